@@ -1,0 +1,102 @@
+# Every target installs what it needs first. The stamps live inside what they vouch for, so deleting the folder is enough
+# to start again; they depend on the locks, so an up-to-date tree goes straight to its work.
+PYTHON ?= python3
+HOST ?= 127.0.0.1
+PORT ?= 8000
+UPGRADE ?=# make lock UPGRADE=--upgrade
+
+VENV := .venv
+BIN := $(VENV)/bin
+UV := $(VENV)/uv/bin/uv
+MODULES := frontend/node_modules
+ASSETS := frontend/dist/manifest.json
+# Once a tree is set up for development, `make run` must not take the tools away again.
+ENVIRONMENT := $(if $(wildcard $(VENV)/.dev),$(VENV)/.dev,$(VENV)/.run)
+PACKAGES := $(if $(wildcard $(MODULES)/.dev),$(MODULES)/.dev,$(MODULES)/.run)
+# Where the machine has no npm, a wheel brings one; it stays out of the way of an installed Node.
+NODE := $(if $(shell command -v npm),,$(VENV)/.node)
+ifdef NODE
+export PATH := $(CURDIR)/$(VENV)/node/bin:$(PATH)
+endif
+# The machine's own certificates, for networks that inspect traffic.
+export UV_SYSTEM_CERTS ?= true
+
+.PHONY: run install assets test check bench screenshots browser lock clean
+.DELETE_ON_ERROR:
+
+run: install
+	exec $(BIN)/hpn serve --host "$(HOST)" --port "$(PORT)"
+
+install: $(ENVIRONMENT) $(ASSETS)
+assets: $(ASSETS)
+
+test: $(VENV)/.dev $(MODULES)/.dev $(ASSETS) browser
+	$(BIN)/pytest $(PYTEST_ARGS)
+
+check: $(VENV)/.dev
+	$(BIN)/ruff format --check
+	$(BIN)/ruff check
+	$(BIN)/mypy
+	$(BIN)/lint-imports
+
+bench: $(VENV)/.dev $(ASSETS)
+	$(BIN)/python -m tests.benchmarks
+
+screenshots: $(VENV)/.dev $(ASSETS) browser
+	$(BIN)/python -m tests.screenshots
+
+# --- Python -----------------------------------------------------------------------------------------------------------
+
+$(UV): requirements-uv.lock
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || { echo "Python 3.11 or newer is needed" >&2; exit 1; }
+	@$(PYTHON) -c 'import ensurepip' 2>/dev/null || { apt-get update && apt-get install -y --no-install-recommends python3-venv; }
+	$(PYTHON) -m venv --clear $(VENV)
+	$(BIN)/python -m pip install --quiet --no-deps --require-hashes --target $(VENV)/uv -r $<
+	@touch $@
+
+$(VENV)/.run: requirements.lock
+$(VENV)/.dev: requirements-dev.lock
+$(VENV)/.run $(VENV)/.dev: $(UV) pyproject.toml
+	$(UV) pip sync --quiet --python $(BIN)/python --require-hashes $(filter %.lock,$^)
+	$(UV) pip install --quiet --python $(BIN)/python --offline --no-deps --editable .
+	@touch $@
+
+# --- Page -------------------------------------------------------------------------------------------------------------
+
+$(VENV)/.node: requirements-node.lock | $(UV)
+	$(UV) pip install --quiet --python $(BIN)/python --target $(VENV)/node --require-hashes -r $<
+	@touch $@
+
+$(MODULES)/.run: NPM_FLAGS := --omit=dev
+$(MODULES)/.run $(MODULES)/.dev: frontend/package.json frontend/package-lock.json frontend/.npmrc | $(NODE)
+	cd frontend && npm ci --loglevel=error $(NPM_FLAGS)
+	@touch $@
+
+$(ASSETS): $(shell find frontend/static 2>/dev/null) frontend/build.py $(PACKAGES) | $(ENVIRONMENT)
+	$(BIN)/python frontend/build.py
+
+# An installed Chromium, else Debian's, else Playwright's own build; the last line of whichever fails says why.
+browser: $(VENV)/.dev
+	@for name in chromium chromium-browser google-chrome google-chrome-stable; do command -v $$name && exit 0; done; \
+	if [ "$$(id -u)" = 0 ] && [ -f /etc/debian_version ] && apt-get update -q \
+	    && apt-get install -q -y --no-install-recommends chromium; then exit 0; fi; \
+	$(BIN)/playwright install chromium || { echo "No Chromium found, and none could be installed" >&2; exit 1; }
+
+# --- Upkeep -----------------------------------------------------------------------------------------------------------
+
+COMPILE := pip compile --quiet --universal --python-version 3.11 --generate-hashes --no-header --no-annotate --no-config \
+	--no-emit-index-url --no-emit-find-links $(UPGRADE)
+
+lock: $(UV) | $(NODE)
+	$(UV) $(COMPILE) pyproject.toml --output-file requirements.lock
+	$(UV) $(COMPILE) pyproject.toml --group dev --constraints requirements.lock --output-file requirements-dev.lock
+	$(UV) $(COMPILE) --group uv --output-file requirements-uv.lock
+	$(UV) $(COMPILE) --group node --output-file requirements-node.lock
+	cd frontend && npm install --package-lock-only --loglevel=error
+	@# npm copies each author's funding address into the lock; the project names no addresses
+	$(BIN)/python -c "import json, pathlib; path = pathlib.Path('frontend/package-lock.json'); lock = json.loads(path.read_text()); \
+	  [package.pop('funding', None) for package in lock['packages'].values()]; path.write_text(json.dumps(lock, indent=2) + '\n')"
+	! grep -nE 'https?:|file:|find-links' requirements*.lock frontend/package-lock.json
+
+clean:
+	rm -rf $(VENV) $(MODULES) frontend/dist bench-results.json .*_cache .hypothesis

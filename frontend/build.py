@@ -1,0 +1,56 @@
+"""Write the page's assets to frontend/dist under content-hashed names, each text file with its compressed forms.
+
+A name changes exactly when its content does, so the service may let browsers keep every file for ever.
+`manifest.json` maps the logical name a template asks for ("app.css") to the hashed one ("app.3f2a9c1b.css").
+"""
+
+import gzip
+import hashlib
+import json
+import shutil
+from pathlib import Path
+
+import brotli
+
+FRONTEND = Path(__file__).parent
+STATIC = FRONTEND / "static"
+DIST = FRONTEND / "dist"
+PACKAGES = {
+    "htmx.min.js": FRONTEND / "node_modules/htmx.org/dist/htmx.min.js",
+    "plotly-basic.min.js": FRONTEND / "node_modules/plotly.js-basic-dist-min/plotly-basic.min.js",
+}
+TEXT_SUFFIXES = {".css", ".html", ".js", ".json", ".map", ".mjs", ".svg", ".txt", ".webmanifest", ".xml"}
+
+
+def sources() -> dict[str, Path]:
+    """Logical name, with forward slashes, to file."""
+    static = {path.relative_to(STATIC).as_posix(): path for path in sorted(STATIC.rglob("*")) if path.is_file()}
+    return static | PACKAGES
+
+
+def hashed_name(name: str, content: bytes) -> str:
+    stem, dot, suffix = name.rpartition(".")
+    return f"{stem}.{hashlib.sha256(content).hexdigest()[:8]}{dot}{suffix}"
+
+
+def write(target: Path, content: bytes) -> None:
+    target.parent.mkdir(parents=True, exist_ok=True)
+    target.write_bytes(content)
+    if target.suffix in TEXT_SUFFIXES:
+        target.with_name(target.name + ".br").write_bytes(brotli.compress(content))
+        target.with_name(target.name + ".gz").write_bytes(gzip.compress(content, mtime=0))
+
+
+def main() -> None:
+    shutil.rmtree(DIST, ignore_errors=True)
+    manifest: dict[str, str] = {}
+    for name, path in sources().items():
+        content = path.read_bytes()
+        manifest[name] = hashed_name(name, content)
+        write(DIST / manifest[name], content)
+    # Last, so that make sees an interrupted build as not done.
+    (DIST / "manifest.json").write_text(json.dumps(manifest, indent=2, sort_keys=True) + "\n")
+
+
+if __name__ == "__main__":
+    main()
