@@ -50,8 +50,9 @@ screenshots: $(VENV)/.dev $(ASSETS) browser
 $(UV): requirements-uv.lock
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || { echo "Python 3.11 or newer is needed" >&2; exit 1; }
 	@$(PYTHON) -c 'import ensurepip' 2>/dev/null || { apt-get update && apt-get install -y --no-install-recommends python3-venv; }
-	$(PYTHON) -m venv --clear $(VENV)
-	$(BIN)/python -m pip install --quiet --no-deps --require-hashes --target $(VENV)/uv -r $<
+	$(PYTHON) -m venv $(VENV)
+	@rm -rf $(VENV)/uv
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps --require-hashes --target $(VENV)/uv -r $<
 	@touch $@
 
 $(VENV)/.run: requirements.lock
