@@ -10,9 +10,11 @@ BIN := $(VENV)/bin
 UV := $(VENV)/uv/bin/uv
 MODULES := frontend/node_modules
 ASSETS := frontend/dist/manifest.json
-# Once a tree is set up for development, `make run` must not take the tools away again.
-ENVIRONMENT := $(if $(wildcard $(VENV)/.dev),$(VENV)/.dev,$(VENV)/.run)
-PACKAGES := $(if $(wildcard $(MODULES)/.dev),$(MODULES)/.dev,$(MODULES)/.run)
+# What is installed: enough to run, or all of it. Once a tree has the tools, `make run` must not take them away again.
+FOR := $(if $(filter check test bench screenshots browser,$(MAKECMDGOALS))$(wildcard $(VENV)/.dev),dev,run)
+PAGE_FOR := $(if $(filter test,$(MAKECMDGOALS))$(wildcard $(MODULES)/.dev),dev,run)
+ENVIRONMENT := $(VENV)/.$(FOR)
+PACKAGES := $(MODULES)/.$(PAGE_FOR)
 # Where the machine has no npm, a wheel brings one; it stays out of the way of an installed Node.
 NODE := $(if $(shell command -v npm),,$(VENV)/.node)
 ifdef NODE
@@ -30,19 +32,19 @@ run: install
 install: $(ENVIRONMENT) $(ASSETS)
 assets: $(ASSETS)
 
-test: $(VENV)/.dev $(MODULES)/.dev $(ASSETS) browser
+test: install browser
 	$(BIN)/pytest $(PYTEST_ARGS)
 
-check: $(VENV)/.dev
+check: $(ENVIRONMENT)
 	$(BIN)/ruff format --check
 	$(BIN)/ruff check
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 
-bench: $(VENV)/.dev $(ASSETS)
+bench: install
 	$(BIN)/python -m tests.benchmarks
 
-screenshots: $(VENV)/.dev $(ASSETS) browser
+screenshots: install browser
 	$(BIN)/python -m tests.screenshots
 
 # --- Python -----------------------------------------------------------------------------------------------------------
@@ -77,7 +79,7 @@ $(ASSETS): $(shell find frontend/static 2>/dev/null) frontend/build.py $(PACKAGE
 	$(BIN)/python frontend/build.py
 
 # An installed Chromium, else Debian's, else Playwright's own build; the last line of whichever fails says why.
-browser: $(VENV)/.dev
+browser: $(ENVIRONMENT)
 	@for name in chromium chromium-browser google-chrome google-chrome-stable; do command -v $$name && exit 0; done; \
 	if [ "$$(id -u)" = 0 ] && [ -f /etc/debian_version ] && apt-get update -q \
 	    && apt-get install -q -y --no-install-recommends chromium; then exit 0; fi; \
