@@ -67,7 +67,8 @@ $(VENV)/.run $(VENV)/.dev: $(UV) pyproject.toml
 # --- Page -------------------------------------------------------------------------------------------------------------
 
 $(VENV)/.node: requirements-node.lock | $(UV)
-	$(UV) pip install --quiet --python $(BIN)/python --target $(VENV)/node --require-hashes -r $<
+	$(UV) venv --quiet --clear --python $(BIN)/python $(VENV)/node
+	$(UV) pip sync --quiet --python $(VENV)/node/bin/python --require-hashes $<
 	@touch $@
 
 $(MODULES)/.run: NPM_FLAGS := --omit=dev
