@@ -1,0 +1,161 @@
+"""The output bearing: equivalent load, envelopes and life between the two published limits.
+
+The handbook's graphs 16.1 to 16.5 are not available. `linear` and `iso281` stand in for them, built on F_R,dyn(max)
+and F_A,dyn(max) of the rating tables; `digitised` follows graph points that a supplement supplies. That the published
+limits belong to f_w = 1 is our reading, not printed. Loads act at the centre of the output shaft and along its axis.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+FloatArray = NDArray[np.float64]
+
+RADIAL_FACTOR = 0.56
+"""X of deep groove ball bearings where the axial part matters (ISO 281, table of factors X and Y)."""
+
+L50_PER_L10 = 5.0
+"""L50 = 5 L10: from the maker's other handbooks, not printed in this one; a Weibull slope of 10/9 gives 5.45."""
+
+PRINTED_LOAD_COEFFICIENTS = (1.0, 1.2, 1.5)
+"""Load coefficients of the printed graphs 16.1 to 16.5."""
+
+
+@dataclass(frozen=True, eq=False)
+class Curve:
+    """Permissible loads from the radial axis (axial 0) round to the axial axis (radial 0), each ray crossed once."""
+
+    radial_N: FloatArray
+    axial_N: FloatArray
+
+    def equivalent_load(self, radial_N: FloatArray, axial_N: FloatArray) -> FloatArray:
+        """Factor by which loads exceed the curve along their own direction; any shape, the same out.
+
+        On the segment between two points with p x d = c, where d is the step to the next point, P = (load x d) / c.
+        """
+        angle = np.arctan2(axial_N / self.axial_N[-1], radial_N / self.radial_N[0])
+        knots = np.arctan2(self.axial_N / self.axial_N[-1], self.radial_N / self.radial_N[0])
+        segment = np.clip(np.searchsorted(knots, angle, side="right") - 1, 0, len(knots) - 2)
+        step_radial, step_axial = np.diff(self.radial_N)[segment], np.diff(self.axial_N)[segment]
+        load = radial_N * step_axial - axial_N * step_radial
+        curve = self.radial_N[segment] * step_axial - self.axial_N[segment] * step_radial
+        return np.asarray(load / curve, dtype=float)
+
+
+def curve_through(points: Sequence[tuple[float, float]]) -> Curve:
+    """Curve through (radial_N, axial_N) points in any order.
+
+    Raises CurveError, with the index of the point, where the points do not start on one axis and end on the other or
+    where a ray from the origin would cross the curve more than once (not star-shaped).
+    """
+    if len(points) < 2:
+        raise CurveError(0, "a curve needs at least two points, one on each axis")
+    order = sorted(range(len(points)), key=lambda index: np.arctan2(points[index][1], points[index][0]))
+    ordered = [points[index] for index in order]
+    if ordered[0][1] != 0 or ordered[0][0] <= 0:
+        raise CurveError(order[0], "no point lies on the radial axis (axial_N 0, radial_N above 0)")
+    if ordered[-1][0] != 0 or ordered[-1][1] <= 0:
+        raise CurveError(order[-1], "no point lies on the axial axis (radial_N 0, axial_N above 0)")
+    for index, (this, following) in enumerate(pairwise(ordered)):
+        if this[0] * following[1] - this[1] * following[0] <= 0:
+            raise CurveError(
+                order[index + 1], "the curve is not star-shaped: two of its points lie in one direction from the origin"
+            )
+    radial, axial = np.array(ordered, dtype=float).T
+    return Curve(radial, axial)
+
+
+class CurveError(ValueError):
+    """Points that make no envelope; `index` names the first wrong one."""
+
+    def __init__(self, index: int, detail: str) -> None:
+        super().__init__(detail)
+        self.index = index
+
+
+def linear_load(radial: FloatArray, axial: FloatArray) -> FloatArray:
+    """Equivalent load P = r + a of normalised loads r, a: the straight line between the published points. [-]"""
+    return radial + axial
+
+
+def iso281_load(radial: FloatArray, axial: FloatArray) -> FloatArray:
+    """Equivalent load P = max(r, 0.56 r + a) of normalised loads; ISO 281 with Y set by the axial limit. [-]"""
+    return np.maximum(radial, RADIAL_FACTOR * radial + axial)
+
+
+def mean_equivalent_load(
+    *, equivalent_load: FloatArray, speed_rpm: FloatArray, duration_s: FloatArray, axis: int = -1
+) -> FloatArray:
+    """Constant load with the damage of the cycle, P_m = (sum n t P^3 / sum n t)^(1/3) along `axis`. [-]
+
+    ISO 281, ball bearings, exponent 3. Holding phases (n = 0) have no weight; a cycle without motion raises nothing
+    and gives NaN, as the application forbids it.
+    """
+    largest = np.max(equivalent_load, axis=axis, keepdims=True)
+    scaled = equivalent_load / np.where(largest > 0, largest, 1.0)
+    weight = np.abs(speed_rpm) * duration_s
+    mean = (weight * scaled * scaled * scaled).sum(axis=axis) / weight.sum(axis=axis)
+    return np.asarray(np.squeeze(largest, axis=axis) * np.cbrt(mean), dtype=float)
+
+
+def life_factor(
+    *,
+    average_output_speed_rpm: FloatArray | float,
+    required_life_L50_h: FloatArray | float,
+    reference_speed_rpm: float,
+    reference_life_h: float,
+) -> FloatArray:
+    """Load factor k = (n_ref L_ref / (n_out_av L_required))^(1/3) that speed and life allow. [-]
+
+    ISO 281. The pause counts in n_out_av, as in equation 17.4.
+    """
+    return np.asarray(
+        np.cbrt(reference_speed_rpm / np.asarray(average_output_speed_rpm))
+        * np.cbrt(reference_life_h / np.asarray(required_life_L50_h)),
+        dtype=float,
+    )
+
+
+def life_L50(
+    *,
+    equivalent_load: FloatArray | float,
+    average_output_speed_rpm: FloatArray | float,
+    reference_speed_rpm: float,
+    reference_life_h: float,
+) -> FloatArray:
+    """Life L50 = L_ref (n_ref / n_out_av) / (f_w P_m)^3 in hours; infinite without a load.
+
+    `equivalent_load` is f_w P_m. ISO 281, ball bearings.
+    """
+    load = np.asarray(equivalent_load)
+    with np.errstate(divide="ignore", over="ignore"):
+        return np.asarray(reference_life_h * (reference_speed_rpm / average_output_speed_rpm) / (load * load * load))
+
+
+def required_L50(life_h: float, basis: str) -> float:
+    """Required life as L50: a requirement given as L10 counts five times."""
+    return life_h * L50_PER_L10 if basis == "L10" else life_h
+
+
+def envelope(
+    *,
+    model: str,
+    radial_limit_N: float,
+    axial_limit_N: float,
+    curve: Curve | None,
+    factor: float,
+) -> tuple[FloatArray, FloatArray]:
+    """Corner points (radial_N, axial_N) of the envelope f P = 1 with f = 1 / factor, from the axial to the radial axis.
+
+    `factor` is 1 / f_w for the published envelope and min(1, k) / f_w for the life envelope.
+    """
+    if model == "digitised":
+        if curve is None:
+            raise ValueError("the digitised model needs the points of a printed curve")
+        return curve.radial_N[::-1] * factor, curve.axial_N[::-1] * factor
+    knee = [(1.0, 1.0 - RADIAL_FACTOR)] if model == "iso281" else []
+    radial, axial = np.array([(0.0, 1.0), *knee, (1.0, 0.0)]).T
+    return radial * radial_limit_N * factor, axial * axial_limit_N * factor

@@ -1,0 +1,432 @@
+"""The catalogue: CSV tables, and a supplement over them, into gears with a source for every figure."""
+
+import hashlib
+from collections import defaultdict
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Any, cast
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hpn import tables
+from hpn.bearing import Curve, CurveError, curve_through
+from hpn.gear import ClampBolt, Gear, HousingBolts, canonical_designation, canonical_size
+from hpn.tables import (
+    AccuracyTable,
+    CatalogueError,
+    ClampBoltTable,
+    EfficiencyTable,
+    EnvelopeTable,
+    FlangeBoltTable,
+    GearTable,
+    HousingBoltTable,
+    LengthTable,
+    RatingTable,
+    SeriesTable,
+    SizeTable,
+    SourceTable,
+    StiffnessTable,
+    Table,
+    TableRow,
+    VersionTable,
+    WeightTable,
+)
+
+FloatArray = NDArray[np.float64]
+HANDBOOK_FOLDER = Path(__file__).parents[2] / "catalogue"
+
+SERIES_FIGURES = {
+    "rated_input_speed": "rpm",
+    "life_at_rated_torque": "h",
+    "bearing_reference_speed": "rpm",
+    "bearing_reference_life_L50": "h",
+}
+"""Figures of series.csv that the equations need, and their units."""
+
+PER_STAGE = (WeightTable, LengthTable, AccuracyTable, StiffnessTable)
+"""Tables whose figures follow size and number of stages."""
+
+ORDERINGS = (
+    (RatingTable, "rated_torque_Nm", "momentary_peak_torque_Nm", False),
+    (RatingTable, "rated_torque_Nm", "repeated_peak_torque_Nm", True),
+    (RatingTable, "repeated_peak_torque_Nm", "momentary_peak_torque_Nm", False),
+    (SizeTable, "average_input_speed_rpm", "maximum_input_speed_rpm", True),
+    (SizeTable, "ambient_temperature_minimum_degC", "ambient_temperature_maximum_degC", False),
+    (LengthTable, "length_min_mm", "length_max_mm", True),
+)
+"""Table, smaller figure, larger figure, and whether they may be equal."""
+
+
+@dataclass(frozen=True, slots=True)
+class SeriesFigure:
+    """A figure or text that holds for the whole series, with its unit and source."""
+
+    value: float | str
+    unit: str | None
+    source: str
+
+
+@dataclass(frozen=True, slots=True)
+class FlangeBolt:
+    """Bolt between motor and gear flange (table 26.1)."""
+
+    bolt_size: str
+    tightening_torque_Nm: float | None
+    source: str
+
+
+@dataclass(frozen=True, slots=True)
+class OutputVersion:
+    """An option of the ordering code (tables 9.2 and 9.3)."""
+
+    position: str
+    code: str
+    description: str
+    source: str
+
+
+class GearColumns:
+    """Figures of some gears as arrays, shape (gears,); NaN where a figure is not published."""
+
+    ratio: FloatArray
+    repeated_peak_torque_Nm: FloatArray
+    rated_torque_Nm: FloatArray
+    momentary_peak_torque_Nm: FloatArray
+    maximum_input_speed_rpm: FloatArray
+    average_input_speed_rpm: FloatArray
+    ambient_temperature_minimum_degC: FloatArray
+    ambient_temperature_maximum_degC: FloatArray
+    weight_kg: FloatArray
+    backlash_arcmin: FloatArray
+    torsional_stiffness_Nm_per_rad: FloatArray
+    length_min_mm: FloatArray
+    length_max_mm: FloatArray
+    dynamic_radial_load_N: FloatArray
+    dynamic_axial_load_N: FloatArray
+
+    def __init__(self, gears: Sequence[Gear]) -> None:
+        for name in self.__class__.__annotations__:
+            column = np.array([np.nan if (v := getattr(gear, name)) is None else v for gear in gears], dtype=float)
+            column.flags.writeable = False
+            setattr(self, name, column)
+
+
+class GearList:
+    """Some gears of the catalogue in its order, once as rows and once as columns."""
+
+    def __init__(self, gears: Sequence[Gear], curves: Sequence[Curve | None]) -> None:
+        self.rows = tuple(gears)
+        self.columns = GearColumns(self.rows)
+        self.curves = tuple(curves)
+
+
+@dataclass(frozen=True)
+class Catalogue:
+    """Every gear of the series, and what holds for the series as a whole."""
+
+    version: str
+    gears: tuple[Gear, ...]
+    series: dict[str, SeriesFigure]
+    flange_bolts: tuple[FlangeBolt, ...]
+    output_versions: tuple[OutputVersion, ...]
+    curves: dict[str, Curve]
+    efficiency: dict[str, tuple[FloatArray, FloatArray]]
+    supplement: str | None
+
+    @cached_property
+    def by_designation(self) -> dict[str, Gear]:
+        """Gears by canonical designation."""
+        return {gear.designation: gear for gear in self.gears}
+
+    @cached_property
+    def sizes(self) -> tuple[str, ...]:
+        """Sizes, ascending."""
+        return tuple(dict.fromkeys(gear.size for gear in self.gears))
+
+    @cached_property
+    def ratios(self) -> tuple[int, ...]:
+        """Ratios of any size, ascending."""
+        return tuple(sorted({gear.ratio for gear in self.gears}))
+
+    @cached_property
+    def rated_input_speed_rpm(self) -> float:
+        """Rated input speed of equation 17.10."""
+        return float(self.series["rated_input_speed"].value)
+
+    @cached_property
+    def life_at_rated_torque_h(self) -> float:
+        """Life at rated torque and rated input speed of equation 17.10."""
+        return float(self.series["life_at_rated_torque"].value)
+
+    @cached_property
+    def bearing_reference(self) -> tuple[float, float]:
+        """Speed in rpm and life L50 in hours that the published bearing loads belong to (note 1 of table 10.1)."""
+        return (
+            float(self.series["bearing_reference_speed"].value),
+            float(self.series["bearing_reference_life_L50"].value),
+        )
+
+    @cached_property
+    def _lists(self) -> dict[object, GearList]:
+        return {}
+
+    def restricted(self, sizes: tuple[str, ...] | None, ratios: tuple[int, ...] | None) -> GearList:
+        """Gears of the given sizes and ratios (None: of all), in catalogue order; maybe none."""
+        key = (sizes and frozenset(sizes), ratios and frozenset(ratios))
+        if key not in self._lists:
+            if len(self._lists) >= 256:  # sizes and ratios come from outside: don't let them fill the memory
+                self._lists.clear()
+            chosen = [
+                gear
+                for gear in self.gears
+                if (sizes is None or gear.size in sizes) and (ratios is None or gear.ratio in ratios)
+            ]
+            self._lists[key] = GearList(chosen, [self.curves.get(gear.size) for gear in chosen])
+        return self._lists[key]
+
+    def find(self, designation: str) -> Gear | None:
+        """Gear of a designation in any of the printed spellings, or None."""
+        return self.by_designation.get(canonical_designation(designation) or "")
+
+    def find_size(self, text: str) -> Gear | None:
+        """First gear of a size in any spelling, or None; what belongs to the size is the same in all of them."""
+        return next((gear for gear in self.gears if gear.size == canonical_size(text)), None)
+
+
+def load_catalogue(folder: Path = HANDBOOK_FOLDER, supplement: Path | None = None) -> Catalogue:
+    """Read, merge and validate the catalogue.
+
+    Raises CatalogueError, which names file, line and column, for the first thing that is wrong.
+    """
+    _refuse_unknown_files(supplement)
+    book = _Book()
+    for table in tables.TABLES:
+        rows = tables.read(folder, table, supplied=False)
+        if supplement:
+            rows = tables.merge(rows, tables.read(supplement, table, supplied=True))
+        book[table] = tables.validated(table, rows)
+    _check(book)
+    return Catalogue(
+        version=_version(folder, supplement),
+        gears=_gears(book),
+        series=_series(book),
+        flange_bolts=tuple(
+            FlangeBolt(row.bolt_size, row.tightening_torque_Nm, book.source(row, "tightening_torque_Nm"))
+            for row in book.of(FlangeBoltTable)
+        ),
+        output_versions=tuple(
+            OutputVersion(row.position, row.code, row.description, book.source(row, "description"))
+            for row in book.of(VersionTable)
+        ),
+        curves=_curves(book),
+        efficiency=_efficiency(book),
+        supplement=str(supplement) if supplement else None,
+    )
+
+
+def _refuse_unknown_files(supplement: Path | None) -> None:
+    if supplement is None:
+        return
+    if not supplement.is_dir():
+        raise CatalogueError(supplement, None, None, "is not a folder")
+    known = {table.file for table in tables.TABLES}
+    for path in sorted(supplement.glob("*.csv")):
+        if path.name not in known:
+            raise CatalogueError(
+                path, None, None, f"is not a table of the catalogue; there are {', '.join(sorted(known))}"
+            )
+
+
+def _version(folder: Path, supplement: Path | None) -> str:
+    digest = hashlib.sha256()
+    for part in filter(None, (folder, supplement)):
+        for table in tables.TABLES:
+            path = part / table.file
+            if path.exists():
+                content = path.read_bytes().replace(b"\r\n", b"\n")
+                digest.update(f"{table.file} {len(content)}\n".encode() + content)
+        digest.update(b"--\n")
+    return digest.hexdigest()[:16]
+
+
+class _Book(dict[type[Table], list[Table]]):
+    """Validated rows by table."""
+
+    def of(self, table: type[TableRow]) -> list[TableRow]:
+        """Rows of one table, typed."""
+        return cast(list[TableRow], self[table])
+
+    def find(self, table: type[TableRow], **key: object) -> TableRow | None:
+        """Row with this key, or None."""
+        return next((row for row in self.of(table) if all(getattr(row, k) == v for k, v in key.items())), None)
+
+    def source(self, row: Table, column: str) -> str:
+        """Where one figure comes from; what the user supplied says so."""
+        cell = row.cells[column]
+        if cell.supplied:
+            return f"supplied by the user: {cell.source or Path(cell.file).name}"
+        page = next(entry.page for entry in self.of(SourceTable) if entry.source == cell.source)
+        return f"{cell.source}, page {page}"
+
+
+def _check(book: _Book) -> None:
+    sources = {row.source for row in book.of(SourceTable)}
+    sizes = {row.size for row in book.of(GearTable)}
+    pairs = {(row.size, row.ratio) for row in book.of(GearTable)} | {
+        (row.size, row.stages) for row in book.of(GearTable)
+    }
+    for table in tables.TABLES:
+        for row in book[table]:
+            cell = row.cells["source"]
+            if not cell.supplied and cell.text not in sources:
+                raise row.error("source", f"{cell.text!r} is not in sources.csv")
+            values = tuple(getattr(row, name) for name in table.key)
+            if "size" in table.key and values[0] not in sizes:
+                raise row.error("size", f"{values[0]} is not a size of gears.csv")
+            if len(table.key) > 1 and table.key[1] in ("ratio", "stages") and values[:2] not in pairs:
+                raise row.error(table.key[1], f"gears.csv has no {values[0]} with {table.key[1]} {values[1]}")
+    _check_stages(book)
+    _check_orderings(book)
+    _check_complete(book)
+    for name, unit in SERIES_FIGURES.items():
+        figure = book.find(SeriesTable, name=name)
+        if figure is None:
+            raise CatalogueError("series.csv", None, "name", f"{name} is missing")
+        if figure.unit != unit:
+            raise figure.error("unit", f"{name} must be in {unit}")
+
+
+def _check_stages(book: _Book) -> None:
+    """A ratio has the same number of stages in every size, and fewer stages never make a larger ratio."""
+    gears = book.of(GearTable)
+    for gear in gears:
+        for other in gears:
+            if (gear.ratio <= other.ratio and gear.stages > other.stages) or (
+                gear.ratio == other.ratio and gear.stages != other.stages
+            ):
+                later = max(gear, other, key=lambda row: row.cells["stages"].line)
+                raise later.error(
+                    "stages",
+                    f"ratio {gear.ratio} with {gear.stages} stages contradicts {other.ratio} with {other.stages}",
+                )
+
+
+def _check_orderings(book: _Book) -> None:
+    for table, smaller, larger, may_equal in ORDERINGS:
+        for row in book[table]:
+            low, high = getattr(row, smaller), getattr(row, larger)
+            if low is not None and high is not None and (low > high or (low == high and not may_equal)):
+                column = larger if row.cells[larger].supplied else smaller
+                raise row.error(
+                    column, f"{smaller} {low:g} must be {'at most' if may_equal else 'below'} {larger} {high:g}"
+                )
+
+
+def _check_complete(book: _Book) -> None:
+    """A size that the handbook rates is rated whole; a supplement may rate gear by gear."""
+    rated = {row.size: row for row in reversed(book.of(RatingTable)) if not row.cells["size"].supplied}
+    for gear in book.of(GearTable):
+        if gear.size not in rated:
+            continue
+        rows: dict[type[Table], Table | None] = {
+            RatingTable: book.find(RatingTable, size=gear.size, ratio=gear.ratio),
+            SizeTable: book.find(SizeTable, size=gear.size),
+            WeightTable: book.find(WeightTable, size=gear.size, stages=gear.stages),
+            LengthTable: book.find(LengthTable, size=gear.size, stages=gear.stages),
+            AccuracyTable: book.find(AccuracyTable, size=gear.size, stages=gear.stages),
+            StiffnessTable: book.find(StiffnessTable, size=gear.size, stages=gear.stages),
+        }
+        for table, row in rows.items():
+            if row is None:
+                detail = f"{table.file} has no row for {gear.size} ratio {gear.ratio}, but {gear.size} is rated"
+                raise rated[gear.size].error("size", detail)
+            for column in table.columns():
+                if column not in ("source", "note") and getattr(row, column) is None:
+                    raise row.error(column, f"is blank, but {gear.size} is rated")
+
+
+def _series(book: _Book) -> dict[str, SeriesFigure]:
+    series = {}
+    for row in book.of(SeriesTable):
+        value: float | str = row.value
+        if row.unit:
+            try:
+                value = float(row.value)
+            except ValueError:
+                raise row.error("value", f"must be a number of {row.unit} (found {row.value!r})") from None
+            if not np.isfinite(value) or (row.name in SERIES_FIGURES and value <= 0):
+                raise row.error("value", f"must be above 0 (found {row.value!r})")
+        series[row.name] = SeriesFigure(value, row.unit, book.source(row, "value"))
+    return series
+
+
+def _gears(book: _Book) -> tuple[Gear, ...]:
+    gears = []
+    for row in sorted(book.of(GearTable), key=lambda row: (int(row.size[:-1]), row.ratio)):
+        parts: list[Table | None] = [
+            book.find(RatingTable, size=row.size, ratio=row.ratio),
+            book.find(SizeTable, size=row.size),
+            *(book.find(table, size=row.size, stages=row.stages) for table in PER_STAGE),
+        ]
+        values: dict[str, Any] = {}
+        sources = {"ratio": book.source(row, "ratio"), "stages": book.source(row, "stages")}
+        for part in filter(None, parts):
+            for column in part.columns():
+                if column not in part.key and column != "source":
+                    values[column] = getattr(part, column)
+                    if values[column] is not None:
+                        sources[column] = book.source(part, column)
+        gears.append(
+            Gear(
+                designation=f"HPN-{row.size}-{row.ratio}",
+                size=row.size,
+                ratio=row.ratio,
+                stages=row.stages,
+                **values,
+                clamp_bolts=tuple(
+                    ClampBolt(bolt.bolt_size, bolt.tightening_torque_Nm, book.source(bolt, "tightening_torque_Nm"))
+                    for bolt in book.of(ClampBoltTable)
+                    if bolt.size == row.size
+                ),
+                housing_bolts=_housing_bolts(book, row.size),
+                sources=sources,
+            )
+        )
+    return tuple(gears)
+
+
+def _housing_bolts(book: _Book, size: str) -> HousingBolts | None:
+    row = book.find(HousingBoltTable, size=size)
+    if row is None:
+        return None
+    source = book.source(row, "tightening_torque_Nm")
+    return HousingBolts(row.number_of_bolts, row.bolt_size, row.pitch_diameter_mm, row.tightening_torque_Nm, source)
+
+
+def _curves(book: _Book) -> dict[str, Curve]:
+    """Curves by size, from the f_w = 1 points; curves of other load coefficients are validated alike."""
+    points: dict[tuple[str, float], list[EnvelopeTable]] = defaultdict(list)
+    for row in book.of(EnvelopeTable):
+        points[row.size, row.load_coefficient].append(row)
+    curves = {}
+    for (size, load_coefficient), rows in points.items():
+        try:
+            curve = curve_through([(row.radial_N, row.axial_N) for row in rows])
+        except CurveError as error:
+            raise rows[error.index].error("axial_N", str(error)) from None
+        if load_coefficient == 1:
+            curves[size] = curve
+    return curves
+
+
+def _efficiency(book: _Book) -> dict[str, tuple[FloatArray, FloatArray]]:
+    points: dict[str, list[tuple[float, float]]] = defaultdict(list)
+    for row in book.of(EfficiencyTable):
+        points[f"HPN-{row.size}-{row.ratio}"].append((row.torque_Nm, row.efficiency))
+    return {
+        designation: (np.array([t for t, _ in sorted(curve)]), np.array([eta for _, eta in sorted(curve)]))
+        for designation, curve in points.items()
+    }

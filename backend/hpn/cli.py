@@ -1,0 +1,97 @@
+"""Command line: `hpn select application.json`, `hpn catalogue`, `hpn serve`."""
+
+import argparse
+import sys
+from pathlib import Path
+
+import orjson
+import uvicorn
+from pydantic import ValidationError
+
+from hpn.application import Application, InputError
+from hpn.catalogue import Catalogue, load_catalogue
+from hpn.selection import select
+from hpn.tables import CatalogueError
+from hpn.web.links import to_link
+from hpn.web.problems import Problem
+from hpn.web.settings import Settings
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Run a command; 0 for success, 1 where no gear is suitable, 2 for input that can't be used."""
+    options = _parser().parse_args(arguments)
+    try:
+        result: int = options.run(options)
+        return result
+    except (CatalogueError, OSError) as error:
+        return _refuse(str(error))
+    except (ValidationError, InputError) as error:
+        problem = Problem.of(error)
+        lines = [f"{entry['pointer'] or '/'}: {entry['detail']}" for entry in problem.body().get("errors", ())]
+        return _refuse("\n".join(lines) or problem.detail)
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser("hpn", description="Select a Harmonic Drive HPN planetary gear.")
+    commands = parser.add_subparsers(required=True, metavar="command")
+    one = commands.add_parser("select", help="select a gear for an application file (JSON; - for standard input)")
+    one.add_argument("file")
+    one.add_argument("--json", action="store_true", help="print the whole reply of the API instead of a table")
+    one.set_defaults(run=_select)
+    listing = commands.add_parser("catalogue", help="list the gears, or show one")
+    listing.add_argument("designation", nargs="?")
+    listing.set_defaults(run=_catalogue)
+    serve = commands.add_parser("serve", help="serve page and API")
+    serve.add_argument("--host", default="127.0.0.1")
+    serve.add_argument("--port", type=int, default=8000)
+    serve.add_argument("--workers", type=int, default=1)
+    serve.set_defaults(run=_serve)
+    return parser
+
+
+def _select(options: argparse.Namespace) -> int:
+    content = sys.stdin.buffer.read() if options.file == "-" else Path(options.file).read_bytes()
+    application = Application.model_validate_json(content)
+    selection = select(application, _loaded())
+    link = to_link(application)
+    if options.json:
+        sys.stdout.write(selection.json(link).decode() + "\n")
+    else:
+        reply = selection.reply(link)
+        print(f"selected: {reply['selected'] or 'none is suitable'}")
+        for candidate in reply["candidates"]:
+            used = "" if candidate["utilisation"] is None else f"{candidate['utilisation']:.1%}"
+            print(f"{candidate['designation']:<11} {candidate['status']:<10} {used:>8}  {candidate['reason']}")
+        for notice in reply["notices"]:
+            print(f"note: {notice['text']}")
+    return 0 if selection.selected else 1
+
+
+def _catalogue(options: argparse.Namespace) -> int:
+    catalogue = _loaded()
+    if options.designation is None:
+        for gear in catalogue.gears:
+            rated = f"T_N {gear.rated_torque_Nm:g} Nm" if gear.rated_torque_Nm else "unrated"
+            print(f"{gear.designation:<11} {gear.stages}-stage  {rated}")
+        return 0
+    found = catalogue.find(options.designation)
+    if found is None:
+        return _refuse(f"the catalogue has no gear {options.designation!r}; a designation is written like HPN-20A-5")
+    print(orjson.dumps(found, option=orjson.OPT_INDENT_2).decode())
+    return 0
+
+
+def _serve(options: argparse.Namespace) -> int:
+    _loaded()  # a wrong catalogue stops here, with its file, line and column
+    uvicorn.run("hpn.web.app:create_app", factory=True, host=options.host, port=options.port, workers=options.workers)
+    return 0
+
+
+def _loaded() -> Catalogue:
+    settings = Settings()
+    return load_catalogue(settings.catalogue_folder, settings.catalogue_supplement)
+
+
+def _refuse(text: str) -> int:
+    print(text, file=sys.stderr)
+    return 2

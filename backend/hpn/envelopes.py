@@ -1,0 +1,76 @@
+"""Load envelopes of a size's output bearing, as a user asks for them: at a speed, a life and load coefficients."""
+
+from dataclasses import dataclass
+from typing import Annotated
+
+from pydantic import Field
+
+from hpn import bearing
+from hpn.application import BearingModel, InputError, Model
+from hpn.catalogue import Catalogue
+from hpn.gear import Gear
+
+
+class EnvelopeQuery(Model):
+    """Condition of the life envelopes; as a query gives it, so numbers come as text."""
+
+    speed_rpm: Annotated[float, Field(gt=0, le=1e6, allow_inf_nan=False)] = Field(
+        100.0, description="Average output speed, pause included."
+    )
+    life_h: Annotated[float, Field(gt=0, le=1e9, allow_inf_nan=False)] = Field(
+        20_000.0, description="Required life of the output bearing as L50."
+    )
+    load_coefficient: Annotated[float, Field(ge=1, le=3, allow_inf_nan=False)] = Field(
+        1.0, description="Load coefficient f_w, beside the printed 1, 1.2, 1.5."
+    )
+    model: BearingModel = Field("linear", description="How the envelope runs between the two published limits.")
+
+
+@dataclass(frozen=True, slots=True)
+class EnvelopeCurve:
+    """Corner points of one envelope, from the axial to the radial axis."""
+
+    load_coefficient: float
+    radial_N: list[float]
+    axial_N: list[float]
+
+
+def life_envelopes(catalogue: Catalogue, gear: Gear, query: EnvelopeQuery) -> list[EnvelopeCurve]:
+    """What a constant load may be at the query's speed and life, for f_w = 1, 1.2, 1.5 and the query's own.
+
+    The published envelope times min(1, k) / f_w: slower running never enlarges it. Raises InputError where the size
+    has no published limits, or no curve points for the digitised model.
+    """
+    speed, life = catalogue.bearing_reference
+    k = bearing.life_factor(
+        average_output_speed_rpm=query.speed_rpm,
+        required_life_L50_h=query.life_h,
+        reference_speed_rpm=speed,
+        reference_life_h=life,
+    )
+    coefficients = dict.fromkeys((*bearing.PRINTED_LOAD_COEFFICIENTS, query.load_coefficient))
+    return [envelope_curve(catalogue, gear, query.model, f_w, min(1.0, float(k))) for f_w in coefficients]
+
+
+def envelope_curve(
+    catalogue: Catalogue, gear: Gear, model: BearingModel, load_coefficient: float, factor: float = 1.0
+) -> EnvelopeCurve:
+    """Envelope of one size: the published one times `factor` / f_w. Raises InputError as `life_envelopes` does."""
+    curve = catalogue.curves.get(gear.size)
+    if model == "digitised" and curve is None:
+        raise InputError(
+            (
+                ("model",),
+                f"there are no curve points of {gear.name}: put them into bearing_envelopes.csv of a supplement",
+            )
+        )
+    if gear.dynamic_radial_load_N is None or gear.dynamic_axial_load_N is None:
+        raise InputError((("size",), f"the bearing limits of {gear.name} are not published, so it has no envelope"))
+    radial, axial = bearing.envelope(
+        model=model,
+        radial_limit_N=gear.dynamic_radial_load_N,
+        axial_limit_N=gear.dynamic_axial_load_N,
+        curve=curve,
+        factor=factor / load_coefficient,
+    )
+    return EnvelopeCurve(load_coefficient, radial.tolist(), axial.tolist())

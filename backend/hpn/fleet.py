@@ -1,0 +1,47 @@
+"""Many applications at once: the batch behind a PLM system's ten thousand axes."""
+
+from collections import defaultdict
+from collections.abc import Iterable, Sequence
+
+from hpn.application import Application, InputError
+from hpn.catalogue import Catalogue, GearList
+from hpn.checks import evaluate
+from hpn.duty import Duty
+from hpn.selection import Selection, candidates_of, rank
+
+CHUNK_CYCLES = 256
+CHUNK_PHASES = 100_000
+
+
+def select_fleet(applications: Sequence[Application], catalogue: Catalogue) -> list[Selection | InputError]:
+    """One selection, or the reason why there is none, per application, in their order.
+
+    Applications with the same candidates are evaluated together, in chunks that stay inside the processor's cache.
+    """
+    results: list[Selection | InputError | None] = [None] * len(applications)
+    groups: dict[GearList, list[int]] = defaultdict(list)
+    for index, application in enumerate(applications):
+        try:
+            groups[candidates_of(application, catalogue)].append(index)
+        except InputError as error:
+            results[index] = error
+    for gears, indices in groups.items():
+        for chunk in _chunks(indices, applications):
+            members = [applications[index] for index in chunk]
+            evaluation = evaluate(Duty(members), gears, catalogue)
+            for place, index in enumerate(chunk):
+                results[index] = Selection(applications[index], catalogue, evaluation, rank(evaluation, place), place)
+    return [result for result in results if result is not None]
+
+
+def _chunks(indices: list[int], applications: Sequence[Application]) -> Iterable[list[int]]:
+    """Indices in chunks of cycles of like length, since every cycle of a chunk is padded to its longest."""
+    chunk: list[int] = []
+    for index in sorted(indices, key=lambda index: len(applications[index].duty_cycle.phases)):
+        phases = len(applications[index].duty_cycle.phases)
+        if chunk and (len(chunk) >= CHUNK_CYCLES or (len(chunk) + 1) * phases > CHUNK_PHASES):
+            yield chunk
+            chunk = []
+        chunk.append(index)
+    if chunk:
+        yield chunk

@@ -1,0 +1,178 @@
+"""What the reader of a result must know beyond its numbers: assumptions, standings, unlimited values."""
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from hpn.application import Application
+from hpn.checks import Evaluation
+
+
+@dataclass(frozen=True, slots=True)
+class Notice:
+    """A note on the result: an English template (msgid for translation) and the values in it."""
+
+    code: str
+    template: str
+    values: dict[str, Any] = field(default_factory=dict)
+
+    @property
+    def text(self) -> str:
+        """The notice in English."""
+        return self.template.format(**self.values)
+
+
+AREAS = {
+    "aerospace": "aerospace",
+    "explosive_area": "areas at risk of explosion",
+    "nuclear": "machines for a nuclear purpose",
+    "vacuum": "vacuum",
+    "household": "household devices",
+    "medical": "medical equipment",
+    "human_contact": "devices that interact directly with the human body",
+    "people_transport": "machines for transporting or lifting people",
+    "amusement": "devices for funfairs and leisure parks",
+}
+"""Application areas of section 2.4 by their code; English msgids."""
+
+
+def notices_of(evaluation: Evaluation, index: int) -> list[Notice]:
+    """Notices on application `index` of an evaluation, most general last."""
+    case, application = evaluation.case, evaluation.case.duty.applications[index]
+    return [
+        *_area(application),
+        *_emergency_stop(evaluation, index),
+        *_life(evaluation, index),
+        *_bearing(evaluation, index),
+        *_motor(application, bool(case.catalogue.efficiency)),
+        *_catalogue(evaluation),
+    ]
+
+
+def _area(application: Application) -> list[Notice]:
+    if application.application_area is None:
+        return []
+    return [
+        Notice(
+            "application_area",
+            "Use in this area ({area}) needs a risk assessment and the maker's approval (handbook 2.4).",
+            {"area": AREAS[application.application_area]},
+        )
+    ]
+
+
+def _emergency_stop(evaluation: Evaluation, index: int) -> list[Notice]:
+    case, stop = evaluation.case, evaluation.case.duty.applications[index].emergency_stop
+    if stop is None or case.momentary_peak_count is None:
+        return []
+    notices = []
+    largest = float(case.duty.maximum_torque_Nm[index, 0])
+    if abs(stop.torque_Nm) < largest:
+        notices.append(
+            Notice(
+                "emergency_stop_below_maximum",
+                "The emergency-stop torque of {stop:g} Nm is below the largest torque of the cycle, {largest:g} Nm: is "
+                "it really the emergency?",
+                {"stop": abs(stop.torque_Nm), "largest": largest},
+            )
+        )
+    if np.isinf(case.momentary_peak_count[index]).any():
+        notices.append(
+            Notice(
+                "momentary_peak_count_unlimited",
+                "Where the emergency-stop torque is at or below T_R, equation 17.9 sets no limit to the number of "
+                "stops: the allowed number is empty there.",
+            )
+        )
+    return notices
+
+
+def _life(evaluation: Evaluation, index: int) -> list[Notice]:
+    if not np.isinf(evaluation.case.life_L10_h[index]).any():
+        return []
+    return [
+        Notice(
+            "life_unlimited",
+            "The average torque is 0 or so small that equation 17.10 gives a life without limit: the life is empty.",
+        )
+    ]
+
+
+def _bearing(evaluation: Evaluation, index: int) -> list[Notice]:
+    case, load = evaluation.case, evaluation.case.duty.applications[index].loads
+    if load is None or case.bearing is None:
+        return []
+    standing = (
+        "The output bearing is judged along curve points that you supplied."
+        if load.model == "digitised"
+        else "The envelope of the output bearing is computed between the two published limits; the handbook's printed "
+        "curve was not available."
+    )
+    notices = [
+        Notice("bearing_envelope_computed" if load.model != "digitised" else "bearing_envelope_supplied", standing),
+        Notice(
+            "bearing_load_position",
+            "Loads act at the centre of the output shaft and along its axis; a load that acts elsewhere can't be "
+            "judged from the published data.",
+        ),
+        Notice(
+            "bearing_life_basis",
+            "Bearing life L10 = L50 / 5 is the relation of the maker's other handbooks, not printed in this one; a "
+            "Weibull slope of 10/9 gives 5.45.",
+        ),
+    ]
+    if np.isinf(case.bearing.life_L50_h[index]).any():
+        notices.append(
+            Notice(
+                "bearing_life_unlimited",
+                "The equivalent load of the moving phases is 0 or so small that the bearing life has no limit: it is "
+                "empty.",
+            )
+        )
+    return notices
+
+
+def _motor(application: Application, curves: bool) -> list[Notice]:
+    requirements = application.requirements
+    if requirements.efficiency is not None:
+        return [
+            Notice(
+                "efficiency_assumed",
+                "Motor torques use the efficiency of {efficiency:g} that you assume.",
+                {"efficiency": requirements.efficiency},
+            )
+        ]
+    if requirements.motor is None and application.rank_by != "motor_torque":
+        return []
+    if curves:
+        return [
+            Notice(
+                "efficiency_supplied",
+                "Motor torques use the efficiency curves that you supplied; where they say nothing, loss-free: a lower "
+                "bound.",
+            )
+        ]
+    return [
+        Notice(
+            "efficiency_unknown",
+            "Motor torques are loss-free, a lower bound: the handbook's efficiency curves were not available and no "
+            "efficiency is stated.",
+        )
+    ]
+
+
+def _catalogue(evaluation: Evaluation) -> list[Notice]:
+    case = evaluation.case
+    notes = {gear.name: gear.note for gear in case.gears.rows if gear.note and gear.rated_torque_Nm is None}
+    notices = [
+        Notice("size_unrated", "{name} is listed as unrated. {note}", {"name": n, "note": t}) for n, t in notes.items()
+    ]
+    if case.catalogue.supplement:
+        notices.append(
+            Notice(
+                "catalogue_supplement",
+                "Some catalogue figures are supplied by the user; their sources say so.",
+            )
+        )
+    return notices
