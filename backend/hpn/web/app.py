@@ -1,0 +1,72 @@
+"""The service: one factory that puts settings, catalogue, routes and limits together."""
+
+from typing import Any
+
+from fastapi import FastAPI
+from pydantic.json_schema import models_json_schema
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
+
+from hpn import ENGINE_VERSION
+from hpn.application import Application
+from hpn.catalogue import load_catalogue
+from hpn.web import api, health, pages, problems, schemas
+from hpn.web.settings import Settings
+
+SECURITY_HEADERS = [
+    (
+        b"content-security-policy",
+        b"default-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data: blob:; "
+        b"base-uri 'none'; form-action 'self'; frame-ancestors 'none'",
+    ),
+    (b"x-content-type-options", b"nosniff"),
+    (b"referrer-policy", b"same-origin"),
+]
+
+
+def create_app(settings: Settings | None = None) -> FastAPI:
+    """The application; raises CatalogueError where the catalogue or its supplement is wrong."""
+    settings = settings or Settings()
+    app = FastAPI(
+        title="HPN Select",
+        version=ENGINE_VERSION,
+        summary="Which Harmonic Drive HPN planetary gear fits an application, and why.",
+        description="Independent of the maker; check a selection with the maker before ordering.",
+        docs_url=None,
+        redoc_url=None,
+        license_info={"name": "Apache-2.0", "identifier": "Apache-2.0"},
+    )
+    app.state.settings = settings
+    app.state.catalogue = load_catalogue(settings.catalogue_folder, settings.catalogue_supplement)
+    problems.install(app)
+    for router in (health.router, api.direct, api.router):
+        app.include_router(router)
+    app.router.routes.extend(pages.routes)
+    app.add_middleware(SecurityHeaders)
+    document = app.openapi
+    app.openapi = lambda: _complete(document())  # type: ignore[method-assign]
+    return app
+
+
+def _complete(document: dict[str, Any]) -> dict[str, Any]:
+    """Add the schemas of request bodies and problems, which direct routes refer to by name."""
+    models: list[Any] = [(model, "validation") for model in (Application, schemas.Batch, schemas.ProblemReply)]
+    _, definitions = models_json_schema(models, ref_template="#/components/schemas/{model}")
+    document.setdefault("components", {}).setdefault("schemas", {}).update(definitions["$defs"])
+    return document
+
+
+class SecurityHeaders:
+    """Headers that keep the page to its own host."""
+
+    def __init__(self, app: ASGIApp) -> None:
+        self.app = app
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Pass the request on, and add the headers to the start of the response."""
+
+        async def send_with_headers(message: Message) -> None:
+            if message["type"] == "http.response.start":
+                message["headers"] = [*message.get("headers", ()), *SECURITY_HEADERS]
+            await send(message)
+
+        await self.app(scope, receive, send_with_headers if scope["type"] == "http" else send)

@@ -1,0 +1,43 @@
+"""Reading a request's body within limits of type, size and time."""
+
+import asyncio
+
+from starlette.requests import ClientDisconnect, Request
+
+from hpn.web.problems import Problem
+
+
+async def read_json(request: Request, *, maximum_bytes: int, seconds: float) -> bytes:
+    """Body of a JSON request.
+
+    Raises Problem 415 for another content type, 413 above `maximum_bytes`, 408 when it has not arrived in `seconds`.
+    """
+    require_content_type(request, "application/json")
+    try:
+        async with asyncio.timeout(seconds):
+            return await _read(request, maximum_bytes)
+    except TimeoutError:
+        raise Problem(408, f"the body did not arrive within {seconds:g} s") from None
+    except ClientDisconnect:
+        raise Problem(400, "the connection closed before the body was complete") from None
+
+
+def require_content_type(request: Request, expected: str) -> None:
+    """Raise Problem 415 unless the request's content type is `expected`."""
+    given = request.headers.get("content-type", "").partition(";")[0].strip().lower()
+    if given != expected:
+        raise Problem(415, f"send the body as {expected} (the Content-Type header says {given or 'nothing'})")
+
+
+async def _read(request: Request, maximum_bytes: int) -> bytes:
+    too_large = Problem(413, f"the body may have {maximum_bytes} bytes at most")
+    declared = request.headers.get("content-length", "0")
+    if declared.isascii() and declared.isdigit() and int(declared[:20]) > maximum_bytes:
+        raise too_large
+    chunks, size = [], 0
+    async for chunk in request.stream():
+        size += len(chunk)
+        if size > maximum_bytes:
+            raise too_large
+        chunks.append(chunk)
+    return b"".join(chunks)

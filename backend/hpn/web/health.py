@@ -1,0 +1,33 @@
+"""Whether the service lives and is ready, for load balancers and orchestrators."""
+
+from fastapi import APIRouter
+from pydantic import BaseModel, Field
+from starlette.requests import Request
+
+router = APIRouter()
+
+
+class Health(BaseModel):
+    """State of the service."""
+
+    status: str = Field(description="ok while the service answers.")
+
+
+class Readiness(Health):
+    """State of the service and of what it needs."""
+
+    catalogue_version: str = Field(description="Hash of the loaded catalogue's content.")
+    gears: int = Field(description="Number of gears in the catalogue.")
+
+
+@router.get("/healthz")
+async def healthz() -> Health:
+    """The process answers."""
+    return Health(status="ok")
+
+
+@router.get("/readyz")
+async def readyz(request: Request) -> Readiness:
+    """The catalogue is loaded."""
+    catalogue = request.app.state.catalogue
+    return Readiness(status="ok", catalogue_version=catalogue.version, gears=len(catalogue.gears))

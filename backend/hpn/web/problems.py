@@ -1,0 +1,130 @@
+"""Errors as RFC 9457 problem details: what was wrong, where, and what would be right."""
+
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+import orjson
+from fastapi import FastAPI
+from fastapi.exceptions import RequestValidationError
+from pydantic import ValidationError
+from starlette.exceptions import HTTPException
+from starlette.requests import Request
+from starlette.responses import Response
+
+from hpn.application import InputError
+
+MEDIA_TYPE = "application/problem+json"
+MAXIMUM_ERRORS = 100
+TITLES = {
+    400: "The request can't be read",
+    401: "An API key is needed",
+    403: "Not allowed",
+    404: "Not found",
+    405: "Method not allowed",
+    406: "Not acceptable",
+    408: "The request took too long to arrive",
+    412: "Precondition failed",
+    413: "The request is too large",
+    415: "The content type is not supported",
+    422: "The input has errors",
+    429: "Too many requests",
+    500: "Internal error",
+    503: "Not available at the moment",
+}
+
+Location = Sequence[str | int]
+
+
+class Problem(HTTPException):
+    """A refusal with its status, a text for people, and the fields it is about."""
+
+    def __init__(
+        self,
+        status: int,
+        detail: str,
+        errors: Iterable[tuple[Location, str]] = (),
+        headers: dict[str, str] | None = None,
+    ) -> None:
+        super().__init__(status, detail, headers)
+        self.errors = list(errors)
+
+    @classmethod
+    def of(cls, error: ValidationError | InputError) -> "Problem":
+        """Problem for input that the models or the selection refuse."""
+        if isinstance(error, InputError):
+            return cls(422, str(error), error.problems)
+        found = error.errors(include_url=False, include_context=False, include_input=False)
+        if found and found[0]["type"] == "json_invalid":
+            return cls(400, found[0]["msg"])
+        return cls.at((entry["loc"], entry["type"], entry["msg"]) for entry in found)
+
+    @classmethod
+    def at(cls, found: Iterable[tuple[Location, str, str]]) -> "Problem":
+        """Problem for pydantic's (location, type, message) entries."""
+        # A list whose items are wrong is also reported as too short; the items say it better.
+        entries = list(found)
+        items = {tuple(location[:-2]) for location, _, _ in entries if len(location) > 2}
+        errors = [
+            (location, plain_message(kind, message))
+            for location, kind, message in entries
+            if kind != "too_short" or tuple(location) not in items
+        ]
+        return cls(422, "; ".join(f"{pointer(location)}: {text}" for location, text in errors[:3]), errors)
+
+    def body(self) -> dict[str, Any]:
+        """The problem as a JSON object."""
+        body: dict[str, Any] = {
+            "type": "about:blank",
+            "title": TITLES.get(self.status_code, "Error"),
+            "status": self.status_code,
+            "detail": self.detail,
+        }
+        if self.errors:
+            body["errors"] = [
+                {"pointer": pointer(location), "detail": detail} for location, detail in self.errors[:MAXIMUM_ERRORS]
+            ]
+        return body
+
+    def response(self) -> Response:
+        """The problem as a response."""
+        return Response(orjson.dumps(self.body()), self.status_code, self.headers, MEDIA_TYPE)
+
+
+def plain_message(kind: str, message: str) -> str:
+    """Pydantic's message in words that say what would be right."""
+    return {
+        "extra_forbidden": "is not a field of this object",
+        "missing": "is required",
+        "float_parsing": "must be a number, such as 9.3",
+        "finite_number": "must be a finite number",
+        "float_type": "must be a JSON number, such as 9.3",
+        "int_type": "must be a JSON integer, such as 5",
+    }.get(kind) or message.removeprefix("Value error, ").replace("Input should", "must").replace("Tuple should", "must")
+
+
+def pointer(location: Location) -> str:
+    """JSON pointer (RFC 6901) of a location."""
+    return "".join("/" + str(part).replace("~", "~0").replace("/", "~1") for part in location)
+
+
+def install(app: FastAPI) -> None:
+    """Answer every error of `app` as a problem."""
+
+    async def refused(request: Request, error: Exception) -> Response:
+        if isinstance(error, ValidationError | InputError):
+            return Problem.of(error).response()
+        if isinstance(error, RequestValidationError):
+            return Problem.at((entry["loc"][1:], entry["type"], entry["msg"]) for entry in error.errors()).response()
+        if isinstance(error, Problem):
+            return error.response()
+        assert isinstance(error, HTTPException)
+        text = {404: f"there is nothing at {request.url.path}", 405: f"{request.method} is not possible here"}
+        headers = dict(error.headers) if error.headers else None
+        return Problem(error.status_code, text.get(error.status_code, error.detail), headers=headers).response()
+
+    async def failed(request: Request, error: Exception) -> Response:
+        return Problem(500, "the service made a mistake; it is in the log").response()
+
+    for kind in (ValidationError, RequestValidationError, InputError, HTTPException):
+        app.add_exception_handler(kind, refused)
+    app.add_exception_handler(Exception, failed)
