@@ -22,6 +22,7 @@ export PATH := $(CURDIR)/$(VENV)/node/bin:$(PATH)
 endif
 # The machine's own certificates, for networks that inspect traffic.
 export UV_SYSTEM_CERTS ?= true
+export NODE_USE_SYSTEM_CA ?= 1
 
 .PHONY: run install assets test check bench screenshots browser lock clean
 .DELETE_ON_ERROR:
