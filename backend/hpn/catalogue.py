@@ -121,6 +121,9 @@ class GearList:
         self.rows = tuple(gears)
         self.columns = GearColumns(self.rows)
         self.curves = tuple(curves)
+        self.names = tuple(
+            tuple(getattr(gear, field) for gear in self.rows) for field in ("designation", "size", "ratio", "stages")
+        )
 
 
 @dataclass(frozen=True)

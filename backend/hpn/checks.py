@@ -7,6 +7,7 @@ tests, why, and what to turn stands in `explanations.py`, one entry per code.
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,7 +21,7 @@ from hpn.explanations import EXPLANATIONS, Explanation
 FloatArray = NDArray[np.float64]
 Terms = tuple[FloatArray, FloatArray, FloatArray]
 PASS, FAIL, NOT_RATED, ABSENT = range(4)
-STATUS = ("pass", "fail", "not_rated")
+STATUS = ("pass", "fail", "not_rated", "absent")
 
 
 class Case:
@@ -53,8 +54,7 @@ class Case:
 
     def _motor_torque(self) -> None:
         duty, ratio = self.duty, self.gears.columns.ratio
-        stated = duty.column(lambda a: a.requirements.efficiency)
-        efficiency = np.where(np.isnan(stated), 1.0, stated)
+        efficiency = duty.column(lambda a: a.requirements.efficiency or 1.0)
         self.motor_peak_torque_Nm = equations.motor_torque(
             output_torque_Nm=duty.maximum_torque_Nm, ratio=ratio, efficiency=efficiency
         )
@@ -62,6 +62,9 @@ class Case:
             output_torque_Nm=duty.rms_torque_Nm, ratio=ratio, efficiency=efficiency
         )
         curves = self.catalogue.efficiency
+        if not curves:
+            return
+        stated = duty.column(lambda a: a.requirements.efficiency)
         for index, gear in enumerate(self.gears.rows):
             if gear.designation not in curves:
                 continue
@@ -286,8 +289,8 @@ class Evaluation:
     """
 
     checks: tuple[Check, ...]
-    demand: tuple[FloatArray, ...]
-    limit: tuple[FloatArray, ...]
+    demand: list[FloatArray]
+    limit: list[FloatArray]
     utilisation: FloatArray
     status: NDArray[np.int8]
     case: Case
@@ -295,29 +298,29 @@ class Evaluation:
     @property
     def load_checks(self) -> NDArray[np.bool_]:
         """Which of the checks are load checks, shape (checks, 1, 1)."""
-        return np.array([check.is_load_check for check in self.checks])[:, None, None]
+        return _load_checks(self.checks)
+
+
+@lru_cache(maxsize=1024)
+def _load_checks(checks: tuple[Check, ...]) -> NDArray[np.bool_]:
+    return np.array([check.is_load_check for check in checks])[:, None, None]
 
 
 def evaluate(duty: Duty, gears: GearList, catalogue: Catalogue) -> Evaluation:
     """Every check that the applications ask for, on every gear."""
     asked = [(check, [check.asked(a) for a in duty.applications]) for check in CHECKS]
     active = [(check, mask) for check, mask in asked if any(mask)]
+    checks = tuple(check for check, _ in active)
     with np.errstate(divide="ignore", invalid="ignore"):
         case = Case(duty, gears, catalogue)
-        terms = [check.terms(case) for check, _ in active]
-    utilisation = np.empty((len(active), len(duty.applications), len(gears.rows)))
+        terms = [check.terms(case) for check in checks]
+    utilisation = np.empty((len(checks), len(duty.applications), len(gears.rows)))
     for index, (_, _, values) in enumerate(terms):
         utilisation[index] = values
-    is_load = np.array([check.is_load_check for check, _ in active])[:, None, None]
-    bound = np.where(is_load, duty.reserve_utilisation, 1.0) * (1 + equations.ROUNDING)
-    status = np.where(utilisation <= bound, PASS, np.where(np.isnan(utilisation), NOT_RATED, FAIL)).astype(np.int8)
+    bound = np.where(_load_checks(checks), duty.reserve_utilisation, 1.0) * (1 + equations.ROUNDING)
+    # PASS is 0; what is not within the bound counts 1, FAIL, and once more where it is NaN: NOT_RATED.
+    status = np.add(~(utilisation <= bound), np.isnan(utilisation), dtype=np.int8)
     if not all(all(mask) for _, mask in active):
         status[~np.array([mask for _, mask in active])] = ABSENT
-    return Evaluation(
-        tuple(check for check, _ in active),
-        tuple(demand for demand, _, _ in terms),
-        tuple(limit for _, limit, _ in terms),
-        utilisation,
-        status,
-        case,
-    )
+    demands, limits = [demand for demand, _, _ in terms], [limit for _, limit, _ in terms]
+    return Evaluation(checks, demands, limits, utilisation, status, case)

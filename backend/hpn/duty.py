@@ -33,8 +33,8 @@ class Duty:
         self.average_output_speed_rpm = equations.average_output_speed(
             speed_rpm=self.speed_rpm, duration_s=self.duration_s, pause_s=self.pause_s
         )[:, None]
-        self.maximum_torque_Nm = self.torque_Nm.max(axis=1, keepdims=True)
-        self.maximum_output_speed_rpm = self.speed_rpm.max(axis=1, keepdims=True)
+        self.maximum_torque_Nm = np.maximum.reduce(self.torque_Nm, axis=1, keepdims=True)
+        self.maximum_output_speed_rpm = np.maximum.reduce(self.speed_rpm, axis=1, keepdims=True)
 
     def column(self, value: Callable[[Application], float | None]) -> FloatArray:
         """One input of every application, shape (N, 1); NaN where it is not given."""

@@ -16,15 +16,12 @@ ROUNDING = 1e-12
 def average_output_torque(*, torque_Nm: ArrayLike, speed_rpm: ArrayLike, duration_s: ArrayLike) -> FloatArray:
     """Average output torque T_av in Nm, equation 17.2; shape (..., phases) in, (...) out.
 
-    T_av = (sum |n| t |T|^(10/3) / sum |n| t)^(3/10). A holding phase (n = 0) has no weight. Torque, speed and duration
-    are scaled by their largest, so that no power overflows. NaN where nothing moves: the application forbids that.
+    T_av = (sum |n| t |T|^(10/3) / sum |n| t)^(3/10). A holding phase (n = 0) has no weight. Torque is scaled by its
+    largest, so that no power of it overflows. NaN where nothing moves: the application forbids that.
     """
-    T = np.abs(np.asarray(torque_Nm, dtype=float))
-    T_max = T.max(axis=-1, keepdims=True)
-    r = T / np.where(T_max > 0, T_max, 1.0)
-    w = _weight(speed_rpm, duration_s)
-    mean = (w * (r * r * r * np.cbrt(r))).sum(axis=-1) / w.sum(axis=-1)
-    return np.asarray(T_max[..., 0] * mean**0.3)
+    r, T_max = _scaled(torque_Nm)
+    w = np.abs(speed_rpm) * np.asarray(duration_s, dtype=float)
+    return np.asarray(T_max * (np.vecdot(w, r * r * r * np.cbrt(r)) / np.add.reduce(w, axis=-1)) ** 0.3)
 
 
 def average_output_speed(*, speed_rpm: ArrayLike, duration_s: ArrayLike, pause_s: ArrayLike) -> FloatArray:
@@ -32,8 +29,8 @@ def average_output_speed(*, speed_rpm: ArrayLike, duration_s: ArrayLike, pause_s
 
     n_out_av = sum |n| t / (sum t + t_p). The pause counts here, and so does the time of a holding phase.
     """
-    n, t = np.abs(np.asarray(speed_rpm, dtype=float)), np.asarray(duration_s, dtype=float)
-    return np.asarray((n * t).sum(axis=-1) / (t.sum(axis=-1) + pause_s))
+    t = np.asarray(duration_s, dtype=float)
+    return np.asarray(np.vecdot(np.abs(speed_rpm), t) / (np.add.reduce(t, axis=-1) + pause_s))
 
 
 def average_input_speed(*, ratio: ArrayLike, average_output_speed_rpm: ArrayLike) -> FloatArray:
@@ -97,14 +94,13 @@ def motor_torque(*, output_torque_Nm: ArrayLike, ratio: ArrayLike, efficiency: A
 
 def rms_torque(*, torque_Nm: ArrayLike, duration_s: ArrayLike, pause_s: ArrayLike) -> FloatArray:
     """Root mean square of the torque over the cycle, pause included, in Nm; shape (..., phases) in, (...) out."""
-    T, t = np.abs(np.asarray(torque_Nm, dtype=float)), np.asarray(duration_s, dtype=float)
-    T_max = T.max(axis=-1, keepdims=True)
-    r = T / np.where(T_max > 0, T_max, 1.0)
-    return np.asarray(T_max[..., 0] * np.sqrt((r * r * t).sum(axis=-1) / (t.sum(axis=-1) + pause_s)))
+    t = np.asarray(duration_s, dtype=float)
+    r, T_max = _scaled(torque_Nm)
+    return np.asarray(T_max * np.sqrt(np.vecdot(r * r, t) / (np.add.reduce(t, axis=-1) + pause_s)))
 
 
-def _weight(speed_rpm: ArrayLike, duration_s: ArrayLike) -> FloatArray:
-    """Weights |n| t of the phases, relative to the largest speed and duration: their ratios alone matter."""
-    n, t = np.abs(np.asarray(speed_rpm, dtype=float)), np.asarray(duration_s, dtype=float)
-    n_max = n.max(axis=-1, keepdims=True)
-    return np.asarray((n / np.where(n_max > 0, n_max, 1.0)) * (t / t.max(axis=-1, keepdims=True)))
+def _scaled(values: ArrayLike) -> tuple[FloatArray, FloatArray]:
+    """Magnitudes along the last axis relative to their largest, and that largest; relative to 1 where all are 0."""
+    magnitude = np.abs(np.asarray(values, dtype=float))
+    largest = np.maximum.reduce(magnitude, axis=-1)
+    return magnitude / (largest + (largest == 0))[..., None], largest

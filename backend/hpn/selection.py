@@ -1,11 +1,13 @@
 """From an application and the catalogue to a ranked list of candidates, each with its checks and a reason."""
 
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from functools import lru_cache
+from operator import itemgetter
 from typing import Any
 
 import numpy as np
-import orjson
+from msgspec import Raw
+from msgspec.json import decode
 from numpy.typing import NDArray
 
 from hpn import ENGINE_VERSION
@@ -15,8 +17,8 @@ from hpn.catalogue import Catalogue, GearList
 from hpn.checks import ABSENT, FAIL, NOT_RATED, STATUS, Evaluation, evaluate
 from hpn.duty import Duty
 from hpn.explanations import EXPLANATIONS
-from hpn.gear import Gear
 from hpn.notices import Notice, notices_of
+from hpn.reply import CandidateRow, CheckRow, DutyRow, SelectReply, encode
 
 SUITABLE, UNSUITABLE, UNRATED = range(3)
 CANDIDATE_STATUS = ("suitable", "unsuitable", "unrated")
@@ -100,26 +102,27 @@ class Selection:
     def json(self, link: str) -> bytes:
         """The reply of `POST /api/v1/select` as JSON; unlimited, infinite and unpublished values are null."""
         duty, index = self.evaluation.case.duty, self.index
-        reply = {
-            "engine_version": ENGINE_VERSION,
-            "catalogue_version": self.catalogue.version,
-            "link": link,
-            "duty": {
-                "average_torque_Nm": float(duty.average_torque_Nm[index, 0]),
-                "average_output_speed_rpm": float(duty.average_output_speed_rpm[index, 0]),
-                "maximum_torque_Nm": float(duty.maximum_torque_Nm[index, 0]),
-                "maximum_output_speed_rpm": float(duty.maximum_output_speed_rpm[index, 0]),
-            },
-            "selected": self.selected,
-            "candidates": self._candidates(),
-            "check_definitions": check_definitions(self._codes()),
-            "notices": [{"code": notice.code, "text": notice.text} for notice in self.notices],
-        }
-        return orjson.dumps(reply)
+        return encode(
+            SelectReply(
+                engine_version=ENGINE_VERSION,
+                catalogue_version=self.catalogue.version,
+                link=link,
+                duty=DutyRow(
+                    duty.average_torque_Nm.item(index),
+                    duty.average_output_speed_rpm.item(index),
+                    duty.maximum_torque_Nm.item(index),
+                    duty.maximum_output_speed_rpm.item(index),
+                ),
+                selected=self.selected,
+                candidates=self._candidates(),
+                check_definitions=check_definitions(self._codes()),
+                notices=[{"code": notice.code, "text": notice.text} for notice in self.notices],
+            )
+        )
 
     def reply(self, link: str) -> dict[str, Any]:
         """The same as plain Python values."""
-        reply: dict[str, Any] = orjson.loads(self.json(link))
+        reply: dict[str, Any] = decode(self.json(link))
         return reply
 
     def summary(self, link: str) -> dict[str, Any]:
@@ -135,64 +138,67 @@ class Selection:
         }
 
     def _codes(self) -> tuple[str, ...]:
-        present = (self.evaluation.status[:, self.index] != ABSENT).all(axis=1)
-        return tuple(check.code for check, here in zip(self.evaluation.checks, present, strict=True) if here)
+        here = (self.evaluation.status[:, self.index, 0] != ABSENT).tolist()
+        return tuple(check.code for check, present in zip(self.evaluation.checks, here, strict=True) if present)
 
-    def _candidates(self) -> list[dict[str, Any]]:
-        evaluation, ranking, index = self.evaluation, self.ranking, self.index
-        case, gears = evaluation.case, self.gears.rows
-        shape = (len(evaluation.checks), len(case.duty.applications), len(gears))
-        table = np.empty((3, *shape))
-        for check, (demand, limit) in enumerate(zip(evaluation.demand, evaluation.limit, strict=True)):
-            table[0, check], table[1, check] = demand, limit
-        table[2] = evaluation.utilisation
-        rows = table[:, :, index].transpose(2, 1, 0).tolist()
-        statuses = evaluation.status[:, index].T.tolist()
-        codes = [check.code for check in evaluation.checks]
-        derived = self._derived()
-        suitable = int((ranking.status == SUITABLE).sum())
-        verdicts, governing, overall = ranking.status.tolist(), ranking.governing.tolist(), ranking.utilisation.tolist()
-        candidates = []
-        for place, gear_index in enumerate(ranking.order.tolist()):
-            gear, verdict, utilisation = gears[gear_index], verdicts[gear_index], overall[gear_index]
-            check, states = governing[gear_index], statuses[gear_index]
-            candidates.append(
-                {
-                    "designation": gear.designation,
-                    "size": gear.size,
-                    "ratio": gear.ratio,
-                    "stages": gear.stages,
-                    "status": CANDIDATE_STATUS[verdict],
-                    "rank": place + 1 if place < suitable else None,
-                    "utilisation": utilisation,
-                    "governing_check": None if verdict == UNRATED else codes[check],
-                    "reason": _reason(verdict, gear, codes[check], utilisation, states.count(FAIL)),
-                    **derived[gear_index],
-                    "checks": [
-                        {"code": code, "demand": demand, "limit": limit, "utilisation": used, "status": STATUS[state]}
-                        for code, (demand, limit, used), state in zip(codes, rows[gear_index], states, strict=True)
-                        if state != ABSENT
-                    ],
-                }
+    def _candidates(self) -> list[CandidateRow]:
+        ranking, index, order = self.ranking, self.index, self.ranking.order
+        in_order = itemgetter(*order.tolist(), -1)  # the last one twice, so that one gear gives a tuple as well
+        codes = [check.code for check in self.evaluation.checks]
+        verdicts, governing = ranking.status[order].tolist(), ranking.governing[order].tolist()
+        governing_codes = [codes[place] for place in governing]
+        failed = (self.evaluation.status[:, index] == FAIL).sum(axis=0)[order].tolist()
+        percent = np.round(100 * ranking.utilisation, 1)[order].tolist()
+        suitable = verdicts.count(SUITABLE)
+        empty = [None] * len(order)
+        names, sizes, ratios, stages = (in_order(column) for column in self.gears.names)
+        return list(
+            map(
+                CandidateRow,
+                names,
+                sizes,
+                ratios,
+                stages,
+                [CANDIDATE_STATUS[verdict] for verdict in verdicts],
+                [*range(1, suitable + 1), *empty[suitable:]],
+                ranking.utilisation[order].tolist(),
+                [None if v == UNRATED else code for v, code in zip(verdicts, governing_codes, strict=True)],
+                map(_reason, verdicts, sizes, governing_codes, failed, percent),
+                *(empty if column is None else column[index][order].tolist() for column in self._derived()),
+                self._checks(codes),
             )
-        return candidates
+        )
 
-    def _derived(self) -> list[dict[str, float]]:
-        """Derived quantities of every candidate, in catalogue order."""
+    def _checks(self, codes: list[str]) -> list[list[CheckRow]]:
+        """Check rows of every candidate, best first."""
+        evaluation, index, order = self.evaluation, self.index, self.ranking.order
+        table = np.empty((3, len(codes), len(order)))
+        for place, (demand, limit) in enumerate(zip(evaluation.demand, evaluation.limit, strict=True)):
+            table[0, place] = demand if demand.shape[0] == 1 or demand.ndim == 1 else demand[index]
+            table[1, place] = limit if limit.shape[0] == 1 or limit.ndim == 1 else limit[index]
+        table[2] = evaluation.utilisation[:, index]
+        states = evaluation.status[:, index][:, order].T.ravel().tolist()
+        numbers = table[:, :, order].transpose(0, 2, 1).reshape(3, -1).tolist()
+        rows = list(map(CheckRow, codes * len(order), *numbers, [STATUS[state] for state in states]))
+        size = len(codes)
+        lists = [rows[start : start + size] for start in range(0, len(rows), size)]
+        if ABSENT in states:
+            lists = [[row for row in checks if row.status != STATUS[ABSENT]] for checks in lists]
+        return lists
+
+    def _derived(self) -> tuple[FloatArray | None, ...]:
+        """Derived quantities of every candidate, in the order of the fields of CandidateRow, shape (N, G) each."""
         case = self.evaluation.case
-        columns = {
-            "average_input_speed_rpm": case.average_input_speed_rpm,
-            "maximum_input_speed_rpm": case.maximum_input_speed_rpm,
-            "life_L10_h": case.life_L10_h,
-            "momentary_peak_count": case.momentary_peak_count,
-            "bearing_life_L50_h": case.bearing.life_L50_h if case.bearing else None,
-            "bearing_life_L10_h": case.bearing.life_L50_h / L50_PER_L10 if case.bearing else None,
-            "motor_peak_torque_Nm": case.motor_peak_torque_Nm,
-            "motor_rated_torque_Nm": case.motor_rated_torque_Nm,
-        }
-        empty = [None] * len(self.gears.rows)
-        lists = [empty if column is None else column[self.index].tolist() for column in columns.values()]
-        return [dict(zip(columns, values, strict=True)) for values in zip(*lists, strict=True)]
+        return (
+            case.average_input_speed_rpm,
+            case.maximum_input_speed_rpm,
+            case.life_L10_h,
+            case.momentary_peak_count,
+            case.bearing.life_L50_h if case.bearing else None,
+            case.bearing.life_L50_h / L50_PER_L10 if case.bearing else None,
+            case.motor_peak_torque_Nm,
+            case.motor_rated_torque_Nm,
+        )
 
 
 def select(application: Application, catalogue: Catalogue) -> Selection:
@@ -241,26 +247,29 @@ def candidates_of(application: Application, catalogue: Catalogue) -> GearList:
 
 
 @lru_cache(maxsize=1024)
-def check_definitions(codes: tuple[str, ...]) -> orjson.Fragment:
+def check_definitions(codes: tuple[str, ...]) -> Raw:
     """What is the same for every candidate, by check code, as JSON."""
-    return orjson.Fragment(orjson.dumps({code: asdict(EXPLANATIONS[code]) for code in codes}))
+    return Raw(encode({code: EXPLANATIONS[code] for code in codes}))
 
 
 REASONS = {
-    "suitable": "Every check passes; the closest is {check} at {percent:.1f} % of its limit.",
-    "unsuitable": "{check} is at {percent:.1f} % of its limit.",
-    "unsuitable_more": "{check} is at {percent:.1f} % of its limit; checks that fail: {failed}.",
+    "suitable": "Every check passes; the closest is %(check)s at %(percent)s %%%% of its limit.",
+    "unsuitable": "%(check)s is at %(percent)s %%%% of its limit.",
+    "unsuitable_more": "%(check)s is at %(percent)s %%%% of its limit; checks that fail: %(failed)s.",
     "no_stop_allowed": "The emergency stop is so hard that not one is allowed (equation 17.9).",
-    "unrated": "Not rated: figures that the checks need are not published.",
+    "unrated": "Not rated: figures of %(name)s that the checks need are not published.",
 }
 """Why a candidate stands where it does; English msgids."""
 
 
-def _reason(verdict: int, gear: Gear, check: str, utilisation: float, failed: int) -> str:
+def _reason(verdict: int, size: str, check: str, failed: int, percent: float) -> str:
     if verdict == UNRATED:
-        return gear.note or REASONS["unrated"]
-    if utilisation == np.inf:
-        return REASONS["no_stop_allowed"]
+        return REASONS["unrated"] % {"name": f"HPN-{size}"}
+    return REASONS["no_stop_allowed"] if percent == np.inf else _reason_template(verdict, check, failed) % percent
+
+
+@lru_cache(maxsize=1024)
+def _reason_template(verdict: int, check: str, failed: int) -> str:
+    """Reason with the place of the percentage left open: there are few of these, and many candidates."""
     key = "suitable" if verdict == SUITABLE else "unsuitable" if failed == 1 else "unsuitable_more"
-    title = EXPLANATIONS[check].title
-    return REASONS[key].format(check=title, percent=utilisation * 100, failed=failed)
+    return REASONS[key] % {"check": EXPLANATIONS[check].title, "percent": "%s", "failed": failed}

@@ -6,12 +6,11 @@ from typing import Annotated, Any
 
 import orjson
 from fastapi import APIRouter, Query
-from fastapi.routing import APIRoute
 from pydantic import ValidationError
 from starlette.concurrency import run_in_threadpool
 from starlette.requests import Request
 from starlette.responses import Response
-from starlette.routing import request_response
+from starlette.routing import Route
 
 from hpn.application import Application, BatchItem, InputError
 from hpn.catalogue import Catalogue
@@ -31,19 +30,10 @@ LONG_CYCLE = 500
 BATCH_SLICE = 1024
 
 
-class DirectRoute(APIRoute):
-    """A route that FastAPI documents and Starlette runs: the endpoint takes the request and gives the response."""
-
-    def __init__(self, *args: Any, **kwargs: Any) -> None:
-        super().__init__(*args, **kwargs)
-        self.app = request_response(self.endpoint)
-
-
-direct = APIRouter(prefix="/api/v1", route_class=DirectRoute)
 router = APIRouter(prefix="/api/v1")
 
 
-@direct.post(
+@router.post(
     "/select",
     summary="Select a gear for one application",
     openapi_extra=schemas.request_body(Application),
@@ -64,7 +54,7 @@ def _reply(application: Application, catalogue: Catalogue) -> bytes:
     return select(application, catalogue).json(to_link(application))
 
 
-@direct.post(
+@router.post(
     "/select/batch",
     summary="Select gears for up to 10000 applications",
     openapi_extra=schemas.request_body(schemas.Batch),
@@ -156,3 +146,7 @@ async def bearing_envelopes(request: Request, size: str, query: Annotated[Envelo
         raise Problem(404, f"the catalogue has no size {size[:60]!r}; there are {', '.join(book.sizes)}")
     curves = life_envelopes(book, gear, query)
     return schemas.JSONBytes(orjson.dumps({"size": gear.size, "model": query.model, "curves": curves}))
+
+
+FAST_ROUTES = (Route("/api/v1/select", select_one, methods=["POST"]),)
+"""Routes that Starlette runs without FastAPI's dependency machinery, which costs more than the selection does."""

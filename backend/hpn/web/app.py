@@ -38,7 +38,8 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     app.state.settings = settings
     app.state.catalogue = load_catalogue(settings.catalogue_folder, settings.catalogue_supplement)
     problems.install(app)
-    for router in (health.router, api.direct, api.router):
+    app.router.routes[:0] = api.FAST_ROUTES
+    for router in (health.router, api.router):
         app.include_router(router)
     app.router.routes.extend(pages.routes)
     app.add_middleware(SecurityHeaders)
