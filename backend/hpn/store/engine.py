@@ -1,0 +1,72 @@
+"""From an address to an engine: SQLite in write-ahead mode, or PostgreSQL."""
+
+from pathlib import Path
+from typing import Any
+
+from sqlalchemy import URL, Connection, event, make_url
+from sqlalchemy.exc import ArgumentError
+from sqlalchemy.ext.asyncio import AsyncEngine, create_async_engine
+
+from hpn.store.errors import StoreError
+
+WRITES = {"writes": True}
+"""Execution options of an engine whose transactions write from their start."""
+
+
+def make_engine(address: str, *, seconds: float) -> AsyncEngine:
+    """Engine for `sqlite:///file` or `postgresql://user:password@host/database`; connects when it is first used.
+
+    `seconds` is the longest wait for a connection or for another writer's lock.
+    """
+    try:
+        url = make_url(address)
+    except ArgumentError:
+        url = make_url("none://")  # the text may hold a password, so it is not repeated
+    backend = url.get_backend_name()
+    if backend == "sqlite" and url.database not in (None, "", ":memory:"):
+        return _sqlite(url, seconds)
+    if backend in ("postgresql", "postgres"):
+        return _postgresql(url, seconds)
+    raise StoreError(
+        "HPN_DATABASE_URL must be sqlite:///file.sqlite3 (four slashes for an absolute path) "
+        "or postgresql://user:password@host/database"
+    )
+
+
+def _postgresql(url: URL, seconds: float) -> AsyncEngine:
+    return create_async_engine(
+        url.set(drivername="postgresql+psycopg"),
+        pool_pre_ping=True,
+        pool_timeout=seconds,
+        connect_args={
+            "connect_timeout": max(2, round(seconds)),
+            "tcp_user_timeout": round(seconds * 1000),
+            "application_name": "hpn-select",
+        },
+    )
+
+
+def _sqlite(url: URL, seconds: float) -> AsyncEngine:
+    assert url.database is not None
+    Path(url.database).absolute().parent.mkdir(parents=True, exist_ok=True)
+    engine = create_async_engine(
+        url.set(drivername="sqlite+aiosqlite"), pool_timeout=seconds, connect_args={"timeout": seconds}
+    )
+    event.listen(engine.sync_engine, "connect", _prepare)
+    event.listen(engine.sync_engine, "begin", _begin)
+    return engine
+
+
+def _prepare(connection: Any, record: object) -> None:
+    """Readers never wait for the writer, and a commit is on disk before it returns."""
+    connection.isolation_level = None  # `_begin` begins transactions, not the driver
+    cursor = connection.cursor()
+    for pragma in ("journal_mode=WAL", "synchronous=FULL", "foreign_keys=ON"):
+        cursor.execute(f"PRAGMA {pragma}")
+    cursor.close()
+
+
+def _begin(connection: Connection) -> None:
+    """Take the write lock at once where the transaction will write: to take it later can fail without waiting."""
+    writes = connection.get_execution_options().get("writes", False)
+    connection.exec_driver_sql("BEGIN IMMEDIATE" if writes else "BEGIN")

@@ -1,0 +1,17 @@
+"""What can go wrong with the store."""
+
+
+class StoreError(Exception):
+    """Base of the store's errors; its text is for people."""
+
+
+class StoreUnavailableError(StoreError):
+    """The database can't be reached, is too slow, or is refused for now; the same call may work later."""
+
+
+class NewerDatabaseError(StoreError):
+    """A newer version of this program has changed the database in a way that this one does not know."""
+
+
+class KeyReusedError(StoreError):
+    """An idempotency key that was used before comes with other content."""

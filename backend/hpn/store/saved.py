@@ -1,0 +1,56 @@
+"""What the store keeps of a selection."""
+
+import hashlib
+from dataclasses import dataclass, field
+from datetime import datetime
+
+import orjson
+
+
+@dataclass(frozen=True, slots=True)
+class Draft:
+    """A selection that is about to be saved: the application as it was given, and the reply it got, byte for byte."""
+
+    application: bytes
+    result: bytes
+    engine_version: str
+    catalogue_version: str
+    selected: str | None
+    title: str | None = None
+    reference: str | None = None
+    idempotency_key: str | None = None
+
+    @property
+    def digest(self) -> str:
+        """Fingerprint of what the caller sent; equal for equal requests, whatever engine or catalogue answered."""
+        sent = orjson.dumps([self.application.decode(), self.title, self.reference])
+        return hashlib.sha256(sent).hexdigest()
+
+
+@dataclass(frozen=True, slots=True)
+class Summary:
+    """One line of a list of saved selections."""
+
+    id: str
+    created: datetime
+    title: str | None
+    reference: str | None
+    selected: str | None
+    engine_version: str
+    catalogue_version: str
+
+
+@dataclass(frozen=True, slots=True)
+class SavedSelection(Summary):
+    """A saved selection, whole."""
+
+    application: bytes = field(repr=False)
+    result: bytes = field(repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Page:
+    """Part of a list, newest first; `next_cursor` asks for the part that follows, None at the end."""
+
+    selections: list[Summary]
+    next_cursor: str | None

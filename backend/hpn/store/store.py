@@ -1,0 +1,211 @@
+"""The store: a few functions over a database, each within a time limit."""
+
+import asyncio
+import base64
+import logging
+import re
+import secrets
+from collections.abc import AsyncIterator, Sequence
+from contextlib import asynccontextmanager
+from datetime import UTC, datetime
+from typing import Any
+
+import brotli
+from sqlalchemy import delete, select, text, tuple_
+from sqlalchemy.dialects import postgresql, sqlite
+from sqlalchemy.exc import DataError, SQLAlchemyError
+from sqlalchemy.ext.asyncio import AsyncConnection
+
+from hpn.store.engine import WRITES, make_engine
+from hpn.store.errors import KeyReusedError, NewerDatabaseError, StoreUnavailableError
+from hpn.store.saved import Draft, Page, SavedSelection, Summary
+from hpn.store.tables import selections
+from hpn.store.upgrade import bring_up_to_date
+from hpn.store.writer import Outcome, Writer
+
+logger = logging.getLogger(__name__)
+
+ID = re.compile(r"[A-Za-z0-9_-]{22}")
+"""An id: 128 random bits."""
+
+SUMMARY = [selections.c[name] for name in Summary.__dataclass_fields__]
+
+
+class Store:
+    """Saved selections. What `save` has returned is durable, and nothing is ever rewritten.
+
+    Every function raises StoreUnavailableError where the database can't be reached or takes longer than `seconds`, and
+    works again as soon as it can. Nothing is connected before it is needed.
+    """
+
+    def __init__(self, address: str, *, seconds: float = 5.0) -> None:
+        # A database that is only busy gives up by itself, just before we would.
+        self._engine = make_engine(address, seconds=seconds * 0.8)
+        self._writing = self._engine.execution_options(**WRITES)
+        self._seconds = seconds
+        self._writer = Writer(self._commit)
+        self._opening: asyncio.Task[None] | None = None
+        insert = sqlite.insert if self._engine.dialect.name == "sqlite" else postgresql.insert
+        self._insert = insert(selections).on_conflict_do_nothing(index_elements=["idempotency_key"])
+
+    async def open(self) -> None:
+        """Bring the database up to date, however long it takes; once done, this costs nothing.
+
+        Raises NewerDatabaseError, for good, where a newer version has changed the database.
+        """
+        if self._opening is None or (self._opening.done() and self._failed_to_open()):
+            self._opening = asyncio.create_task(bring_up_to_date(self._engine))
+        try:
+            # The work belongs to all who wait for it: one who gives up must not cancel it.
+            await asyncio.shield(self._opening)
+        except (SQLAlchemyError, OSError) as error:
+            raise _unavailable(error) from error
+
+    def _failed_to_open(self) -> bool:
+        assert self._opening is not None
+        return self._opening.cancelled() or self._opening.exception() is not None
+
+    async def close(self) -> None:
+        """Save what still waits, and close the connections."""
+        await self._writer.finish()
+        if self._opening is not None:
+            self._opening.cancel()
+        await self._engine.dispose()
+
+    async def check(self) -> None:
+        """Raise StoreUnavailableError unless the database answers."""
+        async with self._reading() as connection:
+            await connection.execute(text("SELECT 1"))
+
+    async def save(self, draft: Draft) -> str:
+        """Id of the saved selection: a new one, or the one that the same idempotency key has saved before.
+
+        Raises KeyReusedError where the key came with other content.
+        """
+        return await self._writer.save(draft)
+
+    async def find(self, id: str) -> SavedSelection | None:
+        """The selection with this id, or None."""
+        if not ID.fullmatch(id):
+            return None
+        columns = [*SUMMARY, selections.c.application, selections.c.result_brotli]
+        async with self._reading() as connection:
+            row = (await connection.execute(select(*columns).where(selections.c.id == id))).one_or_none()
+        if row is None:
+            return None
+        fields = row._asdict()
+        application, packed = fields.pop("application"), fields.pop("result_brotli")
+        return SavedSelection(**fields, application=application.encode(), result=brotli.decompress(packed))
+
+    async def page(self, *, reference: str | None = None, cursor: str | None = None, limit: int = 50) -> Page:
+        """Saved selections, newest first, all or those of a reference; ValueError for a cursor that isn't one."""
+        c = selections.c
+        query = select(*SUMMARY).order_by(c.created.desc(), c.id.desc()).limit(limit + 1)
+        if reference is not None:
+            query = query.where(c.reference == reference)
+        if cursor is not None:
+            query = query.where(tuple_(c.created, c.id) < tuple_(*_position(cursor)))
+        async with self._reading() as connection:
+            found = [Summary(*row) for row in await connection.execute(query)]
+        more = len(found) > limit
+        return Page(found[:limit], _cursor(found[limit - 1]) if more else None)
+
+    async def delete(self, id: str) -> bool:
+        """Delete a selection; False where there is none with this id."""
+        if not ID.fullmatch(id):
+            return False
+        async with self._reachable(), self._writing.begin() as connection:
+            done = await connection.execute(delete(selections).where(selections.c.id == id))
+        return done.rowcount == 1
+
+    @asynccontextmanager
+    async def _reachable(self) -> AsyncIterator[None]:
+        """Limits what happens inside in time, and says of every failure of the database that it is one."""
+        try:
+            async with asyncio.timeout(self._seconds):
+                await self.open()
+                yield
+        except (SQLAlchemyError, OSError, NewerDatabaseError) as error:  # OSError: TimeoutError too
+            raise _unavailable(error) from error
+
+    @asynccontextmanager
+    async def _reading(self) -> AsyncIterator[AsyncConnection]:
+        async with self._reachable(), self._engine.connect() as connection:
+            yield connection
+
+    async def _commit(self, drafts: Sequence[Draft]) -> list[Outcome]:
+        """Save drafts in one transaction: an id for each, or why it has none."""
+        rows = await asyncio.to_thread(_rows, drafts)
+        try:
+            async with self._reachable(), self._writing.begin() as connection:
+                return await self._insert_all(connection, rows)
+        except StoreUnavailableError as error:
+            if len(drafts) == 1 or not isinstance(error.__cause__, DataError):
+                raise
+        # One draft that the database can't hold must not fail its neighbours.
+        return [await self._commit_alone(draft) for draft in drafts]
+
+    async def _commit_alone(self, draft: Draft) -> Outcome:
+        try:
+            return (await self._commit([draft]))[0]
+        except StoreUnavailableError as error:
+            return error
+
+    async def _insert_all(self, connection: AsyncConnection, rows: list[dict[str, Any]]) -> list[Outcome]:
+        # Always in the order of the keys: two processes with the same two keys would otherwise wait for each other.
+        await connection.execute(self._insert, sorted(rows, key=lambda row: row["idempotency_key"] or ""))
+        c = selections.c
+        keys = {row["idempotency_key"] for row in rows} - {None}
+        holders: dict[str, tuple[str, str]] = {}
+        if keys:
+            query = select(c.idempotency_key, c.id, c.digest).where(c.idempotency_key.in_(keys))
+            holders = {key: (id, digest) for key, id, digest in await connection.execute(query)}
+        return [_outcome(row, holders.get(row["idempotency_key"])) for row in rows]
+
+
+def _rows(drafts: Sequence[Draft]) -> list[dict[str, Any]]:
+    return [
+        {
+            "id": secrets.token_urlsafe(16),
+            "created": datetime.now(UTC),
+            "title": draft.title,
+            "reference": draft.reference,
+            "selected": draft.selected,
+            "engine_version": draft.engine_version,
+            "catalogue_version": draft.catalogue_version,
+            "application": draft.application.decode(),
+            "result_brotli": brotli.compress(draft.result, quality=0),
+            "idempotency_key": draft.idempotency_key,
+            "digest": draft.digest if draft.idempotency_key else None,
+        }
+        for draft in drafts
+    ]
+
+
+def _outcome(row: dict[str, Any], holder: tuple[str, str] | None) -> Outcome:
+    """Id under which a row is saved: its own, or that of the row that was first with its idempotency key."""
+    id, digest = holder or (row["id"], row["digest"])
+    if digest != row["digest"]:
+        return KeyReusedError(
+            "this idempotency key was used before, with other content; take a new key for a new selection"
+        )
+    return str(id)
+
+
+def _unavailable(error: Exception) -> StoreUnavailableError:
+    logger.warning("the store is not available: %s: %s", type(error).__name__, error)
+    return StoreUnavailableError("saved selections are not available at the moment")
+
+
+def _cursor(last: Summary) -> str:
+    return base64.urlsafe_b64encode(f"{last.created.isoformat()} {last.id}".encode()).decode()
+
+
+def _position(cursor: str) -> tuple[datetime, str]:
+    try:
+        created, _, id = base64.urlsafe_b64decode(cursor.encode()).decode().partition(" ")
+        if not ID.fullmatch(id):
+            raise ValueError
+        return datetime.fromisoformat(created).astimezone(UTC), id
+    except (ValueError, OverflowError):
+        raise ValueError("is not a cursor that this list has given") from None

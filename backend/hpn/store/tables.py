@@ -1,0 +1,45 @@
+"""The tables as they are after the last migration."""
+
+from datetime import UTC, datetime
+
+from sqlalchemy import Column, DateTime, Index, LargeBinary, MetaData, String, Table, Text
+from sqlalchemy.engine import Dialect
+from sqlalchemy.types import TypeDecorator
+
+
+class UtcTime(TypeDecorator[datetime]):
+    """A moment in UTC, also where the database keeps no time zone (SQLite)."""
+
+    impl = DateTime(timezone=True)
+    cache_ok = True
+
+    def process_bind_param(self, value: datetime | None, dialect: Dialect) -> datetime | None:
+        """To the database."""
+        return None if value is None else value.astimezone(UTC)
+
+    def process_result_value(self, value: datetime | None, dialect: Dialect) -> datetime | None:
+        """From the database."""
+        return None if value is None else value.replace(tzinfo=UTC) if value.tzinfo is None else value.astimezone(UTC)
+
+
+metadata = MetaData()
+
+selections = Table(
+    "selections",
+    metadata,
+    Column("id", String(32), primary_key=True),
+    Column("created", UtcTime, nullable=False),
+    Column("title", Text),
+    Column("reference", Text),
+    Column("selected", Text),
+    Column("engine_version", Text, nullable=False),
+    Column("catalogue_version", Text, nullable=False),
+    Column("application", Text, nullable=False),
+    # The reply is some 70 kB of repetitive JSON; packed it is a ninth of that.
+    Column("result_brotli", LargeBinary, nullable=False),
+    Column("idempotency_key", Text),
+    Column("digest", String(64)),
+    Index("selections_created", "created", "id"),
+    Index("selections_reference", "reference", "created", "id"),
+    Index("selections_idempotency_key", "idempotency_key", unique=True),
+)
