@@ -15,6 +15,15 @@ class CheckRow(msgspec.Struct, gc=False):
     status: str
 
 
+class ReserveRow(msgspec.Struct, gc=False):
+    """How far each driver may grow (above 1) or must shrink (below 1) on one candidate, the others as given."""
+
+    torque_factor: float | None
+    speed_factor: float | None
+    load_factor: float | None
+    emergency_stop_torque_Nm: float | None
+
+
 class CandidateRow(msgspec.Struct, gc=False):
     """One gear, its verdict and why."""
 
@@ -35,6 +44,7 @@ class CandidateRow(msgspec.Struct, gc=False):
     bearing_life_L10_h: float | None
     motor_peak_torque_Nm: float
     motor_rated_torque_Nm: float
+    reserve: ReserveRow
     checks: list[CheckRow]
 
 

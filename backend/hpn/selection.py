@@ -18,7 +18,8 @@ from hpn.checks import ABSENT, FAIL, NOT_RATED, STATUS, Evaluation, evaluate
 from hpn.duty import Duty
 from hpn.explanations import EXPLANATIONS
 from hpn.notices import Notice, notices_of
-from hpn.reply import CandidateRow, CheckRow, DutyRow, SelectReply, encode
+from hpn.reply import CandidateRow, CheckRow, DutyRow, ReserveRow, SelectReply, encode
+from hpn.reserve import reserve_of
 
 SUITABLE, UNSUITABLE, UNRATED = range(3)
 CANDIDATE_STATUS = ("suitable", "unsuitable", "unrated")
@@ -164,7 +165,8 @@ class Selection:
                 ranking.utilisation[order].tolist(),
                 [None if v == UNRATED else code for v, code in zip(verdicts, governing_codes, strict=True)],
                 map(_reason, verdicts, sizes, governing_codes, failed, percent),
-                *(empty if column is None else column[index][order].tolist() for column in self._derived()),
+                *(self._column(values) for values in self._derived()),
+                map(ReserveRow, *(self._column(values) for values in self._reserve())),
                 self._checks(codes),
             )
         )
@@ -185,6 +187,16 @@ class Selection:
         if ABSENT in states:
             lists = [[row for row in checks if row.status != STATUS[ABSENT]] for checks in lists]
         return lists
+
+    def _column(self, values: FloatArray | None) -> list[float] | list[None]:
+        """One quantity, shape (N, G), of every candidate, best first; None where the application has no such thing."""
+        order = self.ranking.order
+        return [None] * len(order) if values is None else values[self.index][order].tolist()
+
+    def _reserve(self) -> tuple[FloatArray | None, ...]:
+        """Reserves in the order of the fields of ReserveRow."""
+        reserve = reserve_of(self.evaluation)
+        return reserve.torque, reserve.speed, reserve.load, reserve.emergency_stop_torque_Nm
 
     def _derived(self) -> tuple[FloatArray | None, ...]:
         """Derived quantities of every candidate, in the order of the fields of CandidateRow, shape (N, G) each."""

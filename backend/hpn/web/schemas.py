@@ -49,6 +49,15 @@ class CheckReply(Reply):
     status: Literal["pass", "fail", "not_rated"] = Field(description="Verdict of the check.")
 
 
+class ReserveReply(Reply):
+    """How far a driver may grow (above 1) or must shrink (below 1) until a check it moves meets its limit."""
+
+    torque_factor: float | None = Field(description="Factor on all duty torques; null where nothing limits.")
+    speed_factor: float | None = Field(description="Factor on all speeds; null where nothing limits.")
+    load_factor: float | None = Field(description="Factor on all output loads; null where nothing limits.")
+    emergency_stop_torque_Nm: float | None = Field(description="Largest permissible emergency-stop torque.")
+
+
 class CandidateReply(Reply):
     """One gear, its verdict and why."""
 
@@ -73,6 +82,7 @@ class CandidateReply(Reply):
     bearing_life_L10_h: float | None = Field(description="Life of the output bearing that nine of ten reach: L50 / 5.")
     motor_peak_torque_Nm: float = Field(description="Largest torque at the motor, without the emergency stop.")
     motor_rated_torque_Nm: float = Field(description="RMS torque at the motor over the cycle with pause.")
+    reserve: ReserveReply = Field(description="Reserve per driver, the other inputs as given.")
     checks: list[CheckReply] = Field(description="Every check that was asked for, in a fixed order.")
 
 

@@ -1,0 +1,94 @@
+"""How far each driver of an application may grow, or must shrink, until a check that it moves meets its limit.
+
+In closed form, because every utilisation is a power of each driver: `MOVES` names the powers. The other inputs stay
+as they are. A factor below 1 is what a rejected gear needs; all factors below 1 together are the remedy.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hpn.checks import ABSENT, Evaluation
+
+FloatArray = NDArray[np.float64]
+
+MOVES: dict[str, dict[str, float]] = {
+    "torque": {
+        "average_torque": 1.0,
+        "repeated_peak_torque": 1.0,
+        "life": 10 / 3,
+        "motor_peak_torque": 1.0,
+        "motor_rated_torque": 1.0,
+    },
+    "speed": {
+        "average_input_speed": 1.0,
+        "maximum_input_speed": 1.0,
+        "life": 1.0,
+        "output_bearing_life": 1 / 3,
+        "motor_speed": 1.0,
+    },
+    "load": {"output_bearing_load": 1.0, "output_bearing_life": 1.0},
+}
+"""Driver -> check -> power with which the driver moves the utilisation of the check (eq. 17.2 to 17.10, ISO 281)."""
+
+
+@dataclass(frozen=True, slots=True)
+class Reserve:
+    """Reserves of N applications on G gears, shape (N, G) each; infinite without a limit, NaN where not rated.
+
+    Each factor multiplies all torques of the duty cycle (not the emergency stop), all speeds, or all loads; the
+    emergency-stop torque is the largest permissible one in Nm. None where the application moves no such check.
+    """
+
+    torque: FloatArray | None
+    speed: FloatArray | None
+    load: FloatArray | None
+    emergency_stop_torque_Nm: FloatArray | None
+
+
+def reserve_of(evaluation: Evaluation) -> Reserve:
+    """Reserves of every application on every gear of an evaluation."""
+    factors = {driver: _factor(evaluation, powers) for driver, powers in MOVES.items()}
+    return Reserve(**factors, emergency_stop_torque_Nm=_emergency_stop_torque(evaluation))
+
+
+def _factor(evaluation: Evaluation, powers: dict[str, float]) -> FloatArray | None:
+    """Smallest (u / utilisation)^(1 / power) over the checks that a driver moves."""
+    case = evaluation.case
+    rows = [(index, powers[c.code]) for index, c in enumerate(evaluation.checks) if c.code in powers]
+    if not rows or (case.catalogue.efficiency and "motor_peak_torque" in powers and _follows_a_curve(evaluation)):
+        return None
+    indices = [index for index, _ in rows]
+    used = evaluation.utilisation[indices]
+    with np.errstate(divide="ignore"):
+        room = case.duty.reserve_utilisation / used
+    for row, (_, power) in enumerate(rows):
+        if power != 1.0:
+            room[row] = room[row] ** (1 / power)
+    absent = evaluation.status[indices] == ABSENT
+    return np.asarray(np.where(absent, np.inf, room).min(axis=0))
+
+
+def _follows_a_curve(evaluation: Evaluation) -> bool:
+    """Whether a motor torque depends on an efficiency curve, which no closed form follows."""
+    asks = any(check.code.startswith("motor_") and check.code != "motor_speed" for check in evaluation.checks)
+    return asks and any(a.requirements.efficiency is None for a in evaluation.case.duty.applications)
+
+
+def _emergency_stop_torque(evaluation: Evaluation) -> FloatArray | None:
+    """Largest T_k = min(u T_M, max(T_R, T_R (8.5 - log10 N) / 1.5)) in Nm, equations 17.8 and 17.9 solved for T_k.
+
+    N is the smallest allowed number that the expected count needs: count / u, rounded up, since equation 17.9 gives a
+    count. Without an expected count T_M alone limits.
+    """
+    case = evaluation.case
+    if case.momentary_peak_count is None:
+        return None
+    duty, g = case.duty, case.gears.columns
+    u = duty.reserve_utilisation
+    count = duty.column(lambda a: a.emergency_stop.count if a.emergency_stop else None)
+    needed = np.maximum(np.ceil(count / u * (1 - 1e-12)), 1.0)
+    by_count = np.maximum(g.repeated_peak_torque_Nm, g.repeated_peak_torque_Nm * (8.5 - np.log10(needed)) / 1.5)
+    by_torque = u * g.momentary_peak_torque_Nm
+    return np.asarray(np.where(np.isnan(count), by_torque, np.minimum(by_torque, by_count)))
