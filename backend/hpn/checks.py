@@ -84,7 +84,7 @@ class BearingCase:
     def __init__(self, duty: Duty, gears: GearList, catalogue: Catalogue) -> None:
         self.duty, self.gears = duty, gears
         speed, life = catalogue.bearing_reference
-        load = self._phase_loads() * duty.load_coefficient[:, :, None]
+        load = self.phase_loads = self._phase_loads() * duty.load_coefficient[:, :, None]
         self.largest = load.max(axis=1)
         self.mean = bearing.mean_equivalent_load(
             equivalent_load=load, speed_rpm=duty.speed_rpm[:, :, None], duration_s=duty.duration_s[:, :, None], axis=1

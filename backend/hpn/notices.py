@@ -1,26 +1,29 @@
 """What the reader of a result must know beyond its numbers: assumptions, standings, unlimited values."""
 
-from dataclasses import dataclass, field
-from typing import Any
+from dataclasses import dataclass
 
 import numpy as np
 
 from hpn.application import Application
 from hpn.checks import Evaluation
+from hpn.wording import Quantity, Sentence, Value
 
 
 @dataclass(frozen=True, slots=True)
 class Notice:
-    """A note on the result: an English template (msgid for translation) and the values in it."""
+    """A note on the result, with a code for programs and a sentence for people."""
 
     code: str
-    template: str
-    values: dict[str, Any] = field(default_factory=dict)
+    sentence: Sentence
 
     @property
     def text(self) -> str:
         """The notice in English."""
-        return self.template.format(**self.values)
+        return self.sentence.text
+
+
+def _notice(code: str, template: str, translated: tuple[str, ...] = (), **values: Value) -> Notice:
+    return Notice(code, Sentence(template, values, translated))
 
 
 AREAS = {
@@ -54,10 +57,11 @@ def _area(application: Application) -> list[Notice]:
     if application.application_area is None:
         return []
     return [
-        Notice(
+        _notice(
             "application_area",
             "Use in this area ({area}) needs a risk assessment and the maker's approval (handbook 2.4).",
-            {"area": AREAS[application.application_area]},
+            ("area",),
+            area=AREAS[application.application_area],
         )
     ]
 
@@ -70,16 +74,17 @@ def _emergency_stop(evaluation: Evaluation, index: int) -> list[Notice]:
     largest = float(case.duty.maximum_torque_Nm[index, 0])
     if abs(stop.torque_Nm) < largest:
         notices.append(
-            Notice(
+            _notice(
                 "emergency_stop_below_maximum",
-                "The emergency-stop torque of {stop:g} Nm is below the largest torque of the cycle, {largest:g} Nm: is "
+                "The emergency-stop torque of {stop} is below the largest torque of the cycle, {largest}: is "
                 "it really the emergency?",
-                {"stop": abs(stop.torque_Nm), "largest": largest},
+                stop=Quantity(abs(stop.torque_Nm), "Nm", 6),
+                largest=Quantity(largest, "Nm", 6),
             )
         )
     if np.isinf(case.momentary_peak_count[index]).any():
         notices.append(
-            Notice(
+            _notice(
                 "momentary_peak_count_unlimited",
                 "Where the emergency-stop torque is at or below T_R, equation 17.9 sets no limit to the number of "
                 "stops: the allowed number is empty there.",
@@ -92,7 +97,7 @@ def _life(evaluation: Evaluation, index: int) -> list[Notice]:
     if not np.isinf(evaluation.case.life_L10_h[index]).any():
         return []
     return [
-        Notice(
+        _notice(
             "life_unlimited",
             "The average torque is 0 or so small that equation 17.10 gives a life without limit: the life is empty.",
         )
@@ -110,13 +115,13 @@ def _bearing(evaluation: Evaluation, index: int) -> list[Notice]:
         "curve was not available."
     )
     notices = [
-        Notice("bearing_envelope_computed" if load.model != "digitised" else "bearing_envelope_supplied", standing),
-        Notice(
+        _notice("bearing_envelope_computed" if load.model != "digitised" else "bearing_envelope_supplied", standing),
+        _notice(
             "bearing_load_position",
             "Loads act at the centre of the output shaft and along its axis; a load that acts elsewhere can't be "
             "judged from the published data.",
         ),
-        Notice(
+        _notice(
             "bearing_life_basis",
             "Bearing life L10 = L50 / 5 is the relation of the maker's other handbooks, not printed in this one; a "
             "Weibull slope of 10/9 gives 5.45.",
@@ -124,7 +129,7 @@ def _bearing(evaluation: Evaluation, index: int) -> list[Notice]:
     ]
     if np.isinf(case.bearing.life_L50_h[index]).any():
         notices.append(
-            Notice(
+            _notice(
                 "bearing_life_unlimited",
                 "The equivalent load of the moving phases is 0 or so small that the bearing life has no limit: it is "
                 "empty.",
@@ -137,24 +142,24 @@ def _motor(application: Application, curves: bool) -> list[Notice]:
     requirements = application.requirements
     if requirements.efficiency is not None:
         return [
-            Notice(
+            _notice(
                 "efficiency_assumed",
-                "Motor torques use the efficiency of {efficiency:g} that you assume.",
-                {"efficiency": requirements.efficiency},
+                "Motor torques use the efficiency of {efficiency} that you assume.",
+                efficiency=Quantity(100 * requirements.efficiency, "percent"),
             )
         ]
     if requirements.motor is None and application.rank_by != "motor_torque":
         return []
     if curves:
         return [
-            Notice(
+            _notice(
                 "efficiency_supplied",
                 "Motor torques use the efficiency curves that you supplied; where they say nothing, loss-free: a lower "
                 "bound.",
             )
         ]
     return [
-        Notice(
+        _notice(
             "efficiency_unknown",
             "Motor torques are loss-free, a lower bound: the handbook's efficiency curves were not available and no "
             "efficiency is stated.",
@@ -166,11 +171,12 @@ def _catalogue(evaluation: Evaluation) -> list[Notice]:
     case = evaluation.case
     notes = {gear.name: gear.note for gear in case.gears.rows if gear.note and gear.rated_torque_Nm is None}
     notices = [
-        Notice("size_unrated", "{name} is listed as unrated. {note}", {"name": n, "note": t}) for n, t in notes.items()
+        _notice("size_unrated", "{name} is listed as unrated. {note}", ("note",), name=n, note=t)
+        for n, t in notes.items()
     ]
     if case.catalogue.supplement:
         notices.append(
-            Notice(
+            _notice(
                 "catalogue_supplement",
                 "Some catalogue figures are supplied by the user; their sources say so.",
             )

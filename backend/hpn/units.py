@@ -11,6 +11,7 @@ SYMBOLS = {
     "mm": "mm",
     "arcmin": "arcmin",
     "degC": "°C",
+    "percent": "%",
 }
 """Unit suffix of a field name -> the symbol a reader sees."""
 
