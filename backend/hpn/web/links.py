@@ -1,0 +1,472 @@
+"""Links: the one mapping between the symbols of a query and the application model, in both directions.
+
+The form, the address bar and every link that somebody writes by hand go through `parse`; `to_link` writes the canonical
+link. Names are the handbook's symbols, values are in the units of the API.
+"""
+
+import difflib
+import re
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any, Literal
+from urllib.parse import quote
+
+from pydantic import BaseModel, ValidationError
+
+from hpn.application import MAXIMUM_PHASES, Application, OutputLoad
+
+MAXIMUM_QUERY_BYTES = 60_000
+"""Longest query that is read: servers and proxies on the way allow little more."""
+
+Pairs = Sequence[tuple[str, str]]
+Kind = Literal["number", "whole", "text"]
+
+
+@dataclass(frozen=True, slots=True)
+class Symbol:
+    """A query name, and the field of the application that it stands for."""
+
+    name: str
+    path: tuple[str, ...]
+    kind: Kind = "number"
+    many: bool = False
+
+
+PHASE_SYMBOLS = (
+    Symbol("T", ("torque_Nm",)),
+    Symbol("n", ("speed_rpm",)),
+    Symbol("t", ("duration_s",)),
+    Symbol("FRi", ("radial_N",)),
+    Symbol("FAi", ("axial_N",)),
+)
+"""Repeated once per phase, all of equal length."""
+
+SYMBOLS = (
+    Symbol("tp", ("duty_cycle", "pause_s")),
+    Symbol("Tk", ("emergency_stop", "torque_Nm")),
+    Symbol("Nk", ("emergency_stop", "count"), "whole"),
+    Symbol("FR", ("output_load", "radial_N")),
+    Symbol("FA", ("output_load", "axial_N")),
+    Symbol("fw", ("output_load", "load_coefficient")),
+    Symbol("Lb", ("output_load", "life_h")),
+    Symbol("Lbb", ("output_load", "life_basis"), "text"),
+    Symbol("bm", ("output_load", "model"), "text"),
+    Symbol("i", ("requirements", "ratios"), "whole", many=True),
+    Symbol("size", ("requirements", "sizes"), "text", many=True),
+    Symbol("Lh", ("requirements", "life_h")),
+    Symbol("ta", ("requirements", "ambient_temperature_degC")),
+    Symbol("bl", ("requirements", "backlash_arcmin")),
+    Symbol("K3", ("requirements", "torsional_stiffness_Nm_per_rad")),
+    Symbol("m", ("requirements", "weight_kg")),
+    Symbol("L", ("requirements", "length_mm")),
+    Symbol("u", ("requirements", "utilisation")),
+    Symbol("aa", ("application_area",), "text"),
+    Symbol("rank", ("rank_by",), "text"),
+    Symbol("nm", ("requirements", "motor", "maximum_speed_rpm")),
+    Symbol("Tm", ("requirements", "motor", "peak_torque_Nm")),
+    Symbol("Tmn", ("requirements", "motor", "rated_torque_Nm")),
+    Symbol("eta", ("requirements", "efficiency")),
+)
+"""Everything but the phases, in the order in which a canonical link gives them."""
+
+PAGE_NAMES = ("gear", "do")
+"""Parameters of the page alone: the candidate looked at, and the button that edits the rows without script."""
+
+_PHASE_BY_NAME = {symbol.name: symbol for symbol in PHASE_SYMBOLS}
+_PHASE_BY_LEAF = {symbol.path[0]: symbol for symbol in PHASE_SYMBOLS}
+_BY_NAME = {symbol.name: symbol for symbol in SYMBOLS}
+_BY_PATH = {symbol.path: symbol for symbol in SYMBOLS}
+_REQUIRED = ("T", "n", "t")
+_LOADS = ("FRi", "FAi")
+# Where an error of a whole part of the model is shown.
+_PARTS = {("duty_cycle",): "T", ("duty_cycle", "phases"): "T", ("output_load",): "FR", ("emergency_stop",): "Tk"}
+
+
+def N_(text: str) -> str:
+    """Mark a text for the translators; it is translated where it is shown."""
+    return text
+
+
+@dataclass(frozen=True)
+class Message:
+    """A text to be translated when shown, with the values that go into it."""
+
+    template: str
+    values: Mapping[str, str] = field(default_factory=dict)
+
+    def text(self, translate: Callable[[str], str]) -> str:
+        """The text in a language."""
+        template = translate(self.template)
+        return template % self.values if self.values else template
+
+    def __str__(self) -> str:
+        return self.text(str)
+
+
+@dataclass(frozen=True)
+class Problem:
+    """What is wrong with one input: the query name and, for a repeated one, which of its values."""
+
+    name: str
+    index: int | None
+    message: Message
+
+    @property
+    def of_phase(self) -> bool:
+        """Whether the input stands in the duty table."""
+        return self.name in _PHASE_BY_NAME
+
+    @property
+    def place(self) -> str:
+        """Element of the page that takes this input."""
+        return f"{self.name}-{self.index}" if self.of_phase else f"f-{self.name}"
+
+
+@dataclass(frozen=True)
+class Form:
+    """A query as given, and the application it describes, or why it describes none."""
+
+    rows: tuple[Mapping[str, str], ...]
+    texts: Mapping[str, str]
+    lists: Mapping[str, tuple[str, ...]]
+    with_loads: bool = False
+    gear: str = ""
+    focus: str | None = None
+    problems: tuple[Problem, ...] = ()
+    application: Application | None = None
+
+    @property
+    def empty(self) -> bool:
+        """Nobody has filled in a phase yet: neither an application nor an error."""
+        return self.application is None and not self.problems
+
+    def messages(self, name: str, index: int | None = None) -> list[Message]:
+        """What is wrong with one input."""
+        return [problem.message for problem in self.problems if (problem.name, problem.index) == (name, index)]
+
+    @property
+    def general(self) -> list[Problem]:
+        """Problems that belong to no field of the form."""
+        return [problem for problem in self.problems if problem.name not in _BY_NAME | _PHASE_BY_NAME]
+
+
+_BY_PARENT: dict[tuple[str, ...], list[Symbol]] = {}
+for _symbol in SYMBOLS:
+    _BY_PARENT.setdefault(_symbol.path[:-1], []).append(_symbol)
+
+_EMPTY_LOAD = OutputLoad()
+
+# --- Application to link ----------------------------------------------------------------------------------------------
+
+
+def to_link(application: Application) -> str:
+    """Canonical link of an application: only what differs from the defaults, numbers as short as they can be.
+
+    `parse` gives the same application back; a motor of which nothing is known counts as no motor.
+    """
+    return "/?" + "&".join(
+        f"{name}={value}" for name, value in (*_phase_pairs(application), *_other_pairs(application))
+    )
+
+
+def _phase_pairs(application: Application) -> Iterable[tuple[str, str]]:
+    phases = application.duty_cycle.phases
+    used = [s for s in PHASE_SYMBOLS if any(getattr(phase, s.path[0]) is not None for phase in phases)]
+    for phase in phases:
+        yield from ((symbol.name, _written(getattr(phase, symbol.path[0]))) for symbol in used)
+
+
+def _other_pairs(application: Application) -> Iterable[tuple[str, str]]:
+    for parent, symbols in _BY_PARENT.items():
+        model = _part(application, parent)
+        if model is None:
+            continue
+        for symbol in symbols:
+            if (field := symbol.path[-1]) in model.model_fields_set:
+                value = getattr(model, field)
+                if value != type(model).model_fields[field].default:
+                    yield from ((symbol.name, _written(item)) for item in (value if symbol.many else (value,)))
+    if application.output_load == _EMPTY_LOAD:
+        yield "fw", "1"  # a load case without a figure of its own must still be seen to exist
+
+
+def _part(application: Application, path: tuple[str, ...]) -> BaseModel | None:
+    part: BaseModel | None = application
+    for step in path:
+        part = getattr(part, step, None)
+    return part
+
+
+def _written(value: float | int | str | None) -> str:
+    if not isinstance(value, float):
+        return "" if value is None else quote(str(value))
+    return repr(value).removesuffix(".0").replace("e+", "e").replace("e-0", "e-")
+
+
+# --- Link to application ----------------------------------------------------------------------------------------------
+
+
+def parse(pairs: Pairs) -> Form:
+    """Read a query. Whatever it says, the form comes back with it and with a message beside each wrong field."""
+    given = _Given()
+    for name, text in pairs:
+        given.add(name, text)
+    rows, focus = given.edited()
+    problems = [*given.problems(), *_list_problems(given)]
+    application = None
+    if not _untouched(given, rows):
+        document, found = _document(rows, given)
+        problems += found
+        application, refused = _validated(document, rows, problems)
+        problems += refused
+    return Form(
+        rows=tuple(rows),
+        texts={name: texts[0] for name, texts in given.scalars.items()},
+        lists={name: tuple(texts) for name, texts in given.lists.items()},
+        with_loads=given.with_loads,
+        gear=given.page.get("gear", "").strip(),
+        focus=focus,
+        problems=tuple(problems),
+        application=None if problems else application,
+    )
+
+
+class _Given:
+    """A query sorted into phases, scalars, lists and what belongs to the page."""
+
+    def __init__(self) -> None:
+        self.columns: dict[str, list[str]] = {}
+        self.scalars: dict[str, list[str]] = {}
+        self.lists: dict[str, list[str]] = {}
+        self.page: dict[str, str] = {}
+        self.unknown: list[str] = []
+        self.with_loads = False
+
+    def add(self, name: str, text: str) -> None:
+        """Take one pair of the query."""
+        if name in _PHASE_BY_NAME:
+            self.columns.setdefault(name, []).append(text)
+        elif name in PAGE_NAMES:
+            self.page[name] = text
+        elif name not in _BY_NAME:
+            self.unknown.append(name)
+        elif text.strip():  # the plain form submits blank fields too: they count as absent
+            (self.lists if _BY_NAME[name].many else self.scalars).setdefault(name, []).append(text)
+
+    def edited(self) -> tuple[list[dict[str, str]], str | None]:
+        """Rows of the duty table after the button that was pressed, and the element to go on from."""
+        self.with_loads = any(name in self.columns for name in _LOADS)
+        shown = [name for name in _PHASE_BY_NAME if name in _REQUIRED or self.with_loads]
+        length = max((len(texts) for texts in self.columns.values()), default=0)
+        rows = [
+            {name: texts[k] if k < len(texts := self.columns.get(name, [])) else "" for name in shown}
+            for k in range(min(length, MAXIMUM_PHASES + 1))
+        ]
+        focus = self._press(rows)
+        return rows or [dict.fromkeys(shown, "")], focus
+
+    def _press(self, rows: list[dict[str, str]]) -> str | None:
+        do, _, number = self.page.get("do", "").partition(":")
+        k = int(number) - 1 if re.fullmatch(r"[0-9]{1,5}", number) else -1
+        if do == "add":
+            rows.append(dict.fromkeys(rows[0] if rows else _REQUIRED, ""))
+            return f"T-{len(rows) - 1}"
+        if do == "loads":
+            self.with_loads = not self.with_loads
+            for row in rows:
+                for name in _LOADS:
+                    row.setdefault(name, "") if self.with_loads else row.pop(name, None)
+            return "loads"
+        if not 0 <= k < len(rows):
+            return None
+        if do == "remove":
+            del rows[k]
+            return f"T-{min(k, max(len(rows) - 1, 0))}"
+        if do in ("up", "down"):
+            to = min(max(k + (1 if do == "down" else -1), 0), len(rows) - 1)
+            rows.insert(to, rows.pop(k))
+            # At either end the way on is back.
+            onward = do if 0 < to < len(rows) - 1 else "down" if to == 0 else "up"
+            return f"{onward}-{to}"
+        return None
+
+    def problems(self) -> Iterable[Problem]:
+        """Names that are unknown, repeated, or repeated unequally often."""
+        for name in self.unknown[:20]:
+            yield Problem(name[:60], None, _unknown(name))
+        for name, texts in self.scalars.items():
+            if len(texts) > 1:
+                listed = ", ".join(text.strip()[:20] for text in texts[:5])
+                yield Problem(name, None, Message(N_("takes one value, given were %(texts)s"), {"texts": listed}))
+        if self.columns and not self.page.get("do"):
+            yield from self._unequal()
+
+    def _unequal(self) -> Iterable[Problem]:
+        counts = {name: len(self.columns.get(name, [])) for name in (*_REQUIRED, *self.columns)}
+        longest = max(counts, key=lambda name: counts[name])
+        for name, count in counts.items():
+            if count < counts[longest]:
+                values = {"count": str(count), "name": name, "most": str(counts[longest]), "longest": longest}
+                template = N_("missing: the link gives %(count)s × %(name)s, but %(most)s × %(longest)s")
+                yield Problem(name, min(count, MAXIMUM_PHASES), Message(template, values))
+
+
+def _unknown(name: str) -> Message:
+    leaves = {s.path[-1].lower(): s.name for s in (*SYMBOLS, *PHASE_SYMBOLS)}
+    names = {known.lower(): known for known in (*_PHASE_BY_NAME, *_BY_NAME, *PAGE_NAMES)}
+    near = difflib.get_close_matches(name[:60].lower(), leaves | names, n=1, cutoff=0.4)
+    if not near:
+        return Message(N_("%(name)s is not a parameter of this page"), {"name": name[:60]})
+    values = {"name": name[:60], "near": (leaves | names)[near[0]]}
+    return Message(N_("%(name)s is not a parameter of this page; did you mean %(near)s?"), values)
+
+
+def _list_problems(given: _Given) -> Iterable[Problem]:
+    for name, texts in given.lists.items():
+        for k, text in enumerate(texts):
+            if _BY_NAME[name].kind != "text" and isinstance(message := _read(text, "whole"), Message):
+                yield Problem(name, k, message)
+
+
+def _untouched(given: _Given, rows: list[dict[str, str]]) -> bool:
+    """The form was sent with its duty table still blank."""
+    return all(name in given.columns for name in _REQUIRED) and not any(map(_filled, rows))
+
+
+def _filled(row: Mapping[str, str]) -> bool:
+    return any(text.strip() for text in row.values())
+
+
+def _document(rows: Sequence[Mapping[str, str]], given: _Given) -> tuple[dict[str, Any], list[Problem]]:
+    """Nested input of the application model; what can't be read is left out and reported."""
+    problems: list[Problem] = []
+    phases: list[dict[str, Any]] = []
+    for k, row in enumerate(rows):
+        if _filled(row):
+            phase: dict[str, Any] = {}
+            phases.append(phase)
+            for name, text in row.items():
+                _put(phase, _PHASE_BY_NAME[name], text, Problem(name, k, Message("")), problems)
+    document: dict[str, Any] = {"duty_cycle": {"phases": phases}}
+    for name, texts in given.scalars.items():
+        _put(document, _BY_NAME[name], texts[0], Problem(name, None, Message("")), problems)
+    for name, texts in given.lists.items():
+        values = [value for text in texts if not isinstance(value := _read(text, _BY_NAME[name].kind), Message)]
+        document.setdefault(_BY_NAME[name].path[0], {})[_BY_NAME[name].path[1]] = values or None
+    return document, problems
+
+
+def _put(document: dict[str, Any], symbol: Symbol, text: str, place: Problem, problems: list[Problem]) -> None:
+    if not text.strip():
+        return
+    value = _read(text, symbol.kind)
+    if isinstance(value, Message):
+        problems.append(Problem(place.name, place.index, value))
+        return
+    for step in symbol.path[:-1]:
+        document = document.setdefault(step, {})
+    document[symbol.path[-1]] = value
+
+
+def _validated(
+    document: dict[str, Any], rows: Sequence[Mapping[str, str]], known: Sequence[Problem]
+) -> tuple[Application | None, list[Problem]]:
+    kept = [k for k, row in enumerate(rows) if _filled(row)] or [0]
+    places = {(problem.name, problem.index) for problem in known}
+    try:
+        return Application.model_validate(document), []
+    except ValidationError as refusal:
+        errors = refusal.errors(include_url=False, include_input=False)
+    problems = []
+    for error in errors:
+        name, index = place_of(error["loc"], kept)
+        if error["type"] == "no_motion":
+            name = "n"
+        # What could not be read was left out of the model, which then misses it, or the whole that it belongs to.
+        consequence = known and error["type"] in ("no_motion", "no_load")
+        refused_phases = error["type"] == "too_short" and any(map(_filled, rows))
+        if (name, index) not in places and not consequence and not refused_phases:
+            problems.append(Problem(name, index, _refusal(error)))
+    return None, problems
+
+
+def place_of(location: Sequence[int | str], rows: Sequence[int] = ()) -> tuple[str, int | None]:
+    """Query name and index of a location in the application model; `rows` are the rows that became phases."""
+    path = tuple(step for step in location if isinstance(step, str))
+    index = next((step for step in location if isinstance(step, int)), None)
+    if path[:2] == ("duty_cycle", "phases"):
+        name = _PHASE_BY_LEAF[path[2]].name if len(path) > 2 and path[2] in _PHASE_BY_LEAF else "T"
+        k = index or 0
+        return name, rows[k] if k < len(rows) else k
+    if path in _BY_PATH:
+        return _BY_PATH[path].name, index
+    return _PARTS.get(path, ".".join(path)), None
+
+
+_BOUNDS = {
+    "greater_than": (N_("must be above %(bound)s"), "gt"),
+    "greater_than_equal": (N_("must be at least %(bound)s"), "ge"),
+    "less_than": (N_("must be below %(bound)s"), "lt"),
+    "less_than_equal": (N_("must be at most %(bound)s"), "le"),
+}
+
+
+def _refusal(error: Any) -> Message:
+    """Text for one error of the model."""
+    context = error.get("ctx", {})
+    if error["type"] in _BOUNDS:
+        template, key = _BOUNDS[error["type"]]
+        return Message(template, {"bound": f"{context[key]:.12g}"})
+    if error["type"] == "no_load":
+        return Message(N_("give a radial or an axial load, here or in a phase"))
+    if error["type"] in ("missing", "too_short"):
+        return Message(N_("is missing"))
+    if error["type"] == "too_long":
+        return Message(N_("takes at most %(bound)s values"), {"bound": str(context["max_length"])})
+    if error["type"] == "literal_error":
+        return Message(N_("must be one of %(expected)s"), {"expected": context["expected"].replace("'", "")})
+    return Message(error["msg"])
+
+
+# --- Numbers ----------------------------------------------------------------------------------------------------------
+
+_NUMBER = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?")
+_LONGEST_TEXT = 60
+
+
+def _read(text: str, kind: Kind) -> float | int | str | Message:
+    text = text.strip()
+    if kind == "text":
+        return text if len(text) <= _LONGEST_TEXT else Message(N_("is too long"))
+    plain = text.replace("\N{MINUS SIGN}", "-")
+    if len(plain) > _LONGEST_TEXT or not _NUMBER.fullmatch(plain):
+        return _not_a_number(plain)
+    value = float(plain)
+    if value in (float("inf"), float("-inf")):
+        return Message(N_("is too large"))
+    if kind == "number":
+        return value
+    return int(value) if value.is_integer() else Message(N_("must be a whole number"))
+
+
+def _not_a_number(text: str) -> Message:
+    """What to write instead, where it can be told."""
+    tight = re.sub(r"[\s'’]", "", text)
+    if len(tight) > _LONGEST_TEXT:
+        return Message(N_("is too long for a number"))
+    readings = [reading for reading in _readings(tight) if _NUMBER.fullmatch(reading)]
+    if len(readings) > 1:
+        return Message(N_("write %(first)s or %(second)s"), {"first": readings[0], "second": readings[1]})
+    if readings:
+        return Message(N_("write %(number)s"), {"number": readings[0]})
+    return Message(N_("is not a number; write one such as 9.3"))
+
+
+def _readings(text: str) -> list[str]:
+    """Numbers that a text with commas may stand for; `1,234` is either of two."""
+    if text.rfind(".") > text.rfind(",") or text.count(",") > 1:
+        return [text.replace(",", "")]
+    decimal = text.replace(".", "").replace(",", ".")
+    if re.fullmatch(r"[+-]?[1-9][0-9]{0,2},[0-9]{3}", text):
+        return [decimal, text.replace(",", "")]
+    return [decimal]

@@ -1,0 +1,205 @@
+"""The page: one address that takes the whole application, and answers with the whole page or with what has changed."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from gettext import NullTranslations
+from pathlib import Path
+from typing import Any
+from urllib.parse import parse_qsl
+
+from jinja2 import Environment, FileSystemLoader, StrictUndefined
+from starlette.datastructures import State
+from starlette.requests import Request
+from starlette.responses import HTMLResponse, Response
+from starlette.routing import Route
+
+from hpn.application import Application, InputError
+from hpn.catalogue import Catalogue
+from hpn.gear import Gear
+from hpn.notices import AREAS
+from hpn.selection import Selection, select
+from hpn.web import assets, display, links
+from hpn.web.links import Form, Message, Problem
+
+TEMPLATES = Path(__file__).parents[3] / "frontend/templates"
+
+Candidate = Mapping[str, Any]
+
+
+@dataclass(frozen=True)
+class Cell:
+    """One gear in the map of sizes and ratios; `asked` tells whether the ratio and size wishes include it."""
+
+    gear: Gear
+    candidate: Candidate
+    asked: bool
+
+    @property
+    def level(self) -> str:
+        """Step of the colour scale: five for gears that pass, one each for those that fail and those not rated."""
+        if self.candidate["status"] == "suitable":
+            return f"l{min(int(self.candidate['utilisation'] * 5), 4)}"
+        return "over" if self.candidate["status"] == "unsuitable" else "unknown"
+
+
+@dataclass(frozen=True)
+class Answer:
+    """Reply to an application, and the candidate that the page looks at."""
+
+    link: str
+    address: str
+    reply: Mapping[str, Any]
+    selection: Selection
+    chosen: Candidate
+    gear: Gear
+    lighter: Candidate | None
+    map: tuple[tuple[int, tuple[Cell | None, ...]], ...]
+
+
+def show(request: Request) -> Response:
+    """The page of `/`, or only the part that changes with the input where htmx asks for it."""
+    query = request.scope["query_string"]
+    if len(query) > links.MAXIMUM_QUERY_BYTES:
+        return _render(request, "too_long.html", 414, limit=links.MAXIMUM_QUERY_BYTES)
+    catalogue: Catalogue = request.app.state.catalogue
+    form, answer = answered(read_query(query), catalogue)
+    status = 422 if form.problems else 200
+    template = "_changes.html" if _wants_changes(request) else "page.html"
+    return _render(request, template, status, form=form, answer=answer, catalogue=catalogue)
+
+
+def read_query(query: bytes) -> Form:
+    """Form of a query; without one, the handbook's worked example."""
+    text = query.decode("latin-1") or links.to_link(Application.worked_example()).removeprefix("/?")
+    return links.parse(parse_qsl(text, keep_blank_values=True))
+
+
+def answered(form: Form, catalogue: Catalogue) -> tuple[Form, Answer | None]:
+    """Answer to a form; a form that can't be answered comes back with its problems."""
+    if form.gear and catalogue.find(form.gear) is None:
+        unknown = Message(links.N_("%(gear)s is not a gear of the catalogue"), {"gear": form.gear[:40]})
+        form = replace(form, problems=(*form.problems, Problem("gear", None, unknown)))
+    if form.application is None or form.problems:
+        return form, None
+    try:
+        return form, _answer(form.application, form.gear, catalogue)
+    except InputError as refusal:
+        refused = [Problem(*links.place_of(location), Message(detail)) for location, detail in refusal.problems]
+        return replace(form, application=None, problems=tuple(refused)), None
+
+
+def _answer(application: Application, designation: str, catalogue: Catalogue) -> Answer:
+    link = links.to_link(application)
+    selection = select(application, catalogue)
+    reply = selection.reply(link)
+    landscape = _landscape(application, catalogue, reply)
+    gear = catalogue.find(designation or reply["selected"] or reply["candidates"][0]["designation"])
+    assert gear is not None  # `answered` refuses what the catalogue lacks
+    return Answer(
+        link=link,
+        address=f"{link}&gear={gear.designation}" if designation else link,
+        reply=reply,
+        selection=selection,
+        chosen=landscape[gear.designation],
+        gear=gear,
+        lighter=_lighter_miss(reply, catalogue),
+        map=_map(reply, landscape, catalogue),
+    )
+
+
+def _landscape(application: Application, catalogue: Catalogue, reply: Mapping[str, Any]) -> dict[str, Candidate]:
+    """Every gear of the catalogue as a candidate, whatever ratios and sizes were asked for."""
+    wishes = application.requirements
+    if wishes.ratios or wishes.sizes:
+        free = wishes.model_copy(update={"ratios": None, "sizes": None})
+        reply = select(application.model_copy(update={"requirements": free}), catalogue).reply("")
+    return {candidate["designation"]: candidate for candidate in reply["candidates"]}
+
+
+def _map(
+    reply: Mapping[str, Any], landscape: Mapping[str, Candidate], catalogue: Catalogue
+) -> tuple[tuple[int, tuple[Cell | None, ...]], ...]:
+    asked = {candidate["designation"] for candidate in reply["candidates"]}
+    gears = {(gear.ratio, gear.size): gear for gear in catalogue.gears}
+
+    def cell(ratio: int, size: str) -> Cell | None:
+        gear = gears.get((ratio, size))
+        return Cell(gear, landscape[gear.designation], gear.designation in asked) if gear else None
+
+    return tuple((ratio, tuple(cell(ratio, size) for size in catalogue.sizes)) for ratio in catalogue.ratios)
+
+
+def _lighter_miss(reply: Mapping[str, Any], catalogue: Catalogue) -> Candidate | None:
+    """The rejected gear closest to passing among those lighter than the selected one."""
+    selected = catalogue.find(reply["selected"] or "")
+    if selected is None or selected.weight_kg is None:
+        return None
+    for candidate in reply["candidates"]:
+        weight = catalogue.by_designation[candidate["designation"]].weight_kg
+        if candidate["status"] == "unsuitable" and weight is not None and weight < selected.weight_kg:
+            found: Candidate = candidate
+            return found
+    return None
+
+
+def _wants_changes(request: Request) -> bool:
+    """Whether htmx asks for a part; when it goes back in history it needs the whole page."""
+    return "hx-request" in request.headers and "hx-history-restore-request" not in request.headers
+
+
+def _render(request: Request, template: str, status: int, **context: Any) -> Response:
+    answer: Answer | None = context.get("answer")
+    content = environment(request.app.state).get_template(template).render(**context)
+    response = HTMLResponse(content, status)
+    response.headers["Vary"] = "HX-Request, HX-History-Restore-Request"
+    if answer and _wants_changes(request):
+        response.headers["HX-Push-Url"] = answer.address
+    return response
+
+
+# --- Templates --------------------------------------------------------------------------------------------------------
+
+
+def environment(state: State) -> Environment:
+    """Templates of an application, with what they all use; made once per application."""
+    if not hasattr(state, "assets"):
+        state.assets = assets.Assets.load()
+    if not hasattr(state, "templates"):
+        state.templates = _templates(state.assets, NullTranslations())
+    templates: Environment = state.templates
+    return templates
+
+
+def _templates(static: assets.Assets, translations: NullTranslations) -> Environment:
+    """Templates in one language. `_()` takes a format, the filter `t` a text of the domain that may hold a `%`."""
+    templates = Environment(
+        loader=FileSystemLoader(TEMPLATES),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        extensions=["jinja2.ext.i18n"],
+    )
+    templates.install_gettext_translations(translations, newstyle=True)  # type: ignore[attr-defined]
+    translate = translations.gettext
+    templates.filters |= {
+        "figure": display.figure,
+        "percent": display.percent,
+        "capped_percent": display.capped_percent,
+        "symbols": display.symbols,
+        "t": translate,
+        "say": lambda message: message.text(translate),
+        "translated": lambda texts: [(code, translate(text)) for code, text in texts.items()],
+    }
+    templates.globals |= {
+        "asset": static.url,
+        "AREAS": AREAS,
+        "BEST": display.BEST,
+        "CHECK_NAMES": display.CHECK_NAMES,
+        "FIELD_NAMES": display.FIELD_NAMES,
+        "LIMIT_FIGURES": display.LIMIT_FIGURES,
+    }
+    return templates
+
+
+routes = [Route("/", show, methods=["GET"]), *assets.routes]

@@ -1,0 +1,84 @@
+// What the page adds to htmx: the form stays the reader's while answers arrive, and history has one entry per edit.
+// Everything hangs on the document, because going back in history replaces the body.
+
+const formOf = () => document.getElementById("application");
+const contentOf = (form) => new URLSearchParams(new FormData(form)).toString();
+
+// --- Answers that come too late ---------------------------------------------------------------------------------------
+
+document.addEventListener("htmx:config:request", (event) => {
+  const { ctx } = event.detail;
+  if (ctx.sourceElement.id !== "application") return;
+  if (ctx.sourceEvent.type === "input" && unfinishedRow()) {
+    ctx.sourceElement.dataset.waiting = "";
+    event.preventDefault();
+    return;
+  }
+  delete ctx.sourceElement.dataset.waiting;
+  ctx.asked = contentOf(ctx.sourceElement);
+});
+
+document.addEventListener("htmx:before:swap", (event) => {
+  const { ctx } = event.detail;
+  if (ctx.asked === undefined) return;
+  // An answer to what the form no longer says must not overwrite it; the request for what it says now is under way.
+  if (ctx.asked !== contentOf(formOf())) event.preventDefault();
+  else mirrorIntoAttributes(formOf());
+});
+
+// The morph compares attributes, while typing changes properties: make the two agree first.
+function mirrorIntoAttributes(form) {
+  for (const field of form.elements) {
+    if (field.type === "checkbox") field.toggleAttribute("checked", field.checked);
+    else if (field.type === "text" || field.type === "hidden") field.setAttribute("value", field.value);
+    else if (field.tagName === "SELECT") {
+      for (const option of field.options) option.toggleAttribute("selected", option.selected);
+    }
+  }
+}
+
+// --- Rows that are still being typed ----------------------------------------------------------------------------------
+
+// A phase with a torque and no speed yet is no error of somebody who is about to type the speed.
+function unfinishedRow() {
+  const row = document.activeElement?.closest("#duty tbody tr");
+  if (!row) return null;
+  const filled = ["T", "n", "t"].map((name) => row.querySelector(`[name="${name}"]`).value.trim() !== "");
+  return filled.includes(true) && filled.includes(false) ? row : null;
+}
+
+document.addEventListener("focusout", (event) => {
+  const row = event.target.closest("#duty tbody tr");
+  const form = formOf();
+  if (row && "waiting" in form.dataset && !row.contains(event.relatedTarget)) form.requestSubmit();
+});
+
+// --- Choosing a candidate ---------------------------------------------------------------------------------------------
+
+document.addEventListener("click", (event) => {
+  const link = event.target.closest("a[data-gear]");
+  if (!link || event.button || event.ctrlKey || event.metaKey || event.shiftKey || event.altKey) return;
+  event.preventDefault();
+  const form = formOf();
+  form.elements.gear.value = link.dataset.gear;
+  startEdit();
+  form.requestSubmit();
+});
+
+// --- History: one entry per edit, not per keystroke -------------------------------------------------------------------
+
+let visit = 0; // counts the times that a field was entered
+let edit = 0; // the visit that the latest change belongs to
+let pushed = -1; // the edit that has its entry already
+
+const startEdit = () => (edit = ++visit);
+document.addEventListener("focusin", () => visit++);
+document.addEventListener("input", () => (edit = visit));
+document.addEventListener("submit", (event) => event.submitter?.name && startEdit());
+
+document.addEventListener("htmx:before:history:update", (event) => {
+  const { history } = event.detail;
+  if (history.path === location.pathname + location.search) return event.preventDefault();
+  if (edit === pushed) history.type = "replace";
+  pushed = edit;
+});
