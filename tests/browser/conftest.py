@@ -1,0 +1,124 @@
+"""A real server and a real Chromium, started once for all browser tests."""
+
+import shutil
+import socket
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from urllib.parse import urlsplit
+from urllib.request import urlopen
+
+import pytest
+from playwright.sync_api import Browser, BrowserContext, Page, Playwright, sync_playwright
+
+AXE = Path(__file__).parents[2] / "frontend/node_modules/axe-core/axe.min.js"
+BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
+# The browser looks nothing up outside this machine.
+OFFLINE = "--host-resolver-rules=MAP * ~NOTFOUND , EXCLUDE 127.0.0.1 , EXCLUDE localhost"
+
+
+@pytest.fixture(scope="session")
+def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
+    """Address of a running service."""
+    with socket.socket() as listener:
+        listener.bind(("127.0.0.1", 0))
+        port = listener.getsockname()[1]
+    log = tmp_path_factory.mktemp("server") / "log"
+    command = [sys.executable, "-m", "uvicorn", "--factory", "hpn.web.app:create_app", "--port", str(port)]
+    with log.open("w") as output:
+        process = subprocess.Popen(command, stdout=output, stderr=subprocess.STDOUT)
+    try:
+        _wait_for(f"http://127.0.0.1:{port}/healthz", process, log)
+        yield f"http://127.0.0.1:{port}"
+    finally:
+        process.terminate()
+        process.wait(10)
+
+
+def _wait_for(address: str, process: subprocess.Popen[bytes], log: Path) -> None:
+    for _ in range(150):
+        if process.poll() is not None:
+            break
+        try:
+            with urlopen(address):
+                return
+        except OSError:
+            time.sleep(0.2)
+    raise RuntimeError(f"the server did not start:\n{log.read_text()}")
+
+
+@pytest.fixture(scope="session")
+def playwright_driver() -> Iterator[Playwright]:
+    """Playwright's driver process."""
+    with sync_playwright() as driver:
+        yield driver
+
+
+@pytest.fixture(scope="session")
+def chromium(playwright_driver: Playwright) -> Iterator[Browser]:
+    """The machine's Chromium, else Playwright's own."""
+    path = next(filter(None, map(shutil.which, BROWSERS)), None)
+    browser = playwright_driver.chromium.launch(executable_path=path, args=[OFFLINE])
+    yield browser
+    browser.close()
+
+
+class Watch:
+    """What a page reported while it was used."""
+
+    def __init__(self, page: Page, server: str) -> None:
+        self.console: list[str] = []
+        self.strangers: list[str] = []
+        home = urlsplit(server).netloc
+        page.on("console", lambda m: self.console.append(m.text) if m.type in ("error", "warning") else None)
+        page.on("pageerror", lambda error: self.console.append(str(error)))
+        page.on("request", lambda r: self.strangers.append(r.url) if urlsplit(r.url).netloc not in (home, "") else None)
+
+
+class Visitor:
+    """Opens pages of the service, each in a context of its own, and watches them."""
+
+    def __init__(self, browser: Browser, server: str) -> None:
+        self.browser, self.server = browser, server
+        self.contexts: list[BrowserContext] = []
+        self.watches: list[Watch] = []
+
+    def open(
+        self, path: str = "/", width: int = 1440, *, script: bool = True, dark: bool = False, touch: bool = False
+    ) -> Page:
+        """Page at a path, in a viewport of a width."""
+        context = self.browser.new_context(
+            viewport={"width": width, "height": 844 if width < 600 else 900},
+            java_script_enabled=script,
+            color_scheme="dark" if dark else "light",
+            has_touch=touch,
+            is_mobile=touch,
+        )
+        context.set_default_timeout(10_000)
+        self.contexts.append(context)
+        page = context.new_page()
+        self.watches.append(Watch(page, self.server))
+        page.goto(self.server + path)
+        return page
+
+    def close(self) -> None:
+        """End all contexts."""
+        for context in self.contexts:
+            context.close()
+
+
+@pytest.fixture
+def visitor(chromium: Browser, server: str) -> Iterator[Visitor]:
+    """Visitor whose pages must neither complain in the console nor ask another host for anything.
+
+    A page of a test about errors says so itself: Chromium reports every 422 in the console.
+    """
+    visitor = Visitor(chromium, server)
+    yield visitor
+    complaints = [text for watch in visitor.watches for text in watch.console if "status of 422" not in text]
+    strangers = [url for watch in visitor.watches for url in watch.strangers]
+    visitor.close()
+    assert complaints == []
+    assert strangers == []

@@ -1,0 +1,242 @@
+"""Links in both directions: what they mean, that nothing is lost, and that nothing breaks the reader."""
+
+from typing import Any
+from urllib.parse import parse_qsl
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from hpn.application import Application
+from hpn.web import links
+
+EXAMPLE = "/?T=40&n=250&t=0.3&T=32&n=500&t=3&T=20&n=250&t=0.4&tp=4&Tk=200&i=5"
+PHASE = "T=40&n=250&t=0.3"
+
+
+def some(**fields: st.SearchStrategy[Any]) -> st.SearchStrategy[dict[str, Any]]:
+    """Any of these fields, in any combination."""
+    return st.fixed_dictionaries({}, optional=fields)
+
+
+amounts = st.floats(1e-6, 1e6)
+signed = st.floats(-1e6, 1e6)
+phases = st.tuples(
+    st.fixed_dictionaries({"torque_Nm": signed, "speed_rpm": amounts, "duration_s": amounts}),
+    some(radial_N=signed, axial_N=signed),
+).map(lambda parts: parts[0] | parts[1])
+requirements = some(
+    ratios=st.lists(st.integers(1, 10_000), min_size=1, max_size=4),
+    sizes=st.lists(st.sampled_from(["11A", "14A", "40A", "A&B =ß"]), min_size=1, max_size=3),
+    life_h=amounts,
+    backlash_arcmin=amounts,
+    torsional_stiffness_Nm_per_rad=st.floats(1e-300, 1e12),
+    weight_kg=amounts,
+    length_mm=amounts,
+    ambient_temperature_degC=st.floats(-273, 1000),
+    utilisation=st.floats(0, 1, exclude_min=True),
+    efficiency=st.floats(0, 1, exclude_min=True),
+    motor=some(peak_torque_Nm=amounts, rated_torque_Nm=amounts, maximum_speed_rpm=amounts).filter(bool),
+)
+conditions = some(
+    load_coefficient=st.floats(1, 3),
+    life_h=amounts,
+    life_basis=st.sampled_from(["L50", "L10"]),
+    model=st.sampled_from(["linear", "iso281", "digitised"]),
+)
+applications = st.fixed_dictionaries(
+    {
+        "duty_cycle": st.fixed_dictionaries(
+            {"phases": st.lists(phases, min_size=1, max_size=5)}, optional={"pause_s": amounts}
+        )
+    },
+    optional={
+        "emergency_stop": st.fixed_dictionaries({"torque_Nm": signed}, optional={"count": st.integers(0, 10**15)}),
+        "output_load": st.tuples(some(radial_N=signed, axial_N=signed), conditions).map(lambda p: p[0] | p[1]),
+        "requirements": requirements,
+        "application_area": st.sampled_from(["vacuum", "medical"]),
+        "rank_by": st.sampled_from(["weight", "utilisation", "life"]),
+    },
+)
+
+
+def loaded(document: dict[str, Any]) -> bool:
+    """Whether an output load, where there is one, has a load."""
+    carriers = [document.get("output_load", {}), *document["duty_cycle"]["phases"]]
+    return "output_load" not in document or any("radial_N" in c or "axial_N" in c for c in carriers)
+
+
+def read(query: str) -> links.Form:
+    return links.parse(parse_qsl(query, keep_blank_values=True))
+
+
+def found(query: str) -> dict[tuple[str, int | None], str]:
+    """Message by place."""
+    return {(problem.name, problem.index): str(problem.message) for problem in read(query).problems}
+
+
+def test_worked_example_has_the_link_of_the_contract() -> None:
+    assert links.to_link(Application.worked_example()) == EXAMPLE
+    assert read(EXAMPLE[2:]).application == Application.worked_example()
+
+
+@given(applications.filter(loaded))
+def test_every_application_survives_its_link(document: dict[str, Any]) -> None:
+    application = Application.model_validate(document)
+    again = read(links.to_link(application).removeprefix("/?"))
+    assert again.problems == ()
+    assert again.application == application
+
+
+@given(
+    st.lists(st.tuples(st.sampled_from([*"TntLmui", "tp", "Nk", "size", "gear", "do", "FRi", "rank", "x"]), st.text()))
+)
+def test_no_query_breaks_the_reader_and_all_of_it_comes_back(pairs: list[tuple[str, str]]) -> None:
+    form = links.parse(pairs)
+    assert form.application is None or not form.problems
+    assert all(str(problem.message) for problem in form.problems)
+    given_rows = [text for name, text in pairs if name == "T"]
+    if not form.with_loads and not any(name == "do" for name, _ in pairs):
+        assert [row["T"] for row in form.rows][: len(given_rows)] == given_rows
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("9,3", "write 9.3"),
+        ("1.234,5", "write 1234.5"),
+        ("1,234.5", "write 1234.5"),
+        ("1,234,567", "write 1234567"),
+        ("1,234", "write 1.234 or 1234"),
+        ("1 000", "write 1000"),
+        ("1e999", "is too large"),
+        ("nan", "is not a number; write one such as 9.3"),
+        ("0x10", "is not a number; write one such as 9.3"),
+        ("٤٢", "is not a number; write one such as 9.3"),
+        ("4\0", "is not a number; write one such as 9.3"),
+        ("1_000", "is not a number; write one such as 9.3"),
+        ("12 Nm", "is not a number; write one such as 9.3"),
+        ("9" * 50_000, "is too long for a number"),
+    ],
+)
+def test_text_that_is_no_number_is_answered_with_what_to_write(text: str, message: str) -> None:
+    form = links.parse([("T", text), ("n", "250"), ("t", "0.3")])
+    assert [(p.name, p.index, str(p.message)) for p in form.problems] == [("T", 0, message)]
+    assert form.rows[0]["T"] == text
+
+
+@pytest.mark.parametrize("text", ["40", "40.", "+40", " 40 ", "4e1", "040", "40.00"])
+def test_number_may_be_written_in_any_plain_way(text: str) -> None:
+    form = links.parse([("T", text), ("n", "250"), ("t", "0.3")])
+    assert form.application is not None
+    assert form.application.duty_cycle.phases[0].torque_Nm == 40
+
+
+def test_minus_sign_of_a_word_processor_is_a_minus() -> None:
+    application = links.parse([("T", "−40"), ("n", "250"), ("t", "1")]).application
+    assert application is not None
+    assert application.duty_cycle.phases[0].torque_Nm == -40
+
+
+def test_unequal_lists_are_reported_where_the_value_is_missing() -> None:
+    problems = found("T=40&n=250&t=0.3&T=3&n=2")
+    assert problems == {("t", 1): "missing: the link gives 1 × t, but 2 × T"}
+
+
+def test_repeated_scalar_is_reported_and_kept() -> None:
+    form = read(PHASE + "&Tk=200&Tk=300")
+    assert form.texts["Tk"] == "200"
+    assert found(PHASE + "&Tk=200&Tk=300") == {("Tk", None): "takes one value, given were 200, 300"}
+
+
+@pytest.mark.parametrize(
+    ("name", "near"), [("ratio", "i"), ("torque_Nm", "T"), ("Tkk", "Tk"), ("rnak", "rank"), ("life_h", "Lh")]
+)
+def test_unknown_name_is_answered_with_the_nearest(name: str, near: str) -> None:
+    assert found(f"{PHASE}&{name}=1")[name, None].endswith(f"did you mean {near}?")
+
+
+def test_each_error_of_the_model_stands_at_its_field() -> None:
+    problems = found("T=1&n=2&t=-1&T=4000000&n=5&t=6&u=2&rank=best&K3=0&Nk=1.5")
+    assert problems == {
+        ("t", 0): "must be above 0",
+        ("T", 1): "must be at most 1000000",
+        ("u", None): "must be at most 1",
+        ("rank", None): "must be one of weight, utilisation, length, motor_torque, life or stiffness",
+        ("K3", None): "must be above 0",
+        ("Nk", None): "must be a whole number",
+    }
+
+
+def test_cycle_without_motion_is_reported_at_the_speed() -> None:
+    assert "no phase moves" in found("T=40&n=0&t=1")["n", 0]
+
+
+def test_count_without_a_torque_asks_for_the_torque() -> None:
+    assert found(PHASE + "&Nk=5") == {("Tk", None): "is missing"}
+
+
+def test_load_coefficient_without_a_load_asks_for_a_load() -> None:
+    assert found(PHASE + "&fw=1.2") == {("FR", None): "give a radial or an axial load, here or in a phase"}
+
+
+def test_blank_fields_of_the_plain_form_count_as_absent() -> None:
+    form = read(PHASE + "&tp=&Tk=&Nk=&Lh=&rank=&gear=&u=&T=&n=&t=")
+    assert form.problems == ()
+    assert form.application == read(PHASE).application
+    assert len(form.rows) == 2
+
+
+def test_errors_name_the_row_that_is_seen_though_a_blank_row_stands_above() -> None:
+    assert found("T=&n=&t=&T=40&n=250&t=-1") == {("t", 1): "must be above 0"}
+
+
+def test_untouched_form_is_neither_answer_nor_error() -> None:
+    assert read("T=&n=&t=&rank=&Tk=").empty
+    assert found("tp=4") == {("T", 0): "is missing"}
+
+
+def test_loads_of_phases_may_be_blank_but_not_left_out() -> None:
+    form = read("T=1&n=2&t=3&FRi=500&T=1&n=2&t=3&FRi=")
+    assert form.application is not None
+    assert [phase.radial_N for phase in form.application.duty_cycle.phases] == [500, None]
+    assert ("FRi", 1) in found("T=1&n=2&t=3&FRi=500&T=1&n=2&t=3")
+
+
+@pytest.mark.parametrize(
+    ("do", "torques", "focus"),
+    [
+        ("add", ["1", "2", "3", ""], "T-3"),
+        ("remove:2", ["1", "3"], "T-1"),
+        ("remove:3", ["1", "2"], "T-1"),
+        ("up:3", ["1", "3", "2"], "up-1"),
+        ("up:1", ["1", "2", "3"], "down-0"),
+        ("down:2", ["1", "3", "2"], "up-2"),
+        ("down:1", ["2", "1", "3"], "down-1"),
+        ("remove:9", ["1", "2", "3"], None),
+        ("remove:x", ["1", "2", "3"], None),
+        ("dance", ["1", "2", "3"], None),
+    ],
+)
+def test_buttons_edit_rows_without_script(do: str, torques: list[str], focus: str | None) -> None:
+    form = read(f"T=1&n=1&t=1&T=2&n=1&t=1&T=3&n=1&t=1&do={do}")
+    assert [row["T"] for row in form.rows] == torques
+    assert form.focus == focus
+
+
+def test_last_row_removed_leaves_a_blank_one() -> None:
+    assert [dict(row) for row in read("T=1&n=1&t=1&do=remove:1").rows] == [{"T": "", "n": "", "t": ""}]
+
+
+def test_every_field_of_the_application_has_a_symbol() -> None:
+    def leaves(model: type, path: tuple[str, ...] = ()) -> set[tuple[str, ...]]:
+        found: set[tuple[str, ...]] = set()
+        for name, info in model.model_fields.items():  # type: ignore[attr-defined]
+            parts = [
+                t for t in (info.annotation, *getattr(info.annotation, "__args__", ())) if hasattr(t, "model_fields")
+            ]
+            found |= leaves(parts[0], (*path, name)) if parts else {(*path, name)}
+        return found
+
+    phases = {("duty_cycle", "phases", *symbol.path) for symbol in links.PHASE_SYMBOLS}
+    assert leaves(Application) == phases | {symbol.path for symbol in links.SYMBOLS}

@@ -1,0 +1,197 @@
+"""The page and its assets over HTTP."""
+
+import gzip
+import re
+from collections.abc import Iterator
+
+import brotli
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from starlette.testclient import TestClient
+
+from hpn.web.app import create_app
+from hpn.web.links import MAXIMUM_QUERY_BYTES, PHASE_SYMBOLS, SYMBOLS
+
+EXAMPLE = "/?T=40&n=250&t=0.3&T=32&n=500&t=3&T=20&n=250&t=0.4&tp=4&Tk=200&i=5"
+HTMX = {"HX-Request": "true"}
+
+
+@pytest.fixture(scope="module")
+def client() -> Iterator[TestClient]:
+    with TestClient(create_app()) as client:
+        yield client
+
+
+def heading(html: str) -> str:
+    """Designation in big type, or nothing."""
+    found = re.search(r'<h2 class="designation"[^>]*>(\S+)', html)
+    return found[1] if found else ""
+
+
+def test_page_without_a_query_is_the_worked_example(client: TestClient) -> None:
+    bare, linked = client.get("/"), client.get(EXAMPLE)
+    assert bare.status_code == 200
+    assert heading(bare.text) == "HPN-20A-5"
+    assert bare.text == linked.text
+
+
+def test_page_agrees_with_the_API(client: TestClient) -> None:
+    query = EXAMPLE.replace("&i=5", "&Lh=20000&FR=500&u=0.9")
+    page = client.get(query).text
+    body = {
+        "duty_cycle": {
+            "phases": [
+                {"torque_Nm": T, "speed_rpm": n, "duration_s": t}
+                for T, n, t in ((40, 250, 0.3), (32, 500, 3), (20, 250, 0.4))
+            ],
+            "pause_s": 4,
+        },
+        "emergency_stop": {"torque_Nm": 200},
+        "output_load": {"radial_N": 500},
+        "requirements": {"life_h": 20000, "utilisation": 0.9},
+    }
+    reply = client.post("/api/v1/select", json=body).json()
+    assert heading(page) == reply["selected"]
+    listed = re.findall(r'<tr id="row-(HPN-\w+-\d+)" class="(\w+)', page)
+    assert listed == [(c["designation"], c["status"]) for c in reply["candidates"]]
+    shown = [float(value) for value in re.findall(r'class="percent"\s+data-value="([^"]+)"', page)]
+    best = next(c for c in reply["candidates"] if c["designation"] == reply["selected"])
+    assert shown[: len(best["checks"])] == [check["utilisation"] for check in best["checks"]]
+
+
+def test_htmx_gets_the_part_that_changes_and_the_canonical_address(client: TestClient) -> None:
+    part = client.get("/?T=40.0&n=250&t=0.30&rank=weight&Tk=&gear=14-5", headers=HTMX)
+    assert "<html" not in part.text
+    assert "<form" in part.text
+    assert part.headers["HX-Push-Url"] == "/?T=40&n=250&t=0.3&gear=HPN-14A-5"
+    assert "HX-Request" in part.headers["Vary"]
+
+
+def test_htmx_going_back_gets_the_whole_page(client: TestClient) -> None:
+    whole = client.get(EXAMPLE, headers={**HTMX, "HX-History-Restore-Request": "true"})
+    assert whole.text == client.get(EXAMPLE).text
+    assert "HX-Push-Url" not in whole.headers
+    assert "HX-History-Restore-Request" in whole.headers["Vary"]
+
+
+@pytest.mark.parametrize("headers", [{}, HTMX], ids=["page", "part"])
+@pytest.mark.parametrize(
+    ("query", "field", "message"),
+    [
+        ("/?T=9,3&n=250&t=0.3", "e-T-0", "write 9.3"),
+        ("/?T=40&n=250&t=0.3&T=30", "e-n-1", "missing"),
+        ("/?T=40&n=250&t=0.3&Tk=1&Tk=2", "e-Tk", "takes one value"),
+        ("/?T=40&n=250&t=0.3&u=1.5", "e-u", "must be at most 1"),
+    ],
+)
+def test_error_is_422_with_the_form_the_input_and_the_message(
+    client: TestClient, query: str, field: str, message: str, headers: dict[str, str]
+) -> None:
+    response = client.get(query, headers=headers)
+    assert response.status_code == 422
+    assert re.search(rf'id="{field}">{message}', response.text)
+    assert f'aria-describedby="{field}' in response.text
+    first = re.search("T=([^&]*)", query)
+    assert first and f'value="{first[1]}"' in response.text
+    assert "HX-Push-Url" not in response.headers
+
+
+def test_unknown_name_is_422_and_suggests_the_nearest(client: TestClient) -> None:
+    response = client.get("/?T=40&n=250&t=0.3&ratio=5")
+    assert response.status_code == 422
+    assert "ratio is not a parameter of this page; did you mean i?" in response.text
+
+
+@pytest.mark.parametrize(
+    ("wish", "message"),
+    [
+        ("i=6", "the catalogue has no 6"),
+        ("size=99", "the catalogue has no 99A"),
+        ("size=11A&i=3", "no gear has such a size and ratio"),
+        ("gear=HPN-99A-5", "HPN-99A-5 is not a gear of the catalogue"),
+        ("FR=100&bm=digitised", "bearing_envelopes.csv"),
+    ],
+)
+def test_wish_that_nothing_can_meet_is_422_and_says_what_there_is(client: TestClient, wish: str, message: str) -> None:
+    response = client.get(f"/?T=40&n=250&t=0.3&{wish}")
+    assert response.status_code == 422
+    assert message in response.text
+
+
+def test_input_is_shown_as_text_never_as_markup(client: TestClient) -> None:
+    attack = "%22%3E%3Cscript%3Ealert(1)%3C/script%3E%3Chx-partial%3E"
+    for name in [s.name for s in (*SYMBOLS, *PHASE_SYMBOLS)] + ["gear", "do", attack]:
+        response = client.get(f"/?T=40&n=250&t=0.3&{name}={attack}", headers=HTMX)
+        assert "<script" not in response.text
+        assert response.text.count("<hx-partial") <= 1
+
+
+@given(st.binary(max_size=300))
+def test_no_query_is_a_server_error(query: bytes) -> None:
+    with TestClient(app, raise_server_exceptions=True) as client:
+        assert (
+            client.get(
+                "/?" + "".join(f"%{byte:02x}" if byte % 3 else chr(byte % 64 + 60) for byte in query)
+            ).status_code
+            < 500
+        )
+
+
+app = create_app()
+
+
+@pytest.mark.parametrize(
+    "value", ["1e999", "nan", "-inf", "0x10", "%D9%A4", "%00", "1e308", "-1e308", "1e-30", "9" * 5000]
+)
+@pytest.mark.parametrize("name", [s.name for s in (*SYMBOLS, *PHASE_SYMBOLS)])
+def test_odd_values_are_answered_in_every_field(client: TestClient, name: str, value: str) -> None:
+    assert client.get(f"/?T=40&n=250&t=0.3&Tk=50&FR=10&FRi=&FAi=&{name}={value}").status_code in (200, 422)
+
+
+def test_link_that_is_too_long_is_414_and_names_the_API(client: TestClient) -> None:
+    response = client.get("/?T=" + "9" * MAXIMUM_QUERY_BYTES)
+    assert response.status_code == 414
+    assert "/api/v1/select" in response.text
+
+
+def test_long_cycle_within_the_limit_is_answered_without_repeating_it_per_gear(client: TestClient) -> None:
+    query = "&".join(["T=40&n=250&t=0.3"] * 1500)
+    response = client.get("/?" + query, headers=HTMX)
+    assert response.status_code == 200
+    assert response.text.count("T=40&amp;n=250&amp;t=0.3") == 0
+    assert '<button type="submit" form="application" name="gear" value="HPN-32A-5"' in response.text
+
+
+def test_assets_are_hashed_immutable_and_precompressed(client: TestClient) -> None:
+    page = client.get("/").text
+    addresses = re.findall(r'(?:href|src)="(/static/[^"]+)"', page)
+    assert {address.rpartition(".")[2] for address in addresses} == {"css", "js", "svg"}
+    for address in addresses:
+        plain = client.get(address, headers={"Accept-Encoding": "identity"})
+        assert plain.headers["Cache-Control"] == "public, max-age=31536000, immutable"
+        assert plain.headers["Vary"] == "Accept-Encoding"
+        assert re.search(r"\.[0-9a-f]{8}\.", address)
+        for coding, unpack in (("br", brotli.decompress), ("gzip", gzip.decompress)):
+            with client.stream("GET", address, headers={"Accept-Encoding": coding}) as packed:
+                assert packed.headers["Content-Encoding"] == coding
+                assert packed.headers["Content-Type"] == plain.headers["Content-Type"]
+                assert unpack(b"".join(packed.iter_raw())) == plain.content
+
+
+@pytest.mark.parametrize(
+    "name", ["app.css", "manifest.json", "../static/app.css", "..%2f..%2fbuild.py", "%00", "x" * 5000]
+)
+def test_only_built_files_are_served(client: TestClient, name: str) -> None:
+    assert client.get(f"/static/{name}").status_code == 404
+
+
+def test_first_view_stays_light(client: TestClient) -> None:
+    """Issue 4's budget of 120 kB for everything but the plots, the page itself compressed as a proxy would."""
+    page = client.get("/")
+    addresses = set(re.findall(r'(?:href|src)="(/static/[^"]+)"', page.text))
+    total = len(gzip.compress(page.content))
+    for address in addresses:
+        with client.stream("GET", address, headers={"Accept-Encoding": "br"}) as packed:
+            total += len(b"".join(packed.iter_raw()))
+    assert total < 60_000
