@@ -1,7 +1,9 @@
 """Command line: `hpn select application.json`, `hpn catalogue`, `hpn serve`."""
 
 import argparse
+import asyncio
 import sys
+from contextlib import suppress
 from pathlib import Path
 
 import orjson
@@ -11,6 +13,7 @@ from pydantic import ValidationError
 from hpn.application import Application, InputError
 from hpn.catalogue import Catalogue, load_catalogue
 from hpn.selection import select
+from hpn.store import Store, StoreError, StoreUnavailableError
 from hpn.tables import CatalogueError
 from hpn.web.links import to_link
 from hpn.web.problems import Problem
@@ -23,7 +26,7 @@ def main(arguments: list[str] | None = None) -> int:
     try:
         result: int = options.run(options)
         return result
-    except (CatalogueError, OSError) as error:
+    except (CatalogueError, StoreError, OSError) as error:
         return _refuse(str(error))
     except (ValidationError, InputError) as error:
         problem = Problem.of(error)
@@ -82,9 +85,18 @@ def _catalogue(options: argparse.Namespace) -> int:
 
 
 def _serve(options: argparse.Namespace) -> int:
-    _loaded()  # a wrong catalogue stops here, with its file, line and column
+    settings = Settings()
+    load_catalogue(settings.catalogue_folder, settings.catalogue_supplement)  # a wrong one stops here, with its place
+    asyncio.run(_migrate(Store(settings.database_url.get_secret_value(), seconds=settings.database_seconds)))
     uvicorn.run("hpn.web.app:create_app", factory=True, host=options.host, port=options.port, workers=options.workers)
     return 0
+
+
+async def _migrate(store: Store) -> None:
+    """Bring the database up to date before any worker starts, so that a refusal is a text and not a trace."""
+    with suppress(StoreUnavailableError):  # the calculator works without
+        await store.open()
+    await store.close()
 
 
 def _loaded() -> Catalogue:

@@ -1,5 +1,7 @@
-"""The service: one factory that puts settings, catalogue, routes and limits together."""
+"""The service: one factory that puts settings, catalogue, store, routes and limits together."""
 
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager, suppress
 from typing import Any
 
 from fastapi import FastAPI
@@ -9,7 +11,8 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from hpn import ENGINE_VERSION
 from hpn.application import Application
 from hpn.catalogue import load_catalogue
-from hpn.web import api, health, pages, problems, schemas
+from hpn.store import Store, StoreUnavailableError
+from hpn.web import api, health, pages, problems, schemas, selection_schemas, selections
 from hpn.web.settings import Settings
 
 SECURITY_HEADERS = [
@@ -24,7 +27,11 @@ SECURITY_HEADERS = [
 
 
 def create_app(settings: Settings | None = None) -> FastAPI:
-    """The application; raises CatalogueError where the catalogue or its supplement is wrong."""
+    """The application; raises CatalogueError where the catalogue or its supplement is wrong.
+
+    At its start it brings the database up to date, and raises NewerDatabaseError where a newer version has changed it.
+    A database that is out of reach keeps nothing from starting.
+    """
     settings = settings or Settings()
     app = FastAPI(
         title="HPN Select",
@@ -34,12 +41,15 @@ def create_app(settings: Settings | None = None) -> FastAPI:
         docs_url=None,
         redoc_url=None,
         license_info={"name": "Apache-2.0", "identifier": "Apache-2.0"},
+        lifespan=_with_store,
     )
     app.state.settings = settings
     app.state.catalogue = load_catalogue(settings.catalogue_folder, settings.catalogue_supplement)
+    app.state.store = Store(settings.database_url.get_secret_value(), seconds=settings.database_seconds)
     problems.install(app)
-    app.router.routes[:0] = api.FAST_ROUTES
-    for router in (health.router, api.router):
+    app.add_exception_handler(StoreUnavailableError, selections.unavailable)
+    app.router.routes[:0] = (*api.FAST_ROUTES, *selections.FAST_ROUTES)
+    for router in (health.router, api.router, selections.router):
         app.include_router(router)
     app.router.routes.extend(pages.routes)
     app.add_middleware(SecurityHeaders)
@@ -48,9 +58,19 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     return app
 
 
+@asynccontextmanager
+async def _with_store(app: FastAPI) -> AsyncIterator[None]:
+    store: Store = app.state.store
+    with suppress(StoreUnavailableError):  # it is in the log, and the store opens as soon as it can
+        await store.open()
+    yield
+    await store.close()
+
+
 def _complete(document: dict[str, Any]) -> dict[str, Any]:
     """Add the schemas of request bodies and problems, which direct routes refer to by name."""
-    models: list[Any] = [(model, "validation") for model in (Application, schemas.Batch, schemas.ProblemReply)]
+    bodies = (Application, schemas.Batch, schemas.ProblemReply, selection_schemas.SaveRequest)
+    models: list[Any] = [(model, "validation") for model in bodies]
     _, definitions = models_json_schema(models, ref_template="#/components/schemas/{model}")
     document.setdefault("components", {}).setdefault("schemas", {}).update(definitions["$defs"])
     return document

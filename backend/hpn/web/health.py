@@ -4,6 +4,8 @@ from fastapi import APIRouter
 from pydantic import BaseModel, Field
 from starlette.requests import Request
 
+from hpn.web.schemas import problems
+
 router = APIRouter()
 
 
@@ -18,6 +20,7 @@ class Readiness(Health):
 
     catalogue_version: str = Field(description="Hash of the loaded catalogue's content.")
     gears: int = Field(description="Number of gears in the catalogue.")
+    store: str = Field(description="ok while the database of the saved selections answers.")
 
 
 @router.get("/healthz")
@@ -26,8 +29,9 @@ async def healthz() -> Health:
     return Health(status="ok")
 
 
-@router.get("/readyz")
+@router.get("/readyz", responses=problems(503))
 async def readyz(request: Request) -> Readiness:
-    """The catalogue is loaded."""
+    """The catalogue is loaded and the database of the saved selections answers; else 503."""
     catalogue = request.app.state.catalogue
-    return Readiness(status="ok", catalogue_version=catalogue.version, gears=len(catalogue.gears))
+    await request.app.state.store.check()
+    return Readiness(status="ok", catalogue_version=catalogue.version, gears=len(catalogue.gears), store="ok")

@@ -264,3 +264,8 @@ def problems(*statuses: int) -> dict[int | str, dict[str, Any]]:
 def replies(model: type[BaseModel], *statuses: int) -> dict[int | str, dict[str, Any]]:
     """OpenAPI entries of a route's answer and of its problems."""
     return {200: {"model": model}, **problems(*statuses)}
+
+
+def header(name: str, description: str) -> dict[str, Any]:
+    """OpenAPI entry of a request header that a route reads."""
+    return {"name": name, "in": "header", "required": False, "description": description, "schema": {"type": "string"}}

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from pydantic import Field
+from pydantic import Field, SecretStr
 from pydantic_settings import BaseSettings, SettingsConfigDict
 
 from hpn.catalogue import HANDBOOK_FOLDER
@@ -17,6 +17,12 @@ class Settings(BaseSettings):
     catalogue_supplement: Path | None = Field(
         None, description="Folder of CSV files that fill or correct catalogue cells."
     )
+    database_url: SecretStr = Field(
+        SecretStr("sqlite:///hpn.sqlite3"),
+        description="Database of the saved selections: sqlite:///file, relative to the working directory (four slashes "
+        "for an absolute path), or postgresql://user:password@host/database.",
+    )
+    database_seconds: float = Field(5.0, gt=0, description="Longest wait for the database.")
     maximum_body_bytes: int = Field(2_000_000, gt=0, description="Largest body of a request for one application.")
     maximum_batch_body_bytes: int = Field(32_000_000, gt=0, description="Largest body of a batch request.")
     maximum_batch_count: int = Field(10_000, gt=0, le=10_000, description="Most applications in one batch request.")

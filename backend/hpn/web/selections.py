@@ -1,0 +1,237 @@
+"""Saved selections over REST: save, read with what differs today, list, delete."""
+
+from dataclasses import dataclass
+from typing import Annotated, Any
+from urllib.parse import urlencode
+
+import orjson
+from fastapi import APIRouter, Query
+from pydantic import ValidationError
+from starlette.concurrency import run_in_threadpool
+from starlette.datastructures import State
+from starlette.requests import Request
+from starlette.responses import Response
+from starlette.routing import Route
+
+from hpn import ENGINE_VERSION
+from hpn.application import Application, InputError
+from hpn.catalogue import Catalogue
+from hpn.differences import Difference, differences
+from hpn.selection import select
+from hpn.store import Draft, KeyReusedError, SavedSelection, Store, Summary
+from hpn.web import schemas
+from hpn.web.api import LONG_CYCLE
+from hpn.web.bodies import read_json
+from hpn.web.conditions import conditional, idempotency_key, preferred_return, require_match
+from hpn.web.links import to_link
+from hpn.web.problems import Problem
+from hpn.web.selection_schemas import (
+    Labels,
+    Line,
+    SavedReply,
+    SavedSelectionReply,
+    SaveRequest,
+    SelectionListReply,
+)
+from hpn.web.settings import Settings
+
+DIFFERENCES_SHOWN = 500
+RETRY_SECONDS = 5
+
+router = APIRouter(prefix="/api/v1/selections")
+
+
+@router.post(
+    "",
+    summary="Save a selection",
+    status_code=201,
+    openapi_extra=schemas.request_body(SaveRequest)
+    | {
+        "parameters": [
+            schemas.header("Idempotency-Key", "Makes a retry safe: the same key and content is saved once."),
+            schemas.header("Prefer", "return=minimal: no body; return=representation: the whole saved selection."),
+        ]
+    },
+    responses={201: {"model": SavedReply}, **schemas.problems(400, 408, 413, 415, 422, 503)},
+    response_class=schemas.JSONBytes,
+)
+async def save_selection(request: Request) -> Response:
+    """Saves an application with its result; once answered with 201 it is durable."""
+    settings: Settings = request.app.state.settings
+    key = idempotency_key(request)
+    body = await read_json(request, maximum_bytes=settings.maximum_body_bytes, seconds=settings.body_seconds)
+    wanted = SaveRequest.model_validate_json(body)
+    id = await save(request.app.state, wanted.application, wanted, key)
+    headers = {"Location": f"/api/v1/selections/{id}"}
+    preferred = preferred_return(request)
+    if preferred:
+        headers["Preference-Applied"] = f"return={preferred}"
+    if preferred == "minimal":
+        return Response(status_code=201, headers=headers)
+    if preferred == "representation":
+        return schemas.JSONBytes(await _representation(request, id), 201, headers)
+    return schemas.JSONBytes(orjson.dumps({"id": id, "url": url_of(id)}), 201, headers)
+
+
+@router.get(
+    "/{id}",
+    response_model=SavedSelectionReply,
+    responses=schemas.problems(404, 503) | {304: {"description": "The client has it already."}},
+)
+async def read_selection(request: Request, id: str) -> Response:
+    """Input and result as saved, and what today's engine and catalogue say differently, verdicts first."""
+    return conditional(request, await _representation(request, id))
+
+
+@router.get(
+    "",
+    response_model=SelectionListReply,
+    responses=schemas.problems(422, 503) | {304: {"description": "The client has it already."}},
+)
+async def list_selections(
+    request: Request,
+    reference: Annotated[Line | None, Query(description="Only those with this reference.")] = None,
+    cursor: Annotated[str | None, Query(max_length=200, description="From an earlier part of the list.")] = None,
+    limit: Annotated[int, Query(ge=1, le=200, description="How many at most.")] = 50,
+) -> Response:
+    """Saved selections, newest first; the Link header leads to the next part."""
+    store: Store = request.app.state.store
+    try:
+        page = await store.page(reference=reference, cursor=cursor, limit=limit)
+    except ValueError as error:
+        raise Problem(422, f"cursor {error}", [(("cursor",), str(error))]) from None
+    lines = [_summary(selection) for selection in page.selections]
+    response = conditional(request, orjson.dumps({"selections": lines, "next_cursor": page.next_cursor}))
+    if page.next_cursor:
+        query = {"reference": reference, "cursor": page.next_cursor, "limit": limit}
+        address = urlencode({name: value for name, value in query.items() if value is not None})
+        response.headers["Link"] = f'</api/v1/selections?{address}>; rel="next"'
+    return response
+
+
+@router.delete(
+    "/{id}",
+    status_code=204,
+    responses=schemas.problems(404, 412, 503),
+    openapi_extra={"parameters": [schemas.header("If-Match", "Delete only this state of it.")]},
+)
+async def delete_selection(request: Request, id: str) -> Response:
+    """Deletes a saved selection for good."""
+    store: Store = request.app.state.store
+    if "if-match" in request.headers:
+        require_match(request, await _representation(request, id))
+    if not await store.delete(id):
+        raise not_found(id)
+    return Response(status_code=204)
+
+
+# --- What the page of a saved selection needs too ---------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class Today:
+    """What today's engine and catalogue say to a saved application: differences, or why they have no answer.
+
+    `link` leads to the live form with a copy of the application.
+    """
+
+    differences: list[Difference]
+    problem: dict[str, Any] | None
+    link: str
+
+
+def url_of(id: str) -> str:
+    """Address of the page of a saved selection."""
+    return f"/selections/{id}"
+
+
+async def save(state: State, application: Application, labels: Labels, key: str | None = None) -> str:
+    """Select and save; the id under which it is durable. Problem 422 for a key that came with other content before."""
+    asked = (application, labels, key, state.catalogue)
+    long = len(application.duty_cycle.phases) > LONG_CYCLE
+    draft = await run_in_threadpool(_draft, *asked) if long else _draft(*asked)
+    try:
+        id: str = await state.store.save(draft)
+    except KeyReusedError as error:
+        raise Problem(422, str(error)) from None
+    return id
+
+
+def _draft(application: Application, labels: Labels, key: str | None, catalogue: Catalogue) -> Draft:
+    selection = select(application, catalogue)
+    return Draft(
+        application=application.model_dump_json(exclude_unset=True).encode(),
+        result=selection.json(to_link(application)),
+        engine_version=ENGINE_VERSION,
+        catalogue_version=catalogue.version,
+        selected=selection.selected,
+        title=labels.title,
+        reference=labels.reference,
+        idempotency_key=key,
+    )
+
+
+async def found(state: State, id: str) -> tuple[SavedSelection, Today]:
+    """A saved selection and what differs today; Problem 404 where there is none."""
+    saved = await state.store.find(id)
+    if saved is None:
+        raise not_found(id)
+    return saved, await run_in_threadpool(reopen, saved, state.catalogue)
+
+
+def not_found(id: str) -> Problem:
+    """There is no such saved selection."""
+    return Problem(404, f"there is no saved selection {id[:60]!r}; it may have been deleted")
+
+
+def reopen(saved: SavedSelection, catalogue: Catalogue) -> Today:
+    """Ask today's engine and catalogue again, and compare; what was saved stays as it is."""
+    before = orjson.loads(saved.result)
+    try:
+        application = Application.model_validate_json(saved.application)
+        link = to_link(application)
+        after = select(application, catalogue).json(link)
+    except (ValidationError, InputError) as error:
+        return Today([], Problem.of(error).body(), before["link"])
+    same = after == saved.result
+    return Today([] if same else differences(before, orjson.loads(after)), None, link)
+
+
+async def unavailable(request: Request, error: Exception) -> Response:
+    """The store is out of reach for now."""
+    return Problem(503, str(error), headers={"Retry-After": str(RETRY_SECONDS)}).response()
+
+
+async def _representation(request: Request, id: str) -> bytes:
+    saved, today = await found(request.app.state, id)
+    return orjson.dumps(
+        _summary(saved)
+        | {
+            "application": orjson.Fragment(saved.application),
+            "result": orjson.Fragment(saved.result),
+            "today": {
+                "engine_version": ENGINE_VERSION,
+                "catalogue_version": request.app.state.catalogue.version,
+                "difference_count": len(today.differences),
+                "differences": today.differences[:DIFFERENCES_SHOWN],
+                "problem": today.problem,
+            },
+        }
+    )
+
+
+def _summary(selection: Summary) -> dict[str, Any]:
+    return {
+        "id": selection.id,
+        "url": url_of(selection.id),
+        "created": selection.created.isoformat(timespec="microseconds").replace("+00:00", "Z"),
+        "title": selection.title,
+        "reference": selection.reference,
+        "selected": selection.selected,
+        "engine_version": selection.engine_version,
+        "catalogue_version": selection.catalogue_version,
+    }
+
+
+FAST_ROUTES = (Route("/api/v1/selections", save_selection, methods=["POST"]),)
+"""See `api.FAST_ROUTES`."""
