@@ -84,7 +84,7 @@ $(ASSETS): $(shell find frontend/static 2>/dev/null) frontend/build.py $(PACKAGE
 browser: $(ENVIRONMENT)
 	@for name in chromium chromium-browser google-chrome google-chrome-stable; do command -v $$name && exit 0; done; \
 	if [ "$$(id -u)" = 0 ] && [ -f /etc/debian_version ] && apt-get update -q \
-	    && apt-get install -q -y --no-install-recommends chromium; then exit 0; fi; \
+	    && apt-get install -q -y --no-install-recommends chromium && command -v chromium; then exit 0; fi; \
 	$(BIN)/playwright install chromium || { echo "No Chromium found, and none could be installed" >&2; exit 1; }
 
 # --- Upkeep -----------------------------------------------------------------------------------------------------------
