@@ -6,7 +6,7 @@ import numpy as np
 
 from hpn.application import Application
 from hpn.checks import Evaluation
-from hpn.wording import Quantity, Sentence, Value
+from hpn.wording import N_, Quantity, Sentence, Value
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,15 +27,15 @@ def _notice(code: str, template: str, translated: tuple[str, ...] = (), **values
 
 
 AREAS = {
-    "aerospace": "aerospace",
-    "explosive_area": "areas at risk of explosion",
-    "nuclear": "machines for a nuclear purpose",
-    "vacuum": "vacuum",
-    "household": "household devices",
-    "medical": "medical equipment",
-    "human_contact": "devices that interact directly with the human body",
-    "people_transport": "machines for transporting or lifting people",
-    "amusement": "devices for funfairs and leisure parks",
+    "aerospace": N_("aerospace"),
+    "explosive_area": N_("areas at risk of explosion"),
+    "nuclear": N_("machines for a nuclear purpose"),
+    "vacuum": N_("vacuum"),
+    "household": N_("household devices"),
+    "medical": N_("medical equipment"),
+    "human_contact": N_("devices that interact directly with the human body"),
+    "people_transport": N_("machines for transporting or lifting people"),
+    "amusement": N_("devices for funfairs and leisure parks"),
 }
 """Application areas of section 2.4 by their code; English msgids."""
 

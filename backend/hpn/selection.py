@@ -20,6 +20,7 @@ from hpn.explanations import EXPLANATIONS
 from hpn.notices import Notice, notices_of
 from hpn.reply import CandidateRow, CheckRow, DutyRow, ReserveRow, SelectReply, encode
 from hpn.reserve import reserve_of
+from hpn.wording import N_
 
 SUITABLE, UNSUITABLE, UNRATED = range(3)
 CANDIDATE_STATUS = ("suitable", "unsuitable", "unrated")
@@ -265,11 +266,11 @@ def check_definitions(codes: tuple[str, ...]) -> Raw:
 
 
 REASONS = {
-    "suitable": "Every check passes; the closest is %(check)s at %(percent)s %%%% of its limit.",
-    "unsuitable": "%(check)s is at %(percent)s %%%% of its limit.",
-    "unsuitable_more": "%(check)s is at %(percent)s %%%% of its limit; checks that fail: %(failed)s.",
-    "no_stop_allowed": "The emergency stop is so hard that not one is allowed (equation 17.9).",
-    "unrated": "Not rated: figures of %(name)s that the checks need are not published.",
+    "suitable": N_("Every check passes; the closest is %(check)s at %(percent)s %%%% of its limit."),
+    "unsuitable": N_("%(check)s is at %(percent)s %%%% of its limit."),
+    "unsuitable_more": N_("%(check)s is at %(percent)s %%%% of its limit; checks that fail: %(failed)s."),
+    "no_stop_allowed": N_("The emergency stop is so hard that not one is allowed (equation 17.9)."),
+    "unrated": N_("Not rated: figures of %(name)s that the checks need are not published."),
 }
 """Why a candidate stands where it does; English msgids."""
 

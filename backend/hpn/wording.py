@@ -6,6 +6,11 @@ from dataclasses import dataclass, field
 from hpn.units import SYMBOLS
 
 
+def N_(text: str) -> str:
+    """Mark a text for the translators; it is translated where it is shown."""
+    return text
+
+
 @dataclass(frozen=True, slots=True)
 class Quantity:
     """A number with the suffix of its unit, rounded for reading where it is shown."""
