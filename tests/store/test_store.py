@@ -1,0 +1,219 @@
+"""The store keeps what it has acknowledged, on SQLite and on PostgreSQL alike."""
+
+import asyncio
+from datetime import UTC, datetime, timedelta
+from pathlib import Path
+
+import pytest
+from sqlalchemy import event, text
+
+from hpn.store import KeyReusedError, Store, StoreError, StoreUnavailableError
+from hpn.store.writer import MAXIMUM_WAITING
+from tests.store.drafts import draft
+
+pytestmark = pytest.mark.anyio
+
+
+async def count(store: Store) -> int:
+    """Number of rows."""
+    async with store._engine.connect() as connection:
+        return int((await connection.execute(text("SELECT count(*) FROM selections"))).scalar_one())
+
+
+async def test_a_saved_selection_comes_back_as_it_was_byte_for_byte(store: Store) -> None:
+    saved = draft(
+        application='{"a": "Ä ✓ 😀"}'.encode(), result=b'{"x": [1.0, 2e3 ]}\n', title="Ä ✓ 😀", reference="r/1 %"
+    )
+    before = datetime.now(UTC)
+
+    found = await store.find(await store.save(saved))
+
+    assert found is not None
+    for name in ("application", "result", "engine_version", "catalogue_version", "selected", "title", "reference"):
+        assert getattr(found, name) == getattr(saved, name)
+    assert before <= found.created <= datetime.now(UTC)
+    assert found.created.utcoffset() == timedelta(0)
+
+
+async def test_a_large_selection_comes_back_whole(store: Store) -> None:
+    large = draft(application=b"[" + b"1234.5678," * 100_000 + b"0]", result=bytes(range(256)) * 10_000)
+
+    found = await store.find(await store.save(large))
+
+    assert found is not None
+    assert (found.application, found.result) == (large.application, large.result)
+
+
+async def test_ids_are_128_bits_that_differ(store: Store) -> None:
+    ids = await asyncio.gather(*(store.save(draft()) for _ in range(50)))
+
+    assert len(set(ids)) == 50
+    assert {len(id) for id in ids} == {22}  # 22 characters of 6 bits
+
+
+@pytest.mark.parametrize("id", ["", "x", "A" * 22, "A" * 23, "é" * 22, "A" * 21 + "\0", "' OR 1=1 --"])
+async def test_what_was_never_saved_is_not_found(store: Store, id: str) -> None:
+    assert await store.find(id) is None
+    assert await store.delete(id) is False
+
+
+async def test_a_deleted_selection_is_gone_and_the_others_stay(store: Store) -> None:
+    kept, gone = await store.save(draft()), await store.save(draft())
+
+    assert await store.delete(gone) is True
+
+    assert await store.find(gone) is None
+    assert await store.delete(gone) is False
+    assert await store.find(kept) is not None
+
+
+async def test_a_list_gives_every_selection_once_newest_first(store: Store) -> None:
+    ids = [await store.save(draft(title=str(k))) for k in range(7)]
+
+    listed, cursor = [], None
+    while True:
+        page = await store.page(cursor=cursor, limit=3)
+        listed += [summary.id for summary in page.selections]
+        cursor = page.next_cursor
+        if cursor is None:
+            break
+
+    assert listed == ids[::-1]
+
+
+async def test_selections_saved_in_one_moment_are_listed_once_each(store: Store) -> None:
+    ids = await asyncio.gather(*(store.save(draft()) for _ in range(20)))
+
+    listed, cursor = [], None
+    for _ in range(20):
+        page = await store.page(cursor=cursor, limit=1)
+        listed += [summary.id for summary in page.selections]
+        cursor = page.next_cursor
+
+    assert sorted(listed) == sorted(ids)
+    assert cursor is None
+
+
+async def test_a_list_can_be_of_one_reference(store: Store) -> None:
+    mine = [await store.save(draft(reference="4711")) for _ in range(2)]
+    await store.save(draft(reference="4712"))
+    await store.save(draft())
+
+    page = await store.page(reference="4711")
+
+    assert [summary.id for summary in page.selections] == mine[::-1]
+    assert (await store.page(reference="none")).selections == []
+
+
+@pytest.mark.parametrize(
+    "cursor", ["x", "====", "é", "AAAA", "MDAwMS0wMS0wMVQwMDowMCsyMzo1OSBBQUFBQUFBQUFBQUFBQUFBQUFBQUFB"]
+)
+async def test_a_cursor_that_no_list_gave_is_refused(store: Store, cursor: str) -> None:
+    with pytest.raises(ValueError, match="is not a cursor"):
+        await store.page(cursor=cursor)
+
+
+async def test_the_same_key_with_the_same_content_is_saved_once(store: Store) -> None:
+    first = await store.save(draft(idempotency_key="k", title="t"))
+
+    # The reply may have changed between the two, because the service was updated; the request is still the same.
+    assert await store.save(draft(idempotency_key="k", title="t", result=b"{}", engine_version="2")) == first
+    assert await count(store) == 1
+
+
+@pytest.mark.parametrize("other", [{"title": "u"}, {"reference": "r"}, {"application": b"{}"}])
+async def test_the_same_key_with_other_content_is_refused(store: Store, other: dict[str, str]) -> None:
+    first = await store.save(draft(idempotency_key="k", title="t"))
+
+    with pytest.raises(KeyReusedError, match="used before"):
+        await store.save(draft(**{"idempotency_key": "k", "title": "t"} | other))
+
+    assert await count(store) == 1
+    assert await store.find(first) is not None
+
+
+async def test_identical_requests_at_once_make_one_row_also_from_several_workers(store: Store, database: str) -> None:
+    others = [Store(database) for _ in range(3)]
+    stores = [store, *others] * 10
+
+    ids = await asyncio.gather(*(each.save(draft(idempotency_key=f"k{n}")) for each in stores for n in range(3)))
+
+    assert len(set(ids)) == await count(store) == 3
+    for other in others:
+        await other.close()
+
+
+async def test_savers_who_come_together_share_a_transaction(store: Store) -> None:
+    commits: list[object] = []
+    event.listen(store._engine.sync_engine, "commit", commits.append)
+
+    await asyncio.gather(*(store.save(draft()) for _ in range(100)))
+
+    assert await count(store) == 100
+    assert len(commits) <= 3  # one for the first, one or two for those who came while it was written
+
+
+async def test_one_draft_that_the_database_refuses_fails_alone(store: Store) -> None:
+    outcomes = await asyncio.gather(
+        *(store.save(draft(title=title)) for title in ("a", "b\0", "c")), return_exceptions=True
+    )
+
+    good = [outcome for outcome in outcomes if isinstance(outcome, str)]
+    assert isinstance(outcomes[0], str)
+    assert isinstance(outcomes[2], str)
+    assert await count(store) == len(good)
+
+
+async def test_a_saver_who_leaves_does_not_take_the_others_along(store: Store) -> None:
+    tasks = [asyncio.create_task(store.save(draft())) for _ in range(3)]
+    await asyncio.sleep(0)
+    tasks[1].cancel()
+
+    outcomes = await asyncio.gather(*tasks, return_exceptions=True)
+
+    assert isinstance(outcomes[0], str)
+    assert isinstance(outcomes[1], asyncio.CancelledError)
+    assert isinstance(outcomes[2], str)
+
+
+async def test_more_savers_than_can_wait_are_sent_away(store: Store) -> None:
+    outcomes = await asyncio.gather(*(store.save(draft()) for _ in range(MAXIMUM_WAITING + 50)), return_exceptions=True)
+
+    refused = [outcome for outcome in outcomes if isinstance(outcome, StoreUnavailableError)]
+    assert len(refused) == 50
+    assert await count(store) == MAXIMUM_WAITING
+
+
+async def test_closing_saves_what_still_waits(database: str) -> None:
+    store = Store(database)
+    saving = asyncio.create_task(store.save(draft()))
+    await asyncio.sleep(0)
+
+    await store.close()
+
+    again = Store(database)
+    assert await again.find(await saving) is not None
+    await again.close()
+
+
+async def test_sqlite_commits_reach_the_disk_and_readers_do_not_wait(tmp_path: Path) -> None:
+    store = Store(f"sqlite:///{tmp_path}/new/folder/store.sqlite3")
+    await store.open()
+
+    async with store._engine.connect() as connection:
+        pragmas = [
+            (await connection.execute(text(f"PRAGMA {name}"))).scalar_one() for name in ("journal_mode", "synchronous")
+        ]
+
+    assert pragmas == ["wal", 2]  # 2 is FULL: the log is synced at every commit
+    await store.close()
+
+
+@pytest.mark.parametrize(
+    "address", ["", "x", "mysql://u:secret@h/d", "sqlite://", "sqlite:///:memory:", "//u:secret@h:x"]
+)
+def test_an_address_that_cannot_be_used_says_what_can_without_repeating_secrets(address: str) -> None:
+    with pytest.raises(StoreError, match="HPN_DATABASE_URL must be") as caught:
+        Store(address)
+
+    assert "secret" not in str(caught.value)
