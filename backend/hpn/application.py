@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from functools import cached_property
 from typing import Annotated, Any, Literal, Self
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, field_validator
+from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, field_validator
 from pydantic_core import PydanticCustomError
 
 from hpn.gear import canonical_size
@@ -31,12 +31,21 @@ ApplicationArea = Literal[
     "amusement",
 ]
 
+
+
+def _not_vanishing(value: float) -> float:
+    """Refuse what is above 0 but so small that a quotient by it could overflow."""
+    if value < 1e-12:
+        raise PydanticCustomError("vanishing", "must be at least 1e-12")
+    return value
+
+
 Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
 Torque = Annotated[Number, Field(ge=-1e6, le=1e6)]
 Speed = Annotated[Number, Field(ge=-1e6, le=1e6)]
 Load = Annotated[Number, Field(ge=-1e9, le=1e9)]
-Hours = Annotated[Number, Field(gt=0, le=1e9)]
-Positive = Annotated[Number, Field(gt=0, le=1e12)]
+Hours = Annotated[Number, Field(gt=0, le=1e9), AfterValidator(_not_vanishing)]
+Positive = Annotated[Number, Field(gt=0, le=1e12), AfterValidator(_not_vanishing)]
 Size = Annotated[str, Field(max_length=20), BeforeValidator(canonical_size)]
 
 
@@ -141,7 +150,7 @@ class Requirements(Model):
     utilisation: Annotated[Number, Field(gt=0, le=1)] = Field(
         1.0, description="Largest acceptable utilisation u of the load checks: your own reserve.", examples=[1.0]
     )
-    efficiency: Annotated[Number, Field(gt=0, le=1)] | None = Field(
+    efficiency: Annotated[Number, Field(gt=0, le=1), AfterValidator(_not_vanishing)] | None = Field(
         None, description="Your assumption for the gear's efficiency; without it the motor side is loss-free."
     )
     motor: Motor | None = Field(None, description="Limits of the motor.")

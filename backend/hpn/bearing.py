@@ -94,9 +94,10 @@ def mean_equivalent_load(
     ISO 281, ball bearings, exponent 3. Holding phases (n = 0) have no weight; a cycle without motion raises nothing
     and gives NaN, as the application forbids it.
     """
-    largest = np.max(equivalent_load, axis=axis, keepdims=True)
-    scaled = equivalent_load / np.where(largest > 0, largest, 1.0)
     weight = np.abs(speed_rpm) * duration_s
+    moving = equivalent_load * (weight > 0)  # beside a held load a small one must not vanish in its cube
+    largest = np.max(moving, axis=axis, keepdims=True)
+    scaled = moving / np.where(largest > 0, largest, 1.0)
     mean = (weight * scaled * scaled * scaled).sum(axis=axis) / weight.sum(axis=axis)
     return np.asarray(np.squeeze(largest, axis=axis) * np.cbrt(mean), dtype=float)
 
@@ -113,8 +114,8 @@ def life_factor(
     ISO 281. The pause counts in n_out_av, as in equation 17.4.
     """
     return np.asarray(
-        np.cbrt(reference_speed_rpm / np.asarray(average_output_speed_rpm))
-        * np.cbrt(reference_life_h / np.asarray(required_life_L50_h)),
+        (np.cbrt(reference_speed_rpm) / np.cbrt(np.asarray(average_output_speed_rpm)))  # no quotient overflows here
+        * (np.cbrt(reference_life_h) / np.cbrt(np.asarray(required_life_L50_h))),
         dtype=float,
     )
 

@@ -17,10 +17,10 @@ def average_output_torque(*, torque_Nm: ArrayLike, speed_rpm: ArrayLike, duratio
     """Average output torque T_av in Nm, equation 17.2; shape (..., phases) in, (...) out.
 
     T_av = (sum |n| t |T|^(10/3) / sum |n| t)^(3/10). A holding phase (n = 0) has no weight. Torque is scaled by its
-    largest, so that no power of it overflows. NaN where nothing moves: the application forbids that.
+    largest, so that no power of it overflows or vanishes. NaN where nothing moves: the application forbids that.
     """
-    r, T_max = _scaled(torque_Nm)
     w = np.abs(speed_rpm) * np.asarray(duration_s, dtype=float)
+    r, T_max = _scaled(np.asarray(torque_Nm) * (w > 0))  # what is held must not set the scale
     return np.asarray(T_max * (np.vecdot(w, r * r * r * np.cbrt(r)) / np.add.reduce(w, axis=-1)) ** 0.3)
 
 

@@ -61,11 +61,11 @@ def _factor(evaluation: Evaluation, powers: dict[str, float]) -> FloatArray | No
         return None
     indices = [index for index, _ in rows]
     used = evaluation.utilisation[indices]
-    with np.errstate(divide="ignore"):
+    with np.errstate(divide="ignore", over="ignore"):  # unlimited
         room = case.duty.reserve_utilisation / used
-    for row, (_, power) in enumerate(rows):
-        if power != 1.0:
-            room[row] = room[row] ** (1 / power)
+        for row, (_, power) in enumerate(rows):
+            if power != 1.0:
+                room[row] = room[row] ** (1 / power)
     absent = evaluation.status[indices] == ABSENT
     return np.asarray(np.where(absent, np.inf, room).min(axis=0))
 
@@ -88,7 +88,8 @@ def _emergency_stop_torque(evaluation: Evaluation) -> FloatArray | None:
     duty, g = case.duty, case.gears.columns
     u = duty.reserve_utilisation
     count = duty.column(lambda a: a.emergency_stop.count if a.emergency_stop else None)
-    needed = np.maximum(np.ceil(count / u * (1 - 1e-12)), 1.0)
+    with np.errstate(over="ignore"):  # a reserve next to 0 leaves no stop above T_R
+        needed = np.maximum(np.ceil(count / u * (1 - 1e-12)), 1.0)
     by_count = np.maximum(g.repeated_peak_torque_Nm, g.repeated_peak_torque_Nm * (8.5 - np.log10(needed)) / 1.5)
     by_torque = u * g.momentary_peak_torque_Nm
     return np.asarray(np.where(np.isnan(count), by_torque, np.minimum(by_torque, by_count)))
