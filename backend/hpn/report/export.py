@@ -1,0 +1,80 @@
+"""One selection as it leaves the service: what was asked and what was answered, never computed again."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from datetime import datetime
+from functools import cached_property
+from typing import Any
+
+from hpn.application import Application
+from hpn.catalogue import Catalogue
+from hpn.gear import Gear
+
+Candidate = Mapping[str, Any]
+
+
+@dataclass(frozen=True)
+class Export:
+    """An application, the reply to it, and what a reader needs to find both again.
+
+    `link` is absolute. `created` is when the selection was saved, in a time zone; None for one that is not saved, whose
+    files then carry no date. `catalogue` gives the figures behind the reply; one of another version is not used.
+    """
+
+    application: Application
+    reply: Mapping[str, Any]
+    link: str
+    title: str = ""
+    reference: str = ""
+    created: datetime | None = None
+    catalogue: Catalogue | None = None
+
+    @property
+    def candidates(self) -> Sequence[Candidate]:
+        """Every candidate, best first."""
+        candidates: Sequence[Candidate] = self.reply["candidates"]
+        return candidates
+
+    @property
+    def candidate(self) -> Candidate:
+        """The selected gear, or the nearest miss where none is suitable."""
+        return self.candidates[0]
+
+    @property
+    def definitions(self) -> Mapping[str, Any]:
+        """Check definitions by code."""
+        definitions: Mapping[str, Any] = self.reply["check_definitions"]
+        return definitions
+
+    @cached_property
+    def figures(self) -> Catalogue | None:
+        """The catalogue of the reply's own version, or None where that is not at hand."""
+        known = self.catalogue is not None and self.catalogue.version == self.reply["catalogue_version"]
+        return self.catalogue if known else None
+
+    def gear(self, designation: str) -> Gear | None:
+        """Published figures of a candidate as they were, or None."""
+        return self.figures.by_designation.get(designation) if self.figures else None
+
+    def check(self, code: str) -> Mapping[str, Any] | None:
+        """A check of the reported gear, or None where it was not asked for."""
+        return next((check for check in self.candidate["checks"] if check["code"] == code), None)
+
+    @property
+    def runner_up(self) -> Candidate | None:
+        """The second suitable gear, or None."""
+        second = self.candidates[1:2]
+        return second[0] if second and second[0]["status"] == "suitable" else None
+
+    @property
+    def smaller(self) -> Candidate | None:
+        """The nearest miss among the smaller sizes: of the same ratio where there is one, else of any."""
+        own = frame(self.candidate)
+        misses = [c for c in self.candidates if c["status"] == "unsuitable" and frame(c) < own]
+        same = [c for c in misses if c["ratio"] == self.candidate["ratio"]]
+        return next(iter(same or misses), None)
+
+
+def frame(candidate: Candidate) -> int:
+    """Number in the size of a candidate: 20 for 20A."""
+    return int(str(candidate["size"]).rstrip("A"))
