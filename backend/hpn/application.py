@@ -32,7 +32,6 @@ ApplicationArea = Literal[
 ]
 
 
-
 def _not_vanishing(value: float) -> float:
     """Refuse what is above 0 but so small that a quotient by it could overflow."""
     if value < 1e-12:

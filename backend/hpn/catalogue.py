@@ -179,7 +179,8 @@ class Catalogue:
     def restricted(self, sizes: tuple[str, ...] | None, ratios: tuple[int, ...] | None) -> GearList:
         """Gears of the given sizes and ratios (None: of all), in catalogue order; maybe none."""
         key = (sizes and frozenset(sizes), ratios and frozenset(ratios))
-        if key not in self._lists:
+        gears = self._lists.get(key)
+        if gears is None:
             if len(self._lists) >= 256:  # sizes and ratios come from outside: don't let them fill the memory
                 self._lists.clear()
             chosen = [
@@ -187,8 +188,9 @@ class Catalogue:
                 for gear in self.gears
                 if (sizes is None or gear.size in sizes) and (ratios is None or gear.ratio in ratios)
             ]
-            self._lists[key] = GearList(chosen, [self.curves.get(gear.size) for gear in chosen])
-        return self._lists[key]
+            # Another thread may clear or fill the same entry meanwhile: what was built here is returned.
+            self._lists[key] = gears = GearList(chosen, [self.curves.get(gear.size) for gear in chosen])
+        return gears
 
     def find(self, designation: str) -> Gear | None:
         """Gear of a designation in any of the printed spellings, or None."""
@@ -278,8 +280,9 @@ class _Book(dict[type[Table], list[Table]]):
 def _check(book: _Book) -> None:
     sources = {row.source for row in book.of(SourceTable)}
     sizes = {row.size for row in book.of(GearTable)}
-    pairs = {(row.size, row.ratio) for row in book.of(GearTable)} | {
-        (row.size, row.stages) for row in book.of(GearTable)
+    pairs = {
+        "ratio": {(row.size, row.ratio) for row in book.of(GearTable)},
+        "stages": {(row.size, row.stages) for row in book.of(GearTable)},
     }
     for table in tables.TABLES:
         for row in book[table]:
@@ -289,7 +292,7 @@ def _check(book: _Book) -> None:
             values = tuple(getattr(row, name) for name in table.key)
             if "size" in table.key and values[0] not in sizes:
                 raise row.error("size", f"{values[0]} is not a size of gears.csv")
-            if len(table.key) > 1 and table.key[1] in ("ratio", "stages") and values[:2] not in pairs:
+            if len(table.key) > 1 and table.key[1] in pairs and values[:2] not in pairs[table.key[1]]:
                 raise row.error(table.key[1], f"gears.csv has no {values[0]} with {table.key[1]} {values[1]}")
     _check_stages(book)
     _check_orderings(book)

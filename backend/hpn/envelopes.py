@@ -64,12 +64,13 @@ def envelope_curve(
                 f"there are no curve points of {gear.name}: put them into bearing_envelopes.csv of a supplement",
             )
         )
-    if gear.dynamic_radial_load_N is None or gear.dynamic_axial_load_N is None:
+    radial_limit, axial_limit = gear.dynamic_radial_load_N, gear.dynamic_axial_load_N
+    if model != "digitised" and (radial_limit is None or axial_limit is None):
         raise InputError((("size",), f"the bearing limits of {gear.name} are not published, so it has no envelope"))
     radial, axial = bearing.envelope(
         model=model,
-        radial_limit_N=gear.dynamic_radial_load_N,
-        axial_limit_N=gear.dynamic_axial_load_N,
+        radial_limit_N=radial_limit or 0.0,  # of no account along supplied points
+        axial_limit_N=axial_limit or 0.0,
         curve=curve,
         factor=factor / load_coefficient,
     )

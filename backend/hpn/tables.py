@@ -287,11 +287,15 @@ def _lines(path: Path, table: type[Table]) -> Iterator[tuple[int, list[str]]]:
     try:
         if path.stat().st_size > MAXIMUM_FILE_BYTES:
             raise CatalogueError(path, None, None, f"is larger than {MAXIMUM_FILE_BYTES} bytes")
-        text = path.read_text(encoding="utf-8-sig")
+        content = path.read_bytes()
+        text = content.decode("utf-8-sig")
     except FileNotFoundError:
         raise CatalogueError(path, None, None, "is missing") from None
-    except (OSError, UnicodeDecodeError) as error:
-        raise CatalogueError(path, None, None, f"can't be read as UTF-8 text: {error}") from None
+    except OSError as error:
+        raise CatalogueError(path, None, None, f"can't be read: {error}") from None
+    except UnicodeDecodeError as error:
+        line = content[: error.start].count(b"\n") + 1
+        raise CatalogueError(path, line, None, f"is not UTF-8 text: {error}") from None
     reader = csv.reader(text.splitlines(), strict=True)
     columns = table.columns()
     try:
@@ -305,8 +309,9 @@ def _lines(path: Path, table: type[Table]) -> Iterator[tuple[int, list[str]]]:
             if not row:
                 continue
             if len(row) != len(columns):
+                place = header[min(len(row), len(header) - 1)]  # the first column without a cell, else the last of all
                 detail = f"has {len(row)} cells where the header has {len(columns)} (a decimal comma splits a cell)"
-                raise CatalogueError(path, reader.line_num, None, detail)
+                raise CatalogueError(path, reader.line_num, place, f"the row {detail}")
             yield reader.line_num, [row[index] for index in order]
     except csv.Error as error:
         raise CatalogueError(path, reader.line_num, None, str(error)) from None
