@@ -1,0 +1,141 @@
+"""Random applications: by Hypothesis for what must hold, by a plain generator for comparison in bulk."""
+
+import random
+from collections.abc import Sequence
+from typing import Any
+
+from hypothesis import strategies as st
+
+from tests.build import Json, cycle, phase
+
+RANKS = ("weight", "utilisation", "length", "motor_torque", "life", "stiffness")
+
+signs = st.sampled_from([-1.0, 1.0])
+torques = st.one_of(st.just(0.0), st.sampled_from([9.0, 26.0, 80.0, 149.0, 256.0]), st.floats(0.01, 400))
+speeds = st.one_of(st.sampled_from([100.0, 120.0, 600.0, 1200.0]), st.floats(0.1, 1500))
+durations = st.floats(0.01, 100)
+loads = st.one_of(st.just(0.0), st.floats(0.1, 5000))
+
+
+def _wishes() -> st.SearchStrategy[Json]:
+    motor = st.fixed_dictionaries(
+        {},
+        optional={
+            "maximum_speed_rpm": st.floats(100, 10000),
+            "peak_torque_Nm": st.floats(0.1, 100),
+            "rated_torque_Nm": st.floats(0.1, 100),
+        },
+    )
+    return st.fixed_dictionaries(
+        {},
+        optional={
+            "life_h": st.floats(1, 1e6),
+            "backlash_arcmin": st.sampled_from([4.9, 5.0, 6.0, 7.0]),
+            "torsional_stiffness_Nm_per_rad": st.sampled_from([1000.0, 9300.0, 26001.0, 143000.0]),
+            "weight_kg": st.sampled_from([0.5, 1.0, 2.6, 8.0]),
+            "length_mm": st.sampled_from([60.0, 122.0, 190.0]),
+            "ambient_temperature_degC": st.floats(-30, 60),
+            "utilisation": st.sampled_from([0.5, 0.8, 1.0]),
+            "efficiency": st.floats(0.5, 1),
+            "motor": motor,
+        },
+    )
+
+
+@st.composite
+def applications(draw: st.DrawFn, wishes: bool = True) -> Json:
+    """A valid application with any of its parts."""
+    phases = [
+        phase(draw(signs) * draw(torques), draw(signs) * (draw(speeds) if k == 0 else draw(st.just(0.0) | speeds)), t)
+        for k, t in enumerate(draw(st.lists(durations, min_size=1, max_size=6)))
+    ]
+    parts: Json = {"rank_by": draw(st.sampled_from(RANKS))}
+    if draw(st.booleans()):
+        parts["emergency_stop"] = {"torque_Nm": draw(signs) * draw(st.floats(0, 700))}
+        if draw(st.booleans()):
+            parts["emergency_stop"]["count"] = draw(st.integers(0, 10**8))
+    if draw(st.booleans()):
+        parts["output_load"] = {
+            "radial_N": draw(signs) * draw(loads),
+            "axial_N": draw(signs) * draw(loads),
+            "load_coefficient": draw(st.sampled_from([1.0, 1.2, 1.5, 3.0])),
+            "life_h": draw(st.floats(1, 1e6)),
+            "life_basis": draw(st.sampled_from(["L50", "L10"])),
+            "model": draw(st.sampled_from(["linear", "iso281"])),
+        }
+    if wishes:
+        parts["requirements"] = draw(_wishes())
+    return cycle(*phases, pause_s=draw(st.just(0.0) | st.floats(0, 100)), **parts)
+
+
+def at_random(chance: random.Random, models: Sequence[str] = ("linear", "iso281")) -> Json:
+    """A valid application; every part with even chance, and figures that often meet a limit or a tie exactly."""
+
+    def some(low: float, high: float, *exact: float) -> float:
+        return float(chance.choice(exact)) if exact and chance.random() < 0.4 else chance.uniform(low, high)
+
+    def maybe(probability: float = 0.5) -> bool:
+        return chance.random() < probability
+
+    scale = 10 ** chance.uniform(-2, 0.3)
+    phases = []
+    for k in range(chance.choice([1, 1, 2, 3, 5, 12])):
+        T = chance.choice([1, -1]) * some(0, 300, 0, 9, 14, 26, 80, 149, 200, 376) * (1 if maybe() else scale)
+        n = chance.choice([1, -1]) * some(1, 1200, 60, 100, 120, 200, 600, 1000, 1200) * (1 if maybe() else scale)
+        entry = phase(T, n if k == 0 or maybe(0.8) else 0.0, some(0.01, 30, 1, 2))
+        phases.append(entry)
+    if maybe(0.3):
+        for entry in phases:
+            if maybe(0.7):
+                entry["radial_N"] = chance.choice([1, -1]) * some(0, 3000, 0, 480, 1800)
+            if maybe(0.7):
+                entry["axial_N"] = chance.choice([1, -1]) * some(0, 3000, 0, 640, 2200)
+        phases[0].setdefault("axial_N", 0.0)
+    parts: dict[str, Any] = {"rank_by": chance.choice(RANKS)} if maybe(0.8) else {}
+    if maybe(0.6):
+        parts["emergency_stop"] = {"torque_Nm": chance.choice([1, -1]) * some(0, 900, 26, 40, 80, 149, 250, 256, 376)}
+        if maybe():
+            parts["emergency_stop"]["count"] = chance.choice([0, 1, 10, 1000, 10**5, 10**7, chance.randrange(10**8)])
+    if maybe():
+        load: dict[str, Any] = {"model": chance.choice(models)} if maybe(0.8) else {}
+        if maybe(0.8) or not any("axial_N" in entry for entry in phases):
+            load["radial_N"] = chance.choice([1, -1]) * some(0, 2000, 0, 480, 840) * scale
+        if maybe():
+            load["axial_N"] = chance.choice([1, -1]) * some(0, 2000, 0, 640, 900) * scale
+        if maybe():
+            load["load_coefficient"] = some(1, 3, 1, 1.2, 1.5)
+        if maybe():
+            load["life_h"] = 10 ** chance.uniform(2, 6)
+        if maybe():
+            load["life_basis"] = chance.choice(["L50", "L10"])
+        parts["output_load"] = load
+    wishes: dict[str, Any] = {}
+    if maybe(0.2):
+        wishes["ratios"] = chance.sample([4, 5, 7, 10, 15, 20, 50], chance.choice([1, 3]))
+    if maybe(0.2):
+        wishes["sizes"] = chance.sample(["11A", "14A", "20A", "32A", "40A"], chance.choice([1, 2, 4]))
+    for name, value in (
+        ("life_h", 10 ** chance.uniform(2, 6)),
+        ("backlash_arcmin", some(4, 8, 5, 7)),
+        ("torsional_stiffness_Nm_per_rad", some(1000, 150000, 9300, 26000, 143000)),
+        ("weight_kg", some(0.4, 8, 0.44, 2.6, 7.2)),
+        ("length_mm", some(50, 200, 60, 122, 190)),
+        ("ambient_temperature_degC", some(-20, 60, 0, 20, 40)),
+        ("utilisation", some(0.3, 1, 1, 0.8)),
+        ("efficiency", some(0.6, 1, 0.95)),
+    ):
+        if maybe(0.2):
+            wishes[name] = value
+    if maybe(0.3):
+        wishes["motor"] = {
+            name: value
+            for name, value in (
+                ("maximum_speed_rpm", some(500, 8000, 3000, 6000)),
+                ("peak_torque_Nm", some(0.5, 60, 8, 16)),
+                ("rated_torque_Nm", some(0.5, 40, 8)),
+            )
+            if maybe(0.6)
+        }
+    if wishes:
+        parts["requirements"] = wishes
+    return cycle(*phases, pause_s=some(0, 20, 0) if maybe() else 0.0, **parts)

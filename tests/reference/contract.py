@@ -1,0 +1,332 @@
+"""The public contract of `select`, worked out slowly: one gear, one check, one phase at a time, in plain Python.
+
+Written from the contract and the handbook alone, on the tests' own transcription; it shares no code with the product.
+Where both agree on thousands of applications, a misreading would have to have been made twice.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from tests.reference import handbook as book
+
+ROOM = 1e-12
+INFINITE = math.inf
+
+
+@dataclass
+class Gear:
+    """What is known of a gear; None is not published."""
+
+    size: str
+    ratio: int
+    stages: int
+    T_R: float | None = None
+    T_N: float | None = None
+    T_M: float | None = None
+    n_max: float | None = None
+    n_av: float | None = None
+    ambient: tuple[float, float] | None = None
+    weight: float | None = None
+    length: float | None = None
+    backlash: float | None = None
+    K3: float | None = None
+    F_R: float | None = None
+    F_A: float | None = None
+    curve: Sequence[tuple[float, float]] | None = None  # (radial, axial), from the radial axis to the axial one
+
+    @property
+    def name(self) -> str:
+        return f"HPN-{self.size}-{self.ratio}"
+
+
+@dataclass
+class Check:
+    code: str
+    demand: float | None
+    limit: float | None
+    utilisation: float | None  # infinite where it fails without one
+    status: str
+
+
+@dataclass
+class Candidate:
+    gear: Gear
+    checks: list[Check]
+    figures: dict[str, float | None]
+    status: str = ""
+    utilisation: float | None = None
+    governing: str | None = None
+    rank: int | None = None
+
+
+@dataclass
+class Answer:
+    duty: dict[str, float]
+    candidates: list[Candidate] = field(default_factory=list)
+
+    @property
+    def selected(self) -> str | None:
+        first = self.candidates[0]
+        return first.gear.name if first.status == "suitable" else None
+
+
+def printed_gears() -> list[Gear]:
+    """All gears in the order of the catalogue: by size, then ratio."""
+    gears = []
+    for size, ratios in book.RATIOS.items():
+        for place, ratio in enumerate(ratios):
+            stages = book.STAGES[ratio]
+            gear = Gear(size, ratio, stages)
+            gear.backlash = book.BACKLASH_ARCMIN[size, stages]
+            gear.K3 = book.TORSIONAL_STIFFNESS_NM_PER_RAD[size, stages]
+            if size in book.RATED_TORQUE_NM:
+                gear.T_R = book.REPEATED_PEAK_TORQUE_NM[size][place]
+                gear.T_N = book.RATED_TORQUE_NM[size][place]
+                gear.T_M = book.MOMENTARY_PEAK_TORQUE_NM[size][place]
+                gear.n_max = book.MAXIMUM_INPUT_SPEED_RPM[size]
+                gear.n_av = book.AVERAGE_INPUT_SPEED_RPM[size]
+                gear.ambient = book.AMBIENT_TEMPERATURE_DEGC[size]
+                gear.weight = book.WEIGHT_KG[size, stages]
+                gear.length = book.LENGTH_MM[size, stages][1]
+                gear.F_R = book.DYNAMIC_RADIAL_LOAD_N[size]
+                gear.F_A = book.DYNAMIC_AXIAL_LOAD_N[size]
+            gears.append(gear)
+    return gears
+
+
+def answer(application: Mapping[str, Any], gears: Sequence[Gear]) -> Answer:
+    """Everything that the contract fixes of a reply, in its order."""
+    wishes = application.get("requirements", {})
+    chosen = [
+        gear
+        for gear in gears
+        if (not wishes.get("sizes") or gear.size in wishes["sizes"])
+        and (not wishes.get("ratios") or gear.ratio in wishes["ratios"])
+    ]
+    duty = _duty(application["duty_cycle"])
+    result = Answer(
+        {
+            "average_torque_Nm": duty.T_av,
+            "average_output_speed_rpm": duty.n_av,
+            "maximum_torque_Nm": duty.T_max,
+            "maximum_output_speed_rpm": duty.n_max,
+        }
+    )
+    judged = [_judge(application, wishes, duty, gear) for gear in chosen]
+    result.candidates = _ordered(judged, application.get("rank_by", "weight"))
+    return result
+
+
+@dataclass
+class _Duty:
+    T_av: float
+    n_av: float
+    T_max: float
+    n_max: float
+    T_rms: float
+
+
+def _duty(cycle: Mapping[str, Any]) -> _Duty:
+    phases, pause = cycle["phases"], cycle.get("pause_s", 0)
+    T_max = max(abs(p["torque_Nm"]) for p in phases)
+    way = math.fsum(abs(p["speed_rpm"]) * p["duration_s"] for p in phases)
+    time = math.fsum(p["duration_s"] for p in phases) + pause
+    T_av = T_rms = 0.0
+    if T_max > 0:
+        shares = [
+            (abs(p["speed_rpm"]) * p["duration_s"] / way, abs(p["torque_Nm"]) / T_max, p["duration_s"] / time)
+            for p in phases
+        ]
+        T_av = T_max * math.fsum(w * r ** (10 / 3) for w, r, _ in shares) ** 0.3
+        T_rms = T_max * math.sqrt(math.fsum(s * r**2 for _, r, s in shares))
+    return _Duty(T_av, way / time, T_max, max(abs(p["speed_rpm"]) for p in phases), T_rms)
+
+
+def _judge(application: Mapping[str, Any], wishes: Mapping[str, Any], duty: _Duty, gear: Gear) -> Candidate:
+    u = wishes.get("utilisation", 1.0)
+    checks: list[Check] = []
+
+    def compare(code: str, demand: float | None, limit: float | None, used: float | None, bound: float) -> None:
+        status = "not_rated" if used is None else "pass" if used <= bound * (1 + ROOM) else "fail"
+        checks.append(Check(code, demand, limit, used, status))
+
+    def at_most(code: str, demand: float | None, limit: float | None, bound: float = u) -> None:
+        used = None if demand is None or limit is None else demand / limit
+        compare(code, demand, limit, used, bound)
+
+    def at_least(code: str, demand: float | None, limit: float, bound: float = u) -> None:
+        compare(code, demand, limit, None if demand is None else limit / demand, bound)
+
+    n_in_av, n_in_max = gear.ratio * duty.n_av, gear.ratio * duty.n_max
+    life = None
+    if gear.T_N is not None:
+        life = INFINITE
+        if duty.T_av > 0:
+            life = 20000 * (book.RATED_INPUT_SPEED_RPM / n_in_av) * (gear.T_N / duty.T_av) ** (10 / 3)
+    at_most("average_torque", duty.T_av, gear.T_N)
+    at_most("repeated_peak_torque", duty.T_max, gear.T_R)
+
+    allowed: float | None = None
+    stop = application.get("emergency_stop")
+    if stop is not None:
+        T_k = abs(stop["torque_Nm"])
+        at_most("momentary_peak_torque", T_k, gear.T_M)
+        if gear.T_R is not None:
+            allowed = INFINITE
+            if T_k > gear.T_R:
+                allowed = math.floor(10 ** max(8.5 - 1.5 * T_k / gear.T_R, -300) * (1 + ROOM))
+        if stop.get("count") is not None:
+            used = None if allowed is None else INFINITE if allowed == 0 else stop["count"] / allowed
+            compare("momentary_peak_count", stop["count"], allowed, used, u)
+
+    at_most("average_input_speed", n_in_av, gear.n_av)
+    at_most("maximum_input_speed", n_in_max, gear.n_max)
+    if wishes.get("life_h") is not None:
+        at_least("life", life, wishes["life_h"])
+
+    bearing_life = _bearing(application, duty, gear, at_most)
+
+    loss = gear.ratio * (wishes.get("efficiency") or 1.0)
+    motor = wishes.get("motor") or {}
+    for code, demand, key in (
+        ("motor_speed", n_in_max, "maximum_speed_rpm"),
+        ("motor_peak_torque", duty.T_max / loss, "peak_torque_Nm"),
+        ("motor_rated_torque", duty.T_rms / loss, "rated_torque_Nm"),
+    ):
+        if motor.get(key) is not None:
+            at_most(code, demand, motor[key])
+    load_checks = len(checks)
+
+    temperature = wishes.get("ambient_temperature_degC")
+    if temperature is not None:
+        used, end = None, None
+        if gear.ambient is not None:
+            low, high = gear.ambient
+            used = abs(temperature - (low + high) / 2) / ((high - low) / 2)
+            end = high if temperature >= (low + high) / 2 else low
+        compare("ambient_temperature", temperature, end, used, 1)
+    if wishes.get("backlash_arcmin") is not None:
+        at_most("backlash", gear.backlash, wishes["backlash_arcmin"], 1)
+    if wishes.get("torsional_stiffness_Nm_per_rad") is not None:
+        at_least("torsional_stiffness", gear.K3, wishes["torsional_stiffness_Nm_per_rad"], 1)
+    if wishes.get("weight_kg") is not None:
+        at_most("weight", gear.weight, wishes["weight_kg"], 1)
+    if wishes.get("length_mm") is not None:
+        at_most("length", gear.length, wishes["length_mm"], 1)
+
+    result = Candidate(
+        gear,
+        checks,
+        {
+            "average_input_speed_rpm": n_in_av,
+            "maximum_input_speed_rpm": n_in_max,
+            "life_L10_h": life,
+            "momentary_peak_count": allowed,
+            "bearing_life_L50_h": bearing_life,
+            "bearing_life_L10_h": None if bearing_life is None else bearing_life / 5,
+            "motor_peak_torque_Nm": duty.T_max / loss,
+            "motor_rated_torque_Nm": duty.T_rms / loss,
+        },
+    )
+    _conclude(result, load_checks)
+    return result
+
+
+def _bearing(application: Mapping[str, Any], duty: _Duty, gear: Gear, at_most: Any) -> float | None:
+    """Both checks of the output bearing; its life L50."""
+    phases = application["duty_cycle"]["phases"]
+    given = application.get("output_load")
+    own = any(p.get(key) is not None for p in phases for key in ("radial_N", "axial_N"))
+    if given is None and not own:
+        return None
+    given = given or {}
+    f_w = given.get("load_coefficient", 1.0)
+    loads = [
+        tuple(
+            abs(p[key] if p.get(key) is not None else given[key] if given.get(key) is not None else 0.0)
+            for key in ("radial_N", "axial_N")
+        )
+        for p in phases
+    ]
+    P = [_equivalent(given.get("model", "linear"), F_R, F_A, gear) for F_R, F_A in loads]
+    required = given.get("life_h", 20000) * (5 if given.get("life_basis") == "L10" else 1)
+    k = (100 * 20000 / (duty.n_av * required)) ** (1 / 3)
+    known = [p for p in P if p is not None]
+    if len(known) < len(P):
+        at_most("output_bearing_load", None, 1.0)
+        at_most("output_bearing_life", None, k)
+        return None
+    weights = [abs(p["speed_rpm"]) * p["duration_s"] for p in phases]
+    mean = (math.fsum(w * p**3 for w, p in zip(weights, known, strict=True)) / math.fsum(weights)) ** (1 / 3)
+    at_most("output_bearing_load", f_w * max(known), 1.0)
+    at_most("output_bearing_life", f_w * mean, k)
+    return 20000 * (100 / duty.n_av) / (f_w * mean) ** 3 if mean > 0 else INFINITE
+
+
+def _equivalent(model: str, F_R: float, F_A: float, gear: Gear) -> float | None:
+    if model == "digitised":
+        return None if gear.curve is None else _along_curve(gear.curve, F_R, F_A)
+    if gear.F_R is None or gear.F_A is None:
+        return None
+    r, a = F_R / gear.F_R, F_A / gear.F_A
+    return r + a if model == "linear" else max(r, 0.56 * r + a)
+
+
+def _along_curve(curve: Sequence[tuple[float, float]], F_R: float, F_A: float) -> float:
+    """Length of the load over the length at which its ray meets the curve, found by trying every segment."""
+    if F_R == F_A == 0:
+        return 0.0
+    for (R0, A0), (R1, A1) in itertools.pairwise(curve):
+        # (F_R, F_A) = P * ((R0, A0) + s * (R1 - R0, A1 - A0)), by Cramer's rule for P and P s
+        across = R0 * (A1 - A0) - A0 * (R1 - R0)
+        P = (F_R * (A1 - A0) - F_A * (R1 - R0)) / across
+        Ps = (R0 * F_A - A0 * F_R) / across
+        if P > 0 and -1e-12 <= Ps / P <= 1 + 1e-12:
+            return P
+    raise AssertionError("the curve does not reach from axis to axis")
+
+
+def _conclude(result: Candidate, load_checks: int) -> None:
+    states = [check.status for check in result.checks]
+    if "fail" in states:
+        result.status = "unsuitable"
+    elif "not_rated" in states:
+        result.status = "unrated"
+        return
+    else:
+        result.status = "suitable"
+    for place, check in enumerate(result.checks):
+        counts = place < load_checks or check.status == "fail"
+        if not counts or check.utilisation is None:
+            continue
+        if result.utilisation is None or check.utilisation > result.utilisation:  # a tie stays with the first
+            result.utilisation, result.governing = check.utilisation, check.code
+
+
+def _ordered(candidates: list[Candidate], rank_by: str) -> list[Candidate]:
+    def last(value: float | None, sign: int = 1) -> float:
+        return INFINITE if value is None else sign * value
+
+    def ties(c: Candidate) -> tuple[float, ...]:
+        return (last(c.gear.weight), last(c.utilisation), last(c.figures["life_L10_h"], -1), c.gear.ratio)
+
+    def wish(c: Candidate) -> float:
+        return {
+            "weight": last(c.gear.weight),
+            "utilisation": last(c.utilisation),
+            "length": last(c.gear.length),
+            "motor_torque": last(c.figures["motor_peak_torque_Nm"]),
+            "life": last(c.figures["life_L10_h"], -1),
+            "stiffness": last(c.gear.K3, -1),
+        }[rank_by]
+
+    good = sorted((c for c in candidates if c.status == "suitable"), key=lambda c: (wish(c), *ties(c)))
+    bad = sorted((c for c in candidates if c.status == "unsuitable"), key=lambda c: (last(c.utilisation), *ties(c)))
+    for place, c in enumerate(good):
+        c.rank = place + 1
+    return good + bad + [c for c in candidates if c.status == "unrated"]

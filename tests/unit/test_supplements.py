@@ -1,0 +1,205 @@
+"""A supplement fills or corrects cells, says so wherever they show, and needs no change of code."""
+
+import dataclasses
+from pathlib import Path
+
+import pytest
+
+from hpn.application import Application, InputError
+from hpn.catalogue import HANDBOOK_FOLDER, Catalogue, load_catalogue
+from hpn.envelopes import EnvelopeQuery, life_envelopes
+from hpn.selection import select
+from tests.build import answer, candidate, check, cycle, notices, phase, suitable
+from tests.conftest import Supplement
+
+RATINGS = "size,ratio,repeated_peak_torque_Nm,rated_torque_Nm,momentary_peak_torque_Nm,source\n"
+SIZES = (
+    "size,maximum_input_speed_rpm,average_input_speed_rpm,ambient_temperature_minimum_degC,"
+    "ambient_temperature_maximum_degC,dynamic_radial_load_N,dynamic_axial_load_N,note,source\n"
+)
+WEIGHTS = "size,stages,weight_kg,source\n"
+LENGTHS = "size,stages,length_min_mm,length_max_mm,source\n"
+CURVES = "size,load_coefficient,axial_N,radial_N,source\n"
+EFFICIENCY = "size,ratio,torque_Nm,efficiency,source\n"
+
+
+def test_one_gear_of_40a_is_rated_and_its_neighbours_stay_unrated(
+    supplemented: Supplement, catalogue: Catalogue
+) -> None:
+    filled = supplemented(
+        ratings=RATINGS + "40A,5,752,400,1250,page 12 of my print\n",
+        sizes=SIZES + "HPN-40A,6000,3000,0,40,,,,page 12 of my print\n",
+        weights=WEIGHTS + "40,1,14,\n",
+    )
+    application = cycle(phase(380, 100))  # more than any gear of the handbook carries on average
+
+    before, after = answer(application, catalogue), answer(application, filled)
+
+    assert before["selected"] is None
+    assert after["selected"] == "HPN-40A-5"
+    states = {c["designation"]: c["status"] for c in after["candidates"] if c["size"] == "40A"}
+    assert states.pop("HPN-40A-5") == "suitable"
+    # Speeds are known of the whole size now, so a ratio that runs too fast is out; the rest stays unrated.
+    assert set(states.values()) == {"unrated", "unsuitable"}
+    assert states["HPN-40A-4"] == "unrated"
+    assert states["HPN-40A-50"] == "unsuitable"
+
+
+def test_what_the_user_supplied_says_so_and_what_was_there_stays(
+    supplemented: Supplement, catalogue: Catalogue
+) -> None:
+    filled = supplemented(ratings=RATINGS + "20A,5,,82,,measured\n", weights=WEIGHTS + "20A,1,2.7,\n")
+    gear, printed = filled.by_designation["HPN-20A-5"], catalogue.by_designation["HPN-20A-5"]
+
+    assert gear.rated_torque_Nm == 82
+    assert gear.weight_kg == 2.7
+    assert gear.sources["rated_torque_Nm"] == "supplied by the user: measured"
+    assert gear.sources["weight_kg"] == "supplied by the user: weights.csv"
+    changed = {"rated_torque_Nm", "weight_kg"}
+    for f in dataclasses.fields(gear):
+        if f.name not in changed | {"sources"}:
+            assert getattr(gear, f.name) == getattr(printed, f.name), f.name
+    for field, source in printed.sources.items():
+        assert field in changed or gear.sources[field] == source, field
+    others = [g for g in filled.gears if (g.size, g.stages) != ("20A", 1)]
+    assert others == [g for g in catalogue.gears if (g.size, g.stages) != ("20A", 1)]
+
+
+def test_a_blank_cell_keeps_what_was_there(supplemented: Supplement, catalogue: Catalogue) -> None:
+    filled = supplemented(ratings=RATINGS + "20A,5,,,,\n", sizes=SIZES + "20A,,,,,,,,\n")
+
+    assert filled.gears == catalogue.gears
+
+
+def test_a_supplement_changes_the_version_and_gives_a_notice(supplemented: Supplement, catalogue: Catalogue) -> None:
+    first = supplemented(weights=WEIGHTS + "20A,1,2.7,\n")
+    second = supplemented(weights=WEIGHTS + "20A,1,2.8,\n")
+
+    assert len({catalogue.version, first.version, second.version}) == 3
+    assert answer(cycle(phase(1, 1)), first)["catalogue_version"] == first.version
+    assert "catalogue_supplement" in notices(answer(cycle(phase(1, 1)), first))
+    assert "catalogue_supplement" not in notices(answer(cycle(phase(1, 1)), catalogue))
+
+
+def test_the_version_follows_the_content_and_nothing_else(folder: Path, catalogue: Catalogue) -> None:
+    assert load_catalogue(folder).version == catalogue.version
+    path = folder / "weights.csv"
+    path.write_text(path.read_text(encoding="utf-8").replace("0.44", "0.45"), encoding="utf-8")
+    assert load_catalogue(folder).version != catalogue.version
+
+
+def test_a_sixth_size_needs_rows_alone(folder: Path, catalogue: Catalogue) -> None:
+    rows = {
+        "gears": "50A,5,1,table 9.1\n50A,15,2,table 9.1\n",
+        "ratings": "50A,5,1500,900,2500,table 9.1\n50A,15,1500,900,2500,table 9.1\n",
+        "sizes": "50A,4000,2500,0,40,9000,8000,,table 9.1\n",
+        "weights": "50A,1,30,table 9.1\n50A,2,34,table 9.1\n",
+        "lengths": "50A,1,200,250,table 9.1\n50A,2,260,300,table 9.1\n",
+        "accuracy": "50A,1,5,8,table 9.1\n50A,2,7,10,table 9.1\n",
+        "stiffness": "50A,1,400000,table 9.1\n50A,2,400000,table 9.1\n",
+    }
+    for stem, text in rows.items():
+        with (folder / f"{stem}.csv").open("a", encoding="utf-8") as file:
+            file.write(text)
+
+    grown = load_catalogue(folder)
+    reply = answer(cycle(phase(700, 100), output_load={"radial_N": 5000}), grown)
+
+    assert len(grown.gears) == len(catalogue.gears) + 2
+    assert grown.sizes[-1] == "50A"
+    assert suitable(reply) == {"HPN-50A-5", "HPN-50A-15"}
+    assert reply["selected"] == "HPN-50A-5"
+    assert select(Application.model_validate(cycle(phase(1, 1), requirements={"sizes": ["50"]})), grown)
+    assert grown.gears[:64] == catalogue.gears
+
+
+def test_a_sixth_size_may_come_from_a_supplement(supplemented: Supplement) -> None:
+    grown = supplemented(gears="size,ratio,stages,source\n50A,5,1,mine\n", ratings=RATINGS + "50A,5,1500,900,2500,\n")
+
+    reply = answer(cycle(phase(700, 100)), grown)
+
+    entry = candidate(reply, "HPN-50A-5")
+    assert entry["status"] == "unrated"  # its speeds are still missing
+    assert check(reply, "HPN-50A-5", "average_torque")["status"] == "pass"
+    assert grown.by_designation["HPN-50A-5"].sources["ratio"] == "supplied by the user: mine"
+
+
+def test_curve_points_of_a_supplement_make_the_digitised_model(supplemented: Supplement) -> None:
+    drawn = supplemented(bearing_envelopes=CURVES + "14A,1,0,840,\n14A,1,450,900,\n14A,1,900,0,\n")
+    load = {"model": "digitised", "radial_N": 450, "axial_N": 225}
+
+    reply = answer(cycle(phase(1, 100), output_load=load), drawn)
+
+    # Half of the corner point (900, 450): by hand, the utilisation is one half.
+    assert check(reply, "HPN-14A-5", "output_bearing_load")["utilisation"] == 0.5
+    assert check(reply, "HPN-14A-5", "output_bearing_life")["utilisation"] == 0.5
+    assert candidate(reply, "HPN-14A-5")["bearing_life_L50_h"] == 20000 * 8
+    for designation in ("HPN-20A-5", "HPN-40A-5"):
+        assert check(reply, designation, "output_bearing_load")["status"] == "not_rated"
+        assert candidate(reply, designation)["bearing_life_L50_h"] is None
+    assert "bearing_envelope_supplied" in notices(reply)
+
+
+def test_the_drawn_envelope_of_the_digitised_model_runs_through_its_points(supplemented: Supplement) -> None:
+    drawn = supplemented(bearing_envelopes=CURVES + "14A,1,0,840,\n14A,1,450,900,\n14A,1,900,0,\n")
+    gear = drawn.by_designation["HPN-14A-5"]
+    query = EnvelopeQuery.model_validate({"model": "digitised", "load_coefficient": 1.2})
+
+    curve = next(c for c in life_envelopes(drawn, gear, query) if c.load_coefficient == 1.2)
+
+    assert curve.radial_N == pytest.approx([0, 900 / 1.2, 840 / 1.2], rel=1e-15)
+    assert curve.axial_N == pytest.approx([900 / 1.2, 450 / 1.2, 0], rel=1e-15)
+
+
+def test_a_size_without_published_limits_is_drawn_and_judged_along_the_points_that_are_supplied(
+    supplemented: Supplement,
+) -> None:
+    """Check and picture must not part ways: what `select` judges, the envelope shows."""
+    drawn = supplemented(bearing_envelopes=CURVES + "40A,1,0,8000,\n40A,1,6000,0,\n")
+    gear = drawn.by_designation["HPN-40A-5"]
+
+    reply = answer(cycle(phase(1, 100), output_load={"model": "digitised", "radial_N": 4000}), drawn)
+    curves = life_envelopes(drawn, gear, EnvelopeQuery.model_validate({"model": "digitised"}))
+
+    assert check(reply, "HPN-40A-5", "output_bearing_load")["utilisation"] == 0.5
+    assert (curves[0].radial_N, curves[0].axial_N) == ([0, 8000], [6000, 0])
+    with pytest.raises(InputError, match="not published"):
+        life_envelopes(drawn, gear, EnvelopeQuery.model_validate({"model": "linear"}))
+
+
+def test_the_digitised_model_without_points_is_an_input_error_that_says_where_to_put_them(
+    catalogue: Catalogue, supplemented: Supplement
+) -> None:
+    application = cycle(phase(1, 100), output_load={"model": "digitised", "radial_N": 1})
+    with pytest.raises(InputError, match=r"bearing_envelopes\.csv.*HPN_CATALOGUE_SUPPLEMENT") as refusal:
+        answer(application, catalogue)
+    assert [location for location, _ in refusal.value.problems] == [("output_load", "model")]
+
+    drawn = supplemented(bearing_envelopes=CURVES + "14A,1,0,840,\n14A,1,900,0,\n")
+    answer(application, drawn)
+    with pytest.raises(InputError, match=r"bearing_envelopes\.csv"):
+        answer(application | {"requirements": {"sizes": ["20A"]}}, drawn)
+
+
+def test_an_efficiency_curve_of_a_supplement_is_followed_between_its_points_and_lossfree_outside(
+    supplemented: Supplement,
+) -> None:
+    curved = supplemented(efficiency=EFFICIENCY + "20A,5,80,0.9,\n20A,5,20,0.7,\n")
+    application = cycle(phase(50, 100), requirements={"motor": {"peak_torque_Nm": 100}})
+
+    inside = answer(application, curved)
+    outside = answer(cycle(phase(100, 100), requirements={"motor": {"peak_torque_Nm": 100}}), curved)
+    stated = answer(application | {"requirements": {"efficiency": 0.5}}, curved)
+
+    # Half way between 20 Nm and 80 Nm the efficiency is 0.8: 50 / (5 · 0.8), by hand.
+    assert candidate(inside, "HPN-20A-5")["motor_peak_torque_Nm"] == pytest.approx(12.5, rel=1e-15)
+    assert candidate(inside, "HPN-20A-4")["motor_peak_torque_Nm"] == 12.5
+    assert candidate(outside, "HPN-20A-5")["motor_peak_torque_Nm"] == 20
+    assert candidate(stated, "HPN-20A-5")["motor_peak_torque_Nm"] == 20
+    assert "efficiency_supplied" in notices(inside)
+    assert "efficiency_assumed" in notices(stated)
+
+
+def test_the_shipped_folder_is_not_touched_by_any_of_this() -> None:
+    assert HANDBOOK_FOLDER.name == "catalogue"
+    assert len(load_catalogue().gears) == 64
