@@ -1,11 +1,13 @@
 """Journeys through the page in a real browser."""
 
+import io
 import re
 import time
 from typing import Any
 
 import pytest
 from playwright.sync_api import Page, Route, expect
+from pypdf import PdfReader
 
 from tests.browser.conftest import AXE, Visitor
 
@@ -243,7 +245,7 @@ def test_loads_can_be_given_for_each_phase(visitor: Visitor) -> None:
     page = visitor.open(EXAMPLE)
     page.get_by_text("Load on the output shaft").click()
     page.get_by_role("button", name="A load for each phase").click()
-    page.get_by_label("Radial load, phase 2").fill("500")
+    page.get_by_label("Radial, phase 2").fill("500")
     expect(page).to_have_url(re.compile("FRi=&.*FRi=500"))
     expect(page.get_by_role("table", name="Load limits").get_by_text("Output bearing").first).to_be_visible()
 
@@ -256,11 +258,21 @@ def test_page_does_not_move_while_typing(visitor: Visitor) -> None:
         torque(page, 1).fill(value)
         expect(page).to_have_url(re.compile(f"T={re.escape(value)}&"))
         assert (heading.bounding_box(), table.bounding_box()) == before
+    box = torque(page, 1).bounding_box()
+    torque(page, 1).fill("9,3")
+    expect(page.get_by_text("Not recalculated")).to_be_visible()
+    assert (heading.bounding_box(), table.bounding_box()) == before
+    assert torque(page, 1).bounding_box() == box
+
+
+def test_answer_prints_on_one_page(visitor: Visitor) -> None:
+    page = visitor.open(EXAMPLE)
+    assert len(PdfReader(io.BytesIO(page.pdf(prefer_css_page_size=True))).pages) == 1
 
 
 @pytest.mark.parametrize("width", [390, 768, 1024, 1440, 1920])
 def test_nothing_makes_the_page_scroll_sideways(visitor: Visitor, width: int) -> None:
-    page = visitor.open(EXAMPLE.replace("&i=5", ""), width=width)
+    page = visitor.open(EXAMPLE.replace("&i=5", "&FR=500&FRi=&FRi=&FRi=700"), width=width)
     assert page.evaluate("document.documentElement.scrollWidth") == width
 
 

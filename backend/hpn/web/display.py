@@ -96,7 +96,7 @@ LIMIT_FIGURES = {
 def capped_percent(utilisation: float | None) -> str:
     """Percentage without its sign, for a narrow cell: beyond tenfold it matters no more by how much."""
     if utilisation is not None and utilisation >= 9.995:
-        return f">{GROUP}999"
+        return ">999"
     return percent(utilisation).removesuffix(f"{GROUP}%")
 
 

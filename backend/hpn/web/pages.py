@@ -170,14 +170,25 @@ def environment(state: State) -> Environment:
     return templates
 
 
+class _Environment(Environment):
+    """Looks into a reply first: Jinja's own way round, attribute before item, costs an exception per field."""
+
+    def getattr(self, obj: Any, attribute: str) -> Any:
+        """Field of a dictionary or attribute of an object."""
+        if isinstance(obj, dict) and attribute in obj:
+            return obj[attribute]
+        return super().getattr(obj, attribute)
+
+
 def _templates(static: assets.Assets, translations: NullTranslations) -> Environment:
     """Templates in one language. `_()` takes a format, the filter `t` a text of the domain that may hold a `%`."""
-    templates = Environment(
+    templates = _Environment(
         loader=FileSystemLoader(TEMPLATES),
         autoescape=True,
         undefined=StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
+        auto_reload=False,
         extensions=["jinja2.ext.i18n"],
     )
     templates.install_gettext_translations(translations, newstyle=True)  # type: ignore[attr-defined]
