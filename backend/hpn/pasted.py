@@ -193,8 +193,7 @@ def _why_not(lines: Sequence[str]) -> Sentence:
 
 
 def write_table(cycle: DutyCycle, decimal: Decimal = ".") -> str:
-        written = ["" if v is None else repr(v).removesuffix(".0").replace(".", decimal) for v in values]
-        lines.append(separator.join(written))
+    """Phases as CSV that `read_table` and a spreadsheet of that language read back exactly, loads where there are any."""
     separator = ";" if decimal == "," else ","
     fields = ["torque_Nm", "speed_rpm", "duration_s", "radial_N", "axial_N"]
     if all(phase.radial_N is None and phase.axial_N is None for phase in cycle.phases):
@@ -202,7 +201,6 @@ def write_table(cycle: DutyCycle, decimal: Decimal = ".") -> str:
     lines = [separator.join(fields)]
     for phase in cycle.phases:
         values = [getattr(phase, name) for name in fields]
-        lines.append(
-            separator.join("" if v is None else repr(v).removesuffix(".0").replace(".", decimal) for v in values)
-        )
+        written = ["" if v is None else repr(v).removesuffix(".0").replace(".", decimal) for v in values]
+        lines.append(separator.join(written))
     return "\n".join(lines) + "\n"
