@@ -108,7 +108,7 @@ def _difference(name: Name, old: tuple[str, Any] | None, new: tuple[str, Any] | 
         kind="text" if any(part in TEXTS for part in name) else "verdict" if name[-1] in VERDICTS else "figure",
         change="added" if old is None else "removed" if new is None else "changed",
         candidate=name[1] if name[0] == "candidates" else None,
-        check=name[3] if name[0] == "candidates" and len(name) > 3 else None,
+        check=name[3] if len(name) > 3 and (name[0], name[2]) == ("candidates", "checks") else None,
         field=name[-1],
         saved=old and old[1],
         today=new and new[1],

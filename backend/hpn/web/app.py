@@ -12,7 +12,7 @@ from hpn import ENGINE_VERSION
 from hpn.application import Application
 from hpn.catalogue import load_catalogue
 from hpn.store import Store, StoreUnavailableError
-from hpn.web import api, health, pages, problems, schemas, selection_schemas, selections
+from hpn.web import api, health, pages, problems, schemas, selection_pages, selection_schemas, selections
 from hpn.web.settings import Settings
 
 SECURITY_HEADERS = [
@@ -51,7 +51,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     app.router.routes[:0] = (*api.FAST_ROUTES, *selections.FAST_ROUTES)
     for router in (health.router, api.router, selections.router):
         app.include_router(router)
-    app.router.routes.extend(pages.routes)
+    app.router.routes.extend([*pages.routes, *selection_pages.routes])
     app.add_middleware(SecurityHeaders)
     document = app.openapi
     app.openapi = lambda: _complete(document())  # type: ignore[method-assign]

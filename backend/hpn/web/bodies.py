@@ -8,11 +8,16 @@ from hpn.web.problems import Problem
 
 
 async def read_json(request: Request, *, maximum_bytes: int, seconds: float) -> bytes:
-    """Body of a JSON request.
+    """Body of a JSON request; refuses as `read_body` does."""
+    return await read_body(request, "application/json", maximum_bytes=maximum_bytes, seconds=seconds)
+
+
+async def read_body(request: Request, content_type: str, *, maximum_bytes: int, seconds: float) -> bytes:
+    """Body of a request.
 
     Raises Problem 415 for another content type, 413 above `maximum_bytes`, 408 when it has not arrived in `seconds`.
     """
-    require_content_type(request, "application/json")
+    require_content_type(request, content_type)
     try:
         async with asyncio.timeout(seconds):
             return await _read(request, maximum_bytes)
