@@ -1,0 +1,149 @@
+"""The command line: exit codes, what goes where, and that a mistake is a sentence and not a trace."""
+
+import io
+import json
+from pathlib import Path
+from types import SimpleNamespace
+
+import orjson
+import pytest
+
+from hpn.cli import main
+from tests.build import Json, cycle, phase, worked_example
+
+Output = pytest.CaptureFixture[str]
+TOO_MUCH = cycle(phase(100_000, 100))
+
+
+@pytest.fixture
+def file(tmp_path: Path) -> Path:
+    return tmp_path / "application.json"
+
+
+def write(file: Path, application: Json) -> str:
+    file.write_bytes(orjson.dumps(application))
+    return str(file)
+
+
+def test_select_prints_the_choice_every_candidate_and_the_notes(file: Path, capsys: Output) -> None:
+    code = main(["select", write(file, worked_example())])
+
+    out = capsys.readouterr().out
+    assert code == 0
+    assert out.startswith("selected: HPN-20A-4\n")
+    assert out.count("\nHPN-") == 64
+    assert "HPN-40A" in out and "unrated" in out
+    assert "note: " in out
+
+
+def test_select_json_prints_the_reply_of_the_api(file: Path, capsys: Output) -> None:
+    code = main(["select", write(file, worked_example(requirements={"ratios": [5]})), "--json"])
+
+    reply = json.loads(capsys.readouterr().out)
+    assert code == 0
+    assert reply["selected"] == "HPN-20A-5"
+    assert reply["link"] == "/?T=40&n=250&t=0.3&T=32&n=500&t=3&T=20&n=250&t=0.4&tp=4&Tk=200&i=5"
+
+
+def test_select_reads_standard_input(monkeypatch: pytest.MonkeyPatch, capsys: Output) -> None:
+    content = io.BytesIO(orjson.dumps(worked_example()))
+    monkeypatch.setattr("sys.stdin", SimpleNamespace(buffer=content))
+
+    assert main(["select", "-"]) == 0
+    assert capsys.readouterr().out.startswith("selected: HPN-20A-4")
+
+
+def test_no_suitable_gear_is_exit_code_1_with_the_whole_answer(file: Path, capsys: Output) -> None:
+    assert main(["select", write(file, TOO_MUCH)]) == 1
+    assert capsys.readouterr().out.startswith("selected: none is suitable")
+    assert main(["select", str(file), "--json"]) == 1
+    assert json.loads(capsys.readouterr().out)["selected"] is None
+
+
+@pytest.mark.parametrize(
+    ("content", "words"),
+    [
+        (b"{", "JSON"),
+        (b"", "JSON"),
+        (b'{"duty_cycle": {"phases": [{"torque_Nm": "40", "speed_rpm": 1, "duration_s": 1}]}}', "phases/0/torque_Nm"),
+        (orjson.dumps(cycle(phase(1, 0))), "no phase moves"),
+        (orjson.dumps(cycle(phase(1, 1), requirements={"ratios": [6]})), "/requirements/ratios/0: the catalogue has"),
+        (orjson.dumps(cycle(phase(1, 1), price=5)), "/price: is not a field"),
+        (b"\xff\xfe", ""),
+    ],
+)
+def test_wrong_input_is_exit_code_2_with_the_place_on_standard_error(
+    file: Path, capsys: Output, content: bytes, words: str
+) -> None:
+    file.write_bytes(content)
+
+    code = main(["select", str(file)])
+
+    captured = capsys.readouterr()
+    assert code == 2
+    assert captured.out == ""
+    assert words in captured.err
+    assert captured.err.strip()
+    assert "Traceback" not in captured.err
+
+
+def test_a_file_that_is_not_there_is_exit_code_2(tmp_path: Path, capsys: Output) -> None:
+    assert main(["select", str(tmp_path / "none.json")]) == 2
+    assert "none.json" in capsys.readouterr().err
+
+
+def test_catalogue_lists_every_gear_and_shows_one(capsys: Output) -> None:
+    assert main(["catalogue"]) == 0
+    listed = capsys.readouterr().out
+    assert len(listed.splitlines()) == 64
+    assert listed.count("unrated") == 13
+
+    assert main(["catalogue", "HPN-20-5"]) == 0
+    gear = json.loads(capsys.readouterr().out)
+    assert (gear["designation"], gear["rated_torque_Nm"]) == ("HPN-20A-5", 80)
+
+    assert main(["catalogue", "HPN-20A-6"]) == 2
+    assert "HPN-20A-6" in capsys.readouterr().err
+
+
+def test_a_wrong_catalogue_is_exit_code_2_with_file_line_and_column(
+    folder: Path, file: Path, monkeypatch: pytest.MonkeyPatch, capsys: Output
+) -> None:
+    weights = folder / "weights.csv"
+    weights.write_text(weights.read_text(encoding="utf-8").replace("0.44", "light"), encoding="utf-8")
+    monkeypatch.setenv("HPN_CATALOGUE_FOLDER", str(folder))
+
+    for command in (["catalogue"], ["select", write(file, worked_example())], ["serve"]):
+        assert main(command) == 2
+        assert "weights.csv, line 2, column weight_kg" in capsys.readouterr().err
+
+
+def test_a_supplement_is_used_and_a_wrong_setting_is_a_sentence(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: Output
+) -> None:
+    (tmp_path / "weights.csv").write_text("size,stages,weight_kg,source\n20A,1,2.7,mine\n", encoding="utf-8")
+    monkeypatch.setenv("HPN_CATALOGUE_SUPPLEMENT", str(tmp_path))
+    assert main(["catalogue", "HPN-20A-5"]) == 0
+    assert json.loads(capsys.readouterr().out)["weight_kg"] == 2.7
+
+    monkeypatch.setenv("HPN_MAXIMUM_BODY_BYTES", "many")
+    assert main(["catalogue"]) == 2
+    assert "maximum_body_bytes" in capsys.readouterr().err.lower()
+
+
+@pytest.mark.parametrize("arguments", [[], ["selct"], ["select"], ["serve", "--port", "http"]])
+def test_a_wrong_command_is_exit_code_2_with_usage(arguments: list[str], capsys: Output) -> None:
+    with pytest.raises(SystemExit) as exit_:
+        main(arguments)
+
+    assert exit_.value.code == 2
+    assert "usage: hpn" in capsys.readouterr().err
+
+
+def test_help_names_every_command(capsys: Output) -> None:
+    with pytest.raises(SystemExit) as exit_:
+        main(["--help"])
+
+    assert exit_.value.code == 0
+    out = capsys.readouterr().out
+    assert all(command in out for command in ("select", "catalogue", "serve"))

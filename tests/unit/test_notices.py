@@ -1,0 +1,116 @@
+"""Notices: each where it belongs, and nowhere else."""
+
+from typing import get_args
+
+import pytest
+
+from hpn.application import ApplicationArea
+from hpn.catalogue import Catalogue
+from hpn.notices import AREAS
+from tests.build import Json, answer, candidate, check, cycle, notices, phase
+
+PLAIN = cycle(phase(10, 100), requirements={"sizes": ["20A"]})
+
+
+def codes(application: Json, catalogue: Catalogue) -> set[str]:
+    return set(notices(answer(application, catalogue)))
+
+
+def test_a_plain_application_on_rated_gears_needs_no_notice(catalogue: Catalogue) -> None:
+    assert codes(PLAIN, catalogue) == set()
+
+
+def test_an_unrated_size_is_announced_with_the_reason(catalogue: Catalogue) -> None:
+    reply = answer(cycle(phase(10, 100)), catalogue)
+
+    assert "HPN-40A" in notices(reply)["size_unrated"]
+    assert "752 Nm" in notices(reply)["size_unrated"]
+    for gear in reply["candidates"]:
+        assert (gear["status"] == "unrated") == (gear["size"] == "40A")
+
+
+@pytest.mark.parametrize("area", get_args(ApplicationArea))
+def test_every_area_of_section_2_4_needs_the_makers_approval(catalogue: Catalogue, area: str) -> None:
+    reply = answer(PLAIN | {"application_area": area}, catalogue)
+
+    assert "approval" in notices(reply)["application_area"]
+    assert AREAS[area] in notices(reply)["application_area"]
+
+
+def test_there_are_the_nine_areas_of_section_2_4() -> None:
+    assert len(get_args(ApplicationArea)) == len(AREAS) == 9
+    assert set(get_args(ApplicationArea)) == set(AREAS)
+
+
+@pytest.mark.parametrize(("T_k", "below"), [(9.999, True), (10, False), (-10, False), (11, False)])
+def test_an_emergency_stop_below_the_largest_torque_is_questioned(
+    catalogue: Catalogue, T_k: float, below: bool
+) -> None:
+    found = codes(PLAIN | {"emergency_stop": {"torque_Nm": T_k}}, catalogue)
+
+    assert ("emergency_stop_below_maximum" in found) == below
+
+
+def test_an_unlimited_count_is_null_beside_its_notice_and_a_limited_one_is_given(catalogue: Catalogue) -> None:
+    free = answer(PLAIN | {"emergency_stop": {"torque_Nm": 30, "count": 5}}, catalogue)
+    bound = answer(
+        cycle(
+            phase(1, 1),
+            emergency_stop={"torque_Nm": 300, "count": 5},
+            requirements={"sizes": ["20A"], "ratios": [5]},
+        ),
+        catalogue,
+    )
+
+    assert candidate(free, "HPN-20A-5")["momentary_peak_count"] is None
+    assert check(free, "HPN-20A-5", "momentary_peak_count")["limit"] is None
+    assert check(free, "HPN-20A-5", "momentary_peak_count")["utilisation"] == 0
+    assert "momentary_peak_count_unlimited" in notices(free)
+    # Above T_M the number is still given: 10^(8.5 - 1.5 * 300 / 149) = 301901.8, rounded down.
+    assert candidate(bound, "HPN-20A-5")["momentary_peak_count"] == 301901
+    assert "momentary_peak_count_unlimited" not in notices(bound)
+
+
+def test_a_cycle_without_torque_has_an_unlimited_life_beside_its_notice(catalogue: Catalogue) -> None:
+    idle = cycle(phase(0, 100), requirements={"sizes": ["20A"], "life_h": 1e6})
+
+    reply = answer(idle, catalogue)
+
+    assert candidate(reply, "HPN-20A-5")["life_L10_h"] is None
+    assert check(reply, "HPN-20A-5", "life")["utilisation"] == 0
+    assert check(reply, "HPN-20A-5", "life")["status"] == "pass"
+    assert check(reply, "HPN-20A-5", "average_torque")["utilisation"] == 0
+    assert "life_unlimited" in notices(reply)
+    assert "life_unlimited" not in codes(PLAIN, catalogue)
+    # The other checks stand: 100 rpm at ratio 50 is 5000 rpm at the input, above the average of 3000.
+    assert check(reply, "HPN-20A-50", "average_input_speed")["status"] == "fail"
+
+
+def test_bearing_loads_bring_the_standing_of_the_envelope_and_of_its_life(catalogue: Catalogue) -> None:
+    reply = answer(PLAIN | {"output_load": {"radial_N": 100}}, catalogue)
+
+    found = notices(reply)
+    assert "computed between the two published limits" in found["bearing_envelope_computed"]
+    assert "printed curve was not available" in found["bearing_envelope_computed"]
+    assert "centre" in found["bearing_load_position"]
+    assert "L50 / 5" in found["bearing_life_basis"]
+    assert "5.45" in found["bearing_life_basis"]
+    assert not {code for code in codes(PLAIN, catalogue) if code.startswith("bearing")}
+
+
+def test_a_bearing_without_load_has_an_unlimited_life_beside_its_notice(catalogue: Catalogue) -> None:
+    reply = answer(PLAIN | {"output_load": {"radial_N": 0}}, catalogue)
+
+    assert candidate(reply, "HPN-20A-5")["bearing_life_L50_h"] is None
+    assert candidate(reply, "HPN-20A-5")["bearing_life_L10_h"] is None
+    assert "bearing_life_unlimited" in notices(reply)
+    for code in ("output_bearing_load", "output_bearing_life"):
+        assert check(reply, "HPN-20A-5", code)["utilisation"] == 0
+
+
+def test_a_motor_without_a_stated_efficiency_is_a_lower_bound(catalogue: Catalogue) -> None:
+    motor = {"motor": {"peak_torque_Nm": 20}, "sizes": ["20A"]}
+
+    assert "lower bound" in notices(answer(PLAIN | {"requirements": motor}, catalogue))["efficiency_unknown"]
+    assert codes(PLAIN | {"rank_by": "motor_torque"}, catalogue) == {"efficiency_unknown"}
+    assert codes(PLAIN | {"requirements": motor | {"efficiency": 0.9}}, catalogue) == {"efficiency_assumed"}
