@@ -193,7 +193,7 @@ def _why_not(lines: Sequence[str]) -> Sentence:
 
 
 def write_table(cycle: DutyCycle, decimal: Decimal = ".") -> str:
-    """Phases as CSV that `read_table` and a spreadsheet of that language read back exactly, loads where there are any."""
+    """Phases as CSV that `read_table` and a spreadsheet of that language read back exactly, with loads if any."""
     separator = ";" if decimal == "," else ","
     fields = ["torque_Nm", "speed_rpm", "duration_s", "radial_N", "axial_N"]
     if all(phase.radial_N is None and phase.axial_N is None for phase in cycle.phases):
