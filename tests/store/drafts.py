@@ -15,3 +15,10 @@ def draft(**parts: Any) -> Draft:
         "selected": "HPN-20A-5",
     }
     return Draft(**(fields | parts))
+
+
+WEAKER = """\
+size,ratio,repeated_peak_torque_Nm,rated_torque_Nm,momentary_peak_torque_Nm,source
+20A,5,,30,,test
+"""
+"""Ratings with which HPN-20A-5 no longer suits the worked example."""

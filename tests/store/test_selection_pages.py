@@ -1,0 +1,112 @@
+"""The page of a saved selection, and saving from the live page without script."""
+
+import html
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from starlette.testclient import TestClient
+
+from hpn.application import Application
+from hpn.web.app import create_app
+from hpn.web.links import to_link
+from hpn.web.settings import Settings
+from tests.build import Json, worked_example
+from tests.conftest import Supplement
+from tests.store.drafts import WEAKER
+
+LINK = to_link(Application.model_validate(worked_example(requirements={"ratios": [5]})))
+
+
+@pytest.fixture
+def client(tmp_path: Path) -> Iterator[TestClient]:
+    """A client of a running service."""
+    settings = Settings(database_url=f"sqlite:///{tmp_path}/store.sqlite3")
+    with TestClient(create_app(settings), follow_redirects=False) as client:
+        yield client
+
+
+def sent(client: TestClient, **fields: str) -> str:
+    """Address of the page that the form leads to."""
+    response = client.post("/selections", data={"link": LINK} | fields)
+    assert response.status_code == 303, response.text
+    return str(response.headers["location"])
+
+
+def test_the_form_saves_and_leads_to_the_page(client: TestClient) -> None:
+    address = sent(client, title="Axis <7>", reference="4711")
+
+    page = client.get(address)
+
+    assert page.status_code == 200
+    assert "Axis &lt;7&gt;" in page.text
+    assert "<7>" not in page.text
+    for text in ("HPN-20A-5", "Reference 4711", "Today the result is the same", f'href="{html.escape(LINK)}"'):
+        assert text in page.text
+
+
+def test_labels_can_be_left_blank(client: TestClient) -> None:
+    saved = client.get(f"/api/v1{sent(client, title='', reference=' ')}").json()
+
+    assert (saved["title"], saved["reference"]) == (None, None)
+
+
+def test_a_label_that_cannot_be_comes_back_with_what_was_typed_and_a_message(client: TestClient) -> None:
+    response = client.post("/selections", data={"link": LINK, "title": "a\x07b", "reference": "4711"})
+
+    assert response.status_code == 422
+    assert 'value="4711"' in response.text
+    assert 'aria-describedby="e-save-title"' in response.text
+    assert f'value="{html.escape(LINK)}"' in response.text
+
+
+@pytest.mark.parametrize(
+    "fields", [{}, {"link": ""}, {"link": "/?T=x&n=1&t=1"}, {"link": "/?T=1&n=1&t=1&i=6"}, {"link": "/?no=1"}]
+)
+def test_what_is_no_application_is_not_saved(client: TestClient, fields: Json) -> None:
+    response = client.post("/selections", data=fields | {"title": "t"})
+
+    assert response.status_code == 422
+    assert client.get("/api/v1/selections").json()["selections"] == []
+
+
+@pytest.mark.parametrize(
+    ("headers", "status"),
+    [
+        ({"Sec-Fetch-Site": "same-origin"}, 303),
+        ({"Sec-Fetch-Site": "cross-site"}, 403),
+        ({"Sec-Fetch-Site": "same-site"}, 403),
+        ({"Origin": "http://testserver"}, 303),
+        ({"Origin": "http://other.example"}, 403),
+        ({"Origin": "null"}, 403),
+        ({}, 303),
+    ],
+)
+def test_only_our_own_page_can_send_the_form(client: TestClient, headers: dict[str, str], status: int) -> None:
+    assert client.post("/selections", data={"link": LINK}, headers=headers).status_code == status
+
+
+def test_another_candidate_can_be_looked_at(client: TestClient) -> None:
+    page = client.get(sent(client) + "?gear=HPN-32A-5")
+
+    assert "Load limits of HPN-32A-5" in page.text
+
+
+def test_what_today_says_differently_stands_beside_what_was_saved(client: TestClient, supplemented: Supplement) -> None:
+    address = sent(client)
+    catalogue = supplemented(ratings=WEAKER)
+    client.app.state.catalogue = catalogue  # type: ignore[attr-defined]
+
+    page = client.get(address)
+
+    assert "What today says differently" in page.text
+    assert page.text.index("selected gear") < page.text.index("Load limit 1: average torque: utilisation")
+    assert 'HPN-20A-5 <span class="status suitable">' in page.text
+
+
+def test_a_page_that_is_not_there_says_so_in_words(client: TestClient) -> None:
+    response = client.get("/selections/AAAAAAAAAAAAAAAAAAAAAA")
+
+    assert response.status_code == 404
+    assert response.headers["content-type"].startswith("text/html")
+    assert "There is no saved selection at this address" in response.text
