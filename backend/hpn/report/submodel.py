@@ -1,0 +1,254 @@
+"""The Asset Administration Shell: technical data of the selected gear, and the selection with every check.
+
+`TechnicalData` follows IDTA 02003-1-2 (Generic Frame for Technical Data for Industrial Equipment in Manufacturing, 1.2)
+with its semantic ids. Its mandatory article number and order code have no value: the handbook prints neither, and a
+designation is only part of an order code. `SelectionResult` is ours; no registered template exists for it.
+"""
+
+from collections.abc import Iterable, Iterator, Mapping
+from datetime import UTC
+from io import BytesIO
+from typing import Any
+from zipfile import ZIP_DEFLATED, ZipFile, ZipInfo
+
+import orjson
+from basyx.aas import model
+from basyx.aas.adapter import aasx
+from pyecma376_2.core_properties import OPCCoreProperties
+
+from hpn.gear import Gear
+from hpn.report.concepts import CONCEPTS, concept, concept_id, reference, texts, urn
+from hpn.report.export import Export
+from hpn.report.formulas import RATINGS
+from hpn.report.sheets import Known
+
+MANUFACTURER = "Harmonic Drive AG"
+TECHNICAL_DATA = "https://admin-shell.io/ZVEI/TechnicalData/"
+GENERAL_INFORMATION = {
+    "ManufacturerName": "0173-1#02-AAO677#002",
+    "ManufacturerProductDesignation": "0173-1#02-AAW338#001",
+    "ManufacturerArticleNumber": "0173-1#02-AAO676#003",
+    "ManufacturerOrderCode": "0173-1#02-AAO227#002",
+}
+"""Elements of the template and their semantic ids, as the template of IDTA gives them."""
+
+DATA_PART, APPLICATION_PART, RESULT_PART = "/aasx/data.xml", "/aasx/application.json", "/aasx/result.json"
+FIRST_DATE = (1980, 1, 1, 0, 0, 0)
+"""Earliest time that a zip entry can have; the content says when the selection was saved."""
+
+
+def package(export: Export) -> bytes:
+    """The .aasx package on an export; the same bytes for the same selection."""
+    files = aasx.DictSupplementaryFileContainer()  # type: ignore[no-untyped-call]
+    application = export.application.model_dump_json(exclude_unset=True).encode()
+    files.add_file(APPLICATION_PART, BytesIO(application), "application/json")
+    files.add_file(RESULT_PART, BytesIO(orjson.dumps(export.reply)), "application/json")
+    packed = BytesIO()
+    with aasx.AASXWriter(packed, failsafe=False) as writer:
+        writer.write_core_properties(_properties(export))
+        writer.write_all_aas_objects(DATA_PART, environment(export), files)
+    return _undated(packed.getvalue())
+
+
+def environment(export: Export) -> model.DictIdentifiableStore[model.Identifiable]:
+    """Shell, submodels and concept descriptions of an export."""
+    submodels = [_selection_result(export)]
+    if export.reply["selected"] is not None:
+        submodels.insert(0, _technical_data(export))
+    kind = model.AssetKind.TYPE if export.reply["selected"] else model.AssetKind.NOT_APPLICABLE
+    shell = model.AssetAdministrationShell(
+        model.AssetInformation(kind, global_asset_id=urn("asset", export.link)),
+        urn("shell", export.link),
+        id_short="GearSelection",
+        submodel=_InOrder(map(model.ModelReference.from_referable, submodels)),
+    )
+    store: model.DictIdentifiableStore[model.Identifiable] = model.DictIdentifiableStore()
+    for item in (shell, *submodels, *map(concept, CONCEPTS)):
+        store.add(item)
+    return store
+
+
+class _InOrder(set[model.ModelReference[model.Submodel]]):
+    """A set that is always written in the same order, so that equal packages have equal bytes."""
+
+    def __iter__(self) -> Iterator[model.ModelReference[model.Submodel]]:
+        return iter(sorted(super().__iter__(), key=str))
+
+
+# --- Technical data ---------------------------------------------------------------------------------------------------
+
+
+def _technical_data(export: Export) -> model.Submodel:
+    gear = export.gear(export.candidate["designation"])
+    return model.Submodel(
+        urn("technical-data", export.link),
+        [_general_information(export), _technical_properties(export, gear), _further_information(export)],
+        id_short="TechnicalData",
+        administration=model.AdministrativeInformation(version="1", revision="2"),
+        semantic_id=reference(TECHNICAL_DATA + "Submodel/1/2"),
+    )
+
+
+def _general_information(export: Export) -> model.SubmodelElementCollection:
+    designation = export.candidate["designation"]
+    names = {"en": f"{designation} planetary gear", "de": f"{designation} Planetengetriebe"}
+    ids = {name: reference(value) for name, value in GENERAL_INFORMATION.items()}
+
+    def element(name: str, value: str | None) -> model.Property:
+        return model.Property(name, str, value, semantic_id=ids[name])
+
+    return model.SubmodelElementCollection(
+        "GeneralInformation",
+        [
+            element("ManufacturerName", MANUFACTURER),
+            model.MultiLanguageProperty(
+                "ManufacturerProductDesignation",
+                model.MultiLanguageTextType(names),
+                semantic_id=ids["ManufacturerProductDesignation"],
+            ),
+            element("ManufacturerArticleNumber", None),
+            element("ManufacturerOrderCode", None),
+        ],
+        semantic_id=reference(TECHNICAL_DATA + "GeneralInformation/1/1"),
+    )
+
+
+def _technical_properties(export: Export, gear: Gear | None) -> model.SubmodelElementCollection:
+    """Published figures; what is not published is left out."""
+    candidate = export.candidate
+    figures: dict[str, Any] = {name: candidate[name] for name in ("size", "ratio", "stages")}
+    if gear:
+        figures |= {name: getattr(gear, name) for name in CONCEPTS if hasattr(gear, name)}
+    else:
+        known = Known(export, candidate, {}).ratings()
+        figures |= {RATINGS[name]: value for name, value in known.items() if name != "ratio"}
+    return model.SubmodelElementCollection(
+        "TechnicalProperties",
+        _properties_of(figures, gear.sources if gear else {}),
+        semantic_id=reference(TECHNICAL_DATA + "TechnicalProperties/1/1"),
+    )
+
+
+def _further_information(export: Export) -> model.SubmodelElementCollection:
+    statement = {
+        "en": "Figures of the maker's engineering data, written by an independent tool; not a statement of the maker.",
+        "de": "Angaben aus den Projektierungsunterlagen des Herstellers, von einem unabhängigen Werkzeug geschrieben; "
+        "keine Aussage des Herstellers.",
+    }
+    return model.SubmodelElementCollection(
+        "FurtherInformation",
+        [
+            model.MultiLanguageProperty(
+                "TextStatement01",
+                model.MultiLanguageTextType(statement),
+                semantic_id=reference(TECHNICAL_DATA + "TextStatement/1/1"),
+            )
+        ],
+        semantic_id=reference(TECHNICAL_DATA + "FurtherInformation/1/1"),
+    )
+
+
+# --- Selection --------------------------------------------------------------------------------------------------------
+
+
+def _selection_result(export: Export) -> model.Submodel:
+    elements: list[model.SubmodelElement] = [
+        *_texts(export),
+        model.File("Application", "application/json", APPLICATION_PART),
+        model.File("Result", "application/json", RESULT_PART),
+        model.SubmodelElementCollection("Duty", _properties_of(export.reply["duty"])),
+        model.SubmodelElementCollection("Figures", _properties_of(_figures(export))),
+        model.SubmodelElementCollection("Checks", [_check(export, check) for check in export.candidate["checks"]]),
+        model.SubmodelElementCollection("Notices", _notices(export)),
+    ]
+    return model.Submodel(
+        urn("selection-result", export.link),
+        elements,
+        id_short="SelectionResult",
+        description=model.MultiLanguageTextType(
+            {"en": "Selection of a planetary gear for a duty cycle", "de": "Auswahl eines Planetengetriebes"}
+        ),
+        semantic_id=reference(urn("submodel", "selection-result", "1")),
+    )
+
+
+def _texts(export: Export) -> Iterable[model.Property]:
+    reply, candidate = export.reply, export.candidate
+    values = {
+        "Selected": reply["selected"],
+        "Candidate": candidate["designation"],
+        "Status": candidate["status"],
+        "GoverningCheck": candidate["governing_check"],
+        "Title": export.title or None,
+        "Reference": export.reference or None,
+        "Created": export.created.astimezone(UTC).isoformat() if export.created else None,
+        "Link": export.link,
+        "EngineVersion": reply["engine_version"],
+        "CatalogueVersion": reply["catalogue_version"],
+    }
+    return [model.Property(name, str, value) for name, value in values.items() if value is not None]
+
+
+def _figures(export: Export) -> dict[str, Any]:
+    """Calculated figures of the candidate."""
+    return {name: value for name, value in export.candidate.items() if isinstance(value, int | float)} | {"rank": None}
+
+
+def _check(export: Export, check: Mapping[str, Any]) -> model.SubmodelElementCollection:
+    definition = export.definitions[check["code"]]
+    figures = {name: check[name] for name in ("demand", "limit", "utilisation", "status")}
+    return model.SubmodelElementCollection(
+        check["code"],
+        [*_properties_of(figures), *([model.Property("unit", str, definition["unit"])] if definition["unit"] else [])],
+        display_name=model.MultiLanguageNameType(texts(definition["title"])),
+        description=model.MultiLanguageTextType(texts(definition["basis"])),
+    )
+
+
+def _notices(export: Export) -> Iterable[model.MultiLanguageProperty]:
+    return [
+        model.MultiLanguageProperty(f"{notice['code']}_{number}", model.MultiLanguageTextType(texts(notice["text"])))
+        for number, notice in enumerate(export.reply["notices"], 1)
+    ]
+
+
+def _properties_of(figures: Mapping[str, Any], sources: Mapping[str, str] | None = None) -> list[model.Property]:
+    """Properties of the figures that have a value and a concept."""
+    sources = sources or {}
+    return [
+        model.Property(
+            name,
+            _type(value),
+            value,
+            semantic_id=reference(concept_id(name)),
+            description=model.MultiLanguageTextType(texts(sources[name])) if name in sources else None,
+        )
+        for name, value in figures.items()
+        if value is not None and name in CONCEPTS
+    ]
+
+
+def _type(value: Any) -> type[str] | type[int] | type[float]:
+    return str if isinstance(value, str) else int if isinstance(value, int) else float
+
+
+# --- Package ----------------------------------------------------------------------------------------------------------
+
+
+def _properties(export: Export) -> OPCCoreProperties:
+    properties = OPCCoreProperties()  # type: ignore[no-untyped-call]
+    properties.creator = "HPN Select"
+    properties.title = export.title or None
+    properties.created = export.created.astimezone(UTC) if export.created else None
+    return properties
+
+
+def _undated(packed: bytes) -> bytes:
+    """The same package without the time of its making."""
+    result = BytesIO()
+    with ZipFile(BytesIO(packed)) as source, ZipFile(result, "w", ZIP_DEFLATED) as target:
+        for name in source.namelist():
+            entry = ZipInfo(name, FIRST_DATE)
+            entry.compress_type = ZIP_DEFLATED
+            target.writestr(entry, source.read(name))
+    return result.getvalue()
