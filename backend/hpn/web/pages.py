@@ -18,7 +18,7 @@ from hpn.catalogue import Catalogue
 from hpn.gear import Gear
 from hpn.notices import AREAS
 from hpn.selection import Selection, select
-from hpn.web import assets, display, links
+from hpn.web import assets, display, links, reader
 from hpn.web.links import Form, Message, Problem
 
 TEMPLATES = Path(__file__).parents[3] / "frontend/templates"
@@ -193,8 +193,7 @@ def _templates(static: assets.Assets, translations: NullTranslations) -> Environ
     )
     templates.install_gettext_translations(translations, newstyle=True)  # type: ignore[attr-defined]
     translate = translations.gettext
-    templates.filters |= {
-        "figure": display.figure,
+    templates.filters |= reader.FILTERS | {
         "percent": display.percent,
         "capped_percent": display.capped_percent,
         "symbols": display.symbols,
