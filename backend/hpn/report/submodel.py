@@ -40,7 +40,7 @@ FIRST_DATE = (1980, 1, 1, 0, 0, 0)
 def package(export: Export) -> bytes:
     """The .aasx package on an export; the same bytes for the same selection."""
     files = aasx.DictSupplementaryFileContainer()  # type: ignore[no-untyped-call]
-    application = export.application.model_dump_json(exclude_unset=True).encode()
+    application = export.application.model_dump_json(exclude_none=True).encode()
     files.add_file(APPLICATION_PART, BytesIO(application), "application/json")
     files.add_file(RESULT_PART, BytesIO(orjson.dumps(export.reply)), "application/json")
     packed = BytesIO()

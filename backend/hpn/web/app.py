@@ -12,7 +12,18 @@ from hpn import ENGINE_VERSION
 from hpn.application import Application
 from hpn.catalogue import load_catalogue
 from hpn.store import Store, StoreUnavailableError
-from hpn.web import api, health, pages, problems, schemas, selection_pages, selection_schemas, selections
+from hpn.web import (
+    api,
+    embeds,
+    exports,
+    health,
+    pages,
+    problems,
+    schemas,
+    selection_pages,
+    selection_schemas,
+    selections,
+)
 from hpn.web.settings import Settings
 
 SECURITY_HEADERS = [
@@ -49,7 +60,8 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     problems.install(app)
     app.add_exception_handler(StoreUnavailableError, selections.unavailable)
     app.router.routes[:0] = (*api.FAST_ROUTES, *selections.FAST_ROUTES)
-    for router in (health.router, api.router, selections.router):
+    files = (exports.saved_files, exports.posted_files, exports.linked_files, embeds.router)
+    for router in (health.router, api.router, selections.router, *files):
         app.include_router(router)
     app.router.routes.extend([*pages.routes, *selection_pages.routes])
     app.add_middleware(SecurityHeaders)

@@ -22,9 +22,14 @@ def conditional(request: Request, body: bytes) -> Response:
     """JSON with its entity tag, or 304 where the client has it already; to be asked for anew each time."""
     etag = etag_of(body)
     headers = {"ETag": etag, "Cache-Control": "no-cache"}
-    if _lists(request.headers.get("if-none-match", ""), etag, weakly=True):
+    if has_already(request, etag):
         return Response(status_code=304, headers=headers)
     return JSONBytes(body, headers=headers)
+
+
+def has_already(request: Request, etag: str) -> bool:
+    """Whether the client has this state already."""
+    return _lists(request.headers.get("if-none-match", ""), etag, weakly=True)
 
 
 def require_match(request: Request, body: bytes) -> None:

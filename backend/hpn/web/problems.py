@@ -23,12 +23,15 @@ TITLES = {
     405: "Method not allowed",
     406: "Not acceptable",
     408: "The request took too long to arrive",
+    409: "In conflict with the present state",
     412: "Precondition failed",
     413: "The request is too large",
+    414: "The address is too long",
     415: "The content type is not supported",
     422: "The input has errors",
     429: "Too many requests",
     500: "Internal error",
+    501: "Not implemented",
     503: "Not available at the moment",
 }
 
