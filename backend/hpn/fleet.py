@@ -29,8 +29,9 @@ def select_fleet(applications: Sequence[Application], catalogue: Catalogue) -> l
         for chunk in _chunks(indices, applications):
             members = [applications[index] for index in chunk]
             evaluation = evaluate(Duty(members), gears, catalogue)
+            ranking = rank(evaluation)
             for place, index in enumerate(chunk):
-                results[index] = Selection(applications[index], catalogue, evaluation, rank(evaluation, place), place)
+                results[index] = Selection(applications[index], catalogue, evaluation, ranking, place)
     return [result for result in results if result is not None]
 
 

@@ -5,6 +5,7 @@ as they are. A factor below 1 is what a rejected gear needs; all factors below 1
 """
 
 from dataclasses import dataclass
+from functools import reduce
 
 import numpy as np
 from numpy.typing import NDArray
@@ -49,29 +50,26 @@ class Reserve:
 
 def reserve_of(evaluation: Evaluation) -> Reserve:
     """Reserves of every application on every gear of an evaluation."""
-    factors = {driver: _factor(evaluation, powers) for driver, powers in MOVES.items()}
-    return Reserve(**factors, emergency_stop_torque_Nm=_emergency_stop_torque(evaluation))
-
-
-def _factor(evaluation: Evaluation, powers: dict[str, float]) -> FloatArray | None:
-    """Smallest (u / utilisation)^(1 / power) over the checks that a driver moves."""
-    case = evaluation.case
-    rows = [(index, powers[c.code]) for index, c in enumerate(evaluation.checks) if c.code in powers]
-    if not rows or (case.catalogue.efficiency and "motor_peak_torque" in powers and _follows_a_curve(evaluation)):
-        return None
-    indices = [index for index, _ in rows]
-    used = evaluation.utilisation[indices]
     with np.errstate(divide="ignore", over="ignore"):  # unlimited
-        room = case.duty.reserve_utilisation / used
-        for row, (_, power) in enumerate(rows):
-            if power != 1.0:
-                room[row] = room[row] ** (1 / power)
-    absent = evaluation.status[indices] == ABSENT
-    return np.asarray(np.where(absent, np.inf, room).min(axis=0))
+        room = evaluation.case.duty.reserve_utilisation / evaluation.utilisation
+        if len(evaluation.case.duty.applications) > 1:
+            room[evaluation.status == ABSENT] = np.inf
+        rooms = {check.code: room[index] for index, check in enumerate(evaluation.checks)}
+        torque = None if _follows_a_curve(evaluation) else _factor(rooms, MOVES["torque"])
+        speed, load = _factor(rooms, MOVES["speed"]), _factor(rooms, MOVES["load"])
+    return Reserve(torque, speed, load, _emergency_stop_torque(evaluation))
+
+
+def _factor(rooms: dict[str, FloatArray], powers: dict[str, float]) -> FloatArray | None:
+    """Smallest (u / utilisation)^(1 / power) over the checks that a driver moves; None where it moves none."""
+    factors = [rooms[code] if p == 1.0 else rooms[code] ** (1 / p) for code, p in powers.items() if code in rooms]
+    return reduce(np.minimum, factors) if factors else None
 
 
 def _follows_a_curve(evaluation: Evaluation) -> bool:
     """Whether a motor torque depends on an efficiency curve, which no closed form follows."""
+    if not evaluation.case.catalogue.efficiency:
+        return False
     asks = any(check.code.startswith("motor_") and check.code != "motor_speed" for check in evaluation.checks)
     return asks and any(a.requirements.efficiency is None for a in evaluation.case.duty.applications)
 
@@ -87,9 +85,11 @@ def _emergency_stop_torque(evaluation: Evaluation) -> FloatArray | None:
         return None
     duty, g = case.duty, case.gears.columns
     u = duty.reserve_utilisation
+    by_torque = u * g.momentary_peak_torque_Nm
     count = duty.column(lambda a: a.emergency_stop.count if a.emergency_stop else None)
+    if np.isnan(count).all():
+        return np.asarray(by_torque)
     with np.errstate(over="ignore"):  # a reserve next to 0 leaves no stop above T_R
         needed = np.maximum(np.ceil(count / u * (1 - 1e-12)), 1.0)
     by_count = np.maximum(g.repeated_peak_torque_Nm, g.repeated_peak_torque_Nm * (8.5 - np.log10(needed)) / 1.5)
-    by_torque = u * g.momentary_peak_torque_Nm
     return np.asarray(np.where(np.isnan(count), by_torque, np.minimum(by_torque, by_count)))

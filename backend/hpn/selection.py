@@ -1,5 +1,6 @@
 """From an application and the catalogue to a ranked list of candidates, each with its checks and a reason."""
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from operator import itemgetter
@@ -14,7 +15,7 @@ from hpn import ENGINE_VERSION
 from hpn.application import Application, InputError
 from hpn.bearing import L50_PER_L10
 from hpn.catalogue import Catalogue, GearList
-from hpn.checks import ABSENT, FAIL, NOT_RATED, STATUS, Evaluation, evaluate
+from hpn.checks import ABSENT, FAIL, NOT_RATED, PASS, STATUS, Evaluation, evaluate
 from hpn.duty import Duty
 from hpn.explanations import EXPLANATIONS
 from hpn.notices import Notice, notices_of
@@ -29,50 +30,52 @@ FloatArray = NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True)
 class Ranking:
-    """Verdict on G gears for one application, in catalogue order."""
+    """Verdicts on G gears for N applications in catalogue order, shape (N, G), and the order from best to last."""
 
     status: NDArray[np.int8]
     utilisation: FloatArray
     governing: NDArray[np.intp]
     order: NDArray[np.intp]
 
-    @property
-    def best(self) -> int | None:
-        """Index of the selected gear, or None where none is suitable."""
-        return int(self.order[0]) if self.status[self.order[0]] == SUITABLE else None
 
-
-def rank(evaluation: Evaluation, index: int) -> Ranking:
-    """Rank the gears for application `index`.
+def rank(evaluation: Evaluation) -> Ranking:
+    """Rank the gears for every application of an evaluation.
 
     Suitable gears come first by `rank_by`, then unsuitable ones by ascending utilisation, then unrated ones; ties fall
-    to weight, utilisation, life and ratio, and last to the order of the catalogue.
+    to weight, utilisation, life and ratio, and last to the order of the catalogue. What is not published comes last.
     """
-    case, status = evaluation.case, evaluation.status[:, index]
-    utilisation = evaluation.utilisation[:, index]
+    case, status = evaluation.case, evaluation.status
     failed = status == FAIL
-    counts = (evaluation.load_checks[:, 0] & (status != ABSENT)) | failed
-    score = np.where(counts & (status != NOT_RATED), utilisation, -np.inf)
-    governing = score.argmax(axis=0)
-    verdict = np.where(
-        failed.any(axis=0), UNSUITABLE, np.where((status == NOT_RATED).any(axis=0), UNRATED, SUITABLE)
-    ).astype(np.int8)
-    overall = np.where(verdict == UNRATED, np.nan, score.max(axis=0))
-    g, life = case.gears.columns, case.life_L10_h[index]
-    key = {
-        "weight": g.weight_kg,
-        "utilisation": overall,
-        "length": g.length_max_mm,
-        "motor_torque": case.motor_peak_torque_Nm[index],
-        "life": -life,
-        "stiffness": -g.torsional_stiffness_Nm_per_rad,
-    }[case.duty.applications[index].rank_by]
-    first = np.where(verdict == SUITABLE, key, np.where(verdict == UNSUITABLE, overall, 0.0))
-    ties = np.array([g.ratio, -life, overall, g.weight_kg, first])
-    ties[:, verdict == UNRATED] = 0.0
-    ties[np.isnan(ties)] = np.inf  # not published comes last
-    order = np.lexsort((*ties, verdict))
-    return Ranking(verdict, overall, governing, order)
+    counts = failed | (evaluation.load_checks & (status == PASS))
+    score = np.where(counts, evaluation.utilisation, -np.inf)
+    unknown = np.logical_or.reduce(status == NOT_RATED) * np.int8(UNRATED)
+    verdict = np.where(np.logical_or.reduce(failed), np.int8(UNSUITABLE), unknown)
+    unrated = verdict == UNRATED
+    overall = np.where(unrated, np.nan, np.maximum.reduce(score))
+    g = case.gears.columns
+    keys = np.empty((6, *verdict.shape))  # the last key is the first to decide
+    keys[0], keys[1], keys[2], keys[3] = g.ratio, -case.life_L10_h, overall, g.weight_kg
+    keys[4] = np.where(verdict == SUITABLE, _rank_key(evaluation, overall), overall)
+    np.copyto(keys[4], np.arange(verdict.shape[1]), where=unrated)
+    keys[5] = verdict
+    return Ranking(verdict, overall, score.argmax(axis=0), np.lexsort(keys))
+
+
+def _rank_key(evaluation: Evaluation, overall: FloatArray) -> FloatArray:
+    """What suitable gears are ordered by, ascending, shape (N, G) or (G,)."""
+    case = evaluation.case
+    g, wishes = case.gears.columns, [application.rank_by for application in case.duty.applications]
+    keys: dict[str, Callable[[], FloatArray]] = {
+        "weight": lambda: g.weight_kg,
+        "utilisation": lambda: overall,
+        "length": lambda: g.length_max_mm,
+        "motor_torque": lambda: case.motor_peak_torque_Nm,
+        "life": lambda: -case.life_L10_h,
+        "stiffness": lambda: -g.torsional_stiffness_Nm_per_rad,
+    }
+    if len(set(wishes)) == 1:
+        return keys[wishes[0]]()
+    return np.array([np.broadcast_to(keys[wish](), overall.shape)[row] for row, wish in enumerate(wishes)])
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,10 +94,15 @@ class Selection:
         return self.evaluation.case.gears
 
     @property
+    def best(self) -> int | None:
+        """Index of the selected gear among the candidates, or None where none is suitable."""
+        first = self.ranking.order.item(self.index, 0)
+        return first if self.ranking.status[self.index, first] == SUITABLE else None
+
+    @property
     def selected(self) -> str | None:
         """Designation of the selected gear, or None."""
-        best = self.ranking.best
-        return None if best is None else self.gears.rows[best].designation
+        return None if (best := self.best) is None else self.gears.rows[best].designation
 
     @property
     def notices(self) -> list[Notice]:
@@ -129,13 +137,13 @@ class Selection:
 
     def summary(self, link: str) -> dict[str, Any]:
         """One line of a batch: the selected gear, how close it is to its limits, and how many gears are suitable."""
-        best, ranking = self.ranking.best, self.ranking
+        best, ranking, index = self.best, self.ranking, self.index
         return {
             "status": "ok",
             "selected": self.selected,
-            "governing_check": None if best is None else self.evaluation.checks[ranking.governing[best]].code,
-            "utilisation": None if best is None else float(ranking.utilisation[best]),
-            "suitable": int((ranking.status == SUITABLE).sum()),
+            "governing_check": None if best is None else self.evaluation.checks[ranking.governing[index, best]].code,
+            "utilisation": None if best is None else ranking.utilisation.item(index, best),
+            "suitable": int((ranking.status[index] == SUITABLE).sum()),
             "link": link,
         }
 
@@ -144,16 +152,17 @@ class Selection:
         return tuple(check.code for check, present in zip(self.evaluation.checks, here, strict=True) if present)
 
     def _candidates(self) -> list[CandidateRow]:
-        ranking, index, order = self.ranking, self.index, self.ranking.order
+        evaluation, ranking, index = self.evaluation, self.ranking, self.index
+        order = ranking.order[index]
         in_order = itemgetter(*order.tolist(), -1)  # the last one twice, so that one gear gives a tuple as well
-        codes = [check.code for check in self.evaluation.checks]
-        verdicts, governing = ranking.status[order].tolist(), ranking.governing[order].tolist()
-        governing_codes = [codes[place] for place in governing]
-        failed = (self.evaluation.status[:, index] == FAIL).sum(axis=0)[order].tolist()
-        percent = np.round(100 * ranking.utilisation, 1)[order].tolist()
+        codes = [check.code for check in evaluation.checks]
+        verdicts = ranking.status[index][order].tolist()
+        governing = [codes[place] for place in ranking.governing[index][order].tolist()]
+        failed = np.add.reduce(evaluation.status[:, index] == FAIL)[order].tolist()
+        utilisation = ranking.utilisation[index][order]
         suitable = verdicts.count(SUITABLE)
-        empty = [None] * len(order)
         names, sizes, ratios, stages = (in_order(column) for column in self.gears.names)
+        *derived, torque, speed, load, stop = self._columns((*self._derived(), *self._reserve()), order)
         return list(
             map(
                 CandidateRow,
@@ -162,26 +171,26 @@ class Selection:
                 ratios,
                 stages,
                 [CANDIDATE_STATUS[verdict] for verdict in verdicts],
-                [*range(1, suitable + 1), *empty[suitable:]],
-                ranking.utilisation[order].tolist(),
-                [None if v == UNRATED else code for v, code in zip(verdicts, governing_codes, strict=True)],
-                map(_reason, verdicts, sizes, governing_codes, failed, percent),
-                *(self._column(values) for values in self._derived()),
-                map(ReserveRow, *(self._column(values) for values in self._reserve())),
-                self._checks(codes),
+                [*range(1, suitable + 1), *[None] * (len(order) - suitable)],
+                utilisation.tolist(),
+                [None if v == UNRATED else code for v, code in zip(verdicts, governing, strict=True)],
+                map(_reason, verdicts, sizes, governing, failed, np.round(100 * utilisation, 1).tolist()),
+                *derived,
+                map(ReserveRow, torque, speed, load, stop),
+                self._checks(codes, order),
             )
         )
 
-    def _checks(self, codes: list[str]) -> list[list[CheckRow]]:
+    def _checks(self, codes: list[str], order: NDArray[np.intp]) -> list[list[CheckRow]]:
         """Check rows of every candidate, best first."""
-        evaluation, index, order = self.evaluation, self.index, self.ranking.order
+        evaluation, index = self.evaluation, self.index
         table = np.empty((3, len(codes), len(order)))
         for place, (demand, limit) in enumerate(zip(evaluation.demand, evaluation.limit, strict=True)):
             table[0, place] = demand if demand.shape[0] == 1 or demand.ndim == 1 else demand[index]
             table[1, place] = limit if limit.shape[0] == 1 or limit.ndim == 1 else limit[index]
         table[2] = evaluation.utilisation[:, index]
-        states = evaluation.status[:, index][:, order].T.ravel().tolist()
-        numbers = table[:, :, order].transpose(0, 2, 1).reshape(3, -1).tolist()
+        states = evaluation.status[:, index].T[order].ravel().tolist()
+        numbers = table.transpose(0, 2, 1)[:, order].reshape(3, -1).tolist()
         rows = list(map(CheckRow, codes * len(order), *numbers, [STATUS[state] for state in states]))
         size = len(codes)
         lists = [rows[start : start + size] for start in range(0, len(rows), size)]
@@ -189,10 +198,11 @@ class Selection:
             lists = [[row for row in checks if row.status != STATUS[ABSENT]] for checks in lists]
         return lists
 
-    def _column(self, values: FloatArray | None) -> list[float] | list[None]:
-        """One quantity, shape (N, G), of every candidate, best first; None where the application has no such thing."""
-        order = self.ranking.order
-        return [None] * len(order) if values is None else values[self.index][order].tolist()
+    def _columns(self, quantities: Sequence[FloatArray | None], order: NDArray[np.intp]) -> list[list[Any]]:
+        """Quantities, shape (N, G) each, of every candidate, best first; None where there is no such thing."""
+        given = [values[self.index] for values in quantities if values is not None]
+        columns = iter(np.array(given)[:, order].tolist())
+        return [[None] * len(order) if values is None else next(columns) for values in quantities]
 
     def _reserve(self) -> tuple[FloatArray | None, ...]:
         """Reserves in the order of the fields of ReserveRow."""
@@ -222,7 +232,7 @@ def select(application: Application, catalogue: Catalogue) -> Selection:
     """
     gears = candidates_of(application, catalogue)
     evaluation = evaluate(Duty([application]), gears, catalogue)
-    return Selection(application, catalogue, evaluation, rank(evaluation, 0))
+    return Selection(application, catalogue, evaluation, rank(evaluation))
 
 
 def candidates_of(application: Application, catalogue: Catalogue) -> GearList:
