@@ -158,10 +158,10 @@ class Requirements(Model):
 class Application(Model):
     """One axis: its duty cycle, its loads, and what is required of the gear."""
 
-    duty_cycle: DutyCycle
-    emergency_stop: EmergencyStop | None = None
-    output_load: OutputLoad | None = None
-    requirements: Requirements = Field(default_factory=Requirements)
+    duty_cycle: DutyCycle = Field(description="Load phases and pause of the axis.")
+    emergency_stop: EmergencyStop | None = Field(None, description="Emergency stop, where there is one.")
+    output_load: OutputLoad | None = Field(None, description="Load on the output shaft and what its bearing must last.")
+    requirements: Requirements = Field(default_factory=Requirements, description="What is required of the gear.")
     application_area: ApplicationArea | None = Field(
         None, description="An area of use that needs the maker's risk assessment and approval (handbook 2.4)."
     )

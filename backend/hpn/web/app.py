@@ -2,10 +2,8 @@
 
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager, suppress
-from typing import Any
 
 from fastapi import FastAPI
-from pydantic.json_schema import models_json_schema
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from hpn import ENGINE_VERSION
@@ -17,6 +15,7 @@ from hpn.web import (
     embeds,
     exports,
     health,
+    openapi,
     pages,
     problems,
     schemas,
@@ -35,6 +34,9 @@ SECURITY_HEADERS = [
     (b"x-content-type-options", b"nosniff"),
     (b"referrer-policy", b"same-origin"),
 ]
+
+
+BODIES = (Application, schemas.Batch, selection_schemas.SaveRequest)
 
 
 def create_app(settings: Settings | None = None) -> FastAPI:
@@ -66,7 +68,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     app.router.routes.extend([*pages.routes, *selection_pages.routes])
     app.add_middleware(SecurityHeaders)
     document = app.openapi
-    app.openapi = lambda: _complete(document())  # type: ignore[method-assign]
+    app.openapi = lambda: openapi.complete(document(), *BODIES)  # type: ignore[method-assign]
     return app
 
 
@@ -77,15 +79,6 @@ async def _with_store(app: FastAPI) -> AsyncIterator[None]:
         await store.open()
     yield
     await store.close()
-
-
-def _complete(document: dict[str, Any]) -> dict[str, Any]:
-    """Add the schemas of request bodies and problems, which direct routes refer to by name."""
-    bodies = (Application, schemas.Batch, schemas.ProblemReply, selection_schemas.SaveRequest)
-    models: list[Any] = [(model, "validation") for model in bodies]
-    _, definitions = models_json_schema(models, ref_template="#/components/schemas/{model}")
-    document.setdefault("components", {}).setdefault("schemas", {}).update(definitions["$defs"])
-    return document
 
 
 class SecurityHeaders:
