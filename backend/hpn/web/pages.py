@@ -50,6 +50,8 @@ class Answer:
     address: str
     reply: Mapping[str, Any]
     selection: Selection
+    everything: Selection
+    """The same for every gear of the catalogue, whatever ratios and sizes were asked for."""
     chosen: Candidate
     gear: Gear
     lighter: Candidate | None
@@ -92,7 +94,8 @@ def _answer(application: Application, designation: str, catalogue: Catalogue) ->
     link = links.to_link(application)
     selection = select(application, catalogue)
     reply = selection.reply(link)
-    landscape = _landscape(application, catalogue, reply)
+    everything = _unrestricted(selection)
+    landscape = _by_designation(reply if everything is selection else everything.reply(""))
     gear = catalogue.find(designation or reply["selected"] or reply["candidates"][0]["designation"])
     assert gear is not None  # `answered` refuses what the catalogue lacks
     return Answer(
@@ -100,6 +103,7 @@ def _answer(application: Application, designation: str, catalogue: Catalogue) ->
         address=f"{link}&gear={gear.designation}" if designation else link,
         reply=reply,
         selection=selection,
+        everything=everything,
         chosen=landscape[gear.designation],
         gear=gear,
         lighter=_lighter_miss(reply, catalogue),
@@ -107,12 +111,17 @@ def _answer(application: Application, designation: str, catalogue: Catalogue) ->
     )
 
 
-def _landscape(application: Application, catalogue: Catalogue, reply: Mapping[str, Any]) -> dict[str, Candidate]:
-    """Every gear of the catalogue as a candidate, whatever ratios and sizes were asked for."""
+def _unrestricted(selection: Selection) -> Selection:
+    """The same application without its wishes for ratios and sizes."""
+    application = selection.application
     wishes = application.requirements
-    if wishes.ratios or wishes.sizes:
-        free = wishes.model_copy(update={"ratios": None, "sizes": None})
-        reply = select(application.model_copy(update={"requirements": free}), catalogue).reply("")
+    if not wishes.ratios and not wishes.sizes:
+        return selection
+    free = wishes.model_copy(update={"ratios": None, "sizes": None})
+    return select(application.model_copy(update={"requirements": free}), selection.catalogue)
+
+
+def _by_designation(reply: Mapping[str, Any]) -> dict[str, Candidate]:
     return {candidate["designation"]: candidate for candidate in reply["candidates"]}
 
 
