@@ -1,9 +1,13 @@
 """Sentences with numbers in them: an English template, and values that each reader sees in their own units."""
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import Literal, Union
 
 from hpn.units import SYMBOLS
+
+Rounding = Literal["nearest", "down", "up"]
 
 
 def N_(text: str) -> str:
@@ -13,23 +17,43 @@ def N_(text: str) -> str:
 
 @dataclass(frozen=True, slots=True)
 class Quantity:
-    """A number with the suffix of its unit, rounded for reading where it is shown."""
+    """A number with the suffix of its unit, rounded for reading where it is shown; a blank unit is a pure number.
+
+    A bound that somebody will follow is rounded towards the safe side, in whatever unit it is shown.
+    """
 
     value: float
     unit: str
     digits: int = 3
+    rounding: Rounding = "nearest"
 
     def __str__(self) -> str:
         """English, in the unit of the wire."""
-        return f"{self.value:.{self.digits}g} {SYMBOLS[self.unit]}"
+        return f"{rounded(self.value, self.digits, self.rounding)} {SYMBOLS.get(self.unit, '')}".rstrip()
 
 
-Value = Quantity | str | int
+def rounded(value: float, digits: int, rounding: Rounding = "nearest") -> str:
+    """A number to so many significant digits; a bound never passes over to the wrong side by its rounding."""
+    text = f"{value:.{digits}g}"
+    if rounding == "nearest" or not math.isfinite(value):
+        return text
+    # What is off by an error of floating point alone is exact: 107 stays 107, up and down.
+    beyond = float(text) > value * (1 + 1e-14) if rounding == "down" else float(text) < value * (1 - 1e-14)
+    if not beyond:
+        return text
+    step = 10.0 ** (math.floor(math.log10(abs(value))) - digits + 1)
+    return f"{float(text) + (step if rounding == 'up' else -step):.{digits}g}"
+
+
+Value = Union[Quantity, str, int, "Sentence"]
 
 
 @dataclass(frozen=True, slots=True)
 class Sentence:
-    """An English template (msgid for translation) and the values in it; `translated` names values that are msgids."""
+    """An English template (msgid for translation) and the values in it, among them other sentences.
+
+    `translated` names values that are msgids.
+    """
 
     template: str
     values: dict[str, Value] = field(default_factory=dict)
@@ -45,6 +69,8 @@ class Sentence:
         values = {
             name: show(value)
             if isinstance(value, Quantity)
+            else value.render(translate, show)
+            if isinstance(value, Sentence)
             else translate(str(value))
             if name in self.translated
             else str(value)
