@@ -1,4 +1,4 @@
-"""Command line: `hpn select application.json`, `hpn catalogue`, `hpn serve`."""
+"""Command line: `hpn select application.json`, `hpn catalogue`, `hpn serve`, `hpn key NAME`."""
 
 import argparse
 import asyncio
@@ -7,7 +7,6 @@ from contextlib import suppress
 from pathlib import Path
 
 import orjson
-import uvicorn
 from pydantic import ValidationError
 
 from hpn.application import Application, InputError
@@ -15,6 +14,8 @@ from hpn.catalogue import Catalogue, load_catalogue
 from hpn.selection import select
 from hpn.store import Store, StoreError, StoreUnavailableError
 from hpn.tables import CatalogueError
+from hpn.web import serving
+from hpn.web.keys import new_key
 from hpn.web.links import to_link
 from hpn.web.problems import Problem
 from hpn.web.settings import Settings
@@ -45,10 +46,13 @@ def _parser() -> argparse.ArgumentParser:
     listing.add_argument("designation", nargs="?")
     listing.set_defaults(run=_catalogue)
     serve = commands.add_parser("serve", help="serve page and API")
-    serve.add_argument("--host", default="127.0.0.1")
-    serve.add_argument("--port", type=int, default=8000)
-    serve.add_argument("--workers", type=int, default=1)
+    serve.add_argument("--host", help="address to listen on, instead of HPN_HOST")
+    serve.add_argument("--port", type=int, help="port to listen on, instead of HPN_PORT")
+    serve.add_argument("--workers", type=int, help="number of processes, instead of HPN_WORKERS")
     serve.set_defaults(run=_serve)
+    key = commands.add_parser("key", help="make an API key")
+    key.add_argument("name", help="who gets it; the logs name it")
+    key.set_defaults(run=_key)
     return parser
 
 
@@ -85,10 +89,21 @@ def _catalogue(options: argparse.Namespace) -> int:
 
 
 def _serve(options: argparse.Namespace) -> int:
-    settings = Settings()
+    given = {name: getattr(options, name) for name in ("host", "port", "workers")}
+    settings = Settings(**{name: value for name, value in given.items() if value is not None})
     load_catalogue(settings.catalogue_folder, settings.catalogue_supplement)  # a wrong one stops here, with its place
     asyncio.run(_migrate(Store(settings.database_url.get_secret_value(), seconds=settings.database_seconds)))
-    uvicorn.run("hpn.web.app:create_app", factory=True, host=options.host, port=options.port, workers=options.workers)
+    serving.run(settings)
+    return 0
+
+
+def _key(options: argparse.Namespace) -> int:
+    try:
+        key, pair = new_key(options.name)
+    except ValueError as error:
+        return _refuse(str(error))
+    print(f"key, to be given to {options.name}; it is shown only now:\n  {key}")
+    print(f"pair, to be added to HPN_API_KEYS:\n  {pair}")
     return 0
 
 

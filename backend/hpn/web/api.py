@@ -1,25 +1,24 @@
 """The REST interface, version 1: parse, one call into the domain, render."""
 
 import time
-from collections.abc import Sequence
 from typing import Annotated, Any
 
 import orjson
 from fastapi import APIRouter, Query
-from pydantic import ValidationError
 from starlette.concurrency import run_in_threadpool
+from starlette.datastructures import State
 from starlette.requests import Request
 from starlette.responses import Response
 from starlette.routing import Route
 
-from hpn.application import Application, BatchItem, InputError
+from hpn.application import Application
 from hpn.catalogue import Catalogue
 from hpn.envelopes import EnvelopeQuery, life_envelopes
-from hpn.fleet import select_fleet
 from hpn.gear import Gear
 from hpn.selection import select
-from hpn.web import schemas
-from hpn.web.bodies import read_json
+from hpn.web import schemas, streaming
+from hpn.web.batch import batch_items, batch_lines, line_evaluator
+from hpn.web.bodies import content_type_of, read_json
 from hpn.web.links import to_link
 from hpn.web.problems import Problem
 from hpn.web.settings import Settings
@@ -45,74 +44,56 @@ async def select_one(request: Request) -> Response:
     settings: Settings = request.app.state.settings
     body = await read_json(request, maximum_bytes=settings.maximum_body_bytes, seconds=settings.body_seconds)
     application = Application.model_validate_json(body)
-    if len(application.duty_cycle.phases) > LONG_CYCLE:
-        return schemas.JSONBytes(await run_in_threadpool(_reply, application, request.app.state.catalogue))
-    return schemas.JSONBytes(_reply(application, request.app.state.catalogue))
+    long = len(application.duty_cycle.phases) > LONG_CYCLE
+    reply = (
+        await run_in_threadpool(_reply, application, request.app.state)
+        if long
+        else _reply(application, request.app.state)
+    )
+    return schemas.JSONBytes(reply)
 
 
-def _reply(application: Application, catalogue: Catalogue) -> bytes:
-    return select(application, catalogue).json(to_link(application))
+def _reply(application: Application, state: State) -> bytes:
+    selection = select(application, state.catalogue)
+    state.metrics.selection(selection.selected)
+    return selection.json(to_link(application))
 
 
 @router.post(
     "/select/batch",
-    summary="Select gears for up to 10000 applications",
-    openapi_extra=schemas.request_body(schemas.Batch),
-    responses=schemas.replies(schemas.BatchReply, 400, 408, 413, 415, 422, 503),
+    summary="Select gears for many applications",
+    openapi_extra=schemas.batch_body(),
+    responses=schemas.batch_replies(400, 408, 413, 415, 422, 503),
     response_class=schemas.JSONBytes,
 )
 async def select_batch(request: Request) -> Response:
-    """One line per application; an item with errors never fails its neighbours."""
+    """One line per application; one with errors never fails its neighbours.
+
+    As JSON up to 10000 applications; as newline-delimited JSON any number, answered while they still arrive.
+    """
     settings: Settings = request.app.state.settings
+    if content_type_of(request) in streaming.MEDIA_TYPES:
+        return _stream(request.app.state)
     body = await read_json(request, maximum_bytes=settings.maximum_batch_body_bytes, seconds=settings.body_seconds)
-    items = _batch_items(body, settings.maximum_batch_count)
+    items = batch_items(body, settings.maximum_batch_count)
     results: list[dict[str, Any]] = []
     deadline = time.monotonic() + settings.batch_seconds
     for start in range(0, len(items), BATCH_SLICE):
         if time.monotonic() > deadline:
             raise Problem(503, f"the batch took longer than {settings.batch_seconds:g} s; send fewer items at once")
         results += await run_in_threadpool(batch_lines, items[start : start + BATCH_SLICE], request.app.state.catalogue)
+    request.app.state.metrics.batch(results)
     return schemas.JSONBytes(orjson.dumps({"results": results}))
 
 
-def _batch_items(body: bytes, maximum: int) -> list[Any]:
-    try:
-        batch = orjson.loads(body)
-    except orjson.JSONDecodeError as error:
-        raise Problem(400, f"the body is not JSON: {error}") from None
-    if not isinstance(batch, dict) or not isinstance(batch.get("applications"), list) or len(batch) != 1:
-        raise Problem(
-            422, 'the body must be {"applications": [ … ]}', [(("applications",), "must be a list, and the only field")]
-        )
-    items: list[Any] = batch["applications"]
-    if len(items) > maximum:
-        raise Problem(
-            413,
-            f"at most {maximum} applications at once",
-            [(("applications",), f"has {len(items)} items, at most {maximum}")],
-        )
-    return items
-
-
-def batch_lines(items: Sequence[Any], catalogue: Catalogue) -> list[dict[str, Any]]:
-    """Result lines of batch items, in their order; each item is validated on its own."""
-    lines: list[dict[str, Any]] = []
-    valid: list[tuple[int, BatchItem]] = []
-    for item in items:
-        reference = item.get("reference") if isinstance(item, dict) else None
-        line: dict[str, Any] = {"reference": reference if isinstance(reference, str) else None}
-        lines.append(line)
-        try:
-            valid.append((len(lines) - 1, BatchItem.model_validate(item)))
-        except ValidationError as error:
-            line |= {"status": "error", "problem": Problem.of(error).body()}
-    selections = select_fleet([item for _, item in valid], catalogue)
-    for (index, item), selection in zip(valid, selections, strict=True):
-        if isinstance(selection, InputError):
-            lines[index] |= {"status": "error", "problem": Problem.of(selection).body()}
-        else:
-            lines[index] |= selection.summary(to_link(item))
-    return lines
+def _stream(state: State) -> Response:
+    settings: Settings = state.settings
+    return streaming.LineStream(
+        line_evaluator(state.catalogue, state.metrics, settings.maximum_body_bytes),
+        maximum_line_bytes=settings.maximum_body_bytes,
+        maximum_spool_bytes=settings.maximum_spool_bytes,
+        seconds=settings.body_seconds,
+    )
 
 
 @router.get("/catalogue", response_model=schemas.CatalogueReply, responses=schemas.problems(406))

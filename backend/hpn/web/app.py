@@ -2,9 +2,13 @@
 
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager, suppress
+from typing import Any
 
 from fastapi import FastAPI
+from starlette.middleware.cors import CORSMiddleware
+from starlette.routing import Route
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
+from uvicorn.middleware.proxy_headers import ProxyHeadersMiddleware
 
 from hpn import ENGINE_VERSION
 from hpn.application import Application
@@ -23,6 +27,10 @@ from hpn.web import (
     selection_schemas,
     selections,
 )
+from hpn.web.access import Gate
+from hpn.web.logs import make_logger
+from hpn.web.metrics import CountedStore, Metrics
+from hpn.web.observation import Observation
 from hpn.web.settings import Settings
 
 SECURITY_HEADERS = [
@@ -35,6 +43,32 @@ SECURITY_HEADERS = [
     (b"referrer-policy", b"same-origin"),
 ]
 
+CORS: dict[str, Any] = {
+    "allow_methods": ["GET", "POST", "DELETE"],
+    "allow_headers": [
+        "Authorization",
+        "Content-Type",
+        "Idempotency-Key",
+        "If-Match",
+        "If-None-Match",
+        "Prefer",
+        "X-API-Key",
+        "X-Request-ID",
+    ],
+    "expose_headers": [
+        "ETag",
+        "Link",
+        "Location",
+        "Preference-Applied",
+        "RateLimit",
+        "RateLimit-Policy",
+        "Retry-After",
+        "X-Request-ID",
+    ],
+    "max_age": 3600,
+}
+"""What scripts of the permitted origins may send and read."""
+
 
 BODIES = (Application, schemas.Batch, selection_schemas.SaveRequest)
 
@@ -46,6 +80,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     A database that is out of reach keeps nothing from starting.
     """
     settings = settings or Settings()
+    metrics = Metrics()
     app = FastAPI(
         title="HPN Select",
         version=ENGINE_VERSION,
@@ -58,7 +93,10 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     )
     app.state.settings = settings
     app.state.catalogue = load_catalogue(settings.catalogue_folder, settings.catalogue_supplement)
-    app.state.store = Store(settings.database_url.get_secret_value(), seconds=settings.database_seconds)
+    app.state.metrics = metrics
+    app.state.store = CountedStore(
+        settings.database_url.get_secret_value(), seconds=settings.database_seconds, metrics=metrics
+    )
     problems.install(app)
     app.add_exception_handler(StoreUnavailableError, selections.unavailable)
     app.router.routes[:0] = (*api.FAST_ROUTES, *selections.FAST_ROUTES)
@@ -66,10 +104,22 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     for router in (health.router, api.router, selections.router, *files):
         app.include_router(router)
     app.router.routes.extend([*pages.routes, *selection_pages.routes])
-    app.add_middleware(SecurityHeaders)
+    _add_middleware(app, settings, metrics)
     document = app.openapi
     app.openapi = lambda: openapi.complete(document(), *BODIES)  # type: ignore[method-assign]
     return app
+
+
+def _add_middleware(app: FastAPI, settings: Settings, metrics: Metrics) -> None:
+    """Add what every request passes, from the inside out."""
+    app.add_middleware(Gate, settings=settings)
+    if settings.cors_origins:
+        app.add_middleware(CORSMiddleware, allow_origins=settings.cors_origins, **CORS)
+    templates = {route.endpoint: route.path for route in app.routes if isinstance(route, Route)}
+    app.add_middleware(Observation, logger=make_logger(settings.log_level), metrics=metrics, routes=templates)
+    app.add_middleware(SecurityHeaders)
+    if settings.trusted_proxies:
+        app.add_middleware(ProxyHeadersMiddleware, trusted_hosts=list(settings.trusted_proxies))
 
 
 @asynccontextmanager

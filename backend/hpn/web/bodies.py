@@ -29,9 +29,14 @@ async def read_body(request: Request, content_type: str, *, maximum_bytes: int, 
 
 def require_content_type(request: Request, expected: str) -> None:
     """Raise Problem 415 unless the request's content type is `expected`."""
-    given = request.headers.get("content-type", "").partition(";")[0].strip().lower()
+    given = content_type_of(request)
     if given != expected:
         raise Problem(415, f"send the body as {expected} (the Content-Type header says {given or 'nothing'})")
+
+
+def content_type_of(request: Request) -> str:
+    """Content type of the request's body, without its parameters."""
+    return request.headers.get("content-type", "").partition(";")[0].strip().lower()
 
 
 async def _read(request: Request, maximum_bytes: int) -> bytes:

@@ -2,8 +2,11 @@
 
 from fastapi import APIRouter
 from pydantic import BaseModel, Field
+from starlette.concurrency import run_in_threadpool
 from starlette.requests import Request
+from starlette.responses import PlainTextResponse, Response
 
+from hpn.web.metrics import CONTENT_TYPE
 from hpn.web.schemas import problems
 
 router = APIRouter()
@@ -35,3 +38,9 @@ async def readyz(request: Request) -> Readiness:
     catalogue = request.app.state.catalogue
     await request.app.state.store.check()
     return Readiness(status="ok", catalogue_version=catalogue.version, gears=len(catalogue.gears), store="ok")
+
+
+@router.get("/metrics", response_class=PlainTextResponse, responses=problems(401))
+async def metrics(request: Request) -> Response:
+    """What Prometheus counts: requests, selections by verdict, operations of the store."""
+    return Response(await run_in_threadpool(request.app.state.metrics.exposition), media_type=CONTENT_TYPE)

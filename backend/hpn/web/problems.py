@@ -111,7 +111,7 @@ def pointer(location: Location) -> str:
 
 
 def install(app: FastAPI) -> None:
-    """Answer every error of `app` as a problem."""
+    """Answer every refusal of `app` as a problem; what goes wrong is `observation.py`'s business."""
 
     async def refused(request: Request, error: Exception) -> Response:
         if isinstance(error, ValidationError | InputError):
@@ -125,9 +125,5 @@ def install(app: FastAPI) -> None:
         headers = dict(error.headers) if error.headers else None
         return Problem(error.status_code, text.get(error.status_code, error.detail), headers=headers).response()
 
-    async def failed(request: Request, error: Exception) -> Response:
-        return Problem(500, "the service made a mistake; it is in the log").response()
-
     for kind in (ValidationError, RequestValidationError, InputError, HTTPException):
         app.add_exception_handler(kind, refused)
-    app.add_exception_handler(Exception, failed)

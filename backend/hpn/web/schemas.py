@@ -250,6 +250,18 @@ def request_body(model: type[BaseModel]) -> dict[str, Any]:
     return {"requestBody": {"required": True, "content": {"application/json": {"schema": schema}}}}
 
 
+def batch_body() -> dict[str, Any]:
+    """OpenAPI entry of a batch's body, as one JSON object or as lines."""
+    body = request_body(Batch)
+    body["requestBody"]["content"]["application/x-ndjson"] = {
+        "schema": {
+            "type": "string",
+            "description": "One application with its reference per line, each a JSON object (schema BatchItem).",
+        }
+    }
+    return body
+
+
 def problems(*statuses: int) -> dict[int | str, dict[str, Any]]:
     """OpenAPI entries of the problems that a route can answer."""
     return {
@@ -264,6 +276,15 @@ def problems(*statuses: int) -> dict[int | str, dict[str, Any]]:
 def replies(model: type[BaseModel], *statuses: int) -> dict[int | str, dict[str, Any]]:
     """OpenAPI entries of a route's answer and of its problems."""
     return {200: {"model": model}, **problems(*statuses)}
+
+
+def batch_replies(*statuses: int) -> dict[int | str, dict[str, Any]]:
+    """OpenAPI entries of a batch's answer, which comes in the form of its body."""
+    entries = replies(BatchReply, *statuses)
+    entries[200]["content"] = {
+        "application/x-ndjson": {"schema": {"type": "string", "description": "One BatchLine as JSON per line."}}
+    }
+    return entries
 
 
 def header(name: str, description: str) -> dict[str, Any]:

@@ -150,6 +150,7 @@ async def save(state: State, application: Application, labels: Labels, key: str 
     asked = (application, labels, key, state.catalogue)
     long = len(application.duty_cycle.phases) > LONG_CYCLE
     draft = await run_in_threadpool(_draft, *asked) if long else _draft(*asked)
+    state.metrics.selection(draft.selected)
     try:
         id: str = await state.store.save(draft)
     except KeyReusedError as error:

@@ -1,11 +1,37 @@
 """Every setting of the service, by environment variable `HPN_…`; the README's table lists them."""
 
 from pathlib import Path
+from typing import Annotated, Literal
 
-from pydantic import Field, SecretStr
-from pydantic_settings import BaseSettings, SettingsConfigDict
+import limits
+from pydantic import AfterValidator, BeforeValidator, Field, SecretStr
+from pydantic_settings import BaseSettings, NoDecode, SettingsConfigDict
 
 from hpn.catalogue import HANDBOOK_FOLDER
+from hpn.web.keys import ApiKey
+
+Group = Literal["calculator", "batch", "writing", "listing", "deleting", "reading", "metrics"]
+"""Kinds of requests that keys and rate limits tell apart; `access.py` says which request belongs to which."""
+
+
+def _split(text: object) -> object:
+    return text.replace(",", " ").split() if isinstance(text, str) else text
+
+
+def _keys(words: object) -> object:
+    return (
+        [ApiKey.parse(word) if isinstance(word, str) else word for word in words] if isinstance(words, list) else words
+    )
+
+
+def _rate(text: str) -> str:
+    if text != "off":
+        limits.parse(text)
+    return text
+
+
+Words = Annotated[tuple[str, ...], NoDecode, BeforeValidator(_split)]
+Rate = Annotated[str, AfterValidator(_rate)]
 
 
 class Settings(BaseSettings):
@@ -28,3 +54,33 @@ class Settings(BaseSettings):
     maximum_batch_count: int = Field(10_000, gt=0, le=10_000, description="Most applications in one batch request.")
     body_seconds: float = Field(30.0, gt=0, description="Longest time for a request's body to arrive.")
     batch_seconds: float = Field(60.0, gt=0, description="Longest computing time of one batch request.")
+    maximum_spool_bytes: int = Field(
+        2_000_000_000,
+        gt=0,
+        description="Most bytes of results that one streamed batch keeps in a temporary file for a client that sends "
+        "without reading.",
+    )
+    host: str = Field("127.0.0.1", description="Address that `hpn serve` listens on.")
+    port: int = Field(8000, ge=0, le=65535, description="Port that `hpn serve` listens on.")
+    workers: int = Field(1, ge=1, le=64, description="Processes that `hpn serve` starts.")
+    maximum_connections: int = Field(1000, gt=0, description="Most connections of one process; more get a 503.")
+    shutdown_seconds: int = Field(30, ge=0, description="Longest time that running requests get to finish at the end.")
+    log_level: Literal["debug", "info", "warning", "error"] = Field("info", description="Least level that is logged.")
+    api_keys: Annotated[tuple[ApiKey, ...], NoDecode, BeforeValidator(_keys), BeforeValidator(_split)] = Field(
+        (), description="Keys as name:sha256 pairs, separated by commas or spaces; `hpn key NAME` makes one."
+    )
+    guarded: Annotated[frozenset[Group], NoDecode, BeforeValidator(_split)] = Field(
+        frozenset({"batch", "writing", "listing", "deleting"}),
+        description="What needs a key where there are keys, out of calculator, batch, writing, listing, deleting, "
+        "reading and metrics.",
+    )
+    calculator_rate: Rate = Field(
+        "120000/minute",
+        description="Most calculations, readings and pages per key or address and process; off for no limit.",
+    )
+    batch_rate: Rate = Field("1200/minute", description="Most batches per key or address and process, or off.")
+    writing_rate: Rate = Field("60000/minute", description="Most savings and deletions likewise, or off.")
+    trusted_proxies: Words = Field(
+        (), description="Addresses or networks of proxies whose X-Forwarded-For and X-Forwarded-Proto count."
+    )
+    cors_origins: Words = Field((), description="Origins whose scripts may use the API, such as https://plm.example.")

@@ -1,0 +1,75 @@
+"""Structured logs: one JSON object per line, with the request's id, and nothing of what the request asked."""
+
+import logging
+import re
+import secrets
+import sys
+from collections.abc import Iterable
+from typing import Any
+
+import orjson
+import structlog
+from structlog.typing import EventDict, FilteringBoundLogger
+
+LEVELS = {"debug": logging.DEBUG, "info": logging.INFO, "warning": logging.WARNING, "error": logging.ERROR}
+REQUEST_ID = re.compile(rb"[A-Za-z0-9._-]{1,64}")
+
+SHARED: list[Any] = [
+    structlog.contextvars.merge_contextvars,
+    structlog.processors.add_log_level,
+    structlog.processors.TimeStamper(fmt="iso", utc=True),
+    structlog.processors.format_exc_info,
+]
+
+
+class Lines:
+    """Writes whole lines to standard output, wherever that leads at the time."""
+
+    def msg(self, line: bytes) -> None:
+        """Write one line."""
+        sys.stdout.buffer.write(line + b"\n")
+        sys.stdout.buffer.flush()
+
+    debug = info = warning = error = critical = exception = msg
+
+
+def make_logger(level: str) -> FilteringBoundLogger:
+    """The service's own logger."""
+    logger: FilteringBoundLogger = structlog.wrap_logger(
+        Lines(),
+        processors=[*SHARED, _json],
+        wrapper_class=structlog.make_filtering_bound_logger(LEVELS[level]),
+        cache_logger_on_first_use=True,
+    )
+    return logger
+
+
+def configure(level: str) -> None:
+    """Write what libraries log (server, database, store) in the same form. For a process that serves, once."""
+    handler = logging.StreamHandler(sys.stdout)
+    handler.setFormatter(
+        structlog.stdlib.ProcessorFormatter(
+            foreign_pre_chain=[*SHARED[:3], structlog.stdlib.add_logger_name],
+            processors=[
+                structlog.stdlib.ProcessorFormatter.remove_processors_meta,
+                structlog.processors.format_exc_info,
+                lambda *arguments: _json(*arguments).decode(),
+            ],
+        )
+    )
+    root = logging.getLogger()
+    root.handlers[:] = [handler]
+    root.setLevel(LEVELS[level])
+    logging.getLogger("alembic").setLevel(logging.WARNING)
+
+
+def _json(logger: Any, method: str, event: EventDict) -> bytes:
+    return orjson.dumps(event, default=str)
+
+
+def request_id(headers: Iterable[tuple[bytes, bytes]]) -> bytes:
+    """Id that the caller has given, where it is well-formed, else a new one."""
+    for name, value in headers:
+        if name == b"x-request-id" and REQUEST_ID.fullmatch(value):
+            return value
+    return secrets.token_hex(16).encode()

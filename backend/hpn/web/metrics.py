@@ -1,0 +1,135 @@
+"""Prometheus metrics: requests, selections by verdict, operations of the store.
+
+With several workers each writes its counts to files in one folder, and whichever is asked adds all of them up: that is
+the client library's multiprocess mode, for which `serving.py` sets PROMETHEUS_MULTIPROC_DIR before it starts them.
+"""
+
+import os
+from collections.abc import AsyncIterator, Iterable
+from contextlib import asynccontextmanager
+from typing import Any
+
+from prometheus_client import CollectorRegistry, Counter, Histogram, ProcessCollector, generate_latest
+from prometheus_client.multiprocess import MultiProcessCollector
+
+from hpn.store import Draft, KeyReusedError, Page, SavedSelection, Store
+
+CONTENT_TYPE = "text/plain; version=0.0.4; charset=utf-8"
+FOLDER = "PROMETHEUS_MULTIPROC_DIR"
+METHODS = frozenset({"GET", "HEAD", "POST", "DELETE", "OPTIONS", "PUT", "PATCH"})
+BUCKETS = (0.0005, 0.001, 0.0025, 0.005, 0.01, 0.025, 0.05, 0.1, 0.25, 0.5, 1, 2.5, 5, 10, 30, 60)
+
+
+class Metrics:
+    """Counts of one process."""
+
+    def __init__(self) -> None:
+        self._registry = registry = CollectorRegistry()
+        if FOLDER not in os.environ:
+            ProcessCollector(registry=registry)
+        self._requests = Counter(
+            "hpn_http_requests", "Requests answered.", ("route", "method", "status"), registry=registry
+        )
+        self._seconds = Histogram(
+            "hpn_http_request_duration_seconds",
+            "Time from a request's head to the end of its answer.",
+            ("route", "method"),
+            buckets=BUCKETS,
+            registry=registry,
+        )
+        self._selections = Counter(
+            "hpn_selections",
+            "Applications evaluated: selected, none suitable, or refused.",
+            ("verdict",),
+            registry=registry,
+        )
+        self._store = Counter(
+            "hpn_store_operations",
+            "Operations of the store: ok or failed.",
+            ("operation", "outcome"),
+            registry=registry,
+        )
+        self._children: dict[tuple[str, ...], Any] = {}
+
+    def request(self, route: str, method: str, status: int, seconds: float) -> None:
+        """Count an answered request."""
+        method = method if method in METHODS else "other"
+        self._child(self._requests, route, method, str(status)).inc()
+        self._child(self._seconds, route, method).observe(seconds)
+
+    def selection(self, selected: str | None) -> None:
+        """Count an evaluated application."""
+        self._child(self._selections, "none" if selected is None else "selected").inc()
+
+    def batch(self, lines: Iterable[dict[str, Any]]) -> None:
+        """Count the lines of a batch."""
+        counts = {"selected": 0, "none": 0, "refused": 0}
+        for line in lines:
+            counts["refused" if line["status"] == "error" else "selected" if line["selected"] else "none"] += 1
+        for verdict, count in counts.items():
+            self._child(self._selections, verdict).inc(count)
+
+    def store_operation(self, name: str, outcome: str) -> None:
+        """Count an operation of the store."""
+        self._child(self._store, name, outcome).inc()
+
+    def exposition(self) -> bytes:
+        """All counts in Prometheus' text format, those of the other workers included."""
+        registry = self._registry
+        if FOLDER in os.environ:
+            registry = CollectorRegistry()
+            MultiProcessCollector(registry)  # type: ignore[no-untyped-call]
+        return generate_latest(registry)
+
+    def _child(self, metric: Counter | Histogram, *labels: str) -> Any:
+        """Child of a metric, found in a third of the time that `labels` takes."""
+        key = (metric._name, *labels)
+        child = self._children.get(key)
+        if child is None:
+            child = self._children[key] = metric.labels(*labels)
+        return child
+
+
+class CountedStore(Store):
+    """A store whose operations are counted."""
+
+    def __init__(self, address: str, *, seconds: float, metrics: Metrics) -> None:
+        super().__init__(address, seconds=seconds)
+        self._metrics = metrics
+
+    async def check(self) -> None:
+        """See Store."""
+        async with self._counted("check"):
+            await super().check()
+
+    async def save(self, draft: Draft) -> str:
+        """See Store."""
+        async with self._counted("save"):
+            return await super().save(draft)
+
+    async def find(self, id: str) -> SavedSelection | None:
+        """See Store."""
+        async with self._counted("find"):
+            return await super().find(id)
+
+    async def page(self, *, reference: str | None = None, cursor: str | None = None, limit: int = 50) -> Page:
+        """See Store."""
+        async with self._counted("page"):
+            return await super().page(reference=reference, cursor=cursor, limit=limit)
+
+    async def delete(self, id: str) -> bool:
+        """See Store."""
+        async with self._counted("delete"):
+            return await super().delete(id)
+
+    @asynccontextmanager
+    async def _counted(self, operation: str) -> AsyncIterator[None]:
+        try:
+            yield
+        except (KeyReusedError, ValueError):  # the caller's mistake
+            self._metrics.store_operation(operation, "refused")
+            raise
+        except BaseException:
+            self._metrics.store_operation(operation, "failed")
+            raise
+        self._metrics.store_operation(operation, "ok")

@@ -1,0 +1,74 @@
+"""What is seen of each request from outside: its id, one line in the log, its place in the metrics."""
+
+import time
+from collections.abc import Mapping
+from typing import Any
+
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
+from structlog.contextvars import bind_contextvars, unbind_contextvars
+from structlog.typing import FilteringBoundLogger
+
+from hpn.web.logs import request_id
+from hpn.web.metrics import Metrics
+from hpn.web.problems import Problem
+
+QUIET = frozenset({"/healthz", "/readyz", "/metrics"})
+"""Routes that are asked every few seconds; seen at level debug."""
+
+GONE = 499
+"""Status of a request whose caller left before the answer, as proxies count it."""
+
+
+class Observation:
+    """Gives each request an id, and counts and logs it. What goes wrong is logged once, and answered as a problem."""
+
+    def __init__(self, app: ASGIApp, logger: FilteringBoundLogger, metrics: Metrics, routes: Mapping[Any, str]) -> None:
+        self.app = app
+        self._logger = logger
+        self._metrics = metrics
+        self._routes = routes
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Pass the request on, and note what becomes of it."""
+        if scope["type"] != "http":
+            await self.app(scope, receive, send)
+            return
+        start, status, id = time.perf_counter(), 0, request_id(scope["headers"])
+        bind_contextvars(request_id=id.decode())
+
+        async def observed(message: Message) -> None:
+            nonlocal status
+            if message["type"] == "http.response.start":
+                status = message["status"]
+                message["headers"] = [*message.get("headers", ()), (b"x-request-id", id)]
+            await send(message)
+
+        try:
+            await self.app(scope, receive, observed)
+        except Exception:
+            self._logger.exception("error", route=self._route(scope), method=scope["method"])
+            # Of an answer that has begun only the end can be withheld.
+            if status == 0:
+                await Problem(500, "the service made a mistake; it is in the log").response()(scope, receive, observed)
+        finally:
+            self._note(scope, status or GONE, time.perf_counter() - start)
+            unbind_contextvars("request_id")
+
+    def _note(self, scope: Scope, status: int, seconds: float) -> None:
+        route, method = self._route(scope), scope["method"]
+        self._metrics.request(route, method, status, seconds)
+        client = scope.get("client")
+        (self._logger.debug if route in QUIET else self._logger.info)(
+            "request",
+            method=method,
+            route=route,
+            status=status,
+            duration_ms=round(1000 * seconds, 3),
+            client=client[0] if client else None,
+            key=scope.get("api_key"),
+        )
+
+    def _route(self, scope: Scope) -> str:
+        """Template of the route, never the address itself: it could hold what the caller asked."""
+        route = scope.get("route")
+        return route.path if route is not None else self._routes.get(scope.get("endpoint"), "none")

@@ -1,0 +1,51 @@
+"""Running the service: processes, limits of the server, logs, and an end that lets running requests finish."""
+
+import os
+import tempfile
+from typing import Any
+
+import uvicorn
+from fastapi import FastAPI
+
+from hpn.web import logs, metrics
+from hpn.web.app import create_app
+from hpn.web.settings import Settings
+
+WORKER_ANSWER_SECONDS = 30
+
+
+def served_app() -> FastAPI:
+    """The application in a process of its own, whose logs are all the service's."""
+    settings = Settings()
+    logs.configure(settings.log_level)
+    return create_app(settings)
+
+
+def options(settings: Settings) -> dict[str, Any]:
+    """Options of the server."""
+    return {
+        "factory": True,
+        "host": settings.host,
+        "port": settings.port,
+        "workers": settings.workers,
+        "http": "hpn.web.protocol:BoundedProtocol",
+        "ws": "none",
+        "log_config": None,
+        "access_log": False,
+        "proxy_headers": False,  # who is trusted is a setting, and nobody is by default
+        "server_header": False,
+        "limit_concurrency": settings.maximum_connections,
+        "timeout_graceful_shutdown": settings.shutdown_seconds,
+        "timeout_worker_healthcheck": WORKER_ANSWER_SECONDS,
+    }
+
+
+def run(settings: Settings) -> None:
+    """Serve until a signal says otherwise."""
+    logs.configure(settings.log_level)
+    if settings.workers == 1:
+        uvicorn.run("hpn.web.serving:served_app", **options(settings))
+        return
+    with tempfile.TemporaryDirectory(prefix="hpn-metrics-") as folder:
+        os.environ[metrics.FOLDER] = folder
+        uvicorn.run("hpn.web.serving:served_app", **options(settings))
