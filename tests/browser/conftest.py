@@ -1,5 +1,6 @@
 """A real server and a real Chromium, started once for all browser tests."""
 
+import os
 import shutil
 import socket
 import subprocess
@@ -25,10 +26,12 @@ def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
     with socket.socket() as listener:
         listener.bind(("127.0.0.1", 0))
         port = listener.getsockname()[1]
-    log = tmp_path_factory.mktemp("server") / "log"
+    folder = tmp_path_factory.mktemp("server")
+    log, database = folder / "log", f"sqlite:///{folder}/selections.sqlite3"
     command = [sys.executable, "-m", "uvicorn", "--factory", "hpn.web.app:create_app", "--port", str(port)]
     with log.open("w") as output:
-        process = subprocess.Popen(command, stdout=output, stderr=subprocess.STDOUT)
+        environment = {**os.environ, "HPN_DATABASE_URL": database}
+        process = subprocess.Popen(command, stdout=output, stderr=subprocess.STDOUT, env=environment)
     try:
         _wait_for(f"http://127.0.0.1:{port}/healthz", process, log)
         yield f"http://127.0.0.1:{port}"
