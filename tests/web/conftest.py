@@ -1,0 +1,31 @@
+"""One service for the tests of the REST interface, with a database of its own."""
+
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+from fastapi import FastAPI
+from starlette.testclient import TestClient
+
+from hpn.web.app import create_app
+from hpn.web.settings import Settings
+
+
+@pytest.fixture(scope="session")
+def service(tmp_path_factory: pytest.TempPathFactory) -> FastAPI:
+    """The application as shipped, on a database file of its own."""
+    file = tmp_path_factory.mktemp("service") / "selections.sqlite3"
+    return create_app(Settings(database_url=f"sqlite:///{file}"))
+
+
+@pytest.fixture(scope="session")
+def api(service: FastAPI) -> Iterator[TestClient]:
+    """A client that shows a mistake of the service as an answer 500, as its users would see it."""
+    with TestClient(service, raise_server_exceptions=False) as client:
+        yield client
+
+
+@pytest.fixture(scope="session")
+def document(service: FastAPI) -> dict[str, Any]:
+    """The OpenAPI document."""
+    return service.openapi()

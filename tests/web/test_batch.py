@@ -1,0 +1,170 @@
+"""`POST /api/v1/select/batch`: one line per item, and a bad item that hurts nobody."""
+
+from typing import Any
+
+import orjson
+import pytest
+from starlette.testclient import TestClient
+
+from hpn.web.app import create_app
+from hpn.web.settings import Settings
+from tests.build import Json, cycle, phase, suitable, worked_example
+
+PATH = "/api/v1/select/batch"
+GOOD = worked_example(requirements={"ratios": [5]})
+HEAVY = cycle(phase(9000, 100))
+
+
+def send(api: TestClient, *items: Any) -> list[dict[str, Any]]:
+    reply = api.post(PATH, json={"applications": list(items)})
+    assert reply.status_code == 200
+    results: list[dict[str, Any]] = reply.json()["results"]
+    return results
+
+
+def test_a_line_says_what_select_says(api: TestClient) -> None:
+    single = api.post("/api/v1/select", json=GOOD).json()
+    [line] = send(api, GOOD | {"reference": "axis-7"})
+
+    best = single["candidates"][0]
+    assert line == {
+        "reference": "axis-7",
+        "status": "ok",
+        "selected": "HPN-20A-5",
+        "governing_check": best["governing_check"],
+        "utilisation": best["utilisation"],
+        "suitable": len(suitable(single)),
+        "link": single["link"],
+    }
+
+
+def test_an_application_that_no_gear_fits_is_ok_with_nothing_selected(api: TestClient) -> None:
+    [line] = send(api, HEAVY)
+
+    assert line["reference"] is None
+    assert (line["status"], line["selected"], line["suitable"]) == ("ok", None, 0)
+    assert (line["governing_check"], line["utilisation"]) == (None, None)
+    assert line["link"].startswith("/?T=9000")
+
+
+def test_a_bad_item_never_fails_its_neighbours_and_results_keep_their_order(api: TestClient) -> None:
+    items: list[Any] = [
+        GOOD | {"reference": "first"},
+        {"reference": "no phases"},
+        GOOD | {"reference": "wrong ratio", "requirements": {"ratios": [6]}},
+        5,
+        None,
+        "text",
+        [],
+        GOOD | {"reference": 7},
+        GOOD | {"reference": "x" * 201},
+        GOOD | {"reference": "unknown field", "price": 1},
+        HEAVY | {"reference": "first"},
+        cycle(phase(1, 1), output_load={"radial_N": 1, "model": "digitised"}),
+        GOOD,
+    ]
+    lines = send(api, *items)
+
+    assert [line["status"] for line in lines] == ["ok", *["error"] * 9, "ok", "error", "ok"]
+    assert [line["reference"] for line in lines[:3]] == ["first", "no phases", "wrong ratio"]
+    pointers = [
+        [e["pointer"] for e in line["problem"].get("errors", ())] for line in lines if line["status"] == "error"
+    ]
+    assert pointers[0] == ["/duty_cycle"]
+    assert pointers[1] == ["/requirements/ratios/0"]
+    assert pointers[6] == ["/reference"]
+    assert pointers[7] == ["/reference"]
+    assert pointers[8] == ["/price"]
+    assert pointers[9] == ["/output_load/model"]
+    for line in lines:
+        if line["status"] == "error":
+            assert set(line) == {"reference", "status", "problem"}
+            assert line["problem"]["status"] == 422
+            assert line["problem"]["detail"]
+    assert lines[-1]["selected"] == "HPN-20A-5"
+
+
+def test_items_of_many_kinds_are_each_answered_as_if_alone(api: TestClient) -> None:
+    items: list[Json] = []
+    for k in range(40):
+        item = cycle(*[phase(5 + k, 100 + j, 0.5) for j in range(1 + k % 4)])
+        if k % 2:
+            item["emergency_stop"] = {"torque_Nm": 50 + k, "count": k}
+        if k % 3 == 0:
+            item["output_load"] = {"radial_N": 10 * k, "model": "iso281"}
+        if k % 5 == 0:
+            item["requirements"] = {"sizes": ["20A", "32A"], "life_h": 1000}
+        items.append(item)
+    lines = send(api, *items)
+
+    for item, line in zip(items, lines, strict=True):
+        single = api.post("/api/v1/select", json=item).json()
+        assert line["selected"] == single["selected"]
+        assert line["suitable"] == len(suitable(single))
+        assert line["link"] == single["link"]
+        if line["selected"]:
+            # padded sums may be taken in another order
+            assert line["utilisation"] == pytest.approx(single["candidates"][0]["utilisation"], rel=1e-13)
+
+
+def test_no_application_at_all_gives_no_results(api: TestClient) -> None:
+    assert send(api) == []
+
+
+@pytest.mark.parametrize(
+    "body",
+    [{}, [], 5, {"applications": {}}, {"applications": None}, {"applications": [], "more": 1}, {"items": []}],
+)
+def test_another_shape_is_refused_with_the_right_one(api: TestClient, body: Any) -> None:
+    reply = api.post(PATH, json=body)
+
+    assert reply.status_code == 422
+    assert reply.headers["content-type"] == "application/problem+json"
+    assert [error["pointer"] for error in reply.json()["errors"]] == ["/applications"]
+
+
+@pytest.mark.parametrize("content", [b"", b"{", b"\xff", b'{"applications": [NaN]}', b"[" * 100_000])
+def test_what_is_no_json_is_a_400(api: TestClient, content: bytes) -> None:
+    reply = api.post(PATH, content=content, headers={"content-type": "application/json"})
+
+    assert reply.status_code == 400
+    assert reply.headers["content-type"] == "application/problem+json"
+
+
+def test_numbers_that_are_too_large_for_json_readers_are_an_error_of_their_item(api: TestClient) -> None:
+    huge = b'{"duty_cycle": {"phases": [{"torque_Nm": ' + b"9" * 400 + b', "speed_rpm": 1, "duration_s": 1}]}}'
+    content = b'{"applications": [' + huge + b", " + orjson.dumps(GOOD) + b"]}"
+
+    reply = api.post(PATH, content=content, headers={"content-type": "application/json"})
+
+    assert reply.status_code in (200, 400)  # never a 500, never a wrong result
+    if reply.status_code == 200:
+        assert [line["status"] for line in reply.json()["results"]] == ["error", "ok"]
+
+
+def test_ten_thousand_applications_are_answered_and_one_more_is_refused(api: TestClient) -> None:
+    item = cycle(phase(10, 100), requirements={"ratios": [5], "sizes": ["14A"]})
+    lines = send(api, *[item] * 10_000)
+    assert len(lines) == 10_000
+    assert {line["selected"] for line in lines} == {"HPN-14A-5"}
+
+    reply = api.post(PATH, json={"applications": [item] * 10_001})
+    assert reply.status_code == 413
+    assert "10000" in reply.json()["detail"]
+
+
+def test_a_lower_count_can_be_set_and_a_higher_one_cannot() -> None:
+    client = TestClient(create_app(Settings(maximum_batch_count=2)))
+    assert client.post(PATH, json={"applications": [GOOD] * 2}).status_code == 200
+    assert client.post(PATH, json={"applications": [GOOD] * 3}).status_code == 413
+    with pytest.raises(ValueError, match="maximum_batch_count"):
+        Settings(maximum_batch_count=10_001)
+
+
+def test_a_batch_that_takes_too_long_is_a_503_that_says_what_to_do() -> None:
+    client = TestClient(create_app(Settings(batch_seconds=1e-9)))
+
+    reply = client.post(PATH, json={"applications": [GOOD]})
+
+    assert reply.status_code == 503
+    assert "fewer" in reply.json()["detail"]

@@ -1,0 +1,190 @@
+"""The OpenAPI document: valid, complete, and true to what the service answers."""
+
+import copy
+from collections.abc import Iterator
+from typing import Any
+
+import jsonschema_rs
+import pytest
+from schemathesis.specs.openapi.definitions import OPENAPI_31
+from starlette.testclient import TestClient
+
+from hpn.units import suffix_of, symbol_of
+from tests.build import cycle, phase, worked_example
+
+Json = dict[str, Any]
+FULL = worked_example(
+    output_load={"radial_N": 500, "axial_N": 200, "load_coefficient": 1.2, "life_h": 20000, "model": "iso281"},
+    requirements={
+        "life_h": 20000,
+        "backlash_arcmin": 7,
+        "torsional_stiffness_Nm_per_rad": 5000,
+        "weight_kg": 5,
+        "length_mm": 200,
+        "ambient_temperature_degC": 25,
+        "utilisation": 1.0,
+        "efficiency": 0.95,
+        "motor": {"maximum_speed_rpm": 4000, "peak_torque_Nm": 20, "rated_torque_Nm": 8},
+    },
+    application_area="vacuum",
+) | {"emergency_stop": {"torque_Nm": 200, "count": 1000}}
+
+
+def validator(document: Json, name: str, *, closed: bool = True) -> jsonschema_rs.Validator:
+    """Validator of one schema of the document; `closed` refuses fields that the schema doesn't know."""
+    components = copy.deepcopy(document["components"])
+    if closed:
+        for schema in components["schemas"].values():
+            if "properties" in schema:
+                schema.setdefault("additionalProperties", False)
+    return jsonschema_rs.validator_for(
+        {
+            "$schema": "https://json-schema.org/draft/2020-12/schema",
+            "$ref": f"#/components/schemas/{name}",
+            "components": components,
+        }
+    )
+
+
+def fields(document: Json) -> Iterator[tuple[str, str, Json]]:
+    """Every field of every schema: schema, name, entry."""
+    for schema_name, schema in document["components"]["schemas"].items():
+        for name, entry in schema.get("properties", {}).items():
+            yield schema_name, name, entry
+
+
+def test_the_document_is_valid_openapi_3_1_and_served_as_it_is(api: TestClient, document: Json) -> None:
+    served = api.get("/openapi.json").json()
+
+    assert served == document
+    assert served["openapi"].startswith("3.1")
+    jsonschema_rs.validator_for(OPENAPI_31).validate(served)
+
+
+def test_every_schema_of_the_document_is_valid_json_schema_and_every_reference_leads_somewhere(document: Json) -> None:
+    for name, schema in document["components"]["schemas"].items():
+        jsonschema_rs.meta.validate({"$schema": "https://json-schema.org/draft/2020-12/schema", **schema})
+        assert validator(document, name) is not None  # compiling it follows its references
+
+
+def test_every_endpoint_of_the_contract_is_in_the_document(document: Json) -> None:
+    expected = {
+        ("/api/v1/select", "post"),
+        ("/api/v1/select/batch", "post"),
+        ("/api/v1/catalogue", "get"),
+        ("/api/v1/catalogue/{designation}", "get"),
+        ("/api/v1/bearing-envelopes/{size}", "get"),
+        ("/healthz", "get"),
+        ("/readyz", "get"),
+    }
+    there = {(path, method) for path, operations in document["paths"].items() for method in operations}
+
+    assert expected <= there
+
+
+def test_every_operation_has_a_summary_a_description_and_its_refusals_as_problems(document: Json) -> None:
+    for path, operations in document["paths"].items():
+        for method, operation in operations.items():
+            assert operation.get("summary"), (path, method)
+            assert operation.get("description"), (path, method)
+            for status, response in operation["responses"].items():
+                if status.startswith(("4", "5")):
+                    assert list(response["content"]) == ["application/problem+json"], (path, method, status)
+                    schema = response["content"]["application/problem+json"]["schema"]
+                    assert schema == {"$ref": "#/components/schemas/ProblemReply"}
+
+
+def test_every_field_has_a_description(document: Json) -> None:
+    missing = [f"{schema}.{name}" for schema, name, entry in fields(document) if not entry.get("description")]
+
+    assert missing == []
+
+
+def test_every_field_whose_name_ends_in_a_unit_says_so_and_no_other(document: Json) -> None:
+    for schema, name, entry in fields(document):
+        if suffix_of(name):
+            assert entry.get("x-unit") == symbol_of(name), f"{schema}.{name}"
+        else:
+            assert "x-unit" not in entry, f"{schema}.{name}"
+
+
+def test_every_parameter_of_a_query_or_path_has_a_description_and_its_unit(document: Json) -> None:
+    for path, operations in document["paths"].items():
+        for operation in operations.values():
+            for parameter in operation.get("parameters", ()):
+                where = (path, parameter["name"])
+                assert parameter.get("description") or parameter["schema"].get("description"), where
+                if suffix_of(parameter["name"]):
+                    unit = parameter.get("x-unit") or parameter["schema"].get("x-unit")
+                    assert unit == symbol_of(parameter["name"]), where
+
+
+def test_every_example_of_a_field_is_valid_by_its_own_schema(document: Json) -> None:
+    count = 0
+    for schema, name, entry in fields(document):
+        for example in entry.get("examples", ()):
+            count += 1
+            found = validator(document, schema)
+            others = document["components"]["schemas"][schema].get("required", [])
+            if others in ([], [name]):
+                found.validate({name: example})
+            else:
+                property_schema = {**entry, "components": document["components"]}
+                jsonschema_rs.validator_for(property_schema).validate(example)
+    assert count > 20
+
+
+@pytest.mark.parametrize("path", ["/api/v1/select", "/api/v1/select/batch"])
+def test_a_whole_request_stands_as_an_example_and_is_accepted(api: TestClient, document: Json, path: str) -> None:
+    content = document["paths"][path]["post"]["requestBody"]["content"]["application/json"]
+    examples = [entry["value"] for entry in content.get("examples", {}).values()]
+    if "example" in content:
+        examples.append(content["example"])
+
+    assert examples, f"{path} has no example of a request"
+    for example in examples:
+        assert api.post(path, json=example).status_code == 200
+
+
+APPLICATIONS: dict[str, Json] = {
+    "full": FULL,
+    "least": {"duty_cycle": {"phases": [phase(1, 1)]}},
+    "no gear fits": cycle(phase(9000, 100), emergency_stop={"torque_Nm": 20000, "count": 3}),
+    "no torque": cycle(phase(0, 100, radial_N=0.0), requirements={"life_h": 5}),
+}
+
+
+@pytest.mark.parametrize("case", APPLICATIONS, ids=list(APPLICATIONS))
+def test_request_and_reply_of_select_are_valid_by_the_schemas_to_the_last_field(
+    api: TestClient, document: Json, case: str
+) -> None:
+    validator(document, "Application").validate(APPLICATIONS[case])
+
+    reply = api.post("/api/v1/select", json=APPLICATIONS[case])
+
+    assert reply.status_code == 200
+    validator(document, "SelectReply").validate(reply.json())
+
+
+def test_other_replies_are_valid_by_their_schemas_to_the_last_field(api: TestClient, document: Json) -> None:
+    batch = {"applications": [FULL | {"reference": "a"}, {}, cycle(phase(9000, 1))]}
+    validator(document, "BatchReply").validate(api.post("/api/v1/select/batch", json=batch).json())
+    validator(document, "CatalogueReply").validate(api.get("/api/v1/catalogue").json())
+    validator(document, "GearReply").validate(api.get("/api/v1/catalogue/HPN-40A-5").json())
+    validator(document, "EnvelopeReply").validate(api.get("/api/v1/bearing-envelopes/20A").json())
+    validator(document, "Health").validate(api.get("/healthz").json())
+    validator(document, "Readiness").validate(api.get("/readyz").json())
+    for problem in (
+        api.get("/api/v1/catalogue/HPN-1A-1"),
+        api.get("/nowhere"),
+        api.post("/api/v1/select", json={}),
+        api.get("/api/v1/bearing-envelopes/40A"),
+    ):
+        validator(document, "ProblemReply").validate(problem.json())
+
+
+def test_a_required_field_is_never_null_and_an_optional_reply_field_may_be_left_out(document: Json) -> None:
+    """What a client generator relies on: `required` lists what is always there."""
+    for name in ("SelectReply", "CandidateReply", "CheckReply", "GearReply", "EnvelopeReply"):
+        schema = document["components"]["schemas"][name]
+        assert set(schema["required"]) == set(schema["properties"]), name
