@@ -99,12 +99,17 @@ def _route(file: File) -> None:
 
     shared: dict[str, Any] = {"response_class": Response, "summary": file.summary}
     saved_files.add_api_route(
-        f"/{file.name}", of_saved, **shared, responses=content | schemas.problems(404, 409, 422, 503)
+        f"/{file.name}",
+        of_saved,
+        **shared,
+        description=f"{file.summary} of a saved selection, as it was saved.",
+        responses=content | schemas.problems(404, 409, 422, 503),
     )
     posted_files.add_api_route(
         f"/{file.name}",
         of_posted,
         methods=["POST"],
+        description=f"{file.summary} of an application, computed now; nothing is saved.",
         openapi_extra=schemas.request_body(Application),
         responses=content | schemas.problems(400, 408, 413, 415, 422, 503),
         **shared,
