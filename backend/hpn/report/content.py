@@ -227,8 +227,8 @@ DERIVED = (
     ("maximum_input_speed_rpm", "n_in,max", N_("Largest input speed"), "17.6"),
     ("momentary_peak_count", "N_k,max", N_("Allowed emergency stops"), "17.9"),
     ("life_L10_h", "L_10", N_("Gear life"), "17.10"),
-    ("bearing_life_L50_h", "L_b,50", N_("Bearing life, half reach it"), ""),
-    ("bearing_life_L10_h", "L_b,10", N_("Bearing life, nine of ten reach it"), ""),
+    ("bearing_life_L50_h", "L_b,50", N_("Bearing life L50"), ""),
+    ("bearing_life_L10_h", "L_b,10", N_("Bearing life L10"), ""),
     ("motor_peak_torque_Nm", "T_max/(i·η)", N_("Peak motor torque needed"), ""),
     ("motor_rated_torque_Nm", "T_rms/(i·η)", N_("RMS motor torque needed"), ""),
 )

@@ -116,7 +116,7 @@ GEAR_TERMS = (
     Term(
         "L_b50",
         "L_b,50",
-        N_("Bearing life, half reach it"),
+        N_("Bearing life L50"),
         "h",
         'IF({P_m}="","",IFERROR(bearing_life*bearing_speed/n_out_av/{P_m}^3,"[unlimited]"))',
     ),

@@ -16,7 +16,7 @@ LANGUAGES = ("en", "de")
 _DATES = {"en": "en_GB", "de": "de_DE"}
 GROUP = "\N{NARROW NO-BREAK SPACE}"
 _SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
-_QUANTITY = re.compile(r"-?[0-9]+(\.[0-9]+)?(e[+-]?[0-9]+)?( \S{1,8})?")
+_QUANTITY = re.compile(r"-?[0-9]+(\.[0-9]+)?(e[+-]?[0-9]+)? \S{1,8}")
 
 
 @dataclass(frozen=True)

@@ -18,13 +18,15 @@ from hpn.web.links import MAXIMUM_QUERY_BYTES, to_link
 from hpn.web.problems import Problem
 
 SAVED = "/selections/"
+LONGEST_PATH = 2000
+"""Length of a link from which a page doesn't carry it a second time."""
 
 router = APIRouter()
 
 
 @dataclass(frozen=True, slots=True)
 class Preview:
-    """Title and description of a result, and where its oEmbed stands."""
+    """Title and description of a result, and where its oEmbed stands; empty for a very long link."""
 
     title: str
     description: str
@@ -57,7 +59,7 @@ def preview(reply: Mapping[str, Any], path: str, title: str | None = None) -> Pr
     if best["governing_check"]:
         check = reply["check_definitions"][best["governing_check"]]["title"]
         parts.append(f"{best['designation']}: {check} at {english.percent(best['utilisation'])} of its limit")
-    address = "/oembed?" + urlencode({"url": path, "format": "json"})
+    address = "/oembed?" + urlencode({"url": path, "format": "json"}) if len(path) <= LONGEST_PATH else ""
     return Preview(f"{title}: {verdict}" if title else f"HPN Select: {verdict}", ", ".join(parts) + ".", address)
 
 

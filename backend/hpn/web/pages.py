@@ -19,6 +19,7 @@ from hpn.gear import Gear
 from hpn.notices import AREAS
 from hpn.selection import Selection, select
 from hpn.web import assets, display, links, reader
+from hpn.web.embeds import preview
 from hpn.web.links import Form, Message, Problem
 
 TEMPLATES = Path(__file__).parents[3] / "frontend/templates"
@@ -217,6 +218,7 @@ def _templates(static: assets.Assets, translations: NullTranslations) -> Environ
         "CHECK_NAMES": display.CHECK_NAMES,
         "FIELD_NAMES": display.FIELD_NAMES,
         "LIMIT_FIGURES": display.LIMIT_FIGURES,
+        "preview_of": preview,
     }
     return templates
 
