@@ -1,0 +1,69 @@
+"""`make screenshots`: the main states of the page as pictures for the docs, from the real service in real Chromium."""
+
+import shutil
+from dataclasses import dataclass
+from pathlib import Path
+
+from playwright.sync_api import Browser, sync_playwright
+
+from tests.benchmarks.server import serving
+
+FOLDER = Path("docs/screenshots")
+BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
+OFFLINE = "--host-resolver-rules=MAP * ~NOTFOUND , EXCLUDE 127.0.0.1 , EXCLUDE localhost"
+EXAMPLE = "/?T=40&n=250&t=0.3&T=32&n=500&t=3&T=20&n=250&t=0.4&tp=4&Tk=200&i=5"
+LOADED = EXAMPLE + "&FR=500&FA=200&fw=1.2"
+
+
+@dataclass(frozen=True)
+class State:
+    """One state of the page, and how it is looked at."""
+
+    name: str
+    path: str
+    width: int = 1440
+    dark: bool = False
+    whole: bool = False
+    language: str = "en"
+
+
+STATES = (
+    State("answer-1440-light", "/"),
+    State("answer-1440-dark", "/", dark=True),
+    State("answer-390-light", "/", width=390),
+    State("german-1440-light", "/", language="de"),
+    State("bearing-1440-light", LOADED, whole=True),
+    State("bearing-390-dark", LOADED, width=390, dark=True, whole=True),
+    State("rejected-1440-light", EXAMPLE + "&gear=HPN-14A-5"),
+    State("errors-1440-light", "/?T=40&n=fast&t=0,3"),
+    State("gear-1440-light", "/catalogue/HPN-20A-5"),
+    State("unrated-1440-light", "/catalogue/HPN-40A-5"),
+)
+
+
+def main() -> None:
+    """Take every picture anew."""
+    FOLDER.mkdir(parents=True, exist_ok=True)
+    path = next(filter(None, map(shutil.which, BROWSERS)), None)
+    with serving("hpn.web.app:create_app") as server, sync_playwright() as driver:
+        browser = driver.chromium.launch(executable_path=path, args=[OFFLINE])
+        for state in STATES:
+            _take(browser, f"http://127.0.0.1:{server.port}", state)
+        browser.close()
+
+
+def _take(browser: Browser, address: str, state: State) -> None:
+    context = browser.new_context(
+        viewport={"width": state.width, "height": 844 if state.width < 600 else 900},
+        color_scheme="dark" if state.dark else "light",
+        locale=state.language,
+        reduced_motion="reduce",
+    )
+    page = context.new_page()
+    page.goto(address + state.path, wait_until="networkidle")
+    page.screenshot(path=FOLDER / f"{state.name}.png", full_page=state.whole)
+    context.close()
+
+
+if __name__ == "__main__":
+    main()
