@@ -1,7 +1,7 @@
 """Sentences with numbers in them: an English template, and values that each reader sees in their own units."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Literal, Union
 
@@ -56,7 +56,7 @@ class Sentence:
     """
 
     template: str
-    values: dict[str, Value] = field(default_factory=dict)
+    values: Mapping[str, Value] = field(default_factory=dict)
     translated: tuple[str, ...] = ()
 
     @property
