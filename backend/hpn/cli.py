@@ -40,7 +40,9 @@ def _parser() -> argparse.ArgumentParser:
     commands = parser.add_subparsers(required=True, metavar="command")
     one = commands.add_parser("select", help="select a gear for an application file (JSON; - for standard input)")
     one.add_argument("file")
-    one.add_argument("--json", action="store_true", help="print the whole reply of the API instead of a table")
+    form = one.add_mutually_exclusive_group()
+    form.add_argument("--json", action="store_true", help="print the whole reply of the API; the default into a pipe")
+    form.add_argument("--table", action="store_true", help="print a table; the default on a terminal")
     one.set_defaults(run=_select)
     listing = commands.add_parser("catalogue", help="list the gears, or show one")
     listing.add_argument("designation", nargs="?")
@@ -61,7 +63,7 @@ def _select(options: argparse.Namespace) -> int:
     application = Application.model_validate_json(content)
     selection = select(application, _loaded())
     link = to_link(application)
-    if options.json:
+    if options.json or not (options.table or sys.stdout.isatty()):
         sys.stdout.write(selection.json(link).decode() + "\n")
     else:
         reply = selection.reply(link)

@@ -26,7 +26,7 @@ def write(file: Path, application: Json) -> str:
 
 
 def test_select_prints_the_choice_every_candidate_and_the_notes(file: Path, capsys: Output) -> None:
-    code = main(["select", write(file, worked_example())])
+    code = main(["select", write(file, worked_example()), "--table"])
 
     out = capsys.readouterr().out
     assert code == 0
@@ -37,7 +37,7 @@ def test_select_prints_the_choice_every_candidate_and_the_notes(file: Path, caps
 
 
 def test_select_json_prints_the_reply_of_the_api(file: Path, capsys: Output) -> None:
-    code = main(["select", write(file, worked_example(requirements={"ratios": [5]})), "--json"])
+    code = main(["select", write(file, worked_example(requirements={"ratios": [5]}))])
 
     reply = json.loads(capsys.readouterr().out)
     assert code == 0
@@ -49,12 +49,12 @@ def test_select_reads_standard_input(monkeypatch: pytest.MonkeyPatch, capsys: Ou
     content = io.BytesIO(orjson.dumps(worked_example()))
     monkeypatch.setattr("sys.stdin", SimpleNamespace(buffer=content))
 
-    assert main(["select", "-"]) == 0
+    assert main(["select", "-", "--table"]) == 0
     assert capsys.readouterr().out.startswith("selected: HPN-20A-4")
 
 
 def test_no_suitable_gear_is_exit_code_1_with_the_whole_answer(file: Path, capsys: Output) -> None:
-    assert main(["select", write(file, TOO_MUCH)]) == 1
+    assert main(["select", write(file, TOO_MUCH), "--table"]) == 1
     assert capsys.readouterr().out.startswith("selected: none is suitable")
     assert main(["select", str(file), "--json"]) == 1
     assert json.loads(capsys.readouterr().out)["selected"] is None
