@@ -63,7 +63,7 @@ def preview(reply: Mapping[str, Any], path: str, title: str | None = None) -> Pr
     return Preview(f"{title}: {verdict}" if title else f"HPN Select: {verdict}", ", ".join(parts) + ".", address)
 
 
-@router.get("/oembed", response_model=OEmbedReply, responses=schemas.problems(404, 422, 501))
+@router.get("/oembed", response_model=OEmbedReply, responses=schemas.problems(404, 406, 422))
 async def oembed(
     request: Request,
     url: Annotated[str, Query(max_length=MAXIMUM_QUERY_BYTES, description="Address of a selection of this service.")],
@@ -73,7 +73,7 @@ async def oembed(
 ) -> OEmbedReply:
     """What a link to a selection unfolds into (oEmbed 1.0)."""
     if format != "json":
-        raise Problem(501, "oEmbed is given as JSON only")
+        raise Problem(406, "oEmbed is given as JSON only")
     found = await _preview_of(request, url)
     return OEmbedReply(
         type="link",

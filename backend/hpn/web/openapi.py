@@ -37,6 +37,7 @@ def complete(document: dict[str, Any], *bodies: type[BaseModel]) -> dict[str, An
     for operation in _operations(document):
         _give_examples(operation)
         _say_problems(operation)
+        _mend_replies(operation)
         for parameter in operation.get("parameters", ()):
             _describe(parameter)
     for name in FRAMEWORK:
@@ -62,6 +63,14 @@ def _say_problems(operation: dict[str, Any]) -> None:
     schema = response.get("content", {}).get("application/json", {}).get("schema", {})
     if schema.get("$ref", "").endswith("/HTTPValidationError"):
         operation["responses"] |= {str(status): entry for status, entry in schemas.problems(422).items()}
+
+
+def _mend_replies(operation: dict[str, Any]) -> None:
+    """FastAPI takes a reply that it doesn't encode itself for a text, and says so beside the model."""
+    for response in operation["responses"].values():
+        for content in response.get("content", {}).values():
+            if "$ref" in content.get("schema", {}):
+                content["schema"].pop("type", None)
 
 
 def _describe(parameter: dict[str, Any]) -> None:

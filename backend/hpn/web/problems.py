@@ -31,7 +31,6 @@ TITLES = {
     422: "The input has errors",
     429: "Too many requests",
     500: "Internal error",
-    501: "Not implemented",
     503: "Not available at the moment",
 }
 
@@ -102,6 +101,7 @@ def plain_message(kind: str, message: str) -> str:
         "finite_number": "must be a finite number",
         "float_type": "must be a JSON number, such as 9.3",
         "int_type": "must be a JSON integer, such as 5",
+        "tuple_type": "must be a list",
     }.get(kind) or message.removeprefix("Value error, ").replace("Input should", "must").replace("Tuple should", "must")
 
 
