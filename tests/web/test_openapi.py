@@ -183,6 +183,16 @@ def test_other_replies_are_valid_by_their_schemas_to_the_last_field(api: TestCli
         validator(document, "ProblemReply").validate(problem.json())
 
 
+def test_every_reply_is_described_by_its_model_alone(document: Json) -> None:
+    """A `type` beside the reference to an object would make a schema that nothing satisfies."""
+    for path, operations in document["paths"].items():
+        for method, operation in operations.items():
+            for status, response in operation["responses"].items():
+                for content in response.get("content", {}).values():
+                    if "$ref" in content["schema"]:
+                        assert set(content["schema"]) == {"$ref"}, (path, method, status)
+
+
 def test_a_required_field_is_never_null_and_an_optional_reply_field_may_be_left_out(document: Json) -> None:
     """What a client generator relies on: `required` lists what is always there."""
     for name in ("SelectReply", "CandidateReply", "CheckReply", "GearReply", "EnvelopeReply"):

@@ -144,6 +144,12 @@ def test_a_mistake_is_a_problem_that_points_at_it(api: TestClient, application: 
     assert list(refused(api, application)) == [pointer]
 
 
+def test_a_list_that_is_none_is_told_so_in_the_words_of_json(api: TestClient) -> None:
+    found = refused(api, cycle(phase(1, 1), requirements={"ratios": 5}))
+
+    assert found == {"/requirements/ratios": "must be a list"}
+
+
 def test_several_mistakes_are_reported_at_once(api: TestClient) -> None:
     found = refused(api, cycle(phase(1, 1) | {"torque_Nm": None}, phase(1, 1, -1), rank_by="price"))
 

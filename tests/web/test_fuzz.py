@@ -1,0 +1,62 @@
+"""Thousands of requests that the OpenAPI document allows, and as many that it forbids: never a server error."""
+
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+import schemathesis
+from fastapi import FastAPI
+from hypothesis import HealthCheck, given, settings
+from hypothesis.errors import Unsatisfiable
+from schemathesis import Case, GenerationMode
+from schemathesis.checks import not_a_server_error
+from schemathesis.specs.openapi.checks import (
+    content_type_conformance,
+    response_schema_conformance,
+    status_code_conformance,
+)
+from starlette.testclient import TestClient
+
+from hpn.web.app import create_app
+from hpn.web.settings import Settings
+
+CHECKS = [not_a_server_error, status_code_conformance, content_type_conformance, response_schema_conformance]
+LABELS = [
+    f"{method.upper()} {path}" for path, operations in create_app().openapi()["paths"].items() for method in operations
+]
+MUCH = ("/select", "/select/batch", "/bearing-envelopes/{size}", "/selections")
+SLOW = ("pdf", "xlsx", "aasx")
+
+
+def examples(label: str) -> int:
+    """Several thousand in all, most of them where an application is read; few where each makes a whole file."""
+    return 15 if label.endswith(SLOW) else 350 if label.endswith(MUCH) else 100
+
+
+@pytest.fixture(scope="module")
+def schema(tmp_path_factory: pytest.TempPathFactory) -> Iterator[schemathesis.BaseSchema]:
+    """The document of a service with a database of its own, which runs while its operations are tried."""
+    file = tmp_path_factory.mktemp("fuzz") / "selections.sqlite3"
+    app: FastAPI = create_app(Settings(database_url=f"sqlite:///{file}", log_level="error"))
+    with TestClient(app):
+        yield schemathesis.openapi.from_asgi("/openapi.json", app)
+
+
+@pytest.mark.parametrize("mode", list(GenerationMode), ids=lambda mode: mode.value)
+@pytest.mark.parametrize("label", LABELS)
+def test_no_request_brings_the_service_to_a_mistake(
+    schema: schemathesis.BaseSchema, label: str, mode: GenerationMode
+) -> None:
+    operation = schema.find_operation_by_label(label)
+    assert operation is not None
+
+    @settings(max_examples=examples(label), deadline=None, suppress_health_check=list(HealthCheck))
+    @given(operation.as_strategy(generation_mode=mode))
+    def try_out(case: Case[Any]) -> None:
+        case.call_and_validate(checks=CHECKS)
+
+    try:
+        try_out()
+    except Unsatisfiable:
+        assert mode is GenerationMode.NEGATIVE
+        pytest.skip("there is nothing in this request that the document could forbid")
