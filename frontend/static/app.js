@@ -9,12 +9,13 @@ const contentOf = (form) => new URLSearchParams(new FormData(form)).toString();
 document.addEventListener("htmx:config:request", (event) => {
   const { ctx } = event.detail;
   if (ctx.sourceElement.id !== "application") return;
-  if (ctx.sourceEvent.type === "input" && unfinishedRow()) {
+  if (ctx.sourceEvent.type === "input" && unfinishedRow() && !presses.length) {
     ctx.sourceElement.dataset.waiting = "";
     event.preventDefault();
     return;
   }
   delete ctx.sourceElement.dataset.waiting;
+  carryPresses(ctx);
   ctx.asked = contentOf(ctx.sourceElement);
 });
 
@@ -26,10 +27,70 @@ document.addEventListener("htmx:before:swap", (event) => {
   else mirrorIntoAttributes(formOf());
 });
 
+document.addEventListener("htmx:after:swap", (event) => {
+  const { ctx } = event.detail;
+  if (ctx.asked === undefined) return;
+  // What somebody has typed into hides what the server wrote, after an undo for instance.
+  for (const area of formOf().querySelectorAll("textarea")) {
+    if (area.value !== area.defaultValue) area.value = area.defaultValue;
+  }
+  if (ctx.presses) presses.splice(0, ctx.presses);
+  ctx.refocus?.();
+});
+
+// --- Row edits that are under way while somebody types on -------------------------------------------------------------
+
+const presses = []; // row edits that are not answered yet, each as the rows stand after those before it
+
+// The row at which a row stands after an edit, or null where the edit removes it.
+function after(press, row, rows) {
+  const [name, number] = press.split(":");
+  const at = number - 1;
+  if (name === "remove") return row === at ? null : row - (row > at);
+  if (name !== "up" && name !== "down") return row;
+  const to = Math.min(Math.max(at + (name === "down" ? 1 : -1), 0), rows - 1);
+  return row === at ? to : row === to ? at : row;
+}
+
+const placeAfterPresses = (row, rows) => presses.reduce((at, press) => (at === null ? null : after(press, at, rows)), row);
+
+// A later request takes along the row edits of the one that it replaces, so that neither they nor the typing are lost.
+function carryPresses(ctx) {
+  const rows = document.querySelectorAll("#duty tbody tr").length;
+  const { submitter, body } = ctx.request;
+  const own = submitter?.name === "do" ? submitter.value : null;
+  if (!own && !presses.length) return;
+  body.delete("do");
+  if (own) {
+    const [name, number] = own.split(":");
+    const row = number === undefined ? undefined : placeAfterPresses(number - 1, rows);
+    if (row !== null) presses.push(row === undefined ? name : `${name}:${row + 1}`);
+  }
+  for (const press of presses) body.append("do", press);
+  ctx.presses = presses.length;
+  if (!own) keepPlace(ctx, rows);
+}
+
+// Who types on stays in the field, wherever its row goes.
+function keepPlace(ctx, rows) {
+  const field = document.activeElement;
+  const [name, number] = field.closest("#duty tbody tr") ? field.id.split("-") : [];
+  if (!name) return;
+  const row = placeAfterPresses(Number(number), rows);
+  if (row === null) return;
+  const range = [field.selectionStart, field.selectionEnd];
+  ctx.refocus = () => {
+    const place = document.getElementById(`${name}-${row}`);
+    place?.focus();
+    place?.setSelectionRange?.(...range);
+  };
+}
+
 // The morph compares attributes, while typing changes properties: make the two agree first.
 function mirrorIntoAttributes(form) {
   for (const field of form.elements) {
     if (field.type === "checkbox") field.toggleAttribute("checked", field.checked);
+    else if (field.tagName === "TEXTAREA") field.textContent = field.value;
     else if (field.type === "text" || field.type === "hidden") field.setAttribute("value", field.value);
     else if (field.tagName === "SELECT") {
       for (const option of field.options) option.toggleAttribute("selected", option.selected);

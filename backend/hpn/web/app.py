@@ -19,13 +19,16 @@ from hpn.web import (
     embeds,
     exports,
     health,
+    long_cycles,
     openapi,
     pages,
+    paste,
     problems,
     schemas,
     selection_pages,
     selection_schemas,
     selections,
+    transfer,
 )
 from hpn.web.access import Gate
 from hpn.web.logs import make_logger
@@ -103,7 +106,8 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     files = (exports.saved_files, exports.posted_files, exports.linked_files, embeds.router)
     for router in (health.router, api.router, selections.router, *files):
         app.include_router(router)
-    app.router.routes.extend([*pages.routes, *selection_pages.routes])
+    for part in (pages, long_cycles, paste, transfer, selection_pages):
+        app.router.routes.extend(part.routes)
     _add_middleware(app, settings, metrics)
     document = app.openapi
     app.openapi = lambda: openapi.complete(document(), *BODIES)  # type: ignore[method-assign]

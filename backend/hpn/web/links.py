@@ -70,7 +70,10 @@ SYMBOLS = (
 """Everything but the phases, in the order in which a canonical link gives them."""
 
 PAGE_NAMES = ("gear", "do")
-"""Parameters of the page alone: the candidate looked at, and the button that edits the rows without script."""
+"""Parameters of the page alone: the candidate looked at, and the buttons that edit the rows, one after the other."""
+
+ROWS_IN_TABLE = 100
+"""A longer duty cycle is edited as text: a field for each of its figures would weigh megabytes."""
 
 _PHASE_BY_NAME = {symbol.name: symbol for symbol in PHASE_SYMBOLS}
 _PHASE_BY_LEAF = {symbol.path[0]: symbol for symbol in PHASE_SYMBOLS}
@@ -134,6 +137,17 @@ class Form:
     focus: str | None = None
     problems: tuple[Problem, ...] = ()
     application: Application | None = None
+    typed: str | None = None
+
+    @property
+    def long(self) -> bool:
+        """Whether the duty cycle is edited as text instead of in a table."""
+        return len(self.rows) > ROWS_IN_TABLE
+
+    @property
+    def text(self) -> str:
+        """The duty cycle as text, one phase per line: as typed, if it was."""
+        return "\n".join("\t".join(row.values()) for row in self.rows) if self.typed is None else self.typed
 
     @property
     def empty(self) -> bool:
@@ -239,6 +253,7 @@ class _Given:
         self.scalars: dict[str, list[str]] = {}
         self.lists: dict[str, list[str]] = {}
         self.page: dict[str, str] = {}
+        self.presses: list[str] = []
         self.unknown: list[str] = []
         self.with_loads = False
 
@@ -246,6 +261,8 @@ class _Given:
         """Take one pair of the query."""
         if name in _PHASE_BY_NAME:
             self.columns.setdefault(name, []).append(text)
+        elif name == "do":
+            self.presses.append(text)
         elif name in PAGE_NAMES:
             self.page[name] = text
         elif name not in _BY_NAME:
@@ -254,7 +271,7 @@ class _Given:
             (self.lists if _BY_NAME[name].many else self.scalars).setdefault(name, []).append(text)
 
     def edited(self) -> tuple[list[dict[str, str]], str | None]:
-        """Rows of the duty table after the button that was pressed, and the element to go on from."""
+        """Rows of the duty table after the buttons that were pressed, and the element to go on from."""
         self.with_loads = any(name in self.columns for name in _LOADS)
         shown = [name for name in _PHASE_BY_NAME if name in _REQUIRED or self.with_loads]
         length = max((len(texts) for texts in self.columns.values()), default=0)
@@ -262,11 +279,13 @@ class _Given:
             {name: texts[k] if k < len(texts := self.columns.get(name, [])) else "" for name in shown}
             for k in range(min(length, MAXIMUM_PHASES + 1))
         ]
-        focus = self._press(rows)
+        focus = None
+        for press in self.presses[:50]:
+            focus = self._press(press, rows)
         return rows or [dict.fromkeys(shown, "")], focus
 
-    def _press(self, rows: list[dict[str, str]]) -> str | None:
-        do, _, number = self.page.get("do", "").partition(":")
+    def _press(self, press: str, rows: list[dict[str, str]]) -> str | None:
+        do, _, number = press.partition(":")
         k = int(number) - 1 if re.fullmatch(r"[0-9]{1,5}", number) else -1
         if do == "add":
             rows.append(dict.fromkeys(rows[0] if rows else _REQUIRED, ""))
@@ -298,7 +317,7 @@ class _Given:
             if len(texts) > 1:
                 listed = ", ".join(text.strip()[:20] for text in texts[:5])
                 yield Problem(name, None, Message(N_("takes one value, given were %(texts)s"), {"texts": listed}))
-        if self.columns and not self.page.get("do"):
+        if self.columns and not self.presses:
             yield from self._unequal()
 
     def _unequal(self) -> Iterable[Problem]:

@@ -19,6 +19,7 @@ from hpn.gear import Gear
 from hpn.notices import AREAS
 from hpn.selection import Selection, select
 from hpn.web import assets, display, links, reader
+from hpn.web.as_read import as_read
 from hpn.web.embeds import preview
 from hpn.web.links import Form, Message, Problem
 
@@ -58,14 +59,24 @@ class Answer:
     lighter: Candidate | None
     map: tuple[tuple[int, tuple[Cell | None, ...]], ...]
 
+    @property
+    def too_long(self) -> bool:
+        """Whether the address is more than servers and proxies let through."""
+        return len(self.address) > links.MAXIMUM_QUERY_BYTES
+
 
 def show(request: Request) -> Response:
     """The page of `/`, or only the part that changes with the input where htmx asks for it."""
     query = request.scope["query_string"]
     if len(query) > links.MAXIMUM_QUERY_BYTES:
         return _render(request, "too_long.html", 414, limit=links.MAXIMUM_QUERY_BYTES)
+    return respond(request, read_query(query))
+
+
+def respond(request: Request, form: Form) -> Response:
+    """The page of a form, or only the part that changes."""
     catalogue: Catalogue = request.app.state.catalogue
-    form, answer = answered(read_query(query), catalogue)
+    form, answer = answered(form, catalogue)
     status = 422 if form.problems else 200
     template = "_changes.html" if _wants_changes(request) else "page.html"
     return _render(request, template, status, form=form, answer=answer, catalogue=catalogue)
@@ -163,7 +174,8 @@ def _render(request: Request, template: str, status: int, **context: Any) -> Res
     response = HTMLResponse(content, status)
     response.headers["Vary"] = "HX-Request, HX-History-Restore-Request"
     if answer and _wants_changes(request):
-        response.headers["HX-Push-Url"] = answer.address
+        # What is too long for an address must not stand under somebody else's: reloading leads to where it came from.
+        response.headers["HX-Push-Url"] = "/paste" if answer.too_long else answer.address
     return response
 
 
@@ -204,6 +216,7 @@ def _templates(static: assets.Assets, translations: NullTranslations) -> Environ
     templates.install_gettext_translations(translations, newstyle=True)  # type: ignore[attr-defined]
     translate = translations.gettext
     templates.filters |= reader.FILTERS | {
+        "as_read": as_read,
         "percent": display.percent,
         "capped_percent": display.capped_percent,
         "symbols": display.symbols,

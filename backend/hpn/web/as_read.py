@@ -1,0 +1,18 @@
+"""Numbers of a pasted table as they were understood: every digit, and no mark that could be taken for the other one."""
+
+from jinja2 import pass_context
+from jinja2.runtime import Context
+
+from hpn.web.display import GROUP
+from hpn.web.reader import reader_of
+
+
+@pass_context
+def as_read(context: Context, number: str) -> str:
+    """A number in plain notation with the reader's decimal mark, thousands apart by a narrow blank: `1 234.5`."""
+    decimal = getattr(reader_of(context), "decimal", ".")
+    sign = "\N{MINUS SIGN}" if number.startswith("-") else ""
+    whole, point, fraction = number.lstrip("+-").partition(".")
+    if whole.isdigit():
+        whole = f"{int(whole):,}".replace(",", GROUP)
+    return sign + whole + point.replace(".", decimal) + fraction

@@ -1,0 +1,54 @@
+"""Forms that a browser posts, with or without files, within limits of size and time."""
+
+from email.parser import BytesParser
+from email.policy import HTTP
+from urllib.parse import parse_qsl
+
+from starlette.requests import Request
+
+from hpn.web.bodies import content_type_of, read_body
+from hpn.web.problems import Problem
+from hpn.web.settings import Settings
+
+FORM, MULTIPART = "application/x-www-form-urlencoded", "multipart/form-data"
+
+
+async def read_fields(request: Request) -> dict[str, str]:
+    """Fields of a posted form, the last of a name; files as text. Raises Problem as `read_body` does, 422 for a file
+    that is no text.
+    """
+    settings: Settings = request.app.state.settings
+    content_type = MULTIPART if content_type_of(request) == MULTIPART else FORM
+    body = await read_body(
+        request, content_type, maximum_bytes=settings.maximum_body_bytes, seconds=settings.body_seconds
+    )
+    if content_type == FORM:
+        return dict(parse_qsl(body.decode(errors="replace"), keep_blank_values=True))
+    return {name: decoded(content) for name, content in parts_of(request.headers["content-type"], body)}
+
+
+def parts_of(content_type: str, body: bytes) -> list[tuple[str, bytes]]:
+    """Name and content of each part of a multipart body; none where it isn't one."""
+    message = BytesParser(policy=HTTP).parsebytes(f"Content-Type: {content_type}\r\n\r\n".encode("latin-1") + body)
+    parts = []
+    for part in message.iter_parts() if message.is_multipart() else ():
+        name, content = part.get_param("name", header="content-disposition"), part.get_payload(decode=True)
+        if isinstance(name, str) and isinstance(content, bytes):
+            parts.append((name, content))
+    return parts
+
+
+def decoded(content: bytes) -> str:
+    """Text of a file: UTF-8, UTF-16 where it begins with its mark, else Windows-1252 as spreadsheets write CSV."""
+    if content.startswith((b"\xff\xfe", b"\xfe\xff")):
+        encodings = ["utf-16"]
+    elif b"\x00" in content:
+        encodings = []  # a workbook or a picture
+    else:
+        encodings = ["utf-8-sig", "cp1252"]
+    for encoding in encodings:
+        try:
+            return content.decode(encoding)
+        except UnicodeDecodeError:
+            continue
+    raise Problem(422, "the file is no text: save the sheet as CSV, or copy its cells")

@@ -1,0 +1,100 @@
+// Dialogs, pasting into the duty table, and the keys. Everything hangs on the document, because the body is replaced
+// when somebody goes back in history.
+
+const formOf = () => document.getElementById("application");
+const contentOf = (form) => new URLSearchParams(new FormData(form)).toString();
+const isText = (element) => element.matches("textarea, select, input:not([type=checkbox], [type=radio], [type=button], [type=submit])");
+
+// --- Dialogs ----------------------------------------------------------------------------------------------------------
+
+document.addEventListener("click", (event) => {
+  const opener = event.target.closest("[data-opens]");
+  const dialog = opener && document.getElementById(opener.dataset.opens);
+  if (!dialog) return;
+  event.preventDefault();
+  if (dialog.id === "paste") openPaste("");
+  else dialog.showModal();
+});
+
+function openPaste(text) {
+  const dialog = document.getElementById("paste");
+  const form = dialog.querySelector("form");
+  form.reset();
+  form.elements.text.value = text;
+  document.getElementById("paste-preview").replaceChildren();
+  dialog.showModal();
+  form.elements.text.focus();
+  if (text) form.requestSubmit();
+}
+
+// --- Pasting ----------------------------------------------------------------------------------------------------------
+
+// One cell pastes as ever; several open the dialog, where is seen what they are read as.
+const ofSeveralCells = (text) => /[\t\n;]|, |,.*,.*[.]/.test(text.trim());
+
+document.addEventListener("paste", (event) => {
+  if (!event.target.closest?.("#duty")) return;
+  const text = event.clipboardData.getData("text/plain");
+  if (!ofSeveralCells(text)) return;
+  event.preventDefault();
+  openPaste(text);
+});
+
+document.addEventListener("htmx:config:request", (event) => {
+  const { ctx } = event.detail;
+  if (ctx.sourceElement.id !== "paste-form") return;
+  const form = formOf();
+  if (!form) return; // the page of its own brings its link along
+  ctx.request.body.set("link", contentOf(form));
+  if (ctx.request.submitter?.name !== "take") return;
+  // What is taken becomes the form: the same swap as that of an edit.
+  ctx.target = form;
+  ctx.swap = "outerMorph";
+  ctx.asked = contentOf(form);
+});
+
+document.addEventListener("htmx:after:swap", (event) => {
+  const { ctx } = event.detail;
+  if (ctx?.sourceElement.id !== "paste-form") return;
+  if (ctx.request.submitter?.name === "take") {
+    document.getElementById("paste").close();
+    document.querySelector("#duty input, #phases")?.focus();
+  } else if (ctx.sourceEvent.type === "submit") {
+    document.querySelector("#paste-preview .take button")?.focus({ preventScroll: false });
+  }
+});
+
+// --- Keys -------------------------------------------------------------------------------------------------------------
+
+let cameFrom = null;
+
+const ROW_KEYS = { ArrowUp: "up", ArrowDown: "down", Delete: "remove" };
+
+function keyInForm(event) {
+  if (event.altKey && event.key === "Enter") return press("add");
+  const row = event.target.closest("#duty tbody tr");
+  const name = ROW_KEYS[event.key];
+  if (event.altKey && name && row) return press(`${name}-${row.id.split("-")[1]}`);
+  if (event.ctrlKey && event.key === "Enter") {
+    const result = document.getElementById("result");
+    cameFrom = event.target.id;
+    result.tabIndex = -1;
+    result.focus();
+    return true;
+  }
+  return false;
+}
+
+function press(id) {
+  const button = document.getElementById(id);
+  button?.click();
+  return Boolean(button);
+}
+
+document.addEventListener("keydown", (event) => {
+  if (document.querySelector("dialog[open]")) return;
+  const plain = !event.ctrlKey && !event.metaKey && !event.altKey;
+  if (plain && event.key === "?" && !isText(event.target)) document.getElementById("shortcuts")?.showModal();
+  else if (plain && event.key === "Escape" && event.target.id === "result" && cameFrom) document.getElementById(cameFrom)?.focus();
+  else if (!event.shiftKey && formOf()?.contains(event.target) && keyInForm(event)) event.preventDefault();
+});

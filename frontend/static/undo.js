@@ -1,0 +1,81 @@
+// Undo and redo of every edit of the form: its contents in the order in which they came to be. The browser's own undo
+// inside a text field stays the browser's.
+
+const MOST = 200;
+const contents = []; // what the form said, oldest first
+let at = -1; // the one it says now
+let group = null; // field and visit that the latest change belongs to: its keystrokes are one step
+let visit = 0;
+let restoring = null;
+
+const formOf = () => document.getElementById("application");
+const contentOf = (form) => new URLSearchParams(new FormData(form)).toString();
+
+function record(changedIn) {
+  const form = formOf();
+  if (!form) return;
+  const content = contentOf(form);
+  if (content !== contents[at]) {
+    const same = changedIn !== null && changedIn === group && at > 0;
+    contents.splice(same ? at : at + 1, Infinity, content);
+    if (contents.length > MOST) contents.shift();
+    at = contents.length - 1;
+    group = changedIn;
+  }
+  show();
+}
+
+function show() {
+  for (const button of document.querySelectorAll("[data-undo]")) {
+    const possible = button.dataset.undo === "back" ? at > 0 : at < contents.length - 1;
+    button.setAttribute("aria-disabled", String(!possible));
+  }
+}
+
+export function step(direction) {
+  const to = at + (direction === "back" ? -1 : 1);
+  if (!contents[to] || restoring !== null) return;
+  at = to;
+  group = null;
+  restoring = contents[to];
+  formOf().requestSubmit();
+  show();
+}
+
+// The form is built by the server: ask it for the earlier content instead of the present one.
+document.addEventListener("htmx:config:request", (event) => {
+  const { ctx } = event.detail;
+  if (restoring === null || ctx.sourceElement.id !== "application") return;
+  const body = new FormData();
+  for (const [name, value] of new URLSearchParams(restoring)) body.append(name, value);
+  ctx.request.body = body;
+  ctx.request.method = body.has("phases") ? "POST" : "GET";
+  ctx.restores = true;
+  restoring = null;
+});
+
+document.addEventListener("focusin", () => visit++);
+document.addEventListener("input", (event) => {
+  if (event.target.form?.id === "application") record(`${event.target.id} ${visit}`);
+});
+document.addEventListener("htmx:after:swap", (event) => {
+  const { ctx } = event.detail;
+  if (ctx?.restores) contents[at] = contentOf(formOf()); // the server may write a content in another order
+  record(null);
+});
+
+document.addEventListener("click", (event) => {
+  const button = event.target.closest("[data-undo]");
+  if (button) step(button.dataset.undo);
+});
+
+const ownUndo = (element) => element.isContentEditable || element.matches("textarea, input:not([type=checkbox], [type=radio], [type=button], [type=submit], [type=file])");
+document.addEventListener("keydown", (event) => {
+  if (!(event.ctrlKey || event.metaKey) || event.altKey || ownUndo(event.target) || document.querySelector("dialog[open]")) return;
+  const key = event.key.toLowerCase();
+  if (key !== "z" && key !== "y") return;
+  event.preventDefault();
+  step(key === "y" || event.shiftKey ? "forward" : "back");
+});
+
+record(null);
