@@ -1,0 +1,27 @@
+"""Pictures of a selection as plain data: Plotly figures, steps of the duty cycle, and what they say in words.
+
+Data and axes are made here; colours are names of the page's theme (`var(--plot-own)`), which the browser fills in.
+"""
+
+from hpn.plots.bearing import bearing_figure, sizes_figure
+from hpn.plots.cycle import CyclePicture, cycle_picture
+from hpn.plots.picture import BearingPicture, NamedCurve, SizeUse, bearing_picture, bearing_verdict, size_uses
+from hpn.plots.stops import emergency_stop_figure, emergency_stop_words
+from hpn.plots.words import Figure, Words
+
+__all__ = [
+    "BearingPicture",
+    "CyclePicture",
+    "Figure",
+    "NamedCurve",
+    "SizeUse",
+    "Words",
+    "bearing_figure",
+    "bearing_picture",
+    "bearing_verdict",
+    "cycle_picture",
+    "emergency_stop_figure",
+    "emergency_stop_words",
+    "size_uses",
+    "sizes_figure",
+]

@@ -1,0 +1,242 @@
+"""Loads of one application on an output bearing: what plot, table and verdict are made from."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from hpn import bearing
+from hpn.application import OutputLoad
+from hpn.envelopes import EnvelopeCurve, EnvelopeQuery, envelope_curve, life_envelopes
+from hpn.gear import Gear
+from hpn.plots.words import numbers, share
+from hpn.selection import Selection
+from hpn.wording import Quantity, Sentence, Value
+
+MOST_LOADS = 200
+"""Different loads that plot and table show; of more, those that use the published maximum most."""
+
+
+@dataclass(frozen=True, slots=True)
+class PhaseLoad:
+    """One load in N, the phases that have it, and its f_w P: 1 on the published envelope over f_w."""
+
+    places: list[int]
+    radial_N: float
+    axial_N: float
+    published: float
+
+    @property
+    def phases(self) -> str:
+        """Numbers of the phases as a reader counts them."""
+        return numbers(self.places)
+
+    @property
+    def magnitude_N(self) -> float:
+        """Length of the load vector."""
+        return float(np.hypot(self.radial_N, self.axial_N))
+
+    @property
+    def distance_N(self) -> float | None:
+        """From the load to the published envelope over f_w along its own direction; negative beyond it."""
+        return self.magnitude_N * (1 / self.published - 1) if self.published > 1e-300 else None
+
+
+@dataclass(frozen=True, slots=True)
+class NamedCurve:
+    """One curve of the picture, and the condition that it stands for; `kind` tells the curves apart in the figure."""
+
+    kind: Literal["own", "life", "published", "equivalent"]
+    name: Sentence
+    curve: EnvelopeCurve
+
+    @property
+    def corners(self) -> list[tuple[float, float]]:
+        """Radial and axial load in N of each corner, from the axial to the radial axis."""
+        return list(zip(self.curve.radial_N, self.curve.axial_N, strict=True))
+
+
+@dataclass(frozen=True, slots=True)
+class BearingPicture:
+    """Loads of one application on the output bearing of one candidate.
+
+    `mean` is P_m without f_w, `life_utilisation` f_w P_m over k; `loads` are in the order of the phases.
+    """
+
+    gear: Gear
+    load: OutputLoad
+    loads: list[PhaseLoad]
+    hidden: int
+    mean: float
+    life_factor: float
+    life_L50_h: float
+    average_output_speed_rpm: float
+    life_utilisation: float
+    curves: list[EnvelopeCurve]
+    published_curve: EnvelopeCurve
+    mean_curve: EnvelopeCurve
+
+    @property
+    def worst(self) -> PhaseLoad:
+        """The load that uses the published envelope most."""
+        return max(self.loads, key=lambda load: load.published)
+
+    @property
+    def constant_load_utilisation(self) -> float:
+        """Share of what a constant load may be: f_w P_m over min(1, k)."""
+        return self.mean * self.load.load_coefficient / min(1.0, self.life_factor)
+
+    @property
+    def named_curves(self) -> list[NamedCurve]:
+        """All curves, the user's own first."""
+        f_w = self.load.load_coefficient
+        own = [
+            NamedCurve("own", Sentence("Constant load, f_w = {f_w} (yours)", _coefficient(curve)), curve)
+            for curve in self.curves
+            if curve.load_coefficient == f_w
+        ]
+        others = [
+            NamedCurve("life", Sentence("Constant load, f_w = {f_w}", _coefficient(curve)), curve)
+            for curve in self.curves
+            if curve.load_coefficient != f_w
+        ]
+        published = Sentence("Any single phase: published maximum over f_w = {f_w}", _coefficient(self.published_curve))
+        named = [*own, *others, NamedCurve("published", published, self.published_curve)]
+        equivalent = NamedCurve("equivalent", Sentence("Equivalent load of the cycle, P = P_m"), self.mean_curve)
+        return [*named, equivalent] if self.mean > 0 else named
+
+
+def _coefficient(curve: EnvelopeCurve) -> dict[str, Value]:
+    return {"f_w": Quantity(curve.load_coefficient, "", 6)}
+
+
+@dataclass(frozen=True, slots=True)
+class SizeUse:
+    """How far the loads use the bearing of one size; None where it is not rated."""
+
+    gear: Gear
+    constant_load: float | None
+    published: float | None
+
+    @property
+    def carries(self) -> bool | None:
+        """Whether both questions are answered with yes; None where it is not rated."""
+        if self.constant_load is None or self.published is None:
+            return None
+        return max(self.constant_load, self.published) <= 1 + 1e-12
+
+
+def condition(selection: Selection) -> EnvelopeQuery:
+    """Speed, life, load coefficient and model at which the application asks for envelopes."""
+    load = selection.application.loads or OutputLoad()
+    return EnvelopeQuery(
+        speed_rpm=selection.evaluation.case.duty.average_output_speed_rpm.item(selection.index),
+        life_h=bearing.required_L50(load.life_h, load.life_basis),
+        load_coefficient=load.load_coefficient,
+        model=load.model,
+    )
+
+
+def bearing_picture(selection: Selection, gear: Gear) -> BearingPicture | None:
+    """Loads on the bearing of a candidate, or None without loads or where the bearing of its size is not rated."""
+    load, case = selection.application.loads, selection.evaluation.case.bearing
+    index, n = selection.gears.rows.index(gear), selection.index
+    if load is None or case is None or np.isnan(case.mean[n, index]):
+        return None
+    catalogue, f_w = selection.catalogue, load.load_coefficient
+    mean, k = float(case.mean[n, index]), case.life_factor.item(n)
+    count = len(selection.application.duty_cycle.phases)
+    loads = phase_loads(selection, case.phase_loads[n, :count, index].tolist())
+    return BearingPicture(
+        gear=gear,
+        load=load,
+        loads=_foremost(loads),
+        hidden=max(len(loads) - MOST_LOADS, 0),
+        mean=mean / f_w,
+        life_factor=k,
+        life_L50_h=float(case.life_L50_h[n, index]),
+        average_output_speed_rpm=selection.evaluation.case.duty.average_output_speed_rpm.item(n),
+        life_utilisation=mean / k,
+        curves=life_envelopes(catalogue, gear, condition(selection)),
+        published_curve=envelope_curve(catalogue, gear, load.model, f_w),
+        mean_curve=envelope_curve(catalogue, gear, load.model, 1.0, mean / f_w),
+    )
+
+
+def phase_loads(selection: Selection, published: Sequence[float]) -> list[PhaseLoad]:
+    """Different loads of the cycle, in the order in which they first occur."""
+    radial, axial = (component[selection.index].tolist() for component in selection.evaluation.case.duty.loads_N)
+    found: dict[tuple[float, float], PhaseLoad] = {}
+    for place, used in enumerate(published):
+        load = (radial[place], axial[place])
+        found.setdefault(load, PhaseLoad([], *load, used)).places.append(place)
+    return list(found.values())
+
+
+def _foremost(loads: list[PhaseLoad]) -> list[PhaseLoad]:
+    if len(loads) <= MOST_LOADS:
+        return loads
+    kept = sorted(loads, key=lambda load: load.published, reverse=True)[:MOST_LOADS]
+    return sorted(kept, key=lambda load: load.places[0])
+
+
+def size_uses(selection: Selection) -> list[SizeUse]:
+    """Use of the bearing of every size among the candidates."""
+    case, n, uses = selection.evaluation.case.bearing, selection.index, {}
+    for index, gear in enumerate(selection.gears.rows):
+        if case is None or gear.size in uses:
+            continue
+        mean, largest = float(case.mean[n, index]), float(case.largest[n, index])
+        rated = not np.isnan(mean)
+        uses[gear.size] = SizeUse(
+            gear,
+            mean / min(1.0, case.life_factor.item(n)) if rated else None,
+            largest if rated else None,
+        )
+    return list(uses.values())
+
+
+# --- In words ---------------------------------------------------------------------------------------------------------
+
+
+def bearing_verdict(picture: BearingPicture) -> list[Sentence]:
+    """What the picture says, in words: the life of the cycle, the largest single load, the next f_w, what decides."""
+    worst = picture.worst
+    sentences = [
+        Sentence(
+            "The cycle uses {used} of what a constant load may be at {speed} for {life} ({basis}).",
+            {
+                "used": share(picture.constant_load_utilisation),
+                "speed": Quantity(picture.average_output_speed_rpm, "rpm"),
+                "life": Quantity(picture.load.life_h, "h", 6),
+                "basis": picture.load.life_basis,
+            },
+        ),
+        _worst_phase(worst, alone=len(picture.loads) == 1),
+        *_next_load_coefficient(picture),
+    ]
+    if picture.life_factor >= 1 or picture.life_utilisation < worst.published:
+        return [*sentences, Sentence("The largest single load decides, not the life.")]
+    return [*sentences, Sentence("The life of the bearing decides, not the largest single load.")]
+
+
+def _worst_phase(worst: PhaseLoad, *, alone: bool) -> Sentence:
+    used = share(worst.published)
+    if alone:
+        return Sentence("The load uses {used} of the published maximum.", {"used": used})
+    return Sentence("Phase {phase} uses {used} of the published maximum.", {"phase": worst.places[0] + 1, "used": used})
+
+
+def _next_load_coefficient(picture: BearingPicture) -> list[Sentence]:
+    """What the next printed load coefficient would do to the first sentence."""
+    f_w, used = picture.load.load_coefficient, picture.constant_load_utilisation
+    larger = next((printed for printed in bearing.PRINTED_LOAD_COEFFICIENTS if printed > f_w), None)
+    if larger is None or used == 0:
+        return []
+    used = used * larger / f_w
+    values: dict[str, Value] = {"coefficient": Quantity(larger, "")}
+    if used > 1:
+        values["excess"] = Quantity(100 * (used - 1), "percent")
+        return [Sentence("f_w = {coefficient} would exceed the first by {excess}.", values)]
+    return [Sentence("f_w = {coefficient} would use {used}.", values | {"used": share(used)})]

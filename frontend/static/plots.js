@@ -1,0 +1,164 @@
+// Plots: data come with the page, the library only when one is about to be seen. Colours are names of the page's theme.
+
+const CONFIG = { showSendToCloud: false, plotlyServerURL: "", displaylogo: false, displayModeBar: false, responsive: true };
+const drawn = new Map(); // place in the page -> the data that it shows
+
+// --- Theme ------------------------------------------------------------------------------------------------------------
+
+// A custom property keeps its light-dark() unresolved: only a property that uses it has a colour.
+function palette(scheme) {
+  const probe = document.body.appendChild(document.createElement("i"));
+  probe.style.cssText = `position:absolute;visibility:hidden;forced-color-adjust:none;${scheme ? `color-scheme:${scheme}` : ""}`;
+  const known = new Map();
+  const colour = (name) => {
+    if (!known.has(name)) {
+      probe.style.color = name;
+      known.set(name, getComputedStyle(probe).color);
+    }
+    return known.get(name);
+  };
+  return { colour, done: () => probe.remove() };
+}
+
+function themed(figure, scheme) {
+  const { colour, done } = palette(scheme);
+  const walk = (value) => {
+    if (typeof value === "string") return value.startsWith("var(") ? colour(value) : value;
+    if (Array.isArray(value)) return typeof value[0] === "number" ? value : value.map(walk);
+    if (value === null || typeof value !== "object") return value;
+    return Object.fromEntries(Object.entries(value).map(([key, inner]) => [key, walk(inner)]));
+  };
+  const result = walk(figure);
+  result.layout.font.family = getComputedStyle(document.body).fontFamily;
+  done();
+  return result;
+}
+
+// --- Library ----------------------------------------------------------------------------------------------------------
+
+let library;
+function load(address) {
+  library ??= new Promise((resolve, reject) => {
+    const script = document.createElement("script");
+    script.src = address;
+    script.onload = () => resolve(window.Plotly);
+    script.onerror = () => {
+      library = undefined; // a later plot tries again
+      script.remove();
+      reject(new Error("the plot library did not load"));
+    };
+    document.head.append(script);
+  });
+  return library;
+}
+
+// --- Drawing ----------------------------------------------------------------------------------------------------------
+
+const placeIn = (plot) => plot.firstElementChild ?? plot.appendChild(document.createElement("div"));
+const printing = matchMedia("print");
+const PAPER_WIDTH = 640;
+
+function draw(plot, { force = false, paper = printing.matches } = {}) {
+  if (!window.Plotly || (!force && drawn.get(plot) === plot.dataset.figure)) return;
+  const { data, layout } = themed(JSON.parse(plot.dataset.figure), paper ? "light" : undefined);
+  const place = placeIn(plot);
+  if (paper) Object.assign(layout, { width: PAPER_WIDTH, height: 380, autosize: false });
+  layout.dragmode = matchMedia("(pointer: coarse)").matches ? false : "zoom";
+  const first = !drawn.has(plot);
+  drawn.set(plot, plot.dataset.figure);
+  window.Plotly.react(place, data, layout, CONFIG);
+  if (first) place.on("plotly_relayout", () => showWhether(plot));
+}
+
+function showWhether(plot) {
+  const axes = placeIn(plot).layout;
+  const { layout } = JSON.parse(plot.dataset.figure);
+  const enlarged = ["xaxis", "yaxis"].some((axis) => axes[axis].range.some((end, k) => end !== layout[axis].range[k]));
+  plot.parentElement.toggleAttribute("data-enlarged", enlarged);
+}
+
+const watcher = new IntersectionObserver(
+  (entries) => {
+    for (const { isIntersecting, target } of entries) {
+      target.toggleAttribute("data-seen", isIntersecting);
+      if (isIntersecting) load(target.dataset.bundle).then(() => draw(target), () => (target.dataset.failed = ""));
+    }
+  },
+  { rootMargin: "400px" },
+);
+
+function look() {
+  for (const plot of drawn.keys()) {
+    if (plot.isConnected) continue;
+    watcher.unobserve(plot);
+    if (window.Plotly) window.Plotly.purge(placeIn(plot));
+    drawn.delete(plot);
+  }
+  for (const plot of document.querySelectorAll(".plot[data-figure]")) {
+    if (!plot.dataset.watched) {
+      plot.dataset.watched = "yes";
+      watcher.observe(plot);
+    }
+    if (drawn.has(plot)) draw(plot);
+  }
+}
+
+const redraw = (options) => [...drawn.keys()].filter((plot) => plot.isConnected).forEach((plot) => draw(plot, { force: true, ...options }));
+
+document.addEventListener("htmx:after:swap", look);
+new MutationObserver(look).observe(document.documentElement, { childList: true }); // history replaces the body
+addEventListener("pageshow", look);
+for (const query of ["(prefers-color-scheme: dark)", "(forced-colors: active)", "(prefers-contrast: more)"]) {
+  matchMedia(query).addEventListener("change", () => redraw());
+}
+addEventListener("beforeprint", () => redraw({ paper: true }));
+addEventListener("afterprint", () => redraw({ paper: false }));
+look();
+
+// --- Buttons ----------------------------------------------------------------------------------------------------------
+
+document.addEventListener("click", (event) => {
+  const button = event.target.closest("button[data-plot]");
+  const plot = button && document.getElementById(button.dataset.plot);
+  if (plot && button.dataset.save) save(plot, button.dataset.save);
+  else if (plot && drawn.has(plot)) whole(plot);
+});
+
+function whole(plot) {
+  const { layout } = JSON.parse(plot.dataset.figure);
+  window.Plotly.relayout(placeIn(plot), { "xaxis.range": layout.xaxis.range, "yaxis.range": layout.yaxis.range });
+}
+
+// A picture leaves the page that explains it, so it takes title, legend and standing along; always on white.
+async function save(plot, format) {
+  await load(plot.dataset.bundle);
+  const { data, layout } = themed(JSON.parse(plot.dataset.figure), "light");
+  const { title, note } = layout.meta;
+  const rows = data.filter((trace) => trace.name).length;
+  Object.assign(layout, {
+    title: { text: title, font: { size: 15 }, x: 0.02, xanchor: "left" },
+    showlegend: true,
+    legend: { orientation: "v", x: 0, y: -0.17, xanchor: "left", yanchor: "top" },
+    margin: { l: 76, r: 28, t: 56, b: 110 + 20 * rows },
+    paper_bgcolor: "#fff",
+    plot_bgcolor: "#fff",
+    width: 900,
+    height: 640 + 20 * rows,
+  });
+  layout.annotations = [
+    ...(layout.annotations ?? []),
+    { text: note, xref: "paper", yref: "paper", x: 0, y: 0, yshift: -(96 + 20 * rows), xanchor: "left", yanchor: "top", showarrow: false, font: { size: 11 } },
+  ];
+  await window.Plotly.downloadImage({ data, layout, config: CONFIG }, { format, width: 900, height: 640 + 20 * rows, scale: format === "png" ? 2 : 1, filename: plot.dataset.file });
+}
+
+// --- Links to an input that is folded away ----------------------------------------------------------------------------
+
+document.addEventListener("click", (event) => {
+  const link = event.target.closest('a[href^="#"]');
+  const field = link && document.getElementById(link.hash.slice(1));
+  if (!field?.matches("input, select")) return;
+  event.preventDefault();
+  field.closest("details")?.setAttribute("open", "");
+  field.focus();
+});
