@@ -12,6 +12,9 @@ FloatArray = NDArray[np.float64]
 ROUNDING = 1e-12
 """Relative room for floating point, so that a limit met exactly passes (see the contract of checks)."""
 
+TORSION_REFERENCE = 0.15
+"""Share of the rated torque from which on the torsional stiffness K3 holds (glossary)."""
+
 
 def average_output_torque(*, torque_Nm: ArrayLike, speed_rpm: ArrayLike, duration_s: ArrayLike) -> FloatArray:
     """Average output torque T_av in Nm, equation 17.2; shape (..., phases) in, (...) out.
@@ -90,6 +93,19 @@ def life(
 def motor_torque(*, output_torque_Nm: ArrayLike, ratio: ArrayLike, efficiency: ArrayLike = 1.0) -> FloatArray:
     """Torque at the motor shaft T / (i eta) in Nm; loss-free, a lower bound, at the default efficiency of 1."""
     return np.asarray(np.asarray(output_torque_Nm, dtype=float) / (np.asarray(ratio) * np.asarray(efficiency)))
+
+
+def torsion(
+    *, maximum_torque_Nm: ArrayLike, rated_torque_Nm: ArrayLike, torsional_stiffness_Nm_per_rad: ArrayLike
+) -> FloatArray:
+    """Torsion of the output (T_max - 0.15 T_N) / K3 in arcmin, from 15 % of the rated torque up to T_max (glossary).
+
+    K3 holds above that reference torque alone, so up to it there is nothing to work out: 0. NaN where a figure is not
+    published. Backlash comes on top and is no part of it.
+    """
+    T_max, T_N = np.asarray(maximum_torque_Nm, dtype=float), np.asarray(rated_torque_Nm, dtype=float)
+    above = np.maximum(T_max - TORSION_REFERENCE * T_N, 0.0)
+    return np.asarray(np.degrees(above / np.asarray(torsional_stiffness_Nm_per_rad, dtype=float)) * 60)
 
 
 def rms_torque(*, torque_Nm: ArrayLike, duration_s: ArrayLike, pause_s: ArrayLike) -> FloatArray:
