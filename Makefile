@@ -24,7 +24,7 @@ endif
 export UV_SYSTEM_CERTS ?= true
 export NODE_USE_SYSTEM_CA ?= 1
 
-.PHONY: run install assets test check bench screenshots browser lock clean
+.PHONY: run install assets test check bench screenshots browser office lock clean
 .DELETE_ON_ERROR:
 
 run: install
@@ -33,7 +33,7 @@ run: install
 install: $(ENVIRONMENT) $(ASSETS)
 assets: $(ASSETS)
 
-test: install browser
+test: install browser office
 	$(BIN)/pytest $(PYTEST_ARGS)
 
 check: $(ENVIRONMENT)
@@ -86,6 +86,13 @@ browser: $(ENVIRONMENT)
 	if [ "$$(id -u)" = 0 ] && [ -f /etc/debian_version ] && apt-get update -q \
 	    && apt-get install -q -y --no-install-recommends chromium && command -v chromium; then exit 0; fi; \
 	$(BIN)/playwright install chromium || { echo "No Chromium found, and none could be installed" >&2; exit 1; }
+
+# Recalculates the workbooks in the tests; like the browser, an installed one counts.
+office:
+	@for name in soffice libreoffice; do command -v $$name && exit 0; done; \
+	if [ "$$(id -u)" = 0 ] && [ -f /etc/debian_version ] && apt-get update -q \
+	    && apt-get install -q -y --no-install-recommends libreoffice-calc && command -v soffice; then exit 0; fi; \
+	echo "No LibreOffice found, and none could be installed; install LibreOffice Calc" >&2; exit 1
 
 # --- Upkeep -----------------------------------------------------------------------------------------------------------
 

@@ -18,7 +18,7 @@ from hpn.catalogue import Catalogue
 from hpn.gear import Gear
 from hpn.notices import AREAS
 from hpn.selection import Selection, select
-from hpn.web import assets, display, links, reader
+from hpn.web import assets, display, links, pictures, reader
 from hpn.web.as_read import as_read
 from hpn.web.embeds import preview
 from hpn.web.links import Form, Message, Problem
@@ -215,7 +215,7 @@ def _templates(static: assets.Assets, translations: NullTranslations) -> Environ
     )
     templates.install_gettext_translations(translations, newstyle=True)  # type: ignore[attr-defined]
     translate = translations.gettext
-    templates.filters |= reader.FILTERS | {
+    templates.filters |= reader.FILTERS | pictures.FILTERS | {
         "as_read": as_read,
         "percent": display.percent,
         "capped_percent": display.capped_percent,
@@ -224,7 +224,7 @@ def _templates(static: assets.Assets, translations: NullTranslations) -> Environ
         "say": lambda message: message.text(translate),
         "translated": lambda texts: [(code, translate(text)) for code, text in texts.items()],
     }
-    templates.globals |= {
+    templates.globals |= pictures.GLOBALS | {
         "asset": static.url,
         "AREAS": AREAS,
         "BEST": display.BEST,

@@ -1,0 +1,71 @@
+"""Selections to be exported, from the plain example to what is hostile."""
+
+import math
+from datetime import UTC, datetime
+from typing import Any
+
+from hpn.application import Application
+from hpn.catalogue import Catalogue
+from hpn.report.export import Export
+from hpn.selection import select
+from hpn.web.links import to_link
+from tests.build import Json, cycle, phase, worked_example
+
+CREATED = datetime(2026, 11, 21, 10, 15, tzinfo=UTC)
+
+EVERYTHING = cycle(
+    phase(40, 250, 0.3, radial_N=900, axial_N=300),
+    phase(32, 500, 3.0),
+    phase(-20, 250, 0.4, radial_N=700),
+    pause_s=4.0,
+    emergency_stop={"torque_Nm": 200, "count": 1000},
+    output_load={"radial_N": 500, "axial_N": 200, "load_coefficient": 1.2},
+    requirements={
+        "ratios": [3, 5, 10, 25],
+        "life_h": 20000,
+        "backlash_arcmin": 7,
+        "torsional_stiffness_Nm_per_rad": 5000,
+        "weight_kg": 5,
+        "length_mm": 200,
+        "ambient_temperature_degC": 25,
+        "utilisation": 0.9,
+        "efficiency": 0.95,
+        "motor": {"maximum_speed_rpm": 4000, "peak_torque_Nm": 20, "rated_torque_Nm": 8},
+    },
+    application_area="medical",
+)
+"""Every input there is, with values of which none is a default."""
+
+
+def long_cycle(phases: int, **parts: Any) -> Json:
+    """A cycle of many different phases."""
+    steps = (phase(30 * math.sin(k / 3) + 5, 300 * math.cos(k / 7), 0.1 + 0.01 * (k % 7)) for k in range(phases))
+    return cycle(*steps, **parts)
+
+
+CASES: dict[str, Json] = {
+    "example": worked_example(requirements={"ratios": [5]}),
+    "everything": EVERYTHING,
+    "twenty phases": EVERYTHING | {"duty_cycle": long_cycle(20)["duty_cycle"]},
+    "ten thousand phases": long_cycle(10_000, output_load={"radial_N": 300}),
+    "nothing suitable": cycle(phase(900, 900), emergency_stop={"torque_Nm": 5000, "count": 5}),
+    "not rated": cycle(phase(400, 90), requirements={"sizes": ["40A"]}),
+    "iso281": worked_example(output_load={"radial_N": 700, "axial_N": 90, "model": "iso281", "life_basis": "L10"}),
+    "extremes": cycle(phase(0, 1e-5, 1e-9), phase(1e-300, 1e6, 1e9), output_load={"radial_N": 1e9, "axial_N": 0}),
+    "standing loads": cycle(phase(0, 100), phase(50, 0, 2), emergency_stop={"torque_Nm": 10}),
+}
+
+
+def export_of(application: Json, catalogue: Catalogue, *, title: str = "Rotary table", reference: str = "") -> Export:
+    """An export as a saved selection gives it."""
+    asked = Application.model_validate(application)
+    reply = select(asked, catalogue).reply(to_link(asked))
+    return Export(
+        application=asked,
+        reply=reply,
+        link="http://hpn.example/selections/0123456789abcdefghijkl",
+        title=title,
+        reference=reference,
+        created=CREATED,
+        catalogue=catalogue,
+    )

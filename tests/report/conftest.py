@@ -1,0 +1,34 @@
+"""LibreOffice, as the second opinion on a workbook."""
+
+import shutil
+import subprocess
+from collections.abc import Callable, Mapping
+from pathlib import Path
+
+import openpyxl
+import pytest
+from openpyxl.workbook import Workbook
+
+Recalculate = Callable[[Mapping[str, Workbook]], dict[str, Workbook]]
+
+
+@pytest.fixture(scope="session")
+def recalculate(tmp_path_factory: pytest.TempPathFactory) -> Recalculate:
+    """Workbooks as LibreOffice calculates them; the saved values of formulas are gone before it sees them."""
+    program = shutil.which("soffice") or shutil.which("libreoffice")
+    assert program, "LibreOffice is missing; `make office` installs it"
+    folder = tmp_path_factory.mktemp("office")
+
+    def run(books: Mapping[str, Workbook]) -> dict[str, Workbook]:
+        sources = [_saved(book, folder / f"{name}.xlsx") for name, book in books.items()]
+        profile = f"-env:UserInstallation={(folder / 'profile').as_uri()}"
+        command = [program, "--headless", profile, "--convert-to", "xlsx", "--outdir", str(folder / "out")]
+        subprocess.run([*command, *map(str, sources)], check=True, capture_output=True, timeout=300)
+        return {name: openpyxl.load_workbook(folder / "out" / f"{name}.xlsx", data_only=True) for name in books}
+
+    return run
+
+
+def _saved(book: Workbook, path: Path) -> Path:
+    book.save(path)  # openpyxl writes formulas without their values
+    return path

@@ -1,0 +1,136 @@
+"""The files over HTTP, and what a pasted link unfolds into."""
+
+import html
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+import jsonschema  # type: ignore[import-untyped]
+import pytest
+from starlette.testclient import TestClient
+
+from hpn.application import WORKED_EXAMPLE
+from hpn.web.app import create_app
+from hpn.web.settings import Settings
+
+QUERY = "T=40&n=250&t=0.3&T=32&n=500&t=3&T=20&n=250&t=0.4&tp=4&Tk=200&i=5"
+FILES = {
+    "report.pdf": ("application/pdf", b"%PDF-"),
+    "report.xlsx": ("application/vnd.openxmlformats-officedocument.spreadsheetml.sheet", b"PK"),
+    "submodel.aasx": ("application/asset-administration-shell-package", b"PK"),
+}
+
+
+@pytest.fixture(scope="module")
+def client(tmp_path_factory: pytest.TempPathFactory) -> Iterator[TestClient]:
+    """A service of its own."""
+    database = f"sqlite:///{tmp_path_factory.mktemp('files') / 'hpn.sqlite3'}"
+    with TestClient(create_app(Settings(database_url=database, log_level="error"))) as client:
+        yield client
+
+
+@pytest.fixture(scope="module")
+def saved(client: TestClient) -> str:
+    """Address of a saved selection in the API."""
+    body = {"application": WORKED_EXAMPLE, "title": 'Axis <7> & "more"', "reference": "PLM-4711"}
+    return str(client.post("/api/v1/selections", json=body).headers["location"])
+
+
+@pytest.mark.parametrize("name", FILES)
+def test_saved_posted_and_linked_selections_are_files(name: str, client: TestClient, saved: str) -> None:
+    media_type, start = FILES[name]
+    linked, posted = client.get(f"/{name}?{QUERY}"), client.post(f"/api/v1/{name}", json=WORKED_EXAMPLE)
+    for response in (client.get(f"{saved}/{name}"), linked, posted):
+        assert response.status_code == 200
+        assert response.headers["content-type"] == media_type
+        assert response.content.startswith(start)
+        assert f'filename="HPN-20A-5.{name[-4:].strip(".")}"' in response.headers["content-disposition"]
+    assert linked.content == posted.content
+
+
+@pytest.mark.parametrize("name", FILES)
+def test_a_file_is_the_same_each_time_and_known_by_its_tag(name: str, client: TestClient, saved: str) -> None:
+    first = client.get(f"{saved}/{name}")
+    assert client.get(f"{saved}/{name}").content == first.content
+    again = client.get(f"{saved}/{name}", headers={"If-None-Match": first.headers["etag"]})
+    assert (again.status_code, again.content) == (304, b"")
+
+
+def test_language_is_asked_for_or_the_browsers(client: TestClient, saved: str) -> None:
+    german = {"Accept-Language": "fr, de-DE;q=0.9, en;q=0.8"}
+    assert client.get(f"{saved}/report.pdf", headers=german).headers["content-language"] == "de"
+    assert client.get(f"{saved}/report.pdf?lang=en", headers=german).headers["content-language"] == "en"
+    assert client.get(f"/report.pdf?{QUERY}&lang=de").headers["content-language"] == "de"
+    assert (
+        client.get(f"{saved}/report.pdf", headers={"Accept-Language": "xx;q=,,;"}).headers["content-language"] == "en"
+    )
+
+
+@pytest.mark.parametrize("name", FILES)
+def test_what_is_refused(name: str, client: TestClient, saved: str) -> None:
+    problems = {
+        404: client.get(f"/api/v1/selections/0123456789abcdefghijkl/{name}"),
+        422: client.get(f"{saved}/{name}?lang=fr"),
+        414: client.get(f"/{name}?{QUERY}&size={'x' * 61_000}"),
+        415: client.post(f"/api/v1/{name}", content=b"{}"),
+        400: client.post(f"/api/v1/{name}", content=b"{", headers={"Content-Type": "application/json"}),
+    }
+    for status, response in problems.items():
+        assert response.status_code == status
+        assert response.headers["content-type"] == "application/problem+json"
+    assert problems[422].json()["errors"][0]["pointer"] == "/lang"
+    comma = client.get(f"/{name}?T=1,5&n=2&t=3")
+    assert (comma.status_code, comma.json()["errors"][0]["pointer"]) == (422, "/T/0")
+    assert client.get(f"/{name}").status_code == 422
+    assert client.post(f"/api/v1/{name}", json={"duty_cycle": {"phases": []}}).status_code == 422
+
+
+def test_schema_of_the_application_accepts_what_the_service_accepts(client: TestClient) -> None:
+    schema = client.get("/api/v1/application.schema.json").json()
+    assert schema["$id"] == "application.schema.json"
+    jsonschema.Draft202012Validator.check_schema(schema)
+    jsonschema.validate(WORKED_EXAMPLE, schema)
+    with pytest.raises(jsonschema.ValidationError):
+        jsonschema.validate({**WORKED_EXAMPLE, "colour": "red"}, schema)
+    assert schema["$defs"]["Phase"]["properties"]["torque_Nm"]["x-unit"] == "Nm"
+
+
+def test_a_pasted_link_unfolds_into_gear_and_verdict(client: TestClient, saved: str) -> None:
+    page = saved.removeprefix("/api/v1")
+    for path, title in (
+        (page, 'Axis <7> & "more": HPN-20A-5, suitable'),
+        (f"/?{QUERY}", "HPN Select: HPN-20A-5, suitable"),
+    ):
+        document = client.get(path).text
+        found = re.search(r'<meta property="og:title" content="([^"]*)"', document)
+        assert found and html.unescape(found[1]) == title
+        link = re.search(r'application/json\+oembed" href="([^"]+)"', document)
+        assert link
+        answer = client.get(html.unescape(link[1]))
+        assert answer.status_code == 200
+        assert answer.json()["title"] == title
+        assert answer.json()["type"] == "link" and answer.json()["version"] == "1.0"
+        absolute = client.get("/oembed", params={"url": f"http://testserver{path}"})
+        assert absolute.json() == answer.json()
+
+
+@pytest.mark.parametrize(
+    "url",
+    [
+        "http://elsewhere.example/selections/x",
+        "http://testserver/selections/x",
+        "http://testserver/catalogue",
+        "http://[",
+    ],
+)
+def test_a_strange_link_unfolds_into_nothing(url: str, client: TestClient) -> None:
+    assert client.get("/oembed", params={"url": url}).status_code == 404
+
+
+def test_oembed_is_json_only(client: TestClient) -> None:
+    assert client.get("/oembed", params={"url": f"http://testserver/?{QUERY}", "format": "xml"}).status_code == 406
+
+
+def test_templates_and_catalogues_are_part_of_the_package() -> None:
+    folder = Path(__file__).parents[2] / "backend/hpn/report"
+    assert {"report.typ", "de.po"} <= {path.name for path in folder.iterdir()}

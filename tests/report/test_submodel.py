@@ -1,0 +1,115 @@
+"""The Asset Administration Shell, read back by the library that wrote it and verified by another one."""
+
+import hashlib
+import subprocess
+import sys
+from io import BytesIO
+from zipfile import ZipFile
+
+import aas_core3_1.verification as verification
+import aas_core3_1.xmlization as xmlization
+import orjson
+import pytest
+from basyx.aas import model
+from basyx.aas.adapter import aasx
+
+from hpn.application import Application
+from hpn.catalogue import Catalogue
+from hpn.report.submodel import TECHNICAL_DATA, package
+from tests.report.cases import CASES, EVERYTHING, export_of
+
+Submodels = dict[str, model.Submodel]
+
+
+def read(content: bytes) -> tuple[Submodels, aasx.DictSupplementaryFileContainer]:
+    """Submodels by their short id, and the files beside them; anything amiss raises."""
+    store: model.DictIdentifiableStore[model.Identifiable] = model.DictIdentifiableStore()
+    files = aasx.DictSupplementaryFileContainer()  # type: ignore[no-untyped-call]
+    with aasx.AASXReader(BytesIO(content), failsafe=False) as reader:
+        reader.read_into(store, files)
+    shells = [item for item in store if isinstance(item, model.AssetAdministrationShell)]
+    submodels = {str(item.id_short): item for item in store if isinstance(item, model.Submodel)}
+    assert len(shells) == 1
+    assert {reference.resolve(store).id_short for reference in shells[0].submodel} == set(submodels)
+    return submodels, files
+
+
+def values(collection: object) -> dict[str, object]:
+    """Values of the properties of a collection by name."""
+    assert isinstance(collection, model.SubmodelElementCollection)
+    return {str(element.id_short): element.value for element in collection if isinstance(element, model.Property)}
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_package_says_what_the_reply_says(case: str, catalogue: Catalogue) -> None:
+    export = export_of(CASES[case], catalogue)
+    submodels, files = read(package(export))
+    result = submodels["SelectionResult"]
+    assert values(result.get_referable("Duty")) == export.reply["duty"]
+    checks = result.get_referable("Checks")
+    assert isinstance(checks, model.SubmodelElementCollection)
+    for check in export.candidate["checks"]:
+        known = {name: check[name] for name in ("demand", "limit", "utilisation", "status") if check[name] is not None}
+        shown = values(checks.get_referable(check["code"]))
+        assert {name: shown[name] for name in known} == known
+        assert set(shown) <= {*known, "unit"}
+    saved = BytesIO()
+    files.write_file("/aasx/result.json", saved)
+    assert orjson.loads(saved.getvalue()) == export.reply
+    asked = BytesIO()
+    files.write_file("/aasx/application.json", asked)
+    assert Application.model_validate_json(asked.getvalue()) == export.application
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_package_is_valid_by_an_independent_implementation(case: str, catalogue: Catalogue) -> None:
+    content = ZipFile(BytesIO(package(export_of(CASES[case], catalogue)))).read("aasx/data.xml")
+    environment = xmlization.environment_from_str(content.decode())
+    assert [f"{error.path}: {error.cause}" for error in verification.verify(environment)] == []
+
+
+def test_technical_data_has_the_published_figures_and_no_invented_number(catalogue: Catalogue) -> None:
+    technical = read(package(export_of(EVERYTHING, catalogue)))[0]["TechnicalData"]
+    gear = catalogue.by_designation["HPN-20A-5"]
+    figures = values(technical.get_referable("TechnicalProperties"))
+    assert figures["rated_torque_Nm"] == gear.rated_torque_Nm
+    assert all(figures[name] == getattr(gear, name) for name in figures)
+    general = values(technical.get_referable("GeneralInformation"))
+    assert general["ManufacturerArticleNumber"] is None and general["ManufacturerOrderCode"] is None
+    assert technical.semantic_id is not None
+    assert technical.semantic_id.key[0].value == TECHNICAL_DATA + "Submodel/1/2"
+
+
+def test_what_is_not_published_is_left_out(catalogue: Catalogue) -> None:
+    submodels, _ = read(package(export_of(CASES["standing loads"], catalogue)))
+    figures = values(submodels["SelectionResult"].get_referable("Figures"))
+    assert "life_L10_h" not in figures  # unlimited
+    assert None not in figures.values()
+
+
+def test_no_technical_data_where_no_gear_is_selected(catalogue: Catalogue) -> None:
+    assert set(read(package(export_of(CASES["nothing suitable"], catalogue)))[0]) == {"SelectionResult"}
+
+
+def test_ids_are_our_own_urns(catalogue: Catalogue) -> None:
+    submodels, _ = read(package(export_of(EVERYTHING, catalogue)))
+    assert all(submodel.id.startswith("urn:uuid:") for submodel in submodels.values())
+
+
+MAKE = """
+import sys
+from hashlib import sha256
+from hpn.catalogue import load_catalogue
+from hpn.report.submodel import package
+from tests.report.cases import EVERYTHING, export_of
+print(sha256(package(export_of(EVERYTHING, load_catalogue()))).hexdigest())
+"""
+
+
+def test_the_same_selection_gives_the_same_bytes_in_every_process(catalogue: Catalogue) -> None:
+    here = hashlib.sha256(package(export_of(EVERYTHING, catalogue))).hexdigest()
+    for seed in ("1", "2"):
+        run = subprocess.run(
+            [sys.executable, "-c", MAKE], env={"PYTHONHASHSEED": seed}, capture_output=True, text=True, check=True
+        )
+        assert run.stdout.strip() == here

@@ -1,0 +1,237 @@
+"""The workbook, recalculated by LibreOffice: it says what the service says, as saved and when inputs change."""
+
+import math
+from collections.abc import Mapping
+from io import BytesIO
+from typing import Any
+from zipfile import ZipFile
+
+import openpyxl
+import pytest
+from openpyxl.workbook import Workbook
+
+from hpn.catalogue import Catalogue
+from hpn.explanations import EXPLANATIONS
+from hpn.report.language import language
+from hpn.report.workbook import workbook
+from tests.build import Json, answer, cycle, phase, worked_example
+from tests.conftest import Supplement
+from tests.report.cases import CASES, EVERYTHING, export_of
+from tests.report.conftest import Recalculate
+
+ENGLISH = language("en")
+SMALL_CASES = {name: case for name, case in CASES.items() if name != "ten thousand phases"}
+
+LOADED = worked_example(output_load={"radial_N": 700, "axial_N": 200})
+
+
+def opened(application: Json, catalogue: Catalogue, *, values: bool = False, code: str = "en") -> Workbook:
+    """The workbook on an application: its formulas, or the values saved beside them."""
+    content = workbook(export_of(application, catalogue), language(code))
+    return openpyxl.load_workbook(BytesIO(content), data_only=values)
+
+
+def put(book: Workbook, name: str, value: Any, row: int = 0) -> None:
+    """Write into the cell of a defined name, or into a row of its block."""
+    sheet, cells = next(iter(book.defined_names[name].destinations))
+    first = cells.replace("$", "").partition(":")[0]
+    book[sheet][first].offset(row=row).value = value
+
+
+def got(book: Workbook, name: str) -> Any:
+    """Value of the cell of a defined name."""
+    sheet, cells = next(iter(book.defined_names[name].destinations))
+    return book[sheet][cells.replace("$", "")].value
+
+
+def candidates(book: Workbook) -> dict[str, dict[str, Any]]:
+    """Rows of the list of candidates by designation, by their heads."""
+    rows = list(book["Candidates"].iter_rows(values_only=True))
+    return {str(row[0]): dict(zip(map(str, rows[0]), row, strict=True)) for row in rows[1:] if row[0]}
+
+
+def same(one: Any, other: Any) -> bool:
+    """Equal but for the order of floating-point operations."""
+    if isinstance(one, int | float) and isinstance(other, int | float):
+        return math.isclose(one, other, rel_tol=1e-9, abs_tol=1e-300)
+    return (one or None) == (other or None)
+
+
+def assert_agrees(book: Workbook, reply: Mapping[str, Any]) -> None:
+    """Every candidate has the verdict and the utilisations of the reply."""
+    rows = candidates(book)
+    for candidate in reply["candidates"]:
+        row, name = rows[candidate["designation"]], candidate["designation"]
+        assert row["Verdict"] == candidate["status"], name
+        if candidate["utilisation"] is not None:
+            assert same(row["Utilisation"], candidate["utilisation"]), name
+        for check in candidate["checks"]:
+            if check["utilisation"] is not None:
+                shown = row[EXPLANATIONS[check["code"]].title]
+                assert same(shown, check["utilisation"]), (name, check, shown)
+
+
+def test_recalculated_as_saved_no_cell_changes(catalogue: Catalogue, recalculate: Recalculate) -> None:
+    fresh = recalculate({name: opened(case, catalogue) for name, case in SMALL_CASES.items()})
+    for name, case in SMALL_CASES.items():
+        for sheet in opened(case, catalogue, values=True):
+            for row in sheet.iter_rows():
+                for cell in row:
+                    value = fresh[name][sheet.title][cell.coordinate].value
+                    assert same(cell.value, value), (name, sheet.title, cell.coordinate, cell.value, value)
+        assert_agrees(fresh[name], answer(case, catalogue))
+
+
+def _merged(application: Json, part: str, **values: Any) -> Json:
+    return application | {part: {**application.get(part, {}), **values}}
+
+
+CHANGES: dict[str, tuple[Json, list[tuple[Any, ...]], Json]] = {
+    "torque of a phase": (
+        worked_example(),
+        [("torque_Nm", 60, 1)],
+        worked_example() | cycle(phase(40, 250, 0.3), phase(60, 500, 3), phase(20, 250, 0.4), pause_s=4),
+    ),
+    "a phase more": (
+        worked_example(),
+        [("torque_Nm", -90, 3), ("speed_rpm", -100, 3), ("duration_s", 0.5, 3)],
+        worked_example()
+        | cycle(phase(40, 250, 0.3), phase(32, 500, 3), phase(20, 250, 0.4), phase(-90, -100, 0.5), pause_s=4),
+    ),
+    "pause": (worked_example(), [("pause_s", 0)], _merged(worked_example(), "duty_cycle", pause_s=0)),
+    "stop torque and count": (
+        worked_example(),
+        [("T_k", -250), ("N_k", 2_000_000)],
+        worked_example(emergency_stop={"torque_Nm": -250, "count": 2_000_000}),
+    ),
+    "no stop": (worked_example(), [("T_k", None)], {k: v for k, v in worked_example().items() if k[0] != "e"}),
+    "a load where there was none": (
+        worked_example(),
+        [("F_R", -700), ("f_w", 1.5)],
+        worked_example(output_load={"radial_N": -700, "load_coefficient": 1.5}),
+    ),
+    "load of one phase": (
+        LOADED,
+        [("radial_N", 1500, 1), ("axial_N", 0, 2)],
+        LOADED
+        | cycle(phase(40, 250, 0.3), phase(32, 500, 3, radial_N=1500), phase(20, 250, 0.4, axial_N=0), pause_s=4),
+    ),
+    "model and basis": (
+        LOADED,
+        [("model", "iso281"), ("life_basis", "L10"), ("L_b", 5000)],
+        _merged(LOADED, "output_load", model="iso281", life_basis="L10", life_h=5000),
+    ),
+    "requirements": (
+        EVERYTHING,
+        [("u", 0.5), ("eta", None), ("L_10_req", 2e6), ("m_req", 1), ("t_amb", -5), ("j_req", None), ("n_mot", 2000)],
+        _merged(
+            EVERYTHING,
+            "requirements",
+            utilisation=0.5,
+            efficiency=None,
+            life_h=2e6,
+            weight_kg=1,
+            ambient_temperature_degC=-5,
+            backlash_arcmin=None,
+            motor={"maximum_speed_rpm": 2000, "peak_torque_Nm": 20, "rated_torque_Nm": 8},
+        ),
+    ),
+}
+"""What is saved, what is written into which cell (and row of a block), and the application that this makes."""
+
+
+def test_changed_inputs_recalculate_to_what_the_service_says(catalogue: Catalogue, recalculate: Recalculate) -> None:
+    books = {}
+    for name, (saved, cells, _) in CHANGES.items():
+        books[name] = opened(saved, catalogue)
+        for cell, value, *row in cells:
+            put(books[name], cell, value, *row)
+    fresh = recalculate(books)
+    for name, (_, _, meant) in CHANGES.items():
+        reply = answer(meant, catalogue)
+        assert_agrees(fresh[name], reply)
+        assert same(got(fresh[name], "T_av"), reply["duty"]["average_torque_Nm"]), name
+        assert same(got(fresh[name], "n_out_av"), reply["duty"]["average_output_speed_rpm"]), name
+        chosen = next(c for c in reply["candidates"] if c["designation"] == got(fresh[name], "gear"))
+        for cell, field in {
+            "L_10": "life_L10_h",
+            "L_b50": "bearing_life_L50_h",
+            "T_mot_rms": "motor_rated_torque_Nm",
+        }.items():
+            if chosen[field] is not None:
+                assert same(got(fresh[name], cell), chosen[field]), (name, cell)
+        if chosen["momentary_peak_count"] is not None:
+            assert got(fresh[name], "N_k_max") == chosen["momentary_peak_count"], name
+
+
+def test_another_gear_can_be_chosen_in_the_sheet(catalogue: Catalogue, recalculate: Recalculate) -> None:
+    book = opened(worked_example(), catalogue)
+    put(book, "gear", "HPN-14A-5")
+    fresh = recalculate({"other": book})["other"]
+    gear = catalogue.by_designation["HPN-14A-5"]
+    assert (got(fresh, "T_N"), got(fresh, "T_M")) == (gear.rated_torque_Nm, gear.momentary_peak_torque_Nm)
+    status = {row[0].value: row[5].value for row in fresh["Selection"].iter_rows() if row[5].value}
+    assert status["Load limit 1: average torque [Nm]"] == "fails"
+    assert status["Load limit 2: repeated peak torque [Nm]"] == "passes"
+
+
+def test_german_workbook_calculates_the_same(catalogue: Catalogue, recalculate: Recalculate) -> None:
+    fresh = recalculate({"german": opened(EVERYTHING, catalogue, code="de")})["german"]
+    reply = answer(EVERYTHING, catalogue)
+    rows = {row[0]: row for row in fresh["Kandidaten"].iter_rows(values_only=True)}
+    german = {"suitable": "geeignet", "unsuitable": "ungeeignet", "unrated": "nicht bewertet"}
+    for candidate in reply["candidates"]:
+        assert rows[candidate["designation"]][1] == german[candidate["status"]]
+
+
+def test_what_no_formula_gives_stands_as_saved(supplemented: Supplement, recalculate: Recalculate) -> None:
+    curve = "size,load_coefficient,axial_N,radial_N,source\n20A,1,2200,0,p\n20A,1,1500,900,p\n20A,1,0,1800,p\n"
+    efficiency = "size,ratio,torque_Nm,efficiency,source\n20A,5,10,0.9,p\n20A,5,80,0.95,p\n"
+    catalogue = supplemented(bearing_envelopes=curve, efficiency=efficiency)
+    asked = worked_example(
+        output_load={"radial_N": 700, "model": "digitised"},
+        requirements={"sizes": ["20A"], "motor": {"peak_torque_Nm": 20, "rated_torque_Nm": 8}},
+    )
+    fresh = recalculate({"supplied": opened(asked, catalogue)})["supplied"]
+    assert_agrees(fresh, answer(asked, catalogue))
+
+
+def test_figures_of_another_catalogue_are_not_used(
+    catalogue: Catalogue, supplemented: Supplement, recalculate: Recalculate
+) -> None:
+    export = export_of(EVERYTHING, catalogue)
+    later = supplemented(weights="size,stages,weight_kg,source\n20A,1,3.6,p\n")
+    aged = type(export)(**{**vars(export), "catalogue": later})
+    book = openpyxl.load_workbook(BytesIO(workbook(aged, ENGLISH)))
+    assert_agrees(recalculate({"aged": book})["aged"], export.reply)
+
+
+@pytest.mark.parametrize("text", ["=1+1", "+A1", "@SUM(A1)", '=HYPERLINK("http://evil.example")', "{=1}"])
+def test_no_text_becomes_a_formula(text: str, catalogue: Catalogue) -> None:
+    content = workbook(export_of(worked_example(), catalogue, title=text, reference=text), ENGLISH)
+    sheet = openpyxl.load_workbook(BytesIO(content))["Selection"]
+    assert sheet["A1"].value == text
+    assert sheet["A1"].data_type == "s"
+    assert b"hyperlink" not in b"".join(ZipFile(BytesIO(content)).read(n) for n in ZipFile(BytesIO(content)).namelist())
+
+
+def test_every_phase_of_a_long_cycle_is_there(catalogue: Catalogue) -> None:
+    export = export_of(CASES["ten thousand phases"], catalogue)
+    book = openpyxl.load_workbook(BytesIO(workbook(export, ENGLISH)), read_only=True)
+    torques = [
+        row[0]
+        for row in book["Duty cycle"].iter_rows(min_row=2, max_row=10_001, min_col=2, max_col=2, values_only=True)
+    ]
+    given = [phase.torque_Nm for phase in export.application.duty_cycle.phases]
+    assert torques == pytest.approx(given, rel=1e-15)  # a workbook holds sixteen digits
+
+
+def test_the_same_selection_gives_the_same_bytes(catalogue: Catalogue) -> None:
+    one, other = (workbook(export_of(EVERYTHING, catalogue), ENGLISH) for _ in range(2))
+    assert one == other
+
+
+def test_heads_stay_in_view(catalogue: Catalogue) -> None:
+    book = opened(worked_example(), catalogue)
+    assert book["Candidates"].freeze_panes == "B2"
+    assert book["Duty cycle"].freeze_panes == "A2"
