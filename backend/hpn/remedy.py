@@ -10,10 +10,11 @@ from dataclasses import dataclass
 from functools import reduce
 from typing import Any
 
+from hpn.application import Application
 from hpn.equations import ROUNDING
 from hpn.gear import Gear
 from hpn.reserve import MOVES
-from hpn.wording import N_, Quantity, Rounding, Sentence
+from hpn.wording import N_, Quantity, Rounding, Sentence, rounded
 
 Candidate = Mapping[str, Any]
 
@@ -81,6 +82,39 @@ def _stop(candidate: Candidate, u: float) -> tuple[float | None, int | None]:
         return None, None
     fewer = math.floor(u * count["limit"] * (1 + ROUNDING)) if count and not torque else 0
     return candidate["reserve"]["emergency_stop_torque_Nm"], fewer or None
+
+
+def followed(application: Application, way: Way) -> Application:
+    """The application changed by a way, with its figures as the words print them."""
+    torque, speed, load = (_printed(factor, 3) for factor in (way.torque, way.speed, way.load))
+    phases = tuple(
+        phase.model_copy(
+            update={
+                "torque_Nm": _scaled(phase.torque_Nm, torque),
+                "speed_rpm": _scaled(phase.speed_rpm, speed),
+                "radial_N": _scaled(phase.radial_N, load),
+                "axial_N": _scaled(phase.axial_N, load),
+            }
+        )
+        for phase in application.duty_cycle.phases
+    )
+    parts: dict[str, Any] = {"duty_cycle": application.duty_cycle.model_copy(update={"phases": phases})}
+    if (given := application.output_load) is not None:
+        loads = {name: _scaled(getattr(given, name), load) for name in ("radial_N", "axial_N")}
+        parts["output_load"] = given.model_copy(update={k: v for k, v in loads.items() if v is not None})
+    if (stop := application.emergency_stop) is not None and way.emergency_stop_torque_Nm is not None:
+        limit = _printed(way.emergency_stop_torque_Nm, 4)
+        parts["emergency_stop"] = stop.model_copy(update={"torque_Nm": math.copysign(limit, stop.torque_Nm)})
+    return application.model_copy(update=parts)
+
+
+def _printed(value: float, digits: int) -> float:
+    return value if value == 1 else float(rounded(value, digits, "down"))
+
+
+def _scaled(value: float | None, factor: float) -> float | None:
+    """A figure by a factor, as somebody would type it: without the last digits of floating point."""
+    return value if value is None or factor == 1 else float(f"{value * factor:.12g}")
 
 
 # --- In words ---------------------------------------------------------------------------------------------------------

@@ -5,8 +5,10 @@ from typing import Any
 
 from hypothesis import assume, example, given
 
+from hpn.application import Application
 from hpn.catalogue import Catalogue, load_catalogue
 from hpn.remedy import Way, rooms_of, ways_of
+from hpn.remedy import followed as follow
 from hpn.reserve import MOVES
 from hpn.wording import rounded
 from tests.build import Json, answer, candidate, cycle, phase, worked_example
@@ -112,6 +114,21 @@ def followed(application: Json, way: Way) -> list[Json]:
         return [gentler]
     rarer["emergency_stop"]["count"] = way.emergency_stop_count
     return [gentler, rarer]
+
+
+@given(applications())
+@example(BOTH_LIVES)
+@example(STOPS)
+def test_following_a_way_for_the_reader_passes_every_load_check(application: Json) -> None:
+    """What the page offers as a link: the first way applied to the application itself."""
+    u = reserve_utilisation(application)
+    reply = answer(application, CATALOGUE)
+    for designation in GEARS:
+        for way in ways_of(candidate(reply, designation), u):
+            changed = follow(Application.model_validate(application), way)
+            assume(any(abs(p.speed_rpm) * p.duration_s > 1e-9 for p in changed.duty_cycle.phases))
+            checks = statuses(changed.model_dump(exclude_unset=True), designation)
+            assert {code for code, status in checks.items() if status == "fail"} <= PROPERTIES, (designation, way)
 
 
 @given(applications())
