@@ -236,10 +236,10 @@ def _type(value: Any) -> type[str] | type[int] | type[float]:
 
 
 def _properties(export: Export) -> OPCCoreProperties:
+    """Who made it and what it is called; its time stands in the content, where no library chooses the prefix."""
     properties = OPCCoreProperties()  # type: ignore[no-untyped-call]
     properties.creator = "HPN Select"
     properties.title = export.title or None
-    properties.created = export.created.astimezone(UTC) if export.created else None
     return properties
 
 
