@@ -37,7 +37,9 @@ Rate = Annotated[str, AfterValidator(_rate)]
 class Settings(BaseSettings):
     """Settings of one process; read once at start and passed on, never global."""
 
-    model_config = SettingsConfigDict(env_prefix="HPN_", env_ignore_empty=True, extra="ignore")
+    model_config = SettingsConfigDict(
+        env_prefix="HPN_", env_ignore_empty=True, extra="ignore", hide_input_in_errors=True
+    )
 
     catalogue_folder: Path = Field(HANDBOOK_FOLDER, description="Folder of the catalogue's CSV files.")
     catalogue_supplement: Path | None = Field(

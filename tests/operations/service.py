@@ -1,0 +1,95 @@
+"""The service as its users run it: `hpn serve` in processes of its own, on a free port of loopback."""
+
+import os
+import signal
+import socket
+import subprocess
+import sys
+import time
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import httpx
+import orjson
+
+START_SECONDS = 120
+"""It takes 3 s alone; several of them start beside each other on two cores."""
+HPN = Path(sys.executable).with_name("hpn")
+
+
+@dataclass
+class Service:
+    """A running service."""
+
+    process: "subprocess.Popen[bytes]"
+    port: int
+    log: Path
+    client: httpx.Client = field(repr=False)
+
+    @property
+    def url(self) -> str:
+        """Its address."""
+        return f"http://127.0.0.1:{self.port}"
+
+    def events(self) -> list[dict[str, Any]]:
+        """What it has logged."""
+        return [orjson.loads(line) for line in self.log.read_bytes().split(b"\n")[:-1]]
+
+    def event(self, *, count: int = 1, **fields: str) -> dict[str, Any]:
+        """The event with these fields, once it has been logged `count` times."""
+        for _ in range(START_SECONDS * 10):
+            found = [event for event in self.events() if fields.items() <= event.items()]
+            if len(found) >= count:
+                return found[-1]
+            time.sleep(0.1)
+        raise AssertionError(f"nothing of this in the log: {fields}")
+
+    def terminate(self) -> None:
+        """Ask it to end, and go on."""
+        self.process.send_signal(signal.SIGTERM)
+
+
+def free_port() -> int:
+    """A port that nobody listens on."""
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        port: int = probe.getsockname()[1]
+        return port
+
+
+@contextmanager
+def serving(folder: Path, environment: Mapping[str, str] | None = None, *arguments: str) -> Iterator[Service]:
+    """Run `hpn serve` with a new database in `folder` until the block ends."""
+    port = free_port()
+    log = folder / "service.log"
+    database = f"sqlite:///{folder}/store.sqlite3"
+    clean = {name: value for name, value in os.environ.items() if not name.startswith("HPN_")}
+    command = [str(HPN), "serve", "--port", str(port), *arguments]
+    with log.open("wb") as output:
+        process = subprocess.Popen(
+            command, stdout=output, stderr=output, env={**clean, "HPN_DATABASE_URL": database, **(environment or {})}
+        )
+    with httpx.Client(base_url=f"http://127.0.0.1:{port}", timeout=60, trust_env=False) as client:
+        service = Service(process, port, log, client)
+        try:
+            await_start(service)
+            yield service
+        finally:
+            process.terminate()
+            process.wait(timeout=60)
+
+
+def await_start(service: Service) -> None:
+    """Wait until it answers."""
+    for _ in range(START_SECONDS * 10):
+        try:
+            if service.client.get("/healthz").status_code == 200:
+                return
+        except httpx.TransportError:
+            if service.process.poll() is not None:
+                break
+            time.sleep(0.1)
+    raise RuntimeError(f"the service did not start:\n{service.log.read_text()}")

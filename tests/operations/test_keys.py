@@ -1,0 +1,161 @@
+"""API keys: who may do what, and what a key looks like at rest."""
+
+import base64
+import hashlib
+
+import pytest
+from fastapi import FastAPI
+from pydantic import ValidationError
+from starlette.routing import Route
+
+from hpn.cli import main
+from hpn.web.access import group_of
+from hpn.web.app import create_app
+from hpn.web.keys import holder, new_key
+from hpn.web.settings import Settings
+from tests.build import worked_example
+from tests.operations.conftest import MakeClient
+
+SAVE = {"application": worked_example()}
+REQUESTS = {
+    "calculator": ("POST", "/api/v1/select", worked_example()),
+    "batch": ("POST", "/api/v1/select/batch", {"applications": []}),
+    "writing": ("POST", "/api/v1/selections", SAVE),
+    "listing": ("GET", "/api/v1/selections", None),
+    "deleting": ("DELETE", "/api/v1/selections/AAAAAAAAAAAAAAAAAAAAAA", None),
+    "reading": ("GET", "/api/v1/selections/AAAAAAAAAAAAAAAAAAAAAA", None),
+    "metrics": ("GET", "/metrics", None),
+}
+"""One request of each group; 404 is an answer of the route, and so tells that the gate was open."""
+
+
+@pytest.mark.parametrize("group", REQUESTS)
+@pytest.mark.parametrize("guarded", [*REQUESTS, "batch,writing,listing,deleting"])
+def test_a_guarded_group_needs_a_key_and_any_other_does_not(group: str, guarded: str, make_client: MakeClient) -> None:
+    key, pair = new_key("plm")
+    client = make_client(api_keys=pair, guarded=guarded)
+    method, path, body = REQUESTS[group]
+
+    without = client.request(method, path, json=body)
+    wrong = client.request(method, path, json=body, headers={"X-API-Key": key[:-1]})
+    right = client.request(method, path, json=body, headers={"X-API-Key": key})
+
+    assert right.status_code in (200, 201, 404)
+    expected = 401 if group in guarded.split(",") else right.status_code
+    assert without.status_code == wrong.status_code == expected
+
+
+def test_what_needs_a_key_by_default_is_writing_listing_deleting_and_batch() -> None:
+    assert Settings().guarded == {"writing", "listing", "deleting", "batch"}
+
+
+def test_without_keys_nothing_is_guarded(make_client: MakeClient) -> None:
+    client = make_client()
+
+    assert client.post("/api/v1/selections", json=SAVE).status_code == 201
+    assert client.get("/api/v1/selections").status_code == 200
+
+
+@pytest.mark.parametrize(
+    "header",
+    [
+        lambda key: {"X-API-Key": key},
+        lambda key: {"Authorization": f"Bearer {key}"},
+        lambda key: {"Authorization": f"bearer  {key}"},
+        lambda key: {"Authorization": "Basic " + base64.b64encode(f"me:{key}".encode()).decode()},
+    ],
+)
+def test_a_key_is_sent_in_any_of_three_ways(header: object, make_client: MakeClient) -> None:
+    assert callable(header)
+    key, pair = new_key("plm")
+    client = make_client(api_keys=f"other:{'0' * 64}, {pair}")
+
+    assert client.get("/api/v1/selections", headers=header(key)).status_code == 200
+
+
+@pytest.mark.parametrize("value", ["", "Bearer", "Bearer ", "Basic !!", "Basic bWU=", "Digest x", "Bearer \xff"])
+def test_a_malformed_credential_is_a_401(value: str, make_client: MakeClient) -> None:
+    client = make_client(api_keys=new_key("plm")[1])
+
+    response = client.get("/api/v1/selections", headers={b"Authorization": value.encode("latin-1")})
+
+    assert response.status_code == 401
+
+
+def test_a_401_is_a_problem_that_says_how_to_authenticate(make_client: MakeClient) -> None:
+    client = make_client(api_keys=new_key("plm")[1])
+
+    api = client.get("/api/v1/selections")
+    page = client.post("/selections", data={"link": "/?T=1"})
+
+    assert api.headers["Content-Type"] == page.headers["Content-Type"] == "application/problem+json"
+    assert api.json()["status"] == 401
+    assert api.headers["WWW-Authenticate"] == 'Bearer realm="HPN Select"'
+    assert page.headers["WWW-Authenticate"] == 'Basic realm="HPN Select"'
+
+
+def test_a_key_never_appears_in_its_pair_nor_in_the_settings() -> None:
+    key, pair = new_key("plm")
+    name, digest = pair.split(":")
+
+    assert name == "plm"
+    assert digest == hashlib.sha256(key.encode()).hexdigest()
+    assert key not in repr(Settings(api_keys=pair))
+
+
+def test_every_key_is_compared_even_after_one_has_matched(monkeypatch: pytest.MonkeyPatch) -> None:
+    key, pair = new_key("first")
+    keys = Settings(api_keys=f"{pair} second:{'0' * 64} third:{'1' * 64}").api_keys
+    compared = []
+
+    def compare(one: bytes, other: bytes) -> bool:
+        compared.append(one)
+        return one == other
+
+    monkeypatch.setattr("hpn.web.keys.hmac.compare_digest", compare)
+
+    assert holder(key.encode(), keys) == "first"
+    assert len(compared) == 3
+
+
+@pytest.mark.parametrize("pairs", ["secret", "plm:secret", f"a b:{'0' * 64}", f":{'0' * 64}"])
+def test_what_is_no_pair_stops_the_start_and_is_not_repeated(pairs: str) -> None:
+    with pytest.raises(ValidationError, match="hpn key NAME") as refused:
+        Settings(api_keys=pairs)
+
+    assert "secret" not in refused.value.errors(include_input=False)[0]["msg"]
+
+
+def test_the_command_prints_a_key_and_the_pair_that_admits_it(
+    capsys: pytest.CaptureFixture[str], make_client: MakeClient
+) -> None:
+    assert main(["key", "plm"]) == 0
+    _, key, _, pair = (line.strip() for line in capsys.readouterr().out.splitlines())
+
+    assert make_client(api_keys=pair).get("/api/v1/selections", headers={"X-API-Key": key}).status_code == 200
+    assert main(["key", "no spaces"]) == 2
+
+
+def test_every_route_belongs_to_the_group_that_its_method_and_address_suggest() -> None:
+    open_to_all = {"/healthz", "/readyz", "/openapi.json", "/static/{name:path}"}
+    for method, path in sorted(_routes(create_app())):
+        group = group_of(method, path)
+        if path in open_to_all:
+            assert group is None, path
+        elif path == "/metrics":
+            assert group == "metrics"
+        elif path.endswith("/select/batch"):
+            assert group == "batch"
+        elif "/selections" in path:
+            assert group in ({"listing", "reading"} if method in ("GET", "HEAD") else {"writing", "deleting"}), path
+        else:
+            assert group == "calculator", path
+
+
+def _routes(app: FastAPI) -> set[tuple[str, str]]:
+    """Method and path of every route, of the document and beside it."""
+    documented = {(method.upper(), path) for path, item in app.openapi()["paths"].items() for method in item}
+    direct = {
+        (method, route.path) for route in app.routes if isinstance(route, Route) for method in route.methods or ()
+    }
+    return documented | direct

@@ -1,0 +1,184 @@
+"""What operators see: one JSON line per request, its id, and Prometheus' counts."""
+
+import json
+import re
+from typing import Any
+
+import pytest
+from fastapi import FastAPI
+from prometheus_client.parser import text_string_to_metric_families
+from starlette.requests import Request
+from starlette.responses import Response
+from starlette.testclient import TestClient
+
+from hpn.store import Store
+from hpn.web.app import create_app
+from hpn.web.keys import new_key
+from hpn.web.metrics import CountedStore
+from hpn.web.settings import Settings
+from tests.build import worked_example
+from tests.operations.conftest import MakeClient
+
+SECRET = "4711.25"
+"""A figure that stands in the requests, and must not stand in the log."""
+
+
+def events(text: str) -> list[dict[str, Any]]:
+    """Events of the log."""
+    return [json.loads(line) for line in text.splitlines()]
+
+
+def counts(client: TestClient) -> dict[str, float]:
+    """Samples of /metrics by name and labels."""
+    families = text_string_to_metric_families(client.get("/metrics").text)
+    return {
+        sample.name + "".join(f" {value}" for _, value in sorted(sample.labels.items())): sample.value
+        for family in families
+        for sample in family.samples
+    }
+
+
+def test_a_request_is_one_line_with_route_status_and_duration(
+    make_client: MakeClient, capsys: pytest.CaptureFixture[str]
+) -> None:
+    client = make_client()
+    capsys.readouterr()
+
+    client.get("/api/v1/catalogue/HPN-20A-5", headers={"X-Request-ID": "plm-42"})
+
+    (event,) = events(capsys.readouterr().out)
+    assert event["event"] == "request"
+    assert event["level"] == "info"
+    assert (event["method"], event["route"], event["status"]) == ("GET", "/api/v1/catalogue/{designation}", 200)
+    assert 0 < event["duration_ms"] < 60_000
+    assert event["request_id"] == "plm-42"
+    assert event["timestamp"].endswith("Z")
+
+
+def test_no_input_stands_in_the_log(make_client: MakeClient, capsys: pytest.CaptureFixture[str]) -> None:
+    client = make_client()
+    application = worked_example(emergency_stop={"torque_Nm": float(SECRET)})
+    client.get(f"/?T={SECRET}&n=100&t=1")
+    client.get(f"/?T={SECRET}x&n=100&t=1")
+    client.get(f"/api/v1/{SECRET}")
+    client.get(f"/api/v1/catalogue/{SECRET}")
+    client.post("/api/v1/select", json=application)
+    client.post("/api/v1/select", content=f'{{"{SECRET}'.encode(), headers={"Content-Type": "application/json"})
+    client.post("/api/v1/select/batch", json={"applications": [application, {"reference": SECRET}]})
+    client.post("/api/v1/selections", json={"application": application, "title": SECRET, "reference": SECRET})
+    client.get(f"/api/v1/selections?reference={SECRET}")
+
+    logged = capsys.readouterr().out
+    assert len(events(logged)) >= 9
+    assert SECRET not in logged
+
+
+@pytest.mark.parametrize("given", ["", "a b", "x" * 65, "ü", "a\tb"])
+def test_an_id_that_is_not_well_formed_is_replaced(given: str, make_client: MakeClient) -> None:
+    response = make_client().get("/healthz", headers={b"X-Request-ID": given.encode("latin-1")})
+
+    assert re.fullmatch("[0-9a-f]{32}", response.headers["X-Request-ID"])
+
+
+def test_every_answer_has_an_id_of_its_own(make_client: MakeClient) -> None:
+    client = make_client()
+    paths = ["/", "/healthz", "/nowhere", "/api/v1/catalogue", "/api/v1/select"]
+
+    assert len({client.get(path).headers["X-Request-ID"] for path in paths}) == len(paths)
+
+
+def test_what_is_asked_every_few_seconds_is_not_logged(
+    make_client: MakeClient, capsys: pytest.CaptureFixture[str]
+) -> None:
+    client = make_client()
+    capsys.readouterr()
+    for path in ("/healthz", "/readyz", "/metrics"):
+        client.get(path)
+
+    assert capsys.readouterr().out == ""
+
+
+def test_the_key_that_asked_is_named(make_client: MakeClient, capsys: pytest.CaptureFixture[str]) -> None:
+    key, pair = new_key("plm")
+    make_client(api_keys=pair).get("/api/v1/selections", headers={"X-API-Key": key})
+    logged = capsys.readouterr().out
+
+    assert events(logged)[-1]["key"] == "plm"
+    assert key not in logged
+
+
+def failing(app: FastAPI) -> FastAPI:
+    """The application with a route that fails."""
+
+    async def fail(request: Request) -> Response:
+        raise RuntimeError("a mistake")
+
+    app.router.add_route("/fail", fail)
+    return app
+
+
+def test_a_mistake_is_logged_once_with_its_trace_and_answered_as_a_problem(
+    capsys: pytest.CaptureFixture[str], caplog: pytest.LogCaptureFixture
+) -> None:
+    response = TestClient(failing(create_app(Settings(log_level="error")))).get("/fail")
+
+    assert response.status_code == 500
+    assert response.headers["Content-Type"] == "application/problem+json"
+    assert "X-Request-ID" in response.headers
+    assert "Content-Security-Policy" in response.headers
+    assert "mistake" not in response.json()["title"]
+    (event,) = events(capsys.readouterr().out)
+    assert event["level"] == "error"
+    assert event["request_id"] == response.headers["X-Request-ID"]
+    assert 'RuntimeError("a mistake")' in event["exception"]
+    assert caplog.records == []
+
+
+def test_requests_are_counted_by_route_and_status(make_client: MakeClient) -> None:
+    client = make_client()
+    for name in ("HPN-20A-5", "HPN-14A-5", "none"):
+        client.get(f"/api/v1/catalogue/{name}")
+    client.get("/some/where")
+    client.request("BREW", "/healthz")
+
+    found = counts(client)
+    route = "/api/v1/catalogue/{designation}"
+    assert found[f"hpn_http_requests_total GET {route} 200"] == 2
+    assert found[f"hpn_http_requests_total GET {route} 404"] == 1
+    assert found["hpn_http_requests_total GET none 404"] == 1
+    assert found["hpn_http_requests_total other /healthz 405"] == 1
+    assert found[f"hpn_http_request_duration_seconds_count GET {route}"] == 3
+
+
+def test_selections_are_counted_by_verdict_wherever_they_are_asked_for(make_client: MakeClient) -> None:
+    client = make_client()
+    good, heavy = worked_example(), worked_example(requirements={"weight_kg": 0.001})
+    client.post("/api/v1/select", json=good)
+    client.post("/api/v1/select", json=heavy)
+    client.post("/api/v1/select/batch", json={"applications": [good, heavy, {}]})
+    client.post("/api/v1/selections", json={"application": good})
+
+    found = counts(client)
+    assert found["hpn_selections_total selected"] == 3
+    assert found["hpn_selections_total none"] == 2
+    assert found["hpn_selections_total refused"] == 1
+
+
+def test_operations_of_the_store_are_counted_and_its_failures(make_client: MakeClient) -> None:
+    client = make_client()
+    id = client.post("/api/v1/selections", json={"application": worked_example()}).json()["id"]
+    client.get(f"/api/v1/selections/{id}")
+    client.get("/api/v1/selections")
+    client.delete(f"/api/v1/selections/{id}")
+    found = counts(client)
+    assert [found[f"hpn_store_operations_total {name} ok"] for name in ("save", "find", "page", "delete")] == [1] * 4
+
+    broken = make_client(database_url="postgresql://nobody@127.0.0.1:1/none", database_seconds=1)
+    assert broken.get("/api/v1/selections").status_code == 503
+    assert counts(broken)["hpn_store_operations_total page failed"] == 1
+
+
+def test_every_operation_of_the_store_is_counted() -> None:
+    operations = {name for name in vars(Store) if not name.startswith("_")} - {"open", "close"}
+
+    assert operations == {name for name in vars(CountedStore) if not name.startswith("_")}

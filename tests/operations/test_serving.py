@@ -1,0 +1,149 @@
+"""`hpn serve` as its users run it: processes, limits of the server, and its end."""
+
+import http.client
+import json
+import signal
+import socket
+import time
+from collections.abc import Iterator
+from contextlib import closing, contextmanager
+from pathlib import Path
+
+import httpx
+import orjson
+import pytest
+
+from tests.build import worked_example
+from tests.operations.service import Service, serving
+
+SELECT = "/api/v1/select"
+NDJSON = {"Content-Type": "application/x-ndjson"}
+LINE = orjson.dumps({"reference": "axis", **worked_example(requirements={"ratios": [5]})}) + b"\n"
+CHUNK = b"%x\r\n%b\r\n" % (len(LINE), LINE)
+ENDED = (0, -signal.SIGTERM)
+"""uvicorn ends its own process with the signal that it was sent, as shells expect."""
+
+
+def answer_to(service: Service, *parts: bytes) -> bytes:
+    """First bytes of the answer to raw bytes."""
+    with socket.create_connection(("127.0.0.1", service.port), 20) as connection:
+        try:
+            for part in parts:
+                connection.sendall(part)
+            return connection.recv(200)
+        except ConnectionError:
+            return b""
+
+
+@pytest.mark.parametrize(
+    "head",
+    [
+        b"GET / HTTP/1.1\r\nHost: x\r\nX-Long: " + b"a" * 1_000_000,
+        b"GET / HTTP/1.1\r\n" + b"A: b\r\n" * 101 + b"\r\n",
+        b"GET /?" + b"a" * 200_000 + b" HTTP/1.1\r\n\r\n",
+    ],
+)
+def test_a_head_that_is_too_large_is_refused_while_it_arrives(head: bytes, service: Service) -> None:
+    # a client that still sends may see the connection reset before it reads the answer
+    assert answer_to(service, head).startswith(b"HTTP/1.1 431") or len(head) > 300_000
+    assert service.client.get("/healthz").status_code == 200
+
+
+def test_the_longest_link_is_no_such_head(service: Service) -> None:
+    assert service.client.get("/?T=" + "1" * 59_000).status_code == 422
+    assert service.client.get("/?T=" + "1" * 61_000).status_code == 414
+
+
+def test_a_body_of_many_small_chunks_is_no_such_head(service: Service) -> None:
+    response = service.client.post(
+        f"{SELECT}/batch", content=(LINE[i : i + 1] for i in range(len(LINE))), headers=NDJSON
+    )
+
+    assert response.json()["status"] == "ok"
+
+
+def test_the_server_does_not_trust_a_forwarded_address(service: Service) -> None:
+    service.client.get("/api/v1/catalogue", headers={"X-Forwarded-For": "192.0.2.1", "X-Request-ID": "forwarded"})
+
+    assert service.event(request_id="forwarded")["client"] == "127.0.0.1"
+
+
+def test_a_client_that_sends_all_before_it_reads_gets_all(service: Service) -> None:
+    # the answers, some 20 MB, exceed what sockets of both sides hold, so a server without a spool would stand still
+    count = 60_000
+    with closing(http.client.HTTPConnection("127.0.0.1", service.port, timeout=120)) as connection:
+        connection.request("POST", f"{SELECT}/batch", (b'{"reference":"%d"}\n' % n for n in range(count)), NDJSON)
+        with connection.getresponse() as response:
+            references = [orjson.loads(line)["reference"] for line in response]
+
+    assert references == [str(number) for number in range(count)]
+
+
+@contextmanager
+def batch_under_way(service: Service) -> Iterator[tuple[http.client.HTTPConnection, http.client.HTTPResponse]]:
+    """A streamed batch whose first line is answered, and whose end is still to come."""
+    connection = http.client.HTTPConnection("127.0.0.1", service.port, timeout=60)
+    connection.putrequest("POST", f"{SELECT}/batch")
+    connection.putheader("Content-Type", "application/x-ndjson")
+    connection.putheader("Transfer-Encoding", "chunked")
+    connection.endheaders(CHUNK)
+    with closing(connection), connection.getresponse() as response:
+        assert json.loads(response.readline())["selected"] == "HPN-20A-5"
+        yield connection, response
+
+
+def test_what_runs_is_finished_before_the_end(tmp_path: Path) -> None:
+    with serving(tmp_path) as service, batch_under_way(service) as (connection, response):
+        service.terminate()
+        wait_until_closed(service)
+        for _ in range(20):
+            connection.send(CHUNK)
+            time.sleep(0.05)
+        connection.send(b"0\r\n\r\n")
+
+        rest = response.read().splitlines()
+        assert [json.loads(line)["selected"] for line in rest] == ["HPN-20A-5"] * 20
+        assert service.process.wait(timeout=30) in ENDED
+
+
+def wait_until_closed(service: Service) -> None:
+    """Wait until it takes no new connection."""
+    for _ in range(200):
+        try:
+            httpx.get(f"{service.url}/healthz", trust_env=False)
+        except httpx.TransportError:
+            return
+        time.sleep(0.05)
+    raise AssertionError("it still takes connections")
+
+
+def test_the_end_does_not_wait_for_ever(tmp_path: Path) -> None:
+    with serving(tmp_path, {"HPN_SHUTDOWN_SECONDS": "1"}) as service, batch_under_way(service):
+        service.terminate()
+
+        assert service.process.wait(timeout=20) in ENDED
+
+
+def test_several_workers_serve_count_together_and_end(tmp_path: Path) -> None:
+    with serving(tmp_path, {"HPN_WORKERS": "2"}) as service:
+        service.event(event="Application startup complete.", count=2)
+        for _ in range(40):  # each on a connection of its own, so that both workers get some
+            httpx.post(service.url + SELECT, json=worked_example(), trust_env=False).raise_for_status()
+        saved = service.client.post("/api/v1/selections", json={"application": worked_example()})
+        counted = service.client.get("/metrics").text
+
+        assert saved.status_code == 201
+        assert f'hpn_http_requests_total{{method="POST",route="{SELECT}",status="200"}} 40.0' in counted
+        assert 'hpn_selections_total{verdict="selected"} 41.0' in counted
+        assert 'hpn_store_operations_total{operation="save",outcome="ok"} 1.0' in counted
+
+        service.terminate()
+        assert service.process.wait(timeout=30) == 0
+        assert sum(event["event"].startswith("Finished server process") for event in service.events()) == 2
+
+
+def test_everything_that_is_logged_is_json(service: Service) -> None:
+    service.client.get("/api/v1/catalogue", headers={"X-Request-ID": "last"})
+    service.event(request_id="last")
+
+    assert {"event", "level", "timestamp"} <= set.intersection(*(set(event) for event in service.events()))

@@ -1,0 +1,298 @@
+"""Batches as newline-delimited JSON: the same answers, line by line, while the body still arrives."""
+
+import asyncio
+import json
+from collections.abc import Awaitable, Callable, Iterable
+from typing import Any
+
+import orjson
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from starlette.types import Message
+
+from hpn.catalogue import Catalogue
+from hpn.web.batch import batch_lines, line_evaluator
+from hpn.web.metrics import Metrics
+from hpn.web.streaming import MEMORY_BYTES, Line, LineSplitter, LineStream, Spool
+from tests.build import worked_example
+from tests.operations.conftest import MakeClient
+
+PATH = "/api/v1/select/batch"
+NDJSON = {"Content-Type": "application/x-ndjson"}
+ITEMS: list[Any] = [
+    {"reference": "axis-1", **worked_example()},
+    {"reference": "axis-2"},
+    {"reference": "axis-3", **worked_example(requirements={"ratios": [6]})},
+    {"reference": 4, **worked_example()},
+    [1, 2],
+    {"reference": "axis-ü", **worked_example(requirements={"ratios": [5]})},
+]
+
+
+def lines_of(content: bytes) -> list[Any]:
+    """Result lines."""
+    assert content.endswith(b"\n") or not content
+    return [json.loads(line) for line in content.splitlines()]
+
+
+def test_lines_are_answered_in_order_as_the_json_form_answers_them(make_client: MakeClient) -> None:
+    client = make_client()
+    body = "\n".join(json.dumps(item) for item in ITEMS)
+
+    streamed = client.post(PATH, content=body.encode(), headers=NDJSON)
+    whole = client.post(PATH, json={"applications": ITEMS})
+
+    assert streamed.status_code == 200
+    assert streamed.headers["Content-Type"] == "application/x-ndjson"
+    assert lines_of(streamed.content) == whole.json()["results"]
+    assert [line["status"] for line in lines_of(streamed.content)] == ["ok", "error", "error", "error", "error", "ok"]
+
+
+@pytest.mark.parametrize("end", [b"", b"\n", b"\r\n", b"\n\n \n"])
+@pytest.mark.parametrize("between", [b"\n", b"\r\n", b"\n\n\t\n"])
+def test_line_ends_of_any_kind_and_blank_lines_make_no_difference(
+    between: bytes, end: bytes, make_client: MakeClient
+) -> None:
+    one = orjson.dumps(ITEMS[-1])
+
+    response = make_client().post(PATH, content=b"\xef\xbb\xbf" + one + between + one + end, headers=NDJSON)
+
+    assert [line["selected"] for line in lines_of(response.content)] == ["HPN-20A-5"] * 2
+
+
+def test_no_line_gives_no_line(make_client: MakeClient) -> None:
+    assert make_client().post(PATH, content=b"\n", headers=NDJSON).content == b""
+
+
+@pytest.mark.parametrize(
+    ("line", "status"),
+    [(b"{", 400), (b"\xff", 400), (b"NaN", 400), (b"null", 422), (b"[" * 5000, 400), (b'"' + b"a" * 3000 + b'"', 413)],
+)
+def test_a_bad_line_gets_its_problem_and_its_neighbours_their_answers(
+    line: bytes, status: int, make_client: MakeClient
+) -> None:
+    good = orjson.dumps(ITEMS[0])
+    client = make_client(maximum_body_bytes=2000 if status == 413 else 2_000_000)
+
+    before, bad, after = lines_of(client.post(PATH, content=good + b"\n" + line + b"\n" + good, headers=NDJSON).content)
+
+    assert bad["reference"] is None
+    assert bad["problem"]["status"] == status
+    assert before["status"] == after["status"] == "ok"
+
+
+def test_more_lines_than_the_json_form_takes(make_client: MakeClient) -> None:
+    client = make_client(maximum_batch_count=3)
+
+    assert len(lines_of(client.post(PATH, content=b"{}\n" * 1000, headers=NDJSON).content)) == 1000
+
+
+def test_another_content_type_is_a_415(make_client: MakeClient) -> None:
+    assert make_client().post(PATH, content=b"{}", headers={"Content-Type": "text/csv"}).status_code == 415
+
+
+@given(st.lists(st.sampled_from([b"abc", b"", b" ", b"x" * 8, b"x" * 9, b"y" * 40, b"\r"])), st.integers(1, 20))
+def test_cutting_does_not_depend_on_how_the_body_is_cut(parts: list[bytes], size: int) -> None:
+    body = b"\n".join(parts)
+    splitter = LineSplitter(8)
+
+    lines: list[Line] = []
+    for start in range(0, len(body), size):
+        lines += splitter.feed(body[start : start + size])
+    lines += splitter.rest()
+
+    assert lines == [None if len(part) > 8 else part.strip() for part in parts if len(part) > 8 or part.strip()]
+
+
+@given(st.lists(st.integers(0, MEMORY_BYTES) | st.just(-1), max_size=30))
+def test_the_spool_gives_back_what_it_got_in_order(steps: list[int]) -> None:
+    spool, expected, got = Spool(), b"", b""
+    for number, size in enumerate(steps):
+        if size >= 0:
+            piece = bytes([number]) * size
+            spool.write(piece)
+            expected += piece
+        else:
+            got += spool.read()
+        assert len(spool) == len(expected) - len(got)
+    while piece := spool.read():
+        got += piece
+    spool.close()
+
+    assert got == expected
+
+
+# --- Both directions at once, by hand ---------------------------------------------------------------------------------
+
+
+def echo(lines: Iterable[Line]) -> bytes:
+    """Answers every line with itself."""
+    return b"".join((line or b"too long") + b"\n" for line in lines)
+
+
+class Peer:
+    """A client as the server's protocol shows it."""
+
+    def __init__(self) -> None:
+        self.incoming: asyncio.Queue[Message] = asyncio.Queue()
+        self.reading = asyncio.Event()
+        self.reading.set()
+        self.outgoing: list[Message] = []
+        self.asked = 0
+
+    def send_body(self, body: bytes, *, more: bool = True) -> None:
+        """Part of the body."""
+        self.incoming.put_nowait({"type": "http.request", "body": body, "more_body": more})
+
+    async def receive(self) -> Message:
+        """For the application."""
+        self.asked += 1
+        return await self.incoming.get()
+
+    async def send(self, message: Message) -> None:
+        """For the application."""
+        if message["type"] == "http.response.body":
+            await self.reading.wait()
+        self.outgoing.append(message)
+
+    @property
+    def received(self) -> bytes:
+        """Body of the answer so far."""
+        return b"".join(message.get("body", b"") for message in self.outgoing)
+
+    @property
+    def complete(self) -> bool:
+        """Whether the answer has its end."""
+        return self.outgoing[-1].get("more_body") is False
+
+
+def stream(evaluate: Callable[[Any], bytes] = echo, *, spool: int = 10_000_000, seconds: float = 20) -> LineStream:
+    """A stream with small limits."""
+    return LineStream(evaluate, maximum_line_bytes=100_000, maximum_spool_bytes=spool, seconds=seconds)
+
+
+async def until(condition: Callable[[], bool]) -> None:
+    """Wait for something that others do."""
+    async with asyncio.timeout(20):
+        while not condition():
+            await asyncio.sleep(0.005)
+
+
+def running(response: LineStream, peer: Peer) -> "asyncio.Task[None]":
+    """Run a stream."""
+    call: Awaitable[None] = response({"type": "http"}, peer.receive, peer.send)
+    return asyncio.ensure_future(call)
+
+
+@pytest.mark.anyio
+async def test_a_line_is_answered_before_the_next_one_is_sent() -> None:
+    peer = Peer()
+    task = running(stream(), peer)
+    for number in range(5):
+        peer.send_body(b"%d\n" % number)
+        await until(lambda number=number: peer.received.endswith(b"%d\n" % number))  # type: ignore[misc]
+    peer.send_body(b"last", more=False)
+    await task
+
+    assert peer.received == b"0\n1\n2\n3\n4\nlast\n"
+    assert peer.complete
+
+
+@pytest.mark.anyio
+async def test_a_client_that_sends_everything_before_it_reads_gets_everything() -> None:
+    peer, line = Peer(), b"x" * 50_000 + b"\n"
+    peer.reading.clear()
+    task = running(stream(), peer)
+    for _ in range(100):
+        peer.send_body(line)
+    peer.send_body(b"", more=False)
+    await until(lambda: peer.incoming.empty() and peer.asked > 101)
+    peer.reading.set()
+    await task
+
+    assert peer.received == line * 100
+    assert peer.complete
+
+
+@pytest.mark.anyio
+async def test_beyond_the_spool_nothing_more_is_read_until_the_client_reads() -> None:
+    peer, line = Peer(), b"x" * 50_000 + b"\n"
+    task = running(stream(spool=200_000), peer)
+    peer.send_body(line)
+    await until(lambda: peer.received == line)
+    peer.reading.clear()
+    for _ in range(100):
+        peer.send_body(line)
+    await asyncio.sleep(0.3)
+    taken = peer.asked
+    await asyncio.sleep(0.2)
+    assert peer.asked == taken < 20
+
+    peer.reading.set()
+    peer.send_body(b"", more=False)
+    await task
+    assert peer.received == line * 101
+
+
+@pytest.mark.anyio
+@pytest.mark.parametrize("sent", ["part", "everything"])
+async def test_work_ends_when_the_client_leaves(sent: str) -> None:
+    peer, answered = Peer(), 0
+
+    def count(lines: Any) -> bytes:
+        nonlocal answered
+        answered += len(lines)
+        return echo(lines)
+
+    peer.reading.clear()
+    task = running(stream(count), peer)
+    peer.send_body(b"1\n", more=sent == "part")
+    peer.incoming.put_nowait({"type": "http.disconnect"})
+    await until(lambda: answered == 1)
+    await until(lambda: peer.incoming.empty())
+    peer.reading.set()  # as the server does: what is sent to nobody vanishes
+    await asyncio.wait_for(task, 10)
+
+    assert answered == 1
+
+
+@pytest.mark.anyio
+async def test_a_client_that_falls_silent_is_told_so() -> None:
+    peer = Peer()
+    peer.send_body(b"1\n")
+    await running(stream(seconds=0.3), peer)
+
+    first, last = peer.received.splitlines()
+    assert first == b"1"
+    assert orjson.loads(last)["problem"]["status"] == 408
+    assert peer.complete
+
+
+@pytest.mark.anyio
+async def test_a_client_that_never_reads_is_cut_off() -> None:
+    peer = Peer()
+    peer.reading.clear()
+    peer.send_body(b"1\n", more=False)
+    await asyncio.wait_for(running(stream(seconds=0.3), peer), 10)
+
+    assert not peer.complete
+
+
+@pytest.mark.anyio
+async def test_a_mistake_of_ours_is_raised_and_leaves_the_answer_without_its_end() -> None:
+    def fail(lines: Any) -> bytes:
+        raise RuntimeError("mistake")
+
+    peer = Peer()
+    peer.send_body(b"1\n", more=False)
+    with pytest.raises(RuntimeError, match="mistake"):
+        await running(stream(fail), peer)
+
+    assert not peer.complete
+
+
+def test_the_evaluator_gives_the_lines_of_the_json_form(catalogue: Catalogue) -> None:
+    answers = line_evaluator(catalogue, Metrics(), 100)([orjson.dumps(item) for item in ITEMS])
+
+    assert lines_of(answers) == json.loads(json.dumps(batch_lines(ITEMS, catalogue)))
