@@ -11,7 +11,7 @@ UV := $(VENV)/uv/bin/uv
 MODULES := frontend/node_modules
 ASSETS := frontend/dist/manifest.json
 # What is installed: enough to run, or all of it. Once a tree has the tools, `make run` must not take them away again.
-FOR := $(if $(filter check test bench screenshots browser,$(MAKECMDGOALS))$(wildcard $(VENV)/.dev),dev,run)
+FOR := $(if $(filter check test bench screenshots browser messages,$(MAKECMDGOALS))$(wildcard $(VENV)/.dev),dev,run)
 PAGE_FOR := $(if $(filter test,$(MAKECMDGOALS))$(wildcard $(MODULES)/.dev),dev,run)
 ENVIRONMENT := $(VENV)/.$(FOR)
 PACKAGES := $(MODULES)/.$(PAGE_FOR)
@@ -24,7 +24,7 @@ endif
 export UV_SYSTEM_CERTS ?= true
 export NODE_USE_SYSTEM_CA ?= 1
 
-.PHONY: run install assets test check bench screenshots browser office lock clean
+.PHONY: run install assets test check bench screenshots browser office messages lock clean
 .DELETE_ON_ERROR:
 
 run: install
@@ -98,6 +98,10 @@ office:
 
 COMPILE := pip compile --quiet --universal --python-version 3.11 --generate-hashes --no-header --no-annotate --no-config \
 	--no-emit-index-url --no-emit-find-links $(UPGRADE)
+
+# Texts of code and templates into the catalogues of translations; prints what is left to translate.
+messages: $(ENVIRONMENT)
+	$(BIN)/python -m tests.messages
 
 lock: $(UV) | $(NODE)
 	$(UV) $(COMPILE) pyproject.toml --output-file requirements.lock

@@ -13,6 +13,7 @@ from pydantic_core import PydanticCustomError
 
 from hpn.gear import canonical_size
 from hpn.units import suffix_of, symbol_of
+from hpn.wording import Sentence
 
 MAXIMUM_PHASES = 10_000
 
@@ -216,9 +217,13 @@ WORKED_EXAMPLE: Mapping[str, Any] = {
 """Inputs as printed on the handbook's page 18."""
 
 
-class InputError(ValueError):
-    """Input that is well formed but can't be answered; `problems` are (location, detail) pairs."""
+Location = tuple[str | int, ...]
 
-    def __init__(self, *problems: tuple[tuple[str | int, ...], str]) -> None:
-        super().__init__("; ".join(detail for _, detail in problems))
-        self.problems = problems
+
+class InputError(ValueError):
+    """Input that is well formed but can't be answered; `problems` are (location, detail) pairs, in English."""
+
+    def __init__(self, *sentences: tuple[Location, Sentence]) -> None:
+        self.sentences = sentences
+        self.problems = tuple((location, sentence.text) for location, sentence in sentences)
+        super().__init__("; ".join(detail for _, detail in self.problems))

@@ -9,6 +9,7 @@ from hpn import bearing
 from hpn.application import BearingModel, InputError, Model
 from hpn.catalogue import Catalogue
 from hpn.gear import Gear
+from hpn.wording import Sentence
 
 
 class EnvelopeQuery(Model):
@@ -61,12 +62,18 @@ def envelope_curve(
         raise InputError(
             (
                 ("model",),
-                f"there are no curve points of {gear.name}: put them into bearing_envelopes.csv of a supplement",
+                Sentence(
+                    "there are no curve points of {name}: put them into bearing_envelopes.csv of a supplement",
+                    {"name": gear.name},
+                ),
             )
         )
     radial_limit, axial_limit = gear.dynamic_radial_load_N, gear.dynamic_axial_load_N
     if model != "digitised" and (radial_limit is None or axial_limit is None):
-        raise InputError((("size",), f"the bearing limits of {gear.name} are not published, so it has no envelope"))
+        unpublished = Sentence(
+            "the bearing limits of {name} are not published, so it has no envelope", {"name": gear.name}
+        )
+        raise InputError((("size",), unpublished))
     radial, axial = bearing.envelope(
         model=model,
         radial_limit_N=radial_limit or 0.0,  # of no account along supplied points

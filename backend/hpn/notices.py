@@ -109,10 +109,12 @@ def _bearing(evaluation: Evaluation, index: int) -> list[Notice]:
     if load is None or case.bearing is None:
         return []
     standing = (
-        "The output bearing is judged along curve points that you supplied."
+        N_("The output bearing is judged along curve points that you supplied.")
         if load.model == "digitised"
-        else "The envelope of the output bearing is computed between the two published limits; the handbook's printed "
-        "curve was not available."
+        else N_(
+            "The envelope of the output bearing is computed between the two published limits; the handbook's printed "
+            "curve was not available."
+        )
     )
     notices = [
         _notice("bearing_envelope_computed" if load.model != "digitised" else "bearing_envelope_supplied", standing),

@@ -12,7 +12,7 @@ from msgspec.json import decode
 from numpy.typing import NDArray
 
 from hpn import ENGINE_VERSION
-from hpn.application import Application, InputError
+from hpn.application import Application, InputError, Location
 from hpn.bearing import L50_PER_L10
 from hpn.catalogue import Catalogue, GearList
 from hpn.checks import ABSENT, FAIL, NOT_RATED, PASS, STATUS, Evaluation, evaluate
@@ -21,7 +21,7 @@ from hpn.explanations import EXPLANATIONS
 from hpn.notices import Notice, notices_of
 from hpn.reply import CandidateRow, CheckRow, DutyRow, ReserveRow, SelectReply, encode
 from hpn.reserve import reserve_of
-from hpn.wording import N_
+from hpn.wording import N_, Sentence
 
 SUITABLE, UNSUITABLE, UNRATED = range(3)
 CANDIDATE_STATUS = ("suitable", "unsuitable", "unrated")
@@ -235,14 +235,17 @@ def select(application: Application, catalogue: Catalogue) -> Selection:
     return Selection(application, catalogue, evaluation, rank(evaluation))
 
 
+NOT_THERE = N_("the catalogue has no {value}; there are {listed}")
+
+
 def candidates_of(application: Application, catalogue: Catalogue) -> GearList:
     """Gears that `ratios` and `sizes` leave; raises InputError as `select` does."""
     sizes, ratios = application.requirements.sizes, application.requirements.ratios
-    problems: list[tuple[tuple[str | int, ...], str]] = []
+    problems: list[tuple[Location, Sentence]] = []
     for name, wanted, there in (("sizes", sizes, catalogue.sizes), ("ratios", ratios, catalogue.ratios)):
         listed = ", ".join(str(value) for value in there)
         problems += [
-            (("requirements", name, index), f"the catalogue has no {value}; there are {listed}")
+            (("requirements", name, index), Sentence(NOT_THERE, {"value": str(value), "listed": listed}))
             for index, value in enumerate(wanted or ())
             if value not in there
         ]
@@ -255,15 +258,20 @@ def candidates_of(application: Application, catalogue: Catalogue) -> GearList:
             for size in sizes or ()
         )
         raise InputError(
-            (("requirements", "ratios"), f"no gear has such a size and ratio together; there are {offered}")
+            (
+                ("requirements", "ratios"),
+                Sentence("no gear has such a size and ratio together; there are {offered}", {"offered": offered}),
+            )
         )
     load = application.loads
     if load is not None and load.model == "digitised" and not any(gears.curves):
         raise InputError(
             (
                 ("output_load", "model"),
-                "no candidate has points of a printed curve: put them into bearing_envelopes.csv of a catalogue "
-                "supplement (setting HPN_CATALOGUE_SUPPLEMENT), or choose linear or iso281",
+                Sentence(
+                    "no candidate has points of a printed curve: put them into bearing_envelopes.csv of a catalogue "
+                    "supplement (setting HPN_CATALOGUE_SUPPLEMENT), or choose linear or iso281"
+                ),
             )
         )
     return gears
@@ -276,18 +284,18 @@ def check_definitions(codes: tuple[str, ...]) -> Raw:
 
 
 REASONS = {
-    "suitable": N_("Every check passes; the closest is %(check)s at %(percent)s %%%% of its limit."),
-    "unsuitable": N_("%(check)s is at %(percent)s %%%% of its limit."),
-    "unsuitable_more": N_("%(check)s is at %(percent)s %%%% of its limit; checks that fail: %(failed)s."),
+    "suitable": N_("Every check passes; the closest is {check} at {percent} of its limit."),
+    "unsuitable": N_("{check} is at {percent} of its limit."),
+    "unsuitable_more": N_("{check} is at {percent} of its limit; checks that fail: {failed}."),
     "no_stop_allowed": N_("The emergency stop is so hard that not one is allowed (equation 17.9)."),
-    "unrated": N_("Not rated: figures of %(name)s that the checks need are not published."),
+    "unrated": N_("Not rated: figures of {name} that the checks need are not published."),
 }
-"""Why a candidate stands where it does; English msgids."""
+"""Why a candidate stands where it does: templates of sentences."""
 
 
 def _reason(verdict: int, size: str, check: str, failed: int, percent: float) -> str:
     if verdict == UNRATED:
-        return REASONS["unrated"] % {"name": f"HPN-{size}"}
+        return REASONS["unrated"].format(name=f"HPN-{size}")
     return REASONS["no_stop_allowed"] if percent == np.inf else _reason_template(verdict, check, failed) % percent
 
 
@@ -295,4 +303,4 @@ def _reason(verdict: int, size: str, check: str, failed: int, percent: float) ->
 def _reason_template(verdict: int, check: str, failed: int) -> str:
     """Reason with the place of the percentage left open: there are few of these, and many candidates."""
     key = "suitable" if verdict == SUITABLE else "unsuitable" if failed == 1 else "unsuitable_more"
-    return REASONS[key] % {"check": EXPLANATIONS[check].title, "percent": "%s", "failed": failed}
+    return REASONS[key].format(check=EXPLANATIONS[check].title, percent="%s %%", failed=failed)

@@ -4,6 +4,22 @@
 const formOf = () => document.getElementById("application");
 const contentOf = (form) => new URLSearchParams(new FormData(form)).toString();
 
+// --- Another language or other units ----------------------------------------------------------------------------------
+
+// The way back leads to what the form says, finished or not; the server turns it into the units of the link.
+document.addEventListener("submit", async (event) => {
+  const settings = event.target;
+  const form = formOf();
+  if (!form || !settings.matches("form.settings")) return;
+  if (form.method === "get") {
+    settings.elements.back.value = `/?${contentOf(form)}${form.elements.written ? "" : "&written=en"}`;
+    return;
+  }
+  event.preventDefault(); // a cycle too long for an address is posted again
+  await fetch(settings.action, { method: "POST", body: new URLSearchParams(new FormData(settings, event.submitter)), redirect: "manual" });
+  form.submit();
+});
+
 // --- Answers that come too late ---------------------------------------------------------------------------------------
 
 document.addEventListener("htmx:config:request", (event) => {

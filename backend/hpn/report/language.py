@@ -5,14 +5,15 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from functools import cache, cached_property
-from pathlib import Path
 from string import Formatter
 
 from babel.dates import format_date
-from babel.messages.pofile import read_po
 from babel.numbers import get_decimal_symbol
 
-LANGUAGES = ("en", "de")
+from hpn.translation import LANGUAGES, texts
+
+__all__ = ["LANGUAGES", "Language", "language"]
+
 _DATES = {"en": "en_GB", "de": "de_DE"}
 GROUP = "\N{NARROW NO-BREAK SPACE}"
 _SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
@@ -45,7 +46,7 @@ class Language:
     @cached_property
     def _templates(self) -> list[tuple[re.Pattern[str], str]]:
         """Templates with the most fixed text first, so that a loose one takes nothing from a strict one."""
-        templates = sorted((m for m in self.messages if "{" in m), key=len, reverse=True)
+        templates = sorted((m for m in self.messages if "{" in m and _telling(m)), key=len, reverse=True)
         return [(_pattern(template), _plain(self.messages[template])) for template in templates]
 
     @cached_property
@@ -119,6 +120,11 @@ def _extreme(value: float) -> bool:
     return abs(value) >= 1e10 or 0 < abs(value) < 1e-4
 
 
+def _telling(template: str) -> bool:
+    """Whether the fixed parts are enough to know the template by."""
+    return sum(letter.isalpha() for literal, *_ in Formatter().parse(template) for letter in literal) >= 9
+
+
 def _pattern(template: str) -> re.Pattern[str]:
     parts = []
     for literal, name, _, _ in Formatter().parse(template):
@@ -137,10 +143,4 @@ def _plain(template: str) -> str:
 @cache
 def language(code: str) -> Language:
     """One of LANGUAGES. Raises KeyError for another code."""
-    if code not in LANGUAGES:
-        raise KeyError(code)
-    path = Path(__file__).parent / f"{code}.po"
-    if not path.exists():  # English is the language of the texts themselves
-        return Language(code)
-    with path.open("rb") as file:
-        return Language(code, {str(m.id): str(m.string) for m in read_po(file) if m.id and m.string})
+    return Language(code, texts(code))

@@ -34,6 +34,7 @@ from hpn.web.access import Gate
 from hpn.web.logs import make_logger
 from hpn.web.metrics import CountedStore, Metrics
 from hpn.web.observation import Observation
+from hpn.web.readers import Readers
 from hpn.web.settings import Settings
 
 SECURITY_HEADERS = [
@@ -116,6 +117,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
 
 def _add_middleware(app: FastAPI, settings: Settings, metrics: Metrics) -> None:
     """Add what every request passes, from the inside out."""
+    app.add_middleware(Readers)
     app.add_middleware(Gate, settings=settings)
     if settings.cors_origins:
         app.add_middleware(CORSMiddleware, allow_origins=settings.cors_origins, **CORS)

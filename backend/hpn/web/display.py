@@ -4,7 +4,7 @@ import re
 
 from markupsafe import Markup, escape
 
-from hpn.web.links import N_
+from hpn.wording import N_
 
 GROUP = "\N{NARROW NO-BREAK SPACE}"
 _SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
@@ -117,6 +117,16 @@ def figure(value: float | None) -> str:
     if magnitude >= 100:
         return _grouped(f"{value:.0f}")
     return f"{value:#.3g}".rstrip(".")
+
+
+def plain(number: str) -> str:
+    """A number that was rounded already, such as `2e+04` or `1234.5`, for reading."""
+    if "e" not in number:
+        return _grouped(number) if number[-1:].isdigit() else number
+    mantissa, exponent = number.split("e")
+    if -5 <= int(exponent) < 10:
+        return _grouped(f"{float(number):.12f}".rstrip("0").rstrip("."))
+    return f"{mantissa}·10{str(int(exponent)).translate(_SUPERSCRIPT)}"
 
 
 def percent(utilisation: float | None) -> str:

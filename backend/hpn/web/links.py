@@ -6,14 +6,20 @@ link. Names are the handbook's symbols, values are in the units of the API.
 
 import difflib
 import re
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from typing import Any, Literal
 from urllib.parse import quote
 
 from pydantic import BaseModel, ValidationError
 
 from hpn.application import MAXIMUM_PHASES, Application, OutputLoad
+from hpn.units import suffix_of
+from hpn.web import entries
+from hpn.web.entries import WAS, WRITTEN, Entry
+from hpn.web.messages import N_, Message
+from hpn.web.reader import Reader
+from hpn.wording import Quantity, Sentence
 
 MAXIMUM_QUERY_BYTES = 60_000
 """Longest query that is read: servers and proxies on the way allow little more."""
@@ -69,7 +75,7 @@ SYMBOLS = (
 )
 """Everything but the phases, in the order in which a canonical link gives them."""
 
-PAGE_NAMES = ("gear", "do")
+PAGE_NAMES = ("gear", "do", WRITTEN, WAS)
 """Parameters of the page alone: the candidate looked at, and the buttons that edit the rows, one after the other."""
 
 ROWS_IN_TABLE = 100
@@ -79,31 +85,15 @@ _PHASE_BY_NAME = {symbol.name: symbol for symbol in PHASE_SYMBOLS}
 _PHASE_BY_LEAF = {symbol.path[0]: symbol for symbol in PHASE_SYMBOLS}
 _BY_NAME = {symbol.name: symbol for symbol in SYMBOLS}
 _BY_PATH = {symbol.path: symbol for symbol in SYMBOLS}
+_UNITS = {
+    symbol.name: suffix_of(symbol.path[-1]) or ""
+    for symbol in (*PHASE_SYMBOLS, *SYMBOLS)
+    if symbol.kind != "text" and not symbol.many
+}
 _REQUIRED = ("T", "n", "t")
 _LOADS = ("FRi", "FAi")
 # Where an error of a whole part of the model is shown.
 _PARTS = {("duty_cycle",): "T", ("duty_cycle", "phases"): "T", ("output_load",): "FR", ("emergency_stop",): "Tk"}
-
-
-def N_(text: str) -> str:
-    """Mark a text for the translators; it is translated where it is shown."""
-    return text
-
-
-@dataclass(frozen=True)
-class Message:
-    """A text to be translated when shown, with the values that go into it."""
-
-    template: str
-    values: Mapping[str, str] = field(default_factory=dict)
-
-    def text(self, translate: Callable[[str], str]) -> str:
-        """The text in a language."""
-        template = translate(self.template)
-        return template % self.values if self.values else template
-
-    def __str__(self) -> str:
-        return self.text(str)
 
 
 @dataclass(frozen=True)
@@ -112,7 +102,7 @@ class Problem:
 
     name: str
     index: int | None
-    message: Message
+    message: Message | Sentence
 
     @property
     def of_phase(self) -> bool:
@@ -137,6 +127,8 @@ class Form:
     focus: str | None = None
     problems: tuple[Problem, ...] = ()
     application: Application | None = None
+    written: str = ""
+    was: str = ""
     typed: str | None = None
 
     @property
@@ -154,7 +146,7 @@ class Form:
         """Nobody has filled in a phase yet: neither an application nor an error."""
         return self.application is None and not self.problems
 
-    def messages(self, name: str, index: int | None = None) -> list[Message]:
+    def messages(self, name: str, index: int | None = None) -> list[Message | Sentence]:
         """What is wrong with one input."""
         return [problem.message for problem in self.problems if (problem.name, problem.index) == (name, index)]
 
@@ -222,6 +214,7 @@ def _written(value: float | int | str | None) -> str:
 
 def parse(pairs: Pairs) -> Form:
     """Read a query. Whatever it says, the form comes back with it and with a message beside each wrong field."""
+    pairs, written = in_wire_units(pairs)
     given = _Given()
     for name, text in pairs:
         given.add(name, text)
@@ -242,6 +235,28 @@ def parse(pairs: Pairs) -> Form:
         focus=focus,
         problems=tuple(problems),
         application=None if problems else application,
+        written=written,
+    )
+
+
+def in_wire_units(pairs: Pairs) -> tuple[Pairs, str]:
+    """Pairs of a form as a link has them, and the marker of what they were written in: see `entries`."""
+    return entries.to_wire(pairs, _UNITS)
+
+
+def for_reader(form: Form, reader: Reader) -> Form:
+    """The same form with what the reader's fields show: their units and decimal mark."""
+    cells = [(text, _UNITS[name]) for row in form.rows for name, text in row.items()]
+    named = {name: text for name, text in form.texts.items() if name in _UNITS}
+    shown = entries.to_fields([*cells, *((text, _UNITS[name]) for name, text in named.items())], reader, form.written)
+    texts = iter(shown.texts)
+    rows = tuple({name: next(texts) for name in row} for row in form.rows)
+    return replace(
+        form,
+        rows=rows,
+        texts={**form.texts, **{name: next(texts) for name in named}},
+        written=reader.marker,
+        was=shown.was,
     )
 
 
@@ -435,7 +450,7 @@ def _refusal(error: Any) -> Message:
     context = error.get("ctx", {})
     if error["type"] in _BOUNDS:
         template, key = _BOUNDS[error["type"]]
-        return Message(template, {"bound": f"{context[key]:.12g}"})
+        return Message(template, {"bound": Quantity(context[key], suffix_of(str(error["loc"][-1])) or "", 12)})
     if error["type"] == "no_load":
         return Message(N_("give a radial or an axial load, here or in a phase"))
     if error["type"] in ("missing", "too_short"):
@@ -454,6 +469,8 @@ _LONGEST_TEXT = 60
 
 
 def _read(text: str, kind: Kind) -> float | int | str | Message:
+    if isinstance(text, Entry) and text.refusal:
+        return text.refusal
     text = text.strip()
     if kind == "text":
         return text if len(text) <= _LONGEST_TEXT else Message(N_("is too long"))

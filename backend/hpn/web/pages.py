@@ -2,7 +2,6 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from gettext import NullTranslations
 from pathlib import Path
 from typing import Any
 from urllib.parse import parse_qsl
@@ -10,7 +9,7 @@ from urllib.parse import parse_qsl
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from starlette.datastructures import State
 from starlette.requests import Request
-from starlette.responses import HTMLResponse, Response
+from starlette.responses import HTMLResponse, RedirectResponse, Response
 from starlette.routing import Route
 
 from hpn.application import Application, InputError
@@ -18,10 +17,12 @@ from hpn.catalogue import Catalogue
 from hpn.gear import Gear
 from hpn.notices import AREAS
 from hpn.selection import Selection, select
-from hpn.web import assets, display, links, pictures, reader
+from hpn.web import assets, display, links, pictures, reader, readers
 from hpn.web.as_read import as_read
 from hpn.web.embeds import preview
-from hpn.web.links import Form, Message, Problem
+from hpn.web.entries import WRITTEN
+from hpn.web.links import Form, Problem
+from hpn.web.messages import N_, Message
 
 TEMPLATES = Path(__file__).parents[3] / "frontend/templates"
 
@@ -77,6 +78,8 @@ def respond(request: Request, form: Form) -> Response:
     """The page of a form, or only the part that changes."""
     catalogue: Catalogue = request.app.state.catalogue
     form, answer = answered(form, catalogue)
+    if answer and WRITTEN in request.query_params and not _wants_changes(request) and not form.focus:
+        return RedirectResponse(answer.address, 303)  # what was written in a reader's units gets an address for all
     status = 422 if form.problems else 200
     template = "_changes.html" if _wants_changes(request) else "page.html"
     return _render(request, template, status, form=form, answer=answer, catalogue=catalogue)
@@ -91,14 +94,14 @@ def read_query(query: bytes) -> Form:
 def answered(form: Form, catalogue: Catalogue) -> tuple[Form, Answer | None]:
     """Answer to a form; a form that can't be answered comes back with its problems."""
     if form.gear and catalogue.find(form.gear) is None:
-        unknown = Message(links.N_("%(gear)s is not a gear of the catalogue"), {"gear": form.gear[:40]})
+        unknown = Message(N_("%(gear)s is not a gear of the catalogue"), {"gear": form.gear[:40]})
         form = replace(form, problems=(*form.problems, Problem("gear", None, unknown)))
     if form.application is None or form.problems:
         return form, None
     try:
         return form, _answer(form.application, form.gear, catalogue)
     except InputError as refusal:
-        refused = [Problem(*links.place_of(location), Message(detail)) for location, detail in refusal.problems]
+        refused = [Problem(*links.place_of(location), sentence) for location, sentence in refusal.sentences]
         return replace(form, application=None, problems=tuple(refused)), None
 
 
@@ -170,6 +173,8 @@ def _wants_changes(request: Request) -> bool:
 
 def _render(request: Request, template: str, status: int, **context: Any) -> Response:
     answer: Answer | None = context.get("answer")
+    if "form" in context:
+        context["form"] = links.for_reader(context["form"], reader.current())
     content = environment(request.app.state).get_template(template).render(**context)
     response = HTMLResponse(content, status)
     response.headers["Vary"] = "HX-Request, HX-History-Restore-Request"
@@ -187,7 +192,7 @@ def environment(state: State) -> Environment:
     if not hasattr(state, "assets"):
         state.assets = assets.Assets.load()
     if not hasattr(state, "templates"):
-        state.templates = _templates(state.assets, NullTranslations())
+        state.templates = _templates(state.assets)
     templates: Environment = state.templates
     return templates
 
@@ -202,8 +207,8 @@ class _Environment(Environment):
         return super().getattr(obj, attribute)
 
 
-def _templates(static: assets.Assets, translations: NullTranslations) -> Environment:
-    """Templates in one language. `_()` takes a format, the filter `t` a text of the domain that may hold a `%`."""
+def _templates(static: assets.Assets) -> Environment:
+    """Templates for any reader. `_()` takes a format, the filter `t` a text of the domain that may hold a `%`."""
     templates = _Environment(
         loader=FileSystemLoader(TEMPLATES),
         autoescape=True,
@@ -213,19 +218,14 @@ def _templates(static: assets.Assets, translations: NullTranslations) -> Environ
         auto_reload=False,
         extensions=["jinja2.ext.i18n"],
     )
-    templates.install_gettext_translations(translations, newstyle=True)  # type: ignore[attr-defined]
-    translate = translations.gettext
+    templates.install_gettext_callables(*reader.GETTEXT, newstyle=True)  # type: ignore[attr-defined]
     templates.filters |= reader.FILTERS | pictures.FILTERS | {
         "as_read": as_read,
-        "percent": display.percent,
-        "capped_percent": display.capped_percent,
         "symbols": display.symbols,
-        "t": translate,
-        "say": lambda message: message.text(translate),
-        "translated": lambda texts: [(code, translate(text)) for code, text in texts.items()],
     }
     templates.globals |= pictures.GLOBALS | {
         "asset": static.url,
+        **reader.GLOBALS,
         "AREAS": AREAS,
         "BEST": display.BEST,
         "CHECK_NAMES": display.CHECK_NAMES,
@@ -236,4 +236,4 @@ def _templates(static: assets.Assets, translations: NullTranslations) -> Environ
     return templates
 
 
-routes = [Route("/", show, methods=["GET"]), *assets.routes]
+routes = [Route("/", show, methods=["GET"]), *assets.routes, *readers.routes]

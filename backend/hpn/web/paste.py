@@ -152,11 +152,11 @@ def _marked(row: Sequence[str], others: Sequence[Sequence[str]]) -> tuple[tuple[
 
 def taken(link: str, reading: Reading, *, append: bool) -> list[tuple[str, str]]:
     """Pairs of the form with the phases of a reading, instead of its own or after them."""
-    pairs = parse_qsl(link, keep_blank_values=True)
+    pairs, _ = links.in_wire_units(long_cycles.expanded(parse_qsl(link, keep_blank_values=True)))
     rest = [(name, value) for name, value in pairs if value.strip() and name not in {*_PHASE_NAMES, "do", "phases"}]
     rows = [dict(zip(reading.columns, row, strict=True)) for row in reading.rows]
     if append:
-        given = links.parse(long_cycles.expanded(pairs)).rows
+        given = links.parse(pairs).rows
         rows = [dict(row) for row in given if any(text.strip() for text in row.values())] + rows
     names = COLUMNS if any(row.get("FRi") or row.get("FAi") for row in rows) else COLUMNS[:3]
     return [(name, row.get(name, "")) for row in rows for name in names] + rest

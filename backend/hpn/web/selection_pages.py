@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
-from urllib.parse import parse_qsl, urlsplit
+from urllib.parse import parse_qsl
 
 import orjson
 from pydantic import ValidationError
@@ -20,9 +20,10 @@ from hpn.store import SavedSelection, StoreUnavailableError
 from hpn.units import symbol_of
 from hpn.web.bodies import read_body
 from hpn.web.display import figure
-from hpn.web.links import N_
+from hpn.web.messages import N_
 from hpn.web.pages import environment, read_query
 from hpn.web.problems import Problem
+from hpn.web.requests import require_same_origin
 from hpn.web.selection_schemas import Labels
 from hpn.web.selections import RETRY_SECONDS, Today, found, save, url_of
 from hpn.web.settings import Settings
@@ -101,18 +102,6 @@ async def save_from_page(request: Request) -> Response:
     except (Problem, StoreUnavailableError) as error:
         return _refused(request, error, fields, query)
     return RedirectResponse(url_of(id), 303)
-
-
-def require_same_origin(request: Request) -> None:
-    """Raise Problem 403 for a form that a page of another site has sent; programs send neither header."""
-    site = request.headers.get("sec-fetch-site")
-    origin = request.headers.get("origin")
-    if site is not None:
-        same = site in ("same-origin", "none")
-    else:
-        same = origin is None or urlsplit(origin).netloc == request.headers.get("host")
-    if not same:
-        raise Problem(403, "this form was sent by a page of another site")
 
 
 def _application(query: str) -> Application:

@@ -1,0 +1,20 @@
+"""What a form must prove before it changes anything."""
+
+from urllib.parse import urlsplit
+
+from starlette.requests import Request
+
+from hpn.web.problems import Problem
+from hpn.wording import N_
+
+
+def require_same_origin(request: Request) -> None:
+    """Raise Problem 403 for a form that a page of another site has sent; programs send neither header."""
+    site = request.headers.get("sec-fetch-site")
+    origin = request.headers.get("origin")
+    if site is not None:
+        same = site in ("same-origin", "none")
+    else:
+        same = origin is None or urlsplit(origin).netloc == request.headers.get("host")
+    if not same:
+        raise Problem(403, N_("this form was sent by a page of another site"))
