@@ -23,7 +23,7 @@ function palette(scheme) {
 function themed(figure, scheme) {
   const { colour, done } = palette(scheme);
   const walk = (value) => {
-    if (typeof value === "string") return value.startsWith("var(") ? colour(value) : value;
+    if (typeof value === "string") return value.includes("var(") ? value.replace(/var\(--[\w-]+\)/g, colour) : value;
     if (Array.isArray(value)) return typeof value[0] === "number" ? value : value.map(walk);
     if (value === null || typeof value !== "object") return value;
     return Object.fromEntries(Object.entries(value).map(([key, inner]) => [key, walk(inner)]));

@@ -14,6 +14,9 @@ from hpn.wording import N_, Quantity, Sentence, Value
 LABELLED_LOADS = 40
 """Loads up to which each is named in the plot."""
 
+HALO = ", ".join(f"{x}px {y}px 1px var(--card)" for x in (-1, 1) for y in (-1, 1))
+"""Shadow that keeps a label apart from the lines behind it."""
+
 SPELT_OUT = 6
 """Loads up to which the label says "phase 2" and not just "2"."""
 
@@ -74,9 +77,9 @@ def sizes_figure(selection: Selection, words: Words = ENGLISH) -> Figure:
         own = next(c for c in life_envelopes(catalogue, gear, query) if c.load_coefficient == load.load_coefficient)
         style = SIZE_STYLES[place % len(SIZE_STYLES)]
         data.append(
-            _curve(own, "size", Sentence("{gear}", {"gear": gear.name}), style, words) | {"text": _at_end(own, gear)}
+            _curve(own, "size", Sentence("{gear}", {"gear": gear.name}), style, words) | {"text": _at_start(own, gear)}
         )
-        data[-1] |= {"mode": "lines+text", "textposition": "top left", "cliponaxis": False}
+        data[-1] |= {"mode": "lines+text", "textposition": "top right", "textfont": {"size": 11, "shadow": HALO}}
         drawn.append(gear)
     count = len(selection.application.duty_cycle.phases)
     loads = phase_loads(selection, [0.0] * count) if selection.application.loads else []
@@ -101,9 +104,9 @@ def _has_envelope(selection: Selection, gear: Gear, load: OutputLoad) -> bool:
     return bool(gear.dynamic_radial_load_N and gear.dynamic_axial_load_N)
 
 
-def _at_end(curve: EnvelopeCurve, gear: Gear) -> list[str]:
-    """Name of a size at the end of its curve on the radial axis."""
-    return ["" for _ in curve.radial_N[1:]] + [gear.size]
+def _at_start(curve: EnvelopeCurve, gear: Gear) -> list[str]:
+    """Name of a size where its curve starts on the axial axis."""
+    return [gear.size, *("" for _ in curve.radial_N[1:])]
 
 
 def _named(named: NamedCurve, words: Words) -> Figure:
@@ -150,7 +153,7 @@ def _points(loads: Sequence[PhaseLoad], words: Words, *, with_use: bool = True) 
         "y": words.convert_all((load.axial_N for load in loads), "N"),
         "text": labels,
         "textposition": _positions(loads) if named else "top right",
-        "textfont": {"color": "var(--ink)", "size": 12},
+        "textfont": {"color": "var(--ink)", "size": 12, "shadow": HALO},
         "cliponaxis": False,
         "marker": {
             "size": 10,

@@ -13,7 +13,7 @@ from hpn.plots.words import ENGLISH, Words
 from hpn.selection import Selection
 from hpn.wording import N_, Quantity, Sentence, Value
 
-WIDTH, LEFT, RIGHT = 344.0, 34.0, 276.0
+WIDTH, LEFT, RIGHT = 344.0, 34.0, 282.0
 TORQUE_TOP, TORQUE_HEIGHT, SPEED_HEIGHT, BETWEEN = 14.0, 92.0, 60.0, 30.0
 LETTER = 10.5
 """Least distance of two texts below each other."""
@@ -38,7 +38,6 @@ class Mark:
     value: str = ""
     kind: str = ""
     line: float | None = None
-    beyond: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,6 +52,8 @@ class Panel:
     area: str
     ticks: list[Mark]
     lines: list[Mark]
+    beyond: list[Mark]
+    """Lines beyond the scale, from the right edge inwards."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -180,7 +181,8 @@ def _panel(
     bottom = top + height
     outline, area = _steps(edges, values, at)
     ticks = [Mark(LEFT - 5, at(v) + 3.5, text, line=at(v)) for v, text in _ticks(low, high, unit, words)]
-    return Panel(title, top, bottom, at(0.0), outline, area, ticks, _placed(lines, high, at, top, unit, words))
+    marks, beyond = _placed(lines, high, at, top, unit, words)
+    return Panel(title, top, bottom, at(0.0), outline, area, ticks, marks, beyond)
 
 
 def _range(values: Sequence[float], lines: Sequence[_Line]) -> tuple[float, float]:
@@ -232,18 +234,21 @@ def _round_step(rough: float) -> float:
 
 def _placed(
     lines: Sequence[_Line], high: float, at: Callable[[float], float], top: float, unit: str, words: Words
-) -> list[Mark]:
-    """Lines with their names at the right, each below the other; those out of scale with an arrow at the top."""
+) -> tuple[list[Mark], list[Mark]]:
+    """Lines with their names at the right, none over another; and those beyond the scale, which only have a name."""
     known = sorted((line for line in lines if line.value is not None), key=lambda line: -(line.value or 0.0))
     marks: list[Mark] = []
-    y = top - LETTER + 7
+    beyond: list[Mark] = []
+    y = top - LETTER
     for line in known:
         value = line.value or 0.0
-        beyond = value > high * (1 + 1e-9)
-        y = max(y + LETTER, 0.0 if beyond else at(value) + 3.5)
         shown = words.number(value, unit)
-        marks.append(Mark(RIGHT + 5, y, line.symbol, shown, line.kind, None if beyond else at(value), beyond))
-    return marks
+        if value > high * (1 + 1e-9):
+            beyond.append(Mark(WIDTH, top - 5, line.symbol, shown, line.kind))
+            continue
+        y = max(y + LETTER, at(value) + 3.5)
+        marks.append(Mark(RIGHT + 4, y, line.symbol, shown if unit == "Nm" else "", line.kind, at(value)))
+    return marks, beyond[::-1]
 
 
 # --- What is compared -------------------------------------------------------------------------------------------------

@@ -39,15 +39,25 @@ def emergency_stop_figure(selection: Selection, gear: Gear, words: Words = ENGLI
     figure["shapes"] = [_free(edge[0]), *(_vertical(x) for x in edge)]
     figure["annotations"] = [_label(edge[0], "T<sub>R</sub>"), _label(edge[1], "T<sub>M</sub>"), _free_label(words)]
     figure["xaxis"]["range"] = [0, words.convert(widened(T_M, [T_k]), "Nm") * 1.06]
-    figure["yaxis"] |= {"type": "log", "range": [0, top], "exponentformat": "power", "dtick": 1}
+    figure["yaxis"] |= {
+        "type": "log",
+        "range": [0, top],
+        "exponentformat": "power",
+        "dtick": 1,
+        "tickfont": {"size": 11},
+    }
     return {"data": [*data, *marked], "layout": figure}
 
 
 def _line(torque: list[float], number: list[float], words: Words) -> Figure:
+    name = words.say(Sentence("Allowed number N_k max"))
     return {
         "type": "scatter",
-        "mode": "lines",
-        "name": words.say(Sentence("Allowed number N_k max")),
+        "mode": "lines+text",
+        "name": name,
+        "text": ["" if place != len(torque) // 2 else name for place in range(len(torque))],
+        "textposition": "top center",
+        "textfont": {"color": "var(--ink)", "size": 12},
         "x": words.convert_all(torque, "Nm"),
         "y": number,
         "line": {"color": "var(--plot-own)", "width": 3},
@@ -71,12 +81,15 @@ def _stop(selection: Selection, gear: Gear, top: int, words: Words) -> list[Figu
     number = float(stop.count) if stop.count else min(allowed, 10.0**top)
     if number <= 0:
         return []
-    name = words.say(Sentence("Your stops") if stop.count else Sentence("Your stop torque"))
+    name = words.say(Sentence("your stops") if stop.count else Sentence("your stop torque"))
     return [
         {
             "type": "scatter",
-            "mode": "markers",
+            "mode": "markers+text",
             "name": name,
+            "text": [name],
+            "textposition": "top left",
+            "textfont": {"color": "var(--ink)", "size": 12},
             "x": [words.convert(abs(stop.torque_Nm), "Nm")],
             "y": [number],
             "cliponaxis": False,
