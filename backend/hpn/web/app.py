@@ -16,6 +16,7 @@ from hpn.catalogue import load_catalogue
 from hpn.store import Store, StoreUnavailableError
 from hpn.web import (
     api,
+    catalogue_pages,
     embeds,
     exports,
     health,
@@ -107,7 +108,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     files = (exports.saved_files, exports.posted_files, exports.linked_files, embeds.router)
     for router in (health.router, api.router, selections.router, *files):
         app.include_router(router)
-    for part in (pages, long_cycles, paste, transfer, selection_pages):
+    for part in (pages, catalogue_pages, long_cycles, paste, transfer, selection_pages):
         app.router.routes.extend(part.routes)
     _add_middleware(app, settings, metrics)
     document = app.openapi

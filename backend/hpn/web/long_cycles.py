@@ -9,6 +9,7 @@ from starlette.requests import Request
 from starlette.responses import Response
 from starlette.routing import Route
 
+from hpn.application import MAXIMUM_PHASES
 from hpn.web import links, pages
 from hpn.web.bodies import read_body
 from hpn.web.links import PHASE_SYMBOLS, Pairs
@@ -49,7 +50,7 @@ def expanded(pairs: Pairs) -> list[tuple[str, str]]:
     for name, text in pairs:
         if name == TEXT:
             rows = [_cells(line) for line in text.rstrip().splitlines()]
-            plain += phase_pairs(rows[: links.MAXIMUM_PHASES + 1])
+            plain += phase_pairs(rows[: MAXIMUM_PHASES + 1])
     return plain
 
 

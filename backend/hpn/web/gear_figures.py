@@ -1,0 +1,133 @@
+"""What the page of a gear says: its figures in groups, which are missing, and how a supplement would give them."""
+
+from dataclasses import dataclass
+
+from hpn.catalogue import Catalogue
+from hpn.gear import Gear
+from hpn.tables import TABLES
+from hpn.units import suffix_of
+from hpn.wording import N_
+
+SUPPLIED = "supplied by the user"
+
+
+@dataclass(frozen=True, slots=True)
+class Label:
+    """Fields of a figure (two for a range), what it is called, its symbol, and whether it is an upper limit."""
+
+    fields: tuple[str, ...]
+    name: str
+    letter: str = ""
+    index: str = ""
+    at_most: bool = False
+
+
+GROUPS: tuple[tuple[str, tuple[Label, ...]], ...] = (
+    (
+        N_("Torque at the output"),
+        (
+            Label(("rated_torque_Nm",), N_("Rated torque"), "T", "N"),
+            Label(("repeated_peak_torque_Nm",), N_("Repeated peak torque"), "T", "R"),
+            Label(("momentary_peak_torque_Nm",), N_("Momentary peak torque"), "T", "M"),
+        ),
+    ),
+    (
+        N_("Speed at the input, temperature"),
+        (
+            Label(("maximum_input_speed_rpm",), N_("Maximum input speed"), "n", "in (max)"),
+            Label(("average_input_speed_rpm",), N_("Average input speed"), "n", "av (max)"),
+            Label(("ambient_temperature_minimum_degC", "ambient_temperature_maximum_degC"), N_("Ambient temperature")),
+        ),
+    ),
+    (
+        N_("Accuracy and stiffness"),
+        (
+            Label(("backlash_arcmin",), N_("Backlash"), at_most=True),
+            Label(("transmission_accuracy_arcmin",), N_("Transmission accuracy"), at_most=True),
+            Label(("torsional_stiffness_Nm_per_rad",), N_("Torsional stiffness"), "K", "3"),
+        ),
+    ),
+    (
+        N_("Size and weight"),
+        (
+            Label(("length_min_mm", "length_max_mm"), N_("Length, depending on the motor"), "L"),
+            Label(("weight_kg",), N_("Weight"), "m"),
+        ),
+    ),
+    (
+        N_("Output bearing"),
+        (
+            Label(("dynamic_radial_load_N",), N_("Radial load without axial load"), "F", "R, dyn (max)"),
+            Label(("dynamic_axial_load_N",), N_("Axial load without radial load"), "F", "A, dyn (max)"),
+        ),
+    ),
+)
+"""Figures of a gear as its page groups them; None is shown as not published."""
+
+
+@dataclass(frozen=True, slots=True)
+class Figure:
+    """One line of the page: a figure or a range, its unit and where it comes from."""
+
+    label: Label
+    values: tuple[float, ...]
+    unit: str
+    source: str
+    supplied: bool
+
+
+@dataclass(frozen=True, slots=True)
+class SupplementFile:
+    """File of a supplement that would give what is missing: its name, its header, and rows to fill in."""
+
+    name: str
+    header: str
+    rows: tuple[str, ...]
+
+
+def figures_of(gear: Gear) -> list[tuple[str, list[Figure]]]:
+    """Every figure of a gear by group."""
+    return [(title, [_figure(gear, label) for label in labels]) for title, labels in GROUPS]
+
+
+def _figure(gear: Gear, label: Label) -> Figure:
+    values = [getattr(gear, name) for name in label.fields]
+    known = tuple(dict.fromkeys(value for value in values if value is not None))
+    source = next((gear.sources[name] for name in label.fields if name in gear.sources), "")
+    supplied = any(is_supplied(gear, name) for name in label.fields)
+    return Figure(label, known, suffix_of(label.fields[0]) or "", source, supplied)
+
+
+def is_supplied(gear: Gear, field: str) -> bool:
+    """Whether a figure comes from the user's supplement."""
+    return gear.sources.get(field, "").startswith(SUPPLIED)
+
+
+def supplements_for(gear: Gear) -> list[SupplementFile]:
+    """Files that would fill the figures that are missing of a gear."""
+    missing = {name for _, labels in GROUPS for label in labels for name in label.fields if getattr(gear, name) is None}
+    files = []
+    for table in TABLES:
+        if "size" in table.key and missing & set(table.columns()):
+            columns = [*(name for name in table.columns() if name != "source"), "source"]
+            known = {"size": gear.size, "ratio": str(gear.ratio), "stages": str(gear.stages), "source": "printed page"}
+            row = ",".join(known.get(name, "") if name in (*table.key, "source") else "" for name in columns)
+            files.append(SupplementFile(table.file, ",".join(columns), (row,)))
+    return files
+
+
+def neighbours(catalogue: Catalogue, gear: Gear) -> dict[str, Gear | None]:
+    """The gears of the next ratios in the same size, and of the next sizes in the same ratio."""
+    same_size = [other for other in catalogue.gears if other.size == gear.size]
+    same_ratio = [other for other in catalogue.gears if other.ratio == gear.ratio]
+
+    def beside(gears: list[Gear], step: int) -> Gear | None:
+        place = gears.index(gear) + step
+        return gears[place] if 0 <= place < len(gears) else None
+
+    return {
+        "lower_ratio": beside(same_size, -1),
+        "higher_ratio": beside(same_size, 1),
+        "smaller": beside(same_ratio, -1),
+        "larger": beside(same_ratio, 1),
+    }

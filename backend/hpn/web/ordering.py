@@ -1,0 +1,33 @@
+"""Ordering codes: `HPN-20A-5-J6-BH-AF1` is gear, output version and code for the motor adaption (table 9.1)."""
+
+import re
+from dataclasses import dataclass
+
+from hpn.catalogue import Catalogue, OutputVersion
+from hpn.gear import Gear
+from hpn.wording import N_
+
+MOTOR_CODE = r"[A-Za-z0-9]{1,8}([.\-][A-Za-z0-9]{1,8}){0,3}"
+"""Codes for the motor adaption look like `BH-AF1` or `xx.xx`; which one fits a motor only the maker says."""
+
+
+@dataclass(frozen=True, slots=True)
+class OrderingCode:
+    """A code as far as it is known, what it was made of, and what is wrong with the part that was typed."""
+
+    text: str
+    output: str
+    motor: str
+    versions: tuple[OutputVersion, ...]
+    problem: str | None = None
+
+
+def ordering_code(catalogue: Catalogue, gear: Gear, output: str = "", motor: str = "") -> OrderingCode:
+    """Code of a gear with an output version, the first one where none or an unknown one is asked for."""
+    versions = tuple(version for version in catalogue.output_versions if version.position == "output")
+    output = output if any(version.code == output for version in versions) else versions[0].code
+    motor = motor.strip()[:60]
+    valid = re.fullmatch(MOTOR_CODE, motor) is not None
+    problem = None if valid or not motor else N_("letters and digits, in groups apart by - or . such as BH-AF1")
+    parts = [gear.designation, output, *([motor.upper()] if valid else [])]
+    return OrderingCode("-".join(parts), output, motor, versions, problem)
