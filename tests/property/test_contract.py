@@ -11,7 +11,7 @@ from hpn.application import Application
 from hpn.catalogue import Catalogue
 from hpn.explanations import EXPLANATIONS
 from hpn.fleet import select_fleet
-from hpn.selection import Selection
+from hpn.selection import Selection, select
 from tests.build import Json
 from tests.conftest import Supplement
 from tests.property.draw import RANKS, at_random
@@ -67,8 +67,10 @@ def compare_many(catalogue: Catalogue, gears: list[contract.Gear], cases: list[J
     """Compare through the batch's code path, and count what the cases reached."""
     reached: Counter[object] = Counter()
     selections = select_fleet([Application.model_validate(case) for case in cases], catalogue)
-    for case, selection in zip(cases, selections, strict=True):
+    for place, (case, selection) in enumerate(zip(cases, selections, strict=True)):
         assert isinstance(selection, Selection), (case, selection)
+        if place % 10 == 0:  # and alone: both roads must lead to the same reply
+            selection = select(Application.model_validate(case), catalogue)
         expected = contract.answer(case, gears)
         found = list(itertools.islice(differences(selection.reply("/"), expected), 5))
         assert not found, "\n".join([json.dumps(case), *found])

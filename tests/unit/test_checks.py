@@ -1,0 +1,120 @@
+"""A limit that is met exactly passes, and so does what floating point may add; what lies beyond that fails."""
+
+from collections.abc import Callable
+
+import pytest
+
+from hpn.catalogue import Catalogue
+from tests.build import Json, answer, candidate, check, cycle, phase
+
+GEAR = "HPN-20A-5"
+ONLY = {"sizes": ["20A"], "ratios": [5]}
+
+
+def with_wish(**wishes: object) -> Json:
+    return cycle(phase(1, 1), requirements=ONLY | wishes)
+
+
+# Code of the check, and the application whose utilisation is x for HPN-20A-5 by the printed limits, for x near 1.
+AT: dict[str, Callable[[float], Json]] = {
+    "average_torque": lambda x: cycle(phase(80 * x, 100), requirements=ONLY),
+    "repeated_peak_torque": lambda x: cycle(phase(149 * x, 0), phase(1, 1), requirements=ONLY),
+    "momentary_peak_torque": lambda x: with_wish() | {"emergency_stop": {"torque_Nm": 256 * x}},
+    "average_input_speed": lambda x: cycle(phase(1, 600 * x), requirements=ONLY),
+    "maximum_input_speed": lambda x: cycle(phase(1, 1200 * x), pause_s=9, requirements=ONLY),
+    "output_bearing_load": lambda x: with_wish() | {"output_load": {"radial_N": 1800 * x, "life_h": 1}},
+    "output_bearing_life": lambda x: cycle(phase(1, 100), output_load={"axial_N": 2200 * x}, requirements=ONLY),
+    "motor_speed": lambda x: cycle(phase(1, 100), requirements=ONLY | {"motor": {"maximum_speed_rpm": 500 / x}}),
+    "motor_peak_torque": lambda x: cycle(phase(40 * x, 100), requirements=ONLY | {"motor": {"peak_torque_Nm": 8}}),
+    "motor_rated_torque": lambda x: cycle(phase(40 * x, 100), requirements=ONLY | {"motor": {"rated_torque_Nm": 8}}),
+    # 80 Nm is T_N, so at 600 rpm (3000 rpm at the input) the life is 20000 h
+    "life": lambda x: cycle(phase(80, 600), requirements=ONLY | {"life_h": 20000 * x}),
+    "ambient_temperature": lambda x: with_wish(ambient_temperature_degC=20 - 20 * x),
+    "backlash": lambda x: with_wish(backlash_arcmin=5 / x),
+    "torsional_stiffness": lambda x: with_wish(torsional_stiffness_Nm_per_rad=26000 * x),
+    "weight": lambda x: with_wish(weight_kg=2.6 / x),
+    "length": lambda x: with_wish(length_mm=122 / x),
+}
+PROPERTIES = {"ambient_temperature", "backlash", "torsional_stiffness", "weight", "length"}
+
+
+@pytest.mark.parametrize("code", AT)
+def test_a_limit_passes_when_met_and_within_rounding_and_fails_beyond(catalogue: Catalogue, code: str) -> None:
+    # The contract's tolerance is 1e-12; an eighth of it to either side is far above the rounding of these few steps.
+    for x, expected in (
+        (1.0, "pass"),
+        (1 + 0.875e-12, "pass"),
+        (1 + 1.125e-12, "fail"),
+        (1.001, "fail"),
+        (0.9, "pass"),
+    ):
+        found = check(answer(AT[code](x), catalogue), GEAR, code)
+        assert found["utilisation"] == pytest.approx(x, rel=3e-15, abs=1e-14)
+        assert found["status"] == expected, x
+
+
+@pytest.mark.parametrize("code", AT)
+def test_a_reserve_of_the_user_bounds_load_checks_and_leaves_properties(catalogue: Catalogue, code: str) -> None:
+    for x, expected in (
+        (0.75, "pass"),
+        (0.75 * (1 + 0.875e-12), "pass"),
+        (0.75 * (1 + 1.125e-12), "fail"),
+        (0.9, "fail"),
+    ):
+        application = AT[code](x)
+        application["requirements"]["utilisation"] = 0.75
+        reply = answer(application, catalogue)
+        assert check(reply, GEAR, code)["status"] == ("pass" if code in PROPERTIES else expected), x
+        # A property that passes never governs, however close it is.
+        assert candidate(reply, GEAR)["governing_check"] not in PROPERTIES
+
+
+@pytest.mark.parametrize("count", [1, 10, 9999, 10**4])
+def test_the_expected_number_of_stops_may_be_the_allowed_number_and_no_more(catalogue: Catalogue, count: int) -> None:
+    """On HPN-11A-10 T_k = 27 Nm is three times T_R = 9 Nm: 10^(8.5 - 4.5) = 10000 stops, by mental arithmetic."""
+    only = {"sizes": ["11A"], "ratios": [10]}
+    for extra, expected in ((0, "pass"), (10**4 - count, "pass"), (10**4 - count + 1, "fail")):
+        stop = {"torque_Nm": 27, "count": count + extra}
+        found = check(
+            answer(cycle(phase(1, 1), emergency_stop=stop, requirements=only), catalogue),
+            "HPN-11A-10",
+            "momentary_peak_count",
+        )
+        assert (found["limit"], found["status"]) == (10**4, expected)
+        assert found["utilisation"] == (count + extra) / 10**4
+
+
+def test_where_not_one_stop_is_allowed_even_none_expected_fails_without_a_utilisation(catalogue: Catalogue) -> None:
+    """T_k / T_R above 17/3 leaves less than one stop: 52 Nm on T_R = 9 Nm."""
+    for count in (0, 1):
+        application = cycle(phase(1, 1), emergency_stop={"torque_Nm": 52, "count": count})
+        reply = answer(application, catalogue)
+        found = check(reply, "HPN-11A-10", "momentary_peak_count")
+        assert (found["demand"], found["limit"], found["utilisation"]) == (count, 0, None)
+        assert found["status"] == "fail"
+        gear = candidate(reply, "HPN-11A-10")
+        assert (gear["status"], gear["utilisation"]) == ("unsuitable", None)
+        assert gear["governing_check"] == "momentary_peak_count"
+        assert gear["momentary_peak_count"] == 0
+        last = [c["designation"] for c in reply["candidates"] if c["status"] == "unsuitable"][-1]
+        assert candidate(reply, last)["utilisation"] is None  # null stands last among the unsuitable
+
+
+def test_what_is_known_of_an_unrated_gear_is_judged(catalogue: Catalogue) -> None:
+    stiff = cycle(phase(1, 1), requirements={"sizes": ["40A"], "torsional_stiffness_Nm_per_rad": 143_001})
+    fast = cycle(phase(1, 100), requirements={"sizes": ["40A"], "motor": {"maximum_speed_rpm": 1000}})
+
+    failed = answer(stiff, catalogue)["candidates"]
+    assert {c["status"] for c in failed} == {"unsuitable"}
+    assert {c["governing_check"] for c in failed} == {"torsional_stiffness"}
+    by_ratio = {c["ratio"]: c["status"] for c in answer(fast, catalogue)["candidates"]}
+    assert by_ratio == {ratio: "unrated" if ratio <= 10 else "unsuitable" for ratio in by_ratio}
+
+
+def test_a_tie_for_governing_goes_to_the_first_check(catalogue: Catalogue) -> None:
+    """80 Nm over T_N and 600 rpm times five over n_av are both 1."""
+    reply = answer(cycle(phase(80, 600), requirements=ONLY), catalogue)
+
+    used = {c["code"]: c["utilisation"] for c in candidate(reply, GEAR)["checks"]}
+    assert used["average_torque"] == used["average_input_speed"] == 1
+    assert candidate(reply, GEAR)["governing_check"] == "average_torque"
