@@ -134,3 +134,19 @@ def test_oembed_is_json_only(client: TestClient) -> None:
 def test_templates_and_catalogues_are_part_of_the_package() -> None:
     folder = Path(__file__).parents[2] / "backend/hpn/report"
     assert "report.typ" in {path.name for path in folder.iterdir()}
+
+
+def test_guarded_reading_guards_files_and_previews_of_saved_selections(tmp_path: Path) -> None:
+    settings = Settings(
+        database_url=f"sqlite:///{tmp_path / 'hpn.sqlite3'}",
+        api_keys=f"me:{'0' * 64}",
+        guarded="reading",
+        log_level="error",
+    )
+    with TestClient(create_app(settings)) as client:
+        for path in (
+            "/oembed?url=/selections/x",
+            *(f"/api/v1/selections/0123456789abcdefghijkl/{name}" for name in FILES),
+        ):
+            assert client.get(path).status_code == 401
+        assert client.get(f"/report.pdf?{QUERY}").status_code == 200

@@ -35,6 +35,8 @@ def group_of(method: str, path: str) -> Group | None:
         return "deleting" if method == "DELETE" else "writing"
     if path == "/metrics":
         return "metrics"
+    if path == "/oembed":  # it tells what a saved selection is about
+        return "reading"
     return None if path.startswith(OPEN) else "calculator"
 
 
