@@ -98,3 +98,14 @@ document.addEventListener("keydown", (event) => {
   else if (plain && event.key === "Escape" && event.target.id === "result" && cameFrom) document.getElementById(cameFrom)?.focus();
   else if (!event.shiftKey && formOf()?.contains(event.target) && keyInForm(event)) event.preventDefault();
 });
+
+// --- A gear by its name -----------------------------------------------------------------------------------------------
+
+document.addEventListener("submit", (event) => {
+  const form = event.target;
+  const name = form.matches("[data-finds]") ? form.elements.gear.value.trim() : "";
+  if (!name || !formOf()) return;
+  event.preventDefault();
+  formOf().elements.gear.value = name;
+  formOf().requestSubmit();
+});

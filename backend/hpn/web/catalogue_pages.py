@@ -12,7 +12,7 @@ from hpn.catalogue import Catalogue
 from hpn.gear import Gear, canonical_designation, canonical_size
 from hpn.web.envelope_drawing import HEIGHT, WIDTH, drawing
 from hpn.web.gear_figures import figures_of, is_supplied, neighbours, supplements_for
-from hpn.web.ordering import MOTOR_CODE, ordering_code
+from hpn.web.ordering import ordering_code
 from hpn.web.pages import environment
 
 OWN_NAMES = ("output", "motor", "gear", "find")
@@ -126,7 +126,7 @@ def _path(text: str) -> str:
 def _render(request: Request, template: str, status: int, **context: Any) -> Response:
     catalogue: Catalogue = request.app.state.catalogue
     content = environment(request.app.state).get_template(template)
-    shown = content.render(catalogue=catalogue, motor_pattern=MOTOR_CODE, **context)
+    shown = content.render(catalogue=catalogue, **context)
     return HTMLResponse(shown, status, {"Cache-Control": "no-cache"})
 
 

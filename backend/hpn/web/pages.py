@@ -18,11 +18,12 @@ from hpn.gear import Gear
 from hpn.notices import AREAS
 from hpn.selection import Selection, select
 from hpn.web import assets, display, links, pictures, reader, readers
-from hpn.web.as_read import as_read
+from hpn.web.as_read import as_read, as_typed
 from hpn.web.embeds import preview
 from hpn.web.entries import WRITTEN
 from hpn.web.links import Form, Problem
 from hpn.web.messages import N_, Message
+from hpn.web.ordering import MOTOR_CODE, ordering_code
 
 TEMPLATES = Path(__file__).parents[3] / "frontend/templates"
 
@@ -219,12 +220,19 @@ def _templates(static: assets.Assets) -> Environment:
         extensions=["jinja2.ext.i18n"],
     )
     templates.install_gettext_callables(*reader.GETTEXT, newstyle=True)  # type: ignore[attr-defined]
-    templates.filters |= reader.FILTERS | pictures.FILTERS | {
-        "as_read": as_read,
-        "symbols": display.symbols,
-    }
+    templates.filters |= (
+        reader.FILTERS
+        | pictures.FILTERS
+        | {
+            "as_read": as_read,
+            "as_typed": as_typed,
+            "symbols": display.symbols,
+        }
+    )
     templates.globals |= pictures.GLOBALS | {
         "asset": static.url,
+        "motor_pattern": MOTOR_CODE,
+        "ordering_code": ordering_code,
         **reader.GLOBALS,
         "AREAS": AREAS,
         "BEST": display.BEST,
