@@ -203,3 +203,15 @@ def test_an_efficiency_curve_of_a_supplement_is_followed_between_its_points_and_
 def test_the_shipped_folder_is_not_touched_by_any_of_this() -> None:
     assert HANDBOOK_FOLDER.name == "catalogue"
     assert len(load_catalogue().gears) == 64
+
+
+def test_length_is_ranked_and_checked_by_L_max(supplemented: Supplement) -> None:
+    """In the handbook L min and L max give one order; here 14A is the shortest by L min and the longest by L max."""
+    changed = supplemented(lengths=LENGTHS + "14A,1,50,200,\n")
+    wishes = {"sizes": ["11A", "14A"], "ratios": [5]}
+
+    ranked = answer(cycle(phase(1, 1), requirements=wishes, rank_by="length"), changed)
+    limited = answer(cycle(phase(1, 1), requirements=wishes | {"length_mm": 100}), changed)
+
+    assert [c["designation"] for c in ranked["candidates"]] == ["HPN-11A-5", "HPN-14A-5"]
+    assert suitable(limited) == {"HPN-11A-5"}
