@@ -29,8 +29,8 @@ class PostgreSQL:
         return self._address(name)
 
     def stop(self) -> None:
-        """Stop at once, connections or not."""
-        self._control("stop", "-m", "immediate")
+        """Stop at once, connections or not; in order, so that no recovery delays the next start."""
+        self._control("stop", "-m", "fast")
 
     def start(self) -> None:
         """Start again, with the same address."""

@@ -1,0 +1,5 @@
+"""Databases to break."""
+
+from tests.databases import PostgreSQL, database, postgresql
+
+__all__ = ["PostgreSQL", "database", "postgresql"]

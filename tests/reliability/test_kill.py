@@ -1,0 +1,139 @@
+"""What was acknowledged survives `kill -9` of the server at any moment."""
+
+import asyncio
+import http.client
+import itertools
+import json
+import os
+import random
+import socket
+import subprocess
+import sys
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+
+import orjson
+
+from hpn.application import Application
+from hpn.catalogue import Catalogue
+from hpn.selection import select
+from hpn.store import Store
+from hpn.web.links import to_link
+from tests.build import Json, cycle, phase
+
+KILLS = int(os.environ.get("HPN_TEST_KILLS", "200"))
+"""On SQLite, which lives in the process that is killed; on PostgreSQL, which does not, a quarter of them."""
+
+CLIENTS = 4
+
+
+@contextmanager
+def killed_server(database: str, kills: int) -> Iterator[tuple[int, "subprocess.Popen[str]"]]:
+    """Port of a service whose workers are killed at random moments, and the process that does it."""
+    with socket.create_server(("127.0.0.1", 0), backlog=128) as listener:
+        command = [sys.executable, "-m", "tests.reliability.killer", str(listener.fileno()), str(kills), "17"]
+        process = subprocess.Popen(
+            command,
+            env={**os.environ, "HPN_DATABASE_URL": database, "HPN_LOG_LEVEL": "error", "HPN_WRITING_RATE": "off"},
+            pass_fds=[listener.fileno()],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            text=True,
+        )
+        try:
+            yield listener.getsockname()[1], process
+        finally:
+            process.communicate(timeout=30)
+
+
+@dataclass
+class Clients:
+    """Clients that save without pause, and repeat with the same key what was not acknowledged."""
+
+    port: int
+    acknowledged: dict[str, Json] = field(default_factory=dict)
+    broken: int = 0
+    unexpected: list[str] = field(default_factory=list)
+    enough: threading.Event = field(default_factory=threading.Event)
+    numbers: "itertools.count[int]" = field(default_factory=itertools.count)
+
+    def run(self) -> None:
+        """One client."""
+        while not self.enough.is_set():
+            number = next(self.numbers)
+            wanted = application(number)
+            body = {"application": wanted, "title": f"axis {number}", "reference": f"r{number % 10}"}
+            id = None
+            while id is None and not self.enough.is_set():
+                id = self.save(body, f"key-{number}")
+            if id is not None:
+                self.acknowledged[id] = body
+
+    def save(self, body: Json, key: str) -> str | None:
+        """Id if the service says that it is saved."""
+        connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=10)
+        try:
+            headers = {"Content-Type": "application/json", "Idempotency-Key": key}
+            connection.request("POST", "/api/v1/selections", json.dumps(body), headers)
+            response = connection.getresponse()
+            content = response.read()
+        except (OSError, http.client.HTTPException):
+            self.broken += 1
+            return None
+        finally:
+            connection.close()
+        if response.status != 201:
+            self.unexpected.append(f"{response.status} {content[:200]!r}")
+            return None
+        return str(json.loads(content)["id"])
+
+
+def application(number: int) -> Json:
+    """An application that no other number has."""
+    chance = random.Random(number)
+    return cycle(phase(chance.uniform(1, 60), 200.0 + number, 1.5), phase(-5.0, 100.0, 2.0), pause_s=1.0)
+
+
+async def read_back(database: str, clients: Clients, catalogue: Catalogue) -> None:
+    """Every acknowledged selection is there, once and whole."""
+    store = Store(database)
+    await store.open()
+    for id, body in clients.acknowledged.items():
+        found = await store.find(id)
+        assert found is not None, f"{body['title']} was acknowledged and is lost"
+        assert (found.title, found.reference) == (body["title"], body["reference"])
+        assert orjson.loads(found.application) == body["application"]
+        wanted = Application.model_validate(body["application"])
+        assert found.result == select(wanted, catalogue).json(to_link(wanted))
+    titles, cursor = [], None
+    while True:
+        page = await store.page(cursor=cursor, limit=200)
+        titles += [summary.title for summary in page.selections]
+        cursor = page.next_cursor
+        if cursor is None:
+            break
+    await store.close()
+    assert len(titles) == len(set(titles)), "a repeated request was saved twice"
+    assert {body["title"] for body in clients.acknowledged.values()} <= set(titles)
+
+
+def test_every_acknowledged_selection_survives_a_kill_at_any_moment(database: str, catalogue: Catalogue) -> None:
+    kills = KILLS if database.startswith("sqlite") else KILLS // 4
+    with killed_server(database, kills) as (port, process):
+        clients = Clients(port)
+        threads = [threading.Thread(target=clients.run) for _ in range(CLIENTS)]
+        for thread in threads:
+            thread.start()
+        assert process.stdout is not None
+        finished = process.stdout.readline()
+        clients.enough.set()
+        for thread in threads:
+            thread.join()
+
+    assert finished == "done\n", "the killing broke off"
+    assert clients.unexpected == []
+    assert clients.broken >= kills / 4, "too few kills met a request"
+    assert len(clients.acknowledged) >= kills
+    asyncio.run(read_back(database, clients, catalogue))

@@ -1,0 +1,192 @@
+"""A database that is gone or stuck takes down saving, nothing else; and saving comes back by itself."""
+
+import asyncio
+import sqlite3
+import threading
+import time
+from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager, contextmanager
+from pathlib import Path
+from typing import Any
+
+import psycopg
+import pytest
+from starlette.testclient import TestClient
+
+from hpn.store import Store, StoreUnavailableError
+from hpn.web.app import create_app
+from hpn.web.settings import Settings
+from tests.build import worked_example
+from tests.databases import PostgreSQL
+from tests.store.drafts import draft
+
+SAVE = {"application": worked_example()}
+WAIT_S = 1.0
+"""Longest wait for the database in these tests."""
+
+SLACK_S = 1.5
+"""For a busy machine: what an answer may take beyond the wait."""
+
+Outage = Callable[[], AbstractContextManager[None]]
+
+
+@contextmanager
+def _sqlite_locked(path: Path) -> Iterator[None]:
+    """Another process writes, and does not come to an end."""
+    connection = sqlite3.connect(path, isolation_level=None)
+    connection.execute("BEGIN IMMEDIATE")
+    yield
+    connection.execute("ROLLBACK")
+    connection.close()
+
+
+@contextmanager
+def _postgresql_locked(address: str) -> Iterator[None]:
+    with psycopg.connect(address) as connection:
+        connection.execute("LOCK TABLE selections IN ACCESS EXCLUSIVE MODE")
+        yield
+        connection.rollback()
+
+
+@contextmanager
+def _stopped(server: PostgreSQL) -> Iterator[None]:
+    server.stop()
+    try:
+        yield
+    finally:
+        server.start()
+
+
+@pytest.fixture(params=["sqlite locked", "postgresql locked", "postgresql stopped"])
+def outage(request: pytest.FixtureRequest, tmp_path: Path) -> tuple[str, Outage]:
+    """Address of a database, and what makes it unusable for a while."""
+    if request.param == "sqlite locked":
+        path = tmp_path / "store.sqlite3"
+        return f"sqlite:///{path}", lambda: _sqlite_locked(path)
+    server: PostgreSQL = request.getfixturevalue("postgresql")
+    address = server.new_database()
+    if request.param == "postgresql locked":
+        return address, lambda: _postgresql_locked(address)
+    return address, lambda: _stopped(server)
+
+
+def client_of(database: str) -> TestClient:
+    """A client of a service that does not wait long."""
+    return TestClient(create_app(Settings(database_url=database, database_seconds=WAIT_S)))
+
+
+def assert_unavailable(response: Any) -> None:
+    """The answer of a service whose store is out of reach."""
+    assert response.status_code == 503
+    assert response.headers["content-type"] == "application/problem+json"
+    assert int(response.headers["retry-after"]) > 0
+    assert response.json()["title"] == "Not available at the moment"
+
+
+def test_while_the_database_is_gone_saving_says_when_to_retry_and_the_calculator_works_on(
+    outage: tuple[str, Outage],
+) -> None:
+    database, broken = outage
+    with client_of(database) as client:
+        before = client.post("/api/v1/selections", json=SAVE)
+        with broken():
+            end = time.monotonic() + 5
+            while time.monotonic() < end:
+                start = time.monotonic()
+                assert_unavailable(client.post("/api/v1/selections", json=SAVE))
+                assert time.monotonic() - start < WAIT_S + SLACK_S
+                assert client.post("/api/v1/select", json=SAVE["application"]).status_code == 200
+                assert client.get("/?T=40&n=250&t=1").status_code == 200
+                assert client.get("/healthz").status_code == 200
+
+        assert client.post("/api/v1/selections", json=SAVE).status_code == 201
+        assert client.get(before.headers["location"]).status_code == 200
+        assert client.get("/readyz").status_code == 200
+
+
+def test_while_the_server_is_stopped_nothing_of_the_store_answers_and_readiness_says_so(postgresql: PostgreSQL) -> None:
+    with client_of(postgresql.new_database()) as client:
+        saved = client.post("/api/v1/selections", json=SAVE).json()
+        with _stopped(postgresql):
+            address = f"/api/v1/selections/{saved['id']}"
+            for response in (client.get(address), client.get("/api/v1/selections"), client.delete(address)):
+                assert_unavailable(response)
+            assert_unavailable(client.get("/readyz"))
+            page = client.get(saved["url"])
+            assert (page.status_code, page.headers["content-type"]) == (503, "text/html; charset=utf-8")
+            assert "Retry-After" in page.headers
+
+        assert client.get(saved["url"]).status_code == 200
+
+
+def test_a_service_that_starts_before_its_database_saves_as_soon_as_it_can(postgresql: PostgreSQL) -> None:
+    database = postgresql.new_database()
+    with _stopped(postgresql):
+        client = client_of(database)
+        client.__enter__()
+        assert client.post("/api/v1/select", json=SAVE["application"]).status_code == 200
+        assert_unavailable(client.get("/readyz"))
+        assert_unavailable(client.post("/api/v1/selections", json=SAVE))
+
+    assert client.post("/api/v1/selections", json=SAVE).status_code == 201
+    client.__exit__(None, None, None)
+
+
+def test_a_file_that_cannot_be_opened_keeps_only_the_store_from_working(tmp_path: Path) -> None:
+    (tmp_path / "store.sqlite3").mkdir()
+
+    with client_of(f"sqlite:///{tmp_path}/store.sqlite3") as client:
+        assert_unavailable(client.post("/api/v1/selections", json=SAVE))
+        assert_unavailable(client.get("/readyz"))
+        assert client.post("/api/v1/select", json=SAVE["application"]).status_code == 200
+
+
+def test_many_savers_wait_for_a_stuck_database_only_once(outage: tuple[str, Outage]) -> None:
+    """Who comes while one transaction is stuck is not put behind it, to wait as long again."""
+    database, broken = outage
+
+    async def main() -> tuple[list[object], float]:
+        store = Store(database, seconds=WAIT_S)
+        await store.open()
+        entered, leave = threading.Event(), threading.Event()
+
+        def hold() -> None:
+            with broken():
+                entered.set()
+                leave.wait(30)
+
+        holding = asyncio.create_task(asyncio.to_thread(hold))
+        await asyncio.to_thread(entered.wait)
+        start = time.monotonic()
+        outcomes = await asyncio.gather(*(store.save(draft()) for _ in range(200)), return_exceptions=True)
+        spent = time.monotonic() - start
+        leave.set()
+        await holding
+        assert isinstance(await store.save(draft()), str)
+        await store.close()
+        return list(outcomes), spent
+
+    outcomes, spent = asyncio.run(main())
+
+    assert {type(outcome) for outcome in outcomes} == {StoreUnavailableError}
+    assert spent < 2 * WAIT_S + SLACK_S
+
+
+def test_the_event_loop_runs_on_while_the_database_is_stuck(tmp_path: Path) -> None:
+    path = tmp_path / "store.sqlite3"
+
+    async def main() -> float:
+        store = Store(f"sqlite:///{path}", seconds=WAIT_S)
+        await store.open()
+        longest = 0.0
+        with _sqlite_locked(path):
+            saving = asyncio.create_task(store.save(draft()))
+            while not saving.done():
+                start = time.monotonic()
+                await asyncio.sleep(0.01)
+                longest = max(longest, time.monotonic() - start)
+        assert isinstance(saving.exception(), StoreUnavailableError)
+        await store.close()
+        return longest
+
+    assert asyncio.run(main()) < 0.5  # a blocked loop would show the whole wait
