@@ -10,7 +10,7 @@ const contentOf = (form) => new URLSearchParams(new FormData(form)).toString();
 document.addEventListener("submit", async (event) => {
   const settings = event.target;
   const form = formOf();
-  if (!form || !settings.matches("form.settings")) return;
+  if (!form || !settings.matches("form.reader")) return;
   if (form.method === "get") {
     settings.elements.back.value = `/?${contentOf(form)}${form.elements.written ? "" : "&written=en"}`;
     return;
