@@ -301,13 +301,20 @@ def _check(export: Export, check: Mapping[str, Any], language: Language) -> dict
         "demand": _measured(check["demand"], definition["unit"], language),
         "limit": _measured(check["limit"], definition["unit"], language),
         "utilisation": language.percent(check["utilisation"]),
-        "share": 2.0 if check["utilisation"] is None else check["utilisation"],
+        "share": _share(check),
         "bound": export.application.requirements.utilisation if definition["group"] == "load" else 1.0,
         "status": check["status"],
         "word": language.text(STATUS[check["status"]]),
         "where": " · ".join([*where, standings.source(export, code, language)]),
         "basis": sentence(language.text(definition["basis"])),
     }
+
+
+def _share(check: Mapping[str, Any]) -> float:
+    """Length of a check's bar: none where it is not rated, all of it where it fails without a number."""
+    if check["utilisation"] is None:
+        return 2.0 if check["status"] == "fail" else 0.0
+    return float(check["utilisation"])
 
 
 def _measured(value: float | None, unit: str, language: Language) -> str:
