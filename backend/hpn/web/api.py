@@ -92,6 +92,7 @@ def _stream(state: State) -> Response:
         line_evaluator(state.catalogue, state.metrics, settings.maximum_body_bytes),
         maximum_line_bytes=settings.maximum_body_bytes,
         maximum_spool_bytes=settings.maximum_spool_bytes,
+        spool_folder=settings.spool_folder,
         seconds=settings.body_seconds,
     )
 

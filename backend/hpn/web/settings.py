@@ -56,6 +56,10 @@ class Settings(BaseSettings):
     maximum_batch_count: int = Field(10_000, gt=0, le=10_000, description="Most applications in one batch request.")
     body_seconds: float = Field(30.0, gt=0, description="Longest time for a request's body to arrive.")
     batch_seconds: float = Field(60.0, gt=0, description="Longest computing time of one batch request.")
+    spool_folder: Path | None = Field(
+        None,
+        description="Folder for what a streamed batch has to set aside; the system's for temporary files by default.",
+    )
     maximum_spool_bytes: int = Field(
         2_000_000_000,
         gt=0,

@@ -4,6 +4,7 @@ import asyncio
 import tempfile
 from collections import deque
 from collections.abc import Callable, Sequence
+from pathlib import Path
 from typing import IO
 
 import orjson
@@ -66,7 +67,8 @@ class Spool:
     A client that sends everything before it reads anything, as most do, would otherwise block both sides for good.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, folder: Path | None = None) -> None:
+        self._folder = folder
         self._pieces: deque[bytes] = deque()
         self._in_memory = 0
         self._file: IO[bytes] | None = None
@@ -81,7 +83,7 @@ class Spool:
             self._pieces.append(piece)
             self._in_memory += len(piece)
             return
-        self._file = self._file or tempfile.TemporaryFile(buffering=0)  # noqa: SIM115
+        self._file = self._file or tempfile.TemporaryFile(buffering=0, dir=self._folder)  # noqa: SIM115
         self._file.seek(self._end)
         self._end += self._file.write(piece)
 
@@ -122,6 +124,7 @@ class LineStream(Response):
         *,
         maximum_line_bytes: int,
         maximum_spool_bytes: int,
+        spool_folder: Path | None = None,
         seconds: float,
     ) -> None:
         self.status_code = 200
@@ -131,7 +134,7 @@ class LineStream(Response):
         self._splitter = LineSplitter(maximum_line_bytes)
         self._maximum_spool = maximum_spool_bytes
         self._seconds = seconds
-        self._spool = Spool()
+        self._spool = Spool(spool_folder)
         self._filled, self._drained = asyncio.Event(), asyncio.Event()
         self._done = self._gone = self._sending = False
 
