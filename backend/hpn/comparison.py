@@ -1,5 +1,6 @@
 """Candidates side by side: row by row what they are and do, which is best at it, and which none other outdoes."""
 
+import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
@@ -58,8 +59,15 @@ def _figure(name: str) -> Read:
     return lambda column: getattr(column.gear, name)
 
 
-def _result(name: str) -> Read:
-    return lambda column: column.candidate[name]
+def _result(name: str, rating: str = "ratio") -> Read:
+    """A figure of the reply; without limit where it is empty although the gear's rating is known."""
+
+    def read(column: Column) -> float | None:
+        value: float | None = column.candidate[name]
+        unlimited = value is None and getattr(column.gear, rating) is not None
+        return math.inf if unlimited else value
+
+    return read
 
 
 def groups_of(columns: Sequence[Column], maximum_torque_Nm: float, checks: Mapping[str, str]) -> tuple[Group, ...]:
@@ -84,11 +92,18 @@ def _utilisations(columns: Sequence[Column], checks: Mapping[str, str]) -> Itera
 
 
 def _results(columns: Sequence[Column]) -> Iterable[Row]:
-    yield _row(columns, "life", N_("Life"), _result("life_L10_h"), "L_10", "h", lowest=False)
+    yield _row(columns, "life", N_("Life"), _result("life_L10_h", "rated_torque_Nm"), "L_10", "h", lowest=False)
     if any(column.candidate["momentary_peak_count"] is not None for column in columns):
-        yield _row(columns, "stops", N_("Allowed stops"), _result("momentary_peak_count"), "N_k max", lowest=False)
+        yield _row(
+            columns,
+            "stops",
+            N_("Allowed stops"),
+            _result("momentary_peak_count", "repeated_peak_torque_Nm"),
+            "N_k max",
+            lowest=False,
+        )
     if any(column.candidate["bearing_life_L50_h"] is not None for column in columns):
-        bearing_life = _result("bearing_life_L50_h")
+        bearing_life = _result("bearing_life_L50_h", "dynamic_radial_load_N")
         yield _row(columns, "bearing_life", N_("Bearing life"), bearing_life, "L_50", "h", lowest=False)
     peak, average = _result("motor_peak_torque_Nm"), _result("average_input_speed_rpm")
     yield _row(columns, "motor_torque", N_("Peak torque at the motor"), peak, "", "Nm", lowest=True)

@@ -154,3 +154,18 @@ def over_phases(make: Callable[[str, int], Formula], count: int, total: Callable
     terms = tuple(make(str(k + 1), k) for k in shown)
     pattern = (make("1", 0), make("2", 0), make("n", 0))
     return Series(pattern, terms, count, total() if count > SHOWN_TERMS else math.fsum(map(value_of, terms)))
+
+
+def leaves_out(formula: Formula) -> bool:
+    """Whether a series in a formula is abbreviated."""
+    match formula:
+        case Term() | Constant():
+            return False
+        case Series():
+            return formula.abbreviated
+        case Sum(parts) | Product(parts) | Largest(parts):
+            return any(map(leaves_out, parts))
+        case Difference(first, second) | Quotient(first, second) | Power(first, second):
+            return leaves_out(first) or leaves_out(second)
+        case Root(body) | Magnitude(body):
+            return leaves_out(body)

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from hpn.calculation.formula import Formula, Magnitude, Product, Series, Sum, Symbol, Term, over_phases
+from hpn.calculation.formula import Formula, Magnitude, Product, Series, Sum, Symbol, Term, leaves_out, over_phases
 from hpn.catalogue import Catalogue
 from hpn.duty import Duty
 from hpn.gear import Gear
@@ -58,6 +58,11 @@ class Step:
     comparisons: tuple[Comparison, ...] = ()
     notes: tuple[Sentence, ...] = ()
     trivial: bool = False
+
+    @property
+    def abbreviated(self) -> bool:
+        """Whether some of the phases are not written out."""
+        return any(leaves_out(line.formula) for line in self.lines)
 
 
 class Sheet:

@@ -142,12 +142,16 @@ def percent(utilisation: float | None) -> str:
     return f"{_grouped(f'{value:.{digits}f}')}{GROUP}%"
 
 
-_SYMBOL = re.compile(r"\b([A-Za-z])_([A-Za-z]+(?:\([a-z]+\))?)")
+_SYMBOL = re.compile(r"\b([A-Za-z])_([A-Za-z0-9]+(?:_[a-z]+)*(?:\([a-z]+\))?)")
 
 
 def symbols(text: str) -> Markup:
-    """Text with the handbook's symbols set as such: `T_R` with R as an index."""
-    return Markup(_SYMBOL.sub(r'<var class="symbol">\1<sub>\2</sub></var>', str(escape(text))))
+    """Text with the handbook's symbols set as such: `T_R` with R as an index, `n_out_av` with two words as one."""
+    return Markup(_SYMBOL.sub(_set, str(escape(text))))
+
+
+def _set(symbol: re.Match[str]) -> str:
+    return f'<var class="symbol">{symbol[1]}<sub>{symbol[2].replace("_", " ")}</sub></var>'
 
 
 def _grouped(number: str) -> str:

@@ -75,8 +75,9 @@ SYMBOLS = (
 )
 """Everything but the phases, in the order in which a canonical link gives them."""
 
-PAGE_NAMES = ("gear", "do", WRITTEN, WAS)
-"""Parameters of the page alone: the candidate looked at, and the buttons that edit the rows, one after the other."""
+PAGE_NAMES = ("gear", "pin", "unpin", "do", WRITTEN, WAS)
+"""Parameters of the page alone: the candidate looked at, those pinned beside it (repeated) and the one to take away, and
+the buttons that edit the rows, one after the other."""
 
 ROWS_IN_TABLE = 100
 """A longer duty cycle is edited as text: a field for each of its figures would weigh megabytes."""
@@ -124,6 +125,7 @@ class Form:
     lists: Mapping[str, tuple[str, ...]]
     with_loads: bool = False
     gear: str = ""
+    pins: tuple[str, ...] = ()
     focus: str | None = None
     problems: tuple[Problem, ...] = ()
     application: Application | None = None
@@ -232,6 +234,7 @@ def parse(pairs: Pairs) -> Form:
         lists={name: tuple(texts) for name, texts in given.lists.items()},
         with_loads=given.with_loads,
         gear=given.page.get("gear", "").strip(),
+        pins=given.pinned(),
         focus=focus,
         problems=tuple(problems),
         application=None if problems else application,
@@ -269,6 +272,7 @@ class _Given:
         self.lists: dict[str, list[str]] = {}
         self.page: dict[str, str] = {}
         self.presses: list[str] = []
+        self.pins: list[str] = []
         self.unknown: list[str] = []
         self.with_loads = False
 
@@ -278,6 +282,8 @@ class _Given:
             self.columns.setdefault(name, []).append(text)
         elif name == "do":
             self.presses.append(text)
+        elif name == "pin":
+            self.pins += [text.strip()] if text.strip() else []
         elif name in PAGE_NAMES:
             self.page[name] = text
         elif name not in _BY_NAME:
@@ -323,6 +329,10 @@ class _Given:
             onward = do if 0 < to < len(rows) - 1 else "down" if to == 0 else "up"
             return f"{onward}-{to}"
         return None
+
+    def pinned(self) -> tuple[str, ...]:
+        """Pinned gears, without the one whose button takes it away."""
+        return tuple(pin for pin in self.pins if pin != self.page.get("unpin"))
 
     def problems(self) -> Iterable[Problem]:
         """Names that are unknown, repeated, or repeated unequally often."""

@@ -1,10 +1,14 @@
 """Formulas as MathML, in symbols or with the numbers substituted, and as text for whoever can't see MathML."""
 
-from collections.abc import Iterable
-from typing import Protocol
+from collections.abc import Callable, Iterable
+from html import escape
+from typing import Any, Protocol
 
-from markupsafe import Markup, escape
+from jinja2 import pass_context
+from jinja2.runtime import Context
+from markupsafe import Markup
 
+from hpn.calculation import Comparison, Line
 from hpn.calculation.formula import (
     Constant,
     Difference,
@@ -19,7 +23,9 @@ from hpn.calculation.formula import (
     Sum,
     Symbol,
     Term,
+    value_of,
 )
+from hpn.web import reader as readers
 from hpn.wording import Quantity
 
 DIGITS = 9
@@ -44,26 +50,66 @@ def number(reader: Reader, value: float, unit: str, digits: int = DIGITS) -> tup
     return reader.quantity(Quantity(value, unit, digits)).removesuffix(symbol).strip(), symbol
 
 
-def mathml(*parts: Formula | Symbol | str, reader: Reader, numbers: bool) -> Markup:
-    """An equation as a `math` element; `parts` are formulas, symbols and the relations between them."""
-    content = Markup("").join(
-        _operator(part) if isinstance(part, str) else _Writer(reader, numbers).write(part) for part in parts
-    )
-    text = " ".join(part if isinstance(part, str) else _Liner(reader, numbers).write(part) for part in parts)
-    return Markup('<math display="block" alttext="{}"><mrow>{}</mrow></math>').format(text, content)
+Part = tuple[Formula | Symbol, bool] | str
+"""A formula and whether its numbers are substituted, or the relation between two of them."""
 
 
-def _operator(text: str) -> Markup:
-    return Markup("<mo>{}</mo>").format(text)
+def mathml(reader: Reader, *parts: Part) -> Markup:
+    """An equation as a `math` element, with the same as a line of text for whoever can't see it."""
+    written = "".join(_operator(p) if isinstance(p, str) else _Writer(reader, p[1]).write(p[0]) for p in parts)
+    text = " ".join(p if isinstance(p, str) else _Liner(reader, p[1]).write(p[0]) for p in parts)
+    return Markup(f'<math display="block" alttext="{escape(text)}"><mrow>{written}</mrow></math>')
+
+
+def in_symbols(reader: Reader, line: Line) -> Markup:
+    """An equation as the handbook prints it."""
+    return mathml(reader, (line.result.symbol, False), "=", (line.formula, False))
+
+
+def with_numbers(reader: Reader, line: Line) -> Markup:
+    """The same equation with its numbers."""
+    return mathml(reader, (line.result.symbol, False), "=", (line.formula, True))
+
+
+def result(reader: Reader, line: Line) -> Markup:
+    """What the equation gives; a count is rounded down."""
+    given = (Constant(line.result.value, line.result.unit), True)
+    if line.rounded_down:
+        return mathml(reader, "=", (Constant(value_of(line.formula)), True), "→", given)
+    return mathml(reader, "=", given)
+
+
+def compared(reader: Reader, comparison: Comparison) -> Markup:
+    """What is tested against its limit, which the user's own reserve may lower."""
+    tested, u = comparison.tested, comparison.allowed
+    parts: list[Part] = [(tested, False), "="]
+    if not isinstance(tested, Term):
+        parts += [(tested, True), "="]
+    parts += [(Constant(comparison.value, comparison.unit), True), comparison.relation]
+    limit = Constant(comparison.limit, comparison.unit)
+    if u == 1:
+        for name in comparison.limit_names:
+            parts += [(name, False), "="]
+        return mathml(reader, *parts, (limit, True))
+    named = Term(comparison.limit_names[-1], 0.0) if comparison.limit_names else limit
+    reserve = Term(Symbol("u"), u)
+    for numbers, factor in ((False, named), (True, limit)):
+        reserved = Product((reserve, factor)) if comparison.relation == "≤" else Quotient(factor, reserve)
+        parts += [(reserved, numbers), "="]
+    return mathml(reader, *parts, (Constant(comparison.bound, comparison.unit), True))
+
+
+def _operator(text: str) -> str:
+    return f"<mo>{escape(text)}</mo>"
 
 
 class _Writer:
-    """Writes MathML."""
+    """Writes MathML. Plain strings, because a page has hundreds of these; every leaf is escaped where it is written."""
 
     def __init__(self, reader: Reader, numbers: bool) -> None:
         self.reader, self.numbers = reader, numbers
 
-    def write(self, formula: Formula | Symbol) -> Markup:
+    def write(self, formula: Formula | Symbol) -> str:
         """One formula, as one element."""
         match formula:
             case Symbol():
@@ -75,120 +121,128 @@ class _Writer:
             case Sum(terms):
                 return self.row("+", map(self.write, terms))
             case Series():
-                return self.series(formula)
+                return self.row("+", self.terms(formula))
             case Difference(left, right):
                 return self.row("−", (self.write(left), self.write(right)))
             case Product(factors):
                 return self.row("·", map(self.factor, factors))
-            case Quotient(above, below, flat=True):
-                return self.row("/", (self.write(above), self.write(below)))
-            case Quotient(above, below):
-                return Markup("<mfrac>{}{}</mfrac>").format(self.write(above), self.write(below))
-            case Power(base, exponent):
-                return Markup("<msup>{}{}</msup>").format(self.base(base), self.write(exponent))
-            case Root(body, None):
-                return Markup("<msqrt>{}</msqrt>").format(self.write(body))
-            case Root(body, degree):
-                assert degree is not None
-                return Markup("<mroot>{}{}</mroot>").format(self.write(body), self.write(degree))
             case Magnitude(body):
                 return self.write(body) if self.numbers else self.fenced("|", body, "|")
             case Largest(of):
                 return self.call("max", map(self.write, of))
+            case Quotient() | Power() | Root():
+                return self.shaped(formula)
 
-    def row(self, operator: str, parts: Iterable[Markup]) -> Markup:
+    def shaped(self, formula: Quotient | Power | Root) -> str:
+        """What does not stand in a row."""
+        match formula:
+            case Quotient(above, below, flat=True):
+                return self.row("/", (self.write(above), self.write(below)))
+            case Quotient(above, below):
+                return f"<mfrac>{self.write(above)}{self.write(below)}</mfrac>"
+            case Power(base, exponent):
+                return f"<msup>{self.base(base)}{self.write(exponent)}</msup>"
+            case Root(body, degree):
+                if degree is None:
+                    return f"<msqrt>{self.write(body)}</msqrt>"
+                return f"<mroot>{self.write(body)}{self.write(degree)}</mroot>"
+
+    def row(self, operator: str, parts: Iterable[str]) -> str:
         """Parts with an operator between them."""
-        return Markup("<mrow>{}</mrow>").format(_operator(operator).join(parts))
+        return f"<mrow>{_operator(operator).join(parts)}</mrow>"
 
-    def fenced(self, opening: str, body: Formula, closing: str) -> Markup:
+    def fenced(self, opening: str, body: Formula, closing: str) -> str:
         """A formula between fences."""
-        fence = Markup('<mo form="{}" stretchy="true">{}</mo>')
-        parts = (fence.format("prefix", opening), self.write(body), fence.format("postfix", closing))
-        return Markup("<mrow>{}{}{}</mrow>").format(*parts)
+        before, after = f'<mo form="prefix">{opening}</mo>', f'<mo form="postfix">{closing}</mo>'
+        return f"<mrow>{before}{self.write(body)}{after}</mrow>"
 
-    def factor(self, formula: Formula) -> Markup:
+    def factor(self, formula: Formula) -> str:
         """A factor of a product, in brackets where it is a sum."""
         return self.fenced("(", formula, ")") if isinstance(formula, Sum | Difference | Series) else self.write(formula)
 
-    def base(self, formula: Formula) -> Markup:
+    def base(self, formula: Formula) -> str:
         """A base of a power, in brackets unless it is a symbol or a number without unit."""
         plain = isinstance(formula, Term | Constant) and not (self.numbers and formula.unit)
         return self.write(formula) if plain else self.fenced("(", formula, ")")
 
-    def call(self, name: str, arguments: Iterable[Markup]) -> Markup:
+    def call(self, name: str, arguments: Iterable[str]) -> str:
         """A function of some arguments."""
-        listed = Markup('<mo separator="true">;</mo>').join(arguments)
-        return Markup("<mrow><mi>{}</mi><mo>(</mo>{}<mo>)</mo></mrow>").format(name, listed)
+        return f"<mrow><mi>{name}</mi><mo>(</mo>{_operator(';').join(arguments)}<mo>)</mo></mrow>"
 
-    def series(self, series: Series) -> Markup:
-        """A series: in symbols with its general term, in numbers with the terms that are shown."""
-        dots = Markup("<mo>…</mo>")
-        if not self.numbers:
-            first, second, last = map(self.write, series.pattern)
-            return self.row("+", (first, second, dots, last))
-        terms = [self.write(term) for term in series.terms]
-        return self.row("+", (*terms[:-1], dots, terms[-1]) if series.abbreviated else terms)
+    def terms(self, series: Series) -> list[str]:
+        """Terms of a series: in symbols the general ones, in numbers those that are kept."""
+        terms = [self.write(term) for term in (series.terms if self.numbers else series.pattern)]
+        return [*terms[:-1], self.dots, terms[-1]] if series.abbreviated or not self.numbers else terms
 
-    def symbol(self, symbol: Symbol) -> Markup:
+    dots = "<mo>…</mo>"
+
+    def symbol(self, symbol: Symbol) -> str:
         """A letter with its index."""
-        letter = Markup("<mi>{}</mi>").format(symbol.letter)
         if not symbol.index:
-            return letter
+            return f"<mi>{escape(symbol.letter)}</mi>"
         tag = "mn" if symbol.index.isdigit() else "mi" if symbol.index.isalpha() else "mtext"
-        return Markup("<msub>{}<{}>{}</{}></msub>").format(letter, Markup(tag), symbol.index, Markup(tag))
+        return f"<msub><mi>{escape(symbol.letter)}</mi><{tag}>{escape(symbol.index)}</{tag}></msub>"
 
-    def number(self, value: float, unit: str) -> Markup:
+    def number(self, value: float, unit: str) -> str:
         """A number with its unit."""
         text, symbol = number(self.reader, value, unit)
         if not symbol:
-            return Markup("<mn>{}</mn>").format(text)
-        return Markup('<mrow><mn>{}</mn><mtext class="unit">\u202f{}</mtext></mrow>').format(text, symbol)
+            return f"<mn>{escape(text)}</mn>"
+        return f'<mrow><mn>{escape(text)}</mn><mtext class="unit">\u202f{escape(symbol)}</mtext></mrow>'
 
 
 class _Liner(_Writer):
-    """Writes a line of text."""
+    """Writes a line of text, not escaped yet."""
 
-    def row(self, operator: str, parts: Iterable[str]) -> Markup:
+    dots = "…"
+
+    def row(self, operator: str, parts: Iterable[str]) -> str:
         """Parts with an operator between them."""
-        return Markup(operator if operator in "·/" else f" {operator} ").join(parts)
+        return (operator if operator in "·/" else f" {operator} ").join(parts)
 
-    def write(self, formula: Formula | Symbol) -> Markup:
-        """One formula as text."""
+    def shaped(self, formula: Quotient | Power | Root) -> str:
+        """Fractions, powers and roots in one line."""
         match formula:
-            case Quotient(above, below, flat=False):
-                return self.row("/", (self.grouped(above), self.grouped(below)))
+            case Quotient(above, below):
+                return f"{self.grouped(above)}/{self.grouped(below)}"
             case Power(base, exponent):
-                return Markup("{}^{}").format(self.base(base), self.grouped(exponent))
+                return f"{self.base(base)}^{self.grouped(exponent)}"
             case Root(body, degree):
-                return Markup("root({})({})").format(self.write(degree) if degree else 2, self.write(body))
-            case _:
-                return super().write(formula)
+                return f"root({self.write(degree) if degree else 2})({self.write(body)})"
 
-    def grouped(self, formula: Formula) -> Markup:
+    def grouped(self, formula: Formula) -> str:
         """In brackets, unless it is a single term."""
         text = self.write(formula)
-        return text if isinstance(formula, Term | Constant) else Markup("({})").format(text)
+        return text if isinstance(formula, Term | Constant) else f"({text})"
 
-    def fenced(self, opening: str, body: Formula, closing: str) -> Markup:
+    def fenced(self, opening: str, body: Formula, closing: str) -> str:
         """A formula between fences."""
-        return Markup("{}{}{}").format(opening, self.write(body), closing)
+        return f"{opening}{self.write(body)}{closing}"
 
-    def call(self, name: str, arguments: Iterable[str]) -> Markup:
+    def call(self, name: str, arguments: Iterable[str]) -> str:
         """A function of some arguments."""
-        return Markup("{}({})").format(name, Markup("; ").join(arguments))
+        return f"{name}({'; '.join(arguments)})"
 
-    def series(self, series: Series) -> Markup:
-        """A series of terms."""
-        shown = series.terms if self.numbers else series.pattern
-        terms = [self.write(term) for term in shown]
-        gap = series.abbreviated or not self.numbers
-        return self.row("+", (*terms[:-1], Markup("…"), terms[-1]) if gap else terms)
-
-    def symbol(self, symbol: Symbol) -> Markup:
+    def symbol(self, symbol: Symbol) -> str:
         """A letter with its index."""
-        return escape(f"{symbol.letter}_{symbol.index}" if symbol.index else symbol.letter)
+        return f"{symbol.letter}_{symbol.index}" if symbol.index else symbol.letter
 
-    def number(self, value: float, unit: str) -> Markup:
+    def number(self, value: float, unit: str) -> str:
         """A number with its unit."""
-        text, symbol = number(self.reader, value, unit)
-        return escape(f"{text} {symbol}".strip())
+        return " ".join(filter(None, number(self.reader, value, unit)))
+
+
+def _for_reader(write: Callable[[Reader, Any], Markup]) -> Callable[..., Markup]:
+    def filtered(_: Context, argument: Any) -> Markup:
+        return write(readers.current(), argument)
+
+    return pass_context(filtered)
+
+
+FILTERS = {
+    "in_symbols": _for_reader(in_symbols),
+    "with_numbers": _for_reader(with_numbers),
+    "result": _for_reader(result),
+    "compared": _for_reader(compared),
+}
+"""`{{ line | in_symbols }}`, `{{ line | with_numbers }}`, `{{ comparison | compared }}`, for whoever reads the page."""

@@ -16,11 +16,13 @@ from hpn.application import Application, InputError
 from hpn.catalogue import Catalogue
 from hpn.gear import Gear
 from hpn.notices import AREAS
+from hpn.remedy import DRIVERS
 from hpn.selection import Selection, select
-from hpn.web import assets, display, links, pictures, reader, readers
+from hpn.web import assets, display, links, mathml, pictures, reader, readers
 from hpn.web.as_read import as_read, as_typed
 from hpn.web.embeds import preview
 from hpn.web.entries import WRITTEN
+from hpn.web.insight import Insight, checked_pins, insight_of, tail_of
 from hpn.web.links import Form, Problem
 from hpn.web.messages import N_, Message
 from hpn.web.ordering import MOTOR_CODE, ordering_code
@@ -60,6 +62,7 @@ class Answer:
     gear: Gear
     lighter: Candidate | None
     map: tuple[tuple[int, tuple[Cell | None, ...]], ...]
+    insight: Insight
 
     @property
     def too_long(self) -> bool:
@@ -97,33 +100,36 @@ def answered(form: Form, catalogue: Catalogue) -> tuple[Form, Answer | None]:
     if form.gear and catalogue.find(form.gear) is None:
         unknown = Message(N_("%(gear)s is not a gear of the catalogue"), {"gear": form.gear[:40]})
         form = replace(form, problems=(*form.problems, Problem("gear", None, unknown)))
+    form = checked_pins(form, catalogue)
     if form.application is None or form.problems:
         return form, None
     try:
-        return form, _answer(form.application, form.gear, catalogue)
+        return form, _answer(form.application, form, catalogue)
     except InputError as refusal:
         refused = [Problem(*links.place_of(location), sentence) for location, sentence in refusal.sentences]
         return replace(form, application=None, problems=tuple(refused)), None
 
 
-def _answer(application: Application, designation: str, catalogue: Catalogue) -> Answer:
+def _answer(application: Application, form: Form, catalogue: Catalogue) -> Answer:
     link = links.to_link(application)
     selection = select(application, catalogue)
     reply = selection.reply(link)
     everything = _unrestricted(selection)
     landscape = _by_designation(reply if everything is selection else everything.reply(""))
-    gear = catalogue.find(designation or reply["selected"] or reply["candidates"][0]["designation"])
+    gear = catalogue.find(form.gear or reply["selected"] or reply["candidates"][0]["designation"])
     assert gear is not None  # `answered` refuses what the catalogue lacks
+    chosen, lighter = landscape[gear.designation], _lighter_miss(reply, catalogue)
     return Answer(
         link=link,
-        address=f"{link}&gear={gear.designation}" if designation else link,
+        address=link + (f"&gear={gear.designation}" if form.gear else "") + tail_of(form.pins),
         reply=reply,
         selection=selection,
         everything=everything,
-        chosen=landscape[gear.designation],
+        chosen=chosen,
         gear=gear,
-        lighter=_lighter_miss(reply, catalogue),
+        lighter=lighter,
         map=_map(reply, landscape, catalogue),
+        insight=insight_of(selection, reply, landscape, chosen, lighter, form.pins),
     )
 
 
@@ -223,6 +229,7 @@ def _templates(static: assets.Assets) -> Environment:
     templates.filters |= (
         reader.FILTERS
         | pictures.FILTERS
+        | mathml.FILTERS
         | {
             "as_read": as_read,
             "as_typed": as_typed,
@@ -235,6 +242,7 @@ def _templates(static: assets.Assets) -> Environment:
         "ordering_code": ordering_code,
         **reader.GLOBALS,
         "AREAS": AREAS,
+        "DRIVERS": DRIVERS,
         "BEST": display.BEST,
         "CHECK_NAMES": display.CHECK_NAMES,
         "FIELD_NAMES": display.FIELD_NAMES,
