@@ -38,7 +38,9 @@ export function step(direction) {
   at = to;
   group = null;
   restoring = contents[to];
-  formOf().requestSubmit();
+  const form = formOf();
+  form.setAttribute("hx-method", new URLSearchParams(restoring).has("phases") ? "post" : "get");
+  form.requestSubmit();
   show();
 }
 
@@ -49,7 +51,6 @@ document.addEventListener("htmx:config:request", (event) => {
   const body = new FormData();
   for (const [name, value] of new URLSearchParams(restoring)) body.append(name, value);
   ctx.request.body = body;
-  ctx.request.method = body.has("phases") ? "POST" : "GET";
   ctx.restores = true;
   restoring = null;
 });

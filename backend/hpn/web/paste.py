@@ -5,7 +5,7 @@ comes along as the field `link`, so that nothing typed is lost on the way.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from math import isfinite
 from urllib.parse import parse_qsl, urlencode
 
@@ -31,6 +31,7 @@ DECIMALS = {".": N_("a point"), ",": N_("a comma")}
 COLUMN_UNITS = dict(zip(COLUMNS, ("Nm", "rpm", "s", "N", "N"), strict=True))
 """Units that a table is read in, whatever the page shows."""
 
+NOTHING = Pasted(())
 _PHASE_NAMES = {symbol.name for symbol in PHASE_SYMBOLS}
 
 
@@ -70,7 +71,7 @@ class Draft:
 
 async def start(request: Request) -> Response:
     """The page with an empty field."""
-    return _render(request, _draft(request.url.query, ""), 200)
+    return _render(request, _draft(request.url.query), 200)
 
 
 async def paste(request: Request) -> Response:
@@ -85,13 +86,17 @@ async def paste(request: Request) -> Response:
 def _answer(request: Request, fields: dict[str, str]) -> Response:
     text = (fields.get("file", "") or fields.get("text", "")).removeprefix("\ufeff")
     take, link = fields.get("take", ""), fields.get("link", "").removeprefix("/").removeprefix("?")
-    draft = _opened(link, text) if text.lstrip().startswith("{") else _draft(link, text)
-    if draft.application and (take or "hx-request" not in request.headers):
-        return _proceed(request, parse_qsl(links.to_link(draft.application).removeprefix("/?"), keep_blank_values=True))
+    if text.lstrip().startswith("{"):
+        draft = _opened(link, text)
+        if draft.application and (take or "hx-request" not in request.headers):
+            query = links.to_link(draft.application).removeprefix("/?")
+            return _proceed(request, parse_qsl(query, keep_blank_values=True))
+        return _render(request, draft, 422 if draft.problems else 200)
+    pasted = read_table(text) if text.strip() else NOTHING
     mode, _, index = take.partition(":")
-    if draft.previews and index.isascii() and index.isdigit() and int(index[:3]) < len(draft.previews):
-        reading = read_table(text).readings[int(index[:3])]
-        return _proceed(request, taken(link, reading, append=mode == "append"))
+    if index.isascii() and index.isdigit() and int(index[:3]) < len(pasted.readings):
+        return _proceed(request, taken(link, pasted.readings[int(index[:3])], append=mode == "append"))
+    draft = _draft(link, text, pasted)
     return _render(request, draft, 422 if draft.problems else 200)
 
 
@@ -111,17 +116,15 @@ def _opened(link: str, text: str) -> Draft:
         return Draft(link, text, problems=tuple(problems))
 
 
-def _draft(link: str, text: str) -> Draft:
+def _draft(link: str, text: str = "", pasted: Pasted = NOTHING) -> Draft:
     """Draft of a table, or of nothing yet."""
-    draft = Draft(
-        link, text, has_phases=any(name in {*_PHASE_NAMES, "phases"} and value for name, value in parse_qsl(link))
+    return Draft(
+        link,
+        text,
+        previews=tuple(_preview(pasted, index) for index in range(len(pasted.readings))),
+        problems=(pasted.problem,) if pasted.problem else (),
+        has_phases=any(name in {*_PHASE_NAMES, "phases"} and value for name, value in parse_qsl(link)),
     )
-    if not text.strip():
-        return draft
-    pasted = read_table(text)
-    if pasted.problem:
-        return replace(draft, problems=(pasted.problem,))
-    return replace(draft, previews=tuple(_preview(pasted, index) for index in range(len(pasted.readings))))
 
 
 def _preview(pasted: Pasted, index: int) -> Preview:
