@@ -76,7 +76,7 @@ SYMBOLS = (
 """Everything but the phases, in the order in which a canonical link gives them."""
 
 PAGE_NAMES = ("gear", "pin", "unpin", "do", WRITTEN, WAS)
-"""Parameters of the page alone: the candidate looked at, those pinned beside it (repeated) and the one to take away, and
+"""Parameters of the page alone: the candidate looked at, those pinned beside it (repeated), one to take away, and
 the buttons that edit the rows, one after the other."""
 
 ROWS_IN_TABLE = 100
