@@ -32,6 +32,7 @@ from hpn.web import (
     transfer,
 )
 from hpn.web.access import Gate
+from hpn.web.compression import PackedPages
 from hpn.web.logs import make_logger
 from hpn.web.metrics import CountedStore, Metrics
 from hpn.web.observation import Observation
@@ -118,6 +119,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
 
 def _add_middleware(app: FastAPI, settings: Settings, metrics: Metrics) -> None:
     """Add what every request passes, from the inside out."""
+    app.add_middleware(PackedPages)
     app.add_middleware(Readers)
     app.add_middleware(Gate, settings=settings)
     if settings.cors_origins:

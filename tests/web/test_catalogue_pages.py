@@ -1,0 +1,128 @@
+"""The catalogue to read, over HTTP."""
+
+import gzip
+import re
+from pathlib import Path
+
+import brotli
+import pytest
+from starlette.testclient import TestClient
+
+from hpn.catalogue import Catalogue
+from hpn.web.app import create_app
+from hpn.web.settings import Settings
+
+
+@pytest.fixture(scope="module")
+def client() -> TestClient:
+    return TestClient(create_app(), follow_redirects=False)
+
+
+def test_every_gear_has_a_page_that_the_catalogue_links(client: TestClient, catalogue: Catalogue) -> None:
+    listed = set(re.findall(r'href="/catalogue/(HPN-\w+-\d+)"', client.get("/catalogue").text))
+    assert listed == set(catalogue.by_designation)
+    for designation in listed:
+        page = client.get(f"/catalogue/{designation}")
+        assert page.status_code == 200
+        assert f"<title>{designation} · HPN Select</title>" in page.text
+        assert f'<link rel="canonical" href="http://testserver/catalogue/{designation}">' in page.text
+
+
+def test_page_of_a_gear_gives_each_figure_with_its_source(client: TestClient) -> None:
+    page = client.get("/catalogue/HPN-20A-5").text
+    rows = {
+        name: (value, source)
+        for name, value, source in re.findall(
+            r'<th scope="row">([^<]+?)\s*(?:<var.*?</var>)?</th>\s*<td class="figure">.*?value="([^"]*)".*?'
+            r'<td class="origin">\s*([^<]*?)\s*</td>',
+            page,
+            re.S,
+        )
+    }
+    assert rows["Rated torque"] == ("80.0", "table 12.1, page 12")
+    assert rows["Torsional stiffness"] == ("26000.0", "table 15.2, page 15")
+    assert rows["Backlash"] == ("5.0", "table 15.1, page 15")
+    assert rows["Weight"] == ("2.6", "table 12.1, page 12")
+
+
+@pytest.mark.parametrize("spelling", ["HPN-20-5", "HPN-20A-05", "20A-5", "hpn-20a-5", "HPN-20A-5-J6-BH-AF1"])
+def test_other_spellings_lead_to_the_page(client: TestClient, spelling: str) -> None:
+    reply = client.get(f"/catalogue/{spelling}?T=1")
+    assert (reply.status_code, reply.headers["location"]) == (308, "/catalogue/HPN-20A-5?T=1")
+
+
+@pytest.mark.parametrize("name", ["HPN-20A-6", "20A", "nonsense", "%00", "..%2f..", "<b>", "x" * 5000])
+def test_unknown_gear_is_404_that_helps(client: TestClient, name: str) -> None:
+    page = client.get(f"/catalogue/{name}")
+    assert page.status_code == 404
+    if len(name) < 20 and ".." not in name:
+        assert "HPN-20-5, HPN-20A-05 and a whole ordering code" in page.text
+        assert "<b>" not in page.text
+    if "20A" in name:
+        assert "/catalogue/HPN-20A-5" in page.text
+
+
+def test_filters_are_links_that_narrow_the_table(client: TestClient) -> None:
+    for query, count in (("size=14A", 13), ("i=5", 5), ("size=14&i=5", 1), ("size=11A&i=3", 0), ("size=%00&i=x", 0)):
+        page = client.get(f"/catalogue?{query}")
+        assert len(set(re.findall(r'<th scope="row"><a href="/catalogue/([^"]+)"', page.text))) == count
+        assert page.status_code == (200 if count else 404)
+
+
+def test_finding_keeps_the_selection(client: TestClient) -> None:
+    reply = client.get("/find", params={"gear": "hpn-14-05", "link": "/?T=40&n=250&t=0.3&gear=HPN-20A-5"})
+    assert reply.headers["location"] == "/?T=40&n=250&t=0.3&gear=HPN-14A-5"
+    assert client.get("/catalogue", params={"find": "../x"}).headers["location"] == "/catalogue/..%2Fx"
+
+
+def test_missing_figures_say_how_to_supply_them_and_what_is_supplied_is_marked(tmp_path: Path) -> None:
+    page = TestClient(create_app()).get("/catalogue/HPN-40A-5").text
+    assert page.count("not published") >= 9
+    files = dict(re.findall(r"<strong>(\w+\.csv)</strong></p>\s*<pre[^>]*>([^<]*)</pre>", page))
+    assert set(files) == {"ratings.csv", "sizes.csv", "weights.csv", "lengths.csv"}
+    header, row = files["ratings.csv"].strip().splitlines()
+    assert header == "size,ratio,repeated_peak_torque_Nm,rated_torque_Nm,momentary_peak_torque_Nm,source"
+    (tmp_path / "ratings.csv").write_text(f"{header}\n{row.replace('5,,,', '5,700,400,1300')}\n")
+    supplied = TestClient(create_app(Settings(catalogue_supplement=tmp_path))).get("/catalogue/HPN-40A-5").text
+    assert 'value="700.0"' in supplied
+    assert supplied.count('<span class="tag">yours</span>') == 3
+
+
+@pytest.mark.parametrize(
+    ("query", "code"),
+    [
+        ("", "HPN-20A-5-J6"),
+        ("output=J8", "HPN-20A-5-J8"),
+        ("output=J8&motor=bh-af1", "HPN-20A-5-J8-BH-AF1"),
+        ("output=X&motor=a!", "HPN-20A-5-J6"),
+    ],
+)
+def test_ordering_code_is_put_together_without_script(client: TestClient, query: str, code: str) -> None:
+    page = client.get(f"/catalogue/HPN-20A-5?{query}").text
+    assert re.search("<output[^>]*>([^<]*)</output>", page)[1] == code  # type: ignore[index]
+    assert ('aria-invalid="true"' in page) == ("!" in query)
+
+
+def test_selection_travels_along_and_back(client: TestClient) -> None:
+    page = client.get("/catalogue/HPN-20A-5?T=40&n=250&t=0.3&output=J6").text
+    assert 'href="/?T=40&amp;n=250&amp;t=0.3&amp;gear=HPN-20A-5"' in page
+    assert 'href="/catalogue/HPN-20A-7?T=40&amp;n=250&amp;t=0.3"' in page
+    assert 'href="/?T=&amp;n=&amp;t=&amp;i=5&amp;size=20A"' in client.get("/catalogue/HPN-20A-5").text
+
+
+def test_robots_may_read_the_catalogue(client: TestClient) -> None:
+    text = client.get("/robots.txt").text
+    assert "Disallow: /selections/" in text
+    assert "Disallow: /catalogue" not in text
+
+
+def test_pages_come_packed_and_replies_of_the_API_plain(client: TestClient) -> None:
+    plain = client.get("/catalogue", headers={"Accept-Encoding": "identity"})
+    assert "content-encoding" not in plain.headers
+    assert "Accept-Encoding" in plain.headers["vary"]
+    for coding, unpack in (("br", brotli.decompress), ("gzip", gzip.decompress)):
+        with client.stream("GET", "/catalogue", headers={"Accept-Encoding": coding}) as packed:
+            assert packed.headers["content-encoding"] == coding
+            assert "Accept-Encoding" in packed.headers["vary"]
+            assert unpack(b"".join(packed.iter_raw())) == plain.content
+    assert "content-encoding" not in client.get("/api/v1/catalogue", headers={"Accept-Encoding": "gzip"}).headers

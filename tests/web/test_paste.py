@@ -1,0 +1,181 @@
+"""Pasting a table, opening a file, long cycles and the files that the page gives away, over HTTP."""
+
+import json
+import re
+from urllib.parse import parse_qs, quote, urlsplit
+
+import pytest
+from starlette.testclient import TestClient
+
+from hpn.web.app import create_app
+from hpn.web.links import MAXIMUM_QUERY_BYTES, ROWS_IN_TABLE
+
+LINK = "T=40&n=250&t=0.3&T=32&n=500&t=3&tp=4&Tk=200&i=5"
+GERMAN = "Drehmoment [Nm]\tDrehzahl [1/min]\tDauer [s]\r\n9,3\t1.250\t0,3\r\n-12,5\t500\t1,25\r\n"
+LONG = "".join(f"40.{k % 10};{250 + k % 90};0.25\n" for k in range(4000))
+HTMX = {"HX-Request": "true"}
+
+
+@pytest.fixture(scope="module")
+def client() -> TestClient:
+    return TestClient(create_app(), follow_redirects=False)
+
+
+def query_of(location: str) -> dict[str, list[str]]:
+    return parse_qs(urlsplit(location).query)
+
+
+def test_preview_names_separator_mark_and_every_number(client: TestClient) -> None:
+    page = client.post("/paste", data={"link": LINK, "text": GERMAN}, headers=HTMX)
+    assert page.status_code == 200
+    assert "<html" not in page.text
+    assert "Columns apart by tab, a comma as decimal mark." in page.text
+    assert re.findall(r"<td>([^<]+)</td>", page.text) == [
+        "9.3",
+        "1\u202f250",
+        "0.3",
+        "\N{MINUS SIGN}12.5",
+        "500",
+        "1.25",
+    ]
+
+
+def test_taking_replaces_the_phases_and_keeps_everything_else(client: TestClient) -> None:
+    reply = client.post("/paste", data={"link": LINK, "text": GERMAN, "take": "replace:0"})
+    assert reply.status_code == 303
+    assert query_of(reply.headers["location"]) == {
+        "T": ["9.3", "-12.5"],
+        "n": ["1250", "500"],
+        "t": ["0.3", "1.25"],
+        "tp": ["4"],
+        "Tk": ["200"],
+        "i": ["5"],
+    }
+
+
+def test_adding_puts_the_phases_behind_those_there(client: TestClient) -> None:
+    reply = client.post("/paste", data={"link": LINK, "text": "5\t10\t1\t300\t", "take": "append:0"})
+    given = parse_qs(urlsplit(reply.headers["location"]).query, keep_blank_values=True)
+    assert given["T"] == ["40", "32", "5"]
+    assert given["FRi"] == ["", "", "300"]
+    assert client.get(reply.headers["location"]).status_code == 200
+
+
+def test_two_readings_are_both_shown_and_the_chosen_one_is_taken(client: TestClient) -> None:
+    text = "1.234\t250\t3"
+    page = client.post("/paste", data={"link": LINK, "text": text}, headers=HTMX)
+    assert "Which one is meant?" in page.text
+    assert re.findall("<mark>([^<]+)</mark>", page.text) == ["1.234", "1\u202f234"]
+    taken = [
+        query_of(client.post("/paste", data={"link": "", "text": text, "take": f"replace:{k}"}).headers["location"])[
+            "T"
+        ]
+        for k in (0, 1)
+    ]
+    assert taken == [["1.234"], ["1234"]]
+
+
+@pytest.mark.parametrize(
+    "text", ["40\tx\t3", "40\t250", "T\tn\tt", "{", '{"duty_cycle": {"phases": [{"torque_Nm": "a"}]}}']
+)
+def test_what_can_not_be_taken_is_422_and_says_why(client: TestClient, text: str) -> None:
+    page = client.post("/paste", data={"link": LINK, "text": text, "take": "replace:0"})
+    assert page.status_code == 422
+    assert 'class="error"' in page.text
+    assert quote("T=40")[0] in page.text and 'value="T=40' in page.text
+
+
+def test_error_in_a_json_file_names_the_field(client: TestClient) -> None:
+    body = {"duty_cycle": {"phases": [{"torque_Nm": 1, "speed_rpm": 1, "duration_s": -1}]}}
+    page = client.post("/paste", files={"file": ("a.json", json.dumps(body))})
+    assert page.status_code == 422
+    assert "/duty_cycle/phases/0/duration_s" in page.text
+
+
+@pytest.mark.parametrize("take", ["replace:7", "append:-1", "replace:", "all", "x" * 999, "replace:²"])
+def test_taking_what_is_not_there_only_shows(client: TestClient, take: str) -> None:
+    assert client.post("/paste", data={"link": "%%%", "text": GERMAN, "take": take}).status_code == 200
+
+
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16", "cp1252"])
+def test_files_are_read_in_the_encodings_of_spreadsheets(client: TestClient, encoding: str) -> None:
+    text = GERMAN.replace("\t", ";").replace("Dauer", "Zeit")
+    page = client.post("/paste", files={"file": ("zyklus.csv", text.encode(encoding))}, data={"link": LINK})
+    assert page.status_code == 200
+    assert "Columns apart by semicolon" in page.text
+
+
+def test_a_workbook_is_refused_with_a_way_on(client: TestClient) -> None:
+    page = client.post("/paste", files={"file": ("a.xlsx", b"PK\x03\x04\x00\x00")})
+    assert page.status_code == 422
+    assert "save the sheet as CSV" in page.text
+
+
+def test_application_goes_out_as_a_file_and_comes_back_as_the_same_link(client: TestClient) -> None:
+    link = f"/?{LINK}&FR=500&fw=1.2&bl=7"
+    document = client.get(link.replace("/?", "/application.json?"))
+    assert document.headers["content-disposition"] == 'attachment; filename="application.json"'
+    reply = client.post("/api/v1/select", content=document.content, headers={"content-type": "application/json"})
+    assert reply.status_code == 200
+    opened = client.post("/paste", files={"file": ("application.json", document.content)})
+    assert opened.status_code == 303
+    assert query_of(opened.headers["location"]) == query_of(link)
+
+
+@pytest.mark.parametrize("decimal", [".", ","])
+def test_cycle_goes_out_as_csv_and_comes_back(client: TestClient, decimal: str) -> None:
+    table = client.get(f"/cycle.csv?T=40.5&n=250&t=0.3&FRi=500&decimal={decimal}")
+    assert table.headers["content-type"].startswith("text/csv")
+    assert f"40{decimal}5" in table.text
+    back = client.post("/paste", data={"text": table.text, "take": "replace:0"})
+    assert query_of(back.headers["location"]) == {"T": ["40.5"], "n": ["250"], "t": ["0.3"], "FRi": ["500"]} | {
+        name: values for name, values in query_of(back.headers["location"]).items() if name == "FAi"
+    }
+
+
+@pytest.mark.parametrize(
+    "path", ["/application.json?T=x&n=1&t=1", "/cycle.csv?T=1&n=1&t=1&decimal=;", "/cycle.csv?T=&n=&t="]
+)
+def test_file_of_a_wrong_link_is_422(client: TestClient, path: str) -> None:
+    reply = client.get(path)
+    assert reply.status_code == 422
+    assert reply.json()["detail"]
+
+
+def test_cycle_too_long_for_an_address_is_answered_where_it_is_taken(client: TestClient) -> None:
+    page = client.post("/paste", data={"link": LINK, "text": LONG, "take": "replace:0"}, headers=HTMX)
+    assert page.status_code == 200
+    assert page.headers["HX-Push-Url"] == "/paste"
+    assert '<textarea id="phases"' in page.text
+    assert "too long for a link" in page.text
+    again = client.post("/", data={"phases": LONG.replace(";", "\t"), "tp": "4", "Tk": "200", "i": "5"}, headers=HTMX)
+    figures = [re.findall(r'<data class="quantity" value="([^"]*)"', text) for text in (page.text, again.text)]
+    assert figures[0] == figures[1] != []
+
+
+def test_error_in_a_long_cycle_names_the_phase_and_keeps_the_text(client: TestClient) -> None:
+    text = LONG.replace("40.7;", "40,7;", 1)
+    page = client.post("/", data={"phases": text}, headers=HTMX)
+    assert page.status_code == 422
+    assert "Phase 8, Torque: write 40.7" in page.text
+    assert "\n40,7;257;0.25\n" in page.text
+
+
+def test_rows_turn_into_text_only_beyond_what_a_table_holds(client: TestClient) -> None:
+    for count, marker in ((ROWS_IN_TABLE, 'id="T-0"'), (ROWS_IN_TABLE + 1, 'id="phases"')):
+        page = client.get("/?" + "&".join(["T=40&n=250&t=1"] * count))
+        assert marker in page.text
+
+
+def test_body_beyond_the_limit_is_413(client: TestClient) -> None:
+    assert client.post("/paste", data={"text": "1" * 2_100_000}).status_code == 413
+    assert client.post("/", data={"phases": "1" * 2_100_000}).status_code == 413
+
+
+def test_long_link_is_told_the_way_to_paste(client: TestClient) -> None:
+    assert 'href="/paste"' in client.get("/?T=" + "9" * MAXIMUM_QUERY_BYTES).text
+
+
+def test_row_edits_are_applied_in_the_order_they_were_pressed(client: TestClient) -> None:
+    page = client.get(f"/?{LINK}&do=add&do=remove:1&do=up:2", headers=HTMX)
+    assert re.findall(r'name="T" type="text" inputmode="decimal" value="([^"]*)"', page.text) == ["", "32"]
