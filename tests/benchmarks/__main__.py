@@ -8,11 +8,13 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
-from tests.benchmarks import edits, reply
+from tests.benchmarks import batch, edits, reply, saving
 
 BENCHMARKS: dict[str, Callable[[], dict[str, Any]]] = {
     "reply": reply.measure,
     "edits": edits.measure,
+    "batch": batch.measure,
+    "saving": saving.measure,
 }
 
 

@@ -2,6 +2,7 @@
 
 import asyncio
 import json
+import sys
 from collections.abc import Awaitable, Callable, Iterable
 from typing import Any
 
@@ -15,6 +16,8 @@ from hpn.catalogue import Catalogue
 from hpn.web.batch import batch_lines, line_evaluator
 from hpn.web.metrics import Metrics
 from hpn.web.streaming import MEMORY_BYTES, Line, LineSplitter, LineStream, Spool
+from tests.benchmarks import batch
+from tests.benchmarks.server import serving
 from tests.build import worked_example
 from tests.operations.conftest import MakeClient
 
@@ -121,6 +124,17 @@ def test_the_spool_gives_back_what_it_got_in_order(steps: list[int]) -> None:
     spool.close()
 
     assert got == expected
+
+
+@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="memory is read from /proc")
+def test_twenty_times_the_lines_take_no_more_memory_on_either_side() -> None:
+    with serving("hpn.web.app:create_app") as server:
+        batch.stream(server, 1_000)
+        few, many = batch.stream(server, 1_000), batch.stream(server, 20_000)
+
+    # held in memory, the answers alone would be 5 MB, and as Python objects several times that
+    assert many["server_peak_MB"] - few["server_peak_MB"] < 5
+    assert many["client_peak_MB"] - few["client_peak_MB"] < 2
 
 
 # --- Both directions at once, by hand ---------------------------------------------------------------------------------
