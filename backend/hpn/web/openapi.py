@@ -28,10 +28,8 @@ FRAMEWORK = ("HTTPValidationError", "ValidationError")
 
 def complete(document: dict[str, Any], *bodies: type[BaseModel]) -> dict[str, Any]:
     """Add schemas and examples of the request bodies, the one form of every problem, and a text for every parameter."""
-    _, definitions = models_json_schema(
-        [(model, "validation") for model in (*bodies, schemas.ProblemReply)],
-        ref_template="#/components/schemas/{model}",
-    )
+    models: list[Any] = [(model, "validation") for model in (*bodies, schemas.ProblemReply)]
+    _, definitions = models_json_schema(models, ref_template="#/components/schemas/{model}")
     components = document.setdefault("components", {}).setdefault("schemas", {})
     components.update(definitions["$defs"])
     for operation in _operations(document):
