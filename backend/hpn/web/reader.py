@@ -19,7 +19,7 @@ from hpn.translation import LANGUAGES, translations
 from hpn.web import display, measures
 from hpn.web.measures import Measure
 from hpn.web.messages import Message
-from hpn.wording import Quantity, Sentence, rounded
+from hpn.wording import N_, Quantity, Sentence, rounded
 
 LANGUAGE_NAMES = {"en": "English", "de": "Deutsch"}
 """Each language by its own name."""
@@ -67,6 +67,16 @@ class Reader:
     def plural(self, one: str, many: str, number: int) -> str:
         """A text that depends on a number."""
         return translations(self.language).ngettext(one, many, number)
+
+    def source(self, source: str) -> str:
+        """Where a figure of the catalogue comes from, in short: `table 12.1, p. 12`."""
+        match = re.fullmatch(r"(table|section) ([0-9.]+)(?:, page ([0-9]+))?", source)
+        if match is None:
+            return self.filled(source)
+        template = N_("table {number}") if match[1] == "table" else N_("section {number}")
+        place = self.told(Sentence(template, {"number": match[2]}))
+        page = Sentence(N_("{place}, p.\u202f{page}"), {"place": place, "page": match[3] or ""})
+        return self.told(page) if match[3] else place
 
     def filled(self, english: str) -> str:
         """A text whose template was filled in English already, such as a notice that was saved."""
@@ -188,12 +198,13 @@ def _for_reader(method: str) -> Callable[..., Any]:
 
 
 FILTERS: dict[str, Callable[..., Any]] = {
+    "capital": lambda text: text[:1].upper() + text[1:],
     "t": _for_reader("text"),
     **{
         name: _for_reader(name)
         for name in (
             *("figure", "exact", "percent", "capped_percent", "value", "unit"),
-            *("told", "say", "reason", "filled", "translated"),
+            *("told", "say", "reason", "source", "filled", "translated"),
         )
     },
 }

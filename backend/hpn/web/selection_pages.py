@@ -19,10 +19,10 @@ from hpn.report.inputs import LOADS, REQUIREMENTS, WORDS
 from hpn.store import SavedSelection, StoreUnavailableError
 from hpn.units import symbol_of
 from hpn.web.bodies import read_body
-from hpn.web.display import figure
 from hpn.web.messages import N_
 from hpn.web.pages import environment, read_query
 from hpn.web.problems import Problem
+from hpn.web.reader import current
 from hpn.web.requests import require_same_origin
 from hpn.web.selection_schemas import Labels
 from hpn.web.selections import RETRY_SECONDS, Today, found, save, url_of
@@ -181,7 +181,7 @@ def _inputs(application: Application) -> Iterable[tuple[str, str, bool]]:
         elif isinstance(value, str):
             yield entry.label, WORDS[value], True
         elif value is not None:
-            yield entry.label, f"{value:.12g} {entry.unit}".rstrip(), False
+            yield entry.label, f"{current().exact(value, entry.unit)} {current().unit(entry.unit)}".rstrip(), False
 
 
 def _line(difference: Difference, reply: Mapping[str, Any]) -> Line:
@@ -189,25 +189,30 @@ def _line(difference: Difference, reply: Mapping[str, Any]) -> Line:
     definition = definitions.get(difference.check, {})
     own = difference.field in ("demand", "limit")
     titles = {code: entry["title"] for code, entry in definitions.items()}
-    saved, today = _texts(difference.saved, difference.today)
+    unit = definition.get("unit", "") if own else symbol_of(difference.field)
+    saved, today = _texts(difference.saved, difference.today, unit)
     return Line(
         candidate=difference.candidate,
         check=titles.get(difference.check, difference.check),
         field=FIELDS.get(difference.field, difference.field),
-        unit=definition.get("unit", "") if own else symbol_of(difference.field),
+        unit=unit,
         verdict=difference.kind == "verdict",
         saved=(VERDICTS | titles).get(saved, saved),
         today=(VERDICTS | titles).get(today, today),
     )
 
 
-def _texts(saved: Any, today: Any) -> tuple[str, str]:
+def _texts(saved: Any, today: Any, unit: str) -> tuple[str, str]:
     """Two values for reading, with as many digits as it takes to tell numbers apart."""
-    before, after = (figure(value) if _is_number(value) else str(value or "–") for value in (saved, today))
-    if before == after and _is_number(saved):
-        return next(
-            texts for digits in range(3, 18) if len(set(texts := (f"{saved:.{digits}g}", f"{today:.{digits}g}"))) == 2
-        )
+    reader = current()
+    before, after = (
+        reader.figure(value, unit) if _is_number(value) else str(value or "–") for value in (saved, today)
+    )
+    if before == after and _is_number(saved) and _is_number(today):
+        measure = reader.measure(unit)
+        pairs = ((measure.written(saved, digits), measure.written(today, digits)) for digits in range(3, 18))
+        first, second = next((pair for pair in pairs if len(set(pair)) == 2), (before, after))
+        return reader.localised(first), reader.localised(second)
     return before, after
 
 
