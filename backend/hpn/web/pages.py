@@ -84,6 +84,8 @@ def respond(request: Request, form: Form) -> Response:
     form, answer = answered(form, catalogue)
     if answer and WRITTEN in request.query_params and not _wants_changes(request) and not form.focus:
         return RedirectResponse(answer.address, 303)  # what was written in a reader's units gets an address for all
+    if answer:
+        request.app.state.metrics.selection(answer.reply["selected"])
     status = 422 if form.problems else 200
     template = "_changes.html" if _wants_changes(request) else "page.html"
     return _render(request, template, status, form=form, answer=answer, catalogue=catalogue)
