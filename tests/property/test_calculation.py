@@ -1,0 +1,178 @@
+"""The calculation as shown, worked out again from the numbers in its MathML alone."""
+
+import math
+from typing import Any
+from xml.etree import ElementTree
+from xml.etree.ElementTree import Element
+
+import pytest
+from hypothesis import example, given
+
+from hpn.application import Application
+from hpn.calculation import Line, Step, calculation_of
+from hpn.calculation.formula import value_of
+from hpn.catalogue import Catalogue, load_catalogue
+from hpn.selection import select
+from hpn.web.mathml import compared, in_symbols, result, with_numbers
+from hpn.web.reader import Reader
+from tests.build import Json, candidate, cycle, phase, worked_example
+from tests.property.draw import applications
+
+CATALOGUE: Catalogue = load_catalogue()
+READERS = (Reader(), Reader("de"), Reader(units=("lb_in", "rad_per_s", "lbf")))
+NINE_DIGITS = 3e-7  # nine digits of T_av in the power 10/3, twice over where a root of a sum follows
+
+LOADED = worked_example(output_load={"radial_N": 600.0, "axial_N": 300.0, "load_coefficient": 1.2, "model": "iso281"})
+PER_PHASE = cycle(
+    phase(40.0, 250.0, 0.3, radial_N=500.0),
+    phase(-20.0, -100.0, 2.0, axial_N=300.0),
+    pause_s=1.0,
+    output_load={"life_basis": "L10"},
+    requirements={"utilisation": 0.8, "life_h": 1000.0, "efficiency": 0.9, "motor": {"peak_torque_Nm": 9.0}},
+)
+
+
+def steps_of(application: Json, designation: str) -> tuple[Json, tuple[Step, ...]]:
+    """Entry of the reply, and the calculation of a gear."""
+    selection = select(Application.model_validate(application), CATALOGUE)
+    entry = candidate(selection.reply("/"), designation)
+    gear = CATALOGUE.by_designation[designation]
+    return entry, calculation_of(entry, gear, selection.evaluation.case.duty, CATALOGUE)
+
+
+# --- A reader of MathML that knows nothing of the formulas ------------------------------------------------------------
+
+
+def worked_out(element: Element, reader: Reader) -> float:
+    """Value of a MathML element that holds numbers alone."""
+    children = [child for child in element if child.tag != "mtext"]
+    if element.tag == "mn":
+        return number(element.text or "", reader)
+    if element.tag == "mfrac":
+        return worked_out(children[0], reader) / worked_out(children[1], reader)
+    if element.tag == "msup":
+        return float(worked_out(children[0], reader) ** worked_out(children[1], reader))
+    if element.tag == "msqrt":
+        return math.sqrt(worked_out(children[0], reader))
+    if element.tag == "mroot":
+        return float(worked_out(children[0], reader) ** (1 / worked_out(children[1], reader)))
+    assert element.tag == "mrow", element.tag
+    return row(children, reader)
+
+
+def row(children: list[Element], reader: Reader) -> float:
+    """Value of terms with operators between them."""
+    if children[0].tag == "mi":  # max ( a ; b )
+        return max(worked_out(child, reader) for child in children[1:] if child.tag != "mo")
+    if children[0].tag == "mo":  # brackets
+        return worked_out(children[1], reader)
+    value = worked_out(children[0], reader)
+    for operator, operand in zip(children[1::2], children[2::2], strict=True):
+        other = worked_out(operand, reader)
+        value = {"+": value + other, "−": value - other, "·": value * other, "/": value / (other or math.nan)}[
+            operator.text or ""
+        ]
+    return value
+
+
+def number(text: str, reader: Reader) -> float:
+    """A number as a page shows it."""
+    mantissa, _, exponent = text.partition("·10")
+    plain = "".join(mantissa.split())
+    if reader.language == "de":
+        plain = plain.replace(".", "").replace(",", ".")
+    power = exponent.translate(str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789"))
+    return float(plain.replace("−", "-")) * 10.0 ** int(power or 0)
+
+
+def sides(markup: str) -> list[list[Element]]:
+    """Elements of an equation between its signs of equality."""
+    content = ElementTree.fromstring(markup)[0]
+    parts: list[list[Element]] = [[]]
+    for child in content:
+        if child.tag == "mo" and child.text in ("=", "→", "≤", "≥"):
+            parts.append([])
+        else:
+            parts[-1].append(child)
+    return parts
+
+
+def shown(line: Line, reader: Reader) -> tuple[float, float]:
+    """What the substituted numbers of a line give, and what the page says that they give."""
+    (_, [formula]), (_, [first], *_) = sides(with_numbers(reader, line)), sides(result(reader, line))
+    return worked_out(formula, reader), worked_out(first, reader)
+
+
+# --- Tests ------------------------------------------------------------------------------------------------------------
+
+
+@given(applications())
+@example(LOADED)
+@example(PER_PHASE)
+def test_substituted_numbers_give_the_result_that_is_printed_in_every_language_and_unit(application: Json) -> None:
+    for designation in ("HPN-20A-5", "HPN-32A-25"):
+        _, steps = steps_of(application, designation)
+        for reader in READERS:
+            for step in steps:
+                for line in step.lines:
+                    found, printed = shown(line, reader)
+                    scale = max(abs(printed), 1e-9)
+                    assert abs(found - printed) <= NINE_DIGITS * scale, (step.code, reader, found, printed)
+
+
+@given(applications())
+@example(LOADED)
+@example(PER_PHASE)
+def test_every_line_gives_the_figure_of_the_reply(application: Json) -> None:
+    entry, steps = steps_of(application, "HPN-20A-5")
+    for step in steps:
+        for line in step.lines:
+            exact = value_of(line.formula)
+            value = math.floor(exact * (1 + 1e-12)) if line.rounded_down else exact
+            assert math.isclose(value, line.result.value, rel_tol=1e-11, abs_tol=1e-300), step.code
+    results = {step.code: step.lines[-1].result.value for step in steps if step.lines}
+    for code, name in (
+        ("average_input_speed", "average_input_speed_rpm"),
+        ("maximum_input_speed", "maximum_input_speed_rpm"),
+        ("life", "life_L10_h"),
+        ("momentary_peak_count", "momentary_peak_count"),
+        ("motor_peak_torque", "motor_peak_torque_Nm"),
+        ("motor_rated_torque", "motor_rated_torque_Nm"),
+        ("bearing_life", "bearing_life_L10_h"),
+    ):
+        assert results.get(code) == entry[name], code
+
+
+@given(applications())
+@example(LOADED)
+@example(PER_PHASE)
+def test_every_load_check_is_compared_once_with_the_figures_of_the_reply(application: Json) -> None:
+    entry, steps = steps_of(application, "HPN-20A-5")
+    properties = {"ambient_temperature", "backlash", "torsional_stiffness", "weight", "length"}
+    expected = {
+        check["code"]: (check["demand"], check["limit"])
+        for check in entry["checks"]
+        if check["code"] not in properties and None not in (check["demand"], check["limit"])
+    }
+    comparisons = [comparison for step in steps for comparison in step.comparisons]
+    assert {c.code: (c.value, c.limit) for c in comparisons} == expected
+    assert len(comparisons) == len(expected)
+    for comparison in comparisons:
+        markup = compared(READERS[0], comparison)
+        *_, [limit] = sides(markup)
+        assert worked_out(limit, READERS[0]) == pytest.approx(comparison.bound, rel=1e-8)
+
+
+@given(applications())
+@example(LOADED)
+def test_every_equation_that_applies_is_there_in_symbols(application: Json) -> None:
+    _, steps = steps_of(application, "HPN-20A-5")
+    expected = ["17.2", "17.4", "17.5", "17.6", "17.7"]
+    expected += ["17.8", "17.9"] if "emergency_stop" in application else []
+    assert [step.equation for step in steps if step.equation] == [*expected, "17.10"]
+    codes = [step.code for step in steps if not step.equation]
+    bearing: list[Any] = ["output_bearing_load", "output_bearing_life", "bearing_life"]
+    assert codes == ["motor_peak_torque", "motor_rated_torque", *(bearing if "output_load" in application else [])]
+    for line in (line for step in steps for line in step.lines):
+        letters = ElementTree.fromstring(in_symbols(READERS[0], line)).iter("mi")
+        assert next(letters).text == line.result.symbol.letter

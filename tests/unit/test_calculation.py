@@ -1,0 +1,89 @@
+"""The calculation of the worked example, of long cycles, and of gears that are not rated."""
+
+import pytest
+
+from hpn.application import Application
+from hpn.calculation import Step, calculation_of
+from hpn.calculation.formula import Constant, Symbol, Term
+from hpn.catalogue import Catalogue
+from hpn.selection import select
+from hpn.web.mathml import mathml, with_numbers
+from hpn.web.reader import Reader
+from tests.build import Json, candidate, cycle, phase, worked_example
+
+
+def steps_of(application: Json, designation: str, catalogue: Catalogue) -> dict[str, Step]:
+    """Steps of the calculation of a gear by their code."""
+    selection = select(Application.model_validate(application), catalogue)
+    entry = candidate(selection.reply("/"), designation)
+    gear = catalogue.by_designation[designation]
+    steps = calculation_of(entry, gear, selection.evaluation.case.duty, catalogue)
+    return {step.code: step for step in steps}
+
+
+def test_worked_example_says_what_rounding_by_hand_would_give(catalogue: Catalogue) -> None:
+    """1090 rpm, 3090295 stops and 1167324 h are printed in equations 18.4, 18.8 and 18.9."""
+    steps = steps_of(worked_example(), "HPN-20A-5", catalogue)
+    speed, stops, life = (steps[code].notes[0].text for code in ("average_input_speed", "momentary_peak_count", "life"))
+    assert "218 rpm by hand you would get 1090 rpm" in speed
+    assert "x rounded to 6.49 by hand you would get 3090295 stops" in stops
+    assert (
+        "32 Nm and n_in_av to 1090 rpm by hand you would get 1167324 h, as the handbook does in equation 18.9" in life
+    )
+
+
+def test_nothing_is_said_of_rounding_where_it_changes_nothing(catalogue: Catalogue) -> None:
+    steps = steps_of(cycle(phase(30.0, 100.0)), "HPN-20A-5", catalogue)
+    assert steps["average_input_speed"].notes == ()
+    assert not any("by hand" in note.text for note in steps["life"].notes)
+
+
+def test_limits_name_their_table_and_page(catalogue: Catalogue) -> None:
+    steps = steps_of(worked_example(), "HPN-20A-5", catalogue)
+    sources = {c.code: c.source for step in steps.values() for c in step.comparisons}
+    assert set(sources.values()) == {"table 12.1, page 12"}
+
+
+def test_a_user_s_own_reserve_stands_in_the_limit(catalogue: Catalogue) -> None:
+    steps = steps_of(worked_example(requirements={"utilisation": 0.8, "life_h": 1000.0}), "HPN-20A-5", catalogue)
+    assert steps["average_torque"].comparisons[0].bound == 64
+    assert steps["life"].comparisons[0].bound == 1250
+
+
+@pytest.mark.parametrize(("count", "written", "left_out"), [(6, 6, False), (7, 5, True), (2000, 5, True)])
+def test_long_cycles_are_abbreviated_and_say_so(catalogue: Catalogue, count: int, written: int, left_out: bool) -> None:
+    phases = [phase(10.0 + k % 7, 100.0 + k, 0.5) for k in range(count)]
+    step = steps_of(cycle(*phases, pause_s=1.0), "HPN-20A-5", catalogue)["average_output_speed"]
+    markup = with_numbers(Reader(), step.lines[0])
+    assert step.abbreviated == left_out
+    assert markup.count("<mo>…</mo>") == 2 * left_out
+    assert markup.count(">\u202frpm</mtext>") == written
+    assert f"<mn>{100 + count - 1}" in markup.replace("\u202f", "").replace(" ", "")
+
+
+def test_where_equation_17_9_sets_no_limit_it_says_so(catalogue: Catalogue) -> None:
+    step = steps_of(worked_example() | {"emergency_stop": {"torque_Nm": 149.0}}, "HPN-20A-5", catalogue)
+    assert step["momentary_peak_count"].lines == ()
+    assert "sets no limit" in step["momentary_peak_count"].notes[0].text
+
+
+def test_a_gear_that_is_not_rated_shows_what_can_be_worked_out_and_no_more(catalogue: Catalogue) -> None:
+    steps = steps_of(worked_example(), "HPN-40A-5", catalogue)
+    assert [step.equation for step in steps.values() if step.equation] == ["17.2", "17.4", "17.5", "17.6"]
+    assert not any(step.comparisons for step in steps.values())
+
+
+def test_efficiency_curve_of_a_supplement_enters_phase_by_phase(supplemented: object) -> None:
+    rows = "size,ratio,torque_Nm,efficiency,source\n20A,5,10,0.8,own\n20A,5,50,0.9,own\n"
+    catalogue = supplemented(efficiency=rows)  # type: ignore[operator]
+    steps = steps_of(worked_example(), "HPN-20A-5", catalogue)
+    line = steps["motor_peak_torque"].lines[0]
+    assert line.result.value == pytest.approx(40 / (5 * 0.875), rel=1e-12)
+    assert "curve that you supplied" in steps["motor_rated_torque"].notes[0].text
+
+
+def test_texts_in_a_formula_are_escaped() -> None:
+    hostile = Symbol("<script>", '"&<')
+    markup = mathml(Reader(), (hostile, False), "<", (Term(hostile, 1.0), False), "=", (Constant(1.0), True))
+    assert "<script" not in markup
+    assert 'alttext="&lt;script&gt;_&quot;&amp;&lt; &lt; ' in markup
