@@ -45,14 +45,14 @@ def _lists(header: str, etag: str, *, weakly: bool) -> bool:
 
 
 def idempotency_key(request: Request) -> str | None:
-    """Key by which a repeated request is known, or None; Problem 400 for one that can't be a key."""
+    """Key by which a repeated request of the same caller is known, or None; Problem 400 for one that can't be a key."""
     given = request.headers.get("idempotency-key")
     if given is None:
         return None
     match = IDEMPOTENCY_KEY.fullmatch(given.strip())
     if match is None:
         raise Problem(400, "Idempotency-Key must be 1 to 200 visible ASCII characters, such as a UUID")
-    return match[1]
+    return f"{request.scope.get('api_key') or ''}:{match[1]}"
 
 
 def preferred_return(request: Request) -> str | None:
