@@ -170,7 +170,7 @@ def test_other_replies_are_valid_by_their_schemas_to_the_last_field(api: TestCli
     batch = {"applications": [FULL | {"reference": "a"}, {}, cycle(phase(9000, 1))]}
     validator(document, "BatchReply").validate(api.post("/api/v1/select/batch", json=batch).json())
     validator(document, "CatalogueReply").validate(api.get("/api/v1/catalogue").json())
-    validator(document, "GearReply").validate(api.get("/api/v1/catalogue/HPN-40A-5").json())
+    validator(document, "OneGearReply").validate(api.get("/api/v1/catalogue/HPN-40A-5").json())
     validator(document, "EnvelopeReply").validate(api.get("/api/v1/bearing-envelopes/20A").json())
     validator(document, "Health").validate(api.get("/healthz").json())
     validator(document, "Readiness").validate(api.get("/readyz").json())
@@ -195,6 +195,6 @@ def test_every_reply_is_described_by_its_model_alone(document: Json) -> None:
 
 def test_a_required_field_is_never_null_and_an_optional_reply_field_may_be_left_out(document: Json) -> None:
     """What a client generator relies on: `required` lists what is always there."""
-    for name in ("SelectReply", "CandidateReply", "CheckReply", "GearReply", "EnvelopeReply"):
+    for name in ("SelectReply", "CandidateReply", "CheckReply", "OneGearReply", "EnvelopeReply"):
         schema = document["components"]["schemas"][name]
         assert set(schema["required"]) == set(schema["properties"]), name

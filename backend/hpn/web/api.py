@@ -1,5 +1,6 @@
 """The REST interface, version 1: parse, one call into the domain, render."""
 
+import dataclasses
 import time
 from typing import Annotated, Any
 
@@ -106,10 +107,13 @@ async def catalogue(request: Request) -> Response:
     )
 
 
-@router.get("/catalogue/{designation}", response_model=schemas.GearReply, responses=schemas.problems(404))
+@router.get("/catalogue/{designation}", response_model=schemas.OneGearReply, responses=schemas.problems(404))
 async def gear(request: Request, designation: str) -> Response:
-    """One gear, by its designation in any of the printed spellings."""
-    return schemas.JSONBytes(orjson.dumps(_gear(request.app.state.catalogue, designation)))
+    """One gear, by its designation in any of the printed spellings: by itself, and as the list has it."""
+    book: Catalogue = request.app.state.catalogue
+    found = _gear(book, designation)
+    fields = {field.name: getattr(found, field.name) for field in dataclasses.fields(found)}
+    return schemas.JSONBytes(orjson.dumps({"catalogue_version": book.version, **fields, "gears": [found]}))
 
 
 def _gear(book: Catalogue, designation: str) -> Gear:

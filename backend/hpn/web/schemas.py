@@ -220,6 +220,13 @@ class SeriesFigureReply(Reply):
     source: str = Field(description="Where it comes from.")
 
 
+class OneGearReply(GearReply):
+    """One gear by itself, and once more in the form of the whole catalogue, so that one reader serves both."""
+
+    catalogue_version: str = Field(description="Hash of the catalogue's content, supplement included.")
+    gears: list[GearReply] = Field(description="The gear, as the list of all gears has it.")
+
+
 class CatalogueReply(Reply):
     """The whole catalogue."""
 
