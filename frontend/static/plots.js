@@ -68,6 +68,7 @@ function draw(plot, { force = false, paper = printing.matches } = {}) {
   drawn.set(plot, plot.dataset.figure);
   window.Plotly.react(place, data, layout, CONFIG);
   if (first) place.on("plotly_relayout", () => showWhether(plot));
+  showWhether(plot);
 }
 
 function showWhether(plot) {
@@ -80,8 +81,7 @@ function showWhether(plot) {
 const watcher = new IntersectionObserver(
   (entries) => {
     for (const { isIntersecting, target } of entries) {
-      target.toggleAttribute("data-seen", isIntersecting);
-      if (isIntersecting) load(target.dataset.bundle).then(() => draw(target), () => (target.dataset.failed = ""));
+      if (isIntersecting) load(target.dataset.bundle).then(() => draw(target), console.warn);
     }
   },
   { rootMargin: "400px" },
@@ -95,11 +95,10 @@ function look() {
     drawn.delete(plot);
   }
   for (const plot of document.querySelectorAll(".plot[data-figure]")) {
-    if (!plot.dataset.watched) {
-      plot.dataset.watched = "yes";
-      watcher.observe(plot);
-    }
-    if (drawn.has(plot)) draw(plot);
+    watcher.observe(plot); // once more does no harm
+    if (!drawn.has(plot)) continue;
+    draw(plot);
+    showWhether(plot); // a morph takes the mark away
   }
 }
 

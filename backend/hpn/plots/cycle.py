@@ -147,13 +147,14 @@ def _widened(widths: list[float], least: float, room: float) -> list[float]:
 
 
 def _names(edges: list[float], count: int, y: float) -> list[Mark]:
-    names = [
-        Mark((edges[k] + edges[k + 1]) / 2, y, f"t_{k + 1}")
-        for k in range(count)
-        if count <= NAMED_PHASES and edges[k + 1] - edges[k] >= (9.0 if count < 10 else 12.0)
-    ]
+    """Names of the phases below their steps, as many as have room, and of the pause."""
+    names: list[Mark] = []
     if count > NAMED_PHASES:
-        names = [Mark((edges[0] + edges[count]) / 2, y, f"t_1 … t_{count}")]
+        names.append(Mark((edges[0] + edges[count]) / 2, y, f"t_1 … t_{count}"))
+    for k in range(count if count <= NAMED_PHASES else 0):
+        x = (edges[k] + edges[k + 1]) / 2
+        if not names or x - names[-1].x >= (10.0 if k < 10 else 14.0):
+            names.append(Mark(x, y, f"t_{k + 1}"))
     if len(edges) > count + 1:
         names.append(Mark((edges[count] + edges[-1]) / 2, y, "t_p"))
     return names

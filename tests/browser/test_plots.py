@@ -1,0 +1,247 @@
+"""Pictures in a real browser: plots follow the form, stay where they are, and say what the API says."""
+
+import re
+from pathlib import Path
+from typing import Any
+
+import pytest
+from playwright.sync_api import Page, Playwright, expect
+
+from tests.browser.conftest import AXE, Visitor
+
+CONSTANT = "/?T=40&n=300&t=1&i=5&FR={FR}&FA={FA}&bm={bm}&gear=HPN-20A-5"
+PHASES = (
+    "/?T=40&n=250&t=0.3&T=32&n=500&t=3&T=20&n=250&t=0.4&tp=4&Tk=200&Nk=1000&i=5&fw=1.2"
+    "&FRi=900&FRi=500&FRi=700&FAi=300&FAi=200&FAi=500"
+)
+EXAMPLE = "/?T=40&n=250&t=0.3&T=32&n=500&t=3&T=20&n=250&t=0.4&tp=4&Tk=200&i=5"
+
+
+def section(page: Page) -> Any:
+    return page.get_by_role("region", name=re.compile("^Output bearing of"))
+
+
+def plot(page: Page, name: str = "Permissible loads") -> Any:
+    """A plot, once it is drawn."""
+    found = page.get_by_role("img", name=re.compile(name))
+    found.scroll_into_view_if_needed()
+    expect(found.locator(".main-svg").first).to_be_visible()
+    return found
+
+
+def drawn(page: Page, name: str = "Permissible loads") -> Any:
+    """Data and axes that Plotly holds of a plot."""
+    return plot(page, name).evaluate(
+        "({ firstElementChild: p }) => ({"
+        " data: p.data.map(({ x, y, text, meta, line }) => ({ x, y, text, meta, line })),"
+        " ranges: [p._fullLayout.xaxis.range, p._fullLayout.yaxis.range] })"
+    )
+
+
+def curves(data: Any) -> dict[float, tuple[list[float], list[float]]]:
+    """Life envelopes of a plot by load coefficient."""
+    kept = [trace for trace in data if trace["meta"]["kind"] in ("own", "life")]
+    return {trace["meta"]["load_coefficient"]: (trace["x"], trace["y"]) for trace in kept}
+
+
+def envelopes(visitor: Visitor, driver: Playwright, size: str, **query: str | float) -> Any:
+    """Curves of the API by load coefficient."""
+    with_server = driver.request.new_context(base_url=visitor.server)
+    reply = with_server.get(f"/api/v1/bearing-envelopes/{size}", params=query).json()
+    with_server.dispose()
+    return {curve["load_coefficient"]: (curve["radial_N"], curve["axial_N"]) for curve in reply["curves"]}
+
+
+@pytest.mark.parametrize("model", ["linear", "iso281"])
+def test_the_plots_own_data_equal_the_APIs(visitor: Visitor, playwright_driver: Playwright, model: str) -> None:
+    page = visitor.open(f"{PHASES}&bm={model}&Lb=30000&Lbb=L10&gear=HPN-20A-5")
+    speed = page.get_by_text("Average output speed").locator("xpath=..").locator("data").get_attribute("value") or ""
+    asked = envelopes(
+        visitor, playwright_driver, "20A", speed_rpm=speed, life_h=150_000, load_coefficient=1.2, model=model
+    )
+    assert curves(drawn(page)["data"]) == asked
+
+
+@pytest.mark.parametrize(("model", "axial"), [("linear", 0.0), ("linear", 400.0), ("iso281", 900.0)])
+def test_verdict_changes_where_the_constant_load_crosses_the_drawn_curve(
+    visitor: Visitor, playwright_driver: Playwright, model: str, axial: float
+) -> None:
+    page = visitor.open(CONSTANT.format(FR=100, FA=axial, bm=model))
+    radial, limit = envelopes(visitor, playwright_driver, "20A", speed_rpm=300, model=model)[1.0]
+    assert curves(drawn(page)["data"])[1.0] == (radial, limit)
+    # On the segment between two corners that holds this axial load.
+    k = next(k for k in range(len(limit) - 1) if limit[k] >= axial >= limit[k + 1])
+    crossing = radial[k] + (radial[k + 1] - radial[k]) * (limit[k] - axial) / (limit[k] - limit[k + 1])
+
+    box, low, high = page.get_by_label("Radial load"), 0.9 * crossing, 1.1 * crossing
+    while high - low > 1e-5 * crossing:
+        middle = (low + high) / 2
+        box.fill(f"{middle:.6f}")
+        expect(page).to_have_url(re.compile(f"FR={re.escape(f'{middle:.6f}'.rstrip('0'))}"))
+        carries = "The output bearing carries" in section(page).inner_text()
+        low, high = (middle, high) if carries else (low, middle)
+
+    assert low <= crossing * (1 + 1e-9)
+    assert high >= crossing * (1 - 1e-9)
+
+
+def test_typing_a_load_moves_its_point_and_no_axis(visitor: Visitor) -> None:
+    page = visitor.open(CONSTANT.format(FR=100, FA=200, bm=""))
+    before = drawn(page)
+    frame = plot(page).bounding_box()
+    page.get_by_label("Radial load").fill("600")
+    expect(page).to_have_url(re.compile("FR=600&"))
+    page.wait_for_function("document.querySelector('#plot-bearing > div').data.at(-1).x[0] === 600")
+    after = drawn(page)
+    assert after["ranges"] == before["ranges"]
+    assert after["data"][-1]["x"] == [600]
+    moved = plot(page).bounding_box()
+    assert [moved[side] for side in ("x", "width", "height")] == [frame[side] for side in ("x", "width", "height")]
+
+
+def test_library_is_fetched_only_when_a_plot_is_to_be_seen(visitor: Visitor) -> None:
+    page = visitor.open(EXAMPLE)
+    page.wait_for_timeout(600)
+    assert not page.evaluate("performance.getEntriesByType('resource').some(entry => /plotly/.test(entry.name))")
+    page.get_by_text("Allowed number against torque").click()
+    plot(page, "Allowed number of emergency stops")
+    assert page.evaluate("performance.getEntriesByType('resource').some(entry => /plotly/.test(entry.name))")
+
+
+def test_all_sizes_are_a_second_view_by_keyboard_that_stays_while_typing(visitor: Visitor) -> None:
+    page = visitor.open(PHASES)
+    plot(page)
+    page.get_by_role("radio", name="This size").focus()
+    page.keyboard.press("ArrowRight")
+    sizes = [trace for trace in drawn(page, "on each size")["data"] if trace["meta"]["kind"] == "size"]
+    assert len(sizes) == 4
+    table = page.get_by_role("table", name="Which size carries the load")
+    expect(table.get_by_role("row", name=re.compile("14A"))).to_contain_text("does not carry it")
+    expect(table.get_by_role("row", name=re.compile("20A"))).to_contain_text("carries the load")
+    page.get_by_label("Load coefficient").fill("2")
+    expect(page).to_have_url(re.compile("fw=2"))
+    expect(table).to_be_visible()
+    expect(table.get_by_role("row", name=re.compile("20A"))).to_contain_text("does not carry it")
+
+
+def test_enlarged_part_stays_while_typing_until_the_whole_view_is_asked_for(visitor: Visitor) -> None:
+    page = visitor.open(PHASES)
+    whole = drawn(page)["ranges"]
+    frame = plot(page).bounding_box()
+    page.mouse.move(frame["x"] + 150, frame["y"] + 80)
+    page.mouse.down()
+    page.mouse.move(frame["x"] + 350, frame["y"] + 220, steps=5)
+    page.mouse.up()
+    page.wait_for_timeout(400)
+    part = drawn(page)["ranges"]
+    assert part != whole
+    page.get_by_label("Load coefficient").fill("1.3")
+    expect(page).to_have_url(re.compile("fw=1.3"))
+    page.wait_for_timeout(300)
+    assert drawn(page)["ranges"] == part
+    page.get_by_role("button", name="Whole view").click()
+    assert drawn(page)["ranges"] == whole
+
+
+@pytest.mark.parametrize(("format", "start"), [("SVG", b"<svg"), ("PNG", b"\x89PNG")])
+def test_plot_is_saved_without_any_service(visitor: Visitor, tmp_path: Path, format: str, start: bytes) -> None:
+    page = visitor.open(PHASES)
+    plot(page)
+    with page.expect_download() as download:
+        section(page).get_by_role("button", name=f"Save as {format}").first.click()
+    path = tmp_path / download.value.suggested_filename
+    download.value.save_as(path)
+    content = path.read_bytes()
+    assert path.suffix == f".{format.lower()}"
+    assert content.startswith(start)
+    if format == "SVG":
+        text = re.sub("<[^>]+>", "", content.decode())
+        assert "Computed between the two published limits" in text
+        assert "Output bearing of HPN-20A" in text
+
+
+def test_plot_follows_the_switch_to_dark_and_prints_on_white(visitor: Visitor) -> None:
+    page = visitor.open(PHASES)
+    light = drawn(page)["data"][0]["line"]["color"]
+    page.emulate_media(color_scheme="dark")
+    page.wait_for_timeout(300)
+    dark = drawn(page)["data"][0]["line"]["color"]
+    assert dark != light
+    page.evaluate("dispatchEvent(new Event('beforeprint'))")
+    assert drawn(page)["data"][0]["line"]["color"] == light
+    page.evaluate("dispatchEvent(new Event('afterprint'))")
+    assert drawn(page)["data"][0]["line"]["color"] == dark
+
+
+def test_going_back_brings_the_plot_of_the_earlier_load(visitor: Visitor) -> None:
+    page = visitor.open(CONSTANT.format(FR=100, FA=200, bm=""))
+    plot(page)
+    page.get_by_label("Radial load").fill("700")
+    expect(page).to_have_url(re.compile("FR=700&"))
+    page.go_back()
+    expect(page.get_by_label("Radial load")).to_have_value("100")
+    assert drawn(page)["data"][-1]["x"] == [100]
+
+
+def test_without_script_sentence_and_tables_say_it_all(visitor: Visitor) -> None:
+    page = visitor.open(PHASES, script=False)
+    expect(section(page)).to_contain_text("The output bearing carries these loads.")
+    expect(section(page)).to_contain_text("Phase 1 uses 76.4")
+    expect(section(page)).to_contain_text("computed between the two published limits")
+    page.get_by_text("Data: loads and curves as tables").click()
+    expect(page.get_by_role("table", name="Loads of the phases").get_by_role("row")).to_have_count(5)
+    expect(page.get_by_role("table", name="Which size carries the load")).to_be_visible()
+    expect(page.get_by_role("button", name="Save as SVG")).to_have_count(0)
+
+
+def test_a_size_without_published_limits_says_why_it_has_no_envelope(visitor: Visitor) -> None:
+    page = visitor.open(PHASES + "&gear=HPN-40A-5")
+    expect(section(page)).to_contain_text("Not rated.")
+    expect(section(page)).to_contain_text("not published")
+    expect(section(page)).to_contain_text("sizes.csv")
+
+
+def test_a_candidate_outside_the_wishes_has_its_pictures_too(visitor: Visitor) -> None:
+    page = visitor.open(PHASES + "&gear=HPN-32A-10")
+    assert drawn(page)["data"][-1]["text"] == ["phase 1", "phase 2", "phase 3"]
+
+
+def test_without_loads_the_section_leads_to_the_field(visitor: Visitor) -> None:
+    page = visitor.open(EXAMPLE)
+    page.get_by_role("link", name="Enter a radial or axial load").click()
+    expect(page.get_by_label("Radial load")).to_be_focused()
+
+
+def test_picture_of_the_cycle_follows_the_form_and_outlives_an_error(visitor: Visitor) -> None:
+    page = visitor.open(EXAMPLE)
+    picture = page.get_by_role("img", name="Torque and speed over time, beside the limits of HPN-20A-5")
+    expect(picture).to_be_in_viewport()
+    expect(page.get_by_text("3 phases. Torque from 20")).to_be_attached()
+    before = picture.locator(".steps").first.get_attribute("d")
+    page.get_by_label("Torque, phase 1").fill("-40")
+    expect(page.get_by_text(re.compile("Torque from [-−]40"))).to_be_attached()
+    after = picture.locator(".steps").first.get_attribute("d")
+    assert after != before
+    place = picture.bounding_box()
+    page.get_by_label("Pause").fill("x")
+    expect(page.get_by_text("Not recalculated")).to_be_visible()
+    assert picture.locator(".steps").first.get_attribute("d") == after
+    box = picture.bounding_box()
+    assert box and place and box["width"] == place["width"]
+
+
+@pytest.mark.parametrize("dark", [False, True], ids=["light", "dark"])
+@pytest.mark.parametrize("view", ["This size", "All sizes"])
+def test_accessibility_check_of_the_plots_finds_nothing(visitor: Visitor, view: str, dark: bool) -> None:
+    page = visitor.open(PHASES, dark=dark)
+    page.get_by_role("radio", name=view).check(force=True)
+    plot(page, "Permissible loads" if view == "This size" else "on each size")
+    for summary in section(page).locator("summary:visible").all():
+        summary.click()
+    page.get_by_text("Allowed number against torque").click()
+    plot(page, "Allowed number of emergency stops")
+    page.evaluate(AXE.read_text())
+    violations = page.evaluate(
+        "axe.run({ include: ['#bearing', '#stops', '#cycle'] }).then(result => result.violations)"
+    )
+    assert [(v["id"], [node["target"] for node in v["nodes"]]) for v in violations] == []

@@ -1,0 +1,248 @@
+"""Pictures as data: every figure is valid for Plotly, shows what the checks compute, and says so in words."""
+
+from dataclasses import replace
+from itertools import pairwise
+
+import plotly.graph_objects as go
+import pytest
+
+from hpn import plots
+from hpn.application import Application
+from hpn.catalogue import Catalogue
+from hpn.selection import Selection, select
+from hpn.wording import Quantity
+from tests.build import Json, cycle, phase
+from tests.conftest import Supplement
+
+CURVES = (
+    "size,load_coefficient,axial_N,radial_N,source\n20A,1,2200,0,print\n20A,1,1300,1200,print\n20A,1,0,1800,print\n"
+)
+LOADS = {"radial_N": 500.0, "axial_N": 200.0, "load_coefficient": 1.2}
+
+
+def selected(catalogue: Catalogue, **parts: object) -> Selection:
+    phases = (phase(40, 250, 0.3, radial_N=900, axial_N=300), phase(32, 500, 3), phase(-20, -250, 0.4))
+    document: Json = cycle(*phases, pause_s=4.0, **parts)
+    return select(Application.model_validate(document), catalogue)
+
+
+def picture(selection: Selection, designation: str = "HPN-20A-5") -> plots.BearingPicture:
+    found = plots.bearing_picture(selection, selection.catalogue.by_designation[designation])
+    assert found is not None
+    return found
+
+
+def check(selection: Selection, designation: str, code: str) -> Json:
+    candidates = selection.reply("")["candidates"]
+    gear = next(c for c in candidates if c["designation"] == designation)
+    found: Json = next(c for c in gear["checks"] if c["code"] == code)
+    return found
+
+
+def traces(figure: plots.Figure, kind: str) -> list[Json]:
+    return [trace for trace in figure["data"] if trace["meta"]["kind"] == kind]
+
+
+@pytest.mark.parametrize("model", ["linear", "iso281", "digitised"])
+@pytest.mark.parametrize("coefficient", [1.0, 1.2, 1.37, 3.0])
+def test_figures_of_the_bearing_are_valid_in_every_model(
+    supplemented: Supplement, model: str, coefficient: float
+) -> None:
+    catalogue = supplemented(bearing_envelopes=CURVES)
+    selection = selected(catalogue, output_load=LOADS | {"model": model, "load_coefficient": coefficient})
+    shown = picture(selection)
+
+    figure = plots.bearing_figure(shown)
+
+    go.Figure(figure)
+    go.Figure(plots.sizes_figure(selection))
+    drawn = {trace["meta"]["load_coefficient"] for trace in traces(figure, "own") + traces(figure, "life")}
+    assert drawn == {1.0, 1.2, 1.5, coefficient}
+    assert len(traces(plots.sizes_figure(selection), "size")) == (1 if model == "digitised" else 4)
+
+
+@pytest.mark.parametrize("model", ["linear", "iso281", "digitised"])
+def test_the_picture_uses_what_the_checks_say(supplemented: Supplement, model: str) -> None:
+    selection = selected(supplemented(bearing_envelopes=CURVES), output_load=LOADS | {"model": model})
+    shown = picture(selection)
+
+    largest, life = (check(selection, "HPN-20A-5", f"output_bearing_{name}") for name in ("load", "life"))
+    assert shown.worst.published == largest["utilisation"]
+    assert shown.life_utilisation == pytest.approx(life["utilisation"], rel=1e-14)
+    assert shown.life_factor == life["limit"]
+
+
+def test_distance_leads_from_the_worst_load_to_the_published_curve(catalogue: Catalogue) -> None:
+    shown = picture(selected(catalogue, output_load=LOADS))
+    line = traces(plots.bearing_figure(shown), "distance")[0]
+
+    radial, axial = line["x"][1], line["y"][1]
+    assert 1.2 * (radial / 1800 + axial / 2200) == pytest.approx(1, rel=1e-12)
+    assert shown.worst.distance_N == pytest.approx(
+        ((radial - line["x"][0]) ** 2 + (axial - line["y"][0]) ** 2) ** 0.5, rel=1e-12
+    )
+
+
+def test_phases_with_one_load_are_one_point(catalogue: Catalogue) -> None:
+    phases = [phase(10, 100, 1.0, radial_N=300)] * 3 + [phase(10, 100, 1.0, radial_N=100)]
+    selection = select(Application.model_validate(cycle(*phases)), catalogue)
+
+    points = traces(plots.bearing_figure(picture(selection)), "phases")[0]
+
+    assert points["text"] == ["phase 1–3", "phase 4"]
+    assert points["x"] == [300, 100]
+
+
+def test_of_very_many_loads_the_worst_are_shown_and_the_rest_counted(catalogue: Catalogue) -> None:
+    phases = [phase(1, 100, 1.0, radial_N=float(k)) for k in range(1000)]
+    selection = select(Application.model_validate(cycle(*phases)), catalogue)
+    shown = picture(selection)
+
+    assert len(shown.loads) == 200
+    assert shown.hidden == 800
+    assert shown.worst.phases == "1000"
+    go.Figure(plots.bearing_figure(shown))
+
+
+def test_axes_stay_for_any_load_within_the_limits_and_widen_beyond(catalogue: Catalogue) -> None:
+    def ranges(radial: float) -> tuple[list[float], list[float]]:
+        layout = plots.bearing_figure(
+            picture(
+                select(Application.model_validate(cycle(phase(1, 100), output_load={"radial_N": radial})), catalogue)
+            )
+        )["layout"]
+        return layout["xaxis"]["range"], layout["yaxis"]["range"]
+
+    assert ranges(1.0) == ranges(900.0) == ranges(1800.0)
+    assert ranges(1801.0) != ranges(1800.0)
+    assert ranges(1e9)[0][1] > 1e9
+
+
+def test_the_verdict_says_which_question_decides(catalogue: Catalogue) -> None:
+    fast = cycle(phase(10, 500), output_load={"radial_N": 800.0})
+    slow = cycle(phase(10, 50), output_load={"radial_N": 800.0})
+
+    def said(document: Json) -> str:
+        selection = select(Application.model_validate(document), catalogue)
+        return " ".join(sentence.text for sentence in plots.bearing_verdict(picture(selection)))
+
+    assert said(fast).endswith("The life of the bearing decides, not the largest single load.")
+    assert "uses 76 % of what a constant load may be at 500 rpm for 20000 h (L50)" in said(fast)
+    assert "f_w = 1.2 would use 91.2 %." in said(fast)
+    assert said(slow).endswith("The largest single load decides, not the life.")
+    assert "uses 44.4 % of the published maximum" in said(slow)
+
+
+def test_a_use_next_to_its_limit_is_never_called_100_percent(catalogue: Catalogue) -> None:
+    document = cycle(phase(10, 50), output_load={"radial_N": 1800.0001})
+    selection = select(Application.model_validate(document), catalogue)
+    said = " ".join(sentence.text for sentence in plots.bearing_verdict(picture(selection)))
+    assert "uses 100 %" not in said
+    assert "100.00" in said
+
+
+def test_without_loads_or_limits_there_is_no_picture_of_the_bearing(catalogue: Catalogue) -> None:
+    plain = selected(catalogue, output_load=LOADS)
+    bare = select(Application.model_validate(cycle(phase(10, 100))), catalogue)
+
+    assert plots.bearing_picture(bare, catalogue.by_designation["HPN-20A-5"]) is None
+    assert plots.bearing_picture(plain, catalogue.by_designation["HPN-40A-5"]) is None
+    uses = {use.gear.size: use.carries for use in plots.size_uses(plain)}
+    assert uses == {"11A": False, "14A": False, "20A": True, "32A": True, "40A": None}
+
+
+# --- Emergency stops --------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "stop", [None, {"torque_Nm": 200.0}, {"torque_Nm": 200.0, "count": 10**15}, {"torque_Nm": 1e6}]
+)
+def test_figure_of_the_emergency_stops_is_valid(catalogue: Catalogue, stop: Json | None) -> None:
+    selection = selected(catalogue, emergency_stop=stop)
+    figure = plots.emergency_stop_figure(selection, catalogue.by_designation["HPN-20A-5"])
+    assert figure is not None
+    go.Figure(figure)
+    assert figure["layout"]["yaxis"]["type"] == "log"
+
+
+@pytest.mark.parametrize(
+    ("stop", "said"),
+    [
+        ({"torque_Nm": 200.0, "count": 1000}, "allows 3066035 stops over the life; your 1000 use 0.0326 %"),
+        ({"torque_Nm": -200.0}, "At 200 Nm equation 17.9 allows 3066035 stops over the life."),
+        ({"torque_Nm": 149.0}, "149 Nm is at or below T_R = 149 Nm: equation 17.9 sets no limit"),
+        ({"torque_Nm": 300.0}, "300 Nm is above T_M = 256 Nm, whatever the number."),
+        ({"torque_Nm": 1e6}, "allows not even one stop"),
+        (None, "Enter an emergency-stop torque"),
+    ],
+)
+def test_emergency_stops_in_words(catalogue: Catalogue, stop: Json | None, said: str) -> None:
+    selection = selected(catalogue, emergency_stop=stop)
+    words = plots.emergency_stop_words(selection, catalogue.by_designation["HPN-20A-5"])
+    assert said in " ".join(sentence.text for sentence in words)
+
+
+def test_emergency_stops_of_an_unrated_gear_have_words_but_no_plot(catalogue: Catalogue) -> None:
+    gear, selection = catalogue.by_designation["HPN-40A-5"], selected(catalogue)
+    assert plots.emergency_stop_figure(selection, gear) is None
+    assert "not published" in plots.emergency_stop_words(selection, gear)[0].text
+
+
+# --- The cycle over time ----------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("count", [1, 3, 24, 25, 50, 10_000])
+def test_the_cycle_is_drawn_within_its_frame(catalogue: Catalogue, count: int) -> None:
+    phases = [phase((-1) ** k * 10.0 * (k % 7), 100.0, 1e-3 if k % 2 else 5.0) for k in range(count)]
+    selection = select(Application.model_validate(cycle(*phases, pause_s=3.0)), catalogue)
+
+    shown = plots.cycle_picture(selection, catalogue.by_designation["HPN-20A-5"])
+
+    named = [mark.symbol for mark in shown.names]
+    assert named[-1] == "t_p"
+    assert len(named) == {1: 2, 3: 4}.get(count, len(named))
+    gaps = [after.x - before.x for before, after in pairwise(shown.names)]
+    assert min(gaps) >= 10  # about the width of a name
+    for panel in (shown.torque, shown.speed):
+        assert panel.top <= panel.zero <= panel.bottom
+        assert len(panel.outline) + len(panel.area) < 30_000
+        assert all(panel.top <= mark.line <= panel.bottom for mark in panel.lines if mark.line is not None)
+
+
+def test_a_negative_torque_lies_below_zero(catalogue: Catalogue) -> None:
+    document = cycle(phase(30, 100), phase(-20, 100))
+    shown = plots.cycle_picture(
+        select(Application.model_validate(document), catalogue), catalogue.by_designation["HPN-20A-5"]
+    )
+    heights = [float(part.split("H")[0]) for part in shown.torque.outline.split("V")[1:]]
+    assert heights[0] < shown.torque.zero < heights[1]
+
+
+def test_limits_far_above_the_cycle_are_named_beyond_the_scale(catalogue: Catalogue) -> None:
+    selection = selected(catalogue, emergency_stop={"torque_Nm": 200.0})
+    torque = plots.cycle_picture(selection, catalogue.by_designation["HPN-20A-5"]).torque
+    assert {mark.symbol for mark in torque.lines} == {"T_av", "T_N"}
+    assert [(mark.symbol, mark.value) for mark in torque.beyond] == [("T_R", "149"), ("T_k", "200")]
+
+
+def test_extreme_durations_stay_in_the_frame_and_say_that_they_are_not_to_scale(catalogue: Catalogue) -> None:
+    document = cycle(phase(1e6, 1e6, 1e9), phase(1e-300, 1e-6, 1e-300), pause_s=1e9)
+    shown = plots.cycle_picture(
+        select(Application.model_validate(document), catalogue), catalogue.by_designation["HPN-11A-4"]
+    )
+    assert not shown.to_scale
+    assert "nan" not in shown.torque.outline + shown.speed.outline
+
+
+def test_a_reader_of_other_units_sees_other_numbers(catalogue: Catalogue) -> None:
+    pounds = replace(
+        plots.Words(),
+        convert=lambda value, unit: value / 2 if unit == "N" else value,
+        show=lambda quantity: f"{quantity.value / 2:g} half" if isinstance(quantity, Quantity) else "",
+        unit=lambda unit: "half",
+    )
+    shown = picture(selected(catalogue, output_load=LOADS))
+    figure, plain = plots.bearing_figure(shown, pounds), plots.bearing_figure(shown)
+    assert [2 * x for x in figure["data"][0]["x"]] == plain["data"][0]["x"]
+    assert figure["layout"]["xaxis"]["range"][1] * 2 == plain["layout"]["xaxis"]["range"][1]
+    assert figure["layout"]["xaxis"]["title"]["text"] == "radial load in half"
