@@ -1,0 +1,111 @@
+"""Remedy, calculation and pinned gears of the page over HTTP."""
+
+import re
+from collections.abc import Iterator
+from urllib.parse import quote
+
+import pytest
+from starlette.testclient import TestClient
+
+from hpn.web.app import create_app
+from tests.web.test_pages import EXAMPLE, HTMX
+
+
+@pytest.fixture(scope="module")
+def client() -> Iterator[TestClient]:
+    with TestClient(create_app()) as client:
+        yield client
+
+
+def compared(html: str) -> list[str]:
+    """Gears of the comparison, from left to right."""
+    found = re.search("Comparison of ([^<]*)", html)
+    return found[1].split(", ") if found else []
+
+
+def pins(html: str) -> list[str]:
+    """Pins that the form carries on."""
+    return re.findall('<input type="hidden" name="pin" value="([^"]*)">', html)
+
+
+def test_without_pins_the_nearest_smaller_miss_stands_beside_the_selected_gear(client: TestClient) -> None:
+    html = client.get(EXAMPLE).text
+    assert compared(html) == ["HPN-20A-5", "HPN-14A-5"]
+    assert pins(html) == []
+
+
+def test_pins_stand_beside_the_chosen_gear_in_their_order_and_each_once(client: TestClient) -> None:
+    html = client.get(EXAMPLE + "&pin=32-5&pin=HPN-20A-5&pin=HPN-32A-05&gear=HPN-14A-5").text
+    assert compared(html) == ["HPN-14A-5", "HPN-32A-5", "HPN-20A-5"]
+    assert pins(html) == ["HPN-32A-5", "HPN-20A-5"]
+
+
+def test_pins_stay_in_the_address_and_in_links_to_other_gears(client: TestClient) -> None:
+    part = client.get(EXAMPLE + "&pin=HPN-32A-5", headers=HTMX)
+    assert part.headers["HX-Push-Url"] == EXAMPLE + "&pin=HPN-32A-5"
+    assert "&amp;gear=HPN-14A-5&amp;pin=HPN-32A-5" in part.text
+
+
+def test_a_button_takes_a_pin_away(client: TestClient) -> None:
+    assert pins(client.get(EXAMPLE + "&pin=HPN-32A-5&pin=HPN-14A-5&unpin=HPN-32A-5").text) == ["HPN-14A-5"]
+
+
+@pytest.mark.parametrize("headers", [{}, HTMX], ids=["page", "part"])
+@pytest.mark.parametrize(
+    ("query", "message"),
+    [
+        ("&pin=HPN-99A-5", "HPN-99A-5 is not a gear of the catalogue"),
+        ("&pin=" + quote('"><script>'), "&gt;&lt;script&gt; is not a gear of the catalogue"),
+        (
+            "".join(f"&pin=HPN-20A-{ratio}" for ratio in (3, 4, 5, 7, 10)),
+            "at most 4 gears can be pinned; the link gives 5",
+        ),
+    ],
+)
+def test_pins_that_cannot_be_are_422_and_say_why(
+    client: TestClient, query: str, message: str, headers: dict[str, str]
+) -> None:
+    response = client.get(EXAMPLE + query, headers=headers)
+    assert response.status_code == 422
+    assert message in response.text
+
+
+def test_thousands_of_pins_are_refused_without_a_message_for_each(client: TestClient) -> None:
+    response = client.get(EXAMPLE + "&pin=HPN-1A-1" * 4000)
+    assert response.status_code == 422
+    assert 0 < response.text.count("HPN-1A-1 is not a gear") < 20
+    assert pins(response.text) == []
+
+
+def test_full_pins_offer_no_more(client: TestClient) -> None:
+    html = client.get(EXAMPLE + "".join(f"&pin=HPN-{size}A-5" for size in (11, 14, 20, 32))).text
+    assert "take one out to pin another" in html
+    assert 'aria-label="Compare HPN-40A-5"' not in html
+
+
+def test_rejected_gear_leads_with_its_remedy_and_offers_to_try_it(client: TestClient) -> None:
+    html = client.get(EXAMPLE + "&gear=HPN-14A-5").text
+    text = re.sub(r"<[^>]*>", "", html).replace("\u202f", " ")
+    assert text.count("Fits if the duty torques are at most 0.905 of these and Tk at most 107 Nm.") >= 3
+    link = re.search(r'href="([^"]*)">Try it', html)
+    assert link
+    tried = client.get(link[1].replace("&amp;", "&")).text
+    assert re.search(r'<h2 class="designation"[^>]*>\s*HPN-14A-5\s*<span class="status suitable"', tried)
+
+
+def test_area_of_use_is_a_note_in_the_result(client: TestClient) -> None:
+    assert "Use in this area (medical equipment) needs a risk assessment" in client.get(EXAMPLE + "&aa=medical").text
+
+
+def test_a_long_cycle_pins_by_buttons_instead_of_long_links(client: TestClient) -> None:
+    query = "/?" + "&".join(["T=40&n=250&t=0.3"] * 300)
+    html = client.get(query + "&pin=HPN-14A-5").text
+    assert '<button class="pin" type="submit" form="application" name="pin" value="HPN-20A-5"' in html
+    assert '<button class="pin pinned" type="submit" form="application" name="unpin" value="HPN-14A-5"' in html
+
+
+def test_calculation_stands_on_the_page_in_MathML_folded(client: TestClient) -> None:
+    html = client.get(EXAMPLE).text
+    assert html.count("<math ") > 15
+    assert re.search(r'<details class="panel calculation" id="calculation">', html)
+    assert "1\u202f167\u202f275.94" in html
