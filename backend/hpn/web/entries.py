@@ -18,7 +18,7 @@ from hpn.wording import N_
 WRITTEN, WAS = "written", "was"
 """Fields that say how the others are written, and which exact numbers stand behind them."""
 
-DIGITS = 6
+DIGITS = 5
 """Digits that a number from elsewhere is shown with in another unit."""
 
 _GROUPED = re.compile(r"[+-]?[1-9][0-9]{0,2}(\.[0-9]{3})+")
@@ -107,7 +107,7 @@ def _with_point(text: str) -> str:
 def to_fields(entries: Iterable[tuple[str, str]], reader: Reader, written: str) -> Shown:
     """Texts of the wire, with their units, as the reader's form shows them; `written` marks how they came in.
 
-    What the reader has typed stands there as typed. What comes from elsewhere is shown to six digits in another unit,
+    What the reader has typed stands there as typed. What comes from elsewhere is shown to five digits in another unit,
     or to all where two numbers would look alike, and is remembered where that is not all of it.
     """
     listed = [_Field(text, unit, reader, own=reader.marker == written) for text, unit in entries]
