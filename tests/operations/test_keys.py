@@ -146,6 +146,8 @@ def test_every_route_belongs_to_the_group_that_its_method_and_address_suggest() 
             assert group == "metrics"
         elif path.endswith("/select/batch"):
             assert group == "batch"
+        elif path == "/oembed":
+            assert group == "reading"  # it tells of a saved selection
         elif "/selections" in path:
             assert group in ({"listing", "reading"} if method in ("GET", "HEAD") else {"writing", "deleting"}), path
         else:
