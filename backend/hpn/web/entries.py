@@ -7,6 +7,7 @@ on the way: a number that is shown shorter than it is stands in the field `was`,
 import re
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
+from math import isfinite
 from typing import NamedTuple
 
 from hpn.units import SYMBOLS
@@ -67,7 +68,7 @@ class _Known:
         self.was: dict[tuple[str, str], float] = {}
         for token in was.split():
             unit, _, text = token.partition(":")
-            if unit in SYMBOLS and len(text) <= _LONGEST and NUMBER.fullmatch(text):
+            if unit in SYMBOLS and len(text) <= _LONGEST and NUMBER.fullmatch(text) and isfinite(float(text)):
                 self.was[unit, reader.measure(unit).written(float(text), DIGITS)] = float(text)
 
     def entry(self, text: str, unit: str) -> str:
@@ -80,7 +81,8 @@ class _Known:
         measure = self.reader.measure(unit)
         if measure.same:
             return Entry(plain, text)
-        return Entry(_plain(self.was.get((unit, plain), measure.wire(plain))), text)
+        value = self.was.get((unit, plain), measure.wire(plain))
+        return Entry(_plain(value) if isfinite(value) else plain, text)
 
 
 def read_decimal(text: str, decimal: str) -> str | Message | None:
@@ -127,7 +129,7 @@ class _Field:
         self.unit, self.reader, self.measure = unit, reader, reader.measure(unit)
         plain = wire.strip().replace("\N{MINUS SIGN}", "-")
         number = bool(NUMBER.fullmatch(plain))
-        self.value = float(plain) if number and not self.measure.same else None
+        self.value = float(plain) if number and not self.measure.same and isfinite(float(plain)) else None
         self.short = "" if self.value is None else self.measure.written(self.value, DIGITS), unit
         self.typed = wire.shown if isinstance(wire, Entry) and (own or wire.refusal) else None
         self.wire = self._marked(wire) if number else wire

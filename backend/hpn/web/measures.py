@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from decimal import ROUND_HALF_EVEN, Context, Decimal
 from fractions import Fraction
 from functools import cache
+from math import inf
 from typing import Any
 
 from hpn.units import SYMBOLS
@@ -83,8 +84,10 @@ class Measure:
 
         Twelve digits are kept, or all of them where more than thirteen are given, so that every float can be written.
         """
-        exact = (Fraction(text) - self.offset) / self.factor
-        value = float(exact)
+        try:
+            value = float((Fraction(text) - self.offset) / self.factor)
+        except OverflowError:
+            return inf
         return value if _digits(text) > 13 else float(f"{value:.12g}")
 
     def written(self, value: float, digits: int) -> str:
