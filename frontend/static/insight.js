@@ -15,10 +15,21 @@ document.addEventListener("click", (event) => {
   form.requestSubmit();
 });
 
+// Steps may also be opened one by one: the switch is on while all of them are open.
+const stepsOf = (button) => [...document.querySelectorAll(button.dataset.unfold)];
+const allOpen = (button) => stepsOf(button).every((step) => step.open);
+
+function showState() {
+  for (const button of document.querySelectorAll("[data-unfold]")) button.setAttribute("aria-checked", allOpen(button));
+}
+
 document.addEventListener("click", (event) => {
   const button = event.target.closest("[data-unfold]");
   if (!button) return;
-  const open = button.getAttribute("aria-checked") !== "true";
-  button.setAttribute("aria-checked", open);
-  for (const step of document.querySelectorAll(button.dataset.unfold)) step.open = open;
+  const open = !allOpen(button);
+  for (const step of stepsOf(button)) step.open = open;
+  showState();
 });
+
+document.addEventListener("toggle", showState, true);
+document.addEventListener("htmx:after:swap", showState);

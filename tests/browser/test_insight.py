@@ -1,0 +1,144 @@
+"""Journeys of an engineer who wants to know why: the remedy followed, gears compared, the calculation read."""
+
+import re
+
+from playwright.sync_api import Locator, Page, expect
+
+from tests.browser.conftest import AXE, Visitor
+from tests.browser.test_page import EXAMPLE, selected, torque
+
+
+def comparison(page: Page) -> Locator:
+    return page.get_by_role("table", name=re.compile("^Comparison of"))
+
+
+def gears_compared(page: Page) -> list[str]:
+    names = comparison(page).get_by_role("columnheader").all_inner_texts()
+    return [found[0] for text in names if (found := re.search(r"HPN-\w+-\d+", text))]
+
+
+def open_calculation(page: Page, gear: str) -> None:
+    page.get_by_role("heading", name=f"Show the calculation of {gear}").click()
+
+
+def test_finding_why_HPN_14A_5_fails_and_making_it_fit_by_its_remedy(visitor: Visitor) -> None:
+    page = visitor.open(EXAMPLE)
+    page.get_by_role("table", name="Candidates").get_by_role("link", name="HPN-14A-5", exact=True).click()
+    expect(selected(page)).to_contain_text("not suitable")
+    remedy = page.get_by_role("region", name="What would make HPN-14A-5 fit")
+    words = remedy.get_by_text("Fits if the duty torques are at most 0.905 of these and")
+    expect(words).to_contain_text(re.compile(r"Tk at most 107.Nm"))
+
+    for phase, value in enumerate((40, 32, 20), start=1):
+        torque(page, phase).fill(f"{value * 0.905:g}")
+    page.get_by_label("Torque Tk").fill("107")
+
+    expect(selected(page)).to_contain_text("HPN-14A-5")
+    expect(selected(page)).to_contain_text("✓ suitable")
+    expect(page.get_by_role("region", name="Reserve of HPN-14A-5")).to_contain_text("up to 1 times")
+
+
+def test_a_life_that_fails_offers_torque_or_speed(visitor: Visitor) -> None:
+    page = visitor.open(EXAMPLE + "&Lh=2000000&gear=HPN-20A-5")
+    remedy = page.get_by_role("region", name="What would make HPN-20A-5 fit")
+    expect(remedy).to_contain_text(
+        re.compile("duty torques are at most 0.85 of these, or if the speeds are at most 0.583")
+    )
+
+
+def test_trying_the_remedy_by_its_link_without_script(visitor: Visitor) -> None:
+    page = visitor.open(EXAMPLE + "&gear=HPN-14A-5", script=False)
+    page.get_by_role("link", name="Try it").click()
+    expect(selected(page)).to_contain_text("HPN-14A-5")
+    expect(selected(page)).to_contain_text("✓ suitable")
+    expect(torque(page, 1)).to_have_value("36.2")
+
+
+def test_comparing_gears_by_pinning_them_from_the_list(visitor: Visitor) -> None:
+    page = visitor.open(EXAMPLE)
+    assert gears_compared(page) == ["HPN-20A-5", "HPN-14A-5"]
+    page.get_by_role("link", name="Compare HPN-32A-5").click()
+    expect(comparison(page)).to_have_accessible_name("Comparison of HPN-20A-5, HPN-32A-5")
+    expect(page).to_have_url(re.compile(re.escape(EXAMPLE + "&pin=HPN-32A-5") + "$"))
+
+    torsion = comparison(page).get_by_role("row", name=re.compile("^Torsion at"))
+    expect(torsion.get_by_role("cell").nth(0)).to_have_text("3.70")
+    expect(torsion.get_by_role("cell").nth(1)).to_contain_text("best")
+    expect(comparison(page).get_by_role("row", name=re.compile("^Backlash"))).not_to_contain_text("best")
+
+    torque(page, 1).fill("41")
+    expect(page).to_have_url(re.compile("T=41&.*&pin=HPN-32A-5$"))
+    expect(comparison(page)).to_have_accessible_name("Comparison of HPN-20A-5, HPN-32A-5")
+    page.get_by_role("link", name="Take HPN-32A-5 out of the comparison").first.click()
+    expect(comparison(page)).to_have_accessible_name("Comparison of HPN-20A-5, HPN-14A-5")
+
+
+def test_comparing_gears_without_script(visitor: Visitor) -> None:
+    page = visitor.open(EXAMPLE, script=False)
+    page.get_by_role("link", name="Compare HPN-32A-5").click()
+    page.get_by_role("link", name="Compare HPN-11A-5").click()
+    assert gears_compared(page) == ["HPN-20A-5", "HPN-32A-5", "HPN-11A-5"]
+    page.get_by_role("button", name="Calculate").click()
+    assert gears_compared(page) == ["HPN-20A-5", "HPN-32A-5", "HPN-11A-5"]
+    page.get_by_role("link", name="Take HPN-32A-5 out of the comparison").first.click()
+    assert gears_compared(page) == ["HPN-20A-5", "HPN-11A-5"]
+
+
+def test_reading_the_calculation(visitor: Visitor) -> None:
+    page = visitor.open(EXAMPLE)
+    open_calculation(page, "HPN-20A-5")
+    life = page.get_by_role("group", name="Formulas: Life")
+    expect(life.get_by_role("math").nth(1)).to_contain_text("32.0210136")
+    expect(life.get_by_role("math").nth(2)).to_contain_text("1\u202f167\u202f275.94")
+    expect(page.get_by_text("as the handbook does in equation 18.9")).to_be_visible()
+    expect(page.get_by_text("Equation 17.10, page 17 of the handbook.")).to_be_visible()
+
+
+def test_trivial_steps_are_folded_until_the_switch_or_their_own_line_opens_them(visitor: Visitor) -> None:
+    page = visitor.open(EXAMPLE)
+    open_calculation(page, "HPN-20A-5")
+    peak = page.get_by_role("group", name="Formulas: Load limit 2: T_R")
+    speed = page.get_by_role("group", name="Formulas: Maximum input speed")
+    expect(peak).to_be_hidden()
+    page.get_by_role("heading", name="Maximum input speed").click()
+    expect(speed).to_be_visible()
+    switch = page.get_by_role("switch", name="Open the trivial steps too")
+    switch.focus()
+    page.keyboard.press("Space")
+    expect(switch).to_have_attribute("aria-checked", "true")
+    expect(peak).to_be_visible()
+    torque(page, 1).fill("41")
+    expect(peak).to_contain_text("41")
+    expect(peak).to_be_visible()
+    switch.click()
+    expect(peak).to_be_hidden()
+
+
+def test_calculation_opens_without_script(visitor: Visitor) -> None:
+    page = visitor.open(EXAMPLE, script=False)
+    open_calculation(page, "HPN-20A-5")
+    page.get_by_role("heading", name="Maximum input speed").click()
+    formulas = page.get_by_role("group", name="Formulas: Maximum input speed")
+    expect(formulas.get_by_role("math").last).to_contain_text("2\u202f500")
+    expect(page.get_by_role("switch")).to_have_count(0)
+
+
+def test_calculation_and_comparison_scroll_in_their_own_boxes_on_a_phone(visitor: Visitor) -> None:
+    pins = "&pin=HPN-14A-5&pin=HPN-32A-5&pin=HPN-11A-5&FR=300&FA=100"
+    page = visitor.open(EXAMPLE + pins, width=390, touch=True)
+    open_calculation(page, "HPN-20A-5")
+    assert page.evaluate("document.documentElement.scrollWidth") <= 390
+    box = page.get_by_role("group", name="Table of the comparison")
+    box.evaluate("box => box.scrollLeft = 200")
+    head = comparison(page).get_by_role("rowheader", name="Weight")
+    assert head.evaluate("cell => cell.getBoundingClientRect().left") < 40
+
+
+def test_remedy_calculation_and_comparison_are_accessible_in_both_themes(visitor: Visitor) -> None:
+    for dark in (False, True):
+        page = visitor.open(EXAMPLE + "&gear=HPN-14A-5&pin=HPN-20A-5&FR=300", dark=dark)
+        open_calculation(page, "HPN-14A-5")
+        page.get_by_role("switch", name="Open the trivial steps too").click()
+        page.evaluate(AXE.read_text())
+        result = page.evaluate("axe.run({ resultTypes: ['violations'] })")
+        assert [(v["id"], v["nodes"][0]["html"]) for v in result["violations"]] == []
