@@ -46,10 +46,7 @@ document.addEventListener("htmx:before:swap", (event) => {
 document.addEventListener("htmx:after:swap", (event) => {
   const { ctx } = event.detail;
   if (ctx.asked === undefined) return;
-  // What somebody has typed into hides what the server wrote, after an undo for instance.
-  for (const area of formOf().querySelectorAll("textarea")) {
-    if (area.value !== area.defaultValue) area.value = area.defaultValue;
-  }
+  if (ctx.replaces) followAttributes(formOf());
   if (ctx.presses) presses.splice(0, ctx.presses);
   ctx.refocus?.();
 });
@@ -111,6 +108,15 @@ function mirrorIntoAttributes(form) {
     else if (field.tagName === "SELECT") {
       for (const option of field.options) option.toggleAttribute("selected", option.selected);
     }
+  }
+}
+
+// And the other way round, where a content takes the place of what was typed: an undo, or a file.
+function followAttributes(form) {
+  for (const field of form.elements) {
+    if (field.type === "checkbox") field.checked = field.defaultChecked;
+    else if (field.tagName === "SELECT") for (const option of field.options) option.selected = option.defaultSelected;
+    else if (field.defaultValue !== undefined && field.type !== "hidden" && field.value !== field.defaultValue) field.value = field.defaultValue;
   }
 }
 

@@ -51,6 +51,7 @@ document.addEventListener("htmx:config:request", (event) => {
   ctx.target = form;
   ctx.swap = "outerMorph";
   ctx.asked = contentOf(form);
+  ctx.replaces = true;
 });
 
 document.addEventListener("htmx:after:swap", (event) => {
@@ -78,7 +79,6 @@ function keyInForm(event) {
   if (event.ctrlKey && event.key === "Enter") {
     const result = document.getElementById("result");
     cameFrom = event.target.id;
-    result.tabIndex = -1;
     result.focus();
     return true;
   }

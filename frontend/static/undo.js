@@ -51,7 +51,7 @@ document.addEventListener("htmx:config:request", (event) => {
   const body = new FormData();
   for (const [name, value] of new URLSearchParams(restoring)) body.append(name, value);
   ctx.request.body = body;
-  ctx.restores = true;
+  ctx.replaces = ctx.restores = true;
   restoring = null;
 });
 

@@ -1,0 +1,337 @@
+"""Journeys with the tools around the form: paste, files, undo, keys, a lost server, and the catalogue."""
+
+import re
+import time
+from pathlib import Path
+from typing import Any
+
+import pytest
+from playwright.sync_api import Page, Route, expect
+
+from tests.browser.conftest import AXE, Visitor
+
+EXAMPLE = "/?T=40&n=250&t=0.3&T=32&n=500&t=3&T=20&n=250&t=0.4&tp=4&Tk=200&i=5"
+GERMAN = "Drehmoment [Nm]\tDrehzahl [1/min]\tDauer [s]\r\n9,3\t1.250\t0,3\r\n12,5\t500\t1,25\r\n"
+PASTE = """([id, text]) => {
+  const data = new DataTransfer();
+  data.setData("text/plain", text);
+  const event = new ClipboardEvent("paste", {clipboardData: data, bubbles: true, cancelable: true});
+  return document.getElementById(id).dispatchEvent(event);
+}"""
+"""Pastes as a browser does; true where the page leaves the pasting to the browser."""
+
+
+def paste(page: Page, text: str, into: str = "T-0") -> bool:
+    page.locator(f"#{into}").focus()
+    return bool(page.evaluate(PASTE, [into, text]))
+
+
+def torque(page: Page, phase: int) -> Any:
+    return page.get_by_label(f"Torque, phase {phase}")
+
+
+def pause(page: Page) -> Any:
+    return page.get_by_role("textbox", name="Pause")
+
+
+def button(page: Page, name: str) -> Any:
+    return page.get_by_role("button", name=name, exact=True)
+
+
+def slowly(route: Route) -> None:
+    time.sleep(0.6)
+    route.continue_()
+
+
+def test_german_table_is_shown_and_taken_and_undone(visitor: Visitor) -> None:
+    page = visitor.open(EXAMPLE)
+    assert not paste(page, GERMAN)
+    dialog = page.get_by_role("dialog", name="Paste a table or open a file")
+    expect(dialog.get_by_text("Columns apart by tab, a comma as decimal mark.")).to_be_visible()
+    expect(dialog.get_by_role("row", name="1 9.3 1 250 0.3")).to_be_visible()
+    expect(torque(page, 1)).to_have_value("40")  # nothing is taken yet
+    button(page, "Take these phases").click()
+    expect(dialog).to_be_hidden()
+    expect(page).to_have_url(re.compile(r"\?T=9\.3&n=1250&t=0\.3&T=12\.5&n=500&t=1\.25&tp=4&Tk=200&i=5$"))
+    expect(torque(page, 1)).to_have_value("9.3")
+    expect(torque(page, 1)).to_be_focused()
+    button(page, "Undo").click()
+    expect(torque(page, 3)).to_have_value("20")
+    expect(page).to_have_url(re.compile(re.escape(EXAMPLE) + "$"))
+
+
+def test_ambiguous_table_is_asked_about_by_keyboard(visitor: Visitor) -> None:
+    page = visitor.open(EXAMPLE)
+    paste(page, "1.234\t250\t3")
+    expect(page.get_by_text("Which one is meant?")).to_be_visible()
+    expect(page.get_by_role("region", name="With a point as decimal mark").get_by_role("mark")).to_have_text("1.234")
+    comma = page.get_by_role("region", name="With a comma as decimal mark")
+    expect(comma.get_by_role("mark")).to_have_text("1\u202f234")
+    for _ in range(12):
+        if comma.get_by_role("button", name="Take these phases").evaluate("b => b === document.activeElement"):
+            break
+        page.keyboard.press("Tab")
+    page.keyboard.press("Enter")
+    expect(torque(page, 1)).to_have_value("1234")
+
+
+def test_what_can_not_be_read_is_said_and_nothing_is_taken(visitor: Visitor) -> None:
+    page = visitor.open(EXAMPLE)
+    paste(page, "40\tabc\t3")
+    expect(page.get_by_role("alert")).to_contain_text("row 1: abc is not a number")
+    expect(button(page, "Take these phases")).to_have_count(0)
+    page.keyboard.press("Escape")
+    expect(page.get_by_role("dialog")).to_have_count(0)
+    expect(torque(page, 1)).to_have_value("40")
+
+
+def test_single_cell_pastes_as_ever(visitor: Visitor) -> None:
+    page = visitor.open(EXAMPLE)
+    for text in ("41", " 41 ", "9,3", "1.234,5", "41\n"):
+        assert paste(page, text)
+    expect(page.get_by_role("dialog")).to_have_count(0)
+
+
+def test_long_table_is_edited_as_text_and_kept_as_a_file(visitor: Visitor, tmp_path: Path) -> None:
+    page = visitor.open(EXAMPLE)
+    page.set_default_timeout(40_000)
+    paste(page, "".join(f"40,{k % 10};{250 + k % 90};0,25\n" for k in range(3500)))
+    button(page, "Take these phases").click()
+    text = page.get_by_role("textbox", name="Load phases")
+    expect(text).to_be_visible(timeout=40_000)
+    expect(page.get_by_text("This cycle is too long for a link: keep it as a file.")).to_be_visible()
+    expect(page).to_have_url(re.compile("/paste$"))
+    with page.expect_download() as download:
+        button(page, "Duty cycle as CSV").click()
+    assert Path(download.value.path()).read_text().count("\n") == 3501
+    button(page, "Undo").click()
+    expect(torque(page, 3)).to_have_value("20", timeout=40_000)
+    expect(page).to_have_url(re.compile(re.escape(EXAMPLE) + "$"))
+
+
+def test_application_leaves_as_a_file_and_comes_back(visitor: Visitor, tmp_path: Path) -> None:
+    page = visitor.open(EXAMPLE)
+    with page.expect_download() as download:
+        page.get_by_role("link", name="Application as JSON").click()
+    file = tmp_path / "application.json"
+    download.value.save_as(file)
+    page.goto(visitor.server + "/?T=&n=&t=")
+    button(page, "Paste table").click()
+    page.get_by_label("or a file").set_input_files(file)
+    expect(page.get_by_text("An application with 3 load phases.")).to_be_visible()
+    button(page, "Open it").click()
+    expect(page).to_have_url(re.compile(re.escape(EXAMPLE) + "$"))
+
+
+def test_table_and_file_are_taken_without_script(visitor: Visitor, tmp_path: Path) -> None:
+    page = visitor.open(EXAMPLE, script=False)
+    pause(page).fill("5")  # typed, not calculated yet: it must come along
+    button(page, "Paste table").click()
+    page.get_by_label("Cells copied from a spreadsheet").fill("1.234;250;3\n2.345;100;1")
+    button(page, "Show what is read").click()
+    page.get_by_role("region", name="With a point").get_by_role("button", name="Take these phases").click()
+    expect(torque(page, 2)).to_have_value("2.345")
+    expect(pause(page)).to_have_value("5")
+    file = tmp_path / "cycle.csv"
+    file.write_text("9,3;250;0,5\n", "cp1252")
+    button(page, "Open a file").click()
+    page.get_by_label("or a file").set_input_files(file)
+    button(page, "Show what is read").click()
+    button(page, "Add them to mine").click()
+    expect(torque(page, 3)).to_have_value("9.3")
+
+
+def test_every_edit_can_be_undone_and_done_again(visitor: Visitor) -> None:
+    page = visitor.open(EXAMPLE)
+    undo, redo = button(page, "Undo"), button(page, "Redo")
+    expect(undo).to_have_attribute("aria-disabled", "true")
+    torque(page, 1).press_sequentially("5")
+    expect(page).to_have_url(re.compile("T=540&"))
+    button(page, "Remove phase 2").click()
+    expect(torque(page, 3)).to_have_count(0)
+    page.get_by_role("checkbox", name="7", exact=True).check(force=True)
+    expect(page).to_have_url(re.compile("i=7"))
+    page.keyboard.press("Control+z")
+    expect(page.get_by_role("checkbox", name="7", exact=True)).not_to_be_checked()
+    undo.click()
+    expect(torque(page, 2)).to_have_value("32")
+    undo.click()
+    expect(torque(page, 1)).to_have_value("40")
+    expect(undo).to_have_attribute("aria-disabled", "true")
+    expect(undo).to_be_focused()
+    for _ in range(3):
+        redo.click()
+        page.wait_for_load_state("networkidle")
+    expect(torque(page, 1)).to_have_value("540")
+    expect(page.get_by_role("checkbox", name="7", exact=True)).to_be_checked()
+
+
+def test_undo_key_in_a_text_field_stays_the_browsers(visitor: Visitor) -> None:
+    page = visitor.open(EXAMPLE)
+    button(page, "Remove phase 3").click()
+    expect(torque(page, 3)).to_have_count(0)
+    torque(page, 1).focus()
+    page.keyboard.press("Control+z")
+    page.wait_for_timeout(300)
+    expect(torque(page, 3)).to_have_count(0)
+
+
+def test_keys_edit_rows_and_are_listed(visitor: Visitor) -> None:
+    page = visitor.open(EXAMPLE)
+    torque(page, 1).focus()
+    page.keyboard.press("Alt+ArrowDown")
+    expect(torque(page, 2)).to_have_value("40")
+    torque(page, 3).focus()
+    page.keyboard.press("Alt+Delete")
+    expect(torque(page, 3)).to_have_count(0)
+    page.keyboard.press("Alt+Enter")
+    expect(torque(page, 3)).to_be_focused()
+    page.keyboard.type("?")
+    expect(torque(page, 3)).to_have_value("?")
+    expect(page.get_by_role("dialog")).to_have_count(0)
+    torque(page, 3).fill("")
+    page.keyboard.press("Control+Enter")
+    expect(page.get_by_role("region", name="Result")).to_be_focused()
+    page.keyboard.press("?")
+    expect(page.get_by_role("dialog", name="Keys")).to_contain_text("Alt+Enter")
+    page.keyboard.press("Escape")
+    expect(page.get_by_role("region", name="Result")).to_be_focused()
+    page.keyboard.press("Escape")
+    expect(torque(page, 3)).to_be_focused()
+
+
+def test_typing_while_a_row_edit_is_under_way_keeps_both_and_the_place(visitor: Visitor) -> None:
+    page = visitor.open(EXAMPLE)
+    page.route("**/?*", slowly)
+    button(page, "Remove phase 1").click()
+    torque(page, 3).fill("205")
+    expect(torque(page, 3)).to_have_count(0)
+    expect(torque(page, 2)).to_have_value("205")
+    expect(torque(page, 2)).to_be_focused()
+    expect(page).to_have_url(re.compile(r"\?T=32&n=500&t=3&T=205&"))
+
+
+def test_rows_added_in_quick_succession_all_come(visitor: Visitor) -> None:
+    page = visitor.open(EXAMPLE)
+    page.route("**/?*", slowly)
+    button(page, "+ Add phase").click()
+    button(page, "+ Add phase").click()
+    expect(torque(page, 5)).to_be_visible()
+
+
+def test_long_wait_is_shown_and_a_short_one_is_not(visitor: Visitor) -> None:
+    page = visitor.open(EXAMPLE)
+    result = page.get_by_role("region", name="Result")
+    page.route("**/?*", slowly)
+    before = page.get_by_role("table", name="Load limits").bounding_box()
+    with page.expect_request("**/?*"):
+        pause(page).fill("5")
+    expect(result).not_to_have_attribute("aria-busy", "true", timeout=100)
+    expect(result).to_have_attribute("aria-busy", "true")
+    assert page.get_by_role("table", name="Load limits").bounding_box() == before
+    expect(page).to_have_url(re.compile("tp=5"))
+    expect(result).not_to_have_attribute("aria-busy", "true")
+
+
+class TestWithoutServer:
+    """The browser complains in its console about what can't be loaded; these tests look after themselves."""
+
+    @pytest.fixture
+    def page(self, visitor: Visitor) -> Page:
+        page = visitor.open(EXAMPLE)
+        visitor.watches.clear()
+        return page
+
+    def test_lost_server_is_said_and_tried_again_and_nothing_typed_is_lost(self, page: Page) -> None:
+        page.route("**/?*", lambda route: route.abort())
+        pause(page).fill("7")
+        message = page.get_by_text("The server can’t be reached.")
+        expect(message).to_be_visible()
+        expect(pause(page)).to_have_value("7")
+        expect(page.get_by_role("region", name="Result")).to_have_attribute("data-stale", "")
+        page.unroute("**/?*")
+        expect(page).to_have_url(re.compile("tp=7"))
+        expect(message).to_be_hidden()
+
+    def test_reply_that_is_no_page_never_takes_the_forms_place(self, page: Page) -> None:
+        problem = {"status": 503, "content_type": "application/problem+json", "body": '{"detail": "too many at once"}'}
+        page.route("**/?*", lambda route: route.fulfill(**problem))  # type: ignore[arg-type]
+        pause(page).fill("8")
+        expect(page.get_by_text("too many at once")).to_be_visible()
+        expect(pause(page)).to_have_value("8")
+        page.unroute("**/?*")
+        button(page, "Try now").click()
+        expect(page).to_have_url(re.compile("tp=8"))
+
+
+def test_ordering_code_follows_what_is_chosen_and_survives_the_next_answer(visitor: Visitor) -> None:
+    page = visitor.open(EXAMPLE)
+    page.get_by_role("radio", name="J8").check(force=True)
+    page.get_by_label("Motor adaption").fill("bh-af1")
+    code = page.get_by_role("region", name="Ordering code").get_by_role("status")
+    expect(code).to_have_text("HPN-20A-5-J8-BH-AF1")
+    page.get_by_role("checkbox", name="7", exact=True).check(force=True)
+    page.get_by_role("checkbox", name="5", exact=True).uncheck(force=True)
+    expect(code).to_have_text("HPN-20A-7-J8-BH-AF1")
+    page.get_by_label("Motor adaption").fill("bh af1!")
+    expect(code).to_have_text("HPN-20A-7-J8")
+    expect(page.get_by_text("letters and digits")).to_be_visible()
+
+
+@pytest.mark.parametrize("script", [True, False])
+def test_gear_is_found_by_any_spelling(visitor: Visitor, script: bool) -> None:
+    page = visitor.open(EXAMPLE, script=script)
+    page.get_by_role("combobox", name="Find a gear").fill("HPN-14-05-J6-BH-AF1")
+    page.get_by_role("search").get_by_role("button", name="Show").click()
+    expect(page).to_have_url(re.compile("gear=HPN-14A-5"))
+    expect(page.get_by_role("region", name="Result").get_by_role("heading", level=2)).to_contain_text("HPN-14A-5")
+
+
+def test_from_the_selection_to_a_gears_page_and_back_with_another_gear(visitor: Visitor) -> None:
+    page = visitor.open(EXAMPLE)
+    page.get_by_role("link", name="catalogue page").click()
+    expect(page.get_by_role("heading", level=2)).to_have_text("HPN-20A-5")
+    page.get_by_role("link", name="larger HPN-32A-5").click()
+    expect(page.get_by_role("row", name="Rated torque")).to_contain_text("200 Nm")
+    page.get_by_role("link", name="Use in selection").click()
+    expect(page).to_have_url(re.compile(re.escape(EXAMPLE) + "&gear=HPN-32A-5$"))
+
+
+def test_table_is_pasted_by_touch_on_a_phone(visitor: Visitor) -> None:
+    page = visitor.open(EXAMPLE, width=390, touch=True)
+    button(page, "Paste table").tap()
+    page.get_by_label("Cells copied from a spreadsheet").fill(GERMAN)
+    button(page, "Take these phases").tap()
+    expect(torque(page, 2)).to_have_value("12.5")
+    assert page.evaluate("document.documentElement.scrollWidth") == 390
+
+
+@pytest.mark.parametrize("dark", [False, True], ids=["light", "dark"])
+@pytest.mark.parametrize("width", [390, 1440])
+@pytest.mark.parametrize(
+    "path",
+    ["/catalogue", "/catalogue/HPN-20A-5", "/catalogue/HPN-40A-5", "/catalogue?size=11A&i=3", "/paste?T=1&n=2&t=3"],
+)
+def test_accessibility_check_finds_nothing_on_the_pages_beside(
+    visitor: Visitor, path: str, width: int, dark: bool
+) -> None:
+    page = visitor.open(path, width=width, dark=dark)
+    if "i=3" in path:
+        visitor.watches.clear()  # a filter that leaves nothing is a 404, which Chromium reports
+    assert page.evaluate("document.documentElement.scrollWidth") == width
+    page.evaluate(AXE.read_text())
+    violations = page.evaluate("axe.run().then(result => result.violations)")
+    assert [(v["id"], [node["target"] for node in v["nodes"]]) for v in violations] == []
+
+
+@pytest.mark.parametrize("state", ["paste", "keys", "long"])
+def test_accessibility_check_finds_nothing_in_the_dialogs(visitor: Visitor, state: str) -> None:
+    page = visitor.open(EXAMPLE if state != "long" else "/?" + "&".join(["T=40&n=250&t=1"] * 101))
+    if state == "paste":
+        paste(page, "1.234\t250\t3")
+        expect(page.get_by_text("Which one is meant?")).to_be_visible()
+    if state == "keys":
+        button(page, "Keys").click()
+    page.evaluate(AXE.read_text())
+    violations = page.evaluate("axe.run().then(result => result.violations)")
+    assert [(v["id"], [node["target"] for node in v["nodes"]]) for v in violations] == []
