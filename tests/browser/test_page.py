@@ -139,7 +139,7 @@ def test_back_and_forward_walk_through_edits_not_keystrokes(visitor: Visitor) ->
 
 def test_choosing_a_candidate_shows_its_limits_and_goes_back(visitor: Visitor) -> None:
     page = visitor.open(EXAMPLE)
-    page.get_by_role("table", name="Candidates").get_by_role("link", name="HPN-14A-5").click()
+    page.get_by_role("table", name="Candidates").get_by_role("link", name="HPN-14A-5", exact=True).click()
     expect(selected(page)).to_contain_text("HPN-14A-5")
     expect(selected(page)).to_contain_text("not suitable")
     limits = page.get_by_role("table", name="Load limits of HPN-14A-5")
