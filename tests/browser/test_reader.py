@@ -1,0 +1,119 @@
+"""Journeys of readers with other languages and units."""
+
+import re
+
+import pytest
+from playwright.sync_api import Page, expect
+
+from tests.browser.conftest import AXE, Visitor
+
+EXAMPLE = "/?T=40&n=250&t=0.3&T=32&n=500&t=3&T=20&n=250&t=0.4&tp=4&Tk=200&i=5"
+ODD = "/?T=40.123456789&n=33.3333333333333&t=0.1&tp=0.07&Tk=199.99&FR=512.34&fw=1.2&ta=21.7&bl=7.5&m=3.3&L=150.5"
+
+
+def set_units(page: Page, preset: str) -> None:
+    page.get_by_role("button", name=re.compile("^(Units|Einheiten)")).click()
+    page.get_by_role("button", name=preset).click()
+
+
+def violations(page: Page, part: str) -> list[tuple[str, list[str]]]:
+    """What the accessibility check finds in a part of the page."""
+    found = page.evaluate(f"axe.run({part}).then(result => result.violations)")
+    return [(v["id"], [node["target"] for node in v["nodes"]]) for v in found]
+
+
+def address(page: Page) -> str:
+    return page.url.split("/", 3)[3]
+
+
+@pytest.mark.parametrize("script", [True, False], ids=["script", "plain"])
+@pytest.mark.parametrize("link", [EXAMPLE, ODD])
+def test_switching_to_lb_in_and_german_and_back_loses_nothing(visitor: Visitor, link: str, script: bool) -> None:
+    page = visitor.open(link, script=script)
+    torque = page.locator("#T-0")
+    before, first = address(page), torque.input_value()
+    set_units(page, "US customary")
+    expect(page.get_by_label("Torque, phase 1, in lb·in")).to_have_value(re.compile(r"^35[45]\.\d+$"))
+    page.get_by_role("button", name="Deutsch").click()
+    expect(page.get_by_label("Drehmoment, Phase 1, in lb·in")).to_have_value(re.compile(r"^35[45],\d+$"))
+    if not script:
+        page.get_by_role("button", name="Berechnen").click()
+    expect(page.locator("html")).to_have_attribute("lang", "de")
+    set_units(page, "Metrisch (SI)")
+    page.get_by_role("button", name="English").click()
+    expect(page.get_by_label("Torque, phase 1, in Nm")).to_have_value(first)
+    assert address(page) == before
+
+
+def test_typing_in_a_readers_units_makes_the_link_of_everybody(visitor: Visitor) -> None:
+    page = visitor.open(EXAMPLE)
+    set_units(page, "US customary")
+    box = page.get_by_label("Torque, phase 1, in lb·in")
+    box.fill("300.0")
+    expect(page).to_have_url(re.compile(r"/\?T=33\.8954487083&n=250&t=0\.3&T=32&"))
+    expect(box).to_have_value("300.0")
+    other = visitor.open(page.url.replace(visitor.server, ""))
+    expect(other.get_by_label("Torque, phase 1, in Nm")).to_have_value("33.8954487083")
+
+
+def test_a_decimal_comma_is_understood_in_a_german_form(visitor: Visitor) -> None:
+    page = visitor.open(EXAMPLE)
+    page.get_by_role("button", name="Deutsch").click()
+    box = page.get_by_label("Drehmoment, Phase 2")
+    box.fill("9,3")
+    expect(page).to_have_url(re.compile("T=9.3&"))
+    expect(box).to_have_value("9,3")
+    box.fill("1.234")
+    expect(box).to_have_accessible_description("1,234 oder 1234 schreiben")
+
+
+def test_unfinished_input_survives_a_switch(visitor: Visitor) -> None:
+    page = visitor.open(EXAMPLE)
+    page.get_by_role("button", name="Add phase").click()
+    expect(page.get_by_label("Torque, phase 4")).to_be_focused()
+    page.keyboard.type("50")
+    page.get_by_role("button", name="Deutsch").click()
+    expect(page.get_by_label("Drehmoment, Phase 4")).to_have_value("50")
+    expect(page.get_by_label("Drehzahl, Phase 4")).to_have_accessible_description("fehlt")
+
+
+def test_language_follows_the_browser_and_no_link_changes_it(visitor: Visitor) -> None:
+    context = visitor.browser.new_context(locale="de-AT")
+    page = context.new_page()
+    page.goto(visitor.server + EXAMPLE + "&written=lb_in")
+    expect(page.locator("html")).to_have_attribute("lang", "de")
+    page.goto(visitor.server + EXAMPLE)
+    expect(page.get_by_label("Drehmoment, Phase 1, in Nm")).to_have_value("40")
+    context.close()
+
+
+def test_units_are_chosen_by_keyboard_one_by_one(visitor: Visitor) -> None:
+    page = visitor.open(EXAMPLE)
+    page.get_by_role("button", name=re.compile("^Units")).focus()
+    page.keyboard.press("Enter")
+    dialog = page.get_by_role("dialog", name="Units")
+    expect(dialog).to_be_visible()
+    dialog.get_by_label("Speed").select_option("rad/s")
+    dialog.get_by_role("button", name="Apply").press("Enter")
+    expect(page.get_by_label("Speed, phase 1, in rad/s")).to_have_value("26.18")
+    expect(page.get_by_label("Torque, phase 1, in Nm")).to_have_value("40")
+
+
+@pytest.mark.parametrize("dark", [False, True], ids=["light", "dark"])
+@pytest.mark.parametrize("path", [ODD, "/?T=9,3&n=&t=1", "/catalogue/HPN-20A-5", "/paste"])
+def test_accessibility_check_finds_nothing_in_german(visitor: Visitor, path: str, dark: bool) -> None:
+    page = visitor.open(path, dark=dark)
+    page.get_by_role("button", name="Deutsch").click()
+    set_units(page, "US-Einheiten")
+    page.evaluate(AXE.read_text())
+    assert violations(page, "document") == []
+    page.get_by_role("button", name=re.compile("^Einheiten")).click()
+    assert violations(page, "'#units'") == []
+
+
+@pytest.mark.parametrize("width", [390, 768, 1024, 1440])
+def test_nothing_makes_the_german_page_scroll_sideways(visitor: Visitor, width: int) -> None:
+    page = visitor.open(EXAMPLE.replace("&i=5", "&FR=500&FRi=&FRi=&FRi=700"), width=width)
+    page.get_by_role("button", name="Deutsch").click()
+    expect(page.locator("html")).to_have_attribute("lang", "de")
+    assert page.evaluate("document.documentElement.scrollWidth") == width
