@@ -12,7 +12,6 @@ from markupsafe import Markup
 from hpn import plots
 from hpn.gear import Gear
 from hpn.selection import Selection
-from hpn.web import display
 from hpn.web.reader import Reader, reader_of
 from hpn.wording import Sentence
 
@@ -93,7 +92,7 @@ def words_of(reader: Reader) -> plots.Words:
         number=reader.figure,
         unit=reader.unit,
         convert=lambda value, unit: reader.measure(unit).shown(value),
-        separators=reader.decimal + display.GROUP,
+        separators=reader.decimal + reader.group,
     )
 
 

@@ -56,6 +56,11 @@ class Reader:
         return _marks(self.language)[0]
 
     @property
+    def group(self) -> str:
+        """Mark between thousands."""
+        return _marks(self.language)[1]
+
+    @property
     def preset(self) -> str:
         """Name of the preset that these units are, or blank."""
         return next((name for name, codes in measures.PRESETS.items() if set(codes) == set(self.units)), "")

@@ -205,9 +205,7 @@ def _line(difference: Difference, reply: Mapping[str, Any]) -> Line:
 def _texts(saved: Any, today: Any, unit: str) -> tuple[str, str]:
     """Two values for reading, with as many digits as it takes to tell numbers apart."""
     reader = current()
-    before, after = (
-        reader.figure(value, unit) if _is_number(value) else str(value or "–") for value in (saved, today)
-    )
+    before, after = (reader.figure(value, unit) if _is_number(value) else str(value or "–") for value in (saved, today))
     if before == after and _is_number(saved) and _is_number(today):
         measure = reader.measure(unit)
         pairs = ((measure.written(saved, digits), measure.written(today, digits)) for digits in range(3, 18))
