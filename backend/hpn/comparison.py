@@ -184,7 +184,7 @@ def _housing_bolts(column: Column) -> Sentence | None:
         return None
     parts = [Sentence("{number} × {bolt}", {"number": bolts.number_of_bolts or "?", "bolt": bolts.bolt_size})]
     if bolts.pitch_diameter_mm is not None:
-        parts.append(Sentence("Ø {diameter}", {"diameter": Quantity(bolts.pitch_diameter_mm, "mm", 4)}))
+        parts.append(Sentence("Ø\u00a0{diameter}", {"diameter": Quantity(bolts.pitch_diameter_mm, "mm", 4)}))
     if bolts.tightening_torque_Nm is not None:
         parts.append(Sentence("{torque}", {"torque": Quantity(bolts.tightening_torque_Nm, "Nm", 4)}))
     return _listed(parts)
