@@ -147,7 +147,7 @@ class Requirements(Model):
     ambient_temperature_degC: Annotated[Number, Field(ge=-273.15, le=1000)] | None = Field(
         None, description="Ambient temperature of the gear.", examples=[25.0]
     )
-    utilisation: Annotated[Number, Field(gt=0, le=1)] = Field(
+    utilisation: Annotated[Number, Field(gt=0, le=1), AfterValidator(_not_vanishing)] = Field(
         1.0, description="Largest acceptable utilisation u of the load checks: your own reserve.", examples=[1.0]
     )
     efficiency: Annotated[Number, Field(gt=0, le=1), AfterValidator(_not_vanishing)] | None = Field(

@@ -243,7 +243,7 @@ def test_opened_sections_stay_open_while_typing(visitor: Visitor) -> None:
 
 def test_loads_can_be_given_for_each_phase(visitor: Visitor) -> None:
     page = visitor.open(EXAMPLE)
-    page.get_by_text("Load on the output shaft").click()
+    page.get_by_text("Load on the output shaft", exact=True).click()
     page.get_by_role("button", name="A load for each phase").click()
     page.get_by_label("Radial, phase 2").fill("500")
     expect(page).to_have_url(re.compile("FRi=&.*FRi=500"))
