@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hpn.application import Application
-from hpn.web import links
+from hpn.web import links, symbols
 
 EXAMPLE = "/?T=40&n=250&t=0.3&T=32&n=500&t=3&T=20&n=250&t=0.4&tp=4&Tk=200&i=5"
 PHASE = "T=40&n=250&t=0.3"
@@ -238,5 +238,5 @@ def test_every_field_of_the_application_has_a_symbol() -> None:
             found |= leaves(parts[0], (*path, name)) if parts else {(*path, name)}
         return found
 
-    phases = {("duty_cycle", "phases", *symbol.path) for symbol in links.PHASE_SYMBOLS}
-    assert leaves(Application) == phases | {symbol.path for symbol in links.SYMBOLS}
+    phases = {("duty_cycle", "phases", *symbol.path) for symbol in symbols.PHASE_SYMBOLS}
+    assert leaves(Application) == phases | {symbol.path for symbol in symbols.SYMBOLS}

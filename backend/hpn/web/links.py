@@ -8,7 +8,7 @@ import difflib
 import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, Literal
+from typing import Any
 from urllib.parse import quote
 
 from pydantic import BaseModel, ValidationError
@@ -16,64 +16,27 @@ from pydantic import BaseModel, ValidationError
 from hpn.application import MAXIMUM_PHASES, Application, OutputLoad
 from hpn.units import suffix_of
 from hpn.web import entries
-from hpn.web.entries import WAS, WRITTEN, Entry
+from hpn.web.entries import WAS, WRITTEN
 from hpn.web.messages import N_, Message
 from hpn.web.reader import Reader
+from hpn.web.symbols import (
+    BY_NAME,
+    BY_PARENT,
+    BY_PATH,
+    PHASE_BY_LEAF,
+    PHASE_BY_NAME,
+    PHASE_SYMBOLS,
+    SYMBOLS,
+    UNITS,
+    Symbol,
+)
+from hpn.web.typed import read_value
 from hpn.wording import Quantity, Sentence
 
 MAXIMUM_QUERY_BYTES = 60_000
 """Longest query that is read: servers and proxies on the way allow little more."""
 
 Pairs = Sequence[tuple[str, str]]
-Kind = Literal["number", "whole", "text"]
-
-
-@dataclass(frozen=True, slots=True)
-class Symbol:
-    """A query name, and the field of the application that it stands for."""
-
-    name: str
-    path: tuple[str, ...]
-    kind: Kind = "number"
-    many: bool = False
-
-
-PHASE_SYMBOLS = (
-    Symbol("T", ("torque_Nm",)),
-    Symbol("n", ("speed_rpm",)),
-    Symbol("t", ("duration_s",)),
-    Symbol("FRi", ("radial_N",)),
-    Symbol("FAi", ("axial_N",)),
-)
-"""Repeated once per phase, all of equal length."""
-
-SYMBOLS = (
-    Symbol("tp", ("duty_cycle", "pause_s")),
-    Symbol("Tk", ("emergency_stop", "torque_Nm")),
-    Symbol("Nk", ("emergency_stop", "count"), "whole"),
-    Symbol("FR", ("output_load", "radial_N")),
-    Symbol("FA", ("output_load", "axial_N")),
-    Symbol("fw", ("output_load", "load_coefficient")),
-    Symbol("Lb", ("output_load", "life_h")),
-    Symbol("Lbb", ("output_load", "life_basis"), "text"),
-    Symbol("bm", ("output_load", "model"), "text"),
-    Symbol("i", ("requirements", "ratios"), "whole", many=True),
-    Symbol("size", ("requirements", "sizes"), "text", many=True),
-    Symbol("Lh", ("requirements", "life_h")),
-    Symbol("ta", ("requirements", "ambient_temperature_degC")),
-    Symbol("bl", ("requirements", "backlash_arcmin")),
-    Symbol("K3", ("requirements", "torsional_stiffness_Nm_per_rad")),
-    Symbol("m", ("requirements", "weight_kg")),
-    Symbol("L", ("requirements", "length_mm")),
-    Symbol("u", ("requirements", "utilisation")),
-    Symbol("aa", ("application_area",), "text"),
-    Symbol("rank", ("rank_by",), "text"),
-    Symbol("nm", ("requirements", "motor", "maximum_speed_rpm")),
-    Symbol("Tm", ("requirements", "motor", "peak_torque_Nm")),
-    Symbol("Tmn", ("requirements", "motor", "rated_torque_Nm")),
-    Symbol("eta", ("requirements", "efficiency")),
-)
-"""Everything but the phases, in the order in which a canonical link gives them."""
 
 PAGE_NAMES = ("gear", "pin", "unpin", "do", WRITTEN, WAS)
 """Parameters of the page alone: the candidate looked at, those pinned beside it (repeated), one to take away, and
@@ -82,15 +45,6 @@ the buttons that edit the rows, one after the other."""
 ROWS_IN_TABLE = 100
 """A longer duty cycle is edited as text: a field for each of its figures would weigh megabytes."""
 
-_PHASE_BY_NAME = {symbol.name: symbol for symbol in PHASE_SYMBOLS}
-_PHASE_BY_LEAF = {symbol.path[0]: symbol for symbol in PHASE_SYMBOLS}
-_BY_NAME = {symbol.name: symbol for symbol in SYMBOLS}
-_BY_PATH = {symbol.path: symbol for symbol in SYMBOLS}
-_UNITS = {
-    symbol.name: suffix_of(symbol.path[-1]) or ""
-    for symbol in (*PHASE_SYMBOLS, *SYMBOLS)
-    if symbol.kind != "text" and not symbol.many
-}
 _REQUIRED = ("T", "n", "t")
 _LOADS = ("FRi", "FAi")
 # Where an error of a whole part of the model is shown.
@@ -108,7 +62,7 @@ class Problem:
     @property
     def of_phase(self) -> bool:
         """Whether the input stands in the duty table."""
-        return self.name in _PHASE_BY_NAME
+        return self.name in PHASE_BY_NAME
 
     @property
     def place(self) -> str:
@@ -155,12 +109,8 @@ class Form:
     @property
     def general(self) -> list[Problem]:
         """Problems that belong to no field of the form."""
-        return [problem for problem in self.problems if problem.name not in _BY_NAME | _PHASE_BY_NAME]
+        return [problem for problem in self.problems if problem.name not in BY_NAME | PHASE_BY_NAME]
 
-
-_BY_PARENT: dict[tuple[str, ...], list[Symbol]] = {}
-for _symbol in SYMBOLS:
-    _BY_PARENT.setdefault(_symbol.path[:-1], []).append(_symbol)
 
 _EMPTY_LOAD = OutputLoad()
 
@@ -185,7 +135,7 @@ def _phase_pairs(application: Application) -> Iterable[tuple[str, str]]:
 
 
 def _other_pairs(application: Application) -> Iterable[tuple[str, str]]:
-    for parent, symbols in _BY_PARENT.items():
+    for parent, symbols in BY_PARENT.items():
         model = _part(application, parent)
         if model is None:
             continue
@@ -244,14 +194,14 @@ def parse(pairs: Pairs) -> Form:
 
 def in_wire_units(pairs: Pairs) -> tuple[Pairs, str]:
     """Pairs of a form as a link has them, and the marker of what they were written in: see `entries`."""
-    return entries.to_wire(pairs, _UNITS)
+    return entries.to_wire(pairs, UNITS)
 
 
 def for_reader(form: Form, reader: Reader) -> Form:
     """The same form with what the reader's fields show: their units and decimal mark."""
-    cells = [(text, _UNITS[name]) for row in form.rows for name, text in row.items()]
-    named = {name: text for name, text in form.texts.items() if name in _UNITS}
-    shown = entries.to_fields([*cells, *((text, _UNITS[name]) for name, text in named.items())], reader, form.written)
+    cells = [(text, UNITS[name]) for row in form.rows for name, text in row.items()]
+    named = {name: text for name, text in form.texts.items() if name in UNITS}
+    shown = entries.to_fields([*cells, *((text, UNITS[name]) for name, text in named.items())], reader, form.written)
     texts = iter(shown.texts)
     rows = tuple({name: next(texts) for name in row} for row in form.rows)
     return replace(
@@ -278,7 +228,7 @@ class _Given:
 
     def add(self, name: str, text: str) -> None:
         """Take one pair of the query."""
-        if name in _PHASE_BY_NAME:
+        if name in PHASE_BY_NAME:
             self.columns.setdefault(name, []).append(text)
         elif name == "do":
             self.presses.append(text)
@@ -286,15 +236,15 @@ class _Given:
             self.pins += [text.strip()] if text.strip() else []
         elif name in PAGE_NAMES:
             self.page[name] = text
-        elif name not in _BY_NAME:
+        elif name not in BY_NAME:
             self.unknown.append(name)
         elif text.strip():  # the plain form submits blank fields too: they count as absent
-            (self.lists if _BY_NAME[name].many else self.scalars).setdefault(name, []).append(text)
+            (self.lists if BY_NAME[name].many else self.scalars).setdefault(name, []).append(text)
 
     def edited(self) -> tuple[list[dict[str, str]], str | None]:
         """Rows of the duty table after the buttons that were pressed, and the element to go on from."""
         self.with_loads = any(name in self.columns for name in _LOADS)
-        shown = [name for name in _PHASE_BY_NAME if name in _REQUIRED or self.with_loads]
+        shown = [name for name in PHASE_BY_NAME if name in _REQUIRED or self.with_loads]
         length = max((len(texts) for texts in self.columns.values()), default=0)
         rows = [
             {name: texts[k] if k < len(texts := self.columns.get(name, [])) else "" for name in shown}
@@ -357,7 +307,7 @@ class _Given:
 
 def _unknown(name: str) -> Message:
     leaves = {s.path[-1].lower(): s.name for s in (*SYMBOLS, *PHASE_SYMBOLS)}
-    names = {known.lower(): known for known in (*_PHASE_BY_NAME, *_BY_NAME, *PAGE_NAMES)}
+    names = {known.lower(): known for known in (*PHASE_BY_NAME, *BY_NAME, *PAGE_NAMES)}
     near = difflib.get_close_matches(name[:60].lower(), leaves | names, n=1, cutoff=0.4)
     if not near:
         return Message(N_("%(name)s is not a parameter of this page"), {"name": name[:60]})
@@ -368,7 +318,7 @@ def _unknown(name: str) -> Message:
 def _list_problems(given: _Given) -> Iterable[Problem]:
     for name, texts in given.lists.items():
         for k, text in enumerate(texts):
-            if _BY_NAME[name].kind != "text" and isinstance(message := _read(text, "whole"), Message):
+            if BY_NAME[name].kind != "text" and isinstance(message := read_value(text, "whole"), Message):
                 yield Problem(name, k, message)
 
 
@@ -390,20 +340,20 @@ def _document(rows: Sequence[Mapping[str, str]], given: _Given) -> tuple[dict[st
             phase: dict[str, Any] = {}
             phases.append(phase)
             for name, text in row.items():
-                _put(phase, _PHASE_BY_NAME[name], text, Problem(name, k, Message("")), problems)
+                _put(phase, PHASE_BY_NAME[name], text, Problem(name, k, Message("")), problems)
     document: dict[str, Any] = {"duty_cycle": {"phases": phases}}
     for name, texts in given.scalars.items():
-        _put(document, _BY_NAME[name], texts[0], Problem(name, None, Message("")), problems)
+        _put(document, BY_NAME[name], texts[0], Problem(name, None, Message("")), problems)
     for name, texts in given.lists.items():
-        values = [value for text in texts if not isinstance(value := _read(text, _BY_NAME[name].kind), Message)]
-        document.setdefault(_BY_NAME[name].path[0], {})[_BY_NAME[name].path[1]] = values or None
+        values = [value for text in texts if not isinstance(value := read_value(text, BY_NAME[name].kind), Message)]
+        document.setdefault(BY_NAME[name].path[0], {})[BY_NAME[name].path[1]] = values or None
     return document, problems
 
 
 def _put(document: dict[str, Any], symbol: Symbol, text: str, place: Problem, problems: list[Problem]) -> None:
     if not text.strip():
         return
-    value = _read(text, symbol.kind)
+    value = read_value(text, symbol.kind)
     if isinstance(value, Message):
         problems.append(Problem(place.name, place.index, value))
         return
@@ -439,11 +389,11 @@ def place_of(location: Sequence[int | str], rows: Sequence[int] = ()) -> tuple[s
     path = tuple(step for step in location if isinstance(step, str))
     index = next((step for step in location if isinstance(step, int)), None)
     if path[:2] == ("duty_cycle", "phases"):
-        name = _PHASE_BY_LEAF[path[2]].name if len(path) > 2 and path[2] in _PHASE_BY_LEAF else "T"
+        name = PHASE_BY_LEAF[path[2]].name if len(path) > 2 and path[2] in PHASE_BY_LEAF else "T"
         k = index or 0
         return name, rows[k] if k < len(rows) else k
-    if path in _BY_PATH:
-        return _BY_PATH[path].name, index
+    if path in BY_PATH:
+        return BY_PATH[path].name, index
     return _PARTS.get(path, ".".join(path)), None
 
 
@@ -470,49 +420,3 @@ def _refusal(error: Any) -> Message:
     if error["type"] == "literal_error":
         return Message(N_("must be one of %(expected)s"), {"expected": context["expected"].replace("'", "")})
     return Message(error["msg"])
-
-
-# --- Numbers ----------------------------------------------------------------------------------------------------------
-
-_NUMBER = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?")
-_LONGEST_TEXT = 60
-
-
-def _read(text: str, kind: Kind) -> float | int | str | Message:
-    if isinstance(text, Entry) and text.refusal:
-        return text.refusal
-    text = text.strip()
-    if kind == "text":
-        return text if len(text) <= _LONGEST_TEXT else Message(N_("is too long"))
-    plain = text.replace("\N{MINUS SIGN}", "-")
-    if len(plain) > _LONGEST_TEXT or not _NUMBER.fullmatch(plain):
-        return _not_a_number(plain)
-    value = float(plain)
-    if value in (float("inf"), float("-inf")):
-        return Message(N_("is too large"))
-    if kind == "number":
-        return value
-    return int(value) if value.is_integer() else Message(N_("must be a whole number"))
-
-
-def _not_a_number(text: str) -> Message:
-    """What to write instead, where it can be told."""
-    tight = re.sub(r"[\s'’]", "", text)
-    if len(tight) > _LONGEST_TEXT:
-        return Message(N_("is too long for a number"))
-    readings = [reading for reading in _readings(tight) if _NUMBER.fullmatch(reading)]
-    if len(readings) > 1:
-        return Message(N_("write %(first)s or %(second)s"), {"first": readings[0], "second": readings[1]})
-    if readings:
-        return Message(N_("write %(number)s"), {"number": readings[0]})
-    return Message(N_("is not a number; write one such as 9.3"))
-
-
-def _readings(text: str) -> list[str]:
-    """Numbers that a text with commas may stand for; `1,234` is either of two."""
-    if text.rfind(".") > text.rfind(",") or text.count(",") > 1:
-        return [text.replace(",", "")]
-    decimal = text.replace(".", "").replace(",", ".")
-    if re.fullmatch(r"[+-]?[1-9][0-9]{0,2},[0-9]{3}", text):
-        return [decimal, text.replace(",", "")]
-    return [decimal]

@@ -12,8 +12,9 @@ from starlette.routing import Route
 from hpn.application import MAXIMUM_PHASES
 from hpn.web import links, pages
 from hpn.web.bodies import read_body
-from hpn.web.links import PHASE_SYMBOLS, Pairs
+from hpn.web.links import Pairs
 from hpn.web.settings import Settings
+from hpn.web.symbols import PHASE_SYMBOLS
 
 TEXT = "phases"
 """Field of the form that holds the phases as text, a phase on each line."""

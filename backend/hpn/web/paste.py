@@ -18,9 +18,10 @@ from starlette.routing import Route
 from hpn.application import Application
 from hpn.pasted import COLUMNS, SEPARATORS, Pasted, Reading, read_table
 from hpn.web import links, long_cycles
-from hpn.web.links import PHASE_SYMBOLS, Pairs
+from hpn.web.links import Pairs
 from hpn.web.pages import environment
 from hpn.web.problems import Problem, plain_message, pointer
+from hpn.web.symbols import PHASE_SYMBOLS
 from hpn.web.uploads import read_fields
 from hpn.wording import N_, Sentence
 
