@@ -30,12 +30,12 @@ requirements = some(
     sizes=st.lists(st.sampled_from(["11A", "14A", "40A", "A&B =ß"]), min_size=1, max_size=3),
     life_h=amounts,
     backlash_arcmin=amounts,
-    torsional_stiffness_Nm_per_rad=st.floats(1e-300, 1e12),
+    torsional_stiffness_Nm_per_rad=st.floats(1e-12, 1e12),
     weight_kg=amounts,
     length_mm=amounts,
     ambient_temperature_degC=st.floats(-273, 1000),
-    utilisation=st.floats(0, 1, exclude_min=True),
-    efficiency=st.floats(0, 1, exclude_min=True),
+    utilisation=st.floats(1e-12, 1),
+    efficiency=st.floats(1e-12, 1),
     motor=some(peak_torque_Nm=amounts, rated_torque_Nm=amounts, maximum_speed_rpm=amounts).filter(bool),
 )
 conditions = some(
@@ -159,11 +159,11 @@ def test_unknown_name_is_answered_with_the_nearest(name: str, near: str) -> None
 def test_each_error_of_the_model_stands_at_its_field() -> None:
     problems = found("T=1&n=2&t=-1&T=4000000&n=5&t=6&u=2&rank=best&K3=0&Nk=1.5")
     assert problems == {
-        ("t", 0): "must be above 0",
-        ("T", 1): "must be at most 1000000",
+        ("t", 0): "must be above 0 s",
+        ("T", 1): "must be at most 1000000 Nm",
         ("u", None): "must be at most 1",
         ("rank", None): "must be one of weight, utilisation, length, motor_torque, life or stiffness",
-        ("K3", None): "must be above 0",
+        ("K3", None): "must be above 0 Nm/rad",
         ("Nk", None): "must be a whole number",
     }
 
@@ -188,7 +188,7 @@ def test_blank_fields_of_the_plain_form_count_as_absent() -> None:
 
 
 def test_errors_name_the_row_that_is_seen_though_a_blank_row_stands_above() -> None:
-    assert found("T=&n=&t=&T=40&n=250&t=-1") == {("t", 1): "must be above 0"}
+    assert found("T=&n=&t=&T=40&n=250&t=-1") == {("t", 1): "must be above 0 s"}
 
 
 def test_untouched_form_is_neither_answer_nor_error() -> None:
