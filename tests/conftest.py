@@ -18,6 +18,11 @@ settings.load_profile("hpn")
 Supplement = Callable[..., Catalogue]
 
 
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Browser tests come last: Playwright's event loop stays in this thread, and no other could run there after it."""
+    items.sort(key=lambda item: "playwright_driver" in getattr(item, "fixturenames", ()))
+
+
 @pytest.fixture(scope="session")
 def catalogue() -> Catalogue:
     """The catalogue as shipped, without a supplement."""
