@@ -23,7 +23,7 @@ class State:
     path: str
     width: int = 1440
     dark: bool = False
-    whole: bool = False
+    region: str = ""
     language: str = "en"
 
 
@@ -32,8 +32,8 @@ STATES = (
     State("answer-1440-dark", "/", dark=True),
     State("answer-390-light", "/", width=390),
     State("german-1440-light", "/", language="de"),
-    State("bearing-1440-light", LOADED, whole=True),
-    State("bearing-390-dark", LOADED, width=390, dark=True, whole=True),
+    State("bearing-1440-light", LOADED, region=".bearing"),
+    State("bearing-390-dark", LOADED, width=390, dark=True, region=".bearing"),
     State("rejected-1440-light", EXAMPLE + "&gear=HPN-14A-5"),
     State("errors-1440-light", "/?T=40&n=fast&t=0,3"),
     State("gear-1440-light", "/catalogue/HPN-20A-5"),
@@ -61,7 +61,14 @@ def _take(browser: Browser, address: str, state: State) -> None:
     )
     page = context.new_page()
     page.goto(address + state.path, wait_until="networkidle")
-    page.screenshot(path=FOLDER / f"{state.name}.png", full_page=state.whole)
+    path = FOLDER / f"{state.name}.png"
+    if state.region:
+        region = page.locator(state.region)
+        region.scroll_into_view_if_needed()
+        region.locator(".main-svg").first.wait_for()  # a plot is drawn when somebody comes near it
+        region.screenshot(path=path)
+    else:
+        page.screenshot(path=path)
     context.close()
 
 
