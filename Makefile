@@ -28,7 +28,8 @@ export NODE_USE_SYSTEM_CA ?= 1
 .DELETE_ON_ERROR:
 
 run: install
-	exec $(BIN)/hpn serve --host "$(HOST)" --port "$(PORT)"
+	@echo "HPN Select is at http://$(HOST):$(PORT) until Ctrl+C"
+	@exec $(BIN)/hpn serve --host "$(HOST)" --port "$(PORT)"
 
 install: $(ENVIRONMENT) $(ASSETS)
 assets: $(ASSETS)
