@@ -24,7 +24,7 @@ endif
 export UV_SYSTEM_CERTS ?= true
 export NODE_USE_SYSTEM_CA ?= 1
 
-.PHONY: run install assets test check bench screenshots browser office messages lock clean
+.PHONY: run install assets test check bench screenshots browser office curl messages lock clean
 .DELETE_ON_ERROR:
 
 run: install
@@ -34,7 +34,7 @@ run: install
 install: $(ENVIRONMENT) $(ASSETS)
 assets: $(ASSETS)
 
-test: install browser office
+test: install browser office curl
 	$(BIN)/pytest $(PYTEST_ARGS)
 
 check: $(ENVIRONMENT)
@@ -94,6 +94,13 @@ office:
 	if [ "$$(id -u)" = 0 ] && [ -f /etc/debian_version ] && apt-get update -q \
 	    && apt-get install -q -y --no-install-recommends libreoffice-calc && command -v soffice; then exit 0; fi; \
 	echo "No LibreOffice found, and none could be installed; install LibreOffice Calc" >&2; exit 1
+
+# Runs the README's example.
+curl:
+	@command -v curl && exit 0; \
+	if [ "$$(id -u)" = 0 ] && [ -f /etc/debian_version ] && apt-get update -q \
+	    && apt-get install -q -y --no-install-recommends curl && command -v curl; then exit 0; fi; \
+	echo "No curl found, and none could be installed" >&2; exit 1
 
 # --- Upkeep -----------------------------------------------------------------------------------------------------------
 

@@ -3,7 +3,6 @@
 import json
 import os
 import re
-import shutil
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -42,7 +41,6 @@ def run(*command: str | Path, folder: Path) -> str:
     return done.stdout
 
 
-@pytest.mark.skipif(shutil.which("curl") is None, reason="this machine has no curl")
 def test_the_example_for_curl(guarded: Service, tmp_path: Path) -> None:
     file = block("sh", guarded, tmp_path)
 
