@@ -5,6 +5,7 @@ import asyncio
 from starlette.requests import ClientDisconnect, Request
 
 from hpn.web.problems import Problem
+from hpn.web.settings import Settings
 
 
 async def read_json(request: Request, *, maximum_bytes: int, seconds: float) -> bytes:
@@ -51,3 +52,14 @@ async def _read(request: Request, maximum_bytes: int) -> bytes:
             raise too_large
         chunks.append(chunk)
     return b"".join(chunks)
+
+
+async def read_form(request: Request) -> bytes:
+    """Body of a posted form, within the limits of the settings; raises Problem as `read_body` does."""
+    settings: Settings = request.app.state.settings
+    return await read_body(
+        request,
+        "application/x-www-form-urlencoded",
+        maximum_bytes=settings.maximum_body_bytes,
+        seconds=settings.body_seconds,
+    )

@@ -11,9 +11,8 @@ from starlette.routing import Route
 
 from hpn.application import MAXIMUM_PHASES
 from hpn.web import links, pages
-from hpn.web.bodies import read_body
+from hpn.web.bodies import read_form
 from hpn.web.links import Pairs
-from hpn.web.settings import Settings
 from hpn.web.symbols import PHASE_SYMBOLS
 
 TEXT = "phases"
@@ -22,13 +21,7 @@ TEXT = "phases"
 
 async def calculate(request: Request) -> Response:
     """The page of a posted form, or only the part that changes; nothing is kept."""
-    settings: Settings = request.app.state.settings
-    body = await read_body(
-        request,
-        "application/x-www-form-urlencoded",
-        maximum_bytes=settings.maximum_body_bytes,
-        seconds=settings.body_seconds,
-    )
+    body = await read_form(request)
     return await run_in_threadpool(_answer, request, body)
 
 

@@ -18,7 +18,7 @@ from hpn.differences import Difference
 from hpn.report.inputs import LOADS, REQUIREMENTS, WORDS
 from hpn.store import SavedSelection, StoreUnavailableError
 from hpn.units import symbol_of
-from hpn.web.bodies import read_body
+from hpn.web.bodies import read_form
 from hpn.web.messages import N_
 from hpn.web.pages import environment, read_query
 from hpn.web.problems import Problem
@@ -26,7 +26,6 @@ from hpn.web.reader import current
 from hpn.web.requests import require_same_origin
 from hpn.web.selection_schemas import Labels
 from hpn.web.selections import RETRY_SECONDS, Today, found, save, url_of
-from hpn.web.settings import Settings
 
 DIFFERENCES_ON_PAGE = 100
 
@@ -85,13 +84,7 @@ def _shown(request: Request, saved: SavedSelection, today: Today) -> Response:
 async def save_from_page(request: Request) -> Response:
     """Saves what the live page shows, and leads to the page of the saved selection."""
     require_same_origin(request)
-    settings: Settings = request.app.state.settings
-    body = await read_body(
-        request,
-        "application/x-www-form-urlencoded",
-        maximum_bytes=settings.maximum_body_bytes,
-        seconds=settings.body_seconds,
-    )
+    body = await read_form(request)
     fields = dict(parse_qsl(body.decode(errors="replace"), keep_blank_values=True))
     query = fields.get("link", "").removeprefix("/").removeprefix("?")
     try:
