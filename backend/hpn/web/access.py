@@ -1,11 +1,13 @@
 """Who may do what, how often: API keys and rate limits, in front of every route."""
 
 from collections.abc import Mapping
+from functools import lru_cache
 
-from starlette.types import ASGIApp, Message, Receive, Scope, Send
+from starlette.types import ASGIApp, Receive, Scope, Send
 
 from hpn.web.keys import holder, presented_key
 from hpn.web.limiting import Admission, Limiter, subject_of
+from hpn.web.observation import RESPONSE_HEADERS
 from hpn.web.problems import Problem
 from hpn.web.settings import Group, Settings
 
@@ -24,6 +26,7 @@ LIMIT_OF: Mapping[Group, str] = {
 """Which rate counts a group's requests."""
 
 
+@lru_cache(maxsize=4096)
 def group_of(method: str, path: str) -> Group | None:
     """Group of a request; None for what is open to all. Page and API of the same thing belong to the same group."""
     place = path.removeprefix(API)
@@ -69,7 +72,9 @@ class Gate:
         elif name is None and group in self._guarded:
             await key_needed(scope["path"])(scope, receive, send)
         else:
-            await self.app(scope, receive, _with_headers(send, admission) if admission else send)
+            if admission:
+                scope.setdefault(RESPONSE_HEADERS, []).extend(admission.headers)
+            await self.app(scope, receive, send)
 
     def _holder(self, scope: Scope) -> str | None:
         presented = presented_key(scope["headers"]) if self._keys else None
@@ -79,15 +84,6 @@ class Gate:
 def _subject(scope: Scope) -> str:
     client = scope.get("client")
     return subject_of(client[0]) if client else "unknown"
-
-
-def _with_headers(send: Send, admission: Admission) -> Send:
-    async def send_with_headers(message: Message) -> None:
-        if message["type"] == "http.response.start":
-            message["headers"] = [*message.get("headers", ()), *admission.headers]
-        await send(message)
-
-    return send_with_headers
 
 
 def too_many(admission: Admission) -> ASGIApp:

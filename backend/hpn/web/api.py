@@ -10,7 +10,6 @@ from starlette.concurrency import run_in_threadpool
 from starlette.datastructures import State
 from starlette.requests import Request
 from starlette.responses import Response
-from starlette.routing import Route
 
 from hpn.application import Application
 from hpn.catalogue import Catalogue
@@ -134,5 +133,5 @@ async def bearing_envelopes(request: Request, size: str, query: Annotated[Envelo
     return schemas.JSONBytes(orjson.dumps({"size": gear.size, "model": query.model, "curves": curves}))
 
 
-FAST_ROUTES = (Route("/api/v1/select", select_one, methods=["POST"]),)
-"""Routes that Starlette runs without FastAPI's dependency machinery, which costs more than the selection does."""
+SHORTCUTS = {("POST", "/api/v1/select"): select_one}
+"""See `service.Service`."""

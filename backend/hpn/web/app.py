@@ -7,7 +7,6 @@ from typing import Any
 from fastapi import FastAPI
 from starlette.middleware.cors import CORSMiddleware
 from starlette.routing import Route
-from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from uvicorn.middleware.proxy_headers import ProxyHeadersMiddleware
 
 from hpn import ENGINE_VERSION
@@ -37,17 +36,8 @@ from hpn.web.logs import make_logger
 from hpn.web.metrics import CountedStore, Metrics
 from hpn.web.observation import Observation
 from hpn.web.readers import Readers
+from hpn.web.service import Service
 from hpn.web.settings import Settings
-
-SECURITY_HEADERS = [
-    (
-        b"content-security-policy",
-        b"default-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data: blob:; "
-        b"base-uri 'none'; form-action 'self'; frame-ancestors 'none'",
-    ),
-    (b"x-content-type-options", b"nosniff"),
-    (b"referrer-policy", b"same-origin"),
-]
 
 CORS: dict[str, Any] = {
     "allow_methods": ["GET", "POST", "DELETE"],
@@ -79,7 +69,7 @@ CORS: dict[str, Any] = {
 BODIES = (Application, schemas.Batch, selection_schemas.SaveRequest)
 
 
-def create_app(settings: Settings | None = None) -> FastAPI:
+def create_app(settings: Settings | None = None) -> Service:
     """The application; raises CatalogueError where the catalogue or its supplement is wrong.
 
     At its start it brings the database up to date, and raises NewerDatabaseError where a newer version has changed it.
@@ -87,7 +77,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     """
     settings = settings or Settings()
     metrics = Metrics()
-    app = FastAPI(
+    app = Service(
         title="HPN Select",
         version=ENGINE_VERSION,
         summary="Which Harmonic Drive HPN planetary gear fits an application, and why.",
@@ -105,30 +95,31 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     )
     problems.install(app)
     app.add_exception_handler(StoreUnavailableError, selections.unavailable)
-    app.router.routes[:0] = (*api.FAST_ROUTES, *selections.FAST_ROUTES)
+    app.shortcuts = api.SHORTCUTS | selections.SHORTCUTS
     files = (exports.saved_files, exports.posted_files, exports.linked_files, embeds.router)
     for router in (health.router, api.router, selections.router, *files):
         app.include_router(router)
     for part in (pages, catalogue_pages, long_cycles, paste, transfer, selection_pages):
         app.router.routes.extend(part.routes)
-    _add_middleware(app, settings, metrics)
+    app.add_middleware(PackedPages)
+    app.add_middleware(Readers)
+    app.front = _front(app, settings, metrics)
     document = app.openapi
     app.openapi = lambda: openapi.complete(document(), *BODIES)  # type: ignore[method-assign]
     return app
 
 
-def _add_middleware(app: FastAPI, settings: Settings, metrics: Metrics) -> None:
-    """Add what every request passes, from the inside out."""
-    app.add_middleware(PackedPages)
-    app.add_middleware(Readers)
-    app.add_middleware(Gate, settings=settings)
+def _front(app: Service, settings: Settings, metrics: Metrics) -> Any:
+    """What every request passes, from the inside out."""
+    front: Any = Gate(app.routed, settings)
     if settings.cors_origins:
-        app.add_middleware(CORSMiddleware, allow_origins=settings.cors_origins, **CORS)
+        front = CORSMiddleware(front, allow_origins=settings.cors_origins, **CORS)
     templates = {route.endpoint: route.path for route in app.routes if isinstance(route, Route)}
-    app.add_middleware(Observation, logger=make_logger(settings.log_level), metrics=metrics, routes=templates)
-    app.add_middleware(SecurityHeaders)
+    templates |= {endpoint: path for (_, path), endpoint in app.shortcuts.items()}
+    front = Observation(front, make_logger(settings.log_level), metrics, templates)
     if settings.trusted_proxies:
-        app.add_middleware(ProxyHeadersMiddleware, trusted_hosts=list(settings.trusted_proxies))
+        front = ProxyHeadersMiddleware(front, trusted_hosts=list(settings.trusted_proxies))
+    return front
 
 
 @asynccontextmanager
@@ -138,20 +129,3 @@ async def _with_store(app: FastAPI) -> AsyncIterator[None]:
         await store.open()
     yield
     await store.close()
-
-
-class SecurityHeaders:
-    """Headers that keep the page to its own host."""
-
-    def __init__(self, app: ASGIApp) -> None:
-        self.app = app
-
-    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Pass the request on, and add the headers to the start of the response."""
-
-        async def send_with_headers(message: Message) -> None:
-            if message["type"] == "http.response.start":
-                message["headers"] = [*message.get("headers", ()), *SECURITY_HEADERS]
-            await send(message)
-
-        await self.app(scope, receive, send_with_headers if scope["type"] == "http" else send)

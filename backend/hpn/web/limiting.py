@@ -8,7 +8,6 @@ from functools import lru_cache
 
 import limits
 from limits.storage import Storage
-from limits.strategies import FixedWindowRateLimiter
 
 SWEEP_SECONDS = 30
 
@@ -71,29 +70,35 @@ class Admission:
     granted: bool
     headers: tuple[tuple[bytes, bytes], ...]
     wait_seconds: int
-    rate: str
+    rate: limits.RateLimitItem
 
 
 class Limiter:
-    """Holds each subject, a key or an address, to the rate of its kind of request."""
+    """Holds each subject, a key or an address, to the rate of its kind of request: so many in each window of time."""
 
     def __init__(self, rates: dict[str, str]) -> None:
         self._rates = {name: limits.parse(rate) for name, rate in rates.items() if rate != "off"}
         self._policies = {
             name: f'"{name}";q={item.amount};w={item.get_expiry()}'.encode() for name, item in self._rates.items()
         }
-        self._strategy = FixedWindowRateLimiter(Counters())
+        self._counters = Counters()
 
     def admit(self, name: str, subject: str) -> Admission | None:
         """Count a request; None where there is no limit."""
         item = self._rates.get(name)
         if item is None:
             return None
-        granted = self._strategy.hit(item, name, subject)
-        end, remaining = self._strategy.get_window_stats(item, name, subject)
-        wait = max(math.ceil(end - time.time()), 1)
-        state = b'"%b";r=%d;t=%d' % (name.encode(), remaining, wait)
-        return Admission(granted, ((b"ratelimit-policy", self._policies[name]), (b"ratelimit", state)), wait, str(item))
+        key = _key(item, name, subject)
+        count = self._counters.incr(key, item.get_expiry())
+        wait = max(math.ceil(self._counters.get_expiry(key) - time.time()), 1)
+        state = b'"%b";r=%d;t=%d' % (name.encode(), max(item.amount - count, 0), wait)
+        headers = ((b"ratelimit-policy", self._policies[name]), (b"ratelimit", state))
+        return Admission(count <= item.amount, headers, wait, item)
+
+
+@lru_cache(maxsize=4096)
+def _key(item: limits.RateLimitItem, name: str, subject: str) -> str:
+    return item.key_for(name, subject)
 
 
 @lru_cache(maxsize=4096)

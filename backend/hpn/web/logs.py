@@ -5,6 +5,8 @@ import re
 import secrets
 import sys
 from collections.abc import Iterable
+from contextvars import ContextVar
+from itertools import count
 from typing import Any
 
 import orjson
@@ -14,8 +16,20 @@ from structlog.typing import EventDict, FilteringBoundLogger
 LEVELS = {"debug": logging.DEBUG, "info": logging.INFO, "warning": logging.WARNING, "error": logging.ERROR}
 REQUEST_ID = re.compile(rb"[A-Za-z0-9._-]{1,64}")
 
+REQUEST: ContextVar[bytes | None] = ContextVar("request", default=None)
+"""Id of the request that runs."""
+
+_series, _number = secrets.token_hex(8).encode(), count(1)
+
+
+def _add_request_id(logger: Any, method: str, event: EventDict) -> EventDict:
+    if id := REQUEST.get():
+        event["request_id"] = id.decode()
+    return event
+
+
 SHARED: list[Any] = [
-    structlog.contextvars.merge_contextvars,
+    _add_request_id,
     structlog.processors.add_log_level,
     structlog.processors.TimeStamper(fmt="iso", utc=True),
     structlog.processors.format_exc_info,
@@ -68,8 +82,8 @@ def _json(logger: Any, method: str, event: EventDict) -> bytes:
 
 
 def request_id(headers: Iterable[tuple[bytes, bytes]]) -> bytes:
-    """Id that the caller has given, where it is well-formed, else a new one."""
+    """Id that the caller has given, where it is well-formed, else the next of this process's own series."""
     for name, value in headers:
         if name == b"x-request-id" and REQUEST_ID.fullmatch(value):
             return value
-    return secrets.token_hex(16).encode()
+    return b"%b%016x" % (_series, next(_number))

@@ -1,22 +1,35 @@
-"""What is seen of each request from outside: its id, one line in the log, its place in the metrics."""
+"""What every request passes first: it gets an id, headers for its response, a line in the log, a metric."""
 
 import time
 from collections.abc import Mapping
 from typing import Any
 
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
-from structlog.contextvars import bind_contextvars, unbind_contextvars
 from structlog.typing import FilteringBoundLogger
 
-from hpn.web.logs import request_id
+from hpn.web.logs import REQUEST, request_id
 from hpn.web.metrics import Metrics
-from hpn.web.problems import Problem
+from hpn.web.problems import mistake
 
 QUIET = frozenset({"/healthz", "/readyz", "/metrics"})
 """Routes that are asked every few seconds; seen at level debug."""
 
 GONE = 499
 """Status of a request whose caller left before the answer, as proxies count it."""
+
+SECURITY_HEADERS = (
+    (
+        b"content-security-policy",
+        b"default-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data: blob:; "
+        b"base-uri 'none'; form-action 'self'; frame-ancestors 'none'",
+    ),
+    (b"x-content-type-options", b"nosniff"),
+    (b"referrer-policy", b"same-origin"),
+)
+"""What keeps the page to its own host."""
+
+RESPONSE_HEADERS = "hpn.response_headers"
+"""Place in the scope for headers that layers further in add to the response, whatever it will be."""
 
 
 class Observation:
@@ -34,13 +47,14 @@ class Observation:
             await self.app(scope, receive, send)
             return
         start, status, id = time.perf_counter(), 0, request_id(scope["headers"])
-        bind_contextvars(request_id=id.decode())
+        token = REQUEST.set(id)
+        added = scope[RESPONSE_HEADERS] = [*SECURITY_HEADERS, (b"x-request-id", id)]
 
         async def observed(message: Message) -> None:
             nonlocal status
             if message["type"] == "http.response.start":
                 status = message["status"]
-                message["headers"] = [*message.get("headers", ()), (b"x-request-id", id)]
+                message["headers"] = [*message.get("headers", ()), *added]
             await send(message)
 
         try:
@@ -49,10 +63,10 @@ class Observation:
             self._logger.exception("error", route=self._route(scope), method=scope["method"])
             # Of an answer that has begun only the end can be withheld.
             if status == 0:
-                await Problem(500, "the service made a mistake; it is in the log").response()(scope, receive, observed)
+                await mistake().response()(scope, receive, observed)
         finally:
             self._note(scope, status or GONE, time.perf_counter() - start)
-            unbind_contextvars("request_id")
+            REQUEST.reset(token)
 
     def _note(self, scope: Scope, status: int, seconds: float) -> None:
         route, method = self._route(scope), scope["method"]

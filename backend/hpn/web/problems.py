@@ -110,8 +110,16 @@ def pointer(location: Location) -> str:
     return "".join("/" + str(part).replace("~", "~0").replace("/", "~1") for part in location)
 
 
+def mistake() -> Problem:
+    """What is answered when the service itself goes wrong."""
+    return Problem(500, "the service made a mistake; it is in the log")
+
+
 def install(app: FastAPI) -> None:
-    """Answer every refusal of `app` as a problem; what goes wrong is `observation.py`'s business."""
+    """Answer every refusal of `app` as a problem, and what goes wrong too; `observation.py` logs that."""
+
+    async def failed(request: Request, error: Exception) -> Response:
+        return mistake().response()
 
     async def refused(request: Request, error: Exception) -> Response:
         if isinstance(error, ValidationError | InputError):
@@ -127,3 +135,4 @@ def install(app: FastAPI) -> None:
 
     for kind in (ValidationError, RequestValidationError, InputError, HTTPException):
         app.add_exception_handler(kind, refused)
+    app.add_exception_handler(Exception, failed)

@@ -11,7 +11,6 @@ from starlette.concurrency import run_in_threadpool
 from starlette.datastructures import State
 from starlette.requests import Request
 from starlette.responses import Response
-from starlette.routing import Route
 
 from hpn import ENGINE_VERSION
 from hpn.application import Application, InputError
@@ -234,5 +233,5 @@ def _summary(selection: Summary) -> dict[str, Any]:
     }
 
 
-FAST_ROUTES = (Route("/api/v1/selections", save_selection, methods=["POST"]),)
-"""See `api.FAST_ROUTES`."""
+SHORTCUTS = {("POST", "/api/v1/selections"): save_selection}
+"""See `service.Service`."""
