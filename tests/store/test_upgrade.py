@@ -21,8 +21,7 @@ pytestmark = pytest.mark.anyio
 
 
 async def run(store: Store, statement: str) -> None:
-    async with store._writing.begin() as connection:
-        await connection.execute(text(statement))
+    await store._transactions.run(lambda connection: connection.execute(text(statement)))
 
 
 async def test_the_migrations_make_the_tables_that_the_code_uses(store: Store) -> None:

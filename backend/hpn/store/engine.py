@@ -3,11 +3,12 @@
 from pathlib import Path
 from typing import Any
 
-from sqlalchemy import URL, Connection, event, make_url
+from sqlalchemy import URL, Connection, Engine, create_engine, event, make_url
 from sqlalchemy.exc import ArgumentError
 from sqlalchemy.ext.asyncio import AsyncEngine, create_async_engine
 
 from hpn.store.errors import StoreError
+from hpn.store.transactions import OnLoop, OnThread, Transactions
 
 WRITES = {"writes": True}
 """Execution options of an engine whose transactions write from their start."""
@@ -52,9 +53,22 @@ def _sqlite(url: URL, seconds: float) -> AsyncEngine:
     engine = create_async_engine(
         url.set(drivername="sqlite+aiosqlite"), pool_timeout=seconds, connect_args={"timeout": seconds}
     )
-    event.listen(engine.sync_engine, "connect", _prepare)
-    event.listen(engine.sync_engine, "begin", _begin)
+    _listen(engine.sync_engine)
     return engine
+
+
+def make_transactions(engine: AsyncEngine, *, seconds: float) -> Transactions:
+    """Transactions that write from their start, on the database of an engine."""
+    if engine.dialect.name != "sqlite":
+        return OnLoop(engine.execution_options(**WRITES))
+    own = create_engine(engine.url.set(drivername="sqlite+pysqlite"), pool_size=1, connect_args={"timeout": seconds})
+    _listen(own)
+    return OnThread(own.execution_options(**WRITES))
+
+
+def _listen(engine: Engine) -> None:
+    event.listen(engine, "connect", _prepare)
+    event.listen(engine, "begin", _begin)
 
 
 def _prepare(connection: Any, record: object) -> None:

@@ -6,10 +6,15 @@ from datetime import datetime
 
 import orjson
 
+from hpn.catalogue import Catalogue
+
 
 @dataclass(frozen=True, slots=True)
 class Draft:
-    """A selection that is about to be saved: the application as it was given, and the reply it got, byte for byte."""
+    """A selection that is about to be saved: the application as it was given, and the reply it got, byte for byte.
+
+    `catalogue` is the one that was asked; the store keeps a copy of each version.
+    """
 
     application: bytes
     result: bytes
@@ -19,6 +24,7 @@ class Draft:
     title: str | None = None
     reference: str | None = None
     idempotency_key: str | None = None
+    catalogue: Catalogue | None = field(default=None, repr=False)
 
     @property
     def digest(self) -> str:

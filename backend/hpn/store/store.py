@@ -4,24 +4,25 @@ import asyncio
 import base64
 import logging
 import re
-import secrets
 from collections.abc import AsyncIterator, Sequence
 from contextlib import asynccontextmanager
 from datetime import UTC, datetime
-from typing import Any
 
 import brotli
 from sqlalchemy import delete, select, text, tuple_
-from sqlalchemy.dialects import postgresql, sqlite
 from sqlalchemy.exc import DataError, SQLAlchemyError
 from sqlalchemy.ext.asyncio import AsyncConnection
 
-from hpn.store.engine import WRITES, make_engine
-from hpn.store.errors import KeyReusedError, NewerDatabaseError, StoreUnavailableError
+from hpn.catalogue import Catalogue
+from hpn.catalogue_copy import UnreadableCopyError, read_copy
+from hpn.store.engine import make_engine, make_transactions
+from hpn.store.errors import NewerDatabaseError, StoreUnavailableError
+from hpn.store.inserting import Outcome, insert, row_of
+from hpn.store.packing import unpacked
 from hpn.store.saved import Draft, Page, SavedSelection, Summary
-from hpn.store.tables import selections
+from hpn.store.tables import catalogues, selections
 from hpn.store.upgrade import bring_up_to_date
-from hpn.store.writer import Outcome, Writer
+from hpn.store.writer import Writer
 
 logger = logging.getLogger(__name__)
 
@@ -41,12 +42,11 @@ class Store:
     def __init__(self, address: str, *, seconds: float = 5.0) -> None:
         # A database that is only busy gives up by itself, just before we would.
         self._engine = make_engine(address, seconds=seconds * 0.8)
-        self._writing = self._engine.execution_options(**WRITES)
+        self._transactions = make_transactions(self._engine, seconds=seconds * 0.8)
         self._seconds = seconds
         self._writer = Writer(self._commit)
         self._opening: asyncio.Task[None] | None = None
-        insert = sqlite.insert if self._engine.dialect.name == "sqlite" else postgresql.insert
-        self._insert = insert(selections).on_conflict_do_nothing(index_elements=["idempotency_key"])
+        self._kept: set[str] = set()  # versions of catalogues that the database has for sure
 
     async def open(self) -> None:
         """Bring the database up to date, however long it takes; once done, this costs nothing.
@@ -70,6 +70,7 @@ class Store:
         await self._writer.finish()
         if self._opening is not None:
             self._opening.cancel()
+        await self._transactions.close()
         await self._engine.dispose()
 
     async def check(self) -> None:
@@ -94,8 +95,19 @@ class Store:
         if row is None:
             return None
         fields = row._asdict()
-        application, packed = fields.pop("application"), fields.pop("result_brotli")
-        return SavedSelection(**fields, application=application.encode(), result=brotli.decompress(packed))
+        application, result = fields.pop("application"), fields.pop("result_brotli")
+        return SavedSelection(**fields, application=application.encode(), result=unpacked(result))
+
+    async def catalogue(self, version: str) -> Catalogue | None:
+        """The catalogue that selections were saved under; None where no copy of it was kept, or none we can read."""
+        query = select(catalogues.c.content_brotli).where(catalogues.c.version == version)
+        async with self._reading() as connection:
+            packed = (await connection.execute(query)).scalar_one_or_none()
+        try:
+            return None if packed is None else read_copy(brotli.decompress(packed))
+        except (UnreadableCopyError, brotli.error) as error:
+            logger.warning("catalogue %s: %s", version, error)
+            return None
 
     async def page(self, *, reference: str | None = None, cursor: str | None = None, limit: int = 50) -> Page:
         """Saved selections, newest first, all or those of a reference; ValueError for a cursor that isn't one."""
@@ -114,9 +126,9 @@ class Store:
         """Delete a selection; False where there is none with this id."""
         if not ID.fullmatch(id):
             return False
-        async with self._reachable(), self._writing.begin() as connection:
-            done = await connection.execute(delete(selections).where(selections.c.id == id))
-        return done.rowcount == 1
+        statement = delete(selections).where(selections.c.id == id)
+        async with self._reachable():
+            return await self._transactions.run(lambda connection: connection.execute(statement).rowcount) == 1
 
     @asynccontextmanager
     async def _reachable(self) -> AsyncIterator[None]:
@@ -135,61 +147,26 @@ class Store:
 
     async def _commit(self, drafts: Sequence[Draft]) -> list[Outcome]:
         """Save drafts in one transaction: an id for each, or why it has none."""
-        rows = await asyncio.to_thread(_rows, drafts)
+        rows = [row_of(draft) for draft in drafts]
+        used = {draft.catalogue_version: draft.catalogue for draft in drafts}
+        new = {version: book for version, book in used.items() if book is not None and version not in self._kept}
         try:
-            async with self._reachable(), self._writing.begin() as connection:
-                return await self._insert_all(connection, rows)
+            async with self._reachable():
+                outcomes = await self._transactions.run(lambda connection: insert(connection, rows, new))
         except StoreUnavailableError as error:
+            self._kept.clear()  # the database that comes back may be one from a backup
             if len(drafts) == 1 or not isinstance(error.__cause__, DataError):
                 raise
-        # One draft that the database can't hold must not fail its neighbours.
-        return [await self._commit_alone(draft) for draft in drafts]
+            # One selection that the database can't hold must not fail its neighbours.
+            return [await self._commit_alone(draft) for draft in drafts]
+        self._kept |= new.keys()
+        return outcomes
 
     async def _commit_alone(self, draft: Draft) -> Outcome:
         try:
             return (await self._commit([draft]))[0]
         except StoreUnavailableError as error:
             return error
-
-    async def _insert_all(self, connection: AsyncConnection, rows: list[dict[str, Any]]) -> list[Outcome]:
-        # Always in the order of the keys: two processes with the same two keys would otherwise wait for each other.
-        await connection.execute(self._insert, sorted(rows, key=lambda row: row["idempotency_key"] or ""))
-        c = selections.c
-        keys = {row["idempotency_key"] for row in rows} - {None}
-        holders: dict[str, tuple[str, str]] = {}
-        if keys:
-            query = select(c.idempotency_key, c.id, c.digest).where(c.idempotency_key.in_(keys))
-            holders = {key: (id, digest) for key, id, digest in await connection.execute(query)}
-        return [_outcome(row, holders.get(row["idempotency_key"])) for row in rows]
-
-
-def _rows(drafts: Sequence[Draft]) -> list[dict[str, Any]]:
-    return [
-        {
-            "id": secrets.token_urlsafe(16),
-            "created": datetime.now(UTC),
-            "title": draft.title,
-            "reference": draft.reference,
-            "selected": draft.selected,
-            "engine_version": draft.engine_version,
-            "catalogue_version": draft.catalogue_version,
-            "application": draft.application.decode(),
-            "result_brotli": brotli.compress(draft.result, quality=0),
-            "idempotency_key": draft.idempotency_key,
-            "digest": draft.digest if draft.idempotency_key else None,
-        }
-        for draft in drafts
-    ]
-
-
-def _outcome(row: dict[str, Any], holder: tuple[str, str] | None) -> Outcome:
-    """Id under which a row is saved: its own, or that of the row that was first with its idempotency key."""
-    id, digest = holder or (row["id"], row["digest"])
-    if digest != row["digest"]:
-        return KeyReusedError(
-            "this idempotency key was used before, with other content; take a new key for a new selection"
-        )
-    return str(id)
 
 
 def _unavailable(error: Exception) -> StoreUnavailableError:

@@ -43,3 +43,11 @@ selections = Table(
     Index("selections_reference", "reference", "created", "id"),
     Index("selections_idempotency_key", "idempotency_key", unique=True),
 )
+
+catalogues = Table(
+    "catalogues",
+    metadata,
+    Column("version", Text, primary_key=True),
+    # The JSON of every figure is some 100 kB; packed it is a fiftieth of that.
+    Column("content_brotli", LargeBinary, nullable=False),
+)

@@ -12,6 +12,7 @@ from typing import Any
 from prometheus_client import CollectorRegistry, Counter, Histogram, ProcessCollector, generate_latest
 from prometheus_client.multiprocess import MultiProcessCollector
 
+from hpn.catalogue import Catalogue
 from hpn.store import Draft, KeyReusedError, Page, SavedSelection, Store
 
 CONTENT_TYPE = "text/plain; version=0.0.4; charset=utf-8"
@@ -111,6 +112,11 @@ class CountedStore(Store):
         """See Store."""
         async with self._counted("find"):
             return await super().find(id)
+
+    async def catalogue(self, version: str) -> Catalogue | None:
+        """See Store."""
+        async with self._counted("catalogue"):
+            return await super().catalogue(version)
 
     async def page(self, *, reference: str | None = None, cursor: str | None = None, limit: int = 50) -> Page:
         """See Store."""

@@ -168,6 +168,7 @@ def _draft(application: Application, labels: Labels, key: str | None, catalogue:
         title=labels.title,
         reference=labels.reference,
         idempotency_key=key,
+        catalogue=catalogue,
     )
 
 
