@@ -5,12 +5,16 @@ and F_A,dyn(max) of the rating tables; `digitised` follows graph points that a s
 limits belong to f_w = 1 is our reading, not printed. Loads act at the centre of the output shaft and along its axis.
 """
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+
+from hpn.compiled import equation, over_phases
 
 FloatArray = NDArray[np.float64]
 
@@ -76,64 +80,61 @@ class CurveError(ValueError):
         self.index = index
 
 
-def linear_load(radial: FloatArray, axial: FloatArray) -> FloatArray:
+@equation
+def linear_load(radial: Any, axial: Any) -> Any:
     """Equivalent load P = r + a of normalised loads r, a: the straight line between the published points. [-]"""
     return radial + axial
 
 
-def iso281_load(radial: FloatArray, axial: FloatArray) -> FloatArray:
+@equation
+def iso281_load(radial: Any, axial: Any) -> Any:
     """Equivalent load P = max(r, 0.56 r + a) of normalised loads; ISO 281 with Y set by the axial limit. [-]"""
-    return np.maximum(radial, RADIAL_FACTOR * radial + axial)
+    combined = RADIAL_FACTOR * radial + axial
+    return radial if radial > combined else combined
 
 
-def mean_equivalent_load(
-    *, equivalent_load: FloatArray, speed_rpm: FloatArray, duration_s: FloatArray, axis: int = -1
-) -> FloatArray:
-    """Constant load with the damage of the cycle, P_m = (sum n t P^3 / sum n t)^(1/3) along `axis`. [-]
+@over_phases("(p),(p),(p)->()")
+def mean_equivalent_load(equivalent_load: Any, speed_rpm: Any, duration_s: Any) -> Any:
+    """Constant load with the damage of the cycle, P_m = (sum n t P^3 / sum n t)^(1/3). [-]
 
-    ISO 281, ball bearings, exponent 3. Holding phases (n = 0) have no weight; a cycle without motion raises nothing
-    and gives NaN, as the application forbids it.
+    ISO 281, ball bearings, exponent 3; phases along the last axis. Holding phases (n = 0) have no weight; a cycle
+    without motion raises nothing and gives NaN, as the application forbids it.
     """
-    weight = np.abs(speed_rpm) * duration_s
-    moving = equivalent_load * (weight > 0)  # beside a held load a small one must not vanish in its cube
-    largest = np.max(moving, axis=axis, keepdims=True)
-    scaled = moving / np.where(largest > 0, largest, 1.0)
-    mean = (weight * scaled * scaled * scaled).sum(axis=axis) / weight.sum(axis=axis)
-    return np.asarray(np.squeeze(largest, axis=axis) * np.cbrt(mean), dtype=float)
+    largest = 0.0
+    for k in range(equivalent_load.size):
+        P = equivalent_load[k]
+        if abs(speed_rpm[k]) * duration_s[k] > 0 and (largest < P or math.isnan(P)):
+            largest = P
+    scale, damage, weight = largest + (largest == 0), 0.0, 0.0
+    for k in range(equivalent_load.size):
+        w, r = abs(speed_rpm[k]) * duration_s[k], equivalent_load[k] / scale
+        damage += w * (r * r * r) if w > 0 else 0.0  # beside a held load a small one must not vanish in its cube
+        weight += w
+    return largest * np.cbrt(damage / weight)
 
 
+@equation
 def life_factor(
-    *,
-    average_output_speed_rpm: FloatArray | float,
-    required_life_L50_h: FloatArray | float,
-    reference_speed_rpm: float,
-    reference_life_h: float,
-) -> FloatArray:
+    average_output_speed_rpm: Any, required_life_L50_h: Any, reference_speed_rpm: Any, reference_life_h: Any
+) -> Any:
     """Load factor k = (n_ref L_ref / (n_out_av L_required))^(1/3) that speed and life allow. [-]
 
     ISO 281. The pause counts in n_out_av, as in equation 17.4.
     """
-    return np.asarray(
-        (np.cbrt(reference_speed_rpm) / np.cbrt(np.asarray(average_output_speed_rpm)))  # no quotient overflows here
-        * (np.cbrt(reference_life_h) / np.cbrt(np.asarray(required_life_L50_h))),
-        dtype=float,
-    )
+    by_speed = np.cbrt(reference_speed_rpm) / np.cbrt(average_output_speed_rpm)  # no quotient overflows here
+    return by_speed * (np.cbrt(reference_life_h) / np.cbrt(required_life_L50_h))
 
 
+@equation
 def life_L50(
-    *,
-    equivalent_load: FloatArray | float,
-    average_output_speed_rpm: FloatArray | float,
-    reference_speed_rpm: float,
-    reference_life_h: float,
-) -> FloatArray:
+    equivalent_load: Any, average_output_speed_rpm: Any, reference_speed_rpm: Any, reference_life_h: Any
+) -> Any:
     """Life L50 = L_ref (n_ref / n_out_av) / (f_w P_m)^3 in hours; infinite without a load.
 
     `equivalent_load` is f_w P_m. ISO 281, ball bearings.
     """
-    load = np.asarray(equivalent_load)
-    with np.errstate(divide="ignore", over="ignore"):
-        return np.asarray(reference_life_h * (reference_speed_rpm / average_output_speed_rpm) / (load * load * load))
+    P = equivalent_load
+    return reference_life_h * (reference_speed_rpm / average_output_speed_rpm) / (P * P * P)
 
 
 def required_L50(life_h: float, basis: str) -> float:

@@ -1,78 +1,187 @@
-"""Applications as columns: N duty cycles side by side as arrays, so that one code path serves one and a million."""
+"""Applications as arrays: N duty cycles side by side, so that one code path serves one and a million."""
 
-from collections.abc import Callable, Sequence
-from functools import cached_property
+from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from hpn import bearing, equations
 from hpn.application import Application
+from hpn.compiled import compiled
 
 FloatArray = NDArray[np.float64]
 
+TORQUE, SPEED, DURATION, RADIAL, AXIAL = range(5)
+"""Columns of `Duty.phases`."""
+
+(
+    PAUSE,
+    UTILISATION,
+    STOP_TORQUE,
+    STOP_COUNT,
+    LIFE,
+    BACKLASH,
+    STIFFNESS,
+    WEIGHT,
+    LENGTH,
+    TEMPERATURE,
+    EFFICIENCY,
+    MOTOR_SPEED,
+    MOTOR_PEAK,
+    MOTOR_RATED,
+    LOAD_COEFFICIENT,
+    BEARING_L50,
+    MODEL,
+    RANK_BY,
+) = range(18)
+"""Columns of `Duty.wishes`."""
+
+LINEAR, ISO281, DIGITISED = range(3)
+_MODEL = {"linear": LINEAR, "iso281": ISO281, "digitised": DIGITISED}
+BY_WEIGHT, BY_UTILISATION, BY_LENGTH, BY_MOTOR_TORQUE, BY_LIFE, BY_STIFFNESS = range(6)
+_RANK_BY = {
+    "weight": BY_WEIGHT,
+    "utilisation": BY_UTILISATION,
+    "length": BY_LENGTH,
+    "motor_torque": BY_MOTOR_TORQUE,
+    "life": BY_LIFE,
+    "stiffness": BY_STIFFNESS,
+}
+
+T_AV, N_OUT_AV, T_MAX, N_OUT_MAX, T_RMS = range(5)
+"""Columns of `Duty.figures`."""
+
 
 class Duty:
-    """N applications as columns of shape (N, 1), to broadcast against gears of shape (G,).
+    """N applications as arrays.
 
-    Shorter cycles are padded with phases of no duration, which have no weight in any equation.
+    `phases` has shape (N, phases, 5), by magnitude; shorter cycles are padded with phases of no duration, which have no
+    weight in any equation. `wishes`, shape (N, 18), is what else is asked; NaN where it is not. `figures`, shape
+    (N, 5), is what the cycles come to.
     """
 
     def __init__(self, applications: Sequence[Application]) -> None:
         self.applications = applications
-        cycles = [application.duty_cycle for application in applications]
-        longest = max(len(cycle.phases) for cycle in cycles)
-        table = np.zeros((len(cycles), longest, 3))
-        for index, cycle in enumerate(cycles):
-            table[index, : len(cycle.phases)] = [(p.torque_Nm, p.speed_rpm, p.duration_s) for p in cycle.phases]
-        self.torque_Nm, self.speed_rpm, self.duration_s = np.abs(table).transpose(2, 0, 1)
-        self.pause_s = np.array([cycle.pause_s for cycle in cycles])
-        self.average_torque_Nm = equations.average_output_torque(
-            torque_Nm=self.torque_Nm, speed_rpm=self.speed_rpm, duration_s=self.duration_s
-        )[:, None]
-        self.average_output_speed_rpm = equations.average_output_speed(
-            speed_rpm=self.speed_rpm, duration_s=self.duration_s, pause_s=self.pause_s
-        )[:, None]
-        self.maximum_torque_Nm = np.maximum.reduce(self.torque_Nm, axis=1, keepdims=True)
-        self.maximum_output_speed_rpm = np.maximum.reduce(self.speed_rpm, axis=1, keepdims=True)
+        longest = max([len(application.duty_cycle.phases) for application in applications])
+        self.phases = np.zeros((len(applications), longest, 5))
+        for table, application in zip(self.phases, applications, strict=True):
+            phases = application.duty_cycle.phases
+            table[: len(phases)] = _with_loads(application) if application.loads else [_unloaded(p) for p in phases]
+        np.abs(self.phases, out=self.phases)
+        self.wishes = np.array([_wishes(application) for application in applications], dtype=np.float64)
+        self.figures = np.empty((len(applications), 5))
+        _work_out(self.phases, self.wishes, self.figures)
 
-    def column(self, value: Callable[[Application], float | None]) -> FloatArray:
-        """One input of every application, shape (N, 1); NaN where it is not given."""
-        return np.array([[np.nan if (v := value(a)) is None else v] for a in self.applications], dtype=float)
+    @property
+    def torque_Nm(self) -> FloatArray:
+        """Torque of every phase by magnitude, shape (N, phases)."""
+        return self.phases[:, :, TORQUE]
 
-    @cached_property
-    def rms_torque_Nm(self) -> FloatArray:
-        """RMS output torque over the cycle with its pause, shape (N, 1)."""
-        return equations.rms_torque(torque_Nm=self.torque_Nm, duration_s=self.duration_s, pause_s=self.pause_s)[:, None]
+    @property
+    def speed_rpm(self) -> FloatArray:
+        """Speed of every phase by magnitude, shape (N, phases)."""
+        return self.phases[:, :, SPEED]
 
-    @cached_property
-    def emergency_stop_torque_Nm(self) -> FloatArray:
-        """Magnitude of T_k, shape (N, 1); NaN without an emergency stop."""
-        return np.abs(self.column(lambda a: a.emergency_stop.torque_Nm if a.emergency_stop else None))
+    @property
+    def duration_s(self) -> FloatArray:
+        """Duration of every phase, shape (N, phases)."""
+        return self.phases[:, :, DURATION]
 
-    @cached_property
-    def reserve_utilisation(self) -> FloatArray:
-        """The user's largest acceptable utilisation u of the load checks, shape (N, 1)."""
-        return self.column(lambda a: a.requirements.utilisation)
-
-    @cached_property
+    @property
     def loads_N(self) -> tuple[FloatArray, FloatArray]:
         """Magnitudes of the radial and axial load, shape (N, phases): each the phase's, else the cycle's, else 0."""
-        radial, axial = np.zeros(self.torque_Nm.shape), np.zeros(self.torque_Nm.shape)
-        for index, application in enumerate(self.applications):
-            phases, load = application.duty_cycle.phases, application.loads
-            if load is not None:
-                cycle_radial, cycle_axial = load.radial_N or 0.0, load.axial_N or 0.0
-                radial[index, : len(phases)] = [cycle_radial if p.radial_N is None else p.radial_N for p in phases]
-                axial[index, : len(phases)] = [cycle_axial if p.axial_N is None else p.axial_N for p in phases]
-        return np.abs(radial), np.abs(axial)
+        return self.phases[:, :, RADIAL], self.phases[:, :, AXIAL]
 
-    @cached_property
-    def load_coefficient(self) -> FloatArray:
-        """Load coefficient f_w, shape (N, 1); 1 without loads."""
-        return self.column(lambda a: a.loads.load_coefficient if a.loads else 1.0)
+    @property
+    def pause_s(self) -> FloatArray:
+        """Pause t_p, shape (N,)."""
+        return self.wishes[:, PAUSE]
 
-    @cached_property
-    def required_bearing_L50_h(self) -> FloatArray:
-        """Required bearing life as L50, shape (N, 1); NaN without loads."""
-        return self.column(lambda a: bearing.required_L50(a.loads.life_h, a.loads.life_basis) if a.loads else None)
+    @property
+    def emergency_stop_torque_Nm(self) -> FloatArray:
+        """Magnitude of T_k, shape (N,); NaN without an emergency stop."""
+        return self.wishes[:, STOP_TORQUE]
+
+    @property
+    def average_torque_Nm(self) -> FloatArray:
+        """T_av, shape (N,)."""
+        return self.figures[:, T_AV]
+
+    @property
+    def average_output_speed_rpm(self) -> FloatArray:
+        """n_out_av, shape (N,)."""
+        return self.figures[:, N_OUT_AV]
+
+    @property
+    def maximum_torque_Nm(self) -> FloatArray:
+        """T_max, holding phases included, shape (N,)."""
+        return self.figures[:, T_MAX]
+
+    @property
+    def maximum_output_speed_rpm(self) -> FloatArray:
+        """n_out_max, shape (N,)."""
+        return self.figures[:, N_OUT_MAX]
+
+
+def _unloaded(phase: Any) -> tuple[float, ...]:
+    return phase.torque_Nm, phase.speed_rpm, phase.duration_s, 0.0, 0.0
+
+
+def _with_loads(application: Application) -> list[tuple[float, ...]]:
+    assert application.loads is not None
+    radial, axial = application.loads.radial_N or 0.0, application.loads.axial_N or 0.0
+    return [
+        (
+            phase.torque_Nm,
+            phase.speed_rpm,
+            phase.duration_s,
+            radial if phase.radial_N is None else phase.radial_N,
+            axial if phase.axial_N is None else phase.axial_N,
+        )
+        for phase in application.duty_cycle.phases
+    ]
+
+
+def _wishes(application: Application) -> tuple[float | None, ...]:
+    """A row of `Duty.wishes`; None becomes NaN."""
+    stop, load, asked = application.emergency_stop, application.loads, application.requirements
+    motor = asked.motor
+    return (
+        application.duty_cycle.pause_s,
+        asked.utilisation,
+        abs(stop.torque_Nm) if stop else None,
+        stop.count if stop else None,
+        asked.life_h,
+        asked.backlash_arcmin,
+        asked.torsional_stiffness_Nm_per_rad,
+        asked.weight_kg,
+        asked.length_mm,
+        asked.ambient_temperature_degC,
+        asked.efficiency,
+        motor.maximum_speed_rpm if motor else None,
+        motor.peak_torque_Nm if motor else None,
+        motor.rated_torque_Nm if motor else None,
+        load.load_coefficient if load else None,
+        bearing.required_L50(load.life_h, load.life_basis) if load else None,
+        _MODEL[load.model] if load else None,
+        _RANK_BY[application.rank_by],
+    )
+
+
+_average_output_torque, _average_output_speed = (
+    equations.average_output_torque.case,
+    equations.average_output_speed.case,
+)
+_rms_torque = equations.rms_torque.case
+
+
+@compiled
+def _work_out(phases: FloatArray, wishes: FloatArray, figures: FloatArray) -> None:
+    for n in range(phases.shape[0]):
+        T, speed, t = phases[n, :, TORQUE], phases[n, :, SPEED], phases[n, :, DURATION]
+        figures[n, T_AV] = _average_output_torque(T, speed, t)
+        figures[n, N_OUT_AV] = _average_output_speed(speed, t, wishes[n, PAUSE])
+        figures[n, T_MAX] = T.max()
+        figures[n, N_OUT_MAX] = speed.max()
+        figures[n, T_RMS] = _rms_torque(T, t, wishes[n, PAUSE])

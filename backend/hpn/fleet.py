@@ -7,7 +7,8 @@ from hpn.application import Application, InputError
 from hpn.catalogue import Catalogue, GearList
 from hpn.checks import evaluate
 from hpn.duty import Duty
-from hpn.selection import Selection, candidates_of, rank
+from hpn.ranking import rank
+from hpn.selection import Selection, candidates_of
 
 CHUNK_CYCLES = 256
 CHUNK_PHASES = 100_000

@@ -42,13 +42,13 @@ AREAS = {
 
 def notices_of(evaluation: Evaluation, index: int) -> list[Notice]:
     """Notices on application `index` of an evaluation, most general last."""
-    case, application = evaluation.case, evaluation.case.duty.applications[index]
+    application = evaluation.duty.applications[index]
     return [
         *_area(application),
         *_emergency_stop(evaluation, index),
         *_life(evaluation, index),
         *_bearing(evaluation, index),
-        *_motor(application, bool(case.catalogue.efficiency)),
+        *_motor(application, bool(evaluation.catalogue.efficiency)),
         *_catalogue(evaluation),
     ]
 
@@ -67,11 +67,11 @@ def _area(application: Application) -> list[Notice]:
 
 
 def _emergency_stop(evaluation: Evaluation, index: int) -> list[Notice]:
-    case, stop = evaluation.case, evaluation.case.duty.applications[index].emergency_stop
-    if stop is None or case.momentary_peak_count is None:
+    stop = evaluation.duty.applications[index].emergency_stop
+    if stop is None:
         return []
     notices = []
-    largest = float(case.duty.maximum_torque_Nm[index, 0])
+    largest = evaluation.duty.maximum_torque_Nm.item(index)
     if abs(stop.torque_Nm) < largest:
         notices.append(
             _notice(
@@ -82,7 +82,7 @@ def _emergency_stop(evaluation: Evaluation, index: int) -> list[Notice]:
                 largest=Quantity(largest, "Nm", 6),
             )
         )
-    if np.isinf(case.momentary_peak_count[index]).any():
+    if np.isinf(evaluation.momentary_peak_count[index]).any():
         notices.append(
             _notice(
                 "momentary_peak_count_unlimited",
@@ -94,7 +94,7 @@ def _emergency_stop(evaluation: Evaluation, index: int) -> list[Notice]:
 
 
 def _life(evaluation: Evaluation, index: int) -> list[Notice]:
-    if not np.isinf(evaluation.case.life_L10_h[index]).any():
+    if not np.isinf(evaluation.life_L10_h[index]).any():
         return []
     return [
         _notice(
@@ -105,8 +105,8 @@ def _life(evaluation: Evaluation, index: int) -> list[Notice]:
 
 
 def _bearing(evaluation: Evaluation, index: int) -> list[Notice]:
-    case, load = evaluation.case, evaluation.case.duty.applications[index].loads
-    if load is None or case.bearing is None:
+    load = evaluation.duty.applications[index].loads
+    if load is None:
         return []
     standing = (
         N_("The output bearing is judged along curve points that you supplied.")
@@ -129,7 +129,7 @@ def _bearing(evaluation: Evaluation, index: int) -> list[Notice]:
             "Weibull slope of 10/9 gives 5.45.",
         ),
     ]
-    if np.isinf(case.bearing.life_L50_h[index]).any():
+    if np.isinf(evaluation.bearing_life_L50_h[index]).any():
         notices.append(
             _notice(
                 "bearing_life_unlimited",
@@ -170,13 +170,12 @@ def _motor(application: Application, curves: bool) -> list[Notice]:
 
 
 def _catalogue(evaluation: Evaluation) -> list[Notice]:
-    case = evaluation.case
-    notes = {gear.name: gear.note for gear in case.gears.rows if gear.note and gear.rated_torque_Nm is None}
+    notes = {gear.name: gear.note for gear in evaluation.gears.rows if gear.note and gear.rated_torque_Nm is None}
     notices = [
         _notice("size_unrated", "{name} is listed as unrated. {note}", ("note",), name=n, note=t)
         for n, t in notes.items()
     ]
-    if case.catalogue.supplement:
+    if evaluation.catalogue.supplement:
         notices.append(
             _notice(
                 "catalogue_supplement",

@@ -4,13 +4,16 @@ In closed form, because every utilisation is a power of each driver: `MOVES` nam
 as they are. A factor below 1 is what a rejected gear needs; all factors below 1 together are the remedy.
 """
 
-from dataclasses import dataclass
-from functools import reduce
+import math
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from hpn.checks import ABSENT, Evaluation
+from hpn import checks as c
+from hpn import duty as d
+from hpn.checks import CHECKS, Evaluation, table_of
+from hpn.compiled import compiled
 
 FloatArray = NDArray[np.float64]
 
@@ -34,62 +37,69 @@ MOVES: dict[str, dict[str, float]] = {
 """Driver -> check -> power with which the driver moves the utilisation of the check (eq. 17.2 to 17.10, ISO 281)."""
 
 
-@dataclass(frozen=True, slots=True)
-class Reserve:
-    """Reserves of N applications on G gears, shape (N, G) each; infinite without a limit, NaN where not rated.
+TORQUE_FACTOR, SPEED_FACTOR, LOAD_FACTOR, STOP_TORQUE = range(4)
+"""Rows of what `reserve_of` gives."""
 
-    Each factor multiplies all torques of the duty cycle (not the emergency stop), all speeds, or all loads; the
-    emergency-stop torque is the largest permissible one in Nm. None where the application moves no such check.
+_POWERS = np.array([[powers.get(check.code, 0.0) for check in CHECKS] for powers in MOVES.values()])
+
+
+def reserve_of(evaluation: Evaluation) -> FloatArray:
+    """Reserves of N applications on G gears, shape (4, N, G); infinite without a limit, NaN where not rated.
+
+    Factors on all torques of the duty cycle (not the emergency stop), on all speeds and on all loads, and the largest
+    permissible emergency-stop torque in Nm. NaN also where the application moves no such check, and for the torque
+    factor where a motor torque follows an efficiency curve, which no closed form does.
     """
-
-    torque: FloatArray | None
-    speed: FloatArray | None
-    load: FloatArray | None
-    emergency_stop_torque_Nm: FloatArray | None
-
-
-def reserve_of(evaluation: Evaluation) -> Reserve:
-    """Reserves of every application on every gear of an evaluation."""
-    with np.errstate(divide="ignore", over="ignore"):  # unlimited
-        room = evaluation.case.duty.reserve_utilisation / evaluation.utilisation
-        if len(evaluation.case.duty.applications) > 1:
-            room[evaluation.status == ABSENT] = np.inf
-        rooms = {check.code: room[index] for index, check in enumerate(evaluation.checks)}
-        torque = None if _follows_a_curve(evaluation) else _factor(rooms, MOVES["torque"])
-        speed, load = _factor(rooms, MOVES["speed"]), _factor(rooms, MOVES["load"])
-    return Reserve(torque, speed, load, _emergency_stop_torque(evaluation))
+    reserve = np.empty((4, *evaluation.status.shape[1:]))
+    curves = bool(evaluation.catalogue.efficiency)
+    _reserve(evaluation.duty.wishes, table_of(evaluation.gears), evaluation.terms, curves, reserve)
+    return reserve
 
 
-def _factor(rooms: dict[str, FloatArray], powers: dict[str, float]) -> FloatArray | None:
-    """Smallest (u / utilisation)^(1 / power) over the checks that a driver moves; None where it moves none."""
-    factors = [rooms[code] if p == 1.0 else rooms[code] ** (1 / p) for code, p in powers.items() if code in rooms]
-    return reduce(np.minimum, factors) if factors else None
+@compiled
+def _reserve(wishes: FloatArray, gears: FloatArray, terms: FloatArray, curves: bool, reserve: FloatArray) -> None:
+    for n in range(wishes.shape[0]):
+        w = wishes[n]
+        motor = not (math.isnan(w[d.MOTOR_PEAK]) and math.isnan(w[d.MOTOR_RATED]))
+        follows = curves and motor and math.isnan(w[d.EFFICIENCY])
+        for g in range(gears.shape[1]):
+            put = terms[:, :, n, g]
+            for driver in range(3):
+                reserve[driver, n, g] = _factor(put, _POWERS[driver], w[d.UTILISATION])
+            if follows:
+                reserve[TORQUE_FACTOR, n, g] = math.nan
+            reserve[STOP_TORQUE, n, g] = _emergency_stop_torque(w, gears[c.T_M, g], gears[c.T_R, g])
 
 
-def _follows_a_curve(evaluation: Evaluation) -> bool:
-    """Whether a motor torque depends on an efficiency curve, which no closed form follows."""
-    if not evaluation.case.catalogue.efficiency:
-        return False
-    asks = any(check.code.startswith("motor_") and check.code != "motor_speed" for check in evaluation.checks)
-    return asks and any(a.requirements.efficiency is None for a in evaluation.case.duty.applications)
+@compiled
+def _factor(put: FloatArray, powers: FloatArray, u: float) -> Any:
+    """Smallest (u / utilisation)^(1 / power) over the checks that a driver moves."""
+    smallest, moved = math.inf, False
+    for check in range(powers.size):
+        if powers[check] == 0 or (math.isnan(put[c.DEMAND, check]) and math.isnan(put[c.LIMIT, check])):
+            continue
+        room = u / put[c.USED, check]
+        factor = room if powers[check] == 1 else room ** (1 / powers[check])
+        moved = True
+        if math.isnan(factor):
+            return math.nan  # not rated
+        smallest = min(smallest, factor)
+    return smallest if moved else math.nan
 
 
-def _emergency_stop_torque(evaluation: Evaluation) -> FloatArray | None:
+@compiled
+def _emergency_stop_torque(w: FloatArray, T_M: float, T_R: float) -> Any:
     """Largest T_k = min(u T_M, max(T_R, T_R (8.5 - log10 N) / 1.5)) in Nm, equations 17.8 and 17.9 solved for T_k.
 
     N is the smallest allowed number that the expected count needs: count / u, rounded up, since equation 17.9 gives a
     count. Without an expected count T_M alone limits.
     """
-    case = evaluation.case
-    if case.momentary_peak_count is None:
-        return None
-    duty, g = case.duty, case.gears.columns
-    u = duty.reserve_utilisation
-    by_torque = u * g.momentary_peak_torque_Nm
-    count = duty.column(lambda a: a.emergency_stop.count if a.emergency_stop else None)
-    if np.isnan(count).all():
-        return np.asarray(by_torque)
-    with np.errstate(over="ignore"):  # a reserve next to 0 leaves no stop above T_R
-        needed = np.maximum(np.ceil(count / u * (1 - 1e-12)), 1.0)
-    by_count = np.maximum(g.repeated_peak_torque_Nm, g.repeated_peak_torque_Nm * (8.5 - np.log10(needed)) / 1.5)
-    return np.asarray(np.where(np.isnan(count), by_torque, np.minimum(by_torque, by_count)))
+    if math.isnan(w[d.STOP_TORQUE]):
+        return math.nan
+    u, count, by_torque = w[d.UTILISATION], w[d.STOP_COUNT], w[d.UTILISATION] * T_M
+    if math.isnan(count):
+        return by_torque
+    # a reserve next to 0 leaves no stop above T_R
+    needed = max(np.ceil(count / u * (1 - 1e-12)), 1.0)
+    by_count = np.maximum(T_R, T_R * (8.5 - math.log10(needed)) / 1.5)
+    return np.minimum(by_torque, by_count)  # NaN, not rated, stays

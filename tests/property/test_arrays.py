@@ -34,8 +34,8 @@ PER_CYCLE: dict[str, Callable[[Any, Any], Any]] = {
         average_torque_Nm=x, average_input_speed_rpm=y, rated_torque_Nm=80, rated_input_speed_rpm=3000
     ),
     "motor": lambda x, y: equations.motor_torque(output_torque_Nm=x, ratio=y, efficiency=0.9),
-    "linear": lambda x, y: bearing.linear_load(np.asarray(x), np.asarray(y)),
-    "iso281": lambda x, y: bearing.iso281_load(np.asarray(x), np.asarray(y)),
+    "linear": lambda x, y: bearing.linear_load(radial=x, axial=y),
+    "iso281": lambda x, y: bearing.iso281_load(radial=x, axial=y),
     "k": lambda x, y: bearing.life_factor(
         average_output_speed_rpm=x, required_life_L50_h=y, reference_speed_rpm=100, reference_life_h=20000
     ),

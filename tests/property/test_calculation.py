@@ -37,7 +37,7 @@ def steps_of(application: Json, designation: str) -> tuple[Json, tuple[Step, ...
     selection = select(Application.model_validate(application), CATALOGUE)
     entry = candidate(selection.reply("/"), designation)
     gear = CATALOGUE.by_designation[designation]
-    return entry, calculation_of(entry, gear, selection.evaluation.case.duty, CATALOGUE)
+    return entry, calculation_of(entry, gear, selection.evaluation.duty, CATALOGUE)
 
 
 # --- A reader of MathML that knows nothing of the formulas ------------------------------------------------------------

@@ -120,7 +120,7 @@ def test_the_linear_model_permits_no_load_that_iso281_forbids(
 def test_linear_is_nowhere_below_iso281_on_a_grid_of_normalised_loads() -> None:
     r, a = np.meshgrid(np.linspace(0, 3, 301), np.linspace(0, 3, 301))
 
-    assert (bearing.linear_load(r, a) >= bearing.iso281_load(r, a) * (1 - 1e-15)).all()
+    assert (bearing.linear_load(radial=r, axial=a) >= bearing.iso281_load(radial=r, axial=a) * (1 - 1e-15)).all()
 
 
 @given(models, st.lists(st.tuples(speeds, st.floats(0.1, 10), st.floats(0, 900), st.floats(0, 900)), min_size=1))

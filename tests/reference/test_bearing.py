@@ -167,5 +167,5 @@ def test_the_knee_of_the_iso_model_is_where_the_radial_part_alone_reaches_the_li
 
     assert radial[1] == 1800
     assert axial[1] == pytest.approx(0.44 * 2200, rel=1e-15)
-    P = bearing.iso281_load(radial / 1800, axial / 2200)
+    P = bearing.iso281_load(radial=radial / 1800, axial=axial / 2200)
     assert P.tolist() == pytest.approx([1, 1, 1], rel=1e-15)

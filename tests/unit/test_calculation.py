@@ -17,7 +17,7 @@ def steps_of(application: Json, designation: str, catalogue: Catalogue) -> dict[
     selection = select(Application.model_validate(application), catalogue)
     entry = candidate(selection.reply("/"), designation)
     gear = catalogue.by_designation[designation]
-    steps = calculation_of(entry, gear, selection.evaluation.case.duty, catalogue)
+    steps = calculation_of(entry, gear, selection.evaluation.duty, catalogue)
     return {step.code: step for step in steps}
 
 

@@ -55,7 +55,7 @@ def _equivalent_loads(sheet: Sheet, load: OutputLoad) -> NDArray[np.float64] | N
     if F_R is None or F_A is None:
         return None
     model = bearing.iso281_load if load.model == "iso281" else bearing.linear_load
-    return model(radial / F_R, axial / F_A)
+    return model(radial=radial / F_R, axial=axial / F_A)
 
 
 # --- Largest load -----------------------------------------------------------------------------------------------------

@@ -256,7 +256,7 @@ def _placed(
 
 
 def _torque_lines(selection: Selection, gear: Gear) -> list[_Line]:
-    stop, average = selection.application.emergency_stop, selection.evaluation.case.duty.average_torque_Nm
+    stop, average = selection.application.emergency_stop, selection.evaluation.duty.average_torque_Nm
     return [
         _Line("T_av", average.item(selection.index), "average"),
         _Line("T_N", gear.rated_torque_Nm, "limit"),
@@ -267,7 +267,7 @@ def _torque_lines(selection: Selection, gear: Gear) -> list[_Line]:
 
 def _speed_lines(selection: Selection, gear: Gear) -> list[_Line]:
     """At the output: the limits of the input over the ratio."""
-    average = selection.evaluation.case.duty.average_output_speed_rpm.item(selection.index)
+    average = selection.evaluation.duty.average_output_speed_rpm.item(selection.index)
     limits = (("n_av(max)/i", gear.average_input_speed_rpm), ("n_in(max)/i", gear.maximum_input_speed_rpm))
     at_output = [_Line(name, value / gear.ratio if value else None, "limit") for name, value in limits]
     return [_Line("n_av", average, "average"), *at_output]

@@ -1,5 +1,6 @@
 """Loads of one application on an output bearing: what plot, table and verdict are made from."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
@@ -131,7 +132,7 @@ def condition(selection: Selection) -> EnvelopeQuery:
     """Speed, life, load coefficient and model at which the application asks for envelopes."""
     load = selection.application.loads or OutputLoad()
     return EnvelopeQuery(
-        speed_rpm=selection.evaluation.case.duty.average_output_speed_rpm.item(selection.index),
+        speed_rpm=selection.evaluation.duty.average_output_speed_rpm.item(selection.index),
         life_h=bearing.required_L50(load.life_h, load.life_basis),
         load_coefficient=load.load_coefficient,
         model=load.model,
@@ -140,14 +141,14 @@ def condition(selection: Selection) -> EnvelopeQuery:
 
 def bearing_picture(selection: Selection, gear: Gear) -> BearingPicture | None:
     """Loads on the bearing of a candidate, or None without loads or where the bearing of its size is not rated."""
-    load, case = selection.application.loads, selection.evaluation.case.bearing
+    load, evaluation = selection.application.loads, selection.evaluation
     index, n = selection.gears.rows.index(gear), selection.index
-    if load is None or case is None or np.isnan(case.mean[n, index]):
+    mean = evaluation.bearing_mean_load.item(n, index)
+    if load is None or math.isnan(mean):
         return None
-    catalogue, f_w = selection.catalogue, load.load_coefficient
-    mean, k = float(case.mean[n, index]), case.life_factor.item(n)
+    catalogue, f_w, k = selection.catalogue, load.load_coefficient, evaluation.bearing_life_factor(n)
     count = len(selection.application.duty_cycle.phases)
-    loads = phase_loads(selection, case.phase_loads[n, :count, index].tolist())
+    loads = phase_loads(selection, evaluation.bearing_loads[n, :count, index].tolist())
     return BearingPicture(
         gear=gear,
         load=load,
@@ -155,8 +156,8 @@ def bearing_picture(selection: Selection, gear: Gear) -> BearingPicture | None:
         hidden=max(len(loads) - MOST_LOADS, 0),
         mean=mean / f_w,
         life_factor=k,
-        life_L50_h=float(case.life_L50_h[n, index]),
-        average_output_speed_rpm=selection.evaluation.case.duty.average_output_speed_rpm.item(n),
+        life_L50_h=evaluation.bearing_life_L50_h.item(n, index),
+        average_output_speed_rpm=selection.evaluation.duty.average_output_speed_rpm.item(n),
         life_utilisation=mean / k,
         curves=life_envelopes(catalogue, gear, condition(selection)),
         published_curve=envelope_curve(catalogue, gear, load.model, f_w),
@@ -166,7 +167,7 @@ def bearing_picture(selection: Selection, gear: Gear) -> BearingPicture | None:
 
 def phase_loads(selection: Selection, published: Sequence[float]) -> list[PhaseLoad]:
     """Different loads of the cycle, in the order in which they first occur."""
-    radial, axial = (component[selection.index].tolist() for component in selection.evaluation.case.duty.loads_N)
+    radial, axial = (component[selection.index].tolist() for component in selection.evaluation.duty.loads_N)
     found: dict[tuple[float, float], PhaseLoad] = {}
     for place, used in enumerate(published):
         load = (radial[place], axial[place])
@@ -183,15 +184,15 @@ def _foremost(loads: list[PhaseLoad]) -> list[PhaseLoad]:
 
 def size_uses(selection: Selection) -> list[SizeUse]:
     """Use of the bearing of every size among the candidates."""
-    case, n, uses = selection.evaluation.case.bearing, selection.index, {}
+    evaluation, n, uses = selection.evaluation, selection.index, {}
     for index, gear in enumerate(selection.gears.rows):
-        if case is None or gear.size in uses:
+        if selection.application.loads is None or gear.size in uses:
             continue
-        mean, largest = float(case.mean[n, index]), float(case.largest[n, index])
-        rated = not np.isnan(mean)
+        mean, largest = evaluation.bearing_mean_load.item(n, index), evaluation.bearing_largest_load.item(n, index)
+        rated = not math.isnan(mean)
         uses[gear.size] = SizeUse(
             gear,
-            mean / min(1.0, case.life_factor.item(n)) if rated else None,
+            mean / min(1.0, evaluation.bearing_life_factor(n)) if rated else None,
             largest if rated else None,
         )
     return list(uses.values())

@@ -6,6 +6,7 @@ from urllib.parse import quote
 
 from hpn.calculation import Step, calculation_of
 from hpn.catalogue import Catalogue
+from hpn.checks import CHECKS
 from hpn.comparison import MOST_PINS, Candidate, Column, Group, groups_of, undominated
 from hpn.remedy import Room, followed, remedy_of, rooms_of, ways_of
 from hpn.selection import Selection
@@ -82,13 +83,13 @@ def insight_of(
     u = application.requirements.utilisation
     gear = catalogue.by_designation[chosen["designation"]]
     listed = {candidate["designation"]: candidate for candidate in (*reply["candidates"], chosen)}
-    duty = selection.evaluation.case.duty
+    duty = selection.evaluation.duty
     ways = ways_of(chosen, u) if chosen["status"] == "unsuitable" else ()
     shown = [chosen, *(landscape[pin] for pin in pins if pin != chosen["designation"])]
     if not pins and (second := _second(reply["candidates"], chosen, lighter)):
         shown.append(second)
     columns = tuple(Column(entry, catalogue.by_designation[entry["designation"]]) for entry in shown)
-    titles = {check.code: check.explanation.title for check in selection.evaluation.checks}
+    titles = {check.code: check.explanation.title for check in CHECKS}
     return Insight(
         remedies={name: remedy_of(entry, catalogue.by_designation[name], u) for name, entry in listed.items()},
         rooms=rooms_of(chosen, u),

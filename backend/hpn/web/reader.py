@@ -13,8 +13,8 @@ from jinja2.runtime import Context
 
 from hpn.explanations import EXPLANATIONS
 from hpn.notices import Notice
+from hpn.reply import REASONS
 from hpn.report.language import language
-from hpn.selection import REASONS
 from hpn.translation import LANGUAGES, translations
 from hpn.web import display, measures
 from hpn.web.measures import Measure
