@@ -2,9 +2,12 @@
 
 import math
 from collections import Counter
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field, fields
 from typing import Any, Literal
+
+from hpn.catalogue import Catalogue
+from hpn.gear import Gear
 
 NAMED_BY = {"candidates": "designation", "checks": "code", "notices": "code"}
 """Lists whose items are matched by a field of theirs: their order follows from what the items say."""
@@ -119,3 +122,51 @@ def _weight(difference: Difference) -> int:
     if difference.kind == "verdict":
         return 2 * VERDICTS.index(difference.field) + (difference.check is not None)
     return 100 if difference.kind == "figure" else 200
+
+
+# --- Published figures ------------------------------------------------------------------------------------------------
+
+NOT_FIGURES = ("designation", "size", "ratio", "sources", "clamp_bolts", "housing_bolts")
+
+
+@dataclass(frozen=True, slots=True)
+class FigureDifference:
+    """A published figure of a gear that two catalogues give differently; None where one has none.
+
+    Of a gear that only one of them has, its designation stands for the whole. A supplied curve is a list of points.
+    """
+
+    candidate: str
+    field: str
+    saved: Any
+    today: Any
+
+
+def figure_differences(saved: Catalogue, today: Catalogue, designations: Iterable[str]) -> list[FigureDifference]:
+    """Differences of the figures that two catalogues publish of some gears, gear by gear."""
+    return [
+        FigureDifference(designation, name, before.get(name), after.get(name))
+        for designation in designations
+        for before, after in [(_published(saved, designation), _published(today, designation))]
+        for name in (before | after if before and after else ["designation"])
+        if before.get(name) != after.get(name)
+    ]
+
+
+def _published(catalogue: Catalogue, designation: str) -> dict[str, Any]:
+    """Figures of a gear by name; nothing where the catalogue lacks it."""
+    gear = catalogue.by_designation.get(designation)
+    if gear is None:
+        return {}
+    figures = {f.name: getattr(gear, f.name) for f in fields(Gear) if f.name not in NOT_FIGURES}
+    curve, efficiency = catalogue.curves.get(gear.size), catalogue.efficiency.get(designation)
+    return {
+        "designation": designation,
+        **figures,
+        "bearing_curve": None if curve is None else _points(curve.axial_N, curve.radial_N),
+        "efficiency_curve": None if efficiency is None else _points(*efficiency),
+    }
+
+
+def _points(*columns: Any) -> list[list[float]]:
+    return [list(point) for point in zip(*(column.tolist() for column in columns), strict=True)]

@@ -118,9 +118,16 @@ def content(export: Export, language: Language) -> dict[str, Any]:
         "notices": [sentence(language.filled(notice["text"])) for notice in export.reply["notices"]],
         "versions": [
             [text(N_("Engine")), export.reply["engine_version"]],
-            [text(N_("Catalogue")), export.reply["catalogue_version"]],
+            [text(N_("Catalogue")), catalogue_version(export, language)],
         ],
     }
+
+
+def catalogue_version(export: Export, language: Language) -> str:
+    """Version of the catalogue, and that its own figures are missing where it is not at hand."""
+    version = str(export.reply["catalogue_version"])
+    missing = language.text(N_("not kept: published figures stand only where the result names them"))
+    return version if export.figures else f"{version} ({missing})"
 
 
 def _input(row: inputs.Row) -> dict[str, Any]:

@@ -18,7 +18,8 @@ class Export:
     """An application, the reply to it, and what a reader needs to find both again.
 
     `link` is absolute. `created` is when the selection was saved, in a time zone; None for one that is not saved, whose
-    files then carry no date. `catalogue` gives the figures behind the reply; one of another version is not used.
+    files then carry no date. `catalogue` gives the figures behind the reply; one of another version is not used, and
+    the files say so.
     """
 
     application: Application

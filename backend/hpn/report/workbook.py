@@ -8,6 +8,7 @@ from typing import Any
 import xlsxwriter
 
 from hpn.report.candidates import CandidatesSheet
+from hpn.report.content import catalogue_version
 from hpn.report.export import Export
 from hpn.report.formulas import NOT_RATED, UNLIMITED
 from hpn.report.language import Language
@@ -61,7 +62,7 @@ def _notes(book: Book, sheet: Any) -> None:
         rows.append((text(definition["title"]), f"{text(definition['tests'])} {text(definition['basis'])}"))
     rows += [
         (text(N_("Engine")), export.reply["engine_version"]),
-        (text(N_("Catalogue")), export.reply["catalogue_version"]),
+        (text(N_("Catalogue")), catalogue_version(export, book.language)),
     ]
     for row, (subject, note) in enumerate(rows, 1):
         sheet.write_string(row, 0, subject, book.style("label"))

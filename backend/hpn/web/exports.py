@@ -16,6 +16,7 @@ from starlette.requests import Request
 from starlette.responses import Response
 
 from hpn.application import Application
+from hpn.catalogue import Catalogue
 from hpn.report.export import Export
 from hpn.report.language import LANGUAGES, Language, language
 from hpn.report.pdf import pdf
@@ -28,7 +29,7 @@ from hpn.web.bodies import read_json
 from hpn.web.conditions import etag_of, has_already
 from hpn.web.links import to_link
 from hpn.web.problems import Problem
-from hpn.web.selections import not_found, url_of
+from hpn.web.selections import url_of, with_catalogue
 from hpn.web.settings import Settings
 
 AT_ONCE = 2
@@ -83,10 +84,8 @@ def _route(file: File) -> None:
     }
 
     async def of_saved(request: Request, id: str, lang: Lang = None) -> Response:
-        saved = await request.app.state.store.find(id)
-        if saved is None:
-            raise not_found(id)
-        return await _answer(request, file, lang, lambda: _of_saved(saved, request))
+        saved, catalogue = await with_catalogue(request.app.state, id)
+        return await _answer(request, file, lang, lambda: _of_saved(saved, catalogue, request))
 
     async def of_posted(request: Request, lang: Lang = None) -> Response:
         settings: Settings = request.app.state.settings
@@ -132,7 +131,7 @@ async def application_schema() -> Response:
 # --- What goes into a file --------------------------------------------------------------------------------------------
 
 
-def _of_saved(saved: SavedSelection, request: Request) -> Export:
+def _of_saved(saved: SavedSelection, catalogue: Catalogue | None, request: Request) -> Export:
     """What was saved, as it was saved; nothing is computed again."""
     try:
         application = Application.model_validate_json(saved.application)
@@ -145,7 +144,7 @@ def _of_saved(saved: SavedSelection, request: Request) -> Export:
         title=saved.title or "",
         reference=saved.reference or "",
         created=saved.created,
-        catalogue=request.app.state.catalogue,
+        catalogue=catalogue,
     )
 
 

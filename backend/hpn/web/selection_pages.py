@@ -1,5 +1,6 @@
 """The page of a saved selection, and the form of the live page that saves one."""
 
+import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -14,11 +15,13 @@ from starlette.routing import Route
 
 from hpn import ENGINE_VERSION
 from hpn.application import Application, InputError
+from hpn.catalogue import Catalogue
 from hpn.differences import Difference
 from hpn.report.inputs import LOADS, REQUIREMENTS, WORDS
 from hpn.store import SavedSelection, StoreUnavailableError
 from hpn.units import symbol_of
 from hpn.web.bodies import read_form
+from hpn.web.gear_figures import Figure, figures_of
 from hpn.web.messages import N_
 from hpn.web.pages import environment, read_query
 from hpn.web.problems import Problem
@@ -77,7 +80,7 @@ async def show_selection(request: Request) -> Response:
 
 
 def _shown(request: Request, saved: SavedSelection, today: Today) -> Response:
-    page = _page(saved, today, request.query_params.get("gear", ""), request.app.state.catalogue.version)
+    page = _page(saved, today, request.query_params.get("gear", ""), request.app.state.catalogue)
     return _render(request, "selection.html", 200, **page)
 
 
@@ -142,7 +145,7 @@ class Line:
     today: str
 
 
-def _page(saved: SavedSelection, today: Today, designation: str, catalogue_version: str) -> dict[str, Any]:
+def _page(saved: SavedSelection, today: Today, designation: str, catalogue: Catalogue) -> dict[str, Any]:
     reply = orjson.loads(saved.result)
     candidates = reply["candidates"]
     chosen = next((entry for entry in candidates if entry["designation"] == designation), candidates[0])
@@ -156,13 +159,32 @@ def _page(saved: SavedSelection, today: Today, designation: str, catalogue_versi
         "chosen": chosen,
         "today": today,
         "lines": [_line(difference, reply) for difference in today.differences[:DIFFERENCES_ON_PAGE]],
-        "catalogue_version": catalogue_version,
+        "catalogue_version": catalogue.version,
+        "published": _published(today.then, catalogue, chosen["designation"]),
+        "changed_gears": sorted({difference.candidate for difference in today.figures or ()}, key=_number),
         "engine_version": ENGINE_VERSION,
         "application": application,
         "document": saved.application.decode(),
         "inputs": [] if application is None else list(_inputs(application)),
         "exports": EXPORTS,
     }
+
+
+def _published(then: Catalogue | None, today: Catalogue, designation: str) -> list[tuple[Figure, Figure | None]]:
+    """Published figures of a gear, each with today's where that differs; none where the catalogue of then is lost."""
+    before, after = _figures(then, designation), _figures(today, designation)
+    pairs = zip(before, after or before, strict=bool(before))
+    return [(old, None if old.values == new.values else new) for old, new in pairs]
+
+
+def _figures(catalogue: Catalogue | None, designation: str) -> list[Figure]:
+    gear = catalogue.by_designation.get(designation) if catalogue else None
+    return [figure for _, figures in figures_of(gear) for figure in figures] if gear else []
+
+
+def _number(designation: str) -> list[int]:
+    """What gears are sorted by: size, then ratio."""
+    return [int(digits) for digits in re.findall(r"\d+", designation)]
 
 
 def _inputs(application: Application) -> Iterable[tuple[str, str, bool]]:

@@ -7,7 +7,7 @@ from pydantic import AfterValidator, Field, StringConstraints
 from pydantic_core import PydanticCustomError
 
 from hpn.application import Application, Model
-from hpn.web.schemas import ProblemReply, Reply, SelectReply
+from hpn.web.schemas import GearReply, ProblemReply, Reply, SelectReply
 
 CONTROLS = re.compile(r"[\x00-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069]")
 """Control characters, line separators, and marks that turn the direction of the text around them."""
@@ -74,6 +74,15 @@ class DifferenceReply(Reply):
     today: Any = Field(description="Value today.")
 
 
+class FigureDifferenceReply(Reply):
+    """One published figure of a candidate that today's catalogue gives differently."""
+
+    candidate: str = Field(description="Designation of the gear.")
+    field: str = Field(description="Name of the figure in the catalogue; designation where only one has the gear.")
+    saved: Any = Field(description="Figure in the catalogue of then; null where it was not published.")
+    today: Any = Field(description="Figure in today's catalogue; null where it is not published.")
+
+
 class TodayReply(Reply):
     """What today's engine and catalogue say to the saved application."""
 
@@ -81,6 +90,10 @@ class TodayReply(Reply):
     catalogue_version: str = Field(description="Hash of the catalogue's content today.")
     difference_count: int = Field(description="Number of fields that differ.")
     differences: list[DifferenceReply] = Field(description="The first 500 of them.")
+    figure_differences: list[FigureDifferenceReply] | None = Field(
+        description="Published figures of the candidates that differ, the first 500; null where the catalogue of then "
+        "is not kept."
+    )
     problem: ProblemReply | None = Field(
         description="Why the application can't be answered today, for example because the catalogue lacks a ratio."
     )
@@ -90,6 +103,9 @@ class SavedSelectionReply(SummaryReply):
     """A saved selection as it was saved, and what differs today. Nothing is rewritten."""
 
     application: dict[str, Any] = Field(description="The application as it was given.")
+    gear: GearReply | None = Field(
+        description="Published figures of the first candidate in the catalogue of then; null where that is not kept."
+    )
     result: SelectReply = Field(description="The reply it got, whole.")
     today: TodayReply = Field(description="What differs today.")
 

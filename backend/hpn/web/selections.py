@@ -15,7 +15,7 @@ from starlette.responses import Response
 from hpn import ENGINE_VERSION
 from hpn.application import Application, InputError
 from hpn.catalogue import Catalogue
-from hpn.differences import Difference, differences
+from hpn.differences import Difference, FigureDifference, differences, figure_differences
 from hpn.selection import select
 from hpn.store import Draft, KeyReusedError, SavedSelection, Store, Summary
 from hpn.web import schemas
@@ -131,12 +131,15 @@ async def delete_selection(request: Request, id: str) -> Response:
 class Today:
     """What today's engine and catalogue say to a saved application: differences, or why they have no answer.
 
-    `link` leads to the live form with a copy of the application.
+    `link` leads to the live form with a copy of the application. `then` is the catalogue of that time, and `figures`
+    what today's publishes differently; None where that of then is not kept.
     """
 
     differences: list[Difference]
     problem: dict[str, Any] | None
     link: str
+    then: Catalogue | None
+    figures: list[FigureDifference] | None
 
 
 def url_of(id: str) -> str:
@@ -174,10 +177,18 @@ def _draft(application: Application, labels: Labels, key: str | None, catalogue:
 
 async def found(state: State, id: str) -> tuple[SavedSelection, Today]:
     """A saved selection and what differs today; Problem 404 where there is none."""
+    saved, then = await with_catalogue(state, id)
+    return saved, await run_in_threadpool(reopen, saved, then, state.catalogue)
+
+
+async def with_catalogue(state: State, id: str) -> tuple[SavedSelection, Catalogue | None]:
+    """A saved selection and the catalogue it was saved under, None where that is not kept; Problem 404."""
     saved = await state.store.find(id)
     if saved is None:
         raise not_found(id)
-    return saved, await run_in_threadpool(reopen, saved, state.catalogue)
+    if saved.catalogue_version == state.catalogue.version:
+        return saved, state.catalogue
+    return saved, await state.store.catalogue(saved.catalogue_version)
 
 
 def not_found(id: str) -> Problem:
@@ -185,17 +196,19 @@ def not_found(id: str) -> Problem:
     return Problem(404, f"there is no saved selection {id[:60]!r}; it may have been deleted")
 
 
-def reopen(saved: SavedSelection, catalogue: Catalogue) -> Today:
+def reopen(saved: SavedSelection, then: Catalogue | None, catalogue: Catalogue) -> Today:
     """Ask today's engine and catalogue again, and compare; what was saved stays as it is."""
     before = orjson.loads(saved.result)
+    gears = [candidate["designation"] for candidate in before["candidates"]]
+    figures = None if then is None else [] if then is catalogue else figure_differences(then, catalogue, gears)
     try:
         application = Application.model_validate_json(saved.application)
         link = to_link(application)
         after = select(application, catalogue).json(link)
     except (ValidationError, InputError) as error:
-        return Today([], Problem.of(error).body(), before["link"])
+        return Today([], Problem.of(error).body(), before["link"], then, figures)
     same = after == saved.result
-    return Today([] if same else differences(before, orjson.loads(after)), None, link)
+    return Today([] if same else differences(before, orjson.loads(after)), None, link, then, figures)
 
 
 async def unavailable(request: Request, error: Exception) -> Response:
@@ -205,16 +218,19 @@ async def unavailable(request: Request, error: Exception) -> Response:
 
 async def _representation(request: Request, id: str) -> bytes:
     saved, today = await found(request.app.state, id)
+    first = orjson.loads(saved.result)["candidates"][0]["designation"]
     return orjson.dumps(
         _summary(saved)
         | {
             "application": orjson.Fragment(saved.application),
+            "gear": today.then and today.then.by_designation.get(first),
             "result": orjson.Fragment(saved.result),
             "today": {
                 "engine_version": ENGINE_VERSION,
                 "catalogue_version": request.app.state.catalogue.version,
                 "difference_count": len(today.differences),
                 "differences": today.differences[:DIFFERENCES_SHOWN],
+                "figure_differences": today.figures and today.figures[:DIFFERENCES_SHOWN],
                 "problem": today.problem,
             },
         }
