@@ -1,6 +1,7 @@
 """The page of a saved selection, and saving from the live page without script."""
 
 import html
+import re
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -43,6 +44,68 @@ def test_the_form_saves_and_leads_to_the_page(client: TestClient) -> None:
     assert "<7>" not in page.text
     for text in ("HPN-20A-5", "Reference 4711", "Today the result is the same", f'href="{html.escape(LINK)}"'):
         assert text in page.text
+
+
+def once_of(page: str) -> str:
+    """One-time key of the form on a page."""
+    found = re.findall(r'name="once" value="([^"]*)"', page)
+    assert len(found) == 1
+    return str(found[0])
+
+
+def count(client: TestClient) -> int:
+    return len(client.get("/api/v1/selections").json()["selections"])
+
+
+def test_a_form_sent_twice_saves_once(client: TestClient) -> None:
+    once = once_of(client.get(LINK).text)
+
+    addresses = [sent(client, title="Axis 7", once=once) for _ in range(2)]
+
+    assert re.fullmatch(r"[A-Za-z0-9_-]{22}", once)
+    assert addresses[0] == addresses[1]
+    assert count(client) == 1
+
+
+def test_a_form_sent_again_with_another_title_saves_another(client: TestClient) -> None:
+    once = once_of(client.get(LINK).text)
+
+    assert sent(client, title="Axis 7", once=once) != sent(client, title="Axis 8", once=once)
+
+
+def test_every_form_has_a_key_of_its_own(client: TestClient) -> None:
+    first, second = (once_of(client.get(LINK).text) for _ in range(2))
+
+    assert first != second
+    assert sent(client, once=first) != sent(client, once=second)
+
+
+def test_a_form_without_a_key_that_can_be_one_saves_each_time(client: TestClient) -> None:
+    for once in ("", "x", "é" * 22, "A" * 200):
+        assert sent(client, once=once)
+
+    assert count(client) == 4
+
+
+def test_a_form_that_comes_back_keeps_its_key(client: TestClient) -> None:
+    once = once_of(client.get(LINK).text)
+
+    response = client.post("/selections", data={"link": LINK, "title": "a\x07b", "once": once})
+
+    assert once_of(response.text) == once
+
+
+def test_a_form_whose_selection_was_deleted_says_so_and_can_be_sent_anew(client: TestClient) -> None:
+    once = once_of(client.get(LINK).text)
+    client.delete(f"/api/v1{sent(client, once=once)}")
+
+    response = client.post("/selections", data={"link": LINK, "once": once})
+
+    assert response.status_code == 410
+    assert "has been deleted since" in response.text
+    assert count(client) == 0
+    assert sent(client, once=once_of(response.text))
+    assert count(client) == 1
 
 
 def test_labels_can_be_left_blank(client: TestClient) -> None:

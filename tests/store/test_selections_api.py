@@ -110,6 +110,27 @@ def test_a_key_with_other_content_is_a_problem(client: TestClient) -> None:
     assert "used before" in response.json()["detail"]
 
 
+def test_a_retry_of_what_was_deleted_is_a_problem_that_says_what_to_do(client: TestClient) -> None:
+    body, headers = {"application": worked_example(), "title": "t"}, {"Idempotency-Key": "k"}
+    client.delete(f"{ADDRESS}/{save(client, headers, title='t')}")
+
+    response = client.post(ADDRESS, json=body, headers=headers)
+
+    assert response.status_code == 410
+    assert response.headers["content-type"] == "application/problem+json"
+    assert "take a new key" in response.json()["detail"]
+    assert client.get(ADDRESS).json()["selections"] == []
+    assert client.post(ADDRESS, json=body, headers={"Idempotency-Key": "l"}).status_code == 201
+
+
+def test_the_document_says_what_becomes_of_a_key(client: TestClient) -> None:
+    operations = client.get("/openapi.json").json()["paths"][ADDRESS]["post"]
+
+    key = next(entry for entry in operations["parameters"] if entry["name"] == "Idempotency-Key")
+    assert "410" in key["description"]
+    assert "410" in operations["responses"]
+
+
 @pytest.mark.parametrize("key", ["", '""', "a b", "ä", "x" * 201])
 def test_a_key_that_cannot_be_one_is_refused(client: TestClient, key: str) -> None:
     headers = {b"Idempotency-Key": key.encode()}

@@ -1,13 +1,14 @@
 """The store keeps what it has acknowledged, on SQLite and on PostgreSQL alike."""
 
 import asyncio
+import hashlib
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
 import pytest
 from sqlalchemy import Connection, event, text
 
-from hpn.store import KeyReusedError, Store, StoreError, StoreUnavailableError
+from hpn.store import KeyReusedError, KeySpentError, Store, StoreError, StoreUnavailableError
 from hpn.store.writer import MAXIMUM_WAITING
 from tests.store.drafts import draft
 
@@ -140,6 +141,59 @@ async def test_the_same_key_with_other_content_is_refused(store: Store, other: d
 
     assert await count(store) == 1
     assert await store.find(first) is not None
+
+
+async def test_a_late_retry_of_what_was_deleted_is_refused_and_saves_nothing(store: Store, database: str) -> None:
+    once = draft(idempotency_key="k", title="t")
+    assert await store.delete(await store.save(once))
+    other = Store(database)  # another worker, or this one after a restart
+
+    for each in (store, other):
+        with pytest.raises(KeySpentError, match="has been deleted"):
+            await each.save(once)
+        with pytest.raises(KeySpentError, match="has been deleted"):
+            await each.save(draft(idempotency_key="k", title="u"))
+
+    assert await count(store) == 0
+    assert isinstance(await store.save(draft(idempotency_key="l", title="t")), str)
+    await other.close()
+
+
+async def test_a_spent_key_fails_alone(store: Store) -> None:
+    await store.delete(await store.save(draft(idempotency_key="spent")))
+
+    keys = ("a", "spent", None, "b", "a")
+    outcomes = await asyncio.gather(*(store.save(draft(idempotency_key=key)) for key in keys), return_exceptions=True)
+
+    assert [isinstance(outcome, str) for outcome in outcomes] == [True, False, True, True, True]
+    assert outcomes[0] == outcomes[4]
+    assert await count(store) == 3
+
+
+async def test_a_deletion_leaves_nothing_of_the_key_but_its_hash(store: Store) -> None:
+    await store.delete(await store.save(draft(idempotency_key="part 4711")))
+    await store.delete(await store.save(draft()))
+
+    async with store._engine.connect() as connection:
+        rows = (await connection.execute(text("SELECT key_sha256 FROM spent_keys"))).scalars().all()
+
+    assert rows == [hashlib.sha256(b"part 4711").hexdigest()]
+
+
+async def test_retries_and_deletions_at_once_never_bring_back_what_was_deleted(store: Store, database: str) -> None:
+    other = Store(database)
+    for number in range(20):
+        once = draft(idempotency_key=f"k{number}")
+        id = await store.save(once)
+
+        outcomes = await asyncio.gather(
+            other.save(once), store.delete(id), other.save(once), store.save(once), return_exceptions=True
+        )
+
+        assert outcomes[1] is True
+        assert all(outcome == id or isinstance(outcome, KeySpentError) for outcome in outcomes[::2])
+    assert await count(store) == 0
+    await other.close()
 
 
 async def test_identical_requests_at_once_make_one_row_also_from_several_workers(store: Store, database: str) -> None:

@@ -13,5 +13,9 @@ class NewerDatabaseError(StoreError):
     """A newer version of this program has changed the database in a way that this one does not know."""
 
 
+class KeySpentError(StoreError):
+    """What was saved under an idempotency key has been deleted since."""
+
+
 class KeyReusedError(StoreError):
     """An idempotency key that was used before comes with other content."""

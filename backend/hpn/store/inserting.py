@@ -1,25 +1,29 @@
-"""What one transaction of saving does: rows, the catalogues behind them, and whose idempotency keys they are."""
+"""What one transaction of saving or deleting does: rows, the catalogues behind them, and whose keys they have."""
 
+import hashlib
 import secrets
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from datetime import UTC, datetime
 from functools import lru_cache
 from typing import Any
 
 import brotli
-from sqlalchemy import Connection, select, text
+from sqlalchemy import Connection, bindparam, delete, select, text
 
 from hpn.catalogue import Catalogue
 from hpn.catalogue_copy import copy_of
-from hpn.store.errors import KeyReusedError
+from hpn.store.errors import KeyReusedError, KeySpentError
 from hpn.store.packing import packed
 from hpn.store.saved import Draft
-from hpn.store.tables import UtcTime, selections
+from hpn.store.tables import UtcTime, selections, spent_keys
 
 Row = dict[str, Any]
 Outcome = str | Exception
 
 COLUMNS = [column.name for column in selections.c]
+SPEND = text("INSERT INTO spent_keys (key_sha256, deleted) VALUES (:hash, :moment) ON CONFLICT DO NOTHING").bindparams(
+    bindparam("moment", type_=UtcTime)
+)
 KEEP = text("INSERT INTO catalogues (version, content_brotli) VALUES (:version, :content) ON CONFLICT DO NOTHING")
 
 
@@ -49,8 +53,21 @@ def insert(connection: Connection, rows: Sequence[Row], catalogues: Mapping[str,
     for version in sorted(catalogues):
         connection.execute(KEEP, {"version": version, "content": brotli.compress(copy_of(catalogues[version]))})
     _insert_rows(connection, sorted(rows, key=lambda row: row["idempotency_key"] or ""))
-    holders = _holders(connection, {row["idempotency_key"] for row in rows} - {None})
-    return [_outcome(row, holders.get(row["idempotency_key"])) for row in rows]
+    keys = {row["idempotency_key"] for row in rows} - {None}
+    if keys:
+        # After the insertion, which has waited for whoever else had one of these keys in hand.
+        _withdraw_spent(connection, rows)
+    holders = _holders(connection, keys) if keys else {}
+    return [_outcome(row, holders) for row in rows]
+
+
+def remove(connection: Connection, id: str) -> bool:
+    """Delete a selection, and remember that its idempotency key is spent; False where there is none."""
+    c = selections.c
+    gone = connection.execute(delete(selections).where(c.id == id).returning(c.idempotency_key)).one_or_none()
+    if gone is not None and gone.idempotency_key is not None:
+        connection.execute(SPEND, {"hash": _hash(gone.idempotency_key), "moment": datetime.now(UTC)})
+    return gone is not None
 
 
 def _insert_rows(connection: Connection, rows: Sequence[Row]) -> None:
@@ -67,18 +84,38 @@ def _insertion(count: int, mark: str) -> str:
     return f"INSERT INTO selections ({', '.join(COLUMNS)}) VALUES {rows} ON CONFLICT (idempotency_key) DO NOTHING"
 
 
-def _holders(connection: Connection, keys: set[str]) -> dict[str, tuple[str, str]]:
+def _hash(key: str) -> str:
+    return hashlib.sha256(key.encode()).hexdigest()
+
+
+def _withdraw_spent(connection: Connection, rows: Sequence[Row]) -> None:
+    """Take back those of these rows whose keys are spent."""
+    hashes = {row["id"]: _hash(row["idempotency_key"]) for row in rows if row["idempotency_key"] is not None}
+    c = spent_keys.c
+    query = select(c.key_sha256).where(c.key_sha256.in_(set(hashes.values())))
+    spent = set(connection.execute(query).scalars())
+    if spent:
+        ids = [id for id, key_hash in hashes.items() if key_hash in spent]
+        connection.execute(delete(selections).where(selections.c.id.in_(ids)))
+
+
+def _holders(connection: Connection, keys: Iterable[str]) -> dict[str, tuple[str, str]]:
     """Id and digest of the selections that hold these idempotency keys."""
-    if not keys:
-        return {}
     c = selections.c
-    query = select(c.idempotency_key, c.id, c.digest).where(c.idempotency_key.in_(keys))
+    query = select(c.idempotency_key, c.id, c.digest).where(c.idempotency_key.in_(list(keys)))
     return {key: (id, digest) for key, id, digest in connection.execute(query)}
 
 
-def _outcome(row: Row, holder: tuple[str, str] | None) -> Outcome:
+def _outcome(row: Row, holders: Mapping[str, tuple[str, str]]) -> Outcome:
     """Id under which a row is saved: its own, or that of the row that was first with its idempotency key."""
-    id, digest = holder or (row["id"], row["digest"])
+    key = row["idempotency_key"]
+    if key is None:
+        return str(row["id"])
+    if key not in holders:
+        return KeySpentError(
+            "what was saved under this idempotency key has been deleted; take a new key to save it anew"
+        )
+    id, digest = holders[key]
     if digest != row["digest"]:
         return KeyReusedError(
             "this idempotency key was used before, with other content; take a new key for a new selection"

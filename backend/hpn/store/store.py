@@ -9,7 +9,7 @@ from contextlib import asynccontextmanager
 from datetime import UTC, datetime
 
 import brotli
-from sqlalchemy import delete, select, text, tuple_
+from sqlalchemy import select, text, tuple_
 from sqlalchemy.exc import DataError, SQLAlchemyError
 from sqlalchemy.ext.asyncio import AsyncConnection
 
@@ -17,7 +17,7 @@ from hpn.catalogue import Catalogue
 from hpn.catalogue_copy import UnreadableCopyError, read_copy
 from hpn.store.engine import make_engine, make_transactions
 from hpn.store.errors import NewerDatabaseError, StoreUnavailableError
-from hpn.store.inserting import Outcome, insert, row_of
+from hpn.store.inserting import Outcome, insert, remove, row_of
 from hpn.store.packing import unpacked
 from hpn.store.saved import Draft, Page, SavedSelection, Summary
 from hpn.store.tables import catalogues, selections
@@ -81,7 +81,7 @@ class Store:
     async def save(self, draft: Draft) -> str:
         """Id of the saved selection: a new one, or the one that the same idempotency key has saved before.
 
-        Raises KeyReusedError where the key came with other content.
+        Raises KeyReusedError where the key came with other content, KeySpentError where what it saved was deleted.
         """
         return await self._writer.save(draft)
 
@@ -126,9 +126,8 @@ class Store:
         """Delete a selection; False where there is none with this id."""
         if not ID.fullmatch(id):
             return False
-        statement = delete(selections).where(selections.c.id == id)
         async with self._reachable():
-            return await self._transactions.run(lambda connection: connection.execute(statement).rowcount) == 1
+            return await self._transactions.run(lambda connection: remove(connection, id))
 
     @asynccontextmanager
     async def _reachable(self) -> AsyncIterator[None]:

@@ -44,6 +44,14 @@ selections = Table(
     Index("selections_idempotency_key", "idempotency_key", unique=True),
 )
 
+spent_keys = Table(
+    "spent_keys",
+    metadata,
+    # Only a hash, because what is deleted is to be gone.
+    Column("key_sha256", String(64), primary_key=True),
+    Column("deleted", UtcTime, nullable=False),
+)
+
 catalogues = Table(
     "catalogues",
     metadata,

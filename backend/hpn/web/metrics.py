@@ -13,7 +13,7 @@ from prometheus_client import CollectorRegistry, Counter, Histogram, ProcessColl
 from prometheus_client.multiprocess import MultiProcessCollector
 
 from hpn.catalogue import Catalogue
-from hpn.store import Draft, KeyReusedError, Page, SavedSelection, Store
+from hpn.store import Draft, KeyReusedError, KeySpentError, Page, SavedSelection, Store
 
 CONTENT_TYPE = "text/plain; version=0.0.4; charset=utf-8"
 FOLDER = "PROMETHEUS_MULTIPROC_DIR"
@@ -132,7 +132,7 @@ class CountedStore(Store):
     async def _counted(self, operation: str) -> AsyncIterator[None]:
         try:
             yield
-        except (KeyReusedError, ValueError):  # the caller's mistake
+        except (KeyReusedError, KeySpentError, ValueError):  # the caller's mistake
             self._metrics.store_operation(operation, "refused")
             raise
         except BaseException:

@@ -24,6 +24,7 @@ TITLES = {
     406: "Not acceptable",
     408: "The request took too long to arrive",
     409: "In conflict with the present state",
+    410: "No longer there",
     412: "Precondition failed",
     413: "The request is too large",
     414: "The address is too long",

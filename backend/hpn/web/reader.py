@@ -1,6 +1,7 @@
 """Who reads a page: the language, the units and the number format that everything is shown in."""
 
 import re
+import secrets
 from collections.abc import Callable, Mapping
 from contextvars import ContextVar
 from dataclasses import dataclass
@@ -221,13 +222,19 @@ def reader_of(_: Context) -> Reader:
     return current()
 
 
+def once() -> str:
+    """A key that nobody can guess, for a form that is to count once however often it is sent."""
+    return secrets.token_urlsafe(16)
+
+
 GLOBALS = {
+    "once": once,
     "here": address,
     "measures": measures,
     "reader": current,
     "LANGUAGE_NAMES": LANGUAGE_NAMES,
 }
-"""What the form of settings shows."""
+"""What the forms of settings and of saving need."""
 
 GETTEXT = (_for_reader("text"), _for_reader("plural"))
 """`_()` and `ngettext()` of the templates."""

@@ -1,5 +1,6 @@
 """The page of a saved selection, and the form of the live page that saves one."""
 
+import hashlib
 import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
@@ -31,6 +32,7 @@ from hpn.web.selection_schemas import Labels
 from hpn.web.selections import RETRY_SECONDS, Today, found, save, url_of
 
 DIFFERENCES_ON_PAGE = 100
+ONCE = re.compile(r"[A-Za-z0-9_-]{22}")
 
 FIELDS = {
     "selected": N_("selected gear"),
@@ -92,12 +94,24 @@ async def save_from_page(request: Request) -> Response:
     query = fields.get("link", "").removeprefix("/").removeprefix("?")
     try:
         labels = Labels.model_validate({name: fields.get(name, "") for name in Labels.model_fields})
-        id = await save(request.app.state, _application(query), labels)
+        id = await save(request.app.state, _application(query), labels, _key(fields))
     except (ValidationError, InputError) as error:
         return _refused(request, Problem.of(error), fields, query)
     except (Problem, StoreUnavailableError) as error:
         return _refused(request, error, fields, query)
     return RedirectResponse(url_of(id), 303)
+
+
+def _key(fields: Mapping[str, str]) -> str | None:
+    """Idempotency key of a form and what is in it: sent twice it saves once, edited it saves another.
+
+    The blank keeps it apart from the keys of API callers.
+    """
+    once = fields.get("once", "")
+    if ONCE.fullmatch(once) is None:
+        return None
+    content = orjson.dumps([fields.get(name, "") for name in ("link", *Labels.model_fields)])
+    return f"form {once} {hashlib.sha256(content).hexdigest()[:32]}"
 
 
 def _application(query: str) -> Application:
@@ -113,6 +127,8 @@ def _refused(
     """Page that says why, and still has what was typed."""
     if isinstance(error, StoreUnavailableError):
         error = Problem(503, str(error), headers={"Retry-After": str(RETRY_SECONDS)})
+    if error.status_code == 410 and fields:
+        fields = {**fields, "once": ""}  # whoever saves it again means to
     shown = {
         "detail": error.detail,
         "errors": {location[0]: text for location, text in error.errors if location},

@@ -17,7 +17,7 @@ from hpn.application import Application, InputError
 from hpn.catalogue import Catalogue
 from hpn.differences import Difference, FigureDifference, differences, figure_differences
 from hpn.selection import select
-from hpn.store import Draft, KeyReusedError, SavedSelection, Store, Summary
+from hpn.store import Draft, KeyReusedError, KeySpentError, SavedSelection, Store, Summary
 from hpn.web import schemas
 from hpn.web.api import LONG_CYCLE
 from hpn.web.bodies import read_json
@@ -36,6 +36,10 @@ from hpn.web.settings import Settings
 
 DIFFERENCES_SHOWN = 500
 RETRY_SECONDS = 5
+KEY = (
+    "Makes a retry safe: the same key and content is saved once, other content is a 422. A key belongs to its caller "
+    "and lasts: once its selection is deleted it is answered with 410, so that a late retry saves nothing anew."
+)
 
 router = APIRouter(prefix="/api/v1/selections")
 
@@ -47,11 +51,11 @@ router = APIRouter(prefix="/api/v1/selections")
     openapi_extra=schemas.request_body(SaveRequest)
     | {
         "parameters": [
-            schemas.header("Idempotency-Key", "Makes a retry safe: the same key and content is saved once."),
+            schemas.header("Idempotency-Key", KEY),
             schemas.header("Prefer", "return=minimal: no body; return=representation: the whole saved selection."),
         ]
     },
-    responses={201: {"model": SavedReply}, **schemas.problems(400, 408, 413, 415, 422, 503)},
+    responses={201: {"model": SavedReply}, **schemas.problems(400, 408, 410, 413, 415, 422, 503)},
     response_class=schemas.JSONBytes,
 )
 async def save_selection(request: Request) -> Response:
@@ -115,7 +119,7 @@ async def list_selections(
     openapi_extra={"parameters": [schemas.header("If-Match", "Delete only this state of it.")]},
 )
 async def delete_selection(request: Request, id: str) -> Response:
-    """Deletes a saved selection for good."""
+    """Deletes a saved selection for good. A retry of saving it, with its Idempotency-Key, is then answered with 410."""
     store: Store = request.app.state.store
     if "if-match" in request.headers:
         require_match(request, await _representation(request, id))
@@ -148,7 +152,7 @@ def url_of(id: str) -> str:
 
 
 async def save(state: State, application: Application, labels: Labels, key: str | None = None) -> str:
-    """Select and save; the id under which it is durable. Problem 422 for a key that came with other content before."""
+    """Select and save; the id under which it is durable. Problem 422 or 410 for a key that was used before."""
     asked = (application, labels, key, state.catalogue)
     long = len(application.duty_cycle.phases) > LONG_CYCLE
     draft = await run_in_threadpool(_draft, *asked) if long else _draft(*asked)
@@ -157,6 +161,8 @@ async def save(state: State, application: Application, labels: Labels, key: str 
         id: str = await state.store.save(draft)
     except KeyReusedError as error:
         raise Problem(422, str(error)) from None
+    except KeySpentError as error:
+        raise Problem(410, str(error)) from None
     return id
 
 
