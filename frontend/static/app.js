@@ -40,7 +40,7 @@ document.addEventListener("htmx:before:swap", (event) => {
   if (ctx.asked === undefined) return;
   // An answer to what the form no longer says must not overwrite it; the request for what it says now is under way.
   if (ctx.asked !== contentOf(formOf())) event.preventDefault();
-  else mirrorIntoAttributes(formOf());
+  else if (event.detail.tasks.some((task) => task.type === "main")) mirrorIntoAttributes(formOf());
 });
 
 document.addEventListener("htmx:after:swap", (event) => {
@@ -50,6 +50,31 @@ document.addEventListener("htmx:after:swap", (event) => {
   if (ctx.presses) presses.splice(0, ctx.presses);
   ctx.refocus?.();
 });
+
+// --- What an answer brings --------------------------------------------------------------------------------------------
+
+// Typing has changed the form already, so that it need not come again, unless there is or was something to correct.
+const typed = (ctx) =>
+  !ctx.replaces && !presses.length && document.querySelector("#application:not([data-invalid]):not(:has(#phases)) ~ #result.answered");
+
+// What is folded away comes along from when somebody has unfolded it for the first time.
+const unfolded = new Set();
+
+document.addEventListener("htmx:before:request", (event) => {
+  const { ctx } = event.detail;
+  if (ctx.sourceElement.id === "application") ctx.request.headers["HPN-Parts"] = [...(typed(ctx) ? [] : ["form"]), "result", ...unfolded].join(" ");
+});
+
+document.addEventListener(
+  "toggle",
+  (event) => {
+    const part = event.target;
+    if (!part.open || !part.matches("[data-part]")) return;
+    unfolded.add(part.id);
+    if (part.childElementCount === 1) htmx.trigger(part, "unfold");
+  },
+  true,
+);
 
 // --- Row edits that are under way while somebody types on -------------------------------------------------------------
 

@@ -114,6 +114,21 @@ def test_trivial_steps_are_folded_until_the_switch_or_their_own_line_opens_them(
     expect(peak).to_be_hidden()
 
 
+def test_calculation_opened_after_an_edit_is_that_of_the_edit(visitor: Visitor) -> None:
+    page = visitor.open(EXAMPLE)
+    torque(page, 1).fill("41")
+    expect(page.get_by_role("row", name="Average torque").first).to_contain_text("32.1")
+    expect(page.get_by_role("math", include_hidden=True)).to_have_count(0)
+    open_calculation(page, "HPN-20A-5")
+    peak = page.get_by_role("group", name="Formulas: Load limit 2: T_R")
+    page.get_by_role("switch", name="Open the trivial steps too").click()
+    expect(peak).to_contain_text("41")
+    open_calculation(page, "HPN-20A-5")
+    torque(page, 1).fill("42")
+    open_calculation(page, "HPN-20A-5")
+    expect(peak).to_contain_text("42")
+
+
 def test_calculation_opens_without_script(visitor: Visitor) -> None:
     page = visitor.open(EXAMPLE, script=False)
     open_calculation(page, "HPN-20A-5")

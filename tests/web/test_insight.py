@@ -107,5 +107,41 @@ def test_a_long_cycle_pins_by_buttons_instead_of_long_links(client: TestClient) 
 def test_calculation_stands_on_the_page_in_MathML_folded(client: TestClient) -> None:
     html = client.get(EXAMPLE).text
     assert html.count("<math ") > 15
-    assert re.search(r'<details class="panel calculation" id="calculation">', html)
+    assert re.search(r'<details class="panel calculation" id="calculation"(?! open)', html)
     assert "1\u202f167\u202f275.94" in html
+
+
+def parts(client: TestClient, names: str, query: str = EXAMPLE) -> str:
+    """What a script gets that asks for these parts alone."""
+    return client.get(query, headers={**HTMX, "HPN-Parts": names}).text
+
+
+def test_an_edit_brings_neither_the_form_nor_what_is_folded_away(client: TestClient) -> None:
+    html = parts(client, "result")
+    assert "<form id=" not in html
+    assert 'id="calculation"' in html
+    assert "<math" not in html
+    assert "data-figure" not in html
+    assert html.count("/application.json?") == 1  # the form's links to files follow all the same
+
+
+def test_what_is_unfolded_comes_alone_or_with_the_result(client: TestClient) -> None:
+    alone = client.get(EXAMPLE, headers={**HTMX, "HPN-Parts": "calculation"})
+    assert "<math" in alone.text
+    assert "<table" not in alone.text
+    assert "HX-Push-Url" not in alone.headers
+    assert "HPN-Parts" in alone.headers["Vary"]
+    assert "data-figure" in parts(client, "stops_figure")
+    assert "<math" in parts(client, "result calculation")
+
+
+def test_the_form_comes_where_there_is_something_to_correct(client: TestClient) -> None:
+    html = parts(client, "result", "/?T=fast&n=250&t=0.3")
+    assert 'aria-invalid="true"' in html
+    assert "<form id=" in html
+
+
+def test_a_cycle_too_long_to_repeat_its_link_brings_all_at_once(client: TestClient) -> None:
+    html = parts(client, "result", "/?" + "&".join(["T=40&n=250&t=0.3"] * 300))
+    assert "<math" in html
+    assert "hx-get" not in html

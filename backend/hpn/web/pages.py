@@ -29,6 +29,16 @@ from hpn.web.ordering import MOTOR_CODE, ordering_code
 
 TEMPLATES = Path(__file__).parents[3] / "frontend/templates"
 
+PARTS = frozenset(("form", "result", "calculation", "stops_figure"))
+"""What an answer is made of.
+
+A script names in the header HPN-Parts those that it is after, so that an edit brings neither the form that it came from
+nor what is folded away. Where there is something to correct, the form comes in any case.
+"""
+
+LONGEST_REPEATED = 3000
+"""Length of a link up to which a page may carry it hundreds of times."""
+
 Candidate = Mapping[str, Any]
 
 
@@ -65,6 +75,11 @@ class Answer:
     insight: Insight
 
     @property
+    def linked(self) -> bool:
+        """Whether the link is short enough to stand once for each gear."""
+        return len(self.link) <= LONGEST_REPEATED
+
+    @property
     def too_long(self) -> bool:
         """Whether the address is more than servers and proxies let through."""
         return len(self.address) > links.MAXIMUM_QUERY_BYTES
@@ -82,13 +97,14 @@ def respond(request: Request, form: Form) -> Response:
     """The page of a form, or only the part that changes."""
     catalogue: Catalogue = request.app.state.catalogue
     form, answer = answered(form, catalogue)
+    parts = _parts(request)
     if answer and WRITTEN in request.query_params and not _wants_changes(request) and not form.focus:
         return RedirectResponse(answer.address, 303)  # what was written in a reader's units gets an address for all
-    if answer:
+    if answer and "result" in parts:
         request.app.state.metrics.selection(answer.reply["selected"])
     status = 422 if form.problems else 200
     template = "_changes.html" if _wants_changes(request) else "page.html"
-    return _render(request, template, status, form=form, answer=answer, catalogue=catalogue)
+    return _render(request, template, status, form=form, answer=answer, parts=parts, catalogue=catalogue)
 
 
 def read_query(query: bytes) -> Form:
@@ -180,14 +196,20 @@ def _wants_changes(request: Request) -> bool:
     return "hx-request" in request.headers and "hx-history-restore-request" not in request.headers
 
 
+def _parts(request: Request) -> frozenset[str]:
+    """Parts that the answer is to bring: all of them, unless a script asks for some."""
+    asked = request.headers.get("hpn-parts")
+    return PARTS if asked is None or not _wants_changes(request) else PARTS.intersection(asked.split())
+
+
 def _render(request: Request, template: str, status: int, **context: Any) -> Response:
     answer: Answer | None = context.get("answer")
     if "form" in context:
         context["form"] = links.for_reader(context["form"], reader.current())
     content = environment(request.app.state).get_template(template).render(**context)
     response = HTMLResponse(content, status)
-    response.headers["Vary"] = "HX-Request, HX-History-Restore-Request"
-    if answer and _wants_changes(request):
+    response.headers["Vary"] = "HX-Request, HX-History-Restore-Request, HPN-Parts"
+    if answer and _wants_changes(request) and "result" in context["parts"]:
         # What is too long for an address must not stand under somebody else's: reloading leads to where it came from.
         response.headers["HX-Push-Url"] = "/paste" if answer.too_long else answer.address
     return response
