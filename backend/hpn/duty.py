@@ -1,7 +1,6 @@
 """Applications as arrays: N duty cycles side by side, so that one code path serves one and a million."""
 
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -63,12 +62,9 @@ class Duty:
 
     def __init__(self, applications: Sequence[Application]) -> None:
         self.applications = applications
-        longest = max([len(application.duty_cycle.phases) for application in applications])
-        self.phases = np.zeros((len(applications), longest, 5))
-        for table, application in zip(self.phases, applications, strict=True):
-            phases = application.duty_cycle.phases
-            table[: len(phases)] = _with_loads(application) if application.loads else [_unloaded(p) for p in phases]
-        np.abs(self.phases, out=self.phases)
+        cycles = [_phases(application) for application in applications]
+        longest = max(map(len, cycles))
+        self.phases = np.array([cycle + [_NOTHING] * (longest - len(cycle)) for cycle in cycles])
         self.wishes = np.array([_wishes(application) for application in applications], dtype=np.float64)
         self.figures = np.empty((len(applications), 5))
         _work_out(self.phases, self.wishes, self.figures)
@@ -124,20 +120,25 @@ class Duty:
         return self.figures[:, N_OUT_MAX]
 
 
-def _unloaded(phase: Any) -> tuple[float, ...]:
-    return phase.torque_Nm, phase.speed_rpm, phase.duration_s, 0.0, 0.0
+_NOTHING = (0.0,) * 5
+"""A phase of no duration."""
 
 
-def _with_loads(application: Application) -> list[tuple[float, ...]]:
-    assert application.loads is not None
+def _phases(application: Application) -> list[tuple[float, ...]]:
+    """A row of `Duty.phases` without its padding."""
+    if application.loads is None:
+        return [
+            (abs(phase.torque_Nm), abs(phase.speed_rpm), phase.duration_s, 0.0, 0.0)
+            for phase in application.duty_cycle.phases
+        ]
     radial, axial = application.loads.radial_N or 0.0, application.loads.axial_N or 0.0
     return [
         (
-            phase.torque_Nm,
-            phase.speed_rpm,
+            abs(phase.torque_Nm),
+            abs(phase.speed_rpm),
             phase.duration_s,
-            radial if phase.radial_N is None else phase.radial_N,
-            axial if phase.axial_N is None else phase.axial_N,
+            abs(radial if phase.radial_N is None else phase.radial_N),
+            abs(axial if phase.axial_N is None else phase.axial_N),
         )
         for phase in application.duty_cycle.phases
     ]

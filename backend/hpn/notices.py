@@ -1,10 +1,12 @@
 """What the reader of a result must know beyond its numbers: assumptions, standings, unlimited values."""
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
 from hpn.application import Application
+from hpn.catalogue import GearList
 from hpn.checks import Evaluation
 from hpn.wording import N_, Quantity, Sentence, Value
 
@@ -170,11 +172,7 @@ def _motor(application: Application, curves: bool) -> list[Notice]:
 
 
 def _catalogue(evaluation: Evaluation) -> list[Notice]:
-    notes = {gear.name: gear.note for gear in evaluation.gears.rows if gear.note and gear.rated_torque_Nm is None}
-    notices = [
-        _notice("size_unrated", "{name} is listed as unrated. {note}", ("note",), name=n, note=t)
-        for n, t in notes.items()
-    ]
+    notices = list(_unrated(evaluation.gears))
     if evaluation.catalogue.supplement:
         notices.append(
             _notice(
@@ -183,3 +181,12 @@ def _catalogue(evaluation: Evaluation) -> list[Notice]:
             )
         )
     return notices
+
+
+@lru_cache(maxsize=256)
+def _unrated(gears: GearList) -> tuple[Notice, ...]:
+    notes = {gear.name: gear.note for gear in gears.rows if gear.note and gear.rated_torque_Nm is None}
+    return tuple(
+        _notice("size_unrated", "{name} is listed as unrated. {note}", ("note",), name=n, note=t)
+        for n, t in notes.items()
+    )

@@ -103,9 +103,11 @@ def candidates_of(application: Application, catalogue: Catalogue) -> GearList:
     sizes, ratios = application.requirements.sizes, application.requirements.ratios
     problems: list[tuple[Location, Sentence]] = []
     for name, wanted, there in (("sizes", sizes, catalogue.sizes), ("ratios", ratios, catalogue.ratios)):
-        listed = ", ".join(str(value) for value in there)
         problems += [
-            (("requirements", name, index), Sentence(NOT_THERE, {"value": str(value), "listed": listed}))
+            (
+                ("requirements", name, index),
+                Sentence(NOT_THERE, {"value": str(value), "listed": ", ".join(map(str, there))}),
+            )
             for index, value in enumerate(wanted or ())
             if value not in there
         ]

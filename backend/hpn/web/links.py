@@ -8,7 +8,7 @@ import difflib
 import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, get_args
 from urllib.parse import quote
 
 from pydantic import BaseModel, ValidationError
@@ -122,30 +122,29 @@ def to_link(application: Application) -> str:
 
     `parse` gives the same application back; a motor of which nothing is known counts as no motor.
     """
-    return "/?" + "&".join(
-        f"{name}={value}" for name, value in (*_phase_pairs(application), *_other_pairs(application))
-    )
+    return "/?" + "&".join([*_phase_pairs(application), *_other_pairs(application)])
 
 
-def _phase_pairs(application: Application) -> Iterable[tuple[str, str]]:
-    phases = application.duty_cycle.phases
-    used = [s for s in PHASE_SYMBOLS if any(getattr(phase, s.path[0]) is not None for phase in phases)]
-    for phase in phases:
-        yield from ((symbol.name, _written(getattr(phase, symbol.path[0]))) for symbol in used)
+def _phase_pairs(application: Application) -> Iterable[str]:
+    phases = [phase.__dict__ for phase in application.duty_cycle.phases]
+    used = [(s.name, s.path[0]) for s in PHASE_SYMBOLS]
+    if application.loads is None:  # as in nearly every cycle
+        used = used[:3]
+    used = [(name, field) for name, field in used if any([phase[field] is not None for phase in phases])]
+    return [f"{name}={_written(phase[field])}" for phase in phases for name, field in used]
 
 
-def _other_pairs(application: Application) -> Iterable[tuple[str, str]]:
-    for parent, symbols in BY_PARENT.items():
+def _other_pairs(application: Application) -> Iterable[str]:
+    for parent, fields in _ENTRIES:
         model = _part(application, parent)
-        if model is None:
+        if model is None or not model.model_fields_set:
             continue
-        for symbol in symbols:
-            if (field := symbol.path[-1]) in model.model_fields_set:
-                value = getattr(model, field)
-                if value != type(model).model_fields[field].default:
-                    yield from ((symbol.name, _written(item)) for item in (value if symbol.many else (value,)))
-    if application.output_load == _EMPTY_LOAD:
-        yield "fw", "1"  # a load case without a figure of its own must still be seen to exist
+        given, values = model.model_fields_set, model.__dict__
+        for name, field, default, many in fields:
+            if field in given and (value := values[field]) != default:
+                yield from [f"{name}={_written(item)}" for item in (value if many else (value,))]
+    if application.output_load is not None and application.output_load == _EMPTY_LOAD:
+        yield "fw=1"  # a load case without a figure of its own must still be seen to exist
 
 
 def _part(application: Application, path: tuple[str, ...]) -> BaseModel | None:
@@ -155,10 +154,28 @@ def _part(application: Application, path: tuple[str, ...]) -> BaseModel | None:
     return part
 
 
+def _default(symbol: Symbol) -> Any:
+    model: Any = Application
+    for step in symbol.path[:-1]:
+        kinds = get_args(model.model_fields[step].annotation) or (model.model_fields[step].annotation,)
+        model = next(kind for kind in kinds if kind is not type(None))
+    return model.model_fields[symbol.path[-1]].default
+
+
+_ENTRIES = [
+    (parent, [(symbol.name, symbol.path[-1], _default(symbol), symbol.many) for symbol in symbols])
+    for parent, symbols in BY_PARENT.items()
+]
+"""Per part of the application: query name, field, default, and whether there may be many."""
+
+
 def _written(value: float | int | str | None) -> str:
     if not isinstance(value, float):
         return "" if value is None else quote(str(value))
-    return repr(value).removesuffix(".0").replace("e+", "e").replace("e-0", "e-")
+    text = repr(value)
+    if text.endswith(".0"):
+        return text[:-2]
+    return text.replace("e+", "e").replace("e-0", "e-") if "e" in text else text
 
 
 # --- Link to application ----------------------------------------------------------------------------------------------
