@@ -168,7 +168,7 @@ document.addEventListener("click", (event) => {
   if (!link || event.button || event.ctrlKey || event.metaKey || event.shiftKey || event.altKey) return;
   event.preventDefault();
   const form = formOf();
-  form.elements.gear.value = link.dataset.gear;
+  form.elements.gear.value = new URL(link.href).searchParams.get("gear");
   startEdit();
   form.requestSubmit();
 });
