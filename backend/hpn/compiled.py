@@ -25,6 +25,9 @@ def compiled(function: Function) -> Function:
     return cast(Function, result)
 
 
+_equations: list["Equation"] = []
+
+
 class Equation:
     """A published equation: `case` computes it for one case, in compiled code; called by name it takes arrays.
 
@@ -36,6 +39,7 @@ class Equation:
         self.case: Any = compiled(function)
         self._parameters = signature(function).parameters
         self._by_phase = [group == "(p)" for group in layout.partition("->")[0].split(",")] if layout else []
+        _equations.append(self)
         self._over_arrays = np.vectorize(self.case, otypes=None if layout else [np.float64], signature=layout)
 
     def __call__(self, **given: Any) -> NDArray[np.float64]:
@@ -58,3 +62,9 @@ def equation(function: Callable[..., Any]) -> Equation:
 def over_phases(layout: str) -> Callable[[Callable[..., Any]], Equation]:
     """Make an equation out of a function that sums over phases; `layout` as in "(p),(p),()->()"."""
     return lambda function: Equation(function, layout)
+
+
+def compile_equations() -> None:
+    """Compile every equation now, rather than when it is first called by name."""
+    for known in _equations:
+        known(**dict.fromkeys(signature(known.case.py_func).parameters, np.ones(1)))

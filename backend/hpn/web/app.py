@@ -11,7 +11,9 @@ from uvicorn.middleware.proxy_headers import ProxyHeadersMiddleware
 
 from hpn import ENGINE_VERSION
 from hpn.application import Application
-from hpn.catalogue import load_catalogue
+from hpn.catalogue import Catalogue, load_catalogue
+from hpn.compiled import compile_equations
+from hpn.selection import select
 from hpn.store import Store, StoreUnavailableError
 from hpn.web import (
     api,
@@ -89,6 +91,7 @@ def create_app(settings: Settings | None = None) -> Service:
     )
     app.state.settings = settings
     app.state.catalogue = load_catalogue(settings.catalogue_folder, settings.catalogue_supplement)
+    _compile(app.state.catalogue)
     app.state.metrics = metrics
     app.state.store = CountedStore(
         settings.database_url.get_secret_value(), seconds=settings.database_seconds, metrics=metrics
@@ -107,6 +110,14 @@ def create_app(settings: Settings | None = None) -> Service:
     document = app.openapi
     app.openapi = lambda: openapi.complete(document(), *BODIES)  # type: ignore[method-assign]
     return app
+
+
+def _compile(catalogue: Catalogue) -> None:
+    """Compile what requests run, or load what was compiled before, so that none of them has to wait for it."""
+    compile_equations()
+    selection = select(Application.worked_example(), catalogue)
+    selection.json("/")
+    _ = selection.evaluation.bearing_loads
 
 
 def _front(app: Service, settings: Settings, metrics: Metrics) -> Any:
