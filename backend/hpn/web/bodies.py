@@ -41,17 +41,20 @@ def content_type_of(request: Request) -> str:
 
 
 async def _read(request: Request, maximum_bytes: int) -> bytes:
-    too_large = Problem(413, f"the body may have {maximum_bytes} bytes at most")
     declared = request.headers.get("content-length", "0")
     if declared.isascii() and declared.isdigit() and int(declared[:20]) > maximum_bytes:
-        raise too_large
+        raise _too_large(maximum_bytes)
     chunks, size = [], 0
     async for chunk in request.stream():
         size += len(chunk)
         if size > maximum_bytes:
-            raise too_large
+            raise _too_large(maximum_bytes)
         chunks.append(chunk)
     return b"".join(chunks)
+
+
+def _too_large(maximum_bytes: int) -> Problem:
+    return Problem(413, f"the body may have {maximum_bytes} bytes at most")
 
 
 async def read_form(request: Request) -> bytes:
