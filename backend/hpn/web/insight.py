@@ -2,11 +2,11 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 from urllib.parse import quote
 
 from hpn.calculation import Step, calculation_of
 from hpn.catalogue import Catalogue
-from hpn.checks import CHECKS
 from hpn.comparison import MOST_PINS, Candidate, Column, Group, groups_of, undominated
 from hpn.remedy import Room, followed, remedy_of, rooms_of, ways_of
 from hpn.selection import Selection
@@ -72,7 +72,7 @@ def checked_pins(form: Form, catalogue: Catalogue) -> Form:
 
 def insight_of(
     selection: Selection,
-    reply: Mapping[str, Sequence[Candidate]],
+    reply: Mapping[str, Any],
     landscape: Mapping[str, Candidate],
     chosen: Candidate,
     lighter: Candidate | None,
@@ -89,7 +89,7 @@ def insight_of(
     if not pins and (second := _second(reply["candidates"], chosen, lighter)):
         shown.append(second)
     columns = tuple(Column(entry, catalogue.by_designation[entry["designation"]]) for entry in shown)
-    titles = {check.code: check.explanation.title for check in CHECKS}
+    titles = {code: definition["title"] for code, definition in reply["check_definitions"].items()}
     return Insight(
         remedies={name: remedy_of(entry, catalogue.by_designation[name], u) for name, entry in listed.items()},
         rooms=rooms_of(chosen, u),
