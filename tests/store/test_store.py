@@ -260,6 +260,17 @@ async def test_closing_saves_what_still_waits(database: str) -> None:
     await again.close()
 
 
+async def test_a_store_that_was_closed_can_be_used_again(store: Store) -> None:
+    first = await store.save(draft())
+    await store.close()
+    await store.close()
+
+    second = await store.save(draft())
+
+    assert await store.find(first) is not None
+    assert await store.delete(second)
+
+
 async def test_sqlite_commits_reach_the_disk_and_readers_do_not_wait(tmp_path: Path) -> None:
     store = Store(f"sqlite:///{tmp_path}/new/folder/store.sqlite3")
     await store.open()

@@ -21,7 +21,7 @@ class Transactions(Protocol):
         """Result of the work, once its transaction is committed."""
 
     async def close(self) -> None:
-        """Close the connections."""
+        """Close the connections; the next work opens new ones."""
 
 
 class OnThread:
@@ -33,11 +33,13 @@ class OnThread:
 
     def __init__(self, engine: Engine) -> None:
         self.engine = engine
-        self._thread = ThreadPoolExecutor(1, thread_name_prefix="hpn-store")
+        self._thread: ThreadPoolExecutor | None = None
         self._connection: Connection | None = None
 
     async def run(self, work: Work[T]) -> T:
         """See Transactions. Work that has begun goes on when nobody waits for it any more."""
+        if self._thread is None:
+            self._thread = ThreadPoolExecutor(1, thread_name_prefix="hpn-store")
         return await asyncio.get_running_loop().run_in_executor(self._thread, self._transact, work)
 
     def _transact(self, work: Work[T]) -> T:
@@ -58,8 +60,10 @@ class OnThread:
 
     async def close(self) -> None:
         """See Transactions."""
-        await asyncio.get_running_loop().run_in_executor(self._thread, self._disconnect)
-        self._thread.shutdown(wait=False)
+        thread, self._thread = self._thread, None
+        if thread is not None:
+            await asyncio.get_running_loop().run_in_executor(thread, self._disconnect)
+            thread.shutdown(wait=False)
 
 
 class OnLoop:
