@@ -30,11 +30,16 @@ def heading(html: str) -> str:
     return found[1] if found else ""
 
 
+def lasting(html: str) -> str:
+    """A page without the key that its form to save has for once."""
+    return re.sub(r'(name="once" value=")[A-Za-z0-9_-]{22}"', r'\1"', html, count=1)
+
+
 def test_page_without_a_query_is_the_worked_example(client: TestClient) -> None:
     bare, linked = client.get("/"), client.get(EXAMPLE)
     assert bare.status_code == 200
     assert heading(bare.text) == "HPN-20A-5"
-    assert bare.text == linked.text
+    assert lasting(bare.text) == lasting(linked.text)
 
 
 def test_page_agrees_with_the_API(client: TestClient) -> None:
@@ -71,7 +76,7 @@ def test_htmx_gets_the_part_that_changes_and_the_canonical_address(client: TestC
 
 def test_htmx_going_back_gets_the_whole_page(client: TestClient) -> None:
     whole = client.get(EXAMPLE, headers={**HTMX, "HX-History-Restore-Request": "true"})
-    assert whole.text == client.get(EXAMPLE).text
+    assert lasting(whole.text) == lasting(client.get(EXAMPLE).text)
     assert "HX-Push-Url" not in whole.headers
     assert "HX-History-Restore-Request" in whole.headers["Vary"]
 
