@@ -8,12 +8,13 @@ import difflib
 import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, get_args
+from operator import itemgetter
+from typing import Any
 from urllib.parse import quote
 
 from pydantic import BaseModel, ValidationError
 
-from hpn.application import MAXIMUM_PHASES, Application, OutputLoad
+from hpn.application import MAXIMUM_PHASES, Application, DutyCycle, EmergencyStop, Motor, OutputLoad, Requirements
 from hpn.units import suffix_of
 from hpn.web import entries
 from hpn.web.entries import WAS, WRITTEN
@@ -113,6 +114,31 @@ class Form:
 
 
 _EMPTY_LOAD = OutputLoad()
+_PHASE_FIELDS = [(symbol.name, symbol.path[0]) for symbol in PHASE_SYMBOLS]
+
+
+@dataclass(frozen=True, slots=True)
+class _Field:
+    """A field of one part of the application: where its symbol stands in a link, and what needs no mention."""
+
+    place: int
+    symbol: Symbol
+    default: Any
+
+
+_IN_ORDER = [symbol for symbols in BY_PARENT.values() for symbol in symbols]
+_FIELDS: list[dict[str, _Field]] = [
+    {s.path[-1]: _Field(_IN_ORDER.index(s), s, model.model_fields[s.path[-1]].default) for s in BY_PARENT[parent]}
+    for parent, model in (
+        ((), Application),
+        (("duty_cycle",), DutyCycle),
+        (("emergency_stop",), EmergencyStop),
+        (("output_load",), OutputLoad),
+        (("requirements",), Requirements),
+        (("requirements", "motor"), Motor),
+    )
+]
+"""Fields that have a symbol, by name, of the parts of an application in the order of `_parts`."""
 
 # --- Application to link ----------------------------------------------------------------------------------------------
 
@@ -125,48 +151,39 @@ def to_link(application: Application) -> str:
     return "/?" + "&".join([*_phase_pairs(application), *_other_pairs(application)])
 
 
-def _phase_pairs(application: Application) -> Iterable[str]:
+def _phase_pairs(application: Application) -> list[str]:
     phases = [phase.__dict__ for phase in application.duty_cycle.phases]
-    used = [(s.name, s.path[0]) for s in PHASE_SYMBOLS]
-    if application.loads is None:  # as in nearly every cycle
-        used = used[:3]
-    used = [(name, field) for name, field in used if any([phase[field] is not None for phase in phases])]
+    used = _PHASE_FIELDS[: len(_REQUIRED)]
+    if application.loads is not None:
+        used += [
+            (name, field)
+            for name, field in _PHASE_FIELDS
+            if name in _LOADS and any(p[field] is not None for p in phases)
+        ]
     return [f"{name}={_written(phase[field])}" for phase in phases for name, field in used]
 
 
-def _other_pairs(application: Application) -> Iterable[str]:
-    for parent, fields in _ENTRIES:
-        model = _part(application, parent)
-        if model is None or not model.model_fields_set:
+def _other_pairs(application: Application) -> list[str]:
+    pairs: list[tuple[int, str, Any]] = []
+    for part, fields in zip(_parts(application), _FIELDS, strict=True):
+        if part is None:
             continue
-        given, values = model.model_fields_set, model.__dict__
-        for name, field, default, many in fields:
-            if field in given and (value := values[field]) != default:
-                yield from [f"{name}={_written(item)}" for item in (value if many else (value,))]
+        values = part.__dict__
+        for given in part.model_fields_set:
+            field = fields.get(given)
+            if field is not None and (value := values[given]) != field.default:
+                symbol = field.symbol
+                pairs += [(field.place, symbol.name, item) for item in (value if symbol.many else (value,))]
+    pairs.sort(key=itemgetter(0))
     if application.output_load is not None and application.output_load == _EMPTY_LOAD:
-        yield "fw=1"  # a load case without a figure of its own must still be seen to exist
+        pairs.append((0, "fw", 1))  # a load case without a figure of its own must still be seen to exist
+    return [f"{name}={_written(value)}" for _, name, value in pairs]
 
 
-def _part(application: Application, path: tuple[str, ...]) -> BaseModel | None:
-    part: BaseModel | None = application
-    for step in path:
-        part = getattr(part, step, None)
-    return part
-
-
-def _default(symbol: Symbol) -> Any:
-    model: Any = Application
-    for step in symbol.path[:-1]:
-        kinds = get_args(model.model_fields[step].annotation) or (model.model_fields[step].annotation,)
-        model = next(kind for kind in kinds if kind is not type(None))
-    return model.model_fields[symbol.path[-1]].default
-
-
-_ENTRIES = [
-    (parent, [(symbol.name, symbol.path[-1], _default(symbol), symbol.many) for symbol in symbols])
-    for parent, symbols in BY_PARENT.items()
-]
-"""Per part of the application: query name, field, default, and whether there may be many."""
+def _parts(application: Application) -> tuple[BaseModel | None, ...]:
+    asked = application.requirements
+    load, stop = application.output_load, application.emergency_stop
+    return application, application.duty_cycle, stop, load, asked, asked.motor
 
 
 def _written(value: float | int | str | None) -> str:
