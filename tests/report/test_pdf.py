@@ -97,6 +97,12 @@ def test_every_input_stands_in_the_report(catalogue: Catalogue) -> None:
     assert "medical equipment" in page and "PLM-4711" in page and "21 November 2026" in page
 
 
+def test_units_are_written_as_on_the_page(catalogue: Catalogue) -> None:
+    german = text(pdf(export_of(EVERYTHING, catalogue), GERMAN), 0)
+    assert "4000 min⁻¹" in german
+    assert "rpm" not in german
+
+
 def test_every_notice_and_the_versions_stand_in_the_report(catalogue: Catalogue) -> None:
     export = export_of(EVERYTHING, catalogue)
     page = "".join(re.findall(r"[a-z0-9]", text(pdf(export, ENGLISH), 1)))

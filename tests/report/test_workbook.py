@@ -1,6 +1,7 @@
 """The workbook, recalculated by LibreOffice: it says what the service says, as saved and when inputs change."""
 
 import math
+import re
 from collections.abc import Mapping
 from io import BytesIO
 from typing import Any
@@ -182,6 +183,13 @@ def test_german_workbook_calculates_the_same(catalogue: Catalogue, recalculate: 
     german = {"suitable": "geeignet", "unsuitable": "ungeeignet", "unrated": "nicht bewertet"}
     for candidate in reply["candidates"]:
         assert rows[candidate["designation"]][1] == german[candidate["status"]]
+
+
+def test_german_workbook_writes_units_as_the_page_does(catalogue: Catalogue) -> None:
+    book = opened(EVERYTHING, catalogue, code="de")
+    texts = [cell.value for sheet in book for row in sheet.iter_rows() for cell in row if isinstance(cell.value, str)]
+    assert "Drehzahl [min⁻¹]" in texts
+    assert not [shown for shown in texts if not shown.startswith("=") and re.search(r"\brpm\b", shown)]
 
 
 def test_what_no_formula_gives_stands_as_saved(supplemented: Supplement, recalculate: Recalculate) -> None:

@@ -48,10 +48,10 @@ class CandidatesSheet:
         return rows
 
     def _heads(self) -> None:
-        text = self.book.language.text
+        text, unit = self.book.language.text, self.book.language.unit
         heads = [text(head) for head in (N_("Gear"), N_("Verdict"), N_("Utilisation"), N_("Rank as saved"))]
-        heads += [_head(name, symbol_of(field)) for name, field in RATINGS.items()]
-        heads += [_head(term.symbol, term.unit) for term in GEAR_TERMS]
+        heads += [_head(name, unit(symbol_of(field))) for name, field in RATINGS.items()]
+        heads += [_head(term.symbol, unit(term.unit)) for term in GEAR_TERMS]
         heads += [text(EXPLANATIONS[code].title) for code in CHECKS]
         for column, head in enumerate(heads):
             self.sheet.write_string(0, column, head, self.book.style("head"))

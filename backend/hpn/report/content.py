@@ -205,7 +205,7 @@ def _phases(export: Export, language: Language) -> dict[str, Any]:
     )
     note = "" if listed else language.text(N_("{count} phases, summarised here; the workbook and the link have each."))
     return {
-        "header": [[[], ""], *([formula(symbols[name]), symbol_of(name)] for name in names)],
+        "header": [[[], ""], *([formula(symbols[name]), language.unit(symbol_of(name))] for name in names)],
         "rows": rows,
         "note": note.format(count=language.exact(len(phases))),
     }
@@ -248,7 +248,7 @@ def _derived(export: Export, language: Language) -> list[dict[str, Any]]:
     for name, symbol, label, equation in DERIVED:
         value = known.get(name)
         if value is not None:
-            unit = symbol_of(name)
+            unit = language.unit(symbol_of(name))
             rows.append(
                 {
                     "label": language.text(label),
@@ -286,7 +286,7 @@ def _ratings(export: Export, language: Language) -> list[dict[str, Any]]:
         {
             "label": language.text(label),
             "symbol": formula(symbol),
-            "text": f"{language.exact(value)}\N{NO-BREAK SPACE}{symbol_of(name)}",
+            "text": f"{language.exact(value)}\N{NO-BREAK SPACE}{language.unit(symbol_of(name))}",
             "where": language.filled(gear.sources.get(name, "")),
         }
         for name, symbol, label in RATINGS
@@ -325,7 +325,8 @@ def _share(check: Mapping[str, Any]) -> float:
 
 
 def _measured(value: float | None, unit: str, language: Language) -> str:
-    return f"{language.figure(value)}\N{NO-BREAK SPACE}{unit}" if unit and value is not None else language.figure(value)
+    shown = language.figure(value)
+    return f"{shown}\N{NO-BREAK SPACE}{language.unit(unit)}" if unit and value is not None else shown
 
 
 def _alternatives(export: Export, language: Language) -> list[list[str]]:

@@ -105,4 +105,4 @@ def _written(value: Any, unit: str, language: Language) -> str:
         return ", ".join(str(item) for item in value)
     if isinstance(value, str):
         return language.text(WORDS[value])
-    return f"{language.exact(value)}\N{NO-BREAK SPACE}{unit}".rstrip("\N{NO-BREAK SPACE}")
+    return f"{language.exact(value)}\N{NO-BREAK SPACE}{language.unit(unit)}".rstrip("\N{NO-BREAK SPACE}")

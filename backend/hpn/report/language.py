@@ -31,6 +31,10 @@ class Language:
         """A text in this language; an unknown one stays English."""
         return self.messages.get(english, english)
 
+    def unit(self, symbol: str) -> str:
+        """Symbol of a unit as it is written in this language: `rpm` is `min⁻¹` in German."""
+        return self.messages.get(symbol, symbol)
+
     def filled(self, english: str) -> str:
         """A text whose template was filled in English already: the template is recognised by its fixed parts."""
         if english in self.messages or not self.messages:
@@ -41,7 +45,10 @@ class Language:
         return english
 
     def _value(self, value: str) -> str:
-        return value.replace(".", self.decimal) if _QUANTITY.fullmatch(value) else self.filled(value)
+        if not _QUANTITY.fullmatch(value):
+            return self.filled(value)
+        number, _, unit = value.partition(" ")
+        return f"{number.replace('.', self.decimal)} {self.unit(unit)}"
 
     @cached_property
     def _templates(self) -> list[tuple[re.Pattern[str], str]]:

@@ -88,7 +88,7 @@ class Overview:
     def _line(self, label: str, symbol: str, unit: str, source: str = "") -> None:
         self.sheet.write_string(self.row, 0, self.text(label), self.book.style("label"))
         self.sheet.write_string(self.row, 1, symbol, self.book.style("quiet"))
-        self.sheet.write_string(self.row, 3, unit, self.book.style("quiet"))
+        self.sheet.write_string(self.row, 3, self.book.language.unit(unit), self.book.style("quiet"))
         self.sheet.write_string(self.row, 4, source, self.book.style("quiet"))
 
     def _gear(self) -> None:
@@ -180,7 +180,7 @@ class Overview:
 
     def _check(self, code: str) -> None:
         check, style, saved = CHECKS[code], self.book.style, self.book.export.check(code)
-        title, unit = self.text(EXPLANATIONS[code].title), EXPLANATIONS[code].unit
+        title, unit = self.text(EXPLANATIONS[code].title), self.book.language.unit(EXPLANATIONS[code].unit)
         self.sheet.write_string(self.row, 0, f"{title} [{unit}]" if unit else title, style("label"))
         self.sheet.write_string(self.row, 1, standings.STANDINGS[code].relation, style("quiet"))
         used = self.known.utilisation(code)

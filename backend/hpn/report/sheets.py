@@ -68,13 +68,13 @@ class CycleSheet:
 
     def write(self) -> None:
         """Write the sheet and name its columns."""
-        text = self.book.language.text
+        text, symbol = self.book.language.text, self.book.language.unit
         heads = [N_("Phase"), N_("Torque"), N_("Speed"), N_("Duration"), N_("Radial load"), N_("Axial load")]
         used = [N_("Radial load that counts"), N_("Axial load that counts")]
         units = ["", "Nm", "rpm", "s", "N", "N", "N", "N"]
         for column, (head, unit) in enumerate(zip([*heads, *used], units, strict=True)):
             self.sheet.write_string(
-                0, column, f"{text(head)} [{unit}]" if unit else text(head), self.book.style("head")
+                0, column, f"{text(head)} [{symbol(unit)}]" if unit else text(head), self.book.style("head")
             )
         self.sheet.set_column(0, 7, 15)
         self.sheet.freeze_panes(1, 0)
