@@ -79,4 +79,20 @@ document.addEventListener("keydown", (event) => {
   step(key === "y" || event.shiftKey ? "forward" : "back");
 });
 
+// Another language or other units load the page anew. Each content says what it is written in, so that they go along.
+const KEPT = "undo";
+document.addEventListener("submit", (event) => {
+  if (!event.target.matches("form.reader")) return;
+  try {
+    sessionStorage.setItem(KEPT, JSON.stringify({ contents, at }));
+  } catch {} // too much to keep
+});
+const kept = JSON.parse(sessionStorage.getItem(KEPT));
+sessionStorage.removeItem(KEPT);
+if (kept && formOf()) {
+  contents.push(...kept.contents);
+  at = kept.at;
+  contents[at] = contentOf(formOf()); // the same, as it is written now
+}
+
 record(null);

@@ -67,6 +67,20 @@ def test_a_decimal_comma_is_understood_in_a_german_form(visitor: Visitor) -> Non
     expect(box).to_have_accessible_description("1,234 oder 1234 schreiben")
 
 
+def test_undo_goes_back_across_a_switch_to_the_same_torque(visitor: Visitor) -> None:
+    page = visitor.open(EXAMPLE)
+    page.get_by_label("Torque, phase 1, in Nm").fill("60")
+    expect(page).to_have_url(re.compile("T=60&"))
+    set_units(page, "US customary")
+    torque = page.get_by_label("Torque, phase 1, in lb·in")
+    expect(torque).to_have_value("531.04")
+    page.get_by_role("button", name="Undo").click()
+    expect(torque).to_have_value("354.03")
+    expect(page).to_have_url(re.compile("T=40&"))
+    page.get_by_role("button", name="Redo").click()
+    expect(torque).to_have_value("531.04")
+
+
 def test_unfinished_input_survives_a_switch(visitor: Visitor) -> None:
     page = visitor.open(EXAMPLE)
     page.get_by_role("button", name="Add phase").click()
