@@ -189,6 +189,12 @@ def table_of(gears: GearList) -> FloatArray:
     return table
 
 
+@compiled
+def has_unlimited(values: FloatArray) -> bool:
+    """Whether one of the values is infinite."""
+    return bool(np.isinf(values).any())
+
+
 # --- What a supplement may bring: curves ------------------------------------------------------------------------------
 
 _NO_CURVES = np.empty((0, 0, 0))

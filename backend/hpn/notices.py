@@ -1,24 +1,22 @@
 """What the reader of a result must know beyond its numbers: assumptions, standings, unlimited values."""
 
 from dataclasses import dataclass
-from functools import lru_cache
-
-import numpy as np
+from functools import cached_property, lru_cache
 
 from hpn.application import Application
 from hpn.catalogue import GearList
-from hpn.checks import Evaluation
+from hpn.checks import Evaluation, has_unlimited
 from hpn.wording import N_, Quantity, Sentence, Value
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Notice:
     """A note on the result, with a code for programs and a sentence for people."""
 
     code: str
     sentence: Sentence
 
-    @property
+    @cached_property
     def text(self) -> str:
         """The notice in English."""
         return self.sentence.text
@@ -27,6 +25,46 @@ class Notice:
 def _notice(code: str, template: str, translated: tuple[str, ...] = (), **values: Value) -> Notice:
     return Notice(code, Sentence(template, values, translated))
 
+
+_COUNT_UNLIMITED = _notice(
+    "momentary_peak_count_unlimited",
+    "Where the emergency-stop torque is at or below T_R, equation 17.9 sets no limit to the number of stops: the "
+    "allowed number is empty there.",
+)
+_LIFE_UNLIMITED = _notice(
+    "life_unlimited",
+    "The average torque is 0 or so small that equation 17.10 gives a life without limit: the life is empty.",
+)
+_SUPPLIED = _notice("bearing_envelope_supplied", "The output bearing is judged along curve points that you supplied.")
+_COMPUTED = _notice(
+    "bearing_envelope_computed",
+    "The envelope of the output bearing is computed between the two published limits; the handbook's printed curve was "
+    "not available.",
+)
+_LOAD_POSITION = _notice(
+    "bearing_load_position",
+    "Loads act at the centre of the output shaft and along its axis; a load that acts elsewhere can't be judged from "
+    "the published data.",
+)
+_LIFE_BASIS = _notice(
+    "bearing_life_basis",
+    "Bearing life L10 = L50 / 5 is the relation of the maker's other handbooks, not printed in this one; a Weibull "
+    "slope of 10/9 gives 5.45.",
+)
+_BEARING_UNLIMITED = _notice(
+    "bearing_life_unlimited",
+    "The equivalent load of the moving phases is 0 or so small that the bearing life has no limit: it is empty.",
+)
+_EFFICIENCY_SUPPLIED = _notice(
+    "efficiency_supplied",
+    "Motor torques use the efficiency curves that you supplied; where they say nothing, loss-free: a lower bound.",
+)
+_EFFICIENCY_UNKNOWN = _notice(
+    "efficiency_unknown",
+    "Motor torques are loss-free, a lower bound: the handbook's efficiency curves were not available and no efficiency "
+    "is stated.",
+)
+_SUPPLEMENT = _notice("catalogue_supplement", "Some catalogue figures are supplied by the user; their sources say so.")
 
 AREAS = {
     "aerospace": N_("aerospace"),
@@ -84,62 +122,21 @@ def _emergency_stop(evaluation: Evaluation, index: int) -> list[Notice]:
                 largest=Quantity(largest, "Nm", 6),
             )
         )
-    if np.isinf(evaluation.momentary_peak_count[index]).any():
-        notices.append(
-            _notice(
-                "momentary_peak_count_unlimited",
-                "Where the emergency-stop torque is at or below T_R, equation 17.9 sets no limit to the number of "
-                "stops: the allowed number is empty there.",
-            )
-        )
+    if has_unlimited(evaluation.momentary_peak_count[index]):
+        notices.append(_COUNT_UNLIMITED)
     return notices
 
 
 def _life(evaluation: Evaluation, index: int) -> list[Notice]:
-    if not np.isinf(evaluation.life_L10_h[index]).any():
-        return []
-    return [
-        _notice(
-            "life_unlimited",
-            "The average torque is 0 or so small that equation 17.10 gives a life without limit: the life is empty.",
-        )
-    ]
+    return [_LIFE_UNLIMITED] if has_unlimited(evaluation.life_L10_h[index]) else []
 
 
 def _bearing(evaluation: Evaluation, index: int) -> list[Notice]:
     load = evaluation.duty.applications[index].loads
     if load is None:
         return []
-    standing = (
-        N_("The output bearing is judged along curve points that you supplied.")
-        if load.model == "digitised"
-        else N_(
-            "The envelope of the output bearing is computed between the two published limits; the handbook's printed "
-            "curve was not available."
-        )
-    )
-    notices = [
-        _notice("bearing_envelope_computed" if load.model != "digitised" else "bearing_envelope_supplied", standing),
-        _notice(
-            "bearing_load_position",
-            "Loads act at the centre of the output shaft and along its axis; a load that acts elsewhere can't be "
-            "judged from the published data.",
-        ),
-        _notice(
-            "bearing_life_basis",
-            "Bearing life L10 = L50 / 5 is the relation of the maker's other handbooks, not printed in this one; a "
-            "Weibull slope of 10/9 gives 5.45.",
-        ),
-    ]
-    if np.isinf(evaluation.bearing_life_L50_h[index]).any():
-        notices.append(
-            _notice(
-                "bearing_life_unlimited",
-                "The equivalent load of the moving phases is 0 or so small that the bearing life has no limit: it is "
-                "empty.",
-            )
-        )
-    return notices
+    notices = [_SUPPLIED if load.model == "digitised" else _COMPUTED, _LOAD_POSITION, _LIFE_BASIS]
+    return [*notices, _BEARING_UNLIMITED] if has_unlimited(evaluation.bearing_life_L50_h[index]) else notices
 
 
 def _motor(application: Application, curves: bool) -> list[Notice]:
@@ -154,33 +151,11 @@ def _motor(application: Application, curves: bool) -> list[Notice]:
         ]
     if requirements.motor is None and application.rank_by != "motor_torque":
         return []
-    if curves:
-        return [
-            _notice(
-                "efficiency_supplied",
-                "Motor torques use the efficiency curves that you supplied; where they say nothing, loss-free: a lower "
-                "bound.",
-            )
-        ]
-    return [
-        _notice(
-            "efficiency_unknown",
-            "Motor torques are loss-free, a lower bound: the handbook's efficiency curves were not available and no "
-            "efficiency is stated.",
-        )
-    ]
+    return [_EFFICIENCY_SUPPLIED if curves else _EFFICIENCY_UNKNOWN]
 
 
 def _catalogue(evaluation: Evaluation) -> list[Notice]:
-    notices = list(_unrated(evaluation.gears))
-    if evaluation.catalogue.supplement:
-        notices.append(
-            _notice(
-                "catalogue_supplement",
-                "Some catalogue figures are supplied by the user; their sources say so.",
-            )
-        )
-    return notices
+    return [*_unrated(evaluation.gears), *([_SUPPLEMENT] if evaluation.catalogue.supplement else [])]
 
 
 @lru_cache(maxsize=256)
