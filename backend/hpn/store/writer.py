@@ -9,6 +9,8 @@ from hpn.store.saved import Draft
 
 AT_ONCE = 64
 MAXIMUM_WAITING = 512
+PATIENCE = 10
+"""Turns of the loop, of some 10 us when nothing else is to be done."""
 
 Commit = Callable[[Sequence[Draft]], Awaitable[Sequence[Outcome]]]
 
@@ -20,6 +22,7 @@ class Writer:
         self._commit = commit
         self._waiting: list[tuple[Draft, asyncio.Future[str]]] = []
         self._task: asyncio.Task[None] | None = None
+        self._last = 0
 
     async def save(self, draft: Draft) -> str:
         """Id of the draft, once it is durable. Who stops waiting does not keep the draft from being saved."""
@@ -52,13 +55,16 @@ class Writer:
     async def _gather(self) -> None:
         """Let all who are on their way arrive: one transaction of all costs much less than several of some.
 
-        A turn of the loop reads what clients have sent, the next one computes it.
+        A turn of the loop reads what clients have sent, the next one computes it. Where more came together the last
+        time, some turns without anybody new are waited for them.
         """
-        before = 0
-        while before < len(self._waiting) < AT_ONCE:
+        before = quiet = 0
+        while len(self._waiting) < AT_ONCE and quiet <= (PATIENCE if len(self._waiting) < self._last else 0):
+            quiet = quiet + 1 if len(self._waiting) == before else 0
             before = len(self._waiting)
             await asyncio.sleep(0)
             await asyncio.sleep(0)
+        self._last = len(self._waiting)
 
 
 def _settle(future: asyncio.Future[str], outcome: Outcome) -> None:
