@@ -178,8 +178,7 @@ class Catalogue:
 
     def restricted(self, sizes: tuple[str, ...] | None, ratios: tuple[int, ...] | None) -> GearList:
         """Gears of the given sizes and ratios (None: of all), in catalogue order; maybe none."""
-        key = (sizes and frozenset(sizes), ratios and frozenset(ratios))
-        gears = self._lists.get(key)
+        gears = self._lists.get((sizes, ratios))
         if gears is None:
             if len(self._lists) >= 256:  # sizes and ratios come from outside: don't let them fill the memory
                 self._lists.clear()
@@ -189,7 +188,7 @@ class Catalogue:
                 if (sizes is None or gear.size in sizes) and (ratios is None or gear.ratio in ratios)
             ]
             # Another thread may clear or fill the same entry meanwhile: what was built here is returned.
-            self._lists[key] = gears = GearList(chosen, [self.curves.get(gear.size) for gear in chosen])
+            self._lists[sizes, ratios] = gears = GearList(chosen, [self.curves.get(gear.size) for gear in chosen])
         return gears
 
     def find(self, designation: str) -> Gear | None:

@@ -1,5 +1,6 @@
 """From an application and the catalogue to a ranked list of candidates, each with its checks and a reason."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
@@ -101,18 +102,9 @@ NOT_THERE = N_("the catalogue has no {value}; there are {listed}")
 def candidates_of(application: Application, catalogue: Catalogue) -> GearList:
     """Gears that `ratios` and `sizes` leave; raises InputError as `select` does."""
     sizes, ratios = application.requirements.sizes, application.requirements.ratios
-    problems: list[tuple[Location, Sentence]] = []
-    for name, wanted, there in (("sizes", sizes, catalogue.sizes), ("ratios", ratios, catalogue.ratios)):
-        problems += [
-            (
-                ("requirements", name, index),
-                Sentence(NOT_THERE, {"value": str(value), "listed": ", ".join(map(str, there))}),
-            )
-            for index, value in enumerate(wanted or ())
-            if value not in there
-        ]
-    if problems:
-        raise InputError(*problems)
+    for wanted, there in ((sizes, catalogue.sizes), (ratios, catalogue.ratios)):
+        if wanted is not None and not set(there).issuperset(wanted):
+            raise _not_there(sizes or (), ratios or (), catalogue)
     gears = catalogue.restricted(sizes, ratios)
     if not gears.rows:
         offered = "; ".join(
@@ -137,6 +129,19 @@ def candidates_of(application: Application, catalogue: Catalogue) -> GearList:
             )
         )
     return gears
+
+
+def _not_there(sizes: Sequence[str], ratios: Sequence[int], catalogue: Catalogue) -> InputError:
+    problems: list[tuple[Location, Sentence]] = [
+        (
+            ("requirements", name, index),
+            Sentence(NOT_THERE, {"value": str(value), "listed": ", ".join(map(str, there))}),
+        )
+        for name, wanted, there in (("sizes", sizes, catalogue.sizes), ("ratios", ratios, catalogue.ratios))
+        for index, value in enumerate(wanted)
+        if value not in there
+    ]
+    return InputError(*problems)
 
 
 @lru_cache(maxsize=1024)

@@ -5,8 +5,8 @@ the client library's multiprocess mode, for which `serving.py` sets PROMETHEUS_M
 """
 
 import os
-from collections.abc import AsyncIterator, Iterable
-from contextlib import asynccontextmanager
+from collections.abc import Iterable
+from dataclasses import dataclass
 from typing import Any
 
 from prometheus_client import CollectorRegistry, Counter, Histogram, ProcessCollector, generate_latest
@@ -91,6 +91,9 @@ class Metrics:
         return child
 
 
+CALLERS_MISTAKES = (KeyReusedError, KeySpentError, ValueError)
+
+
 class CountedStore(Store):
     """A store whose operations are counted."""
 
@@ -100,42 +103,48 @@ class CountedStore(Store):
 
     async def check(self) -> None:
         """See Store."""
-        async with self._counted("check"):
+        with self._counted("check"):
             await super().check()
 
     async def save(self, draft: Draft) -> str:
         """See Store."""
-        async with self._counted("save"):
+        with self._counted("save"):
             return await super().save(draft)
 
     async def find(self, id: str) -> SavedSelection | None:
         """See Store."""
-        async with self._counted("find"):
+        with self._counted("find"):
             return await super().find(id)
 
     async def catalogue(self, version: str) -> Catalogue | None:
         """See Store."""
-        async with self._counted("catalogue"):
+        with self._counted("catalogue"):
             return await super().catalogue(version)
 
     async def page(self, *, reference: str | None = None, cursor: str | None = None, limit: int = 50) -> Page:
         """See Store."""
-        async with self._counted("page"):
+        with self._counted("page"):
             return await super().page(reference=reference, cursor=cursor, limit=limit)
 
     async def delete(self, id: str) -> bool:
         """See Store."""
-        async with self._counted("delete"):
+        with self._counted("delete"):
             return await super().delete(id)
 
-    @asynccontextmanager
-    async def _counted(self, operation: str) -> AsyncIterator[None]:
-        try:
-            yield
-        except (KeyReusedError, KeySpentError, ValueError):  # the caller's mistake
-            self._metrics.store_operation(operation, "refused")
-            raise
-        except BaseException:
-            self._metrics.store_operation(operation, "failed")
-            raise
-        self._metrics.store_operation(operation, "ok")
+    def _counted(self, operation: str) -> "_Counted":
+        return _Counted(self._metrics, operation)
+
+
+@dataclass(frozen=True, slots=True)
+class _Counted:
+    """Counts how an operation ends."""
+
+    metrics: Metrics
+    operation: str
+
+    def __enter__(self) -> None:
+        return
+
+    def __exit__(self, kind: type[BaseException] | None, *_: object) -> None:
+        outcome = "ok" if kind is None else "refused" if issubclass(kind, CALLERS_MISTAKES) else "failed"
+        self.metrics.store_operation(self.operation, outcome)
