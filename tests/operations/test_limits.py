@@ -109,18 +109,14 @@ def test_a_rate_that_is_none_stops_the_start(rate: str) -> None:
         Settings(calculator_rate=rate)
 
 
-def test_counters_start_again_after_their_window_and_are_forgotten(monkeypatch: pytest.MonkeyPatch) -> None:
-    now = time.time()
-    monkeypatch.setattr("hpn.web.limiting.time.time", lambda: now)
-    counters = Counters()
+def test_counters_start_again_after_their_window_and_are_forgotten() -> None:
+    now, counters = time.time(), Counters()
     for address in range(1000):
-        counters.incr(f"address {address}", 60)
-    assert counters.incr("address 1", 60) == 2
+        counters.hit(("calculator", f"address {address}"), 60, now)
+    assert counters.hit(("calculator", "address 1"), 60, now + 20) == (2, now + 60)
 
-    now += 61
-    assert counters.get("address 1") == 0
-    assert counters.incr("address 1", 60) == 1
-    assert counters.reset() == 1  # the sweep has taken the rest
+    assert counters.hit(("calculator", "address 1"), 60, now + 61) == (1, now + 121)
+    assert len(counters) == 1  # the sweep has taken the rest
 
 
 def test_the_limiter_costs_little() -> None:

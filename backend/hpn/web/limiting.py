@@ -7,60 +7,34 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import limits
-from limits.storage import Storage
 
 SWEEP_SECONDS = 30
 
 
-class Counters(Storage):
-    """Counters in a dictionary of one event loop. The library's own memory starts a thread for nearly every request."""
+class Counters:
+    """Counts in windows of time, in a dictionary of one event loop.
 
-    STORAGE_SCHEME = None
+    The memory of the library that reads the rates starts a thread for nearly every request.
+    """
 
     def __init__(self) -> None:
-        super().__init__()
-        self._counts: dict[str, tuple[int, float]] = {}
+        self._counts: dict[tuple[str, str], tuple[int, float]] = {}
         self._sweep = 0.0
 
-    @property
-    def base_exceptions(self) -> type[Exception]:
-        """What can go wrong here: nothing of its own."""
-        return ValueError
+    def __len__(self) -> int:
+        """Number of subjects that are remembered."""
+        return len(self._counts)
 
-    def incr(self, key: str, expiry: float, amount: int = 1) -> int:
-        """Count; a new window begins where the last one has ended."""
-        now = time.time()
+    def hit(self, key: tuple[str, str], window_s: float, now: float) -> tuple[int, float]:
+        """Count, and the end of the window; a new one begins where the last has ended."""
         if now > self._sweep:
             self._counts = {name: entry for name, entry in self._counts.items() if entry[1] > now}
             self._sweep = now + SWEEP_SECONDS
         count, end = self._counts.get(key, (0, 0.0))
         if end <= now:
-            count, end = 0, now + expiry
-        self._counts[key] = count + amount, end
-        return count + amount
-
-    def get(self, key: str) -> int:
-        """Count of the window that is running."""
-        count, end = self._counts.get(key, (0, 0.0))
-        return count if end > time.time() else 0
-
-    def get_expiry(self, key: str) -> float:
-        """End of the window."""
-        return self._counts.get(key, (0, time.time()))[1]
-
-    def check(self) -> bool:
-        """It is always there."""
-        return True
-
-    def reset(self) -> int:
-        """Forget all."""
-        count = len(self._counts)
-        self._counts.clear()
-        return count
-
-    def clear(self, key: str) -> None:
-        """Forget one."""
-        self._counts.pop(key, None)
+            count, end = 0, now + window_s
+        self._counts[key] = count + 1, end
+        return count + 1, end
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,17 +62,12 @@ class Limiter:
         item = self._rates.get(name)
         if item is None:
             return None
-        key = _key(item, name, subject)
-        count = self._counters.incr(key, item.get_expiry())
-        wait = max(math.ceil(self._counters.get_expiry(key) - time.time()), 1)
+        now = time.time()
+        count, end = self._counters.hit((name, subject), item.get_expiry(), now)
+        wait = max(math.ceil(end - now), 1)
         state = b'"%b";r=%d;t=%d' % (name.encode(), max(item.amount - count, 0), wait)
         headers = ((b"ratelimit-policy", self._policies[name]), (b"ratelimit", state))
         return Admission(count <= item.amount, headers, wait, item)
-
-
-@lru_cache(maxsize=4096)
-def _key(item: limits.RateLimitItem, name: str, subject: str) -> str:
-    return item.key_for(name, subject)
 
 
 @lru_cache(maxsize=4096)

@@ -114,7 +114,6 @@ class Form:
 
 
 _EMPTY_LOAD = OutputLoad()
-_PHASE_FIELDS = [(symbol.name, symbol.path[0]) for symbol in PHASE_SYMBOLS]
 
 
 @dataclass(frozen=True, slots=True)
@@ -152,15 +151,15 @@ def to_link(application: Application) -> str:
 
 
 def _phase_pairs(application: Application) -> list[str]:
-    phases = [phase.__dict__ for phase in application.duty_cycle.phases]
-    used = _PHASE_FIELDS[: len(_REQUIRED)]
-    if application.loads is not None:
-        used += [
-            (name, field)
-            for name, field in _PHASE_FIELDS
-            if name in _LOADS and any(p[field] is not None for p in phases)
-        ]
-    return [f"{name}={_written(phase[field])}" for phase in phases for name, field in used]
+    phases = application.duty_cycle.phases
+    pairs = [f"T={_written(p.torque_Nm)}&n={_written(p.speed_rpm)}&t={_written(p.duration_s)}" for p in phases]
+    if application.loads is None:
+        return pairs
+    loads = {"FRi": [phase.radial_N for phase in phases], "FAi": [phase.axial_N for phase in phases]}
+    for name, values in loads.items():
+        if any(value is not None for value in values):
+            pairs = [f"{pair}&{name}={_written(value)}" for pair, value in zip(pairs, values, strict=True)]
+    return pairs
 
 
 def _other_pairs(application: Application) -> list[str]:
