@@ -173,6 +173,11 @@ class Catalogue:
         )
 
     @cached_property
+    def references(self) -> tuple[float, float, float, float]:
+        """Rated input speed and life at rated torque, then speed and life of the published bearing loads."""
+        return self.rated_input_speed_rpm, self.life_at_rated_torque_h, *self.bearing_reference
+
+    @cached_property
     def _lists(self) -> dict[object, GearList]:
         return {}
 

@@ -6,7 +6,7 @@ NaN means not published, so not rated; infinity means unlimited. What a check te
 
 import math
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -76,7 +76,7 @@ T_N, T_R, T_M, N_AV, N_MAX, RATIO, F_R, F_A, LOWEST, HIGHEST, PLAY, K3, MASS, LE
 """Rows of a table of gears."""
 
 
-@dataclass(frozen=True)
+@dataclass(slots=True)
 class Evaluation:
     """Checks of N applications on G gears.
 
@@ -128,7 +128,6 @@ class Evaluation:
         """Load factor k that speed and required life of application `index` allow."""
         return self.terms.item((LIMIT, OUTPUT_BEARING_LIFE, index, 0))
 
-    @cached_property
     def bearing_loads(self) -> FloatArray:
         """Equivalent load f_w P of every phase on every gear, shape (N, phases, G); NaN where it is not rated."""
         loads = np.empty((*self.duty.phases.shape[:2], len(self.gears.rows)))
@@ -147,13 +146,12 @@ def evaluate(duty: Duty, gears: GearList, catalogue: Catalogue) -> Evaluation:
     """Every check that the applications ask for, on every gear."""
     shape = (len(duty.applications), len(gears.rows))
     terms, status, figures = np.empty((3, 17, *shape)), np.empty((17, *shape), np.int8), np.empty((9, *shape))
-    speed, life = catalogue.bearing_reference
     _evaluate(
         duty.phases,
         duty.wishes,
         duty.figures,
         table_of(gears),
-        (catalogue.rated_input_speed_rpm, catalogue.life_at_rated_torque_h, speed, life),
+        catalogue.references,
         _along_curves(duty, gears),
         _motor_torques(duty, gears, catalogue),
         terms,

@@ -1,5 +1,6 @@
 """Applications as arrays: N duty cycles side by side, so that one code path serves one and a million."""
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -144,28 +145,31 @@ def _phases(application: Application) -> list[tuple[float, ...]]:
     ]
 
 
-def _wishes(application: Application) -> tuple[float | None, ...]:
-    """A row of `Duty.wishes`; None becomes NaN."""
+_NOT_ASKED = math.nan
+
+
+def _wishes(application: Application) -> tuple[float, ...]:
+    """A row of `Duty.wishes`."""
     stop, load, asked = application.emergency_stop, application.loads, application.requirements
     motor = asked.motor
     return (
         application.duty_cycle.pause_s,
         asked.utilisation,
-        abs(stop.torque_Nm) if stop else None,
-        stop.count if stop else None,
-        asked.life_h,
-        asked.backlash_arcmin,
-        asked.torsional_stiffness_Nm_per_rad,
-        asked.weight_kg,
-        asked.length_mm,
-        asked.ambient_temperature_degC,
-        asked.efficiency,
-        motor.maximum_speed_rpm if motor else None,
-        motor.peak_torque_Nm if motor else None,
-        motor.rated_torque_Nm if motor else None,
-        load.load_coefficient if load else None,
-        bearing.required_L50(load.life_h, load.life_basis) if load else None,
-        _MODEL[load.model] if load else None,
+        abs(stop.torque_Nm) if stop else _NOT_ASKED,
+        _NOT_ASKED if stop is None or stop.count is None else stop.count,
+        _NOT_ASKED if asked.life_h is None else asked.life_h,
+        _NOT_ASKED if asked.backlash_arcmin is None else asked.backlash_arcmin,
+        _NOT_ASKED if asked.torsional_stiffness_Nm_per_rad is None else asked.torsional_stiffness_Nm_per_rad,
+        _NOT_ASKED if asked.weight_kg is None else asked.weight_kg,
+        _NOT_ASKED if asked.length_mm is None else asked.length_mm,
+        _NOT_ASKED if asked.ambient_temperature_degC is None else asked.ambient_temperature_degC,
+        _NOT_ASKED if asked.efficiency is None else asked.efficiency,
+        _NOT_ASKED if motor is None or motor.maximum_speed_rpm is None else motor.maximum_speed_rpm,
+        _NOT_ASKED if motor is None or motor.peak_torque_Nm is None else motor.peak_torque_Nm,
+        _NOT_ASKED if motor is None or motor.rated_torque_Nm is None else motor.rated_torque_Nm,
+        load.load_coefficient if load else _NOT_ASKED,
+        bearing.required_L50(load.life_h, load.life_basis) if load else _NOT_ASKED,
+        _MODEL[load.model] if load else _NOT_ASKED,
         _RANK_BY[application.rank_by],
     )
 

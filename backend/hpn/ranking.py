@@ -17,7 +17,7 @@ SUITABLE, UNSUITABLE, UNRATED = range(3)
 CANDIDATE_STATUS = ("suitable", "unsuitable", "unrated")
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True)
 class Ranking:
     """Verdicts on G gears for N applications in catalogue order, shape (N, G), and the order from best to last."""
 

@@ -126,8 +126,20 @@ def candidate_rows(evaluation: Evaluation, ranking: Ranking, index: int) -> msgs
         chosen,
     )
     digits = _bytes(orjson.dumps(numbers.ravel(), option=orjson.OPT_SERIALIZE_NUMPY))
+    (commas,) = (digits == ord(",")).nonzero()
     rows = np.empty(2 + count * (template.text.size + words.longest * template.words) + digits.size, np.uint8)
-    end = _write(template.text, template.ends, template.takes, words.text, words.ends, words.gaps, digits, chosen, rows)
+    end = _write(
+        template.text,
+        template.ends,
+        template.takes,
+        words.text,
+        words.ends,
+        words.gaps,
+        digits,
+        commas,
+        chosen,
+        rows,
+    )
     return msgspec.Raw(rows[:end].tobytes())
 
 
@@ -273,18 +285,20 @@ def _write(
     word_ends: NDArray[np.int64],
     word_gaps: NDArray[np.int64],
     digits: ByteArray,
+    commas: NDArray[np.intp],
     chosen: NDArray[np.int64],
     rows: ByteArray,
 ) -> int:
     """Write the list of candidates; how long it is."""
-    at, digit = 0, 1
+    at, number = 0, 0
     for row in range(chosen.shape[0]):
         rows[at] = ord(",") if row else ord("[")
         at, place = at + 1, 0
         for gap in range(takes.size):
             at = _copy(text, ends[gap], ends[gap + 1], rows, at)
             if takes[gap] == _NUMBER:
-                at, digit = _copy_number(digits, digit, rows, at)
+                at = _copy_number(digits, commas, number, rows, at)
+                number += 1
                 continue
             start, inside, end = (
                 word_ends[chosen[row, place]],
@@ -294,10 +308,11 @@ def _write(
             place += 1
             if inside >= 0:
                 at = _copy(words, start, inside, rows, at)
-                at, digit = _copy_number(digits, digit, rows, at)
+                at = _copy_number(digits, commas, number, rows, at)
+                number += 1
                 start = inside + 1
             elif takes[gap] == _SENTENCE:  # which has no place for its number
-                _, digit = _copy_number(digits, digit, rows, at)
+                number += 1
             at = _copy(words, start, end, rows, at)
         at = _copy(text, ends[-2], ends[-1], rows, at)
     rows[at] = ord("]")
@@ -313,9 +328,6 @@ def _copy(source: ByteArray, start: int, end: int, rows: ByteArray, at: int) -> 
 
 
 @compiled
-def _copy_number(digits: ByteArray, digit: int, rows: ByteArray, at: int) -> tuple[int, int]:
-    """Copy the next number; where the text goes on, and where the number after it begins."""
-    end: Any = np.uintp(digit)
-    while digits[end] != ord(",") and digits[end] != ord("]"):
-        end += np.uintp(1)
-    return _copy(digits, digit, int(end), rows, at), int(end) + 1
+def _copy_number(digits: ByteArray, commas: NDArray[np.intp], number: int, rows: ByteArray, at: int) -> int:
+    start = commas[number - 1] + 1 if number else 1
+    return _copy(digits, start, commas[number] if number < commas.size else digits.size - 1, rows, at)

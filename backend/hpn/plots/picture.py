@@ -148,7 +148,7 @@ def bearing_picture(selection: Selection, gear: Gear) -> BearingPicture | None:
         return None
     catalogue, f_w, k = selection.catalogue, load.load_coefficient, evaluation.bearing_life_factor(n)
     count = len(selection.application.duty_cycle.phases)
-    loads = phase_loads(selection, evaluation.bearing_loads[n, :count, index].tolist())
+    loads = phase_loads(selection, evaluation.bearing_loads()[n, :count, index].tolist())
     return BearingPicture(
         gear=gear,
         load=load,

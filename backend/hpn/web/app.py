@@ -117,7 +117,7 @@ def _compile(catalogue: Catalogue) -> None:
     compile_equations()
     selection = select(Application.worked_example(), catalogue)
     selection.json("/")
-    _ = selection.evaluation.bearing_loads
+    selection.evaluation.bearing_loads()
 
 
 def _front(app: Service, settings: Settings, metrics: Metrics) -> Any:

@@ -45,12 +45,16 @@ async def _read(request: Request, maximum_bytes: int) -> bytes:
     if declared.isascii() and declared.isdigit() and int(declared[:20]) > maximum_bytes:
         raise _too_large(maximum_bytes)
     chunks, size = [], 0
-    async for chunk in request.stream():
-        size += len(chunk)
+    while True:
+        message = await request.receive()
+        if message["type"] == "http.disconnect":
+            raise ClientDisconnect
+        chunks.append(message.get("body", b""))
+        size += len(chunks[-1])
         if size > maximum_bytes:
             raise _too_large(maximum_bytes)
-        chunks.append(chunk)
-    return b"".join(chunks)
+        if not message.get("more_body"):
+            return b"".join(chunks)
 
 
 def _too_large(maximum_bytes: int) -> Problem:

@@ -185,13 +185,15 @@ def _parts(application: Application) -> tuple[BaseModel | None, ...]:
     return application, application.duty_cycle, stop, load, asked, asked.motor
 
 
-def _written(value: float | int | str | None) -> str:
-    if not isinstance(value, float):
-        return "" if value is None else quote(str(value))
-    text = repr(value)
-    if text.endswith(".0"):
-        return text[:-2]
-    return text.replace("e+", "e").replace("e-0", "e-") if "e" in text else text
+def _written(value: float | str | None) -> str:
+    if isinstance(value, float):
+        text = repr(value)
+        if text.endswith(".0"):
+            return text[:-2]
+        return text.replace("e+", "e").replace("e-0", "e-") if "e" in text else text
+    if isinstance(value, int):
+        return str(value)
+    return "" if value is None else quote(value)
 
 
 # --- Link to application ----------------------------------------------------------------------------------------------
