@@ -20,7 +20,7 @@ from hpn.reply import DutyRow, SelectReply, candidate_rows, encode
 from hpn.wording import N_, Sentence
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True)
 class Selection:
     """The answer to one application: duty, ranking, checks and notices; `json` is the reply of the API."""
 
