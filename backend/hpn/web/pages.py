@@ -228,6 +228,13 @@ def environment(state: State) -> Environment:
     return templates
 
 
+def prepare(state: State) -> None:
+    """Compile all templates, so that the first page need not wait for it."""
+    templates = environment(state)
+    for name in templates.list_templates():
+        templates.get_template(name)
+
+
 class _Environment(Environment):
     """Looks into a reply first: Jinja's own way round, attribute before item, costs an exception per field."""
 

@@ -8,7 +8,7 @@ from typing import Any
 import uvicorn
 from fastapi import FastAPI
 
-from hpn.web import logs, metrics
+from hpn.web import logs, metrics, pages
 from hpn.web.app import create_app
 from hpn.web.settings import Settings
 
@@ -20,6 +20,7 @@ def served_app() -> FastAPI:
     settings = Settings()
     logs.configure(settings.log_level)
     app = create_app(settings)
+    pages.prepare(app.state)
     gc.collect()
     gc.freeze()  # what lives as long as the process is not searched for garbage again: that took 90 ms each time
     return app
