@@ -15,8 +15,8 @@ from hpn.selection import select
 from hpn.store import Store, StoreError, StoreUnavailableError
 from hpn.tables import CatalogueError
 from hpn.web import serving
+from hpn.web.canonical import to_link
 from hpn.web.keys import new_key
-from hpn.web.links import to_link
 from hpn.web.problems import Problem
 from hpn.web.settings import Settings
 

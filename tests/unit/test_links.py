@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 
 from hpn.application import Application
 from hpn.web import links, symbols
+from hpn.web.canonical import to_link
 
 EXAMPLE = "/?T=40&n=250&t=0.3&T=32&n=500&t=3&T=20&n=250&t=0.4&tp=4&Tk=200&i=5"
 PHASE = "T=40&n=250&t=0.3"
@@ -76,14 +77,14 @@ def found(query: str) -> dict[tuple[str, int | None], str]:
 
 
 def test_worked_example_has_the_link_of_the_contract() -> None:
-    assert links.to_link(Application.worked_example()) == EXAMPLE
+    assert to_link(Application.worked_example()) == EXAMPLE
     assert read(EXAMPLE[2:]).application == Application.worked_example()
 
 
 @given(applications.filter(loaded))
 def test_every_application_survives_its_link(document: dict[str, Any]) -> None:
     application = Application.model_validate(document)
-    again = read(links.to_link(application).removeprefix("/?"))
+    again = read(to_link(application).removeprefix("/?"))
     assert again.problems == ()
     assert again.application == application
 

@@ -19,7 +19,7 @@ from hpn.selection import select
 from hpn.web import schemas, streaming
 from hpn.web.batch import batch_items, batch_lines, line_evaluator
 from hpn.web.bodies import content_type_of, read_json
-from hpn.web.links import to_link
+from hpn.web.canonical import to_link
 from hpn.web.problems import Problem
 from hpn.web.settings import Settings
 

@@ -9,7 +9,7 @@ from pydantic import ValidationError
 from hpn.application import BatchItem, InputError
 from hpn.catalogue import Catalogue
 from hpn.fleet import select_fleet
-from hpn.web.links import to_link
+from hpn.web.canonical import to_link
 from hpn.web.metrics import Metrics
 from hpn.web.problems import Problem
 from hpn.web.streaming import Line

@@ -13,8 +13,9 @@ from starlette.requests import Request
 from hpn.report.language import language
 from hpn.selection import select
 from hpn.web import schemas
+from hpn.web.canonical import to_link
 from hpn.web.exports import absolute, application_of
-from hpn.web.links import MAXIMUM_QUERY_BYTES, to_link
+from hpn.web.links import MAXIMUM_QUERY_BYTES
 from hpn.web.problems import Problem
 
 SAVED = "/selections/"

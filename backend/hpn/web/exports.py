@@ -26,8 +26,8 @@ from hpn.selection import select
 from hpn.store import SavedSelection
 from hpn.web import links, schemas
 from hpn.web.bodies import read_json
+from hpn.web.canonical import to_link
 from hpn.web.conditions import etag_of, has_already
-from hpn.web.links import to_link
 from hpn.web.problems import Problem
 from hpn.web.selections import url_of, with_catalogue
 from hpn.web.settings import Settings

@@ -10,7 +10,7 @@ from hpn.catalogue import Catalogue
 from hpn.comparison import MOST_PINS, Candidate, Column, Group, groups_of, undominated
 from hpn.remedy import Room, followed, remedy_of, rooms_of, ways_of
 from hpn.selection import Selection
-from hpn.web import links
+from hpn.web.canonical import to_link
 from hpn.web.links import Form, Problem
 from hpn.web.messages import N_, Message
 from hpn.wording import Sentence
@@ -93,7 +93,7 @@ def insight_of(
     return Insight(
         remedies={name: remedy_of(entry, catalogue.by_designation[name], u) for name, entry in listed.items()},
         rooms=rooms_of(chosen, u),
-        try_out=links.to_link(followed(application, ways[0])) if ways else None,
+        try_out=to_link(followed(application, ways[0])) if ways else None,
         steps=calculation_of(chosen, gear, duty, catalogue),
         pins=pins,
         columns=columns,

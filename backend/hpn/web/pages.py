@@ -20,6 +20,7 @@ from hpn.remedy import DRIVERS
 from hpn.selection import Selection, select
 from hpn.web import assets, display, links, mathml, pictures, reader, readers
 from hpn.web.as_read import as_read, as_typed
+from hpn.web.canonical import to_link
 from hpn.web.embeds import preview
 from hpn.web.entries import WRITTEN
 from hpn.web.insight import Insight, checked_pins, insight_of, tail_of
@@ -109,7 +110,7 @@ def respond(request: Request, form: Form) -> Response:
 
 def read_query(query: bytes) -> Form:
     """Form of a query; without one, the handbook's worked example."""
-    text = query.decode("latin-1") or links.to_link(Application.worked_example()).removeprefix("/?")
+    text = query.decode("latin-1") or to_link(Application.worked_example()).removeprefix("/?")
     return links.parse(parse_qsl(text, keep_blank_values=True))
 
 
@@ -129,7 +130,7 @@ def answered(form: Form, catalogue: Catalogue) -> tuple[Form, Answer | None]:
 
 
 def _answer(application: Application, form: Form, catalogue: Catalogue) -> Answer:
-    link = links.to_link(application)
+    link = to_link(application)
     selection = select(application, catalogue)
     reply = selection.reply(link)
     everything = _unrestricted(selection)

@@ -18,6 +18,7 @@ from starlette.routing import Route
 from hpn.application import Application
 from hpn.pasted import COLUMNS, SEPARATORS, Pasted, Reading, read_table
 from hpn.web import links, long_cycles
+from hpn.web.canonical import to_link
 from hpn.web.links import Pairs
 from hpn.web.pages import environment
 from hpn.web.problems import Problem, plain_message, pointer
@@ -90,7 +91,7 @@ def _answer(request: Request, fields: dict[str, str]) -> Response:
     if text.lstrip().startswith("{"):
         draft = _opened(link, text)
         if draft.application and (take or "hx-request" not in request.headers):
-            query = links.to_link(draft.application).removeprefix("/?")
+            query = to_link(draft.application).removeprefix("/?")
             return _proceed(request, parse_qsl(query, keep_blank_values=True))
         return _render(request, draft, 422 if draft.problems else 200)
     pasted = read_table(text) if text.strip() else NOTHING

@@ -21,8 +21,8 @@ from hpn.store import Draft, KeyReusedError, KeySpentError, SavedSelection, Stor
 from hpn.web import schemas
 from hpn.web.api import LONG_CYCLE
 from hpn.web.bodies import read_json
+from hpn.web.canonical import to_link
 from hpn.web.conditions import conditional, idempotency_key, preferred_return, require_match
-from hpn.web.links import to_link
 from hpn.web.problems import Problem
 from hpn.web.selection_schemas import (
     Labels,
