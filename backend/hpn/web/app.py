@@ -22,7 +22,6 @@ from hpn.web import (
     exports,
     health,
     long_cycles,
-    openapi,
     pages,
     paste,
     problems,
@@ -68,9 +67,6 @@ CORS: dict[str, Any] = {
 """What scripts of the permitted origins may send and read."""
 
 
-BODIES = (Application, schemas.Batch, selection_schemas.SaveRequest)
-
-
 def create_app(settings: Settings | None = None) -> Service:
     """The application; raises CatalogueError where the catalogue or its supplement is wrong.
 
@@ -99,6 +95,7 @@ def create_app(settings: Settings | None = None) -> Service:
     problems.install(app)
     app.add_exception_handler(StoreUnavailableError, selections.unavailable)
     app.shortcuts = api.SHORTCUTS | selections.SHORTCUTS
+    app.bodies = (Application, schemas.Batch, selection_schemas.SaveRequest)
     files = (exports.saved_files, exports.posted_files, exports.linked_files, embeds.router)
     for router in (health.router, api.router, selections.router, *files):
         app.include_router(router)
@@ -107,8 +104,6 @@ def create_app(settings: Settings | None = None) -> Service:
     app.add_middleware(PackedPages)
     app.add_middleware(Readers)
     app.front = _front(app, settings, metrics)
-    document = app.openapi
-    app.openapi = lambda: openapi.complete(document(), *BODIES)  # type: ignore[method-assign]
     return app
 
 

@@ -1,12 +1,15 @@
 """The application object: FastAPI, behind what every request passes, with shortcuts past it for the busiest routes."""
 
-from collections.abc import Awaitable, Callable, Mapping
+from collections.abc import Awaitable, Callable, Mapping, Sequence
 from typing import Any
 
 from fastapi import FastAPI
+from pydantic import BaseModel
 from starlette.requests import Request
 from starlette.responses import Response
 from starlette.types import ASGIApp, Receive, Scope, Send
+
+from hpn.web import openapi
 
 Endpoint = Callable[[Request], Awaitable[Response]]
 
@@ -19,10 +22,16 @@ class Service(FastAPI):
 
     front: ASGIApp
     shortcuts: Mapping[tuple[str, str], Endpoint]
+    bodies: Sequence[type[BaseModel]]
+    """Models of request bodies that routes read themselves, for the document."""
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Run the application."""
         await self.front(scope, receive, send)
+
+    def openapi(self) -> dict[str, Any]:
+        """The OpenAPI document, with the bodies that FastAPI does not see."""
+        return openapi.complete(super().openapi(), *self.bodies)
 
     async def routed(self, scope: Scope, receive: Receive, send: Send) -> None:
         """What lies behind the front: a shortcut where there is one, FastAPI otherwise."""
