@@ -6,13 +6,14 @@ import socket
 import subprocess
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from urllib.parse import urlsplit
 from urllib.request import urlopen
 
 import pytest
-from playwright.sync_api import Browser, BrowserContext, Page, Playwright, sync_playwright
+from playwright.sync_api import Browser, BrowserContext, Page, Playwright, Route, sync_playwright
 
 AXE = Path(__file__).parents[2] / "frontend/node_modules/axe-core/axe.min.js"
 BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
@@ -125,3 +126,16 @@ def visitor(chromium: Browser, server: str) -> Iterator[Visitor]:
     visitor.close()
     assert complaints == []
     assert strangers == []
+
+
+@contextmanager
+def answer_held_back(page: Page, after: Callable[[], None]) -> Iterator[None]:
+    """What the page asks the server for in consequence is under way and not answered before the block ends."""
+    held: list[Route] = []
+    page.route("**/?*", lambda route: held.append(route))
+    with page.expect_request("**/?*"):
+        after()
+    yield
+    for route in held:
+        route.continue_()
+    page.unroute("**/?*")

@@ -2,14 +2,13 @@
 
 import io
 import re
-import time
 from typing import Any
 
 import pytest
-from playwright.sync_api import Page, Route, expect
+from playwright.sync_api import Page, expect
 from pypdf import PdfReader
 
-from tests.browser.conftest import AXE, Visitor
+from tests.browser.conftest import AXE, Visitor, answer_held_back
 
 EXAMPLE = "/?T=40&n=250&t=0.3&T=32&n=500&t=3&T=20&n=250&t=0.4&tp=4&Tk=200&i=5"
 PHASES = (("40", "250", "0.3"), ("32", "500", "3"), ("20", "250", "0.4"))
@@ -31,12 +30,6 @@ def tab_to(page: Page, role: str, name: str) -> None:
             return
         page.keyboard.press("Tab")
     raise AssertionError(f"no way by keyboard to {role} {name}")
-
-
-def answer_late(route: Route) -> None:
-    """Let a request wait longer than a reader needs to type on."""
-    time.sleep(0.25)
-    route.continue_()
 
 
 def scroll(page: Page) -> float:
@@ -101,12 +94,10 @@ def test_typing_recalculates_and_keeps_focus_caret_and_scroll(visitor: Visitor) 
 
 def test_answer_that_arrives_late_never_overwrites_what_is_typed_meanwhile(visitor: Visitor) -> None:
     page = visitor.open(EXAMPLE)
-    page.route("**/?gear=*", answer_late)
-    torque(page, 1).fill("41")
-    page.wait_for_timeout(180)
-    torque(page, 1).fill("42")
-    torque(page, 2).fill("33")
-    page.get_by_label("Pause").focus()
+    with answer_held_back(page, lambda: torque(page, 1).fill("41")):
+        torque(page, 1).fill("42")
+        torque(page, 2).fill("33")
+        page.get_by_label("Pause").focus()
     expect(page).to_have_url(re.compile("T=42&.*T=33&"))
     expect(torque(page, 1)).to_have_value("42")
     expect(torque(page, 2)).to_have_value("33")

@@ -1,6 +1,7 @@
 """Pictures in a real browser: plots follow the form, stay where they are, and say what the API says."""
 
 import re
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -36,6 +37,15 @@ def drawn(page: Page, name: str = "Permissible loads") -> Any:
         " data: p.data.map(({ x, y, text, meta, line }) => ({ x, y, text, meta, line })),"
         " ranges: [p._fullLayout.xaxis.range, p._fullLayout.yaxis.range] })"
     )
+
+
+def once(page: Page, holds: Callable[[Any], bool]) -> Any:
+    """What is drawn, as soon as something holds of it."""
+    for _ in range(100):
+        if holds(state := drawn(page)):
+            return state
+        page.wait_for_timeout(50)
+    raise AssertionError("the picture did not change")
 
 
 def curves(data: Any) -> dict[float, tuple[list[float], list[float]]]:
@@ -132,9 +142,7 @@ def test_enlarged_part_stays_while_typing_until_the_whole_view_is_asked_for(visi
     page.mouse.down()
     page.mouse.move(frame["x"] + 350, frame["y"] + 220, steps=5)
     page.mouse.up()
-    page.wait_for_timeout(400)
-    part = drawn(page)["ranges"]
-    assert part != whole
+    part = once(page, lambda state: state["ranges"] != whole)["ranges"]
     page.get_by_label("Load coefficient").fill("1.3")
     expect(page).to_have_url(re.compile("fw=1.3"))
     page.wait_for_timeout(300)
@@ -161,16 +169,17 @@ def test_plot_is_saved_without_any_service(visitor: Visitor, tmp_path: Path, for
 
 
 def test_plot_follows_the_switch_to_dark_and_prints_on_white(visitor: Visitor) -> None:
+    def colour(state: Any) -> Any:
+        return state["data"][0]["line"]["color"]
+
     page = visitor.open(PHASES)
-    light = drawn(page)["data"][0]["line"]["color"]
+    light = colour(drawn(page))
     page.emulate_media(color_scheme="dark")
-    page.wait_for_timeout(300)
-    dark = drawn(page)["data"][0]["line"]["color"]
-    assert dark != light
+    dark = colour(once(page, lambda state: colour(state) != light))
     page.evaluate("dispatchEvent(new Event('beforeprint'))")
-    assert drawn(page)["data"][0]["line"]["color"] == light
+    assert colour(drawn(page)) == light
     page.evaluate("dispatchEvent(new Event('afterprint'))")
-    assert drawn(page)["data"][0]["line"]["color"] == dark
+    assert colour(drawn(page)) == dark
 
 
 def test_going_back_brings_the_plot_of_the_earlier_load(visitor: Visitor) -> None:

@@ -1,14 +1,13 @@
 """Journeys with the tools around the form: paste, files, undo, keys, a lost server, and the catalogue."""
 
 import re
-import time
 from pathlib import Path
 from typing import Any
 
 import pytest
-from playwright.sync_api import Page, Route, expect
+from playwright.sync_api import Page, expect
 
-from tests.browser.conftest import AXE, Visitor
+from tests.browser.conftest import AXE, Visitor, answer_held_back
 
 EXAMPLE = "/?T=40&n=250&t=0.3&T=32&n=500&t=3&T=20&n=250&t=0.4&tp=4&Tk=200&i=5"
 GERMAN = "Drehmoment [Nm]\tDrehzahl [1/min]\tDauer [s]\r\n9,3\t1.250\t0,3\r\n12,5\t500\t1,25\r\n"
@@ -36,11 +35,6 @@ def pause(page: Page) -> Any:
 
 def button(page: Page, name: str) -> Any:
     return page.get_by_role("button", name=name, exact=True)
-
-
-def slowly(route: Route) -> None:
-    time.sleep(0.6)
-    route.continue_()
 
 
 def test_german_table_is_shown_and_taken_and_undone(visitor: Visitor) -> None:
@@ -204,9 +198,8 @@ def test_keys_edit_rows_and_are_listed(visitor: Visitor) -> None:
 
 def test_typing_while_a_row_edit_is_under_way_keeps_both_and_the_place(visitor: Visitor) -> None:
     page = visitor.open(EXAMPLE)
-    page.route("**/?*", slowly)
-    button(page, "Remove phase 1").click()
-    torque(page, 3).fill("205")
+    with answer_held_back(page, button(page, "Remove phase 1").click):
+        torque(page, 3).fill("205")
     expect(torque(page, 3)).to_have_count(0)
     expect(torque(page, 2)).to_have_value("205")
     expect(torque(page, 2)).to_be_focused()
@@ -215,22 +208,23 @@ def test_typing_while_a_row_edit_is_under_way_keeps_both_and_the_place(visitor: 
 
 def test_rows_added_in_quick_succession_all_come(visitor: Visitor) -> None:
     page = visitor.open(EXAMPLE)
-    page.route("**/?*", slowly)
-    button(page, "+ Add phase").click()
-    button(page, "+ Add phase").click()
+    with answer_held_back(page, button(page, "+ Add phase").click):
+        button(page, "+ Add phase").click()
     expect(torque(page, 5)).to_be_visible()
 
 
 def test_long_wait_is_shown_and_a_short_one_is_not(visitor: Visitor) -> None:
     page = visitor.open(EXAMPLE)
+    page.clock.install()
     result = page.get_by_role("region", name="Result")
-    page.route("**/?*", slowly)
     before = page.get_by_role("table", name="Load limits").bounding_box()
-    with page.expect_request("**/?*"):
-        pause(page).fill("5")
-    expect(result).not_to_have_attribute("aria-busy", "true", timeout=100)
-    expect(result).to_have_attribute("aria-busy", "true")
-    assert page.get_by_role("table", name="Load limits").bounding_box() == before
+    pause(page).fill("5")
+    with answer_held_back(page, lambda: page.clock.run_for(150)):
+        page.clock.run_for(250)
+        expect(result).not_to_have_attribute("aria-busy", "true")
+        page.clock.run_for(100)
+        expect(result).to_have_attribute("aria-busy", "true")
+        assert page.get_by_role("table", name="Load limits").bounding_box() == before
     expect(page).to_have_url(re.compile("tp=5"))
     expect(result).not_to_have_attribute("aria-busy", "true")
 
