@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from hpn import checks as c
 from hpn import duty as d
-from hpn.checks import CHECKS, Evaluation, table_of
+from hpn.checks import CHECKS
 from hpn.compiled import compiled
 
 FloatArray = NDArray[np.float64]
@@ -38,37 +38,25 @@ MOVES: dict[str, dict[str, float]] = {
 
 
 TORQUE_FACTOR, SPEED_FACTOR, LOAD_FACTOR, STOP_TORQUE = range(4)
-"""Rows of what `reserve_of` gives."""
+"""What `reserve_on` gives, in this order."""
 
 _POWERS = np.array([[powers.get(check.code, 0.0) for check in CHECKS] for powers in MOVES.values()])
 
 
-def reserve_of(evaluation: Evaluation) -> FloatArray:
-    """Reserves of N applications on G gears, shape (4, N, G); infinite without a limit, NaN where not rated.
+@compiled
+def reserve_on(w: FloatArray, gear: FloatArray, put: FloatArray, curves: bool, reserve: FloatArray) -> None:
+    """Write the reserve of one application on one gear, shape (4,); infinite without a limit, NaN where not rated.
 
     Factors on all torques of the duty cycle (not the emergency stop), on all speeds and on all loads, and the largest
     permissible emergency-stop torque in Nm. NaN also where the application moves no such check, and for the torque
     factor where a motor torque follows an efficiency curve, which no closed form does.
     """
-    reserve = np.empty((4, *evaluation.status.shape[1:]))
-    curves = bool(evaluation.catalogue.efficiency)
-    _reserve(evaluation.duty.wishes, table_of(evaluation.gears), evaluation.terms, curves, reserve)
-    return reserve
-
-
-@compiled
-def _reserve(wishes: FloatArray, gears: FloatArray, terms: FloatArray, curves: bool, reserve: FloatArray) -> None:
-    for n in range(wishes.shape[0]):
-        w = wishes[n]
-        motor = not (math.isnan(w[d.MOTOR_PEAK]) and math.isnan(w[d.MOTOR_RATED]))
-        follows = curves and motor and math.isnan(w[d.EFFICIENCY])
-        for g in range(gears.shape[1]):
-            put = terms[:, :, n, g]
-            for driver in range(3):
-                reserve[driver, n, g] = _factor(put, _POWERS[driver], w[d.UTILISATION])
-            if follows:
-                reserve[TORQUE_FACTOR, n, g] = math.nan
-            reserve[STOP_TORQUE, n, g] = _emergency_stop_torque(w, gears[c.T_M, g], gears[c.T_R, g])
+    for driver in range(3):
+        reserve[driver] = _factor(put, _POWERS[driver], w[d.UTILISATION])
+    asks_of_motor = not (math.isnan(w[d.MOTOR_PEAK]) and math.isnan(w[d.MOTOR_RATED]))
+    if curves and asks_of_motor and math.isnan(w[d.EFFICIENCY]):
+        reserve[TORQUE_FACTOR] = math.nan
+    reserve[STOP_TORQUE] = _emergency_stop_torque(w, gear[c.T_M], gear[c.T_R])
 
 
 @compiled

@@ -16,7 +16,8 @@ from hpn.checks import CHECKS, Evaluation, evaluate
 from hpn.duty import Duty
 from hpn.notices import Notice, notices_of
 from hpn.ranking import SUITABLE, Ranking, rank
-from hpn.reply import DutyRow, SelectReply, candidate_rows, encode
+from hpn.reply import DutyRow, SelectReply, encode
+from hpn.rows import candidate_rows
 from hpn.wording import N_, Sentence
 
 
@@ -61,7 +62,7 @@ class Selection:
                 link=link,
                 duty=DutyRow(*self.evaluation.duty.figures[self.index, : d.T_RMS].tolist()),
                 selected=self.selected,
-                candidates=candidate_rows(self.evaluation, self.ranking, self.index),
+                candidates=Raw(candidate_rows(self.evaluation, self.ranking, self.index)),
                 check_definitions=check_definitions(codes),
                 notices=[{"code": notice.code, "text": notice.text} for notice in self.notices],
             )

@@ -1,0 +1,308 @@
+"""The candidates of a reply as JSON, which a request would spend most of its time on.
+
+`reply.CandidateRow` says what a candidate looks like. No such object is made for each gear: its JSON is a template, and
+each distinct number of a reply is spelled once.
+"""
+
+import math
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any, get_type_hints
+
+import numpy as np
+import orjson
+from numpy.typing import NDArray
+
+from hpn import checks as c
+from hpn.bearing import L50_PER_L10
+from hpn.catalogue import GearList
+from hpn.checks import CHECKS, FAIL, STATUS, Evaluation, table_of
+from hpn.compiled import compiled
+from hpn.ranking import CANDIDATE_STATUS, SUITABLE, UNRATED, Ranking
+from hpn.reply import REASONS, CandidateRow, CheckRow, GearRow, ReserveRow, encode
+from hpn.reserve import reserve_on
+
+FloatArray = NDArray[np.float64]
+ByteArray = NDArray[np.uint8]
+
+
+def candidate_rows(evaluation: Evaluation, ranking: Ranking, index: int) -> bytes:
+    """CandidateRows of application `index`, best first, as JSON."""
+    template, words, count = _template(evaluation.asked(index)), _words(evaluation.gears), len(evaluation.gears.rows)
+    numbers, chosen = np.empty((count, template.numbers)), np.empty((count, template.words), np.int64)
+    distinct, places = np.empty(numbers.size), np.empty(numbers.shape, np.int64)
+    found = _fill(
+        index,
+        template.checks,
+        evaluation.duty.wishes,
+        table_of(evaluation.gears),
+        bool(evaluation.catalogue.efficiency),
+        evaluation.terms,
+        evaluation.status,
+        evaluation.figures,
+        ranking.status,
+        ranking.utilisation,
+        ranking.governing,
+        ranking.order,
+        numbers,
+        chosen,
+        distinct,
+        places,
+    )
+    digits = orjson.dumps(distinct[:found], option=orjson.OPT_SERIALIZE_NUMPY)
+    rows = np.empty(count * (template.longest + words.longest * template.words) + 2 + _MOVE, np.uint8)
+    end = _write(
+        template.text,
+        template.ends,
+        template.takes,
+        words.text,
+        words.ends,
+        words.gaps,
+        _padded(digits),
+        places,
+        chosen,
+        rows,
+    )
+    return rows[:end].tobytes()
+
+
+# --- What a candidate is made of: a template whose gaps take words and numbers ----------------------------------------
+
+_MARK = "\1"
+"""Stands in a sentence where its number is to be put."""
+
+_WORD, _SENTENCE, _NUMBER = range(3)
+"""What a gap takes; a sentence takes a number itself."""
+
+_LONGEST_NUMBER = 24
+"""Characters of a double, written as short as it can be."""
+
+_REASON_OF = (REASONS["suitable"], *[REASONS["unsuitable" if n == 1 else "unsuitable_more"] for n in range(1, 18)])
+"""By the number of checks that fail."""
+
+_STATES = [f'"{status}"' for status in (*STATUS, *CANDIDATE_STATUS)]
+_CODES = [f'"{check.code}"' for check in CHECKS]
+_SENTENCES = [
+    encode(template.format(check=check.explanation.title, percent=f"{_MARK} %", failed=failed))
+    .decode()
+    .replace("\\u0001", _MARK)
+    for failed, template in enumerate(_REASON_OF)
+    for check in CHECKS
+]
+_FIXED_WORDS = ["null", *_STATES, *_CODES, encode(REASONS["no_stop_allowed"]).decode(), *_SENTENCES]
+_NULL_WORD, _STATUS_WORD, _VERDICT_WORD, _CODE_WORD = 0, 1, 1 + len(STATUS), 1 + len(_STATES)
+_NO_STOP_WORD = _CODE_WORD + len(_CODES)
+_REASON_WORD, _OWN_WORD = _NO_STOP_WORD + 1, len(_FIXED_WORDS)
+"""Where each kind of word begins; a list of gears has three more kinds, one word for each gear: rank, sentence on an
+unrated one, and GearRow."""
+
+
+@dataclass(frozen=True)
+class _Words:
+    """Texts that gaps may take, as JSON, one behind the other; where each ends, and where in it a number belongs."""
+
+    text: ByteArray
+    ends: NDArray[np.int64]
+    gaps: NDArray[np.int64]
+    longest: int
+
+
+@dataclass(frozen=True)
+class _Template:
+    """JSON of a candidate with gaps: the text between them, where each part of it ends, and what each gap takes."""
+
+    checks: NDArray[np.int64]
+    text: ByteArray
+    ends: NDArray[np.int64]
+    takes: ByteArray
+    words: int
+    numbers: int
+    longest: int
+    """Bytes of a candidate, its words apart."""
+
+
+_MOVE = 32
+"""Bytes that are moved at once, needed or not: what is behind a text must be there to be read."""
+
+
+def _padded(text: bytes) -> ByteArray:
+    return np.frombuffer(text + bytes(_MOVE), np.uint8)
+
+
+def _ends(parts: Sequence[bytes]) -> NDArray[np.int64]:
+    return np.cumsum([0, *map(len, parts)])
+
+
+@lru_cache(maxsize=256)
+def _words(gears: GearList) -> _Words:
+    ranks = [str(place + 1) for place in range(len(gears.rows))]
+    unrated = [encode(REASONS["unrated"].format(name=gear.name)).decode() for gear in gears.rows]
+    names = [_fields(GearRow(gear.designation, gear.size, gear.ratio, gear.stages)) for gear in gears.rows]
+    words = [word.encode() for word in (*_FIXED_WORDS, *ranks, *unrated, *names)]
+    ends = _ends(words)
+    gaps = [
+        start + word.find(_MARK.encode()) if _MARK.encode() in word else -1
+        for start, word in zip(ends, words, strict=False)
+    ]
+    return _Words(_padded(b"".join(words)), ends, np.array(gaps), max(map(len, words)))
+
+
+def _fields(row: GearRow) -> str:
+    return encode(row).decode()[1:-1]
+
+
+@lru_cache(maxsize=1024)
+def _template(checks: tuple[int, ...]) -> _Template:
+    kinds: Any = ("<word>", "<sentence>", "<number>")
+    word, sentence, number = kinds
+    numbers = {name for name, kind in get_type_hints(CandidateRow).items() if kind in (float, float | None)}
+    fields = {name: number if name in numbers else word for name in CandidateRow.__struct_fields__}
+    fields["reason"] = sentence
+    fields["reserve"] = ReserveRow(*[number] * len(ReserveRow.__struct_fields__))
+    fields["checks"] = [CheckRow(CHECKS[check].code, number, number, number, word) for check in checks]
+    candidate = _fields(CandidateRow(**fields)).replace(_fields(GearRow(word, word, word, word)), f'"{word}"')
+    parts = re.split('"(<[a-z]+>)"', f",{{{candidate}}}")
+    takes = [kinds.index(kind) for kind in parts[1::2]]
+    text = [part.encode() for part in parts[::2]]
+    numbers_taken, words_taken = len(takes) - takes.count(_WORD), len(takes) - takes.count(_NUMBER)
+    return _Template(
+        checks=np.array(checks),
+        text=_padded(b"".join(text)),
+        ends=_ends(text),
+        takes=np.array(takes, np.uint8),
+        words=words_taken,
+        numbers=numbers_taken,
+        longest=sum(map(len, text)) + _LONGEST_NUMBER * numbers_taken,
+    )
+
+
+@compiled
+def _fill(
+    index: int,
+    checks: NDArray[np.int64],
+    wishes: FloatArray,
+    gears: FloatArray,
+    curves: bool,
+    terms: FloatArray,
+    status: NDArray[np.int8],
+    figures: FloatArray,
+    verdicts: NDArray[np.int8],
+    utilisation: FloatArray,
+    governing: NDArray[np.int8],
+    order: NDArray[np.intp],
+    numbers: FloatArray,
+    words: NDArray[np.int64],
+    distinct: FloatArray,
+    places: NDArray[np.int64],
+) -> int:
+    """Numbers and words of every candidate, best first, in the order of CandidateRow; how many numbers are distinct."""
+    count = gears.shape[1]
+    for row in range(count):
+        g, value, word = order[index, row], numbers[row], words[row]
+        put, states, figure = terms[:, :, index, g], status[:, index, g], figures[:, index, g]
+        verdict, used, check, failed = verdicts[index, g], utilisation[index, g], governing[index, g], 0
+        for place in range(17):
+            failed += states[place] == FAIL
+        value[0], value[1] = used, np.round(100 * used, 1)
+        for place in range(5):
+            value[2 + place] = figure[place]
+        value[7] = figure[c.BEARING_L50] / L50_PER_L10
+        value[8], value[9] = figure[c.MOTOR_PEAK], figure[c.MOTOR_RATED]
+        reserve_on(wishes[index], gears[:, g], put, curves, value[10:14])
+        word[0] = _OWN_WORD + 2 * count + g
+        word[1] = _VERDICT_WORD + verdict
+        word[2] = _OWN_WORD + row if verdict == SUITABLE else _NULL_WORD
+        word[3] = _NULL_WORD if verdict == UNRATED else _CODE_WORD + check
+        word[4] = _REASON_WORD + 17 * failed + check
+        if verdict == UNRATED:
+            word[4] = _OWN_WORD + count + g
+        elif math.isinf(used):
+            word[4] = _NO_STOP_WORD
+        for place in range(checks.size):
+            word[5 + place] = _STATUS_WORD + states[checks[place]]
+            for term in range(3):
+                value[14 + 3 * place + term] = put[term, checks[place]]
+    return _each_once(numbers, distinct, places)
+
+
+@compiled
+def _each_once(numbers: FloatArray, distinct: FloatArray, places: NDArray[np.int64]) -> int:
+    """Sort out numbers that recur, as a quarter to four fifths do: the distinct ones, and where each is among them."""
+    bits, known, found, size, shift = numbers.view(np.uint64), distinct.view(np.uint64), 0, 1, 64
+    while size < 2 * numbers.size:
+        size, shift = 2 * size, shift - 1
+    slots = np.full(size, -1)  # a hash table with open addresses
+    for row in range(numbers.shape[0]):
+        for gap in range(numbers.shape[1]):
+            slot = np.int64((bits[row, gap] * _SPREAD) >> np.uint64(shift))
+            while slots[slot] >= 0 and known[slots[slot]] != bits[row, gap]:
+                slot = (slot + 1) % size
+            if slots[slot] < 0:
+                known[found], slots[slot] = bits[row, gap], found
+                found += 1
+            places[row, gap] = slots[slot]
+    return found
+
+
+_SPREAD = np.uint64(0x9E3779B97F4A7C15)
+"""2^64 over the golden ratio: a product with it differs in its first bits wherever the factor differs."""
+
+
+@compiled
+def _write(
+    text: ByteArray,
+    ends: NDArray[np.int64],
+    takes: ByteArray,
+    words: ByteArray,
+    word_ends: NDArray[np.int64],
+    word_gaps: NDArray[np.int64],
+    digits: ByteArray,
+    places: NDArray[np.int64],
+    chosen: NDArray[np.int64],
+    rows: ByteArray,
+) -> int:
+    """Write the list of candidates; how long it is."""
+    starts, at = _starts(digits), 0
+    for row in range(chosen.shape[0]):
+        word, number = 0, 0
+        for gap in range(takes.size):
+            at = _copy(text, ends[gap], ends[gap + 1], rows, at)
+            if takes[gap] != _NUMBER:
+                which, word = chosen[row, word], word + 1
+                start, inside, end = word_ends[which], word_gaps[which], word_ends[which + 1]
+                if inside < 0:  # it has no place for a number
+                    at = _copy(words, start, end, rows, at)
+                    number += takes[gap] == _SENTENCE
+                    continue
+                at = _copy(words, start, inside, rows, at)
+            place = places[row, number]
+            at = _copy(digits, starts[place], starts[place + 1] - 1, rows, at)
+            number += 1
+            if takes[gap] == _SENTENCE:
+                at = _copy(words, inside + 1, end, rows, at)
+        at = _copy(text, ends[-2], ends[-1], rows, at)
+    rows[0], rows[at] = ord("["), ord("]")  # each row brings the comma before it
+    return at + 1
+
+
+@compiled
+def _starts(digits: ByteArray) -> NDArray[np.int64]:
+    """Where each number of a list begins, and where one after the last would."""
+    starts, found = np.empty(digits.size, np.int64), 1
+    starts[0] = 1
+    for place in range(digits.size):
+        if digits[place] == ord(",") or digits[place] == ord("]"):
+            starts[found] = place + 1
+            found += 1
+    return starts
+
+
+@compiled
+def _copy(source: ByteArray, start: int, end: int, rows: ByteArray, at: int) -> int:
+    """Copy in wide moves, which go beyond the end: what comes next is written over that."""
+    into, since = np.uintp(at), np.uintp(start)  # without a sign, and by whole moves, the loop becomes few instructions
+    for place in range(np.uintp((end - start + _MOVE - 1) // _MOVE * _MOVE)):
+        rows[into + place] = source[since + place]
+    return at + end - start
