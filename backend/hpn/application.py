@@ -183,9 +183,10 @@ class Application(Model):
     @cached_property
     def loads(self) -> OutputLoad | None:
         """Conditions of the output load, or None where neither the cycle nor a phase carries a load."""
-        phases = self.duty_cycle.phases
-        if self.output_load is None and any(p.radial_N is not None or p.axial_N is not None for p in phases):
-            return OutputLoad()
+        if self.output_load is None:
+            for phase in self.duty_cycle.phases:
+                if phase.radial_N is not None or phase.axial_N is not None:
+                    return OutputLoad()
         return self.output_load
 
     @classmethod

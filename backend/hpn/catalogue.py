@@ -126,9 +126,9 @@ class GearList:
         )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Catalogue:
-    """Every gear of the series, and what holds for the series as a whole."""
+    """Every gear of the series, and what holds for it as a whole. Equal to itself alone, so it can be a key."""
 
     version: str
     gears: tuple[Gear, ...]
@@ -177,24 +177,14 @@ class Catalogue:
         """Rated input speed and life at rated torque, then speed and life of the published bearing loads."""
         return self.rated_input_speed_rpm, self.life_at_rated_torque_h, *self.bearing_reference
 
-    @cached_property
-    def _lists(self) -> dict[object, GearList]:
-        return {}
-
     def restricted(self, sizes: tuple[str, ...] | None, ratios: tuple[int, ...] | None) -> GearList:
         """Gears of the given sizes and ratios (None: of all), in catalogue order; maybe none."""
-        gears = self._lists.get((sizes, ratios))
-        if gears is None:
-            if len(self._lists) >= 256:  # sizes and ratios come from outside: don't let them fill the memory
-                self._lists.clear()
-            chosen = [
-                gear
-                for gear in self.gears
-                if (sizes is None or gear.size in sizes) and (ratios is None or gear.ratio in ratios)
-            ]
-            # Another thread may clear or fill the same entry meanwhile: what was built here is returned.
-            self._lists[sizes, ratios] = gears = GearList(chosen, [self.curves.get(gear.size) for gear in chosen])
-        return gears
+        chosen = [
+            gear
+            for gear in self.gears
+            if (sizes is None or gear.size in sizes) and (ratios is None or gear.ratio in ratios)
+        ]
+        return GearList(chosen, [self.curves.get(gear.size) for gear in chosen])
 
     def find(self, designation: str) -> Gear | None:
         """Gear of a designation in any of the printed spellings, or None."""

@@ -65,7 +65,8 @@ class Duty:
         self.applications = applications
         cycles = [_phases(application) for application in applications]
         longest = max(map(len, cycles))
-        self.phases = np.array([cycle + [_NOTHING] * (longest - len(cycle)) for cycle in cycles])
+        padded = [cycle + [0.0] * (longest - len(cycle)) for cycle in cycles]
+        self.phases = np.array(padded).reshape(len(cycles), -1, 5)
         self.wishes = np.array([_wishes(application) for application in applications], dtype=np.float64)
         self.figures = np.empty((len(applications), 5))
         _work_out(self.phases, self.wishes, self.figures)
@@ -121,28 +122,19 @@ class Duty:
         return self.figures[:, N_OUT_MAX]
 
 
-_NOTHING = (0.0,) * 5
-"""A phase of no duration."""
-
-
-def _phases(application: Application) -> list[tuple[float, ...]]:
-    """A row of `Duty.phases` without its padding."""
+def _phases(application: Application) -> list[float]:
+    """A row of `Duty.phases`, one phase behind the other, without its padding."""
+    figures: list[float] = []
     if application.loads is None:
-        return [
-            (abs(phase.torque_Nm), abs(phase.speed_rpm), phase.duration_s, 0.0, 0.0)
-            for phase in application.duty_cycle.phases
-        ]
+        for phase in application.duty_cycle.phases:
+            figures += abs(phase.torque_Nm), abs(phase.speed_rpm), phase.duration_s, 0.0, 0.0
+        return figures
     radial, axial = application.loads.radial_N or 0.0, application.loads.axial_N or 0.0
-    return [
-        (
-            abs(phase.torque_Nm),
-            abs(phase.speed_rpm),
-            phase.duration_s,
-            abs(radial if phase.radial_N is None else phase.radial_N),
-            abs(axial if phase.axial_N is None else phase.axial_N),
-        )
-        for phase in application.duty_cycle.phases
-    ]
+    for phase in application.duty_cycle.phases:
+        figures += abs(phase.torque_Nm), abs(phase.speed_rpm), phase.duration_s
+        figures.append(abs(radial if phase.radial_N is None else phase.radial_N))
+        figures.append(abs(axial if phase.axial_N is None else phase.axial_N))
+    return figures
 
 
 _NOT_ASKED = math.nan

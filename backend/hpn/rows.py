@@ -233,7 +233,7 @@ def _each_once(numbers: FloatArray, distinct: FloatArray, places: NDArray[np.int
     bits, known, found, size, shift = numbers.view(np.uint64), distinct.view(np.uint64), 0, 1, 64
     while size < 2 * numbers.size:
         size, shift = 2 * size, shift - 1
-    slots = np.full(size, -1)  # a hash table with open addresses
+    slots = np.full(size, -1, np.int32)  # a hash table with open addresses
     for row in range(numbers.shape[0]):
         for gap in range(numbers.shape[1]):
             slot = np.int64((bits[row, gap] * _SPREAD) >> np.uint64(shift))

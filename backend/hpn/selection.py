@@ -54,16 +54,16 @@ class Selection:
 
     def json(self, link: str) -> bytes:
         """The reply of `POST /api/v1/select` as JSON; unlimited, infinite and unpublished values are null."""
-        codes = self.evaluation.asked(self.index)
+        evaluation, index = self.evaluation, self.index
         return encode(
             SelectReply(
                 engine_version=ENGINE_VERSION,
                 catalogue_version=self.catalogue.version,
                 link=link,
-                duty=DutyRow(*self.evaluation.duty.figures[self.index, : d.T_RMS].tolist()),
+                duty=DutyRow(*evaluation.duty.figures[index, : d.T_RMS].tolist()),
                 selected=self.selected,
-                candidates=Raw(candidate_rows(self.evaluation, self.ranking, self.index)),
-                check_definitions=check_definitions(codes),
+                candidates=Raw(candidate_rows(evaluation, self.ranking, index)),
+                check_definitions=check_definitions(evaluation.asked(index)),
                 notices=[{"code": notice.code, "text": notice.text} for notice in self.notices],
             )
         )
@@ -102,7 +102,23 @@ NOT_THERE = N_("the catalogue has no {value}; there are {listed}")
 
 def candidates_of(application: Application, catalogue: Catalogue) -> GearList:
     """Gears that `ratios` and `sizes` leave; raises InputError as `select` does."""
-    sizes, ratios = application.requirements.sizes, application.requirements.ratios
+    asked, load = application.requirements, application.loads
+    gears = _restricted(catalogue, asked.sizes, asked.ratios)
+    if load is not None and load.model == "digitised" and not any(gears.curves):
+        raise InputError(
+            (
+                ("output_load", "model"),
+                Sentence(
+                    "no candidate has points of a printed curve: put them into bearing_envelopes.csv of a catalogue "
+                    "supplement (setting HPN_CATALOGUE_SUPPLEMENT), or choose linear or iso281"
+                ),
+            )
+        )
+    return gears
+
+
+@lru_cache(maxsize=256)
+def _restricted(catalogue: Catalogue, sizes: tuple[str, ...] | None, ratios: tuple[int, ...] | None) -> GearList:
     for wanted, there in ((sizes, catalogue.sizes), (ratios, catalogue.ratios)):
         if wanted is not None and not set(there).issuperset(wanted):
             raise _not_there(sizes or (), ratios or (), catalogue)
@@ -116,17 +132,6 @@ def candidates_of(application: Application, catalogue: Catalogue) -> GearList:
             (
                 ("requirements", "ratios"),
                 Sentence("no gear has such a size and ratio together; there are {offered}", {"offered": offered}),
-            )
-        )
-    load = application.loads
-    if load is not None and load.model == "digitised" and not any(gears.curves):
-        raise InputError(
-            (
-                ("output_load", "model"),
-                Sentence(
-                    "no candidate has points of a printed curve: put them into bearing_envelopes.csv of a catalogue "
-                    "supplement (setting HPN_CATALOGUE_SUPPLEMENT), or choose linear or iso281"
-                ),
             )
         )
     return gears

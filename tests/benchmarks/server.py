@@ -33,13 +33,14 @@ class Server:
 
 @contextmanager
 def serving(factory: str, environment: Mapping[str, str] | None = None) -> Iterator[Server]:
-    """Serve an application factory on a free port of loopback until the block ends."""
+    """Serve an application factory as `hpn serve` does, on a free port of loopback, until the block ends."""
     with socket.socket() as free:
         free.bind(("127.0.0.1", 0))
         port = free.getsockname()[1]
     command = [sys.executable, "-m", "uvicorn", "--factory", factory, "--port", str(port), "--log-level", "warning"]
     process = subprocess.Popen(
-        [*command, "--no-access-log"], env={**os.environ, "HPN_LOG_LEVEL": "warning", **(environment or {})}
+        [*command, "--no-access-log", "--http", "hpn.web.protocol:BoundedProtocol"],
+        env={**os.environ, "HPN_LOG_LEVEL": "warning", **(environment or {})},
     )
     try:
         server = Server(process.pid, port)

@@ -3,8 +3,8 @@
 import ipaddress
 import math
 import time
-from dataclasses import dataclass
 from functools import lru_cache
+from typing import NamedTuple
 
 import limits
 
@@ -37,8 +37,7 @@ class Counters:
         return count + 1, end
 
 
-@dataclass(frozen=True, slots=True)
-class Admission:
+class Admission(NamedTuple):
     """Whether a request may pass, and the response headers that say how many more may."""
 
     granted: bool

@@ -1,4 +1,4 @@
-"""The server's HTTP protocol with bounds on a request's head, which uvicorn with httptools lacks."""
+"""The server's HTTP protocol with bounds on how a request arrives, which uvicorn with httptools lacks."""
 
 import asyncio
 from typing import Any
@@ -8,7 +8,6 @@ from uvicorn.protocols.http.httptools_impl import STATUS_LINE, HttpToolsProtocol
 HEAD_BYTES = 128 * 1024
 """Enough for the longest link."""
 HEADER_COUNT = 100
-HEAD_SECONDS = 20.0
 
 
 class HeadTooLargeError(Exception):
@@ -16,9 +15,14 @@ class HeadTooLargeError(Exception):
 
 
 class BoundedProtocol(HttpToolsProtocol):
-    """Answers 431 to a head that is too large, and closes a connection whose head takes too long."""
+    """Answers 431 to a head that is too large, and gives up a request that does not come.
 
-    _head_timer: asyncio.TimerHandle | None = None
+    Its head and the first of its body have `arrival_s` together; `bodies.py` limits the rest of a body.
+    """
+
+    arrival_s = 20.0
+    _arrival: float | None = None
+    _timer: asyncio.TimerHandle | None = None
     _refused = False
     _head_bytes = 0
     _unseen_bytes = 0
@@ -26,11 +30,12 @@ class BoundedProtocol(HttpToolsProtocol):
     def connection_made(self, transport: Any) -> None:
         """A client has connected."""
         super().connection_made(transport)
-        self._expect_head()
+        self._expect()
 
     def connection_lost(self, exc: Exception | None) -> None:
         """The client has gone."""
-        self._forget_timer()
+        if self._timer is not None:
+            self._timer.cancel()
         super().connection_lost(exc)
 
     def data_received(self, data: bytes) -> None:
@@ -45,8 +50,7 @@ class BoundedProtocol(HttpToolsProtocol):
         """A request begins."""
         self._head_bytes = 0
         super().on_message_begin()
-        if self._head_timer is None:
-            self._expect_head()
+        self._expect()
 
     def on_url(self, url: bytes) -> None:
         """Part of the address."""
@@ -62,14 +66,18 @@ class BoundedProtocol(HttpToolsProtocol):
 
     def on_headers_complete(self) -> None:
         """The head is complete."""
-        self._forget_timer()
         self._unseen_bytes = 0
         super().on_headers_complete()
 
     def on_body(self, body: bytes) -> None:
         """Part of the body."""
-        self._unseen_bytes = 0
+        self._unseen_bytes, self._arrival = 0, None
         super().on_body(body)
+
+    def on_message_complete(self) -> None:
+        """The whole request is there."""
+        self._arrival = None
+        super().on_message_complete()
 
     def send_400_response(self, msg: str) -> None:
         """Refuse what can't be parsed; 431 where that is because it is too large."""
@@ -91,10 +99,20 @@ class BoundedProtocol(HttpToolsProtocol):
         self._refused = True
         raise HeadTooLargeError
 
-    def _expect_head(self) -> None:
-        self._head_timer = self.loop.call_later(HEAD_SECONDS, self.transport.close)
+    def _expect(self) -> None:
+        self._arrival = self.loop.time() + self.arrival_s
+        if self._timer is None:
+            self._timer = self.loop.call_later(self.arrival_s, self._look)
 
-    def _forget_timer(self) -> None:
-        if self._head_timer is not None:
-            self._head_timer.cancel()
-            self._head_timer = None
+    def _look(self) -> None:
+        """See whether the request is late. There is one timer for all requests of a connection."""
+        self._timer = None
+        if self._arrival is None:
+            return
+        left = self._arrival - self.loop.time()
+        if left > 0:
+            self._timer = self.loop.call_later(left, self._look)
+            return
+        if self.cycle is not None and not self.cycle.response_started:  # the head was there, and waits for its body
+            self.transport.write(STATUS_LINE[408] + b"content-length: 0\r\nconnection: close\r\n\r\n")
+        self.transport.close()

@@ -1,0 +1,68 @@
+"""The server gives up requests that do not come; nothing else is cut by that."""
+
+import socket
+import threading
+import time
+from collections.abc import Iterator
+
+import pytest
+import uvicorn
+from starlette.applications import Starlette
+from starlette.requests import Request
+from starlette.responses import Response
+from starlette.routing import Route
+
+from hpn.web.protocol import BoundedProtocol
+
+HEAD = b"POST / HTTP/1.1\r\nHost: x\r\nContent-Length: 4\r\n\r\n"
+
+
+class Hasty(BoundedProtocol):
+    """Has no patience."""
+
+    arrival_s = 0.4
+
+
+async def echo(request: Request) -> Response:
+    return Response(await request.body())
+
+
+@pytest.fixture
+def connection() -> Iterator[socket.socket]:
+    """A connection to a server with the hasty protocol."""
+    app = Starlette(routes=[Route("/", echo, methods=["POST"])])
+    server = uvicorn.Server(uvicorn.Config(app, http=Hasty, log_level="warning", lifespan="off"))
+    listener = socket.create_server(("127.0.0.1", 0))
+    thread = threading.Thread(target=server.run, kwargs={"sockets": [listener]})
+    thread.start()
+    with socket.create_connection(listener.getsockname(), 20) as connection:
+        yield connection
+    server.should_exit = True
+    thread.join(20)
+
+
+@pytest.mark.parametrize("start", [b"", b"POST / HTT", HEAD[:-2]])
+def test_a_connection_whose_head_does_not_come_is_closed(connection: socket.socket, start: bytes) -> None:
+    connection.sendall(start)
+
+    assert connection.recv(200) == b""
+
+
+def test_a_head_whose_body_never_begins_is_a_408(connection: socket.socket) -> None:
+    connection.sendall(HEAD)
+
+    assert connection.recv(200).startswith(b"HTTP/1.1 408")
+
+
+def test_requests_in_time_are_answered_on_one_connection_whatever_the_breaks(connection: socket.socket) -> None:
+    for _ in range(3):
+        connection.sendall(HEAD)
+        time.sleep(0.2)
+        connection.sendall(b"ab")
+        time.sleep(0.5)  # the rest of a body is for the application to wait for
+        connection.sendall(b"cd")
+        answer = b""
+        while not answer.endswith(b"abcd"):
+            answer += (part := connection.recv(500))
+            assert part, answer
+        time.sleep(0.5)
