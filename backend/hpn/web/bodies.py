@@ -49,7 +49,7 @@ def content_type_of(request: Request) -> str:
 
 async def _with_rest(part: bytes, request: Request, maximum_bytes: int, seconds: float) -> bytes:
     parts, size, more = [part], len(part), True
-    async with asyncio.timeout(seconds):  # its timer is worth a tenth of a reply: only where it is needed
+    async with asyncio.timeout(seconds):  # a timer costs a twentieth of a reply: only where it is needed
         while more and size <= maximum_bytes:
             part, more = await _part(request)
             parts.append(part)

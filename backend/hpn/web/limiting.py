@@ -50,23 +50,28 @@ class Limiter:
     """Holds each subject, a key or an address, to the rate of its kind of request: so many in each window of time."""
 
     def __init__(self, rates: dict[str, str]) -> None:
-        self._rates = {name: limits.parse(rate) for name, rate in rates.items() if rate != "off"}
-        self._policies = {
-            name: f'"{name}";q={item.amount};w={item.get_expiry()}'.encode() for name, item in self._rates.items()
-        }
+        self._rates = {name: _Rate(name, limits.parse(rate)) for name, rate in rates.items() if rate != "off"}
         self._counters = Counters()
 
     def admit(self, name: str, subject: str) -> Admission | None:
         """Count a request; None where there is no limit."""
-        item = self._rates.get(name)
-        if item is None:
+        rate = self._rates.get(name)
+        if rate is None:
             return None
         now = time.time()
-        count, end = self._counters.hit((name, subject), item.get_expiry(), now)
+        count, end = self._counters.hit((name, subject), rate.window_s, now)
         wait = max(math.ceil(end - now), 1)
-        state = b'"%b";r=%d;t=%d' % (name.encode(), max(item.amount - count, 0), wait)
-        headers = ((b"ratelimit-policy", self._policies[name]), (b"ratelimit", state))
-        return Admission(count <= item.amount, headers, wait, item)
+        state = b"%b;r=%d;t=%d" % (rate.quoted, max(rate.amount - count, 0), wait)
+        return Admission(count <= rate.amount, (rate.policy, (b"ratelimit", state)), wait, rate.item)
+
+
+class _Rate:
+    """A rate, with what every response says of it."""
+
+    def __init__(self, name: str, item: limits.RateLimitItem) -> None:
+        self.item, self.amount, self.window_s = item, item.amount, item.get_expiry()
+        self.quoted = f'"{name}"'.encode()
+        self.policy = (b"ratelimit-policy", b"%b;q=%d;w=%d" % (self.quoted, self.amount, self.window_s))
 
 
 @lru_cache(maxsize=4096)

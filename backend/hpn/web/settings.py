@@ -54,7 +54,7 @@ class Settings(BaseSettings):
     maximum_body_bytes: int = Field(2_000_000, gt=0, description="Largest body of a request for one application.")
     maximum_batch_body_bytes: int = Field(32_000_000, gt=0, description="Largest body of a batch request.")
     maximum_batch_count: int = Field(10_000, gt=0, le=10_000, description="Most applications in one batch request.")
-    body_seconds: float = Field(30.0, gt=0, description="Longest time for a request's body to arrive.")
+    body_seconds: float = Field(30.0, gt=0, description="Longest time for a body to arrive, from its first part.")
     batch_seconds: float = Field(60.0, gt=0, description="Longest computing time of one batch request.")
     spool_folder: Path | None = Field(
         None,
