@@ -42,19 +42,19 @@ def to_link(application: Application) -> str:
 
     `parse` gives the same application back; a motor of which nothing is known counts as no motor.
     """
-    return "/?" + "&".join([*_phase_pairs(application), *_other_pairs(application)])
+    return "/?" + "&".join([_phases(application), *_other_pairs(application)])
 
 
-def _phase_pairs(application: Application) -> list[str]:
+def _phases(application: Application) -> str:
     phases = application.duty_cycle.phases
-    pairs = [f"T={_written(p.torque_Nm)}&n={_written(p.speed_rpm)}&t={_written(p.duration_s)}" for p in phases]
-    if application.loads is None:
-        return pairs
-    loads = {"FRi": [phase.radial_N for phase in phases], "FAi": [phase.axial_N for phase in phases]}
-    for name, values in loads.items():
-        if any(value is not None for value in values):
-            pairs = [f"{pair}&{name}={_written(value)}" for pair, value in zip(pairs, values, strict=True)]
-    return pairs
+    pairs = [f"T={phase.torque_Nm!r}&n={phase.speed_rpm!r}&t={phase.duration_s!r}" for phase in phases]
+    if application.loads is not None:
+        loads = {"FRi": [phase.radial_N for phase in phases], "FAi": [phase.axial_N for phase in phases]}
+        for name, values in loads.items():
+            if any(value is not None for value in values):
+                written = ["" if value is None else repr(value) for value in values]
+                pairs = [f"{pair}&{name}={value}" for pair, value in zip(pairs, written, strict=True)]
+    return _shortened("&".join(pairs))
 
 
 def _other_pairs(application: Application) -> list[str]:
@@ -82,10 +82,13 @@ def _parts(application: Application) -> tuple[BaseModel | None, ...]:
 
 def _written(value: float | str | None) -> str:
     if isinstance(value, float):
-        text = repr(value)
-        if text.endswith(".0"):
-            return text[:-2]
-        return text.replace("e+", "e").replace("e-0", "e-") if "e" in text else text
+        return _shortened(repr(value))
     if isinstance(value, int):
         return str(value)
     return "" if value is None else quote(value)
+
+
+def _shortened(numbers: str) -> str:
+    """Numbers, between ampersands, without zeros and signs that say nothing."""
+    text = numbers.replace(".0&", "&").removesuffix(".0")
+    return text.replace("e+", "e").replace("e-0", "e-") if "e" in text else text
