@@ -261,7 +261,9 @@ def _evaluate(
     loads = np.empty((1, phases.shape[1], gears.shape[1]))
     for n in range(phases.shape[0]):
         w, cycle = wishes[n], cycles[n]
-        loaded = not math.isnan(w[d.LOAD_COEFFICIENT])
+        loaded, asks_for_property = not math.isnan(w[d.LOAD_COEFFICIENT]), False
+        for wish in range(d.BACKLASH, d.TEMPERATURE + 1):
+            asks_for_property |= not math.isnan(w[wish])
         if loaded:
             curves = along_curves[n : n + 1] if along_curves.size else along_curves
             _phase_loads(phases[n : n + 1], wishes[n : n + 1], gears, curves, loads)
@@ -278,7 +280,8 @@ def _evaluate(
             f[BEARING_LARGEST] = f[BEARING_MEAN] = f[BEARING_L50] = math.nan
             if loaded:
                 _on_the_bearing(w, phases[n], cycle, loads[0, :, g], series, f, put)
-            _properties(w, gear, put)
+            if asks_for_property:
+                _properties(w, gear, put)
             _judge(w, put, status[:, n, g])
 
 

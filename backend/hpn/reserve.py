@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from hpn import checks as c
 from hpn import duty as d
-from hpn.checks import CHECKS
+from hpn.checks import CHECKS, LOAD_CHECKS
 from hpn.compiled import compiled
 
 FloatArray = NDArray[np.float64]
@@ -40,7 +40,7 @@ MOVES: dict[str, dict[str, float]] = {
 TORQUE_FACTOR, SPEED_FACTOR, LOAD_FACTOR, STOP_TORQUE = range(4)
 """What `reserve_on` gives, in this order."""
 
-_POWERS = np.array([[powers.get(check.code, 0.0) for check in CHECKS] for powers in MOVES.values()])
+_POWERS = np.array([[powers.get(check.code, 0.0) for check in CHECKS[:LOAD_CHECKS]] for powers in MOVES.values()])
 
 
 @compiled
