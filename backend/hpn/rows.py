@@ -200,31 +200,45 @@ def _fill(
     """Numbers and words of every candidate, best first, in the order of CandidateRow; how many numbers are distinct."""
     count = gears.shape[1]
     for row in range(count):
-        g, value, word = order[index, row], numbers[row], words[row]
-        put, states, figure = terms[:, :, index, g], status[:, index, g], figures[:, index, g]
-        verdict, used, check, failed = verdicts[index, g], utilisation[index, g], governing[index, g], 0
-        for place in range(17):
-            failed += states[place] == FAIL
-        value[0], value[1] = used, np.round(100 * used, 1)
-        for place in range(5):
-            value[2 + place] = figure[place]
-        value[7] = figure[c.BEARING_L50] / L50_PER_L10
-        value[8], value[9] = figure[c.MOTOR_PEAK], figure[c.MOTOR_RATED]
-        reserve_on(wishes[index], gears[:, g], put, curves, value[10:14])
+        g, word = order[index, row], words[row]
+        put, states = terms[:, :, index, g], status[:, index, g]
+        verdict, used = verdicts[index, g], utilisation[index, g]
+        _fill_numbers(checks, put, figures[:, index, g], used, numbers[row])
+        reserve_on(wishes[index], gears[:, g], put, curves, numbers[row, 10:14])
         word[0] = _OWN_WORD + 2 * count + g
         word[1] = _VERDICT_WORD + verdict
         word[2] = _OWN_WORD + row if verdict == SUITABLE else _NULL_WORD
-        word[3] = _NULL_WORD if verdict == UNRATED else _CODE_WORD + check
-        word[4] = _REASON_WORD + 17 * failed + check
-        if verdict == UNRATED:
-            word[4] = _OWN_WORD + count + g
-        elif math.isinf(used):
-            word[4] = _NO_STOP_WORD
+        word[3] = _NULL_WORD if verdict == UNRATED else _CODE_WORD + governing[index, g]
+        word[4] = _OWN_WORD + count + g if verdict == UNRATED else _reason(states, used, governing[index, g])
         for place in range(checks.size):
             word[5 + place] = _STATUS_WORD + states[checks[place]]
-            for term in range(3):
-                value[14 + 3 * place + term] = put[term, checks[place]]
     return _each_once(numbers, distinct, places)
+
+
+@compiled
+def _fill_numbers(
+    checks: NDArray[np.int64], put: FloatArray, figures: FloatArray, used: float, numbers: FloatArray
+) -> None:
+    """Numbers of a candidate, but for its reserve."""
+    numbers[0], numbers[1] = used, np.round(100 * used, 1)
+    for place in range(5):
+        numbers[2 + place] = figures[place]
+    numbers[7] = figures[c.BEARING_L50] / L50_PER_L10
+    numbers[8], numbers[9] = figures[c.MOTOR_PEAK], figures[c.MOTOR_RATED]
+    for place in range(checks.size):
+        for term in range(3):
+            numbers[14 + 3 * place + term] = put[term, checks[place]]
+
+
+@compiled
+def _reason(states: NDArray[np.int8], used: float, governing: int) -> int:
+    """The sentence on a candidate that could be judged."""
+    if math.isinf(used):
+        return _NO_STOP_WORD
+    failed = 0
+    for state in states:
+        failed += state == FAIL
+    return _REASON_WORD + 17 * failed + governing
 
 
 @compiled
