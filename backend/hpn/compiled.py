@@ -1,12 +1,16 @@
 """Compiled functions: an equation is written once, for one case, and runs as machine code over a million.
 
-Numba compiles a function when it is first called, and keeps the result beside the source, or wherever its cache may
-be written.
+Numba compiles a function when it is first called, and keeps the result beside the source, or where NUMBA_CACHE_DIR
+says. It looks whether the function's own file has changed, but not at the functions that it calls: a changed equation
+would be computed as before. So what is kept belongs to the source of all modules together.
 """
 
+import hashlib
+import os
 from collections.abc import Callable
 from inspect import signature
 from itertools import compress, zip_longest
+from pathlib import Path
 from typing import Any, TypeVar, cast
 
 import numba
@@ -16,10 +20,29 @@ from numpy.typing import NDArray
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 
+def _keep_by_source() -> bool:
+    """Have numba keep what it compiles in a folder of this very source; False where none can be written."""
+    modules = Path(__file__).parent
+    digest = hashlib.sha256()
+    for path in sorted(modules.glob("*.py")):
+        digest.update(path.name.encode() + b"\0" + path.read_bytes() + b"\0")
+    settings: Any = numba.config
+    folder = Path(settings.CACHE_DIR or modules / "__pycache__") / f"compiled-{digest.hexdigest()[:16]}"
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError:
+        return False
+    settings.CACHE_DIR = str(folder)
+    return os.access(folder, os.W_OK)
+
+
+_KEPT = _keep_by_source()
+
+
 def compiled(function: Function) -> Function:
     """Compile a function of floats and arrays. Dividing by zero gives infinity or NaN, as with numpy."""
     try:
-        result: Any = numba.njit(cache=True, error_model="numpy", nogil=True)(function)
+        result: Any = numba.njit(cache=_KEPT, error_model="numpy", nogil=True)(function)
     except RuntimeError:  # no folder for the cache can be written: compile at each start
         result = numba.njit(error_model="numpy", nogil=True)(function)
     return cast(Function, result)

@@ -1,8 +1,15 @@
 """Compiled equations: by name, on floats and arrays, and without a place to keep what was compiled."""
 
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
 import numpy as np
 import pytest
 
+import hpn
 from hpn.compiled import compiled, equation, over_phases
 
 
@@ -49,3 +56,32 @@ def test_without_a_place_for_the_cache_a_function_is_compiled_all_the_same() -> 
     assert callable(function)
 
     assert compiled(function)(2.0) == 4.0
+
+
+AVERAGE_TORQUE = """
+from hpn.application import Application
+from hpn.duty import Duty
+print(Duty([Application.worked_example()]).average_torque_Nm.item())
+"""
+
+
+@pytest.mark.parametrize("kept", ["beside the source", "in a folder of its own"])
+def test_a_changed_equation_is_computed_anew_where_other_modules_call_it(tmp_path: Path, kept: str) -> None:
+    """Numba keeps compiled callers as long as their own file is the same; 18.1 of the handbook gives 32 Nm."""
+    shutil.copytree(Path(hpn.__file__).parent, tmp_path / "hpn", ignore=shutil.ignore_patterns("__pycache__"))
+    environment = {name: value for name, value in os.environ.items() if name != "NUMBA_CACHE_DIR"}
+    if kept != "beside the source":
+        environment["NUMBA_CACHE_DIR"] = str(tmp_path / "kept")
+
+    def average_torque() -> float:
+        command = [sys.executable, "-c", AVERAGE_TORQUE]
+        return float(subprocess.check_output(command, env=environment | {"PYTHONPATH": str(tmp_path)}, text=True))
+
+    before = average_torque()
+    equations = tmp_path / "hpn/equations.py"
+    text = equations.read_text()
+    assert text.count("return T_max * (damage / weight) ** 0.3") == 1
+    equations.write_text(text.replace("return T_max * (damage", "return 2 * T_max * (damage"))
+
+    assert round(before, 4) == 32.0210
+    assert average_torque() == 2 * before
