@@ -1,5 +1,6 @@
 """The server gives up requests that do not come; nothing else is cut by that."""
 
+import asyncio
 import socket
 import threading
 import time
@@ -20,17 +21,22 @@ HEAD = b"POST / HTTP/1.1\r\nHost: x\r\nContent-Length: 4\r\n\r\n"
 class Hasty(BoundedProtocol):
     """Has no patience."""
 
-    arrival_s = 1.5
+    arrival_s = 2.0
 
 
 async def echo(request: Request) -> Response:
     return Response(await request.body())
 
 
+async def slow_echo(request: Request) -> Response:
+    await asyncio.sleep(Hasty.arrival_s + 1)
+    return await echo(request)
+
+
 @pytest.fixture
 def connection() -> Iterator[socket.socket]:
     """A connection to a server with the hasty protocol."""
-    app = Starlette(routes=[Route("/", echo, methods=["POST"])])
+    app = Starlette(routes=[Route("/", echo, methods=["POST"]), Route("/slow", slow_echo, methods=["POST"])])
     server = uvicorn.Server(uvicorn.Config(app, http=Hasty, log_level="warning", lifespan="off"))
     listener = socket.create_server(("127.0.0.1", 0))
     thread = threading.Thread(target=server.run, kwargs={"sockets": [listener]})
@@ -65,3 +71,22 @@ def test_requests_in_time_are_answered_on_one_connection_whatever_the_breaks(con
             answer += (part := connection.recv(500))
             assert part, answer
         time.sleep(Hasty.arrival_s + 0.2)
+
+
+def test_a_later_request_has_as_long_as_the_first(connection: socket.socket) -> None:
+    time.sleep(Hasty.arrival_s * 2 / 3)
+    connection.sendall(HEAD[:-2])
+    time.sleep(Hasty.arrival_s * 2 / 3)  # by now the connection is older than a request may be
+    connection.sendall(b"\r\nabcd")
+
+    assert connection.recv(500).startswith(b"HTTP/1.1 200")
+
+
+def test_a_request_is_answered_although_the_head_behind_it_stalls(connection: socket.socket) -> None:
+    connection.sendall(HEAD.replace(b"/", b"/slow", 1) + b"abcd" + b"POST / HTT")
+
+    answers = b""
+    while part := connection.recv(500):
+        answers += part
+    assert answers.startswith(b"HTTP/1.1 200")
+    assert answers.endswith(b"abcd")

@@ -22,6 +22,7 @@ class BoundedProtocol(HttpToolsProtocol):
 
     arrival_s = 20.0
     _arrival: float | None = None
+    _in_head = False
     _timer: asyncio.TimerHandle | None = None
     _refused = False
     _head_bytes = 0
@@ -48,7 +49,7 @@ class BoundedProtocol(HttpToolsProtocol):
 
     def on_message_begin(self) -> None:
         """A request begins."""
-        self._head_bytes = 0
+        self._head_bytes, self._in_head = 0, True
         super().on_message_begin()
         self._expect()
 
@@ -66,7 +67,7 @@ class BoundedProtocol(HttpToolsProtocol):
 
     def on_headers_complete(self) -> None:
         """The head is complete."""
-        self._unseen_bytes = 0
+        self._unseen_bytes, self._in_head = 0, False
         super().on_headers_complete()
 
     def on_body(self, body: bytes) -> None:
@@ -113,6 +114,10 @@ class BoundedProtocol(HttpToolsProtocol):
         if left > 0:
             self._timer = self.loop.call_later(left, self._look)
             return
-        if self.cycle is not None and not self.cycle.response_started:  # the head was there, and waits for its body
+        answering = self.cycle is not None and not self.cycle.response_complete
+        if answering and self._in_head:  # an earlier request, which is not to suffer
+            self._timer = self.loop.call_later(self.arrival_s, self._look)
+            return
+        if answering and not self.cycle.response_started:
             self.transport.write(STATUS_LINE[408] + b"content-length: 0\r\nconnection: close\r\n\r\n")
         self.transport.close()
