@@ -44,17 +44,17 @@ _POWERS = np.array([[powers.get(check.code, 0.0) for check in CHECKS[:LOAD_CHECK
 
 
 @compiled
-def reserve_on(w: FloatArray, gear: FloatArray, put: FloatArray, curves: bool, reserve: FloatArray) -> None:
+def reserve_on(w: FloatArray, gear: FloatArray, put: FloatArray, curved: bool, reserve: FloatArray) -> None:
     """Write the reserve of one application on one gear, shape (4,); infinite without a limit, NaN where not rated.
 
     Factors on all torques of the duty cycle (not the emergency stop), on all speeds and on all loads, and the largest
     permissible emergency-stop torque in Nm. NaN also where the application moves no such check, and for the torque
-    factor where a motor torque follows an efficiency curve, which no closed form does.
+    factor where a motor torque follows the gear's efficiency curve (`curved`), which no closed form does.
     """
     for driver in range(3):
         reserve[driver] = _factor(put, _POWERS[driver], w[d.UTILISATION])
     asks_of_motor = not (math.isnan(w[d.MOTOR_PEAK]) and math.isnan(w[d.MOTOR_RATED]))
-    if curves and asks_of_motor and math.isnan(w[d.EFFICIENCY]):
+    if curved and asks_of_motor and math.isnan(w[d.EFFICIENCY]):
         reserve[TORQUE_FACTOR] = math.nan
     reserve[STOP_TORQUE] = _emergency_stop_torque(w, gear[c.T_M], gear[c.T_R])
 

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from hpn import checks as c
 from hpn.bearing import L50_PER_L10
-from hpn.catalogue import GearList
+from hpn.catalogue import Catalogue, GearList
 from hpn.checks import CHECKS, FAIL, STATUS, Evaluation, table_of
 from hpn.compiled import compiled
 from hpn.ranking import CANDIDATE_STATUS, SUITABLE, UNRATED, Ranking
@@ -38,7 +38,7 @@ def candidate_rows(evaluation: Evaluation, ranking: Ranking, index: int) -> byte
         template.checks,
         evaluation.duty.wishes,
         table_of(evaluation.gears),
-        bool(evaluation.catalogue.efficiency),
+        _curved(evaluation.gears, evaluation.catalogue),
         evaluation.terms,
         evaluation.status,
         evaluation.figures,
@@ -66,6 +66,12 @@ def candidate_rows(evaluation: Evaluation, ranking: Ranking, index: int) -> byte
         rows,
     )
     return rows[:end].tobytes()
+
+
+@lru_cache(maxsize=256)
+def _curved(gears: GearList, catalogue: Catalogue) -> NDArray[np.bool_]:
+    """Which gears a supplement gives an efficiency curve."""
+    return np.array([gear.designation in catalogue.efficiency for gear in gears.rows])
 
 
 # --- What a candidate is made of: a template whose gaps take words and numbers ----------------------------------------
@@ -184,7 +190,7 @@ def _fill(
     checks: NDArray[np.int64],
     wishes: FloatArray,
     gears: FloatArray,
-    curves: bool,
+    curved: NDArray[np.bool_],
     terms: FloatArray,
     status: NDArray[np.int8],
     figures: FloatArray,
@@ -204,7 +210,7 @@ def _fill(
         put, states = terms[:, :, index, g], status[:, index, g]
         verdict, used = verdicts[index, g], utilisation[index, g]
         _fill_numbers(checks, put, figures[:, index, g], used, numbers[row])
-        reserve_on(wishes[index], gears[:, g], put, curves, numbers[row, 10:14])
+        reserve_on(wishes[index], gears[:, g], put, curved[g], numbers[row, 10:14])
         word[0] = _OWN_WORD + 2 * count + g
         word[1] = _VERDICT_WORD + verdict
         word[2] = _OWN_WORD + row if verdict == SUITABLE else _NULL_WORD
@@ -243,7 +249,7 @@ def _reason(states: NDArray[np.int8], used: float, governing: int) -> int:
 
 @compiled
 def _each_once(numbers: FloatArray, distinct: FloatArray, places: NDArray[np.int64]) -> int:
-    """Sort out numbers that recur, as a quarter to four fifths do: the distinct ones, and where each is among them."""
+    """Sort out numbers that recur, as most do: the distinct ones, and where each is among them."""
     bits, known, found, size, shift = numbers.view(np.uint64), distinct.view(np.uint64), 0, 1, 64
     while size < 2 * numbers.size:
         size, shift = 2 * size, shift - 1

@@ -3,10 +3,11 @@
 import copy
 import math
 
+import pytest
 from hypothesis import assume, given
 
 from hpn.catalogue import Catalogue, load_catalogue
-from tests.build import Json, answer, candidate
+from tests.build import Json, answer, candidate, cycle, phase
 from tests.property.draw import applications
 
 CATALOGUE: Catalogue = load_catalogue()
@@ -49,6 +50,39 @@ def test_a_driver_grown_by_its_reserve_meets_a_limit_exactly(application: Json) 
             again = answer(scaled(application, driver, factor), CATALOGUE)
             used = [c["utilisation"] for c in candidate(again, designation)["checks"] if c["code"] in codes]
             assert math.isclose(max(used), reserve, rel_tol=ROUNDING), (designation, driver, factor)
+
+
+STEADY = [phase(30.0, 200.0)]
+SHORT_PEAK = [phase(30.0, 100.0, 100.0), phase(120.0, 700.0, 0.01)]
+LOADED = [phase(1.0, 1.0, radial_N=300.0)]
+FAST_LOADED = [phase(1.0, 300.0, radial_N=1100.0)]
+
+
+@pytest.mark.parametrize(
+    ("driver", "code", "power", "phases", "wishes"),
+    [
+        ("torque", "average_torque", 1.0, STEADY, {}),
+        ("torque", "repeated_peak_torque", 1.0, SHORT_PEAK, {}),
+        ("torque", "life", 0.3, STEADY, {"life_h": 1e8}),
+        ("torque", "motor_peak_torque", 1.0, SHORT_PEAK, {"motor": {"peak_torque_Nm": 1.0}}),
+        ("torque", "motor_rated_torque", 1.0, STEADY, {"motor": {"rated_torque_Nm": 1.0}}),
+        ("speed", "average_input_speed", 1.0, STEADY, {}),
+        ("speed", "maximum_input_speed", 1.0, SHORT_PEAK, {}),
+        ("speed", "life", 1.0, STEADY, {"life_h": 1e8}),
+        ("speed", "output_bearing_life", 3.0, FAST_LOADED, {}),
+        ("speed", "motor_speed", 1.0, STEADY, {"motor": {"maximum_speed_rpm": 100.0}}),
+        ("load", "output_bearing_load", 1.0, LOADED, {}),
+        ("load", "output_bearing_life", 1.0, FAST_LOADED, {}),
+    ],
+)
+def test_each_check_can_be_the_one_that_limits_its_driver(
+    driver: str, code: str, power: float, phases: list[Json], wishes: Json
+) -> None:
+    """The powers by hand: torque enters life with 10/3, speed bearing life with 1/3, all else linearly."""
+    gear = candidate(answer(cycle(*phases, requirements=wishes), CATALOGUE), "HPN-20A-5")
+    used = {check["code"]: check["utilisation"] for check in gear["checks"]}
+
+    assert math.isclose(gear["reserve"][f"{driver}_factor"], used[code] ** -power, rel_tol=ROUNDING)
 
 
 @given(applications())

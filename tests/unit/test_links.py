@@ -6,6 +6,7 @@ from urllib.parse import parse_qsl
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from pydantic import BaseModel
 
 from hpn.application import Application
 from hpn.web import links, symbols
@@ -230,9 +231,9 @@ def test_last_row_removed_leaves_a_blank_one() -> None:
 
 
 def test_every_field_of_the_application_has_a_symbol() -> None:
-    def leaves(model: type, path: tuple[str, ...] = ()) -> set[tuple[str, ...]]:
+    def leaves(model: type[BaseModel], path: tuple[str, ...] = ()) -> set[tuple[str, ...]]:
         found: set[tuple[str, ...]] = set()
-        for name, info in model.model_fields.items():  # type: ignore[attr-defined]
+        for name, info in model.model_fields.items():
             parts = [
                 t for t in (info.annotation, *getattr(info.annotation, "__args__", ())) if hasattr(t, "model_fields")
             ]
@@ -241,3 +242,15 @@ def test_every_field_of_the_application_has_a_symbol() -> None:
 
     phases = {("duty_cycle", "phases", *symbol.path) for symbol in symbols.PHASE_SYMBOLS}
     assert leaves(Application) == phases | {symbol.path for symbol in symbols.SYMBOLS}
+
+
+def test_a_canonical_number_is_as_short_as_it_can_be() -> None:
+    phases = [
+        {"torque_Nm": 1e-7, "speed_rpm": -2.5, "duration_s": 30.0},
+        {"torque_Nm": 0.0, "speed_rpm": 1e6, "duration_s": 1e-12},
+    ]
+    application = {"duty_cycle": {"phases": phases, "pause_s": 1e-5}, "output_load": {"axial_N": 10.0}}
+
+    link = to_link(Application.model_validate(application))
+
+    assert link == "/?T=1e-7&n=-2.5&t=30&T=0&n=1000000&t=1e-12&tp=1e-5&FA=10"

@@ -2,6 +2,7 @@
 
 import dataclasses
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -9,7 +10,7 @@ from hpn.application import Application, InputError
 from hpn.catalogue import HANDBOOK_FOLDER, Catalogue, load_catalogue
 from hpn.envelopes import EnvelopeQuery, life_envelopes
 from hpn.selection import select
-from tests.build import answer, candidate, check, cycle, notices, phase, suitable
+from tests.build import answer, candidate, check, cycle, notices, phase, suitable, worked_example
 from tests.conftest import Supplement
 
 RATINGS = "size,ratio,repeated_peak_torque_Nm,rated_torque_Nm,momentary_peak_torque_Nm,source\n"
@@ -179,6 +180,24 @@ def test_the_digitised_model_without_points_is_an_input_error_that_says_where_to
     answer(application, drawn)
     with pytest.raises(InputError, match=r"bearing_envelopes\.csv"):
         answer(application | {"requirements": {"sizes": ["20A"]}}, drawn)
+
+
+def test_only_a_gear_with_a_curve_of_its_own_loses_the_torque_reserve_and_only_where_the_curve_counts(
+    supplemented: Supplement, catalogue: Catalogue
+) -> None:
+    curved = supplemented(efficiency=EFFICIENCY + "20A,5,80,0.9,\n20A,5,20,0.7,\n")
+    motor = {"motor": {"peak_torque_Nm": 20.0}}
+
+    def torque_factor(designation: str, book: Catalogue, **asked: Any) -> Any:
+        return candidate(answer(worked_example(requirements=asked), book), designation)["reserve"]["torque_factor"]
+
+    assert torque_factor("HPN-20A-5", curved, **motor) is None
+    for designation, asked in (
+        ("HPN-20A-4", motor),
+        ("HPN-20A-5", {}),
+        ("HPN-20A-5", motor | {"efficiency": 0.9}),
+    ):
+        assert torque_factor(designation, curved, **asked) == torque_factor(designation, catalogue, **asked) is not None
 
 
 def test_an_efficiency_curve_of_a_supplement_is_followed_between_its_points_and_lossfree_outside(
