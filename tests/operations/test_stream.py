@@ -4,6 +4,7 @@ import asyncio
 import json
 import sys
 from collections.abc import Awaitable, Callable, Iterable
+from functools import partial
 from typing import Any
 
 import orjson
@@ -186,6 +187,11 @@ def stream(evaluate: Callable[[Any], bytes] = echo, *, spool: int = 10_000_000, 
     return LineStream(evaluate, maximum_line_bytes=100_000, maximum_spool_bytes=spool, seconds=seconds)
 
 
+def ends_with(peer: Peer, end: bytes) -> bool:
+    """Whether this came last."""
+    return peer.received.endswith(end)
+
+
 async def until(condition: Callable[[], bool]) -> None:
     """Wait for something that others do."""
     async with asyncio.timeout(20):
@@ -205,7 +211,7 @@ async def test_a_line_is_answered_before_the_next_one_is_sent() -> None:
     task = running(stream(), peer)
     for number in range(5):
         peer.send_body(b"%d\n" % number)
-        await until(lambda number=number: peer.received.endswith(b"%d\n" % number))  # type: ignore[misc]
+        await until(partial(ends_with, peer, b"%d\n" % number))
     peer.send_body(b"last", more=False)
     await task
 

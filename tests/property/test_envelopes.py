@@ -7,6 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hpn import bearing
+from hpn.application import BearingModel
 from hpn.catalogue import Catalogue, load_catalogue
 from hpn.envelopes import EnvelopeQuery, envelope_curve, life_envelopes
 from tests.build import Json, answer, check, cycle, phase
@@ -66,10 +67,10 @@ def test_a_constant_load_on_the_drawn_envelope_has_utilisation_one_by_the_check(
 
 @given(sizes, models, coefficients, st.floats(0, 1), speeds)
 def test_a_phase_on_the_published_envelope_over_the_load_coefficient_has_load_utilisation_one(
-    size: str, model: str, f_w: float, place: float, speed: float
+    size: str, model: BearingModel, f_w: float, place: float, speed: float
 ) -> None:
     gear = CATALOGUE.by_designation[SIZES[size]]
-    curve = envelope_curve(CATALOGUE, gear, model, f_w)  # type: ignore[arg-type]
+    curve = envelope_curve(CATALOGUE, gear, model, f_w)
     radial, axial = between(list(zip(curve.radial_N, curve.axial_N, strict=True)), place)
     load = {"load_coefficient": f_w, "model": model}
 

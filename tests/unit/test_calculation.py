@@ -10,6 +10,7 @@ from hpn.selection import select
 from hpn.web.mathml import mathml, with_numbers
 from hpn.web.reader import Reader
 from tests.build import Json, candidate, cycle, phase, worked_example
+from tests.conftest import Supplement
 
 
 def steps_of(application: Json, designation: str, catalogue: Catalogue) -> dict[str, Step]:
@@ -73,9 +74,9 @@ def test_a_gear_that_is_not_rated_shows_what_can_be_worked_out_and_no_more(catal
     assert not any(step.comparisons for step in steps.values())
 
 
-def test_efficiency_curve_of_a_supplement_enters_phase_by_phase(supplemented: object) -> None:
+def test_efficiency_curve_of_a_supplement_enters_phase_by_phase(supplemented: Supplement) -> None:
     rows = "size,ratio,torque_Nm,efficiency,source\n20A,5,10,0.8,own\n20A,5,50,0.9,own\n"
-    catalogue = supplemented(efficiency=rows)  # type: ignore[operator]
+    catalogue = supplemented(efficiency=rows)
     steps = steps_of(worked_example(), "HPN-20A-5", catalogue)
     line = steps["motor_peak_torque"].lines[0]
     assert line.result.value == pytest.approx(40 / (5 * 0.875), rel=1e-12)

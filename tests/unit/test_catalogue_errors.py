@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from hpn.catalogue import load_catalogue
-from hpn.tables import TABLES, CatalogueError
+from hpn.tables import TABLES, CatalogueError, Table
 from hpn.web.app import create_app
 from hpn.web.settings import Settings
 from tests.conftest import Supplement
@@ -220,8 +220,8 @@ def test_a_missing_row_of_a_rated_size_is_named(folder: Path, name: str) -> None
 
 
 @pytest.mark.parametrize("table", TABLES, ids=lambda table: table.file)
-def test_every_missing_file_is_named(folder: Path, table: type[object]) -> None:
-    path = folder / table.file  # type: ignore[attr-defined]
+def test_every_missing_file_is_named(folder: Path, table: type[Table]) -> None:
+    path = folder / table.file
     path.unlink()
 
     with pytest.raises(CatalogueError, match=f"{re.escape(str(path))}: is missing"):
