@@ -67,21 +67,21 @@ LOAD_CHECKS = sum(check.is_load_check for check in CHECKS)
 """The first so many are load checks, the others property checks."""
 
 DEMAND, LIMIT, USED = range(3)
-"""Rows of `Evaluation.terms`; utilisation is the last."""
+"""Places along the last axis of `Evaluation.terms`; utilisation is the last."""
 
 N_IN_AV, N_IN_MAX, L10, PEAKS, BEARING_L50, MOTOR_PEAK, MOTOR_RATED, BEARING_MEAN, BEARING_LARGEST = range(9)
-"""Rows of `Evaluation.figures`."""
+"""Places along the last axis of `Evaluation.figures`."""
 
 T_N, T_R, T_M, N_AV, N_MAX, RATIO, F_R, F_A, LOWEST, HIGHEST, PLAY, K3, MASS, LENGTH_MAX = range(14)
-"""Rows of a table of gears."""
+"""Columns of a table of gears."""
 
 
 @dataclass(slots=True)
 class Evaluation:
     """Checks of N applications on G gears.
 
-    `terms` (3, checks, N, G) are demand, limit and utilisation, the last infinite where a check fails without one;
-    `status` (checks, N, G) holds PASS, FAIL, NOT_RATED or ABSENT; `figures` (9, N, G) is what they derive from.
+    `terms` (N, G, checks, 3) are demand, limit and utilisation, the last infinite where a check fails without one;
+    `status` (N, G, checks) holds PASS, FAIL, NOT_RATED or ABSENT; `figures` (N, G, 9) is what they derive from.
     """
 
     duty: Duty
@@ -93,7 +93,7 @@ class Evaluation:
 
     def asked(self, index: int) -> tuple[int, ...]:
         """Checks that application `index` asks for."""
-        return _present(self.status[:, index, 0].tobytes())
+        return _present(self.status[index, 0].tobytes())
 
     @property
     def life_L10_h(self) -> FloatArray:
@@ -121,12 +121,16 @@ class Evaluation:
         return self._figure(BEARING_LARGEST)
 
     def _figure(self, row: int) -> FloatArray:
-        figure: FloatArray = self.figures[row]
+        figure: FloatArray = self.figures[:, :, row]
         return figure
+
+    def is_unlimited(self, figure: int, index: int) -> bool:
+        """Whether a figure of application `index` is infinite on any gear."""
+        return bool(_any_infinite(self.figures, figure, index))
 
     def bearing_life_factor(self, index: int) -> float:
         """Load factor k that speed and required life of application `index` allow."""
-        return self.terms.item((LIMIT, OUTPUT_BEARING_LIFE, index, 0))
+        return self.terms.item((index, 0, OUTPUT_BEARING_LIFE, LIMIT))
 
     def bearing_loads(self) -> FloatArray:
         """Equivalent load f_w P of every phase on every gear, shape (N, phases, G); NaN where it is not rated."""
@@ -137,6 +141,11 @@ class Evaluation:
         return loads
 
 
+@compiled
+def _any_infinite(figures: FloatArray, figure: int, n: int) -> bool:
+    return bool(np.isinf(figures[n, :, figure]).any())
+
+
 @lru_cache(maxsize=1024)
 def _present(status: bytes) -> tuple[int, ...]:
     return tuple(check for check, state in enumerate(status) if state != ABSENT)
@@ -145,7 +154,7 @@ def _present(status: bytes) -> tuple[int, ...]:
 def evaluate(duty: Duty, gears: GearList, catalogue: Catalogue) -> Evaluation:
     """Every check that the applications ask for, on every gear."""
     shape = (len(duty.applications), len(gears.rows))
-    terms, status, figures = np.empty((3, 17, *shape)), np.empty((17, *shape), np.int8), np.empty((9, *shape))
+    terms, status, figures = np.empty((*shape, 17, 3)), np.empty((*shape, 17), np.int8), np.empty((*shape, 9))
     _evaluate(
         duty.phases,
         duty.wishes,
@@ -163,9 +172,9 @@ def evaluate(duty: Duty, gears: GearList, catalogue: Catalogue) -> Evaluation:
 
 @lru_cache(maxsize=1024)
 def table_of(gears: GearList) -> FloatArray:
-    """Figures of gears as a table, shape (figures, G)."""
+    """Figures of gears as a table, shape (G, figures)."""
     g = gears.columns
-    table = np.array(
+    table = np.column_stack(
         [
             g.rated_torque_Nm,
             g.repeated_peak_torque_Nm,
@@ -185,12 +194,6 @@ def table_of(gears: GearList) -> FloatArray:
     )
     table.flags.writeable = False
     return table
-
-
-@compiled
-def has_unlimited(values: FloatArray) -> bool:
-    """Whether one of the values is infinite."""
-    return bool(np.isinf(values).any())
 
 
 # --- What a supplement may bring: curves ------------------------------------------------------------------------------
@@ -256,33 +259,24 @@ def _evaluate(
     status: ByteArray,
     figures: FloatArray,
 ) -> None:
-    status[:] = ABSENT
-    terms[:] = math.nan
-    loads = np.empty((1, phases.shape[1], gears.shape[1]))
+    """Its parts take whole arrays and the places n, g in them: to cut out a row costs as much as a check on it."""
+    terms.fill(math.nan)
+    loads = np.empty((1, phases.shape[1], gears.shape[0]))
     for n in range(phases.shape[0]):
-        w, cycle = wishes[n], cycles[n]
-        loaded, asks_for_property = not math.isnan(w[d.LOAD_COEFFICIENT]), False
+        loaded, asks_for_property = not math.isnan(wishes[n, d.LOAD_COEFFICIENT]), False
         for wish in range(d.BACKLASH, d.TEMPERATURE + 1):
-            asks_for_property |= not math.isnan(w[wish])
+            asks_for_property |= not math.isnan(wishes[n, wish])
         if loaded:
             curves = along_curves[n : n + 1] if along_curves.size else along_curves
             _phase_loads(phases[n : n + 1], wishes[n : n + 1], gears, curves, loads)
-        for g in range(gears.shape[1]):
-            gear, f = gears[:, g], figures[:, n, g]
-            f[N_IN_AV] = _average_input_speed(gear[RATIO], cycle[d.N_OUT_AV])
-            f[N_IN_MAX] = _maximum_input_speed(gear[RATIO], cycle[d.N_OUT_MAX])
-            f[L10] = _life(cycle[d.T_AV], f[N_IN_AV], gear[T_N], series[0], series[1])
-            _at_the_motor(w, cycle, gear, f)
-            if motor_torques.size and not math.isnan(motor_torques[0, n, g]):
-                f[MOTOR_PEAK], f[MOTOR_RATED] = motor_torques[0, n, g], motor_torques[1, n, g]
-            put = terms[:, :, n, g]
-            _load_limits(w, cycle, gear, f, put)
-            f[BEARING_LARGEST] = f[BEARING_MEAN] = f[BEARING_L50] = math.nan
+        _work_out(wishes, cycles, gears, series, motor_torques, n, figures)
+        for g in range(gears.shape[0]):
+            _load_limits(wishes, cycles, gears, figures, n, g, terms)
             if loaded:
-                _on_the_bearing(w, phases[n], cycle, loads[0, :, g], series, f, put)
+                _on_the_bearing(phases[n], wishes, cycles, loads[0, :, g], series, n, g, figures, terms)
             if asks_for_property:
-                _properties(w, gear, put)
-            _judge(w, put, status[:, n, g])
+                _properties(wishes, gears, n, g, terms)
+            _judge(wishes, terms, n, g, status)
 
 
 @compiled
@@ -294,105 +288,128 @@ def _phase_loads(
         f_w, model = wishes[n, d.LOAD_COEFFICIENT], wishes[n, d.MODEL]
         for k in range(phases.shape[1]):
             radial, axial = phases[n, k, d.RADIAL], phases[n, k, d.AXIAL]
-            for g in range(gears.shape[1]):
+            for g in range(gears.shape[0]):
                 if model == d.DIGITISED:
                     P = along_curves[n, k, g]
                 elif model == d.ISO281:
-                    P = _iso281_load(radial / gears[F_R, g], axial / gears[F_A, g])
+                    P = _iso281_load(radial / gears[g, F_R], axial / gears[g, F_A])
                 else:
-                    P = _linear_load(radial / gears[F_R, g], axial / gears[F_A, g])
+                    P = _linear_load(radial / gears[g, F_R], axial / gears[g, F_A])
                 loads[n, k, g] = f_w * P
 
 
 @compiled
-def _at_the_motor(w: FloatArray, cycle: FloatArray, gear: FloatArray, f: FloatArray) -> None:
-    eta = 1.0 if math.isnan(w[d.EFFICIENCY]) else w[d.EFFICIENCY]
-    f[MOTOR_PEAK] = _motor_torque(cycle[d.T_MAX], gear[RATIO], eta)
-    f[MOTOR_RATED] = _motor_torque(cycle[d.T_RMS], gear[RATIO], eta)
-
-
-@compiled
-def _upper(put: FloatArray, check: int, demand: float, limit: float) -> None:
-    put[DEMAND, check], put[LIMIT, check], put[USED, check] = demand, limit, demand / limit
-
-
-@compiled
-def _lower(put: FloatArray, check: int, demand: float, limit: float) -> None:
-    put[DEMAND, check], put[LIMIT, check], put[USED, check] = demand, limit, limit / demand
-
-
-@compiled
-def _load_limits(w: FloatArray, cycle: FloatArray, gear: FloatArray, f: FloatArray, put: FloatArray) -> None:
-    """Load limits 1 to 3, input speeds, life and motor."""
-    _upper(put, AVERAGE_TORQUE, cycle[d.T_AV], gear[T_N])
-    _upper(put, REPEATED_PEAK_TORQUE, cycle[d.T_MAX], gear[T_R])
-    put[USED, REPEATED_PEAK_TORQUE] = _repeated_peak_torque_utilisation(cycle[d.T_MAX], gear[T_R])
-    T_k, count = w[d.STOP_TORQUE], w[d.STOP_COUNT]
-    f[PEAKS] = math.nan
+def _work_out(
+    wishes: FloatArray,
+    cycles: FloatArray,
+    gears: FloatArray,
+    series: tuple[float, float, float, float],
+    motor_torques: FloatArray,
+    n: int,
+    figures: FloatArray,
+) -> None:
+    """What the checks derive from; that of the output bearing only where it is loaded."""
+    T_k, eta = wishes[n, d.STOP_TORQUE], 1.0 if math.isnan(wishes[n, d.EFFICIENCY]) else wishes[n, d.EFFICIENCY]
+    figures[n] = math.nan
+    for g in range(gears.shape[0]):  # a loop for each kind: the shorter, the faster
+        n_in_av = _average_input_speed(gears[g, RATIO], cycles[n, d.N_OUT_AV])
+        figures[n, g, N_IN_AV] = n_in_av
+        figures[n, g, N_IN_MAX] = _maximum_input_speed(gears[g, RATIO], cycles[n, d.N_OUT_MAX])
+        figures[n, g, L10] = _life(cycles[n, d.T_AV], n_in_av, gears[g, T_N], series[0], series[1])
     if not math.isnan(T_k):
-        f[PEAKS] = _allowed_momentary_peaks(T_k, gear[T_R])
-        _upper(put, MOMENTARY_PEAK_TORQUE, T_k, gear[T_M])
-        put[USED, MOMENTARY_PEAK_TORQUE] = _momentary_peak_torque_utilisation(T_k, gear[T_M])
-    if not math.isnan(count):
-        _upper(put, MOMENTARY_PEAK_COUNT, count, f[PEAKS])
-        if (
-            f[PEAKS] == 0
-        ):  # where no stop at all is allowed the check fails without a utilisation, even for a count of 0
-            put[USED, MOMENTARY_PEAK_COUNT] = math.inf
-    _upper(put, AVERAGE_INPUT_SPEED, f[N_IN_AV], gear[N_AV])
-    _upper(put, MAXIMUM_INPUT_SPEED, f[N_IN_MAX], gear[N_MAX])
-    if not math.isnan(w[d.LIFE]):
-        _lower(put, LIFE, f[L10], w[d.LIFE])
-    if not math.isnan(w[d.MOTOR_SPEED]):
-        _upper(put, MOTOR_SPEED, f[N_IN_MAX], w[d.MOTOR_SPEED])
-    if not math.isnan(w[d.MOTOR_PEAK]):
-        _upper(put, MOTOR_PEAK_TORQUE, f[MOTOR_PEAK], w[d.MOTOR_PEAK])
-    if not math.isnan(w[d.MOTOR_RATED]):
-        _upper(put, MOTOR_RATED_TORQUE, f[MOTOR_RATED], w[d.MOTOR_RATED])
+        for g in range(gears.shape[0]):
+            figures[n, g, PEAKS] = _allowed_momentary_peaks(T_k, gears[g, T_R])
+    for g in range(gears.shape[0]):
+        figures[n, g, MOTOR_PEAK] = _motor_torque(cycles[n, d.T_MAX], gears[g, RATIO], eta)
+        figures[n, g, MOTOR_RATED] = _motor_torque(cycles[n, d.T_RMS], gears[g, RATIO], eta)
+        if motor_torques.size and not math.isnan(motor_torques[0, n, g]):
+            figures[n, g, MOTOR_PEAK], figures[n, g, MOTOR_RATED] = motor_torques[0, n, g], motor_torques[1, n, g]
+
+
+@compiled
+def _upper(terms: FloatArray, n: int, g: int, check: int, demand: float, limit: float) -> None:
+    terms[n, g, check, DEMAND], terms[n, g, check, LIMIT], terms[n, g, check, USED] = demand, limit, demand / limit
+
+
+@compiled
+def _lower(terms: FloatArray, n: int, g: int, check: int, demand: float, limit: float) -> None:
+    terms[n, g, check, DEMAND], terms[n, g, check, LIMIT], terms[n, g, check, USED] = demand, limit, limit / demand
+
+
+@compiled
+def _load_limits(
+    wishes: FloatArray, cycles: FloatArray, gears: FloatArray, figures: FloatArray, n: int, g: int, terms: FloatArray
+) -> None:
+    """Load limits 1 to 3, input speeds, life and motor."""
+    T_av, T_max, T_k = cycles[n, d.T_AV], cycles[n, d.T_MAX], wishes[n, d.STOP_TORQUE]
+    _upper(terms, n, g, AVERAGE_TORQUE, T_av, gears[g, T_N])
+    _upper(terms, n, g, REPEATED_PEAK_TORQUE, T_max, gears[g, T_R])
+    terms[n, g, REPEATED_PEAK_TORQUE, USED] = _repeated_peak_torque_utilisation(T_max, gears[g, T_R])
+    if not math.isnan(T_k):
+        _upper(terms, n, g, MOMENTARY_PEAK_TORQUE, T_k, gears[g, T_M])
+        terms[n, g, MOMENTARY_PEAK_TORQUE, USED] = _momentary_peak_torque_utilisation(T_k, gears[g, T_M])
+    if not math.isnan(wishes[n, d.STOP_COUNT]):
+        _upper(terms, n, g, MOMENTARY_PEAK_COUNT, wishes[n, d.STOP_COUNT], figures[n, g, PEAKS])
+        if figures[n, g, PEAKS] == 0:  # no stop at all is allowed: fails without a utilisation, even for a count of 0
+            terms[n, g, MOMENTARY_PEAK_COUNT, USED] = math.inf
+    _upper(terms, n, g, AVERAGE_INPUT_SPEED, figures[n, g, N_IN_AV], gears[g, N_AV])
+    _upper(terms, n, g, MAXIMUM_INPUT_SPEED, figures[n, g, N_IN_MAX], gears[g, N_MAX])
+    if not math.isnan(wishes[n, d.LIFE]):
+        _lower(terms, n, g, LIFE, figures[n, g, L10], wishes[n, d.LIFE])
+    if not math.isnan(wishes[n, d.MOTOR_SPEED]):
+        _upper(terms, n, g, MOTOR_SPEED, figures[n, g, N_IN_MAX], wishes[n, d.MOTOR_SPEED])
+    if not math.isnan(wishes[n, d.MOTOR_PEAK]):
+        _upper(terms, n, g, MOTOR_PEAK_TORQUE, figures[n, g, MOTOR_PEAK], wishes[n, d.MOTOR_PEAK])
+    if not math.isnan(wishes[n, d.MOTOR_RATED]):
+        _upper(terms, n, g, MOTOR_RATED_TORQUE, figures[n, g, MOTOR_RATED], wishes[n, d.MOTOR_RATED])
 
 
 @compiled
 def _on_the_bearing(
-    w: FloatArray,
     phases: FloatArray,
-    cycle: FloatArray,
+    wishes: FloatArray,
+    cycles: FloatArray,
     loads: FloatArray,
     series: tuple[float, float, float, float],
-    f: FloatArray,
-    put: FloatArray,
+    n: int,
+    g: int,
+    figures: FloatArray,
+    terms: FloatArray,
 ) -> None:
-    mean = _mean_equivalent_load(loads, phases[:, d.SPEED], phases[:, d.DURATION])
-    k = _life_factor(cycle[d.N_OUT_AV], w[d.BEARING_L50], series[2], series[3])
-    f[BEARING_LARGEST], f[BEARING_MEAN] = loads.max(), mean
-    f[BEARING_L50] = _bearing_life(mean, cycle[d.N_OUT_AV], series[2], series[3])
-    _upper(put, OUTPUT_BEARING_LOAD, f[BEARING_LARGEST], 1.0)
-    _upper(put, OUTPUT_BEARING_LIFE, mean, k)
+    mean, n_out_av = _mean_equivalent_load(loads, phases[:, d.SPEED], phases[:, d.DURATION]), cycles[n, d.N_OUT_AV]
+    k = _life_factor(n_out_av, wishes[n, d.BEARING_L50], series[2], series[3])
+    figures[n, g, BEARING_LARGEST], figures[n, g, BEARING_MEAN] = loads.max(), mean
+    figures[n, g, BEARING_L50] = _bearing_life(mean, n_out_av, series[2], series[3])
+    _upper(terms, n, g, OUTPUT_BEARING_LOAD, figures[n, g, BEARING_LARGEST], 1.0)
+    _upper(terms, n, g, OUTPUT_BEARING_LIFE, mean, k)
 
 
 @compiled
-def _properties(w: FloatArray, gear: FloatArray, put: FloatArray) -> None:
-    if not math.isnan(w[d.TEMPERATURE]):
-        middle, half = (gear[LOWEST] + gear[HIGHEST]) / 2, (gear[HIGHEST] - gear[LOWEST]) / 2
-        put[DEMAND, AMBIENT_TEMPERATURE] = w[d.TEMPERATURE]
-        bound = gear[HIGHEST] if w[d.TEMPERATURE] >= middle else gear[LOWEST]
-        put[LIMIT, AMBIENT_TEMPERATURE] = math.nan if math.isnan(middle) else bound
-        put[USED, AMBIENT_TEMPERATURE] = abs(w[d.TEMPERATURE] - middle) / half
-    if not math.isnan(w[d.BACKLASH]):
-        _upper(put, BACKLASH, gear[PLAY], w[d.BACKLASH])
-    if not math.isnan(w[d.STIFFNESS]):
-        _lower(put, TORSIONAL_STIFFNESS, gear[K3], w[d.STIFFNESS])
-    if not math.isnan(w[d.WEIGHT]):
-        _upper(put, WEIGHT, gear[MASS], w[d.WEIGHT])
-    if not math.isnan(w[d.LENGTH]):
-        _upper(put, LENGTH, gear[LENGTH_MAX], w[d.LENGTH])
+def _properties(wishes: FloatArray, gears: FloatArray, n: int, g: int, terms: FloatArray) -> None:
+    wanted = wishes[n, d.TEMPERATURE]
+    if not math.isnan(wanted):
+        lowest, highest = gears[g, LOWEST], gears[g, HIGHEST]
+        middle, half = (lowest + highest) / 2, (highest - lowest) / 2
+        bound = math.nan if math.isnan(middle) else highest if wanted >= middle else lowest
+        _upper(terms, n, g, AMBIENT_TEMPERATURE, wanted, bound)
+        terms[n, g, AMBIENT_TEMPERATURE, USED] = abs(wanted - middle) / half
+    if not math.isnan(wishes[n, d.BACKLASH]):
+        _upper(terms, n, g, BACKLASH, gears[g, PLAY], wishes[n, d.BACKLASH])
+    if not math.isnan(wishes[n, d.STIFFNESS]):
+        _lower(terms, n, g, TORSIONAL_STIFFNESS, gears[g, K3], wishes[n, d.STIFFNESS])
+    if not math.isnan(wishes[n, d.WEIGHT]):
+        _upper(terms, n, g, WEIGHT, gears[g, MASS], wishes[n, d.WEIGHT])
+    if not math.isnan(wishes[n, d.LENGTH]):
+        _upper(terms, n, g, LENGTH, gears[g, LENGTH_MAX], wishes[n, d.LENGTH])
 
 
 @compiled
-def _judge(w: FloatArray, put: FloatArray, status: ByteArray) -> None:
+def _judge(wishes: FloatArray, terms: FloatArray, n: int, g: int, status: ByteArray) -> None:
     """Pass, fail or not rated: a load check against the user's own utilisation u, a property check against 1."""
-    for check in range(status.size):
-        used = put[USED, check]
-        if math.isnan(put[DEMAND, check]) and math.isnan(put[LIMIT, check]):
-            continue
-        bound = (w[d.UTILISATION] if check < LOAD_CHECKS else 1.0) * (1 + equations.ROUNDING)
-        status[check] = NOT_RATED if math.isnan(used) else PASS if used <= bound else FAIL
+    for check in range(status.shape[2]):
+        used = terms[n, g, check, USED]
+        bound = (wishes[n, d.UTILISATION] if check < LOAD_CHECKS else 1.0) * (1 + equations.ROUNDING)
+        if math.isnan(terms[n, g, check, DEMAND]) and math.isnan(terms[n, g, check, LIMIT]):
+            status[n, g, check] = ABSENT
+        else:
+            status[n, g, check] = NOT_RATED if math.isnan(used) else PASS if used <= bound else FAIL

@@ -40,11 +40,14 @@ _KEPT = _keep_by_source()
 
 
 def compiled(function: Function) -> Function:
-    """Compile a function of floats and arrays. Dividing by zero gives infinity or NaN, as with numpy."""
+    """Compile a function of floats and arrays. Dividing by zero gives infinity or NaN, as with numpy.
+
+    Each is put in where it is called: handing arrays over costs more than most of these functions do.
+    """
     try:
-        result: Any = numba.njit(cache=_KEPT, error_model="numpy", nogil=True)(function)
+        result: Any = numba.njit(cache=_KEPT, error_model="numpy", nogil=True, forceinline=True)(function)
     except RuntimeError:  # no folder for the cache can be written: compile at each start
-        result = numba.njit(error_model="numpy", nogil=True)(function)
+        result = numba.njit(error_model="numpy", nogil=True, forceinline=True)(function)
     return cast(Function, result)
 
 

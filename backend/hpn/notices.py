@@ -5,7 +5,7 @@ from functools import cached_property, lru_cache
 
 from hpn.application import Application
 from hpn.catalogue import GearList
-from hpn.checks import Evaluation, has_unlimited
+from hpn.checks import BEARING_L50, L10, PEAKS, Evaluation
 from hpn.wording import N_, Quantity, Sentence, Value
 
 
@@ -122,13 +122,13 @@ def _emergency_stop(evaluation: Evaluation, index: int) -> list[Notice]:
                 largest=Quantity(largest, "Nm", 6),
             )
         )
-    if has_unlimited(evaluation.momentary_peak_count[index]):
+    if evaluation.is_unlimited(PEAKS, index):
         notices.append(_COUNT_UNLIMITED)
     return notices
 
 
 def _life(evaluation: Evaluation, index: int) -> list[Notice]:
-    return [_LIFE_UNLIMITED] if has_unlimited(evaluation.life_L10_h[index]) else []
+    return [_LIFE_UNLIMITED] if evaluation.is_unlimited(L10, index) else []
 
 
 def _bearing(evaluation: Evaluation, index: int) -> list[Notice]:
@@ -136,7 +136,7 @@ def _bearing(evaluation: Evaluation, index: int) -> list[Notice]:
     if load is None:
         return []
     notices = [_SUPPLIED if load.model == "digitised" else _COMPUTED, _LOAD_POSITION, _LIFE_BASIS]
-    return [*notices, _BEARING_UNLIMITED] if has_unlimited(evaluation.bearing_life_L50_h[index]) else notices
+    return [*notices, _BEARING_UNLIMITED] if evaluation.is_unlimited(BEARING_L50, index) else notices
 
 
 def _motor(application: Application, curves: bool) -> list[Notice]:

@@ -33,7 +33,7 @@ def rank(evaluation: Evaluation) -> Ranking:
     Suitable gears come first by `rank_by`, then unsuitable ones by ascending utilisation, then unrated ones; ties fall
     to weight, utilisation, life and ratio, and last to the order of the catalogue. What is not published comes last.
     """
-    shape = evaluation.status.shape[1:]
+    shape = evaluation.status.shape[:2]
     ranking = Ranking(np.empty(shape, np.int8), np.empty(shape), np.empty(shape, np.int8), np.empty(shape, np.intp))
     _rank(
         evaluation.duty.wishes,
@@ -64,20 +64,19 @@ def _rank(
     keys = np.empty((verdicts.shape[1], 6))  # the first decides first
     for n in range(verdicts.shape[0]):
         for g in range(verdicts.shape[1]):
-            verdict, used, check = _verdict(terms[c.USED, :, n, g], status[:, n, g])
+            verdict, used, check = _verdict(terms, status, n, g)
             verdicts[n, g], utilisation[n, g], governing[n, g] = verdict, used, check
-            key = keys[g]
-            key[0], key[1], key[2] = verdict, used, gears[c.MASS, g]
-            key[3], key[4], key[5] = used, -figures[c.L10, n, g], gears[c.RATIO, g]
+            keys[g, 0], keys[g, 1], keys[g, 2] = verdict, used, gears[g, c.MASS]
+            keys[g, 3], keys[g, 4], keys[g, 5] = used, -figures[n, g, c.L10], gears[g, c.RATIO]
             if verdict == SUITABLE:
-                key[1] = _wish(wishes[n, d.RANK_BY], gears[:, g], figures[:, n, g], used)
+                keys[g, 1] = _wish(wishes[n, d.RANK_BY], gears, figures, n, g, used)
             elif verdict == UNRATED:
-                key[1] = g
+                keys[g, 1] = g
         for g in range(verdicts.shape[1]):  # a gear is put behind its equals, which keeps the catalogue's order
             first, last = 0, g
             while first < last:
                 middle = (first + last) // 2
-                if _comes_before(keys[g], keys[order[n, middle]]):
+                if _comes_before(keys, g, order[n, middle]):
                     last = middle
                 else:
                     first = middle + 1
@@ -87,41 +86,43 @@ def _rank(
 
 
 @compiled
-def _verdict(used: FloatArray, status: NDArray[np.int8]) -> tuple[int, float, int]:
+def _verdict(terms: FloatArray, status: NDArray[np.int8], n: int, g: int) -> tuple[int, float, int]:
     """Status of a candidate, the largest utilisation of its load checks and failing ones, and the check it is of."""
     verdict, largest, governing = SUITABLE, -math.inf, 0
-    for check in range(status.size):
-        if status[check] == FAIL:
+    for check in range(status.shape[2]):
+        state = status[n, g, check]
+        if state == FAIL:
             verdict = UNSUITABLE
-        elif status[check] == NOT_RATED and verdict == SUITABLE:
+        elif state == NOT_RATED and verdict == SUITABLE:
             verdict = UNRATED
-        counts = status[check] == FAIL or (status[check] == PASS and check < LOAD_CHECKS)
-        if counts and used[check] > largest:
-            largest, governing = used[check], check
+        counts = state == FAIL or (state == PASS and check < LOAD_CHECKS)
+        if counts and terms[n, g, check, c.USED] > largest:
+            largest, governing = terms[n, g, check, c.USED], check
     return verdict, math.nan if verdict == UNRATED else largest, governing
 
 
 @compiled
-def _wish(rank_by: float, gear: FloatArray, figures: FloatArray, used: float) -> Any:
+def _wish(rank_by: float, gears: FloatArray, figures: FloatArray, n: int, g: int, used: float) -> Any:
     """What suitable gears are ordered by, ascending."""
     if rank_by == d.BY_UTILISATION:
         return used
     if rank_by == d.BY_LENGTH:
-        return gear[c.LENGTH_MAX]
+        return gears[g, c.LENGTH_MAX]
     if rank_by == d.BY_MOTOR_TORQUE:
-        return figures[c.MOTOR_PEAK]
+        return figures[n, g, c.MOTOR_PEAK]
     if rank_by == d.BY_LIFE:
-        return -figures[c.L10]
+        return -figures[n, g, c.L10]
     if rank_by == d.BY_STIFFNESS:
-        return -gear[c.K3]
-    return gear[c.MASS]
+        return -gears[g, c.K3]
+    return gears[g, c.MASS]
 
 
 @compiled
-def _comes_before(one: FloatArray, other: FloatArray) -> bool:
-    for key in range(one.size):
-        if one[key] < other[key] or (math.isnan(other[key]) and not math.isnan(one[key])):
+def _comes_before(keys: FloatArray, one: int, other: int) -> bool:
+    for key in range(keys.shape[1]):
+        a, b = keys[one, key], keys[other, key]
+        if a < b or (math.isnan(b) and not math.isnan(a)):
             return True
-        if other[key] < one[key] or (math.isnan(one[key]) and not math.isnan(other[key])):
+        if b < a or (math.isnan(a) and not math.isnan(b)):
             return False
     return False

@@ -37,37 +37,43 @@ MOVES: dict[str, dict[str, float]] = {
 """Driver -> check -> power with which the driver moves the utilisation of the check (eq. 17.2 to 17.10, ISO 281)."""
 
 
-TORQUE_FACTOR, SPEED_FACTOR, LOAD_FACTOR, STOP_TORQUE = range(4)
-"""What `reserve_on` gives, in this order."""
+TORQUE, SPEED, LOAD = range(3)
+"""The drivers, as rows of `_POWERS`."""
 
 _POWERS = np.array([[powers.get(check.code, 0.0) for check in CHECKS[:LOAD_CHECKS]] for powers in MOVES.values()])
 
 
 @compiled
-def reserve_on(w: FloatArray, gear: FloatArray, put: FloatArray, curved: bool, reserve: FloatArray) -> None:
-    """Write the reserve of one application on one gear, shape (4,); infinite without a limit, NaN where not rated.
+def reserve_on(
+    wishes: FloatArray, gears: FloatArray, terms: FloatArray, curved: bool, n: int, g: int
+) -> tuple[Any, Any, Any, Any]:
+    """Reserve of application n on gear g: infinite without a limit, NaN where not rated.
 
     Factors on all torques of the duty cycle (not the emergency stop), on all speeds and on all loads, and the largest
     permissible emergency-stop torque in Nm. NaN also where the application moves no such check, and for the torque
     factor where a motor torque follows the gear's efficiency curve (`curved`), which no closed form does.
     """
-    for driver in range(3):
-        reserve[driver] = _factor(put, _POWERS[driver], w[d.UTILISATION])
-    asks_of_motor = not (math.isnan(w[d.MOTOR_PEAK]) and math.isnan(w[d.MOTOR_RATED]))
-    if curved and asks_of_motor and math.isnan(w[d.EFFICIENCY]):
-        reserve[TORQUE_FACTOR] = math.nan
-    reserve[STOP_TORQUE] = _emergency_stop_torque(w, gear[c.T_M], gear[c.T_R])
+    asks_of_motor = not (math.isnan(wishes[n, d.MOTOR_PEAK]) and math.isnan(wishes[n, d.MOTOR_RATED]))
+    follows_curve = curved and asks_of_motor and math.isnan(wishes[n, d.EFFICIENCY])
+    u = wishes[n, d.UTILISATION]
+    return (
+        math.nan if follows_curve else _factor(terms, n, g, TORQUE, u),
+        _factor(terms, n, g, SPEED, u),
+        _factor(terms, n, g, LOAD, u),
+        _emergency_stop_torque(wishes[n, d.STOP_TORQUE], wishes[n, d.STOP_COUNT], u, gears[g, c.T_M], gears[g, c.T_R]),
+    )
 
 
 @compiled
-def _factor(put: FloatArray, powers: FloatArray, u: float) -> Any:
+def _factor(terms: FloatArray, n: int, g: int, driver: int, u: float) -> Any:
     """Smallest (u / utilisation)^(1 / power) over the checks that a driver moves."""
     smallest, moved = math.inf, False
-    for check in range(powers.size):
-        if powers[check] == 0 or (math.isnan(put[c.DEMAND, check]) and math.isnan(put[c.LIMIT, check])):
+    for check in range(_POWERS.shape[1]):
+        power = _POWERS[driver, check]
+        if power == 0 or (math.isnan(terms[n, g, check, c.DEMAND]) and math.isnan(terms[n, g, check, c.LIMIT])):
             continue
-        room = u / put[c.USED, check]
-        factor = room if powers[check] == 1 else room ** (1 / powers[check])
+        room = u / terms[n, g, check, c.USED]
+        factor = room if power == 1 else room ** (1 / power)
         moved = True
         if math.isnan(factor):
             return math.nan  # not rated
@@ -76,15 +82,15 @@ def _factor(put: FloatArray, powers: FloatArray, u: float) -> Any:
 
 
 @compiled
-def _emergency_stop_torque(w: FloatArray, T_M: float, T_R: float) -> Any:
+def _emergency_stop_torque(T_k: float, count: float, u: float, T_M: float, T_R: float) -> Any:
     """Largest T_k = min(u T_M, max(T_R, T_R (8.5 - log10 N) / 1.5)) in Nm, equations 17.8 and 17.9 solved for T_k.
 
     N is the smallest allowed number that the expected count needs: count / u, rounded up, since equation 17.9 gives a
     count. Without an expected count T_M alone limits.
     """
-    if math.isnan(w[d.STOP_TORQUE]):
+    by_torque = u * T_M
+    if math.isnan(T_k):
         return math.nan
-    u, count, by_torque = w[d.UTILISATION], w[d.STOP_COUNT], w[d.UTILISATION] * T_M
     if math.isnan(count):
         return by_torque
     # a reserve next to 0 leaves no stop above T_R

@@ -26,16 +26,17 @@ from hpn.reserve import reserve_on
 
 FloatArray = NDArray[np.float64]
 ByteArray = NDArray[np.uint8]
+PlaceArray = NDArray[np.int32]
 
 
-def candidate_rows(evaluation: Evaluation, ranking: Ranking, index: int) -> bytes:
+def candidate_rows(evaluation: Evaluation, ranking: Ranking, index: int) -> memoryview:
     """CandidateRows of application `index`, best first, as JSON."""
-    template, words, count = _template(evaluation.asked(index)), _words(evaluation.gears), len(evaluation.gears.rows)
-    numbers, chosen = np.empty((count, template.numbers)), np.empty((count, template.words), np.int64)
-    distinct, places = np.empty(numbers.size), np.empty(numbers.shape, np.int64)
-    found = _fill(
+    template, words = _template(evaluation.asked(index)), _words(evaluation.gears)
+    distinct, places, chosen = _fill(
         index,
         template.checks,
+        template.numbers,
+        template.words,
         evaluation.duty.wishes,
         table_of(evaluation.gears),
         _curved(evaluation.gears, evaluation.catalogue),
@@ -46,26 +47,21 @@ def candidate_rows(evaluation: Evaluation, ranking: Ranking, index: int) -> byte
         ranking.utilisation,
         ranking.governing,
         ranking.order,
-        numbers,
-        chosen,
-        distinct,
-        places,
     )
-    digits = orjson.dumps(distinct[:found], option=orjson.OPT_SERIALIZE_NUMPY)
-    rows = np.empty(count * (template.longest + words.longest * template.words) + 2 + _MOVE, np.uint8)
-    end = _write(
+    digits = np.frombuffer(orjson.dumps(distinct, option=orjson.OPT_SERIALIZE_NUMPY), np.uint8)
+    longest = template.longest + words.longest * template.words
+    return _write(
         template.text,
         template.ends,
         template.takes,
         words.text,
         words.ends,
         words.gaps,
-        _padded(digits),
+        digits,
         places,
         chosen,
-        rows,
-    )
-    return rows[:end].tobytes()
+        longest,
+    ).data
 
 
 @lru_cache(maxsize=256)
@@ -188,6 +184,8 @@ def _template(checks: tuple[int, ...]) -> _Template:
 def _fill(
     index: int,
     checks: NDArray[np.int64],
+    numbers_taken: int,
+    words_taken: int,
     wishes: FloatArray,
     gears: FloatArray,
     curved: NDArray[np.bool_],
@@ -198,58 +196,67 @@ def _fill(
     utilisation: FloatArray,
     governing: NDArray[np.int8],
     order: NDArray[np.intp],
-    numbers: FloatArray,
-    words: NDArray[np.int64],
-    distinct: FloatArray,
-    places: NDArray[np.int64],
-) -> int:
-    """Numbers and words of every candidate, best first, in the order of CandidateRow; how many numbers are distinct."""
-    count = gears.shape[1]
+) -> tuple[FloatArray, PlaceArray, PlaceArray]:
+    """What fills the gaps of every candidate, best first, in the order of CandidateRow.
+
+    Its distinct numbers, where among them each number is, shape (G, numbers), and its words, shape (G, words).
+    """
+    count = gears.shape[0]
+    numbers, words = np.empty((count, numbers_taken)), np.empty((count, words_taken), np.int32)
     for row in range(count):
-        g, word = order[index, row], words[row]
-        put, states = terms[:, :, index, g], status[:, index, g]
-        verdict, used = verdicts[index, g], utilisation[index, g]
-        _fill_numbers(checks, put, figures[:, index, g], used, numbers[row])
-        reserve_on(wishes[index], gears[:, g], put, curved[g], numbers[row, 10:14])
-        word[0] = _OWN_WORD + 2 * count + g
-        word[1] = _VERDICT_WORD + verdict
-        word[2] = _OWN_WORD + row if verdict == SUITABLE else _NULL_WORD
-        word[3] = _NULL_WORD if verdict == UNRATED else _CODE_WORD + governing[index, g]
-        word[4] = _OWN_WORD + count + g if verdict == UNRATED else _reason(states, used, governing[index, g])
+        g = order[index, row]
+        verdict, used, governs = verdicts[index, g], utilisation[index, g], governing[index, g]
+        _fill_numbers(checks, terms, figures, used, index, g, row, numbers)
+        reserve = reserve_on(wishes, gears, terms, curved[g], index, g)
+        numbers[row, 10], numbers[row, 11], numbers[row, 12], numbers[row, 13] = reserve
+        words[row, 0] = _OWN_WORD + 2 * count + g
+        words[row, 1] = _VERDICT_WORD + verdict
+        words[row, 2] = _OWN_WORD + row if verdict == SUITABLE else _NULL_WORD
+        words[row, 3] = _NULL_WORD if verdict == UNRATED else _CODE_WORD + governs
+        words[row, 4] = _OWN_WORD + count + g if verdict == UNRATED else _reason(status, index, g, used, governs)
         for place in range(checks.size):
-            word[5 + place] = _STATUS_WORD + states[checks[place]]
-    return _each_once(numbers, distinct, places)
+            words[row, 5 + place] = _STATUS_WORD + status[index, g, checks[place]]
+    distinct, places = _each_once(numbers)
+    return distinct, places, words
 
 
 @compiled
 def _fill_numbers(
-    checks: NDArray[np.int64], put: FloatArray, figures: FloatArray, used: float, numbers: FloatArray
+    checks: NDArray[np.int64],
+    terms: FloatArray,
+    figures: FloatArray,
+    used: float,
+    n: int,
+    g: int,
+    row: int,
+    numbers: FloatArray,
 ) -> None:
     """Numbers of a candidate, but for its reserve."""
-    numbers[0], numbers[1] = used, np.round(100 * used, 1)
+    numbers[row, 0], numbers[row, 1] = used, np.round(100 * used, 1)
     for place in range(5):
-        numbers[2 + place] = figures[place]
-    numbers[7] = figures[c.BEARING_L50] / L50_PER_L10
-    numbers[8], numbers[9] = figures[c.MOTOR_PEAK], figures[c.MOTOR_RATED]
+        numbers[row, 2 + place] = figures[n, g, place]
+    numbers[row, 7] = figures[n, g, c.BEARING_L50] / L50_PER_L10
+    numbers[row, 8], numbers[row, 9] = figures[n, g, c.MOTOR_PEAK], figures[n, g, c.MOTOR_RATED]
     for place in range(checks.size):
         for term in range(3):
-            numbers[14 + 3 * place + term] = put[term, checks[place]]
+            numbers[row, 14 + 3 * place + term] = terms[n, g, checks[place], term]
 
 
 @compiled
-def _reason(states: NDArray[np.int8], used: float, governing: int) -> int:
+def _reason(status: NDArray[np.int8], n: int, g: int, used: float, governing: int) -> int:
     """The sentence on a candidate that could be judged."""
     if math.isinf(used):
         return _NO_STOP_WORD
     failed = 0
-    for state in states:
-        failed += state == FAIL
+    for check in range(status.shape[2]):
+        failed += status[n, g, check] == FAIL
     return _REASON_WORD + 17 * failed + governing
 
 
 @compiled
-def _each_once(numbers: FloatArray, distinct: FloatArray, places: NDArray[np.int64]) -> int:
+def _each_once(numbers: FloatArray) -> tuple[FloatArray, PlaceArray]:
     """Sort out numbers that recur, as most do: the distinct ones, and where each is among them."""
+    distinct, places = np.empty(numbers.size), np.empty(numbers.shape, np.int32)
     bits, known, found, size, shift = numbers.view(np.uint64), distinct.view(np.uint64), 0, 1, 64
     while size < 2 * numbers.size:
         size, shift = 2 * size, shift - 1
@@ -263,7 +270,7 @@ def _each_once(numbers: FloatArray, distinct: FloatArray, places: NDArray[np.int
                 known[found], slots[slot] = bits[row, gap], found
                 found += 1
             places[row, gap] = slots[slot]
-    return found
+    return distinct[:found], places
 
 
 _SPREAD = np.uint64(0x9E3779B97F4A7C15)
@@ -279,11 +286,12 @@ def _write(
     word_ends: NDArray[np.int64],
     word_gaps: NDArray[np.int64],
     digits: ByteArray,
-    places: NDArray[np.int64],
-    chosen: NDArray[np.int64],
-    rows: ByteArray,
-) -> int:
-    """Write the list of candidates; how long it is."""
+    places: PlaceArray,
+    chosen: PlaceArray,
+    longest: int,
+) -> ByteArray:
+    """The list of candidates, none of them longer than `longest`, of distinct numbers as `digits`."""
+    rows, digits = np.empty(chosen.shape[0] * longest + 2 + _MOVE, np.uint8), _behind(digits)
     starts, at = _starts(digits), 0
     for row in range(chosen.shape[0]):
         word, number = 0, 0
@@ -304,7 +312,15 @@ def _write(
                 at = _copy(words, inside + 1, end, rows, at)
         at = _copy(text, ends[-2], ends[-1], rows, at)
     rows[0], rows[at] = ord("["), ord("]")  # each row brings the comma before it
-    return at + 1
+    return rows[: at + 1]
+
+
+@compiled
+def _behind(digits: ByteArray) -> ByteArray:
+    """The same with something behind it to be read."""
+    padded = np.empty(digits.size + _MOVE, np.uint8)
+    padded[: digits.size], padded[digits.size :] = digits, 0
+    return padded
 
 
 @compiled

@@ -56,9 +56,8 @@ def row(selection: Selection, place: int, reason: str) -> CandidateRow:
     """The candidate at a place of the ranking."""
     evaluation, ranking = selection.evaluation, selection.ranking
     g = ranking.order.item(0, place)
-    gear, put, figures = selection.gears.rows[g], evaluation.terms[:, :, 0, g], evaluation.figures[:, 0, g]
-    reserve = np.empty(4)
-    reserve_on(evaluation.duty.wishes[0], table_of(selection.gears)[:, g], put, False, reserve)
+    gear, put, figures = selection.gears.rows[g], evaluation.terms[0, g], evaluation.figures[0, g]
+    reserve = reserve_on(evaluation.duty.wishes, table_of(selection.gears), evaluation.terms, False, 0, g)
     status = CANDIDATE_STATUS[ranking.status[0, g]]
     return CandidateRow(
         designation=gear.designation,
@@ -78,14 +77,14 @@ def row(selection: Selection, place: int, reason: str) -> CandidateRow:
         bearing_life_L10_h=figures.item(c.BEARING_L50) / L50_PER_L10,
         motor_peak_torque_Nm=figures.item(c.MOTOR_PEAK),
         motor_rated_torque_Nm=figures.item(c.MOTOR_RATED),
-        reserve=ReserveRow(*reserve.tolist()),
+        reserve=ReserveRow(*reserve),
         checks=[
             CheckRow(
                 code=CHECKS[check].code,
-                demand=put.item(c.DEMAND, check),
-                limit=put.item(c.LIMIT, check),
-                utilisation=put.item(c.USED, check),
-                status=STATUS[evaluation.status[check, 0, g]],
+                demand=put.item(check, c.DEMAND),
+                limit=put.item(check, c.LIMIT),
+                utilisation=put.item(check, c.USED),
+                status=STATUS[evaluation.status[0, g, check]],
             )
             for check in evaluation.asked(0)
         ],

@@ -53,8 +53,7 @@ def make_logger(level: str) -> FilteringBoundLogger:
         Lines(),
         processors=[*SHARED, _json],
         wrapper_class=structlog.make_filtering_bound_logger(LEVELS[level]),
-        cache_logger_on_first_use=True,
-    )
+    ).bind()
     return logger
 
 
