@@ -48,7 +48,7 @@ def candidate_rows(evaluation: Evaluation, ranking: Ranking, index: int) -> memo
         ranking.governing,
         ranking.order,
     )
-    digits = np.frombuffer(orjson.dumps(distinct, option=orjson.OPT_SERIALIZE_NUMPY), np.uint8)
+    digits = _padded(orjson.dumps(distinct, option=orjson.OPT_SERIALIZE_NUMPY))
     longest = template.longest + words.longest * template.words
     return _write(
         template.text,
@@ -291,8 +291,7 @@ def _write(
     longest: int,
 ) -> ByteArray:
     """The list of candidates, none of them longer than `longest`, of distinct numbers as `digits`."""
-    rows, digits = np.empty(chosen.shape[0] * longest + 2 + _MOVE, np.uint8), _behind(digits)
-    starts, at = _starts(digits), 0
+    rows, starts, at = np.empty(chosen.shape[0] * longest + 2 + _MOVE, np.uint8), _starts(digits), 0
     for row in range(chosen.shape[0]):
         word, number = 0, 0
         for gap in range(takes.size):
@@ -313,14 +312,6 @@ def _write(
         at = _copy(text, ends[-2], ends[-1], rows, at)
     rows[0], rows[at] = ord("["), ord("]")  # each row brings the comma before it
     return rows[: at + 1]
-
-
-@compiled
-def _behind(digits: ByteArray) -> ByteArray:
-    """The same with something behind it to be read."""
-    padded = np.empty(digits.size + _MOVE, np.uint8)
-    padded[: digits.size], padded[digits.size :] = digits, 0
-    return padded
 
 
 @compiled
