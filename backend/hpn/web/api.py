@@ -97,7 +97,7 @@ def _stream(state: State) -> Response:
     )
 
 
-@router.get("/catalogue", response_model=schemas.CatalogueReply, responses=schemas.problems(406))
+@router.get("/catalogue", summary="Every gear", response_model=schemas.CatalogueReply, responses=schemas.problems(406))
 async def catalogue(request: Request) -> Response:
     """Every gear of the series with every published figure and its source; null where not published."""
     book: Catalogue = request.app.state.catalogue
@@ -106,7 +106,12 @@ async def catalogue(request: Request) -> Response:
     )
 
 
-@router.get("/catalogue/{designation}", response_model=schemas.OneGearReply, responses=schemas.problems(404))
+@router.get(
+    "/catalogue/{designation}",
+    summary="One gear",
+    response_model=schemas.OneGearReply,
+    responses=schemas.problems(404),
+)
 async def gear(request: Request, designation: str) -> Response:
     """One gear, by its designation in any of the printed spellings: by itself, and as the list has it."""
     book: Catalogue = request.app.state.catalogue
@@ -122,7 +127,12 @@ def _gear(book: Catalogue, designation: str) -> Gear:
     return found
 
 
-@router.get("/bearing-envelopes/{size}", response_model=schemas.EnvelopeReply, responses=schemas.problems(404, 422))
+@router.get(
+    "/bearing-envelopes/{size}",
+    summary="Life envelopes of a size's output bearing",
+    response_model=schemas.EnvelopeReply,
+    responses=schemas.problems(404, 422),
+)
 async def bearing_envelopes(request: Request, size: str, query: Annotated[EnvelopeQuery, Query()]) -> Response:
     """What a constant load may be at this speed and life: one curve per load coefficient, from axial to radial axis."""
     book: Catalogue = request.app.state.catalogue

@@ -64,7 +64,12 @@ def preview(reply: Mapping[str, Any], path: str, title: str | None = None) -> Pr
     return Preview(f"{title}: {verdict}" if title else f"HPN Select: {verdict}", ", ".join(parts) + ".", address)
 
 
-@router.get("/oembed", response_model=OEmbedReply, responses=schemas.problems(404, 406, 422))
+@router.get(
+    "/oembed",
+    summary="What a link to a selection unfolds into",
+    response_model=OEmbedReply,
+    responses=schemas.problems(404, 406, 422),
+)
 async def oembed(
     request: Request,
     url: Annotated[str, Query(max_length=MAXIMUM_QUERY_BYTES, description="Address of a selection of this service.")],

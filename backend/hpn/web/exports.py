@@ -120,7 +120,7 @@ for _file in FILES:
     _route(_file)
 
 
-@posted_files.get("/application.schema.json", response_class=Response)
+@posted_files.get("/application.schema.json", summary="JSON Schema of an application", response_class=Response)
 async def application_schema() -> Response:
     """JSON Schema of an application, with the unit of every field."""
     schema = {"$schema": "https://json-schema.org/draft/2020-12/schema", "$id": "application.schema.json"}

@@ -26,13 +26,13 @@ class Readiness(Health):
     store: str = Field(description="ok while the database of the saved selections answers.")
 
 
-@router.get("/healthz")
+@router.get("/healthz", summary="Is the process alive")
 async def healthz() -> Health:
     """The process answers."""
     return Health(status="ok")
 
 
-@router.get("/readyz", responses=problems(503))
+@router.get("/readyz", summary="Is the service ready", responses=problems(503))
 async def readyz(request: Request) -> Readiness:
     """The catalogue is loaded and the database of the saved selections answers; else 503."""
     catalogue = request.app.state.catalogue
@@ -40,7 +40,7 @@ async def readyz(request: Request) -> Readiness:
     return Readiness(status="ok", catalogue_version=catalogue.version, gears=len(catalogue.gears), store="ok")
 
 
-@router.get("/metrics", response_class=PlainTextResponse, responses=problems(401))
+@router.get("/metrics", summary="Metrics for Prometheus", response_class=PlainTextResponse)
 async def metrics(request: Request) -> Response:
     """What Prometheus counts: requests, selections by verdict, operations of the store."""
     return Response(await run_in_threadpool(request.app.state.metrics.exposition), media_type=CONTENT_TYPE)

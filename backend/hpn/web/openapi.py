@@ -6,9 +6,11 @@ from typing import Any
 from pydantic import BaseModel
 from pydantic.json_schema import models_json_schema
 
-from hpn.application import WORKED_EXAMPLE
+from hpn.catalogue import Catalogue
 from hpn.units import suffix_of, symbol_of
-from hpn.web import schemas
+from hpn.web import samples, schemas
+from hpn.web.access import group_of
+from hpn.web.settings import Settings
 
 PATH_PARAMETERS = {
     "designation": "Designation in any of the printed spellings, such as HPN-20A-5.",
@@ -16,43 +18,61 @@ PATH_PARAMETERS = {
     "id": "Identifier that saving answered with.",
 }
 
-EXAMPLES: dict[str, Any] = {
-    "Application": WORKED_EXAMPLE,
-    "Batch": {"applications": [{"reference": "axis-7", **WORKED_EXAMPLE}]},
-    "SaveRequest": {"application": WORKED_EXAMPLE, "title": "Worked example", "reference": "axis-7"},
-}
-"""A whole request per body schema: the handbook's worked example (chapter 4.1)."""
-
 FRAMEWORK = ("HTTPValidationError", "ValidationError")
 
 
-def complete(document: dict[str, Any], *bodies: type[BaseModel]) -> dict[str, Any]:
-    """Add schemas and examples of the request bodies, the one form of every problem, and a text for every parameter."""
+KEY_SCHEMES = {
+    "bearer": {"type": "http", "scheme": "bearer", "description": "A key of the service, where it has keys."},
+    "key": {"type": "apiKey", "in": "header", "name": "X-API-Key", "description": "The same key in a header."},
+}
+
+
+def complete(
+    document: dict[str, Any], catalogue: Catalogue, settings: Settings, *bodies: type[BaseModel]
+) -> dict[str, Any]:
+    """Add schemas of the request bodies, examples, the one form of every problem, keys, and texts of parameters."""
     models: list[Any] = [(model, "validation") for model in (*bodies, schemas.ProblemReply)]
     _, definitions = models_json_schema(models, ref_template="#/components/schemas/{model}")
-    components = document.setdefault("components", {}).setdefault("schemas", {})
-    components.update(definitions["$defs"])
-    for operation in _operations(document):
+    components = document.setdefault("components", {})
+    components["securitySchemes"] = KEY_SCHEMES
+    named = components.setdefault("schemas", {})
+    named.update(definitions["$defs"])
+    for method, path, operation in _operations(document):
         _give_examples(operation)
         _say_problems(operation)
+        _say_keys(operation, group_of(method, path), settings)
         _mend_replies(operation)
         for parameter in operation.get("parameters", ()):
             _describe(parameter)
     for name in FRAMEWORK:
-        components.pop(name, None)
+        named.pop(name, None)
+    samples.illustrate(named, catalogue)
     return document
 
 
-def _operations(document: dict[str, Any]) -> Iterator[dict[str, Any]]:
-    for operations in document["paths"].values():
-        yield from operations.values()
+def _operations(document: dict[str, Any]) -> Iterator[tuple[str, str, dict[str, Any]]]:
+    for path, operations in document["paths"].items():
+        for method, operation in operations.items():
+            yield method.upper(), path, operation
+
+
+def _say_keys(operation: dict[str, Any], group: str | None, settings: Settings) -> None:
+    """Keys and rate limits stand in front of every route that is not open to all."""
+    if group is None:
+        return
+    needed = bool(settings.api_keys) and group in settings.guarded
+    operation["security"] = [*({name: []} for name in KEY_SCHEMES), *([] if needed else [{}])]
+    refusals = {str(status): entry for status, entry in schemas.problems(401, 429).items()}
+    operation["responses"] = dict(sorted((refusals | operation["responses"]).items()))
 
 
 def _give_examples(operation: dict[str, Any]) -> None:
     body = operation.get("requestBody", {}).get("content", {}).get("application/json")
     name = body["schema"].get("$ref", "").rpartition("/")[2] if body else ""
-    if name in EXAMPLES:
-        body["examples"] = {"worked_example": {"summary": "The handbook's worked example", "value": EXAMPLES[name]}}
+    if name in samples.WHOLE:
+        body["examples"] = {
+            "worked_example": {"summary": "The handbook's worked example", "value": samples.WHOLE[name]}
+        }
 
 
 def _say_problems(operation: dict[str, Any]) -> None:

@@ -271,13 +271,25 @@ def batch_body() -> dict[str, Any]:
 
 def problems(*statuses: int) -> dict[int | str, dict[str, Any]]:
     """OpenAPI entries of the problems that a route can answer."""
+    later = {"headers": {"Retry-After": _text("Seconds after which to come again.")}}
     return {
         status: {
             "description": TITLES[status],
             "content": {MEDIA_TYPE: {"schema": {"$ref": "#/components/schemas/ProblemReply"}}},
+            **(later if status in (429, 503) else {}),
         }
         for status in statuses
     }
+
+
+def _text(description: str) -> dict[str, Any]:
+    return {"description": description, "schema": {"type": "string"}}
+
+
+ETAG = {"ETag": _text("Tag of this state, for If-None-Match and If-Match.")}
+LOCATION = {"Location": _text("Address of what was saved.")}
+NEXT_PART = {"Link": _text("Address of the part that follows, rel=next.")}
+HAS_IT_ALREADY: dict[int | str, dict[str, Any]] = {304: {"description": "The client has it already.", "headers": ETAG}}
 
 
 def replies(model: type[BaseModel], *statuses: int) -> dict[int | str, dict[str, Any]]:
@@ -296,4 +308,7 @@ def batch_replies(*statuses: int) -> dict[int | str, dict[str, Any]]:
 
 def header(name: str, description: str) -> dict[str, Any]:
     """OpenAPI entry of a request header that a route reads."""
-    return {"name": name, "in": "header", "required": False, "description": description, "schema": {"type": "string"}}
+    return {"name": name, "in": "header", "required": False, **_text(description)}
+
+
+IF_NONE_MATCH = {"parameters": [header("If-None-Match", "Tag of the state that the client has: 304 if it is that.")]}

@@ -55,7 +55,10 @@ router = APIRouter(prefix="/api/v1/selections")
             schemas.header("Prefer", "return=minimal: no body; return=representation: the whole saved selection."),
         ]
     },
-    responses={201: {"model": SavedReply}, **schemas.problems(400, 408, 410, 413, 415, 422, 503)},
+    responses={
+        201: {"model": SavedReply, "headers": schemas.LOCATION},
+        **schemas.problems(400, 408, 410, 413, 415, 422, 503),
+    },
     response_class=schemas.JSONBytes,
 )
 async def save_selection(request: Request) -> Response:
@@ -78,8 +81,10 @@ async def save_selection(request: Request) -> Response:
 
 @router.get(
     "/{id}",
+    summary="Read a saved selection",
     response_model=SavedSelectionReply,
-    responses=schemas.problems(404, 503) | {304: {"description": "The client has it already."}},
+    openapi_extra=schemas.IF_NONE_MATCH,
+    responses={200: {"headers": schemas.ETAG}} | schemas.HAS_IT_ALREADY | schemas.problems(404, 503),
 )
 async def read_selection(request: Request, id: str) -> Response:
     """Input and result as saved, and what today's engine and catalogue say differently, verdicts first."""
@@ -88,8 +93,12 @@ async def read_selection(request: Request, id: str) -> Response:
 
 @router.get(
     "",
+    summary="List saved selections",
     response_model=SelectionListReply,
-    responses=schemas.problems(422, 503) | {304: {"description": "The client has it already."}},
+    openapi_extra=schemas.IF_NONE_MATCH,
+    responses={200: {"headers": schemas.ETAG | schemas.NEXT_PART}}
+    | schemas.HAS_IT_ALREADY
+    | schemas.problems(422, 503),
 )
 async def list_selections(
     request: Request,
@@ -114,6 +123,7 @@ async def list_selections(
 
 @router.delete(
     "/{id}",
+    summary="Delete a saved selection",
     status_code=204,
     responses=schemas.problems(404, 412, 503),
     openapi_extra={"parameters": [schemas.header("If-Match", "Delete only this state of it.")]},

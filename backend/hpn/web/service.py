@@ -31,7 +31,7 @@ class Service(FastAPI):
 
     def openapi(self) -> dict[str, Any]:
         """The OpenAPI document, with the bodies that FastAPI does not see."""
-        return openapi.complete(super().openapi(), *self.bodies)
+        return openapi.complete(super().openapi(), self.state.catalogue, self.state.settings, *self.bodies)
 
     async def routed(self, scope: Scope, receive: Receive, send: Send) -> None:
         """What lies behind the front: a shortcut where there is one, FastAPI otherwise."""
