@@ -9,7 +9,7 @@ from functools import cached_property
 from typing import Annotated, Any, Literal, Self
 
 from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, field_validator
-from pydantic_core import PydanticCustomError
+from pydantic_core import PydanticCustomError, PydanticKnownError
 
 from hpn.gear import canonical_size
 from hpn.units import suffix_of, symbol_of
@@ -40,12 +40,28 @@ def _not_vanishing(value: float) -> float:
     return value
 
 
+def _at_most(most: int) -> BeforeValidator:
+    """Refuse a longer list before its items are looked at: each wrong one would leave its errors behind."""
+
+    def check(value: object) -> object:
+        if isinstance(value, list | tuple) and len(value) > most:
+            counts = {"field_type": "Tuple", "max_length": most, "actual_length": len(value)}
+            raise PydanticKnownError("too_long", counts)
+        return value
+
+    return BeforeValidator(check)
+
+
+MOST_WISHES = 100
+"""Ratios or sizes that may be asked for."""
+
 Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
 Torque = Annotated[Number, Field(ge=-1e6, le=1e6)]
 Speed = Annotated[Number, Field(ge=-1e6, le=1e6)]
 Load = Annotated[Number, Field(ge=-1e9, le=1e9)]
 Hours = Annotated[Number, Field(gt=0, le=1e9), AfterValidator(_not_vanishing)]
 Positive = Annotated[Number, Field(gt=0, le=1e12), AfterValidator(_not_vanishing)]
+Ratio = Annotated[int, Field(strict=True, ge=1, le=10_000)]
 Size = Annotated[str, Field(max_length=20), BeforeValidator(canonical_size)]
 
 
@@ -79,7 +95,7 @@ class Phase(Model):
 class DutyCycle(Model):
     """Load phases and the pause t_p that follows them."""
 
-    phases: tuple[Phase, ...] = Field(
+    phases: Annotated[tuple[Phase, ...], _at_most(MAXIMUM_PHASES)] = Field(
         min_length=1, max_length=MAXIMUM_PHASES, description="Load phases; at least one moves."
     )
     pause_s: Annotated[Number, Field(ge=0, le=1e9)] = Field(
@@ -131,11 +147,11 @@ class Motor(Model):
 class Requirements(Model):
     """`ratios` and `sizes` restrict the list of candidates; every other requirement becomes a check."""
 
-    ratios: tuple[Annotated[int, Field(strict=True, ge=1, le=10_000)], ...] | None = Field(
-        None, min_length=1, max_length=100, description="Only these ratios.", examples=[[5]]
+    ratios: Annotated[tuple[Ratio, ...], _at_most(MOST_WISHES)] | None = Field(
+        None, min_length=1, max_length=MOST_WISHES, description="Only these ratios.", examples=[[5]]
     )
-    sizes: tuple[Size, ...] | None = Field(
-        None, min_length=1, max_length=100, description="Only these sizes.", examples=[["14A", "20A"]]
+    sizes: Annotated[tuple[Size, ...], _at_most(MOST_WISHES)] | None = Field(
+        None, min_length=1, max_length=MOST_WISHES, description="Only these sizes.", examples=[["14A", "20A"]]
     )
     life_h: Hours | None = Field(None, description="Required gear life L10 (eq. 17.10).", examples=[20000.0])
     backlash_arcmin: Positive | None = Field(None, description="Largest acceptable backlash.", examples=[7.0])
@@ -228,3 +244,7 @@ class InputError(ValueError):
         self.sentences = sentences
         self.problems = tuple((location, sentence.text) for location, sentence in sentences)
         super().__init__("; ".join(detail for _, detail in self.problems))
+
+    def below(self, name: str) -> "InputError":
+        """The same of an application that is a field of something else."""
+        return InputError(*(((name, *location), sentence) for location, sentence in self.sentences))

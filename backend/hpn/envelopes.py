@@ -18,7 +18,7 @@ class EnvelopeQuery(Model):
     speed_rpm: Annotated[float, Field(gt=0, le=1e6, allow_inf_nan=False)] = Field(
         100.0, description="Average output speed, pause included."
     )
-    life_h: Annotated[float, Field(gt=0, le=1e9, allow_inf_nan=False)] = Field(
+    life_h: Annotated[float, Field(gt=0, le=5e9, allow_inf_nan=False)] = Field(
         20_000.0, description="Required life of the output bearing as L50."
     )
     load_coefficient: Annotated[float, Field(ge=1, le=3, allow_inf_nan=False)] = Field(

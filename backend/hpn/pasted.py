@@ -26,6 +26,7 @@ _HEADINGS = {
     "FRi": ("fr", "fri", "radial", "radial_n", "radialkraft", "radiallast", "radial load"),
     "FAi": ("fa", "fai", "axial", "axial_n", "axialkraft", "axiallast", "axial load"),
 }
+_NAMES = {name.replace("_", " "): column for column, names in _HEADINGS.items() for name in names}
 _UNITS = {
     "T": ("nm", "n·m", "n m", "n*m"),
     "n": ("rpm", "1/min", "min-1", "min^-1", "min⁻¹", "u/min", "r/min"),
@@ -37,6 +38,11 @@ _NUMBER: dict[Decimal, re.Pattern[str]] = {
     ".": re.compile(r"[+-]?(?:\d+|\d{1,3}(?:[,'’ \u00a0\u202f]\d{3})+)?(?:\.\d*)?(?:[eE][+-]?\d{1,3})?", re.ASCII),
     ",": re.compile(r"[+-]?(?:\d+|\d{1,3}(?:[.'’ \u00a0\u202f]\d{3})+)?(?:,\d*)?(?:[eE][+-]?\d{1,3})?", re.ASCII),
 }
+LONGEST_CELL = 400
+"""Characters of a cell that could still be a number: written out, the largest has some 310 digits."""
+
+LONGEST_HEADING = 80
+MOST_COLUMNS = 50
 _UNIT = re.compile(r"^(.*?)\s*(?:\[(.+)\]|\((.+)\)|\bin\s+(\S+)|/\s*(\S+))\s*$")
 
 
@@ -109,7 +115,10 @@ def _with_separator(lines: Sequence[str], separator: str) -> list[Reading]:
 def _shaped(lines: Sequence[str], separator: str) -> tuple[tuple[str, ...], list[list[str]]]:
     """Columns and rows; where some rows carry loads, the others end in blank cells."""
     table = [_cells(line, separator) for line in lines]
-    columns, body = _header(table, max(len(row) for row in table))
+    width = max(len(row) for row in table)
+    if width > MOST_COLUMNS:
+        raise _RefusedError(N_("a row has {cells} cells: paste the columns of the duty cycle alone"), cells=width)
+    columns, body = _header(table, width)
     if len(columns) > 3:
         body = [row + [""] * (len(columns) - len(row)) if len(row) >= 3 else row for row in body]
     return columns, body
@@ -118,20 +127,24 @@ def _shaped(lines: Sequence[str], separator: str) -> tuple[tuple[str, ...], list
 def _cells(line: str, separator: str) -> list[str]:
     if separator == " ":
         return line.split()
-    row = next(csv.reader([line], delimiter=separator), [])
+    try:
+        row = next(csv.reader([line], delimiter=separator), [])
+    except csv.Error:  # a cell longer than the module takes
+        raise _RefusedError(N_("a cell is longer than any number or heading")) from None
     while len(row) > 3 and not row[-1].strip():
         row.pop()  # spreadsheets end their rows with empty cells
     return [cell.strip() for cell in row]
 
 
 def _header(table: list[list[str]], width: int) -> tuple[tuple[str, ...], list[list[str]]]:
-    """Columns and the rows below them. A first row without any digit is a header; without one the order is fixed."""
+    """Columns and the rows below them. A first row without any digit is a header, and must say what they are.
+
+    Without one the order is fixed.
+    """
     first = table[0]
     if any(any(character.isdigit() for character in _heading(cell)[0]) for cell in first) or not any(first):
         return COLUMNS[: 5 if width > 3 else 3], table
     names = [_column_of(*_heading(cell)) for cell in first]
-    if all(name is None for name in names):
-        return COLUMNS[: 5 if width > 3 else 3], table[1:]
     columns = tuple(name or "" for name in names)
     if "" in columns or len(set(columns)) < len(columns) or not {"T", "n", "t"} <= set(columns):
         raise _RefusedError(
@@ -142,18 +155,22 @@ def _header(table: list[list[str]], width: int) -> tuple[tuple[str, ...], list[l
 
 
 def _heading(cell: str) -> tuple[str, str | None]:
-    """Name and unit of a header cell: `Drehzahl [1/min]` is (drehzahl, 1/min)."""
-    match = _UNIT.match(cell.strip())
+    """Name and unit of a header cell: `Drehzahl [1/min]`, `Drehzahl 1/min`, `Drehzahl_1/min` are (drehzahl, 1/min)."""
+    cell = " ".join(cell.split())
+    if len(cell) > LONGEST_HEADING:
+        return cell, None
+    spelled = cell.replace("_", " ")
+    end = max((len(name) for name in _NAMES if f"{spelled.casefold()} ".startswith(f"{name} ")), default=0)
+    if end and not re.match(r" ?[\[(/]| in\b", spelled[end:]):
+        return spelled[:end], spelled[end:].strip() or None
+    match = _UNIT.match(cell)
     if match is None:
-        return cell.strip(), None
+        return cell, None
     return match[1].strip(), next(group for group in match.groups()[1:] if group)
 
 
 def _column_of(name: str, unit: str | None) -> str | None:
-    if name in ("T", "t"):
-        column = name
-    else:
-        column = next((key for key, names in _HEADINGS.items() if name.casefold() in names), "")
+    column = name if name in ("T", "t") else _NAMES.get(name.casefold(), "")
     if column and unit is not None and unit.casefold().strip() not in _UNITS[column]:
         raise _RefusedError(
             N_("the column {name} is in {unit}: give it in {wanted}"), name=name, unit=unit, wanted=_WANTED[column]
@@ -167,6 +184,8 @@ _WANTED = {"T": "Nm", "n": "rpm", "t": "s", "FRi": "N", "FAi": "N"}
 def _plain(cell: str, decimal: Decimal) -> str:
     """A number as this decimal mark reads it, with a point and without grouping; empty where it is none."""
     cell = cell.replace("\N{MINUS SIGN}", "-")
+    if len(cell) > LONGEST_CELL:
+        return ""
     if not _NUMBER[decimal].fullmatch(cell) or not any(character.isdigit() for character in cell):
         return ""
     mantissa = re.sub(r"[^0-9eE+\-,.]", "", cell)

@@ -71,7 +71,7 @@ def test_no_line_gives_no_line(make_client: MakeClient) -> None:
 
 @pytest.mark.parametrize(
     ("line", "status"),
-    [(b"{", 400), (b"\xff", 400), (b"NaN", 400), (b"null", 422), (b"[" * 5000, 400), (b'"' + b"a" * 3000 + b'"', 413)],
+    [(b"{", 400), (b"\xff", 400), (b"NaN", 422), (b"null", 422), (b"[" * 5000, 400), (b'"' + b"a" * 3000 + b'"', 413)],
 )
 def test_a_bad_line_gets_its_problem_and_its_neighbours_their_answers(
     line: bytes, status: int, make_client: MakeClient

@@ -57,6 +57,8 @@ def test_a_file_is_the_same_each_time_and_known_by_its_tag(name: str, client: Te
 
 
 def test_language_is_asked_for_or_the_browsers(client: TestClient, saved: str) -> None:
+    weighted = {"Accept-Language": "en;q=0.2, de;q=0.9"}
+    assert client.get(f"{saved}/report.pdf", headers=weighted).headers["content-language"] == "de"
     german = {"Accept-Language": "fr, de-DE;q=0.9, en;q=0.8"}
     assert client.get(f"{saved}/report.pdf", headers=german).headers["content-language"] == "de"
     assert client.get(f"{saved}/report.pdf?lang=en", headers=german).headers["content-language"] == "en"

@@ -113,7 +113,7 @@ def test_no_application_at_all_gives_no_results(api: TestClient) -> None:
 
 @pytest.mark.parametrize(
     "body",
-    [{}, [], 5, {"applications": {}}, {"applications": None}, {"applications": [], "more": 1}, {"items": []}],
+    [{}, [], 5, {"applications": {}}, {"applications": None}, {"items": []}],
 )
 def test_another_shape_is_refused_with_the_right_one(api: TestClient, body: Any) -> None:
     reply = api.post(PATH, json=body)
@@ -123,7 +123,7 @@ def test_another_shape_is_refused_with_the_right_one(api: TestClient, body: Any)
     assert [error["pointer"] for error in reply.json()["errors"]] == ["/applications"]
 
 
-@pytest.mark.parametrize("content", [b"", b"{", b"\xff", b'{"applications": [NaN]}', b"[" * 100_000])
+@pytest.mark.parametrize("content", [b"", b"{", b"\xff", b'{"applications": [nan]}', b"[" * 100_000])
 def test_what_is_no_json_is_a_400(api: TestClient, content: bytes) -> None:
     reply = api.post(PATH, content=content, headers={"content-type": "application/json"})
 
@@ -168,3 +168,27 @@ def test_a_batch_that_takes_too_long_is_a_503_that_says_what_to_do() -> None:
 
     assert reply.status_code == 503
     assert "fewer" in reply.json()["detail"]
+
+
+NUMBERS = {"infinite": "1e999", "literal": "NaN", "endless": "9" * 400}
+
+
+@pytest.mark.parametrize("number", NUMBERS.values(), ids=list(NUMBERS))
+def test_a_number_that_is_none_is_a_mistake_of_its_item_alone(api: TestClient, number: str) -> None:
+    bad = orjson.dumps(worked_example()).decode().replace("40", number, 1)
+    good = orjson.dumps(GOOD).decode()
+
+    whole = api.post(PATH, content=f'{{"applications": [{bad}, {good}]}}', headers={"content-type": "application/json"})
+    lines = api.post(PATH, content=f"{bad}\n{good}\n", headers={"content-type": "application/x-ndjson"})
+
+    for results in (whole.json()["results"], [orjson.loads(line) for line in lines.text.splitlines()]):
+        assert [line["status"] for line in results] == ["error", "ok"]
+        assert results[0]["problem"]["errors"][0]["pointer"] == "/duty_cycle/phases/0/torque_Nm"
+
+
+def test_what_is_no_object_and_what_is_no_field_are_told_so(api: TestClient) -> None:
+    [line] = send(api, 5)
+    unknown = api.post(PATH, json={"applications": [], "foo": 1})
+
+    assert line["problem"]["detail"] == "must be an object"
+    assert unknown.json()["errors"] == [{"pointer": "/foo", "detail": "is not a field of this object"}]

@@ -4,6 +4,7 @@ Coordinates are those of a drawing WIDTH wide, y downwards; the template only wr
 """
 
 import math
+import sys
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 
@@ -223,6 +224,8 @@ def _ticks(low: float, high: float, unit: str, words: Words) -> list[tuple[float
     """Values on the wire and texts in the reader's unit, at round numbers of the latter."""
     start, end = words.convert(low, unit), words.convert(high, unit)
     scale = (end - start) / (high - low)
+    if not end - start > sys.float_info.min:  # no room for round numbers between them
+        return []
     step = _round_step((end - start) / 3)
     places = range(math.ceil(start / step - 1e-9), math.floor(end / step + 1e-9) + 1)
     return [(k * step / scale, words.number(k * step / scale, unit)) for k in places]

@@ -26,9 +26,17 @@ LIMIT_OF: Mapping[Group, str] = {
 """Which rate counts a group's requests."""
 
 
-@lru_cache(maxsize=4096)
+LONGEST_TOLD = 100
+"""Characters of a path that tell its group; only so many are remembered."""
+
+
 def group_of(method: str, path: str) -> Group | None:
     """Group of a request; None for what is open to all. Page and API of the same thing belong to the same group."""
+    return _group_of(method, path[:LONGEST_TOLD])
+
+
+@lru_cache(maxsize=4096)
+def _group_of(method: str, path: str) -> Group | None:
     place = path.removeprefix(API)
     if place == "/select/batch":
         return "batch"

@@ -26,7 +26,10 @@ from hpn.web.settings import Settings
 LONG_CYCLE = 500
 """Phases from which a single selection leaves the event loop to others."""
 
-BATCH_SLICE = 1024
+BATCH_SLICE = 64
+"""Items between two looks at the clock."""
+
+RETRY_SECONDS = 5
 
 
 router = APIRouter(prefix="/api/v1")
@@ -80,7 +83,8 @@ async def select_batch(request: Request) -> Response:
     deadline = time.monotonic() + settings.batch_seconds
     for start in range(0, len(items), BATCH_SLICE):
         if time.monotonic() > deadline:
-            raise Problem(503, f"the batch took longer than {settings.batch_seconds:g} s; send fewer items at once")
+            text = f"the batch took longer than {settings.batch_seconds:g} s; send fewer items at once"
+            raise Problem(503, text, headers={"Retry-After": str(RETRY_SECONDS)})
         results += await run_in_threadpool(batch_lines, items[start : start + BATCH_SLICE], request.app.state.catalogue)
     request.app.state.metrics.batch(results)
     return schemas.JSONBytes(orjson.dumps({"results": results}))
@@ -140,7 +144,13 @@ async def bearing_envelopes(request: Request, size: str, query: Annotated[Envelo
     if gear is None:
         raise Problem(404, f"the catalogue has no size {size[:60]!r}; there are {', '.join(book.sizes)}")
     curves = life_envelopes(book, gear, query)
-    return schemas.JSONBytes(orjson.dumps({"size": gear.size, "model": query.model, "curves": curves}))
+    sources = (
+        {"curve": "supplied by the user: points of bearing_envelopes.csv"}
+        if query.model == "digitised"
+        else {name: gear.sources[name] for name in ("dynamic_radial_load_N", "dynamic_axial_load_N")}
+    )
+    reply = {"size": gear.size, "model": query.model, "curves": curves, "sources": sources}
+    return schemas.JSONBytes(orjson.dumps(reply))
 
 
 SHORTCUTS = {("POST", "/api/v1/select"): select_one}

@@ -5,6 +5,7 @@ from typing import Any
 
 import orjson
 from pydantic import ValidationError
+from pydantic_core import from_json
 
 from hpn.application import BatchItem, InputError
 from hpn.catalogue import Catalogue
@@ -18,13 +19,14 @@ from hpn.web.streaming import Line
 def batch_items(body: bytes, maximum: int) -> list[Any]:
     """Items of a JSON batch, not yet validated; Problem 400, 413 or 422 for what is none."""
     try:
-        batch = orjson.loads(body)
-    except orjson.JSONDecodeError as error:
+        batch = _parsed(body)
+    except ValueError as error:
         raise Problem(400, f"the body is not JSON: {error}") from None
-    if not isinstance(batch, dict) or not isinstance(batch.get("applications"), list) or len(batch) != 1:
-        raise Problem(
-            422, 'the body must be {"applications": [ … ]}', [(("applications",), "must be a list, and the only field")]
-        )
+    if not isinstance(batch, dict) or not isinstance(batch.get("applications"), list):
+        raise Problem(422, 'the body must be {"applications": [ … ]}', [(("applications",), "must be a list")])
+    unknown = [((name,), "is not a field of this object") for name in batch if name != "applications"]
+    if unknown:
+        raise Problem(422, 'the body must be {"applications": [ … ]} alone', unknown)
     items: list[Any] = batch["applications"]
     if len(items) > maximum:
         raise Problem(
@@ -33,6 +35,11 @@ def batch_items(body: bytes, maximum: int) -> list[Any]:
             [(("applications",), f"has {len(items)} items, at most {maximum}")],
         )
     return items
+
+
+def _parsed(text: bytes) -> Any:
+    """Value of JSON as pydantic reads it: a number that is none leads to an error of its field, not of the whole."""
+    return from_json(text)
 
 
 def batch_lines(items: Sequence[Any], catalogue: Catalogue) -> list[dict[str, Any]]:
@@ -72,8 +79,8 @@ def line_evaluator(
         if line is None:
             return Problem(413, f"a line may have {maximum_line_bytes} bytes at most")
         try:
-            return orjson.loads(line)
-        except orjson.JSONDecodeError as error:
+            return _parsed(line)
+        except ValueError as error:
             return Problem(400, f"the line is not JSON: {error}")
 
     def evaluate(lines: Sequence[Line]) -> bytes:

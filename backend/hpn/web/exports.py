@@ -8,7 +8,6 @@ from urllib.parse import parse_qsl
 import orjson
 from anyio import CapacityLimiter
 from anyio.to_thread import run_sync
-from babel import negotiate_locale
 from fastapi import APIRouter, Query
 from pydantic import ValidationError
 from starlette.datastructures import State
@@ -18,7 +17,7 @@ from starlette.responses import Response
 from hpn.application import Application
 from hpn.catalogue import Catalogue
 from hpn.report.export import Export
-from hpn.report.language import LANGUAGES, Language, language
+from hpn.report.language import Language, language
 from hpn.report.pdf import pdf
 from hpn.report.submodel import package
 from hpn.report.workbook import workbook
@@ -29,6 +28,7 @@ from hpn.web.bodies import read_json
 from hpn.web.canonical import to_link
 from hpn.web.conditions import etag_of, has_already
 from hpn.web.problems import Problem
+from hpn.web.readers import accepted_language
 from hpn.web.selections import url_of, with_catalogue
 from hpn.web.settings import Settings
 
@@ -204,10 +204,8 @@ async def _answer(request: Request, file: File, lang: str | None, make: Make) ->
 
 
 def spoken(request: Request, lang: str | None) -> Language:
-    """The language asked for, else the first of the browser's that there is, else English."""
-    header = request.headers.get("accept-language", "")
-    wanted = [part.partition(";")[0].strip().replace("-", "_") for part in header[:500].split(",")]
-    return language(lang or negotiate_locale([w for w in wanted if w], LANGUAGES) or "en")
+    """The language asked for, else the browser's."""
+    return language(lang or accepted_language(request.headers.get("accept-language", "")))
 
 
 def _limiter(state: State) -> CapacityLimiter:

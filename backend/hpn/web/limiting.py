@@ -58,7 +58,7 @@ class Limiter:
         rate = self._rates.get(name)
         if rate is None:
             return None
-        now = time.time()
+        now = time.monotonic()
         count, end = self._counters.hit((name, subject), rate.window_s, now)
         wait = max(math.ceil(end - now), 1)
         state = b"%b;r=%d;t=%d" % (rate.quoted, max(rate.amount - count, 0), wait)

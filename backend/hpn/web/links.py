@@ -12,7 +12,7 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from hpn.application import MAXIMUM_PHASES, Application
+from hpn.application import MAXIMUM_PHASES, MOST_WISHES, Application
 from hpn.units import suffix_of
 from hpn.web import entries
 from hpn.web.entries import WAS, WRITTEN
@@ -185,7 +185,9 @@ class _Given:
         elif name not in BY_NAME:
             self.unknown.append(name)
         elif text.strip():  # the plain form submits blank fields too: they count as absent
-            (self.lists if BY_NAME[name].many else self.scalars).setdefault(name, []).append(text)
+            texts = (self.lists if BY_NAME[name].many else self.scalars).setdefault(name, [])
+            if len(texts) <= MOST_WISHES:  # one more than there may be is enough to refuse them
+                texts.append(text)
 
     def edited(self) -> tuple[list[dict[str, str]], str | None]:
         """Rows of the duty table after the buttons that were pressed, and the element to go on from."""

@@ -10,6 +10,8 @@ from pydantic import ValidationError
 from starlette.exceptions import HTTPException
 from starlette.requests import Request
 from starlette.responses import Response
+from starlette.routing import Match
+from starlette.types import Scope
 
 from hpn.application import InputError
 
@@ -66,13 +68,13 @@ class Problem(HTTPException):
         """Problem for pydantic's (location, type, message) entries."""
         # A list whose items are wrong is also reported as too short; the items say it better.
         entries = list(found)
-        items = {tuple(location[:-2]) for location, _, _ in entries if len(location) > 2}
+        items = {tuple(location[:end]) for location, _, _ in entries for end in range(len(location))}
         errors = [
             (location, plain_message(kind, message))
             for location, kind, message in entries
             if kind != "too_short" or tuple(location) not in items
         ]
-        return cls(422, "; ".join(f"{pointer(location)}: {text}" for location, text in errors[:3]), errors)
+        return cls(422, "; ".join(": ".join(filter(None, (pointer(at), text))) for at, text in errors[:3]), errors)
 
     def body(self) -> dict[str, Any]:
         """The problem as a JSON object."""
@@ -103,6 +105,7 @@ def plain_message(kind: str, message: str) -> str:
         "float_type": "must be a JSON number, such as 9.3",
         "int_type": "must be a JSON integer, such as 5",
         "tuple_type": "must be a list",
+        "model_type": "must be an object",
     }.get(kind) or message.removeprefix("Value error, ").replace("Input should", "must").replace("Tuple should", "must")
 
 
@@ -114,6 +117,14 @@ def pointer(location: Location) -> str:
 def mistake() -> Problem:
     """What is answered when the service itself goes wrong."""
     return Problem(500, "the service made a mistake; it is in the log")
+
+
+def _methods_at(app: FastAPI, scope: Scope) -> list[str]:
+    """Methods that there are for the path of a request."""
+    tried = [(method, {**scope, "method": method}) for method in ("GET", "POST", "DELETE")]
+    return [
+        method for method, scope in tried if any(route.matches(scope)[0] is Match.FULL for route in app.router.routes)
+    ]
 
 
 def install(app: FastAPI) -> None:
@@ -132,6 +143,8 @@ def install(app: FastAPI) -> None:
         assert isinstance(error, HTTPException)
         text = {404: f"there is nothing at {request.url.path}", 405: f"{request.method} is not possible here"}
         headers = dict(error.headers) if error.headers else None
+        if error.status_code == 405:  # several routes may share a path, each with a method of its own
+            headers = {"Allow": ", ".join(_methods_at(app, request.scope))}
         return Problem(error.status_code, text.get(error.status_code, error.detail), headers=headers).response()
 
     for kind in (ValidationError, RequestValidationError, InputError, HTTPException):

@@ -115,7 +115,8 @@ def _envelopes(catalogue: Catalogue, size: str) -> Json:
         curves = [asdict(curve) for curve in life_envelopes(catalogue, gear, EnvelopeQuery())] if gear else []
     except InputError:  # a catalogue whose first choice has no published limits
         curves = []
-    return {"size": size, "model": "linear", "curves": curves}
+    limits = {name: source for name, source in gear.sources.items() if name.startswith("dynamic_")} if gear else {}
+    return {"size": size, "model": "linear", "curves": curves, "sources": limits}
 
 
 def _changes(reply: Json, catalogue: Catalogue) -> Json:

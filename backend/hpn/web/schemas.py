@@ -249,6 +249,7 @@ class EnvelopeReply(Reply):
     size: str = Field(description="Size such as 20A.")
     model: BearingModel = Field(description="Model of the envelope.")
     curves: list[EnvelopeCurveReply] = Field(description="One curve per load coefficient.")
+    sources: dict[str, str] = Field(description="Where its limits come from, or its points; says what a user supplied.")
 
 
 def request_body(model: type[BaseModel]) -> dict[str, Any]:

@@ -9,8 +9,8 @@ from pydantic_core import PydanticCustomError
 from hpn.application import Application, Model
 from hpn.web.schemas import GearReply, ProblemReply, Reply, SelectReply
 
-CONTROLS = re.compile(r"[\x00-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069]")
-"""Control characters, line separators, and marks that turn the direction of the text around them."""
+CONTROLS = re.compile(r"[\x00-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069\ufffe\uffff]")
+"""Control characters, line separators, marks that turn the direction of the text around them, and no characters."""
 
 
 def _plain(text: str) -> str | None:
@@ -23,7 +23,11 @@ Line = Annotated[
     str,
     StringConstraints(strip_whitespace=True, max_length=200),
     AfterValidator(_plain),
-    Field(json_schema_extra={"pattern": "^[^\\u0000-\\u001f\\u007f-\\u009f\\u2028-\\u202e\\u2066-\\u2069]*$"}),
+    Field(
+        json_schema_extra={
+            "pattern": "^[^\\u0000-\\u001f\\u007f-\\u009f\\u2028-\\u202e\\u2066-\\u2069\\ufffe\\uffff]*$"
+        }
+    ),
 ]
 """One line of text; an empty one counts as none."""
 

@@ -67,7 +67,10 @@ async def save_selection(request: Request) -> Response:
     key = idempotency_key(request)
     body = await read_json(request, maximum_bytes=settings.maximum_body_bytes, seconds=settings.body_seconds)
     wanted = SaveRequest.model_validate_json(body)
-    id = await save(request.app.state, wanted.application, wanted, key)
+    try:
+        id = await save(request.app.state, wanted.application, wanted, key)
+    except InputError as error:
+        raise error.below("application") from None
     headers = {"Location": f"/api/v1/selections/{id}"}
     preferred = preferred_return(request)
     if preferred:

@@ -1,7 +1,6 @@
 """Forms that a browser posts, with or without files, within limits of size and time."""
 
-from email.parser import BytesParser
-from email.policy import HTTP
+import re
 from urllib.parse import parse_qsl
 
 from starlette.requests import Request
@@ -27,14 +26,27 @@ async def read_fields(request: Request) -> dict[str, str]:
     return {name: decoded(content) for name, content in parts_of(request.headers["content-type"], body)}
 
 
+_BOUNDARY = re.compile(r"""boundary="?([A-Za-z0-9'()+_,./:=? -]{1,70})""", re.IGNORECASE)
+_NAME = re.compile(rb';\s*name="([^"\r\n]{1,100})"', re.IGNORECASE)
+MOST_PARTS = 20
+LONGEST_HEAD = 2000
+
+
 def parts_of(content_type: str, body: bytes) -> list[tuple[str, bytes]]:
-    """Name and content of each part of a multipart body; none where it isn't one."""
-    message = BytesParser(policy=HTTP).parsebytes(f"Content-Type: {content_type}\r\n\r\n".encode("latin-1") + body)
-    parts = []
-    for part in message.iter_parts() if message.is_multipart() else ():
-        name, content = part.get_param("name", header="content-disposition"), part.get_payload(decode=True)
-        if isinstance(name, str) and isinstance(content, bytes):
-            parts.append((name, content))
+    """Name and content of each part of a form as browsers write it (RFC 7578); none where it isn't one.
+
+    Not with a library: those at hand take seconds for a header or a nesting that no browser sends.
+    """
+    boundary = _BOUNDARY.search(content_type[:LONGEST_HEAD])
+    if boundary is None:
+        return []
+    parts: list[tuple[str, bytes]] = []
+    delimiter = b"\r\n--" + boundary[1].strip().encode()
+    for section in (b"\r\n" + body).split(delimiter, MOST_PARTS + 1)[1:]:
+        head, blank, content = section.partition(b"\r\n\r\n")
+        name = _NAME.search(head[:LONGEST_HEAD])
+        if name and blank and len(parts) < MOST_PARTS:
+            parts.append((name[1].decode(errors="replace"), content))
     return parts
 
 

@@ -1,0 +1,138 @@
+"""Input made to cost much: it is refused before it does, and never with a server error."""
+
+import re
+from typing import Any
+
+import pytest
+from starlette.testclient import TestClient
+
+from hpn.web.access import LONGEST_TOLD, _group_of, group_of
+from hpn.web.uploads import MOST_PARTS, parts_of
+from tests.build import cycle, phase, worked_example
+
+Json = dict[str, Any]
+FORM = "multipart/form-data; boundary=x"
+
+
+@pytest.mark.parametrize(
+    ("content", "pointer"),
+    [
+        (b'{"duty_cycle": {"phases": [' + b",".join([b"{}"] * 300_000) + b"]}}", "/duty_cycle/phases"),
+        (
+            b'{"duty_cycle": {"phases": [{"torque_Nm":1,"speed_rpm":1,"duration_s":1}]}, "requirements": {"ratios": ['
+            + b",".join([b"0"] * 500_000)
+            + b"]}}",
+            "/requirements/ratios",
+        ),
+    ],
+)
+def test_of_a_list_that_is_too_long_no_item_is_looked_at(api: TestClient, content: bytes, pointer: str) -> None:
+    reply = api.post("/api/v1/select", content=content, headers={"content-type": "application/json"})
+
+    assert reply.status_code == 422
+    assert [error["pointer"] for error in reply.json()["errors"]] == [pointer]
+
+
+def test_of_a_list_parameter_no_more_is_kept_than_it_takes_to_refuse_it(api: TestClient) -> None:
+    page = api.get("/?T=1&n=1&t=1&" + "&".join(f"i={number}" for number in range(1, 3000)))
+
+    assert page.status_code == 422
+    assert page.text.count('type="checkbox" name="i"') < 200
+
+
+def part(head: str, content: str = "1") -> str:
+    return f"--x\r\n{head}\r\n\r\n{content}\r\n"
+
+
+NAMED = 'Content-Disposition: form-data; name="text"'
+NESTED = "".join(f"Content-Type: multipart/mixed; boundary={k}\r\n\r\n--{k}\r\n" for k in range(1000))
+
+
+@pytest.mark.parametrize(
+    ("content_type", "body"),
+    [
+        ("multipart/form-data;" + "(" * 3000, part(NAMED)),
+        (FORM + ";a=b" * 20_000, part(NAMED)),
+        (FORM, part("Content-Disposition: form-data" + ";a=b" * 20_000)),
+        (FORM, part("Content-Disposition: form-data; name*=idna''%ff")),
+        (FORM, part("Content-Disposition: form-data; name*=\0''a")),
+        (FORM, part("Content-Disposition: form-data; name*=\"''\"; =")),
+        (FORM, part(NAMED + "\r\n" + NESTED)),
+        (FORM, part(NAMED) * 30_000),
+    ],
+    ids=["brackets", "type", "head", "idna", "zero", "quotes", "nested", "many"],
+)
+def test_a_form_that_no_browser_sends_is_no_mistake_of_the_service(
+    api: TestClient, content_type: str, body: str
+) -> None:
+    reply = api.post("/paste", content=(body + "--x--\r\n").encode(), headers={"content-type": content_type})
+
+    assert reply.status_code in (200, 413, 415, 422)
+    assert len(parts_of(content_type, body.encode())) <= MOST_PARTS
+
+
+def test_parts_of_a_form_are_read_as_browsers_write_them() -> None:
+    body = (
+        b'--x\r\nContent-Disposition: form-data; name="link"\r\n\r\nT=1\r\n'
+        b'--x\r\nContent-Disposition: form-data; filename="a;b.csv"; name="file"\r\nContent-Type: text/csv\r\n\r\n'
+        b"1\r\n--y\r\n2\r\n--x--\r\n"
+    )
+
+    assert parts_of('multipart/form-data; boundary="x"', body) == [("link", b"T=1"), ("file", b"1\r\n--y\r\n2")]
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "a" + " " * 100_000 + "b\tx\ty\n1\t2\t3",
+        "[" * 100_000 + "\tx\ty\n1\t2\t3",
+        ",".join(["a"] * 200_000),
+        "1\t2\t" + "9" * 5000,
+        "x" * 200_000 + "\t1\t2",
+        '"',
+    ],
+    ids=["blanks", "brackets", "columns", "digits", "cell", "quote"],
+)
+def test_a_text_that_is_no_table_is_refused(api: TestClient, text: str) -> None:
+    reply = api.post("/paste", data={"text": text, "link": ""}, headers={"HX-Request": "true"})
+
+    assert reply.status_code == 422
+    assert re.search(r'class="[^"]*error', reply.text)
+
+
+@pytest.mark.parametrize("origin", ["http://[", "null", "", "http://"])
+def test_a_form_from_a_place_that_is_none_is_refused(api: TestClient, origin: str) -> None:
+    assert api.post("/reader", data={"language": "de"}, headers={"origin": origin}).status_code == 403
+
+
+def test_of_long_paths_no_more_is_remembered_than_tells_their_group() -> None:
+    _group_of.cache_clear()
+    for number in range(50):
+        assert group_of("GET", f"/api/v1/selections/{'a' * LONGEST_TOLD}{number}") == "reading"
+    assert group_of("GET", "/nowhere/" + "a" * 1000) == "calculator"
+
+    assert _group_of.cache_info().currsize == 2
+
+
+@pytest.mark.parametrize("torque", ["5e-324", "1e-323", "1e-310", "1e-300"])
+def test_torques_next_to_nothing_have_a_page(api: TestClient, torque: str) -> None:
+    assert api.get(f"/?T={torque}&n=250&t=1&Tk=1").status_code == 200
+
+
+def test_the_longest_bearing_life_of_either_basis_has_its_own_link(api: TestClient) -> None:
+    application = cycle(phase(40, 250), output_load={"radial_N": 10, "life_h": 1e9, "life_basis": "L10"})
+
+    link = api.post("/api/v1/select", json=application).json()["link"]
+
+    assert api.get(link).status_code == 200
+
+
+def test_a_wrong_wish_is_told_once(api: TestClient) -> None:
+    reply = api.post("/api/v1/select", json=worked_example(requirements={"ratios": ["5"]}))
+
+    assert [error["pointer"] for error in reply.json()["errors"]] == ["/requirements/ratios/0"]
+
+
+def test_what_is_not_allowed_here_says_what_is(api: TestClient) -> None:
+    assert set(api.put("/api/v1/selections").headers["allow"].split(", ")) == {"GET", "POST"}
+    assert set(api.put("/api/v1/selections/x").headers["allow"].split(", ")) == {"GET", "DELETE"}
