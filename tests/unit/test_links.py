@@ -112,6 +112,8 @@ def test_no_query_breaks_the_reader_and_all_of_it_comes_back(pairs: list[tuple[s
         ("1,234", "write 1.234 or 1234"),
         ("1 000", "write 1000"),
         ("1e999", "is too large"),
+        ("4,,5", "is not a number; write one such as 9.3"),
+        ("1,2345.6", "is not a number; write one such as 9.3"),
         ("nan", "is not a number; write one such as 9.3"),
         ("0x10", "is not a number; write one such as 9.3"),
         ("٤٢", "is not a number; write one such as 9.3"),

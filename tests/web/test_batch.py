@@ -167,6 +167,7 @@ def test_a_batch_that_takes_too_long_is_a_503_that_says_what_to_do() -> None:
     reply = client.post(PATH, json={"applications": [GOOD]})
 
     assert reply.status_code == 503
+    assert reply.headers["retry-after"].isdigit()
     assert "fewer" in reply.json()["detail"]
 
 

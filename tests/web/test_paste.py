@@ -179,3 +179,10 @@ def test_long_link_is_told_the_way_to_paste(client: TestClient) -> None:
 def test_row_edits_are_applied_in_the_order_they_were_pressed(client: TestClient) -> None:
     page = client.get(f"/?{LINK}&do=add&do=remove:1&do=up:2", headers=HTMX)
     assert re.findall(r'name="T" type="text" inputmode="decimal" value="([^"]*)"', page.text) == ["", "32"]
+
+
+def test_a_file_that_is_no_text_is_refused_in_the_readers_language(client: TestClient) -> None:
+    reply = client.post("/paste", files={"file": ("a.xlsx", b"PK\0\0")}, headers={"Accept-Language": "de"})
+
+    assert reply.status_code == 422
+    assert "die Datei ist kein Text" in reply.text

@@ -23,7 +23,7 @@ from hpn.web.links import Pairs
 from hpn.web.pages import environment
 from hpn.web.problems import Problem, plain_message, pointer
 from hpn.web.symbols import PHASE_SYMBOLS
-from hpn.web.uploads import read_fields
+from hpn.web.uploads import NO_TEXT, read_fields
 from hpn.wording import N_, Sentence
 
 FIRST_ROWS, LAST_ROWS = 6, 2
@@ -81,7 +81,8 @@ async def paste(request: Request) -> Response:
     try:
         fields = await read_fields(request)
     except Problem as problem:
-        return _render(request, Draft("", problems=(_plain(problem.detail),)), problem.status_code)
+        text = Sentence(NO_TEXT) if problem.detail == NO_TEXT else _plain(problem.detail)
+        return _render(request, Draft("", problems=(text,)), problem.status_code)
     return await run_in_threadpool(_answer, request, fields)
 
 

@@ -7,6 +7,7 @@ from hpn.web.messages import N_, Message
 from hpn.web.symbols import Kind
 
 _NUMBER = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?")
+_GROUPED = re.compile(r"[+-]?[0-9]{1,3}(,[0-9]{3})+(?![0-9,])")
 _LONGEST_TEXT = 60
 
 
@@ -44,7 +45,7 @@ def _not_a_number(text: str) -> Message:
 def _readings(text: str) -> list[str]:
     """Numbers that a text with commas may stand for; `1,234` is either of two."""
     if text.rfind(".") > text.rfind(",") or text.count(",") > 1:
-        return [text.replace(",", "")]
+        return [text.replace(",", "")] if _GROUPED.match(text) else []
     decimal = text.replace(".", "").replace(",", ".")
     if re.fullmatch(r"[+-]?[1-9][0-9]{0,2},[0-9]{3}", text):
         return [decimal, text.replace(",", "")]

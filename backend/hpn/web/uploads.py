@@ -8,7 +8,9 @@ from starlette.requests import Request
 from hpn.web.bodies import content_type_of, read_body
 from hpn.web.problems import Problem
 from hpn.web.settings import Settings
+from hpn.wording import N_
 
+NO_TEXT = N_("the file is no text: save the sheet as CSV, or copy its cells")
 FORM, MULTIPART = "application/x-www-form-urlencoded", "multipart/form-data"
 
 
@@ -63,4 +65,4 @@ def decoded(content: bytes) -> str:
             return content.decode(encoding)
         except UnicodeDecodeError:
             continue
-    raise Problem(422, "the file is no text: save the sheet as CSV, or copy its cells")
+    raise Problem(422, NO_TEXT)
