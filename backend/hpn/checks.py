@@ -120,8 +120,8 @@ class Evaluation:
         """Largest f_w P of the output bearing, shape (N, G); NaN likewise."""
         return self._figure(BEARING_LARGEST)
 
-    def _figure(self, row: int) -> FloatArray:
-        figure: FloatArray = self.figures[:, :, row]
+    def _figure(self, place: int) -> FloatArray:
+        figure: FloatArray = self.figures[:, :, place]
         return figure
 
     def is_unlimited(self, figure: int, index: int) -> bool:

@@ -101,6 +101,10 @@ _REASON_WORD, _OWN_WORD = _NO_STOP_WORD + 1, len(_FIXED_WORDS)
 unrated one, and GearRow."""
 
 
+_RESERVE_AT, _CHECKS_AT, _STATES_AT = 10, 14, 5
+"""Where among the numbers and words of a CandidateRow its reserve, its checks and their states begin."""
+
+
 @dataclass(frozen=True)
 class _Words:
     """Texts that gaps may take, as JSON, one behind the other; where each ends, and where in it a number belongs."""
@@ -208,14 +212,15 @@ def _fill(
         verdict, used, governs = verdicts[index, g], utilisation[index, g], governing[index, g]
         _fill_numbers(checks, terms, figures, used, index, g, row, numbers)
         reserve = reserve_on(wishes, gears, terms, curved[g], index, g)
-        numbers[row, 10], numbers[row, 11], numbers[row, 12], numbers[row, 13] = reserve
+        for driver in range(4):
+            numbers[row, _RESERVE_AT + driver] = reserve[driver]
         words[row, 0] = _OWN_WORD + 2 * count + g
         words[row, 1] = _VERDICT_WORD + verdict
         words[row, 2] = _OWN_WORD + row if verdict == SUITABLE else _NULL_WORD
         words[row, 3] = _NULL_WORD if verdict == UNRATED else _CODE_WORD + governs
         words[row, 4] = _OWN_WORD + count + g if verdict == UNRATED else _reason(status, index, g, used, governs)
         for place in range(checks.size):
-            words[row, 5 + place] = _STATUS_WORD + status[index, g, checks[place]]
+            words[row, _STATES_AT + place] = _STATUS_WORD + status[index, g, checks[place]]
     distinct, places = _each_once(numbers)
     return distinct, places, words
 
@@ -239,7 +244,7 @@ def _fill_numbers(
     numbers[row, 8], numbers[row, 9] = figures[n, g, c.MOTOR_PEAK], figures[n, g, c.MOTOR_RATED]
     for place in range(checks.size):
         for term in range(3):
-            numbers[row, 14 + 3 * place + term] = terms[n, g, checks[place], term]
+            numbers[row, _CHECKS_AT + 3 * place + term] = terms[n, g, checks[place], term]
 
 
 @compiled
