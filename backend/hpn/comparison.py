@@ -24,6 +24,10 @@ class Column:
     candidate: Candidate
     gear: Gear
 
+    def is_unlimited(self, name: str) -> bool:
+        """Whether a figure of the reply is empty because nothing limits it."""
+        return is_unlimited(self.candidate, name)
+
 
 @dataclass(frozen=True, slots=True)
 class Row:
@@ -50,6 +54,25 @@ class Group:
     rows: tuple[Row, ...]
 
 
+_UNLIMITED_BY = {
+    "life_L10_h": ("average_torque", "average_torque"),
+    "momentary_peak_count": ("momentary_peak_torque", "repeated_peak_torque"),
+    "bearing_life_L50_h": ("output_bearing_life", "output_bearing_life"),
+}
+"""Figures that may be without limit: the check that stands there where they are asked for, and the one that says
+whether the gear has the rating that they come from."""
+
+
+def is_unlimited(candidate: Candidate, name: str) -> bool:
+    """Whether a figure of a reply is empty because nothing limits it, and not because nobody asked or a rating lacks.
+
+    The candidate's own status doesn't tell: a gear that fails a check is unsuitable, whether it is rated or not.
+    """
+    asked, rated = _UNLIMITED_BY[name]
+    status = {check["code"]: check["status"] for check in candidate["checks"]}
+    return candidate.get(name) is None and asked in status and status.get(rated, "not_rated") != "not_rated"
+
+
 # --- Rows -------------------------------------------------------------------------------------------------------------
 
 Read = Callable[[Column], float | Sentence | None]
@@ -59,15 +82,13 @@ def _figure(name: str) -> Read:
     return lambda column: getattr(column.gear, name)
 
 
-def _result(name: str, rating: str = "ratio") -> Read:
-    """A figure of the reply; without limit where it is empty although the gear's rating is known."""
+def _result(name: str) -> Read:
+    return lambda column: column.candidate[name]
 
-    def read(column: Column) -> float | None:
-        value: float | None = column.candidate[name]
-        unlimited = value is None and getattr(column.gear, rating) is not None
-        return math.inf if unlimited else value
 
-    return read
+def _unlimited_result(name: str) -> Read:
+    """A figure of the reply; infinite where it is empty because nothing limits it."""
+    return lambda column: math.inf if column.is_unlimited(name) else column.candidate[name]
 
 
 def groups_of(columns: Sequence[Column], maximum_torque_Nm: float, checks: Mapping[str, str]) -> tuple[Group, ...]:
@@ -92,18 +113,12 @@ def _utilisations(columns: Sequence[Column], checks: Mapping[str, str]) -> Itera
 
 
 def _results(columns: Sequence[Column]) -> Iterable[Row]:
-    yield _row(columns, "life", N_("Life"), _result("life_L10_h", "rated_torque_Nm"), "L_10", "h", lowest=False)
+    yield _row(columns, "life", N_("Life"), _unlimited_result("life_L10_h"), "L_10", "h", lowest=False)
     if any(column.candidate["momentary_peak_count"] is not None for column in columns):
-        yield _row(
-            columns,
-            "stops",
-            N_("Allowed stops"),
-            _result("momentary_peak_count", "repeated_peak_torque_Nm"),
-            "N_k max",
-            lowest=False,
-        )
+        stops = _unlimited_result("momentary_peak_count")
+        yield _row(columns, "stops", N_("Allowed stops"), stops, "N_k max", lowest=False)
     if any(column.candidate["bearing_life_L50_h"] is not None for column in columns):
-        bearing_life = _result("bearing_life_L50_h", "dynamic_radial_load_N")
+        bearing_life = _unlimited_result("bearing_life_L50_h")
         yield _row(columns, "bearing_life", N_("Bearing life"), bearing_life, "L_50", "h", lowest=False)
     peak, average = _result("motor_peak_torque_Nm"), _result("average_input_speed_rpm")
     yield _row(columns, "motor_torque", N_("Peak torque at the motor"), peak, "", "Nm", lowest=True)

@@ -204,6 +204,14 @@ def test_what_no_formula_gives_stands_as_saved(supplemented: Supplement, recalcu
     assert_agrees(fresh, answer(asked, catalogue))
 
 
+def test_what_is_not_rated_is_saved_blank_as_its_formula_gives_it(supplemented: Supplement) -> None:
+    columns = "size,ratio,repeated_peak_torque_Nm,rated_torque_Nm,momentary_peak_torque_Nm,source"
+    catalogue = supplemented(ratings=f"{columns}\n40A,5,752,,,p\n")
+    asked = cycle(phase(10, 90), emergency_stop={"torque_Nm": 700}, requirements={"sizes": ["40A"], "ratios": [5]})
+    book = opened(asked, catalogue, values=True)
+    assert (got(book, "N_k_max"), got(book, "L_10") or None) == ("unlimited", None)
+
+
 def test_figures_of_another_catalogue_are_not_used(
     catalogue: Catalogue, supplemented: Supplement, recalculate: Recalculate
 ) -> None:

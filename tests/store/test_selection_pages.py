@@ -12,7 +12,7 @@ from hpn.application import Application
 from hpn.web.app import create_app
 from hpn.web.canonical import to_link
 from hpn.web.settings import Settings
-from tests.build import Json, worked_example
+from tests.build import Json, cycle, phase, worked_example
 from tests.conftest import Supplement
 from tests.store.drafts import WEAKER
 
@@ -153,6 +153,15 @@ def test_another_candidate_can_be_looked_at(client: TestClient) -> None:
     page = client.get(sent(client) + "?gear=HPN-32A-5")
 
     assert "Load limits of HPN-32A-5" in page.text
+
+
+@pytest.mark.parametrize(("size", "shown"), [("40A", "–"), ("20A", "unlimited")])
+def test_life_is_unlimited_only_where_the_gear_is_rated(client: TestClient, size: str, shown: str) -> None:
+    asked = cycle(phase(0, 10), requirements={"sizes": [size], "ratios": [5], "backlash_arcmin": 4})
+    page = client.get(sent(client, link=to_link(Application.model_validate(asked)))).text
+
+    life = re.search("<dt>Life</dt><dd>(.*?)</dd>", page)
+    assert life and re.sub("<[^>]*>", "", life[1]) == shown
 
 
 def test_what_today_says_differently_stands_beside_what_was_saved(client: TestClient, supplemented: Supplement) -> None:

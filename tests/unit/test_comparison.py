@@ -6,12 +6,17 @@ import pytest
 
 from hpn import equations
 from hpn.catalogue import Catalogue
-from hpn.comparison import Column, groups_of, torsion_of, undominated
-from tests.build import Json, answer, candidate, worked_example
+from hpn.comparison import Column, Row, groups_of, is_unlimited, torsion_of, undominated
+from tests.build import Json, answer, candidate, cycle, phase, worked_example
+from tests.conftest import Supplement
 
 
 def columns(reply: Json, catalogue: Catalogue, *designations: str) -> list[Column]:
     return [Column(candidate(reply, name), catalogue.by_designation[name]) for name in designations]
+
+
+def rows(compared: list[Column], maximum_torque_Nm: float) -> dict[str, Row]:
+    return {row.code: row for group in groups_of(compared, maximum_torque_Nm, {}) for row in group.rows}
 
 
 def test_torsion_follows_the_glossary(catalogue: Catalogue) -> None:
@@ -66,3 +71,51 @@ def test_best_compromises_are_those_that_no_other_suitable_gear_outdoes(catalogu
     }
     assert undominated(reply["candidates"], catalogue) == expected
     assert 0 < len(expected) < len(suitable)
+
+
+def test_what_is_not_rated_is_not_unlimited_though_it_fails_a_property_check(catalogue: Catalogue) -> None:
+    """HPN-40A has a published backlash above 4 arcmin and no ratings: unsuitable, not unrated."""
+    asked = cycle(phase(100, 10), emergency_stop={"torque_Nm": 160}, requirements={"backlash_arcmin": 4})
+    reply = answer(asked, catalogue)
+    gear = candidate(reply, "HPN-40A-5")
+
+    assert gear["status"] == "unsuitable"
+    assert not is_unlimited(gear, "life_L10_h")
+    assert not is_unlimited(gear, "momentary_peak_count")
+    values = rows(columns(reply, catalogue, "HPN-40A-5", "HPN-20A-5"), 100.0)
+    assert values["life"].values[0] is None
+    assert values["stops"].values[0] is None and values["stops"].best == frozenset()
+
+
+def test_each_figure_is_unlimited_by_its_own_rating(supplemented: Supplement) -> None:
+    """T_R without T_N: the stops are known to be free, the life is not known."""
+    titles = "size,ratio,repeated_peak_torque_Nm,rated_torque_Nm,momentary_peak_torque_Nm,source"
+    filled = supplemented(ratings=f"{titles}\n40A,5,752,,,page 12\n")
+    gear = candidate(answer(cycle(phase(0, 10), emergency_stop={"torque_Nm": 700}), filled), "HPN-40A-5")
+
+    assert is_unlimited(gear, "momentary_peak_count")
+    assert not is_unlimited(gear, "life_L10_h")
+
+
+def test_without_a_torque_the_life_is_unlimited_and_without_a_stop_there_is_no_count(catalogue: Catalogue) -> None:
+    gear = candidate(answer(cycle(phase(0, 10)), catalogue), "HPN-20A-5")
+
+    assert is_unlimited(gear, "life_L10_h")
+    assert not is_unlimited(gear, "momentary_peak_count")
+
+
+def test_a_bearing_without_points_of_its_curve_has_no_life_to_compare(supplemented: Supplement) -> None:
+    points = "size,load_coefficient,axial_N,radial_N,source\n20A,1,2200,0,p\n20A,1,1500,900,p\n20A,1,0,1800,p\n"
+    filled = supplemented(bearing_envelopes=points)
+    reply = answer(cycle(phase(10, 100), output_load={"radial_N": 500, "model": "digitised"}), filled)
+
+    life = rows(columns(reply, filled, "HPN-20A-5", "HPN-14A-5"), 10.0)["bearing_life"]
+
+    assert life.values == (candidate(reply, "HPN-20A-5")["bearing_life_L50_h"], None)
+    assert life.best == frozenset()
+
+
+def test_a_bearing_under_no_load_is_unlimited(catalogue: Catalogue) -> None:
+    gear = candidate(answer(cycle(phase(10, 100), output_load={"radial_N": 0}), catalogue), "HPN-20A-5")
+
+    assert is_unlimited(gear, "bearing_life_L50_h")

@@ -202,3 +202,21 @@ def test_first_view_stays_light(client: TestClient) -> None:
         with client.stream("GET", address, headers={"Accept-Encoding": "br"}) as packed:
             total += len(b"".join(packed.iter_raw()))
     assert total < 60_000
+
+
+def figure(html: str, name: str) -> str:
+    """What the verdict says of a figure."""
+    found = re.search(rf"<dt>{name}.*?</dt><dd>(.*?)</dd>", html, re.S)
+    assert found, name
+    return re.sub("<[^>]*>", "", found[1]).strip()
+
+
+def test_a_gear_whose_rating_lacks_has_no_unlimited_life(client: TestClient) -> None:
+    query = {"T": 100, "n": 10, "t": 1, "Tk": 5000}
+    unrated = client.get("/", params=query | {"gear": "HPN-40A-5", "bl": 4}).text
+    free = client.get("/", params=query | {"T": 0, "Tk": 1, "gear": "HPN-20A-5"}).text
+    unasked = client.get("/", params={"T": 0, "n": 10, "t": 1, "gear": "HPN-20A-5"}).text
+
+    assert (figure(unrated, "Life"), figure(unrated, "Allowed stops")) == ("–", "–")
+    assert (figure(free, "Life"), figure(free, "Allowed stops")) == ("unlimited", "unlimited")
+    assert (figure(unasked, "Life"), figure(unasked, "Allowed stops")) == ("unlimited", "–")

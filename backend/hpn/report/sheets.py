@@ -6,6 +6,7 @@ from typing import Any
 
 from xlsxwriter.utility import xl_range_abs, xl_rowcol_to_cell
 
+from hpn.comparison import is_unlimited
 from hpn.report.export import Export
 from hpn.report.formulas import GEAR_TERMS, NONE, RATINGS
 from hpn.report.language import Language
@@ -153,7 +154,6 @@ class Known:
 
     def terms(self) -> dict[str, float | str]:
         """Values of GEAR_TERMS as saved; words where there is no number."""
-        loaded = self.export.application.loads is not None
         fields = {
             "n_in_av": "average_input_speed_rpm",
             "n_in_max": "maximum_input_speed_rpm",
@@ -166,11 +166,10 @@ class Known:
         values = {name: self.candidate.get(field) for name, field in fields.items()}
         values["P_max"] = self._check("output_bearing_load", "demand")
         values["P_m"] = self._check("output_bearing_life", "demand")
-        rated = self._check("repeated_peak_torque", "limit") is not None
-        endless = {"L_10": rated, "N_k_max": rated and self.export.application.emergency_stop is not None}
-        endless["L_b50"] = loaded and values["P_m"] is not None
+        may_be = {name: fields[name] for name in ("N_k_max", "L_10", "L_b50")}
+        endless = {name for name, field in may_be.items() if is_unlimited(self.candidate, field)}
         return {
-            term.name: self.words["unlimited"] if value is None and endless.get(term.name) else _cell(value)
+            term.name: self.words["unlimited"] if term.name in endless else _cell(value)
             for term in GEAR_TERMS
             for value in (values[term.name],)
         }
