@@ -3,6 +3,7 @@
 import math
 import re
 from collections.abc import Mapping
+from dataclasses import replace
 from io import BytesIO
 from typing import Any
 from zipfile import ZipFile
@@ -202,6 +203,31 @@ def test_what_no_formula_gives_stands_as_saved(supplemented: Supplement, recalcu
     )
     fresh = recalculate({"supplied": opened(asked, catalogue)})["supplied"]
     assert_agrees(fresh, answer(asked, catalogue))
+
+
+CURVE = "size,ratio,torque_Nm,efficiency,source\n20A,5,10,0.5,p\n20A,5,40,0.85,p\n20A,5,80,0.9,p\n"
+ABOVE_CURVE = cycle(
+    phase(100, 100, 1), phase(20, 100, 9), requirements={"sizes": ["20A"], "motor": {"rated_torque_Nm": 8}}
+)
+"""The largest torque lies outside of the curve, where the gear is loss-free; the other phase within it."""
+
+
+def test_an_efficiency_curve_counts_in_every_phase(supplemented: Supplement, recalculate: Recalculate) -> None:
+    catalogue = supplemented(efficiency=CURVE)
+    export = export_of(ABOVE_CURVE, catalogue)
+    lost = replace(export, catalogue=None)
+    books = {
+        "kept": opened(ABOVE_CURVE, catalogue),
+        "lost": openpyxl.load_workbook(BytesIO(workbook(lost, ENGLISH))),
+        "stated": opened(_merged(ABOVE_CURVE, "requirements", efficiency=0.9), catalogue),
+    }
+    fresh = recalculate(books)
+    assert_agrees(fresh["kept"], export.reply)
+    assert_agrees(fresh["lost"], export.reply)
+    assert_agrees(fresh["stated"], answer(_merged(ABOVE_CURVE, "requirements", efficiency=0.9), catalogue))
+    judged = next(c for c in export.reply["candidates"] if c["designation"] == "HPN-20A-5")
+    assert math.isclose(judged["motor_rated_torque_Nm"], 8.824, rel_tol=1e-4)  # the figure has four digits
+    assert same(candidates(fresh["kept"])["HPN-20A-5"]["T_rms/(i·η) [Nm]"], judged["motor_rated_torque_Nm"])
 
 
 def test_what_is_not_rated_is_saved_blank_as_its_formula_gives_it(supplemented: Supplement) -> None:

@@ -6,6 +6,7 @@ from datetime import datetime
 from functools import cached_property
 from typing import Any
 
+from hpn import equations
 from hpn.application import Application
 from hpn.catalogue import Catalogue
 from hpn.gear import Gear
@@ -60,6 +61,33 @@ class Export:
     def check(self, code: str) -> Mapping[str, Any] | None:
         """A check of the reported gear, or None where it was not asked for."""
         return next((check for check in self.candidate["checks"] if check["code"] == code), None)
+
+    @cached_property
+    def rms_torque_Nm(self) -> float:
+        """RMS torque of the cycle at the output, pause included; the reply has it behind each gear's efficiency."""
+        cycle = self.application.duty_cycle
+        return equations.rms_torque(
+            torque_Nm=[phase.torque_Nm for phase in cycle.phases],
+            duration_s=[phase.duration_s for phase in cycle.phases],
+            pause_s=cycle.pause_s,
+        ).item()
+
+    def follows_efficiency_curve(self, candidate: Candidate) -> bool:
+        """Whether the motor torques of a candidate are by a curve of a supplement, phase by phase.
+
+        A stated efficiency goes before any curve. Without the catalogue of the reply its figures tell, as far as they
+        can: a curve that says nothing of any phase leaves no trace in them.
+        """
+        if self.application.requirements.efficiency is not None:
+            return False
+        if self.figures is not None:
+            return candidate["designation"] in self.figures.efficiency
+        output = {
+            "motor_peak_torque_Nm": self.reply["duty"]["maximum_torque_Nm"],
+            "motor_rated_torque_Nm": self.rms_torque_Nm,
+        }
+        plain = {name: torque / candidate["ratio"] for name, torque in output.items()}
+        return any(abs(candidate[name] - value) > 1e-9 * value for name, value in plain.items())
 
     @property
     def runner_up(self) -> Candidate | None:

@@ -141,16 +141,9 @@ class Known:
             fixed |= {"ambient_temperature", "backlash", "torsional_stiffness", "weight", "length"}
         elif loads and loads.model == "digitised":
             fixed |= {"P_max", "P_m"}
-        if self._supplied_efficiency():
+        if self.export.follows_efficiency_curve(self.candidate):
             fixed |= {"T_mot_peak", "T_mot_rms"}
         return fixed
-
-    def _supplied_efficiency(self) -> bool:
-        """Whether an efficiency curve of a supplement is in the motor torques."""
-        stated = self.export.application.requirements.efficiency
-        largest = self.export.reply["duty"]["maximum_torque_Nm"]
-        plain = largest / (self.candidate["ratio"] * (stated or 1.0))
-        return bool(abs(self.candidate["motor_peak_torque_Nm"] - plain) > 1e-9 * plain)
 
     def terms(self) -> dict[str, float | str]:
         """Values of GEAR_TERMS as saved; words where there is no number."""
