@@ -230,6 +230,17 @@ def test_an_efficiency_curve_counts_in_every_phase(supplemented: Supplement, rec
     assert same(candidates(fresh["kept"])["HPN-20A-5"]["T_rms/(i·η) [Nm]"], judged["motor_rated_torque_Nm"])
 
 
+def test_RMS_torque_is_that_of_the_output_under_an_efficiency_curve(
+    supplemented: Supplement, recalculate: Recalculate
+) -> None:
+    within = cycle(phase(40, 100, 1), phase(20, 100, 9), requirements={"sizes": ["20A"], "ratios": [5]})
+    catalogue = supplemented(efficiency=CURVE)
+    saved = got(opened(within, catalogue, values=True), "T_rms")
+    fresh = got(recalculate({"within": opened(within, catalogue)})["within"], "T_rms")
+    assert same(saved, fresh)
+    assert same(saved, math.sqrt((40**2 * 1 + 20**2 * 9) / 10))
+
+
 def test_what_is_not_rated_is_saved_blank_as_its_formula_gives_it(supplemented: Supplement) -> None:
     columns = "size,ratio,repeated_peak_torque_Nm,rated_torque_Nm,momentary_peak_torque_Nm,source"
     catalogue = supplemented(ratings=f"{columns}\n40A,5,752,,,p\n")

@@ -152,9 +152,7 @@ class Overview:
         self.row += 1
 
     def _cycle_values(self) -> dict[str, float | str]:
-        duty, candidate = self.book.export.reply["duty"], self.known.candidate
-        application = self.book.export.application
-        efficiency, loads = application.requirements.efficiency or 1.0, application.loads or OutputLoad()
+        duty, loads = self.book.export.reply["duty"], self.book.export.application.loads or OutputLoad()
         speed, life = self._series()[2:]
         factor = bearing.life_factor(
             average_output_speed_rpm=duty["average_output_speed_rpm"],
@@ -165,7 +163,7 @@ class Overview:
         return {
             "T_max": duty["maximum_torque_Nm"],
             "T_av": duty["average_torque_Nm"],
-            "T_rms": candidate["motor_rated_torque_Nm"] * candidate["ratio"] * efficiency,
+            "T_rms": self.book.export.rms_torque_Nm,
             "n_out_max": duty["maximum_output_speed_rpm"],
             "n_out_av": duty["average_output_speed_rpm"],
             "k_b": float(factor),
