@@ -4,8 +4,9 @@ from dataclasses import dataclass
 from functools import cached_property, lru_cache
 
 from hpn.application import Application
-from hpn.catalogue import GearList
+from hpn.catalogue import Catalogue, GearList
 from hpn.checks import BEARING_L50, L10, PEAKS, Evaluation
+from hpn.gear import Gear
 from hpn.wording import N_, Quantity, Sentence, Value
 
 
@@ -155,13 +156,28 @@ def _motor(application: Application, curves: bool) -> list[Notice]:
 
 
 def _catalogue(evaluation: Evaluation) -> list[Notice]:
-    return [*_unrated(evaluation.gears), *([_SUPPLEMENT] if evaluation.catalogue.supplement else [])]
+    return [
+        *_unrated(evaluation.gears, evaluation.catalogue),
+        *([_SUPPLEMENT] if evaluation.catalogue.supplement else []),
+    ]
 
 
 @lru_cache(maxsize=256)
-def _unrated(gears: GearList) -> tuple[Notice, ...]:
-    notes = {gear.name: gear.note for gear in gears.rows if gear.note and gear.rated_torque_Nm is None}
+def _unrated(gears: GearList, catalogue: Catalogue) -> tuple[Notice, ...]:
+    """A notice per size with gears that aren't rated; it names them where a supplement rates others of the size."""
+    rated = {gear.name for gear in catalogue.gears if gear.rated_torque_Nm is not None}
+    unrated: dict[str, list[Gear]] = {}
+    for gear in gears.rows:
+        if gear.note and gear.rated_torque_Nm is None:
+            unrated.setdefault(gear.name, []).append(gear)
     return tuple(
-        _notice("size_unrated", "{name} is listed as unrated. {note}", ("note",), name=n, note=t)
-        for n, t in notes.items()
+        _size_unrated([gear.designation for gear in rows] if name in rated else [name], rows[0].note or "")
+        for name, rows in unrated.items()
     )
+
+
+def _size_unrated(names: list[str], note: str) -> Notice:
+    if len(names) == 1:
+        return _notice("size_unrated", "{name} is listed as unrated. {note}", ("note",), name=names[0], note=note)
+    listed = ", ".join(names)
+    return _notice("size_unrated", "{names} are listed as unrated. {note}", ("note",), names=listed, note=note)

@@ -8,6 +8,7 @@ from hpn.application import ApplicationArea
 from hpn.catalogue import Catalogue
 from hpn.notices import AREAS
 from tests.build import Json, answer, candidate, check, cycle, notices, phase
+from tests.conftest import Supplement
 
 PLAIN = cycle(phase(10, 100), requirements={"sizes": ["20A"]})
 
@@ -27,6 +28,19 @@ def test_an_unrated_size_is_announced_with_the_reason(catalogue: Catalogue) -> N
     assert "752 Nm" in notices(reply)["size_unrated"]
     for gear in reply["candidates"]:
         assert (gear["status"] == "unrated") == (gear["size"] == "40A")
+
+
+def test_of_a_size_that_is_rated_in_part_the_gears_without_ratings_are_named(supplemented: Supplement) -> None:
+    titles = "size,ratio,repeated_peak_torque_Nm,rated_torque_Nm,momentary_peak_torque_Nm,source"
+    filled = supplemented(ratings=f"{titles}\n40A,5,752,400,1250,page 12\n40A,3,700,400,1250,page 12\n")
+
+    def text(**requirements: list[int]) -> str | None:
+        return notices(answer(cycle(phase(10, 100), requirements=requirements), filled)).get("size_unrated")
+
+    assert (text(ratios=[4, 5, 10]) or "").startswith("HPN-40A-4, HPN-40A-10 are listed as unrated. The rating table")
+    assert (text(ratios=[5, 10]) or "").startswith("HPN-40A-10 is listed as unrated. ")
+    assert (text(ratios=[10]) or "").startswith("HPN-40A-10 is listed as unrated. ")
+    assert text(ratios=[5]) is None
 
 
 @pytest.mark.parametrize("area", get_args(ApplicationArea))

@@ -87,9 +87,13 @@ def test_missing_figures_say_how_to_supply_them_and_what_is_supplied_is_marked(t
     header, row = files["ratings.csv"].strip().splitlines()
     assert header == "size,ratio,repeated_peak_torque_Nm,rated_torque_Nm,momentary_peak_torque_Nm,source"
     (tmp_path / "ratings.csv").write_text(f"{header}\n{row.replace('5,,,', '5,700,400,1300')}\n")
-    supplied = TestClient(create_app(Settings(catalogue_supplement=tmp_path))).get("/catalogue/HPN-40A-5").text
+    filled = TestClient(create_app(Settings(catalogue_supplement=tmp_path)))
+    supplied, other = (filled.get(f"/catalogue/{gear}").text for gear in ("HPN-40A-5", "HPN-40A-10"))
     assert 'value="700.0"' in supplied
     assert supplied.count('<span class="tag">yours</span>') == 3
+    for rated, unrated in ((supplied, page), (supplied, other)):
+        assert "The rating table and the lengths of HPN-40A are not in" not in rated
+        assert "The rating table and the lengths of HPN-40A are not in" in unrated
 
 
 @pytest.mark.parametrize(
