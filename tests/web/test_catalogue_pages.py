@@ -96,6 +96,13 @@ def test_missing_figures_say_how_to_supply_them_and_what_is_supplied_is_marked(t
         assert "The rating table and the lengths of HPN-40A are not in" in unrated
 
 
+def test_a_gear_of_a_supplement_may_have_any_number_of_stages(tmp_path: Path) -> None:
+    (tmp_path / "gears.csv").write_text("size,ratio,stages,source\n40A,125,3,mine\n")
+    page = TestClient(create_app(Settings(catalogue_supplement=tmp_path))).get("/catalogue/HPN-40A-125")
+    assert page.status_code == 200
+    assert "Planetary gear with 3 stages, ratio 125." in page.text
+
+
 @pytest.mark.parametrize(
     ("query", "code"),
     [
