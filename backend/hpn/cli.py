@@ -16,6 +16,7 @@ from hpn.store import Store, StoreError, StoreUnavailableError
 from hpn.tables import CatalogueError
 from hpn.web import serving
 from hpn.web.canonical import to_link
+from hpn.web.gear_figures import is_supplied
 from hpn.web.keys import new_key
 from hpn.web.problems import Problem
 from hpn.web.settings import Settings
@@ -81,7 +82,8 @@ def _catalogue(options: argparse.Namespace) -> int:
     if options.designation is None:
         for gear in catalogue.gears:
             rated = f"T_N {gear.rated_torque_Nm:g} Nm" if gear.rated_torque_Nm else "unrated"
-            print(f"{gear.designation:<11} {gear.stages}-stage  {rated}")
+            mark = " (supplied by the user)" if is_supplied(gear, "rated_torque_Nm") else ""
+            print(f"{gear.designation:<11} {gear.stages}-stage  {rated}{mark}")
         return 0
     found = catalogue.find(options.designation)
     if found is None:

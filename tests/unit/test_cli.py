@@ -106,6 +106,19 @@ def test_catalogue_lists_every_gear_and_shows_one(capsys: Output) -> None:
     assert "HPN-20A-6" in capsys.readouterr().err
 
 
+def test_the_list_marks_ratings_that_the_user_supplied(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: Output
+) -> None:
+    titles = "size,ratio,repeated_peak_torque_Nm,rated_torque_Nm,momentary_peak_torque_Nm,source"
+    (tmp_path / "ratings.csv").write_text(f"{titles}\n40A,5,752,400,1250,mine\n20A,5,110,,,mine\n", encoding="utf-8")
+    monkeypatch.setenv("HPN_CATALOGUE_SUPPLEMENT", str(tmp_path))
+
+    assert main(["catalogue"]) == 0
+
+    marked = [line for line in capsys.readouterr().out.splitlines() if "supplied" in line]
+    assert marked == ["HPN-40A-5   1-stage  T_N 400 Nm (supplied by the user)"]
+
+
 def test_a_wrong_catalogue_is_exit_code_2_with_file_line_and_column(
     folder: Path, file: Path, monkeypatch: pytest.MonkeyPatch, capsys: Output
 ) -> None:
