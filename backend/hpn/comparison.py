@@ -95,7 +95,7 @@ def groups_of(columns: Sequence[Column], maximum_torque_Nm: float, checks: Mappi
     """The comparison. `checks` are the titles of the checks that the application asks for, by code."""
     return (
         Group(N_("Utilisation"), tuple(_utilisations(columns, checks))),
-        Group(N_("Life and drive"), tuple(_results(columns))),
+        Group(N_("Life and drive"), tuple(_results(columns, maximum_torque_Nm))),
         Group(N_("Stiffness and accuracy"), tuple(_accuracies(columns, maximum_torque_Nm))),
         Group(N_("Ratings"), tuple(_ratings(columns))),
         Group(N_("Size and mounting"), tuple(_mounting(columns))),
@@ -112,7 +112,7 @@ def _utilisations(columns: Sequence[Column], checks: Mapping[str, str]) -> Itera
         yield _row(columns, code, title, read(code), lowest=True, kind="percent")
 
 
-def _results(columns: Sequence[Column]) -> Iterable[Row]:
+def _results(columns: Sequence[Column], maximum_torque_Nm: float) -> Iterable[Row]:
     yield _row(columns, "life", N_("Life"), _unlimited_result("life_L10_h"), "L_10", "h", lowest=False)
     if any(column.candidate["momentary_peak_count"] is not None for column in columns):
         stops = _unlimited_result("momentary_peak_count")
@@ -121,10 +121,17 @@ def _results(columns: Sequence[Column]) -> Iterable[Row]:
         bearing_life = _unlimited_result("bearing_life_L50_h")
         yield _row(columns, "bearing_life", N_("Bearing life"), bearing_life, "L_50", "h", lowest=False)
     peak, average = _result("motor_peak_torque_Nm"), _result("average_input_speed_rpm")
-    yield _row(columns, "motor_torque", N_("Peak torque at the motor"), peak, "", "Nm", lowest=True)
+    yield _row(columns, "motor_torque", _motor_title(columns, maximum_torque_Nm), peak, "", "Nm", lowest=True)
     yield _row(columns, "input_speed", N_("Average input speed"), average, "n_in av", "rpm")
     largest = _result("maximum_input_speed_rpm")
     yield _row(columns, "largest_input_speed", N_("Maximum input speed"), largest, "n_in max", "rpm")
+
+
+def _motor_title(columns: Sequence[Column], maximum_torque_Nm: float) -> str:
+    loss_free = maximum_torque_Nm * (1 + equations.ROUNDING)
+    if any(column.candidate["motor_peak_torque_Nm"] * column.gear.ratio <= loss_free for column in columns):
+        return N_("Peak torque at the motor, a lower bound where η is 1")
+    return N_("Peak torque at the motor")
 
 
 def _accuracies(columns: Sequence[Column], maximum_torque_Nm: float) -> Iterable[Row]:

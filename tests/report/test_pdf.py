@@ -12,6 +12,7 @@ from pypdf import PdfReader
 from hpn.catalogue import Catalogue
 from hpn.report.language import Language, language
 from hpn.report.pdf import pdf
+from tests.build import worked_example
 from tests.report.cases import CASES, EVERYTHING, export_of
 
 ENGLISH, GERMAN = language("en"), language("de")
@@ -109,6 +110,12 @@ def test_every_notice_and_the_versions_stand_in_the_report(catalogue: Catalogue)
     for notice in export.reply["notices"]:
         assert "".join(re.findall(r"[a-z0-9]", notice["text"].replace("T_R", "TR"))) in page, notice
     assert export.reply["catalogue_version"] in page
+
+
+def test_motor_torques_without_an_efficiency_are_said_to_be_a_lower_bound(catalogue: Catalogue) -> None:
+    found = text(pdf(export_of(worked_example(), catalogue), ENGLISH), 0)
+    assert found.count("lower bound where η = 1") == 2
+    assert "lower bound" not in text(pdf(export_of(EVERYTHING, catalogue), ENGLISH), 0)
 
 
 def test_alternatives_name_the_runner_up_and_why_the_smaller_gear_fails(catalogue: Catalogue) -> None:

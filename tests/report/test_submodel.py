@@ -15,7 +15,9 @@ from basyx.aas.adapter import aasx
 
 from hpn.application import Application
 from hpn.catalogue import Catalogue
+from hpn.report.export import LOSS_FREE
 from hpn.report.submodel import TECHNICAL_DATA, package
+from tests.build import worked_example
 from tests.report.cases import CASES, EVERYTHING, export_of
 
 Submodels = dict[str, model.Submodel]
@@ -85,6 +87,19 @@ def test_what_is_not_published_is_left_out(catalogue: Catalogue) -> None:
     figures = values(submodels["SelectionResult"].get_referable("Figures"))
     assert "life_L10_h" not in figures  # unlimited
     assert None not in figures.values()
+
+
+@pytest.mark.parametrize("efficiency", [None, 0.9])
+def test_motor_torques_without_an_efficiency_are_described_as_a_lower_bound(
+    efficiency: float | None, catalogue: Catalogue
+) -> None:
+    asked = worked_example(requirements={"efficiency": efficiency})
+    submodels, _ = read(package(export_of(asked, catalogue)))
+    figures = submodels["SelectionResult"].get_referable("Figures")
+    assert isinstance(figures, model.SubmodelElementCollection)
+    for name in ("motor_peak_torque_Nm", "motor_rated_torque_Nm"):
+        description = figures.get_referable(name).description
+        assert (description["en"] if description else None) == (None if efficiency else LOSS_FREE)
 
 
 def test_no_technical_data_where_no_gear_is_selected(catalogue: Catalogue) -> None:

@@ -14,6 +14,8 @@ from openpyxl.workbook import Workbook
 
 from hpn.catalogue import Catalogue
 from hpn.explanations import EXPLANATIONS
+from hpn.report.export import LOSS_FREE, LOWER_BOUND
+from hpn.report.formulas import MOTOR_TORQUES
 from hpn.report.language import language
 from hpn.report.workbook import workbook
 from tests.build import Json, answer, cycle, phase, worked_example
@@ -44,6 +46,12 @@ def got(book: Workbook, name: str) -> Any:
     """Value of the cell of a defined name."""
     sheet, cells = next(iter(book.defined_names[name].destinations))
     return book[sheet][cells.replace("$", "")].value
+
+
+def beside(book: Workbook, name: str) -> Any:
+    """What the row of a defined name says of its source."""
+    sheet, cell = next(iter(book.defined_names[name].destinations))
+    return book[sheet][cell.replace("$", "")].offset(column=2).value
 
 
 def candidates(book: Workbook) -> dict[str, dict[str, Any]]:
@@ -227,7 +235,33 @@ def test_an_efficiency_curve_counts_in_every_phase(supplemented: Supplement, rec
     assert_agrees(fresh["stated"], answer(_merged(ABOVE_CURVE, "requirements", efficiency=0.9), catalogue))
     judged = next(c for c in export.reply["candidates"] if c["designation"] == "HPN-20A-5")
     assert math.isclose(judged["motor_rated_torque_Nm"], 8.824, rel_tol=1e-4)  # the figure has four digits
-    assert same(candidates(fresh["kept"])["HPN-20A-5"]["T_rms/(i·η) [Nm]"], judged["motor_rated_torque_Nm"])
+    assert same(
+        candidates(fresh["kept"])["HPN-20A-5"][f"T_rms/(i·η) [Nm], {LOWER_BOUND}"], judged["motor_rated_torque_Nm"]
+    )
+
+
+def test_motor_torques_without_an_efficiency_are_a_lower_bound_until_one_is_stated(
+    catalogue: Catalogue, recalculate: Recalculate
+) -> None:
+    book = opened(worked_example(), catalogue)
+    put(book, "eta", 0.9)
+    fresh = recalculate({"stated": book})["stated"]
+    assert [beside(opened(worked_example(), catalogue, values=True), name) for name in MOTOR_TORQUES] == [LOSS_FREE] * 2
+    assert [beside(fresh, name) or "" for name in MOTOR_TORQUES] == ["", ""]
+
+
+@pytest.mark.parametrize(
+    ("torque", "efficiency", "bound"), [(60, None, False), (100, None, True), (5, None, True), (100, 0.9, False)]
+)
+def test_outside_of_its_curve_a_motor_torque_is_a_lower_bound_too(
+    supplemented: Supplement, torque: float, efficiency: float | None, bound: bool
+) -> None:
+    asked = cycle(phase(0, 100), phase(-torque, 9), requirements={"efficiency": efficiency})
+    export = export_of(asked, supplemented(efficiency=CURVE))
+    assert {
+        name: export.is_lower_bound(next(c for c in export.candidates if c["designation"] == name))
+        for name in ("HPN-20A-5", "HPN-20A-4")
+    } == {"HPN-20A-5": bound, "HPN-20A-4": efficiency is None}
 
 
 def test_RMS_torque_is_that_of_the_output_under_an_efficiency_curve(

@@ -40,14 +40,23 @@ def test_the_better_figure_of_a_row_is_marked_and_equal_ones_are_not(catalogue: 
     reply = answer(worked_example(), catalogue)
     compared = columns(reply, catalogue, "HPN-20A-5", "HPN-14A-5", "HPN-32A-5")
     groups = groups_of(compared, 40.0, {"average_torque": "Average torque"})
-    rows = {row.code: row for group in groups for row in group.rows}
+    found = {row.code: row for group in groups for row in group.rows}
 
-    assert rows["weight"].values == (2.6, 0.95, 6.5)
-    assert rows["weight"].best == {1}
-    assert rows["stiffness"].best == {2}
-    assert rows["average_torque"].best == {2}
-    assert rows["backlash"].best == frozenset() and not rows["backlash"].differs
-    assert rows["stops"].values[2] == math.inf and rows["stops"].best == {2}
+    assert found["weight"].values == (2.6, 0.95, 6.5)
+    assert found["weight"].best == {1}
+    assert found["stiffness"].best == {2}
+    assert found["average_torque"].best == {2}
+    assert found["backlash"].best == frozenset() and not found["backlash"].differs
+    assert found["stops"].values[2] == math.inf and found["stops"].best == {2}
+
+
+def test_motor_torque_without_an_efficiency_is_said_to_be_a_lower_bound(catalogue: Catalogue) -> None:
+    def title(**requirements: float) -> str:
+        reply = answer(worked_example(requirements=requirements), catalogue)
+        return rows(columns(reply, catalogue, "HPN-20A-5", "HPN-14A-5"), 40.0)["motor_torque"].title
+
+    assert title() == "Peak torque at the motor, a lower bound where η is 1"
+    assert title(efficiency=0.9) == "Peak torque at the motor"
 
 
 def test_best_compromises_are_those_that_no_other_suitable_gear_outdoes(catalogue: Catalogue) -> None:

@@ -56,6 +56,12 @@ def fields(document: Json) -> Iterator[tuple[str, str, Json]]:
             yield schema_name, name, entry
 
 
+def test_motor_torques_are_described_as_a_lower_bound_without_an_efficiency(document: Json) -> None:
+    candidate = document["components"]["schemas"]["CandidateReply"]["properties"]
+    for name in ("motor_peak_torque_Nm", "motor_rated_torque_Nm"):
+        assert "lower bound" in candidate[name]["description"]
+
+
 def test_the_document_is_valid_openapi_3_1_and_served_as_it_is(api: TestClient, document: Json) -> None:
     served = api.get("/openapi.json").json()
 

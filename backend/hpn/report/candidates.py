@@ -6,7 +6,7 @@ from typing import Any
 from xlsxwriter.utility import xl_range, xl_rowcol_to_cell
 
 from hpn.explanations import EXPLANATIONS
-from hpn.report.export import Candidate
+from hpn.report.export import LOWER_BOUND, Candidate
 from hpn.report.formulas import CHECKS, GEAR_TERMS, NONE, RATINGS, written
 from hpn.report.sheets import Book, Known
 from hpn.units import symbol_of
@@ -51,7 +51,8 @@ class CandidatesSheet:
         text, unit = self.book.language.text, self.book.language.unit
         heads = [text(head) for head in (N_("Gear"), N_("Verdict"), N_("Utilisation"), N_("Rank as saved"))]
         heads += [_head(name, unit(symbol_of(field))) for name, field in RATINGS.items()]
-        heads += [_head(term.symbol, unit(term.unit)) for term in GEAR_TERMS]
+        bound = f", {text(LOWER_BOUND)}"
+        heads += [_head(term.symbol, unit(term.unit)) + bound * term.by_efficiency for term in GEAR_TERMS]
         heads += [text(EXPLANATIONS[code].title) for code in CHECKS]
         for column, head in enumerate(heads):
             self.sheet.write_string(0, column, head, self.book.style("head"))

@@ -8,7 +8,7 @@ from typing import Any
 import segno
 
 from hpn.report import inputs, plots, standings
-from hpn.report.export import Candidate, Export
+from hpn.report.export import LOWER_BOUND, Candidate, Export
 from hpn.report.language import Language
 from hpn.report.symbols import formula, sentence
 from hpn.units import symbol_of
@@ -244,6 +244,7 @@ DERIVED = (
 
 def _derived(export: Export, language: Language) -> list[dict[str, Any]]:
     known = {**export.candidate, **export.reply["duty"]}
+    lower_bound = export.is_lower_bound(export.candidate)
     rows = []
     for name, symbol, label, equation in DERIVED:
         value = known.get(name)
@@ -254,10 +255,16 @@ def _derived(export: Export, language: Language) -> list[dict[str, Any]]:
                     "label": language.text(label),
                     "symbol": formula(symbol),
                     "text": f"{language.figure(value)}\N{NO-BREAK SPACE}{unit}" if unit else language.figure(value),
-                    "where": language.text(N_("eq. {number}")).format(number=equation) if equation else "",
+                    "where": _standing_of(name, equation, lower_bound, language),
                 }
             )
     return rows
+
+
+def _standing_of(name: str, equation: str, lower_bound: bool, language: Language) -> str:
+    if lower_bound and name.startswith("motor_"):
+        return language.text(LOWER_BOUND)
+    return language.text(N_("eq. {number}")).format(number=equation) if equation else ""
 
 
 RATINGS = (

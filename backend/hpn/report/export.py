@@ -10,8 +10,13 @@ from hpn import equations
 from hpn.application import Application
 from hpn.catalogue import Catalogue
 from hpn.gear import Gear
+from hpn.wording import N_
 
 Candidate = Mapping[str, Any]
+
+LOSS_FREE = N_("η = 1 where no efficiency is known: a lower bound")
+LOWER_BOUND = N_("lower bound where η = 1")
+"""What is to be known of motor torques, in full and where there is little room."""
 
 
 @dataclass(frozen=True)
@@ -88,6 +93,18 @@ class Export:
         }
         plain = {name: torque / candidate["ratio"] for name, torque in output.items()}
         return any(abs(candidate[name] - value) > 1e-9 * value for name, value in plain.items())
+
+    def is_lower_bound(self, candidate: Candidate) -> bool:
+        """Whether the motor torques of a candidate are loss-free, in some phase at least: no efficiency is known."""
+        if self.application.requirements.efficiency is not None:
+            return False
+        if not self.follows_efficiency_curve(candidate):
+            return True
+        if self.figures is None:
+            return False
+        known, _ = self.figures.efficiency[candidate["designation"]]
+        torques = [abs(phase.torque_Nm) for phase in self.application.duty_cycle.phases]
+        return any(torque and not known[0] <= torque <= known[-1] for torque in torques)
 
     @property
     def runner_up(self) -> Candidate | None:

@@ -32,6 +32,9 @@ RATINGS = {
 """Figures of a gear: name in formulas, field of the catalogue."""
 
 
+MOTOR_TORQUES = ("T_mot_peak", "T_mot_rms")
+
+
 @dataclass(frozen=True, slots=True)
 class Term:
     """A calculated quantity: its name in formulas, its symbol, what it is, its unit, and how it is calculated."""
@@ -42,6 +45,11 @@ class Term:
     unit: str
     formula: str
     equation: str = ""
+
+    @property
+    def by_efficiency(self) -> bool:
+        """Whether it is a torque at the motor, a lower bound without an efficiency."""
+        return self.name in MOTOR_TORQUES
 
 
 _WORK = "SUMPRODUCT(ABS(speed_rpm)*duration_s)"

@@ -10,6 +10,7 @@ from hpn.explanations import EXPLANATIONS
 from hpn.report import inputs, standings
 from hpn.report.candidates import LOAD
 from hpn.report.content import RATINGS as PUBLISHED
+from hpn.report.export import LOSS_FREE
 from hpn.report.formulas import CHECKS, CYCLE_TERMS, GEAR_TERMS, NONE, RATINGS, Term, written
 from hpn.report.sheets import Book, Known
 from hpn.units import symbol_of
@@ -147,9 +148,20 @@ class Overview:
             else:
                 formula = written(term.formula, self._names(), self.book.words)
                 self.sheet.write_formula(self.row, 2, formula, self.book.style("result"), values[term.name])
+            if term.by_efficiency:
+                self._bound(term.name in fixed)
             self.book.name_cell(term.name, self.sheet, self.row, 2)
             self.row += 1
         self.row += 1
+
+    def _bound(self, fixed: bool) -> None:
+        """That a motor torque is a lower bound, for as long as the reader states no efficiency."""
+        saved = self.text(LOSS_FREE) if self.book.export.is_lower_bound(self.known.candidate) else ""
+        if fixed:
+            self.sheet.write_string(self.row, 4, saved, self.book.style("quiet"))
+        else:
+            formula = f'=IF(eta="","{self.text(LOSS_FREE)}","")'
+            self.sheet.write_formula(self.row, 4, formula, self.book.style("quiet"), saved)
 
     def _cycle_values(self) -> dict[str, float | str]:
         duty, loads = self.book.export.reply["duty"], self.book.export.application.loads or OutputLoad()

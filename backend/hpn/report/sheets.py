@@ -8,7 +8,7 @@ from xlsxwriter.utility import xl_range_abs, xl_rowcol_to_cell
 
 from hpn.comparison import is_unlimited
 from hpn.report.export import Export
-from hpn.report.formulas import GEAR_TERMS, NONE, RATINGS
+from hpn.report.formulas import GEAR_TERMS, MOTOR_TORQUES, NONE, RATINGS
 from hpn.report.language import Language
 from hpn.wording import N_
 
@@ -142,7 +142,7 @@ class Known:
         elif loads and loads.model == "digitised":
             fixed |= {"P_max", "P_m"}
         if self.export.follows_efficiency_curve(self.candidate):
-            fixed |= {"T_mot_peak", "T_mot_rms"}
+            fixed |= set(MOTOR_TORQUES)
         return fixed
 
     def terms(self) -> dict[str, float | str]:

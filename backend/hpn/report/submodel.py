@@ -18,7 +18,7 @@ from pyecma376_2.core_properties import OPCCoreProperties
 
 from hpn.gear import Gear
 from hpn.report.concepts import CONCEPTS, concept, concept_id, reference, texts, urn
-from hpn.report.export import Export
+from hpn.report.export import LOSS_FREE, Export
 from hpn.report.formulas import RATINGS
 from hpn.report.sheets import Known
 
@@ -157,7 +157,7 @@ def _selection_result(export: Export) -> model.Submodel:
         model.File("Application", "application/json", APPLICATION_PART),
         model.File("Result", "application/json", RESULT_PART),
         model.SubmodelElementCollection("Duty", _properties_of(export.reply["duty"])),
-        model.SubmodelElementCollection("Figures", _properties_of(_figures(export))),
+        model.SubmodelElementCollection("Figures", _properties_of(_figures(export), _standings(export))),
         model.SubmodelElementCollection("Checks", [_check(export, check) for check in export.candidate["checks"]]),
         model.SubmodelElementCollection("Notices", _notices(export)),
     ]
@@ -194,6 +194,13 @@ def _figures(export: Export) -> dict[str, Any]:
     return {name: value for name, value in export.candidate.items() if isinstance(value, int | float)} | {"rank": None}
 
 
+def _standings(export: Export) -> dict[str, str]:
+    """What is to be known of calculated figures: motor torques without an efficiency are a lower bound."""
+    if not export.is_lower_bound(export.candidate):
+        return {}
+    return dict.fromkeys(("motor_peak_torque_Nm", "motor_rated_torque_Nm"), LOSS_FREE)
+
+
 def _check(export: Export, check: Mapping[str, Any]) -> model.SubmodelElementCollection:
     definition = export.definitions[check["code"]]
     figures = {name: check[name] for name in ("demand", "limit", "utilisation", "status")}
@@ -212,16 +219,16 @@ def _notices(export: Export) -> Iterable[model.MultiLanguageProperty]:
     ]
 
 
-def _properties_of(figures: Mapping[str, Any], sources: Mapping[str, str] | None = None) -> list[model.Property]:
-    """Properties of the figures that have a value and a concept."""
-    sources = sources or {}
+def _properties_of(figures: Mapping[str, Any], described: Mapping[str, str] | None = None) -> list[model.Property]:
+    """Properties of the figures that have a value and a concept, described by their source or standing."""
+    described = described or {}
     return [
         model.Property(
             name,
             _type(value),
             value,
             semantic_id=reference(concept_id(name)),
-            description=model.MultiLanguageTextType(texts(sources[name])) if name in sources else None,
+            description=model.MultiLanguageTextType(texts(described[name])) if name in described else None,
         )
         for name, value in figures.items()
         if value is not None and name in CONCEPTS

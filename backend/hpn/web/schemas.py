@@ -80,8 +80,14 @@ class CandidateReply(Reply):
     )
     bearing_life_L50_h: float | None = Field(description="Life of the output bearing that half of the bearings reach.")
     bearing_life_L10_h: float | None = Field(description="Life of the output bearing that nine of ten reach: L50 / 5.")
-    motor_peak_torque_Nm: float = Field(description="Largest torque at the motor, without the emergency stop.")
-    motor_rated_torque_Nm: float = Field(description="RMS torque at the motor over the cycle with pause.")
+    motor_peak_torque_Nm: float = Field(
+        description="Largest torque at the motor, T/(i·η), without the emergency stop. Where no efficiency is known "
+        "η is 1, and the torque a lower bound."
+    )
+    motor_rated_torque_Nm: float = Field(
+        description="RMS torque at the motor, T/(i·η), over the cycle with pause. Where no efficiency is known η is 1, "
+        "and the torque a lower bound."
+    )
     reserve: ReserveReply = Field(description="Reserve per driver, the other inputs as given.")
     checks: list[CheckReply] = Field(description="Every check that was asked for, in a fixed order.")
 
