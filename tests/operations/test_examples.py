@@ -1,4 +1,4 @@
-"""The README's client examples, run as they stand there against a service that asks for keys."""
+"""The README's client examples, run as they stand there against a service that asks for keys and one that is open."""
 
 import json
 import os
@@ -6,6 +6,7 @@ import re
 import subprocess
 import sys
 from collections.abc import Iterator
+from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
@@ -17,34 +18,43 @@ README = (Path(__file__).parents[2] / "README.md").read_text()
 KEY, PAIR = new_key("readme")
 
 
-@pytest.fixture(scope="module")
-def guarded(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Service]:
-    """A service that lets only the holder of the key save, list and send batches."""
-    with serving(tmp_path_factory.mktemp("guarded"), {"HPN_API_KEYS": PAIR}) as running:
-        yield running
+@dataclass
+class Example:
+    """An example's service, and the key that its user has."""
+
+    service: Service
+    key: str | None
+
+    def block(self, language: str, folder: Path) -> Path:
+        """File with the one example in this language, for this service instead of the usual one."""
+        (text,) = re.findall(rf"^```{language}\n(.*?)^```", README, re.M | re.S)
+        assert "http://127.0.0.1:8000" in text
+        file = folder / f"example.{language}"
+        file.write_text(text.replace("http://127.0.0.1:8000", self.service.url))
+        return file
+
+    def run(self, *command: str | Path, folder: Path) -> str:
+        """What an example prints."""
+        clean = {name: value for name, value in os.environ.items() if name != "HPN_KEY"}
+        key = {} if self.key is None else {"HPN_KEY": self.key}
+        environment = clean | key | {"no_proxy": "127.0.0.1"}
+        done = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, timeout=120)
+        assert done.returncode == 0, done.stderr + done.stdout
+        return done.stdout
 
 
-def block(language: str, service: Service, folder: Path) -> Path:
-    """File with the one example in this language, for this service instead of the usual one."""
-    (text,) = re.findall(rf"^```{language}\n(.*?)^```", README, re.M | re.S)
-    assert "http://127.0.0.1:8000" in text
-    file = folder / f"example.{language}"
-    file.write_text(text.replace("http://127.0.0.1:8000", service.url))
-    return file
+@pytest.fixture(scope="module", params=[(PAIR, KEY), ("", None), ("", "")], ids=["guarded", "open", "empty key"])
+def example(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Example]:
+    """A service that lets only the holder of the key save, list and send batches, and an open one, without a key."""
+    pairs, key = request.param
+    with serving(tmp_path_factory.mktemp("example"), {"HPN_API_KEYS": pairs}) as running:
+        yield Example(running, key)
 
 
-def run(*command: str | Path, folder: Path) -> str:
-    """What an example prints."""
-    environment = os.environ | {"HPN_KEY": KEY, "no_proxy": "127.0.0.1"}
-    done = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, timeout=120)
-    assert done.returncode == 0, done.stderr + done.stdout
-    return done.stdout
+def test_the_example_for_curl(example: Example, tmp_path: Path) -> None:
+    file = example.block("sh", tmp_path)
 
-
-def test_the_example_for_curl(guarded: Service, tmp_path: Path) -> None:
-    file = block("sh", guarded, tmp_path)
-
-    first, second = (run("sh", "-eu", file, folder=tmp_path) for _ in range(2))
+    first, second = (example.run("sh", "-eu", file, folder=tmp_path) for _ in range(2))
     saved, _, listed = first.partition("}")
 
     assert json.loads(saved + "}")["url"].startswith("/selections/")
@@ -54,8 +64,8 @@ def test_the_example_for_curl(guarded: Service, tmp_path: Path) -> None:
     assert [(line["reference"], line["status"]) for line in results] == [("axis-1", "ok"), ("axis-2", "ok")]
 
 
-def test_the_example_for_python(guarded: Service, tmp_path: Path) -> None:
-    first, *lines = run(sys.executable, block("python", guarded, tmp_path), folder=tmp_path).splitlines()
+def test_the_example_for_python(example: Example, tmp_path: Path) -> None:
+    first, *lines = example.run(sys.executable, example.block("python", tmp_path), folder=tmp_path).splitlines()
 
     assert re.fullmatch(r"/selections/[\w-]{22} \['HPN-\w+-\d+'\]", first)
     assert [line.split()[0] for line in lines] == [f"axis-{number}" for number in range(1000)]
