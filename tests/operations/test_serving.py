@@ -6,7 +6,7 @@ import signal
 import socket
 import time
 from collections.abc import Iterator
-from contextlib import closing, contextmanager
+from contextlib import ExitStack, closing, contextmanager
 from pathlib import Path
 
 import httpx
@@ -104,6 +104,20 @@ def test_what_runs_is_finished_before_the_end(tmp_path: Path) -> None:
         rest = response.read().splitlines()
         assert [json.loads(line)["selected"] for line in rest] == ["HPN-20A-5"] * 20
         assert service.process.wait(timeout=30) in ENDED
+
+
+def test_more_connections_than_it_takes_are_told_when_to_come_again(tmp_path: Path) -> None:
+    with serving(tmp_path, {"HPN_MAXIMUM_CONNECTIONS": "3"}) as service, ExitStack() as held:
+        for _ in range(5):
+            held.enter_context(socket.create_connection(("127.0.0.1", service.port), 20))
+
+        refused = httpx.get(f"{service.url}/healthz", trust_env=False)
+
+        assert refused.status_code == 503
+        assert refused.headers["Content-Type"] == "application/problem+json"
+        assert int(refused.headers["Retry-After"]) >= 1
+        assert refused.headers["Connection"] == "close"
+        assert refused.json()["status"] == 503
 
 
 def wait_until_closed(service: Service) -> None:

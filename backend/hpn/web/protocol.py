@@ -3,11 +3,19 @@
 import asyncio
 from typing import Any
 
+from uvicorn.protocols.http.flow_control import service_unavailable
 from uvicorn.protocols.http.httptools_impl import STATUS_LINE, HttpToolsProtocol
+
+from hpn.web.problems import Problem
 
 HEAD_BYTES = 128 * 1024
 """Enough for the longest link."""
 HEADER_COUNT = 100
+BUSY = Problem(
+    503,
+    "the service has as many connections as it can take; try again in 1 s",
+    headers={"Retry-After": "1", "Connection": "close"},
+)
 
 
 class HeadTooLargeError(Exception):
@@ -17,6 +25,7 @@ class HeadTooLargeError(Exception):
 class BoundedProtocol(HttpToolsProtocol):
     """Answers 431 to a head that is too large, and gives up a request that does not come.
 
+    What exceeds the most connections gets a problem that says when to come again, in place of uvicorn's plain text.
     Its head and the first of its body have `arrival_s` together; `bodies.py` limits the rest of a body.
     """
 
@@ -90,6 +99,10 @@ class BoundedProtocol(HttpToolsProtocol):
         head = [STATUS_LINE[431], b"content-length: 0\r\nconnection: close\r\n\r\n"]
         self.transport.write(b"".join(head))
         self.transport.close()
+
+    def _start_asgi_task(self, cycle: Any, app: Any) -> None:
+        answering: Any = BUSY.response() if app is service_unavailable else app
+        super()._start_asgi_task(cycle, answering)
 
     def _count(self, size: int) -> None:
         self._head_bytes += size
