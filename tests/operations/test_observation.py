@@ -2,6 +2,9 @@
 
 import json
 import re
+import sqlite3
+from contextlib import closing
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -12,12 +15,14 @@ from starlette.responses import Response
 from starlette.testclient import TestClient
 
 from hpn.store import Store
+from hpn.store.engine import make_engine
 from hpn.web.app import create_app
 from hpn.web.keys import new_key
 from hpn.web.metrics import CountedStore
 from hpn.web.settings import Settings
 from tests.build import worked_example
 from tests.operations.conftest import MakeClient
+from tests.operations.service import serving
 
 SECRET = "4711.25"
 """A figure that stands in the requests, and must not stand in the log."""
@@ -71,6 +76,39 @@ def test_no_input_stands_in_the_log(make_client: MakeClient, capsys: pytest.Capt
     logged = capsys.readouterr().out
     assert len(events(logged)) >= 9
     assert SECRET not in logged
+
+
+def test_no_input_stands_in_what_is_logged_of_a_store_that_fails(
+    make_client: MakeClient, tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    client = make_client()
+    with closing(sqlite3.connect(tmp_path / "store.sqlite3")) as connection:
+        connection.execute("DROP TABLE selections")
+
+    client.post("/api/v1/selections", json={"application": worked_example(), "title": SECRET})
+    client.get(f"/api/v1/selections?reference={SECRET}")
+
+    assert caplog.text.count("the store is not available") == 2
+    assert SECRET not in caplog.text
+
+
+def test_an_engine_of_either_database_hides_parameters(tmp_path: Path) -> None:
+    engines = [
+        make_engine(address, seconds=1) for address in ("postgresql://h/d", f"sqlite:///{tmp_path}/store.sqlite3")
+    ]
+
+    assert [engine.sync_engine.hide_parameters for engine in engines] == [True, True]
+
+
+def test_no_input_stands_in_the_log_of_a_service_that_logs_all_it_can(tmp_path: Path) -> None:
+    with serving(tmp_path, {"HPN_LOG_LEVEL": "debug"}) as service:
+        save = {"application": worked_example(), "title": SECRET, "reference": SECRET}
+        saved = service.client.post("/api/v1/selections", json=save)
+        listed = service.client.get(f"/api/v1/selections?reference={SECRET}", headers={"X-Request-ID": "last"})
+        service.event(request_id="last")
+
+    assert (saved.status_code, listed.status_code) == (201, 200)
+    assert SECRET not in service.log.read_text()
 
 
 @pytest.mark.parametrize("given", ["", "a b", "x" * 65, "ü", "a\tb"])

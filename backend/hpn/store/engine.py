@@ -37,6 +37,7 @@ def make_engine(address: str, *, seconds: float) -> AsyncEngine:
 def _postgresql(url: URL, seconds: float) -> AsyncEngine:
     return create_async_engine(
         url.set(drivername="postgresql+psycopg"),
+        hide_parameters=True,
         pool_pre_ping=True,
         pool_timeout=seconds,
         connect_args={
@@ -51,7 +52,10 @@ def _sqlite(url: URL, seconds: float) -> AsyncEngine:
     assert url.database is not None
     Path(url.database).absolute().parent.mkdir(parents=True, exist_ok=True)
     engine = create_async_engine(
-        url.set(drivername="sqlite+aiosqlite"), pool_timeout=seconds, connect_args={"timeout": seconds}
+        url.set(drivername="sqlite+aiosqlite"),
+        hide_parameters=True,  # errors are logged, and what was asked is not
+        pool_timeout=seconds,
+        connect_args={"timeout": seconds},
     )
     _listen(engine.sync_engine)
     return engine
@@ -61,7 +65,12 @@ def make_transactions(engine: AsyncEngine, *, seconds: float) -> Transactions:
     """Transactions that write from their start, on the database of an engine."""
     if engine.dialect.name != "sqlite":
         return OnLoop(engine.execution_options(**WRITES))
-    own = create_engine(engine.url.set(drivername="sqlite+pysqlite"), pool_size=1, connect_args={"timeout": seconds})
+    own = create_engine(
+        engine.url.set(drivername="sqlite+pysqlite"),
+        hide_parameters=True,
+        pool_size=1,
+        connect_args={"timeout": seconds},
+    )
     _listen(own)
     return OnThread(own.execution_options(**WRITES))
 

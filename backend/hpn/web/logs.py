@@ -14,6 +14,8 @@ import structlog
 from structlog.typing import EventDict, FilteringBoundLogger
 
 LEVELS = {"debug": logging.DEBUG, "info": logging.INFO, "warning": logging.WARNING, "error": logging.ERROR}
+QUIET = ("alembic", "aiosqlite", "sqlalchemy", "psycopg")
+"""Libraries that log statements with their parameters, or more than anybody reads."""
 REQUEST_ID = re.compile(rb"[A-Za-z0-9._-]{1,64}")
 
 REQUEST: ContextVar[bytes | None] = ContextVar("request", default=None)
@@ -73,7 +75,8 @@ def configure(level: str) -> None:
     root = logging.getLogger()
     root.handlers[:] = [handler]
     root.setLevel(LEVELS[level])
-    logging.getLogger("alembic").setLevel(logging.WARNING)
+    for name in QUIET:
+        logging.getLogger(name).setLevel(logging.WARNING)
 
 
 def _json(logger: Any, method: str, event: EventDict) -> bytes:
