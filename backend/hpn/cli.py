@@ -18,7 +18,7 @@ from hpn.web import serving
 from hpn.web.canonical import to_link
 from hpn.web.gear_figures import is_supplied
 from hpn.web.keys import new_key
-from hpn.web.problems import Problem
+from hpn.web.problems import Problem, plain_message
 from hpn.web.settings import Settings
 
 
@@ -31,6 +31,8 @@ def main(arguments: list[str] | None = None) -> int:
     except (CatalogueError, StoreError, OSError) as error:
         return _refuse(str(error))
     except (ValidationError, InputError) as error:
+        if isinstance(error, ValidationError) and error.title == Settings.__name__:
+            return _refuse(_wrong_settings(error, options))
         problem = Problem.of(error)
         lines = [f"{entry['pointer'] or '/'}: {entry['detail']}" for entry in problem.body().get("errors", ())]
         return _refuse("\n".join(lines) or problem.detail)
@@ -121,6 +123,16 @@ async def _migrate(store: Store) -> None:
 def _loaded() -> Catalogue:
     settings = Settings()
     return load_catalogue(settings.catalogue_folder, settings.catalogue_supplement)
+
+
+def _wrong_settings(error: ValidationError, options: argparse.Namespace) -> str:
+    """A line for each wrong setting, named as it was given: by option or by variable."""
+    lines = []
+    for entry in error.errors(include_url=False, include_context=False, include_input=False):
+        name = str(entry["loc"][0])
+        given = f"--{name}" if getattr(options, name, None) is not None else f"HPN_{name.upper()}"
+        lines.append(f"{given}: {plain_message(entry['type'], entry['msg'])}")
+    return "\n".join(dict.fromkeys(lines))
 
 
 def _refuse(text: str) -> int:

@@ -141,7 +141,20 @@ def test_a_supplement_is_used_and_a_wrong_setting_is_a_sentence(
 
     monkeypatch.setenv("HPN_MAXIMUM_BODY_BYTES", "many")
     assert main(["catalogue"]) == 2
-    assert "maximum_body_bytes" in capsys.readouterr().err.lower()
+    assert capsys.readouterr().err.startswith("HPN_MAXIMUM_BODY_BYTES: must be a valid integer")
+
+
+def test_a_wrong_setting_is_named_as_it_was_given(monkeypatch: pytest.MonkeyPatch, capsys: Output) -> None:
+    monkeypatch.setenv("HPN_GUARDED", "all,none")
+    monkeypatch.setenv("HPN_PORT", "abc")
+    assert main(["serve"]) == 2
+    first, *rest = sorted(capsys.readouterr().err.splitlines())
+    assert first.startswith("HPN_GUARDED: must be 'calculator', 'batch'")
+    assert [line.split(":")[0] for line in rest] == ["HPN_PORT"]  # and both wrong words are one line
+
+    monkeypatch.delenv("HPN_GUARDED")
+    assert main(["serve", "--port", "70000"]) == 2
+    assert capsys.readouterr().err == "--port: must be less than or equal to 65535\n"
 
 
 @pytest.mark.parametrize("arguments", [[], ["selct"], ["select"], ["serve", "--port", "http"]])
