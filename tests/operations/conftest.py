@@ -34,7 +34,8 @@ def make_client(tmp_path: Path) -> Iterator[MakeClient]:
 
         def make(**settings: Any) -> TestClient:
             values = {"database_url": f"sqlite:///{tmp_path}/store.sqlite3", **settings}
-            return stack.enter_context(TestClient(create_app(Settings(**values)), raise_server_exceptions=False))
+            app = create_app(Settings(**values))
+            return stack.enter_context(TestClient(app, raise_server_exceptions=False, client=("127.0.0.1", 50000)))
 
         yield make
 

@@ -82,7 +82,7 @@ def test_holders_of_different_keys_are_counted_apart(make_client: MakeClient) ->
 
 
 def test_a_forwarded_address_counts_only_from_a_trusted_proxy(make_client: MakeClient) -> None:
-    trusting = make_client(calculator_rate="1/minute", trusted_proxies="testclient 10.0.0.0/8")
+    trusting = make_client(calculator_rate="1/minute", trusted_proxies="127.0.0.1 10.0.0.0/8")
     wary = make_client(calculator_rate="1/minute")
 
     chains = ["192.0.2.1", "192.0.2.2", "198.51.100.9, 192.0.2.2, 10.1.2.3"]

@@ -4,6 +4,7 @@ import re
 from pathlib import Path
 
 import pytest
+from pydantic import ValidationError
 
 from hpn.web.settings import Settings
 
@@ -42,3 +43,51 @@ def test_the_readme_lists_every_setting() -> None:
 
 def test_every_setting_is_described() -> None:
     assert [name for name, field in Settings.model_fields.items() if not field.description] == []
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "words"),
+    [
+        ("cors_origins", "plm.example", "such as https://plm.example"),
+        ("cors_origins", "https://erp.example https://plm.example/", "'https://plm.example/' is none"),
+        ("cors_origins", "https://plm.example/app", "no path"),
+        ("cors_origins", "https://PLM.example", "small letters"),
+        ("cors_origins", "https://plm.example:443", "a port unless it is the usual one"),
+        ("trusted_proxies", "not-an-ip", "such as 10.0.0.0/8"),
+        ("trusted_proxies", "10.0.0.1/8", "has host bits set"),
+        ("trusted_proxies", "*,10.0.0.1", "alone"),
+        ("spool_folder", "/there/is/none", "exists"),
+        ("spool_folder", __file__, "must be a folder"),
+        ("batch_rate", "0/minute", "at least 1"),
+        ("batch_rate", "5/minute;1/second", "one rate"),
+        ("batch_rate", "often", "such as 120/minute"),
+    ],
+)
+def test_a_setting_that_would_do_nothing_is_refused_and_told_what_would_be_right(
+    name: str, value: str, words: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv(f"HPN_{name.upper()}", value)
+
+    with pytest.raises(ValidationError) as caught:
+        Settings()
+
+    (entry,) = caught.value.errors()
+    assert entry["loc"] == (name,)
+    assert words in entry["msg"]
+
+
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [
+        ("cors_origins", "http://localhost:5173, https://plm.example:8443 http://[::1]:8000 app://plm"),
+        ("cors_origins", "*"),
+        ("trusted_proxies", "127.0.0.1, 10.0.0.0/8 2001:db8::/32 ::1"),
+        ("trusted_proxies", "*"),
+        ("spool_folder", str(ROOT)),
+        ("batch_rate", "1200 per 2 hours"),
+    ],
+)
+def test_what_is_right_is_taken(name: str, value: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv(f"HPN_{name.upper()}", value)
+
+    assert getattr(Settings(), name)

@@ -1,5 +1,8 @@
 """Every setting of the service, by environment variable `HPN_…`; the README's table lists them."""
 
+import os
+import re
+from ipaddress import ip_network
 from pathlib import Path
 from typing import Annotated, Literal
 
@@ -25,11 +28,43 @@ def _keys(words: object) -> object:
 
 
 def _rate(text: str) -> str:
-    if text != "off":
-        limits.parse(text)
+    try:
+        items = [] if text == "off" else limits.parse_many(text)
+    except ValueError:
+        raise ValueError("must be a rate, such as 120/minute, or off") from None
+    if len(items) > 1 or any(item.amount < 1 for item in items):
+        raise ValueError("must be one rate of at least 1, such as 120/minute, or off for no limit")
     return text
 
 
+def _proxies(words: tuple[str, ...]) -> tuple[str, ...]:
+    for word in words if words != ("*",) else ():
+        try:
+            ip_network(word)
+        except ValueError as error:
+            raise ValueError(f"must be addresses or networks, such as 10.0.0.0/8, or * alone; {error}") from None
+    return words
+
+
+def _origins(words: tuple[str, ...]) -> tuple[str, ...]:
+    for word in words:
+        if word != "*" and not ORIGIN.fullmatch(word):
+            raise ValueError(
+                "must be origins as browsers send them, such as https://plm.example: scheme and host in small letters, "
+                f"a port unless it is the usual one, no path and no slash at the end; {word!r} is none"
+            )
+    return words
+
+
+def _folder(path: Path | None) -> Path | None:
+    if path is not None and not (path.is_dir() and os.access(path, os.W_OK | os.X_OK)):
+        raise ValueError(f"must be a folder that exists and can be written to; {str(path)!r} is none")
+    return path
+
+
+ORIGIN = re.compile(
+    r"(?!http://[^/]*:80$|https://[^/]*:443$)[a-z][a-z0-9+.-]*://([a-z0-9._-]+|\[[0-9a-f:]+\])(:[0-9]+)?"
+)
 Words = Annotated[tuple[str, ...], NoDecode, BeforeValidator(_split)]
 Rate = Annotated[str, AfterValidator(_rate)]
 
@@ -56,7 +91,7 @@ class Settings(BaseSettings):
     maximum_batch_count: int = Field(10_000, gt=0, le=10_000, description="Most applications in one batch request.")
     body_seconds: float = Field(30.0, gt=0, description="Longest time for a body to arrive, from its first part.")
     batch_seconds: float = Field(60.0, gt=0, description="Longest computing time of one batch request.")
-    spool_folder: Path | None = Field(
+    spool_folder: Annotated[Path | None, AfterValidator(_folder)] = Field(
         None,
         description="Folder for what a streamed batch has to set aside; the system's for temporary files by default.",
     )
@@ -86,7 +121,11 @@ class Settings(BaseSettings):
     )
     batch_rate: Rate = Field("1200/minute", description="Most batches per key or address and process, or off.")
     writing_rate: Rate = Field("60000/minute", description="Most savings and deletions likewise, or off.")
-    trusted_proxies: Words = Field(
-        (), description="Addresses or networks of proxies whose X-Forwarded-For and X-Forwarded-Proto count."
+    trusted_proxies: Annotated[Words, AfterValidator(_proxies)] = Field(
+        (),
+        description="Addresses or networks of proxies whose X-Forwarded-For and X-Forwarded-Proto count; * for all.",
     )
-    cors_origins: Words = Field((), description="Origins whose scripts may use the API, such as https://plm.example.")
+    cors_origins: Annotated[Words, AfterValidator(_origins)] = Field(
+        (),
+        description="Origins whose scripts may use the API, such as https://plm.example.",
+    )
