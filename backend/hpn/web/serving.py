@@ -7,6 +7,7 @@ from typing import Any
 
 import uvicorn
 from fastapi import FastAPI
+from uvicorn.supervisors import Multiprocess
 
 from hpn.web import logs, metrics, pages
 from hpn.web.app import create_app
@@ -53,4 +54,15 @@ def run(settings: Settings) -> None:
         return
     with tempfile.TemporaryDirectory(prefix="hpn-metrics-") as folder:
         os.environ[metrics.FOLDER] = folder
-        uvicorn.run("hpn.web.serving:served_app", **options(settings))
+        config = uvicorn.Config("hpn.web.serving:served_app", **options(settings))
+        Workers(config, sockets=[config.bind_socket()]).run()
+
+
+class Workers(Multiprocess):
+    """uvicorn's workers; at the end new connections are refused at once, as by a single process."""
+
+    def terminate_all(self) -> None:
+        """Have the workers finish what runs."""
+        for listening in self.sockets:  # else the system would go on accepting, and nobody would answer
+            listening.close()
+        super().terminate_all()
