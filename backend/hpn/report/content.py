@@ -8,7 +8,7 @@ from typing import Any
 import segno
 
 from hpn.report import inputs, plots, standings
-from hpn.report.export import LOWER_BOUND, Candidate, Export
+from hpn.report.export import Candidate, Export
 from hpn.report.language import Language
 from hpn.report.symbols import formula, sentence
 from hpn.units import symbol_of
@@ -245,26 +245,23 @@ DERIVED = (
 def _derived(export: Export, language: Language) -> list[dict[str, Any]]:
     known = {**export.candidate, **export.reply["duty"]}
     lower_bound = export.is_lower_bound(export.candidate)
+    loss_free = lower_bound and not export.follows_efficiency_curve(export.candidate)
     rows = []
     for name, symbol, label, equation in DERIVED:
         value = known.get(name)
         if value is not None:
-            unit = language.unit(symbol_of(name))
+            unit, at_motor = language.unit(symbol_of(name)), name.startswith("motor_")
+            where = language.text(N_("eq. {number}")).format(number=equation) if equation else ""
+            bound = f", {language.text(N_('lower bound'))}" if lower_bound and at_motor else ""
             rows.append(
                 {
-                    "label": language.text(label),
+                    "label": language.text(label) + bound,
                     "symbol": formula(symbol),
                     "text": f"{language.figure(value)}\N{NO-BREAK SPACE}{unit}" if unit else language.figure(value),
-                    "where": _standing_of(name, equation, lower_bound, language),
+                    "where": "η = 1" if loss_free and at_motor else where,
                 }
             )
     return rows
-
-
-def _standing_of(name: str, equation: str, lower_bound: bool, language: Language) -> str:
-    if lower_bound and name.startswith("motor_"):
-        return language.text(LOWER_BOUND)
-    return language.text(N_("eq. {number}")).format(number=equation) if equation else ""
 
 
 RATINGS = (
