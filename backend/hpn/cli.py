@@ -2,6 +2,8 @@
 
 import argparse
 import asyncio
+import os
+import signal
 import sys
 from contextlib import suppress
 from pathlib import Path
@@ -27,7 +29,11 @@ def main(arguments: list[str] | None = None) -> int:
     options = _parser().parse_args(arguments)
     try:
         result: int = options.run(options)
+        sys.stdout.flush()
         return result
+    except BrokenPipeError:  # whoever reads has seen enough, such as head
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # else the interpreter's last flush complains
+        return 128 + signal.SIGPIPE
     except (CatalogueError, StoreError, OSError) as error:
         return _refuse(str(error))
     except (ValidationError, InputError) as error:
@@ -138,3 +144,7 @@ def _wrong_settings(error: ValidationError, options: argparse.Namespace) -> str:
 def _refuse(text: str) -> int:
     print(text, file=sys.stderr)
     return 2
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -2,6 +2,9 @@
 
 import io
 import json
+import signal
+import subprocess
+import sys
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -155,6 +158,24 @@ def test_a_wrong_setting_is_named_as_it_was_given(monkeypatch: pytest.MonkeyPatc
     monkeypatch.delenv("HPN_GUARDED")
     assert main(["serve", "--port", "70000"]) == 2
     assert capsys.readouterr().err == "--port: must be less than or equal to 65535\n"
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [["select", "-", "--json"], ["select", "-", "--table"], ["catalogue"], ["catalogue", "HPN-20-5"]],
+    ids=" ".join,
+)
+def test_a_reader_who_has_seen_enough_ends_it_quietly(arguments: list[str]) -> None:
+    command = [sys.executable, "-m", "hpn.cli", *arguments]
+    with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
+        assert process.stdin and process.stdout and process.stderr
+        process.stdout.close()
+        if "-" in arguments:
+            process.stdin.write(orjson.dumps(worked_example()))
+        process.stdin.close()
+
+        assert process.stderr.read() == b""
+    assert process.returncode == 128 + signal.SIGPIPE  # as a shell says it of a program that SIGPIPE has ended
 
 
 @pytest.mark.parametrize("arguments", [[], ["selct"], ["select"], ["serve", "--port", "http"]])
