@@ -46,7 +46,7 @@ document.addEventListener("htmx:before:swap", (event) => {
 document.addEventListener("htmx:after:swap", (event) => {
   const { ctx } = event.detail;
   if (ctx.asked === undefined) return;
-  if (ctx.replaces) followAttributes(formOf());
+  if (ctx.replaces || ctx.presses) followAttributes(formOf());
   if (ctx.presses) presses.splice(0, ctx.presses);
   ctx.refocus?.();
 });
@@ -92,6 +92,9 @@ function after(press, row, rows) {
 
 const placeAfterPresses = (row, rows) => presses.reduce((at, press) => (at === null ? null : after(press, at, rows)), row);
 
+// The place of a row that the edits remove: what followed it stands there afterwards.
+const removedAt = (row, rows) => presses.reduce((at, press) => after(press, at, rows) ?? at, row);
+
 // A later request takes along the row edits of the one that it replaces, so that neither they nor the typing are lost.
 function carryPresses(ctx) {
   const rows = document.querySelectorAll("#duty tbody tr").length;
@@ -106,21 +109,23 @@ function carryPresses(ctx) {
   }
   for (const press of presses) body.append("do", press);
   ctx.presses = presses.length;
-  if (!own) keepPlace(ctx, rows);
+  keepPlace(ctx, rows);
 }
 
-// Who types on stays in the field, wherever its row goes.
+// Who types, or edits rows by key, stays in the cell, wherever its row goes; where it is removed, in the one that takes
+// its place. A button and a new row have their focus from the server.
 function keepPlace(ctx, rows) {
   const field = document.activeElement;
-  const [name, number] = field.closest("#duty tbody tr") ? field.id.split("-") : [];
-  if (!name) return;
+  if (!field?.matches("#duty tbody input") || ctx.request.submitter?.value === "add") return;
+  const [name, number] = field.id.split("-");
   const row = placeAfterPresses(Number(number), rows);
-  if (row === null) return;
   const range = [field.selectionStart, field.selectionEnd];
   ctx.refocus = () => {
-    const place = document.getElementById(`${name}-${row}`);
+    const last = document.querySelectorAll("#duty tbody tr").length - 1;
+    const place = document.getElementById(`${name}-${row ?? Math.min(removedAt(Number(number), rows), last)}`);
     place?.focus();
-    place?.setSelectionRange?.(...range);
+    if (row === null) place?.select();
+    else place?.setSelectionRange(...range);
   };
 }
 

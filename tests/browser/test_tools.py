@@ -3,6 +3,7 @@
 import re
 from pathlib import Path
 from typing import Any
+from urllib.parse import parse_qs, urlsplit
 
 import pytest
 from playwright.sync_api import Page, expect
@@ -194,6 +195,72 @@ def test_keys_edit_rows_and_are_listed(visitor: Visitor) -> None:
     expect(page.get_by_role("region", name="Result")).to_be_focused()
     page.keyboard.press("Escape")
     expect(torque(page, 3)).to_be_focused()
+
+
+def shown(page: Page) -> list[list[str]]:
+    """What the duty table's fields say, row by row."""
+    rows = page.get_by_role("table", name="Load phases").get_by_role("row")
+    return [
+        [field.input_value() for field in fields] for row in rows.all() if (fields := row.get_by_role("textbox").all())
+    ]
+
+
+def addressed(page: Page) -> list[list[str]]:
+    """Rows of the duty cycle in the address."""
+    query = parse_qs(urlsplit(page.url).query)
+    return [list(row) for row in zip(query["T"], query["n"], query["t"], strict=True)]
+
+
+ROWS = [["40", "250", "0.3"], ["32", "500", "3"], ["20", "250", "0.4"]]
+
+
+@pytest.mark.parametrize(
+    ("key", "phase", "column", "order", "lands", "at_once"),
+    [
+        ("Alt+ArrowDown", 1, "T", [1, 0, 2], 2, False),
+        ("Alt+ArrowDown", 1, "n", [1, 0, 2], 2, True),
+        ("Alt+ArrowUp", 2, "T", [1, 0, 2], 1, True),
+        ("Alt+ArrowUp", 1, "t", [0, 1, 2], 1, False),
+        ("Alt+Delete", 1, "n", [1, 2], 1, False),
+        ("Alt+Delete", 3, "t", [0, 1], 2, True),
+    ],
+)
+def test_row_edited_by_key_in_a_changed_cell_takes_the_figures_along(
+    visitor: Visitor, key: str, phase: int, column: str, order: list[int], lands: int, *, at_once: bool
+) -> None:
+    page = visitor.open(EXAMPLE)
+    name, typed = {"T": ("Torque", "36"), "n": ("Speed", "245"), "t": ("Duration", "0.7")}[column]
+    given = [list(row) for row in ROWS]
+    given[phase - 1]["Tnt".index(column)] = typed
+    cell = page.get_by_label(f"{name}, phase {phase},")
+    cell.select_text()
+    page.keyboard.type(typed)
+    if not at_once:
+        expect(page).to_have_url(re.compile(f"{column}={typed}&"))
+    wanted = [given[row] for row in order]
+
+    with page.expect_response(re.compile(r"&do=")):
+        page.keyboard.press(key)
+
+    expect(page.get_by_label(f"{name}, phase {lands},")).to_be_focused()
+    page.wait_for_load_state("networkidle")
+    assert shown(page) == addressed(page) == wanted
+    expect(page.get_by_label(f"{name}, phase {lands},")).to_be_focused()
+    with page.expect_response("**/?*"):
+        page.get_by_label("Pause").fill("5")
+    expect(page).to_have_url(re.compile("tp=5"))
+    assert shown(page) == addressed(page) == wanted
+
+
+def test_row_moved_by_key_twice_in_quick_succession_goes_two_places(visitor: Visitor) -> None:
+    page = visitor.open(EXAMPLE)
+    torque(page, 1).fill("36")
+    with answer_held_back(page, lambda: page.keyboard.press("Alt+ArrowDown")):
+        page.keyboard.press("Alt+ArrowDown")
+    expect(torque(page, 3)).to_be_focused()
+    expect(torque(page, 3)).to_have_value("36")
+    page.wait_for_load_state("networkidle")
+    assert shown(page) == addressed(page) == [ROWS[1], ROWS[2], ["36", "250", "0.3"]]
 
 
 def test_typing_while_a_row_edit_is_under_way_keeps_both_and_the_place(visitor: Visitor) -> None:
