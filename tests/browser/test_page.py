@@ -261,6 +261,19 @@ def test_answer_prints_on_one_page(visitor: Visitor) -> None:
     assert len(PdfReader(io.BytesIO(page.pdf(prefer_css_page_size=True))).pages) == 1
 
 
+def test_saved_selection_prints_its_candidates(visitor: Visitor) -> None:
+    page = visitor.open(EXAMPLE)
+    page.get_by_text("Save this selection").click()
+    page.get_by_role("button", name="Save", exact=True).click()
+    expect(page).to_have_url(re.compile("/selections/"))
+    page.emulate_media(media="print")
+    candidates = page.get_by_role("table", name="Candidates")
+    expect(candidates.get_by_role("row", name=re.compile("HPN-20A-5"))).to_be_visible()
+    printed = PdfReader(io.BytesIO(page.pdf(prefer_css_page_size=True))).pages
+    text = "\n".join(sheet.extract_text() for sheet in printed)
+    assert text.index("Candidates") < text.rindex("HPN-32A-5") < text.rindex("HPN-14A-5")
+
+
 @pytest.mark.parametrize("width", [390, 768, 1024, 1440, 1920])
 def test_nothing_makes_the_page_scroll_sideways(visitor: Visitor, width: int) -> None:
     page = visitor.open(EXAMPLE.replace("&i=5", "&FR=500&FRi=&FRi=&FRi=700"), width=width)
