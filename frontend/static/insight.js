@@ -2,6 +2,20 @@
 
 const plain = (event) => !event.button && !event.ctrlKey && !event.metaKey && !event.shiftKey && !event.altKey;
 
+// Without an answer there is nothing to compare: say so, instead of waiting in silence for the correction.
+document.addEventListener(
+  "click",
+  (event) => {
+    if (!event.target.closest(".pin") || !plain(event) || !document.querySelector("#application[data-invalid]")) return;
+    event.preventDefault();
+    event.stopPropagation();
+    document.querySelector('#connection [data-state="uncompared"]').hidden = false;
+  },
+  true,
+);
+
+let toggle = null; // the gear whose toggle was pressed and keeps the focus, wherever the answer puts it
+
 document.addEventListener("click", (event) => {
   const link = event.target.closest("a[data-pin]");
   if (!link || !plain(event)) return;
@@ -12,7 +26,16 @@ document.addEventListener("click", (event) => {
   for (const value of new URL(link.href).searchParams.getAll("pin").reverse()) {
     gear.after(Object.assign(document.createElement("input"), { type: "hidden", name: "pin", value }));
   }
+  toggle = link.id;
   form.requestSubmit();
+});
+
+document.addEventListener("htmx:after:swap", (event) => {
+  if (!toggle || event.detail.ctx?.sourceElement.id !== "application") return;
+  // A column that is taken out takes its toggle along; the one in the list of candidates stays.
+  const place = document.getElementById(toggle) ?? document.getElementById(toggle.replace("pin-column-", "pin-"));
+  if (document.activeElement === document.body) place?.focus({ preventScroll: true });
+  toggle = null;
 });
 
 // Steps may also be opened one by one: the switch is on while all of them are open.

@@ -73,6 +73,35 @@ def test_comparing_gears_by_pinning_them_from_the_list(visitor: Visitor) -> None
     expect(comparison(page)).to_have_accessible_name("Comparison of HPN-20A-5, HPN-14A-5")
 
 
+def test_pinning_by_key_keeps_the_focus_on_the_toggle(visitor: Visitor) -> None:
+    page = visitor.open(EXAMPLE)
+    candidates = page.get_by_role("table", name="Candidates")
+    candidates.get_by_role("link", name="Compare HPN-32A-5").press("Enter")
+    out = candidates.get_by_role("link", name="Take HPN-32A-5 out of the comparison")
+    expect(out).to_be_focused()
+    page.keyboard.press("Enter")
+    expect(candidates.get_by_role("link", name="Compare HPN-32A-5")).to_be_focused()
+    page.keyboard.press("Enter")
+    expect(out).to_be_focused()
+    comparison(page).get_by_role("link", name="Take HPN-32A-5 out of the comparison").press("Enter")
+    expect(candidates.get_by_role("link", name="Compare HPN-32A-5")).to_be_focused()
+
+
+def test_pinning_while_an_input_is_wrong_says_why_it_can_not_be(visitor: Visitor) -> None:
+    page = visitor.open(EXAMPLE)
+    torque(page, 1).fill("9,3")
+    expect(page.get_by_text("Not recalculated")).to_be_visible()
+    toggle = page.get_by_role("link", name="Compare HPN-32A-5")
+    toggle.press("Enter")
+    reason = page.get_by_text("Not compared: first correct the marked inputs.")
+    expect(reason).to_be_visible()
+    expect(toggle).to_be_focused()
+    torque(page, 1).fill("41")
+    expect(reason).to_be_hidden()
+    expect(page).to_have_url(re.compile("T=41&"))
+    assert gears_compared(page) == ["HPN-20A-5", "HPN-14A-5"]
+
+
 def test_comparing_gears_without_script(visitor: Visitor) -> None:
     page = visitor.open(EXAMPLE, script=False)
     page.get_by_role("link", name="Compare HPN-32A-5").click()
