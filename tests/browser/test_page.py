@@ -241,6 +241,20 @@ def test_loads_can_be_given_for_each_phase(visitor: Visitor) -> None:
     expect(page.get_by_role("table", name="Load limits").get_by_text("Output bearing").first).to_be_visible()
 
 
+@pytest.mark.parametrize("width", [390, 1024, 1440])
+def test_every_figure_is_read_in_full_with_a_load_per_phase(visitor: Visitor, width: int) -> None:
+    rows = "T=40&n=250&t=0.3&FRi=500&FAi=200&T=1234.5&n=1500&t=13.25&FRi=12500&FAi=300"
+    page = visitor.open(f"/?{rows}&i=5", width=width)
+    for field in page.get_by_role("table", name="Load phases").get_by_role("textbox").all():
+        assert field.evaluate("field => field.scrollWidth <= field.clientWidth")
+    radial, axial = (
+        page.get_by_label("Radial, phase 2").bounding_box(),
+        page.get_by_label("Axial, phase 2").bounding_box(),
+    )
+    assert radial and axial and radial["x"] + radial["width"] <= axial["x"]
+    assert min(radial["width"], axial["width"]) > 55
+
+
 def test_page_does_not_move_while_typing(visitor: Visitor) -> None:
     page = visitor.open(EXAMPLE)
     heading, table = selected(page), page.get_by_role("table", name="Size × ratio")
