@@ -255,6 +255,19 @@ def test_every_figure_is_read_in_full_with_a_load_per_phase(visitor: Visitor, wi
     assert min(radial["width"], axial["width"]) > 55
 
 
+@pytest.mark.parametrize(
+    ("path", "width"), [("/?T=500000&n=250&t=0.3", 1440), ("/?T=500&n=100&t=1", 1440), (EXAMPLE, 1024)]
+)
+def test_no_figure_of_limits_and_map_runs_into_its_neighbour(visitor: Visitor, path: str, width: int) -> None:
+    page = visitor.open(path, width=width)
+    for table in ("Load limits", "Size × ratio"):
+        for cell in page.get_by_role("table", name=table).get_by_role("cell").all():
+            inside = (
+                "cell => [cell, ...cell.querySelectorAll('a')].every(box => box.scrollWidth <= box.clientWidth + 1)"
+            )
+            assert cell.evaluate(inside), cell.inner_text()
+
+
 def test_page_does_not_move_while_typing(visitor: Visitor) -> None:
     page = visitor.open(EXAMPLE)
     heading, table = selected(page), page.get_by_role("table", name="Size × ratio")

@@ -182,6 +182,17 @@ def test_emergency_stops_in_words(catalogue: Catalogue, stop: Json | None, said:
     assert said in " ".join(sentence.text for sentence in words)
 
 
+@pytest.mark.parametrize(
+    "stop", [{"torque_Nm": 200}, {"torque_Nm": 200, "count": 10**7}, {"torque_Nm": 200, "count": 10**5}]
+)
+def test_labels_of_line_and_stop_stand_on_different_sides_of_the_line(catalogue: Catalogue, stop: Json) -> None:
+    selection = selected(catalogue, emergency_stop=stop)
+    figure = plots.emergency_stop_figure(selection, catalogue.by_designation["HPN-20A-5"])
+    assert figure is not None
+    line, marked = figure["data"]
+    assert line["textposition"].split()[0] != marked["textposition"].split()[0]
+
+
 def test_emergency_stops_of_an_unrated_gear_have_words_but_no_plot(catalogue: Catalogue) -> None:
     gear, selection = catalogue.by_designation["HPN-40A-5"], selected(catalogue)
     assert plots.emergency_stop_figure(selection, gear) is None

@@ -13,6 +13,9 @@ from hpn.wording import N_, Quantity, Sentence, Value
 TOP = 8
 """Power of ten at which the axis of the number ends, unless more stops are expected."""
 
+LOW = 10
+"""Number of stops below which a label has no room under its point."""
+
 
 def emergency_stop_figure(selection: Selection, gear: Gear, words: Words = ENGLISH) -> Figure | None:
     """Allowed number of emergency stops against their torque (equation 17.9), with the user's stop on it.
@@ -26,8 +29,9 @@ def emergency_stop_figure(selection: Selection, gear: Gear, words: Words = ENGLI
     T_k = abs(stop.torque_Nm) if stop else 0.0
     top = max(TOP, ceil(log10(stop.count)) if stop and stop.count else 0)
     torque = np.linspace(T_R, max(T_M, T_R), 60)
-    data = [_line(torque.tolist(), (10 ** (8.5 - 1.5 * torque / T_R)).tolist(), words)]
     marked = _stop(selection, gear, top, words)
+    beyond = any("top" in stop["textposition"] for stop in marked)
+    data = [_line(torque.tolist(), (10 ** (8.5 - 1.5 * torque / T_R)).tolist(), words, named_below=beyond)]
     figure = layout(
         words,
         words.axis(N_("emergency-stop torque T_k"), "Nm"),
@@ -49,14 +53,15 @@ def emergency_stop_figure(selection: Selection, gear: Gear, words: Words = ENGLI
     return {"data": [*data, *marked], "layout": figure}
 
 
-def _line(torque: list[float], number: list[float], words: Words) -> Figure:
+def _line(torque: list[float], number: list[float], words: Words, *, named_below: bool) -> Figure:
     name = words.say(Sentence("Allowed number N_k max"))
+    named = len(torque) // (2 if named_below else 4)
     return {
         "type": "scatter",
         "mode": "lines+text",
         "name": name,
-        "text": ["" if place != len(torque) // 4 else name for place in range(len(torque))],
-        "textposition": "top right",
+        "text": [name if place == named else "" for place in range(len(torque))],
+        "textposition": "bottom left" if named_below else "top right",
         "textfont": {"color": "var(--ink)", "size": 12},
         "x": words.convert_all(torque, "Nm"),
         "y": number,
@@ -82,13 +87,15 @@ def _stop(selection: Selection, gear: Gear, top: int, words: Words) -> list[Figu
     if number <= 0:
         return []
     name = words.say(Sentence("your stops") if stop.count else Sentence("your stop torque"))
+    # Its label stands on the other side of the line than the line's own, and not on the numbers of the axis.
+    side = "top" if number > allowed * (1 + 1e-9) or number < LOW else "bottom"
     return [
         {
             "type": "scatter",
             "mode": "markers+text",
             "name": name,
             "text": [name],
-            "textposition": "top left",
+            "textposition": f"{side} left",
             "textfont": {"color": "var(--ink)", "size": 12},
             "x": [words.convert(abs(stop.torque_Nm), "Nm")],
             "y": [number],
