@@ -1,8 +1,8 @@
 # Every target installs what it needs first. The stamps live inside what they vouch for, so deleting the folder is enough
 # to start again; they depend on the locks, so an up-to-date tree goes straight to its work.
 PYTHON ?= python3
-HOST ?= 127.0.0.1
-PORT ?= 8000
+HOST ?= $(or $(HPN_HOST),127.0.0.1)
+PORT ?= $(or $(HPN_PORT),8000)
 UPGRADE ?=# make lock UPGRADE=--upgrade
 
 VENV := .venv
@@ -123,4 +123,4 @@ lock: $(UV) | $(NODE)
 	! grep -nE 'https?:|file:|find-links' requirements*.lock frontend/package-lock.json
 
 clean:
-	rm -rf $(VENV) $(MODULES) frontend/dist bench-results.json .*_cache .hypothesis
+	rm -rf $(VENV) $(MODULES) frontend/dist .*_cache .hypothesis

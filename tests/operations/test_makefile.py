@@ -1,0 +1,34 @@
+"""What make would do."""
+
+import os
+import subprocess
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+
+
+def planned(target: str, **environment: str) -> str:
+    """Commands of a target, which are not run."""
+    own = ("HPN_", "MAKE", "MFLAGS", "HOST", "PORT")
+    clean = {name: value for name, value in os.environ.items() if not name.startswith(own)}
+    return subprocess.run(
+        ["make", "--dry-run", target], cwd=ROOT, env=clean | environment, capture_output=True, text=True, check=True
+    ).stdout
+
+
+@pytest.mark.parametrize(
+    ("environment", "address"),
+    [
+        ({}, '--host "127.0.0.1" --port "8000"'),
+        ({"HPN_HOST": "::1", "HPN_PORT": "8123"}, '--host "::1" --port "8123"'),
+        ({"HPN_PORT": "8123", "PORT": "8124"}, '--host "127.0.0.1" --port "8124"'),
+    ],
+)
+def test_run_listens_where_make_or_the_settings_say(environment: dict[str, str], address: str) -> None:
+    assert address in planned("run", **environment)
+
+
+def test_clean_takes_nothing_that_git_tracks() -> None:
+    assert "bench-results.json" not in planned("clean")
