@@ -106,7 +106,7 @@ def _complete(string: object) -> bool:
 def update(code: str) -> list[str]:
     """Bring a language's catalogue up to date; what is left to do in it."""
     own = catalogue(code)
-    own.update(texts(), no_fuzzy_matching=True)
+    own.update(texts(), no_fuzzy_matching=True, update_creation_date=False)
     own.obsolete.clear()
     with path_of(code).open("wb") as file:
         write_po(file, own, width=120, omit_header=False, include_lineno=False, ignore_obsolete=True)

@@ -6,6 +6,9 @@ from pathlib import Path
 
 import pytest
 
+from hpn.translation import path_of
+from tests import messages
+
 ROOT = Path(__file__).parents[2]
 
 
@@ -32,3 +35,14 @@ def test_run_listens_where_make_or_the_settings_say(environment: dict[str, str],
 
 def test_clean_takes_nothing_that_git_tracks() -> None:
     assert "bench-results.json" not in planned("clean")
+
+
+def test_messages_leaves_the_date_of_a_catalogue_alone(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    before = path_of("de").read_text()
+    written = tmp_path / "hpn.po"
+    monkeypatch.setattr("tests.messages.path_of", lambda code: written)
+
+    messages.update("de")
+
+    (date,) = [line for line in written.read_text().splitlines() if "POT-Creation-Date" in line]
+    assert date in before
