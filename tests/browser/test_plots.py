@@ -134,6 +134,16 @@ def test_all_sizes_are_a_second_view_by_keyboard_that_stays_while_typing(visitor
     expect(table.get_by_role("row", name=re.compile("20A"))).to_contain_text("does not carry it")
 
 
+def test_of_two_questions_only_the_figure_that_fails_is_marked(visitor: Visitor) -> None:
+    page = visitor.open("/?T=40&n=250&t=0.3&T=32&n=500&t=3&FR=1200")
+    page.get_by_role("radio", name="All sizes").check()
+    row = page.get_by_role("table", name="Which size carries the load").get_by_role("row", name=re.compile("20A"))
+    weight = "cell => getComputedStyle(cell.firstElementChild).fontWeight"
+    cycle, phase = row.get_by_role("cell").nth(2), row.get_by_role("cell").nth(3)
+    assert float(cycle.inner_text().split()[0]) > 100 > float(phase.inner_text().split()[0])
+    assert (cycle.evaluate(weight), phase.evaluate(weight)) == ("600", "400")
+
+
 def test_enlarged_part_stays_while_typing_until_the_whole_view_is_asked_for(visitor: Visitor) -> None:
     page = visitor.open(PHASES)
     whole = drawn(page)["ranges"]

@@ -34,11 +34,11 @@ class Line:
 
 @dataclass(frozen=True, slots=True)
 class Drawing:
-    """Axial load to the right, radial load upwards."""
+    """Radial load to the right, axial load upwards, as in the plots of a selection."""
 
     lines: tuple[Line, ...]
-    axial_marks: tuple[Mark, ...]
     radial_marks: tuple[Mark, ...]
+    axial_marks: tuple[Mark, ...]
     supplied: bool
 
 
@@ -53,19 +53,19 @@ def drawing(catalogue: Catalogue, gear: Gear) -> Drawing | None:
     radial = SPACE * max(value for curve in curves for value in curve.radial_N)
 
     def x(load: float) -> float:
-        return round(LEFT + load / axial * (WIDTH - LEFT - RIGHT), 1)
+        return round(LEFT + load / radial * (WIDTH - LEFT - RIGHT), 1)
 
     def y(load: float) -> float:
-        return round(HEIGHT - BOTTOM - load / radial * (HEIGHT - TOP - BOTTOM), 1)
+        return round(HEIGHT - BOTTOM - load / axial * (HEIGHT - TOP - BOTTOM), 1)
 
     def line(curve: EnvelopeCurve) -> Line:
-        points = zip(curve.axial_N, curve.radial_N, strict=True)
+        points = zip(curve.radial_N, curve.axial_N, strict=True)
         return Line(curve, " ".join(f"{x(along)},{y(up)}" for along, up in points))
 
     return Drawing(
         tuple(map(line, curves)),
-        tuple(Mark(x(value), value) for value in _marks(axial)),
-        tuple(Mark(y(value), value) for value in _marks(radial)),
+        tuple(Mark(x(value), value) for value in _marks(radial)),
+        tuple(Mark(y(value), value) for value in _marks(axial)),
         supplied,
     )
 
