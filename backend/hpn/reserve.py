@@ -14,6 +14,7 @@ from hpn import checks as c
 from hpn import duty as d
 from hpn.checks import CHECKS, LOAD_CHECKS
 from hpn.compiled import compiled
+from hpn.equations import ROUNDING
 
 FloatArray = NDArray[np.float64]
 
@@ -94,6 +95,6 @@ def _emergency_stop_torque(T_k: float, count: float, u: float, T_M: float, T_R: 
     if math.isnan(count):
         return by_torque
     # a reserve next to 0 leaves no stop above T_R
-    needed = max(np.ceil(count / u * (1 - 1e-12)), 1.0)
+    needed = max(np.ceil(count / u * (1 - ROUNDING)), 1.0)
     by_count = np.maximum(T_R, T_R * (8.5 - math.log10(needed)) / 1.5)
     return np.minimum(by_torque, by_count)  # NaN, not rated, stays

@@ -16,6 +16,7 @@ from hpn.calculation.formula import (
     Term,
 )
 from hpn.calculation.sheet import Line, Sheet, Step
+from hpn.equations import ROUNDING
 from hpn.wording import N_, Quantity, Sentence
 
 LARGEST_WORTH_ROUNDING = 1e6
@@ -136,7 +137,7 @@ def _stops(sheet: Sheet) -> Iterable[Step]:
 
 
 def _hand_stops(x: float, allowed: float) -> tuple[Sentence, ...]:
-    by_hand = float(math.floor(10.0 ** round(x, 2) * (1 + 1e-12)))
+    by_hand = float(math.floor(10.0 ** round(x, 2) * (1 + ROUNDING)))
     if by_hand == allowed:
         return ()
     values = {"x": Quantity(round(x, 2), "", 6), "result": Quantity(by_hand, "", 15)}
@@ -178,7 +179,7 @@ def _hand_life(sheet: Sheet, T_N: float, life: float) -> tuple[Sentence, ...]:
     catalogue = sheet.catalogue
     rated = catalogue.life_at_rated_torque_h * catalogue.rated_input_speed_rpm
     by_hand = rated / speed * (T_N / torque) ** (10 / 3)
-    if math.isclose(by_hand, life, rel_tol=1e-12):
+    if math.isclose(by_hand, life, rel_tol=ROUNDING):
         return ()
     values = {
         "torque": Quantity(torque, "Nm", 6),

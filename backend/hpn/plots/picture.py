@@ -10,6 +10,7 @@ import numpy as np
 from hpn import bearing
 from hpn.application import OutputLoad
 from hpn.envelopes import EnvelopeCurve, EnvelopeQuery, envelope_curve, life_envelopes
+from hpn.equations import ROUNDING
 from hpn.gear import Gear
 from hpn.plots.words import numbers, share
 from hpn.selection import Selection
@@ -125,7 +126,12 @@ class SizeUse:
         """Whether both questions are answered with yes; None where it is not rated."""
         if self.constant_load is None or self.published is None:
             return None
-        return max(self.constant_load, self.published) <= 1 + 1e-12
+        return not beyond_limit(max(self.constant_load, self.published))
+
+
+def beyond_limit(utilisation: float) -> bool:
+    """Whether so much of a limit is too much, floating-point rounding apart."""
+    return utilisation > 1 + ROUNDING
 
 
 def condition(selection: Selection) -> EnvelopeQuery:

@@ -132,7 +132,7 @@ def emergency_stop_words(selection: Selection, gear: Gear) -> list[Sentence]:
     if stop is None or allowed is None:
         return [Sentence("Enter an emergency-stop torque to see how many such stops this gear allows.")]
     torque: dict[str, Value] = {"torque": Quantity(abs(stop.torque_Nm), "Nm", 6)}
-    too_hard = abs(stop.torque_Nm) > T_M * (1 + 1e-12)
+    too_hard = abs(stop.torque_Nm) > T_M * (1 + equations.ROUNDING)
     excess = [
         Sentence("{torque} is above T_M = {limit}, whatever the number.", torque | {"limit": Quantity(T_M, "Nm", 6)})
     ]

@@ -16,6 +16,7 @@ from hpn.application import Application, InputError
 from hpn.catalogue import Catalogue
 from hpn.gear import Gear
 from hpn.notices import AREAS
+from hpn.plots.picture import beyond_limit
 from hpn.remedy import DRIVERS
 from hpn.selection import Selection, select
 from hpn.web import assets, display, links, mathml, pictures, reader, readers
@@ -268,6 +269,7 @@ def _templates(static: assets.Assets) -> Environment:
             "symbols": display.symbols,
         }
     )
+    templates.tests["beyond_limit"] = beyond_limit
     templates.globals |= pictures.GLOBALS | {
         "asset": static.url,
         "motor_pattern": MOTOR_CODE,
