@@ -2,13 +2,13 @@
 
 import asyncio
 import hashlib
-from datetime import UTC, datetime, timedelta
+from datetime import UTC, datetime, timedelta, tzinfo
 from pathlib import Path
 
 import pytest
 from sqlalchemy import Connection, event, text
 
-from hpn.store import KeyReusedError, KeySpentError, Store, StoreError, StoreUnavailableError
+from hpn.store import KeyReusedError, KeySpentError, Store, StoreError, StoreUnavailableError, inserting
 from hpn.store.writer import MAXIMUM_WAITING
 from tests.store.drafts import draft
 
@@ -92,7 +92,18 @@ async def test_a_list_gives_every_selection_once_newest_first(store: Store) -> N
     assert listed == ids[::-1]
 
 
-async def test_selections_saved_in_one_moment_are_listed_once_each(store: Store) -> None:
+class OneMoment(datetime):
+    """A clock that stands."""
+
+    @classmethod
+    def now(cls, tz: tzinfo | None = None) -> datetime:
+        return datetime(2026, 11, 21, 12, 0, 0, 108, tz)
+
+
+async def test_selections_saved_in_one_moment_are_listed_once_each(
+    store: Store, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(inserting, "datetime", OneMoment)
     ids = await asyncio.gather(*(store.save(draft()) for _ in range(20)))
 
     listed, cursor = [], None

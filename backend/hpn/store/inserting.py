@@ -2,7 +2,7 @@
 
 import hashlib
 import secrets
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from datetime import UTC, datetime
 from functools import lru_cache
 from typing import Any
@@ -73,7 +73,8 @@ def remove(connection: Connection, id: str) -> bool:
 def _insert_rows(connection: Connection, rows: Sequence[Row]) -> None:
     """One statement for all rows, past SQLAlchemy's own, which takes longer to make than to run."""
     dialect = connection.dialect
-    written: Callable[[datetime], Any] = UtcTime().bind_processor(dialect) or (lambda moment: moment)
+    # As the dialect writes it: the driver's own way differs from it, and moments are compared as they are written.
+    written: Any = UtcTime().dialect_impl(dialect).bind_processor(dialect) or (lambda moment: moment)
     values = [value for row in rows for value in (row | {"created": written(row["created"])}).values()]
     connection.exec_driver_sql(_insertion(len(rows), "?" if dialect.paramstyle == "qmark" else "%s"), tuple(values))
 
