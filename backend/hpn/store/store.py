@@ -4,7 +4,7 @@ import asyncio
 import base64
 import logging
 import re
-from collections.abc import AsyncIterator, Sequence
+from collections.abc import AsyncIterator, Callable, Sequence
 from contextlib import asynccontextmanager
 from datetime import UTC, datetime
 
@@ -78,12 +78,13 @@ class Store:
         async with self._reading() as connection:
             await connection.execute(text("SELECT 1"))
 
-    async def save(self, draft: Draft) -> str:
+    async def save(self, make: Callable[[], Draft]) -> str:
         """Id of the saved selection: a new one, or the one that the same idempotency key has saved before.
 
-        Raises KeyReusedError where the key came with other content, KeySpentError where what it saved was deleted.
+        `make` gives the draft, at once or in a row with those of others. Raises what it raises, KeyReusedError where
+        the key came with other content, and KeySpentError where what it saved was deleted.
         """
-        return await self._writer.save(draft)
+        return await self._writer.save(make)
 
     async def find(self, id: str) -> SavedSelection | None:
         """The selection with this id, or None."""
@@ -151,7 +152,10 @@ class Store:
         new = {version: book for version, book in used.items() if book is not None and version not in self._kept}
         try:
             async with self._reachable():
-                outcomes = await self._transactions.run(lambda connection: insert(connection, rows, new))
+                outcomes = await self._transactions.run(
+                    lambda connection: insert(connection, rows, new),
+                    one_statement=not new and not any(row["idempotency_key"] for row in rows),
+                )
         except StoreUnavailableError as error:
             self._kept.clear()  # the database that comes back may be one from a backup
             if len(drafts) == 1 or not isinstance(error.__cause__, DataError):

@@ -17,8 +17,8 @@ class Transactions(Protocol):
 
     engine: Engine
 
-    async def run(self, work: Work[T]) -> T:
-        """Result of the work, once its transaction is committed."""
+    async def run(self, work: Work[T], *, one_statement: bool = False) -> T:
+        """Result of the work, once its transaction is committed; one statement may be a transaction by itself."""
 
     async def close(self) -> None:
         """Close the connections; the next work opens new ones."""
@@ -36,17 +36,17 @@ class OnThread:
         self._thread: ThreadPoolExecutor | None = None
         self._connection: Connection | None = None
 
-    async def run(self, work: Work[T]) -> T:
+    async def run(self, work: Work[T], *, one_statement: bool = False) -> T:
         """See Transactions. Work that has begun goes on when nobody waits for it any more."""
         if self._thread is None:
             self._thread = ThreadPoolExecutor(1, thread_name_prefix="hpn-store")
-        return await asyncio.get_running_loop().run_in_executor(self._thread, self._transact, work)
+        return await asyncio.get_running_loop().run_in_executor(self._thread, self._transact, work, one_statement)
 
-    def _transact(self, work: Work[T]) -> T:
+    def _transact(self, work: Work[T], one_statement: bool) -> T:
         if self._connection is None:
             self._connection = self.engine.connect()
         try:
-            with self._connection.begin():
+            with self._connection.execution_options(begins=not one_statement).begin():
                 return work(self._connection)
         except BaseException:
             self._disconnect()
@@ -73,7 +73,7 @@ class OnLoop:
         self.engine = engine.sync_engine
         self._engine = engine
 
-    async def run(self, work: Work[T]) -> T:
+    async def run(self, work: Work[T], *, one_statement: bool = False) -> T:
         """See Transactions."""
         async with self._engine.begin() as connection:
             return await connection.run_sync(work)

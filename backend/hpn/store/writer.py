@@ -1,4 +1,7 @@
-"""Group commit: while one transaction reaches the disk, those who come meanwhile gather for the next."""
+"""Group commit: while one transaction reaches the disk, those who come meanwhile gather for the next.
+
+Those of a group are worked out in a row, too: what the processor has at hand for one serves the next.
+"""
 
 import asyncio
 from collections.abc import Awaitable, Callable, Sequence
@@ -8,28 +11,32 @@ from hpn.store.inserting import Outcome
 from hpn.store.saved import Draft
 
 AT_ONCE = 64
+IN_A_ROW = 16
+"""Drafts that are made before others have a turn of the loop."""
+
 MAXIMUM_WAITING = 512
 PATIENCE = 10
 """Turns of the loop, of some 10 us when nothing else is to be done."""
 
+Make = Callable[[], Draft]
 Commit = Callable[[Sequence[Draft]], Awaitable[Sequence[Outcome]]]
 
 
 class Writer:
-    """Saves drafts in the order of their arrival, many to a transaction, one transaction at a time."""
+    """Makes drafts in the order of their arrival and saves them, many to a transaction, one transaction at a time."""
 
     def __init__(self, commit: Commit) -> None:
         self._commit = commit
-        self._waiting: list[tuple[Draft, asyncio.Future[str]]] = []
+        self._waiting: list[tuple[Make, asyncio.Future[str]]] = []
         self._task: asyncio.Task[None] | None = None
         self._last = 0
 
-    async def save(self, draft: Draft) -> str:
-        """Id of the draft, once it is durable. Who stops waiting does not keep the draft from being saved."""
+    async def save(self, make: Make) -> str:
+        """Id of what `make` gives, once it is durable. Who stops waiting does not keep it from being saved."""
         if len(self._waiting) >= MAXIMUM_WAITING:
             raise StoreUnavailableError("too many selections are waiting to be saved")
         outcome: asyncio.Future[str] = asyncio.get_running_loop().create_future()
-        self._waiting.append((draft, outcome))
+        self._waiting.append((make, outcome))
         if self._task is None or self._task.done():
             self._task = asyncio.create_task(self._run())
         return await outcome
@@ -43,13 +50,16 @@ class Writer:
         while self._waiting:
             await self._gather()
             batch, self._waiting = self._waiting[:AT_ONCE], self._waiting[AT_ONCE:]
+            drafts, futures = await _made(batch)
+            if not drafts:
+                continue
             try:
-                outcomes = await self._commit([draft for draft, _ in batch])
+                outcomes = await self._commit(drafts)
             except Exception as error:
                 # Who waits behind would wait as long again, for the same answer.
-                batch, self._waiting = batch + self._waiting, []
-                outcomes = [error] * len(batch)
-            for (_, future), outcome in zip(batch, outcomes, strict=True):
+                futures += [future for _, future in self._waiting]
+                self._waiting, outcomes = [], [error] * len(futures)
+            for future, outcome in zip(futures, outcomes, strict=True):
                 _settle(future, outcome)
 
     async def _gather(self) -> None:
@@ -65,6 +75,20 @@ class Writer:
             await asyncio.sleep(0)
             await asyncio.sleep(0)
         self._last = len(self._waiting)
+
+
+async def _made(batch: Sequence[tuple[Make, asyncio.Future[str]]]) -> tuple[list[Draft], list[asyncio.Future[str]]]:
+    """Drafts and who waits for each; who waits for one that can't be made is told why."""
+    drafts, futures = [], []
+    for place, (make, future) in enumerate(batch):
+        if place and place % IN_A_ROW == 0:
+            await asyncio.sleep(0)
+        try:
+            drafts.append(make())
+            futures.append(future)
+        except Exception as error:
+            _settle(future, error)
+    return drafts, futures
 
 
 def _settle(future: asyncio.Future[str], outcome: Outcome) -> None:

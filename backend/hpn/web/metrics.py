@@ -5,7 +5,7 @@ the client library's multiprocess mode, for which `serving.py` sets PROMETHEUS_M
 """
 
 import os
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import Any
 
@@ -111,10 +111,10 @@ class CountedStore(Store):
         with self._counted("check"):
             await super().check()
 
-    async def save(self, draft: Draft) -> str:
+    async def save(self, make: Callable[[], Draft]) -> str:
         """See Store."""
         with self._counted("save"):
-            return await super().save(draft)
+            return await super().save(make)
 
     async def find(self, id: str) -> SavedSelection | None:
         """See Store."""

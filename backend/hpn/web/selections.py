@@ -166,12 +166,15 @@ def url_of(id: str) -> str:
 
 async def save(state: State, application: Application, labels: Labels, key: str | None = None) -> str:
     """Select and save; the id under which it is durable. Problem 422 or 410 for a key that was used before."""
-    asked = (application, labels, key, state.catalogue)
-    long = len(application.duty_cycle.phases) > LONG_CYCLE
-    draft = await run_in_threadpool(_draft, *asked) if long else _draft(*asked)
-    state.metrics.selection(draft.selected)
+
+    def make() -> Draft:
+        draft = _draft(application, labels, key, state.catalogue)
+        state.metrics.selection(draft.selected)
+        return draft
+
+    made = await run_in_threadpool(make) if len(application.duty_cycle.phases) > LONG_CYCLE else None
     try:
-        id: str = await state.store.save(draft)
+        id: str = await state.store.save((lambda: made) if made else make)
     except KeyReusedError as error:
         raise Problem(422, str(error)) from None
     except KeySpentError as error:
