@@ -55,6 +55,17 @@ def test_other_spellings_lead_to_the_page(client: TestClient, spelling: str) -> 
     assert (reply.status_code, reply.headers["location"]) == (308, "/catalogue/HPN-20A-5?T=1")
 
 
+def test_an_address_that_leads_nowhere_is_a_page_for_readers_alone(client: TestClient) -> None:
+    read = {"Accept": "text/html,application/xhtml+xml,*/*;q=0.8", "Accept-Language": "de"}
+    page = client.get("/nope", headers=read)
+
+    assert (page.status_code, page.headers["content-type"]) == (404, "text/html; charset=utf-8")
+    assert "Diese Adresse führt nirgendwohin" in page.text
+    for path, headers in (("/nope", {}), ("/api/v1/nope", read)):
+        answer = client.get(path, headers=headers)
+        assert (answer.status_code, answer.headers["content-type"]) == (404, "application/problem+json")
+
+
 @pytest.mark.parametrize("name", ["HPN-20A-6", "20A", "nonsense", "%00", "..%2f..", "<b>", "x" * 5000])
 def test_unknown_gear_is_404_that_helps(client: TestClient, name: str) -> None:
     page = client.get(f"/catalogue/{name}")

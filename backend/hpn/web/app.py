@@ -92,7 +92,7 @@ def create_app(settings: Settings | None = None) -> Service:
     app.state.store = CountedStore(
         settings.database_url.get_secret_value(), seconds=settings.database_seconds, metrics=metrics
     )
-    problems.install(app)
+    problems.install(app, catalogue_pages.nowhere)
     app.add_exception_handler(StoreUnavailableError, selections.unavailable)
     app.shortcuts = api.SHORTCUTS | selections.SHORTCUTS
     app.bodies = (Application, schemas.Batch, selection_schemas.SaveRequest)

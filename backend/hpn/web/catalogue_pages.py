@@ -123,6 +123,11 @@ def _path(text: str) -> str:
     return quote(text[:60], safe="")
 
 
+def nowhere(request: Request) -> Response:
+    """404 for a reader who followed an address that leads nowhere."""
+    return _render(request, "nowhere.html", 404)
+
+
 def _render(request: Request, template: str, status: int, **context: Any) -> Response:
     catalogue: Catalogue = request.app.state.catalogue
     content = environment(request.app.state).get_template(template)

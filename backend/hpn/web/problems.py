@@ -1,6 +1,6 @@
 """Errors as RFC 9457 problem details: what was wrong, where, and what would be right."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
 import orjson
@@ -127,8 +127,11 @@ def _methods_at(app: FastAPI, scope: Scope) -> list[str]:
     ]
 
 
-def install(app: FastAPI) -> None:
-    """Answer every refusal of `app` as a problem, and what goes wrong too; `observation.py` logs that."""
+def install(app: FastAPI, nowhere: Callable[[Request], Response]) -> None:
+    """Answer every refusal of `app` as a problem, and what goes wrong too; `observation.py` logs that.
+
+    `nowhere` is the page for a browser at an address that leads nowhere.
+    """
 
     async def failed(request: Request, error: Exception) -> Response:
         return mistake().response()
@@ -141,6 +144,9 @@ def install(app: FastAPI) -> None:
         if isinstance(error, Problem):
             return error.response()
         assert isinstance(error, HTTPException)
+        read = "text/html" in request.headers.get("accept", "") and not request.url.path.startswith("/api/")
+        if error.status_code == 404 and read:
+            return nowhere(request)
         text = {404: f"there is nothing at {request.url.path}", 405: f"{request.method} is not possible here"}
         headers = dict(error.headers) if error.headers else None
         if error.status_code == 405:  # several routes may share a path, each with a method of its own
