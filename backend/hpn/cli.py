@@ -135,9 +135,11 @@ def _wrong_settings(error: ValidationError, options: argparse.Namespace) -> str:
     """A line for each wrong setting, named as it was given: by option or by variable."""
     lines = []
     for entry in error.errors(include_url=False, include_context=False, include_input=False):
-        name = str(entry["loc"][0])
-        given = f"--{name}" if getattr(options, name, None) is not None else f"HPN_{name.upper()}"
-        lines.append(f"{given}: {plain_message(entry['type'], entry['msg'])}")
+        text = plain_message(entry["type"], entry["msg"])
+        for name in map(str, entry["loc"][:1]):
+            given = f"--{name}" if getattr(options, name, None) is not None else f"HPN_{name.upper()}"
+            text = f"{given}: {text}"
+        lines.append(text)
     return "\n".join(dict.fromkeys(lines))
 
 

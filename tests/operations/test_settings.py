@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 from pydantic import ValidationError
 
+from hpn.cli import main
 from hpn.web.settings import Settings
 
 ROOT = Path(__file__).parents[2]
@@ -91,3 +92,23 @@ def test_what_is_right_is_taken(name: str, value: str, monkeypatch: pytest.Monke
     monkeypatch.setenv(f"HPN_{name.upper()}", value)
 
     assert getattr(Settings(), name)
+
+
+@pytest.mark.parametrize(
+    ("name", "meant"),
+    [("HPN_API_KEY", "HPN_API_KEYS"), ("HPN_WORKER", "HPN_WORKERS"), ("hpn_database", "HPN_DATABASE_URL")],
+)
+def test_a_misspelt_variable_keeps_the_service_from_starting(
+    name: str, meant: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setenv(name, "1")
+
+    assert main(["serve"]) == 2
+    assert capsys.readouterr().err == f"{name} is not a setting; it looks like {meant}\n"
+
+
+def test_variables_of_others_are_left_alone(monkeypatch: pytest.MonkeyPatch) -> None:
+    for name in ("HPN_KEY", "HPN_PUBLISH", "HPN_CUSTOMER", "hpn_port"):
+        monkeypatch.setenv(name, "1")
+
+    assert Settings().port == 1

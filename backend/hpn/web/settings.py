@@ -2,12 +2,13 @@
 
 import os
 import re
+from difflib import get_close_matches
 from ipaddress import ip_network
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Literal, Self
 
 import limits
-from pydantic import AfterValidator, BeforeValidator, Field, SecretStr
+from pydantic import AfterValidator, BeforeValidator, Field, SecretStr, model_validator
 from pydantic_settings import BaseSettings, NoDecode, SettingsConfigDict
 
 from hpn.catalogue import HANDBOOK_FOLDER
@@ -129,3 +130,13 @@ class Settings(BaseSettings):
         (),
         description="Origins whose scripts may use the API, such as https://plm.example.",
     )
+
+    @model_validator(mode="after")
+    def _no_name_misspelt(self) -> Self:
+        """Raise ValueError for a variable next to a setting's name: who believes in it would miss what it guards."""
+        known = [f"HPN_{name.upper()}" for name in type(self).model_fields]
+        for name in sorted(os.environ.keys() - known):
+            meant = get_close_matches(name.upper(), known, 1, 0.85) if name.upper() not in known else []
+            if meant and name.upper().startswith("HPN_"):
+                raise ValueError(f"{name} is not a setting; it looks like {meant[0]}")
+        return self
