@@ -11,7 +11,6 @@ from hpn import checks as c
 from hpn import duty as d
 from hpn.checks import FAIL, LOAD_CHECKS, NOT_RATED, PASS, Evaluation, table_of
 from hpn.compiled import compiled
-from hpn.equations import ROUNDING
 
 FloatArray = NDArray[np.float64]
 SUITABLE, UNSUITABLE, UNRATED = range(3)
@@ -96,11 +95,9 @@ def _verdict(terms: FloatArray, status: NDArray[np.int8], n: int, g: int) -> tup
             verdict = UNSUITABLE
         elif state == NOT_RATED and verdict == SUITABLE:
             verdict = UNRATED
-        if state == FAIL or (state == PASS and check < LOAD_CHECKS):
-            used = terms[n, g, check, c.USED]
-            if used > largest * (1 + ROUNDING):  # a tie goes to the first check, also where rounding blurs it
-                governing = check
-            largest = max(largest, used)
+        counts = state == FAIL or (state == PASS and check < LOAD_CHECKS)
+        if counts and terms[n, g, check, c.USED] > largest:
+            largest, governing = terms[n, g, check, c.USED], check
     return verdict, math.nan if verdict == UNRATED else largest, governing
 
 
