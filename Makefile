@@ -34,8 +34,15 @@ run: install
 install: $(ENVIRONMENT) $(ASSETS)
 assets: $(ASSETS)
 
+# Lighthouse measures, so it has the machine to itself; the rest takes two cores, a file at a time and browsers last.
+TOGETHER := --numprocesses 2 --dist loadfile --no-loadscope-reorder
 test: install browser office curl
+ifdef PYTEST_ARGS
 	$(BIN)/pytest $(PYTEST_ARGS)
+else
+	$(BIN)/pytest tests/browser/test_lighthouse.py
+	$(BIN)/pytest --ignore tests/browser/test_lighthouse.py $(TOGETHER)
+endif
 
 check: $(ENVIRONMENT)
 	$(BIN)/ruff format --check

@@ -29,15 +29,10 @@ class State:
 
 STATES = (
     State("answer-1440-light", "/"),
-    State("answer-1440-dark", "/", dark=True),
-    State("answer-390-light", "/", width=390),
-    State("german-1440-light", "/", language="de"),
-    State("bearing-1440-light", LOADED, region=".bearing"),
-    State("bearing-390-dark", LOADED, width=390, dark=True, region=".bearing"),
     State("rejected-1440-light", EXAMPLE + "&gear=HPN-14A-5"),
-    State("errors-1440-light", "/?T=40&n=fast&t=0,3"),
-    State("gear-1440-light", "/catalogue/HPN-20A-5"),
-    State("unrated-1440-light", "/catalogue/HPN-40A-5"),
+    State("bearing-1440-light", LOADED, region=".bearing"),
+    State("german-1440-dark", "/", dark=True, language="de"),
+    State("answer-390-light", "/", width=390),
 )
 
 
