@@ -1,6 +1,7 @@
 """The server gives up requests that do not come; nothing else is cut by that."""
 
 import asyncio
+import json
 import socket
 import threading
 import time
@@ -13,7 +14,7 @@ from starlette.requests import Request
 from starlette.responses import Response
 from starlette.routing import Route
 
-from hpn.web.protocol import BoundedProtocol
+from hpn.web.protocol import HEAD_BYTES, HEADER_COUNT, BoundedProtocol
 
 HEAD = b"POST / HTTP/1.1\r\nHost: x\r\nContent-Length: 4\r\n\r\n"
 
@@ -54,10 +55,31 @@ def test_a_connection_whose_head_does_not_come_is_closed(connection: socket.sock
     assert connection.recv(200) == b""
 
 
-def test_a_head_whose_body_never_begins_is_a_408(connection: socket.socket) -> None:
-    connection.sendall(HEAD)
+def everything(connection: socket.socket) -> bytes:
+    """What the server sends until it closes."""
+    return b"".join(iter(lambda: connection.recv(500), b""))
 
-    assert connection.recv(200).startswith(b"HTTP/1.1 408")
+
+@pytest.mark.parametrize(
+    ("sent", "status"),
+    [
+        (HEAD, 408),
+        (b"GET / HTTP/x\r\n\r\n", 400),
+        (b"\x16\x03\x01\x02\x00\x01\x00", 400),  # how HTTPS begins
+        (HEAD[:-2] + b"a: b\r\n" * HEADER_COUNT + b"\r\n", 431),
+        (HEAD[:-2] + b"a: " + b"b" * HEAD_BYTES + b"\r\n\r\n", 431),
+    ],
+)
+def test_what_never_reaches_the_application_is_a_problem_too(
+    connection: socket.socket, sent: bytes, status: int
+) -> None:
+    connection.sendall(sent)
+
+    head, _, body = everything(connection).partition(b"\r\n\r\n")
+    lines = head.lower().split(b"\r\n")
+    assert lines[0].startswith(b"http/1.1 %d" % status)
+    assert {b"content-type: application/problem+json", b"content-length: %d" % len(body)} < set(lines)
+    assert json.loads(body)["status"] == status
 
 
 def test_requests_in_time_are_answered_on_one_connection_whatever_the_breaks(connection: socket.socket) -> None:
@@ -85,8 +107,6 @@ def test_a_later_request_has_as_long_as_the_first(connection: socket.socket) -> 
 def test_a_request_is_answered_although_the_head_behind_it_stalls(connection: socket.socket) -> None:
     connection.sendall(HEAD.replace(b"/", b"/slow", 1) + b"abcd" + b"POST / HTT")
 
-    answers = b""
-    while part := connection.recv(500):
-        answers += part
+    answers = everything(connection)
     assert answers.startswith(b"HTTP/1.1 200")
     assert answers.endswith(b"abcd")

@@ -33,6 +33,7 @@ TITLES = {
     415: "The content type is not supported",
     422: "The input has errors",
     429: "Too many requests",
+    431: "The head of the request is too large",
     500: "Internal error",
     503: "Not available at the moment",
 }

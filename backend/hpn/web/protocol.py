@@ -11,6 +11,9 @@ from hpn.web.problems import Problem
 HEAD_BYTES = 128 * 1024
 """Enough for the longest link."""
 HEADER_COUNT = 100
+UNREADABLE = Problem(400, "this is not an HTTP/1.1 request")
+LATE = Problem(408, "the body of the request did not come")
+TOO_LARGE = Problem(431, f"the address and the headers are limited to {HEAD_BYTES} bytes and {HEADER_COUNT} headers")
 BUSY = Problem(
     503,
     "the service has as many connections as it can take; try again in 1 s",
@@ -91,14 +94,8 @@ class BoundedProtocol(HttpToolsProtocol):
 
     def send_400_response(self, msg: str) -> None:
         """Refuse what can't be parsed; 431 where that is because it is too large."""
-        if self.transport.is_closing():
-            return
-        if not self._refused:
-            super().send_400_response(msg)
-            return
-        head = [STATUS_LINE[431], b"content-length: 0\r\nconnection: close\r\n\r\n"]
-        self.transport.write(b"".join(head))
-        self.transport.close()
+        if not self.transport.is_closing():
+            self._end(TOO_LARGE if self._refused else UNREADABLE)
 
     def _start_asgi_task(self, cycle: Any, app: Any) -> None:
         answering: Any = BUSY.response() if app is service_unavailable else app
@@ -132,5 +129,12 @@ class BoundedProtocol(HttpToolsProtocol):
             self._timer = self.loop.call_later(self.arrival_s, self._look)
             return
         if answering and not self.cycle.response_started:
-            self.transport.write(STATUS_LINE[408] + b"content-length: 0\r\nconnection: close\r\n\r\n")
+            self._end(LATE)
+        self.transport.close()
+
+    def _end(self, problem: Problem) -> None:
+        response = problem.response()
+        headers = (name + b": " + value + b"\r\n" for name, value in response.raw_headers)
+        head = [STATUS_LINE[problem.status_code], *headers, b"connection: close\r\n\r\n"]
+        self.transport.write(b"".join([*head, bytes(response.body)]))
         self.transport.close()
