@@ -294,8 +294,11 @@ def _lines(path: Path, table: type[Table]) -> Iterator[tuple[int, list[str]]]:
     except OSError as error:
         raise CatalogueError(path, None, None, f"can't be read: {error}") from None
     except UnicodeDecodeError as error:
-        line = content[: error.start].count(b"\n") + 1
-        raise CatalogueError(path, line, None, f"is not UTF-8 text: {error}") from None
+        lines = (content[: error.start] + b"?").decode("utf-8-sig").splitlines()
+        header, broken = next(csv.reader(lines)), next(csv.reader(lines[-1:]))
+        column = header[len(broken) - 1] if len(broken) <= len(header) and len(lines) > 1 else None
+        detail = f"byte {content[error.start]:#04x} is not UTF-8 text; save the file as UTF-8"
+        raise CatalogueError(path, len(lines), column, detail) from None
     reader = csv.reader(text.splitlines(), strict=True)
     columns = table.columns()
     try:

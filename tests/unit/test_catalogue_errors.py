@@ -236,11 +236,21 @@ def test_a_decimal_comma_that_splits_a_cell_is_named_with_its_line(folder: Path)
         load_catalogue(folder)
 
 
-def test_a_file_that_is_not_utf8_is_named_with_the_line(folder: Path) -> None:
+@pytest.mark.parametrize(
+    ("written", "place"),
+    [
+        (b"14A,1,0.95,t\xe4ble", r"line 4, column source: byte 0xe4"),
+        (b"14A,1,0.95\xb2,table", r"line 4, column weight_kg: byte 0xb2"),
+        (b'"14A",1,"0,95",\xe4', r"line 4, column source: byte 0xe4"),
+        (b"\xe4,1,0.95,table", r"line 4, column size: byte 0xe4"),
+        (b"14A,1,0.95,table,,\xe4", r"line 4: byte 0xe4"),
+    ],
+)
+def test_text_that_is_not_utf8_is_named_with_its_cell(folder: Path, written: bytes, place: str) -> None:
     path = folder / "weights.csv"
-    path.write_bytes(path.read_bytes().replace(b"14A,1,0.95,table", b"14A,1,0.95,t\xe4ble"))
+    path.write_bytes(path.read_bytes().replace(b"14A,1,0.95,table", written))
 
-    with pytest.raises(CatalogueError, match=r"weights\.csv, line 4.*UTF-8"):
+    with pytest.raises(CatalogueError, match=rf"weights\.csv, {place} is not UTF-8"):
         load_catalogue(folder)
 
 
