@@ -24,10 +24,6 @@ class Column:
     candidate: Candidate
     gear: Gear
 
-    def is_unlimited(self, name: str) -> bool:
-        """Whether a figure of the reply is empty because nothing limits it."""
-        return is_unlimited(self.candidate, name)
-
 
 @dataclass(frozen=True, slots=True)
 class Row:
@@ -88,7 +84,7 @@ def _result(name: str) -> Read:
 
 def _unlimited_result(name: str) -> Read:
     """A figure of the reply; infinite where it is empty because nothing limits it."""
-    return lambda column: math.inf if column.is_unlimited(name) else column.candidate[name]
+    return lambda column: math.inf if is_unlimited(column.candidate, name) else column.candidate[name]
 
 
 def groups_of(columns: Sequence[Column], maximum_torque_Nm: float, checks: Mapping[str, str]) -> tuple[Group, ...]:

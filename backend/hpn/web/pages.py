@@ -14,6 +14,7 @@ from starlette.routing import Route
 
 from hpn.application import Application, InputError
 from hpn.catalogue import Catalogue
+from hpn.comparison import is_unlimited
 from hpn.gear import Gear
 from hpn.notices import AREAS
 from hpn.plots.picture import beyond_limit
@@ -269,7 +270,7 @@ def _templates(static: assets.Assets) -> Environment:
             "symbols": display.symbols,
         }
     )
-    templates.tests["beyond_limit"] = beyond_limit
+    templates.tests |= {"beyond_limit": beyond_limit, "unlimited": is_unlimited}
     templates.globals |= pictures.GLOBALS | {
         "asset": static.url,
         "motor_pattern": MOTOR_CODE,
