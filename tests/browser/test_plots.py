@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 from playwright.sync_api import Page, Playwright, expect
 
-from tests.browser.conftest import AXE, Visitor
+from tests.browser.conftest import AXE, PATIENCE_S, Visitor
 
 CONSTANT = "/?T=40&n=300&t=1&i=5&FR={FR}&FA={FA}&bm={bm}&gear=HPN-20A-5"
 PHASES = (
@@ -41,7 +41,7 @@ def drawn(page: Page, name: str = "Permissible loads") -> Any:
 
 def once(page: Page, holds: Callable[[Any], bool]) -> Any:
     """What is drawn, as soon as something holds of it."""
-    for _ in range(100):
+    for _ in range(20 * PATIENCE_S):
         if holds(state := drawn(page)):
             return state
         page.wait_for_timeout(50)

@@ -22,7 +22,7 @@ HEAD = b"POST / HTTP/1.1\r\nHost: x\r\nContent-Length: 4\r\n\r\n"
 class Hasty(BoundedProtocol):
     """Has no patience."""
 
-    arrival_s = 2.0
+    arrival_s = 3.0
 
 
 async def echo(request: Request) -> Response:

@@ -45,7 +45,7 @@ def killed_server(database: str, kills: int) -> Iterator[tuple[int, "subprocess.
         try:
             yield listener.getsockname()[1], process
         finally:
-            process.communicate(timeout=30)
+            process.communicate(timeout=120)
 
 
 @dataclass
@@ -73,7 +73,7 @@ class Clients:
 
     def save(self, body: Json, key: str) -> str | None:
         """Id if the service says that it is saved."""
-        connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=10)
+        connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=60)
         try:
             headers = {"Content-Type": "application/json", "Idempotency-Key": key}
             connection.request("POST", "/api/v1/selections", json.dumps(body), headers)

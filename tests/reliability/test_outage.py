@@ -24,7 +24,7 @@ SAVE = {"application": worked_example()}
 WAIT_S = 1.0
 """Longest wait for the database in these tests."""
 
-SLACK_S = 1.5
+SLACK_S = 5.0
 """For a busy machine: what an answer may take beyond the wait."""
 
 Outage = Callable[[], AbstractContextManager[None]]
@@ -175,18 +175,17 @@ def test_many_savers_wait_for_a_stuck_database_only_once(outage: tuple[str, Outa
 def test_the_event_loop_runs_on_while_the_database_is_stuck(tmp_path: Path) -> None:
     path = tmp_path / "store.sqlite3"
 
-    async def main() -> float:
+    async def main() -> int:
         store = Store(f"sqlite:///{path}", seconds=WAIT_S)
         await store.open()
-        longest = 0.0
+        turns = 0
         with _sqlite_locked(path):
             saving = asyncio.create_task(store.save(draft))
             while not saving.done():
-                start = time.monotonic()
-                await asyncio.sleep(0.01)
-                longest = max(longest, time.monotonic() - start)
+                await asyncio.sleep(WAIT_S / 100)
+                turns += 1
         assert isinstance(saving.exception(), StoreUnavailableError)
         await store.close()
-        return longest
+        return turns
 
-    assert asyncio.run(main()) < 0.5  # a blocked loop would show the whole wait
+    assert asyncio.run(main()) > 10  # a blocked loop has one or two in the whole wait

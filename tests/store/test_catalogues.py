@@ -169,7 +169,7 @@ def _save_under_two(database: str, barrier: "multiprocessing.synchronize.Barrier
     async def main() -> None:
         store = Store(database, seconds=20)
         await store.open()
-        barrier.wait(60)
+        barrier.wait(180)
         await asyncio.gather(*(store.save(partial(under, book)) for book in (books if first else books[::-1])))
         await store.close()
 
@@ -184,7 +184,7 @@ def test_many_workers_can_keep_the_same_catalogues_at_once(database: str, catalo
     for worker in workers:
         worker.start()
     for worker in workers:
-        worker.join(90)
+        worker.join(240)
 
     async def kept() -> tuple[int, Catalogue | None]:
         store = Store(database)

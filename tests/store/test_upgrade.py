@@ -65,7 +65,7 @@ async def test_the_service_refuses_to_start_on_a_newer_database_with_a_clear_tex
 
     def serve() -> subprocess.CompletedProcess[str]:
         environment = {**os.environ, "HPN_DATABASE_URL": database}
-        return subprocess.run(command, env=environment, capture_output=True, text=True, timeout=60)
+        return subprocess.run(command, env=environment, capture_output=True, text=True, timeout=180)
 
     outcome = await asyncio.to_thread(serve)
 
@@ -98,7 +98,7 @@ async def test_a_migration_that_breaks_off_leaves_nothing_behind(
 def _open_and_save(database: str, barrier: "multiprocessing.synchronize.Barrier") -> None:
     async def main() -> None:
         store = Store(database, seconds=20)
-        barrier.wait(60)
+        barrier.wait(180)
         await store.open()
         await store.save(partial(draft, idempotency_key="the same"))
         await store.save(draft)
@@ -115,7 +115,7 @@ def test_many_workers_can_start_at_once_on_an_empty_database(database: str) -> N
     for worker in workers:
         worker.start()
     for worker in workers:
-        worker.join(90)
+        worker.join(240)
 
     assert [worker.exitcode for worker in workers] == [0, 0, 0, 0]
 
