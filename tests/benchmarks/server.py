@@ -52,7 +52,7 @@ def serving(factory: str, environment: Mapping[str, str] | None = None) -> Itera
 
 
 def _await_start(server: Server, process: "subprocess.Popen[bytes]") -> None:
-    for _ in range(200):
+    for _ in range(1200):
         if process.poll() is not None:
             raise RuntimeError(f"the server ended with {process.returncode}")
         try:
