@@ -257,3 +257,18 @@ def test_a_reader_of_other_units_sees_other_numbers(catalogue: Catalogue) -> Non
     assert [2 * x for x in figure["data"][0]["x"]] == plain["data"][0]["x"]
     assert figure["layout"]["xaxis"]["range"][1] * 2 == plain["layout"]["xaxis"]["range"][1]
     assert figure["layout"]["xaxis"]["title"]["text"] == "radial load in half"
+
+
+@pytest.mark.parametrize("allowed", [1.0, 0.8, 0.5])
+@pytest.mark.parametrize("radial", [100.0, 700.0, 1500.0])
+@pytest.mark.parametrize("life", [200.0, 20_000.0, 200_000.0])
+def test_a_size_carries_the_load_where_both_checks_of_its_bearing_pass(
+    catalogue: Catalogue, allowed: float, radial: float, life: float
+) -> None:
+    loads = LOADS | {"radial_N": radial, "life_h": life}
+    selection = selected(catalogue, output_load=loads, requirements={"utilisation": allowed})
+
+    for use in plots.size_uses(selection):
+        codes = ("output_bearing_load", "output_bearing_life")
+        states = [check(selection, use.gear.designation, code)["status"] for code in codes]
+        assert use.carries == (None if "not_rated" in states else states == ["pass", "pass"])

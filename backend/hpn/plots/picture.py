@@ -115,23 +115,24 @@ def _coefficient(curve: EnvelopeCurve) -> dict[str, Value]:
 
 @dataclass(frozen=True, slots=True)
 class SizeUse:
-    """How far the loads use the bearing of one size; None where it is not rated."""
+    """How far the loads use the bearing of one size; None where it is not rated. `allowed` is the user's u."""
 
     gear: Gear
     constant_load: float | None
     published: float | None
+    allowed: float
 
     @property
     def carries(self) -> bool | None:
         """Whether both questions are answered with yes; None where it is not rated."""
         if self.constant_load is None or self.published is None:
             return None
-        return not beyond_limit(max(self.constant_load, self.published))
+        return not beyond_limit(max(self.constant_load, self.published), self.allowed)
 
 
-def beyond_limit(utilisation: float) -> bool:
-    """Whether so much of a limit is too much, floating-point rounding apart."""
-    return utilisation > 1 + ROUNDING
+def beyond_limit(utilisation: float, allowed: float) -> bool:
+    """Whether so much of a limit is more than is allowed, floating-point rounding apart."""
+    return utilisation > allowed * (1 + ROUNDING)
 
 
 def condition(selection: Selection) -> EnvelopeQuery:
@@ -200,6 +201,7 @@ def size_uses(selection: Selection) -> list[SizeUse]:
             gear,
             mean / min(1.0, evaluation.bearing_life_factor(n)) if rated else None,
             largest if rated else None,
+            selection.application.requirements.utilisation,
         )
     return list(uses.values())
 
