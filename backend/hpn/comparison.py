@@ -3,16 +3,16 @@
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
 
 from hpn import equations
+from hpn.candidates import Candidate, is_unlimited
 from hpn.catalogue import Catalogue
 from hpn.gear import Gear
 from hpn.wording import N_, Quantity, Sentence
 
-Candidate = Mapping[str, Any]
 Kind = Literal["figure", "percent", "words"]
 MOST_PINS = 4
 
@@ -48,25 +48,6 @@ class Group:
 
     title: str
     rows: tuple[Row, ...]
-
-
-_UNLIMITED_BY = {
-    "life_L10_h": ("average_torque", "average_torque"),
-    "momentary_peak_count": ("momentary_peak_torque", "repeated_peak_torque"),
-    "bearing_life_L50_h": ("output_bearing_life", "output_bearing_life"),
-}
-"""Figures that may be without limit: the check that stands there where they are asked for, and the one that says
-whether the gear has the rating that they come from."""
-
-
-def is_unlimited(candidate: Candidate, name: str) -> bool:
-    """Whether a figure of a reply is empty because nothing limits it, and not because nobody asked or a rating lacks.
-
-    The candidate's own status doesn't tell: a gear that fails a check is unsuitable, whether it is rated or not.
-    """
-    asked, rated = _UNLIMITED_BY[name]
-    status = {check["code"]: check["status"] for check in candidate["checks"]}
-    return candidate.get(name) is None and asked in status and status.get(rated, "not_rated") != "not_rated"
 
 
 # --- Rows -------------------------------------------------------------------------------------------------------------

@@ -178,6 +178,6 @@ def _unrated(gears: GearList, catalogue: Catalogue) -> tuple[Notice, ...]:
 
 def _size_unrated(names: list[str], note: str) -> Notice:
     if len(names) == 1:
-        return _notice("size_unrated", "{name} is listed as unrated. {note}", ("note",), name=names[0], note=note)
+        return _notice("size_unrated", "{name} is not rated. {note}", ("note",), name=names[0], note=note)
     listed = ", ".join(names)
-    return _notice("size_unrated", "{names} are listed as unrated. {note}", ("note",), names=listed, note=note)
+    return _notice("size_unrated", "{names} are not rated. {note}", ("note",), names=listed, note=note)

@@ -11,12 +11,11 @@ from functools import reduce
 from typing import Any
 
 from hpn.application import Application
+from hpn.candidates import Candidate, is_judged
 from hpn.equations import ROUNDING
 from hpn.gear import Gear
 from hpn.reserve import MOVES
 from hpn.wording import N_, Quantity, Rounding, Sentence, rounded
-
-Candidate = Mapping[str, Any]
 
 LIVES = ("life", "output_bearing_life")
 """Checks that two drivers move: slower running mends them as well as a smaller torque or load."""
@@ -42,11 +41,14 @@ class Way:
 
 
 def ways_of(candidate: Candidate, reserve_utilisation: float = 1.0) -> tuple[Way, ...]:
-    """Ways to make every load check of a rejected gear pass; any one of them is enough, none where nothing is exceeded.
+    """Ways to make every load check of a rejected gear pass; any one of them is enough.
 
+    None where nothing is exceeded, and where not every check can be judged.
     Where a life fails beyond what the other checks ask for anyway there are two: less torque or load, or less speed.
     `reserve_utilisation` is the user's u.
     """
+    if not is_judged(candidate):
+        return ()
     u = reserve_utilisation
     used = {check["code"]: check["utilisation"] for check in candidate["checks"] if check["utilisation"] is not None}
     curve = candidate["reserve"]["torque_factor"] is None  # motor torques that no closed form follows
@@ -114,7 +116,9 @@ def _printed(value: float, digits: int) -> float:
 
 def _scaled(value: float | None, factor: float) -> float | None:
     """A figure by a factor, as somebody would type it: without the last digits of floating point."""
-    return value if value is None or factor == 1 else float(f"{value * factor:.12g}")
+    if value is None or factor == 1:
+        return value
+    return math.copysign(float(rounded(abs(value * factor), 12, "down")), value)
 
 
 # --- In words ---------------------------------------------------------------------------------------------------------
@@ -140,11 +144,13 @@ _ACCEPTED = {
 
 
 def remedy_of(candidate: Candidate, gear: Gear, reserve_utilisation: float = 1.0) -> Sentence | None:
-    """What makes a rejected gear fit; None for a gear that is suitable or not rated."""
-    if candidate["status"] != "unsuitable":
+    """What makes a rejected gear fit; None for one that is suitable, and where not every check can be judged."""
+    if candidate["status"] != "unsuitable" or not is_judged(candidate):
         return None
-    ways = [_way(way) for way in ways_of(candidate, reserve_utilisation)]
-    accepted = _joined([*_motors(candidate, reserve_utilisation), *_accepted(candidate, gear)])
+    found, motors = ways_of(candidate, reserve_utilisation), list(_motors(candidate, reserve_utilisation))
+    if motors and any(way.torque < 1 for way in found):
+        return None  # what the motor has to give at a smaller torque is a matter of the curve
+    ways, accepted = [_way(way) for way in found], _joined([*motors, *_accepted(candidate, gear)])
     if not ways:
         return Sentence(N_("Fits if {conditions}."), {"conditions": accepted}) if accepted else None
     conditions = reduce(_or, ways)
@@ -246,8 +252,8 @@ class Room:
 
 
 def rooms_of(candidate: Candidate, reserve_utilisation: float = 1.0) -> tuple[Room, ...]:
-    """Reserve of every driver that the application has, each with the check that limits it; empty where not rated."""
-    if candidate["status"] == "unrated":
+    """Reserve of every driver, each with the check that limits it; empty where not every check can be judged."""
+    if not is_judged(candidate):
         return ()
     used = {check["code"]: check["utilisation"] for check in candidate["checks"]}
     rooms = [

@@ -5,8 +5,9 @@ import math
 import pytest
 
 from hpn import equations
+from hpn.candidates import is_unlimited
 from hpn.catalogue import Catalogue
-from hpn.comparison import Column, Row, groups_of, is_unlimited, torsion_of, undominated
+from hpn.comparison import Column, Row, groups_of, torsion_of, undominated
 from tests.build import Json, answer, candidate, cycle, phase, worked_example
 from tests.conftest import Supplement
 

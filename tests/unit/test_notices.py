@@ -37,9 +37,9 @@ def test_of_a_size_that_is_rated_in_part_the_gears_without_ratings_are_named(sup
     def text(**requirements: list[int]) -> str | None:
         return notices(answer(cycle(phase(10, 100), requirements=requirements), filled)).get("size_unrated")
 
-    assert (text(ratios=[4, 5, 10]) or "").startswith("HPN-40A-4, HPN-40A-10 are listed as unrated. The rating table")
-    assert (text(ratios=[5, 10]) or "").startswith("HPN-40A-10 is listed as unrated. ")
-    assert (text(ratios=[10]) or "").startswith("HPN-40A-10 is listed as unrated. ")
+    assert (text(ratios=[4, 5, 10]) or "").startswith("HPN-40A-4, HPN-40A-10 are not rated. The rating table")
+    assert (text(ratios=[5, 10]) or "").startswith("HPN-40A-10 is not rated. ")
+    assert (text(ratios=[10]) or "").startswith("HPN-40A-10 is not rated. ")
     assert text(ratios=[5]) is None
 
 

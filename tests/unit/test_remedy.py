@@ -3,11 +3,13 @@
 import pytest
 
 from hpn.application import Application
+from hpn.candidates import foremost
 from hpn.catalogue import Catalogue
 from hpn.remedy import followed, remedy_of, rooms_of, ways_of
 from hpn.selection import select
 from hpn.wording import rounded
 from tests.build import Json, answer, candidate, cycle, phase, worked_example
+from tests.conftest import Supplement
 
 
 def words(application: Json, designation: str, catalogue: Catalogue) -> str | None:
@@ -26,6 +28,19 @@ def test_remedy_of_the_worked_example_reads_as_issue_4_asks(catalogue: Catalogue
 def test_a_suitable_and_an_unrated_gear_need_no_remedy(catalogue: Catalogue) -> None:
     assert words(worked_example(), "HPN-20A-5", catalogue) is None
     assert words(worked_example(), "HPN-40A-5", catalogue) is None
+
+
+def test_a_gear_that_fails_what_is_known_of_it_gets_no_promise_about_what_is_not(catalogue: Catalogue) -> None:
+    """Twice what any gear of the series may carry, on a motor a twentieth too slow for HPN-40A-7."""
+    asked = cycle(phase(2000, 600), requirements={"motor": {"maximum_speed_rpm": 4000}})
+    reply = answer(asked, catalogue)
+    first = reply["candidates"][0]
+
+    assert (first["designation"], first["status"]) == ("HPN-40A-7", "unsuitable")
+    assert words(asked, "HPN-40A-7", catalogue) is None
+    assert ways_of(first) == ()
+    assert rooms_of(first) == ()
+    assert foremost(reply["candidates"])["size"] == "32A"
 
 
 def test_a_life_that_fails_alone_can_be_mended_by_torque_or_by_speed(catalogue: Catalogue) -> None:
@@ -104,3 +119,25 @@ def test_torque_reserve_that_follows_an_efficiency_curve_says_why_it_is_missing(
 def test_bounds_are_rounded_to_the_safe_side(value: float, digits: int, down: str, up: str) -> None:
     assert rounded(value, digits, "down") == down
     assert rounded(value, digits, "up") == up
+
+
+def test_what_is_tried_out_passes_to_the_last_digit(catalogue: Catalogue) -> None:
+    """0.8 of this speed has more than twelve digits: rounded to the nearest it would be too much by a part in 1e12."""
+    wishes = {"ratios": [35], "sizes": ["14A"], "utilisation": 0.8}
+    asked = Application.model_validate(cycle(phase(1, 171.42857142857142), pause_s=3, requirements=wishes))
+    [way] = ways_of(select(asked, catalogue).reply("")["candidates"][0], 0.8)
+
+    assert select(followed(asked, way), catalogue).selected == "HPN-14A-35"
+
+
+def test_a_motor_at_a_smaller_torque_is_promised_nothing_where_a_curve_says_what_it_takes(
+    supplemented: Supplement,
+) -> None:
+    """At 26 Nm the curve has no efficiency; just below it does, and the motor needs more than before."""
+    curve = "size,ratio,torque_Nm,efficiency,source\n14A,5,5,0.5,p\n14A,5,25,0.9,p\n"
+    book, motor = supplemented(efficiency=curve), {"peak_torque_Nm": 4.0}
+    both = cycle(phase(26, 30), requirements={"ratios": [5], "utilisation": 0.8586, "motor": motor})
+    alone = cycle(phase(20, 30), requirements={"ratios": [5], "utilisation": 0.8586, "motor": motor})
+
+    assert words(both, "HPN-14A-5", book) is None
+    assert words(alone, "HPN-14A-5", book) == "Fits if the motor's peak torque is at least 5.824 Nm."

@@ -5,8 +5,9 @@ from typing import Any
 
 from xlsxwriter.utility import xl_range, xl_rowcol_to_cell
 
+from hpn.candidates import Candidate
 from hpn.explanations import EXPLANATIONS
-from hpn.report.export import LOWER_BOUND, Candidate
+from hpn.report.export import LOWER_BOUND
 from hpn.report.formulas import CHECKS, GEAR_TERMS, NONE, RATINGS, written
 from hpn.report.sheets import Book, Known
 from hpn.units import symbol_of

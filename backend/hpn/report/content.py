@@ -7,8 +7,9 @@ from typing import Any
 
 import segno
 
+from hpn.candidates import Candidate
 from hpn.report import inputs, plots, standings
-from hpn.report.export import Candidate, Export
+from hpn.report.export import Export
 from hpn.report.language import Language
 from hpn.report.symbols import formula, sentence
 from hpn.units import symbol_of

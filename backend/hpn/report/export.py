@@ -8,11 +8,10 @@ from typing import Any
 
 from hpn import equations
 from hpn.application import Application
+from hpn.candidates import Candidate, foremost
 from hpn.catalogue import Catalogue
 from hpn.gear import Gear
 from hpn.wording import N_
-
-Candidate = Mapping[str, Any]
 
 LOSS_FREE = N_("η = 1 where no efficiency is known: a lower bound")
 LOWER_BOUND = N_("lower bound where η = 1")
@@ -45,7 +44,7 @@ class Export:
     @property
     def candidate(self) -> Candidate:
         """The selected gear, or the nearest miss where none is suitable."""
-        return self.candidates[0]
+        return foremost(self.candidates)
 
     @property
     def definitions(self) -> Mapping[str, Any]:

@@ -6,7 +6,7 @@ from typing import Any
 
 from xlsxwriter.utility import xl_range_abs, xl_rowcol_to_cell
 
-from hpn.comparison import is_unlimited
+from hpn.candidates import is_unlimited
 from hpn.report.export import Export
 from hpn.report.formulas import GEAR_TERMS, MOTOR_TORQUES, NONE, RATINGS
 from hpn.report.language import Language

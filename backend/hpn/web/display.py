@@ -32,7 +32,7 @@ CHECK_NAMES = {
 
 BEST = {
     "weight": N_("The lightest gear that passes every check."),
-    "utilisation": N_("The gear with the largest reserve on every check."),
+    "utilisation": N_("The gear that stays furthest below its closest limit."),
     "length": N_("The shortest gear that passes every check."),
     "motor_torque": N_("The gear that needs the least motor torque among those that pass every check."),
     "life": N_("The gear with the longest life among those that pass every check."),

@@ -10,6 +10,7 @@ from fastapi import APIRouter, Query
 from pydantic import BaseModel, Field
 from starlette.requests import Request
 
+from hpn.candidates import foremost
 from hpn.report.language import language
 from hpn.selection import select
 from hpn.web import schemas
@@ -48,7 +49,7 @@ class OEmbedReply(BaseModel):
 
 def preview(reply: Mapping[str, Any], path: str, title: str | None = None) -> Preview:
     """Gear and verdict of a reply that stands at a path of this service."""
-    best, english = reply["candidates"][0], language("en")
+    best, english = foremost(reply["candidates"]), language("en")
     selected = reply["selected"]
     verdict = f"{selected}, suitable" if selected else "no suitable gear"
     duty = reply["duty"]

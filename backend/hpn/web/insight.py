@@ -6,8 +6,9 @@ from typing import Any
 from urllib.parse import quote
 
 from hpn.calculation import Step, calculation_of
+from hpn.candidates import Candidate, foremost
 from hpn.catalogue import Catalogue
-from hpn.comparison import MOST_PINS, Candidate, Column, Group, groups_of, undominated
+from hpn.comparison import MOST_PINS, Column, Group, groups_of, undominated
 from hpn.remedy import Room, followed, remedy_of, rooms_of, ways_of
 from hpn.selection import Selection
 from hpn.web.canonical import to_link
@@ -106,6 +107,6 @@ def _second(candidates: Sequence[Candidate], chosen: Candidate, lighter: Candida
     """The gear to compare with where none is pinned: the nearest smaller miss, else the next in line."""
     others = [lighter] if lighter else []
     others += [candidate for candidate in candidates if candidate["status"] != "unrated"]
-    if chosen["designation"] != candidates[0]["designation"]:
-        others.insert(0, candidates[0])
+    if chosen["designation"] != foremost(candidates)["designation"]:
+        others.insert(0, foremost(candidates))
     return next((other for other in others if other["designation"] != chosen["designation"]), None)

@@ -13,8 +13,8 @@ from starlette.responses import HTMLResponse, RedirectResponse, Response
 from starlette.routing import Route
 
 from hpn.application import Application, InputError
+from hpn.candidates import Candidate, foremost, is_judged, is_unlimited
 from hpn.catalogue import Catalogue
-from hpn.comparison import is_unlimited
 from hpn.gear import Gear
 from hpn.notices import AREAS
 from hpn.plots.picture import beyond_limit
@@ -41,8 +41,6 @@ nor what is folded away. Where there is something to correct, the form comes in 
 
 LONGEST_REPEATED = 3000
 """Length of a link up to which a page may carry it hundreds of times."""
-
-Candidate = Mapping[str, Any]
 
 
 @dataclass(frozen=True)
@@ -137,7 +135,7 @@ def _answer(application: Application, form: Form, catalogue: Catalogue) -> Answe
     reply = selection.reply(link)
     everything = _unrestricted(selection)
     landscape = _by_designation(reply if everything is selection else everything.reply(""))
-    gear = catalogue.find(form.gear or reply["selected"] or reply["candidates"][0]["designation"])
+    gear = catalogue.find(form.gear or foremost(reply["candidates"])["designation"])
     assert gear is not None  # `answered` refuses what the catalogue lacks
     chosen, lighter = landscape[gear.designation], _lighter_miss(reply, catalogue)
     return Answer(
@@ -182,13 +180,14 @@ def _map(
 
 
 def _lighter_miss(reply: Mapping[str, Any], catalogue: Catalogue) -> Candidate | None:
-    """The rejected gear closest to passing among those lighter than the selected one."""
+    """The rejected gear closest to passing among those that are judged and lighter than the selected one."""
     selected = catalogue.find(reply["selected"] or "")
     if selected is None or selected.weight_kg is None:
         return None
     for candidate in reply["candidates"]:
         weight = catalogue.by_designation[candidate["designation"]].weight_kg
-        if candidate["status"] == "unsuitable" and weight is not None and weight < selected.weight_kg:
+        lighter = weight is not None and weight < selected.weight_kg
+        if candidate["status"] == "unsuitable" and lighter and is_judged(candidate):
             found: Candidate = candidate
             return found
     return None

@@ -16,6 +16,7 @@ from starlette.routing import Route
 
 from hpn import ENGINE_VERSION
 from hpn.application import Application, InputError
+from hpn.candidates import foremost
 from hpn.catalogue import Catalogue
 from hpn.differences import Difference
 from hpn.report.inputs import LOADS, REQUIREMENTS, WORDS
@@ -164,7 +165,7 @@ class Line:
 def _page(saved: SavedSelection, today: Today, designation: str, catalogue: Catalogue) -> dict[str, Any]:
     reply = orjson.loads(saved.result)
     candidates = reply["candidates"]
-    chosen = next((entry for entry in candidates if entry["designation"] == designation), candidates[0])
+    chosen = next((entry for entry in candidates if entry["designation"] == designation), foremost(candidates))
     try:
         application = Application.model_validate_json(saved.application)
     except ValidationError:  # saved by a version with other inputs; they are shown as they were written

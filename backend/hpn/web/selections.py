@@ -14,6 +14,7 @@ from starlette.responses import Response
 
 from hpn import ENGINE_VERSION
 from hpn.application import Application, InputError
+from hpn.candidates import foremost
 from hpn.catalogue import Catalogue
 from hpn.differences import Difference, FigureDifference, differences, figure_differences
 from hpn.selection import select
@@ -240,7 +241,7 @@ async def unavailable(request: Request, error: Exception) -> Response:
 
 async def _representation(request: Request, id: str) -> bytes:
     saved, today = await found(request.app.state, id)
-    first = orjson.loads(saved.result)["candidates"][0]["designation"]
+    first = foremost(orjson.loads(saved.result)["candidates"])["designation"]
     return orjson.dumps(
         _summary(saved)
         | {
