@@ -66,6 +66,31 @@ CHECKS = tuple(Check(code) for code in EXPLANATIONS)
 LOAD_CHECKS = sum(check.is_load_check for check in CHECKS)
 """The first so many are load checks, the others property checks."""
 
+
+def allowed(code: str | None, utilisation: float) -> float:
+    """Largest utilisation with which a check passes: the user's own for a load check, 1 for another, or for none."""
+    return utilisation if code is not None and EXPLANATIONS[code].group == "load" else 1.0
+
+
+MOST_DECIMALS = 10
+
+
+@compiled
+def telling_decimals(value: float, bound: float, least: int) -> int:
+    """Decimals with which a value, once rounded, still lies on its own side of a bound, `least` at least."""
+    decimals = least
+    while decimals < MOST_DECIMALS and _side(np.round(value, decimals), bound) != _side(value, bound):
+        decimals += 1
+    return decimals
+
+
+@compiled
+def _side(value: float, bound: float) -> int:
+    if abs(value / bound - 1) <= equations.ROUNDING:
+        return 0
+    return 1 if value > bound else -1
+
+
 DEMAND, LIMIT, USED = range(3)
 """Places along the last axis of `Evaluation.terms`; utilisation is the last."""
 

@@ -12,7 +12,9 @@ import orjson
 from pydantic import ValidationError
 
 from hpn.application import Application, InputError
+from hpn.candidates import Candidate
 from hpn.catalogue import Catalogue, load_catalogue
+from hpn.checks import allowed, telling_decimals
 from hpn.selection import select
 from hpn.store import Store, StoreError, StoreUnavailableError
 from hpn.tables import CatalogueError
@@ -78,11 +80,16 @@ def _select(options: argparse.Namespace) -> int:
         reply = selection.reply(link)
         print(f"selected: {reply['selected'] or 'none is suitable'}")
         for candidate in reply["candidates"]:
-            used = "" if candidate["utilisation"] is None else f"{candidate['utilisation']:.1%}"
+            used = _percent(candidate, application.requirements.utilisation)
             print(f"{candidate['designation']:<11} {candidate['status']:<10} {used:>8}  {candidate['reason']}")
         for notice in reply["notices"]:
             print(f"note: {notice['text']}")
     return 0 if selection.selected else 1
+
+
+def _percent(candidate: Candidate, utilisation: float) -> str:
+    used, bound = candidate["utilisation"], allowed(candidate["governing_check"], utilisation)
+    return "" if used is None else f"{100 * used:.{telling_decimals(100 * used, 100 * bound, 1)}f}%"
 
 
 def _catalogue(options: argparse.Namespace) -> int:

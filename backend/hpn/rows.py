@@ -16,9 +16,10 @@ import orjson
 from numpy.typing import NDArray
 
 from hpn import checks as c
+from hpn import duty as d
 from hpn.bearing import L50_PER_L10
 from hpn.catalogue import Catalogue, GearList
-from hpn.checks import CHECKS, FAIL, STATUS, Evaluation, table_of
+from hpn.checks import CHECKS, FAIL, LOAD_CHECKS, STATUS, Evaluation, table_of, telling_decimals
 from hpn.compiled import compiled
 from hpn.ranking import CANDIDATE_STATUS, SUITABLE, UNRATED, Ranking
 from hpn.reply import REASONS, CandidateRow, CheckRow, GearRow, ReserveRow, encode
@@ -210,7 +211,9 @@ def _fill(
     for row in range(count):
         g = order[index, row]
         verdict, used, governs = verdicts[index, g], utilisation[index, g], governing[index, g]
-        _fill_numbers(checks, terms, figures, used, index, g, row, numbers)
+        bound = 100 * (wishes[index, d.UTILISATION] if governs < LOAD_CHECKS else 1.0)
+        percent = np.round(100 * used, telling_decimals(100 * used, bound, 1))
+        _fill_numbers(checks, terms, figures, used, percent, index, g, row, numbers)
         reserve = reserve_on(wishes, gears, terms, curved[g], index, g)
         for driver in range(4):
             numbers[row, _RESERVE_AT + driver] = reserve[driver]
@@ -231,13 +234,14 @@ def _fill_numbers(
     terms: FloatArray,
     figures: FloatArray,
     used: float,
+    percent: float,
     n: int,
     g: int,
     row: int,
     numbers: FloatArray,
 ) -> None:
     """Numbers of a candidate, but for its reserve."""
-    numbers[row, 0], numbers[row, 1] = used, np.round(100 * used, 1)
+    numbers[row, 0], numbers[row, 1] = used, percent
     for place in range(5):
         numbers[row, 2 + place] = figures[n, g, place]
     numbers[row, 7] = figures[n, g, c.BEARING_L50] / L50_PER_L10

@@ -8,6 +8,7 @@ from typing import Any
 import segno
 
 from hpn.candidates import Candidate
+from hpn.checks import allowed
 from hpn.report import inputs, plots, standings
 from hpn.report.export import Export
 from hpn.report.language import Language
@@ -171,14 +172,14 @@ def _verdict(export: Export, language: Language) -> dict[str, Any]:
     sentence = language.text(VERDICTS[key]).format(
         gear=candidate["designation"],
         check=_title(export, candidate["governing_check"], language) if candidate["governing_check"] else "",
-        percent=language.percent(candidate["utilisation"]),
+        percent=_used(export, candidate["governing_check"], candidate["utilisation"], language),
     )
     best = language.text(BEST[export.application.rank_by] if suitable > 1 else ONLY).format(count=suitable)
     return {
         "status": status,
         "gear": candidate["designation"] if status == "suitable" else "–",
         "text": f"{sentence} {best}" if suitable else sentence,
-        "utilisation": language.percent(candidate["utilisation"]),
+        "utilisation": language.percent(candidate["utilisation"], _bound(export, candidate["governing_check"])),
         "word": language.text(
             {"suitable": N_("suitable"), "unsuitable": N_("none suitable")}.get(status, N_("unrated"))
         ),
@@ -303,7 +304,7 @@ def _ratings(export: Export, language: Language) -> list[dict[str, Any]]:
 
 
 def _check(export: Export, check: Mapping[str, Any], language: Language) -> dict[str, Any]:
-    code = check["code"]
+    code, bound = check["code"], _bound(export, check["code"])
     definition = export.definitions[code]
     equation = definition["equation"]
     where = [language.text(N_("eq. {number}")).format(number=equation)] if equation else []
@@ -311,15 +312,38 @@ def _check(export: Export, check: Mapping[str, Any], language: Language) -> dict
         "title": language.text(definition["title"]),
         "relation": formula(standings.STANDINGS[code].relation),
         "demand": _measured(check["demand"], definition["unit"], language),
-        "limit": _measured(check["limit"], definition["unit"], language),
-        "utilisation": language.percent(check["utilisation"]),
+        "limit": _measured(check["limit"], definition["unit"], language) + _part(bound, definition["kind"], language),
+        "utilisation": language.percent(check["utilisation"], bound),
         "share": _share(check),
-        "bound": export.application.requirements.utilisation if definition["group"] == "load" else 1.0,
+        "bound": bound,
         "status": check["status"],
         "word": language.text(STATUS[check["status"]]),
         "where": " · ".join([*where, standings.source(export, code, language)]),
         "basis": sentence(language.text(definition["basis"])),
     }
+
+
+def _bound(export: Export, code: str | None) -> float:
+    return allowed(code, export.application.requirements.utilisation)
+
+
+def _part(bound: float, kind: str, language: Language) -> str:
+    """What stands behind a limit that only part of may be used."""
+    return f" {'÷' if kind == 'minimum' else '×'} {_exact_percent(bound, language)}" if bound < 1 else ""
+
+
+def _exact_percent(bound: float, language: Language) -> str:
+    return f"{language.exact(100 * bound)}\N{NO-BREAK SPACE}%"
+
+
+def _used(export: Export, code: str | None, utilisation: float | None, language: Language) -> str:
+    """A utilisation inside a sentence, with what is allowed where that is less than the limit."""
+    bound = _bound(export, code)
+    used = language.percent(utilisation, bound)
+    if bound == 1 or utilisation is None:
+        return used
+    text = language.text(N_("{used} (at most {allowed})"))
+    return text.format(used=used, allowed=_exact_percent(bound, language))
 
 
 def _share(check: Mapping[str, Any]) -> float:
@@ -359,7 +383,11 @@ def _standing(export: Export, candidate: Candidate, language: Language) -> str:
     if not failing:
         sentence = language.text(N_("{gear} passes too; its closest check is “{check}” at {percent}."))
         check = _title(export, candidate["governing_check"], language)
-        return sentence.format(gear=name, check=check, percent=language.percent(candidate["utilisation"]))
+        return sentence.format(
+            gear=name,
+            check=check,
+            percent=_used(export, candidate["governing_check"], candidate["utilisation"], language),
+        )
     sentence = language.text(N_("{gear} fails: {failures}."))
     return sentence.format(gear=name, failures="; ".join(_failure(export, check, language) for check in failing))
 
@@ -370,5 +398,5 @@ def _failure(export: Export, check: Mapping[str, Any], language: Language) -> st
         check=_title(export, check["code"], language),
         demand=_measured(check["demand"], unit, language),
         limit=_measured(check["limit"], unit, language),
-        percent=language.percent(check["utilisation"]),
+        percent=_used(export, check["code"], check["utilisation"], language),
     )

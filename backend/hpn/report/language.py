@@ -10,6 +10,7 @@ from string import Formatter
 from babel.dates import format_date
 from babel.numbers import get_decimal_symbol
 
+from hpn.checks import telling_decimals
 from hpn.translation import LANGUAGES, texts
 
 __all__ = ["LANGUAGES", "Language", "language"]
@@ -79,16 +80,12 @@ class Language:
         short = f"{value:.12g}"
         return self._written(short if len(short.lstrip("-0.").replace(".", "")) <= 4 else f"{value:#.4g}".rstrip("."))
 
-    def percent(self, share: float | None) -> str:
-        """A share as a percentage, with as many digits as it takes to tell it from 100 %."""
+    def percent(self, share: float | None, allowed: float = 1.0) -> str:
+        """A share as a percentage, with as many digits as it takes to tell it from what is allowed."""
         if share is None:
             return "–"
         value = share * 100
-        digits = 1
-        if value >= 1000:
-            digits = 0
-        while digits < 9 and abs(value - 100) > 1e-9 and round(value, digits) == 100:
-            digits += 1
+        digits = telling_decimals(value, 100 * allowed, 0 if value >= 1000 else 1)
         if value >= 1e7 or 0 < value < 1e-3:
             number = self._scientific(value)
         else:

@@ -24,7 +24,7 @@ STYLES: dict[str, dict[str, Any]] = {
     "figure": {"bg_color": "#F3F6F9"},
     "result": {"num_format": "#,##0.00##"},
     "count": {"num_format": "#,##0"},
-    "share": {"num_format": "0.0%"},
+    "share": {"num_format": "0.0##%"},
     "fixed": {"num_format": "#,##0.00##", "italic": True, "font_color": "#8A6100"},
     "verdict": {"bold": True},
 }

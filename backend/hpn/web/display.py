@@ -4,6 +4,7 @@ import re
 
 from markupsafe import Markup, escape
 
+from hpn.checks import telling_decimals
 from hpn.wording import N_
 
 GROUP = "\N{NARROW NO-BREAK SPACE}"
@@ -93,11 +94,11 @@ LIMIT_FIGURES = {
 """Catalogue figure that a check draws on, whose source stands beside it; the other limits are the user's."""
 
 
-def capped_percent(utilisation: float | None) -> str:
+def capped_percent(utilisation: float | None, allowed: float = 1.0) -> str:
     """Percentage without its sign, for a narrow cell: beyond tenfold it matters no more by how much."""
     if utilisation is not None and utilisation >= 9.995:
         return ">999"
-    return percent(utilisation).removesuffix(f"{GROUP}%")
+    return percent(utilisation, allowed).removesuffix(f"{GROUP}%")
 
 
 def figure(value: float | None) -> str:
@@ -129,16 +130,14 @@ def plain(number: str) -> str:
     return f"{mantissa}·10{str(int(exponent)).translate(_SUPERSCRIPT)}"
 
 
-def percent(utilisation: float | None) -> str:
-    """Utilisation as a percentage, with as many digits as it takes to tell it from 100 %."""
+def percent(utilisation: float | None, allowed: float = 1.0) -> str:
+    """Utilisation as a percentage, with as many digits as it takes to tell it from what is allowed."""
     if utilisation is None:
         return "–"
     value = utilisation * 100
     if value > 99_999:
         return f">{GROUP}99{GROUP}999{GROUP}%"
-    digits = 1 if 0 < value < 9.95 else 0
-    while digits < 6 and abs(value - 100) > 1e-9 and round(value, digits) == 100:
-        digits += 1
+    digits = telling_decimals(value, 100 * allowed, 1 if 0 < value < 9.95 else 0)
     return f"{_grouped(f'{value:.{digits}f}')}{GROUP}%"
 
 

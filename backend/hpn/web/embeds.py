@@ -58,9 +58,7 @@ def preview(reply: Mapping[str, Any], path: str, title: str | None = None) -> Pr
         f"largest torque {english.figure(duty['maximum_torque_Nm'])} Nm",
         f"average speed {english.figure(duty['average_output_speed_rpm'])} rpm",
     ]
-    if best["governing_check"]:
-        check = reply["check_definitions"][best["governing_check"]]["title"]
-        parts.append(f"{best['designation']}: {check} at {english.percent(best['utilisation'])} of its limit")
+    parts.append(f"{best['designation']}: {best['reason'].removesuffix('.')}")
     address = "/oembed?" + urlencode({"url": path, "format": "json"}) if len(path) <= LONGEST_PATH else ""
     return Preview(f"{title}: {verdict}" if title else f"HPN Select: {verdict}", ", ".join(parts) + ".", address)
 

@@ -15,6 +15,7 @@ from starlette.routing import Route
 from hpn.application import Application, InputError
 from hpn.candidates import Candidate, foremost, is_judged, is_unlimited
 from hpn.catalogue import Catalogue
+from hpn.checks import allowed
 from hpn.gear import Gear
 from hpn.notices import AREAS
 from hpn.plots.picture import beyond_limit
@@ -276,6 +277,7 @@ def _templates(static: assets.Assets) -> Environment:
         "ordering_code": ordering_code,
         **reader.GLOBALS,
         "AREAS": AREAS,
+        "allowed": allowed,
         "DRIVERS": DRIVERS,
         "BEST": display.BEST,
         "CHECK_NAMES": display.CHECK_NAMES,

@@ -12,6 +12,7 @@ from babel import Locale
 from jinja2 import pass_context
 from jinja2.runtime import Context
 
+from hpn.checks import allowed, telling_decimals
 from hpn.explanations import EXPLANATIONS
 from hpn.notices import Notice
 from hpn.reply import REASONS
@@ -107,13 +108,13 @@ class Reader:
         measure = self.measure(unit)
         return self.localised(display.plain(f"{value:.12g}" if measure.same else measure.written(value, 6)))
 
-    def percent(self, utilisation: float | None) -> str:
-        """Utilisation as a percentage."""
-        return self.localised(display.percent(utilisation))
+    def percent(self, utilisation: float | None, allowed: float = 1.0) -> str:
+        """Utilisation as a percentage that can be told from what is allowed."""
+        return self.localised(display.percent(utilisation, allowed))
 
-    def capped_percent(self, utilisation: float | None) -> str:
+    def capped_percent(self, utilisation: float | None, allowed: float = 1.0) -> str:
         """Percentage without its sign, for a narrow cell."""
-        return self.localised(display.capped_percent(utilisation))
+        return self.localised(display.capped_percent(utilisation, allowed))
 
     def localised(self, number: str) -> str:
         """A number as `display` writes it, with the reader's marks."""
@@ -146,11 +147,11 @@ class Reader:
         """What is wrong with an input."""
         return self.told(message) if isinstance(message, Sentence) else message.text(self.text, self.bound)
 
-    def reason(self, candidate: Mapping[str, Any]) -> str:
-        """Why a candidate of a reply stands where it does."""
+    def reason(self, candidate: Mapping[str, Any], utilisation: float) -> str:
+        """Why a candidate of a reply stands where it does; `utilisation` is the user's u."""
         if self.language == "en":
             return str(candidate["reason"])
-        return self.told(reason_of(candidate))
+        return self.told(reason_of(candidate, utilisation))
 
     def translated(self, texts: Mapping[str, str]) -> list[tuple[str, str]]:
         """Options of a choice: codes with their texts."""
@@ -181,8 +182,8 @@ def address() -> str:
     return VISIT.get().address
 
 
-def reason_of(candidate: Mapping[str, Any]) -> Sentence:
-    """The reason of a candidate as a sentence that can be translated."""
+def reason_of(candidate: Mapping[str, Any], utilisation: float) -> Sentence:
+    """The reason of a candidate as a sentence that can be translated; `utilisation` is the user's u."""
     status, used = candidate["status"], candidate["utilisation"]
     if status == "unrated":
         return Sentence(REASONS["unrated"], {"name": f"HPN-{candidate['size']}"})
@@ -191,8 +192,9 @@ def reason_of(candidate: Mapping[str, Any]) -> Sentence:
     failed = sum(check["status"] == "fail" for check in candidate["checks"])
     key = "unsuitable_more" if failed > 1 else status
     title = EXPLANATIONS[candidate["governing_check"]].title
-    used = Quantity(round(100 * used, 1), "percent", 12)
-    return Sentence(REASONS[key], {"check": title, "percent": used, "failed": failed}, ("check",))
+    bound = 100 * allowed(candidate["governing_check"], utilisation)
+    percent = Quantity(round(100 * used, telling_decimals(100 * used, bound, 1)), "percent", 12)
+    return Sentence(REASONS[key], {"check": title, "percent": percent, "failed": failed}, ("check",))
 
 
 def _for_reader(method: str) -> Callable[..., Any]:

@@ -1,0 +1,67 @@
+"""What fails never reads like what passes: a percentage has the digits that tell it from what is allowed."""
+
+import html
+import re
+
+import pytest
+from starlette.testclient import TestClient
+
+from hpn.checks import telling_decimals
+from hpn.report.language import language
+from hpn.web import display
+from tests.build import candidate, cycle, phase
+
+# Torque against T_N = 80 Nm of HPN-20A-5, u, and the percentage, by hand: T / 0.8 Nm.
+NEAR = [
+    (80.001, 1.0, "100.001"),
+    (79.999, 1.0, "99.999"),
+    (64.01, 0.8, "80.01"),
+    (63.99, 0.8, "79.99"),
+    (80.01, 0.8, "100.0"),  # far from its bound
+    (80.0000000008, 1.0, "100.000000001"),
+]
+
+
+def words(api: TestClient, address: str, language: str) -> str:
+    """Text of a page, each run of blanks as one."""
+    page = api.get(address, headers={"Accept-Language": language}).text
+    return re.sub("[ \n]+", " ", html.unescape(re.sub(r"<[^>]+>", "", page)))
+
+
+@pytest.mark.parametrize(("torque", "u", "shown"), NEAR)
+def test_reply_and_page_say_it_alike_in_both_languages(api: TestClient, torque: float, u: float, shown: str) -> None:
+    wishes = {"ratios": [5], "sizes": ["20A"], "utilisation": u}
+    reply = api.post("/api/v1/select", json=cycle(phase(torque, 50), requirements=wishes)).json()
+    gear = candidate(reply, "HPN-20A-5")
+    page = f"/?T={torque!r}&n=50&t=1&i=5&size=20A&u={u}"
+
+    assert f" at {shown} % of its limit" in gear["reason"]
+    short = shown.removesuffix(".0")
+    english, german = (words(api, page, language) for language in ("en", "de"))
+    assert re.search(rf"average torque(, at | \(){re.escape(short)}\u202f%", english)
+    assert f"{short.replace('.', ',')}\u202f%" in german
+
+
+def test_only_part_of_a_limit_is_allowed_where_the_user_says_so(api: TestClient) -> None:
+    text = words(api, "/?T=64.01&n=50&t=1&Lh=1000&i=5&size=20A&u=0.8", "en")
+
+    assert "Fails on: average torque (80.01\u202f%; at most 80\u202f%)" in text
+    assert "≤ 80\u202fNm ×\xa080\u202f%" in text
+    assert "≥ 1\u202f000\u202fh ÷\xa080\u202f%" in text
+
+
+@pytest.mark.parametrize("allowed", [1.0, 0.8, 0.855, 1 / 3])
+@pytest.mark.parametrize("distance", [1e-1, 1e-3, 1e-6, 1e-9, 2e-12])
+def test_a_value_beside_its_bound_is_written_beside_it(allowed: float, distance: float) -> None:
+    for write in (display.percent, language("en").percent):
+        under, at, over = (
+            float(write(allowed * (1 + sign * distance), allowed).split("\u202f")[0].split("\xa0")[0])
+            for sign in (-1, 0, 1)
+        )
+        assert under < at < over or (distance * allowed < 1e-11 and under <= at <= over)
+
+
+def test_what_is_infinite_or_unknown_needs_no_digits() -> None:
+    assert telling_decimals(float("inf"), 100.0, 1) == 1
+    assert telling_decimals(float("nan"), 100.0, 1) == 1
+    assert telling_decimals(100.0, 100.0, 0) == 0
