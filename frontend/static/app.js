@@ -25,7 +25,7 @@ document.addEventListener("submit", async (event) => {
 document.addEventListener("htmx:config:request", (event) => {
   const { ctx } = event.detail;
   if (ctx.sourceElement.id !== "application") return;
-  if (ctx.sourceEvent.type === "input" && unfinishedRow() && !presses.length) {
+  if (ctx.sourceEvent.type === "input" && unfinishedRow() && !presses.length && !unfinishedRow().querySelector('[aria-invalid="true"]')) {
     ctx.sourceElement.dataset.waiting = "";
     event.preventDefault();
     return;
@@ -39,7 +39,7 @@ document.addEventListener("htmx:before:swap", (event) => {
   const { ctx } = event.detail;
   if (ctx.asked === undefined) return;
   // An answer to what the form no longer says must not overwrite it; the request for what it says now is under way.
-  if (ctx.asked !== contentOf(formOf())) event.preventDefault();
+  if (leaving || ctx.asked !== contentOf(formOf())) event.preventDefault();
   else if (event.detail.tasks.some((task) => task.type === "main")) mirrorIntoAttributes(formOf());
 });
 
@@ -49,6 +49,17 @@ document.addEventListener("htmx:after:swap", (event) => {
   if (ctx.replaces || ctx.presses) followAttributes(formOf());
   if (ctx.presses) presses.splice(0, ctx.presses);
   ctx.refocus?.();
+  for (const part of document.querySelectorAll("[data-part][open]")) bring(part);
+});
+
+// Going back replaces the page: the answer under way belongs to the one that is left.
+let leaving = false;
+document.addEventListener("htmx:before:history:restore", () => {
+  leaving = true;
+  htmx.trigger(formOf(), "htmx:abort");
+});
+document.addEventListener("htmx:finally:request", (event) => {
+  if (event.detail.ctx.request.headers["HX-History-Restore-Request"]) leaving = false;
 });
 
 // --- What an answer brings --------------------------------------------------------------------------------------------
@@ -71,10 +82,49 @@ document.addEventListener(
     const part = event.target;
     if (!part.open || !part.matches("[data-part]")) return;
     unfolded.add(part.id);
-    if (part.childElementCount === 1) htmx.trigger(part, "unfold");
+    bring(part);
   },
   true,
 );
+
+const addressOf = (part) => document.getElementById(part.id)?.getAttribute("hx-get");
+const bring = (part) => part.childElementCount === 1 && htmx.trigger(part, "unfold");
+
+// What a part was asked for belongs to one answer: beside a later one it would be wrong.
+document.addEventListener("htmx:config:request", (event) => {
+  const { ctx } = event.detail;
+  if (ctx.sourceElement.matches("[data-part]")) ctx.partOf = addressOf(ctx.sourceElement);
+});
+
+document.addEventListener("htmx:before:swap", (event) => {
+  const { ctx } = event.detail;
+  if (ctx.partOf !== undefined && ctx.partOf !== addressOf(ctx.sourceElement)) event.preventDefault();
+});
+
+// Nothing works unseen: what is wrong is unfolded, and so is what an undo or a file has brought.
+const holds = (part) => [...part.querySelectorAll("input")].some((field) => (field.type === "checkbox" ? field.checked : field.value.trim()));
+
+document.addEventListener("htmx:after:swap", (event) => {
+  const { ctx } = event.detail;
+  const brought = ctx.replaces || ctx.sourceElement.id === "paste-form";
+  for (const part of document.querySelectorAll("#application details:not([open])")) {
+    if (part.querySelector('[aria-invalid="true"]') || (brought && holds(part))) part.open = true;
+  }
+});
+
+// --- Saving -----------------------------------------------------------------------------------------------------------
+
+// What is saved is what the form says, although its answer may still be under way.
+document.addEventListener("submit", (event) => {
+  const form = formOf();
+  if (!form || !event.target.matches("form.save")) return;
+  if (form.matches("[data-invalid], [data-waiting]")) {
+    event.preventDefault();
+    document.querySelector('#connection [data-state="unsaved"]').hidden = false;
+    return;
+  }
+  event.target.elements.link.value = `/?${contentOf(form)}`;
+});
 
 // --- Row edits that are under way while somebody types on -------------------------------------------------------------
 

@@ -33,6 +33,7 @@ document.addEventListener("htmx:before:request", (event) => {
 
 function settled() {
   stopTimers();
+  document.querySelector('#connection [data-state="slow"]').hidden = true;
   resultOf()?.removeAttribute("aria-busy");
 }
 

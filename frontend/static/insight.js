@@ -21,11 +21,11 @@ document.addEventListener("click", (event) => {
   if (!link || !plain(event)) return;
   event.preventDefault();
   const form = document.getElementById("application");
-  for (const field of form.querySelectorAll('input[name="pin"]')) field.remove();
-  const gear = form.querySelector('input[name="gear"]');
-  for (const value of new URL(link.href).searchParams.getAll("pin").reverse()) {
-    gear.after(Object.assign(document.createElement("input"), { type: "hidden", name: "pin", value }));
-  }
+  const value = link.id.replace(/^pin-(column-)?/, "");
+  const pins = [...form.querySelectorAll('input[name="pin"]')];
+  const pinned = pins.find((field) => field.value === value);
+  if (pinned) pinned.remove();
+  else (pins.at(-1) ?? form.elements.gear).after(Object.assign(document.createElement("input"), { type: "hidden", name: "pin", value }));
   toggle = link.id;
   form.requestSubmit();
 });

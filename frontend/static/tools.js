@@ -101,11 +101,19 @@ document.addEventListener("keydown", (event) => {
 
 // --- A gear by its name -----------------------------------------------------------------------------------------------
 
-document.addEventListener("submit", (event) => {
-  const form = event.target;
-  const name = form.matches("[data-finds]") ? form.elements.gear.value.trim() : "";
+document.addEventListener("submit", async (event) => {
+  const field = event.target.matches("[data-finds]") ? event.target.elements.gear : null;
+  const name = field?.value.trim();
   if (!name || !formOf()) return;
   event.preventDefault();
+  const reply = await fetch(`/api/v1/catalogue/${encodeURIComponent(name)}`).catch(() => null);
+  if (reply?.status === 404) {
+    field.setCustomValidity(field.dataset.unknown);
+    field.reportValidity();
+    return;
+  }
   formOf().elements.gear.value = name;
   formOf().requestSubmit();
 });
+
+document.addEventListener("input", (event) => event.target.matches("[data-unknown]") && event.target.setCustomValidity(""));

@@ -7,6 +7,8 @@ let at = -1; // the one it says now
 let group = null; // field and visit that the latest change belongs to: its keystrokes are one step
 let visit = 0;
 let restoring = null;
+let pressing = null; // the request that edits rows on the server, until the form says so
+let next = null; // a step that waits for it
 
 const formOf = () => document.getElementById("application");
 const contentOf = (form) => new URLSearchParams(new FormData(form)).toString();
@@ -33,6 +35,11 @@ function show() {
 }
 
 export function step(direction) {
+  if (pressing) {
+    next = direction;
+    return;
+  }
+  record(null); // a gear that was chosen, or pinned, and is not answered yet
   const to = at + (direction === "back" ? -1 : 1);
   if (!contents[to] || restoring !== null) return;
   at = to;
@@ -53,6 +60,17 @@ document.addEventListener("htmx:config:request", (event) => {
   ctx.request.body = body;
   ctx.replaces = ctx.restores = true;
   restoring = null;
+});
+
+document.addEventListener("htmx:before:request", (event) => {
+  const { ctx } = event.detail;
+  if (ctx.sourceElement.id === "application") pressing = ctx.presses ? ctx : null;
+});
+document.addEventListener("htmx:finally:request", (event) => {
+  if (event.detail.ctx !== pressing) return;
+  pressing = null;
+  if (next) step(next);
+  next = null;
 });
 
 document.addEventListener("focusin", () => visit++);

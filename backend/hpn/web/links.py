@@ -9,6 +9,7 @@ import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
+from urllib.parse import urlencode
 
 from pydantic import ValidationError
 
@@ -108,6 +109,13 @@ class Form:
     def general(self) -> list[Problem]:
         """Problems that belong to no field of the form."""
         return [problem for problem in self.problems if problem.name not in BY_NAME | PHASE_BY_NAME]
+
+
+def address_of_empty(form: Form) -> str:
+    """Address of a form without a phase, with all else that it says."""
+    lists = [(name, text) for name, texts in form.lists.items() for text in texts]
+    given = [(name, text) for name, text in (*form.texts.items(), *lists) if text.strip()]
+    return "/?" + urlencode([("T", ""), ("n", ""), ("t", ""), *given])
 
 
 def parse(pairs: Pairs) -> Form:

@@ -206,16 +206,23 @@ def _parts(request: Request) -> frozenset[str]:
 
 
 def _render(request: Request, template: str, status: int, **context: Any) -> Response:
-    answer: Answer | None = context.get("answer")
+    address = _address(context.get("answer"), context.get("form"))
     if "form" in context:
         context["form"] = links.for_reader(context["form"], reader.current())
     content = environment(request.app.state).get_template(template).render(**context)
     response = HTMLResponse(content, status)
     response.headers["Vary"] = "HX-Request, HX-History-Restore-Request, HPN-Parts"
-    if answer and _wants_changes(request) and "result" in context["parts"]:
-        # What is too long for an address must not stand under somebody else's: reloading leads to where it came from.
-        response.headers["HX-Push-Url"] = "/paste" if answer.too_long else answer.address
+    if address and _wants_changes(request) and "result" in context["parts"]:
+        response.headers["HX-Push-Url"] = address
     return response
+
+
+def _address(answer: Answer | None, form: Form | None) -> str | None:
+    """What is to stand in the address bar; None where there is something to correct."""
+    if answer is None:
+        return links.address_of_empty(form) if form and form.empty else None
+    # What is too long for an address must not stand under somebody else's: reloading leads to where it came from.
+    return "/paste" if answer.too_long else answer.address
 
 
 # --- Templates --------------------------------------------------------------------------------------------------------

@@ -22,10 +22,12 @@ from hpn.differences import Difference
 from hpn.report.inputs import LOADS, REQUIREMENTS, WORDS
 from hpn.store import SavedSelection, StoreUnavailableError
 from hpn.units import symbol_of
+from hpn.web import links
 from hpn.web.bodies import read_form
 from hpn.web.gear_figures import Figure, figures_of
+from hpn.web.long_cycles import expanded
 from hpn.web.messages import N_
-from hpn.web.pages import environment, read_query
+from hpn.web.pages import environment
 from hpn.web.problems import Problem
 from hpn.web.reader import current
 from hpn.web.requests import require_same_origin
@@ -116,7 +118,7 @@ def _key(fields: Mapping[str, str]) -> str | None:
 
 
 def _application(query: str) -> Application:
-    form = read_query(query.encode()) if query else None
+    form = links.parse(expanded(parse_qsl(query, keep_blank_values=True))) if query else None
     if form is None or form.application is None or form.problems:
         raise Problem(422, "the inputs have errors: correct them on the page, then save")
     return form.application

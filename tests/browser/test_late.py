@@ -1,0 +1,170 @@
+"""What somebody does while an answer is under way, or while there is none, neither loses nor mixes up anything."""
+
+import re
+from functools import partial
+from typing import Any
+
+from playwright.sync_api import Page, Route, expect
+
+from tests.browser.conftest import Visitor, answer_held_back
+
+EXAMPLE = "/?T=40&n=250&t=0.3&T=32&n=500&t=3&T=20&n=250&t=0.4&tp=4&Tk=200&i=5"
+
+
+def torque(page: Page, phase: int) -> Any:
+    return page.get_by_label(f"Torque, phase {phase}")
+
+
+def pause(page: Page) -> Any:
+    return page.get_by_label("Pause")
+
+
+def unfold(page: Page, text: str) -> None:
+    page.locator("summary", has_text=text).first.click()
+
+
+def average_torque(first: float) -> str:
+    """T_av of the example by equation 17.2, as the page rounds it, with another torque in its first phase."""
+    phases = ((first, 250 * 0.3), (32, 500 * 3), (20, 250 * 0.4))
+    return f"{(sum(T ** (10 / 3) * turns for T, turns in phases) / sum(turns for _, turns in phases)) ** 0.3:.1f}"
+
+
+def test_calculation_that_is_unfolded_meanwhile_is_that_of_the_answer(visitor: Visitor) -> None:
+    page = visitor.open(EXAMPLE)
+    shown = page.locator("#calculation")
+    for first in (80, 96):  # once without a calculation so far, once with that of before
+        with answer_held_back(page, partial(torque(page, 1).fill, str(first))):
+            unfold(page, "Show the calculation")
+        expect(shown).to_contain_text(f"{average_torque(first)}\u202fNm ≤ 80\u202fNm")
+        expect(shown).not_to_contain_text("32.0\u202fNm ≤ 80\u202fNm")
+        unfold(page, "Show the calculation")
+
+
+def test_going_back_meanwhile_leads_to_what_was_before(visitor: Visitor) -> None:
+    page = visitor.open(EXAMPLE)
+    pause(page).fill("5")
+    expect(page).to_have_url(re.compile("tp=5"))
+    held: list[Route] = []
+    page.route("**/?*", lambda route: held.append(route))
+    with page.expect_request("**/?*"):
+        torque(page, 1).fill("77")
+    with page.expect_request("**/?*"):
+        page.evaluate("history.back()")
+    held[0].continue_()  # the answer, if anybody still wants it, comes before the page that is gone back to
+    page.wait_for_timeout(500)
+    held[1].continue_()
+    page.unroute("**/?*")
+    expect(pause(page)).to_have_value("4")
+    expect(torque(page, 1)).to_have_value("40")
+    page.wait_for_load_state("networkidle")
+    expect(page).to_have_url(re.compile("T=40&.*tp=4"))
+    torque(page, 1).fill("41")
+    expect(page).to_have_url(re.compile("T=41&.*tp=4"))
+
+
+def test_what_is_saved_is_what_the_form_says(visitor: Visitor) -> None:
+    page = visitor.open(EXAMPLE)
+    unfold(page, "Save this selection")
+    page.evaluate(
+        "() => { const field = document.getElementById('T-0'); field.value = '90';"
+        " field.dispatchEvent(new Event('input', { bubbles: true }));"
+        " document.querySelector('form.save').requestSubmit(); }"
+    )
+    expect(page).to_have_url(re.compile("/selections/"))
+    expect(page.get_by_role("table", name="Load phases").get_by_role("row").nth(1)).to_contain_text("90")
+
+
+def test_what_is_saved_is_what_the_form_says_in_german_and_inches(visitor: Visitor) -> None:
+    page = visitor.open(EXAMPLE)
+    page.get_by_role("button", name="Deutsch").click()
+    page.locator(".saving > summary").click()
+    page.locator("#T-0").fill("90,5")
+    page.locator("form.save").evaluate("form => form.requestSubmit()")
+    expect(page).to_have_url(re.compile("/selections/"))
+    expect(page.locator("table.phases tbody tr").first).to_contain_text("90,5")
+
+
+def test_what_is_wrong_is_not_saved(visitor: Visitor) -> None:
+    page = visitor.open(EXAMPLE)
+    unfold(page, "Save this selection")
+    torque(page, 1).fill("abc")
+    expect(torque(page, 1)).to_have_attribute("aria-invalid", "true")
+    page.locator("form.save").get_by_role("button", name="Save").click()
+    expect(page.get_by_text("Not saved: first correct the marked inputs.")).to_be_visible()
+    expect(torque(page, 1)).to_have_value("abc")
+
+
+def test_undo_takes_back_the_row_edit_that_is_under_way_and_no_more(visitor: Visitor) -> None:
+    page = visitor.open(EXAMPLE)
+    torque(page, 1).fill("50")
+    expect(page).to_have_url(re.compile("T=50&"))
+    with answer_held_back(page, page.get_by_role("button", name="Remove phase 2").click):
+        page.get_by_role("button", name="Undo").click()
+    expect(torque(page, 3)).to_have_value("20")
+    expect(page.get_by_role("button", name="Redo")).to_have_attribute("aria-disabled", "false")
+    expect(torque(page, 1)).to_have_value("50")
+    page.get_by_role("button", name="Redo").click()
+    expect(torque(page, 3)).to_have_count(0)
+    expect(torque(page, 1)).to_have_value("50")
+
+
+def test_undo_takes_back_the_gear_that_was_chosen_just_now_and_no_more(visitor: Visitor) -> None:
+    page = visitor.open(EXAMPLE)
+    torque(page, 1).fill("50")
+    expect(page).to_have_url(re.compile("T=50&"))
+    row = page.get_by_role("table", name="Candidates").get_by_role("link", name="HPN-32A-5", exact=True)
+    with answer_held_back(page, row.click):
+        page.get_by_role("button", name="Undo").click()
+    expect(page.get_by_role("button", name="Redo")).to_have_attribute("aria-disabled", "false")
+    expect(torque(page, 1)).to_have_value("50")
+    page.get_by_role("button", name="Redo").click()
+    expect(page).to_have_url(re.compile("T=50&.*gear=HPN-32A-5"))
+
+
+def test_gears_pinned_in_quick_succession_are_all_compared(visitor: Visitor) -> None:
+    page = visitor.open(EXAMPLE)
+    pins = page.get_by_role("table", name="Candidates")
+    with answer_held_back(page, pins.get_by_role("link", name="Compare HPN-14A-5").click):
+        pins.get_by_role("link", name="Compare HPN-32A-5").click()
+    expect(page).to_have_url(re.compile("pin=HPN-14A-5&pin=HPN-32A-5"))
+    expect(page.get_by_role("table", name="Comparison of HPN-20A-5, HPN-14A-5, HPN-32A-5")).to_be_visible()
+
+
+def test_a_name_that_no_gear_has_is_said_where_it_was_typed_and_changes_nothing(visitor: Visitor) -> None:
+    page = visitor.open(EXAMPLE)
+    field = page.get_by_role("combobox", name="Find a gear")
+    with page.expect_response("**/api/v1/catalogue/foo"):
+        field.fill("foo")
+        page.keyboard.press("Enter")
+    page.wait_for_function("() => document.getElementById('find-gear').validationMessage !== ''")
+    assert field.evaluate("field => field.validationMessage") == "No gear of the catalogue has this name."
+    pause(page).fill("5")
+    expect(page).to_have_url(re.compile("tp=5"))
+    field.fill("HPN-32-05")
+    page.keyboard.press("Enter")
+    expect(page).to_have_url(re.compile("gear=HPN-32A-5"))
+    for watch in visitor.watches:
+        watch.console = [text for text in watch.console if "status of 404" not in text]
+
+
+def test_without_a_phase_the_address_keeps_all_else(visitor: Visitor) -> None:
+    page = visitor.open("/?T=&n=&t=")
+    page.get_by_label("Torque Tk").fill("300")
+    expect(page).to_have_url(re.compile("Tk=300"))
+    page.reload()
+    expect(page.get_by_label("Torque Tk")).to_have_value("300")
+    expect(page.get_by_text("Enter a duty cycle")).to_be_visible()
+
+
+def test_what_an_undo_brings_back_is_not_folded_away(visitor: Visitor) -> None:
+    page = visitor.open(EXAMPLE)
+    section = page.locator("#application details", has=page.locator("#f-FR"))
+    section.locator("summary").click()
+    page.locator("#f-FR").fill("900")
+    expect(page).to_have_url(re.compile("FR=900"))
+    page.get_by_role("button", name="Undo").click()
+    expect(page).not_to_have_url(re.compile("FR=900"))
+    section.locator("summary").click()
+    page.get_by_role("button", name="Redo").click()
+    expect(page).to_have_url(re.compile("FR=900"))
+    expect(page.locator("#f-FR")).to_be_visible()
