@@ -33,7 +33,7 @@ document.addEventListener("htmx:before:request", (event) => {
 
 function settled() {
   stopTimers();
-  document.querySelector('#connection [data-state="slow"]').hidden = true;
+  for (const line of document.querySelectorAll('#connection [data-state="slow"]')) line.hidden = true;
   resultOf()?.removeAttribute("aria-busy");
 }
 

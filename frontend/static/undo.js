@@ -7,7 +7,7 @@ let at = -1; // the one it says now
 let group = null; // field and visit that the latest change belongs to: its keystrokes are one step
 let visit = 0;
 let restoring = null;
-let pressing = null; // the request that edits rows on the server, until the form says so
+let underWay = null; // the request of the form that is not answered yet
 let next = null; // a step that waits for it
 
 const formOf = () => document.getElementById("application");
@@ -35,11 +35,11 @@ function show() {
 }
 
 export function step(direction) {
-  if (pressing) {
-    next = direction;
+  if (underWay?.presses) {
+    next = direction; // the form does not yet say what is to be taken back
     return;
   }
-  record(null); // a gear that was chosen, or pinned, and is not answered yet
+  if (!underWay?.restores) record(null); // a gear that was chosen, or pinned, and is not answered yet
   const to = at + (direction === "back" ? -1 : 1);
   if (!contents[to] || restoring !== null) return;
   at = to;
@@ -64,13 +64,13 @@ document.addEventListener("htmx:config:request", (event) => {
 
 document.addEventListener("htmx:before:request", (event) => {
   const { ctx } = event.detail;
-  if (ctx.sourceElement.id === "application") pressing = ctx.presses ? ctx : null;
+  if (ctx.sourceElement.id === "application") underWay = ctx;
 });
 document.addEventListener("htmx:finally:request", (event) => {
-  if (event.detail.ctx !== pressing) return;
-  pressing = null;
-  if (next) step(next);
-  next = null;
+  if (event.detail.ctx !== underWay) return;
+  const direction = next;
+  underWay = next = null;
+  if (direction) step(direction);
 });
 
 document.addEventListener("focusin", () => visit++);
