@@ -7,6 +7,7 @@ import pytest
 from starlette.testclient import TestClient
 
 from hpn.checks import telling_decimals
+from hpn.plots.words import share
 from hpn.report.language import language
 from hpn.web import display
 from tests.build import candidate, cycle, phase
@@ -65,3 +66,10 @@ def test_what_is_infinite_or_unknown_needs_no_digits() -> None:
     assert telling_decimals(float("inf"), 100.0, 1) == 1
     assert telling_decimals(float("nan"), 100.0, 1) == 1
     assert telling_decimals(100.0, 100.0, 0) == 0
+
+
+@pytest.mark.parametrize("distance", [1e-1, 1e-3, 1e-6, 1e-9, 2e-12])
+def test_a_sentence_tells_a_use_from_the_whole_limit(distance: float) -> None:
+    under, at, over = (float(str(share(1 + sign * distance)).removesuffix(" %")) for sign in (-1, 0, 1))
+
+    assert under < at == 100 < over

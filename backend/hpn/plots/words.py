@@ -5,6 +5,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import Any
 
+from hpn.checks import telling_decimals
 from hpn.units import SYMBOLS
 from hpn.wording import N_, Quantity, Sentence
 
@@ -94,10 +95,8 @@ def widened(limit: float, values: Iterable[float]) -> float:
 
 def share(used: float) -> Quantity:
     """A utilisation in percent, with as many digits as it takes to tell it from 100 %."""
-    digits = 3
-    while digits < 9 and abs(used - 1) > 1e-9 and float(f"{100 * used:.{digits}g}") == 100:
-        digits += 1
-    return Quantity(100 * used, "percent", digits)
+    decimals = telling_decimals(100 * used, 100.0, 0)
+    return Quantity(100 * used, "percent", 3 + decimals if used > 1 else max(3, 2 + decimals))
 
 
 def numbers(places: list[int]) -> str:
