@@ -76,7 +76,7 @@ async def test_a_backup_brings_selections_back(postgresql: PostgreSQL, tmp_path:
         address = f"postgresql://{info.user}@/hpn?host={info.host}"
         environment = {"PGHOST": info.host, "PGUSER": info.user, "PATH": f"{_programs()}:{os.environ['PATH']}"}
     store = Store(address)
-    id = await store.save(draft)
+    id = await store.save(draft())
 
     name = _run(SERVICES["backup"]["command"], environment, tmp_path).strip()
     await store.delete(id)

@@ -158,11 +158,11 @@ def test_many_savers_wait_for_a_stuck_database_only_once(outage: tuple[str, Outa
         holding = asyncio.create_task(asyncio.to_thread(hold))
         await asyncio.to_thread(entered.wait)
         start = time.monotonic()
-        outcomes = await asyncio.gather(*(store.save(draft) for _ in range(200)), return_exceptions=True)
+        outcomes = await asyncio.gather(*(store.save(draft()) for _ in range(200)), return_exceptions=True)
         spent = time.monotonic() - start
         leave.set()
         await holding
-        assert isinstance(await store.save(draft), str)
+        assert isinstance(await store.save(draft()), str)
         await store.close()
         return list(outcomes), spent
 
@@ -180,7 +180,7 @@ def test_the_event_loop_runs_on_while_the_database_is_stuck(tmp_path: Path) -> N
         await store.open()
         turns = 0
         with _sqlite_locked(path):
-            saving = asyncio.create_task(store.save(draft))
+            saving = asyncio.create_task(store.save(draft()))
             while not saving.done():
                 await asyncio.sleep(WAIT_S / 100)
                 turns += 1

@@ -3,7 +3,6 @@
 import asyncio
 import dataclasses
 import multiprocessing
-from functools import partial
 from typing import Any
 
 import numpy as np
@@ -13,7 +12,7 @@ from sqlalchemy import event, text
 
 from hpn.catalogue import Catalogue, load_catalogue
 from hpn.catalogue_copy import FORMAT, UnreadableCopyError, copy_of, read_copy
-from hpn.store import Store
+from hpn.store import Draft, Store
 from tests.conftest import Supplement
 from tests.store.drafts import draft
 
@@ -46,7 +45,7 @@ async def copies(store: Store) -> int:
         return int((await connection.execute(text("SELECT count(*) FROM catalogues"))).scalar_one())
 
 
-def under(catalogue: Catalogue, **parts: Any) -> Any:
+def under(catalogue: Catalogue, **parts: Any) -> Draft:
     """A draft under a catalogue."""
     return draft(catalogue=catalogue, catalogue_version=catalogue.version, **parts)
 
@@ -125,7 +124,7 @@ async def test_the_catalogue_is_written_once_for_each_version(
     event.listen(store._transactions.engine, "before_cursor_execute", lambda *args: statements.append(args[2]))
 
     for book in (catalogue, catalogue, other, catalogue, other):
-        await store.save(partial(under, book))
+        await store.save(under(book))
 
     assert sum("catalogues" in statement for statement in statements) == 2
     for book in (catalogue, other):
@@ -138,25 +137,23 @@ async def test_catalogues_of_one_transaction_are_all_kept(
 ) -> None:
     other = supplemented(**SUPPLEMENT)
 
-    await asyncio.gather(
-        *(store.save(partial(under, book)) for book in (catalogue, other, catalogue)), store.save(draft)
-    )
+    await asyncio.gather(*(store.save(under(book)) for book in (catalogue, other, catalogue)), store.save(draft()))
 
     assert await copies(store) == 2
 
 
 async def test_a_selection_that_is_refused_leaves_the_catalogue_to_the_next(store: Store, catalogue: Catalogue) -> None:
     outcomes = await asyncio.gather(
-        *(store.save(partial(under, catalogue, title=title)) for title in ("b\0", "c\0")), return_exceptions=True
+        *(store.save(under(catalogue, title=title)) for title in ("b\0", "c\0")), return_exceptions=True
     )
-    await store.save(partial(under, catalogue))
+    await store.save(under(catalogue))
 
     assert len(outcomes) == 2
     assert plain(await store.catalogue(catalogue.version)) == plain(catalogue)
 
 
 async def test_a_catalogue_that_cannot_be_read_counts_as_not_kept(store: Store, catalogue: Catalogue) -> None:
-    await store.save(partial(under, catalogue))
+    await store.save(under(catalogue))
     statement = text("UPDATE catalogues SET content_brotli = :spoilt").bindparams(spoilt=b"\x00")
     await store._transactions.run(lambda connection: connection.execute(statement))
 
@@ -170,7 +167,7 @@ def _save_under_two(database: str, barrier: "multiprocessing.synchronize.Barrier
         store = Store(database, seconds=20)
         await store.open()
         barrier.wait(180)
-        await asyncio.gather(*(store.save(partial(under, book)) for book in (books if first else books[::-1])))
+        await asyncio.gather(*(store.save(under(book)) for book in (books if first else books[::-1])))
         await store.close()
 
     asyncio.run(main())

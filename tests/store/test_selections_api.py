@@ -199,7 +199,7 @@ def test_an_application_that_today_cannot_be_answered_is_still_shown(
     result = orjson.dumps(answer(worked_example(), catalogue))
     application = orjson.dumps(worked_example(requirements=requirements))
     old = draft(application=application, result=result, engine_version="0.1", selected="HPN-50A-5")
-    id = client.portal.call(client.app.state.store.save, lambda: old)  # type: ignore[union-attr, attr-defined]
+    id = client.portal.call(client.app.state.store.save, old)  # type: ignore[union-attr, attr-defined]
 
     saved = client.get(f"{ADDRESS}/{id}")
     page = client.get(f"/selections/{id}")

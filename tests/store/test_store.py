@@ -2,14 +2,15 @@
 
 import asyncio
 import hashlib
+from collections.abc import Sequence
 from datetime import UTC, datetime, timedelta, tzinfo
-from functools import partial
 from pathlib import Path
+from typing import Any
 
 import pytest
 from sqlalchemy import Connection, event, text
 
-from hpn.store import KeyReusedError, KeySpentError, Store, StoreError, StoreUnavailableError, inserting
+from hpn.store import Draft, KeyReusedError, KeySpentError, Store, StoreError, StoreUnavailableError, inserting
 from hpn.store.writer import MAXIMUM_WAITING
 from tests.store.drafts import draft
 
@@ -28,7 +29,7 @@ async def test_a_saved_selection_comes_back_as_it_was_byte_for_byte(store: Store
     )
     before = datetime.now(UTC)
 
-    found = await store.find(await store.save(lambda: saved))
+    found = await store.find(await store.save(saved))
 
     assert found is not None
     for name in ("application", "result", "engine_version", "catalogue_version", "selected", "title", "reference"):
@@ -40,14 +41,14 @@ async def test_a_saved_selection_comes_back_as_it_was_byte_for_byte(store: Store
 async def test_a_large_selection_comes_back_whole(store: Store) -> None:
     large = draft(application=b"[" + b"1234.5678," * 100_000 + b"0]", result=bytes(range(256)) * 10_000)
 
-    found = await store.find(await store.save(lambda: large))
+    found = await store.find(await store.save(large))
 
     assert found is not None
     assert (found.application, found.result) == (large.application, large.result)
 
 
 async def test_ids_are_128_bits_that_differ(store: Store) -> None:
-    ids = await asyncio.gather(*(store.save(draft) for _ in range(50)))
+    ids = await asyncio.gather(*(store.save(draft()) for _ in range(50)))
 
     assert len(set(ids)) == 50
     assert {len(id) for id in ids} == {22}  # 22 characters of 6 bits
@@ -57,7 +58,7 @@ async def test_ids_are_128_bits_that_differ(store: Store) -> None:
 async def test_a_reply_of_any_length_comes_back(store: Store, size: int) -> None:
     result = bytes(range(256)) * (size // 256) + bytes(size % 256)
 
-    found = await store.find(await store.save(partial(draft, result=result)))
+    found = await store.find(await store.save(draft(result=result)))
 
     assert found is not None
     assert found.result == result
@@ -70,7 +71,7 @@ async def test_what_was_never_saved_is_not_found(store: Store, id: str) -> None:
 
 
 async def test_a_deleted_selection_is_gone_and_the_others_stay(store: Store) -> None:
-    kept, gone = await store.save(draft), await store.save(draft)
+    kept, gone = await store.save(draft()), await store.save(draft())
 
     assert await store.delete(gone) is True
 
@@ -80,7 +81,7 @@ async def test_a_deleted_selection_is_gone_and_the_others_stay(store: Store) -> 
 
 
 async def test_a_list_gives_every_selection_once_newest_first(store: Store) -> None:
-    ids = [await store.save(partial(draft, title=str(k))) for k in range(7)]
+    ids = [await store.save(draft(title=str(k))) for k in range(7)]
 
     listed, cursor = [], None
     while True:
@@ -105,7 +106,7 @@ async def test_selections_saved_in_one_moment_are_listed_once_each(
     store: Store, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(inserting, "datetime", OneMoment)
-    ids = await asyncio.gather(*(store.save(draft) for _ in range(20)))
+    ids = await asyncio.gather(*(store.save(draft()) for _ in range(20)))
 
     listed, cursor = [], None
     for _ in range(20):
@@ -118,9 +119,9 @@ async def test_selections_saved_in_one_moment_are_listed_once_each(
 
 
 async def test_a_list_can_be_of_one_reference(store: Store) -> None:
-    mine = [await store.save(partial(draft, reference="4711")) for _ in range(2)]
-    await store.save(partial(draft, reference="4712"))
-    await store.save(draft)
+    mine = [await store.save(draft(reference="4711")) for _ in range(2)]
+    await store.save(draft(reference="4712"))
+    await store.save(draft())
 
     page = await store.page(reference="4711")
 
@@ -137,26 +138,26 @@ async def test_a_cursor_that_no_list_gave_is_refused(store: Store, cursor: str) 
 
 
 async def test_the_same_key_with_the_same_content_is_saved_once(store: Store) -> None:
-    first = await store.save(partial(draft, idempotency_key="k", title="t"))
+    first = await store.save(draft(idempotency_key="k", title="t"))
 
     # The reply may have changed between the two, because the service was updated; the request is still the same.
-    assert await store.save(partial(draft, idempotency_key="k", title="t", result=b"{}", engine_version="2")) == first
+    assert await store.save(draft(idempotency_key="k", title="t", result=b"{}", engine_version="2")) == first
     assert await count(store) == 1
 
 
 @pytest.mark.parametrize("other", [{"title": "u"}, {"reference": "r"}, {"application": b"{}"}])
 async def test_the_same_key_with_other_content_is_refused(store: Store, other: dict[str, str]) -> None:
-    first = await store.save(partial(draft, idempotency_key="k", title="t"))
+    first = await store.save(draft(idempotency_key="k", title="t"))
 
     with pytest.raises(KeyReusedError, match="used before"):
-        await store.save(partial(draft, **{"idempotency_key": "k", "title": "t"} | other))
+        await store.save(draft(**{"idempotency_key": "k", "title": "t"} | other))
 
     assert await count(store) == 1
     assert await store.find(first) is not None
 
 
 async def test_a_late_retry_of_what_was_deleted_is_refused_and_saves_nothing(store: Store, database: str) -> None:
-    once = partial(draft, idempotency_key="k", title="t")
+    once = draft(idempotency_key="k", title="t")
     assert await store.delete(await store.save(once))
     other = Store(database)  # another worker, or this one after a restart
 
@@ -164,20 +165,18 @@ async def test_a_late_retry_of_what_was_deleted_is_refused_and_saves_nothing(sto
         with pytest.raises(KeySpentError, match="has been deleted"):
             await each.save(once)
         with pytest.raises(KeySpentError, match="has been deleted"):
-            await each.save(partial(draft, idempotency_key="k", title="u"))
+            await each.save(draft(idempotency_key="k", title="u"))
 
     assert await count(store) == 0
-    assert isinstance(await store.save(partial(draft, idempotency_key="l", title="t")), str)
+    assert isinstance(await store.save(draft(idempotency_key="l", title="t")), str)
     await other.close()
 
 
 async def test_a_spent_key_fails_alone(store: Store) -> None:
-    await store.delete(await store.save(partial(draft, idempotency_key="spent")))
+    await store.delete(await store.save(draft(idempotency_key="spent")))
 
     keys = ("a", "spent", None, "b", "a")
-    outcomes = await asyncio.gather(
-        *(store.save(partial(draft, idempotency_key=key)) for key in keys), return_exceptions=True
-    )
+    outcomes = await asyncio.gather(*(store.save(draft(idempotency_key=key)) for key in keys), return_exceptions=True)
 
     assert [isinstance(outcome, str) for outcome in outcomes] == [True, False, True, True, True]
     assert outcomes[0] == outcomes[4]
@@ -185,8 +184,8 @@ async def test_a_spent_key_fails_alone(store: Store) -> None:
 
 
 async def test_a_deletion_leaves_nothing_of_the_key_but_its_hash(store: Store) -> None:
-    await store.delete(await store.save(partial(draft, idempotency_key="part 4711")))
-    await store.delete(await store.save(draft))
+    await store.delete(await store.save(draft(idempotency_key="part 4711")))
+    await store.delete(await store.save(draft()))
 
     async with store._engine.connect() as connection:
         rows = (await connection.execute(text("SELECT key_sha256 FROM spent_keys"))).scalars().all()
@@ -197,7 +196,7 @@ async def test_a_deletion_leaves_nothing_of_the_key_but_its_hash(store: Store) -
 async def test_retries_and_deletions_at_once_never_bring_back_what_was_deleted(store: Store, database: str) -> None:
     other = Store(database)
     for number in range(20):
-        once = partial(draft, idempotency_key=f"k{number}")
+        once = draft(idempotency_key=f"k{number}")
         id = await store.save(once)
 
         outcomes = await asyncio.gather(
@@ -218,9 +217,7 @@ async def test_identical_requests_at_once_make_one_row_also_from_several_workers
     others = [Store(database) for _ in range(3)]
     stores = [store, *others] * 10
 
-    ids = await asyncio.gather(
-        *(each.save(partial(draft, idempotency_key=f"k{n}")) for each in stores for n in range(3))
-    )
+    ids = await asyncio.gather(*(each.save(draft(idempotency_key=f"k{n}")) for each in stores for n in range(3)))
 
     assert len(set(ids)) == await count(store) == 3
     for other in others:
@@ -231,7 +228,7 @@ async def test_savers_who_come_together_share_a_transaction(store: Store) -> Non
     commits: list[object] = []
     event.listen(store._transactions.engine, "commit", commits.append)
 
-    await asyncio.gather(*(store.save(draft) for _ in range(100)))
+    await asyncio.gather(*(store.save(draft()) for _ in range(100)))
 
     assert await count(store) == 100
     assert 1 <= len(commits) <= 3  # at most 64 to a transaction
@@ -239,7 +236,7 @@ async def test_savers_who_come_together_share_a_transaction(store: Store) -> Non
 
 async def test_one_draft_that_the_database_refuses_fails_alone(store: Store) -> None:
     outcomes = await asyncio.gather(
-        *(store.save(partial(draft, title=title)) for title in ("a", "b\0", "c")), return_exceptions=True
+        *(store.save(draft(title=title)) for title in ("a", "b\0", "c")), return_exceptions=True
     )
 
     good = [outcome for outcome in outcomes if isinstance(outcome, str)]
@@ -248,8 +245,27 @@ async def test_one_draft_that_the_database_refuses_fails_alone(store: Store) -> 
     assert await count(store) == len(good)
 
 
+def _made(wanted: Sequence[Any]) -> list[Draft | Exception]:
+    """Drafts of titles, a reason against one, and a mistake of ours at another."""
+    if "mistake" in wanted:
+        raise ZeroDivisionError
+    return [ValueError("refused") if title == "wrong" else draft(title=title) for title in wanted]
+
+
+async def test_what_cannot_be_made_fails_alone(database: str) -> None:
+    store = Store(database, make=_made)
+    titles = ["a", "wrong", "b", "mistake", "c"]
+
+    outcomes = await asyncio.gather(*(store.save(title) for title in titles), return_exceptions=True)
+
+    assert [type(outcome) for outcome in outcomes] == [str, ValueError, str, ZeroDivisionError, str]
+    found = [await store.find(id) for id in outcomes if isinstance(id, str)]
+    assert [selection and selection.title for selection in found] == ["a", "b", "c"]
+    await store.close()
+
+
 async def test_a_saver_who_leaves_does_not_take_the_others_along(store: Store) -> None:
-    tasks = [asyncio.create_task(store.save(draft)) for _ in range(3)]
+    tasks = [asyncio.create_task(store.save(draft())) for _ in range(3)]
     await asyncio.sleep(0)
     tasks[1].cancel()
 
@@ -261,7 +277,7 @@ async def test_a_saver_who_leaves_does_not_take_the_others_along(store: Store) -
 
 
 async def test_more_savers_than_can_wait_are_sent_away(store: Store) -> None:
-    outcomes = await asyncio.gather(*(store.save(draft) for _ in range(MAXIMUM_WAITING + 50)), return_exceptions=True)
+    outcomes = await asyncio.gather(*(store.save(draft()) for _ in range(MAXIMUM_WAITING + 50)), return_exceptions=True)
 
     refused = [outcome for outcome in outcomes if isinstance(outcome, StoreUnavailableError)]
     assert len(refused) == 50
@@ -270,7 +286,7 @@ async def test_more_savers_than_can_wait_are_sent_away(store: Store) -> None:
 
 async def test_closing_saves_what_still_waits(database: str) -> None:
     store = Store(database)
-    saving = asyncio.create_task(store.save(draft))
+    saving = asyncio.create_task(store.save(draft()))
     await asyncio.sleep(0)
 
     await store.close()
@@ -281,11 +297,11 @@ async def test_closing_saves_what_still_waits(database: str) -> None:
 
 
 async def test_a_store_that_was_closed_can_be_used_again(store: Store) -> None:
-    first = await store.save(draft)
+    first = await store.save(draft())
     await store.close()
     await store.close()
 
-    second = await store.save(draft)
+    second = await store.save(draft())
 
     assert await store.find(first) is not None
     assert await store.delete(second)

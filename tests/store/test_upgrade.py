@@ -5,7 +5,6 @@ import multiprocessing
 import os
 import subprocess
 import sys
-from functools import partial
 from pathlib import Path
 
 import pytest
@@ -38,7 +37,7 @@ def test_there_is_one_line_of_migrations() -> None:
 
 
 async def test_opening_again_changes_nothing(store: Store, database: str) -> None:
-    id = await store.save(draft)
+    id = await store.save(draft())
     again = Store(database)
 
     await again.open()
@@ -91,7 +90,7 @@ async def test_a_migration_that_breaks_off_leaves_nothing_behind(
 
     await store.open()
 
-    assert await store.find(await store.save(draft)) is not None
+    assert await store.find(await store.save(draft())) is not None
     await store.close()
 
 
@@ -100,8 +99,8 @@ def _open_and_save(database: str, barrier: "multiprocessing.synchronize.Barrier"
         store = Store(database, seconds=20)
         barrier.wait(180)
         await store.open()
-        await store.save(partial(draft, idempotency_key="the same"))
-        await store.save(draft)
+        await store.save(draft(idempotency_key="the same"))
+        await store.save(draft())
         await store.close()
 
     asyncio.run(main())

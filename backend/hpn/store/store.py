@@ -4,9 +4,10 @@ import asyncio
 import base64
 import logging
 import re
-from collections.abc import AsyncIterator, Callable, Sequence
+from collections.abc import AsyncIterator, Sequence
 from contextlib import asynccontextmanager
 from datetime import UTC, datetime
+from typing import Any
 
 import brotli
 from sqlalchemy import select, text, tuple_
@@ -22,7 +23,7 @@ from hpn.store.packing import unpacked
 from hpn.store.saved import Draft, Page, SavedSelection, Summary
 from hpn.store.tables import catalogues, selections
 from hpn.store.upgrade import bring_up_to_date
-from hpn.store.writer import Writer
+from hpn.store.writer import Make, Writer
 
 logger = logging.getLogger(__name__)
 
@@ -36,15 +37,16 @@ class Store:
     """Saved selections. What `save` has returned is durable, and nothing is ever rewritten.
 
     Every function raises StoreUnavailableError where the database can't be reached or takes longer than `seconds`, and
-    works again as soon as it can. Nothing is connected before it is needed.
+    works again as soon as it can. Nothing is connected before it is needed. `make` makes drafts of what is to be saved,
+    where those are not drafts already.
     """
 
-    def __init__(self, address: str, *, seconds: float = 5.0) -> None:
+    def __init__(self, address: str, *, seconds: float = 5.0, make: Make = list) -> None:
         # A database that is only busy gives up by itself, just before we would.
         self._engine = make_engine(address, seconds=seconds * 0.8)
         self._transactions = make_transactions(self._engine, seconds=seconds * 0.8)
         self._seconds = seconds
-        self._writer = Writer(self._commit)
+        self._writer = Writer(make, self._commit)
         self._opening: asyncio.Task[None] | None = None
         self._kept: set[str] = set()  # versions of catalogues that the database has for sure
 
@@ -78,13 +80,13 @@ class Store:
         async with self._reading() as connection:
             await connection.execute(text("SELECT 1"))
 
-    async def save(self, make: Callable[[], Draft]) -> str:
+    async def save(self, wanted: Any) -> str:
         """Id of the saved selection: a new one, or the one that the same idempotency key has saved before.
 
-        `make` gives the draft, at once or in a row with those of others. Raises what it raises, KeyReusedError where
-        the key came with other content, and KeySpentError where what it saved was deleted.
+        Raises why there is no draft of it, KeyReusedError where the key came with other content, and KeySpentError
+        where what it saved was deleted.
         """
-        return await self._writer.save(make)
+        return await self._writer.save(wanted)
 
     async def find(self, id: str) -> SavedSelection | None:
         """The selection with this id, or None."""

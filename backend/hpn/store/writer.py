@@ -1,42 +1,46 @@
 """Group commit: while one transaction reaches the disk, those who come meanwhile gather for the next.
 
-Those of a group are worked out in a row, too: what the processor has at hand for one serves the next.
+Those of a group are worked out together, too, as those of a batch are.
 """
 
 import asyncio
 from collections.abc import Awaitable, Callable, Sequence
+from typing import Any
 
 from hpn.store.errors import StoreUnavailableError
 from hpn.store.inserting import Outcome
 from hpn.store.saved import Draft
 
 AT_ONCE = 64
-IN_A_ROW = 16
+TOGETHER = 16
 """Drafts that are made before others have a turn of the loop."""
 
 MAXIMUM_WAITING = 512
 PATIENCE = 10
 """Turns of the loop, of some 10 us when nothing else is to be done."""
 
-Make = Callable[[], Draft]
+Make = Callable[[Sequence[Any]], Sequence[Draft | Exception]]
+"""Gives a draft of each thing that is to be saved, or why there is none."""
+
 Commit = Callable[[Sequence[Draft]], Awaitable[Sequence[Outcome]]]
 
 
 class Writer:
     """Makes drafts in the order of their arrival and saves them, many to a transaction, one transaction at a time."""
 
-    def __init__(self, commit: Commit) -> None:
+    def __init__(self, make: Make, commit: Commit) -> None:
+        self._make = make
         self._commit = commit
-        self._waiting: list[tuple[Make, asyncio.Future[str]]] = []
+        self._waiting: list[tuple[Any, asyncio.Future[str]]] = []
         self._task: asyncio.Task[None] | None = None
         self._last = 0
 
-    async def save(self, make: Make) -> str:
-        """Id of what `make` gives, once it is durable. Who stops waiting does not keep it from being saved."""
+    async def save(self, wanted: Any) -> str:
+        """Id of what is made of `wanted`, once it is durable. Who stops waiting does not keep it from being saved."""
         if len(self._waiting) >= MAXIMUM_WAITING:
             raise StoreUnavailableError("too many selections are waiting to be saved")
         outcome: asyncio.Future[str] = asyncio.get_running_loop().create_future()
-        self._waiting.append((make, outcome))
+        self._waiting.append((wanted, outcome))
         if self._task is None or self._task.done():
             self._task = asyncio.create_task(self._run())
         return await outcome
@@ -50,7 +54,7 @@ class Writer:
         while self._waiting:
             await self._gather()
             batch, self._waiting = self._waiting[:AT_ONCE], self._waiting[AT_ONCE:]
-            drafts, futures = await _made(batch)
+            drafts, futures = await self._made(batch)
             if not drafts:
                 continue
             try:
@@ -76,19 +80,29 @@ class Writer:
             await asyncio.sleep(0)
         self._last = len(self._waiting)
 
+    async def _made(
+        self, batch: Sequence[tuple[Any, asyncio.Future[str]]]
+    ) -> tuple[list[Draft], list[asyncio.Future[str]]]:
+        """Drafts and who waits for each; who waits for one that can't be made is told why."""
+        drafts, futures = [], []
+        for start in range(0, len(batch), TOGETHER):
+            if start:
+                await asyncio.sleep(0)
+            wanted, waiting = zip(*batch[start : start + TOGETHER], strict=True)
+            for made, future in zip(self._made_together(wanted), waiting, strict=True):
+                if isinstance(made, Exception):
+                    _settle(future, made)
+                else:
+                    drafts.append(made)
+                    futures.append(future)
+        return drafts, futures
 
-async def _made(batch: Sequence[tuple[Make, asyncio.Future[str]]]) -> tuple[list[Draft], list[asyncio.Future[str]]]:
-    """Drafts and who waits for each; who waits for one that can't be made is told why."""
-    drafts, futures = [], []
-    for place, (make, future) in enumerate(batch):
-        if place and place % IN_A_ROW == 0:
-            await asyncio.sleep(0)
+    def _made_together(self, wanted: Sequence[Any]) -> Sequence[Draft | Exception]:
         try:
-            drafts.append(make())
-            futures.append(future)
+            return self._make(wanted)
         except Exception as error:
-            _settle(future, error)
-    return drafts, futures
+            # What fails in a way nobody has thought of must not fail its neighbours.
+            return [error] if len(wanted) == 1 else [made for one in wanted for made in self._made_together([one])]
 
 
 def _settle(future: asyncio.Future[str], outcome: Outcome) -> None:

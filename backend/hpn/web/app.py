@@ -2,6 +2,7 @@
 
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager, suppress
+from functools import partial
 from typing import Any
 
 from fastapi import FastAPI
@@ -90,7 +91,10 @@ def create_app(settings: Settings | None = None) -> Service:
     _compile(app.state.catalogue)
     app.state.metrics = metrics
     app.state.store = CountedStore(
-        settings.database_url.get_secret_value(), seconds=settings.database_seconds, metrics=metrics
+        settings.database_url.get_secret_value(),
+        seconds=settings.database_seconds,
+        make=partial(selections.drafts, app.state),
+        metrics=metrics,
     )
     problems.install(app, catalogue_pages.nowhere)
     app.add_exception_handler(StoreUnavailableError, selections.unavailable)

@@ -5,7 +5,7 @@ the client library's multiprocess mode, for which `serving.py` sets PROMETHEUS_M
 """
 
 import os
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
 
@@ -13,7 +13,8 @@ from prometheus_client import CollectorRegistry, Counter, Histogram, ProcessColl
 from prometheus_client.multiprocess import MultiProcessCollector
 
 from hpn.catalogue import Catalogue
-from hpn.store import Draft, KeyReusedError, KeySpentError, Page, SavedSelection, Store
+from hpn.store import KeyReusedError, KeySpentError, Page, SavedSelection, Store
+from hpn.store.writer import Make
 
 CONTENT_TYPE = "text/plain; version=0.0.4; charset=utf-8"
 FOLDER = "PROMETHEUS_MULTIPROC_DIR"
@@ -102,8 +103,8 @@ CALLERS_MISTAKES = (KeyReusedError, KeySpentError, ValueError)
 class CountedStore(Store):
     """A store whose operations are counted."""
 
-    def __init__(self, address: str, *, seconds: float, metrics: Metrics) -> None:
-        super().__init__(address, seconds=seconds)
+    def __init__(self, address: str, *, seconds: float, make: Make, metrics: Metrics) -> None:
+        super().__init__(address, seconds=seconds, make=make)
         self._metrics = metrics
 
     async def check(self) -> None:
@@ -111,10 +112,10 @@ class CountedStore(Store):
         with self._counted("check"):
             await super().check()
 
-    async def save(self, make: Callable[[], Draft]) -> str:
+    async def save(self, wanted: Any) -> str:
         """See Store."""
         with self._counted("save"):
-            return await super().save(make)
+            return await super().save(wanted)
 
     async def find(self, id: str) -> SavedSelection | None:
         """See Store."""

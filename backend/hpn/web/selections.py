@@ -1,5 +1,6 @@
 """Saved selections over REST: save, read with what differs today, list, delete."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Annotated, Any
 from urllib.parse import urlencode
@@ -17,7 +18,8 @@ from hpn.application import Application, InputError
 from hpn.candidates import foremost
 from hpn.catalogue import Catalogue
 from hpn.differences import Difference, FigureDifference, differences, figure_differences
-from hpn.selection import select
+from hpn.fleet import select_fleet
+from hpn.selection import Selection, select
 from hpn.store import Draft, KeyReusedError, KeySpentError, SavedSelection, Store, Summary
 from hpn.web import schemas
 from hpn.web.api import LONG_CYCLE
@@ -165,17 +167,25 @@ def url_of(id: str) -> str:
     return f"/selections/{id}"
 
 
+@dataclass(frozen=True, slots=True)
+class Wanted:
+    """An application that is to be saved with its result, under these labels and this idempotency key."""
+
+    application: Application
+    labels: Labels
+    key: str | None
+
+
 async def save(state: State, application: Application, labels: Labels, key: str | None = None) -> str:
-    """Select and save; the id under which it is durable. Problem 422 or 410 for a key that was used before."""
+    """Select and save; the id under which it is durable.
 
-    def make() -> Draft:
-        draft = _draft(application, labels, key, state.catalogue)
-        state.metrics.selection(draft.selected)
-        return draft
-
-    made = await run_in_threadpool(make) if len(application.duty_cycle.phases) > LONG_CYCLE else None
+    Raises InputError as `select` does, and Problem 422 or 410 for a key that was used before.
+    """
+    wanted: Wanted | Draft | InputError = Wanted(application, labels, key)
+    if len(application.duty_cycle.phases) > LONG_CYCLE:
+        (wanted,) = await run_in_threadpool(drafts, state, [wanted])
     try:
-        id: str = await state.store.save((lambda: made) if made else make)
+        id: str = await state.store.save(wanted)
     except KeyReusedError as error:
         raise Problem(422, str(error)) from None
     except KeySpentError as error:
@@ -183,18 +193,27 @@ async def save(state: State, application: Application, labels: Labels, key: str 
     return id
 
 
-def _draft(application: Application, labels: Labels, key: str | None, catalogue: Catalogue) -> Draft:
-    selection = select(application, catalogue)
+def drafts(state: State, wanted: Sequence[Wanted | Draft | InputError]) -> list[Draft | InputError]:
+    """A draft of each, or why there is none: worked out together, but for those that are there already."""
+    unmade = [each.application for each in wanted if isinstance(each, Wanted)]
+    made = iter(select_fleet(unmade, state.catalogue))
+    return [_draft(state, each, next(made)) if isinstance(each, Wanted) else each for each in wanted]
+
+
+def _draft(state: State, wanted: Wanted, selection: Selection | InputError) -> Draft | InputError:
+    if isinstance(selection, InputError):
+        return selection
+    state.metrics.selection(selection.selected)
     return Draft(
-        application=application.model_dump_json(exclude_unset=True).encode(),
-        result=selection.json(to_link(application)),
+        application=wanted.application.model_dump_json(exclude_unset=True).encode(),
+        result=selection.json(to_link(wanted.application)),
         engine_version=ENGINE_VERSION,
-        catalogue_version=catalogue.version,
+        catalogue_version=state.catalogue.version,
         selected=selection.selected,
-        title=labels.title,
-        reference=labels.reference,
-        idempotency_key=key,
-        catalogue=catalogue,
+        title=wanted.labels.title,
+        reference=wanted.labels.reference,
+        idempotency_key=wanted.key,
+        catalogue=state.catalogue,
     )
 
 
