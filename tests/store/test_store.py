@@ -2,7 +2,9 @@
 
 import asyncio
 import hashlib
+import sqlite3
 from collections.abc import Sequence
+from contextlib import closing
 from datetime import UTC, datetime, timedelta, tzinfo
 from pathlib import Path
 from typing import Any
@@ -11,6 +13,7 @@ import pytest
 from sqlalchemy import Connection, event, text
 
 from hpn.store import Draft, KeyReusedError, KeySpentError, Store, StoreError, StoreUnavailableError, inserting
+from hpn.store.transactions import CHANGES_IN_LOG
 from hpn.store.writer import MAXIMUM_WAITING
 from tests.store.drafts import draft
 
@@ -328,3 +331,34 @@ def test_an_address_that_cannot_be_used_says_what_can_without_repeating_secrets(
         Store(address)
 
     assert "secret" not in str(caught.value)
+
+
+async def test_sqlite_puts_its_log_in_place_between_transactions(tmp_path: Path) -> None:
+    """The file alone, without its log, then has what was saved; SQLite by itself would wait for much more."""
+    store = Store(f"sqlite:///{tmp_path}/store.sqlite3")
+    await asyncio.gather(*(store.save(draft()) for _ in range(CHANGES_IN_LOG)))
+    await store._transactions.run(lambda connection: None)  # begins when what was to be done before is done
+
+    (tmp_path / "alone.sqlite3").write_bytes((tmp_path / "store.sqlite3").read_bytes())
+
+    with closing(sqlite3.connect(tmp_path / "alone.sqlite3")) as alone:
+        assert alone.execute("SELECT count(*) FROM selections").fetchone() == (CHANGES_IN_LOG,)
+    await store.close()
+
+
+async def test_a_log_that_cannot_be_put_in_place_is_reported_and_saving_goes_on(
+    tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    def deny_pragmas(connection: Connection) -> None:
+        driver: Any = connection.connection.driver_connection
+        driver.set_authorizer(lambda action, *_: sqlite3.SQLITE_DENY if action == sqlite3.SQLITE_PRAGMA else 0)
+
+    store = Store(f"sqlite:///{tmp_path}/store.sqlite3")
+    await store.open()
+    await store._transactions.run(deny_pragmas)
+
+    ids = [await store.save(draft()) for _ in range(CHANGES_IN_LOG + 1)]
+
+    assert "log can't be put into its place" in caplog.text
+    assert [await store.find(id) is not None for id in ids] == [True] * len(ids)
+    await store.close()

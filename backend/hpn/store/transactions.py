@@ -1,12 +1,19 @@
 """Where the store's transactions run: on a thread of their own for SQLite, on the event loop for PostgreSQL."""
 
 import asyncio
+import logging
+import sqlite3
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
-from typing import Protocol, TypeVar
+from typing import Any, Protocol, TypeVar
 
 from sqlalchemy import Connection, Engine
 from sqlalchemy.ext.asyncio import AsyncEngine
+
+logger = logging.getLogger(__name__)
+
+CHANGES_IN_LOG = 64
+"""Changed rows after which the write-ahead log is put into its place, far fewer than SQLite waits for by itself."""
 
 T = TypeVar("T")
 Work = Callable[[Connection], T]
@@ -28,29 +35,45 @@ class OnThread:
     """One thread for all that a process writes: SQLite has one writer at a time anyway.
 
     A whole transaction costs one hand-over between threads. With a driver for the event loop each statement does, and
-    beside a busy loop every hand-over costs as much as the statement.
+    beside a busy loop every hand-over costs as much as the statement. The write-ahead log is put into its place between
+    transactions: SQLite would do it at the end of one, while everybody waits.
     """
 
     def __init__(self, engine: Engine) -> None:
         self.engine = engine
         self._thread: ThreadPoolExecutor | None = None
         self._connection: Connection | None = None
+        self._in_place = 0
 
     async def run(self, work: Work[T], *, one_statement: bool = False) -> T:
         """See Transactions. Work that has begun goes on when nobody waits for it any more."""
         if self._thread is None:
             self._thread = ThreadPoolExecutor(1, thread_name_prefix="hpn-store")
-        return await asyncio.get_running_loop().run_in_executor(self._thread, self._transact, work, one_statement)
+        outcome = asyncio.get_running_loop().run_in_executor(self._thread, self._transact, work, one_statement)
+        self._thread.submit(self._put_log_in_place)
+        return await outcome
 
     def _transact(self, work: Work[T], one_statement: bool) -> T:
         if self._connection is None:
-            self._connection = self.engine.connect()
+            self._connection, self._in_place = self.engine.connect(), 0
         try:
             with self._connection.execution_options(begins=not one_statement).begin():
                 return work(self._connection)
         except BaseException:
             self._disconnect()
             raise
+
+    def _put_log_in_place(self) -> None:
+        if self._connection is None:
+            return
+        driver: Any = self._connection.connection.driver_connection
+        if driver.total_changes - self._in_place < CHANGES_IN_LOG:
+            return
+        self._in_place = driver.total_changes
+        try:
+            driver.execute("PRAGMA wal_checkpoint(PASSIVE)").fetchall()
+        except sqlite3.Error as error:  # nothing is lost: it stays in the log, and SQLite tries again
+            logger.warning("the write-ahead log can't be put into its place: %s", error)
 
     def _disconnect(self) -> None:
         if self._connection is not None:
