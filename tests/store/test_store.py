@@ -9,10 +9,12 @@ from datetime import UTC, datetime, timedelta, tzinfo
 from pathlib import Path
 from typing import Any
 
+import brotli
 import pytest
 from sqlalchemy import Connection, event, text
 
 from hpn.store import Draft, KeyReusedError, KeySpentError, Store, StoreError, StoreUnavailableError, inserting
+from hpn.store.packing import unpacked
 from hpn.store.transactions import CHANGES_IN_LOG
 from hpn.store.writer import MAXIMUM_WAITING
 from tests.store.drafts import draft
@@ -55,6 +57,15 @@ async def test_ids_are_128_bits_that_differ(store: Store) -> None:
 
     assert len(set(ids)) == 50
     assert {len(id) for id in ids} == {22}  # 22 characters of 6 bits
+
+
+AS_IT_STANDS = (1 << 20 | 2 << 4).to_bytes(3, "little") + b"xyz" + b"\x03"
+"""A brotli stream with its content as it stands, RFC 7932, 9.2: so earlier versions kept short replies."""
+
+
+@pytest.mark.parametrize("stream", [AS_IT_STANDS, brotli.compress(b"xyz"), brotli.compress(b"xyz", quality=0)])
+def test_what_earlier_versions_packed_is_read(stream: bytes) -> None:
+    assert unpacked(stream) == b"xyz"
 
 
 @pytest.mark.parametrize("size", [0, 1, 2, 255, 16_383, 16_384, 16_385, 100_000])

@@ -38,7 +38,7 @@ def row_of(draft: Draft) -> Row:
         "engine_version": draft.engine_version,
         "catalogue_version": draft.catalogue_version,
         "application": draft.application.decode(),
-        "result_brotli": packed(draft.result),
+        "result_packed": packed(draft.result),
         "idempotency_key": draft.idempotency_key,
         "digest": draft.digest if draft.idempotency_key else None,
     }

@@ -92,13 +92,13 @@ class Store:
         """The selection with this id, or None."""
         if not ID.fullmatch(id):
             return None
-        columns = [*SUMMARY, selections.c.application, selections.c.result_brotli]
+        columns = [*SUMMARY, selections.c.application, selections.c.result_packed]
         async with self._reading() as connection:
             row = (await connection.execute(select(*columns).where(selections.c.id == id))).one_or_none()
         if row is None:
             return None
         fields = row._asdict()
-        application, result = fields.pop("application"), fields.pop("result_brotli")
+        application, result = fields.pop("application"), fields.pop("result_packed")
         return SavedSelection(**fields, application=application.encode(), result=unpacked(result))
 
     async def catalogue(self, version: str) -> Catalogue | None:

@@ -35,8 +35,7 @@ selections = Table(
     Column("engine_version", Text, nullable=False),
     Column("catalogue_version", Text, nullable=False),
     Column("application", Text, nullable=False),
-    # The reply is some 70 kB of repetitive JSON; packed it is a ninth of that.
-    Column("result_brotli", LargeBinary, nullable=False),
+    Column("result_packed", LargeBinary, nullable=False),
     Column("idempotency_key", Text),
     Column("digest", String(64)),
     Index("selections_created", "created", "id"),
