@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from tests.benchmarks.server import Server, serving
+from tests.benchmarks.server import SERVICE, Server, serving
 
 COUNTS = (1_000, 10_000, 100_000)
 LINES_AT_ONCE = 100
@@ -62,7 +62,7 @@ def stream(server: Server, count: int) -> dict[str, Any]:
 
 def measure() -> dict[str, Any]:
     """Peak memory by number of axes, after a first batch that warms up what is loaded once."""
-    with serving("hpn.web.app:create_app") as server:
+    with serving(SERVICE) as server:
         stream(server, COUNTS[0])
         rows = [stream(server, count) for count in COUNTS]
     return {

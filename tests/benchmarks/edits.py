@@ -6,7 +6,7 @@ from typing import Any
 
 from playwright.sync_api import Page, sync_playwright
 
-from tests.benchmarks.server import serving
+from tests.benchmarks.server import SERVICE, serving
 
 EDITS = 200
 DEBOUNCE_MS = 120
@@ -28,7 +28,7 @@ SERVER = """() => performance.getEntriesByType("resource").filter((entry) => ent
 def measure() -> dict[str, Any]:
     """Milliseconds over 200 edits, with five candidates and with every gear."""
     path = next(filter(None, map(shutil.which, BROWSERS)), None)
-    with serving("hpn.web.serving:served_app") as server, sync_playwright() as driver:
+    with serving(SERVICE) as server, sync_playwright() as driver:
         browser = driver.chromium.launch(executable_path=path, args=[OFFLINE])
         address = f"http://127.0.0.1:{server.port}"
         try:

@@ -5,7 +5,7 @@ import statistics
 import time
 from typing import Any
 
-from tests.benchmarks.server import JSON, Server, serving
+from tests.benchmarks.server import JSON, SERVICE, Server, serving
 
 REQUESTS = 400
 ROUNDS = 7
@@ -32,7 +32,7 @@ def measure() -> dict[str, Any]:
     with (
         serving("tests.benchmarks.floor:create_floor") as five,
         serving("tests.benchmarks.floor:create_full_floor") as full,
-        serving("hpn.web.app:create_app") as service,
+        serving(SERVICE) as service,
     ):
         return {
             "worked_example_5_gears": _compare(five, service, [5]),

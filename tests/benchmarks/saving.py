@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from tests.benchmarks.reply import body
-from tests.benchmarks.server import Server, serving
+from tests.benchmarks.server import SERVICE, Server, serving
 
 CLIENTS = 16
 REQUESTS = 800
@@ -19,7 +19,7 @@ def measure() -> dict[str, Any]:
     """Time and processor time per request, saving over calculating, for the worked example and for every gear."""
     with tempfile.TemporaryDirectory() as folder:
         environment = {"HPN_DATABASE_URL": f"sqlite:///{folder}/store.sqlite3", "HPN_WRITING_RATE": "off"}
-        with serving("hpn.web.app:create_app", environment | {"HPN_CALCULATOR_RATE": "off"}) as server:
+        with serving(SERVICE, environment | {"HPN_CALCULATOR_RATE": "off"}) as server:
             return {
                 "worked_example_5_gears": _compare(server, [5]),
                 "every_gear_64": _compare(server, None),

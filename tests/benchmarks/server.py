@@ -10,6 +10,12 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 
+import uvicorn
+
+from hpn.web.serving import options
+from hpn.web.settings import Settings
+
+SERVICE = "hpn.web.serving:served_app"
 JSON = {"Content-Type": "application/json"}
 
 
@@ -33,14 +39,13 @@ class Server:
 
 @contextmanager
 def serving(factory: str, environment: Mapping[str, str] | None = None) -> Iterator[Server]:
-    """Serve an application factory as `hpn serve` does, on a free port of loopback, until the block ends."""
+    """Serve an application factory as `hpn serve` serves its own, on a free port of loopback, until the block ends."""
     with socket.socket() as free:
         free.bind(("127.0.0.1", 0))
         port = free.getsockname()[1]
-    command = [sys.executable, "-m", "uvicorn", "--factory", factory, "--port", str(port), "--log-level", "warning"]
     process = subprocess.Popen(
-        [*command, "--no-access-log", "--http", "hpn.web.protocol:BoundedProtocol"],
-        env={**os.environ, "HPN_LOG_LEVEL": "warning", **(environment or {})},
+        [sys.executable, "-m", "tests.benchmarks.server", factory],
+        env={**os.environ, "HPN_PORT": str(port), "HPN_LOG_LEVEL": "warning", **(environment or {})},
     )
     try:
         server = Server(process.pid, port)
@@ -61,3 +66,7 @@ def _await_start(server: Server, process: "subprocess.Popen[bytes]") -> None:
         except OSError:
             time.sleep(0.1)
     raise RuntimeError("the server did not start")
+
+
+if __name__ == "__main__":
+    uvicorn.run(sys.argv[1], log_level="warning", **options(Settings()))
