@@ -33,11 +33,13 @@ PlaceArray = NDArray[np.int32]
 def candidate_rows(evaluation: Evaluation, ranking: Ranking, index: int) -> memoryview:
     """CandidateRows of application `index`, best first, as JSON."""
     template, words = _template(evaluation.asked(index)), _words(evaluation.gears)
-    distinct, places, chosen = _fill(
+    count = len(evaluation.gears.rows)
+    # Compiled code fills what it is given: to return an array costs ten times as much as to make one here.
+    distinct, places = np.empty(count * template.numbers), np.empty((count, template.numbers), np.int32)
+    chosen = np.empty((count, template.words), np.int32)
+    found = _fill(
         index,
         template.checks,
-        template.numbers,
-        template.words,
         evaluation.duty.wishes,
         table_of(evaluation.gears),
         _curved(evaluation.gears, evaluation.catalogue),
@@ -48,10 +50,13 @@ def candidate_rows(evaluation: Evaluation, ranking: Ranking, index: int) -> memo
         ranking.utilisation,
         ranking.governing,
         ranking.order,
+        distinct,
+        places,
+        chosen,
     )
-    digits = _padded(orjson.dumps(distinct, option=orjson.OPT_SERIALIZE_NUMPY))
-    longest = template.longest + words.longest * template.words
-    return _write(
+    digits = _padded(orjson.dumps(distinct[:found], option=orjson.OPT_SERIALIZE_NUMPY))
+    rows = np.empty(count * (template.longest + words.longest * template.words) + 2 + _MOVE, np.uint8)
+    end = _write(
         template.text,
         template.ends,
         template.takes,
@@ -61,8 +66,9 @@ def candidate_rows(evaluation: Evaluation, ranking: Ranking, index: int) -> memo
         digits,
         places,
         chosen,
-        longest,
-    ).data
+        rows,
+    )
+    return rows[:end].data
 
 
 @lru_cache(maxsize=256)
@@ -189,8 +195,6 @@ def _template(checks: tuple[int, ...]) -> _Template:
 def _fill(
     index: int,
     checks: NDArray[np.int64],
-    numbers_taken: int,
-    words_taken: int,
     wishes: FloatArray,
     gears: FloatArray,
     curved: NDArray[np.bool_],
@@ -201,13 +205,17 @@ def _fill(
     utilisation: FloatArray,
     governing: NDArray[np.int8],
     order: NDArray[np.intp],
-) -> tuple[FloatArray, PlaceArray, PlaceArray]:
-    """What fills the gaps of every candidate, best first, in the order of CandidateRow.
+    distinct: FloatArray,
+    places: PlaceArray,
+    words: PlaceArray,
+) -> int:
+    """Find what fills the gaps of every candidate, best first, in the order of CandidateRow.
 
-    Its distinct numbers, where among them each number is, shape (G, numbers), and its words, shape (G, words).
+    `distinct` gets the distinct numbers, `places` which of them each number is, shape (G, numbers), and `words` which
+    words are taken, shape (G, words). Gives how many distinct numbers there are.
     """
     count = gears.shape[0]
-    numbers, words = np.empty((count, numbers_taken)), np.empty((count, words_taken), np.int32)
+    numbers = np.empty(places.shape)
     for row in range(count):
         g = order[index, row]
         verdict, used, governs = verdicts[index, g], utilisation[index, g], governing[index, g]
@@ -224,8 +232,7 @@ def _fill(
         words[row, 4] = _OWN_WORD + count + g if verdict == UNRATED else _reason(status, index, g, used, governs)
         for place in range(checks.size):
             words[row, _STATES_AT + place] = _STATUS_WORD + status[index, g, checks[place]]
-    distinct, places = _each_once(numbers)
-    return distinct, places, words
+    return _each_once(numbers, distinct, places)
 
 
 @compiled
@@ -263,9 +270,8 @@ def _reason(status: NDArray[np.int8], n: int, g: int, used: float, governing: in
 
 
 @compiled
-def _each_once(numbers: FloatArray) -> tuple[FloatArray, PlaceArray]:
-    """Sort out numbers that recur, as most do: the distinct ones, and where each is among them."""
-    distinct, places = np.empty(numbers.size), np.empty(numbers.shape, np.int32)
+def _each_once(numbers: FloatArray, distinct: FloatArray, places: PlaceArray) -> int:
+    """Sort out numbers that recur, as most do: the distinct ones, where each is among them, and how many there are."""
     bits, known, found, size, shift = numbers.view(np.uint64), distinct.view(np.uint64), 0, 1, 64
     while size < 2 * numbers.size:
         size, shift = 2 * size, shift - 1
@@ -279,7 +285,7 @@ def _each_once(numbers: FloatArray) -> tuple[FloatArray, PlaceArray]:
                 known[found], slots[slot] = bits[row, gap], found
                 found += 1
             places[row, gap] = slots[slot]
-    return distinct[:found], places
+    return found
 
 
 _SPREAD = np.uint64(0x9E3779B97F4A7C15)
@@ -297,10 +303,10 @@ def _write(
     digits: ByteArray,
     places: PlaceArray,
     chosen: PlaceArray,
-    longest: int,
-) -> ByteArray:
-    """The list of candidates, none of them longer than `longest`, of distinct numbers as `digits`."""
-    rows, starts, at = np.empty(chosen.shape[0] * longest + 2 + _MOVE, np.uint8), _starts(digits), 0
+    rows: ByteArray,
+) -> int:
+    """Write the list of candidates into `rows`, of distinct numbers as `digits`; gives where it ends."""
+    starts, at = _starts(digits), 0
     for row in range(chosen.shape[0]):
         word, number = 0, 0
         for gap in range(takes.size):
@@ -320,7 +326,7 @@ def _write(
                 at = _copy(words, inside + 1, end, rows, at)
         at = _copy(text, ends[-2], ends[-1], rows, at)
     rows[0], rows[at] = ord("["), ord("]")  # each row brings the comma before it
-    return rows[: at + 1]
+    return at + 1
 
 
 @compiled

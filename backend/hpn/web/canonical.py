@@ -63,11 +63,14 @@ def _other_pairs(application: Application) -> list[str]:
         if part is None:
             continue
         values = part.__dict__
-        for given in part.model_fields_set:
+        for given in part.__pydantic_fields_set__:
             field = fields.get(given)
-            if field is not None and (value := values[given]) != field.default:
-                symbol = field.symbol
-                pairs += [(field.place, symbol.name, item) for item in (value if symbol.many else (value,))]
+            if field is None or (value := values[given]) == field.default:
+                continue
+            if field.symbol.many:
+                pairs += [(field.place, field.symbol.name, item) for item in value]
+            else:
+                pairs.append((field.place, field.symbol.name, value))
     pairs.sort(key=itemgetter(0))
     if application.output_load is not None and application.output_load == _EMPTY_LOAD:
         pairs.append((0, "fw", 1))  # a load case without a figure of its own must still be seen to exist
