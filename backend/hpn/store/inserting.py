@@ -3,12 +3,14 @@
 import hashlib
 import secrets
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from datetime import UTC, datetime
 from functools import lru_cache
+from itertools import chain
 from typing import Any
 
 import brotli
-from sqlalchemy import Connection, bindparam, delete, select, text
+from sqlalchemy import Connection, Dialect, bindparam, delete, select, text
 
 from hpn.catalogue import Catalogue
 from hpn.catalogue_copy import copy_of
@@ -27,11 +29,34 @@ SPEND = text("INSERT INTO spent_keys (key_sha256, deleted) VALUES (:hash, :momen
 KEEP = text("INSERT INTO catalogues (version, content_brotli) VALUES (:version, :content) ON CONFLICT DO NOTHING")
 
 
-def row_of(draft: Draft) -> Row:
+@dataclass(frozen=True, slots=True)
+class Insertion:
+    """Rows of new selections, and the one statement that inserts them all, with its values."""
+
+    rows: Sequence[Row]
+    statement: str
+    values: tuple[Any, ...]
+
+
+def insertion_of(drafts: Sequence[Draft], dialect: Dialect) -> Insertion:
+    """How to insert drafts: past SQLAlchemy's own statement, which takes longer to make than to run.
+
+    Nothing of it is left to the transaction, which may run on a thread of its own, where all is cold.
+    """
+    # As the dialect writes it: the driver's own way differs from it, and moments are compared as they are written.
+    written: Any = UtcTime().dialect_impl(dialect).bind_processor(dialect) or (lambda moment: moment)
+    rows = [_row_of(draft, written(datetime.now(UTC))) for draft in drafts]
+    # In one order: two processes with the same two keys would otherwise wait for each other.
+    ordered = sorted(rows, key=lambda row: row["idempotency_key"] or "")
+    statement = _statement(len(rows), "?" if dialect.paramstyle == "qmark" else "%s")
+    return Insertion(rows, statement, tuple(chain.from_iterable(row.values() for row in ordered)))
+
+
+def _row_of(draft: Draft, created: Any) -> Row:
     """Row of a new selection, under a new id; in the order of the columns."""
     return {
         "id": secrets.token_urlsafe(16),
-        "created": datetime.now(UTC),
+        "created": created,
         "title": draft.title,
         "reference": draft.reference,
         "selected": draft.selected,
@@ -44,15 +69,22 @@ def row_of(draft: Draft) -> Row:
     }
 
 
-def insert(connection: Connection, rows: Sequence[Row], catalogues: Mapping[str, Catalogue]) -> list[Outcome]:
+@lru_cache(maxsize=128)
+def _statement(count: int, mark: str) -> str:
+    rows = ", ".join([f"({', '.join([mark] * len(COLUMNS))})"] * count)
+    return f"INSERT INTO selections ({', '.join(COLUMNS)}) VALUES {rows} ON CONFLICT (idempotency_key) DO NOTHING"
+
+
+def insert(connection: Connection, insertion: Insertion, catalogues: Mapping[str, Catalogue]) -> list[Outcome]:
     """Insert selections and the catalogues, by version, that may not be there yet.
 
     For each selection the id under which it is saved, or why it is not.
     """
-    # Always in the same order: two processes with the same two keys would otherwise wait for each other.
+    # In one order, too.
     for version in sorted(catalogues):
         connection.execute(KEEP, {"version": version, "content": brotli.compress(copy_of(catalogues[version]))})
-    _insert_rows(connection, sorted(rows, key=lambda row: row["idempotency_key"] or ""))
+    connection.exec_driver_sql(insertion.statement, insertion.values)
+    rows = insertion.rows
     keys = {row["idempotency_key"] for row in rows} - {None}
     if keys:
         # After the insertion, which has waited for whoever else had one of these keys in hand.
@@ -68,21 +100,6 @@ def remove(connection: Connection, id: str) -> bool:
     if gone is not None and gone.idempotency_key is not None:
         connection.execute(SPEND, {"hash": _hash(gone.idempotency_key), "moment": datetime.now(UTC)})
     return gone is not None
-
-
-def _insert_rows(connection: Connection, rows: Sequence[Row]) -> None:
-    """One statement for all rows, past SQLAlchemy's own, which takes longer to make than to run."""
-    dialect = connection.dialect
-    # As the dialect writes it: the driver's own way differs from it, and moments are compared as they are written.
-    written: Any = UtcTime().dialect_impl(dialect).bind_processor(dialect) or (lambda moment: moment)
-    values = [value for row in rows for value in (row | {"created": written(row["created"])}).values()]
-    connection.exec_driver_sql(_insertion(len(rows), "?" if dialect.paramstyle == "qmark" else "%s"), tuple(values))
-
-
-@lru_cache(maxsize=128)
-def _insertion(count: int, mark: str) -> str:
-    rows = ", ".join([f"({', '.join([mark] * len(COLUMNS))})"] * count)
-    return f"INSERT INTO selections ({', '.join(COLUMNS)}) VALUES {rows} ON CONFLICT (idempotency_key) DO NOTHING"
 
 
 def _hash(key: str) -> str:

@@ -18,7 +18,7 @@ from hpn.catalogue import Catalogue
 from hpn.catalogue_copy import UnreadableCopyError, read_copy
 from hpn.store.engine import make_engine, make_transactions
 from hpn.store.errors import NewerDatabaseError, StoreUnavailableError
-from hpn.store.inserting import Outcome, insert, remove, row_of
+from hpn.store.inserting import Outcome, insert, insertion_of, remove
 from hpn.store.packing import unpacked
 from hpn.store.saved import Draft, Page, SavedSelection, Summary
 from hpn.store.tables import catalogues, selections
@@ -149,14 +149,14 @@ class Store:
 
     async def _commit(self, drafts: Sequence[Draft]) -> list[Outcome]:
         """Save drafts in one transaction: an id for each, or why it has none."""
-        rows = [row_of(draft) for draft in drafts]
+        insertion = insertion_of(drafts, self._engine.dialect)
         used = {draft.catalogue_version: draft.catalogue for draft in drafts}
         new = {version: book for version, book in used.items() if book is not None and version not in self._kept}
         try:
             async with self._reachable():
                 outcomes = await self._transactions.run(
-                    lambda connection: insert(connection, rows, new),
-                    one_statement=not new and not any(row["idempotency_key"] for row in rows),
+                    lambda connection: insert(connection, insertion, new),
+                    one_statement=not new and not any(draft.idempotency_key for draft in drafts),
                 )
         except StoreUnavailableError as error:
             self._kept.clear()  # the database that comes back may be one from a backup

@@ -5,7 +5,7 @@ import logging
 import sqlite3
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
-from typing import Any, Protocol, TypeVar
+from typing import Protocol, TypeVar, cast
 
 from sqlalchemy import Connection, Engine
 from sqlalchemy.ext.asyncio import AsyncEngine
@@ -43,35 +43,40 @@ class OnThread:
         self.engine = engine
         self._thread: ThreadPoolExecutor | None = None
         self._connection: Connection | None = None
-        self._in_place = 0
+        self._changes = self._counted = 0
 
     async def run(self, work: Work[T], *, one_statement: bool = False) -> T:
         """See Transactions. Work that has begun goes on when nobody waits for it any more."""
         if self._thread is None:
             self._thread = ThreadPoolExecutor(1, thread_name_prefix="hpn-store")
-        outcome = asyncio.get_running_loop().run_in_executor(self._thread, self._transact, work, one_statement)
-        self._thread.submit(self._put_log_in_place)
-        return await outcome
+        result = await asyncio.get_running_loop().run_in_executor(self._thread, self._transact, work, one_statement)
+        if self._changes >= CHANGES_IN_LOG and self._thread is not None:
+            self._thread.submit(self._put_log_in_place)
+        return result
 
     def _transact(self, work: Work[T], one_statement: bool) -> T:
         if self._connection is None:
-            self._connection, self._in_place = self.engine.connect(), 0
+            self._connection, self._counted = self.engine.connect(), 0
         try:
             with self._connection.execution_options(begins=not one_statement).begin():
-                return work(self._connection)
+                result = work(self._connection)
         except BaseException:
             self._disconnect()
             raise
+        self._changes = self._driver.total_changes - self._counted
+        return result
+
+    @property
+    def _driver(self) -> sqlite3.Connection:
+        assert self._connection is not None
+        return cast(sqlite3.Connection, self._connection.connection.driver_connection)
 
     def _put_log_in_place(self) -> None:
         if self._connection is None:
             return
-        driver: Any = self._connection.connection.driver_connection
-        if driver.total_changes - self._in_place < CHANGES_IN_LOG:
-            return
-        self._in_place = driver.total_changes
+        self._changes, self._counted = 0, self._driver.total_changes
         try:
-            driver.execute("PRAGMA wal_checkpoint(PASSIVE)").fetchall()
+            self._driver.execute("PRAGMA wal_checkpoint(PASSIVE)").fetchall()
         except sqlite3.Error as error:  # nothing is lost: it stays in the log, and SQLite tries again
             logger.warning("the write-ahead log can't be put into its place: %s", error)
 
