@@ -12,6 +12,11 @@ from hpn.selection import Selection, candidates_of
 
 CHUNK_CYCLES = 256
 CHUNK_PHASES = 100_000
+LIKE = 2
+"""How many times longer than the shortest cycle of a chunk the longest may be."""
+
+SHORT_CYCLE = 16
+"""Phases up to which a cycle counts as long as this."""
 
 
 def select_fleet(applications: Sequence[Application], catalogue: Catalogue) -> list[Selection | InputError]:
@@ -38,10 +43,14 @@ def select_fleet(applications: Sequence[Application], catalogue: Catalogue) -> l
 
 def _chunks(indices: list[int], applications: Sequence[Application]) -> Iterable[list[int]]:
     """Indices in chunks of cycles of like length, since every cycle of a chunk is padded to its longest."""
+
+    def phases(index: int) -> int:
+        return len(applications[index].duty_cycle.phases)
+
     chunk: list[int] = []
-    for index in sorted(indices, key=lambda index: len(applications[index].duty_cycle.phases)):
-        phases = len(applications[index].duty_cycle.phases)
-        if chunk and (len(chunk) >= CHUNK_CYCLES or (len(chunk) + 1) * phases > CHUNK_PHASES):
+    for index in sorted(indices, key=phases):
+        full = len(chunk) >= CHUNK_CYCLES or (len(chunk) + 1) * phases(index) > CHUNK_PHASES
+        if chunk and (full or phases(index) > LIKE * max(phases(chunk[0]), SHORT_CYCLE)):
             yield chunk
             chunk = []
         chunk.append(index)

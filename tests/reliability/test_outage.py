@@ -14,9 +14,10 @@ import pytest
 from starlette.testclient import TestClient
 
 from hpn.store import Store, StoreUnavailableError
+from hpn.web.api import LONG_CYCLE
 from hpn.web.app import create_app
 from hpn.web.settings import Settings
-from tests.build import worked_example
+from tests.build import cycle, phase, worked_example
 from tests.databases import PostgreSQL
 from tests.store.drafts import draft
 
@@ -139,6 +140,23 @@ def test_a_file_that_cannot_be_opened_keeps_only_the_store_from_working(tmp_path
         assert_unavailable(client.post("/api/v1/selections", json=SAVE))
         assert_unavailable(client.get("/readyz"))
         assert client.post("/api/v1/select", json=SAVE["application"]).status_code == 200
+
+
+@pytest.mark.parametrize("phases", [1, LONG_CYCLE + 1])
+def test_what_has_to_be_refused_does_not_wait_behind_who_is_stuck(outage: tuple[str, Outage], phases: int) -> None:
+    database, broken = outage
+    wrong = cycle(*[phase(1, 1)] * phases, requirements={"ratios": [6]})
+    with client_of(database) as client:
+        assert client.post("/api/v1/selections", json=SAVE).status_code == 201
+        with broken():
+            stuck = threading.Thread(target=client.post, args=("/api/v1/selections",), kwargs={"json": SAVE})
+            stuck.start()
+            time.sleep(WAIT_S / 5)
+            answer = client.post("/api/v1/selections", json={"application": wrong})
+            stuck.join()
+
+    assert answer.status_code == 422
+    assert answer.json()["errors"][0]["pointer"] == "/application/requirements/ratios/0"
 
 
 def test_many_savers_wait_for_a_stuck_database_only_once(outage: tuple[str, Outage]) -> None:

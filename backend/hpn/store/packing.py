@@ -11,7 +11,7 @@ SHORT_BYTES = 16_384
 _FAST = zstandard.ZstdCompressionParameters.from_level(-1, min_match=7)
 """What recurs in a reply is long, and shorter matches are not worth looking for."""
 _AS_IT_IS = -1000
-"""A level at which zstd finds nothing to pack."""
+"""A level at which zstd looks for next to nothing."""
 
 
 class _Contexts(threading.local):
@@ -27,7 +27,7 @@ _contexts = _Contexts()
 
 
 def packed(content: bytes) -> bytes:
-    """A zstd frame, in which a short reply stands as it is."""
+    """A zstd frame, in which a short reply stands almost as it is."""
     return (_contexts.packer if len(content) > SHORT_BYTES else _contexts.framer).compress(content)
 
 

@@ -74,8 +74,8 @@ class OnThread:
     def _put_log_in_place(self) -> None:
         if self._connection is None:
             return
-        self._changes, self._counted = 0, self._driver.total_changes
         try:
+            self._changes, self._counted = 0, self._driver.total_changes
             self._driver.execute("PRAGMA wal_checkpoint(PASSIVE)").fetchall()
         except sqlite3.Error as error:  # nothing is lost: it stays in the log, and SQLite tries again
             logger.warning("the write-ahead log can't be put into its place: %s", error)

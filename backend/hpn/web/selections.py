@@ -19,7 +19,7 @@ from hpn.candidates import foremost
 from hpn.catalogue import Catalogue
 from hpn.differences import Difference, FigureDifference, differences, figure_differences
 from hpn.fleet import select_fleet
-from hpn.selection import Selection, select
+from hpn.selection import Selection, candidates_of, select
 from hpn.store import Draft, KeyReusedError, KeySpentError, SavedSelection, Store, Summary
 from hpn.web import schemas
 from hpn.web.api import LONG_CYCLE
@@ -181,6 +181,7 @@ async def save(state: State, application: Application, labels: Labels, key: str 
 
     Raises InputError as `select` does, and Problem 422 or 410 for a key that was used before.
     """
+    candidates_of(application, state.catalogue)  # what has to be refused need not wait for the database
     wanted: Wanted | Draft | InputError = Wanted(application, labels, key)
     if len(application.duty_cycle.phases) > LONG_CYCLE:
         (wanted,) = await run_in_threadpool(drafts, state, [wanted])
@@ -195,15 +196,19 @@ async def save(state: State, application: Application, labels: Labels, key: str 
 
 def drafts(state: State, wanted: Sequence[Wanted | Draft | InputError]) -> list[Draft | InputError]:
     """A draft of each, or why there is none: worked out together, but for those that are there already."""
-    unmade = [each.application for each in wanted if isinstance(each, Wanted)]
-    made = iter(select_fleet(unmade, state.catalogue))
-    return [_draft(state, each, next(made)) if isinstance(each, Wanted) else each for each in wanted]
+    unmade = [each for each in wanted if isinstance(each, Wanted)]
+    selections = select_fleet([each.application for each in unmade], state.catalogue)
+    made = [_draft(state, each, selection) for each, selection in zip(unmade, selections, strict=True)]
+    for draft in made:
+        if isinstance(draft, Draft):
+            state.metrics.selection(draft.selected)
+    new = iter(made)
+    return [next(new) if isinstance(each, Wanted) else each for each in wanted]
 
 
 def _draft(state: State, wanted: Wanted, selection: Selection | InputError) -> Draft | InputError:
     if isinstance(selection, InputError):
         return selection
-    state.metrics.selection(selection.selected)
     return Draft(
         application=wanted.application.model_dump_json(exclude_unset=True).encode(),
         result=selection.json(to_link(wanted.application)),
