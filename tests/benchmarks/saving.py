@@ -12,7 +12,7 @@ from tests.benchmarks.server import SERVICE, Server, serving
 
 CLIENTS = 16
 REQUESTS = 800
-ROUNDS = 5
+ROUNDS = 9
 
 
 def measure() -> dict[str, Any]:

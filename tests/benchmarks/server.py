@@ -10,11 +10,6 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 
-import uvicorn
-
-from hpn.web.serving import options
-from hpn.web.settings import Settings
-
 SERVICE = "hpn.web.serving:served_app"
 JSON = {"Content-Type": "application/json"}
 
@@ -44,7 +39,7 @@ def serving(factory: str, environment: Mapping[str, str] | None = None) -> Itera
         free.bind(("127.0.0.1", 0))
         port = free.getsockname()[1]
     process = subprocess.Popen(
-        [sys.executable, "-m", "tests.benchmarks.server", factory],
+        [sys.executable, "-m", "tests.benchmarks.serve", factory],
         env={**os.environ, "HPN_PORT": str(port), "HPN_LOG_LEVEL": "warning", **(environment or {})},
     )
     try:
@@ -66,7 +61,3 @@ def _await_start(server: Server, process: "subprocess.Popen[bytes]") -> None:
         except OSError:
             time.sleep(0.1)
     raise RuntimeError("the server did not start")
-
-
-if __name__ == "__main__":
-    uvicorn.run(sys.argv[1], log_level="warning", **options(Settings()))
