@@ -7,10 +7,13 @@ from starlette.requests import Request
 from starlette.responses import Response
 
 from hpn.web.problems import Problem
+from hpn.web.requests import header
 from hpn.web.schemas import JSONBytes
 
 IDEMPOTENCY_KEY = re.compile(r'"?([\x21\x23-\x7e]{1,200})"?')
 """Visible ASCII, with or without the quotes of a structured field."""
+
+PREFERRED_RETURN = re.compile(r"(?:^|[,;\s])return\s*=\s*\"?(minimal|representation)\b", re.I)
 
 
 def etag_of(body: bytes) -> str:
@@ -46,7 +49,7 @@ def _lists(header: str, etag: str, *, weakly: bool) -> bool:
 
 def idempotency_key(request: Request) -> str | None:
     """Key by which a repeated request of the same caller is known, or None; Problem 400 for one that can't be a key."""
-    given = request.headers.get("idempotency-key")
+    given = header(request, b"idempotency-key")
     if given is None:
         return None
     match = IDEMPOTENCY_KEY.fullmatch(given.strip())
@@ -57,7 +60,5 @@ def idempotency_key(request: Request) -> str | None:
 
 def preferred_return(request: Request) -> str | None:
     """What `Prefer: return=…` asks for: minimal, representation, or None."""
-    match = re.search(
-        r"(?:^|[,;\s])return\s*=\s*\"?(minimal|representation)\b", request.headers.get("prefer", ""), re.I
-    )
+    match = PREFERRED_RETURN.search(header(request, b"prefer") or "")
     return match[1].lower() if match else None

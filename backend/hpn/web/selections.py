@@ -194,6 +194,10 @@ async def save(state: State, application: Application, labels: Labels, key: str 
     return id
 
 
+_AS_GIVEN = Application.__pydantic_serializer__.to_json
+"""What `model_dump_json` calls, without a string in between."""
+
+
 def drafts(state: State, wanted: Sequence[Wanted | Draft | InputError]) -> list[Draft | InputError]:
     """A draft of each, or why there is none: worked out together, but for those that are there already."""
     unmade = [each for each in wanted if isinstance(each, Wanted)]
@@ -210,7 +214,7 @@ def _draft(state: State, wanted: Wanted, selection: Selection | InputError) -> D
     if isinstance(selection, InputError):
         return selection
     return Draft(
-        application=wanted.application.model_dump_json(exclude_unset=True).encode(),
+        application=_AS_GIVEN(wanted.application, exclude_unset=True),
         result=selection.json(to_link(wanted.application)),
         engine_version=ENGINE_VERSION,
         catalogue_version=state.catalogue.version,
