@@ -8,8 +8,8 @@ import zstandard
 SHORT_BYTES = 16_384
 """Up to here packing costs more than writing what it would save."""
 
-_FAST = zstandard.ZstdCompressionParameters.from_level(-1, min_match=7)
-"""What recurs in a reply is long, and shorter matches are not worth looking for."""
+_FAST = zstandard.ZstdCompressionParameters.from_level(-1, min_match=7, hash_log=12)
+"""What recurs in a reply is long: shorter matches are not worth looking for, nor a table beyond the first cache."""
 _AS_IT_IS = -1000
 """A level at which zstd looks for next to nothing."""
 
