@@ -106,7 +106,8 @@ class Evaluation:
     """Checks of N applications on G gears.
 
     `terms` (N, G, checks, 3) are demand, limit and utilisation, the last infinite where a check fails without one;
-    `status` (N, G, checks) holds PASS, FAIL, NOT_RATED or ABSENT; `figures` (N, G, 9) is what they derive from.
+    `status` (N, G, checks) holds PASS, FAIL, NOT_RATED or ABSENT; `figures` (N, G, 9) is what they derive from, and
+    `unlimited` (N, 9) whether a figure is infinite on any gear.
     """
 
     duty: Duty
@@ -115,6 +116,7 @@ class Evaluation:
     terms: FloatArray
     status: ByteArray
     figures: FloatArray
+    unlimited: NDArray[np.bool_]
 
     def asked(self, index: int) -> tuple[int, ...]:
         """Checks that application `index` asks for."""
@@ -149,10 +151,6 @@ class Evaluation:
         figure: FloatArray = self.figures[:, :, place]
         return figure
 
-    def is_unlimited(self, figure: int, index: int) -> bool:
-        """Whether a figure of application `index` is infinite on any gear."""
-        return bool(_any_infinite(self.figures, figure, index))
-
     def bearing_life_factor(self, index: int) -> float:
         """Load factor k that speed and required life of application `index` allow."""
         return self.terms.item((index, 0, OUTPUT_BEARING_LIFE, LIMIT))
@@ -166,11 +164,6 @@ class Evaluation:
         return loads
 
 
-@compiled
-def _any_infinite(figures: FloatArray, figure: int, n: int) -> bool:
-    return bool(np.isinf(figures[n, :, figure]).any())
-
-
 @lru_cache(maxsize=1024)
 def _present(status: bytes) -> tuple[int, ...]:
     return tuple(check for check, state in enumerate(status) if state != ABSENT)
@@ -180,6 +173,7 @@ def evaluate(duty: Duty, gears: GearList, catalogue: Catalogue) -> Evaluation:
     """Every check that the applications ask for, on every gear."""
     shape = (len(duty.applications), len(gears.rows))
     terms, status, figures = np.empty((*shape, 17, 3)), np.empty((*shape, 17), np.int8), np.empty((*shape, 9))
+    unlimited = np.empty((shape[0], 9), np.bool_)
     _evaluate(
         duty.phases,
         duty.wishes,
@@ -191,8 +185,9 @@ def evaluate(duty: Duty, gears: GearList, catalogue: Catalogue) -> Evaluation:
         terms,
         status,
         figures,
+        unlimited,
     )
-    return Evaluation(duty, gears, catalogue, terms, status, figures)
+    return Evaluation(duty, gears, catalogue, terms, status, figures, unlimited)
 
 
 @lru_cache(maxsize=1024)
@@ -283,6 +278,7 @@ def _evaluate(
     terms: FloatArray,
     status: ByteArray,
     figures: FloatArray,
+    unlimited: NDArray[np.bool_],
 ) -> None:
     """Its parts take whole arrays and the places n, g in them: to cut out a row costs as much as a check on it."""
     terms.fill(math.nan)
@@ -302,6 +298,10 @@ def _evaluate(
             if asks_for_property:
                 _properties(wishes, gears, n, g, terms)
             _judge(wishes, terms, n, g, status)
+        unlimited[n] = False
+        for g in range(gears.shape[0]):
+            for figure in range(figures.shape[2]):
+                unlimited[n, figure] |= math.isinf(figures[n, g, figure])
 
 
 @compiled

@@ -3,9 +3,9 @@
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 
-from hpn.application import Application
 from hpn.catalogue import Catalogue, GearList
 from hpn.checks import BEARING_L50, L10, PEAKS, Evaluation
+from hpn.duty import T_MAX
 from hpn.gear import Gear
 from hpn.wording import N_, Quantity, Sentence, Value
 
@@ -83,83 +83,59 @@ AREAS = {
 
 def notices_of(evaluation: Evaluation, index: int) -> list[Notice]:
     """Notices on application `index` of an evaluation, most general last."""
-    application = evaluation.duty.applications[index]
-    return [
-        *_area(application),
-        *_emergency_stop(evaluation, index),
-        *_life(evaluation, index),
-        *_bearing(evaluation, index),
-        *_motor(application, bool(evaluation.catalogue.efficiency)),
-        *_catalogue(evaluation),
-    ]
-
-
-def _area(application: Application) -> list[Notice]:
-    if application.application_area is None:
-        return []
-    return [
-        _notice(
-            "application_area",
-            "Use in this area ({area}) needs a risk assessment and the maker's approval (handbook 2.4).",
-            ("area",),
-            area=AREAS[application.application_area],
-        )
-    ]
-
-
-def _emergency_stop(evaluation: Evaluation, index: int) -> list[Notice]:
-    stop = evaluation.duty.applications[index].emergency_stop
-    if stop is None:
-        return []
+    application, catalogue = evaluation.duty.applications[index], evaluation.catalogue
+    stop, load, asked = application.emergency_stop, application.loads, application.requirements
+    unlimited = evaluation.unlimited[index].tolist()
     notices = []
-    largest = evaluation.duty.maximum_torque_Nm.item(index)
-    if abs(stop.torque_Nm) < largest:
-        notices.append(
-            _notice(
-                "emergency_stop_below_maximum",
-                "The emergency-stop torque of {stop} is below the largest torque of the cycle, {largest}: is "
-                "it really the emergency?",
-                stop=Quantity(abs(stop.torque_Nm), "Nm", 6),
-                largest=Quantity(largest, "Nm", 6),
-            )
-        )
-    if evaluation.is_unlimited(PEAKS, index):
+    if application.application_area is not None:
+        notices.append(_area(application.application_area))
+    if stop is not None:
+        largest = evaluation.duty.figures.item(index, T_MAX)
+        if abs(stop.torque_Nm) < largest:
+            notices.append(_stop_below(abs(stop.torque_Nm), largest))
+    if unlimited[PEAKS]:
         notices.append(_COUNT_UNLIMITED)
+    if unlimited[L10]:
+        notices.append(_LIFE_UNLIMITED)
+    if load is not None:
+        notices += _SUPPLIED if load.model == "digitised" else _COMPUTED, _LOAD_POSITION, _LIFE_BASIS
+        if unlimited[BEARING_L50]:
+            notices.append(_BEARING_UNLIMITED)
+    if asked.efficiency is not None:
+        notices.append(_efficiency(asked.efficiency))
+    elif asked.motor is not None or application.rank_by == "motor_torque":
+        notices.append(_EFFICIENCY_SUPPLIED if catalogue.efficiency else _EFFICIENCY_UNKNOWN)
+    notices += _unrated(evaluation.gears, catalogue)
+    if catalogue.supplement:
+        notices.append(_SUPPLEMENT)
     return notices
 
 
-def _life(evaluation: Evaluation, index: int) -> list[Notice]:
-    return [_LIFE_UNLIMITED] if evaluation.is_unlimited(L10, index) else []
+def _area(code: str) -> Notice:
+    return _notice(
+        "application_area",
+        "Use in this area ({area}) needs a risk assessment and the maker's approval (handbook 2.4).",
+        ("area",),
+        area=AREAS[code],
+    )
 
 
-def _bearing(evaluation: Evaluation, index: int) -> list[Notice]:
-    load = evaluation.duty.applications[index].loads
-    if load is None:
-        return []
-    notices = [_SUPPLIED if load.model == "digitised" else _COMPUTED, _LOAD_POSITION, _LIFE_BASIS]
-    return [*notices, _BEARING_UNLIMITED] if evaluation.is_unlimited(BEARING_L50, index) else notices
+def _stop_below(torque_Nm: float, largest_Nm: float) -> Notice:
+    return _notice(
+        "emergency_stop_below_maximum",
+        "The emergency-stop torque of {stop} is below the largest torque of the cycle, {largest}: is "
+        "it really the emergency?",
+        stop=Quantity(torque_Nm, "Nm", 6),
+        largest=Quantity(largest_Nm, "Nm", 6),
+    )
 
 
-def _motor(application: Application, curves: bool) -> list[Notice]:
-    requirements = application.requirements
-    if requirements.efficiency is not None:
-        return [
-            _notice(
-                "efficiency_assumed",
-                "Motor torques use the efficiency of {efficiency} that you assume.",
-                efficiency=Quantity(100 * requirements.efficiency, "percent"),
-            )
-        ]
-    if requirements.motor is None and application.rank_by != "motor_torque":
-        return []
-    return [_EFFICIENCY_SUPPLIED if curves else _EFFICIENCY_UNKNOWN]
-
-
-def _catalogue(evaluation: Evaluation) -> list[Notice]:
-    return [
-        *_unrated(evaluation.gears, evaluation.catalogue),
-        *([_SUPPLEMENT] if evaluation.catalogue.supplement else []),
-    ]
+def _efficiency(assumed: float) -> Notice:
+    return _notice(
+        "efficiency_assumed",
+        "Motor torques use the efficiency of {efficiency} that you assume.",
+        efficiency=Quantity(100 * assumed, "percent"),
+    )
 
 
 @lru_cache(maxsize=256)

@@ -1,5 +1,6 @@
 """The REST interface, version 1: parse, one call into the domain, render."""
 
+import asyncio
 import dataclasses
 import time
 from typing import Annotated, Any
@@ -15,11 +16,12 @@ from hpn.application import Application
 from hpn.catalogue import Catalogue
 from hpn.envelopes import EnvelopeQuery, life_envelopes
 from hpn.gear import Gear
-from hpn.selection import select
+from hpn.selection import Selection, select
 from hpn.web import schemas, streaming
 from hpn.web.batch import batch_items, batch_lines, line_evaluator
 from hpn.web.bodies import content_type_of, read_json
 from hpn.web.canonical import to_link
+from hpn.web.metrics import Metrics
 from hpn.web.problems import Problem
 from hpn.web.settings import Settings
 
@@ -47,19 +49,19 @@ async def select_one(request: Request) -> Response:
     settings: Settings = request.app.state.settings
     body = await read_json(request, maximum_bytes=settings.maximum_body_bytes, seconds=settings.body_seconds)
     application = Application.model_validate_json(body)
-    long = len(application.duty_cycle.phases) > LONG_CYCLE
-    reply = (
-        await run_in_threadpool(_reply, application, request.app.state)
-        if long
-        else _reply(application, request.app.state)
-    )
+    state, long = request.app.state, len(application.duty_cycle.phases) > LONG_CYCLE
+    selection, reply = await run_in_threadpool(_reply, application, state) if long else _reply(application, state)
+    asyncio.get_running_loop().call_soon(_count, state.metrics, selection)  # once the reply is on its way
     return schemas.JSONBytes(reply)
 
 
-def _reply(application: Application, state: State) -> bytes:
+def _reply(application: Application, state: State) -> tuple[Selection, bytes]:
     selection = select(application, state.catalogue)
-    state.metrics.selection(selection.selected)
-    return selection.json(to_link(application))
+    return selection, selection.json(to_link(application))
+
+
+def _count(metrics: Metrics, selection: Selection) -> None:
+    metrics.selection(selection.selected)
 
 
 @router.post(

@@ -1,5 +1,6 @@
 """What every request passes first: it gets an id, headers for its response, a line in the log, a metric."""
 
+import asyncio
 import time
 from collections.abc import Mapping
 from typing import Any
@@ -65,7 +66,9 @@ class Observation:
             if status == 0:
                 await mistake().response()(scope, receive, observed)
         finally:
-            self._note(scope, status or GONE, time.perf_counter() - start)
+            # The server sends what was written when its loop comes round: the caller does not wait for these notes.
+            seconds = time.perf_counter() - start
+            asyncio.get_running_loop().call_soon(self._note, scope, status or GONE, seconds)
             REQUEST.reset(token)
 
     def _note(self, scope: Scope, status: int, seconds: float) -> None:
