@@ -5,7 +5,6 @@ The bounds keep every power in chapter 4 far inside the range of a floating-poin
 """
 
 from collections.abc import Mapping
-from functools import cached_property
 from typing import Annotated, Any, Literal, Self
 
 from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, field_validator
@@ -196,7 +195,7 @@ class Application(Model):
             "no_load", "no load is given: state radial_N or axial_N here or in a phase, or leave output_load out"
         )
 
-    @cached_property
+    @property
     def loads(self) -> OutputLoad | None:
         """Conditions of the output load, or None where neither the cycle nor a phase carries a load."""
         if self.output_load is None:

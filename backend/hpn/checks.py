@@ -78,6 +78,8 @@ MOST_DECIMALS = 10
 @compiled
 def telling_decimals(value: float, bound: float, least: int) -> int:
     """Decimals with which a value, once rounded, still lies on its own side of a bound, `least` at least."""
+    if abs(value - bound) > 1 + equations.ROUNDING * abs(bound):
+        return least  # to round it moves it by half at most
     decimals = least
     while decimals < MOST_DECIMALS and _side(np.round(value, decimals), bound) != _side(value, bound):
         decimals += 1
@@ -92,7 +94,11 @@ def _side(value: float, bound: float) -> int:
 
 
 DEMAND, LIMIT, USED = range(3)
-"""Places along the last axis of `Evaluation.terms`; utilisation is the last."""
+"""Places along the last axis of `Evaluation.numbers`; utilisation is the last."""
+
+COUNT = len(CHECKS)
+VERDICT, GOVERNING = COUNT, COUNT + 1
+"""Places along the last axis of `Evaluation.codes`, behind the checks."""
 
 N_IN_AV, N_IN_MAX, L10, PEAKS, BEARING_L50, MOTOR_PEAK, MOTOR_RATED, BEARING_MEAN, BEARING_LARGEST = range(9)
 """Places along the last axis of `Evaluation.figures`."""
@@ -103,24 +109,31 @@ T_N, T_R, T_M, N_AV, N_MAX, RATIO, F_R, F_A, LOWEST, HIGHEST, PLAY, K3, MASS, LE
 
 @dataclass(slots=True)
 class Evaluation:
-    """Checks of N applications on G gears.
+    """Checks of N applications on G gears, and how the gears stand.
 
-    `terms` (N, G, checks, 3) are demand, limit and utilisation, the last infinite where a check fails without one;
-    `status` (N, G, checks) holds PASS, FAIL, NOT_RATED or ABSENT; `figures` (N, G, 9) is what they derive from, and
-    `unlimited` (N, 9) whether a figure is infinite on any gear.
+    `numbers` (N, G, 20, 3) are demand, limit and utilisation of every check, the last infinite where a check fails
+    without one; behind the checks stand the `figures` that they derive from. `codes` (N, G, 19) are PASS, FAIL,
+    NOT_RATED or ABSENT for every check, and the gear's verdict and governing check (see `ranking.py`). `order` (N, G)
+    are the places of the gears among `gears`, from best to last; `unlimited` (N, 9) tells which figures are infinite on
+    any gear.
     """
 
     duty: Duty
     gears: GearList
     catalogue: Catalogue
-    terms: FloatArray
-    status: ByteArray
-    figures: FloatArray
+    numbers: FloatArray
+    codes: ByteArray
+    order: NDArray[np.intp]
     unlimited: NDArray[np.bool_]
 
     def asked(self, index: int) -> tuple[int, ...]:
         """Checks that application `index` asks for."""
-        return _present(self.status[index, 0].tobytes())
+        return _present(self.codes[index, 0].tobytes())
+
+    @property
+    def figures(self) -> FloatArray:
+        """What the checks derive from, shape (N, G, 9)."""
+        return self.numbers[:, :, COUNT:].reshape(*self.numbers.shape[:2], -1)
 
     @property
     def life_L10_h(self) -> FloatArray:
@@ -153,41 +166,20 @@ class Evaluation:
 
     def bearing_life_factor(self, index: int) -> float:
         """Load factor k that speed and required life of application `index` allow."""
-        return self.terms.item((index, 0, OUTPUT_BEARING_LIFE, LIMIT))
+        return self.numbers.item((index, 0, OUTPUT_BEARING_LIFE, LIMIT))
 
     def bearing_loads(self) -> FloatArray:
         """Equivalent load f_w P of every phase on every gear, shape (N, phases, G); NaN where it is not rated."""
         loads = np.empty((*self.duty.phases.shape[:2], len(self.gears.rows)))
         _phase_loads(
-            self.duty.phases, self.duty.wishes, table_of(self.gears), _along_curves(self.duty, self.gears), loads
+            self.duty.phases, self.duty.wishes, table_of(self.gears), along_curves(self.duty, self.gears), loads
         )
         return loads
 
 
 @lru_cache(maxsize=1024)
-def _present(status: bytes) -> tuple[int, ...]:
-    return tuple(check for check, state in enumerate(status) if state != ABSENT)
-
-
-def evaluate(duty: Duty, gears: GearList, catalogue: Catalogue) -> Evaluation:
-    """Every check that the applications ask for, on every gear."""
-    shape = (len(duty.applications), len(gears.rows))
-    terms, status, figures = np.empty((*shape, 17, 3)), np.empty((*shape, 17), np.int8), np.empty((*shape, 9))
-    unlimited = np.empty((shape[0], 9), np.bool_)
-    _evaluate(
-        duty.phases,
-        duty.wishes,
-        duty.figures,
-        table_of(gears),
-        catalogue.references,
-        _along_curves(duty, gears),
-        _motor_torques(duty, gears, catalogue),
-        terms,
-        status,
-        figures,
-        unlimited,
-    )
-    return Evaluation(duty, gears, catalogue, terms, status, figures, unlimited)
+def _present(codes: bytes) -> tuple[int, ...]:
+    return tuple(check for check, state in enumerate(codes[:COUNT]) if state != ABSENT)
 
 
 @lru_cache(maxsize=1024)
@@ -221,9 +213,9 @@ def table_of(gears: GearList) -> FloatArray:
 _NO_CURVES = np.empty((0, 0, 0))
 
 
-def _along_curves(duty: Duty, gears: GearList) -> FloatArray:
+def along_curves(duty: Duty, gears: GearList) -> FloatArray:
     """Equivalent loads along supplied curve points, shape (N, phases, G), where an application asks for them."""
-    asked = [index for index, a in enumerate(duty.applications) if a.loads and a.loads.model == "digitised"]
+    asked = [index for index, load in enumerate(duty.loads) if load and load.model == "digitised"]
     if not asked:
         return _NO_CURVES
     radial, axial = duty.loads_N
@@ -234,7 +226,7 @@ def _along_curves(duty: Duty, gears: GearList) -> FloatArray:
     return loads
 
 
-def _motor_torques(duty: Duty, gears: GearList, catalogue: Catalogue) -> FloatArray:
+def motor_torques(duty: Duty, gears: GearList, catalogue: Catalogue) -> FloatArray:
     """Peak and RMS torque at the motor by supplied efficiency curves, shape (2, N, G); NaN on gears without a curve."""
     if not catalogue.efficiency:
         return _NO_CURVES
@@ -267,37 +259,40 @@ _bearing_life = bearing.life_L50.case
 
 
 @compiled
-def _evaluate(
+def run_checks(
     phases: FloatArray,
     wishes: FloatArray,
     cycles: FloatArray,
     gears: FloatArray,
     series: tuple[float, float, float, float],
-    along_curves: FloatArray,
-    motor_torques: FloatArray,
-    terms: FloatArray,
-    status: ByteArray,
-    figures: FloatArray,
+    curved_loads: FloatArray,
+    curved_torques: FloatArray,
+    numbers: FloatArray,
+    codes: ByteArray,
     unlimited: NDArray[np.bool_],
 ) -> None:
-    """Its parts take whole arrays and the places n, g in them: to cut out a row costs as much as a check on it."""
-    terms.fill(math.nan)
+    """Every check that the applications ask for, on every gear.
+
+    Its parts take whole arrays and the places n, g in them: to cut out a row costs as much as a check on it.
+    """
+    numbers.fill(math.nan)
+    figures = numbers.reshape((*codes.shape[:2], 3 * numbers.shape[2]))[:, :, 3 * COUNT :]
     loads = np.empty((1, phases.shape[1], gears.shape[0]))
     for n in range(phases.shape[0]):
         loaded, asks_for_property = not math.isnan(wishes[n, d.LOAD_COEFFICIENT]), False
         for wish in range(d.BACKLASH, d.TEMPERATURE + 1):
             asks_for_property |= not math.isnan(wishes[n, wish])
         if loaded:
-            curves = along_curves[n : n + 1] if along_curves.size else along_curves
+            curves = curved_loads[n : n + 1] if curved_loads.size else curved_loads
             _phase_loads(phases[n : n + 1], wishes[n : n + 1], gears, curves, loads)
-        _work_out(wishes, cycles, gears, series, motor_torques, n, figures)
+        _work_out(wishes, cycles, gears, series, curved_torques, n, figures)
         for g in range(gears.shape[0]):
-            _load_limits(wishes, cycles, gears, figures, n, g, terms)
+            _load_limits(wishes, cycles, gears, figures, n, g, numbers)
             if loaded:
-                _on_the_bearing(phases[n], wishes, cycles, loads[0, :, g], series, n, g, figures, terms)
+                _on_the_bearing(phases[n], wishes, cycles, loads[0, :, g], series, n, g, figures, numbers)
             if asks_for_property:
-                _properties(wishes, gears, n, g, terms)
-            _judge(wishes, terms, n, g, status)
+                _properties(wishes, gears, n, g, numbers)
+            _judge(wishes, numbers, n, g, codes)
         unlimited[n] = False
         for g in range(gears.shape[0]):
             for figure in range(figures.shape[2]):
@@ -306,7 +301,7 @@ def _evaluate(
 
 @compiled
 def _phase_loads(
-    phases: FloatArray, wishes: FloatArray, gears: FloatArray, along_curves: FloatArray, loads: FloatArray
+    phases: FloatArray, wishes: FloatArray, gears: FloatArray, curved_loads: FloatArray, loads: FloatArray
 ) -> None:
     """f_w P of every phase on every gear."""
     for n in range(phases.shape[0]):
@@ -315,7 +310,7 @@ def _phase_loads(
             radial, axial = phases[n, k, d.RADIAL], phases[n, k, d.AXIAL]
             for g in range(gears.shape[0]):
                 if model == d.DIGITISED:
-                    P = along_curves[n, k, g]
+                    P = curved_loads[n, k, g]
                 elif model == d.ISO281:
                     P = _iso281_load(radial / gears[g, F_R], axial / gears[g, F_A])
                 else:
@@ -329,13 +324,12 @@ def _work_out(
     cycles: FloatArray,
     gears: FloatArray,
     series: tuple[float, float, float, float],
-    motor_torques: FloatArray,
+    curved_torques: FloatArray,
     n: int,
     figures: FloatArray,
 ) -> None:
     """What the checks derive from; that of the output bearing only where it is loaded."""
     T_k, eta = wishes[n, d.STOP_TORQUE], 1.0 if math.isnan(wishes[n, d.EFFICIENCY]) else wishes[n, d.EFFICIENCY]
-    figures[n] = math.nan
     for g in range(gears.shape[0]):  # a loop for each kind: the shorter, the faster
         n_in_av = _average_input_speed(gears[g, RATIO], cycles[n, d.N_OUT_AV])
         figures[n, g, N_IN_AV] = n_in_av
@@ -347,8 +341,8 @@ def _work_out(
     for g in range(gears.shape[0]):
         figures[n, g, MOTOR_PEAK] = _motor_torque(cycles[n, d.T_MAX], gears[g, RATIO], eta)
         figures[n, g, MOTOR_RATED] = _motor_torque(cycles[n, d.T_RMS], gears[g, RATIO], eta)
-        if motor_torques.size and not math.isnan(motor_torques[0, n, g]):
-            figures[n, g, MOTOR_PEAK], figures[n, g, MOTOR_RATED] = motor_torques[0, n, g], motor_torques[1, n, g]
+        if curved_torques.size and not math.isnan(curved_torques[0, n, g]):
+            figures[n, g, MOTOR_PEAK], figures[n, g, MOTOR_RATED] = curved_torques[0, n, g], curved_torques[1, n, g]
 
 
 @compiled
@@ -429,12 +423,12 @@ def _properties(wishes: FloatArray, gears: FloatArray, n: int, g: int, terms: Fl
 
 
 @compiled
-def _judge(wishes: FloatArray, terms: FloatArray, n: int, g: int, status: ByteArray) -> None:
+def _judge(wishes: FloatArray, terms: FloatArray, n: int, g: int, codes: ByteArray) -> None:
     """Pass, fail or not rated: a load check against the user's own utilisation u, a property check against 1."""
-    for check in range(status.shape[2]):
+    for check in range(COUNT):
         used = terms[n, g, check, USED]
         bound = (wishes[n, d.UTILISATION] if check < LOAD_CHECKS else 1.0) * (1 + equations.ROUNDING)
         if math.isnan(terms[n, g, check, DEMAND]) and math.isnan(terms[n, g, check, LIMIT]):
-            status[n, g, check] = ABSENT
+            codes[n, g, check] = ABSENT
         else:
-            status[n, g, check] = NOT_RATED if math.isnan(used) else PASS if used <= bound else FAIL
+            codes[n, g, check] = NOT_RATED if math.isnan(used) else PASS if used <= bound else FAIL

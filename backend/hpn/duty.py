@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hpn import bearing, equations
-from hpn.application import Application
+from hpn.application import Application, OutputLoad
 from hpn.compiled import compiled
 
 FloatArray = NDArray[np.float64]
@@ -54,7 +54,7 @@ T_AV, N_OUT_AV, T_MAX, N_OUT_MAX, T_RMS = range(5)
 
 
 class Duty:
-    """N applications as arrays.
+    """N applications as arrays; `loads` are the conditions of their output loads, None where there is none.
 
     `phases` has shape (N, phases, 5), by magnitude; shorter cycles are padded with phases of no duration, which have no
     weight in any equation. `wishes`, shape (N, 18), is what else is asked; NaN where it is not. `figures`, shape
@@ -62,12 +62,12 @@ class Duty:
     """
 
     def __init__(self, applications: Sequence[Application]) -> None:
-        self.applications = applications
-        cycles = [_phases(application) for application in applications]
+        self.applications, self.loads = applications, [application.loads for application in applications]
+        cycles = list(map(_phases, applications, self.loads))
         longest = max(map(len, cycles))
         padded = [cycle + [0.0] * (longest - len(cycle)) for cycle in cycles]
         self.phases = np.array(padded).reshape(len(cycles), -1, 5)
-        self.wishes = np.array([_wishes(application) for application in applications], dtype=np.float64)
+        self.wishes = np.array(list(map(_wishes, applications, self.loads)), dtype=np.float64)
         self.figures = np.empty((len(applications), 5))
         _work_out(self.phases, self.wishes, self.figures)
 
@@ -122,14 +122,14 @@ class Duty:
         return self.figures[:, N_OUT_MAX]
 
 
-def _phases(application: Application) -> list[float]:
+def _phases(application: Application, load: OutputLoad | None) -> list[float]:
     """A row of `Duty.phases`, one phase behind the other, without its padding."""
     figures: list[float] = []
-    if application.loads is None:
+    if load is None:
         for phase in application.duty_cycle.phases:
             figures += abs(phase.torque_Nm), abs(phase.speed_rpm), phase.duration_s, 0.0, 0.0
         return figures
-    radial, axial = application.loads.radial_N or 0.0, application.loads.axial_N or 0.0
+    radial, axial = load.radial_N or 0.0, load.axial_N or 0.0
     for phase in application.duty_cycle.phases:
         figures += abs(phase.torque_Nm), abs(phase.speed_rpm), phase.duration_s
         figures.append(abs(radial if phase.radial_N is None else phase.radial_N))
@@ -140,9 +140,9 @@ def _phases(application: Application) -> list[float]:
 _NOT_ASKED = math.nan
 
 
-def _wishes(application: Application) -> tuple[float, ...]:
+def _wishes(application: Application, load: OutputLoad | None) -> tuple[float, ...]:
     """A row of `Duty.wishes`."""
-    stop, load, asked = application.emergency_stop, application.loads, application.requirements
+    stop, asked = application.emergency_stop, application.requirements
     motor = asked.motor
     return (
         application.duty_cycle.pause_s,

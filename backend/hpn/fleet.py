@@ -5,9 +5,8 @@ from collections.abc import Iterable, Sequence
 
 from hpn.application import Application, InputError
 from hpn.catalogue import Catalogue, GearList
-from hpn.checks import evaluate
 from hpn.duty import Duty
-from hpn.ranking import rank
+from hpn.ranking import evaluate
 from hpn.selection import Selection, candidates_of
 
 CHUNK_CYCLES = 256
@@ -35,9 +34,8 @@ def select_fleet(applications: Sequence[Application], catalogue: Catalogue) -> l
         for chunk in _chunks(indices, applications):
             members = [applications[index] for index in chunk]
             evaluation = evaluate(Duty(members), gears, catalogue)
-            ranking = rank(evaluation)
             for place, index in enumerate(chunk):
-                results[index] = Selection(applications[index], catalogue, evaluation, ranking, place)
+                results[index] = Selection(applications[index], catalogue, evaluation, place)
     return [result for result in results if result is not None]
 
 

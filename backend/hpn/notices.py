@@ -84,7 +84,7 @@ AREAS = {
 def notices_of(evaluation: Evaluation, index: int) -> list[Notice]:
     """Notices on application `index` of an evaluation, most general last."""
     application, catalogue = evaluation.duty.applications[index], evaluation.catalogue
-    stop, load, asked = application.emergency_stop, application.loads, application.requirements
+    stop, load, asked = application.emergency_stop, evaluation.duty.loads[index], application.requirements
     unlimited = evaluation.unlimited[index].tolist()
     notices = []
     if application.application_area is not None:

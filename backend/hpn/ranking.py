@@ -1,7 +1,6 @@
 """From checks to verdicts: which gears are suitable, how close each is to its limits, and their order."""
 
 import math
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -9,70 +8,90 @@ from numpy.typing import NDArray
 
 from hpn import checks as c
 from hpn import duty as d
-from hpn.checks import FAIL, LOAD_CHECKS, NOT_RATED, PASS, Evaluation, table_of
+from hpn.catalogue import Catalogue, GearList
+from hpn.checks import (
+    FAIL,
+    LOAD_CHECKS,
+    NOT_RATED,
+    PASS,
+    ByteArray,
+    Evaluation,
+    FloatArray,
+    along_curves,
+    motor_torques,
+    table_of,
+)
 from hpn.compiled import compiled
+from hpn.duty import Duty
 
-FloatArray = NDArray[np.float64]
 SUITABLE, UNSUITABLE, UNRATED = range(3)
 CANDIDATE_STATUS = ("suitable", "unsuitable", "unrated")
 
 
-@dataclass(slots=True)
-class Ranking:
-    """Verdicts on G gears for N applications in catalogue order, shape (N, G), and the order from best to last."""
-
-    status: NDArray[np.int8]
-    utilisation: FloatArray
-    governing: NDArray[np.int8]
-    order: NDArray[np.intp]
-
-
-def rank(evaluation: Evaluation) -> Ranking:
-    """Rank the gears for every application of an evaluation.
+def evaluate(duty: Duty, gears: GearList, catalogue: Catalogue) -> Evaluation:
+    """Every check that the applications ask for on every gear, and what the gears come to, in one compiled pass.
 
     Suitable gears come first by `rank_by`, then unsuitable ones by ascending utilisation, then unrated ones; ties fall
     to weight, utilisation, life and ratio, and last to the order of the catalogue. What is not published comes last.
     """
-    shape = evaluation.status.shape[:2]
-    ranking = Ranking(np.empty(shape, np.int8), np.empty(shape), np.empty(shape, np.int8), np.empty(shape, np.intp))
-    _rank(
-        evaluation.duty.wishes,
-        table_of(evaluation.gears),
-        evaluation.terms,
-        evaluation.status,
-        evaluation.figures,
-        ranking.status,
-        ranking.utilisation,
-        ranking.governing,
-        ranking.order,
+    shape = (len(duty.applications), len(gears.rows))
+    numbers, codes = np.empty((*shape, c.COUNT + 3, 3)), np.empty((*shape, c.COUNT + 2), np.int8)
+    order, unlimited = np.empty(shape, np.intp), np.empty((shape[0], 9), np.bool_)
+    _evaluate(
+        duty.phases,
+        duty.wishes,
+        duty.figures,
+        table_of(gears),
+        catalogue.references,
+        along_curves(duty, gears),
+        motor_torques(duty, gears, catalogue),
+        numbers,
+        codes,
+        order,
+        unlimited,
     )
-    return ranking
+    return Evaluation(duty, gears, catalogue, numbers, codes, order, unlimited)
+
+
+@compiled
+def _evaluate(
+    phases: FloatArray,
+    wishes: FloatArray,
+    cycles: FloatArray,
+    gears: FloatArray,
+    series: tuple[float, float, float, float],
+    curved_loads: FloatArray,
+    curved_torques: FloatArray,
+    numbers: FloatArray,
+    codes: ByteArray,
+    order: NDArray[np.intp],
+    unlimited: NDArray[np.bool_],
+) -> None:
+    c.run_checks(phases, wishes, cycles, gears, series, curved_loads, curved_torques, numbers, codes, unlimited)
+    _rank(wishes, gears, numbers, codes, order)
 
 
 @compiled
 def _rank(
     wishes: FloatArray,
     gears: FloatArray,
-    terms: FloatArray,
-    status: NDArray[np.int8],
-    figures: FloatArray,
-    verdicts: NDArray[np.int8],
-    utilisation: FloatArray,
-    governing: NDArray[np.int8],
+    numbers: FloatArray,
+    codes: ByteArray,
     order: NDArray[np.intp],
 ) -> None:
-    keys = np.empty((verdicts.shape[1], 6))  # the first decides first
-    for n in range(verdicts.shape[0]):
-        for g in range(verdicts.shape[1]):
-            verdict, used, check = _verdict(terms, status, n, g)
-            verdicts[n, g], utilisation[n, g], governing[n, g] = verdict, used, check
+    figures = numbers.reshape((*order.shape, 3 * numbers.shape[2]))[:, :, 3 * c.COUNT :]
+    keys = np.empty((order.shape[1], 6))  # the first decides first
+    for n in range(order.shape[0]):
+        for g in range(order.shape[1]):
+            verdict, used, check = _verdict(numbers, codes, n, g)
+            codes[n, g, c.VERDICT], codes[n, g, c.GOVERNING] = verdict, check
             keys[g, 0], keys[g, 1], keys[g, 2] = verdict, used, gears[g, c.MASS]
             keys[g, 3], keys[g, 4], keys[g, 5] = used, -figures[n, g, c.L10], gears[g, c.RATIO]
             if verdict == SUITABLE:
                 keys[g, 1] = _wish(wishes[n, d.RANK_BY], gears, figures, n, g, used)
             elif verdict == UNRATED:
                 keys[g, 1] = g
-        for g in range(verdicts.shape[1]):  # a gear is put behind its equals, which keeps the catalogue's order
+        for g in range(order.shape[1]):  # a gear is put behind its equals, which keeps the catalogue's order
             first, last = 0, g
             while first < last:
                 middle = (first + last) // 2
@@ -86,18 +105,18 @@ def _rank(
 
 
 @compiled
-def _verdict(terms: FloatArray, status: NDArray[np.int8], n: int, g: int) -> tuple[int, float, int]:
+def _verdict(numbers: FloatArray, codes: ByteArray, n: int, g: int) -> tuple[int, float, int]:
     """Status of a candidate, the largest utilisation of its load checks and failing ones, and the check it is of."""
     verdict, largest, governing = SUITABLE, -math.inf, 0
-    for check in range(status.shape[2]):
-        state = status[n, g, check]
+    for check in range(c.COUNT):
+        state = codes[n, g, check]
         if state == FAIL:
             verdict = UNSUITABLE
         elif state == NOT_RATED and verdict == SUITABLE:
             verdict = UNRATED
         counts = state == FAIL or (state == PASS and check < LOAD_CHECKS)
-        if counts and terms[n, g, check, c.USED] > largest:
-            largest, governing = terms[n, g, check, c.USED], check
+        if counts and numbers[n, g, check, c.USED] > largest:
+            largest, governing = numbers[n, g, check, c.USED], check
     return verdict, math.nan if verdict == UNRATED else largest, governing
 
 

@@ -19,40 +19,44 @@ from hpn import checks as c
 from hpn import duty as d
 from hpn.bearing import L50_PER_L10
 from hpn.catalogue import Catalogue, GearList
-from hpn.checks import CHECKS, FAIL, LOAD_CHECKS, STATUS, Evaluation, table_of, telling_decimals
+from hpn.checks import (
+    CHECKS,
+    FAIL,
+    LOAD_CHECKS,
+    STATUS,
+    ByteArray,
+    Evaluation,
+    FloatArray,
+    table_of,
+    telling_decimals,
+)
 from hpn.compiled import compiled
-from hpn.ranking import CANDIDATE_STATUS, SUITABLE, UNRATED, Ranking
+from hpn.ranking import CANDIDATE_STATUS, SUITABLE, UNRATED
 from hpn.reply import REASONS, CandidateRow, CheckRow, GearRow, ReserveRow, encode
 from hpn.reserve import reserve_on
 
-FloatArray = NDArray[np.float64]
-ByteArray = NDArray[np.uint8]
+TextArray = NDArray[np.uint8]
 PlaceArray = NDArray[np.int32]
 
 
-def candidate_rows(evaluation: Evaluation, ranking: Ranking, index: int) -> memoryview:
+def candidate_rows(evaluation: Evaluation, index: int) -> memoryview:
     """CandidateRows of application `index`, best first, as JSON."""
     template, words = _template(evaluation.asked(index)), _words(evaluation.gears)
     count = len(evaluation.gears.rows)
     # Compiled code fills what it is given: to return an array costs ten times as much as to make one here.
-    distinct, places = np.empty(count * template.numbers), np.empty((count, template.numbers), np.int32)
-    chosen = np.empty((count, template.words), np.int32)
+    distinct = np.empty(count * template.numbers)
+    taken = np.empty((count, template.words + template.numbers), np.int32)
     found = _fill(
         index,
         template.checks,
         evaluation.duty.wishes,
         table_of(evaluation.gears),
         _curved(evaluation.gears, evaluation.catalogue),
-        evaluation.terms,
-        evaluation.status,
-        evaluation.figures,
-        ranking.status,
-        ranking.utilisation,
-        ranking.governing,
-        ranking.order,
+        evaluation.numbers,
+        evaluation.codes,
+        evaluation.order,
         distinct,
-        places,
-        chosen,
+        taken,
     )
     digits = _padded(orjson.dumps(distinct[:found], option=orjson.OPT_SERIALIZE_NUMPY))
     rows = np.empty(count * (template.longest + words.longest * template.words) + 2 + _MOVE, np.uint8)
@@ -64,8 +68,7 @@ def candidate_rows(evaluation: Evaluation, ranking: Ranking, index: int) -> memo
         words.ends,
         words.gaps,
         digits,
-        places,
-        chosen,
+        taken,
         rows,
     )
     return rows[:end].data
@@ -116,7 +119,7 @@ _RESERVE_AT, _CHECKS_AT, _STATES_AT = 10, 14, 5
 class _Words:
     """Texts that gaps may take, as JSON, one behind the other; where each ends, and where in it a number belongs."""
 
-    text: ByteArray
+    text: TextArray
     ends: NDArray[np.int64]
     gaps: NDArray[np.int64]
     longest: int
@@ -127,9 +130,9 @@ class _Template:
     """JSON of a candidate with gaps: the text between them, where each part of it ends, and what each gap takes."""
 
     checks: NDArray[np.int64]
-    text: ByteArray
+    text: TextArray
     ends: NDArray[np.int64]
-    takes: ByteArray
+    takes: TextArray
     words: int
     numbers: int
     longest: int
@@ -140,8 +143,11 @@ _MOVE = 32
 """Bytes that are moved at once, needed or not: what is behind a text must be there to be read."""
 
 
-def _padded(text: bytes) -> ByteArray:
-    return np.frombuffer(text + bytes(_MOVE), np.uint8)
+_BEHIND = bytes(_MOVE)
+
+
+def _padded(text: bytes) -> TextArray:
+    return np.frombuffer(text + _BEHIND, np.uint8)
 
 
 def _ends(parts: Sequence[bytes]) -> NDArray[np.int64]:
@@ -198,48 +204,43 @@ def _fill(
     wishes: FloatArray,
     gears: FloatArray,
     curved: NDArray[np.bool_],
-    terms: FloatArray,
-    status: NDArray[np.int8],
-    figures: FloatArray,
-    verdicts: NDArray[np.int8],
-    utilisation: FloatArray,
-    governing: NDArray[np.int8],
+    results: FloatArray,
+    codes: ByteArray,
     order: NDArray[np.intp],
     distinct: FloatArray,
-    places: PlaceArray,
-    words: PlaceArray,
+    taken: PlaceArray,
 ) -> int:
     """Find what fills the gaps of every candidate, best first, in the order of CandidateRow.
 
-    `distinct` gets the distinct numbers, `places` which of them each number is, shape (G, numbers), and `words` which
-    words are taken, shape (G, words). Gives how many distinct numbers there are.
+    `distinct` gets the distinct numbers; `taken`, shape (G, words + numbers), which words are taken, and which of the
+    distinct numbers each number is. Gives how many distinct numbers there are.
     """
-    count = gears.shape[0]
-    numbers = np.empty(places.shape)
+    count, words = gears.shape[0], _STATES_AT + checks.size
+    numbers = np.empty((count, taken.shape[1] - words))
     for row in range(count):
         g = order[index, row]
-        verdict, used, governs = verdicts[index, g], utilisation[index, g], governing[index, g]
+        verdict, governs = codes[index, g, c.VERDICT], codes[index, g, c.GOVERNING]
+        used = math.nan if verdict == UNRATED else results[index, g, governs, c.USED]
         bound = 100 * (wishes[index, d.UTILISATION] if governs < LOAD_CHECKS else 1.0)
         percent = np.round(100 * used, telling_decimals(100 * used, bound, 1))
-        _fill_numbers(checks, terms, figures, used, percent, index, g, row, numbers)
-        reserve = reserve_on(wishes, gears, terms, curved[g], index, g)
+        _fill_numbers(checks, results, used, percent, index, g, row, numbers)
+        reserve = reserve_on(wishes, gears, results, curved[g], index, g)
         for driver in range(4):
             numbers[row, _RESERVE_AT + driver] = reserve[driver]
-        words[row, 0] = _OWN_WORD + 2 * count + g
-        words[row, 1] = _VERDICT_WORD + verdict
-        words[row, 2] = _OWN_WORD + row if verdict == SUITABLE else _NULL_WORD
-        words[row, 3] = _NULL_WORD if verdict == UNRATED else _CODE_WORD + governs
-        words[row, 4] = _OWN_WORD + count + g if verdict == UNRATED else _reason(status, index, g, used, governs)
+        taken[row, 0] = _OWN_WORD + 2 * count + g
+        taken[row, 1] = _VERDICT_WORD + verdict
+        taken[row, 2] = _OWN_WORD + row if verdict == SUITABLE else _NULL_WORD
+        taken[row, 3] = _NULL_WORD if verdict == UNRATED else _CODE_WORD + governs
+        taken[row, 4] = _OWN_WORD + count + g if verdict == UNRATED else _reason(codes, index, g, used, governs)
         for place in range(checks.size):
-            words[row, _STATES_AT + place] = _STATUS_WORD + status[index, g, checks[place]]
-    return _each_once(numbers, distinct, places)
+            taken[row, _STATES_AT + place] = _STATUS_WORD + codes[index, g, checks[place]]
+    return _each_once(numbers, distinct, taken[:, words:])
 
 
 @compiled
 def _fill_numbers(
     checks: NDArray[np.int64],
-    terms: FloatArray,
-    figures: FloatArray,
+    results: FloatArray,
     used: float,
     percent: float,
     n: int,
@@ -248,25 +249,26 @@ def _fill_numbers(
     numbers: FloatArray,
 ) -> None:
     """Numbers of a candidate, but for its reserve."""
+    figures = results[n, g, c.COUNT :].reshape(-1)
     numbers[row, 0], numbers[row, 1] = used, percent
     for place in range(5):
-        numbers[row, 2 + place] = figures[n, g, place]
-    numbers[row, 7] = figures[n, g, c.BEARING_L50] / L50_PER_L10
-    numbers[row, 8], numbers[row, 9] = figures[n, g, c.MOTOR_PEAK], figures[n, g, c.MOTOR_RATED]
+        numbers[row, 2 + place] = figures[place]
+    numbers[row, 7] = figures[c.BEARING_L50] / L50_PER_L10
+    numbers[row, 8], numbers[row, 9] = figures[c.MOTOR_PEAK], figures[c.MOTOR_RATED]
     for place in range(checks.size):
         for term in range(3):
-            numbers[row, _CHECKS_AT + 3 * place + term] = terms[n, g, checks[place], term]
+            numbers[row, _CHECKS_AT + 3 * place + term] = results[n, g, checks[place], term]
 
 
 @compiled
-def _reason(status: NDArray[np.int8], n: int, g: int, used: float, governing: int) -> int:
+def _reason(codes: ByteArray, n: int, g: int, used: float, governing: int) -> int:
     """The sentence on a candidate that could be judged."""
     if math.isinf(used):
         return _NO_STOP_WORD
     failed = 0
-    for check in range(status.shape[2]):
-        failed += status[n, g, check] == FAIL
-    return _REASON_WORD + 17 * failed + governing
+    for check in range(c.COUNT):
+        failed += codes[n, g, check] == FAIL
+    return _REASON_WORD + c.COUNT * failed + governing
 
 
 @compiled
@@ -294,32 +296,32 @@ _SPREAD = np.uint64(0x9E3779B97F4A7C15)
 
 @compiled
 def _write(
-    text: ByteArray,
+    text: TextArray,
     ends: NDArray[np.int64],
-    takes: ByteArray,
-    words: ByteArray,
+    takes: TextArray,
+    words: TextArray,
     word_ends: NDArray[np.int64],
     word_gaps: NDArray[np.int64],
-    digits: ByteArray,
-    places: PlaceArray,
-    chosen: PlaceArray,
-    rows: ByteArray,
+    digits: TextArray,
+    taken: PlaceArray,
+    rows: TextArray,
 ) -> int:
     """Write the list of candidates into `rows`, of distinct numbers as `digits`; gives where it ends."""
     starts, at = _starts(digits), 0
-    for row in range(chosen.shape[0]):
-        word, number = 0, 0
+    first_number = np.sum(takes != _NUMBER)
+    for row in range(taken.shape[0]):
+        word, number = 0, first_number
         for gap in range(takes.size):
             at = _copy(text, ends[gap], ends[gap + 1], rows, at)
             if takes[gap] != _NUMBER:
-                which, word = chosen[row, word], word + 1
+                which, word = taken[row, word], word + 1
                 start, inside, end = word_ends[which], word_gaps[which], word_ends[which + 1]
                 if inside < 0:  # it has no place for a number
                     at = _copy(words, start, end, rows, at)
                     number += takes[gap] == _SENTENCE
                     continue
                 at = _copy(words, start, inside, rows, at)
-            place = places[row, number]
+            place = taken[row, number]
             at = _copy(digits, starts[place], starts[place + 1] - 1, rows, at)
             number += 1
             if takes[gap] == _SENTENCE:
@@ -330,19 +332,18 @@ def _write(
 
 
 @compiled
-def _starts(digits: ByteArray) -> NDArray[np.int64]:
+def _starts(digits: TextArray) -> PlaceArray:
     """Where each number of a list begins, and where one after the last would."""
-    starts, found = np.empty(digits.size, np.int64), 1
+    starts, found = np.empty(digits.size, np.int32), 1
     starts[0] = 1
-    for place in range(digits.size):
-        if digits[place] == ord(",") or digits[place] == ord("]"):
-            starts[found] = place + 1
-            found += 1
+    for place in range(digits.size):  # without a branch, which would be guessed wrong at every number
+        starts[found] = place + 1
+        found += (digits[place] == ord(",")) | (digits[place] == ord("]"))
     return starts
 
 
 @compiled
-def _copy(source: ByteArray, start: int, end: int, rows: ByteArray, at: int) -> int:
+def _copy(source: TextArray, start: int, end: int, rows: TextArray, at: int) -> int:
     """Copy in wide moves, which go beyond the end: what comes next is written over that."""
     into, since = np.uintp(at), np.uintp(start)  # without a sign, and by whole moves, the loop becomes few instructions
     for place in range(np.uintp((end - start + _MOVE - 1) // _MOVE * _MOVE)):

@@ -12,10 +12,10 @@ from hpn import ENGINE_VERSION
 from hpn import duty as d
 from hpn.application import Application, InputError, Location
 from hpn.catalogue import Catalogue, GearList
-from hpn.checks import CHECKS, Evaluation, evaluate
+from hpn.checks import CHECKS, GOVERNING, USED, VERDICT, Evaluation
 from hpn.duty import Duty
 from hpn.notices import Notice, notices_of
-from hpn.ranking import SUITABLE, Ranking, rank
+from hpn.ranking import SUITABLE, evaluate
 from hpn.reply import DutyRow, SelectReply, encode
 from hpn.rows import candidate_rows
 from hpn.wording import N_, Sentence
@@ -23,12 +23,11 @@ from hpn.wording import N_, Sentence
 
 @dataclass(slots=True)
 class Selection:
-    """The answer to one application: duty, ranking, checks and notices; `json` is the reply of the API."""
+    """The answer to one application, which is number `index` of an evaluation; `json` is the reply of the API."""
 
     application: Application
     catalogue: Catalogue
     evaluation: Evaluation
-    ranking: Ranking
     index: int = 0
 
     @property
@@ -39,8 +38,8 @@ class Selection:
     @property
     def best(self) -> int | None:
         """Index of the selected gear among the candidates, or None where none is suitable."""
-        first = self.ranking.order.item(self.index, 0)
-        return first if self.ranking.status[self.index, first] == SUITABLE else None
+        first = self.evaluation.order.item(self.index, 0)
+        return first if self.evaluation.codes.item(self.index, first, VERDICT) == SUITABLE else None
 
     @property
     def selected(self) -> str | None:
@@ -62,7 +61,7 @@ class Selection:
                 link=link,
                 duty=DutyRow(*evaluation.duty.figures[index, : d.T_RMS].tolist()),
                 selected=self.selected,
-                candidates=Raw(candidate_rows(evaluation, self.ranking, index)),
+                candidates=Raw(candidate_rows(evaluation, index)),
                 check_definitions=check_definitions(evaluation.asked(index)),
                 notices=[{"code": notice.code, "text": notice.text} for notice in self.notices],
             )
@@ -75,13 +74,17 @@ class Selection:
 
     def summary(self, link: str) -> dict[str, Any]:
         """One line of a batch: the selected gear, how close it is to its limits, and how many gears are suitable."""
-        best, ranking, index = self.best, self.ranking, self.index
+        best, evaluation, index = self.best, self.evaluation, self.index
+        governing = used = None
+        if best is not None:
+            check = evaluation.codes.item(index, best, GOVERNING)
+            governing, used = CHECKS[check].code, evaluation.numbers.item(index, best, check, USED)
         return {
             "status": "ok",
             "selected": self.selected,
-            "governing_check": None if best is None else CHECKS[ranking.governing[index, best]].code,
-            "utilisation": None if best is None else ranking.utilisation.item(index, best),
-            "suitable": int((ranking.status[index] == SUITABLE).sum()),
+            "governing_check": governing,
+            "utilisation": used,
+            "suitable": int((evaluation.codes[index, :, VERDICT] == SUITABLE).sum()),
             "link": link,
         }
 
@@ -93,8 +96,7 @@ def select(application: Application, catalogue: Catalogue) -> Selection:
     digitised bearing model where no candidate has curve points.
     """
     gears = candidates_of(application, catalogue)
-    evaluation = evaluate(Duty([application]), gears, catalogue)
-    return Selection(application, catalogue, evaluation, rank(evaluation))
+    return Selection(application, catalogue, evaluate(Duty([application]), gears, catalogue))
 
 
 NOT_THERE = N_("the catalogue has no {value}; there are {listed}")
@@ -102,7 +104,7 @@ NOT_THERE = N_("the catalogue has no {value}; there are {listed}")
 
 def candidates_of(application: Application, catalogue: Catalogue) -> GearList:
     """Gears that `ratios` and `sizes` leave; raises InputError as `select` does."""
-    asked, load = application.requirements, application.loads
+    asked, load = application.requirements, application.output_load
     gears = _restricted(catalogue, asked.sizes, asked.ratios)
     if load is not None and load.model == "digitised" and not any(gears.curves):
         raise InputError(

@@ -1,5 +1,6 @@
 """Candidates, written in compiled code, against the typed rows and templates filled in by Python."""
 
+import math
 import random
 from typing import Any
 
@@ -54,11 +55,12 @@ def test_every_candidate_has_the_sentence_that_its_checks_ask_for(catalogue: Cat
 
 def row(selection: Selection, place: int, reason: str) -> CandidateRow:
     """The candidate at a place of the ranking."""
-    evaluation, ranking = selection.evaluation, selection.ranking
-    g = ranking.order.item(0, place)
-    gear, put, figures = selection.gears.rows[g], evaluation.terms[0, g], evaluation.figures[0, g]
-    reserve = reserve_on(evaluation.duty.wishes, table_of(selection.gears), evaluation.terms, False, 0, g)
-    status = CANDIDATE_STATUS[ranking.status[0, g]]
+    evaluation = selection.evaluation
+    g = evaluation.order.item(0, place)
+    gear, put, figures = selection.gears.rows[g], evaluation.numbers[0, g], evaluation.figures[0, g]
+    reserve = reserve_on(evaluation.duty.wishes, table_of(selection.gears), evaluation.numbers, False, 0, g)
+    *states, verdict, governing = evaluation.codes[0, g].tolist()
+    status = CANDIDATE_STATUS[verdict]
     return CandidateRow(
         designation=gear.designation,
         size=gear.size,
@@ -66,8 +68,8 @@ def row(selection: Selection, place: int, reason: str) -> CandidateRow:
         stages=gear.stages,
         status=status,
         rank=place + 1 if status == "suitable" else None,
-        utilisation=ranking.utilisation.item(0, g),
-        governing_check=None if status == "unrated" else CHECKS[ranking.governing[0, g]].code,
+        utilisation=math.nan if status == "unrated" else put.item(governing, c.USED),
+        governing_check=None if status == "unrated" else CHECKS[governing].code,
         reason=reason,
         average_input_speed_rpm=figures.item(c.N_IN_AV),
         maximum_input_speed_rpm=figures.item(c.N_IN_MAX),
@@ -84,7 +86,7 @@ def row(selection: Selection, place: int, reason: str) -> CandidateRow:
                 demand=put.item(check, c.DEMAND),
                 limit=put.item(check, c.LIMIT),
                 utilisation=put.item(check, c.USED),
-                status=STATUS[evaluation.status[0, g, check]],
+                status=STATUS[states[check]],
             )
             for check in evaluation.asked(0)
         ],

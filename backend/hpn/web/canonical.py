@@ -1,40 +1,21 @@
 """The canonical link of an application; `links.parse` reads it, and what people write by hand."""
 
-from dataclasses import dataclass
-from operator import itemgetter
-from typing import Any
+from itertools import groupby
 from urllib.parse import quote
 
 from pydantic import BaseModel
 
 from hpn.application import Application, DutyCycle, EmergencyStop, Motor, OutputLoad, Requirements
-from hpn.web.symbols import BY_PARENT, Symbol
+from hpn.web.symbols import SYMBOLS
 
 _EMPTY_LOAD = OutputLoad()
 
-
-@dataclass(frozen=True, slots=True)
-class _Field:
-    """A field of one part of the application: where its symbol stands in a link, and what needs no mention."""
-
-    place: int
-    symbol: Symbol
-    default: Any
-
-
-_IN_ORDER = [symbol for symbols in BY_PARENT.values() for symbol in symbols]
-_FIELDS: list[dict[str, _Field]] = [
-    {s.path[-1]: _Field(_IN_ORDER.index(s), s, model.model_fields[s.path[-1]].default) for s in BY_PARENT[parent]}
-    for parent, model in (
-        ((), Application),
-        (("duty_cycle",), DutyCycle),
-        (("emergency_stop",), EmergencyStop),
-        (("output_load",), OutputLoad),
-        (("requirements",), Requirements),
-        (("requirements", "motor"), Motor),
-    )
+_MODELS: tuple[type[BaseModel], ...] = (DutyCycle, EmergencyStop, OutputLoad, Requirements, Application, Motor)
+_FIELDS = [
+    [(s.path[-1], s.name, model.model_fields[s.path[-1]].default, s.many) for s in symbols]
+    for model, (_, symbols) in zip(_MODELS, groupby(SYMBOLS, lambda symbol: symbol.path[:-1]), strict=True)
 ]
-"""Fields that have a symbol, by name, of the parts of an application in the order of `_parts`."""
+"""Fields of each part of an application, as a link gives them: name, symbol, what needs no mention, whether a list."""
 
 
 def to_link(application: Application) -> str:
@@ -42,7 +23,19 @@ def to_link(application: Application) -> str:
 
     `parse` gives the same application back; a motor of which nothing is known counts as no motor.
     """
-    return "/?" + "&".join([_phases(application), *_other_pairs(application)])
+    link = "/?" + _phases(application)
+    for part, fields in zip(_parts(application), _FIELDS, strict=True):
+        if part is None:
+            continue
+        values = part.__dict__
+        for field, symbol, default, many in fields:
+            if (value := values[field]) == default:
+                continue
+            for item in value if many else (value,):
+                link += f"&{symbol}={_written(item)}"
+    load = application.output_load
+    # A load case without a figure of its own must still be seen to exist.
+    return link + "&fw=1" if load is not None and load == _EMPTY_LOAD else link
 
 
 def _phases(application: Application) -> str:
@@ -57,30 +50,9 @@ def _phases(application: Application) -> str:
     return _shortened("&".join(pairs))
 
 
-def _other_pairs(application: Application) -> list[str]:
-    pairs: list[tuple[int, str, Any]] = []
-    for part, fields in zip(_parts(application), _FIELDS, strict=True):
-        if part is None:
-            continue
-        values = part.__dict__
-        for given in part.__pydantic_fields_set__:
-            field = fields.get(given)
-            if field is None or (value := values[given]) == field.default:
-                continue
-            if field.symbol.many:
-                pairs += [(field.place, field.symbol.name, item) for item in value]
-            else:
-                pairs.append((field.place, field.symbol.name, value))
-    pairs.sort(key=itemgetter(0))
-    if application.output_load is not None and application.output_load == _EMPTY_LOAD:
-        pairs.append((0, "fw", 1))  # a load case without a figure of its own must still be seen to exist
-    return [f"{name}={_written(value)}" for _, name, value in pairs]
-
-
 def _parts(application: Application) -> tuple[BaseModel | None, ...]:
-    asked = application.requirements
-    load, stop = application.output_load, application.emergency_stop
-    return application, application.duty_cycle, stop, load, asked, asked.motor
+    asked, load = application.requirements, application.output_load
+    return application.duty_cycle, application.emergency_stop, load, asked, application, asked.motor
 
 
 def _written(value: float | str | None) -> str:

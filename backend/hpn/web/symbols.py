@@ -46,14 +46,14 @@ SYMBOLS = (
     Symbol("m", ("requirements", "weight_kg")),
     Symbol("L", ("requirements", "length_mm")),
     Symbol("u", ("requirements", "utilisation")),
+    Symbol("eta", ("requirements", "efficiency")),
     Symbol("aa", ("application_area",), "text"),
     Symbol("rank", ("rank_by",), "text"),
     Symbol("nm", ("requirements", "motor", "maximum_speed_rpm")),
     Symbol("Tm", ("requirements", "motor", "peak_torque_Nm")),
     Symbol("Tmn", ("requirements", "motor", "rated_torque_Nm")),
-    Symbol("eta", ("requirements", "efficiency")),
 )
-"""Everything but the phases, in the order in which a canonical link gives them."""
+"""Everything but the phases, in the order of a canonical link: one part of an application at a time."""
 
 PHASE_BY_NAME = {symbol.name: symbol for symbol in PHASE_SYMBOLS}
 PHASE_BY_LEAF = {symbol.path[0]: symbol for symbol in PHASE_SYMBOLS}
@@ -64,8 +64,3 @@ UNITS = {
     for symbol in (*PHASE_SYMBOLS, *SYMBOLS)
     if symbol.kind != "text" and not symbol.many
 }
-
-BY_PARENT: dict[tuple[str, ...], list[Symbol]] = {}
-"""Symbols by the part of the application that they belong to."""
-for _symbol in SYMBOLS:
-    BY_PARENT.setdefault(_symbol.path[:-1], []).append(_symbol)
