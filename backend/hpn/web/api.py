@@ -19,7 +19,7 @@ from hpn.gear import Gear
 from hpn.selection import Selection, select
 from hpn.web import schemas, streaming
 from hpn.web.batch import batch_items, batch_lines, line_evaluator
-from hpn.web.bodies import content_type_of, read_json
+from hpn.web.bodies import content_type_of, read_body
 from hpn.web.canonical import to_link
 from hpn.web.metrics import Metrics
 from hpn.web.problems import Problem
@@ -46,10 +46,11 @@ router = APIRouter(prefix="/api/v1")
 )
 async def select_one(request: Request) -> Response:
     """Evaluates every size and ratio, ranks the candidates, and says why each stands where it does."""
-    settings: Settings = request.app.state.settings
-    body = await read_json(request, maximum_bytes=settings.maximum_body_bytes, seconds=settings.body_seconds)
+    state: State = request.app.state
+    settings: Settings = state.settings
+    body = await read_body(request, maximum_bytes=settings.maximum_body_bytes, seconds=settings.body_seconds)
     application = Application.model_validate_json(body)
-    state, long = request.app.state, len(application.duty_cycle.phases) > LONG_CYCLE
+    long = len(application.duty_cycle.phases) > LONG_CYCLE
     selection, reply = await run_in_threadpool(_reply, application, state) if long else _reply(application, state)
     asyncio.get_running_loop().call_soon(_count, state.metrics, selection)  # once the reply is on its way
     return schemas.JSONBytes(reply)
@@ -79,7 +80,7 @@ async def select_batch(request: Request) -> Response:
     settings: Settings = request.app.state.settings
     if content_type_of(request) in streaming.MEDIA_TYPES:
         return _stream(request.app.state)
-    body = await read_json(request, maximum_bytes=settings.maximum_batch_body_bytes, seconds=settings.body_seconds)
+    body = await read_body(request, maximum_bytes=settings.maximum_batch_body_bytes, seconds=settings.body_seconds)
     items = batch_items(body, settings.maximum_batch_count)
     results: list[dict[str, Any]] = []
     deadline = time.monotonic() + settings.batch_seconds

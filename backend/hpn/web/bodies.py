@@ -3,29 +3,29 @@
 import asyncio
 
 from starlette.requests import ClientDisconnect, Request
+from starlette.types import Message
 
 from hpn.web.problems import Problem
 from hpn.web.requests import header
 from hpn.web.settings import Settings
 
 
-async def read_json(request: Request, *, maximum_bytes: int, seconds: float) -> bytes:
-    """Body of a JSON request; refuses as `read_body` does."""
-    return await read_body(request, "application/json", maximum_bytes=maximum_bytes, seconds=seconds)
-
-
-async def read_body(request: Request, content_type: str, *, maximum_bytes: int, seconds: float) -> bytes:
+async def read_body(
+    request: Request, content_type: str = "application/json", *, maximum_bytes: int, seconds: float
+) -> bytes:
     """Body of a request.
 
     Raises Problem 415 for another content type, 413 above `maximum_bytes`, 408 when the rest of it has not arrived
     `seconds` after its first part; for that part the server waits, see `protocol.py`.
     """
-    require_content_type(request, content_type)
+    given = content_type_of(request)
+    if given != content_type:
+        raise Problem(415, f"send the body as {content_type} (the Content-Type header says {given or 'nothing'})")
     declared = header(request, b"content-length") or ""
     if declared.isascii() and declared.isdigit() and int(declared[:20]) > maximum_bytes:
         raise _too_large(maximum_bytes)
     try:
-        part, more = await _part(request)
+        part, more = _part(await request.receive())
         body = await _with_rest(part, request, maximum_bytes, seconds) if more else part
     except TimeoutError:
         raise Problem(408, f"the body did not arrive within {seconds:g} s") from None
@@ -34,13 +34,6 @@ async def read_body(request: Request, content_type: str, *, maximum_bytes: int, 
     if len(body) > maximum_bytes:
         raise _too_large(maximum_bytes)
     return body
-
-
-def require_content_type(request: Request, expected: str) -> None:
-    """Raise Problem 415 unless the request's content type is `expected`."""
-    given = content_type_of(request)
-    if given != expected:
-        raise Problem(415, f"send the body as {expected} (the Content-Type header says {given or 'nothing'})")
 
 
 def content_type_of(request: Request) -> str:
@@ -52,15 +45,14 @@ async def _with_rest(part: bytes, request: Request, maximum_bytes: int, seconds:
     parts, size, more = [part], len(part), True
     async with asyncio.timeout(seconds):  # a timer costs a twentieth of a reply: only where it is needed
         while more and size <= maximum_bytes:
-            part, more = await _part(request)
+            part, more = _part(await request.receive())
             parts.append(part)
             size += len(part)
     return b"".join(parts)
 
 
-async def _part(request: Request) -> tuple[bytes, bool]:
-    """Next part of a body, and whether there is more."""
-    message = await request.receive()
+def _part(message: Message) -> tuple[bytes, bool]:
+    """Part of a body, and whether there is more."""
     if message["type"] == "http.disconnect":
         raise ClientDisconnect
     return message.get("body", b""), message.get("more_body", False)

@@ -24,7 +24,7 @@ from hpn.report.workbook import workbook
 from hpn.selection import select
 from hpn.store import SavedSelection
 from hpn.web import links, schemas
-from hpn.web.bodies import read_json
+from hpn.web.bodies import read_body
 from hpn.web.canonical import to_link
 from hpn.web.conditions import etag_of, has_already
 from hpn.web.problems import Problem
@@ -89,7 +89,7 @@ def _route(file: File) -> None:
 
     async def of_posted(request: Request, lang: Lang = None) -> Response:
         settings: Settings = request.app.state.settings
-        body = await read_json(request, maximum_bytes=settings.maximum_body_bytes, seconds=settings.body_seconds)
+        body = await read_body(request, maximum_bytes=settings.maximum_body_bytes, seconds=settings.body_seconds)
         application = Application.model_validate_json(body)
         return await _answer(request, file, lang, lambda: _computed(application, request))
 

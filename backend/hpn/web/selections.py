@@ -23,7 +23,7 @@ from hpn.selection import Selection, candidates_of, select
 from hpn.store import Draft, KeyReusedError, KeySpentError, SavedSelection, Store, Summary
 from hpn.web import schemas
 from hpn.web.api import LONG_CYCLE
-from hpn.web.bodies import read_json
+from hpn.web.bodies import read_body
 from hpn.web.canonical import to_link
 from hpn.web.conditions import conditional, idempotency_key, preferred_return, require_match
 from hpn.web.problems import Problem
@@ -68,7 +68,7 @@ async def save_selection(request: Request) -> Response:
     """Saves an application with its result; once answered with 201 it is durable."""
     settings: Settings = request.app.state.settings
     key = idempotency_key(request)
-    body = await read_json(request, maximum_bytes=settings.maximum_body_bytes, seconds=settings.body_seconds)
+    body = await read_body(request, maximum_bytes=settings.maximum_body_bytes, seconds=settings.body_seconds)
     wanted = SaveRequest.model_validate_json(body)
     try:
         id = await save(request.app.state, wanted.application, wanted, key)
