@@ -1,6 +1,7 @@
 """`POST /api/v1/select` over HTTP: the contract's shape, and a problem that points at what is wrong."""
 
 import math
+import re
 from collections.abc import Iterator
 from typing import Any
 
@@ -232,7 +233,7 @@ def test_a_path_that_is_not_there_is_a_404_problem(api: TestClient) -> None:
         assert path in reply.json()["detail"]
 
 
-def test_every_answer_carries_the_security_headers(api: TestClient) -> None:
+def test_no_answer_is_to_be_taken_for_what_it_is_not(api: TestClient) -> None:
     for reply in (
         api.get("/healthz"),
         api.post(PATH, json=EXAMPLE),
@@ -242,12 +243,29 @@ def test_every_answer_carries_the_security_headers(api: TestClient) -> None:
         api.get("/openapi.json"),
         api.get("/"),
     ):
+        assert reply.headers["x-content-type-options"] == "nosniff"
+
+
+def test_every_answer_but_json_keeps_to_its_own_host(api: TestClient) -> None:
+    page, kinds = api.get("/"), set()
+    assets = {asset.rpartition(".")[2]: asset for asset in re.findall(r'"(/static/[^"]+)"', page.text)}
+    for reply in (
+        page,
+        api.get(assets["js"]),
+        api.get(assets["svg"]),
+        api.post("/api/v1/report.pdf", json=EXAMPLE),
+        api.get("/metrics"),
+        api.post(PATH, json={}),
+        api.get("/nowhere"),
+    ):
+        kinds.add(reply.headers["content-type"].partition(";")[0])
         policy = reply.headers["content-security-policy"]
         assert "default-src 'self'" in policy
         assert "script-src" not in policy or "unsafe" not in policy.split("script-src")[1].split(";")[0]
         assert "frame-ancestors 'none'" in policy
-        assert reply.headers["x-content-type-options"] == "nosniff"
         assert reply.headers["referrer-policy"]
+    made = {"text/html", "text/javascript", "image/svg+xml", "application/pdf", "text/plain"}
+    assert kinds == made | {"application/problem+json"}
 
 
 def test_the_same_question_gets_the_same_bytes(api: TestClient) -> None:

@@ -9,6 +9,8 @@ from typing import NamedTuple
 import limits
 
 SWEEP_SECONDS = 30
+QUIET_SHARE = 0.5
+"""Share of a rate below which nobody needs to hear what is left of it."""
 
 
 class Counters:
@@ -38,7 +40,7 @@ class Counters:
 
 
 class Admission(NamedTuple):
-    """Whether a request may pass, and the response headers that say how many more may."""
+    """Whether a request may pass, and response headers that say how many more may once that matters."""
 
     granted: bool
     headers: tuple[tuple[bytes, bytes], ...]
@@ -61,6 +63,8 @@ class Limiter:
         now = time.monotonic()
         count, end = self._counters.hit((name, subject), rate.window_s, now)
         wait = max(math.ceil(end - now), 1)
+        if count <= QUIET_SHARE * rate.amount:
+            return Admission(True, (), wait, rate.item)
         state = b"%b;r=%d;t=%d" % (rate.quoted, max(rate.amount - count, 0), wait)
         return Admission(count <= rate.amount, (rate.policy, (b"ratelimit", state)), wait, rate.item)
 

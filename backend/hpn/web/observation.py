@@ -18,16 +18,20 @@ QUIET = frozenset({"/healthz", "/readyz", "/metrics"})
 GONE = 499
 """Status of a request whose caller left before the answer, as proxies count it."""
 
-SECURITY_HEADERS = (
+DOCUMENT_HEADERS = (
     (
         b"content-security-policy",
         b"default-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data: blob:; "
         b"base-uri 'none'; form-action 'self'; frame-ancestors 'none'",
     ),
-    (b"x-content-type-options", b"nosniff"),
     (b"referrer-policy", b"same-origin"),
 )
-"""What keeps the page to its own host."""
+"""What keeps a page to its own host. A caller's program reads each header in as long as the server takes to write
+three: JSON, which loads nothing and leads nowhere, goes without these."""
+
+JSON = (b"content-type", b"application/json")
+NOT_TO_GUESS = (b"x-content-type-options", b"nosniff")
+"""JSON, or any other content, is not to be taken for a page."""
 
 RESPONSE_HEADERS = "hpn.response_headers"
 """Place in the scope for headers that layers further in add to the response, whatever it will be."""
@@ -49,13 +53,15 @@ class Observation:
             return
         start, status, id = time.perf_counter(), 0, request_id(scope["headers"])
         token = REQUEST.set(id)
-        added = scope[RESPONSE_HEADERS] = [*SECURITY_HEADERS, (b"x-request-id", id)]
+        added = scope[RESPONSE_HEADERS] = [NOT_TO_GUESS, (b"x-request-id", id)]
 
         async def observed(message: Message) -> None:
             nonlocal status
             if message["type"] == "http.response.start":
                 status = message["status"]
-                message["headers"] = [*message.get("headers", ()), *added]
+                headers = message["headers"] = [*message.get("headers", ()), *added]
+                if JSON not in headers:
+                    headers += DOCUMENT_HEADERS
             await send(message)
 
         try:
