@@ -9,7 +9,7 @@ import uvicorn
 from fastapi import FastAPI
 from uvicorn.supervisors import Multiprocess
 
-from hpn.web import logs, metrics, pages
+from hpn.web import logs, memory, metrics, pages
 from hpn.web.app import create_app
 from hpn.web.settings import Settings
 
@@ -23,6 +23,7 @@ def served_app() -> FastAPI:
     app = create_app(settings)
     pages.prepare(app.state)
     gc.collect()
+    memory.into_huge_pages()
     gc.freeze()  # what lives as long as the process is not searched for garbage again: that took 90 ms each time
     return app
 

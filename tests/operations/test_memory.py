@@ -1,0 +1,49 @@
+"""The heap in huge pages: where the system has them, and at no cost in memory."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from hpn.web.memory import into_huge_pages
+
+OFFERED = Path("/sys/kernel/mm/transparent_hugepage/enabled")
+
+PROGRAM = """
+import re, threading
+from pathlib import Path
+from hpn.web.memory import into_huge_pages
+
+def kilobytes(name):
+    return int(re.search(rf"^{name}: +([0-9]+)", Path("/proc/self/smaps_rollup").read_text(), re.MULTILINE)[1])
+
+heap, done = [bytes(500) for _ in range(100_000)], threading.Event()
+threads = [threading.Thread(target=done.wait) for _ in range(20)]  # each has a stack of some megabytes, hardly used
+for thread in threads:
+    thread.start()
+before = kilobytes("Rss")
+into_huge_pages()
+print(kilobytes("AnonHugePages"), kilobytes("Rss") / before, sum(map(len, heap)))
+done.set()
+"""
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="only Linux has them")
+def test_a_filled_heap_comes_into_huge_pages_and_takes_no_more_memory() -> None:
+    run = subprocess.run([sys.executable, "-c", PROGRAM], capture_output=True, text=True, check=True, timeout=120)
+    huge_kB, growth, kept = run.stdout.split()
+
+    assert kept == str(500 * 100_000)
+    assert float(growth) < 1.1
+    if OFFERED.exists() and "[never]" not in OFFERED.read_text():
+        assert int(huge_kB) > 20_000
+
+
+def test_a_system_that_does_not_tell_its_areas_keeps_nothing_from_starting(monkeypatch: pytest.MonkeyPatch) -> None:
+    def refused(path: Path) -> str:
+        raise PermissionError(path)
+
+    monkeypatch.setattr(Path, "read_text", refused)
+
+    into_huge_pages()
