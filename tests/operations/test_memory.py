@@ -11,21 +11,19 @@ from hpn.web.memory import into_huge_pages
 OFFERED = Path("/sys/kernel/mm/transparent_hugepage/enabled")
 
 PROGRAM = """
-import re, threading
+import mmap, re
 from pathlib import Path
 from hpn.web.memory import into_huge_pages
 
 def kilobytes(name):
     return int(re.search(rf"^{name}: +([0-9]+)", Path("/proc/self/smaps_rollup").read_text(), re.MULTILINE)[1])
 
-heap, done = [bytes(500) for _ in range(100_000)], threading.Event()
-threads = [threading.Thread(target=done.wait) for _ in range(20)]  # each has a stack of some megabytes, hardly used
-for thread in threads:
-    thread.start()
+heap, sparse = [bytes(500) for _ in range(100_000)], mmap.mmap(-1, 1 << 26, mmap.MAP_PRIVATE | mmap.MAP_ANONYMOUS)
+for place in range(0, len(sparse), 1 << 20):
+    sparse[place] = 1
 before = kilobytes("Rss")
 into_huge_pages()
 print(kilobytes("AnonHugePages"), kilobytes("Rss") / before, sum(map(len, heap)))
-done.set()
 """
 
 
