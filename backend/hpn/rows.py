@@ -39,12 +39,12 @@ TextArray = NDArray[np.uint8]
 PlaceArray = NDArray[np.int32]
 
 
-def candidate_rows(evaluation: Evaluation, index: int) -> memoryview:
-    """CandidateRows of application `index`, best first, as JSON."""
-    template, words = _template(evaluation.asked(index)), _words(evaluation.gears)
+def candidate_rows(evaluation: Evaluation, index: int, asked: tuple[int, ...]) -> memoryview:
+    """CandidateRows of application `index`, best first, with the checks that it asks for, as JSON."""
+    template, words = _template(asked), _words(evaluation.gears)
     count = len(evaluation.gears.rows)
     # Compiled code fills what it is given: to return an array costs ten times as much as to make one here.
-    distinct = np.empty(count * template.numbers)
+    distinct = np.empty(count * template.numbers + _BEHIND)
     taken = np.empty((count, template.words + template.numbers), np.int32)
     found = _fill(
         index,
@@ -58,7 +58,7 @@ def candidate_rows(evaluation: Evaluation, index: int) -> memoryview:
         distinct,
         taken,
     )
-    digits = _padded(orjson.dumps(distinct[:found], option=orjson.OPT_SERIALIZE_NUMPY))
+    digits = np.frombuffer(orjson.dumps(distinct[: found + _BEHIND], option=orjson.OPT_SERIALIZE_NUMPY), np.uint8)
     rows = np.empty(count * (template.longest + words.longest * template.words) + 2 + _MOVE, np.uint8)
     end = _write(
         template.text,
@@ -143,11 +143,12 @@ _MOVE = 32
 """Bytes that are moved at once, needed or not: what is behind a text must be there to be read."""
 
 
-_BEHIND = bytes(_MOVE)
+_LONG, _BEHIND = 1.2345678901234567e300, 2
+"""Behind the numbers of a reply so many of these are spelled, which nothing takes."""
 
 
 def _padded(text: bytes) -> TextArray:
-    return np.frombuffer(text + _BEHIND, np.uint8)
+    return np.frombuffer(text + bytes(_MOVE), np.uint8)
 
 
 def _ends(parts: Sequence[bytes]) -> NDArray[np.int64]:
@@ -234,7 +235,9 @@ def _fill(
         taken[row, 4] = _OWN_WORD + count + g if verdict == UNRATED else _reason(codes, index, g, used, governs)
         for place in range(checks.size):
             taken[row, _STATES_AT + place] = _STATUS_WORD + codes[index, g, checks[place]]
-    return _each_once(numbers, distinct, taken[:, words:])
+    found = _each_once(numbers, distinct, taken[:, words:])
+    distinct[found : found + _BEHIND] = _LONG
+    return found
 
 
 @compiled

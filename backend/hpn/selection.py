@@ -54,6 +54,7 @@ class Selection:
     def json(self, link: str) -> bytes:
         """The reply of `POST /api/v1/select` as JSON; unlimited, infinite and unpublished values are null."""
         evaluation, index = self.evaluation, self.index
+        asked = evaluation.asked(index)
         return encode(
             SelectReply(
                 engine_version=ENGINE_VERSION,
@@ -61,8 +62,8 @@ class Selection:
                 link=link,
                 duty=DutyRow(*evaluation.duty.figures[index, : d.T_RMS].tolist()),
                 selected=self.selected,
-                candidates=Raw(candidate_rows(evaluation, index)),
-                check_definitions=check_definitions(evaluation.asked(index)),
+                candidates=Raw(candidate_rows(evaluation, index, asked)),
+                check_definitions=check_definitions(asked),
                 notices=[{"code": notice.code, "text": notice.text} for notice in self.notices],
             )
         )
