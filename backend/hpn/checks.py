@@ -100,8 +100,9 @@ COUNT = len(CHECKS)
 VERDICT, GOVERNING = COUNT, COUNT + 1
 """Places along the last axis of `Evaluation.codes`, behind the checks."""
 
-N_IN_AV, N_IN_MAX, L10, PEAKS, BEARING_L50, MOTOR_PEAK, MOTOR_RATED, BEARING_MEAN, BEARING_LARGEST = range(9)
-"""Places along the last axis of `Evaluation.figures`."""
+FIGURES = 9
+N_IN_AV, N_IN_MAX, L10, PEAKS, BEARING_L50, MOTOR_PEAK, MOTOR_RATED, BEARING_MEAN, BEARING_LARGEST = range(FIGURES)
+"""Places along the last axis of `Evaluation.figures`, which fill rows of three behind the checks."""
 
 T_N, T_R, T_M, N_AV, N_MAX, RATIO, F_R, F_A, LOWEST, HIGHEST, PLAY, K3, MASS, LENGTH_MAX = range(14)
 """Columns of a table of gears."""

@@ -35,8 +35,8 @@ def evaluate(duty: Duty, gears: GearList, catalogue: Catalogue) -> Evaluation:
     to weight, utilisation, life and ratio, and last to the order of the catalogue. What is not published comes last.
     """
     shape = (len(duty.applications), len(gears.rows))
-    numbers, codes = np.empty((*shape, c.COUNT + 3, 3)), np.empty((*shape, c.COUNT + 2), np.int8)
-    order, unlimited = np.empty(shape, np.intp), np.empty((shape[0], 9), np.bool_)
+    numbers, codes = np.empty((*shape, c.COUNT + c.FIGURES // 3, 3)), np.empty((*shape, c.COUNT + 2), np.int8)
+    order, unlimited = np.empty(shape, np.intp), np.empty((shape[0], c.FIGURES), np.bool_)
     _evaluate(
         duty.phases,
         duty.wishes,

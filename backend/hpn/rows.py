@@ -91,7 +91,10 @@ _WORD, _SENTENCE, _NUMBER = range(3)
 _LONGEST_NUMBER = 24
 """Characters of a double, written as short as it can be."""
 
-_REASON_OF = (REASONS["suitable"], *[REASONS["unsuitable" if n == 1 else "unsuitable_more"] for n in range(1, 18)])
+_REASON_OF = (
+    REASONS["suitable"],
+    *[REASONS["unsuitable" if n == 1 else "unsuitable_more"] for n in range(1, c.COUNT + 1)],
+)
 """By the number of checks that fail."""
 
 _STATES = [f'"{status}"' for status in (*STATUS, *CANDIDATE_STATUS)]
@@ -142,9 +145,8 @@ class _Template:
 _MOVE = 32
 """Bytes that are moved at once, needed or not: what is behind a text must be there to be read."""
 
-
 _LONG, _BEHIND = 1.2345678901234567e300, 2
-"""Behind the numbers of a reply so many of these are spelled, which nothing takes."""
+"""Behind the numbers of a reply so many of these are spelled, which nothing takes: as long together as a move."""
 
 
 def _padded(text: bytes) -> TextArray:

@@ -10,7 +10,7 @@ from msgspec.json import decode
 
 from hpn import ENGINE_VERSION
 from hpn import duty as d
-from hpn.application import Application, InputError, Location
+from hpn.application import Application, InputError, Location, OutputLoad
 from hpn.catalogue import Catalogue, GearList
 from hpn.checks import CHECKS, GOVERNING, USED, VERDICT, Evaluation
 from hpn.duty import Duty
@@ -34,6 +34,11 @@ class Selection:
     def gears(self) -> GearList:
         """The candidates in catalogue order."""
         return self.evaluation.gears
+
+    @property
+    def load(self) -> OutputLoad | None:
+        """Conditions of the output load, or None where there is none."""
+        return self.evaluation.duty.loads[self.index]
 
     @property
     def best(self) -> int | None:

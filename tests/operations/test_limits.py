@@ -41,7 +41,7 @@ def test_from_half_of_a_rate_an_answer_says_how_many_more_may_follow(make_client
 
     told = [client.post(SELECT, json=worked_example()).headers.get("RateLimit", "").split(";")[1:2] for _ in range(6)]
 
-    assert told == [[], [], [], ["r=2"], ["r=1"], ["r=0"]]
+    assert told == [[], [], ["r=3"], ["r=2"], ["r=1"], ["r=0"]]
 
 
 def test_kinds_of_requests_are_counted_apart(make_client: MakeClient) -> None:

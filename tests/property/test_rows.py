@@ -5,9 +5,11 @@ import random
 from typing import Any
 
 import numpy as np
+import orjson
 from msgspec.json import decode
 
 from hpn import checks as c
+from hpn import rows
 from hpn.application import Application
 from hpn.bearing import L50_PER_L10
 from hpn.catalogue import Catalogue
@@ -91,6 +93,10 @@ def row(selection: Selection, place: int, reason: str) -> CandidateRow:
             for check in evaluation.asked(0)
         ],
     )
+
+
+def test_what_is_moved_beyond_the_last_number_is_there_to_be_read() -> None:
+    assert len(orjson.dumps([rows._LONG] * rows._BEHIND)) >= rows._MOVE
 
 
 def test_every_candidate_has_the_words_and_numbers_of_its_row(catalogue: Catalogue) -> None:

@@ -246,6 +246,12 @@ def test_no_answer_is_to_be_taken_for_what_it_is_not(api: TestClient) -> None:
         assert reply.headers["x-content-type-options"] == "nosniff"
 
 
+def test_json_goes_without_the_headers_that_only_a_page_heeds(api: TestClient) -> None:
+    for reply in (api.post(PATH, json=EXAMPLE), api.get("/api/v1/catalogue"), api.get("/openapi.json")):
+        assert reply.status_code == 200
+        assert not {"content-security-policy", "referrer-policy"} & reply.headers.keys()
+
+
 def test_every_answer_but_json_keeps_to_its_own_host(api: TestClient) -> None:
     page, kinds = api.get("/"), set()
     assets = {asset.rpartition(".")[2]: asset for asset in re.findall(r'"(/static/[^"]+)"', page.text)}

@@ -67,7 +67,7 @@ def bearing_figure(picture: BearingPicture, words: Words = ENGLISH) -> Figure:
 
 def sizes_figure(selection: Selection, words: Words = ENGLISH) -> Figure:
     """Life envelopes of every size at the application's speed, life and load coefficient, with its loads."""
-    load, query, catalogue = selection.application.loads or OutputLoad(), condition(selection), selection.catalogue
+    load, query, catalogue = selection.load or OutputLoad(), condition(selection), selection.catalogue
     drawn: list[Gear] = []
     data: list[Figure] = []
     for place, size in enumerate(catalogue.sizes):
@@ -82,7 +82,7 @@ def sizes_figure(selection: Selection, words: Words = ENGLISH) -> Figure:
         data[-1] |= {"mode": "lines+text", "textposition": "top right", "textfont": {"size": 11, "shadow": HALO}}
         drawn.append(gear)
     count = len(selection.application.duty_cycle.phases)
-    loads = phase_loads(selection, [0.0] * count) if selection.application.loads else []
+    loads = phase_loads(selection, [0.0] * count) if selection.load else []
     if loads:
         data.append(_points(loads[:LABELLED_LOADS], words, with_use=False))
     heading = Sentence(

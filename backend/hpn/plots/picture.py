@@ -137,7 +137,7 @@ def beyond_limit(utilisation: float, allowed: float) -> bool:
 
 def condition(selection: Selection) -> EnvelopeQuery:
     """Speed, life, load coefficient and model at which the application asks for envelopes."""
-    load = selection.application.loads or OutputLoad()
+    load = selection.load or OutputLoad()
     return EnvelopeQuery(
         speed_rpm=selection.evaluation.duty.average_output_speed_rpm.item(selection.index),
         life_h=bearing.required_L50(load.life_h, load.life_basis),
@@ -148,7 +148,7 @@ def condition(selection: Selection) -> EnvelopeQuery:
 
 def bearing_picture(selection: Selection, gear: Gear) -> BearingPicture | None:
     """Loads on the bearing of a candidate, or None without loads or where the bearing of its size is not rated."""
-    load, evaluation = selection.application.loads, selection.evaluation
+    load, evaluation = selection.load, selection.evaluation
     index, n = selection.gears.rows.index(gear), selection.index
     mean = evaluation.bearing_mean_load.item(n, index)
     if load is None or math.isnan(mean):
@@ -193,7 +193,7 @@ def size_uses(selection: Selection) -> list[SizeUse]:
     """Use of the bearing of every size among the candidates."""
     evaluation, n, uses = selection.evaluation, selection.index, {}
     for index, gear in enumerate(selection.gears.rows):
-        if selection.application.loads is None or gear.size in uses:
+        if selection.load is None or gear.size in uses:
             continue
         mean, largest = evaluation.bearing_mean_load.item(n, index), evaluation.bearing_largest_load.item(n, index)
         rated = not math.isnan(mean)

@@ -55,12 +55,12 @@ def _parts(application: Application) -> tuple[BaseModel | None, ...]:
     return application.duty_cycle, application.emergency_stop, load, asked, application, asked.motor
 
 
-def _written(value: float | str | None) -> str:
+def _written(value: float | str) -> str:
     if isinstance(value, float):
         return _shortened(repr(value))
     if isinstance(value, int):
         return str(value)
-    return "" if value is None else quote(value)
+    return quote(value)
 
 
 def _shortened(numbers: str) -> str:

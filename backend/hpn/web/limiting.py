@@ -63,7 +63,7 @@ class Limiter:
         now = time.monotonic()
         count, end = self._counters.hit((name, subject), rate.window_s, now)
         wait = max(math.ceil(end - now), 1)
-        if count <= QUIET_SHARE * rate.amount:
+        if count < QUIET_SHARE * rate.amount:
             return Admission(True, (), wait, rate.item)
         state = b"%b;r=%d;t=%d" % (rate.quoted, max(rate.amount - count, 0), wait)
         return Admission(count <= rate.amount, (rate.policy, (b"ratelimit", state)), wait, rate.item)

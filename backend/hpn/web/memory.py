@@ -26,7 +26,7 @@ def into_huge_pages() -> None:
     if sys.platform != "linux":
         return
     try:
-        areas = AREA.findall(Path("/proc/self/smaps").read_text())
+        areas = AREA.findall(Path("/proc/self/smaps").read_text(errors="replace"))
     except OSError:
         return
     advise = ctypes.CDLL(None).madvise

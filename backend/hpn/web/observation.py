@@ -10,7 +10,7 @@ from structlog.typing import FilteringBoundLogger
 
 from hpn.web.logs import REQUEST, request_id
 from hpn.web.metrics import Metrics
-from hpn.web.problems import mistake
+from hpn.web.problems import JSON, mistake
 
 QUIET = frozenset({"/healthz", "/readyz", "/metrics"})
 """Routes that are asked every few seconds; seen at level debug."""
@@ -27,9 +27,11 @@ DOCUMENT_HEADERS = (
     (b"referrer-policy", b"same-origin"),
 )
 """What keeps a page to its own host. A caller's program reads each header in as long as the server takes to write
-three: JSON, which loads nothing and leads nowhere, goes without these."""
+three: JSON, which loads nothing and leads nowhere, goes without these, and so does what has no content."""
 
-JSON = (b"content-type", b"application/json")
+EMPTY = frozenset({204, 304})
+"""Statuses of answers without content."""
+
 NOT_TO_GUESS = (b"x-content-type-options", b"nosniff")
 """JSON, or any other content, is not to be taken for a page."""
 
@@ -60,7 +62,7 @@ class Observation:
             if message["type"] == "http.response.start":
                 status = message["status"]
                 headers = message["headers"] = [*message.get("headers", ()), *added]
-                if JSON not in headers:
+                if JSON not in headers and status not in EMPTY:
                     headers += DOCUMENT_HEADERS
             await send(message)
 

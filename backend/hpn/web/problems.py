@@ -16,6 +16,9 @@ from starlette.types import Scope
 from hpn.application import InputError
 
 MEDIA_TYPE = "application/problem+json"
+JSON = (b"content-type", b"application/json")
+"""The header, as it is sent."""
+
 MAXIMUM_ERRORS = 100
 TITLES = {
     400: "The request can't be read",

@@ -10,8 +10,7 @@ from pydantic import BaseModel, ConfigDict, Field
 from starlette.responses import Response
 
 from hpn.application import BatchItem, BearingModel, Model, name_units
-from hpn.web.observation import JSON
-from hpn.web.problems import MEDIA_TYPE, TITLES
+from hpn.web.problems import JSON, MEDIA_TYPE, TITLES
 
 
 class JSONBytes(Response):
