@@ -35,8 +35,12 @@ _UNITS = {
     "FAi": ("n",),
 }
 _NUMBER: dict[Decimal, re.Pattern[str]] = {
-    ".": re.compile(r"[+-]?(?:\d+|\d{1,3}(?:[,'’ \u00a0\u202f]\d{3})+)?(?:\.\d*)?(?:[eE][+-]?\d{1,3})?", re.ASCII),
-    ",": re.compile(r"[+-]?(?:\d+|\d{1,3}(?:[.'’ \u00a0\u202f]\d{3})+)?(?:,\d*)?(?:[eE][+-]?\d{1,3})?", re.ASCII),
+    ".": re.compile(
+        r"[+-]?(?=[.,]?\d)(?:\d+|\d{1,3}(?:[,'’ \u00a0\u202f]\d{3})+)?(?:\.\d*)?(?:[eE][+-]?\d{1,3})?", re.ASCII
+    ),
+    ",": re.compile(
+        r"[+-]?(?=[.,]?\d)(?:\d+|\d{1,3}(?:[.'’ \u00a0\u202f]\d{3})+)?(?:,\d*)?(?:[eE][+-]?\d{1,3})?", re.ASCII
+    ),
 }
 LONGEST_CELL = 400
 """Characters of a cell that could still be a number: written out, the largest has some 310 digits."""

@@ -6,6 +6,7 @@ from contextlib import suppress
 import pytest
 from pydantic import ValidationError
 from starlette.testclient import TestClient
+from starlette.types import Scope
 
 from hpn.web.access import Gate
 from hpn.web.keys import new_key
@@ -57,6 +58,15 @@ def test_kinds_of_requests_are_counted_apart(make_client: MakeClient) -> None:
 
     assert ask() == [200, 200, 201]
     assert ask() == [429, 429, 429]
+
+
+def test_another_spelling_of_a_path_is_counted_with_it(make_client: MakeClient) -> None:
+    client = make_client(batch_rate="1/minute")
+
+    first = client.post("/api/v1/select/batch", json={"applications": []})
+    second = client.post("/api/v1/select/batch%0a", json={"applications": []})
+
+    assert (first.status_code, second.status_code) == (200, 429)
 
 
 def test_health_and_assets_are_never_limited(make_client: MakeClient) -> None:
@@ -136,7 +146,10 @@ def test_the_limiter_costs_little() -> None:
             costs.append((time.process_time() - start) / 200)
         return min(costs)
 
-    limited, free = Gate(answer, Settings()), Gate(answer, Settings(calculator_rate="off"))
+    def template_of(scope: Scope) -> str:
+        return SELECT
+
+    limited, free = (Gate(answer, s, template_of) for s in (Settings(), Settings(calculator_rate="off")))
 
     # 11 µs was measured; the bound only catches a mistake such as a thread per request
     assert best(limited) - best(free) < 60e-6

@@ -75,6 +75,7 @@ def test_what_has_two_readings_is_asked(text: str) -> None:
         ("T\tn\tt", "no row"),
         ("40\t250", "2 cells"),
         ("40\tx1\t3", "x1 is not a number"),
+        ("1\t2\te6", "e6 is not a number"),
         ("1,5\t2.5\t3", "different ways"),
         ("Torque (lb·in)\tSpeed\tDuration\n1\t2\t3", "lb·in"),
         ("T [Nm];n [rpm];t [ms]\n1;2;3", "ms"),

@@ -6,7 +6,6 @@ from typing import Any
 import pytest
 from starlette.testclient import TestClient
 
-from hpn.web.access import LONGEST_TOLD, _group_of, group_of
 from hpn.web.uploads import MOST_PARTS, parts_of
 from tests.build import cycle, phase, worked_example
 
@@ -103,15 +102,6 @@ def test_a_text_that_is_no_table_is_refused(api: TestClient, text: str) -> None:
 @pytest.mark.parametrize("origin", ["http://[", "null", "", "http://"])
 def test_a_form_from_a_place_that_is_none_is_refused(api: TestClient, origin: str) -> None:
     assert api.post("/reader", data={"language": "de"}, headers={"origin": origin}).status_code == 403
-
-
-def test_of_long_paths_no_more_is_remembered_than_tells_their_group() -> None:
-    _group_of.cache_clear()
-    for number in range(50):
-        assert group_of("GET", f"/api/v1/selections/{'a' * LONGEST_TOLD}{number}") == "reading"
-    assert group_of("GET", "/nowhere/" + "a" * 1000) == "calculator"
-
-    assert _group_of.cache_info().currsize == 2
 
 
 @pytest.mark.parametrize("torque", ["5e-324", "1e-323", "1e-310", "1e-300"])

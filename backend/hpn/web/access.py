@@ -1,7 +1,6 @@
 """Who may do what, how often: API keys and rate limits, in front of every route."""
 
-from collections.abc import Mapping
-from functools import lru_cache
+from collections.abc import Callable, Mapping
 
 from starlette.types import ASGIApp, Receive, Scope, Send
 
@@ -26,17 +25,8 @@ LIMIT_OF: Mapping[Group, str] = {
 """Which rate counts a group's requests."""
 
 
-LONGEST_TOLD = 100
-"""Characters of a path that tell its group; only so many are remembered."""
-
-
 def group_of(method: str, path: str) -> Group | None:
-    """Group of a request; None for what is open to all. Page and API of the same thing belong to the same group."""
-    return _group_of(method, path[:LONGEST_TOLD])
-
-
-@lru_cache(maxsize=4096)
-def _group_of(method: str, path: str) -> Group | None:
+    """Group of a route by its template; None for what is open to all. Page and API of a thing are of one group."""
     place = path.removeprefix(API)
     if place == "/select/batch":
         return "batch"
@@ -52,10 +42,15 @@ def _group_of(method: str, path: str) -> Group | None:
 
 
 class Gate:
-    """Answers 401 where a key is needed, 429 where there were too many requests, and lets the rest pass."""
+    """Answers 401 where a key is needed, 429 where there were too many requests, and lets the rest pass.
 
-    def __init__(self, app: ASGIApp, settings: Settings) -> None:
+    `template_of` gives the template of the route that the router will take: the path's own text can be spelled in ways
+    that the router takes for the same.
+    """
+
+    def __init__(self, app: ASGIApp, settings: Settings, template_of: Callable[[Scope], str]) -> None:
         self.app = app
+        self._template_of = template_of
         self._keys = settings.api_keys
         self._guarded = settings.guarded if settings.api_keys else frozenset()
         self._limiter = Limiter(
@@ -68,7 +63,7 @@ class Gate:
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Pass the request on, or answer it."""
-        group = group_of(scope["method"], scope["path"]) if scope["type"] == "http" else None
+        group = group_of(scope["method"], self._template_of(scope)) if scope["type"] == "http" else None
         if group is None:
             await self.app(scope, receive, send)
             return

@@ -1,13 +1,14 @@
 """The service: one factory that puts settings, catalogue, store, routes and limits together."""
 
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Sequence
 from contextlib import asynccontextmanager, suppress
 from functools import partial
 from typing import Any
 
 from fastapi import FastAPI
 from starlette.middleware.cors import CORSMiddleware
-from starlette.routing import Route
+from starlette.routing import Match, Route
+from starlette.types import Scope
 from uvicorn.middleware.proxy_headers import ProxyHeadersMiddleware
 
 from hpn import ENGINE_VERSION
@@ -101,13 +102,15 @@ def create_app(settings: Settings | None = None) -> Service:
     app.shortcuts = api.SHORTCUTS | selections.SHORTCUTS
     app.bodies = (Application, schemas.Batch, selection_schemas.SaveRequest)
     files = (exports.saved_files, exports.posted_files, exports.linked_files, embeds.router)
-    for router in (health.router, api.router, selections.router, *files):
+    routers = (health.router, api.router, selections.router, *files)
+    for router in routers:
         app.include_router(router)
     for part in (pages, catalogue_pages, long_cycles, paste, transfer, selection_pages):
         app.router.routes.extend(part.routes)
     app.add_middleware(PackedPages)
     app.add_middleware(Readers)
-    app.front = _front(app, settings, metrics)
+    routes = [route for router in (app.router, *routers) for route in router.routes if isinstance(route, Route)]
+    app.front = _front(app, settings, metrics, routes)
     return app
 
 
@@ -119,9 +122,9 @@ def _compile(catalogue: Catalogue) -> None:
     selection.evaluation.bearing_loads()
 
 
-def _front(app: Service, settings: Settings, metrics: Metrics) -> Any:
+def _front(app: Service, settings: Settings, metrics: Metrics, routes: Sequence[Route]) -> Any:
     """What every request passes, from the inside out."""
-    front: Any = Gate(app.routed, settings)
+    front: Any = Gate(app.routed, settings, partial(_template_of, app, routes))
     if settings.cors_origins:
         front = CORSMiddleware(front, allow_origins=settings.cors_origins, **CORS)
     templates = {route.endpoint: route.path for route in app.routes if isinstance(route, Route)}
@@ -130,6 +133,14 @@ def _front(app: Service, settings: Settings, metrics: Metrics) -> Any:
     if settings.trusted_proxies:
         front = ProxyHeadersMiddleware(front, trusted_hosts=list(settings.trusted_proxies))
     return front
+
+
+def _template_of(app: Service, routes: Sequence[Route], scope: Scope) -> str:
+    """Template of the route that answers a request, by the router's own match; the path where none does."""
+    path: str = scope["path"]
+    if (scope["method"], path) in app.shortcuts:
+        return path
+    return next((route.path for route in routes if route.matches(scope)[0] is Match.FULL), path)
 
 
 @asynccontextmanager
