@@ -14,10 +14,10 @@ from pydantic import ValidationError
 from hpn.application import Application, InputError
 from hpn.candidates import Candidate
 from hpn.catalogue import Catalogue, load_catalogue
+from hpn.catalogue.tables import CatalogueError
 from hpn.checks import allowed, telling_decimals
 from hpn.selection import select
 from hpn.store import Store, StoreError, StoreUnavailableError
-from hpn.tables import CatalogueError
 from hpn.web import serving
 from hpn.web.canonical import to_link
 from hpn.web.gear_figures import is_supplied

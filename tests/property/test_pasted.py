@@ -5,7 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hpn.application import DutyCycle, Phase
-from hpn.pasted import Decimal, Reading, read_table, write_table
+from hpn.web.form.pasted import Decimal, Reading, read_table, write_table
 
 NUMBERS = st.floats(-1e6, 1e6, allow_subnormal=False).map(lambda value: round(value, 4))
 PHASES = st.builds(

@@ -11,7 +11,7 @@ import pytest
 from sqlalchemy import event, text
 
 from hpn.catalogue import Catalogue, load_catalogue
-from hpn.catalogue_copy import FORMAT, UnreadableCopyError, copy_of, read_copy
+from hpn.catalogue.copy import FORMAT, UnreadableCopyError, copy_of, read_copy
 from hpn.store import Draft, Store
 from tests.conftest import Supplement
 from tests.store.drafts import draft

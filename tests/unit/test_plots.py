@@ -6,7 +6,7 @@ from itertools import pairwise
 import plotly.graph_objects as go
 import pytest
 
-from hpn import plots
+from hpn import drawings as plots
 from hpn.application import Application
 from hpn.catalogue import Catalogue
 from hpn.selection import Selection, select

@@ -7,7 +7,7 @@ import pytest
 from starlette.testclient import TestClient
 
 from hpn.checks import telling_decimals
-from hpn.plots.words import share
+from hpn.drawings.words import share
 from hpn.report.language import language
 from hpn.web import display
 from tests.build import candidate, cycle, phase

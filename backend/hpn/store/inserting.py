@@ -13,7 +13,7 @@ import brotli
 from sqlalchemy import Connection, Dialect, bindparam, delete, select, text
 
 from hpn.catalogue import Catalogue
-from hpn.catalogue_copy import copy_of
+from hpn.catalogue.copy import copy_of
 from hpn.store.errors import KeyReusedError, KeySpentError
 from hpn.store.packing import packed
 from hpn.store.saved import Draft

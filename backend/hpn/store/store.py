@@ -15,7 +15,7 @@ from sqlalchemy.exc import DataError, SQLAlchemyError
 from sqlalchemy.ext.asyncio import AsyncConnection
 
 from hpn.catalogue import Catalogue
-from hpn.catalogue_copy import UnreadableCopyError, read_copy
+from hpn.catalogue.copy import UnreadableCopyError, read_copy
 from hpn.store.engine import make_engine, make_transactions
 from hpn.store.errors import NewerDatabaseError, StoreUnavailableError
 from hpn.store.inserting import Outcome, insert, insertion_of, remove

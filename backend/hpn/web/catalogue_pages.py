@@ -9,8 +9,8 @@ from starlette.responses import HTMLResponse, PlainTextResponse, RedirectRespons
 from starlette.routing import Route
 
 from hpn.catalogue import Catalogue
+from hpn.drawings.envelope import HEIGHT, WIDTH, drawing
 from hpn.gear import Gear, canonical_designation, canonical_size
-from hpn.web.envelope_drawing import HEIGHT, WIDTH, drawing
 from hpn.web.gear_figures import figures_of, is_supplied, neighbours, supplements_for
 from hpn.web.ordering import ordering_code
 from hpn.web.pages import environment

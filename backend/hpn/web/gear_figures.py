@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 
 from hpn.catalogue import Catalogue
+from hpn.catalogue.tables import TABLES
 from hpn.gear import Gear
-from hpn.tables import TABLES
 from hpn.units import suffix_of
 from hpn.wording import N_
 

@@ -16,9 +16,9 @@ from hpn.application import Application, InputError
 from hpn.candidates import Candidate, foremost, is_judged, is_unlimited
 from hpn.catalogue import Catalogue
 from hpn.checks import allowed
+from hpn.drawings.picture import beyond_limit
 from hpn.gear import Gear
 from hpn.notices import AREAS
-from hpn.plots.picture import beyond_limit
 from hpn.remedy import DRIVERS
 from hpn.selection import Selection, select
 from hpn.web import assets, display, links, mathml, pictures, reader, readers

@@ -16,9 +16,9 @@ from starlette.responses import HTMLResponse, RedirectResponse, Response
 from starlette.routing import Route
 
 from hpn.application import Application
-from hpn.pasted import COLUMNS, SEPARATORS, Pasted, Reading, read_table
 from hpn.web import links, long_cycles
 from hpn.web.canonical import to_link
+from hpn.web.form.pasted import COLUMNS, SEPARATORS, Pasted, Reading, read_table
 from hpn.web.links import Pairs
 from hpn.web.pages import environment
 from hpn.web.problems import Problem, plain_message, pointer

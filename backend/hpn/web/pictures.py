@@ -9,7 +9,7 @@ from jinja2 import pass_context
 from jinja2.runtime import Context
 from markupsafe import Markup
 
-from hpn import plots
+from hpn import drawings as plots
 from hpn.gear import Gear
 from hpn.selection import Selection
 from hpn.web.reader import Reader, reader_of

@@ -8,7 +8,7 @@ from starlette.responses import Response
 from starlette.routing import Route
 
 from hpn.application import Application
-from hpn.pasted import Decimal, write_table
+from hpn.web.form.pasted import Decimal, write_table
 from hpn.web.pages import read_query
 from hpn.web.problems import Problem
 from hpn.web.uploads import read_fields

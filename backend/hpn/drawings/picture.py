@@ -9,10 +9,10 @@ import numpy as np
 
 from hpn import bearing
 from hpn.application import OutputLoad
+from hpn.drawings.words import numbers, share
 from hpn.envelopes import EnvelopeCurve, EnvelopeQuery, envelope_curve, life_envelopes
 from hpn.equations import ROUNDING
 from hpn.gear import Gear
-from hpn.plots.words import numbers, share
 from hpn.selection import Selection
 from hpn.wording import Quantity, Sentence, Value
 

@@ -2,19 +2,16 @@
 
 import hashlib
 from collections import defaultdict
-from collections.abc import Sequence
-from dataclasses import dataclass
-from functools import cached_property
 from pathlib import Path
 from typing import Any, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
-from hpn import tables
 from hpn.bearing import Curve, CurveError, curve_through
-from hpn.gear import ClampBolt, Gear, HousingBolts, canonical_designation, canonical_size
-from hpn.tables import (
+from hpn.catalogue import tables
+from hpn.catalogue.catalogue import Catalogue, FlangeBolt, OutputVersion, SeriesFigure
+from hpn.catalogue.tables import (
     AccuracyTable,
     CatalogueError,
     ClampBoltTable,
@@ -34,9 +31,10 @@ from hpn.tables import (
     VersionTable,
     WeightTable,
 )
+from hpn.gear import ClampBolt, Gear, HousingBolts
 
 FloatArray = NDArray[np.float64]
-HANDBOOK_FOLDER = Path(__file__).parents[2] / "catalogue"
+HANDBOOK_FOLDER = Path(__file__).parents[3] / "catalogue"
 
 SERIES_FIGURES = {
     "rated_input_speed": "rpm",
@@ -58,141 +56,6 @@ ORDERINGS = (
     (LengthTable, "length_min_mm", "length_max_mm", True),
 )
 """Table, smaller figure, larger figure, and whether they may be equal."""
-
-
-@dataclass(frozen=True, slots=True)
-class SeriesFigure:
-    """A figure or text that holds for the whole series, with its unit and source."""
-
-    value: float | str
-    unit: str | None
-    source: str
-
-
-@dataclass(frozen=True, slots=True)
-class FlangeBolt:
-    """Bolt between motor and gear flange (table 26.1)."""
-
-    bolt_size: str
-    tightening_torque_Nm: float | None
-    source: str
-
-
-@dataclass(frozen=True, slots=True)
-class OutputVersion:
-    """An option of the ordering code (tables 9.2 and 9.3)."""
-
-    position: str
-    code: str
-    description: str
-    source: str
-
-
-class GearColumns:
-    """Figures of some gears as arrays, shape (gears,); NaN where a figure is not published."""
-
-    ratio: FloatArray
-    repeated_peak_torque_Nm: FloatArray
-    rated_torque_Nm: FloatArray
-    momentary_peak_torque_Nm: FloatArray
-    maximum_input_speed_rpm: FloatArray
-    average_input_speed_rpm: FloatArray
-    ambient_temperature_minimum_degC: FloatArray
-    ambient_temperature_maximum_degC: FloatArray
-    weight_kg: FloatArray
-    backlash_arcmin: FloatArray
-    torsional_stiffness_Nm_per_rad: FloatArray
-    length_min_mm: FloatArray
-    length_max_mm: FloatArray
-    dynamic_radial_load_N: FloatArray
-    dynamic_axial_load_N: FloatArray
-
-    def __init__(self, gears: Sequence[Gear]) -> None:
-        for name in self.__class__.__annotations__:
-            column = np.array([np.nan if (v := getattr(gear, name)) is None else v for gear in gears], dtype=float)
-            column.flags.writeable = False
-            setattr(self, name, column)
-
-
-class GearList:
-    """Some gears of the catalogue in its order, once as rows and once as columns."""
-
-    def __init__(self, gears: Sequence[Gear], curves: Sequence[Curve | None]) -> None:
-        self.rows = tuple(gears)
-        self.columns = GearColumns(self.rows)
-        self.curves = tuple(curves)
-        self.names = tuple(
-            tuple(getattr(gear, field) for gear in self.rows) for field in ("designation", "size", "ratio", "stages")
-        )
-
-
-@dataclass(frozen=True, eq=False)
-class Catalogue:
-    """Every gear of the series, and what holds for it as a whole. Equal to itself alone, so it can be a key."""
-
-    version: str
-    gears: tuple[Gear, ...]
-    series: dict[str, SeriesFigure]
-    flange_bolts: tuple[FlangeBolt, ...]
-    output_versions: tuple[OutputVersion, ...]
-    curves: dict[str, Curve]
-    efficiency: dict[str, tuple[FloatArray, FloatArray]]
-    supplement: str | None
-
-    @cached_property
-    def by_designation(self) -> dict[str, Gear]:
-        """Gears by canonical designation."""
-        return {gear.designation: gear for gear in self.gears}
-
-    @cached_property
-    def sizes(self) -> tuple[str, ...]:
-        """Sizes, ascending."""
-        return tuple(dict.fromkeys(gear.size for gear in self.gears))
-
-    @cached_property
-    def ratios(self) -> tuple[int, ...]:
-        """Ratios of any size, ascending."""
-        return tuple(sorted({gear.ratio for gear in self.gears}))
-
-    @cached_property
-    def rated_input_speed_rpm(self) -> float:
-        """Rated input speed of equation 17.10."""
-        return float(self.series["rated_input_speed"].value)
-
-    @cached_property
-    def life_at_rated_torque_h(self) -> float:
-        """Life at rated torque and rated input speed of equation 17.10."""
-        return float(self.series["life_at_rated_torque"].value)
-
-    @cached_property
-    def bearing_reference(self) -> tuple[float, float]:
-        """Speed in rpm and life L50 in hours that the published bearing loads belong to (note 1 of table 10.1)."""
-        return (
-            float(self.series["bearing_reference_speed"].value),
-            float(self.series["bearing_reference_life_L50"].value),
-        )
-
-    @cached_property
-    def references(self) -> tuple[float, float, float, float]:
-        """Rated input speed and life at rated torque, then speed and life of the published bearing loads."""
-        return self.rated_input_speed_rpm, self.life_at_rated_torque_h, *self.bearing_reference
-
-    def restricted(self, sizes: tuple[str, ...] | None, ratios: tuple[int, ...] | None) -> GearList:
-        """Gears of the given sizes and ratios (None: of all), in catalogue order; maybe none."""
-        chosen = [
-            gear
-            for gear in self.gears
-            if (sizes is None or gear.size in sizes) and (ratios is None or gear.ratio in ratios)
-        ]
-        return GearList(chosen, [self.curves.get(gear.size) for gear in chosen])
-
-    def find(self, designation: str) -> Gear | None:
-        """Gear of a designation in any of the printed spellings, or None."""
-        return self.by_designation.get(canonical_designation(designation) or "")
-
-    def find_size(self, text: str) -> Gear | None:
-        """First gear of a size in any spelling, or None; what belongs to the size is the same in all of them."""
-        return next((gear for gear in self.gears if gear.size == canonical_size(text)), None)
 
 
 def load_catalogue(folder: Path = HANDBOOK_FOLDER, supplement: Path | None = None) -> Catalogue:

@@ -4,10 +4,10 @@ from collections.abc import Sequence
 from math import hypot
 
 from hpn.application import OutputLoad
+from hpn.drawings.picture import BearingPicture, NamedCurve, PhaseLoad, condition, phase_loads
+from hpn.drawings.words import ENGLISH, STANDING, STANDING_SUPPLIED, Figure, Words, layout, share, widened
 from hpn.envelopes import EnvelopeCurve, life_envelopes
 from hpn.gear import Gear
-from hpn.plots.picture import BearingPicture, NamedCurve, PhaseLoad, condition, phase_loads
-from hpn.plots.words import ENGLISH, STANDING, STANDING_SUPPLIED, Figure, Words, layout, share, widened
 from hpn.selection import Selection
 from hpn.wording import N_, Quantity, Sentence, Value
 

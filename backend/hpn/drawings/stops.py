@@ -5,8 +5,8 @@ from math import ceil, inf, log10
 import numpy as np
 
 from hpn import equations
+from hpn.drawings.words import ENGLISH, Figure, Words, layout, share, widened
 from hpn.gear import Gear
-from hpn.plots.words import ENGLISH, Figure, Words, layout, share, widened
 from hpn.selection import Selection
 from hpn.wording import N_, Quantity, Sentence, Value
 

@@ -3,11 +3,11 @@
 Data and axes are made here; colours are names of the page's theme (`var(--plot-own)`), which the browser fills in.
 """
 
-from hpn.plots.bearing import bearing_figure, sizes_figure
-from hpn.plots.cycle import CyclePicture, cycle_picture
-from hpn.plots.picture import BearingPicture, NamedCurve, SizeUse, bearing_picture, bearing_verdict, size_uses
-from hpn.plots.stops import emergency_stop_figure, emergency_stop_words
-from hpn.plots.words import Figure, Words
+from hpn.drawings.bearing import bearing_figure, sizes_figure
+from hpn.drawings.cycle import CyclePicture, cycle_picture
+from hpn.drawings.picture import BearingPicture, NamedCurve, SizeUse, bearing_picture, bearing_verdict, size_uses
+from hpn.drawings.stops import emergency_stop_figure, emergency_stop_words
+from hpn.drawings.words import Figure, Words
 
 __all__ = [
     "BearingPicture",

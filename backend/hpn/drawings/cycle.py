@@ -9,8 +9,8 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 
 from hpn.application import DutyCycle
+from hpn.drawings.words import ENGLISH, Words
 from hpn.gear import Gear
-from hpn.plots.words import ENGLISH, Words
 from hpn.selection import Selection
 from hpn.wording import N_, Quantity, Sentence, Value
 
