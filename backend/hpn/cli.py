@@ -18,11 +18,11 @@ from hpn.catalogue.tables import CatalogueError
 from hpn.checks import allowed, telling_decimals
 from hpn.selection import select
 from hpn.store import Store, StoreError, StoreUnavailableError
-from hpn.web import serving
-from hpn.web.canonical import to_link
-from hpn.web.gear_figures import is_supplied
-from hpn.web.keys import new_key
-from hpn.web.problems import Problem, plain_message
+from hpn.web import serve as serving
+from hpn.web.door.keys import new_key
+from hpn.web.door.problems import Problem, plain_message
+from hpn.web.form.write import to_link
+from hpn.web.pages.gear_figures import is_supplied
 from hpn.web.settings import Settings
 
 

@@ -4,7 +4,7 @@ import sys
 
 import uvicorn
 
-from hpn.web.serving import options
+from hpn.web.serve import options
 from hpn.web.settings import Settings
 
 if __name__ == "__main__":

@@ -10,7 +10,7 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 
-SERVICE = "hpn.web.serving:served_app"
+SERVICE = "hpn.web.serve:served_app"
 JSON = {"Content-Type": "application/json"}
 
 

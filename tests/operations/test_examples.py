@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from hpn.web.keys import new_key
+from hpn.web.door.keys import new_key
 from tests.operations.service import Service, serving
 
 README = (Path(__file__).parents[2] / "README.md").read_text()

@@ -9,9 +9,9 @@ from pydantic import ValidationError
 from starlette.routing import Route
 
 from hpn.cli import main
-from hpn.web.access import group_of
 from hpn.web.app import create_app
-from hpn.web.keys import holder, new_key
+from hpn.web.door.access import group_of
+from hpn.web.door.keys import holder, new_key
 from hpn.web.settings import Settings
 from tests.build import worked_example
 from tests.operations.conftest import MakeClient
@@ -137,7 +137,7 @@ def test_every_key_is_compared_even_after_one_has_matched(monkeypatch: pytest.Mo
         compared.append(one)
         return one == other
 
-    monkeypatch.setattr("hpn.web.keys.hmac.compare_digest", compare)
+    monkeypatch.setattr("hpn.web.door.keys.hmac.compare_digest", compare)
 
     assert holder(key.encode(), keys) == "first"
     assert len(compared) == 3

@@ -8,9 +8,9 @@ from pydantic import ValidationError
 from starlette.testclient import TestClient
 from starlette.types import Scope
 
-from hpn.web.access import Gate
-from hpn.web.keys import new_key
-from hpn.web.limiting import Counters, Limiter, subject_of
+from hpn.web.door.access import Gate
+from hpn.web.door.keys import new_key
+from hpn.web.door.rates import Counters, Limiter, subject_of
 from hpn.web.settings import Settings
 from tests.build import worked_example
 from tests.operations.conftest import MakeClient

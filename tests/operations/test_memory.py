@@ -10,14 +10,14 @@ from pathlib import Path
 
 import pytest
 
-from hpn.web.memory import into_huge_pages
+from hpn.web.door.memory import into_huge_pages
 
 OFFERED = Path("/sys/kernel/mm/transparent_hugepage/enabled")
 
 PROGRAM = """
 import mmap, re, zlib
 from pathlib import Path
-from hpn.web.memory import into_huge_pages
+from hpn.web.door.memory import into_huge_pages
 
 def kilobytes(name):
     return int(re.search(rf"^{name}: +([0-9]+)", Path("/proc/self/smaps_rollup").read_text(), re.MULTILINE)[1])

@@ -17,8 +17,8 @@ from starlette.testclient import TestClient
 from hpn.store import Store
 from hpn.store.engine import make_engine
 from hpn.web.app import create_app
-from hpn.web.keys import new_key
-from hpn.web.metrics import CountedStore
+from hpn.web.door.keys import new_key
+from hpn.web.door.metrics import CountedStore
 from hpn.web.settings import Settings
 from tests.build import worked_example
 from tests.operations.conftest import MakeClient

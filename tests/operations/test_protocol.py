@@ -14,7 +14,7 @@ from starlette.requests import Request
 from starlette.responses import Response
 from starlette.routing import Route
 
-from hpn.web.protocol import HEAD_BYTES, HEADER_COUNT, BoundedProtocol
+from hpn.web.door.protocol import HEAD_BYTES, HEADER_COUNT, BoundedProtocol
 
 HEAD = b"POST / HTTP/1.1\r\nHost: x\r\nContent-Length: 4\r\n\r\n"
 

@@ -14,9 +14,9 @@ from hypothesis import strategies as st
 from starlette.types import Message
 
 from hpn.catalogue import Catalogue
-from hpn.web.batch import batch_lines, line_evaluator
-from hpn.web.metrics import Metrics
-from hpn.web.streaming import MEMORY_BYTES, Line, LineSplitter, LineStream, Spool
+from hpn.web.api.batch import batch_lines, line_evaluator
+from hpn.web.api.streaming import MEMORY_BYTES, Line, LineSplitter, LineStream, Spool
+from hpn.web.door.metrics import Metrics
 from tests.benchmarks import batch
 from tests.benchmarks.server import serving
 from tests.build import worked_example

@@ -13,7 +13,7 @@ from hpn.calculation import Line, Step, calculation_of
 from hpn.calculation.formula import value_of
 from hpn.catalogue import Catalogue, load_catalogue
 from hpn.selection import select
-from hpn.web.mathml import compared, in_symbols, result, with_numbers
+from hpn.web.pages.mathml import compared, in_symbols, result, with_numbers
 from hpn.web.reader import Reader
 from tests.build import Json, candidate, cycle, phase, worked_example
 from tests.property.draw import applications

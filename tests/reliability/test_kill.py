@@ -20,7 +20,7 @@ from hpn.application import Application
 from hpn.catalogue import Catalogue
 from hpn.selection import select
 from hpn.store import Store
-from hpn.web.canonical import to_link
+from hpn.web.form.write import to_link
 from tests.build import Json, cycle, phase
 
 KILLS = int(os.environ.get("HPN_TEST_KILLS", "200"))

@@ -14,7 +14,7 @@ import pytest
 from starlette.testclient import TestClient
 
 from hpn.store import Store, StoreUnavailableError
-from hpn.web.api import LONG_CYCLE
+from hpn.web.api.select import LONG_CYCLE
 from hpn.web.app import create_app
 from hpn.web.settings import Settings
 from tests.build import cycle, phase, worked_example

@@ -8,7 +8,7 @@ from hpn.application import Application
 from hpn.catalogue import Catalogue
 from hpn.report.export import Export
 from hpn.selection import select
-from hpn.web.canonical import to_link
+from hpn.web.form.write import to_link
 from tests.build import Json, cycle, phase, worked_example
 
 CREATED = datetime(2026, 11, 21, 10, 15, tzinfo=UTC)

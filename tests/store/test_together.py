@@ -10,10 +10,10 @@ from hpn.catalogue import Catalogue
 from hpn.fleet import select_fleet
 from hpn.selection import Selection, select
 from hpn.store import Draft
-from hpn.web.canonical import to_link
-from hpn.web.metrics import Metrics
-from hpn.web.selection_schemas import Labels
-from hpn.web.selections import Wanted, drafts
+from hpn.web.api.selection_schemas import Labels
+from hpn.web.api.selections import Wanted, drafts
+from hpn.web.door.metrics import Metrics
+from hpn.web.form.write import to_link
 from tests.build import Json, cycle, phase, worked_example
 from tests.conftest import Supplement
 from tests.property.draw import at_random
@@ -74,7 +74,7 @@ def test_who_is_made_twice_is_counted_once(catalogue: Catalogue, monkeypatch: py
             raise ZeroDivisionError
         return "/"
 
-    monkeypatch.setattr("hpn.web.selections.to_link", fail)
+    monkeypatch.setattr("hpn.web.api.selections.to_link", fail)
     state = State({"catalogue": catalogue, "metrics": Metrics()})
 
     with pytest.raises(ZeroDivisionError):

@@ -7,7 +7,7 @@ from hpn.calculation import Step, calculation_of
 from hpn.calculation.formula import Constant, Symbol, Term
 from hpn.catalogue import Catalogue
 from hpn.selection import select
-from hpn.web.mathml import mathml, with_numbers
+from hpn.web.pages.mathml import mathml, with_numbers
 from hpn.web.reader import Reader
 from tests.build import Json, candidate, cycle, phase, worked_example
 from tests.conftest import Supplement

@@ -9,8 +9,9 @@ from hypothesis import strategies as st
 from pydantic import BaseModel
 
 from hpn.application import Application
-from hpn.web import links, symbols
-from hpn.web.canonical import to_link
+from hpn.web.form import read as links
+from hpn.web.form import symbols
+from hpn.web.form.write import to_link
 
 EXAMPLE = "/?T=40&n=250&t=0.3&T=32&n=500&t=3&T=20&n=250&t=0.4&tp=4&Tk=200&i=5"
 PHASE = "T=40&n=250&t=0.3"

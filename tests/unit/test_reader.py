@@ -4,10 +4,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hpn.web import entries, links, measures
+from hpn.web import measures
 from hpn.web.display import GROUP
+from hpn.web.door.readers import accepted_language
+from hpn.web.form import entries
+from hpn.web.form import read as links
 from hpn.web.reader import Reader
-from hpn.web.readers import accepted_language
 from hpn.wording import Quantity, Sentence
 
 AMERICAN = Reader("en", measures.PRESETS["US"])

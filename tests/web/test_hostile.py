@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 from starlette.testclient import TestClient
 
-from hpn.web.uploads import MOST_PARTS, parts_of
+from hpn.web.door.uploads import MOST_PARTS, parts_of
 from tests.build import cycle, phase, worked_example
 
 Json = dict[str, Any]

@@ -107,7 +107,7 @@ def test_a_mistake_of_the_service_is_a_problem_without_a_trace(monkeypatch: pyte
     def broken(*arguments: Any) -> Any:
         raise RuntimeError("secret detail")
 
-    monkeypatch.setattr("hpn.web.api.select", broken)
+    monkeypatch.setattr("hpn.web.api.select.select", broken)
     client = TestClient(create_app(), raise_server_exceptions=False)
 
     reply = client.post(PATHS[0], content=SMALL, headers=JSON)

@@ -11,7 +11,7 @@ from starlette.testclient import TestClient
 
 from hpn.units import suffix_of, symbol_of
 from hpn.web.app import create_app
-from hpn.web.keys import new_key
+from hpn.web.door.keys import new_key
 from hpn.web.settings import Settings
 from tests.build import cycle, phase, worked_example
 

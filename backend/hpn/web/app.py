@@ -17,29 +17,21 @@ from hpn.catalogue import Catalogue, load_catalogue
 from hpn.compiled import compile_equations
 from hpn.selection import select
 from hpn.store import Store, StoreUnavailableError
-from hpn.web import (
-    api,
-    catalogue_pages,
-    embeds,
-    exports,
-    health,
-    long_cycles,
-    pages,
-    paste,
-    problems,
-    schemas,
-    selection_pages,
-    selection_schemas,
-    selections,
-    transfer,
-)
-from hpn.web.access import Gate
-from hpn.web.compression import PackedPages
-from hpn.web.logs import make_logger
-from hpn.web.metrics import CountedStore, Metrics
-from hpn.web.observation import Observation
-from hpn.web.readers import Readers
-from hpn.web.service import Service
+from hpn.web.api import embeds, health, schemas, selection_schemas, selections
+from hpn.web.api import files as exports
+from hpn.web.api import select as api
+from hpn.web.door import problems
+from hpn.web.door.access import Gate
+from hpn.web.door.compression import PackedPages
+from hpn.web.door.logs import make_logger
+from hpn.web.door.metrics import CountedStore, Metrics
+from hpn.web.door.observation import Observation
+from hpn.web.door.readers import Readers
+from hpn.web.door.service import Service
+from hpn.web.pages import calculator as pages
+from hpn.web.pages import catalogue as catalogue_pages
+from hpn.web.pages import long_cycles, paste, transfer
+from hpn.web.pages import saved as selection_pages
 from hpn.web.settings import Settings
 
 CORS: dict[str, Any] = {

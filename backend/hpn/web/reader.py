@@ -19,8 +19,8 @@ from hpn.reply import REASONS
 from hpn.report.language import language
 from hpn.translation import LANGUAGES, translations
 from hpn.web import display, measures
+from hpn.web.form.messages import Message
 from hpn.web.measures import Measure
-from hpn.web.messages import Message
 from hpn.wording import N_, Quantity, Sentence, rounded
 
 LANGUAGE_NAMES = {"en": "English", "de": "Deutsch"}

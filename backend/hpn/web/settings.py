@@ -12,7 +12,7 @@ from pydantic import AfterValidator, BeforeValidator, Field, SecretStr, model_va
 from pydantic_settings import BaseSettings, NoDecode, SettingsConfigDict
 
 from hpn.catalogue import HANDBOOK_FOLDER
-from hpn.web.keys import ApiKey
+from hpn.web.door.keys import ApiKey
 
 Group = Literal["calculator", "batch", "writing", "listing", "deleting", "reading", "metrics"]
 """Kinds of requests that keys and rate limits tell apart; `access.py` says which request belongs to which."""

@@ -1,0 +1,216 @@
+"""Selections as files: report, workbook and Asset Administration Shell, of what is saved, posted, or in a link."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Annotated, Any, Literal
+from urllib.parse import parse_qsl
+
+import orjson
+from anyio import CapacityLimiter
+from anyio.to_thread import run_sync
+from fastapi import APIRouter, Query
+from pydantic import ValidationError
+from starlette.datastructures import State
+from starlette.requests import Request
+from starlette.responses import Response
+
+from hpn.application import Application
+from hpn.catalogue import Catalogue
+from hpn.report.export import Export
+from hpn.report.language import Language, language
+from hpn.report.pdf import pdf
+from hpn.report.submodel import package
+from hpn.report.workbook import workbook
+from hpn.selection import select
+from hpn.store import SavedSelection
+from hpn.web.api import schemas
+from hpn.web.api.selections import url_of, with_catalogue
+from hpn.web.door.bodies import read_body
+from hpn.web.door.conditions import etag_of, has_already
+from hpn.web.door.problems import Problem
+from hpn.web.door.readers import accepted_language
+from hpn.web.form import read as links
+from hpn.web.form.write import to_link
+from hpn.web.settings import Settings
+
+AT_ONCE = 2
+"""Files that one process makes at the same time; they cost processor time alone."""
+
+MOST_WAITING = 32
+RETRY_SECONDS = 5
+
+Lang = Annotated[Literal["en", "de"] | None, Query(description="Language; by default the browser's.")]
+Make = Callable[[], Export]
+
+
+@dataclass(frozen=True, slots=True)
+class File:
+    """A kind of file: its name, its media type, what it is, and how it is made."""
+
+    name: str
+    media_type: str
+    summary: str
+    build: Callable[[Export, Language], bytes]
+    disposition: str = "attachment"
+
+    def named(self, export: Export) -> str:
+        """File name for a download; ASCII, whatever the selection is called."""
+        return f"{export.candidate['designation']}.{self.name.rpartition('.')[2]}"
+
+
+FILES = (
+    File("report.pdf", "application/pdf", "PDF report", pdf, "inline"),
+    File(
+        "report.xlsx",
+        "application/vnd.openxmlformats-officedocument.spreadsheetml.sheet",
+        "Workbook with live formulas",
+        workbook,
+    ),
+    File(
+        "submodel.aasx",
+        "application/asset-administration-shell-package",
+        "Asset Administration Shell: technical data and selection",
+        lambda export, _: package(export),
+    ),
+)
+
+saved_files = APIRouter(prefix="/api/v1/selections/{id}")
+posted_files = APIRouter(prefix="/api/v1")
+linked_files = APIRouter(include_in_schema=False)
+
+
+def _route(file: File) -> None:
+    content: dict[int | str, dict[str, Any]] = {
+        200: {"content": {file.media_type: {"schema": {"type": "string", "format": "binary"}}}}
+    }
+
+    async def of_saved(request: Request, id: str, lang: Lang = None) -> Response:
+        saved, catalogue = await with_catalogue(request.app.state, id)
+        return await _answer(request, file, lang, lambda: _of_saved(saved, catalogue, request))
+
+    async def of_posted(request: Request, lang: Lang = None) -> Response:
+        settings: Settings = request.app.state.settings
+        body = await read_body(request, maximum_bytes=settings.maximum_body_bytes, seconds=settings.body_seconds)
+        application = Application.model_validate_json(body)
+        return await _answer(request, file, lang, lambda: _computed(application, request))
+
+    async def of_link(request: Request, lang: Lang = None) -> Response:
+        return await _answer(request, file, lang, lambda: _computed(linked_application(request), request))
+
+    shared: dict[str, Any] = {"response_class": Response, "summary": file.summary}
+    saved_files.add_api_route(
+        f"/{file.name}",
+        of_saved,
+        **shared,
+        description=f"{file.summary} of a saved selection, as it was saved.",
+        responses=content | schemas.problems(404, 409, 422, 503),
+    )
+    posted_files.add_api_route(
+        f"/{file.name}",
+        of_posted,
+        methods=["POST"],
+        description=f"{file.summary} of an application, computed now; nothing is saved.",
+        openapi_extra=schemas.request_body(Application),
+        responses=content | schemas.problems(400, 408, 413, 415, 422, 503),
+        **shared,
+    )
+    linked_files.add_api_route(f"/{file.name}", of_link, **shared)
+
+
+for _file in FILES:
+    _route(_file)
+
+
+@posted_files.get("/application.schema.json", summary="JSON Schema of an application", response_class=Response)
+async def application_schema() -> Response:
+    """JSON Schema of an application, with the unit of every field."""
+    schema = {"$schema": "https://json-schema.org/draft/2020-12/schema", "$id": "application.schema.json"}
+    document = orjson.dumps(schema | Application.model_json_schema())
+    return Response(document, media_type="application/schema+json")
+
+
+# --- What goes into a file --------------------------------------------------------------------------------------------
+
+
+def _of_saved(saved: SavedSelection, catalogue: Catalogue | None, request: Request) -> Export:
+    """What was saved, as it was saved; nothing is computed again."""
+    try:
+        application = Application.model_validate_json(saved.application)
+    except ValidationError:
+        raise Problem(409, "the saved input does not fit this version's model any more") from None
+    return Export(
+        application=application,
+        reply=orjson.loads(saved.result),
+        link=absolute(request, url_of(saved.id)),
+        title=saved.title or "",
+        reference=saved.reference or "",
+        created=saved.created,
+        catalogue=catalogue,
+    )
+
+
+def _computed(application: Application, request: Request) -> Export:
+    catalogue = request.app.state.catalogue
+    link = to_link(application)
+    reply = select(application, catalogue).reply(link)
+    return Export(application=application, reply=reply, link=absolute(request, link), catalogue=catalogue)
+
+
+def linked_application(request: Request) -> Application:
+    """Application of the request's query; Problem 422 names each parameter that can't be read, 414 a query too long."""
+    query = request.scope["query_string"]
+    if len(query) > links.MAXIMUM_QUERY_BYTES:
+        raise Problem(414, f"a link may have {links.MAXIMUM_QUERY_BYTES} bytes at most; post the application instead")
+    pairs = parse_qsl(query.decode("latin-1"), keep_blank_values=True)
+    return application_of([(name, value) for name, value in pairs if name != "lang"])
+
+
+def application_of(pairs: links.Pairs) -> Application:
+    """Application of the parameters of a link; Problem 422 names each that can't be read."""
+    form = links.parse(pairs)
+    errors = [
+        ((problem.name, *(() if problem.index is None else (problem.index,))), str(problem.message))
+        for problem in form.problems
+    ]
+    if form.application is None:
+        listed = "; ".join(f"{location[0]} {text}" for location, text in errors[:3])
+        raise Problem(422, listed or "the link has no application: give T, n and t for each phase", errors)
+    return form.application
+
+
+def absolute(request: Request, path: str) -> str:
+    """Address of this service with a path."""
+    return str(request.base_url).rstrip("/") + path
+
+
+# --- Making it --------------------------------------------------------------------------------------------------------
+
+
+async def _answer(request: Request, file: File, lang: str | None, make: Make) -> Response:
+    reader = spoken(request, lang)
+
+    def work() -> tuple[bytes, str]:
+        export = make()
+        return file.build(export, reader), file.named(export)
+
+    limiter = _limiter(request.app.state)
+    if limiter.statistics().tasks_waiting >= MOST_WAITING:
+        raise Problem(503, "too many files are being made", headers={"Retry-After": str(RETRY_SECONDS)})
+    content, name = await run_sync(work, limiter=limiter)
+    headers = {"ETag": etag_of(content), "Cache-Control": "no-cache", "Vary": "Accept-Language"}
+    if request.method == "GET" and has_already(request, headers["ETag"]):
+        return Response(status_code=304, headers=headers)
+    headers |= {"Content-Language": reader.code, "Content-Disposition": f'{file.disposition}; filename="{name}"'}
+    return Response(content, headers=headers, media_type=file.media_type)
+
+
+def spoken(request: Request, lang: str | None) -> Language:
+    """The language asked for, else the browser's."""
+    return language(lang or accepted_language(request.headers.get("accept-language", "")))
+
+
+def _limiter(state: State) -> CapacityLimiter:
+    if not hasattr(state, "files_at_once"):
+        state.files_at_once = CapacityLimiter(AT_ONCE)
+    limiter: CapacityLimiter = state.files_at_once
+    return limiter

@@ -1,0 +1,46 @@
+"""Whether the service lives and is ready, for load balancers and orchestrators."""
+
+from fastapi import APIRouter
+from pydantic import BaseModel, Field
+from starlette.concurrency import run_in_threadpool
+from starlette.requests import Request
+from starlette.responses import PlainTextResponse, Response
+
+from hpn.web.api.schemas import problems
+from hpn.web.door.metrics import CONTENT_TYPE
+
+router = APIRouter()
+
+
+class Health(BaseModel):
+    """State of the service."""
+
+    status: str = Field(description="ok while the service answers.")
+
+
+class Readiness(Health):
+    """State of the service and of what it needs."""
+
+    catalogue_version: str = Field(description="Hash of the loaded catalogue's content.")
+    gears: int = Field(description="Number of gears in the catalogue.")
+    store: str = Field(description="ok while the database of the saved selections answers.")
+
+
+@router.get("/healthz", summary="Is the process alive")
+async def healthz() -> Health:
+    """The process answers."""
+    return Health(status="ok")
+
+
+@router.get("/readyz", summary="Is the service ready", responses=problems(503))
+async def readyz(request: Request) -> Readiness:
+    """The catalogue is loaded and the database of the saved selections answers; else 503."""
+    catalogue = request.app.state.catalogue
+    await request.app.state.store.check()
+    return Readiness(status="ok", catalogue_version=catalogue.version, gears=len(catalogue.gears), store="ok")
+
+
+@router.get("/metrics", summary="Metrics for Prometheus", response_class=PlainTextResponse)
+async def metrics(request: Request) -> Response:
+    """What Prometheus counts: requests, selections by verdict, operations of the store."""
+    return Response(await run_in_threadpool(request.app.state.metrics.exposition), media_type=CONTENT_TYPE)

@@ -1,0 +1,98 @@
+"""The OpenAPI document: what FastAPI finds by itself, and what the direct routes know better."""
+
+from collections.abc import Iterator
+from typing import Any
+
+from pydantic import BaseModel
+from pydantic.json_schema import models_json_schema
+
+from hpn.catalogue import Catalogue
+from hpn.units import suffix_of, symbol_of
+from hpn.web.api import samples, schemas
+from hpn.web.door.access import group_of
+from hpn.web.settings import Settings
+
+PATH_PARAMETERS = {
+    "designation": "Designation in any of the printed spellings, such as HPN-20A-5.",
+    "size": "Size, such as 20A.",
+    "id": "Identifier that saving answered with.",
+}
+
+FRAMEWORK = ("HTTPValidationError", "ValidationError")
+
+
+KEY_SCHEMES = {
+    "bearer": {"type": "http", "scheme": "bearer", "description": "A key of the service, where it has keys."},
+    "key": {"type": "apiKey", "in": "header", "name": "X-API-Key", "description": "The same key in a header."},
+}
+
+
+def complete(
+    document: dict[str, Any], catalogue: Catalogue, settings: Settings, *bodies: type[BaseModel]
+) -> dict[str, Any]:
+    """Add schemas of the request bodies, examples, the one form of every problem, keys, and texts of parameters."""
+    models: list[Any] = [(model, "validation") for model in (*bodies, schemas.ProblemReply)]
+    _, definitions = models_json_schema(models, ref_template="#/components/schemas/{model}")
+    components = document.setdefault("components", {})
+    components["securitySchemes"] = KEY_SCHEMES
+    named = components.setdefault("schemas", {})
+    named.update(definitions["$defs"])
+    for method, path, operation in _operations(document):
+        _give_examples(operation)
+        _say_problems(operation)
+        _say_keys(operation, group_of(method, path), settings)
+        _mend_replies(operation)
+        for parameter in operation.get("parameters", ()):
+            _describe(parameter)
+    for name in FRAMEWORK:
+        named.pop(name, None)
+    samples.illustrate(named, catalogue)
+    return document
+
+
+def _operations(document: dict[str, Any]) -> Iterator[tuple[str, str, dict[str, Any]]]:
+    for path, operations in document["paths"].items():
+        for method, operation in operations.items():
+            yield method.upper(), path, operation
+
+
+def _say_keys(operation: dict[str, Any], group: str | None, settings: Settings) -> None:
+    """Keys and rate limits stand in front of every route that is not open to all."""
+    if group is None:
+        return
+    needed = bool(settings.api_keys) and group in settings.guarded
+    operation["security"] = [*({name: []} for name in KEY_SCHEMES), *([] if needed else [{}])]
+    refusals = {str(status): entry for status, entry in schemas.problems(401, 429).items()}
+    operation["responses"] = dict(sorted((refusals | operation["responses"]).items()))
+
+
+def _give_examples(operation: dict[str, Any]) -> None:
+    body = operation.get("requestBody", {}).get("content", {}).get("application/json")
+    name = body["schema"].get("$ref", "").rpartition("/")[2] if body else ""
+    if name in samples.WHOLE:
+        body["examples"] = {
+            "worked_example": {"summary": "The handbook's worked example", "value": samples.WHOLE[name]}
+        }
+
+
+def _say_problems(operation: dict[str, Any]) -> None:
+    """FastAPI announces its own form of a 422; the service answers problems alone."""
+    response = operation["responses"].get("422", {})
+    schema = response.get("content", {}).get("application/json", {}).get("schema", {})
+    if schema.get("$ref", "").endswith("/HTTPValidationError"):
+        operation["responses"] |= {str(status): entry for status, entry in schemas.problems(422).items()}
+
+
+def _mend_replies(operation: dict[str, Any]) -> None:
+    """FastAPI takes a reply that it doesn't encode itself for a text, and says so beside the model."""
+    for response in operation["responses"].values():
+        for content in response.get("content", {}).values():
+            if "$ref" in content.get("schema", {}):
+                content["schema"].pop("type", None)
+
+
+def _describe(parameter: dict[str, Any]) -> None:
+    if parameter["in"] == "path":
+        parameter.setdefault("description", PATH_PARAMETERS[parameter["name"]])
+    if suffix_of(parameter["name"]):
+        parameter["schema"]["x-unit"] = symbol_of(parameter["name"])

@@ -1,0 +1,164 @@
+"""Examples for every field of the OpenAPI document: what this very service makes of one full application."""
+
+from collections.abc import Mapping
+from dataclasses import asdict
+from itertools import islice
+from typing import Any
+
+import orjson
+
+from hpn import ENGINE_VERSION
+from hpn.application import WORKED_EXAMPLE, Application, InputError
+from hpn.catalogue import Catalogue
+from hpn.differences import FigureDifference, differences
+from hpn.envelopes import EnvelopeQuery, life_envelopes
+from hpn.selection import select
+from hpn.web.api.batch import batch_lines
+from hpn.web.api.embeds import preview
+from hpn.web.door.problems import Problem
+from hpn.web.form.write import to_link
+
+Json = dict[str, Any]
+
+FULL: Json = {
+    "duty_cycle": {
+        "phases": [phase | {"radial_N": 500.0, "axial_N": 200.0} for phase in WORKED_EXAMPLE["duty_cycle"]["phases"]],
+        "pause_s": 4.0,
+    },
+    "emergency_stop": {"torque_Nm": 200.0, "count": 1000},
+    "output_load": {"load_coefficient": 1.2, "life_h": 20000.0, "life_basis": "L50", "model": "linear"},
+    "requirements": {"life_h": 20000.0, "efficiency": 0.95, "motor": {"maximum_speed_rpm": 4000.0}},
+    "application_area": "medical",
+    "rank_by": "weight",
+}
+"""The handbook's worked example with the rest of what may be asked; no size and no ratio, so any catalogue has it."""
+
+WHOLE: Json = {
+    "Application": WORKED_EXAMPLE,
+    "Batch": {"applications": [{"reference": "axis-7", **WORKED_EXAMPLE}]},
+    "SaveRequest": {"application": WORKED_EXAMPLE, "title": "Worked example", "reference": "axis-7"},
+}
+"""A whole request per body schema: the handbook's worked example (chapter 4.1)."""
+
+ITEMS_SHOWN = 3
+
+
+def illustrate(schemas: Json, catalogue: Catalogue) -> None:
+    """Give every field of the schemas that has no example one."""
+    for name, value in _samples(catalogue).items():
+        if name in schemas:
+            _illustrate(schemas, schemas[name], value)
+
+
+def _samples(catalogue: Catalogue) -> Json:
+    """A value of each schema that no other contains."""
+    application = Application.model_validate(FULL)
+    link = to_link(application)
+    reply = select(application, catalogue).reply(link)
+    best = reply["candidates"][0]["designation"]
+    gear = orjson.loads(orjson.dumps(catalogue.by_designation[best]))
+    versions = {"engine_version": ENGINE_VERSION, "catalogue_version": catalogue.version}
+    where = {"id": "q83vASNFZ4mrze8BI0Vniw", "url": "/selections/q83vASNFZ4mrze8BI0Vniw"}
+    summary = {**where, "created": "2026-11-21T10:00:00.000000Z", **WHOLE["SaveRequest"], "selected": best, **versions}
+    return {
+        **WHOLE,
+        "Application": FULL,
+        "BatchItem": {"reference": "axis-7", **FULL},
+        "SelectReply": reply,
+        "BatchReply": {"results": batch_lines([WHOLE["Batch"]["applications"][0]], catalogue)},
+        "BatchLine": batch_lines([{"reference": "axis-8"}], catalogue)[0],
+        "ProblemReply": _refusal().body(),
+        "CatalogueReply": {
+            "gears": [gear],
+            "catalogue_version": catalogue.version,
+            "series": {name: asdict(figure) for name, figure in catalogue.series.items()},
+        },
+        "OneGearReply": {"catalogue_version": catalogue.version, **gear, "gears": [gear]},
+        "EnvelopeReply": _envelopes(catalogue, gear["size"]),
+        "SelectionListReply": {"selections": [summary], "next_cursor": None},
+        "SavedReply": where,
+        "SavedSelectionReply": {
+            **summary,
+            "application": WORKED_EXAMPLE,
+            "gear": gear,
+            "result": reply,
+            "today": versions | _changes(reply, catalogue),
+        },
+        "Readiness": {
+            "status": "ok",
+            "catalogue_version": catalogue.version,
+            "gears": len(catalogue.gears),
+            "store": "ok",
+        },
+        "Health": {"status": "ok"},
+        "OEmbedReply": asdict(preview(reply, link)) | _PROVIDER,
+    }
+
+
+_PROVIDER = {
+    "type": "link",
+    "version": "1.0",
+    "provider_name": "HPN Select",
+    "provider_url": "http://127.0.0.1:8000/",
+    "cache_age": 3600,
+}
+
+
+def _refusal() -> Problem:
+    location = ("duty_cycle", "phases", 0, "duration_s")
+    return Problem.at([(location, "greater_than", "must be greater than 0")])
+
+
+def _envelopes(catalogue: Catalogue, size: str) -> Json:
+    gear = catalogue.find_size(size)
+    try:
+        curves = [asdict(curve) for curve in life_envelopes(catalogue, gear, EnvelopeQuery())] if gear else []
+    except InputError:  # a catalogue whose first choice has no published limits
+        curves = []
+    limits = {name: source for name, source in gear.sources.items() if name.startswith("dynamic_")} if gear else {}
+    return {"size": size, "model": "linear", "curves": curves, "sources": limits}
+
+
+def _changes(reply: Json, catalogue: Catalogue) -> Json:
+    """What has changed since, had the cycle been a tenth heavier then, and were the best gear's weight new."""
+    phases = [phase | {"torque_Nm": 1.1 * phase["torque_Nm"]} for phase in FULL["duty_cycle"]["phases"]]
+    heavier = Application.model_validate(FULL | {"duty_cycle": {"phases": phases}})
+    found = differences(select(heavier, catalogue).reply(to_link(heavier)), reply)
+    figures = next(difference for difference in found if difference.check)
+    best = reply["candidates"][0]["designation"]
+    weight = FigureDifference(best, "weight_kg", None, catalogue.by_designation[best].weight_kg)
+    return {
+        "difference_count": len(found),
+        "differences": [asdict(figures)],
+        "figure_differences": [asdict(weight)],
+        "problem": None,
+    }
+
+
+def _illustrate(schemas: Json, schema: Json, value: Any) -> None:
+    if "$ref" in schema:
+        _illustrate(schemas, schemas[schema["$ref"].rpartition("/")[2]], value)
+    for option in schema.get("anyOf", ()):
+        _illustrate(schemas, option, value)
+    if isinstance(value, list):
+        for item in value[:1]:
+            _illustrate(schemas, schema.get("items", {}), item)
+    elif isinstance(value, Mapping):
+        more = schema.get("additionalProperties")
+        if isinstance(more, dict):
+            for item in islice(value.values(), 1):
+                _illustrate(schemas, more, item)
+        for name, field in schema.get("properties", {}).items():
+            if name in value:
+                field.setdefault("examples", [_brief(value[name])])
+                _illustrate(schemas, field, value[name])
+
+
+def _brief(value: Any) -> Any:
+    """A value with few items in each list and mapping of objects."""
+    if isinstance(value, list):
+        return [_brief(item) for item in value[: 1 if value and isinstance(value[0], Mapping) else ITEMS_SHOWN]]
+    if isinstance(value, Mapping):
+        nested = all(isinstance(item, Mapping) for item in value.values())
+        return {name: _brief(item) for name, item in islice(value.items(), 1 if nested else None)}
+    return value

@@ -1,0 +1,64 @@
+"""Request headers that make a request conditional, repeatable or brief (RFC 9110, RFC 7240, Idempotency-Key)."""
+
+import hashlib
+import re
+
+from starlette.requests import Request
+from starlette.responses import Response
+
+from hpn.web.api.schemas import JSONBytes
+from hpn.web.door.problems import Problem
+from hpn.web.door.requests import header
+
+IDEMPOTENCY_KEY = re.compile(r'"?([\x21\x23-\x7e]{1,200})"?')
+"""Visible ASCII, with or without the quotes of a structured field."""
+
+PREFERRED_RETURN = re.compile(r"(?:^|[,;\s])return\s*=\s*\"?(minimal|representation)\b", re.I)
+
+
+def etag_of(body: bytes) -> str:
+    """Strong entity tag of a body."""
+    return f'"{hashlib.sha256(body).hexdigest()[:32]}"'
+
+
+def conditional(request: Request, body: bytes) -> Response:
+    """JSON with its entity tag, or 304 where the client has it already; to be asked for anew each time."""
+    etag = etag_of(body)
+    headers = {"ETag": etag, "Cache-Control": "no-cache"}
+    if has_already(request, etag):
+        return Response(status_code=304, headers=headers)
+    return JSONBytes(body, headers=headers)
+
+
+def has_already(request: Request, etag: str) -> bool:
+    """Whether the client has this state already."""
+    return _lists(request.headers.get("if-none-match", ""), etag, weakly=True)
+
+
+def require_match(request: Request, body: bytes) -> None:
+    """Raise Problem 412 where `If-Match` names another state than this one."""
+    given = request.headers.get("if-match")
+    if given is not None and not _lists(given, etag_of(body), weakly=False):
+        raise Problem(412, "If-Match names another state of this selection; read it again")
+
+
+def _lists(header: str, etag: str, *, weakly: bool) -> bool:
+    tags = re.findall(r'(?:W/)?"[^"]*"|\*', header)
+    return "*" in tags or etag in tags or (weakly and f"W/{etag}" in tags)
+
+
+def idempotency_key(request: Request) -> str | None:
+    """Key by which a repeated request of the same caller is known, or None; Problem 400 for one that can't be a key."""
+    given = header(request, b"idempotency-key")
+    if given is None:
+        return None
+    match = IDEMPOTENCY_KEY.fullmatch(given.strip())
+    if match is None:
+        raise Problem(400, "Idempotency-Key must be 1 to 200 visible ASCII characters, such as a UUID")
+    return f"{request.scope.get('api_key') or ''}:{match[1]}"
+
+
+def preferred_return(request: Request) -> str | None:
+    """What `Prefer: return=…` asks for: minimal, representation, or None."""
+    match = PREFERRED_RETURN.search(header(request, b"prefer") or "")
+    return match[1].lower() if match else None

@@ -1,0 +1,119 @@
+"""Whose request it is: the reader's language and units from cookies and browser, and the form that changes them.
+
+An address never says anything about its reader, so that a shared link shows each reader their own language and units.
+"""
+
+from http.cookies import CookieError, SimpleCookie
+from urllib.parse import parse_qsl, quote
+
+from babel import negotiate_locale
+from starlette.datastructures import Headers, MutableHeaders
+from starlette.requests import Request
+from starlette.responses import RedirectResponse, Response
+from starlette.routing import Route
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
+
+from hpn.translation import LANGUAGES
+from hpn.web import measures
+from hpn.web.door.bodies import read_body
+from hpn.web.door.requests import require_same_origin
+from hpn.web.reader import VISIT, Reader, Visit, current
+
+LANGUAGE, UNITS = "hpn_language", "hpn_units"
+"""Cookies; what they hold is no secret and names nobody."""
+
+YEAR_S = 365 * 24 * 3600
+MAXIMUM_BYTES = 70_000
+"""A form of settings carries the address that it leads back to."""
+
+
+class Readers:
+    """Finds out who reads a page, and tells caches that this makes a difference."""
+
+    def __init__(self, app: ASGIApp) -> None:
+        self.app = app
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Pass the request on with its reader set."""
+        if scope["type"] != "http" or scope["path"].startswith(("/api/", "/static/")):
+            await self.app(scope, receive, send)
+            return
+
+        async def send_with_headers(message: Message) -> None:
+            if message["type"] == "http.response.start":
+                headers = MutableHeaders(scope=message)
+                if headers.get("content-type", "").startswith("text/html"):
+                    headers.add_vary_header("Accept-Language, Cookie")
+                    headers["Content-Language"] = current().language
+            await send(message)
+
+        token = VISIT.set(Visit(reader_from(Headers(scope=scope)), _address(scope)))
+        try:
+            await self.app(scope, receive, send_with_headers)
+        finally:
+            VISIT.reset(token)
+
+
+def reader_from(headers: Headers) -> Reader:
+    """Reader by cookies, else by the language of the browser, else English; in SI units at first."""
+    cookies = _cookies(headers.get("cookie", ""))
+    language = cookies.get(LANGUAGE, "")
+    if language not in LANGUAGES:
+        language = accepted_language(headers.get("accept-language", ""))
+    return Reader(language, measures.codes_of(cookies.get(UNITS, "")))
+
+
+def accepted_language(header: str) -> str:
+    """Best of LANGUAGES by an Accept-Language header; English where none fits."""
+    weighted = []
+    for place, part in enumerate(header[:500].split(",")):
+        tag, _, parameter = part.partition(";")
+        weight = parameter.replace(" ", "").removeprefix("q=") or "1"
+        if weight.strip("0.") and weight.replace(".", "", 1).isdecimal():
+            weighted.append((-float(weight), place, tag.strip().replace("-", "_")))
+    wanted = [tag for _, _, tag in sorted(weighted) if tag]
+    return negotiate_locale(wanted, LANGUAGES) or "en"
+
+
+def _cookies(header: str) -> dict[str, str]:
+    try:
+        return {name: morsel.value for name, morsel in SimpleCookie(header[:8000]).items()}
+    except CookieError:  # another application on this host may set anything
+        return {}
+
+
+def _address(scope: Scope) -> str:
+    if scope["method"] not in ("GET", "HEAD"):
+        return "/"
+    query: bytes = scope["query_string"]
+    return quote(scope["path"]) + (f"?{query.decode('latin-1')}" if query else "")
+
+
+async def change(request: Request) -> Response:
+    """Keep a language, units or both, and go back to where the reader was."""
+    require_same_origin(request)
+    body = await read_body(request, "application/x-www-form-urlencoded", maximum_bytes=MAXIMUM_BYTES, seconds=10)
+    given = dict(parse_qsl(body.decode(errors="replace"), keep_blank_values=True))
+    response = RedirectResponse(_own(given.get("back", "")), 303, {"Cache-Control": "no-store"})
+    if (language := given.get("language", "")) in LANGUAGES:
+        _keep(request, response, LANGUAGE, language)
+    if given.get("preset") in measures.PRESETS:
+        _keep(request, response, UNITS, ".".join(measures.PRESETS[given["preset"]]))
+    elif any(name in given for name in measures.CHOICES):
+        codes = measures.codes_of(".".join(given.get(name, "") for name in measures.CHOICES))
+        _keep(request, response, UNITS, ".".join(codes))
+    return response
+
+
+def _keep(request: Request, response: Response, name: str, value: str) -> None:
+    secure = request.url.scheme == "https"
+    response.set_cookie(name, value or "SI", max_age=YEAR_S, samesite="lax", httponly=True, secure=secure)
+
+
+def _own(address: str) -> str:
+    """An address on this host, or the first page: a form must lead nobody elsewhere."""
+    safe = address.isascii() and address.isprintable() and "\\" not in address
+    return address if safe and address.startswith("/") and not address.startswith("//") else "/"
+
+
+routes = [Route("/reader", change, methods=["POST"])]

@@ -1,0 +1,26 @@
+"""Reading a request's headers; what a form must prove before it changes anything."""
+
+from starlette.requests import Request
+
+from hpn.web.door.problems import Problem
+from hpn.wording import N_
+
+
+def header(request: Request, name: bytes) -> str | None:
+    """First header of a name, in lower case; `request.headers` takes four times as long."""
+    for known, value in request.scope["headers"]:
+        if known == name:
+            return str(value, "latin-1")
+    return None
+
+
+def require_same_origin(request: Request) -> None:
+    """Raise Problem 403 for a form that a page of another site has sent; programs send neither header."""
+    site = request.headers.get("sec-fetch-site")
+    origin = request.headers.get("origin")
+    if site is not None:
+        same = site in ("same-origin", "none")
+    else:
+        same = origin is None or origin.partition("://")[2] == request.headers.get("host")
+    if not same:
+        raise Problem(403, N_("this form was sent by a page of another site"))

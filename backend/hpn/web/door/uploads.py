@@ -1,0 +1,68 @@
+"""Forms that a browser posts, with or without files, within limits of size and time."""
+
+import re
+from urllib.parse import parse_qsl
+
+from starlette.requests import Request
+
+from hpn.web.door.bodies import content_type_of, read_body
+from hpn.web.door.problems import Problem
+from hpn.web.settings import Settings
+from hpn.wording import N_
+
+NO_TEXT = N_("the file is no text: save the sheet as CSV, or copy its cells")
+FORM, MULTIPART = "application/x-www-form-urlencoded", "multipart/form-data"
+
+
+async def read_fields(request: Request) -> dict[str, str]:
+    """Fields of a posted form, the last of a name; files as text. Raises Problem as `read_body` does, 422 for a file
+    that is no text.
+    """
+    settings: Settings = request.app.state.settings
+    content_type = MULTIPART if content_type_of(request) == MULTIPART else FORM
+    body = await read_body(
+        request, content_type, maximum_bytes=settings.maximum_body_bytes, seconds=settings.body_seconds
+    )
+    if content_type == FORM:
+        return dict(parse_qsl(body.decode(errors="replace"), keep_blank_values=True))
+    return {name: decoded(content) for name, content in parts_of(request.headers["content-type"], body)}
+
+
+_BOUNDARY = re.compile(r"""boundary="?([A-Za-z0-9'()+_,./:=? -]{1,70})""", re.IGNORECASE)
+_NAME = re.compile(rb';\s*name="([^"\r\n]{1,100})"', re.IGNORECASE)
+MOST_PARTS = 20
+LONGEST_HEAD = 2000
+
+
+def parts_of(content_type: str, body: bytes) -> list[tuple[str, bytes]]:
+    """Name and content of each part of a form as browsers write it (RFC 7578); none where it isn't one.
+
+    Not with a library: those at hand take seconds for a header or a nesting that no browser sends.
+    """
+    boundary = _BOUNDARY.search(content_type[:LONGEST_HEAD])
+    if boundary is None:
+        return []
+    parts: list[tuple[str, bytes]] = []
+    delimiter = b"\r\n--" + boundary[1].strip().encode()
+    for section in (b"\r\n" + body).split(delimiter, MOST_PARTS + 1)[1:]:
+        head, blank, content = section.partition(b"\r\n\r\n")
+        name = _NAME.search(head[:LONGEST_HEAD])
+        if name and blank and len(parts) < MOST_PARTS:
+            parts.append((name[1].decode(errors="replace"), content))
+    return parts
+
+
+def decoded(content: bytes) -> str:
+    """Text of a file: UTF-8, UTF-16 where it begins with its mark, else Windows-1252 as spreadsheets write CSV."""
+    if content.startswith((b"\xff\xfe", b"\xfe\xff")):
+        encodings = ["utf-16"]
+    elif b"\x00" in content:
+        encodings = []  # a workbook or a picture
+    else:
+        encodings = ["utf-8-sig", "cp1252"]
+    for encoding in encodings:
+        try:
+            return content.decode(encoding)
+        except UnicodeDecodeError:
+            continue
+    raise Problem(422, NO_TEXT)

@@ -1,0 +1,69 @@
+"""The canonical link of an application; `links.parse` reads it, and what people write by hand."""
+
+from itertools import groupby
+from urllib.parse import quote
+
+from pydantic import BaseModel
+
+from hpn.application import Application, DutyCycle, EmergencyStop, Motor, OutputLoad, Requirements
+from hpn.web.form.symbols import SYMBOLS
+
+_EMPTY_LOAD = OutputLoad()
+
+_MODELS: tuple[type[BaseModel], ...] = (DutyCycle, EmergencyStop, OutputLoad, Requirements, Application, Motor)
+_FIELDS = [
+    [(s.path[-1], s.name, model.model_fields[s.path[-1]].default, s.many) for s in symbols]
+    for model, (_, symbols) in zip(_MODELS, groupby(SYMBOLS, lambda symbol: symbol.path[:-1]), strict=True)
+]
+"""Fields of each part of an application, as a link gives them: name, symbol, what needs no mention, whether a list."""
+
+
+def to_link(application: Application) -> str:
+    """Canonical link of an application: only what differs from the defaults, numbers as short as they can be.
+
+    `parse` gives the same application back; a motor of which nothing is known counts as no motor.
+    """
+    link = "/?" + _phases(application)
+    for part, fields in zip(_parts(application), _FIELDS, strict=True):
+        if part is None:
+            continue
+        values = part.__dict__
+        for field, symbol, default, many in fields:
+            if (value := values[field]) == default:
+                continue
+            for item in value if many else (value,):
+                link += f"&{symbol}={_written(item)}"
+    load = application.output_load
+    # A load case without a figure of its own must still be seen to exist.
+    return link + "&fw=1" if load is not None and load == _EMPTY_LOAD else link
+
+
+def _phases(application: Application) -> str:
+    phases = application.duty_cycle.phases
+    pairs = [f"T={phase.torque_Nm!r}&n={phase.speed_rpm!r}&t={phase.duration_s!r}" for phase in phases]
+    if application.loads is not None:
+        loads = {"FRi": [phase.radial_N for phase in phases], "FAi": [phase.axial_N for phase in phases]}
+        for name, values in loads.items():
+            if any(value is not None for value in values):
+                written = ["" if value is None else repr(value) for value in values]
+                pairs = [f"{pair}&{name}={value}" for pair, value in zip(pairs, written, strict=True)]
+    return _shortened("&".join(pairs))
+
+
+def _parts(application: Application) -> tuple[BaseModel | None, ...]:
+    asked, load = application.requirements, application.output_load
+    return application.duty_cycle, application.emergency_stop, load, asked, application, asked.motor
+
+
+def _written(value: float | str) -> str:
+    if isinstance(value, float):
+        return _shortened(repr(value))
+    if isinstance(value, int):
+        return str(value)
+    return quote(value)
+
+
+def _shortened(numbers: str) -> str:
+    """Numbers, between ampersands, without zeros and signs that say nothing."""
+    text = numbers.replace(".0&", "&").removesuffix(".0")
+    return text.replace("e+", "e").replace("e-0", "e-") if "e" in text else text

@@ -1,0 +1,71 @@
+"""Static files under content-hashed names, precompressed when they were built, kept by browsers for ever."""
+
+import json
+import mimetypes
+from dataclasses import dataclass
+from pathlib import Path
+
+from starlette.exceptions import HTTPException
+from starlette.requests import Request
+from starlette.responses import FileResponse, Response
+from starlette.routing import Route
+
+DIST = Path(__file__).parents[4] / "frontend/dist"
+ENCODINGS = {"br": ".br", "gzip": ".gz"}
+"""Content codings in order of preference, and the suffix of the file that holds each."""
+
+# Not every system's table knows these.
+mimetypes.add_type("text/javascript", ".js")
+mimetypes.add_type("text/javascript", ".mjs")
+mimetypes.add_type("image/svg+xml", ".svg")
+mimetypes.add_type("application/manifest+json", ".webmanifest")
+
+
+@dataclass(frozen=True)
+class Assets:
+    """Files that the build wrote, by the logical name that a template asks for."""
+
+    folder: Path
+    manifest: dict[str, str]
+
+    @classmethod
+    def load(cls, folder: Path = DIST) -> "Assets":
+        """Read the manifest; FileNotFoundError says how to make one."""
+        path = folder / "manifest.json"
+        if not path.exists():
+            raise FileNotFoundError(f"{path} is missing: build the assets with `make assets`")
+        return cls(folder, json.loads(path.read_text()))
+
+    def url(self, name: str) -> str:
+        """Address of a file, such as `/static/app.3f2a9c1b.css` for `app.css`; KeyError for an unknown name."""
+        return f"/static/{self.manifest[name]}"
+
+    def file(self, hashed_name: str) -> Path | None:
+        """File of a hashed name, or None: only what the manifest lists is ever served."""
+        return self.folder / hashed_name if hashed_name in self.manifest.values() else None
+
+
+def serve(request: Request) -> Response:
+    """Send a file in the best coding that the client accepts."""
+    path = request.app.state.assets.file(request.path_params["name"])
+    if path is None:
+        raise HTTPException(404)
+    headers = {"Cache-Control": "public, max-age=31536000, immutable", "Vary": "Accept-Encoding"}
+    media_type = mimetypes.guess_type(path.name)[0] or "application/octet-stream"
+    for coding in accepted_codings(request.headers.get("accept-encoding", "")):
+        packed = path.with_name(path.name + ENCODINGS[coding])
+        if packed.exists():
+            return FileResponse(packed, headers=headers | {"Content-Encoding": coding}, media_type=media_type)
+    return FileResponse(path, headers=headers, media_type=media_type)
+
+
+def accepted_codings(header: str) -> list[str]:
+    """Codings of an Accept-Encoding header that files exist in, best first."""
+    weights: dict[str, str] = {}
+    for part in header.lower().split(","):
+        coding, _, parameter = part.partition(";")
+        weights[coding.strip()] = parameter.replace(" ", "").removeprefix("q=") or "1"
+    return [name for name in ENCODINGS if weights.get(name, weights.get("*", "0")).strip("0.") != ""]
+
+
+routes = [Route("/static/{name:path}", serve, methods=["GET"])]

@@ -1,0 +1,65 @@
+"""Duty cycles too long for an address: the form is posted, and its phases are one text."""
+
+import re
+from dataclasses import replace
+from urllib.parse import parse_qsl
+
+from starlette.concurrency import run_in_threadpool
+from starlette.requests import Request
+from starlette.responses import Response
+from starlette.routing import Route
+
+from hpn.application import MAXIMUM_PHASES
+from hpn.web.door.bodies import read_form
+from hpn.web.form import read as links
+from hpn.web.form.read import Pairs
+from hpn.web.form.symbols import PHASE_SYMBOLS
+from hpn.web.pages import calculator as pages
+
+TEXT = "phases"
+"""Field of the form that holds the phases as text, a phase on each line."""
+
+
+async def calculate(request: Request) -> Response:
+    """The page of a posted form, or only the part that changes; nothing is kept."""
+    body = await read_form(request)
+    return await run_in_threadpool(_answer, request, body)
+
+
+def _answer(request: Request, body: bytes) -> Response:
+    return respond(request, parse_qsl(body.decode(errors="replace"), keep_blank_values=True))
+
+
+def respond(request: Request, pairs: Pairs) -> Response:
+    """The page of posted pairs."""
+    typed = dict(pairs).get(TEXT)
+    form = links.parse(expanded(pairs))
+    if typed is not None:
+        form = replace(form, typed=typed.replace("\r\n", "\n"))
+    return pages.respond(request, form)
+
+
+def expanded(pairs: Pairs) -> list[tuple[str, str]]:
+    """Pairs of a link: the text of the phases becomes repeated T, n, t, and where used, FRi and FAi."""
+    plain = [pair for pair in pairs if pair[0] != TEXT]
+    for name, text in pairs:
+        if name == TEXT:
+            rows = [_cells(line) for line in text.rstrip().splitlines()]
+            plain += phase_pairs(rows[: MAXIMUM_PHASES + 1])
+    return plain
+
+
+def _cells(line: str) -> list[str]:
+    """Cells of a line, apart by tabs, semicolons or blanks; the last takes what is too much, and is refused."""
+    cells = re.split(r" *[;\t] *| +", line.strip(" "))
+    return cells[:4] + ([" ".join(cells[4:])] if len(cells) > 4 else [])
+
+
+def phase_pairs(rows: list[list[str]]) -> list[tuple[str, str]]:
+    """Pairs of rows in the order T, n, t, FRi, FAi; what a short row lacks is blank."""
+    width = min(max([3, *map(len, rows)]), 5)
+    names = [symbol.name for symbol in PHASE_SYMBOLS[: 5 if width > 3 else 3]]
+    return [(name, row[k].strip() if k < len(row) else "") for row in rows for k, name in enumerate(names)]
+
+
+routes = [Route("/", calculate, methods=["POST"])]
