@@ -50,8 +50,9 @@ check: $(ENVIRONMENT)
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 
-bench: install
-	$(BIN)/python -m tests.benchmarks
+# What a user feels, of this checkout and a plain service; with BESIDE=folder, of another installed checkout as well.
+bench: install browser
+	$(BIN)/python -m tests.benchmarks $(if $(BESIDE),--beside "$(BESIDE)") $(ONLY)
 
 screenshots: install browser
 	$(BIN)/python -m tests.screenshots

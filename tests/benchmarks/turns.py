@@ -1,0 +1,40 @@
+"""Turns, in which the variants alternate, and what they come to: medians, and ratios taken turn by turn.
+
+The variants of one turn see the same machine, so what else runs on it cancels out of their ratio.
+"""
+
+import statistics
+from collections.abc import Callable, Mapping, Sequence
+from itertools import combinations
+from typing import TypeVar
+
+Measured = TypeVar("Measured")
+
+
+def in_turns(
+    variants: Mapping[str, Callable[[int], Measured]], turns: int, *, warm_up: bool = True
+) -> dict[str, list[Measured]]:
+    """What each variant measures in each turn, every other turn the other way round; one before warms up."""
+    found: dict[str, list[Measured]] = {name: [] for name in variants}
+    for turn in range(0 if warm_up else 1, turns + 1):
+        names = list(variants)[:: 1 if turn % 2 else -1]
+        for name in names:
+            measured = variants[name](turn)
+            if turn:
+                found[name].append(measured)
+    return found
+
+
+def ratios(values: Mapping[str, Sequence[float]]) -> dict[str, float]:
+    """Median of the ratios of the turns for each pair of variants, such as `here_over_plain`."""
+    return {
+        f"{one}_over_{other}": round(
+            statistics.median(a / b for a, b in zip(values[one], values[other], strict=True)), 3
+        )
+        for one, other in combinations(values, 2)
+    }
+
+
+def p95(values: Sequence[float]) -> float:
+    """What nineteen of twenty stay below."""
+    return statistics.quantiles(values, n=20)[-1]
