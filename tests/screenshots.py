@@ -1,12 +1,13 @@
 """`make screenshots`: the main states of the page as pictures for the docs, from the real service in real Chromium."""
 
 import shutil
+import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 
 from playwright.sync_api import Browser, sync_playwright
 
-from tests.benchmarks.server import serving
+from tests.operations.service import serving
 
 FOLDER = Path("docs/screenshots")
 BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
@@ -40,10 +41,10 @@ def main() -> None:
     """Take every picture anew."""
     FOLDER.mkdir(parents=True, exist_ok=True)
     path = next(filter(None, map(shutil.which, BROWSERS)), None)
-    with serving("hpn.web.app:create_app") as server, sync_playwright() as driver:
+    with tempfile.TemporaryDirectory() as folder, serving(Path(folder)) as server, sync_playwright() as driver:
         browser = driver.chromium.launch(executable_path=path, args=[OFFLINE])
         for state in STATES:
-            _take(browser, f"http://127.0.0.1:{server.port}", state)
+            _take(browser, server.url, state)
         browser.close()
 
 

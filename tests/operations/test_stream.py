@@ -17,10 +17,10 @@ from hpn.catalogue import Catalogue
 from hpn.web.api.batch import batch_lines, line_evaluator
 from hpn.web.api.streaming import MEMORY_BYTES, Line, LineSplitter, LineStream, Spool
 from hpn.web.door.metrics import Metrics
-from tests.benchmarks import batch
-from tests.benchmarks.server import serving
 from tests.build import worked_example
 from tests.operations.conftest import MakeClient
+from tests.operations.service import Service
+from tests.operations.streamed import peaks_MB
 
 PATH = "/api/v1/select/batch"
 NDJSON = {"Content-Type": "application/x-ndjson"}
@@ -128,14 +128,13 @@ def test_the_spool_gives_back_what_it_got_in_order(steps: list[int]) -> None:
 
 
 @pytest.mark.skipif(not sys.platform.startswith("linux"), reason="memory is read from /proc")
-def test_twenty_times_the_lines_take_no_more_memory_on_either_side() -> None:
-    with serving("hpn.web.app:create_app") as server:
-        batch.stream(server, 1_000)
-        few, many = batch.stream(server, 1_000), batch.stream(server, 20_000)
+def test_twenty_times_the_lines_take_no_more_memory_on_either_side(service: Service) -> None:
+    peaks_MB(service.process.pid, service.port, 1_000)
+    few, many = (peaks_MB(service.process.pid, service.port, count) for count in (1_000, 20_000))
 
     # held in memory, the answers alone would be 5 MB, and as Python objects several times that
-    assert many["server_peak_MB"] - few["server_peak_MB"] < 5
-    assert many["client_peak_MB"] - few["client_peak_MB"] < 2
+    assert many[0] - few[0] < 5
+    assert many[1] - few[1] < 2
 
 
 # --- Both directions at once, by hand ---------------------------------------------------------------------------------
