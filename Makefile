@@ -11,8 +11,8 @@ UV := $(VENV)/uv/bin/uv
 MODULES := frontend/node_modules
 ASSETS := frontend/dist/manifest.json
 # What is installed: enough to run, or all of it. Once a tree has the tools, `make run` must not take them away again.
-FOR := $(if $(filter check test bench screenshots browser messages,$(MAKECMDGOALS))$(wildcard $(VENV)/.dev),dev,run)
-PAGE_FOR := $(if $(filter test,$(MAKECMDGOALS))$(wildcard $(MODULES)/.dev),dev,run)
+FOR := $(if $(filter check test soak bench screenshots browser messages,$(MAKECMDGOALS))$(wildcard $(VENV)/.dev),dev,run)
+PAGE_FOR := $(if $(filter test soak,$(MAKECMDGOALS))$(wildcard $(MODULES)/.dev),dev,run)
 ENVIRONMENT := $(VENV)/.$(FOR)
 PACKAGES := $(MODULES)/.$(PAGE_FOR)
 # Where the machine has no npm, a wheel brings one; it stays out of the way of an installed Node.
@@ -24,7 +24,7 @@ endif
 export UV_SYSTEM_CERTS ?= true
 export NODE_USE_SYSTEM_CA ?= 1
 
-.PHONY: run install assets test check bench screenshots browser office curl messages lock clean
+.PHONY: run install assets test soak check bench screenshots browser office curl messages lock clean
 .DELETE_ON_ERROR:
 
 run: install
@@ -43,6 +43,11 @@ else
 	$(BIN)/pytest tests/browser/test_lighthouse.py
 	$(BIN)/pytest --ignore tests/browser/test_lighthouse.py $(TOGETHER)
 endif
+
+# What is long by nature, in its long form: hundreds of kills, examples by the thousand, Lighthouse over all pages.
+soak: install browser office curl
+	$(BIN)/pytest --soak tests/browser/test_lighthouse.py
+	$(BIN)/pytest --soak --ignore tests/browser/test_lighthouse.py $(TOGETHER)
 
 check: $(ENVIRONMENT)
 	$(BIN)/ruff format --check

@@ -9,18 +9,71 @@ from hypothesis import HealthCheck, settings
 
 from hpn.catalogue import HANDBOOK_FOLDER, Catalogue, load_catalogue
 
-# Two shared cores: no deadline per example, and as many examples as fit a test run of every commit.
+# Two shared cores: no deadline per example, and as many examples as fit a test run of every commit. The long form draws
+# more and others each time, so that it finds what no run before has met.
 settings.register_profile(
     "hpn", deadline=None, max_examples=60, derandomize=True, suppress_health_check=[HealthCheck.too_slow]
 )
-settings.load_profile("hpn")
+settings.register_profile("soak", parent=settings.get_profile("hpn"), max_examples=2000, derandomize=False)
 
 Supplement = Callable[..., Catalogue]
 
+BULK = ("test_fuzz.py",)
+"""Files of which `make test` draws a part (`tests/web/conftest.py`) and `make soak` everything."""
 
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Browser tests come last: Playwright's event loop stays in this thread, and no other could run there after it."""
-    items.sort(key=lambda item: "playwright_driver" in getattr(item, "fixturenames", ()))
+LONGEST_FIRST = ("test_fuzz.py", "test_kill.py", "test_tools.py", "test_reader.py", "test_page.py", "test_plots.py")
+"""Files that take longest, so that none of them is left alone at the end."""
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """`--soak`: the long form of every test that has one, and nothing else (`make soak`)."""
+    parser.addoption("--soak", action="store_true", help="the long form of every test that has one, and nothing else")
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Draw as many examples as the form of the run asks for; before any test module is imported."""
+    settings.load_profile("soak" if config.getoption("--soak") else "hpn")
+
+
+def pytest_report_header(config: pytest.Config) -> str:
+    """Which form of the tests runs."""
+    return "form: long (--soak)" if config.getoption("--soak") else "form: short; `make soak` runs the long one"
+
+
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Keep what belongs to the form of the run, and order it.
+
+    Browser tests come last: Playwright's event loop stays in this thread, and no other could run there after it.
+    """
+    belongs = _has_long_form if config.getoption("--soak") else _has_short_form
+    if others := [item for item in items if not belongs(item)]:
+        config.hook.pytest_deselected(items=others)
+    items[:] = sorted(filter(belongs, items), key=lambda item: (_needs_browser(item), _place(item)))
+
+
+def _has_short_form(item: pytest.Item) -> bool:
+    return item.get_closest_marker("soak") is None
+
+
+def _has_long_form(item: pytest.Item) -> bool:
+    """Whether `make soak` makes it longer: it is marked, asks how long it may be, or draws examples."""
+    asks = "soak" in getattr(item, "fixturenames", ())
+    draws = getattr(getattr(item, "function", None), "is_hypothesis_test", False)
+    return asks or draws or not _has_short_form(item) or item.path.name in BULK
+
+
+def _needs_browser(item: pytest.Item) -> bool:
+    return "playwright_driver" in getattr(item, "fixturenames", ())
+
+
+def _place(item: pytest.Item) -> int:
+    return LONGEST_FIRST.index(item.path.name) if item.path.name in LONGEST_FIRST else len(LONGEST_FIRST)
+
+
+@pytest.fixture(scope="session")
+def soak(pytestconfig: pytest.Config) -> bool:
+    """Whether the long form is asked for: a test that is long by nature takes its numbers from this."""
+    return bool(pytestconfig.getoption("--soak"))
 
 
 @pytest.fixture(scope="session")

@@ -23,7 +23,7 @@ from hpn.store import Store
 from hpn.web.form.write import to_link
 from tests.build import Json, cycle, phase
 
-KILLS = int(os.environ.get("HPN_TEST_KILLS", "200"))
+KILLS, SOAK_KILLS = 40, 400
 """On SQLite, which lives in the process that is killed; on PostgreSQL, which does not, a quarter of them."""
 
 CLIENTS = 4
@@ -119,8 +119,10 @@ async def read_back(database: str, clients: Clients, catalogue: Catalogue) -> No
     assert {body["title"] for body in clients.acknowledged.values()} <= set(titles)
 
 
-def test_every_acknowledged_selection_survives_a_kill_at_any_moment(database: str, catalogue: Catalogue) -> None:
-    kills = KILLS if database.startswith("sqlite") else KILLS // 4
+def test_every_acknowledged_selection_survives_a_kill_at_any_moment(
+    database: str, catalogue: Catalogue, soak: bool
+) -> None:
+    kills = (SOAK_KILLS if soak else KILLS) // (1 if database.startswith("sqlite") else 4)
     with killed_server(database, kills) as (port, process):
         clients = Clients(port)
         threads = [threading.Thread(target=clients.run) for _ in range(CLIENTS)]

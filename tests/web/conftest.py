@@ -1,6 +1,6 @@
 """One service for the tests of the REST interface, with a database of its own."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import Any
 
 import pytest
@@ -29,3 +29,14 @@ def api(service: FastAPI) -> Iterator[TestClient]:
 def document(service: FastAPI) -> dict[str, Any]:
     """The OpenAPI document."""
     return service.openapi()
+
+
+PART = 4
+"""`make test` tries every operation of the API with one in so many of the fuzz's examples; `make soak` with all."""
+
+
+@pytest.fixture(autouse=True)
+def _part_of_the_fuzz(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
+    if request.path.name == "test_fuzz.py" and not request.config.getoption("--soak"):
+        whole: Callable[[str], int] = request.module.examples
+        monkeypatch.setattr(request.module, "examples", lambda label: max(10, whole(label) // PART))
