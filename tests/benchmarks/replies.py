@@ -100,18 +100,18 @@ def prove_equal(servers: Mapping[str, Server]) -> None:
         first = next(iter(answers.values()))
         for name, answer in answers.items():
             for part in ("duty", "selected", "candidates"):
-                for place in _differing(first[part], answer[part], part):
+                for place in differing(first[part], answer[part], part):
                     raise RuntimeError(f"{name} answers differently at {place}")
 
 
-def _differing(one: Any, other: Any, place: str) -> Iterator[str]:
+def differing(one: Any, other: Any, place: str) -> Iterator[str]:
     """Places where two replies differ: figures by more than 1e-12 of themselves; sentences may."""
     if isinstance(one, dict) and isinstance(other, dict):
         for name in (one.keys() & other.keys()) - {"reason"}:  # a version may have more fields than another
-            yield from _differing(one[name], other[name], f"{place}/{name}")
+            yield from differing(one[name], other[name], f"{place}/{name}")
     elif isinstance(one, list) and isinstance(other, list) and len(one) == len(other):
         for index, (left, right) in enumerate(zip(one, other, strict=True)):
-            yield from _differing(left, right, f"{place}/{index}")
+            yield from differing(left, right, f"{place}/{index}")
     elif isinstance(one, int | float) and isinstance(other, int | float):
         if not math.isclose(one, other, rel_tol=1e-12):
             yield place
