@@ -13,7 +13,7 @@ from tests.benchmarks.variants import Server
 
 AXES = 10_000
 PHASES = 10
-TURNS = 3
+TURNS = 5
 
 
 def measure(servers: Mapping[str, Server]) -> dict[str, Any]:
