@@ -14,7 +14,7 @@ from hpn.catalogue import HANDBOOK_FOLDER, Catalogue, load_catalogue
 settings.register_profile(
     "hpn", deadline=None, max_examples=60, derandomize=True, suppress_health_check=[HealthCheck.too_slow]
 )
-settings.register_profile("soak", parent=settings.get_profile("hpn"), max_examples=2000, derandomize=False)
+settings.register_profile("soak", parent=settings.get_profile("hpn"), max_examples=600, derandomize=False)
 
 Supplement = Callable[..., Catalogue]
 
