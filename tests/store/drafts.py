@@ -1,8 +1,12 @@
 """Drafts to save in tests."""
 
+from collections.abc import Callable
 from typing import Any
 
-from hpn.store import Draft
+from sqlalchemy import Connection
+
+from hpn.store import Draft, Store
+from hpn.store.engine import WRITES
 
 
 def draft(**parts: Any) -> Draft:
@@ -15,6 +19,12 @@ def draft(**parts: Any) -> Draft:
         "selected": "HPN-20A-5",
     }
     return Draft(**(fields | parts))
+
+
+async def change(store: Store, work: Callable[[Connection], object]) -> None:
+    """Change a store's database behind its back, in one transaction."""
+    async with store._engine.execution_options(**WRITES).begin() as connection:
+        await connection.run_sync(work)
 
 
 WEAKER = """\

@@ -14,7 +14,7 @@ from hpn.catalogue import Catalogue, load_catalogue
 from hpn.catalogue.copy import FORMAT, UnreadableCopyError, copy_of, read_copy
 from hpn.store import Draft, Store
 from tests.conftest import Supplement
-from tests.store.drafts import draft
+from tests.store.drafts import change, draft
 
 pytestmark = pytest.mark.anyio
 
@@ -121,18 +121,18 @@ async def test_the_catalogue_is_written_once_for_each_version(
 ) -> None:
     other = supplemented(**SUPPLEMENT)
     statements: list[str] = []
-    event.listen(store._transactions.engine, "before_cursor_execute", lambda *args: statements.append(args[2]))
+    event.listen(store._engine.sync_engine, "before_cursor_execute", lambda *args: statements.append(args[2]))
 
     for book in (catalogue, catalogue, other, catalogue, other):
         await store.save(under(book))
 
-    assert sum("catalogues" in statement for statement in statements) == 2
+    assert sum("INSERT INTO catalogues" in statement for statement in statements) == 2
     for book in (catalogue, other):
         assert plain(await store.catalogue(book.version)) == plain(book)
     assert await store.catalogue("another") is None
 
 
-async def test_catalogues_of_one_transaction_are_all_kept(
+async def test_catalogues_of_savers_at_once_are_all_kept(
     store: Store, catalogue: Catalogue, supplemented: Supplement
 ) -> None:
     other = supplemented(**SUPPLEMENT)
@@ -155,7 +155,7 @@ async def test_a_selection_that_is_refused_leaves_the_catalogue_to_the_next(stor
 async def test_a_catalogue_that_cannot_be_read_counts_as_not_kept(store: Store, catalogue: Catalogue) -> None:
     await store.save(under(catalogue))
     statement = text("UPDATE catalogues SET content_brotli = :spoilt").bindparams(spoilt=b"\x00")
-    await store._transactions.run(lambda connection: connection.execute(statement))
+    await change(store, lambda connection: connection.execute(statement))
 
     assert await store.catalogue(catalogue.version) is None
 

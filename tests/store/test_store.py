@@ -2,21 +2,18 @@
 
 import asyncio
 import hashlib
-import sqlite3
-from collections.abc import Sequence
-from contextlib import closing
 from datetime import UTC, datetime, timedelta, tzinfo
 from pathlib import Path
-from typing import Any
 
 import brotli
 import pytest
-from sqlalchemy import Connection, event, text
+import zstandard
+from sqlalchemy import Connection, text
 
-from hpn.store import Draft, KeyReusedError, KeySpentError, Store, StoreError, StoreUnavailableError, inserting
+from hpn.catalogue import Catalogue
+from hpn.store import KeyReusedError, KeySpentError, Store, StoreError, writing
+from hpn.store.engine import WRITES
 from hpn.store.packing import unpacked
-from hpn.store.transactions import CHANGES_IN_LOG
-from hpn.store.writer import MAXIMUM_WAITING
 from tests.store.drafts import draft
 
 pytestmark = pytest.mark.anyio
@@ -63,7 +60,19 @@ AS_IT_STANDS = (1 << 20 | 2 << 4).to_bytes(3, "little") + b"xyz" + b"\x03"
 """A brotli stream with its content as it stands, RFC 7932, 9.2: so earlier versions kept short replies."""
 
 
-@pytest.mark.parametrize("stream", [AS_IT_STANDS, brotli.compress(b"xyz"), brotli.compress(b"xyz", quality=0)])
+FAST = zstandard.ZstdCompressionParameters.from_level(-1, min_match=7, hash_log=12)
+
+
+@pytest.mark.parametrize(
+    "stream",
+    [
+        AS_IT_STANDS,
+        brotli.compress(b"xyz"),
+        brotli.compress(b"xyz", quality=0),
+        zstandard.ZstdCompressor(level=-1000).compress(b"xyz"),
+        zstandard.ZstdCompressor(compression_params=FAST).compress(b"xyz"),
+    ],
+)
 def test_what_earlier_versions_packed_is_read(stream: bytes) -> None:
     assert unpacked(stream) == b"xyz"
 
@@ -119,7 +128,7 @@ class OneMoment(datetime):
 async def test_selections_saved_in_one_moment_are_listed_once_each(
     store: Store, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(inserting, "datetime", OneMoment)
+    monkeypatch.setattr(writing, "datetime", OneMoment)
     ids = await asyncio.gather(*(store.save(draft()) for _ in range(20)))
 
     listed, cursor = [], None
@@ -238,14 +247,19 @@ async def test_identical_requests_at_once_make_one_row_also_from_several_workers
         await other.close()
 
 
-async def test_savers_who_come_together_share_a_transaction(store: Store) -> None:
-    commits: list[object] = []
-    event.listen(store._transactions.engine, "commit", commits.append)
+async def test_savers_who_come_together_each_get_their_own(store: Store, database: str) -> None:
+    """Each of them, and a retry of each, beside another worker's savers: one row each, with its own content."""
+    other = Store(database)
+    drafts = [draft(title=str(k), result=b"%d" % k, idempotency_key=f"k{k}" if k % 2 else None) for k in range(60)]
 
-    await asyncio.gather(*(store.save(draft()) for _ in range(100)))
+    ids = await asyncio.gather(*((store, other)[k % 2].save(each) for k, each in enumerate(drafts)))
+    retries = await asyncio.gather(*(store.save(each) for each in drafts[1::2]))
+    await other.close()
 
-    assert await count(store) == 100
-    assert 1 <= len(commits) <= 3  # at most 64 to a transaction
+    found = [await store.find(id) for id in ids]
+    assert [(each and each.title, each and each.result) for each in found] == [(d.title, d.result) for d in drafts]
+    assert retries == ids[1::2]
+    assert await count(store) == 60
 
 
 async def test_one_draft_that_the_database_refuses_fails_alone(store: Store) -> None:
@@ -257,25 +271,6 @@ async def test_one_draft_that_the_database_refuses_fails_alone(store: Store) -> 
     assert isinstance(outcomes[0], str)
     assert isinstance(outcomes[2], str)
     assert await count(store) == len(good)
-
-
-def _made(wanted: Sequence[Any]) -> list[Draft | Exception]:
-    """Drafts of titles, a reason against one, and a mistake of ours at another."""
-    if "mistake" in wanted:
-        raise ZeroDivisionError
-    return [ValueError("refused") if title == "wrong" else draft(title=title) for title in wanted]
-
-
-async def test_what_cannot_be_made_fails_alone(database: str) -> None:
-    store = Store(database, make=_made)
-    titles = ["a", "wrong", "b", "mistake", "c"]
-
-    outcomes = await asyncio.gather(*(store.save(title) for title in titles), return_exceptions=True)
-
-    assert [type(outcome) for outcome in outcomes] == [str, ValueError, str, ZeroDivisionError, str]
-    found = [await store.find(id) for id in outcomes if isinstance(id, str)]
-    assert [selection and selection.title for selection in found] == ["a", "b", "c"]
-    await store.close()
 
 
 async def test_a_saver_who_leaves_does_not_take_the_others_along(store: Store) -> None:
@@ -290,24 +285,41 @@ async def test_a_saver_who_leaves_does_not_take_the_others_along(store: Store) -
     assert isinstance(outcomes[2], str)
 
 
-async def test_more_savers_than_can_wait_are_sent_away(store: Store) -> None:
-    outcomes = await asyncio.gather(*(store.save(draft()) for _ in range(MAXIMUM_WAITING + 50)), return_exceptions=True)
+@pytest.mark.parametrize("turns", [*range(0, 40, 3), 60, 100])
+async def test_a_saver_who_gives_up_at_any_moment_leaves_all_or_nothing(store: Store, turns: int) -> None:
+    once = draft(idempotency_key="k", title="t")
+    saving = asyncio.create_task(store.save(once))
+    for _ in range(turns):
+        await asyncio.sleep(0.0001)
+    saving.cancel()
+    await asyncio.gather(saving, return_exceptions=True)
 
-    refused = [outcome for outcome in outcomes if isinstance(outcome, StoreUnavailableError)]
-    assert len(refused) == 50
-    assert await count(store) == MAXIMUM_WAITING
+    id = await asyncio.wait_for(store.save(once), 5)  # nobody holds a lock any more
+
+    assert await count(store) == 1
+    assert await store.find(id) is not None
+    if not saving.cancelled():
+        assert saving.result() == id
 
 
-async def test_closing_saves_what_still_waits(database: str) -> None:
-    store = Store(database)
+async def test_hundreds_of_savers_at_once_are_all_saved(store: Store) -> None:
+    ids = await asyncio.gather(*(store.save(draft()) for _ in range(500)))
+
+    assert len(set(ids)) == await count(store) == 500
+
+
+async def test_closing_finishes_what_sqlite_is_writing(tmp_path: Path) -> None:
+    store = Store(f"sqlite:///{tmp_path}/store.sqlite3")
+    await store.open()
     saving = asyncio.create_task(store.save(draft()))
-    await asyncio.sleep(0)
+    while not store._turn.locked():
+        await asyncio.sleep(0)
 
     await store.close()
 
-    again = Store(database)
-    assert await again.find(await saving) is not None
-    await again.close()
+    assert saving.done()
+    assert await store.find(await saving) is not None
+    await store.close()
 
 
 async def test_a_store_that_was_closed_can_be_used_again(store: Store) -> None:
@@ -328,10 +340,24 @@ async def test_sqlite_commits_reach_the_disk_and_readers_do_not_wait(tmp_path: P
     def pragmas(connection: Connection) -> list[object]:
         return [connection.execute(text(f"PRAGMA {name}")).scalar_one() for name in ("journal_mode", "synchronous")]
 
-    assert await store._transactions.run(pragmas) == ["wal", 2]  # 2 is FULL: the log is synced at every commit
-    async with store._engine.connect() as reading:
-        assert await reading.run_sync(pragmas) == ["wal", 2]
+    for engine in (store._engine, store._engine.execution_options(**WRITES)):
+        async with engine.connect() as connection:
+            assert await connection.run_sync(pragmas) == ["wal", 2]  # 2 is FULL: every commit syncs the log
     await store.close()
+
+
+async def test_a_catalogue_is_kept_once_however_many_save_under_it(
+    store: Store, database: str, catalogue: Catalogue
+) -> None:
+    other = Store(database)
+    under = draft(catalogue=catalogue, catalogue_version=catalogue.version)
+
+    await asyncio.gather(*(each.save(under) for each in (store, other) * 5))
+
+    async with store._engine.connect() as connection:
+        versions = (await connection.execute(text("SELECT version FROM catalogues"))).scalars().all()
+    assert versions == [catalogue.version]
+    await other.close()
 
 
 @pytest.mark.parametrize(
@@ -342,34 +368,3 @@ def test_an_address_that_cannot_be_used_says_what_can_without_repeating_secrets(
         Store(address)
 
     assert "secret" not in str(caught.value)
-
-
-async def test_sqlite_puts_its_log_in_place_between_transactions(tmp_path: Path) -> None:
-    """The file alone, without its log, then has what was saved; SQLite by itself would wait for much more."""
-    store = Store(f"sqlite:///{tmp_path}/store.sqlite3")
-    await asyncio.gather(*(store.save(draft()) for _ in range(CHANGES_IN_LOG)))
-    await store._transactions.run(lambda connection: None)  # begins when what was to be done before is done
-
-    (tmp_path / "alone.sqlite3").write_bytes((tmp_path / "store.sqlite3").read_bytes())
-
-    with closing(sqlite3.connect(tmp_path / "alone.sqlite3")) as alone:
-        assert alone.execute("SELECT count(*) FROM selections").fetchone() == (CHANGES_IN_LOG,)
-    await store.close()
-
-
-async def test_a_log_that_cannot_be_put_in_place_is_reported_and_saving_goes_on(
-    tmp_path: Path, caplog: pytest.LogCaptureFixture
-) -> None:
-    def deny_pragmas(connection: Connection) -> None:
-        driver: Any = connection.connection.driver_connection
-        driver.set_authorizer(lambda action, *_: sqlite3.SQLITE_DENY if action == sqlite3.SQLITE_PRAGMA else 0)
-
-    store = Store(f"sqlite:///{tmp_path}/store.sqlite3")
-    await store.open()
-    await store._transactions.run(deny_pragmas)
-
-    ids = [await store.save(draft()) for _ in range(CHANGES_IN_LOG + 1)]
-
-    assert "log can't be put into its place" in caplog.text
-    assert [await store.find(id) is not None for id in ids] == [True] * len(ids)
-    await store.close()

@@ -15,13 +15,13 @@ from sqlalchemy import Connection, text
 
 from hpn.store import NewerDatabaseError, Store, upgrade
 from hpn.store.tables import metadata
-from tests.store.drafts import draft
+from tests.store.drafts import change, draft
 
 pytestmark = pytest.mark.anyio
 
 
 async def run(store: Store, statement: str) -> None:
-    await store._transactions.run(lambda connection: connection.execute(text(statement)))
+    await change(store, lambda connection: connection.execute(text(statement)))
 
 
 async def test_the_migrations_make_the_tables_that_the_code_uses(store: Store) -> None:

@@ -23,6 +23,7 @@ from hpn.web.settings import Settings
 from tests.build import Json, worked_example
 from tests.report.conftest import Recalculate, recalculate
 from tests.report.test_workbook import assert_agrees
+from tests.store.drafts import change
 
 __all__ = ["recalculate"]
 
@@ -127,7 +128,7 @@ def test_what_was_saved_before_catalogues_were_kept_says_so(database: str, folde
     async def forget() -> None:
         store = Store(database)
         await store.open()
-        await store._transactions.run(lambda connection: connection.execute(text("DELETE FROM catalogues")))
+        await change(store, lambda connection: connection.execute(text("DELETE FROM catalogues")))
         await store.close()
 
     asyncio.run(forget())
@@ -152,13 +153,13 @@ def test_a_database_from_before_is_brought_up_to_date_with_what_it_has(database:
 
     async def main() -> None:
         first = Store(database)
-        await first._transactions.run(older)
+        await change(first, older)
         columns = "id, created, engine_version, catalogue_version, application, result_brotli, selected"
         row = "'AAAAAAAAAAAAAAAAAAAAAA', '2026-01-01 00:00:00.000000', '1', 'v', '{}', :result, 'HPN-20A-5'"
         statement = text(f"INSERT INTO selections ({columns}) VALUES ({row})").bindparams(
             result=brotli.compress(b"xyz", quality=0)
         )
-        await first._transactions.run(lambda connection: connection.execute(statement))
+        await change(first, lambda connection: connection.execute(statement))
         await first.close()
 
         store = Store(database)

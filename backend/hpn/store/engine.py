@@ -3,15 +3,14 @@
 from pathlib import Path
 from typing import Any
 
-from sqlalchemy import URL, Connection, Engine, create_engine, event, make_url
+from sqlalchemy import URL, Connection, event, make_url
 from sqlalchemy.exc import ArgumentError
 from sqlalchemy.ext.asyncio import AsyncEngine, create_async_engine
 
 from hpn.store.errors import StoreError
-from hpn.store.transactions import OnLoop, OnThread, Transactions
 
 WRITES = {"writes": True}
-"""Execution options of an engine whose transactions write from their start."""
+"""Execution options of an engine whose transactions write: on SQLite they take the write lock when they begin."""
 
 
 def make_engine(address: str, *, seconds: float) -> AsyncEngine:
@@ -57,27 +56,9 @@ def _sqlite(url: URL, seconds: float) -> AsyncEngine:
         pool_timeout=seconds,
         connect_args={"timeout": seconds},
     )
-    _listen(engine.sync_engine)
+    event.listen(engine.sync_engine, "connect", _prepare)
+    event.listen(engine.sync_engine, "begin", _begin)
     return engine
-
-
-def make_transactions(engine: AsyncEngine, *, seconds: float) -> Transactions:
-    """Transactions that write from their start, on the database of an engine."""
-    if engine.dialect.name != "sqlite":
-        return OnLoop(engine.execution_options(**WRITES))
-    own = create_engine(
-        engine.url.set(drivername="sqlite+pysqlite"),
-        hide_parameters=True,
-        pool_size=1,
-        connect_args={"timeout": seconds},
-    )
-    _listen(own)
-    return OnThread(own.execution_options(**WRITES))
-
-
-def _listen(engine: Engine) -> None:
-    event.listen(engine, "connect", _prepare)
-    event.listen(engine, "begin", _begin)
 
 
 def _prepare(connection: Any, record: object) -> None:
@@ -91,6 +72,5 @@ def _prepare(connection: Any, record: object) -> None:
 
 def _begin(connection: Connection) -> None:
     """Take the write lock at once where the transaction will write: to take it later can fail without waiting."""
-    options = connection.get_execution_options()
-    if options.get("begins", True):
-        connection.exec_driver_sql("BEGIN IMMEDIATE" if options.get("writes", False) else "BEGIN")
+    writes = connection.get_execution_options().get("writes", False)
+    connection.exec_driver_sql("BEGIN IMMEDIATE" if writes else "BEGIN")

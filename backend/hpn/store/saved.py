@@ -13,7 +13,7 @@ from hpn.catalogue import Catalogue
 class Draft:
     """A selection that is about to be saved: the application as it was given, and the reply it got, byte for byte.
 
-    `catalogue` is the one that was asked; the store keeps a copy of each version.
+    `catalogue` is the one that was asked; the store keeps one copy of each version.
     """
 
     application: bytes

@@ -4,28 +4,28 @@ import asyncio
 import base64
 import logging
 import re
-from collections.abc import AsyncIterator, Sequence
+from collections.abc import AsyncIterator, Awaitable, Callable
 from contextlib import asynccontextmanager
 from datetime import UTC, datetime
-from typing import Any
+from typing import TypeVar
 
 import brotli
 from sqlalchemy import select, text, tuple_
-from sqlalchemy.exc import DataError, SQLAlchemyError
+from sqlalchemy.exc import SQLAlchemyError
 from sqlalchemy.ext.asyncio import AsyncConnection
 
 from hpn.catalogue import Catalogue
 from hpn.catalogue.copy import UnreadableCopyError, read_copy
-from hpn.store.engine import make_engine, make_transactions
+from hpn.store.engine import WRITES, make_engine
 from hpn.store.errors import NewerDatabaseError, StoreUnavailableError
-from hpn.store.inserting import Outcome, insert, insertion_of, remove
 from hpn.store.packing import unpacked
 from hpn.store.saved import Draft, Page, SavedSelection, Summary
 from hpn.store.tables import catalogues, selections
 from hpn.store.upgrade import bring_up_to_date
-from hpn.store.writer import Make, Writer
+from hpn.store.writing import insert, remove
 
 logger = logging.getLogger(__name__)
+T = TypeVar("T")
 
 ID = re.compile(r"[A-Za-z0-9_-]{22}")
 """An id: 128 random bits."""
@@ -37,18 +37,15 @@ class Store:
     """Saved selections. What `save` has returned is durable, and nothing is ever rewritten.
 
     Every function raises StoreUnavailableError where the database can't be reached or takes longer than `seconds`, and
-    works again as soon as it can. Nothing is connected before it is needed. `make` makes drafts of what is to be saved,
-    where those are not drafts already.
+    works again as soon as it can. Nothing is connected before it is needed.
     """
 
-    def __init__(self, address: str, *, seconds: float = 5.0, make: Make = list) -> None:
+    def __init__(self, address: str, *, seconds: float = 5.0) -> None:
         # A database that is only busy gives up by itself, just before we would.
         self._engine = make_engine(address, seconds=seconds * 0.8)
-        self._transactions = make_transactions(self._engine, seconds=seconds * 0.8)
         self._seconds = seconds
-        self._writer = Writer(make, self._commit)
+        self._turn = asyncio.Lock()
         self._opening: asyncio.Task[None] | None = None
-        self._kept: set[str] = set()  # versions of catalogues that the database has for sure
 
     async def open(self) -> None:
         """Bring the database up to date, however long it takes; once done, this costs nothing.
@@ -68,25 +65,24 @@ class Store:
         return self._opening.cancelled() or self._opening.exception() is not None
 
     async def close(self) -> None:
-        """Save what still waits, and close the connections."""
-        await self._writer.finish()
+        """Close the connections; the next call opens new ones. What SQLite is writing is finished first."""
         if self._opening is not None:
             self._opening.cancel()
-        await self._transactions.close()
-        await self._engine.dispose()
+        async with self._turn:
+            await self._engine.dispose()
 
     async def check(self) -> None:
         """Raise StoreUnavailableError unless the database answers."""
         async with self._reading() as connection:
             await connection.execute(text("SELECT 1"))
 
-    async def save(self, wanted: Any) -> str:
+    async def save(self, draft: Draft) -> str:
         """Id of the saved selection: a new one, or the one that the same idempotency key has saved before.
 
-        Raises why there is no draft of it, KeyReusedError where the key came with other content, and KeySpentError
-        where what it saved was deleted.
+        Raises KeyReusedError where the key came with other content, and KeySpentError where what it saved was deleted.
+        Who stops waiting does not know whether it is saved; the same key finds that out.
         """
-        return await self._writer.save(wanted)
+        return await self._write(lambda connection: insert(connection, draft))
 
     async def find(self, id: str) -> SavedSelection | None:
         """The selection with this id, or None."""
@@ -129,8 +125,7 @@ class Store:
         """Delete a selection; False where there is none with this id."""
         if not ID.fullmatch(id):
             return False
-        async with self._reachable():
-            return await self._transactions.run(lambda connection: remove(connection, id))
+        return await self._write(lambda connection: remove(connection, id))
 
     @asynccontextmanager
     async def _reachable(self) -> AsyncIterator[None]:
@@ -147,31 +142,24 @@ class Store:
         async with self._reachable(), self._engine.connect() as connection:
             yield connection
 
-    async def _commit(self, drafts: Sequence[Draft]) -> list[Outcome]:
-        """Save drafts in one transaction: an id for each, or why it has none."""
-        insertion = insertion_of(drafts, self._engine.dialect)
-        used = {draft.catalogue_version: draft.catalogue for draft in drafts}
-        new = {version: book for version, book in used.items() if book is not None and version not in self._kept}
-        try:
-            async with self._reachable():
-                outcomes = await self._transactions.run(
-                    lambda connection: insert(connection, insertion, new),
-                    one_statement=not new and not any(draft.idempotency_key for draft in drafts),
-                )
-        except StoreUnavailableError as error:
-            self._kept.clear()  # the database that comes back may be one from a backup
-            if len(drafts) == 1 or not isinstance(error.__cause__, DataError):
-                raise
-            # One selection that the database can't hold must not fail its neighbours.
-            return [await self._commit_alone(draft) for draft in drafts]
-        self._kept |= new.keys()
-        return outcomes
+    async def _write(self, work: Callable[[AsyncConnection], Awaitable[T]]) -> T:
+        """Result of the work, once its transaction is on disk; it is rolled back where the work raises.
 
-    async def _commit_alone(self, draft: Draft) -> Outcome:
-        try:
-            return (await self._commit([draft]))[0]
-        except StoreUnavailableError as error:
-            return error
+        Who stops waiting for PostgreSQL breaks the transaction off. SQLite has one writer at a time: those of this
+        process take turns, and wait in SQLite only for other processes. There a transaction that has begun runs to its
+        end, whoever has stopped waiting for it: broken off, the driver may leave the lock of the database behind.
+        """
+        async with self._reachable():
+            if self._engine.dialect.name != "sqlite":
+                return await self._transact(work)
+            await self._turn.acquire()
+            transaction = asyncio.create_task(self._transact(work))
+            transaction.add_done_callback(lambda _: self._turn.release())
+            return await asyncio.shield(transaction)
+
+    async def _transact(self, work: Callable[[AsyncConnection], Awaitable[T]]) -> T:
+        async with self._engine.execution_options(**WRITES).begin() as connection:
+            return await work(connection)
 
 
 def _unavailable(error: Exception) -> StoreUnavailableError:

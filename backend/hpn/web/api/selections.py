@@ -1,6 +1,5 @@
 """Saved selections over REST: save, read with what differs today, list, delete."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Annotated, Any
 from urllib.parse import urlencode
@@ -18,8 +17,7 @@ from hpn.application import Application, InputError
 from hpn.candidates import foremost
 from hpn.catalogue import Catalogue
 from hpn.differences import Difference, FigureDifference, differences, figure_differences
-from hpn.fleet import select_fleet
-from hpn.selection import Selection, candidates_of, select
+from hpn.selection import select
 from hpn.store import Draft, KeyReusedError, KeySpentError, SavedSelection, Store, Summary
 from hpn.web.api import schemas
 from hpn.web.api.select import LONG_CYCLE
@@ -31,6 +29,7 @@ from hpn.web.api.selection_schemas import (
     SaveRequest,
     SelectionListReply,
 )
+from hpn.web.door.access import admit
 from hpn.web.door.bodies import read_body
 from hpn.web.door.conditions import conditional, idempotency_key, preferred_return, require_match
 from hpn.web.door.problems import Problem
@@ -45,10 +44,12 @@ KEY = (
 )
 
 router = APIRouter(prefix="/api/v1/selections")
+"""Its routes are of different groups, which each declares."""
 
 
 @router.post(
     "",
+    dependencies=[admit("writing")],
     summary="Save a selection",
     status_code=201,
     openapi_extra=schemas.request_body(SaveRequest)
@@ -87,6 +88,7 @@ async def save_selection(request: Request) -> Response:
 
 @router.get(
     "/{id}",
+    dependencies=[admit("reading")],
     summary="Read a saved selection",
     response_model=SavedSelectionReply,
     openapi_extra=schemas.IF_NONE_MATCH,
@@ -99,6 +101,7 @@ async def read_selection(request: Request, id: str) -> Response:
 
 @router.get(
     "",
+    dependencies=[admit("listing")],
     summary="List saved selections",
     response_model=SelectionListReply,
     openapi_extra=schemas.IF_NONE_MATCH,
@@ -129,6 +132,7 @@ async def list_selections(
 
 @router.delete(
     "/{id}",
+    dependencies=[admit("deleting")],
     summary="Delete a saved selection",
     status_code=204,
     responses=schemas.problems(404, 412, 503),
@@ -167,26 +171,17 @@ def url_of(id: str) -> str:
     return f"/selections/{id}"
 
 
-@dataclass(frozen=True, slots=True)
-class Wanted:
-    """An application that is to be saved with its result, under these labels and this idempotency key."""
-
-    application: Application
-    labels: Labels
-    key: str | None
-
-
 async def save(state: State, application: Application, labels: Labels, key: str | None = None) -> str:
     """Select and save; the id under which it is durable.
 
-    Raises InputError as `select` does, and Problem 422 or 410 for a key that was used before.
+    Raises InputError as `select` does, before the store is asked; Problem 422 or 410 for a key that was used before.
     """
-    candidates_of(application, state.catalogue)  # what has to be refused need not wait for the database
-    wanted: Wanted | Draft | InputError = Wanted(application, labels, key)
-    if len(application.duty_cycle.phases) > LONG_CYCLE:
-        (wanted,) = await run_in_threadpool(drafts, state, [wanted])
+    long = len(application.duty_cycle.phases) > LONG_CYCLE
+    arguments = state.catalogue, application, labels, key
+    draft = await run_in_threadpool(draft_of, *arguments) if long else draft_of(*arguments)
+    state.metrics.selection(draft.selected)
     try:
-        id: str = await state.store.save(wanted)
+        id: str = await state.store.save(draft)
     except KeyReusedError as error:
         raise Problem(422, str(error)) from None
     except KeySpentError as error:
@@ -194,35 +189,19 @@ async def save(state: State, application: Application, labels: Labels, key: str 
     return id
 
 
-_AS_GIVEN = Application.__pydantic_serializer__.to_json
-"""What `model_dump_json` calls, without a string in between."""
-
-
-def drafts(state: State, wanted: Sequence[Wanted | Draft | InputError]) -> list[Draft | InputError]:
-    """A draft of each, or why there is none: worked out together, but for those that are there already."""
-    unmade = [each for each in wanted if isinstance(each, Wanted)]
-    selections = select_fleet([each.application for each in unmade], state.catalogue)
-    made = [_draft(state, each, selection) for each, selection in zip(unmade, selections, strict=True)]
-    for draft in made:
-        if isinstance(draft, Draft):
-            state.metrics.selection(draft.selected)
-    new = iter(made)
-    return [next(new) if isinstance(each, Wanted) else each for each in wanted]
-
-
-def _draft(state: State, wanted: Wanted, selection: Selection | InputError) -> Draft | InputError:
-    if isinstance(selection, InputError):
-        return selection
+def draft_of(catalogue: Catalogue, application: Application, labels: Labels, key: str | None) -> Draft:
+    """What is saved of an application: its own JSON, and the reply that `select` gives it."""
+    selection = select(application, catalogue)
     return Draft(
-        application=_AS_GIVEN(wanted.application, exclude_unset=True),
-        result=selection.json(to_link(wanted.application)),
+        application=application.model_dump_json(exclude_unset=True).encode(),
+        result=selection.json(to_link(application)),
         engine_version=ENGINE_VERSION,
-        catalogue_version=state.catalogue.version,
+        catalogue_version=catalogue.version,
         selected=selection.selected,
-        title=wanted.labels.title,
-        reference=wanted.labels.reference,
-        idempotency_key=wanted.key,
-        catalogue=state.catalogue,
+        title=labels.title,
+        reference=labels.reference,
+        idempotency_key=key,
+        catalogue=catalogue,
     )
 
 
@@ -299,7 +278,3 @@ def _summary(selection: Summary) -> dict[str, Any]:
         "engine_version": selection.engine_version,
         "catalogue_version": selection.catalogue_version,
     }
-
-
-SHORTCUTS = {("POST", "/api/v1/selections"): save_selection}
-"""See `service.Service`."""

@@ -1,20 +1,19 @@
 """Prometheus metrics: requests, selections by verdict, operations of the store.
 
 With several workers each writes its counts to files in one folder, and whichever is asked adds all of them up: that is
-the client library's multiprocess mode, for which `serving.py` sets PROMETHEUS_MULTIPROC_DIR before it starts them.
+the client library's multiprocess mode, for which `serve.py` sets PROMETHEUS_MULTIPROC_DIR before it starts them.
 """
 
 import os
-from collections.abc import Iterable
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from typing import Any
 
 from prometheus_client import CollectorRegistry, Counter, Histogram, ProcessCollector, generate_latest
 from prometheus_client.multiprocess import MultiProcessCollector
 
 from hpn.catalogue import Catalogue
-from hpn.store import KeyReusedError, KeySpentError, Page, SavedSelection, Store
-from hpn.store.writer import Make
+from hpn.store import Draft, KeyReusedError, KeySpentError, Page, SavedSelection, Store
 
 CONTENT_TYPE = "text/plain; version=0.0.4; charset=utf-8"
 FOLDER = "PROMETHEUS_MULTIPROC_DIR"
@@ -51,22 +50,16 @@ class Metrics:
             ("operation", "outcome"),
             registry=registry,
         )
-        self._children: dict[tuple[str, ...], Any] = {}
-        self._answered: dict[tuple[str, str, int], tuple[Counter, Histogram]] = {}
 
     def request(self, route: str, method: str, status: int, seconds: float) -> None:
         """Count an answered request."""
         method = method if method in METHODS else "other"
-        children = self._answered.get((route, method, status))
-        if children is None:
-            children = self._requests.labels(route, method, str(status)), self._seconds.labels(route, method)
-            self._answered[route, method, status] = children
-        children[0].inc()
-        children[1].observe(seconds)
+        self._requests.labels(route, method, str(status)).inc()
+        self._seconds.labels(route, method).observe(seconds)
 
     def selection(self, selected: str | None) -> None:
         """Count an evaluated application."""
-        self._child(self._selections, "none" if selected is None else "selected").inc()
+        self._selections.labels("none" if selected is None else "selected").inc()
 
     def batch(self, lines: Iterable[dict[str, Any]]) -> None:
         """Count the lines of a batch."""
@@ -74,11 +67,11 @@ class Metrics:
         for line in lines:
             counts["refused" if line["status"] == "error" else "selected" if line["selected"] else "none"] += 1
         for verdict, count in counts.items():
-            self._child(self._selections, verdict).inc(count)
+            self._selections.labels(verdict).inc(count)
 
     def store_operation(self, name: str, outcome: str) -> None:
         """Count an operation of the store."""
-        self._child(self._store, name, outcome).inc()
+        self._store.labels(name, outcome).inc()
 
     def exposition(self) -> bytes:
         """All counts in Prometheus' text format, those of the other workers included."""
@@ -88,14 +81,6 @@ class Metrics:
             MultiProcessCollector(registry)  # type: ignore[no-untyped-call]
         return generate_latest(registry)
 
-    def _child(self, metric: Counter, *labels: str) -> Any:
-        """Child of a metric, found in a third of the time that `labels` takes."""
-        key = (metric._name, *labels)
-        child = self._children.get(key)
-        if child is None:
-            child = self._children[key] = metric.labels(*labels)
-        return child
-
 
 CALLERS_MISTAKES = (KeyReusedError, KeySpentError, ValueError)
 
@@ -103,8 +88,8 @@ CALLERS_MISTAKES = (KeyReusedError, KeySpentError, ValueError)
 class CountedStore(Store):
     """A store whose operations are counted."""
 
-    def __init__(self, address: str, *, seconds: float, make: Make, metrics: Metrics) -> None:
-        super().__init__(address, seconds=seconds, make=make)
+    def __init__(self, address: str, *, seconds: float, metrics: Metrics) -> None:
+        super().__init__(address, seconds=seconds)
         self._metrics = metrics
 
     async def check(self) -> None:
@@ -112,10 +97,10 @@ class CountedStore(Store):
         with self._counted("check"):
             await super().check()
 
-    async def save(self, wanted: Any) -> str:
+    async def save(self, draft: Draft) -> str:
         """See Store."""
         with self._counted("save"):
-            return await super().save(wanted)
+            return await super().save(draft)
 
     async def find(self, id: str) -> SavedSelection | None:
         """See Store."""
@@ -137,20 +122,14 @@ class CountedStore(Store):
         with self._counted("delete"):
             return await super().delete(id)
 
-    def _counted(self, operation: str) -> "_Counted":
-        return _Counted(self._metrics, operation)
-
-
-@dataclass(frozen=True, slots=True)
-class _Counted:
-    """Counts how an operation ends."""
-
-    metrics: Metrics
-    operation: str
-
-    def __enter__(self) -> None:
-        return
-
-    def __exit__(self, kind: type[BaseException] | None, *_: object) -> None:
-        outcome = "ok" if kind is None else "refused" if issubclass(kind, CALLERS_MISTAKES) else "failed"
-        self.metrics.store_operation(self.operation, outcome)
+    @contextmanager
+    def _counted(self, operation: str) -> Iterator[None]:
+        try:
+            yield
+        except CALLERS_MISTAKES:
+            self._metrics.store_operation(operation, "refused")
+            raise
+        except BaseException:
+            self._metrics.store_operation(operation, "failed")
+            raise
+        self._metrics.store_operation(operation, "ok")

@@ -1,0 +1,95 @@
+"""What a transaction of saving or deleting does to the tables."""
+
+import asyncio
+import hashlib
+import secrets
+from datetime import UTC, datetime
+from typing import Any
+
+import brotli
+from sqlalchemy import Table, delete, select
+from sqlalchemy.dialects import postgresql, sqlite
+from sqlalchemy.ext.asyncio import AsyncConnection
+
+from hpn.catalogue import Catalogue
+from hpn.catalogue.copy import copy_of
+from hpn.store.errors import KeyReusedError, KeySpentError
+from hpn.store.packing import packed
+from hpn.store.saved import Draft
+from hpn.store.tables import catalogues, selections, spent_keys
+
+
+async def insert(connection: AsyncConnection, draft: Draft) -> str:
+    """Id of the new selection, or of the one that the same idempotency key has saved before.
+
+    Raises KeyReusedError and KeySpentError; the caller then rolls the transaction back.
+    """
+    if draft.catalogue is not None:
+        await _keep_catalogue(connection, draft.catalogue_version, draft.catalogue)
+    row = _row_of(draft)
+    await _insert_new(connection, selections, row)
+    if draft.idempotency_key is None:
+        return str(row["id"])
+    # After the insertion, which has waited for any other transaction that had this key in hand.
+    return await _holder(connection, draft.idempotency_key, draft.digest)
+
+
+def _row_of(draft: Draft) -> dict[str, Any]:
+    return {
+        "id": secrets.token_urlsafe(16),
+        "created": datetime.now(UTC),
+        "title": draft.title,
+        "reference": draft.reference,
+        "selected": draft.selected,
+        "engine_version": draft.engine_version,
+        "catalogue_version": draft.catalogue_version,
+        "application": draft.application.decode(),
+        "result_packed": packed(draft.result),
+        "idempotency_key": draft.idempotency_key,
+        "digest": draft.digest if draft.idempotency_key else None,
+    }
+
+
+async def _insert_new(connection: AsyncConnection, table: Table, row: dict[str, Any]) -> None:
+    """Insert a row unless one with the same unique key is there; SQLAlchemy has this for each database apart."""
+    dialect = sqlite if connection.dialect.name == "sqlite" else postgresql
+    await connection.execute(dialect.insert(table).values(row).on_conflict_do_nothing())
+
+
+async def _keep_catalogue(connection: AsyncConnection, version: str, catalogue: Catalogue) -> None:
+    known = select(catalogues.c.version).where(catalogues.c.version == version)
+    if (await connection.execute(known)).one_or_none() is None:
+        content = await asyncio.to_thread(lambda: brotli.compress(copy_of(catalogue)))
+        await _insert_new(connection, catalogues, {"version": version, "content_brotli": content})
+
+
+async def _holder(connection: AsyncConnection, key: str, digest: str) -> str:
+    """Id of the selection that holds an idempotency key."""
+    spent = select(spent_keys.c.key_sha256).where(spent_keys.c.key_sha256 == _hash(key))
+    holding = select(selections.c.id, selections.c.digest).where(selections.c.idempotency_key == key)
+    is_spent = (await connection.execute(spent)).one_or_none() is not None
+    held = None if is_spent else (await connection.execute(holding)).one_or_none()
+    if held is None:  # deleted, if not before then by another transaction a moment ago
+        raise KeySpentError(
+            "what was saved under this idempotency key has been deleted; take a new key to save it anew"
+        )
+    if held.digest != digest:
+        raise KeyReusedError(
+            "this idempotency key was used before, with other content; take a new key for a new selection"
+        )
+    return str(held.id)
+
+
+async def remove(connection: AsyncConnection, id: str) -> bool:
+    """Delete a selection, and remember that its idempotency key is spent; False where there is none."""
+    c = selections.c
+    statement = delete(selections).where(c.id == id).returning(c.idempotency_key)
+    gone = (await connection.execute(statement)).one_or_none()
+    if gone is not None and gone.idempotency_key is not None:
+        spent = {"key_sha256": _hash(gone.idempotency_key), "deleted": datetime.now(UTC)}
+        await _insert_new(connection, spent_keys, spent)
+    return gone is not None
+
+
+def _hash(key: str) -> str:
+    return hashlib.sha256(key.encode()).hexdigest()
