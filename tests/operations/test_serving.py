@@ -36,16 +36,16 @@ def answer_to(service: Service, *parts: bytes) -> bytes:
 
 
 @pytest.mark.parametrize(
-    "head",
+    ("head", "refusals"),
     [
-        b"GET / HTTP/1.1\r\nHost: x\r\nX-Long: " + b"a" * 1_000_000,
-        b"GET / HTTP/1.1\r\n" + b"A: b\r\n" * 101 + b"\r\n",
-        b"GET /?" + b"a" * 200_000 + b" HTTP/1.1\r\n\r\n",
+        (b"GET / HTTP/1.1\r\nHost: x\r\nX-Long: " + b"a" * 1_000_000, (b"HTTP/1.1 431", b"")),
+        (b"GET / HTTP/1.1\r\n" + b"A: b\r\n" * 101 + b"\r\n", (b"HTTP/1.1 400",)),
+        (b"GET /?" + b"a" * 200_000 + b" HTTP/1.1\r\n\r\n", (b"HTTP/1.1 431", b"HTTP/1.1 414", b"")),
     ],
 )
-def test_a_head_that_is_too_large_is_refused_while_it_arrives(head: bytes, service: Service) -> None:
+def test_a_head_that_is_too_large_is_refused(head: bytes, refusals: tuple[bytes, ...], service: Service) -> None:
     # a client that still sends may see the connection reset before it reads the answer
-    assert answer_to(service, head).startswith(b"HTTP/1.1 431") or len(head) > 300_000
+    assert answer_to(service, head)[:12] in refusals
     assert service.client.get("/healthz").status_code == 200
 
 

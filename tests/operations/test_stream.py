@@ -49,6 +49,7 @@ def test_lines_are_answered_in_order_as_the_json_form_answers_them(make_client: 
 
     assert streamed.status_code == 200
     assert streamed.headers["Content-Type"] == "application/x-ndjson"
+    assert "Content-Encoding" not in streamed.headers  # a packer would hold lines back
     assert lines_of(streamed.content) == whole.json()["results"]
     assert [line["status"] for line in lines_of(streamed.content)] == ["ok", "error", "error", "error", "error", "ok"]
 

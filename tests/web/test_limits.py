@@ -75,20 +75,24 @@ def call(app: FastAPI, path: str, messages: list[Message], headers: list[tuple[b
     return sent[0]["status"], b"".join(message.get("body", b"") for message in sent[1:])
 
 
-@pytest.mark.parametrize("path", PATHS)
-def test_a_body_that_does_not_arrive_in_time_is_a_408(tight: FastAPI, path: str) -> None:
-    part: Message = {"type": "http.request", "body": b"{", "more_body": True}
+PART: Message = {"type": "http.request", "body": b"{", "more_body": True}
 
-    status, body = call(tight, path, [part], [(b"content-type", b"application/json")])
+
+@pytest.mark.parametrize("parts", [[], [PART]])
+@pytest.mark.parametrize("path", PATHS)
+def test_a_body_that_does_not_arrive_in_time_is_a_408(tight: FastAPI, path: str, parts: list[Message]) -> None:
+    status, body = call(tight, path, parts, [(b"content-type", b"application/json")])
 
     assert status == 408
     assert "0.05 s" in orjson.loads(body)["detail"]
 
 
-def test_a_client_that_goes_away_ends_the_request_quietly(tight: FastAPI) -> None:
-    part: Message = {"type": "http.request", "body": b"{", "more_body": True}
+def test_a_stream_whose_first_line_does_not_arrive_in_time_is_a_408(tight: FastAPI) -> None:
+    assert call(tight, PATHS[1], [], [(b"content-type", b"application/x-ndjson")])[0] == 408
 
-    status, _ = call(tight, PATHS[0], [part, {"type": "http.disconnect"}], [(b"content-type", b"application/json")])
+
+def test_a_client_that_goes_away_ends_the_request_quietly(tight: FastAPI) -> None:
+    status, _ = call(tight, PATHS[0], [PART, {"type": "http.disconnect"}], [(b"content-type", b"application/json")])
 
     assert status == 400
 

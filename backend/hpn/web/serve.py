@@ -10,7 +10,7 @@ from fastapi import FastAPI
 from uvicorn.supervisors import Multiprocess
 
 from hpn.web.app import create_app
-from hpn.web.door import logs, memory, metrics
+from hpn.web.door import logs, metrics
 from hpn.web.pages import calculator as pages
 from hpn.web.settings import Settings
 
@@ -24,8 +24,7 @@ def served_app() -> FastAPI:
     app = create_app(settings)
     pages.prepare(app.state)
     gc.collect()
-    memory.into_huge_pages()
-    gc.freeze()  # what lives as long as the process is not searched for garbage again: that took 90 ms each time
+    gc.freeze()  # catalogue, templates and modules are never garbage; to search them takes 90 ms each time
     return app
 
 

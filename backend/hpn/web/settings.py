@@ -15,7 +15,7 @@ from hpn.catalogue import HANDBOOK_FOLDER
 from hpn.web.door.keys import ApiKey
 
 Group = Literal["calculator", "batch", "writing", "listing", "deleting", "reading", "metrics"]
-"""Kinds of requests that keys and rate limits tell apart; `access.py` says which request belongs to which."""
+"""Kinds of requests that keys and rate limits tell apart; each route declares its own."""
 
 
 def _split(text: object) -> object:
@@ -90,7 +90,7 @@ class Settings(BaseSettings):
     maximum_body_bytes: int = Field(2_000_000, gt=0, description="Largest body of a request for one application.")
     maximum_batch_body_bytes: int = Field(32_000_000, gt=0, description="Largest body of a batch request.")
     maximum_batch_count: int = Field(10_000, gt=0, le=10_000, description="Most applications in one batch request.")
-    body_seconds: float = Field(30.0, gt=0, description="Longest time for a body to arrive, from its first part.")
+    body_seconds: float = Field(30.0, gt=0, description="Longest time for a body to arrive.")
     batch_seconds: float = Field(60.0, gt=0, description="Longest computing time of one batch request.")
     spool_folder: Annotated[Path | None, AfterValidator(_folder)] = Field(
         None,

@@ -15,6 +15,7 @@ from hpn.report.language import language
 from hpn.selection import select
 from hpn.web.api import schemas
 from hpn.web.api.files import absolute, application_of
+from hpn.web.door.access import admit
 from hpn.web.door.problems import Problem
 from hpn.web.form.read import MAXIMUM_QUERY_BYTES
 from hpn.web.form.write import to_link
@@ -23,7 +24,8 @@ SAVED = "/selections/"
 LONGEST_PATH = 2000
 """Length of a link from which a page doesn't carry it a second time."""
 
-router = APIRouter()
+router = APIRouter(dependencies=[admit("reading")])
+"""oEmbed tells of saved selections too, so it belongs to reading."""
 
 
 @dataclass(frozen=True, slots=True)

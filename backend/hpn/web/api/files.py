@@ -25,6 +25,7 @@ from hpn.selection import select
 from hpn.store import SavedSelection
 from hpn.web.api import schemas
 from hpn.web.api.selections import url_of, with_catalogue
+from hpn.web.door.access import admit
 from hpn.web.door.bodies import read_body
 from hpn.web.door.conditions import etag_of, has_already
 from hpn.web.door.problems import Problem
@@ -74,9 +75,9 @@ FILES = (
     ),
 )
 
-saved_files = APIRouter(prefix="/api/v1/selections/{id}")
-posted_files = APIRouter(prefix="/api/v1")
-linked_files = APIRouter(include_in_schema=False)
+saved_files = APIRouter(prefix="/api/v1/selections/{id}", dependencies=[admit("reading")])
+posted_files = APIRouter(prefix="/api/v1", dependencies=[admit("calculator")])
+linked_files = APIRouter(include_in_schema=False, dependencies=[admit("calculator")])
 
 
 def _route(file: File) -> None:

@@ -7,9 +7,11 @@ from starlette.requests import Request
 from starlette.responses import PlainTextResponse, Response
 
 from hpn.web.api.schemas import problems
+from hpn.web.door.access import OPEN, admit
 from hpn.web.door.metrics import CONTENT_TYPE
 
-router = APIRouter()
+router = APIRouter(dependencies=[OPEN])
+metrics_router = APIRouter(dependencies=[admit("metrics")])
 
 
 class Health(BaseModel):
@@ -40,7 +42,7 @@ async def readyz(request: Request) -> Readiness:
     return Readiness(status="ok", catalogue_version=catalogue.version, gears=len(catalogue.gears), store="ok")
 
 
-@router.get("/metrics", summary="Metrics for Prometheus", response_class=PlainTextResponse)
+@metrics_router.get("/metrics", summary="Metrics for Prometheus", response_class=PlainTextResponse)
 async def metrics(request: Request) -> Response:
     """What Prometheus counts: requests, selections by verdict, operations of the store."""
     return Response(await run_in_threadpool(request.app.state.metrics.exposition), media_type=CONTENT_TYPE)

@@ -1,16 +1,21 @@
 """The OpenAPI document: what FastAPI finds by itself, and what the direct routes know better."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
+from functools import cache
 from typing import Any
 
+from fastapi import APIRouter, FastAPI
+from fastapi.routing import iter_route_contexts
 from pydantic import BaseModel
 from pydantic.json_schema import models_json_schema
+from starlette.requests import Request
+from starlette.responses import JSONResponse
 
 from hpn.catalogue import Catalogue
 from hpn.units import suffix_of, symbol_of
 from hpn.web.api import samples, schemas
-from hpn.web.door.access import group_of
-from hpn.web.settings import Settings
+from hpn.web.door.access import OPEN, group_of
+from hpn.web.settings import Group, Settings
 
 PATH_PARAMETERS = {
     "designation": "Designation in any of the printed spellings, such as HPN-20A-5.",
@@ -27,10 +32,45 @@ KEY_SCHEMES = {
 }
 
 
+router = APIRouter(include_in_schema=False, dependencies=[OPEN])
+
+
+@router.api_route("/openapi.json", methods=["GET", "HEAD"])
+def document(request: Request) -> JSONResponse:
+    """The OpenAPI document."""
+    return JSONResponse(request.app.openapi())
+
+
+def install(app: FastAPI, *bodies: type[BaseModel]) -> None:
+    """Have `app.openapi()` give the completed document, built when it is first asked for.
+
+    `bodies` are the models of request bodies that routes read themselves.
+    """
+    found = app.openapi
+
+    @cache
+    def openapi() -> dict[str, Any]:
+        groups = {
+            (method, route.path or ""): group_of(route)
+            for route in iter_route_contexts(app.routes)
+            for method in route.methods or ()
+        }
+        return complete(found(), groups, app.state.catalogue, app.state.settings, bodies)
+
+    app.openapi = openapi  # type: ignore[method-assign]
+
+
 def complete(
-    document: dict[str, Any], catalogue: Catalogue, settings: Settings, *bodies: type[BaseModel]
+    document: dict[str, Any],
+    groups: Mapping[tuple[str, str], Group | None],
+    catalogue: Catalogue,
+    settings: Settings,
+    bodies: Sequence[type[BaseModel]],
 ) -> dict[str, Any]:
-    """Add schemas of the request bodies, examples, the one form of every problem, keys, and texts of parameters."""
+    """Add schemas of the request bodies, examples, the one form of every problem, keys, and texts of parameters.
+
+    `groups` tells by method and path who may use a route.
+    """
     models: list[Any] = [(model, "validation") for model in (*bodies, schemas.ProblemReply)]
     _, definitions = models_json_schema(models, ref_template="#/components/schemas/{model}")
     components = document.setdefault("components", {})
@@ -40,7 +80,7 @@ def complete(
     for method, path, operation in _operations(document):
         _give_examples(operation)
         _say_problems(operation)
-        _say_keys(operation, group_of(method, path), settings)
+        _say_keys(operation, groups[method, path], settings)
         _mend_replies(operation)
         for parameter in operation.get("parameters", ()):
             _describe(parameter)
@@ -56,7 +96,7 @@ def _operations(document: dict[str, Any]) -> Iterator[tuple[str, str, dict[str, 
             yield method.upper(), path, operation
 
 
-def _say_keys(operation: dict[str, Any], group: str | None, settings: Settings) -> None:
+def _say_keys(operation: dict[str, Any], group: Group | None, settings: Settings) -> None:
     """Keys and rate limits stand in front of every route that is not open to all."""
     if group is None:
         return

@@ -1,6 +1,5 @@
 """The REST interface, version 1: parse, one call into the domain, render."""
 
-import asyncio
 import dataclasses
 import time
 from typing import Annotated, Any
@@ -16,11 +15,11 @@ from hpn.application import Application
 from hpn.catalogue import Catalogue
 from hpn.envelopes import EnvelopeQuery, life_envelopes
 from hpn.gear import Gear
-from hpn.selection import Selection, select
+from hpn.selection import select
 from hpn.web.api import schemas, streaming
 from hpn.web.api.batch import batch_items, batch_lines, line_evaluator
+from hpn.web.door.access import admit
 from hpn.web.door.bodies import content_type_of, read_body
-from hpn.web.door.metrics import Metrics
 from hpn.web.door.problems import Problem
 from hpn.web.form.write import to_link
 from hpn.web.settings import Settings
@@ -34,7 +33,8 @@ BATCH_SLICE = 64
 RETRY_SECONDS = 5
 
 
-router = APIRouter(prefix="/api/v1")
+router = APIRouter(prefix="/api/v1", dependencies=[admit("calculator")])
+batch_router = APIRouter(prefix="/api/v1", dependencies=[admit("batch")])
 
 
 @router.post(
@@ -51,21 +51,17 @@ async def select_one(request: Request) -> Response:
     body = await read_body(request, maximum_bytes=settings.maximum_body_bytes, seconds=settings.body_seconds)
     application = Application.model_validate_json(body)
     long = len(application.duty_cycle.phases) > LONG_CYCLE
-    selection, reply = await run_in_threadpool(_reply, application, state) if long else _reply(application, state)
-    asyncio.get_running_loop().call_soon(_count, state.metrics, selection)  # once the reply is on its way
+    selected, reply = await run_in_threadpool(_reply, application, state) if long else _reply(application, state)
+    state.metrics.selection(selected)
     return schemas.JSONBytes(reply)
 
 
-def _reply(application: Application, state: State) -> tuple[Selection, bytes]:
+def _reply(application: Application, state: State) -> tuple[str | None, bytes]:
     selection = select(application, state.catalogue)
-    return selection, selection.json(to_link(application))
+    return selection.selected, selection.json(to_link(application))
 
 
-def _count(metrics: Metrics, selection: Selection) -> None:
-    metrics.selection(selection.selected)
-
-
-@router.post(
+@batch_router.post(
     "/select/batch",
     summary="Select gears for many applications",
     openapi_extra=schemas.batch_body(),
@@ -154,7 +150,3 @@ async def bearing_envelopes(request: Request, size: str, query: Annotated[Envelo
     )
     reply = {"size": gear.size, "model": query.model, "curves": curves, "sources": sources}
     return schemas.JSONBytes(orjson.dumps(reply))
-
-
-SHORTCUTS = {("POST", "/api/v1/select"): select_one}
-"""See `service.Service`."""

@@ -12,6 +12,7 @@ from starlette.concurrency import run_in_threadpool
 from starlette.responses import Response
 from starlette.types import Message, Receive, Scope, Send
 
+from hpn.web.door.bodies import late
 from hpn.web.door.problems import Problem
 
 MEDIA_TYPES = ("application/x-ndjson", "application/ndjson", "application/jsonl")
@@ -140,7 +141,11 @@ class LineStream(Response):
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Run both directions until every line is answered, or the client has gone."""
-        first = await receive()  # before the head: only asking for the body answers `Expect: 100-continue`
+        try:
+            async with asyncio.timeout(self._seconds):
+                first = await receive()  # before the head: only asking for the body answers `Expect: 100-continue`
+        except TimeoutError:
+            raise late(self._seconds) from None
         await send({"type": "http.response.start", "status": self.status_code, "headers": self.raw_headers})
         work = asyncio.create_task(self._work(first, receive))
         try:

@@ -3,10 +3,8 @@
 import asyncio
 
 from starlette.requests import ClientDisconnect, Request
-from starlette.types import Message
 
 from hpn.web.door.problems import Problem
-from hpn.web.door.requests import header
 from hpn.web.settings import Settings
 
 
@@ -15,51 +13,37 @@ async def read_body(
 ) -> bytes:
     """Body of a request.
 
-    Raises Problem 415 for another content type, 413 above `maximum_bytes`, 408 when the rest of it has not arrived
-    `seconds` after its first part; for that part the server waits, see `protocol.py`.
+    Raises Problem 415 for another content type, 413 above `maximum_bytes`, 408 when it has not arrived in `seconds`.
     """
     given = content_type_of(request)
     if given != content_type:
         raise Problem(415, f"send the body as {content_type} (the Content-Type header says {given or 'nothing'})")
-    declared = header(request, b"content-length") or ""
+    too_large = Problem(413, f"the body may have {maximum_bytes} bytes at most")
+    declared = request.headers.get("content-length", "")
     if declared.isascii() and declared.isdigit() and int(declared[:20]) > maximum_bytes:
-        raise _too_large(maximum_bytes)
+        raise too_large
+    body = bytearray()
     try:
-        part, more = _part(await request.receive())
-        body = await _with_rest(part, request, maximum_bytes, seconds) if more else part
+        async with asyncio.timeout(seconds):
+            async for part in request.stream():
+                body += part
+                if len(body) > maximum_bytes:
+                    raise too_large
     except TimeoutError:
-        raise Problem(408, f"the body did not arrive within {seconds:g} s") from None
+        raise late(seconds) from None
     except ClientDisconnect:
         raise Problem(400, "the connection closed before the body was complete") from None
-    if len(body) > maximum_bytes:
-        raise _too_large(maximum_bytes)
-    return body
+    return bytes(body)
+
+
+def late(seconds: float) -> Problem:
+    """408."""
+    return Problem(408, f"the body did not arrive within {seconds:g} s")
 
 
 def content_type_of(request: Request) -> str:
     """Content type of the request's body, without its parameters."""
-    return (header(request, b"content-type") or "").partition(";")[0].strip().lower()
-
-
-async def _with_rest(part: bytes, request: Request, maximum_bytes: int, seconds: float) -> bytes:
-    parts, size, more = [part], len(part), True
-    async with asyncio.timeout(seconds):  # a timer costs a twentieth of a reply: only where it is needed
-        while more and size <= maximum_bytes:
-            part, more = _part(await request.receive())
-            parts.append(part)
-            size += len(part)
-    return b"".join(parts)
-
-
-def _part(message: Message) -> tuple[bytes, bool]:
-    """Part of a body, and whether there is more."""
-    if message["type"] == "http.disconnect":
-        raise ClientDisconnect
-    return message.get("body", b""), message.get("more_body", False)
-
-
-def _too_large(maximum_bytes: int) -> Problem:
-    return Problem(413, f"the body may have {maximum_bytes} bytes at most")
+    return request.headers.get("content-type", "").partition(";")[0].strip().lower()
 
 
 async def read_form(request: Request) -> bytes:

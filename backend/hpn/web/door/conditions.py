@@ -6,9 +6,7 @@ import re
 from starlette.requests import Request
 from starlette.responses import Response
 
-from hpn.web.api.schemas import JSONBytes
 from hpn.web.door.problems import Problem
-from hpn.web.door.requests import header
 
 IDEMPOTENCY_KEY = re.compile(r'"?([\x21\x23-\x7e]{1,200})"?')
 """Visible ASCII, with or without the quotes of a structured field."""
@@ -27,7 +25,7 @@ def conditional(request: Request, body: bytes) -> Response:
     headers = {"ETag": etag, "Cache-Control": "no-cache"}
     if has_already(request, etag):
         return Response(status_code=304, headers=headers)
-    return JSONBytes(body, headers=headers)
+    return Response(body, headers=headers, media_type="application/json")
 
 
 def has_already(request: Request, etag: str) -> bool:
@@ -49,16 +47,16 @@ def _lists(header: str, etag: str, *, weakly: bool) -> bool:
 
 def idempotency_key(request: Request) -> str | None:
     """Key by which a repeated request of the same caller is known, or None; Problem 400 for one that can't be a key."""
-    given = header(request, b"idempotency-key")
+    given = request.headers.get("idempotency-key")
     if given is None:
         return None
     match = IDEMPOTENCY_KEY.fullmatch(given.strip())
     if match is None:
         raise Problem(400, "Idempotency-Key must be 1 to 200 visible ASCII characters, such as a UUID")
-    return f"{request.scope.get('api_key') or ''}:{match[1]}"
+    return f"{request.state.api_key or ''}:{match[1]}"
 
 
 def preferred_return(request: Request) -> str | None:
     """What `Prefer: return=…` asks for: minimal, representation, or None."""
-    match = PREFERRED_RETURN.search(header(request, b"prefer") or "")
+    match = PREFERRED_RETURN.search(request.headers.get("prefer", ""))
     return match[1].lower() if match else None

@@ -4,29 +4,26 @@ import logging
 import re
 import secrets
 import sys
-from collections.abc import Iterable
 from contextvars import ContextVar
-from itertools import count
 from typing import Any
 
 import orjson
 import structlog
+from starlette.datastructures import Headers
 from structlog.typing import EventDict, FilteringBoundLogger
 
 LEVELS = {"debug": logging.DEBUG, "info": logging.INFO, "warning": logging.WARNING, "error": logging.ERROR}
 QUIET = ("alembic", "aiosqlite", "sqlalchemy", "psycopg")
 """Libraries that log statements with their parameters, or more than anybody reads."""
-REQUEST_ID = re.compile(rb"[A-Za-z0-9._-]{1,64}")
+REQUEST_ID = re.compile("[A-Za-z0-9._-]{1,64}")
 
-REQUEST: ContextVar[bytes | None] = ContextVar("request", default=None)
+REQUEST: ContextVar[str | None] = ContextVar("request", default=None)
 """Id of the request that runs."""
-
-_series, _number = secrets.token_hex(8).encode(), count(1)
 
 
 def _add_request_id(logger: Any, method: str, event: EventDict) -> EventDict:
     if id := REQUEST.get():
-        event["request_id"] = id.decode()
+        event["request_id"] = id
     return event
 
 
@@ -83,9 +80,7 @@ def _json(logger: Any, method: str, event: EventDict) -> bytes:
     return orjson.dumps(event, default=str)
 
 
-def request_id(headers: Iterable[tuple[bytes, bytes]]) -> bytes:
-    """Id that the caller has given, where it is well-formed, else the next of this process's own series."""
-    for name, value in headers:
-        if name == b"x-request-id" and REQUEST_ID.fullmatch(value):
-            return value
-    return b"%b%016x" % (_series, next(_number))
+def request_id(headers: Headers) -> str:
+    """Id that the caller has given, where it is well-formed, else a random one."""
+    given = headers.get("x-request-id", "")
+    return given if REQUEST_ID.fullmatch(given) else secrets.token_hex(16)

@@ -16,8 +16,6 @@ from starlette.types import Scope
 from hpn.application import InputError
 
 MEDIA_TYPE = "application/problem+json"
-JSON = (b"content-type", b"application/json")
-"""The header, as it is sent."""
 
 MAXIMUM_ERRORS = 100
 TITLES = {
@@ -132,13 +130,10 @@ def _methods_at(app: FastAPI, scope: Scope) -> list[str]:
 
 
 def install(app: FastAPI, nowhere: Callable[[Request], Response]) -> None:
-    """Answer every refusal of `app` as a problem, and what goes wrong too; `observation.py` logs that.
+    """Answer every refusal of `app` as a problem; `observation.py` answers what goes wrong.
 
     `nowhere` is the page for a browser at an address that leads nowhere.
     """
-
-    async def failed(request: Request, error: Exception) -> Response:
-        return mistake().response()
 
     async def refused(request: Request, error: Exception) -> Response:
         if isinstance(error, ValidationError | InputError):
@@ -159,4 +154,3 @@ def install(app: FastAPI, nowhere: Callable[[Request], Response]) -> None:
 
     for kind in (ValidationError, RequestValidationError, InputError, HTTPException):
         app.add_exception_handler(kind, refused)
-    app.add_exception_handler(Exception, failed)

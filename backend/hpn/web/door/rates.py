@@ -3,14 +3,12 @@
 import ipaddress
 import math
 import time
-from functools import lru_cache
+from collections.abc import Mapping
 from typing import NamedTuple
 
 import limits
 
 SWEEP_SECONDS = 30
-QUIET_SHARE = 0.5
-"""Share of a rate below which nobody needs to hear what is left of it."""
 
 
 class Counters:
@@ -40,10 +38,10 @@ class Counters:
 
 
 class Admission(NamedTuple):
-    """Whether a request may pass, and response headers that say how many more may once that matters."""
+    """Whether a request may pass, and response headers that say how many more may."""
 
     granted: bool
-    headers: tuple[tuple[bytes, bytes], ...]
+    headers: Mapping[str, str]
     wait_seconds: int
     rate: limits.RateLimitItem
 
@@ -52,7 +50,7 @@ class Limiter:
     """Holds each subject, a key or an address, to the rate of its kind of request: so many in each window of time."""
 
     def __init__(self, rates: dict[str, str]) -> None:
-        self._rates = {name: _Rate(name, limits.parse(rate)) for name, rate in rates.items() if rate != "off"}
+        self._rates = {name: limits.parse(rate) for name, rate in rates.items() if rate != "off"}
         self._counters = Counters()
 
     def admit(self, name: str, subject: str) -> Admission | None:
@@ -60,25 +58,16 @@ class Limiter:
         rate = self._rates.get(name)
         if rate is None:
             return None
-        now = time.monotonic()
-        count, end = self._counters.hit((name, subject), rate.window_s, now)
+        now, window_s = time.monotonic(), rate.get_expiry()
+        count, end = self._counters.hit((name, subject), window_s, now)
         wait = max(math.ceil(end - now), 1)
-        if count < QUIET_SHARE * rate.amount:
-            return Admission(True, (), wait, rate.item)
-        state = b"%b;r=%d;t=%d" % (rate.quoted, max(rate.amount - count, 0), wait)
-        return Admission(count <= rate.amount, (rate.policy, (b"ratelimit", state)), wait, rate.item)
+        headers = {
+            "RateLimit-Policy": f'"{name}";q={rate.amount};w={window_s}',
+            "RateLimit": f'"{name}";r={max(rate.amount - count, 0)};t={wait}',
+        }
+        return Admission(count <= rate.amount, headers, wait, rate)
 
 
-class _Rate:
-    """A rate, with what every response says of it."""
-
-    def __init__(self, name: str, item: limits.RateLimitItem) -> None:
-        self.item, self.amount, self.window_s = item, item.amount, item.get_expiry()
-        self.quoted = f'"{name}"'.encode()
-        self.policy = (b"ratelimit-policy", b"%b;q=%d;w=%d" % (self.quoted, self.amount, self.window_s))
-
-
-@lru_cache(maxsize=4096)
 def subject_of(address: str) -> str:
     """Who an address stands for: itself, or its /64 network with IPv6, where one customer has that many addresses."""
     try:

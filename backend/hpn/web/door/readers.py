@@ -7,14 +7,15 @@ from http.cookies import CookieError, SimpleCookie
 from urllib.parse import parse_qsl, quote
 
 from babel import negotiate_locale
+from fastapi import APIRouter
 from starlette.datastructures import Headers, MutableHeaders
 from starlette.requests import Request
 from starlette.responses import RedirectResponse, Response
-from starlette.routing import Route
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from hpn.translation import LANGUAGES
 from hpn.web import measures
+from hpn.web.door.access import admit
 from hpn.web.door.bodies import read_body
 from hpn.web.door.requests import require_same_origin
 from hpn.web.reader import VISIT, Reader, Visit, current
@@ -116,4 +117,5 @@ def _own(address: str) -> str:
     return address if safe and address.startswith("/") and not address.startswith("//") else "/"
 
 
-routes = [Route("/reader", change, methods=["POST"])]
+router = APIRouter(include_in_schema=False, dependencies=[admit("calculator")])
+router.add_api_route("/reader", change, methods=["POST"])

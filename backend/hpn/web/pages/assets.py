@@ -5,10 +5,12 @@ import mimetypes
 from dataclasses import dataclass
 from pathlib import Path
 
+from fastapi import APIRouter
 from starlette.exceptions import HTTPException
 from starlette.requests import Request
 from starlette.responses import FileResponse, Response
-from starlette.routing import Route
+
+from hpn.web.door.access import OPEN
 
 DIST = Path(__file__).parents[4] / "frontend/dist"
 ENCODINGS = {"br": ".br", "gzip": ".gz"}
@@ -50,12 +52,13 @@ def serve(request: Request) -> Response:
     path = request.app.state.assets.file(request.path_params["name"])
     if path is None:
         raise HTTPException(404)
-    headers = {"Cache-Control": "public, max-age=31536000, immutable", "Vary": "Accept-Encoding"}
+    headers = {"Cache-Control": "public, max-age=31536000, immutable"}
     media_type = mimetypes.guess_type(path.name)[0] or "application/octet-stream"
     for coding in accepted_codings(request.headers.get("accept-encoding", "")):
         packed = path.with_name(path.name + ENCODINGS[coding])
         if packed.exists():
-            return FileResponse(packed, headers=headers | {"Content-Encoding": coding}, media_type=media_type)
+            headers |= {"Content-Encoding": coding, "Vary": "Accept-Encoding"}
+            return FileResponse(packed, headers=headers, media_type=media_type)
     return FileResponse(path, headers=headers, media_type=media_type)
 
 
@@ -68,4 +71,5 @@ def accepted_codings(header: str) -> list[str]:
     return [name for name in ENCODINGS if weights.get(name, weights.get("*", "0")).strip("0.") != ""]
 
 
-routes = [Route("/static/{name:path}", serve, methods=["GET"])]
+router = APIRouter(include_in_schema=False, dependencies=[OPEN])
+router.add_api_route("/static/{name:path}", serve, methods=["GET", "HEAD"])

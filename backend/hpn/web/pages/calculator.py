@@ -6,11 +6,11 @@ from pathlib import Path
 from typing import Any
 from urllib.parse import parse_qsl
 
+from fastapi import APIRouter
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from starlette.datastructures import State
 from starlette.requests import Request
 from starlette.responses import HTMLResponse, RedirectResponse, Response
-from starlette.routing import Route
 
 from hpn.application import Application, InputError
 from hpn.candidates import Candidate, foremost, is_judged, is_unlimited
@@ -23,7 +23,7 @@ from hpn.remedy import DRIVERS
 from hpn.selection import Selection, select
 from hpn.web import display, reader
 from hpn.web.api.embeds import preview
-from hpn.web.door import readers
+from hpn.web.door.access import admit
 from hpn.web.form import read as links
 from hpn.web.form.entries import WRITTEN
 from hpn.web.form.messages import N_, Message
@@ -298,4 +298,5 @@ def _templates(static: assets.Assets) -> Environment:
     return templates
 
 
-routes = [Route("/", show, methods=["GET"]), *assets.routes, *readers.routes]
+router = APIRouter(include_in_schema=False, dependencies=[admit("calculator")])
+router.add_api_route("/", show, methods=["GET", "HEAD"])

@@ -4,13 +4,14 @@ from dataclasses import dataclass
 from typing import Any
 from urllib.parse import parse_qsl, quote, urlencode
 
+from fastapi import APIRouter
 from starlette.requests import Request
 from starlette.responses import HTMLResponse, PlainTextResponse, RedirectResponse, Response
-from starlette.routing import Route
 
 from hpn.catalogue import Catalogue
 from hpn.drawings.envelope import HEIGHT, WIDTH, drawing
 from hpn.gear import Gear, canonical_designation, canonical_size
+from hpn.web.door.access import admit
 from hpn.web.pages.calculator import environment
 from hpn.web.pages.gear_figures import figures_of, is_supplied, neighbours, supplements_for
 from hpn.web.pages.ordering import ordering_code
@@ -140,9 +141,8 @@ def robots(request: Request) -> Response:
     return PlainTextResponse("User-agent: *\nDisallow: /selections/\nDisallow: /api/\nDisallow: /paste\n")
 
 
-routes = [
-    Route("/robots.txt", robots, methods=["GET"]),
-    Route("/catalogue", show_catalogue, methods=["GET"]),
-    Route("/catalogue/{designation}", show_gear, methods=["GET"]),
-    Route("/find", find_gear, methods=["GET"]),
-]
+router = APIRouter(include_in_schema=False, dependencies=[admit("calculator")])
+router.add_api_route("/robots.txt", robots, methods=["GET", "HEAD"])
+router.add_api_route("/catalogue", show_catalogue, methods=["GET", "HEAD"])
+router.add_api_route("/catalogue/{designation}", show_gear, methods=["GET", "HEAD"])
+router.add_api_route("/find", find_gear, methods=["GET", "HEAD"])

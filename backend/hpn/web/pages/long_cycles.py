@@ -4,12 +4,13 @@ import re
 from dataclasses import replace
 from urllib.parse import parse_qsl
 
+from fastapi import APIRouter
 from starlette.concurrency import run_in_threadpool
 from starlette.requests import Request
 from starlette.responses import Response
-from starlette.routing import Route
 
 from hpn.application import MAXIMUM_PHASES
+from hpn.web.door.access import admit
 from hpn.web.door.bodies import read_form
 from hpn.web.form import read as links
 from hpn.web.form.read import Pairs
@@ -62,4 +63,5 @@ def phase_pairs(rows: list[list[str]]) -> list[tuple[str, str]]:
     return [(name, row[k].strip() if k < len(row) else "") for row in rows for k, name in enumerate(names)]
 
 
-routes = [Route("/", calculate, methods=["POST"])]
+router = APIRouter(include_in_schema=False, dependencies=[admit("calculator")])
+router.add_api_route("/", calculate, methods=["POST"])

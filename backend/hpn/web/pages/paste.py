@@ -9,13 +9,14 @@ from dataclasses import dataclass
 from math import isfinite
 from urllib.parse import parse_qsl, urlencode
 
+from fastapi import APIRouter
 from pydantic import ValidationError
 from starlette.concurrency import run_in_threadpool
 from starlette.requests import Request
 from starlette.responses import HTMLResponse, RedirectResponse, Response
-from starlette.routing import Route
 
 from hpn.application import Application
+from hpn.web.door.access import admit
 from hpn.web.door.problems import Problem, plain_message, pointer
 from hpn.web.door.uploads import NO_TEXT, read_fields
 from hpn.web.form import read as links
@@ -188,4 +189,6 @@ def _render(request: Request, draft: Draft, status: int) -> Response:
     return HTMLResponse(content, status, {"Vary": "HX-Request", "Cache-Control": "no-store"})
 
 
-routes = [Route("/paste", start, methods=["GET"]), Route("/paste", paste, methods=["POST"])]
+router = APIRouter(include_in_schema=False, dependencies=[admit("calculator")])
+router.add_api_route("/paste", start, methods=["GET", "HEAD"])
+router.add_api_route("/paste", paste, methods=["POST"])

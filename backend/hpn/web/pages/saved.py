@@ -8,11 +8,11 @@ from typing import Any
 from urllib.parse import parse_qsl
 
 import orjson
+from fastapi import APIRouter
 from pydantic import ValidationError
 from starlette.concurrency import run_in_threadpool
 from starlette.requests import Request
 from starlette.responses import HTMLResponse, RedirectResponse, Response
-from starlette.routing import Route
 
 from hpn import ENGINE_VERSION
 from hpn.application import Application, InputError
@@ -24,6 +24,7 @@ from hpn.store import SavedSelection, StoreUnavailableError
 from hpn.units import symbol_of
 from hpn.web.api.selection_schemas import Labels
 from hpn.web.api.selections import RETRY_SECONDS, Today, found, save, url_of
+from hpn.web.door.access import admit
 from hpn.web.door.bodies import read_form
 from hpn.web.door.problems import Problem
 from hpn.web.door.requests import require_same_origin
@@ -252,7 +253,6 @@ def _is_number(value: Any) -> bool:
     return isinstance(value, int | float) and not isinstance(value, bool)
 
 
-routes = [
-    Route("/selections", save_from_page, methods=["POST"]),
-    Route("/selections/{id}", show_selection, methods=["GET"]),
-]
+router = APIRouter(include_in_schema=False)
+router.add_api_route("/selections", save_from_page, methods=["POST"], dependencies=[admit("writing")])
+router.add_api_route("/selections/{id}", show_selection, methods=["GET", "HEAD"], dependencies=[admit("reading")])

@@ -3,11 +3,12 @@
 from typing import cast
 from urllib.parse import parse_qsl, urlencode
 
+from fastapi import APIRouter
 from starlette.requests import Request
 from starlette.responses import Response
-from starlette.routing import Route
 
 from hpn.application import Application
+from hpn.web.door.access import admit
 from hpn.web.door.problems import Problem
 from hpn.web.door.uploads import read_fields
 from hpn.web.form.pasted import Decimal, write_table
@@ -28,7 +29,7 @@ async def cycle_file(request: Request) -> Response:
 
 async def _query(request: Request) -> str:
     """Query of a link, which a form posts where it is too long for an address."""
-    if request.method == "GET":
+    if request.method != "POST":
         return request.url.query
     fields = await read_fields(request)
     query = fields.get("link", "").removeprefix("/?")
@@ -52,7 +53,6 @@ def _file(content: str, name: str, media_type: str) -> Response:
     return Response(content, media_type=media_type, headers=headers)
 
 
-routes = [
-    Route("/application.json", application_file, methods=["GET", "POST"]),
-    Route("/cycle.csv", cycle_file, methods=["GET", "POST"]),
-]
+router = APIRouter(include_in_schema=False, dependencies=[admit("calculator")])
+router.add_api_route("/application.json", application_file, methods=["GET", "HEAD", "POST"])
+router.add_api_route("/cycle.csv", cycle_file, methods=["GET", "HEAD", "POST"])
