@@ -28,7 +28,7 @@ export NODE_USE_SYSTEM_CA ?= 1
 .DELETE_ON_ERROR:
 
 run: install
-	@echo "HPN Select is at http://$(HOST):$(PORT) until Ctrl+C; a first start compiles its equations for some ten seconds"
+	@echo "HPN Select is at http://$(HOST):$(PORT) until Ctrl+C"
 	@exec $(BIN)/hpn serve --host "$(HOST)" --port "$(PORT)"
 
 install: $(ENVIRONMENT) $(ASSETS)

@@ -4,8 +4,8 @@ from typing import Any
 
 from hpn.application import Application
 from hpn.catalogue import Catalogue
-from hpn.selection import select
 from tests.reference.handbook import WORKED_EXAMPLE
+from tests.wire import select
 
 Json = dict[str, Any]
 

@@ -13,7 +13,7 @@ from babel.messages.catalog import Catalog
 from babel.messages.pofile import write_po
 from jinja2.ext import babel_extract
 
-from hpn.translation import LANGUAGES, catalogue, path_of
+from hpn.reader import LANGUAGES, catalogue, path_of
 
 ROOT = Path(__file__).parents[1]
 BACKEND, TEMPLATES, FIGURES = ROOT / "backend/hpn", ROOT / "frontend/templates", ROOT / "catalogue"
@@ -22,7 +22,6 @@ MARKS = {
     "N_": (0,),
     "P": (0, 1),
     "Sentence": (0,),
-    "Message": (0,),
     "_notice": (1,),
     "_RefusedError": (0,),
     "PydanticCustomError": (1,),
@@ -31,9 +30,6 @@ MARKS = {
 
 COLUMNS = {"sizes.csv": ("note",), "sources.csv": ("title",), "versions.csv": ("position", "description")}
 """Texts of the catalogue of gears."""
-
-OF_FILES = ("table {number}, page {page}", "section {number}, page {page}", "supplied by the user: {source}")
-"""How the catalogue names its sources."""
 
 Text = str | tuple[str, str]
 Found = tuple[Text, str]
@@ -76,7 +72,6 @@ def _of_templates() -> Iterator[Found]:
 
 
 def _of_figures() -> Iterator[Found]:
-    yield from ((text, "catalogue") for text in OF_FILES)
     for name, columns in COLUMNS.items():
         with (FIGURES / name).open(newline="") as file:
             for row in csv.DictReader(file):

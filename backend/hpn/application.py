@@ -4,8 +4,9 @@ Every field name ends in its unit. Torque, speed and load may be signed; the equ
 The bounds keep every power in chapter 4 far inside the range of a floating-point number.
 """
 
-from collections.abc import Mapping
-from typing import Annotated, Any, Literal, Self
+from collections.abc import Iterator, Mapping
+from types import UnionType
+from typing import Annotated, Any, Literal, Self, Union, get_args, get_origin
 
 from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, field_validator
 from pydantic_core import PydanticCustomError, PydanticKnownError
@@ -208,6 +209,26 @@ class Application(Model):
     def worked_example(cls) -> Self:
         """The handbook's worked example (chapter 4.1, equations 18.1 to 18.9)."""
         return cls.model_validate(WORKED_EXAMPLE)
+
+
+def _number_paths(model: type[BaseModel], path: tuple[str, ...] = ()) -> Iterator[tuple[str, ...]]:
+    for name, field in model.model_fields.items():
+        if field.annotation is not None:
+            yield from _paths_below(field.annotation, (*path, name))
+
+
+def _paths_below(annotation: Any, path: tuple[str, ...]) -> Iterator[tuple[str, ...]]:
+    if get_origin(annotation) in (Annotated, Union, UnionType):
+        for part in get_args(annotation):
+            yield from _paths_below(part, path)
+    elif annotation in (float, int):
+        yield path
+    elif isinstance(annotation, type) and issubclass(annotation, BaseModel):
+        yield from _number_paths(annotation, path)
+
+
+NUMBERS = tuple(_number_paths(Application))
+"""Path of every single number of an application, such as ("requirements", "motor", "peak_torque_Nm")."""
 
 
 class BatchItem(Application):

@@ -5,18 +5,14 @@ and F_A,dyn(max) of the rating tables; `digitised` follows graph points that a s
 limits belong to f_w = 1 is our reading, not printed. Loads act at the centre of the output shaft and along its axis.
 """
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike
 
-from hpn.compiled import equation, over_phases
-
-FloatArray = NDArray[np.float64]
+from hpn.equations import FloatArray, equation, over_phases, total
 
 RADIAL_FACTOR = 0.56
 """X of deep groove ball bearings where the axial part matters (ISO 281, table of factors X and Y)."""
@@ -81,42 +77,42 @@ class CurveError(ValueError):
 
 
 @equation
-def linear_load(radial: Any, axial: Any) -> Any:
+def linear_load(*, radial: ArrayLike, axial: ArrayLike) -> FloatArray:
     """Equivalent load P = r + a of normalised loads r, a: the straight line between the published points. [-]"""
-    return radial + axial
+    return np.add(radial, axial)
 
 
 @equation
-def iso281_load(radial: Any, axial: Any) -> Any:
+def iso281_load(*, radial: ArrayLike, axial: ArrayLike) -> FloatArray:
     """Equivalent load P = max(r, 0.56 r + a) of normalised loads; ISO 281 with Y set by the axial limit. [-]"""
-    combined = RADIAL_FACTOR * radial + axial
-    return radial if radial > combined else combined
+    return np.maximum(radial, np.add(np.multiply(RADIAL_FACTOR, radial), axial))
 
 
-@over_phases("(p),(p),(p)->()")
-def mean_equivalent_load(equivalent_load: Any, speed_rpm: Any, duration_s: Any) -> Any:
+@equation
+def mean_equivalent_load(*, equivalent_load: ArrayLike, speed_rpm: ArrayLike, duration_s: ArrayLike) -> FloatArray:
     """Constant load with the damage of the cycle, P_m = (sum n t P^3 / sum n t)^(1/3). [-]
 
     ISO 281, ball bearings, exponent 3; phases along the last axis. Holding phases (n = 0) have no weight; a cycle
-    without motion raises nothing and gives NaN, as the application forbids it.
+    without motion raises nothing and gives NaN, as the application forbids it. Loads are scaled by the largest of the
+    moving phases, so that no cube of them overflows or vanishes.
     """
-    largest = 0.0
-    for k in range(equivalent_load.size):
-        P = equivalent_load[k]
-        if abs(speed_rpm[k]) * duration_s[k] > 0 and (largest < P or math.isnan(P)):
-            largest = P
-    scale, damage, weight = largest + (largest == 0), 0.0, 0.0
-    for k in range(equivalent_load.size):
-        w, r = abs(speed_rpm[k]) * duration_s[k], equivalent_load[k] / scale
-        damage += w * (r * r * r) if w > 0 else 0.0  # beside a held load a small one must not vanish in its cube
-        weight += w
-    return largest * np.cbrt(damage / weight)
+    P, n, t = over_phases(equivalent_load, speed_rpm, duration_s)
+    weight = np.abs(n) * t
+    P = np.where(weight > 0, P, 0.0)  # what is held must not set the scale
+    largest = P.max(axis=-1)
+    r = P / np.where(largest == 0, 1.0, largest)[..., None]
+    P_m: FloatArray = largest * np.cbrt(total(weight * (r * r * r)) / total(weight))
+    return P_m
 
 
 @equation
 def life_factor(
-    average_output_speed_rpm: Any, required_life_L50_h: Any, reference_speed_rpm: Any, reference_life_h: Any
-) -> Any:
+    *,
+    average_output_speed_rpm: ArrayLike,
+    required_life_L50_h: ArrayLike,
+    reference_speed_rpm: ArrayLike,
+    reference_life_h: ArrayLike,
+) -> FloatArray:
     """Load factor k = (n_ref L_ref / (n_out_av L_required))^(1/3) that speed and life allow. [-]
 
     ISO 281. The pause counts in n_out_av, as in equation 17.4.
@@ -127,19 +123,26 @@ def life_factor(
 
 @equation
 def life_L50(
-    equivalent_load: Any, average_output_speed_rpm: Any, reference_speed_rpm: Any, reference_life_h: Any
-) -> Any:
+    *,
+    equivalent_load: ArrayLike,
+    average_output_speed_rpm: ArrayLike,
+    reference_speed_rpm: ArrayLike,
+    reference_life_h: ArrayLike,
+) -> FloatArray:
     """Life L50 = L_ref (n_ref / n_out_av) / (f_w P_m)^3 in hours; infinite without a load.
 
     `equivalent_load` is f_w P_m. ISO 281, ball bearings.
     """
-    P = equivalent_load
-    return reference_life_h * (reference_speed_rpm / average_output_speed_rpm) / (P * P * P)
+    P = np.asarray(equivalent_load)
+    by_speed = np.divide(reference_speed_rpm, average_output_speed_rpm)
+    L50: FloatArray = np.asarray(reference_life_h) * by_speed / (P * P * P)
+    return L50
 
 
-def required_L50(life_h: float, basis: str) -> float:
-    """Required life as L50: a requirement given as L10 counts five times."""
-    return life_h * L50_PER_L10 if basis == "L10" else life_h
+@equation
+def required_L50(*, life_h: ArrayLike, basis: ArrayLike) -> FloatArray:
+    """Required life as L50 in hours: a requirement on the basis `L10` counts five times."""
+    return np.where(np.equal(basis, "L10"), np.multiply(life_h, L50_PER_L10), life_h)
 
 
 def envelope(

@@ -1,435 +1,453 @@
-"""Every check: what it compares, evaluated for every application on every gear in one compiled pass.
+"""Every check, in one table.
 
-NaN means not published, so not rated; infinity means unlimited. What a check tests, why, and what to turn stands in
-`explanations.py`, one entry per code.
+The functions of an entry take a `Case`, in which what belongs to an application has shape (N, 1) and what belongs to a
+gear (G,); NaN is not published or not asked for, infinity without a limit.
 """
 
-import math
-from dataclasses import dataclass
-from functools import lru_cache
-
 import numpy as np
-from numpy.typing import NDArray
 
-from hpn import bearing, equations
-from hpn import duty as d
-from hpn.catalogue import Catalogue, GearList
-from hpn.compiled import compiled
-from hpn.duty import Duty
-from hpn.explanations import EXPLANATIONS, Explanation
-
-FloatArray = NDArray[np.float64]
-ByteArray = NDArray[np.int8]
-PASS, FAIL, NOT_RATED, ABSENT = range(4)
-STATUS = ("pass", "fail", "not_rated", "absent")
-
-(
-    AVERAGE_TORQUE,
-    REPEATED_PEAK_TORQUE,
-    MOMENTARY_PEAK_TORQUE,
-    MOMENTARY_PEAK_COUNT,
-    AVERAGE_INPUT_SPEED,
-    MAXIMUM_INPUT_SPEED,
-    LIFE,
-    OUTPUT_BEARING_LOAD,
-    OUTPUT_BEARING_LIFE,
-    MOTOR_SPEED,
-    MOTOR_PEAK_TORQUE,
-    MOTOR_RATED_TORQUE,
-    AMBIENT_TEMPERATURE,
-    BACKLASH,
-    TORSIONAL_STIFFNESS,
-    WEIGHT,
-    LENGTH,
-) = range(17)
-"""The checks in their fixed order, which is that of `EXPLANATIONS`; a tie for governing goes to the first."""
+from hpn import equations
+from hpn.check import Case, Check
+from hpn.equations import FloatArray
+from hpn.wording import N_
 
 
-@dataclass(frozen=True)
-class Check:
-    """One check, by its code."""
-
-    code: str
-
-    @property
-    def explanation(self) -> Explanation:
-        """What it tests, what goes wrong, on which basis, and what to turn."""
-        return EXPLANATIONS[self.code]
-
-    @property
-    def is_load_check(self) -> bool:
-        """Load checks are compared with the user's own utilisation u, property checks with 1."""
-        return self.explanation.group == "load"
+def _share_of_stops(case: Case) -> FloatArray:
+    """Expected over allowed stops; infinite where not one is allowed, even for an expected number of 0."""
+    allowed = case.figures.momentary_peak_count
+    return np.where(allowed == 0, np.inf, case.asked["emergency_stop.count"] / allowed)
 
 
-CHECKS = tuple(Check(code) for code in EXPLANATIONS)
-LOAD_CHECKS = sum(check.is_load_check for check in CHECKS)
-"""The first so many are load checks, the others property checks."""
+def _middle_and_half(case: Case) -> tuple[FloatArray, FloatArray]:
+    lowest, highest = case.gears.ambient_temperature_minimum_degC, case.gears.ambient_temperature_maximum_degC
+    return (lowest + highest) / 2, (highest - lowest) / 2
+
+
+def _nearer_end(case: Case) -> FloatArray:
+    """The end of the permitted range of temperature on whose side of the middle the asked one lies."""
+    asked, gears = case.asked["requirements.ambient_temperature_degC"], case.gears
+    middle, _ = _middle_and_half(case)
+    end = np.where(asked >= middle, gears.ambient_temperature_maximum_degC, gears.ambient_temperature_minimum_degC)
+    return np.where(np.isnan(middle), np.nan, end)
+
+
+def _distance_from_middle(case: Case) -> FloatArray:
+    middle, half = _middle_and_half(case)
+    distance: FloatArray = np.abs(case.asked["requirements.ambient_temperature_degC"] - middle) / half
+    return distance
+
+
+RATING_TABLES = N_("rating tables 10.1 to 12.2")
+BEARING_LIMITS = N_("F_R dyn(max) and F_A dyn(max), rating tables 10.1 to 12.2")
+
+CHECKS: tuple[Check, ...] = (
+    Check(
+        code="average_torque",
+        name=N_("average torque"),
+        title=N_("Load limit 1: average torque"),
+        equation="17.2",
+        unit="Nm",
+        kind="maximum",
+        group="load",
+        limit_name=N_("T_A = T_N"),
+        source=RATING_TABLES,
+        tests=N_(
+            "The average output torque T_av of the moving phases, weighted with speed and time to the power 10/3,"
+            " stays within the permissible average torque."
+        ),
+        consequence=N_("Teeth and planet bearings fatigue: pitting and wear long before the life that was planned."),
+        basis=N_(
+            "The handbook tabulates no average torque T_A for HPN. Its worked example uses the rated torque T_N "
+            "as T_A (equation 18.2), and so does this check."
+        ),
+        remedy=N_("Lower or shorten the phases with high torque, or take a gear with a larger rated torque."),
+        demand=lambda c: c.duty.average_torque_Nm,
+        limit=lambda c: c.gears.rated_torque_Nm,
+        limited_by="rated_torque_Nm",
+        relation="T_av ≤ T_A = T_N",
+        moves={"torque": 1.0},
+    ),
+    Check(
+        code="repeated_peak_torque",
+        name=N_("repeated peak torque"),
+        title=N_("Load limit 2: repeated peak torque"),
+        equation="17.7",
+        unit="Nm",
+        kind="maximum",
+        group="load",
+        limit_name=N_("T_R"),
+        source=RATING_TABLES,
+        tests=N_(
+            "The largest torque of the cycle T_max, holding phases included, stays within the repeated peak torque."
+        ),
+        consequence=N_("Every start and stop overloads teeth and shaft; cracks grow from the tooth roots."),
+        basis=N_("Limit T_R of the rating table."),
+        remedy=N_("Accelerate and brake more gently, or take a gear with a larger repeated peak torque."),
+        demand=lambda c: c.duty.maximum_torque_Nm,
+        limit=lambda c: c.gears.repeated_peak_torque_Nm,
+        share=lambda c: equations.repeated_peak_torque_utilisation(
+            maximum_torque_Nm=c.duty.maximum_torque_Nm, repeated_peak_torque_Nm=c.gears.repeated_peak_torque_Nm
+        ),
+        limited_by="repeated_peak_torque_Nm",
+        relation="T_max ≤ T_R",
+        moves={"torque": 1.0},
+    ),
+    Check(
+        code="momentary_peak_torque",
+        name=N_("momentary peak torque"),
+        title=N_("Load limit 3: momentary peak torque"),
+        equation="17.8",
+        unit="Nm",
+        kind="maximum",
+        group="load",
+        limit_name=N_("T_M"),
+        source=RATING_TABLES,
+        tests=N_("The emergency-stop or collision torque T_k stays within the momentary peak torque."),
+        consequence=N_("A single event can deform or break teeth, or make the input coupling slip."),
+        basis=N_("Limit T_M of the rating table. Such a torque must not belong to the normal cycle."),
+        remedy=N_("Limit the braking torque, or take a gear with a larger momentary peak torque."),
+        asked="emergency_stop.torque_Nm",
+        demand=lambda c: c.duty.emergency_stop_torque_Nm,
+        limit=lambda c: c.gears.momentary_peak_torque_Nm,
+        share=lambda c: equations.momentary_peak_torque_utilisation(
+            emergency_stop_torque_Nm=c.duty.emergency_stop_torque_Nm,
+            momentary_peak_torque_Nm=c.gears.momentary_peak_torque_Nm,
+        ),
+        limited_by="momentary_peak_torque_Nm",
+        relation="T_k ≤ T_M",
+    ),
+    Check(
+        code="momentary_peak_count",
+        name=N_("number of emergency stops"),
+        title=N_("Number of momentary peak torques"),
+        equation="17.9",
+        unit="",
+        kind="maximum",
+        group="load",
+        limit_name=N_("N_k max"),
+        source=RATING_TABLES,
+        tests=N_("The expected number of emergency stops stays within the number that T_k / T_R allows."),
+        consequence=N_("Each stop uses up part of a fatigue budget; when it is spent, teeth may break."),
+        basis=N_(
+            "The equation holds where T_k is above T_R; at or below T_R it sets no limit. The number is a count, "
+            "rounded down."
+        ),
+        remedy=N_(
+            "Make emergency stops rarer or gentler: the allowed number grows tenfold when T_k falls by two thirds"
+            " of T_R."
+        ),
+        asked="emergency_stop.count",
+        demand=lambda c: c.asked["emergency_stop.count"],
+        limit=lambda c: c.figures.momentary_peak_count,
+        share=_share_of_stops,
+        limited_by="repeated_peak_torque_Nm",
+        relation="N_k ≤ N_k,max",
+    ),
+    Check(
+        code="average_input_speed",
+        name=N_("average input speed"),
+        title=N_("Average input speed"),
+        equation="17.5",
+        unit="rpm",
+        kind="maximum",
+        group="load",
+        limit_name=N_("n_av(max)"),
+        source=RATING_TABLES,
+        tests=N_(
+            "The average output speed of the cycle, pause included, times the ratio stays within the average "
+            "input speed for grease lubrication."
+        ),
+        consequence=N_("The gear heats up; grease thins and ages, seals wear."),
+        basis=N_("Limit n_av(max) of the rating table, for grease."),
+        remedy=N_("Add pause, run slower, or take a smaller ratio."),
+        demand=lambda c: c.figures.average_input_speed_rpm,
+        limit=lambda c: c.gears.average_input_speed_rpm,
+        limited_by="average_input_speed_rpm",
+        relation="n_in,av ≤ n_av(max)",
+        moves={"speed": 1.0},
+    ),
+    Check(
+        code="maximum_input_speed",
+        name=N_("maximum input speed"),
+        title=N_("Maximum input speed"),
+        equation="17.6",
+        unit="rpm",
+        kind="maximum",
+        group="load",
+        limit_name=N_("n_in(max)"),
+        source=RATING_TABLES,
+        tests=N_("The largest output speed of the cycle times the ratio stays within the maximum input speed."),
+        consequence=N_("Input bearing and seal overheat, and the lubricant film breaks down."),
+        basis=N_("Limit n_in(max) of the rating table, for grease."),
+        remedy=N_("Lower the top speed, or take a smaller ratio."),
+        demand=lambda c: c.figures.maximum_input_speed_rpm,
+        limit=lambda c: c.gears.maximum_input_speed_rpm,
+        limited_by="maximum_input_speed_rpm",
+        relation="n_in,max ≤ n_in(max)",
+        moves={"speed": 1.0},
+    ),
+    Check(
+        code="life",
+        name=N_("gear life"),
+        title=N_("Life"),
+        equation="17.10",
+        unit="h",
+        kind="minimum",
+        group="load",
+        limit_name=N_("L10 required"),
+        source=RATING_TABLES,
+        tests=N_("The calculated life of the gear reaches the life that you require."),
+        consequence=N_("The gear wears out before the planned end of its service."),
+        basis=N_(
+            "The equation prints the result as L10 and so does this tool. The glossary describes the rated torque"
+            " on a basis of 50 % failures; the handbook does not settle which holds. Rated input speed 3000 rpm "
+            "(glossary)."
+        ),
+        remedy=N_("Lower the torque (life grows with the power 10/3), the speed or the duty, or take a larger gear."),
+        asked="requirements.life_h",
+        demand=lambda c: c.figures.life_L10_h,
+        limit=lambda c: c.asked["requirements.life_h"],
+        limited_by="rated_torque_Nm",
+        relation="L_10 ≥ L_10,req",
+        moves={"torque": 10 / 3, "speed": 1.0},
+    ),
+    Check(
+        code="output_bearing_load",
+        name=N_("largest load on the output bearing"),
+        title=N_("Output bearing: largest load"),
+        equation=None,
+        unit="",
+        kind="maximum",
+        group="load",
+        limit_name=N_("1"),
+        source=BEARING_LIMITS,
+        tests=N_("In every phase the load times f_w stays inside the envelope of the published maxima."),
+        consequence=N_("Balls and raceways are indented, or the shaft deflects so far that the teeth run crooked."),
+        basis=N_(
+            "Computed between the two published limits; the handbook's printed curve was not available. That the "
+            "limits belong to f_w = 1 is our reading. Slower running never enlarges this envelope."
+        ),
+        remedy=N_("Support the load outside the gear, move it, or take a larger size."),
+        asked="output_load.load_coefficient",
+        demand=lambda c: c.figures.bearing_load,
+        limit=lambda c: np.ones((1, 1)),
+        limited_by="dynamic_radial_load_N",
+        relation="max f_w · P_i ≤ 1",
+        moves={"load": 1.0},
+    ),
+    Check(
+        code="output_bearing_life",
+        name=N_("life of the output bearing"),
+        title=N_("Output bearing: life"),
+        equation=None,
+        unit="",
+        kind="maximum",
+        group="load",
+        limit_name=N_("k"),
+        source=BEARING_LIMITS,
+        tests=N_(
+            "The equivalent load f_w P_m of the cycle stays within the load k at which the bearing reaches the "
+            "required life at the average output speed."
+        ),
+        consequence=N_("The output bearing pits: play, noise and leakage at the shaft seal."),
+        basis=N_(
+            "Life by ISO 281 with exponent 3 from the published condition of 100 rpm and 20000 h as L50. L10 = "
+            "L50 / 5 is the relation of the maker's other handbooks, not printed in this one."
+        ),
+        remedy=N_("Lower load, speed or required life, choose f_w with more care, or take a larger size."),
+        asked="output_load.load_coefficient",
+        demand=lambda c: c.figures.bearing_mean_load,
+        limit=lambda c: c.figures.bearing_life_factor,
+        limited_by="dynamic_radial_load_N",
+        relation="f_w · P_m ≤ k",
+        moves={"speed": 1 / 3, "load": 1.0},
+    ),
+    Check(
+        code="motor_speed",
+        name=N_("motor speed"),
+        title=N_("Motor speed"),
+        equation="17.6",
+        unit="rpm",
+        kind="maximum",
+        group="load",
+        limit_name=N_("motor's maximum"),
+        source=N_("your input"),
+        tests=N_("The largest output speed times the ratio stays within the motor's maximum speed."),
+        consequence=N_("The motor can't reach the speed that the cycle asks for."),
+        basis=N_("Limit as you stated it."),
+        remedy=N_("Take a smaller ratio, a faster motor, or a lower top speed."),
+        asked="requirements.motor.maximum_speed_rpm",
+        demand=lambda c: c.figures.maximum_input_speed_rpm,
+        limit=lambda c: c.asked["requirements.motor.maximum_speed_rpm"],
+        relation="n_in,max ≤ n_mot",
+        moves={"speed": 1.0},
+    ),
+    Check(
+        code="motor_peak_torque",
+        name=N_("motor peak torque"),
+        title=N_("Motor peak torque"),
+        equation=None,
+        unit="Nm",
+        kind="maximum",
+        group="load",
+        limit_name=N_("motor's peak torque"),
+        source=N_("your input"),
+        tests=N_(
+            "The largest torque of the cycle over ratio and efficiency stays within the motor's peak torque. The "
+            "emergency stop does not count."
+        ),
+        consequence=N_("The motor can't accelerate the load as the cycle asks."),
+        basis=N_(
+            "T_max / (i eta) with the efficiency that you state or a supplement gives; without one loss-free, a "
+            "lower bound: the handbook's efficiency curves were not available."
+        ),
+        remedy=N_("Take a larger ratio, a stronger motor, or accelerate more gently."),
+        asked="requirements.motor.peak_torque_Nm",
+        demand=lambda c: c.figures.motor_peak_torque_Nm,
+        limit=lambda c: c.asked["requirements.motor.peak_torque_Nm"],
+        relation="T_max / (i · η) ≤ T_mot",
+        moves={"torque": 1.0},
+    ),
+    Check(
+        code="motor_rated_torque",
+        name=N_("motor rated torque"),
+        title=N_("Motor rated torque"),
+        equation=None,
+        unit="Nm",
+        kind="maximum",
+        group="load",
+        limit_name=N_("motor's rated torque"),
+        source=N_("your input"),
+        tests=N_(
+            "The RMS of the torque over the cycle, pause included, over ratio and efficiency stays within the "
+            "motor's rated torque."
+        ),
+        consequence=N_("The motor overheats."),
+        basis=N_(
+            "RMS of T / (i eta) with the efficiency that you state or a supplement gives; without one loss-free, "
+            "a lower bound: the handbook's efficiency curves were not available."
+        ),
+        remedy=N_("Take a larger ratio, a stronger motor, or add pause."),
+        asked="requirements.motor.rated_torque_Nm",
+        demand=lambda c: c.figures.motor_rated_torque_Nm,
+        limit=lambda c: c.asked["requirements.motor.rated_torque_Nm"],
+        relation="T_rms / (i · η) ≤ T_mot,N",
+        moves={"torque": 1.0},
+    ),
+    Check(
+        code="ambient_temperature",
+        name=N_("ambient temperature"),
+        title=N_("Ambient temperature"),
+        equation=None,
+        unit="°C",
+        kind="range",
+        group="property",
+        limit_name=N_("permitted range"),
+        source=RATING_TABLES,
+        tests=N_("The ambient temperature lies in the range of the rating table."),
+        consequence=N_("Cold grease does not flow; warm grease ages and leaks."),
+        basis=N_(
+            "Utilisation is the distance from the middle of the range over half the range. The lubricant's own "
+            "lower limit of -10 °C is not the gear's."
+        ),
+        remedy=N_("Heat, cool or shield the gear, or ask the maker for another lubricant."),
+        asked="requirements.ambient_temperature_degC",
+        demand=lambda c: c.asked["requirements.ambient_temperature_degC"],
+        limit=_nearer_end,
+        share=_distance_from_middle,
+        limited_by="ambient_temperature_maximum_degC",
+        relation="t_min ≤ t_amb ≤ t_max",
+    ),
+    Check(
+        code="backlash",
+        name=N_("backlash"),
+        title=N_("Backlash"),
+        equation=None,
+        unit="arcmin",
+        kind="maximum",
+        group="property",
+        limit_name=N_("your limit"),
+        source=N_("table 15.1"),
+        tests=N_("The largest backlash of the gear stays within what you accept."),
+        consequence=N_("Positioning error and knocking at reversal."),
+        basis=N_("The published figure is an upper limit for new gears and follows the number of stages."),
+        remedy=N_("Take a single-stage ratio, or accept more backlash."),
+        asked="requirements.backlash_arcmin",
+        demand=lambda c: c.gears.backlash_arcmin,
+        limit=lambda c: c.asked["requirements.backlash_arcmin"],
+        limited_by="backlash_arcmin",
+        relation="j ≤ j_req",
+        accepted=N_("{value} backlash are accepted"),
+    ),
+    Check(
+        code="torsional_stiffness",
+        name=N_("torsional stiffness"),
+        title=N_("Torsional stiffness"),
+        equation=None,
+        unit="Nm/rad",
+        kind="minimum",
+        group="property",
+        limit_name=N_("your limit"),
+        source=N_("table 15.2"),
+        tests=N_("The torsional stiffness K3 of the gear reaches what you require."),
+        consequence=N_("The output winds up under torque and swings after a move."),
+        basis=N_("K3 holds above 15 % of the rated torque (glossary)."),
+        remedy=N_("Take a larger size."),
+        asked="requirements.torsional_stiffness_Nm_per_rad",
+        demand=lambda c: c.gears.torsional_stiffness_Nm_per_rad,
+        limit=lambda c: c.asked["requirements.torsional_stiffness_Nm_per_rad"],
+        limited_by="torsional_stiffness_Nm_per_rad",
+        relation="K_3 ≥ K_3,req",
+        accepted=N_("a torsional stiffness of {value} is accepted"),
+    ),
+    Check(
+        code="weight",
+        name=N_("weight"),
+        title=N_("Weight"),
+        equation=None,
+        unit="kg",
+        kind="maximum",
+        group="property",
+        limit_name=N_("your limit"),
+        source=RATING_TABLES,
+        tests=N_("The net weight of the standard version stays within what you accept."),
+        consequence=N_("The axis that carries the gear becomes slower."),
+        basis=N_("Net weight without packing, by number of stages."),
+        remedy=N_("Take a smaller size or a single-stage ratio."),
+        asked="requirements.weight_kg",
+        demand=lambda c: c.gears.weight_kg,
+        limit=lambda c: c.asked["requirements.weight_kg"],
+        limited_by="weight_kg",
+        relation="m ≤ m_req",
+        accepted=N_("a weight of {value} is accepted"),
+    ),
+    Check(
+        code="length",
+        name=N_("length"),
+        title=N_("Length"),
+        equation=None,
+        unit="mm",
+        kind="maximum",
+        group="property",
+        limit_name=N_("your limit"),
+        source=N_("tables 11.2 to 13.4"),
+        tests=N_("The largest length L of the gear, which depends on the motor, stays within what you accept."),
+        consequence=N_("The gear does not fit its space."),
+        basis=N_("L max of the table; with a small motor the gear may be as short as L min."),
+        remedy=N_("Take a smaller size or a single-stage ratio, or check the drawing for your motor."),
+        asked="requirements.length_mm",
+        demand=lambda c: c.gears.length_max_mm,
+        limit=lambda c: c.asked["requirements.length_mm"],
+        limited_by="length_max_mm",
+        relation="L_max ≤ L_req",
+        accepted=N_("a length of {value} is accepted"),
+    ),
+)
+"""In the order of the contract; a tie for governing goes to the first."""
+
+BY_CODE = {check.code: check for check in CHECKS}
 
 
 def allowed(code: str | None, utilisation: float) -> float:
-    """Largest utilisation with which a check passes: the user's own for a load check, 1 for another, or for none."""
-    return utilisation if code is not None and EXPLANATIONS[code].group == "load" else 1.0
-
-
-MOST_DECIMALS = 10
-
-
-@compiled
-def telling_decimals(value: float, bound: float, least: int) -> int:
-    """Decimals with which a value, once rounded, still lies on its own side of a bound, `least` at least."""
-    if abs(value - bound) > 1 + equations.ROUNDING * abs(bound):
-        return least  # to round it moves it by half at most
-    decimals = least
-    while decimals < MOST_DECIMALS and _side(np.round(value, decimals), bound) != _side(value, bound):
-        decimals += 1
-    return decimals
-
-
-@compiled
-def _side(value: float, bound: float) -> int:
-    if abs(value / bound - 1) <= equations.ROUNDING:
-        return 0
-    return 1 if value > bound else -1
-
-
-DEMAND, LIMIT, USED = range(3)
-"""Places along the last axis of `Evaluation.numbers`; utilisation is the last."""
-
-COUNT = len(CHECKS)
-VERDICT, GOVERNING = COUNT, COUNT + 1
-"""Places along the last axis of `Evaluation.codes`, behind the checks."""
-
-FIGURES = 9
-N_IN_AV, N_IN_MAX, L10, PEAKS, BEARING_L50, MOTOR_PEAK, MOTOR_RATED, BEARING_MEAN, BEARING_LARGEST = range(FIGURES)
-"""Places along the last axis of `Evaluation.figures`, which fill rows of three behind the checks."""
-
-T_N, T_R, T_M, N_AV, N_MAX, RATIO, F_R, F_A, LOWEST, HIGHEST, PLAY, K3, MASS, LENGTH_MAX = range(14)
-"""Columns of a table of gears."""
-
-
-@dataclass(slots=True)
-class Evaluation:
-    """Checks of N applications on G gears, and how the gears stand.
-
-    `numbers` (N, G, 20, 3) are demand, limit and utilisation of every check, the last infinite where a check fails
-    without one; behind the checks stand the `figures` that they derive from. `codes` (N, G, 19) are PASS, FAIL,
-    NOT_RATED or ABSENT for every check, and the gear's verdict and governing check (see `ranking.py`). `order` (N, G)
-    are the places of the gears among `gears`, from best to last; `unlimited` (N, 9) tells which figures are infinite on
-    any gear.
-    """
-
-    duty: Duty
-    gears: GearList
-    catalogue: Catalogue
-    numbers: FloatArray
-    codes: ByteArray
-    order: NDArray[np.intp]
-    unlimited: NDArray[np.bool_]
-
-    def asked(self, index: int) -> tuple[int, ...]:
-        """Checks that application `index` asks for."""
-        return _present(self.codes[index, 0].tobytes())
-
-    @property
-    def figures(self) -> FloatArray:
-        """What the checks derive from, shape (N, G, 9)."""
-        return self.numbers[:, :, COUNT:].reshape(*self.numbers.shape[:2], -1)
-
-    @property
-    def life_L10_h(self) -> FloatArray:
-        """Life L10, shape (N, G); infinite without a load, NaN where not rated."""
-        return self._figure(L10)
-
-    @property
-    def momentary_peak_count(self) -> FloatArray:
-        """Allowed number of emergency stops, shape (N, G); NaN without a stop and where not rated."""
-        return self._figure(PEAKS)
-
-    @property
-    def bearing_life_L50_h(self) -> FloatArray:
-        """Life L50 of the output bearing, shape (N, G); NaN without loads and where not rated."""
-        return self._figure(BEARING_L50)
-
-    @property
-    def bearing_mean_load(self) -> FloatArray:
-        """f_w P_m of the output bearing, shape (N, G); NaN likewise."""
-        return self._figure(BEARING_MEAN)
-
-    @property
-    def bearing_largest_load(self) -> FloatArray:
-        """Largest f_w P of the output bearing, shape (N, G); NaN likewise."""
-        return self._figure(BEARING_LARGEST)
-
-    def _figure(self, place: int) -> FloatArray:
-        figure: FloatArray = self.figures[:, :, place]
-        return figure
-
-    def bearing_life_factor(self, index: int) -> float:
-        """Load factor k that speed and required life of application `index` allow."""
-        return self.numbers.item((index, 0, OUTPUT_BEARING_LIFE, LIMIT))
-
-    def bearing_loads(self) -> FloatArray:
-        """Equivalent load f_w P of every phase on every gear, shape (N, phases, G); NaN where it is not rated."""
-        loads = np.empty((*self.duty.phases.shape[:2], len(self.gears.rows)))
-        _phase_loads(
-            self.duty.phases, self.duty.wishes, table_of(self.gears), along_curves(self.duty, self.gears), loads
-        )
-        return loads
-
-
-@lru_cache(maxsize=1024)
-def _present(codes: bytes) -> tuple[int, ...]:
-    return tuple(check for check, state in enumerate(codes[:COUNT]) if state != ABSENT)
-
-
-@lru_cache(maxsize=1024)
-def table_of(gears: GearList) -> FloatArray:
-    """Figures of gears as a table, shape (G, figures)."""
-    g = gears.columns
-    table = np.column_stack(
-        [
-            g.rated_torque_Nm,
-            g.repeated_peak_torque_Nm,
-            g.momentary_peak_torque_Nm,
-            g.average_input_speed_rpm,
-            g.maximum_input_speed_rpm,
-            g.ratio,
-            g.dynamic_radial_load_N,
-            g.dynamic_axial_load_N,
-            g.ambient_temperature_minimum_degC,
-            g.ambient_temperature_maximum_degC,
-            g.backlash_arcmin,
-            g.torsional_stiffness_Nm_per_rad,
-            g.weight_kg,
-            g.length_max_mm,
-        ]
-    )
-    table.flags.writeable = False
-    return table
-
-
-# --- What a supplement may bring: curves ------------------------------------------------------------------------------
-
-_NO_CURVES = np.empty((0, 0, 0))
-
-
-def along_curves(duty: Duty, gears: GearList) -> FloatArray:
-    """Equivalent loads along supplied curve points, shape (N, phases, G), where an application asks for them."""
-    asked = [index for index, load in enumerate(duty.loads) if load and load.model == "digitised"]
-    if not asked:
-        return _NO_CURVES
-    radial, axial = duty.loads_N
-    loads = np.full((*radial.shape, len(gears.rows)), np.nan)
-    for column, curve in enumerate(gears.curves):
-        if curve is not None:
-            loads[asked, :, column] = curve.equivalent_load(radial[asked], axial[asked])
-    return loads
-
-
-def motor_torques(duty: Duty, gears: GearList, catalogue: Catalogue) -> FloatArray:
-    """Peak and RMS torque at the motor by supplied efficiency curves, shape (2, N, G); NaN on gears without a curve."""
-    if not catalogue.efficiency:
-        return _NO_CURVES
-    stated, torques = duty.wishes[:, d.EFFICIENCY, None], np.full((2, len(duty.applications), len(gears.rows)), np.nan)
-    for index, gear in enumerate(gears.rows):
-        if gear.designation in catalogue.efficiency:
-            # Outside the supplied curve the efficiency is not known: loss-free, the lower bound, as without a curve.
-            supplied = np.interp(duty.torque_Nm, *catalogue.efficiency[gear.designation], left=1.0, right=1.0)
-            eta = np.where(np.isnan(stated), supplied, stated)
-            torque = equations.motor_torque(output_torque_Nm=duty.torque_Nm, ratio=gear.ratio, efficiency=eta)
-            torques[0, :, index] = torque.max(axis=1)
-            torques[1, :, index] = equations.rms_torque(
-                torque_Nm=torque, duration_s=duty.duration_s, pause_s=duty.pause_s
-            )
-    return torques
-
-
-# --- One pass over applications and gears -----------------------------------------------------------------------------
-
-_average_input_speed = equations.average_input_speed.case
-_maximum_input_speed = equations.maximum_input_speed.case
-_repeated_peak_torque_utilisation = equations.repeated_peak_torque_utilisation.case
-_momentary_peak_torque_utilisation = equations.momentary_peak_torque_utilisation.case
-_allowed_momentary_peaks = equations.allowed_momentary_peaks.case
-_life = equations.life.case
-_motor_torque = equations.motor_torque.case
-_linear_load, _iso281_load = bearing.linear_load.case, bearing.iso281_load.case
-_mean_equivalent_load, _life_factor = bearing.mean_equivalent_load.case, bearing.life_factor.case
-_bearing_life = bearing.life_L50.case
-
-
-@compiled
-def run_checks(
-    phases: FloatArray,
-    wishes: FloatArray,
-    cycles: FloatArray,
-    gears: FloatArray,
-    series: tuple[float, float, float, float],
-    curved_loads: FloatArray,
-    curved_torques: FloatArray,
-    numbers: FloatArray,
-    codes: ByteArray,
-    unlimited: NDArray[np.bool_],
-) -> None:
-    """Every check that the applications ask for, on every gear.
-
-    Its parts take whole arrays and the places n, g in them: to cut out a row costs as much as a check on it.
-    """
-    numbers.fill(math.nan)
-    figures = numbers.reshape((*codes.shape[:2], 3 * numbers.shape[2]))[:, :, 3 * COUNT :]
-    loads = np.empty((1, phases.shape[1], gears.shape[0]))
-    for n in range(phases.shape[0]):
-        loaded, asks_for_property = not math.isnan(wishes[n, d.LOAD_COEFFICIENT]), False
-        for wish in range(d.BACKLASH, d.TEMPERATURE + 1):
-            asks_for_property |= not math.isnan(wishes[n, wish])
-        if loaded:
-            curves = curved_loads[n : n + 1] if curved_loads.size else curved_loads
-            _phase_loads(phases[n : n + 1], wishes[n : n + 1], gears, curves, loads)
-        _work_out(wishes, cycles, gears, series, curved_torques, n, figures)
-        for g in range(gears.shape[0]):
-            _load_limits(wishes, cycles, gears, figures, n, g, numbers)
-            if loaded:
-                _on_the_bearing(phases[n], wishes, cycles, loads[0, :, g], series, n, g, figures, numbers)
-            if asks_for_property:
-                _properties(wishes, gears, n, g, numbers)
-            _judge(wishes, numbers, n, g, codes)
-        unlimited[n] = False
-        for g in range(gears.shape[0]):
-            for figure in range(figures.shape[2]):
-                unlimited[n, figure] |= math.isinf(figures[n, g, figure])
-
-
-@compiled
-def _phase_loads(
-    phases: FloatArray, wishes: FloatArray, gears: FloatArray, curved_loads: FloatArray, loads: FloatArray
-) -> None:
-    """f_w P of every phase on every gear."""
-    for n in range(phases.shape[0]):
-        f_w, model = wishes[n, d.LOAD_COEFFICIENT], wishes[n, d.MODEL]
-        for k in range(phases.shape[1]):
-            radial, axial = phases[n, k, d.RADIAL], phases[n, k, d.AXIAL]
-            for g in range(gears.shape[0]):
-                if model == d.DIGITISED:
-                    P = curved_loads[n, k, g]
-                elif model == d.ISO281:
-                    P = _iso281_load(radial / gears[g, F_R], axial / gears[g, F_A])
-                else:
-                    P = _linear_load(radial / gears[g, F_R], axial / gears[g, F_A])
-                loads[n, k, g] = f_w * P
-
-
-@compiled
-def _work_out(
-    wishes: FloatArray,
-    cycles: FloatArray,
-    gears: FloatArray,
-    series: tuple[float, float, float, float],
-    curved_torques: FloatArray,
-    n: int,
-    figures: FloatArray,
-) -> None:
-    """What the checks derive from; that of the output bearing only where it is loaded."""
-    T_k, eta = wishes[n, d.STOP_TORQUE], 1.0 if math.isnan(wishes[n, d.EFFICIENCY]) else wishes[n, d.EFFICIENCY]
-    for g in range(gears.shape[0]):  # a loop for each kind: the shorter, the faster
-        n_in_av = _average_input_speed(gears[g, RATIO], cycles[n, d.N_OUT_AV])
-        figures[n, g, N_IN_AV] = n_in_av
-        figures[n, g, N_IN_MAX] = _maximum_input_speed(gears[g, RATIO], cycles[n, d.N_OUT_MAX])
-        figures[n, g, L10] = _life(cycles[n, d.T_AV], n_in_av, gears[g, T_N], series[0], series[1])
-    if not math.isnan(T_k):
-        for g in range(gears.shape[0]):
-            figures[n, g, PEAKS] = _allowed_momentary_peaks(T_k, gears[g, T_R])
-    for g in range(gears.shape[0]):
-        figures[n, g, MOTOR_PEAK] = _motor_torque(cycles[n, d.T_MAX], gears[g, RATIO], eta)
-        figures[n, g, MOTOR_RATED] = _motor_torque(cycles[n, d.T_RMS], gears[g, RATIO], eta)
-        if curved_torques.size and not math.isnan(curved_torques[0, n, g]):
-            figures[n, g, MOTOR_PEAK], figures[n, g, MOTOR_RATED] = curved_torques[0, n, g], curved_torques[1, n, g]
-
-
-@compiled
-def _upper(terms: FloatArray, n: int, g: int, check: int, demand: float, limit: float) -> None:
-    terms[n, g, check, DEMAND], terms[n, g, check, LIMIT], terms[n, g, check, USED] = demand, limit, demand / limit
-
-
-@compiled
-def _lower(terms: FloatArray, n: int, g: int, check: int, demand: float, limit: float) -> None:
-    terms[n, g, check, DEMAND], terms[n, g, check, LIMIT], terms[n, g, check, USED] = demand, limit, limit / demand
-
-
-@compiled
-def _load_limits(
-    wishes: FloatArray, cycles: FloatArray, gears: FloatArray, figures: FloatArray, n: int, g: int, terms: FloatArray
-) -> None:
-    """Load limits 1 to 3, input speeds, life and motor."""
-    T_av, T_max, T_k = cycles[n, d.T_AV], cycles[n, d.T_MAX], wishes[n, d.STOP_TORQUE]
-    _upper(terms, n, g, AVERAGE_TORQUE, T_av, gears[g, T_N])
-    _upper(terms, n, g, REPEATED_PEAK_TORQUE, T_max, gears[g, T_R])
-    terms[n, g, REPEATED_PEAK_TORQUE, USED] = _repeated_peak_torque_utilisation(T_max, gears[g, T_R])
-    if not math.isnan(T_k):
-        _upper(terms, n, g, MOMENTARY_PEAK_TORQUE, T_k, gears[g, T_M])
-        terms[n, g, MOMENTARY_PEAK_TORQUE, USED] = _momentary_peak_torque_utilisation(T_k, gears[g, T_M])
-    if not math.isnan(wishes[n, d.STOP_COUNT]):
-        _upper(terms, n, g, MOMENTARY_PEAK_COUNT, wishes[n, d.STOP_COUNT], figures[n, g, PEAKS])
-        if figures[n, g, PEAKS] == 0:  # no stop at all is allowed: fails without a utilisation, even for a count of 0
-            terms[n, g, MOMENTARY_PEAK_COUNT, USED] = math.inf
-    _upper(terms, n, g, AVERAGE_INPUT_SPEED, figures[n, g, N_IN_AV], gears[g, N_AV])
-    _upper(terms, n, g, MAXIMUM_INPUT_SPEED, figures[n, g, N_IN_MAX], gears[g, N_MAX])
-    if not math.isnan(wishes[n, d.LIFE]):
-        _lower(terms, n, g, LIFE, figures[n, g, L10], wishes[n, d.LIFE])
-    if not math.isnan(wishes[n, d.MOTOR_SPEED]):
-        _upper(terms, n, g, MOTOR_SPEED, figures[n, g, N_IN_MAX], wishes[n, d.MOTOR_SPEED])
-    if not math.isnan(wishes[n, d.MOTOR_PEAK]):
-        _upper(terms, n, g, MOTOR_PEAK_TORQUE, figures[n, g, MOTOR_PEAK], wishes[n, d.MOTOR_PEAK])
-    if not math.isnan(wishes[n, d.MOTOR_RATED]):
-        _upper(terms, n, g, MOTOR_RATED_TORQUE, figures[n, g, MOTOR_RATED], wishes[n, d.MOTOR_RATED])
-
-
-@compiled
-def _on_the_bearing(
-    phases: FloatArray,
-    wishes: FloatArray,
-    cycles: FloatArray,
-    loads: FloatArray,
-    series: tuple[float, float, float, float],
-    n: int,
-    g: int,
-    figures: FloatArray,
-    terms: FloatArray,
-) -> None:
-    mean, n_out_av = _mean_equivalent_load(loads, phases[:, d.SPEED], phases[:, d.DURATION]), cycles[n, d.N_OUT_AV]
-    k = _life_factor(n_out_av, wishes[n, d.BEARING_L50], series[2], series[3])
-    figures[n, g, BEARING_LARGEST], figures[n, g, BEARING_MEAN] = loads.max(), mean
-    figures[n, g, BEARING_L50] = _bearing_life(mean, n_out_av, series[2], series[3])
-    _upper(terms, n, g, OUTPUT_BEARING_LOAD, figures[n, g, BEARING_LARGEST], 1.0)
-    _upper(terms, n, g, OUTPUT_BEARING_LIFE, mean, k)
-
-
-@compiled
-def _properties(wishes: FloatArray, gears: FloatArray, n: int, g: int, terms: FloatArray) -> None:
-    wanted = wishes[n, d.TEMPERATURE]
-    if not math.isnan(wanted):
-        lowest, highest = gears[g, LOWEST], gears[g, HIGHEST]
-        middle, half = (lowest + highest) / 2, (highest - lowest) / 2
-        bound = math.nan if math.isnan(middle) else highest if wanted >= middle else lowest
-        _upper(terms, n, g, AMBIENT_TEMPERATURE, wanted, bound)
-        terms[n, g, AMBIENT_TEMPERATURE, USED] = abs(wanted - middle) / half
-    if not math.isnan(wishes[n, d.BACKLASH]):
-        _upper(terms, n, g, BACKLASH, gears[g, PLAY], wishes[n, d.BACKLASH])
-    if not math.isnan(wishes[n, d.STIFFNESS]):
-        _lower(terms, n, g, TORSIONAL_STIFFNESS, gears[g, K3], wishes[n, d.STIFFNESS])
-    if not math.isnan(wishes[n, d.WEIGHT]):
-        _upper(terms, n, g, WEIGHT, gears[g, MASS], wishes[n, d.WEIGHT])
-    if not math.isnan(wishes[n, d.LENGTH]):
-        _upper(terms, n, g, LENGTH, gears[g, LENGTH_MAX], wishes[n, d.LENGTH])
-
-
-@compiled
-def _judge(wishes: FloatArray, terms: FloatArray, n: int, g: int, codes: ByteArray) -> None:
-    """Pass, fail or not rated: a load check against the user's own utilisation u, a property check against 1."""
-    for check in range(COUNT):
-        used = terms[n, g, check, USED]
-        bound = (wishes[n, d.UTILISATION] if check < LOAD_CHECKS else 1.0) * (1 + equations.ROUNDING)
-        if math.isnan(terms[n, g, check, DEMAND]) and math.isnan(terms[n, g, check, LIMIT]):
-            codes[n, g, check] = ABSENT
-        else:
-            codes[n, g, check] = NOT_RATED if math.isnan(used) else PASS if used <= bound else FAIL
+    """Largest utilisation with which the check of a code passes; 1 where there is none to name."""
+    return 1.0 if code is None else BY_CODE[code].allowed(utilisation)

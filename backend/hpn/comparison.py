@@ -8,9 +8,9 @@ from typing import Literal
 import numpy as np
 
 from hpn import equations
-from hpn.candidates import Candidate, is_unlimited
 from hpn.catalogue import Catalogue
 from hpn.gear import Gear
+from hpn.selection import Candidate
 from hpn.wording import N_, Quantity, Sentence
 
 Kind = Literal["figure", "percent", "words"]
@@ -43,7 +43,7 @@ class Row:
 
 
 @dataclass(frozen=True, slots=True)
-class Group:
+class RowGroup:
     """Rows under one heading."""
 
     title: str
@@ -60,30 +60,28 @@ def _figure(name: str) -> Read:
 
 
 def _result(name: str) -> Read:
-    return lambda column: column.candidate[name]
+    return lambda column: getattr(column.candidate, name)
 
 
 def _unlimited_result(name: str) -> Read:
     """A figure of the reply; infinite where it is empty because nothing limits it."""
-    return lambda column: math.inf if is_unlimited(column.candidate, name) else column.candidate[name]
+    return lambda column: math.inf if column.candidate.is_unlimited(name) else getattr(column.candidate, name)
 
 
-def groups_of(columns: Sequence[Column], maximum_torque_Nm: float, checks: Mapping[str, str]) -> tuple[Group, ...]:
+def groups_of(columns: Sequence[Column], maximum_torque_Nm: float, checks: Mapping[str, str]) -> tuple[RowGroup, ...]:
     """The comparison. `checks` are the titles of the checks that the application asks for, by code."""
     return (
-        Group(N_("Utilisation"), tuple(_utilisations(columns, checks))),
-        Group(N_("Life and drive"), tuple(_results(columns, maximum_torque_Nm))),
-        Group(N_("Stiffness and accuracy"), tuple(_accuracies(columns, maximum_torque_Nm))),
-        Group(N_("Ratings"), tuple(_ratings(columns))),
-        Group(N_("Size and mounting"), tuple(_mounting(columns))),
+        RowGroup(N_("Utilisation"), tuple(_utilisations(columns, checks))),
+        RowGroup(N_("Life and drive"), tuple(_results(columns, maximum_torque_Nm))),
+        RowGroup(N_("Stiffness and accuracy"), tuple(_accuracies(columns, maximum_torque_Nm))),
+        RowGroup(N_("Ratings"), tuple(_ratings(columns))),
+        RowGroup(N_("Size and mounting"), tuple(_mounting(columns))),
     )
 
 
 def _utilisations(columns: Sequence[Column], checks: Mapping[str, str]) -> Iterable[Row]:
     def read(code: str) -> Read:
-        return lambda column: next(
-            (check["utilisation"] for check in column.candidate["checks"] if check["code"] == code), None
-        )
+        return lambda column: check.utilisation if (check := column.candidate.check(code)) else None
 
     for code, title in checks.items():
         yield _row(columns, code, title, read(code), lowest=True, kind="percent")
@@ -91,10 +89,10 @@ def _utilisations(columns: Sequence[Column], checks: Mapping[str, str]) -> Itera
 
 def _results(columns: Sequence[Column], maximum_torque_Nm: float) -> Iterable[Row]:
     yield _row(columns, "life", N_("Life"), _unlimited_result("life_L10_h"), "L_10", "h", lowest=False)
-    if any(column.candidate["momentary_peak_count"] is not None for column in columns):
+    if any(column.candidate.momentary_peak_count is not None for column in columns):
         stops = _unlimited_result("momentary_peak_count")
         yield _row(columns, "stops", N_("Allowed stops"), stops, "N_k max", lowest=False)
-    if any(column.candidate["bearing_life_L50_h"] is not None for column in columns):
+    if any(column.candidate.bearing_life_L50_h is not None for column in columns):
         bearing_life = _unlimited_result("bearing_life_L50_h")
         yield _row(columns, "bearing_life", N_("Bearing life"), bearing_life, "L_50", "h", lowest=False)
     peak, average = _result("motor_peak_torque_Nm"), _result("average_input_speed_rpm")
@@ -106,7 +104,7 @@ def _results(columns: Sequence[Column], maximum_torque_Nm: float) -> Iterable[Ro
 
 def _motor_title(columns: Sequence[Column], maximum_torque_Nm: float) -> str:
     loss_free = maximum_torque_Nm * (1 + equations.ROUNDING)
-    if any(column.candidate["motor_peak_torque_Nm"] * column.gear.ratio <= loss_free for column in columns):
+    if any((column.candidate.motor_peak_torque_Nm or 0.0) * column.gear.ratio <= loss_free for column in columns):
         return N_("Peak torque at the motor, a lower bound where η is 1")
     return N_("Peak torque at the motor")
 
@@ -217,22 +215,22 @@ def undominated(candidates: Sequence[Candidate], catalogue: Catalogue) -> frozen
     One outdoes another that is nowhere worse and somewhere better: in weight, utilisation, torsional stiffness, largest
     length and peak torque at the motor. What is not published counts as worst.
     """
-    suitable = [candidate for candidate in candidates if candidate["status"] == "suitable"]
+    suitable = [candidate for candidate in candidates if candidate.status == "suitable"]
     if not suitable:
         return frozenset()
-    table = np.array([_costs(candidate, catalogue.by_designation[candidate["designation"]]) for candidate in suitable])
+    table = np.array([_costs(candidate, catalogue.by_designation[candidate.designation]) for candidate in suitable])
     nowhere_worse = (table[:, None] <= table[None]).all(axis=2)
     outdone = np.any(nowhere_worse & (table[:, None] < table[None]).any(axis=2), axis=0)
-    return frozenset(suitable[place]["designation"] for place in np.flatnonzero(~outdone).tolist())
+    return frozenset(suitable[place].designation for place in np.flatnonzero(~outdone).tolist())
 
 
 def _costs(candidate: Candidate, gear: Gear) -> tuple[float, ...]:
     stiffness = gear.torsional_stiffness_Nm_per_rad
     costs = (
         gear.weight_kg,
-        candidate["utilisation"],
+        candidate.utilisation,
         None if stiffness is None else -stiffness,
         gear.length_max_mm,
-        candidate["motor_peak_torque_Nm"],
+        candidate.motor_peak_torque_Nm,
     )
     return tuple(np.inf if cost is None else cost for cost in costs)

@@ -4,10 +4,13 @@ import math
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, fields
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
+
+from msgspec import Meta, Struct, structs
 
 from hpn.catalogue import Catalogue
 from hpn.gear import Gear
+from hpn.selection import Selection
 
 NAMED_BY = {"candidates": "designation", "checks": "code", "notices": "code"}
 """Lists whose items are matched by a field of theirs: their order follows from what the items say."""
@@ -17,7 +20,9 @@ BRIEFLY = {"candidates": "status", "checks": "status", "notices": "text", "check
 
 VERDICTS = ("selected", "status", "governing_check", "rank")
 TEXTS = ("reason", "link", "notices", "check_definitions")
-VERSIONS = ("engine_version", "catalogue_version")
+NOT_COMPARED = ("engine_version", "catalogue_version", "values")
+"""The versions themselves, and the values of a notice, which its text shows."""
+
 TOLERANCE = 1e-12
 """Relative; the same calculation on another processor may differ by less."""
 
@@ -26,22 +31,27 @@ Change = Literal["changed", "added", "removed"]
 Kind = Literal["verdict", "figure", "text"]
 
 
-@dataclass(frozen=True, slots=True)
-class Difference:
+class Difference(Struct, frozen=True):
     """One field that two replies give differently.
 
     `pointer` is its JSON pointer in the saved reply, or in today's where the saved one lacks it. Of a candidate, check
     or notice that only one of them has, its status or text stands for the whole.
     """
 
-    pointer: str
-    kind: Kind
-    change: Change
-    candidate: str | None
-    check: str | None
-    field: str
-    saved: Any
-    today: Any
+    pointer: Annotated[
+        str,
+        Meta(
+            description="JSON pointer into the saved result; into today's where change is added, since the saved "
+            "lacks it."
+        ),
+    ]
+    kind: Annotated[Kind, Meta(description="Verdicts come first, then figures, then texts.")]
+    change: Annotated[Change, Meta(description="Whether both have the field, or only one.")]
+    candidate: Annotated[str | None, Meta(description="Designation of the candidate it belongs to.")]
+    check: Annotated[str | None, Meta(description="Code of the check it belongs to.")]
+    field: Annotated[str, Meta(description="Name of the field.")]
+    saved: Annotated[Any, Meta(description="Value as saved.")]
+    today: Annotated[Any, Meta(description="Value today.")]
 
 
 @dataclass(slots=True)
@@ -57,30 +67,35 @@ class _Fields:
             inner = (*name, key)
             if name and name[-1] in BRIEFLY:
                 self.items.add(inner)
-            if isinstance(item, Mapping | list):
+            if isinstance(item, Struct | Mapping | list | tuple):
                 self.add(item, inner, f"{pointer}/{part}")
             else:
                 self.values[inner] = f"{pointer}/{part}", item
 
 
-def _parts(value: Mapping[str, Any] | list[Any], holder: str) -> Iterator[tuple[str, str, Any]]:
+def _parts(value: Any, holder: str) -> Iterator[tuple[str, str, Any]]:
     """Name, JSON pointer and value of each part of an object or a list."""
-    if isinstance(value, Mapping):
-        for key, item in value.items():
-            yield key, key.replace("~", "~0").replace("/", "~1"), item
+    if isinstance(value, Struct | Mapping):
+        for key, item in _fields_of(value).items():
+            if key not in NOT_COMPARED:
+                yield key, key.replace("~", "~0").replace("/", "~1"), item
         return
     seen: Counter[str] = Counter()
     for index, item in enumerate(value):
-        name = str(item[NAMED_BY[holder]]) if holder in NAMED_BY else str(index)
+        name = str(_fields_of(item)[NAMED_BY[holder]]) if holder in NAMED_BY else str(index)
         seen[name] += 1
         yield name if seen[name] == 1 else f"{name} {seen[name]}", str(index), item
 
 
-def differences(saved: Mapping[str, Any], today: Mapping[str, Any]) -> list[Difference]:
+def _fields_of(value: Struct | Mapping[str, Any]) -> Mapping[str, Any]:
+    return structs.asdict(value) if isinstance(value, Struct) else value
+
+
+def differences(saved: Selection | Mapping[str, Any], today: Selection | Mapping[str, Any]) -> list[Difference]:
     """Differences of two replies: verdicts, then figures, then texts; the versions themselves are left out."""
     before, after = _Fields(), _Fields()
-    before.add({key: value for key, value in saved.items() if key not in VERSIONS})
-    after.add({key: value for key, value in today.items() if key not in VERSIONS})
+    before.add(saved)
+    after.add(today)
     found = [
         _difference(name, before.values.get(name), after.values.get(name))
         for name in before.values | after.values
@@ -129,17 +144,18 @@ def _weight(difference: Difference) -> int:
 NOT_FIGURES = ("designation", "size", "ratio", "sources", "clamp_bolts", "housing_bolts")
 
 
-@dataclass(frozen=True, slots=True)
-class FigureDifference:
+class FigureDifference(Struct, frozen=True):
     """A published figure of a gear that two catalogues give differently; None where one has none.
 
     Of a gear that only one of them has, its designation stands for the whole. A supplied curve is a list of points.
     """
 
-    candidate: str
-    field: str
-    saved: Any
-    today: Any
+    candidate: Annotated[str, Meta(description="Designation of the gear.")]
+    field: Annotated[
+        str, Meta(description="Name of the figure in the catalogue; designation where only one has the gear.")
+    ]
+    saved: Annotated[Any, Meta(description="Figure in the catalogue of then; null where it was not published.")]
+    today: Annotated[Any, Meta(description="Figure in today's catalogue; null where it is not published.")]
 
 
 def figure_differences(saved: Catalogue, today: Catalogue, designations: Iterable[str]) -> list[FigureDifference]:

@@ -49,8 +49,15 @@ def life_envelopes(catalogue: Catalogue, gear: Gear, query: EnvelopeQuery) -> li
         reference_speed_rpm=speed,
         reference_life_h=life,
     )
-    coefficients = dict.fromkeys((*bearing.PRINTED_LOAD_COEFFICIENTS, query.load_coefficient))
-    return [envelope_curve(catalogue, gear, query.model, f_w, min(1.0, float(k))) for f_w in coefficients]
+    return envelopes_for(catalogue, gear, query.model, query.load_coefficient, float(k))
+
+
+def envelopes_for(
+    catalogue: Catalogue, gear: Gear, model: BearingModel, load_coefficient: float, life_factor: float
+) -> list[EnvelopeCurve]:
+    """The same for a life factor k that is known."""
+    coefficients = dict.fromkeys((*bearing.PRINTED_LOAD_COEFFICIENTS, load_coefficient))
+    return [envelope_curve(catalogue, gear, model, f_w, min(1.0, life_factor)) for f_w in coefficients]
 
 
 def envelope_curve(

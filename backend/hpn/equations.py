@@ -1,15 +1,18 @@
-"""The handbook's selection equations (chapter 4.1, page 17), one function each.
+"""The handbook's selection equations (chapter 4.1, page 17), one function each, in the handbook's symbols.
 
-Each body is one case in floats, in the handbook's symbols, and runs compiled (`hpn.compiled`): over all gears and
-applications in `hpn.checks`, on arrays where it is called by name. Torque and speed enter by magnitude.
+Arguments broadcast, so that one case and thousands go through the same lines; a series over the phases lies along the
+last axis. NaN stands for a figure that is not published, infinity for one without a limit: neither raises nor warns.
+Torque and speed enter by magnitude.
 """
 
-import math
-from typing import Any
+from collections.abc import Callable
+from functools import wraps
+from typing import ParamSpec
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
-from hpn.compiled import equation, over_phases
+FloatArray = NDArray[np.float64]
 
 ROUNDING = 1e-12
 """Relative room for floating point, so that a limit met exactly passes (see the contract of checks)."""
@@ -17,118 +20,161 @@ ROUNDING = 1e-12
 TORSION_REFERENCE = 0.15
 """Share of the rated torque from which on the torsional stiffness K3 holds (glossary)."""
 
+P = ParamSpec("P")
 
-@over_phases("(p),(p),(p)->()")
-def average_output_torque(torque_Nm: Any, speed_rpm: Any, duration_s: Any) -> Any:
+
+def equation(function: Callable[P, FloatArray]) -> Callable[P, FloatArray]:
+    """Give float64 arrays, 0-d for scalars in, without warnings: NaN and infinity are answers here."""
+
+    @wraps(function)
+    def computed(*arguments: P.args, **named: P.kwargs) -> FloatArray:
+        with np.errstate(all="ignore"):
+            return np.asarray(function(*arguments, **named), dtype=np.float64)
+
+    return computed
+
+
+def over_phases(*series: ArrayLike) -> tuple[FloatArray, ...]:
+    """Series of one length along the last axis, as float64 arrays."""
+    return np.broadcast_arrays(*(np.asarray(values, dtype=np.float64) for values in series))
+
+
+def total(values: FloatArray) -> FloatArray:
+    """Sum over the last axis, in the order of the phases.
+
+    Phases of no duration at the end, by which shorter cycles are padded, so change no bit of it: numpy's own sum adds
+    in an order that depends on the length.
+    """
+    result: FloatArray = np.add.accumulate(values, axis=-1)[..., -1]
+    return result
+
+
+def power_ten_thirds(ratio: FloatArray) -> FloatArray:
+    """A ratio to the power 10/3, as a cube times a cube root: a fifth of the time of `**`."""
+    power: FloatArray = ratio * ratio * ratio * np.cbrt(ratio)
+    return power
+
+
+@equation
+def average_output_torque(*, torque_Nm: ArrayLike, speed_rpm: ArrayLike, duration_s: ArrayLike) -> FloatArray:
     """Average output torque T_av in Nm, equation 17.2; shape (..., phases) in, (...) out.
 
     T_av = (sum |n| t |T|^(10/3) / sum |n| t)^(3/10). A holding phase (n = 0) has no weight. Torque is scaled by its
     largest, so that no power of it overflows or vanishes. NaN where nothing moves: the application forbids that.
     """
-    T_max = 0.0
-    for k in range(torque_Nm.size):
-        if abs(speed_rpm[k]) * duration_s[k] > 0:  # what is held must not set the scale
-            T_max = max(T_max, abs(torque_Nm[k]))
-    scale, damage, weight = T_max + (T_max == 0), 0.0, 0.0
-    for k in range(torque_Nm.size):
-        w, r = abs(speed_rpm[k]) * duration_s[k], abs(torque_Nm[k]) / scale
-        damage += w * (r * r * r * np.cbrt(r)) if w > 0 else 0.0
-        weight += w
-    return T_max * (damage / weight) ** 0.3
+    T, n, t = over_phases(torque_Nm, speed_rpm, duration_s)
+    weight = np.abs(n) * t
+    T = np.where(weight > 0, np.abs(T), 0.0)  # what is held must not set the scale
+    T_max = T.max(axis=-1)
+    damage = weight * power_ten_thirds(T / np.where(T_max == 0, 1.0, T_max)[..., None])
+    T_av: FloatArray = T_max * (total(damage) / total(weight)) ** 0.3
+    return T_av
 
 
-@over_phases("(p),(p),()->()")
-def average_output_speed(speed_rpm: Any, duration_s: Any, pause_s: Any) -> Any:
+@equation
+def average_output_speed(*, speed_rpm: ArrayLike, duration_s: ArrayLike, pause_s: ArrayLike) -> FloatArray:
     """Average output speed n_out_av in rpm, equation 17.4; shape (..., phases) in, (...) out.
 
     n_out_av = sum |n| t / (sum t + t_p). The pause counts here, and so does the time of a holding phase.
     """
-    way, time = 0.0, 0.0
-    for k in range(speed_rpm.size):
-        way += abs(speed_rpm[k]) * duration_s[k]
-        time += duration_s[k]
-    return way / (time + pause_s)
+    n, t = over_phases(speed_rpm, duration_s)
+    n_out_av: FloatArray = total(np.abs(n) * t) / (total(t) + np.asarray(pause_s))
+    return n_out_av
 
 
 @equation
-def average_input_speed(ratio: Any, average_output_speed_rpm: Any) -> Any:
+def average_input_speed(*, ratio: ArrayLike, average_output_speed_rpm: ArrayLike) -> FloatArray:
     """Average input speed n_in_av = i n_out_av in rpm, equation 17.5."""
-    return ratio * average_output_speed_rpm
+    return np.multiply(ratio, average_output_speed_rpm)
 
 
 @equation
-def maximum_input_speed(ratio: Any, maximum_output_speed_rpm: Any) -> Any:
+def maximum_input_speed(*, ratio: ArrayLike, maximum_output_speed_rpm: ArrayLike) -> FloatArray:
     """Maximum input speed n_in_max = i n_out_max in rpm, equation 17.6."""
-    return ratio * maximum_output_speed_rpm
+    return np.multiply(ratio, maximum_output_speed_rpm)
 
 
 @equation
-def repeated_peak_torque_utilisation(maximum_torque_Nm: Any, repeated_peak_torque_Nm: Any) -> Any:
+def repeated_peak_torque_utilisation(*, maximum_torque_Nm: ArrayLike, repeated_peak_torque_Nm: ArrayLike) -> FloatArray:
     """Load limit 2 as T_max / T_R [-]; equation 17.7 asks T_max <= T_R."""
-    return maximum_torque_Nm / repeated_peak_torque_Nm
+    return np.divide(maximum_torque_Nm, repeated_peak_torque_Nm)
 
 
 @equation
-def momentary_peak_torque_utilisation(emergency_stop_torque_Nm: Any, momentary_peak_torque_Nm: Any) -> Any:
+def momentary_peak_torque_utilisation(
+    *, emergency_stop_torque_Nm: ArrayLike, momentary_peak_torque_Nm: ArrayLike
+) -> FloatArray:
     """Load limit 3 as T_k / T_M [-]; equation 17.8 asks T_k <= T_M."""
-    return emergency_stop_torque_Nm / momentary_peak_torque_Nm
+    return np.divide(emergency_stop_torque_Nm, momentary_peak_torque_Nm)
 
 
 @equation
-def allowed_momentary_peaks(emergency_stop_torque_Nm: Any, repeated_peak_torque_Nm: Any) -> Any:
+def momentary_peaks_at(*, emergency_stop_torque_Nm: ArrayLike, repeated_peak_torque_Nm: ArrayLike) -> FloatArray:
+    """Number of momentary peak torques 10^(8.5 - 1.5 T_k / T_R) of equation 17.9, not rounded to a count [-]."""
+    return 10.0 ** (8.5 - 1.5 * np.divide(emergency_stop_torque_Nm, repeated_peak_torque_Nm))
+
+
+@equation
+def allowed_momentary_peaks(*, emergency_stop_torque_Nm: ArrayLike, repeated_peak_torque_Nm: ArrayLike) -> FloatArray:
     """Allowable number of momentary peak torques N_k max = 10^(8.5 - 1.5 T_k / T_R), equation 17.9 [-].
 
     A count, so it is rounded down. Holds for T_k > T_R; at or below T_R this equation sets no limit: infinite.
     NaN where T_R is not published.
     """
-    T_k, T_R = emergency_stop_torque_Nm, repeated_peak_torque_Nm
-    if T_k <= T_R:
-        return math.inf
-    return np.floor(10.0 ** (8.5 - 1.5 * (T_k / T_R)) * (1 + ROUNDING))
+    T_k, T_R = np.asarray(emergency_stop_torque_Nm), np.asarray(repeated_peak_torque_Nm)
+    N = momentary_peaks_at(emergency_stop_torque_Nm=T_k, repeated_peak_torque_Nm=T_R)
+    return np.where(T_k <= T_R, np.inf, np.floor(N * (1 + ROUNDING)))
+
+
+@equation
+def emergency_stop_torque_for(*, momentary_peak_count: ArrayLike, repeated_peak_torque_Nm: ArrayLike) -> FloatArray:
+    """Torque in Nm of which equation 17.9 allows so many peaks: T_R (8.5 - log10 N) / 1.5, but never less than T_R."""
+    T_R = np.asarray(repeated_peak_torque_Nm)
+    T_k: FloatArray = np.maximum(T_R, T_R * (8.5 - np.log10(momentary_peak_count)) / 1.5)
+    return T_k
 
 
 @equation
 def life(
-    average_torque_Nm: Any,
-    average_input_speed_rpm: Any,
-    rated_torque_Nm: Any,
-    rated_input_speed_rpm: Any,
-    life_at_rated_torque_h: Any = 20_000.0,
-) -> Any:
+    *,
+    average_torque_Nm: ArrayLike,
+    average_input_speed_rpm: ArrayLike,
+    rated_torque_Nm: ArrayLike,
+    rated_input_speed_rpm: ArrayLike,
+    life_at_rated_torque_h: ArrayLike = 20_000.0,
+) -> FloatArray:
     """Life L10 in hours, equation 17.10: 20000 h (n_rated / n_in_av) (T_N / T_av)^(10/3).
 
     Infinite where T_av is 0 or so small that the result exceeds floating point. NaN where T_N is not published.
     """
-    r = rated_torque_Nm / average_torque_Nm
-    return life_at_rated_torque_h * ((rated_input_speed_rpm / average_input_speed_rpm) * (r * r * r * np.cbrt(r)))
+    by_torque = power_ten_thirds(np.divide(rated_torque_Nm, average_torque_Nm))
+    return np.asarray(life_at_rated_torque_h) * (np.divide(rated_input_speed_rpm, average_input_speed_rpm) * by_torque)
 
 
 @equation
-def motor_torque(output_torque_Nm: Any, ratio: Any, efficiency: Any = 1.0) -> Any:
+def motor_torque(*, output_torque_Nm: ArrayLike, ratio: ArrayLike, efficiency: ArrayLike = 1.0) -> FloatArray:
     """Torque at the motor shaft T / (i eta) in Nm; loss-free, a lower bound, at the default efficiency of 1."""
-    return output_torque_Nm / (ratio * efficiency)
+    return np.divide(output_torque_Nm, np.multiply(ratio, efficiency))
 
 
 @equation
-def torsion(maximum_torque_Nm: Any, rated_torque_Nm: Any, torsional_stiffness_Nm_per_rad: Any) -> Any:
+def torsion(
+    *, maximum_torque_Nm: ArrayLike, rated_torque_Nm: ArrayLike, torsional_stiffness_Nm_per_rad: ArrayLike
+) -> FloatArray:
     """Torsion of the output (T_max - 0.15 T_N) / K3 in arcmin, from 15 % of the rated torque up to T_max (glossary).
 
     K3 holds above that reference torque alone, so up to it there is nothing to work out: 0. NaN where a figure is not
     published. Backlash comes on top and is no part of it.
     """
-    above = maximum_torque_Nm - TORSION_REFERENCE * rated_torque_Nm
-    return math.degrees((0.0 if above < 0 else above) / torsional_stiffness_Nm_per_rad) * 60
+    above = np.maximum(np.asarray(maximum_torque_Nm) - TORSION_REFERENCE * np.asarray(rated_torque_Nm), 0.0)
+    return np.degrees(above / torsional_stiffness_Nm_per_rad) * 60
 
 
-@over_phases("(p),(p),()->()")
-def rms_torque(torque_Nm: Any, duration_s: Any, pause_s: Any) -> Any:
+@equation
+def rms_torque(*, torque_Nm: ArrayLike, duration_s: ArrayLike, pause_s: ArrayLike) -> FloatArray:
     """Root mean square of the torque over the cycle, pause included, in Nm; shape (..., phases) in, (...) out."""
-    T_max = 0.0
-    for k in range(torque_Nm.size):
-        T_max = max(T_max, abs(torque_Nm[k]))
-    scale, squares, time = T_max + (T_max == 0), 0.0, 0.0
-    for k in range(torque_Nm.size):
-        r = torque_Nm[k] / scale
-        squares += r * r * duration_s[k]
-        time += duration_s[k]
-    return T_max * math.sqrt(squares / (time + pause_s))
+    T, t = over_phases(torque_Nm, duration_s)
+    T_max = np.abs(T).max(axis=-1)
+    r = T / np.where(T_max == 0, 1.0, T_max)[..., None]
+    T_rms: FloatArray = T_max * np.sqrt(total(r * r * t) / (total(t) + np.asarray(pause_s)))
+    return T_rms

@@ -5,9 +5,8 @@ from collections.abc import Iterable, Sequence
 
 from hpn.application import Application, InputError
 from hpn.catalogue import Catalogue, GearList
-from hpn.duty import Duty
-from hpn.ranking import evaluate
-from hpn.selection import Selection, candidates_of
+from hpn.evaluation import evaluate
+from hpn.selection import Judged, gears_for
 
 CHUNK_CYCLES = 256
 CHUNK_PHASES = 100_000
@@ -18,24 +17,23 @@ SHORT_CYCLE = 16
 """Phases up to which a cycle counts as long as this."""
 
 
-def select_fleet(applications: Sequence[Application], catalogue: Catalogue) -> list[Selection | InputError]:
-    """One selection, or the reason why there is none, per application, in their order.
+def judge_fleet(applications: Sequence[Application], catalogue: Catalogue) -> list[Judged | InputError]:
+    """Each application on its gears, or the reason why it has none, in their order.
 
     Applications with the same candidates are evaluated together, in chunks that stay inside the processor's cache.
     """
-    results: list[Selection | InputError | None] = [None] * len(applications)
+    results: list[Judged | InputError | None] = [None] * len(applications)
     groups: dict[GearList, list[int]] = defaultdict(list)
     for index, application in enumerate(applications):
         try:
-            groups[candidates_of(application, catalogue)].append(index)
+            groups[gears_for(application, catalogue)].append(index)
         except InputError as error:
             results[index] = error
     for gears, indices in groups.items():
         for chunk in _chunks(indices, applications):
-            members = [applications[index] for index in chunk]
-            evaluation = evaluate(Duty(members), gears, catalogue)
+            evaluation = evaluate([applications[index] for index in chunk], gears, catalogue)
             for place, index in enumerate(chunk):
-                results[index] = Selection(applications[index], catalogue, evaluation, place)
+                results[index] = Judged(applications[index], evaluation, place)
     return [result for result in results if result is not None]
 
 

@@ -1,8 +1,16 @@
-"""One catalogue row: a gear of the series with every figure that is published of it, and where each comes from."""
+"""A gear of the series with every figure that is published of it and where each comes from; and columns of gears."""
 
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hpn.source import is_supplied
+
+FloatArray = NDArray[np.float64]
 
 _DESIGNATION = re.compile(r"(?:HPN-?)?(\d{1,3})A?-0*(\d{1,3})(?:-.*)?", re.IGNORECASE)
 _SIZE = re.compile(r"(?:HPN-?)?(\d{1,3})A?", re.IGNORECASE)
@@ -44,6 +52,11 @@ class HousingBolts:
     source: str
 
 
+def _published(file: str, *, signed: bool = False) -> Any:
+    """Field of a figure, and the file of the catalogue with a column of its name; positive unless it is signed."""
+    return field(default=None, metadata={"file": file, "signed": signed})
+
+
 @dataclass(frozen=True, slots=True)
 class Gear:
     """A size and ratio. None is a figure that is not published; it is never read as zero."""
@@ -52,21 +65,21 @@ class Gear:
     size: str
     ratio: int
     stages: int
-    repeated_peak_torque_Nm: float | None = None
-    rated_torque_Nm: float | None = None
-    momentary_peak_torque_Nm: float | None = None
-    maximum_input_speed_rpm: float | None = None
-    average_input_speed_rpm: float | None = None
-    ambient_temperature_minimum_degC: float | None = None
-    ambient_temperature_maximum_degC: float | None = None
-    weight_kg: float | None = None
-    backlash_arcmin: float | None = None
-    transmission_accuracy_arcmin: float | None = None
-    torsional_stiffness_Nm_per_rad: float | None = None
-    length_min_mm: float | None = None
-    length_max_mm: float | None = None
-    dynamic_radial_load_N: float | None = None
-    dynamic_axial_load_N: float | None = None
+    repeated_peak_torque_Nm: float | None = _published("ratings.csv")
+    rated_torque_Nm: float | None = _published("ratings.csv")
+    momentary_peak_torque_Nm: float | None = _published("ratings.csv")
+    maximum_input_speed_rpm: float | None = _published("sizes.csv")
+    average_input_speed_rpm: float | None = _published("sizes.csv")
+    ambient_temperature_minimum_degC: float | None = _published("sizes.csv", signed=True)
+    ambient_temperature_maximum_degC: float | None = _published("sizes.csv", signed=True)
+    weight_kg: float | None = _published("weights.csv")
+    backlash_arcmin: float | None = _published("accuracy.csv")
+    transmission_accuracy_arcmin: float | None = _published("accuracy.csv")
+    torsional_stiffness_Nm_per_rad: float | None = _published("stiffness.csv")
+    length_min_mm: float | None = _published("lengths.csv")
+    length_max_mm: float | None = _published("lengths.csv")
+    dynamic_radial_load_N: float | None = _published("sizes.csv")
+    dynamic_axial_load_N: float | None = _published("sizes.csv")
     clamp_bolts: tuple[ClampBolt, ...] = ()
     housing_bolts: HousingBolts | None = None
     note: str | None = None
@@ -76,3 +89,33 @@ class Gear:
     def name(self) -> str:
         """Size as the handbook heads its tables: `HPN-20A`."""
         return f"HPN-{self.size}"
+
+    def is_supplied(self, figure: str) -> bool:
+        """Whether a figure comes from the user's supplement."""
+        return is_supplied(self.sources.get(figure, ""))
+
+
+class GearColumns:
+    """Figures of some gears as arrays, shape (gears,); NaN where a figure is not published."""
+
+    ratio: FloatArray
+    repeated_peak_torque_Nm: FloatArray
+    rated_torque_Nm: FloatArray
+    momentary_peak_torque_Nm: FloatArray
+    maximum_input_speed_rpm: FloatArray
+    average_input_speed_rpm: FloatArray
+    ambient_temperature_minimum_degC: FloatArray
+    ambient_temperature_maximum_degC: FloatArray
+    weight_kg: FloatArray
+    backlash_arcmin: FloatArray
+    torsional_stiffness_Nm_per_rad: FloatArray
+    length_min_mm: FloatArray
+    length_max_mm: FloatArray
+    dynamic_radial_load_N: FloatArray
+    dynamic_axial_load_N: FloatArray
+
+    def __init__(self, gears: Sequence[Gear]) -> None:
+        for name in self.__class__.__annotations__:
+            column = np.array([getattr(gear, name) for gear in gears], dtype=np.float64)
+            column.flags.writeable = False
+            setattr(self, name, column)

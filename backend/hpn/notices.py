@@ -1,73 +1,77 @@
-"""What the reader of a result must know beyond its numbers: assumptions, standings, unlimited values."""
+"""What the reader of a result must know beyond its numbers: assumptions, standings, unlimited values.
 
-from dataclasses import dataclass
-from functools import cached_property, lru_cache
+A notice is a code and values; its sentence is one of NOTICES, and is put together where it is shown.
+"""
 
+from collections.abc import Iterable, Mapping
+from functools import lru_cache
+from string import Formatter
+from typing import Annotated
+
+import msgspec
+import numpy as np
+from msgspec import Meta
+
+from hpn.application import Application, OutputLoad
 from hpn.catalogue import Catalogue, GearList
-from hpn.checks import BEARING_L50, L10, PEAKS, Evaluation
-from hpn.duty import T_MAX
+from hpn.equations import FloatArray
+from hpn.evaluation import Evaluation
 from hpn.gear import Gear
-from hpn.wording import N_, Quantity, Sentence, Value
+from hpn.units import suffix_of
+from hpn.wording import N_, Quantity, Sentence
 
+DIGITS: Mapping[str | None, int] = {"Nm": 6, "percent": 3}
+"""Digits of the numbers in a notice, by unit."""
 
-@dataclass(frozen=True)
-class Notice:
-    """A note on the result, with a code for programs and a sentence for people."""
+NOTICES: Mapping[str, str] = {
+    "application_area": N_(
+        "Use in this area ({area}) needs a risk assessment and the maker's approval (handbook 2.4)."
+    ),
+    "emergency_stop_below_maximum": N_(
+        "The emergency-stop torque of {stop_Nm} is below the largest torque of the cycle, {largest_Nm}: is it really "
+        "the emergency?"
+    ),
+    "momentary_peak_count_unlimited": N_(
+        "Where the emergency-stop torque is at or below T_R, equation 17.9 sets no limit to the number of stops: the "
+        "allowed number is empty there."
+    ),
+    "life_unlimited": N_(
+        "The average torque is 0 or so small that equation 17.10 gives a life without limit: the life is empty."
+    ),
+    "bearing_envelope_supplied": N_("The output bearing is judged along curve points that you supplied."),
+    "bearing_envelope_computed": N_(
+        "The envelope of the output bearing is computed between the two published limits; the handbook's printed curve "
+        "was not available."
+    ),
+    "bearing_load_position": N_(
+        "Loads act at the centre of the output shaft and along its axis; a load that acts elsewhere can't be judged "
+        "from the published data."
+    ),
+    "bearing_life_basis": N_(
+        "Bearing life L10 = L50 / 5 is the relation of the maker's other handbooks, not printed in this one; a Weibull "
+        "slope of 10/9 gives 5.45."
+    ),
+    "bearing_life_unlimited": N_(
+        "The equivalent load of the moving phases is 0 or so small that the bearing life has no limit: it is empty."
+    ),
+    "efficiency_assumed": N_("Motor torques use the efficiency of {efficiency_percent} that you assume."),
+    "efficiency_supplied": N_(
+        "Motor torques use the efficiency curves that you supplied; where they say nothing, loss-free: a lower bound."
+    ),
+    "efficiency_unknown": N_(
+        "Motor torques are loss-free, a lower bound: the handbook's efficiency curves were not available and no "
+        "efficiency is stated."
+    ),
+    "size_unrated": N_("{name} is not rated. {note}"),
+    "gears_unrated": N_("{names} are not rated. {note}"),
+    "catalogue_supplement": N_("Some catalogue figures are supplied by the user; their sources say so."),
+}
+"""Sentences by code; a value whose name ends in a unit is a number in that unit."""
 
-    code: str
-    sentence: Sentence
+TRANSLATED = ("area", "note")
+"""Values that are texts to be translated."""
 
-    @cached_property
-    def text(self) -> str:
-        """The notice in English."""
-        return self.sentence.text
-
-
-def _notice(code: str, template: str, translated: tuple[str, ...] = (), **values: Value) -> Notice:
-    return Notice(code, Sentence(template, values, translated))
-
-
-_COUNT_UNLIMITED = _notice(
-    "momentary_peak_count_unlimited",
-    "Where the emergency-stop torque is at or below T_R, equation 17.9 sets no limit to the number of stops: the "
-    "allowed number is empty there.",
-)
-_LIFE_UNLIMITED = _notice(
-    "life_unlimited",
-    "The average torque is 0 or so small that equation 17.10 gives a life without limit: the life is empty.",
-)
-_SUPPLIED = _notice("bearing_envelope_supplied", "The output bearing is judged along curve points that you supplied.")
-_COMPUTED = _notice(
-    "bearing_envelope_computed",
-    "The envelope of the output bearing is computed between the two published limits; the handbook's printed curve was "
-    "not available.",
-)
-_LOAD_POSITION = _notice(
-    "bearing_load_position",
-    "Loads act at the centre of the output shaft and along its axis; a load that acts elsewhere can't be judged from "
-    "the published data.",
-)
-_LIFE_BASIS = _notice(
-    "bearing_life_basis",
-    "Bearing life L10 = L50 / 5 is the relation of the maker's other handbooks, not printed in this one; a Weibull "
-    "slope of 10/9 gives 5.45.",
-)
-_BEARING_UNLIMITED = _notice(
-    "bearing_life_unlimited",
-    "The equivalent load of the moving phases is 0 or so small that the bearing life has no limit: it is empty.",
-)
-_EFFICIENCY_SUPPLIED = _notice(
-    "efficiency_supplied",
-    "Motor torques use the efficiency curves that you supplied; where they say nothing, loss-free: a lower bound.",
-)
-_EFFICIENCY_UNKNOWN = _notice(
-    "efficiency_unknown",
-    "Motor torques are loss-free, a lower bound: the handbook's efficiency curves were not available and no efficiency "
-    "is stated.",
-)
-_SUPPLEMENT = _notice("catalogue_supplement", "Some catalogue figures are supplied by the user; their sources say so.")
-
-AREAS = {
+AREAS: Mapping[str, str] = {
     "aerospace": N_("aerospace"),
     "explosive_area": N_("areas at risk of explosion"),
     "nuclear": N_("machines for a nuclear purpose"),
@@ -80,62 +84,85 @@ AREAS = {
 }
 """Application areas of section 2.4 by their code; English msgids."""
 
+Value = float | str
 
-def notices_of(evaluation: Evaluation, index: int) -> list[Notice]:
-    """Notices on application `index` of an evaluation, most general last."""
-    application, catalogue = evaluation.duty.applications[index], evaluation.catalogue
-    stop, load, asked = application.emergency_stop, evaluation.duty.loads[index], application.requirements
-    unlimited = evaluation.unlimited[index].tolist()
-    notices = []
+
+class Notice(msgspec.Struct, frozen=True):
+    """A note on the result: a code for programs, its sentence in English, and the values in it."""
+
+    code: Annotated[str, Meta(description="Code of the notice.")]
+    text: Annotated[str, Meta(description="The notice.")]
+    values: Annotated[dict[str, Value], Meta(description="The values in the notice, each with its unit.")] = {}
+
+    @property
+    def sentence(self) -> Sentence:
+        """The notice for any language and units; as it was written where its version kept no values."""
+        template = NOTICES.get(_template_of(self.code, self.values))
+        if template is None or not {name for _, name, *_ in Formatter().parse(template) if name} <= self.values.keys():
+            return Sentence("{text}", {"text": self.text})
+        return _sentence(template, self.values)
+
+
+def _template_of(code: str, values: Mapping[str, Value]) -> str:
+    return "gears_unrated" if "names" in values else code
+
+
+def _sentence(template: str, values: Mapping[str, Value]) -> Sentence:
+    shown = {
+        name: value if isinstance(value, str) else Quantity(value, suffix_of(name) or "", DIGITS[suffix_of(name)])
+        for name, value in values.items()
+    }
+    return Sentence(template, shown, TRANSLATED)
+
+
+def notice(code: str, **values: Value) -> Notice:
+    """Notice of a code, with its English text."""
+    return Notice(code, _sentence(NOTICES[_template_of(code, values)], values).text, values)
+
+
+def notices_of(application: Application, evaluation: Evaluation, index: int) -> tuple[Notice, ...]:
+    """Notices on an application, which is number `index` of an evaluation; the most general ones last."""
+    found: list[Notice] = []
     if application.application_area is not None:
-        notices.append(_area(application.application_area))
-    if stop is not None:
-        largest = evaluation.duty.figures.item(index, T_MAX)
-        if abs(stop.torque_Nm) < largest:
-            notices.append(_stop_below(abs(stop.torque_Nm), largest))
-    if unlimited[PEAKS]:
-        notices.append(_COUNT_UNLIMITED)
-    if unlimited[L10]:
-        notices.append(_LIFE_UNLIMITED)
-    if load is not None:
-        notices += _SUPPLIED if load.model == "digitised" else _COMPUTED, _LOAD_POSITION, _LIFE_BASIS
-        if unlimited[BEARING_L50]:
-            notices.append(_BEARING_UNLIMITED)
+        found.append(notice("application_area", area=AREAS[application.application_area]))
+    found += _on_stop_and_life(evaluation, index)
+    if application.loads is not None:
+        found += _on_the_bearing(application.loads, evaluation, index)
+    found += _on_the_motor(application, evaluation.catalogue)
+    found += _unrated(evaluation.gears, evaluation.catalogue)
+    return (*found, *([notice("catalogue_supplement")] if evaluation.catalogue.supplement else ()))
+
+
+def _is_unlimited(figure: FloatArray, index: int) -> bool:
+    """Whether a figure of an application is without a limit on any gear."""
+    return bool(np.isinf(figure[index if len(figure) > 1 else 0]).any())
+
+
+def _on_stop_and_life(evaluation: Evaluation, index: int) -> Iterable[Notice]:
+    figures, duty = evaluation.case.figures, evaluation.case.duty
+    stop, largest = duty.emergency_stop_torque_Nm.item(index), duty.maximum_torque_Nm.item(index)
+    if stop < largest:
+        yield notice("emergency_stop_below_maximum", stop_Nm=stop, largest_Nm=largest)
+    if _is_unlimited(figures.momentary_peak_count, index):
+        yield notice("momentary_peak_count_unlimited")
+    if _is_unlimited(figures.life_L10_h, index):
+        yield notice("life_unlimited")
+
+
+def _on_the_bearing(load: OutputLoad, evaluation: Evaluation, index: int) -> Iterable[Notice]:
+    yield notice("bearing_envelope_supplied" if load.model == "digitised" else "bearing_envelope_computed")
+    yield notice("bearing_load_position")
+    yield notice("bearing_life_basis")
+    if _is_unlimited(evaluation.case.figures.bearing_life_L50_h, index):
+        yield notice("bearing_life_unlimited")
+
+
+def _on_the_motor(application: Application, catalogue: Catalogue) -> Iterable[Notice]:
+    asked = application.requirements
     if asked.efficiency is not None:
-        notices.append(_efficiency(asked.efficiency))
+        yield notice("efficiency_assumed", efficiency_percent=100 * asked.efficiency)
     elif asked.motor is not None or application.rank_by == "motor_torque":
-        notices.append(_EFFICIENCY_SUPPLIED if catalogue.efficiency else _EFFICIENCY_UNKNOWN)
-    notices += _unrated(evaluation.gears, catalogue)
-    if catalogue.supplement:
-        notices.append(_SUPPLEMENT)
-    return notices
-
-
-def _area(code: str) -> Notice:
-    return _notice(
-        "application_area",
-        "Use in this area ({area}) needs a risk assessment and the maker's approval (handbook 2.4).",
-        ("area",),
-        area=AREAS[code],
-    )
-
-
-def _stop_below(torque_Nm: float, largest_Nm: float) -> Notice:
-    return _notice(
-        "emergency_stop_below_maximum",
-        "The emergency-stop torque of {stop} is below the largest torque of the cycle, {largest}: is "
-        "it really the emergency?",
-        stop=Quantity(torque_Nm, "Nm", 6),
-        largest=Quantity(largest_Nm, "Nm", 6),
-    )
-
-
-def _efficiency(assumed: float) -> Notice:
-    return _notice(
-        "efficiency_assumed",
-        "Motor torques use the efficiency of {efficiency} that you assume.",
-        efficiency=Quantity(100 * assumed, "percent"),
-    )
+        yield notice("efficiency_supplied" if catalogue.efficiency else "efficiency_unknown")
 
 
 @lru_cache(maxsize=256)
@@ -154,6 +181,5 @@ def _unrated(gears: GearList, catalogue: Catalogue) -> tuple[Notice, ...]:
 
 def _size_unrated(names: list[str], note: str) -> Notice:
     if len(names) == 1:
-        return _notice("size_unrated", "{name} is not rated. {note}", ("note",), name=names[0], note=note)
-    listed = ", ".join(names)
-    return _notice("size_unrated", "{names} are not rated. {note}", ("note",), names=listed, note=note)
+        return notice("size_unrated", name=names[0], note=note)
+    return notice("size_unrated", names=", ".join(names), note=note)

@@ -11,11 +11,14 @@ from functools import reduce
 from typing import Any
 
 from hpn.application import Application
-from hpn.candidates import Candidate, is_judged
+from hpn.check import Driver
+from hpn.checks import BY_CODE
 from hpn.equations import ROUNDING
 from hpn.gear import Gear
 from hpn.reserve import MOVES
-from hpn.wording import N_, Quantity, Rounding, Sentence, rounded
+from hpn.selection import Candidate
+from hpn.units import suffix_of
+from hpn.wording import N_, Quantity, Sentence, rounded
 
 LIVES = ("life", "output_bearing_life")
 """Checks that two drivers move: slower running mends them as well as a smaller torque or load."""
@@ -47,11 +50,11 @@ def ways_of(candidate: Candidate, reserve_utilisation: float = 1.0) -> tuple[Way
     Where a life fails beyond what the other checks ask for anyway there are two: less torque or load, or less speed.
     `reserve_utilisation` is the user's u.
     """
-    if not is_judged(candidate):
+    if not candidate.is_judged:
         return ()
     u = reserve_utilisation
-    used = {check["code"]: check["utilisation"] for check in candidate["checks"] if check["utilisation"] is not None}
-    curve = candidate["reserve"]["torque_factor"] is None  # motor torques that no closed form follows
+    used = {check.code: check.utilisation for check in candidate.checks if check.utilisation is not None}
+    curve = candidate.reserve.torque_factor is None  # motor torques that no closed form follows
     torque, speed, load = (_needed(used, u, driver, curve) for driver in MOVES)
     life = _excess(used.get("life", 0.0) * torque ** (10 / 3) * speed / u)
     bearing = _excess(used.get("output_bearing_life", 0.0) * load * speed ** (1 / 3) / u)
@@ -61,7 +64,7 @@ def ways_of(candidate: Candidate, reserve_utilisation: float = 1.0) -> tuple[Way
     return () if gentler == Way() else (gentler,) if gentler == slower else (gentler, slower)
 
 
-def _needed(used: Mapping[str, float], u: float, driver: str, curve: bool) -> float:
+def _needed(used: Mapping[str, float], u: float, driver: Driver, curve: bool) -> float:
     """Factor on a driver that the checks ask for which no other driver moves."""
     rooms = [
         u / used[code]
@@ -78,12 +81,12 @@ def _excess(relative: float) -> float:
 
 
 def _stop(candidate: Candidate, u: float) -> tuple[float | None, int | None]:
-    checks = {check["code"]: check for check in candidate["checks"] if check["status"] == "fail"}
+    checks = {check.code: check for check in candidate.failing}
     torque, count = checks.get("momentary_peak_torque"), checks.get("momentary_peak_count")
     if not torque and not count:
         return None, None
-    fewer = math.floor(u * count["limit"] * (1 + ROUNDING)) if count and not torque else 0
-    return candidate["reserve"]["emergency_stop_torque_Nm"], fewer or None
+    fewer = math.floor(u * (count.limit or 0) * (1 + ROUNDING)) if count and not torque else 0
+    return candidate.reserve.emergency_stop_torque_Nm, fewer or None
 
 
 def followed(application: Application, way: Way) -> Application:
@@ -135,22 +138,16 @@ _FEWER = (
     N_("T_k is at most {limit} or the number of stops at most {count}"),
     N_("T_k at most {limit} or the number of stops at most {count}"),
 )
-_ACCEPTED = {
-    "backlash": (N_("{value} backlash are accepted"), "arcmin"),
-    "torsional_stiffness": (N_("a torsional stiffness of {value} is accepted"), "Nm_per_rad"),
-    "weight": (N_("a weight of {value} is accepted"), "kg"),
-    "length": (N_("a length of {value} is accepted"), "mm"),
-}
 
 
 def remedy_of(candidate: Candidate, gear: Gear, reserve_utilisation: float = 1.0) -> Sentence | None:
     """What makes a rejected gear fit; None for one that is suitable, and where not every check can be judged."""
-    if candidate["status"] != "unsuitable" or not is_judged(candidate):
+    if candidate.status != "unsuitable" or not candidate.is_judged:
         return None
     found, motors = ways_of(candidate, reserve_utilisation), list(_motors(candidate, reserve_utilisation))
     if motors and any(way.torque < 1 for way in found):
         return None  # what the motor has to give at a smaller torque is a matter of the curve
-    ways, accepted = [_way(way) for way in found], _joined([*motors, *_accepted(candidate, gear)])
+    ways, accepted = [_way(way) for way in found], _joined([*motors, *_accepted(candidate, gear, reserve_utilisation)])
     if not ways:
         return Sentence(N_("Fits if {conditions}."), {"conditions": accepted}) if accepted else None
     conditions = reduce(_or, ways)
@@ -185,28 +182,27 @@ def _bound(value: float, unit: str, digits: int = 3) -> Quantity:
 
 def _motors(candidate: Candidate, u: float) -> Iterable[Sentence]:
     """What the motor has to give where its torque follows an efficiency curve."""
-    if candidate["reserve"]["torque_factor"] is not None:
+    if candidate.reserve.torque_factor is not None:
         return
-    for check in candidate["checks"]:
-        if check["code"] in _MOTOR_TORQUES and check["status"] == "fail":
-            value = Quantity(check["demand"] / u, "Nm", 4, "up")
-            yield Sentence(_MOTOR_TORQUES[check["code"]], {"value": value})
+    for check in candidate.failing:
+        if check.code in _MOTOR_TORQUES:
+            yield Sentence(_MOTOR_TORQUES[check.code], {"value": Quantity((check.demand or 0.0) / u, "Nm", 4, "up")})
 
 
-def _accepted(candidate: Candidate, gear: Gear) -> Iterable[Sentence]:
-    """Properties of the gear that would have to be accepted as they are."""
-    for check in candidate["checks"]:
-        if check["status"] != "fail":
-            continue
-        if check["code"] == "ambient_temperature":
+def _accepted(candidate: Candidate, gear: Gear, u: float) -> Iterable[Sentence]:
+    """What would have to be accepted of the gear as it is."""
+    for check in candidate.failing:
+        known = BY_CODE[check.code]
+        if check.code == "ambient_temperature":
             low, high = gear.ambient_temperature_minimum_degC, gear.ambient_temperature_maximum_degC
             assert low is not None and high is not None  # a check that fails was rated
             values = {"low": Quantity(low, "degC", 4), "high": Quantity(high, "degC", 4)}
             yield Sentence(N_("the ambient temperature lies between {low} and {high}"), values)
-        elif check["code"] in _ACCEPTED:
-            template, unit = _ACCEPTED[check["code"]]
-            rounding: Rounding = "down" if check["code"] == "torsional_stiffness" else "up"
-            yield Sentence(template, {"value": Quantity(check["demand"], unit, 6, rounding)})
+        elif known.accepted:
+            unit, allowed = suffix_of(known.asked or "") or "", known.allowed(u)
+            least = known.kind == "minimum"
+            value = (check.demand or 0.0) * (allowed if least else 1 / allowed)
+            yield Sentence(known.accepted, {"value": Quantity(value, unit, 6, "down" if least else "up")})
 
 
 def _joined(clauses: list[Sentence]) -> Sentence | None:
@@ -228,7 +224,7 @@ def _or(first: Sentence, second: Sentence) -> Sentence:
 
 # --- Room -------------------------------------------------------------------------------------------------------------
 
-DRIVERS = {
+DRIVER_NAMES = {
     "torque": N_("All duty torques"),
     "speed": N_("All speeds"),
     "load": N_("All output loads"),
@@ -253,15 +249,15 @@ class Room:
 
 def rooms_of(candidate: Candidate, reserve_utilisation: float = 1.0) -> tuple[Room, ...]:
     """Reserve of every driver, each with the check that limits it; empty where not every check can be judged."""
-    if not is_judged(candidate):
+    if not candidate.is_judged:
         return ()
-    used = {check["code"]: check["utilisation"] for check in candidate["checks"]}
+    used = {check.code: check.utilisation for check in candidate.checks}
     rooms = [
-        _room(driver, candidate["reserve"][f"{driver}_factor"], used, reserve_utilisation)
+        _room(driver, getattr(candidate.reserve, f"{driver}_factor"), used, reserve_utilisation)
         for driver, powers in MOVES.items()
         if powers.keys() & used.keys()
     ]
-    stop = candidate["reserve"]["emergency_stop_torque_Nm"]
+    stop = candidate.reserve.emergency_stop_torque_Nm
     if stop is not None:
         limit = _limit_of_stop(candidate, stop, reserve_utilisation)
         bound = Sentence(N_("up to {limit}"), {"limit": _bound(stop, "Nm", 4)})
@@ -269,7 +265,7 @@ def rooms_of(candidate: Candidate, reserve_utilisation: float = 1.0) -> tuple[Ro
     return tuple(rooms)
 
 
-def _room(driver: str, factor: float | None, used: Mapping[str, float | None], u: float) -> Room:
+def _room(driver: Driver, factor: float | None, used: Mapping[str, float | None], u: float) -> Room:
     full = {code: (used[code] or 0.0) / u for code in MOVES[driver] if code in used}
     if factor is None:
         if any(full.values()):
@@ -281,5 +277,6 @@ def _room(driver: str, factor: float | None, used: Mapping[str, float | None], u
 
 def _limit_of_stop(candidate: Candidate, largest: float, u: float) -> str:
     """Which of the two checks holds the emergency-stop torque at its largest."""
-    limit = next(check["limit"] for check in candidate["checks"] if check["code"] == "momentary_peak_torque")
-    return "momentary_peak_torque" if largest >= u * limit * (1 - ROUNDING) else "momentary_peak_count"
+    check = candidate.check("momentary_peak_torque")
+    full = check is not None and check.limit is not None and largest >= u * check.limit * (1 - ROUNDING)
+    return "momentary_peak_torque" if full else "momentary_peak_count"

@@ -1,114 +1,375 @@
-"""From an application and the catalogue to a ranked list of candidates, each with its checks and a reason."""
+"""From an application and the catalogue to a ranked list of candidates, each with its checks and a reason.
 
-from collections.abc import Sequence
+A `Selection` is the reply: what the API encodes as JSON, what pages and files read, what a saved reply decodes to.
+"""
+
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any
+from itertools import islice, repeat
+from typing import Annotated, NamedTuple
 
-from msgspec import Raw
-from msgspec.json import decode
+import msgspec
+import numpy as np
+from msgspec import Meta
 
 from hpn import ENGINE_VERSION
-from hpn import duty as d
-from hpn.application import Application, InputError, Location, OutputLoad
+from hpn.application import Application, InputError, Location
 from hpn.catalogue import Catalogue, GearList
-from hpn.checks import CHECKS, GOVERNING, USED, VERDICT, Evaluation
-from hpn.duty import Duty
+from hpn.check import Check, Group, Kind
+from hpn.checks import BY_CODE, allowed
+from hpn.equations import FloatArray
+from hpn.evaluation import (
+    CHECK_STATUS,
+    STATUS,
+    SUITABLE,
+    UNRATED,
+    Checked,
+    CheckStatus,
+    Evaluation,
+    PlaceArray,
+    Status,
+    evaluate,
+)
 from hpn.notices import Notice, notices_of
-from hpn.ranking import SUITABLE, evaluate
-from hpn.reply import DutyRow, SelectReply, encode
-from hpn.rows import candidate_rows
-from hpn.wording import N_, Sentence
+from hpn.reserve import reserves
+from hpn.wording import N_, Quantity, Sentence, Value, telling_decimals
 
 
-@dataclass(slots=True)
-class Selection:
-    """The answer to one application, which is number `index` of an evaluation; `json` is the reply of the API."""
+class CheckResult(msgspec.Struct, frozen=True):
+    """One check of one candidate."""
+
+    code: str
+    demand: float | None
+    limit: float | None
+    utilisation: float | None
+    status: CheckStatus
+
+
+class Reserve(msgspec.Struct, frozen=True):
+    """How far each driver may grow (above 1) or must shrink (below 1) on one candidate, the others as given."""
+
+    torque_factor: float | None = None
+    speed_factor: float | None = None
+    load_factor: float | None = None
+    emergency_stop_torque_Nm: float | None = None
+
+
+class Candidate(msgspec.Struct, frozen=True):
+    """One gear, its verdict and why."""
+
+    designation: str
+    size: str
+    ratio: int
+    stages: int
+    status: Status
+    rank: int | None
+    utilisation: float | None
+    governing_check: str | None
+    reason: str
+    average_input_speed_rpm: float | None = None
+    maximum_input_speed_rpm: float | None = None
+    life_L10_h: float | None = None
+    momentary_peak_count: float | None = None
+    bearing_life_L50_h: float | None = None
+    bearing_life_L10_h: float | None = None
+    motor_peak_torque_Nm: float | None = None
+    motor_rated_torque_Nm: float | None = None
+    reserve: Reserve = Reserve()
+    checks: tuple[CheckResult, ...] = ()
+
+    def check(self, code: str) -> CheckResult | None:
+        """The check of a code, or None where it was not asked for."""
+        return next((check for check in self.checks if check.code == code), None)
+
+    @property
+    def failing(self) -> tuple[CheckResult, ...]:
+        """The checks that fail."""
+        return tuple(check for check in self.checks if check.status == "fail")
+
+    @property
+    def is_judged(self) -> bool:
+        """Whether every check could be judged. One that is unsuitable needs not be rated for that."""
+        return all(check.status != "not_rated" for check in self.checks)
+
+    def is_unlimited(self, figure: str) -> bool:
+        """Whether a figure is empty because nothing limits it, and not because nobody asked or a rating lacks.
+
+        Its own status doesn't tell: a gear that fails a check is unsuitable, whether it is rated or not.
+        """
+        asked, rated = _UNLIMITED_BY[figure]
+        rating = self.check(rated)
+        known = rating is not None and rating.status != "not_rated"
+        return getattr(self, figure) is None and self.check(asked) is not None and known
+
+
+_UNLIMITED_BY = {
+    "life_L10_h": ("average_torque", "average_torque"),
+    "momentary_peak_count": ("momentary_peak_torque", "repeated_peak_torque"),
+    "bearing_life_L50_h": ("output_bearing_life", "output_bearing_life"),
+}
+"""Figures that may be without limit: the check that stands there where they are asked for, and the one that says
+whether the gear has the rating that they come from."""
+
+
+class DutyFigures(msgspec.Struct, frozen=True):
+    """What the duty cycle comes to."""
+
+    average_torque_Nm: float
+    average_output_speed_rpm: float
+    maximum_torque_Nm: float
+    maximum_output_speed_rpm: float
+
+
+class CheckDefinition(msgspec.Struct, frozen=True):
+    """What is the same of a check for every candidate; `Check` says what its fields mean."""
+
+    title: Annotated[str, Meta(description="Name of the check.")]
+    equation: Annotated[str | None, Meta(description="Number of the handbook's equation, where it has one.")]
+    unit: Annotated[str, Meta(description="Unit of demand and limit; empty for a pure number.")]
+    kind: Annotated[Kind, Meta(description="Which way the limit bounds the demand.")]
+    group: Annotated[
+        Group,
+        Meta(description="Load checks count in the candidate's utilisation; property checks only where they fail."),
+    ]
+    limit_name: Annotated[str, Meta(description="Symbol of the limit.")] = ""
+    source: Annotated[str, Meta(description="Where the limit comes from.")] = ""
+    tests: Annotated[str, Meta(description="What it tests.")] = ""
+    consequence: Annotated[str, Meta(description="What goes wrong where it fails.")] = ""
+    basis: Annotated[str, Meta(description="On which basis it stands.")] = ""
+    remedy: Annotated[str, Meta(description="What to turn.")] = ""
+
+
+class Selection(msgspec.Struct, frozen=True):
+    """The answer to one application. `link` is the address of the page that shows the application."""
+
+    engine_version: Annotated[str, Meta(description="Version of the calculation.")]
+    catalogue_version: Annotated[str, Meta(description="Hash of the catalogue's content, supplement included.")]
+    link: Annotated[str, Meta(description="Address of the page that shows this application.")]
+    duty: Annotated[DutyFigures, Meta(description="The duty cycle's own figures.")]
+    selected: Annotated[str | None, Meta(description="Designation of the first suitable candidate, or null.")]
+    candidates: Annotated[tuple[Candidate, ...], Meta(description="Every gear considered, best first.")]
+    check_definitions: Annotated[dict[str, CheckDefinition], Meta(description="Definitions by check code.")]
+    notices: Annotated[tuple[Notice, ...], Meta(description="Assumptions and standings.")]
+
+    @property
+    def foremost(self) -> Candidate:
+        """The selected gear, else the nearest miss among those that could be judged, if any could."""
+        return next((candidate for candidate in self.candidates if candidate.is_judged), self.candidates[0])
+
+    def candidate(self, designation: str) -> Candidate | None:
+        """The candidate of a designation, or None."""
+        return next((entry for entry in self.candidates if entry.designation == designation), None)
+
+
+encode = msgspec.json.Encoder().encode
+"""JSON of a selection; NaN and infinity, which stand for unpublished and unlimited, become null."""
+
+decode = msgspec.json.Decoder(Selection).decode
+"""Selection of JSON, also of JSON that an earlier version has saved; raises msgspec.MsgspecError for any other."""
+
+
+class Outcome(NamedTuple):
+    """One line of a batch: the selected gear, how close it is to its limits, and how many gears are suitable."""
+
+    selected: str | None
+    governing_check: str | None
+    utilisation: float | None
+    suitable: int
+
+
+@dataclass(frozen=True, slots=True)
+class Judged:
+    """An application on its gears: number `index` of an evaluation."""
 
     application: Application
-    catalogue: Catalogue
     evaluation: Evaluation
     index: int = 0
 
-    @property
-    def gears(self) -> GearList:
-        """The candidates in catalogue order."""
-        return self.evaluation.gears
-
-    @property
-    def load(self) -> OutputLoad | None:
-        """Conditions of the output load, or None where there is none."""
-        return self.evaluation.duty.loads[self.index]
-
-    @property
-    def best(self) -> int | None:
-        """Index of the selected gear among the candidates, or None where none is suitable."""
-        first = self.evaluation.order.item(self.index, 0)
-        return first if self.evaluation.codes.item(self.index, first, VERDICT) == SUITABLE else None
-
-    @property
-    def selected(self) -> str | None:
-        """Designation of the selected gear, or None."""
-        return None if (best := self.best) is None else self.gears.rows[best].designation
-
-    @property
-    def notices(self) -> list[Notice]:
-        """What the reader must know beyond the numbers."""
-        return notices_of(self.evaluation, self.index)
-
-    def json(self, link: str) -> bytes:
-        """The reply of `POST /api/v1/select` as JSON; unlimited, infinite and unpublished values are null."""
+    def outcome(self) -> Outcome:
+        """The answer in brief."""
         evaluation, index = self.evaluation, self.index
-        asked = evaluation.asked(index)
-        return encode(
-            SelectReply(
-                engine_version=ENGINE_VERSION,
-                catalogue_version=self.catalogue.version,
-                link=link,
-                duty=DutyRow(*evaluation.duty.figures[index, : d.T_RMS].tolist()),
-                selected=self.selected,
-                candidates=Raw(candidate_rows(evaluation, index, asked)),
-                check_definitions=check_definitions(asked),
-                notices=[{"code": notice.code, "text": notice.text} for notice in self.notices],
-            )
+        suitable = int((evaluation.verdict[index] == SUITABLE).sum())
+        if not suitable:
+            return Outcome(None, None, None, 0)
+        best = evaluation.order.item(index, 0)
+        check = evaluation.checked[evaluation.governing.item(index, best)].check
+        used = evaluation.utilisation.item(index, best)
+        return Outcome(evaluation.gears.rows[best].designation, check.code, used, suitable)
+
+    def selection(self, link: str = "") -> Selection:
+        """The answer in full."""
+        evaluation, index = self.evaluation, self.index
+        candidates = tuple(_candidates(evaluation, index))
+        checks = tuple(one.check.code for one in evaluation.checked if one.asked[index])
+        return Selection(
+            engine_version=ENGINE_VERSION,
+            catalogue_version=evaluation.catalogue.version,
+            link=link,
+            duty=DutyFigures(
+                *(getattr(evaluation.case.duty, name).item(index) for name in DutyFigures.__struct_fields__)
+            ),
+            selected=candidates[0].designation if candidates[0].status == "suitable" else None,
+            candidates=candidates,
+            check_definitions=dict(_definitions(checks)),
+            notices=notices_of(self.application, evaluation, index),
         )
 
-    def reply(self, link: str) -> dict[str, Any]:
-        """The same as plain Python values."""
-        reply: dict[str, Any] = decode(self.json(link))
-        return reply
 
-    def summary(self, link: str) -> dict[str, Any]:
-        """One line of a batch: the selected gear, how close it is to its limits, and how many gears are suitable."""
-        best, evaluation, index = self.best, self.evaluation, self.index
-        governing = used = None
-        if best is not None:
-            check = evaluation.codes.item(index, best, GOVERNING)
-            governing, used = CHECKS[check].code, evaluation.numbers.item(index, best, check, USED)
-        return {
-            "status": "ok",
-            "selected": self.selected,
-            "governing_check": governing,
-            "utilisation": used,
-            "suitable": int((evaluation.codes[index, :, VERDICT] == SUITABLE).sum()),
-            "link": link,
-        }
-
-
-def select(application: Application, catalogue: Catalogue) -> Selection:
+def select(application: Application, catalogue: Catalogue, link: str = "") -> Selection:
     """Evaluate every gear that the application allows, and rank them.
 
     Raises InputError for a ratio or size that the catalogue lacks, for a combination that leaves no gear, and for the
     digitised bearing model where no candidate has curve points.
     """
-    gears = candidates_of(application, catalogue)
-    return Selection(application, catalogue, evaluate(Duty([application]), gears, catalogue))
+    return judge(application, catalogue).selection(link)
 
+
+def judge(application: Application, catalogue: Catalogue) -> Judged:
+    """The same, before it is put together; raises as `select` does."""
+    gears = gears_for(application, catalogue)
+    return Judged(application, evaluate([application], gears, catalogue))
+
+
+# --- Candidates -------------------------------------------------------------------------------------------------------
+
+
+def _candidates(evaluation: Evaluation, index: int) -> Iterator[Candidate]:
+    """Candidates of an application, best first."""
+    order = evaluation.order[index]
+    asked = [one for one in evaluation.checked if one.asked[index]]
+    codes = [one.check.code for one in evaluation.checked]
+    u = evaluation.case.asked["requirements.utilisation"].item(index)
+    figures = (_row(getattr(evaluation.case.figures, name), index) for name in FIGURES)
+    terms = (values[index] for one in asked for values in (one.demand, one.limit, one.utilisation))
+    columns = iter(
+        _columns([evaluation.utilisation[index], *figures, *reserves(evaluation, index).values(), *terms], order)
+    )
+    used, values = next(columns), zip(*islice(columns, len(FIGURES)), strict=True)
+    reserve = map(Reserve, *islice(columns, len(Reserve.__struct_fields__)))
+    checks = [
+        map(
+            CheckResult, repeat(one.check.code), next(columns), next(columns), next(columns), _states(one, index, order)
+        )
+        for one in asked
+    ]
+    rows = zip(used, values, reserve, zip(*checks, strict=True), strict=True)
+    for place, (gear, (utilisation, numbers, own_reserve, results)) in enumerate(
+        zip(order.tolist(), rows, strict=True)
+    ):
+        verdict = evaluation.verdict.item(index, gear)
+        governing = None if verdict == UNRATED else codes[evaluation.governing.item(index, gear)]
+        known = evaluation.gears.rows[gear]
+        failed = sum(result.status == "fail" for result in results)
+        yield Candidate(
+            designation=known.designation,
+            size=known.size,
+            ratio=known.ratio,
+            stages=known.stages,
+            status=STATUS[verdict],
+            rank=place + 1 if verdict == SUITABLE else None,
+            utilisation=utilisation,
+            governing_check=governing,
+            reason=_reason(known.size, STATUS[verdict], utilisation, governing, failed, u),
+            **dict(zip(FIGURES, numbers, strict=True)),
+            reserve=own_reserve,
+            checks=results,
+        )
+
+
+def _row(figure: FloatArray, index: int) -> FloatArray:
+    row: FloatArray = figure[index if len(figure) > 1 else 0]
+    return row
+
+
+def _columns(values: Sequence[FloatArray], order: PlaceArray) -> list[list[float | None]]:
+    """Values of the gears in an order, a list for each; None where one is not finite."""
+    table = np.empty((len(values), len(order)))
+    for place, column in enumerate(values):
+        table[place] = column
+    table = table[:, order]
+    numbers = table.astype(object)
+    numbers[~np.isfinite(table)] = None
+    columns: list[list[float | None]] = numbers.tolist()
+    return columns
+
+
+def _states(checked: Checked, index: int, order: PlaceArray) -> Iterator[CheckStatus]:
+    return map(CHECK_STATUS.__getitem__, checked.status[index][order].tolist())
+
+
+FIGURES = (
+    "average_input_speed_rpm",
+    "maximum_input_speed_rpm",
+    "life_L10_h",
+    "momentary_peak_count",
+    "bearing_life_L50_h",
+    "bearing_life_L10_h",
+    "motor_peak_torque_Nm",
+    "motor_rated_torque_Nm",
+)
+"""Figures of a candidate, in the order of its fields."""
+
+
+@lru_cache(maxsize=1024)
+def _definitions(codes: tuple[str, ...]) -> dict[str, CheckDefinition]:
+    return {code: _definition(BY_CODE[code]) for code in codes}
+
+
+def _definition(check: Check) -> CheckDefinition:
+    return CheckDefinition(*(getattr(check, name) for name in CheckDefinition.__struct_fields__))
+
+
+# --- Reasons ----------------------------------------------------------------------------------------------------------
+
+REASONS = {
+    "suitable": N_("Every check passes; the closest is {check} at {percent} of its limit."),
+    "unsuitable": N_("{check} is at {percent} of its limit."),
+    "unsuitable_more": N_("{check} is at {percent} of its limit; checks that fail: {failed}."),
+    "no_stop_allowed": N_("The emergency stop is so hard that not one is allowed (equation 17.9)."),
+    "unrated": N_("Not rated: figures of {name} that the checks need are not published."),
+}
+"""Why a candidate stands where it does: templates of sentences."""
+
+
+def reason_of(candidate: Candidate, utilisation: float) -> Sentence:
+    """Why a candidate stands where it does, for any language; `utilisation` is the user's u."""
+    used, code, failed = candidate.utilisation, candidate.governing_check, len(candidate.failing)
+    if used is None or code is None:
+        key = "unrated" if candidate.status == "unrated" else "no_stop_allowed"
+        return Sentence(REASONS[key], {"name": f"HPN-{candidate.size}"})
+    percent = Quantity(_told_percent(used, code, utilisation), "percent", 12)
+    values: dict[str, Value] = {"check": BY_CODE[code].title, "percent": percent, "failed": failed}
+    return Sentence(REASONS[_key(candidate.status, failed)], values, ("check",))
+
+
+def _reason(size: str, status: Status, used: float | None, code: str | None, failed: int, u: float) -> str:
+    """The same as the API gives it: in English, its number with every digit that is told."""
+    if used is None or code is None:
+        return REASONS["unrated" if status == "unrated" else "no_stop_allowed"].format(name=f"HPN-{size}")
+    percent = f"{_told_percent(used, code, u)!r} %"
+    return REASONS[_key(status, failed)].format(check=BY_CODE[code].title, percent=percent, failed=failed)
+
+
+def _key(status: Status, failed: int) -> str:
+    return "unsuitable_more" if failed > 1 else status
+
+
+def _told_percent(used: float, code: str, u: float) -> float:
+    """Utilisation in percent, with as many decimals as tell it from what is allowed."""
+    percent = 100 * used
+    if percent > 1e15:  # no decimal is left to round
+        return percent
+    decimals = telling_decimals(percent, 100 * allowed(code, u), 1)
+    return float(round(percent * 10**decimals) / 10**decimals)
+
+
+# --- Which gears ------------------------------------------------------------------------------------------------------
 
 NOT_THERE = N_("the catalogue has no {value}; there are {listed}")
 
 
-def candidates_of(application: Application, catalogue: Catalogue) -> GearList:
+def gears_for(application: Application, catalogue: Catalogue) -> GearList:
     """Gears that `ratios` and `sizes` leave; raises InputError as `select` does."""
     asked, load = application.requirements, application.output_load
     gears = _restricted(catalogue, asked.sizes, asked.ratios)
@@ -156,9 +417,3 @@ def _not_there(sizes: Sequence[str], ratios: Sequence[int], catalogue: Catalogue
         if value not in there
     ]
     return InputError(*problems)
-
-
-@lru_cache(maxsize=1024)
-def check_definitions(checks: tuple[int, ...]) -> Raw:
-    """What is the same for every candidate, by check code, as JSON."""
-    return Raw(encode({CHECKS[check].code: CHECKS[check].explanation for check in checks}))

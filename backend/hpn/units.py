@@ -1,4 +1,21 @@
-"""Unit suffixes of field names: the one place that says what `_Nm` at the end of a name means."""
+"""Units: what `_Nm` at the end of a field's name means, and what a reader may see in place of it.
+
+Units for display are converted exactly, by pint.
+"""
+
+import re
+from dataclasses import dataclass
+from decimal import ROUND_HALF_EVEN, Context, Decimal
+from fractions import Fraction
+from functools import cache
+from math import inf
+from typing import Any
+
+
+def N_(text: str) -> str:
+    """Mark a text for the translators; it is translated where it is shown."""
+    return text
+
 
 SYMBOLS = {
     "Nm_per_rad": "Nm/rad",
@@ -27,3 +44,141 @@ def symbol_of(field_name: str) -> str:
     """Symbol of a field's unit (`life_L10_h` -> `h`), or an empty text for a field without one."""
     unit = suffix_of(field_name)
     return SYMBOLS[unit] if unit else ""
+
+
+# --- Units for display ------------------------------------------------------------------------------------------------
+
+CHOICES = {
+    "torque": {"Nm": "Nm", "lb_in": "lb·in", "lb_ft": "lb·ft"},
+    "speed": {"rpm": N_("rpm"), "rad_per_s": "rad/s", "deg_per_s": "°/s"},
+    "force": {"N": "N", "lbf": "lbf"},
+    "weight": {"kg": "kg", "lb": "lb"},
+    "length": {"mm": "mm", "in": "in"},
+    "angle": {"arcmin": "arcmin", "mrad": "mrad"},
+    "temperature": {"degC": "°C", "degF": "°F"},
+}
+"""What is measured -> codes of the units that it may be shown in, with their symbols; the first is the wire's."""
+
+NAMES = {
+    "torque": N_("Torque"),
+    "speed": N_("Speed"),
+    "force": N_("Force"),
+    "weight": N_("Weight"),
+    "length": N_("Length"),
+    "angle": N_("Angle"),
+    "temperature": N_("Temperature"),
+}
+
+PRESETS = {"SI": (), "US": ("lb_in", "lbf", "lb", "in", "degF")}
+"""Settings of all units at once."""
+
+CODES = tuple(code for units in CHOICES.values() for code in list(units)[1:])
+"""Codes of the units that differ from the wire's, in the order in which a cookie gives them."""
+
+_PINT = {
+    "Nm": "newton * meter",
+    "lb_in": "force_pound * inch",
+    "lb_ft": "force_pound * foot",
+    "rpm": "rpm",
+    "rad_per_s": "radian / second",
+    "deg_per_s": "degree / second",
+    "N": "newton",
+    "lbf": "force_pound",
+    "kg": "kilogram",
+    "lb": "pound",
+    "mm": "millimeter",
+    "in": "inch",
+    "arcmin": "arcminute",
+    "mrad": "milliradian",
+    "degC": "degC",
+    "degF": "degF",
+}
+_SUFFIXES = {symbol: suffix for suffix, symbol in SYMBOLS.items()}
+_OF_CODE = {code: next(iter(units)) for units in CHOICES.values() for code in units}
+_SYMBOL = {code: symbol for units in CHOICES.values() for code, symbol in units.items()}
+NUMBER = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]{1,3})?")
+
+
+@dataclass(frozen=True, slots=True)
+class Measure:
+    """A unit for display: shown = wire · factor + offset, exactly."""
+
+    symbol: str
+    factor: Fraction = Fraction(1)
+    offset: Fraction = Fraction(0)
+
+    @property
+    def same(self) -> bool:
+        """Whether it is the wire's own."""
+        return self.factor == 1 and self.offset == 0
+
+    def shown(self, value: float) -> float:
+        """A number of the wire in this unit."""
+        return value if self.same else value * float(self.factor) + float(self.offset)
+
+    def wire(self, text: str) -> float:
+        """A number as somebody writes it in this unit, in the wire's.
+
+        Twelve digits are kept, or all of them where more than thirteen are given, so that every float can be written.
+        """
+        try:
+            value = float((Fraction(text) - self.offset) / self.factor)
+        except OverflowError:
+            return inf
+        return value if _digits(text) > 13 else float(f"{value:.12g}")
+
+    def written(self, value: float, digits: int) -> str:
+        """A number of the wire in this unit, correctly rounded to so many digits, as plain as it can be."""
+        exact = Fraction(repr(value)) * self.factor + self.offset
+        rounded = Context(prec=digits, rounding=ROUND_HALF_EVEN).divide(
+            Decimal(exact.numerator), Decimal(exact.denominator)
+        )
+        if not rounded or -6 <= rounded.adjusted() < 15:
+            text = f"{rounded:f}"
+            return text.rstrip("0").rstrip(".") if "." in text else text
+        return f"{rounded.normalize():e}".replace("e+", "e")
+
+    def shortest(self, value: float) -> str:
+        """The shortest text that `wire` reads as exactly this number."""
+        for text in (self.written(value, digits) for digits in range(1, 50)):
+            if self.wire(text) == value:
+                return text
+        # Few digits that stand for many: zeros say that all of them count.
+        mantissa, e, exponent = text.partition("e")
+        return mantissa + ("" if "." in text else ".") + "0" * (14 - _digits(text)) + e + exponent
+
+
+def _digits(text: str) -> int:
+    """Number of significant digits."""
+    return len(re.sub(r"[eE].*|\D", "", text).lstrip("0"))
+
+
+def measure(unit: str, chosen: tuple[str, ...]) -> Measure:
+    """Unit that a unit of the wire (suffix `Nm_per_rad` or symbol `Nm/rad`) is shown in, for the codes chosen."""
+    suffix = unit if unit in SYMBOLS else _SUFFIXES.get(unit, unit)
+    return _measure(suffix, chosen)
+
+
+@cache
+def _measure(suffix: str, chosen: tuple[str, ...]) -> Measure:
+    whole = suffix.removesuffix("_per_rad")
+    code = next((code for code in chosen if _OF_CODE[code] == whole), whole)
+    symbol = _SYMBOL.get(code, SYMBOLS.get(suffix, suffix)) + ("/rad" if whole != suffix else "")
+    if code == whole:
+        return Measure(symbol)
+    zero, one = (_registry().Quantity(Fraction(n), _PINT[whole]).to(_PINT[code]).magnitude for n in (0, 1))
+    return Measure(symbol, Fraction(one - zero), Fraction(zero))
+
+
+@cache
+def _registry() -> Any:
+    import pint  # takes a second, which readers in the units of the wire never need
+
+    return pint.UnitRegistry(non_int_type=Fraction)
+
+
+def codes_of(text: str) -> tuple[str, ...]:
+    """Unit codes in a text such as `lb_in.lbf`, at most one per quantity, in the order of CODES; others are ignored."""
+    given = text[:200].split(".")
+    first = {_OF_CODE[code]: code for code in reversed(given) if code in CODES}
+    return tuple(code for code in CODES if code in first.values())

@@ -5,14 +5,10 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Literal, Union
 
+from hpn.units import N_ as N_
 from hpn.units import SYMBOLS
 
 Rounding = Literal["nearest", "down", "up"]
-
-
-def N_(text: str) -> str:
-    """Mark a text for the translators; it is translated where it is shown."""
-    return text
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,6 +40,29 @@ def rounded(value: float, digits: int, rounding: Rounding = "nearest") -> str:
     step = 10.0 ** (math.floor(math.log10(abs(value))) - digits + 1)
     return f"{float(text) + (step if rounding == 'up' else -step):.{digits}g}"
 
+
+MOST_DECIMALS = 10
+
+
+def telling_decimals(value: float, bound: float, least: int) -> int:
+    """Decimals with which a value, once rounded, still lies on its own side of a bound, `least` at least.
+
+    Within a relative 1e-12 a value is on neither side, as in the checks.
+    """
+    decimals = least
+    if abs(value - bound) <= 1 + _ROOM * abs(bound):  # to round it further away moves it by half at most
+        while decimals < MOST_DECIMALS and _side(round(value, decimals), bound) != _side(value, bound):
+            decimals += 1
+    return decimals
+
+
+def _side(value: float, bound: float) -> int:
+    if abs(value / bound - 1) <= _ROOM:
+        return 0
+    return 1 if value > bound else -1
+
+
+_ROOM = 1e-12
 
 Value = Union[Quantity, str, int, "Sentence"]
 

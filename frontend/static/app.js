@@ -1,94 +1,255 @@
-// What the page adds to htmx: the form stays the reader's while answers arrive, and history has one entry per edit.
-// Everything hangs on the document, because going back in history replaces the body.
+// What the page adds to htmx. Typing asks for the result alone, so that nothing typed is ever overwritten; row buttons, Back
+// and files bring another form. Everything hangs on the document, because the form may be replaced.
 
 const formOf = () => document.getElementById("application");
 const contentOf = (form) => new URLSearchParams(new FormData(form)).toString();
+const isOfForm = (ctx) => ctx?.sourceElement.id === "application";
+const replacesForm = (ctx) => ctx?.hx?.retarget === "#application";
+const valueOf = (field) => (field.type === "checkbox" ? field.checked : field.value);
 
-// --- Another language or other units ----------------------------------------------------------------------------------
+// --- Requests of the form ---------------------------------------------------------------------------------------------
 
-// The way back leads to what the form says, finished or not; the server turns it into the units of the link.
-document.addEventListener("submit", async (event) => {
-  const settings = event.target;
-  const form = formOf();
-  if (!form || !settings.matches("form.reader")) return;
-  if (form.method === "get") {
-    settings.elements.back.value = `/?${contentOf(form)}${form.elements.written ? "" : "&written=en"}`;
-    return;
-  }
-  event.preventDefault(); // a cycle too long for an address is posted again
-  await fetch(settings.action, { method: "POST", body: new URLSearchParams(new FormData(settings, event.submitter)), redirect: "manual" });
-  form.submit();
-});
-
-// --- Answers that come too late ---------------------------------------------------------------------------------------
+let underWay = null; // the request whose answer brings another form
+const pending = []; // what was pressed meanwhile: row buttons, each with its row, and undo
+let typedMeanwhile = false;
 
 document.addEventListener("htmx:config:request", (event) => {
   const { ctx } = event.detail;
-  if (ctx.sourceElement.id !== "application") return;
-  if (ctx.sourceEvent.type === "input" && unfinishedRow() && !presses.length && !unfinishedRow().querySelector('[aria-invalid="true"]')) {
-    ctx.sourceElement.dataset.waiting = "";
+  if (!isOfForm(ctx)) return;
+  const form = formOf();
+  const { submitter } = ctx.request;
+  const press = submitter?.name === "do" ? submitter : null;
+  if (underWay && !restoring) {
     event.preventDefault();
+    if (press) pending.push({ id: press.id.split("-")[0], row: rowOf(press) });
+    else typedMeanwhile = true;
     return;
   }
-  delete ctx.sourceElement.dataset.waiting;
-  carryPresses(ctx);
-  ctx.asked = contentOf(ctx.sourceElement);
+  if (restoring) ctx.request.body = bodyOf(restoring.content);
+  else note();
+  const waits = !press && !restoring && ctx.sourceEvent.type === "input" && unfinishedRow();
+  form.toggleAttribute("data-waiting", Boolean(waits));
+  if (waits) return event.preventDefault();
+  if (restoring) ctx.request.headers["HX-Target"] = "form#application";
+  ctx.before = restoring?.before ?? fieldsOf(form);
+  ctx.restores = restoring;
+  ctx.asked = contentOf(form);
+  if (press || restoring) underWay = ctx;
+  ctx.request.headers["HPN-Parts"] = [...document.querySelectorAll("[data-part][open]")].map((part) => part.id).join(" ");
 });
+
+document.addEventListener("htmx:finally:request", (event) => {
+  if (event.detail.ctx !== underWay) return;
+  underWay = null; // it came to nothing, or its form has been put in place
+  if (typedMeanwhile) formOf().dispatchEvent(new Event("input"));
+  typedMeanwhile = false;
+  next();
+});
+
+function next() {
+  const press = pending.shift();
+  if (press?.step) step(press.step);
+  else if (press) document.getElementById(press.row === null ? press.id : `${press.id}-${press.row}`)?.click();
+}
+
+// --- Another form -----------------------------------------------------------------------------------------------------
+
+const rowOf = (element) => element.closest("#duty tbody tr")?.id.split("-")[1] ?? null;
+const fieldsOf = (form) => new Map([...form.elements].filter((field) => field.id).map((field) => [field.id, valueOf(field)]));
+
+// Rows say where they stood in the form that was sent.
+const placeOf = (row) => document.querySelector(`#duty tr[data-was="${row}"]`)?.id.split("-")[1];
+const moved = (id, row) => (row === null ? id : placeOf(row) === undefined ? null : `${id.split("-")[0]}-${placeOf(row)}`);
 
 document.addEventListener("htmx:before:swap", (event) => {
   const { ctx } = event.detail;
-  if (ctx.asked === undefined) return;
-  // An answer to what the form no longer says must not overwrite it; the request for what it says now is under way.
-  if (leaving || ctx.asked !== contentOf(formOf())) event.preventDefault();
-  else if (event.detail.tasks.some((task) => task.type === "main")) mirrorIntoAttributes(formOf());
+  if (!replacesForm(ctx)) return;
+  const form = formOf();
+  const field = form.contains(document.activeElement) ? document.activeElement : null;
+  ctx.kept = {
+    open: [...form.querySelectorAll("details[open]")].map((part) => part.id),
+    typed: [...form.elements]
+      .filter((each) => ctx.before?.has(each.id) && ctx.before.get(each.id) !== valueOf(each))
+      .map((each) => ({ id: each.id, row: rowOf(each), value: valueOf(each) })),
+    // A button and a new row have their focus from the server.
+    focus: field?.matches("#duty tbody input") && ctx.request.submitter?.value !== "add" && !ctx.restores
+      ? { id: field.id, row: rowOf(field), range: [field.selectionStart, field.selectionEnd] }
+      : null,
+  };
 });
 
 document.addEventListener("htmx:after:swap", (event) => {
   const { ctx } = event.detail;
-  if (ctx.asked === undefined) return;
-  if (ctx.replaces || ctx.presses) followAttributes(formOf());
-  if (ctx.presses) presses.splice(0, ctx.presses);
-  ctx.refocus?.();
-  for (const part of document.querySelectorAll("[data-part][open]")) bring(part);
+  if (!ctx?.kept) return;
+  const { open, typed, focus } = ctx.kept;
+  for (const id of open) document.getElementById(id)?.setAttribute("open", "");
+  if (ctx.restores) settle();
+  else note(true);
+  showAddress(ctx);
+  for (const { id, row, value } of typed) {
+    const field = document.getElementById(moved(id, row));
+    if (!field) continue;
+    field[field.type === "checkbox" ? "checked" : "value"] = value;
+    typedMeanwhile = true;
+  }
+  if (focus) keepPlace(focus);
+  for (const press of pending) if (press.row) press.row = placeOf(press.row) ?? "gone";
 });
 
-// Going back replaces the page: the answer under way belongs to the one that is left.
-let leaving = false;
-document.addEventListener("htmx:before:history:restore", () => {
-  leaving = true;
-  htmx.trigger(formOf(), "htmx:abort");
+// Who types, or edits rows by key, stays in the cell, wherever its row goes; where it is removed, in the one after it.
+function keepPlace({ id, row, range }) {
+  const place = document.getElementById(moved(id, row));
+  if (place) {
+    place.focus();
+    return place.setSelectionRange(...range);
+  }
+  const last = document.querySelectorAll("#duty tbody tr").length - 1;
+  const other = document.getElementById(`${id.split("-")[0]}-${Math.min(row, last)}`);
+  other?.focus();
+  other?.select();
+}
+
+// --- Back is undo: one entry of the history per edit, which holds what the form said ----------------------------------
+
+let at = history.state?.at ?? 0; // number of the entry that the page shows
+let last = at;
+let restoring = null; // what the form said in the entry that somebody has gone to
+let visit = 0; // counts the times that a field was entered
+let edit = 0; // the visit that the latest change belongs to
+let noted = -1; // the edit that has its entry already
+let addressed = contentOf(formOf()); // what the form said when the address came to be
+
+document.addEventListener("focusin", () => visit++);
+document.addEventListener("input", () => (edit = visit));
+const startEdit = () => (edit = ++visit);
+
+function note(own = false) {
+  const content = contentOf(formOf());
+  if (content === history.state?.content) return;
+  if (edit === noted && !own) history.replaceState({ at, content }, "");
+  else history.pushState({ at: (last = ++at), content }, "");
+  noted = own ? -1 : edit;
+  showSteps();
+}
+
+function settle() {
+  restoring = null;
+  history.replaceState({ at, content: contentOf(formOf()) }, "");
+}
+
+const bodyOf = (content) => {
+  const body = new FormData();
+  for (const [name, value] of new URLSearchParams(content)) body.append(name, value);
+  return body;
+};
+
+addEventListener("popstate", (event) => {
+  const form = formOf();
+  if (!event.state || !form) return;
+  at = event.state.at;
+  noted = -1;
+  pending.length = 0;
+  restoring = { content: event.state.content, before: fieldsOf(form) };
+  form.setAttribute("hx-method", new URLSearchParams(restoring.content).has("phases") ? "post" : "get");
+  form.requestSubmit();
+  showSteps();
 });
-document.addEventListener("htmx:finally:request", (event) => {
-  if (event.detail.ctx.request.headers["HX-History-Restore-Request"]) leaving = false;
+
+function step(direction) {
+  if (underWay && !restoring) return pending.push({ step: direction });
+  if (!restoring) note();
+  if (direction < 0 ? at === 0 : at === last) return;
+  at += direction; // at once, so that a second press does not leave the page
+  history.go(direction);
+}
+
+function showSteps() {
+  for (const button of document.querySelectorAll("[data-step]")) {
+    button.setAttribute("aria-disabled", String(button.dataset.step < 0 ? at === 0 : at === last));
+  }
+}
+
+function showAddress(ctx) {
+  if (!ctx.hx?.pushurl) return;
+  addressed = ctx.kept ? contentOf(formOf()) : ctx.asked;
+  history.replaceState(history.state, "", ctx.hx.pushurl);
+}
+
+document.addEventListener("click", (event) => {
+  const button = event.target.closest("[data-step]");
+  if (button) step(Number(button.dataset.step));
 });
 
-// --- What an answer brings --------------------------------------------------------------------------------------------
+const ownUndo = (element) => element.isContentEditable || element.matches("textarea, input:not([type=checkbox], [type=radio], [type=button], [type=submit], [type=file])");
+document.addEventListener("keydown", (event) => {
+  if (!(event.ctrlKey || event.metaKey) || event.altKey || ownUndo(event.target) || document.querySelector("dialog[open]")) return;
+  const key = event.key.toLowerCase();
+  if (key !== "z" && key !== "y") return;
+  event.preventDefault();
+  step(key === "y" || event.shiftKey ? 1 : -1);
+});
 
-// Typing has changed the form already, so that it need not come again, unless there is or was something to correct.
-const typed = (ctx) =>
-  !ctx.replaces && !presses.length && document.querySelector("#application:not([data-invalid]):not(:has(#phases)) ~ #result.answered");
+// A link within the page is no edit: it takes no entry of its own.
+document.addEventListener("click", (event) => {
+  const link = event.target.closest('a[href^="#"]');
+  if (!link || event.button || event.ctrlKey || event.metaKey || event.shiftKey || event.altKey) return;
+  event.preventDefault();
+  const { state } = history;
+  const address = location.pathname + location.search;
+  location.replace(link.hash);
+  history.replaceState(state, "", address);
+});
 
-// What is folded away comes along from when somebody has unfolded it for the first time.
-const unfolded = new Set();
+// --- After every answer -----------------------------------------------------------------------------------------------
 
-document.addEventListener("htmx:before:request", (event) => {
+document.addEventListener("htmx:after:swap", (event) => {
   const { ctx } = event.detail;
-  if (ctx.sourceElement.id === "application") ctx.request.headers["HPN-Parts"] = [...(typed(ctx) ? [] : ["form"]), "result", ...unfolded].join(" ");
+  if (!isOfForm(ctx) && !ctx?.kept) return;
+  if (!ctx.kept) {
+    showAddress(ctx);
+    mark();
+  }
+  showSteps();
+  for (const part of document.querySelectorAll("[data-part][open]")) bring(part);
+  // Nothing works unseen: what is wrong is unfolded.
+  for (const field of document.querySelectorAll('#application details:not([open]) [aria-invalid="true"]')) field.closest("details").open = true;
 });
 
-document.addEventListener(
-  "toggle",
-  (event) => {
-    const part = event.target;
-    if (!part.open || !part.matches("[data-part]")) return;
-    unfolded.add(part.id);
-    bring(part);
-  },
-  true,
-);
+// The result lists what is wrong; each message stands beside the field that it names.
+function mark() {
+  const form = formOf();
+  for (const message of form.querySelectorAll("p.error")) message.remove();
+  for (const field of form.querySelectorAll("[aria-invalid]")) {
+    field.removeAttribute("aria-invalid");
+    describe(field, (id) => !id.startsWith("e-"));
+  }
+  for (const item of document.querySelectorAll("#problems [data-field]")) {
+    const field = document.getElementById(item.dataset.field);
+    if (!form.contains(field)) continue;
+    const first = !field.hasAttribute("aria-invalid");
+    const id = `e-${field.id.replace(/^f-/, "")}`;
+    const message = Object.assign(document.createElement("p"), { className: "error", textContent: (field.id === "phases" ? item : item.querySelector("span")).textContent });
+    if (field.matches("fieldset")) field.append(message);
+    else (field.closest(".control") ?? field).after(message);
+    if (!first) continue;
+    message.id = id;
+    field.setAttribute("aria-invalid", "true");
+    describe(field, () => true, id);
+  }
+}
+
+function describe(field, keep, added) {
+  const ids = [added, ...(field.getAttribute("aria-describedby") ?? "").split(" ").filter(keep)].filter(Boolean);
+  if (ids.length) field.setAttribute("aria-describedby", ids.join(" "));
+  else field.removeAttribute("aria-describedby");
+}
+
+// --- Parts that come when somebody unfolds them -----------------------------------------------------------------------
 
 const addressOf = (part) => document.getElementById(part.id)?.getAttribute("hx-get");
 const bring = (part) => part.childElementCount === 1 && htmx.trigger(part, "unfold");
+
+document.addEventListener("toggle", (event) => event.target.open && event.target.matches("[data-part]") && bring(event.target), true);
 
 // What a part was asked for belongs to one answer: beside a later one it would be wrong.
 document.addEventListener("htmx:config:request", (event) => {
@@ -101,24 +262,44 @@ document.addEventListener("htmx:before:swap", (event) => {
   if (ctx.partOf !== undefined && ctx.partOf !== addressOf(ctx.sourceElement)) event.preventDefault();
 });
 
-// Nothing works unseen: what is wrong is unfolded, and so is what an undo or a file has brought.
-const holds = (part) => [...part.querySelectorAll("input")].some((field) => (field.type === "checkbox" ? field.checked : field.value.trim()));
+// --- Rows that are still being typed ----------------------------------------------------------------------------------
 
-document.addEventListener("htmx:after:swap", (event) => {
-  const { ctx } = event.detail;
-  const brought = ctx.replaces || ctx.sourceElement.id === "paste-form";
-  for (const part of document.querySelectorAll("#application details:not([open])")) {
-    if (part.querySelector('[aria-invalid="true"]') || (brought && holds(part))) part.open = true;
-  }
+// A phase with a torque and no speed yet is no error of somebody who is about to type the speed.
+function unfinishedRow() {
+  const row = document.activeElement?.closest("#duty tbody tr");
+  if (!row || row.querySelector('[aria-invalid="true"]')) return null;
+  const filled = ["T", "n", "t"].map((name) => row.querySelector(`[name="${name}"]`).value.trim() !== "");
+  return filled.includes(true) && filled.includes(false) ? row : null;
+}
+
+document.addEventListener("focusout", (event) => {
+  const row = event.target.closest("#duty tbody tr");
+  if (row && formOf().matches("[data-waiting]") && !row.contains(event.relatedTarget)) formOf().requestSubmit();
 });
 
-// --- Saving -----------------------------------------------------------------------------------------------------------
+// --- Inputs that stand in the result ----------------------------------------------------------------------------------
+
+document.addEventListener("click", (event) => {
+  const chooser = event.target.closest("[data-gear]");
+  if (!chooser || event.button || event.ctrlKey || event.metaKey || event.shiftKey || event.altKey) return;
+  event.preventDefault();
+  document.getElementById("chosen-gear").value = chooser.dataset.gear;
+  startEdit();
+  formOf().requestSubmit();
+});
+
+document.addEventListener("input", (event) => {
+  const { form } = event.target;
+  if (form?.id === "application" && !form.contains(event.target)) form.dispatchEvent(new Event("input"));
+});
+
+// --- Saving, and another language or other units ----------------------------------------------------------------------
 
 // What is saved is what the form says, although its answer may still be under way.
 document.addEventListener("submit", (event) => {
   const form = formOf();
-  if (!form || !event.target.matches("form.save")) return;
-  if (form.matches("[data-invalid], [data-waiting]")) {
+  if (!event.target.matches("form.save")) return;
+  if (form.matches("[data-waiting]") || document.querySelector("#problems > *")) {
     event.preventDefault();
     document.querySelector('#connection [data-state="unsaved"]').hidden = false;
     return;
@@ -126,122 +307,19 @@ document.addEventListener("submit", (event) => {
   event.target.elements.link.value = `/?${contentOf(form)}`;
 });
 
-// --- Row edits that are under way while somebody types on -------------------------------------------------------------
-
-const presses = []; // row edits that are not answered yet, each as the rows stand after those before it
-
-// The row at which a row stands after an edit, or null where the edit removes it.
-function after(press, row, rows) {
-  const [name, number] = press.split(":");
-  const at = number - 1;
-  if (name === "remove") return row === at ? null : row - (row > at);
-  if (name !== "up" && name !== "down") return row;
-  const to = Math.min(Math.max(at + (name === "down" ? 1 : -1), 0), rows - 1);
-  return row === at ? to : row === to ? at : row;
-}
-
-const placeAfterPresses = (row, rows) => presses.reduce((at, press) => (at === null ? null : after(press, at, rows)), row);
-
-// The place of a row that the edits remove: what followed it stands there afterwards.
-const removedAt = (row, rows) => presses.reduce((at, press) => after(press, at, rows) ?? at, row);
-
-// A later request takes along the row edits of the one that it replaces, so that neither they nor the typing are lost.
-function carryPresses(ctx) {
-  const rows = document.querySelectorAll("#duty tbody tr").length;
-  const { submitter, body } = ctx.request;
-  const own = submitter?.name === "do" ? submitter.value : null;
-  if (!own && !presses.length) return;
-  body.delete("do");
-  if (own) {
-    const [name, number] = own.split(":");
-    const row = number === undefined ? undefined : placeAfterPresses(number - 1, rows);
-    if (row !== null) presses.push(row === undefined ? name : `${name}:${row + 1}`);
-  }
-  for (const press of presses) body.append("do", press);
-  ctx.presses = presses.length;
-  keepPlace(ctx, rows);
-}
-
-// Who types, or edits rows by key, stays in the cell, wherever its row goes; where it is removed, in the one that takes
-// its place. A button and a new row have their focus from the server.
-function keepPlace(ctx, rows) {
-  const field = document.activeElement;
-  if (!field?.matches("#duty tbody input") || ctx.request.submitter?.value === "add") return;
-  const [name, number] = field.id.split("-");
-  const row = placeAfterPresses(Number(number), rows);
-  const range = [field.selectionStart, field.selectionEnd];
-  ctx.refocus = () => {
-    const last = document.querySelectorAll("#duty tbody tr").length - 1;
-    const place = document.getElementById(`${name}-${row ?? Math.min(removedAt(Number(number), rows), last)}`);
-    place?.focus();
-    if (row === null) place?.select();
-    else place?.setSelectionRange(...range);
-  };
-}
-
-// The morph compares attributes, while typing changes properties: make the two agree first.
-function mirrorIntoAttributes(form) {
-  for (const field of form.elements) {
-    if (field.type === "checkbox") field.toggleAttribute("checked", field.checked);
-    else if (field.tagName === "TEXTAREA") field.textContent = field.value;
-    else if (field.type === "text" || field.type === "hidden") field.setAttribute("value", field.value);
-    else if (field.tagName === "SELECT") {
-      for (const option of field.options) option.toggleAttribute("selected", option.selected);
-    }
-  }
-}
-
-// And the other way round, where a content takes the place of what was typed: an undo, or a file.
-function followAttributes(form) {
-  for (const field of form.elements) {
-    if (field.type === "checkbox") field.checked = field.defaultChecked;
-    else if (field.tagName === "SELECT") for (const option of field.options) option.selected = option.defaultSelected;
-    else if (field.defaultValue !== undefined && field.type !== "hidden" && field.value !== field.defaultValue) field.value = field.defaultValue;
-  }
-}
-
-// --- Rows that are still being typed ----------------------------------------------------------------------------------
-
-// A phase with a torque and no speed yet is no error of somebody who is about to type the speed.
-function unfinishedRow() {
-  const row = document.activeElement?.closest("#duty tbody tr");
-  if (!row) return null;
-  const filled = ["T", "n", "t"].map((name) => row.querySelector(`[name="${name}"]`).value.trim() !== "");
-  return filled.includes(true) && filled.includes(false) ? row : null;
-}
-
-document.addEventListener("focusout", (event) => {
-  const row = event.target.closest("#duty tbody tr");
-  const form = formOf();
-  if (row && "waiting" in form.dataset && !row.contains(event.relatedTarget)) form.requestSubmit();
-});
-
-// --- Choosing a candidate ---------------------------------------------------------------------------------------------
-
-document.addEventListener("click", (event) => {
-  const link = event.target.closest("a[data-gear]");
-  if (!link || event.button || event.ctrlKey || event.metaKey || event.shiftKey || event.altKey) return;
+// The page is loaded anew with what the form says, finished or not; the server turns it into the units of the link.
+document.addEventListener("submit", async (event) => {
+  const settings = event.target;
+  if (!settings.matches("form.reader")) return;
   event.preventDefault();
+  await fetch(settings.action, { method: "POST", body: new URLSearchParams(new FormData(settings, event.submitter)), redirect: "manual" });
   const form = formOf();
-  form.elements.gear.value = new URL(link.href).searchParams.get("gear");
-  startEdit();
-  form.requestSubmit();
+  if (form.method === "post") return form.submit(); // a cycle too long for an address is posted again
+  note();
+  const content = contentOf(form);
+  if (content !== addressed) history.replaceState(history.state, "", `/?${content}${form.elements.written ? "" : "&written=en"}`);
+  location.reload();
 });
 
-// --- History: one entry per edit, not per keystroke -------------------------------------------------------------------
-
-let visit = 0; // counts the times that a field was entered
-let edit = 0; // the visit that the latest change belongs to
-let pushed = -1; // the edit that has its entry already
-
-const startEdit = () => (edit = ++visit);
-document.addEventListener("focusin", () => visit++);
-document.addEventListener("input", () => (edit = visit));
-document.addEventListener("submit", (event) => event.submitter?.name && startEdit());
-
-document.addEventListener("htmx:before:history:update", (event) => {
-  const { history } = event.detail;
-  if (history.path === location.pathname + location.search) return event.preventDefault();
-  if (edit === pushed) history.type = "replace";
-  pushed = edit;
-});
+history.replaceState({ at, content: contentOf(formOf()) }, "");
+showSteps();

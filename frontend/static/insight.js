@@ -6,7 +6,7 @@ const plain = (event) => !event.button && !event.ctrlKey && !event.metaKey && !e
 document.addEventListener(
   "click",
   (event) => {
-    if (!event.target.closest(".pin") || !plain(event) || !document.querySelector("#application[data-invalid]")) return;
+    if (!event.target.closest(".pin") || !plain(event) || !document.querySelector("#problems > *")) return;
     event.preventDefault();
     event.stopPropagation();
     document.querySelector('#connection [data-state="uncompared"]').hidden = false;
@@ -17,17 +17,20 @@ document.addEventListener(
 let toggle = null; // the gear whose toggle was pressed and keeps the focus, wherever the answer puts it
 
 document.addEventListener("click", (event) => {
-  const link = event.target.closest("a[data-pin]");
-  if (!link || !plain(event)) return;
+  const button = event.target.closest("[data-pin]");
+  if (!button || !plain(event)) return;
   event.preventDefault();
-  const form = document.getElementById("application");
-  const value = link.id.replace(/^pin-(column-)?/, "");
-  const pins = [...form.querySelectorAll('input[name="pin"]')];
+  const value = button.dataset.pin;
+  const pins = [...document.querySelectorAll('#result > input[name="pin"]')];
   const pinned = pins.find((field) => field.value === value);
   if (pinned) pinned.remove();
-  else (pins.at(-1) ?? form.elements.gear).after(Object.assign(document.createElement("input"), { type: "hidden", name: "pin", value }));
-  toggle = link.id;
-  form.requestSubmit();
+  else {
+    const field = Object.assign(document.createElement("input"), { type: "hidden", name: "pin", id: `pinned-${value}`, value });
+    field.setAttribute("form", "application");
+    (pins.at(-1) ?? document.getElementById("chosen-gear")).after(field);
+  }
+  toggle = button.id;
+  document.getElementById("application").requestSubmit();
 });
 
 document.addEventListener("htmx:after:swap", (event) => {

@@ -46,18 +46,12 @@ document.addEventListener("htmx:config:request", (event) => {
   const form = formOf();
   if (!form) return; // the page of its own brings its link along
   ctx.request.body.set("link", contentOf(form));
-  if (ctx.request.submitter?.name !== "take") return;
-  // What is taken becomes the form: the same swap as that of an edit.
-  ctx.target = form;
-  ctx.swap = "outerMorph";
-  ctx.asked = contentOf(form);
-  ctx.replaces = true;
 });
 
 document.addEventListener("htmx:after:swap", (event) => {
   const { ctx } = event.detail;
   if (ctx?.sourceElement.id !== "paste-form") return;
-  if (ctx.request.submitter?.name === "take") {
+  if (ctx.kept) {
     document.getElementById("paste").close();
     document.querySelector("#duty input, #phases")?.focus();
   } else if (ctx.sourceEvent.type === "submit") {
@@ -112,8 +106,24 @@ document.addEventListener("submit", async (event) => {
     field.reportValidity();
     return;
   }
-  formOf().elements.gear.value = name;
+  document.getElementById("chosen-gear").value = name;
   formOf().requestSubmit();
 });
 
 document.addEventListener("input", (event) => event.target.matches("[data-unknown]") && event.target.setCustomValidity(""));
+
+// --- Copying ----------------------------------------------------------------------------------------------------------
+
+document.addEventListener("click", async (event) => {
+  const button = event.target.closest("[data-copies]");
+  if (!button) return;
+  const source = document.getElementById(button.dataset.copies);
+  try {
+    await navigator.clipboard.writeText(source.textContent);
+    const label = button.textContent;
+    button.textContent = button.dataset.done;
+    setTimeout(() => (button.textContent = label), 1500);
+  } catch {
+    getSelection().selectAllChildren(source); // where the clipboard is out of reach, a key copies what is marked
+  }
+});

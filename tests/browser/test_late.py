@@ -40,7 +40,7 @@ def test_calculation_that_is_unfolded_meanwhile_is_that_of_the_answer(visitor: V
         unfold(page, "Show the calculation")
 
 
-def test_going_back_meanwhile_leads_to_what_was_before(visitor: Visitor) -> None:
+def test_going_back_meanwhile_takes_back_the_edit_that_is_under_way(visitor: Visitor) -> None:
     page = visitor.open(EXAMPLE)
     pause(page).fill("5")
     expect(page).to_have_url(re.compile("tp=5"))
@@ -54,12 +54,12 @@ def test_going_back_meanwhile_leads_to_what_was_before(visitor: Visitor) -> None
     page.wait_for_timeout(500)
     held[1].continue_()
     page.unroute("**/?*")
-    expect(pause(page)).to_have_value("4")
     expect(torque(page, 1)).to_have_value("40")
+    expect(pause(page)).to_have_value("5")
     page.wait_for_load_state("networkidle")
-    expect(page).to_have_url(re.compile("T=40&.*tp=4"))
+    expect(page).to_have_url(re.compile("T=40&.*tp=5"))
     torque(page, 1).fill("41")
-    expect(page).to_have_url(re.compile("T=41&.*tp=4"))
+    expect(page).to_have_url(re.compile("T=41&.*tp=5"))
 
 
 def test_what_is_saved_is_what_the_form_says(visitor: Visitor) -> None:

@@ -58,7 +58,7 @@ def test_worked_example_typed_by_keyboard_alone_into_an_empty_cycle_selects_HPN_
             expect(torque(page, k + 1)).to_be_focused()
     tab_to(page, "textbox", "Pause tp")
     page.keyboard.type("4")
-    tab_to(page, "textbox", "Torque Tk")
+    tab_to(page, "textbox", "Emergency-stop torque Tk")
     page.keyboard.type("200")
     tab_to(page, "checkbox", "5")
     page.keyboard.press("Space")
@@ -226,17 +226,17 @@ def test_explanation_of_a_check_opens_and_closes_by_keyboard(visitor: Visitor) -
 def test_opened_sections_stay_open_while_typing(visitor: Visitor) -> None:
     page = visitor.open(EXAMPLE)
     page.get_by_text("Limits and surroundings").click()
-    page.get_by_label("Use at most").fill("0.7")
+    page.get_by_label("Largest acceptable utilisation").fill("0.7")
     expect(selected(page)).to_contain_text("HPN-32A-5")
-    expect(page.get_by_label("Use at most")).to_be_visible()
-    expect(page.get_by_label("Use at most")).to_be_focused()
+    expect(page.get_by_label("Largest acceptable utilisation")).to_be_visible()
+    expect(page.get_by_label("Largest acceptable utilisation")).to_be_focused()
 
 
 def test_loads_can_be_given_for_each_phase(visitor: Visitor) -> None:
     page = visitor.open(EXAMPLE)
     page.get_by_text("Load on the output shaft", exact=True).click()
     page.get_by_role("button", name="A load for each phase").click()
-    page.get_by_label("Radial, phase 2").fill("500")
+    page.get_by_label("Radial load, phase 2").fill("500")
     expect(page).to_have_url(re.compile("FRi=&.*FRi=500"))
     expect(page.get_by_role("table", name="Load limits").get_by_text("Output bearing").first).to_be_visible()
 
@@ -248,8 +248,8 @@ def test_every_figure_is_read_in_full_with_a_load_per_phase(visitor: Visitor, wi
     for field in page.get_by_role("table", name="Load phases").get_by_role("textbox").all():
         assert field.evaluate("field => field.scrollWidth <= field.clientWidth")
     radial, axial = (
-        page.get_by_label("Radial, phase 2").bounding_box(),
-        page.get_by_label("Axial, phase 2").bounding_box(),
+        page.get_by_label("Radial load, phase 2").bounding_box(),
+        page.get_by_label("Axial load, phase 2").bounding_box(),
     )
     assert radial and axial and radial["x"] + radial["width"] <= axial["x"]
     assert min(radial["width"], axial["width"]) > 55

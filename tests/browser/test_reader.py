@@ -13,7 +13,8 @@ ODD = "/?T=40.123456789&n=33.3333333333333&t=0.1&tp=0.07&Tk=199.99&FR=512.34&fw=
 
 def set_units(page: Page, preset: str) -> None:
     page.get_by_role("button", name=re.compile("^(Units|Einheiten)")).click()
-    page.get_by_role("button", name=preset).click()
+    with page.expect_navigation():
+        page.get_by_role("button", name=preset).click()
 
 
 def violations(page: Page, part: str) -> list[tuple[str, list[str]]]:

@@ -15,6 +15,7 @@ from starlette.types import Message
 
 from hpn.catalogue import Catalogue
 from hpn.web.api.batch import batch_lines, line_evaluator
+from hpn.web.api.replies import encode
 from hpn.web.api.streaming import MEMORY_BYTES, Line, LineSplitter, LineStream, Spool
 from hpn.web.door.metrics import Metrics
 from tests.build import worked_example
@@ -315,4 +316,4 @@ async def test_a_mistake_of_ours_is_raised_and_leaves_the_answer_without_its_end
 def test_the_evaluator_gives_the_lines_of_the_json_form(catalogue: Catalogue) -> None:
     answers = line_evaluator(catalogue, Metrics(), 100)([orjson.dumps(item) for item in ITEMS])
 
-    assert lines_of(answers) == json.loads(json.dumps(batch_lines(ITEMS, catalogue)))
+    assert lines_of(answers) == json.loads(encode(batch_lines(ITEMS, catalogue)))

@@ -9,14 +9,14 @@ import pytest
 from hypothesis import example, given
 
 from hpn.application import Application
-from hpn.calculation import Line, Step, calculation_of
+from hpn.calculation import Line, Step
 from hpn.calculation.formula import value_of
 from hpn.catalogue import Catalogue, load_catalogue
-from hpn.selection import select
+from hpn.reader import Reader
 from hpn.web.pages.mathml import compared, in_symbols, result, with_numbers
-from hpn.web.reader import Reader
 from tests.build import Json, candidate, cycle, phase, worked_example
 from tests.property.draw import applications
+from tests.wire import calculation_of, select
 
 CATALOGUE: Catalogue = load_catalogue()
 READERS = (Reader(), Reader("de"), Reader(units=("lb_in", "rad_per_s", "lbf")))

@@ -9,13 +9,11 @@ from collections.abc import Iterator
 
 from hpn.application import Application
 from hpn.catalogue import Catalogue
-from hpn.explanations import EXPLANATIONS
-from hpn.fleet import select_fleet
-from hpn.selection import Selection, select
 from tests.build import Json
 from tests.conftest import Supplement
 from tests.property.draw import RANKS, at_random
 from tests.reference import contract
+from tests.wire import EXPLANATIONS, Selection, select, select_fleet
 
 # Both ways round sums, powers and quotients differently; a power 10/3 of a sum of twelve terms stays far below this.
 ROUNDING = 1e-12

@@ -16,9 +16,8 @@ from hypothesis import strategies as st
 from hpn.application import Application
 from hpn.catalogue import Catalogue, load_catalogue
 from hpn.envelopes import EnvelopeQuery, life_envelopes
-from hpn.fleet import select_fleet
-from hpn.selection import Selection, select
 from tests.build import Json, candidate, cycle, phase
+from tests.wire import Selection, select, select_fleet
 
 CATALOGUE: Catalogue = load_catalogue()
 

@@ -9,10 +9,9 @@ from hypothesis import strategies as st
 
 from hpn.application import Application
 from hpn.catalogue import Catalogue, load_catalogue
-from hpn.fleet import select_fleet
-from hpn.selection import Selection, select
 from tests.build import Json, answer, candidate, suitable
 from tests.property.draw import applications
+from tests.wire import Selection, select, select_fleet
 
 CATALOGUE: Catalogue = load_catalogue()  # Hypothesis does not mix with fixtures of a narrower scope
 

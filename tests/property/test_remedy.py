@@ -7,12 +7,12 @@ from hypothesis import assume, example, given
 
 from hpn.application import Application
 from hpn.catalogue import Catalogue, load_catalogue
-from hpn.remedy import Way, rooms_of, ways_of
+from hpn.remedy import Way
 from hpn.remedy import followed as follow
-from hpn.reserve import MOVES
 from hpn.wording import rounded
 from tests.build import Json, answer, candidate, cycle, phase, worked_example
 from tests.property.draw import applications
+from tests.wire import MOVES, rooms_of, ways_of
 
 CATALOGUE: Catalogue = load_catalogue()
 GEARS = ("HPN-11A-4", "HPN-14A-5", "HPN-20A-25", "HPN-32A-10")

@@ -18,7 +18,7 @@ import orjson
 
 from hpn.application import Application
 from hpn.catalogue import Catalogue
-from hpn.selection import select
+from hpn.selection import encode, select
 from hpn.store import Store
 from hpn.web.form.write import to_link
 from tests.build import Json, cycle, phase
@@ -106,7 +106,7 @@ async def read_back(database: str, clients: Clients, catalogue: Catalogue) -> No
         assert (found.title, found.reference) == (body["title"], body["reference"])
         assert orjson.loads(found.application) == body["application"]
         wanted = Application.model_validate(body["application"])
-        assert found.result == select(wanted, catalogue).json(to_link(wanted))
+        assert found.result == encode(select(wanted, catalogue, to_link(wanted)))
     titles, cursor = [], None
     while True:
         page = await store.page(cursor=cursor, limit=200)

@@ -1,15 +1,22 @@
 """Selections to be exported, from the plain example to what is hostile."""
 
 import math
+from collections.abc import Sequence
+from dataclasses import dataclass
 from datetime import UTC, datetime
 from typing import Any
 
+import msgspec
+
 from hpn.application import Application
 from hpn.catalogue import Catalogue
-from hpn.report.export import Export
-from hpn.selection import select
+from hpn.reader import Reader
+from hpn.report import export
+from hpn.report import workbook as sheets
+from hpn.selection import Selection, encode, select
 from hpn.web.form.write import to_link
 from tests.build import Json, cycle, phase, worked_example
+from tests.wire import candidate_of
 
 CREATED = datetime(2026, 11, 21, 10, 15, tzinfo=UTC)
 
@@ -56,16 +63,70 @@ CASES: dict[str, Json] = {
 }
 
 
-def export_of(application: Json, catalogue: Catalogue, *, title: str = "Rotary table", reference: str = "") -> Export:
+def typed_export_of(
+    application: Json, catalogue: Catalogue, *, title: str = "Rotary table", reference: str = ""
+) -> export.Export:
     """An export as a saved selection gives it."""
     asked = Application.model_validate(application)
-    reply = select(asked, catalogue).reply(to_link(asked))
-    return Export(
+    return export.Export(
         application=asked,
-        reply=reply,
+        selection=select(asked, catalogue, to_link(asked)),
         link="http://hpn.example/selections/0123456789abcdefghijkl",
         title=title,
         reference=reference,
         created=CREATED,
         catalogue=catalogue,
     )
+
+
+# --- The same as JSON -------------------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Export:
+    """An export whose selection is JSON."""
+
+    application: Application
+    reply: Json
+    title: str
+    reference: str
+    catalogue: Catalogue | None
+
+    @property
+    def candidates(self) -> Sequence[Json]:
+        """Every candidate, best first."""
+        candidates: Sequence[Json] = self.reply["candidates"]
+        return candidates
+
+    def is_lower_bound(self, candidate: Json) -> bool:
+        """Whether the motor torques of a candidate are loss-free in some phase."""
+        return self.typed().is_lower_bound(candidate_of(candidate))
+
+    def typed(self) -> export.Export:
+        """The same, typed."""
+        return export.Export(
+            application=self.application,
+            selection=msgspec.convert(self.reply, Selection),
+            link="http://hpn.example/selections/0123456789abcdefghijkl",
+            title=self.title,
+            reference=self.reference,
+            created=CREATED,
+            catalogue=self.catalogue,
+        )
+
+
+def export_of(application: Json, catalogue: Catalogue, *, title: str = "Rotary table", reference: str = "") -> Export:
+    """An export as a saved selection gives it."""
+    asked = Application.model_validate(application)
+    reply = msgspec.json.decode(encode(select(asked, catalogue, to_link(asked))))
+    return Export(asked, reply, title, reference, catalogue)
+
+
+def language(code: str) -> Reader:
+    """Reader of a file."""
+    return Reader(code, digits=export.DIGITS)
+
+
+def workbook(given: Export, reader: Reader) -> bytes:
+    """The workbook on an export."""
+    return sheets.workbook(given.typed(), reader)

@@ -10,10 +10,10 @@ from numpy.typing import NDArray
 from pypdf import PdfReader
 
 from hpn.catalogue import Catalogue
-from hpn.report.language import Language, language
+from hpn.reader import Reader
 from hpn.report.pdf import pdf
 from tests.build import worked_example
-from tests.report.cases import CASES, EVERYTHING, export_of
+from tests.report.cases import CASES, EVERYTHING, language, typed_export_of
 
 ENGLISH, GERMAN = language("en"), language("de")
 POINTS_PER_MM = 72 / 25.4
@@ -35,9 +35,10 @@ def read(document: bytes) -> PdfReader:
     return PdfReader(BytesIO(document))
 
 
-def text(document: bytes, page: int) -> str:
-    """Text of one page, spaces made plain."""
-    return re.sub(r"[\u00a0\u200b]", " ", read(document).pages[page].extract_text()).replace("\u202f", "")
+def text(document: bytes, page: int, reader: Reader = ENGLISH) -> str:
+    """Text of one page, spaces made plain, thousands written together."""
+    found = read(document).pages[page].extract_text().replace("\u200b", " ")
+    return re.sub(rf"(?<=\d){re.escape(reader.group)}(?=\d{{3}}(?!\d))", "", found).replace("\u202f", " ")
 
 
 def numbers(words: str, decimal: str) -> list[float]:
@@ -56,7 +57,7 @@ def pixels(document: bytes, page: int) -> NDArray[np.uint8]:
 
 @pytest.mark.parametrize("case", CASES)
 def test_report_has_two_pages_and_only_vectors(case: str, catalogue: Catalogue) -> None:
-    document = read(pdf(export_of(CASES[case], catalogue), ENGLISH))
+    document = read(pdf(typed_export_of(CASES[case], catalogue), ENGLISH))
     assert len(document.pages) == 2
     assert not any(page.images for page in document.pages)
 
@@ -64,21 +65,21 @@ def test_report_has_two_pages_and_only_vectors(case: str, catalogue: Catalogue) 
 @pytest.mark.parametrize(("reader", "decimal"), [(ENGLISH, "."), (GERMAN, ",")])
 @pytest.mark.parametrize("case", ["example", "everything", "nothing suitable", "iso281", "extremes"])
 def test_every_check_stands_in_the_report_with_its_figures(
-    case: str, reader: Language, decimal: str, catalogue: Catalogue
+    case: str, reader: Reader, decimal: str, catalogue: Catalogue
 ) -> None:
-    export = export_of(CASES[case], catalogue)
-    page = text(pdf(export, reader), 1)
+    export = typed_export_of(CASES[case], catalogue)
+    page = text(pdf(export, reader), 1, reader)
     table = page[: page.index(reader.text("Published figures of {gear}").partition(" {")[0])]
-    titles = [reader.text(export.definitions[check["code"]]["title"]) for check in export.candidate["checks"]]
+    titles = [reader.text(export.selection.check_definitions[check.code].title) for check in export.candidate.checks]
     starts = [_position(table, title) for title in titles]
-    for check, start, end in zip(export.candidate["checks"], starts, [*starts[1:], len(table)], strict=True):
+    for check, start, end in zip(export.candidate.checks, starts, [*starts[1:], len(table)], strict=True):
         row = table[start:end]
         shown = numbers(row, decimal)
-        for value in (check["demand"], check["limit"], check["utilisation"] and 100 * check["utilisation"]):
+        for value in (check.demand, check.limit, check.utilisation and 100 * check.utilisation):
             # Four digits are printed; a percentage has at least one behind the decimal mark.
             close = (abs(number - value) <= max(6e-4 * abs(value), 0.051) for number in shown if value is not None)
             assert value is None or any(close), (check, row)
-        assert {"pass": "passes", "fail": "fails"}.get(check["status"], "not rated") in row or reader is GERMAN
+        assert {"pass": "passes", "fail": "fails"}.get(check.status, "not rated") in row or reader is GERMAN
 
 
 def _position(table: str, title: str) -> int:
@@ -90,7 +91,7 @@ def _position(table: str, title: str) -> int:
 
 
 def test_every_input_stands_in_the_report(catalogue: Catalogue) -> None:
-    page = text(pdf(export_of(EVERYTHING, catalogue, reference="PLM-4711"), ENGLISH), 0)
+    page = text(pdf(typed_export_of(EVERYTHING, catalogue, reference="PLM-4711"), ENGLISH), 0)
     for figure in ("−20", "250", "0.3", "900", "4 s", "200 Nm", "1000", "500 N", "1.2", "20000 h", "0.9", "0.95"):
         assert figure in page, figure
     for figure in ("4000 rpm", "20 Nm", "8 Nm", "25 °C", "7 arcmin", "5000 Nm/rad", "5 kg", "200 mm", "3, 5, 10, 25"):
@@ -99,53 +100,53 @@ def test_every_input_stands_in_the_report(catalogue: Catalogue) -> None:
 
 
 def test_units_are_written_as_on_the_page(catalogue: Catalogue) -> None:
-    german = text(pdf(export_of(EVERYTHING, catalogue), GERMAN), 0)
+    german = text(pdf(typed_export_of(EVERYTHING, catalogue), GERMAN), 0, GERMAN)
     assert "4000 min⁻¹" in german
     assert "rpm" not in german
 
 
 def test_every_notice_and_the_versions_stand_in_the_report(catalogue: Catalogue) -> None:
-    export = export_of(EVERYTHING, catalogue)
+    export = typed_export_of(EVERYTHING, catalogue)
     page = "".join(re.findall(r"[a-z0-9]", text(pdf(export, ENGLISH), 1)))
-    for notice in export.reply["notices"]:
-        assert "".join(re.findall(r"[a-z0-9]", notice["text"].replace("T_R", "TR"))) in page, notice
-    assert export.reply["catalogue_version"] in page
+    for notice in export.selection.notices:
+        assert "".join(re.findall(r"[a-z0-9]", notice.text.replace("T_R", "TR"))) in page, notice
+    assert export.selection.catalogue_version in page
 
 
 def test_motor_torques_without_an_efficiency_are_said_to_be_a_lower_bound(catalogue: Catalogue) -> None:
-    found = " ".join(text(pdf(export_of(worked_example(), catalogue), ENGLISH), 0).split())
+    found = " ".join(text(pdf(typed_export_of(worked_example(), catalogue), ENGLISH), 0).split())
     assert len(re.findall("motor torque needed, lower bound", found)) == 2
-    assert "lower bound" not in text(pdf(export_of(EVERYTHING, catalogue), ENGLISH), 0)
+    assert "lower bound" not in text(pdf(typed_export_of(EVERYTHING, catalogue), ENGLISH), 0)
 
 
 def test_alternatives_name_the_runner_up_and_why_the_smaller_gear_fails(catalogue: Catalogue) -> None:
-    page = text(pdf(export_of(CASES["example"], catalogue), ENGLISH), 1)
+    page = text(pdf(typed_export_of(CASES["example"], catalogue), ENGLISH), 1)
     assert re.search(r"Runner-up:\s+HPN-32A-5", page)
     assert re.search(r"Smaller gear:\s+HPN-14A-5 .*110\.4 %.*186\.9 %", page.replace("\n", " "))
 
 
 def test_many_phases_are_summarised_and_the_report_says_so(catalogue: Catalogue) -> None:
-    page = text(pdf(export_of(CASES["ten thousand phases"], catalogue), ENGLISH), 0)
+    page = text(pdf(typed_export_of(CASES["ten thousand phases"], catalogue), ENGLISH), 0)
     assert "10000 phases, summarised here" in page
 
 
 def test_the_same_selection_gives_the_same_bytes(catalogue: Catalogue) -> None:
-    assert pdf(export_of(EVERYTHING, catalogue), GERMAN) == pdf(export_of(EVERYTHING, catalogue), GERMAN)
+    assert pdf(typed_export_of(EVERYTHING, catalogue), GERMAN) == pdf(typed_export_of(EVERYTHING, catalogue), GERMAN)
 
 
 def test_report_is_tagged_for_people_who_listen(catalogue: Catalogue) -> None:
-    document = read(pdf(export_of(EVERYTHING, catalogue), GERMAN))
+    document = read(pdf(typed_export_of(EVERYTHING, catalogue), GERMAN))
     root = document.root_object
     assert "/StructTreeRoot" in root
     assert "/Marked': True" in str(root["/MarkInfo"])
     assert str(root["/Lang"]) == "de"
-    assert b"pdfuaid:part" in pdf(export_of(EVERYTHING, catalogue), GERMAN)
+    assert b"pdfuaid:part" in pdf(typed_export_of(EVERYTHING, catalogue), GERMAN)
     assert document.metadata is not None and document.metadata.title == "Rotary table"
 
 
 @pytest.mark.parametrize("name", HOSTILE)
 def test_a_hostile_title_breaks_nothing(name: str, catalogue: Catalogue) -> None:
-    document = pdf(export_of(CASES["example"], catalogue, title=HOSTILE[name], reference=HOSTILE[name]), ENGLISH)
+    document = pdf(typed_export_of(CASES["example"], catalogue, title=HOSTILE[name], reference=HOSTILE[name]), ENGLISH)
     assert len(read(document).pages) == 2
     assert "HPN-20A-5" in text(document, 0)
     if name == "typst code":
@@ -156,10 +157,8 @@ def test_a_hostile_title_breaks_nothing(name: str, catalogue: Catalogue) -> None
 
 @pytest.mark.parametrize("reader", [ENGLISH, GERMAN])
 @pytest.mark.parametrize("case", CASES)
-def test_nothing_leaves_the_type_area_or_runs_into_the_footer(
-    case: str, reader: Language, catalogue: Catalogue
-) -> None:
-    document = pdf(export_of(CASES[case], catalogue, title=HOSTILE["very long"]), reader)
+def test_nothing_leaves_the_type_area_or_runs_into_the_footer(case: str, reader: Reader, catalogue: Catalogue) -> None:
+    document = pdf(typed_export_of(CASES[case], catalogue, title=HOSTILE["very long"]), reader)
     for page in range(2):
         ink = pixels(document, page) < 200
         millimetres = PIXELS_PER_MM
@@ -171,5 +170,5 @@ def test_nothing_leaves_the_type_area_or_runs_into_the_footer(
 
 def test_a_figure_never_stands_on_another(catalogue: Catalogue) -> None:
     """Long German labels once pushed symbols and numbers of a table over each other."""
-    page = text(pdf(export_of(EVERYTHING, catalogue), GERMAN), 0)
+    page = text(pdf(typed_export_of(EVERYTHING, catalogue), GERMAN), 0, GERMAN)
     assert re.search(r"Lagerlebensdauer L50\s+Lb,50\s+84\s*437 h", page)

@@ -13,15 +13,13 @@ import pytest
 from openpyxl.workbook import Workbook
 
 from hpn.catalogue import Catalogue
-from hpn.explanations import EXPLANATIONS
 from hpn.report.export import LOSS_FREE, LOWER_BOUND
 from hpn.report.formulas import MOTOR_TORQUES
-from hpn.report.language import language
-from hpn.report.workbook import workbook
 from tests.build import Json, answer, cycle, phase, worked_example
 from tests.conftest import Supplement
-from tests.report.cases import CASES, EVERYTHING, export_of
+from tests.report.cases import CASES, EVERYTHING, export_of, language, workbook
 from tests.report.conftest import Recalculate
+from tests.wire import EXPLANATIONS
 
 ENGLISH = language("en")
 SMALL_CASES = {name: case for name, case in CASES.items() if name != "ten thousand phases"}

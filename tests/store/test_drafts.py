@@ -8,11 +8,10 @@ import pytest
 from starlette.testclient import TestClient
 
 from hpn.application import Application, InputError
-from hpn.selection import select
+from hpn.selection import encode, select
 from hpn.web.api.select import LONG_CYCLE
-from hpn.web.api.selection_schemas import Labels
-from hpn.web.api.selections import draft_of
 from hpn.web.app import create_app
+from hpn.web.archive import Labels, draft_of
 from hpn.web.form.write import to_link
 from hpn.web.settings import Settings
 from tests.build import Json, cycle, phase
@@ -39,7 +38,7 @@ def test_a_draft_has_the_reply_of_its_own_application(supplemented: Supplement) 
     for number, parts in enumerate(given):
         application = Application.model_validate(parts)
         try:
-            reply = select(application, catalogue).json(to_link(application))
+            reply = encode(select(application, catalogue, to_link(application)))
         except InputError:
             with pytest.raises(InputError):
                 draft_of(catalogue, application, Labels(), None)

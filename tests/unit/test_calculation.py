@@ -4,21 +4,21 @@ import pytest
 
 from hpn.application import Application
 from hpn.calculation import Step, calculation_of
-from hpn.calculation.formula import Constant, Symbol, Term
+from hpn.calculation.formula import Constant, Term, Variable
 from hpn.catalogue import Catalogue
+from hpn.reader import Reader
 from hpn.selection import select
 from hpn.web.pages.mathml import mathml, with_numbers
-from hpn.web.reader import Reader
-from tests.build import Json, candidate, cycle, phase, worked_example
+from tests.build import Json, cycle, phase, worked_example
 from tests.conftest import Supplement
 
 
-def steps_of(application: Json, designation: str, catalogue: Catalogue) -> dict[str, Step]:
+def steps_of(document: Json, designation: str, catalogue: Catalogue) -> dict[str, Step]:
     """Steps of the calculation of a gear by their code."""
-    selection = select(Application.model_validate(application), catalogue)
-    entry = candidate(selection.reply("/"), designation)
-    gear = catalogue.by_designation[designation]
-    steps = calculation_of(entry, gear, selection.evaluation.duty, catalogue)
+    application = Application.model_validate(document)
+    candidate = select(application, catalogue).candidate(designation)
+    assert candidate is not None
+    steps = calculation_of(candidate, catalogue.by_designation[designation], application, catalogue)
     return {step.code: step for step in steps}
 
 
@@ -84,7 +84,7 @@ def test_efficiency_curve_of_a_supplement_enters_phase_by_phase(supplemented: Su
 
 
 def test_texts_in_a_formula_are_escaped() -> None:
-    hostile = Symbol("<script>", '"&<')
+    hostile = Variable("<script>", '"&<')
     markup = mathml(Reader(), (hostile, False), "<", (Term(hostile, 1.0), False), "=", (Constant(1.0), True))
     assert "<script" not in markup
     assert 'alttext="&lt;script&gt;_&quot;&amp;&lt; &lt; ' in markup

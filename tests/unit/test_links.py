@@ -75,7 +75,7 @@ def read(query: str) -> links.Form:
 
 def found(query: str) -> dict[tuple[str, int | None], str]:
     """Message by place."""
-    return {(problem.name, problem.index): str(problem.message) for problem in read(query).problems}
+    return {(problem.name, problem.index): problem.message.text for problem in read(query).problems}
 
 
 def test_worked_example_has_the_link_of_the_contract() -> None:
@@ -97,7 +97,7 @@ def test_every_application_survives_its_link(document: dict[str, Any]) -> None:
 def test_no_query_breaks_the_reader_and_all_of_it_comes_back(pairs: list[tuple[str, str]]) -> None:
     form = links.parse(pairs)
     assert form.application is None or not form.problems
-    assert all(str(problem.message) for problem in form.problems)
+    assert all(problem.message.text for problem in form.problems)
     given_rows = [text for name, text in pairs if name == "T"]
     if not form.with_loads and not any(name == "do" for name, _ in pairs):
         assert [row["T"] for row in form.rows][: len(given_rows)] == given_rows
@@ -126,7 +126,7 @@ def test_no_query_breaks_the_reader_and_all_of_it_comes_back(pairs: list[tuple[s
 )
 def test_text_that_is_no_number_is_answered_with_what_to_write(text: str, message: str) -> None:
     form = links.parse([("T", text), ("n", "250"), ("t", "0.3")])
-    assert [(p.name, p.index, str(p.message)) for p in form.problems] == [("T", 0, message)]
+    assert [(p.name, p.index, p.message.text) for p in form.problems] == [("T", 0, message)]
     assert form.rows[0]["T"] == text
 
 
@@ -257,3 +257,9 @@ def test_a_canonical_number_is_as_short_as_it_can_be() -> None:
     link = to_link(Application.model_validate(application))
 
     assert link == "/?T=1e-7&n=-2.5&t=30&T=0&n=1000000&t=1e-12&tp=1e-5&FA=10"
+
+
+def test_every_input_stands_in_one_group_of_the_form_by_its_name() -> None:
+    grouped = [name for group in symbols.GROUPS for name in group.names]
+    assert sorted(["tp", *grouped]) == sorted(symbols.BY_NAME)
+    assert all(symbol.named.name for symbol in (*symbols.PHASE_SYMBOLS, *symbols.SYMBOLS))

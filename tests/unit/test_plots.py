@@ -1,6 +1,5 @@
 """Pictures as data: every figure is valid for Plotly, shows what the checks compute, and says so in words."""
 
-from dataclasses import replace
 from itertools import pairwise
 
 import plotly.graph_objects as go
@@ -9,33 +8,39 @@ import pytest
 from hpn import drawings as plots
 from hpn.application import Application
 from hpn.catalogue import Catalogue
-from hpn.selection import Selection, select
-from hpn.wording import Quantity
+from hpn.drawings import Subject
+from hpn.reader import Reader
+from hpn.selection import CheckResult, select
 from tests.build import Json, cycle, phase
 from tests.conftest import Supplement
 
 CURVES = (
     "size,load_coefficient,axial_N,radial_N,source\n20A,1,2200,0,print\n20A,1,1300,1200,print\n20A,1,0,1800,print\n"
 )
+N_PER_LBF = 4.4482216152605
 LOADS = {"radial_N": 500.0, "axial_N": 200.0, "load_coefficient": 1.2}
 
 
-def selected(catalogue: Catalogue, **parts: object) -> Selection:
+def shown_on(document: Json, catalogue: Catalogue, designation: str = "HPN-20A-5") -> Subject:
+    return Subject(Application.model_validate(document), catalogue.by_designation[designation], catalogue)
+
+
+def example(catalogue: Catalogue, designation: str = "HPN-20A-5", **parts: object) -> Subject:
     phases = (phase(40, 250, 0.3, radial_N=900, axial_N=300), phase(32, 500, 3), phase(-20, -250, 0.4))
-    document: Json = cycle(*phases, pause_s=4.0, **parts)
-    return select(Application.model_validate(document), catalogue)
+    return shown_on(cycle(*phases, pause_s=4.0, **parts), catalogue, designation)
 
 
-def picture(selection: Selection, designation: str = "HPN-20A-5") -> plots.BearingPicture:
-    found = plots.bearing_picture(selection, selection.catalogue.by_designation[designation])
+def picture(subject: Subject) -> plots.BearingPicture:
+    found = plots.bearing_picture(subject)
     assert found is not None
     return found
 
 
-def check(selection: Selection, designation: str, code: str) -> Json:
-    candidates = selection.reply("")["candidates"]
-    gear = next(c for c in candidates if c["designation"] == designation)
-    found: Json = next(c for c in gear["checks"] if c["code"] == code)
+def check(subject: Subject, designation: str, code: str) -> CheckResult:
+    candidate = select(subject.application, subject.catalogue).candidate(designation)
+    assert candidate is not None
+    found = candidate.check(code)
+    assert found is not None
     return found
 
 
@@ -49,31 +54,31 @@ def test_figures_of_the_bearing_are_valid_in_every_model(
     supplemented: Supplement, model: str, coefficient: float
 ) -> None:
     catalogue = supplemented(bearing_envelopes=CURVES)
-    selection = selected(catalogue, output_load=LOADS | {"model": model, "load_coefficient": coefficient})
-    shown = picture(selection)
+    subject = example(catalogue, output_load=LOADS | {"model": model, "load_coefficient": coefficient})
+    shown = picture(subject)
 
     figure = plots.bearing_figure(shown)
 
     go.Figure(figure)
-    go.Figure(plots.sizes_figure(selection))
+    go.Figure(plots.sizes_figure(subject))
     drawn = {trace["meta"]["load_coefficient"] for trace in traces(figure, "own") + traces(figure, "life")}
     assert drawn == {1.0, 1.2, 1.5, coefficient}
-    assert len(traces(plots.sizes_figure(selection), "size")) == (1 if model == "digitised" else 4)
+    assert len(traces(plots.sizes_figure(subject), "size")) == (1 if model == "digitised" else 4)
 
 
 @pytest.mark.parametrize("model", ["linear", "iso281", "digitised"])
 def test_the_picture_uses_what_the_checks_say(supplemented: Supplement, model: str) -> None:
-    selection = selected(supplemented(bearing_envelopes=CURVES), output_load=LOADS | {"model": model})
-    shown = picture(selection)
+    subject = example(supplemented(bearing_envelopes=CURVES), output_load=LOADS | {"model": model})
+    shown = picture(subject)
 
-    largest, life = (check(selection, "HPN-20A-5", f"output_bearing_{name}") for name in ("load", "life"))
-    assert shown.worst.published == largest["utilisation"]
-    assert shown.life_utilisation == pytest.approx(life["utilisation"], rel=1e-14)
-    assert shown.life_factor == life["limit"]
+    largest, life = (check(subject, "HPN-20A-5", f"output_bearing_{name}") for name in ("load", "life"))
+    assert shown.worst.published == largest.utilisation
+    assert shown.life_utilisation == pytest.approx(life.utilisation, rel=1e-14)
+    assert shown.life_factor == life.limit
 
 
 def test_distance_leads_from_the_worst_load_to_the_published_curve(catalogue: Catalogue) -> None:
-    shown = picture(selected(catalogue, output_load=LOADS))
+    shown = picture(example(catalogue, output_load=LOADS))
     line = traces(plots.bearing_figure(shown), "distance")[0]
 
     radial, axial = line["x"][1], line["y"][1]
@@ -85,9 +90,9 @@ def test_distance_leads_from_the_worst_load_to_the_published_curve(catalogue: Ca
 
 def test_phases_with_one_load_are_one_point(catalogue: Catalogue) -> None:
     phases = [phase(10, 100, 1.0, radial_N=300)] * 3 + [phase(10, 100, 1.0, radial_N=100)]
-    selection = select(Application.model_validate(cycle(*phases)), catalogue)
+    subject = shown_on(cycle(*phases), catalogue)
 
-    points = traces(plots.bearing_figure(picture(selection)), "phases")[0]
+    points = traces(plots.bearing_figure(picture(subject)), "phases")[0]
 
     assert points["text"] == ["phase 1–3", "phase 4"]
     assert points["x"] == [300, 100]
@@ -95,8 +100,8 @@ def test_phases_with_one_load_are_one_point(catalogue: Catalogue) -> None:
 
 def test_of_very_many_loads_the_worst_are_shown_and_the_rest_counted(catalogue: Catalogue) -> None:
     phases = [phase(1, 100, 1.0, radial_N=float(k)) for k in range(1000)]
-    selection = select(Application.model_validate(cycle(*phases)), catalogue)
-    shown = picture(selection)
+    subject = shown_on(cycle(*phases), catalogue)
+    shown = picture(subject)
 
     assert len(shown.loads) == 200
     assert shown.hidden == 800
@@ -107,9 +112,7 @@ def test_of_very_many_loads_the_worst_are_shown_and_the_rest_counted(catalogue: 
 def test_axes_stay_for_any_load_within_the_limits_and_widen_beyond(catalogue: Catalogue) -> None:
     def ranges(radial: float) -> tuple[list[float], list[float]]:
         layout = plots.bearing_figure(
-            picture(
-                select(Application.model_validate(cycle(phase(1, 100), output_load={"radial_N": radial})), catalogue)
-            )
+            picture(shown_on(cycle(phase(1, 100), output_load={"radial_N": radial}), catalogue))
         )["layout"]
         return layout["xaxis"]["range"], layout["yaxis"]["range"]
 
@@ -123,8 +126,8 @@ def test_the_verdict_says_which_question_decides(catalogue: Catalogue) -> None:
     slow = cycle(phase(10, 50), output_load={"radial_N": 800.0})
 
     def said(document: Json) -> str:
-        selection = select(Application.model_validate(document), catalogue)
-        return " ".join(sentence.text for sentence in plots.bearing_verdict(picture(selection)))
+        subject = shown_on(document, catalogue)
+        return " ".join(sentence.text for sentence in plots.bearing_verdict(picture(subject)))
 
     assert said(fast).endswith("The life of the bearing decides, not the largest single load.")
     assert "uses 76 % of what a constant load may be at 500 rpm for 20000 h (L50)" in said(fast)
@@ -135,18 +138,18 @@ def test_the_verdict_says_which_question_decides(catalogue: Catalogue) -> None:
 
 def test_a_use_next_to_its_limit_is_never_called_100_percent(catalogue: Catalogue) -> None:
     document = cycle(phase(10, 50), output_load={"radial_N": 1800.0001})
-    selection = select(Application.model_validate(document), catalogue)
-    said = " ".join(sentence.text for sentence in plots.bearing_verdict(picture(selection)))
+    subject = shown_on(document, catalogue)
+    said = " ".join(sentence.text for sentence in plots.bearing_verdict(picture(subject)))
     assert "uses 100 %" not in said
     assert "100.00" in said
 
 
 def test_without_loads_or_limits_there_is_no_picture_of_the_bearing(catalogue: Catalogue) -> None:
-    plain = selected(catalogue, output_load=LOADS)
-    bare = select(Application.model_validate(cycle(phase(10, 100))), catalogue)
+    plain = example(catalogue, output_load=LOADS)
+    bare = shown_on(cycle(phase(10, 100)), catalogue)
 
-    assert plots.bearing_picture(bare, catalogue.by_designation["HPN-20A-5"]) is None
-    assert plots.bearing_picture(plain, catalogue.by_designation["HPN-40A-5"]) is None
+    assert plots.bearing_picture(bare) is None
+    assert plots.bearing_picture(example(catalogue, "HPN-40A-5", output_load=LOADS)) is None
     uses = {use.gear.size: use.carries for use in plots.size_uses(plain)}
     assert uses == {"11A": False, "14A": False, "20A": True, "32A": True, "40A": None}
 
@@ -158,8 +161,8 @@ def test_without_loads_or_limits_there_is_no_picture_of_the_bearing(catalogue: C
     "stop", [None, {"torque_Nm": 200.0}, {"torque_Nm": 200.0, "count": 10**15}, {"torque_Nm": 1e6}]
 )
 def test_figure_of_the_emergency_stops_is_valid(catalogue: Catalogue, stop: Json | None) -> None:
-    selection = selected(catalogue, emergency_stop=stop)
-    figure = plots.emergency_stop_figure(selection, catalogue.by_designation["HPN-20A-5"])
+    subject = example(catalogue, emergency_stop=stop)
+    figure = plots.emergency_stop_figure(subject)
     assert figure is not None
     go.Figure(figure)
     assert figure["layout"]["yaxis"]["type"] == "log"
@@ -177,8 +180,8 @@ def test_figure_of_the_emergency_stops_is_valid(catalogue: Catalogue, stop: Json
     ],
 )
 def test_emergency_stops_in_words(catalogue: Catalogue, stop: Json | None, said: str) -> None:
-    selection = selected(catalogue, emergency_stop=stop)
-    words = plots.emergency_stop_words(selection, catalogue.by_designation["HPN-20A-5"])
+    subject = example(catalogue, emergency_stop=stop)
+    words = plots.emergency_stop_words(subject)
     assert said in " ".join(sentence.text for sentence in words)
 
 
@@ -186,17 +189,17 @@ def test_emergency_stops_in_words(catalogue: Catalogue, stop: Json | None, said:
     "stop", [{"torque_Nm": 200}, {"torque_Nm": 200, "count": 10**7}, {"torque_Nm": 200, "count": 10**5}]
 )
 def test_labels_of_line_and_stop_stand_on_different_sides_of_the_line(catalogue: Catalogue, stop: Json) -> None:
-    selection = selected(catalogue, emergency_stop=stop)
-    figure = plots.emergency_stop_figure(selection, catalogue.by_designation["HPN-20A-5"])
+    subject = example(catalogue, emergency_stop=stop)
+    figure = plots.emergency_stop_figure(subject)
     assert figure is not None
     line, marked = figure["data"]
     assert line["textposition"].split()[0] != marked["textposition"].split()[0]
 
 
 def test_emergency_stops_of_an_unrated_gear_have_words_but_no_plot(catalogue: Catalogue) -> None:
-    gear, selection = catalogue.by_designation["HPN-40A-5"], selected(catalogue)
-    assert plots.emergency_stop_figure(selection, gear) is None
-    assert "not published" in plots.emergency_stop_words(selection, gear)[0].text
+    subject = example(catalogue, "HPN-40A-5")
+    assert plots.emergency_stop_figure(subject) is None
+    assert "not published" in plots.emergency_stop_words(subject)[0].text
 
 
 # --- The cycle over time ----------------------------------------------------------------------------------------------
@@ -205,9 +208,9 @@ def test_emergency_stops_of_an_unrated_gear_have_words_but_no_plot(catalogue: Ca
 @pytest.mark.parametrize("count", [1, 3, 24, 25, 50, 10_000])
 def test_the_cycle_is_drawn_within_its_frame(catalogue: Catalogue, count: int) -> None:
     phases = [phase((-1) ** k * 10.0 * (k % 7), 100.0, 1e-3 if k % 2 else 5.0) for k in range(count)]
-    selection = select(Application.model_validate(cycle(*phases, pause_s=3.0)), catalogue)
+    subject = shown_on(cycle(*phases, pause_s=3.0), catalogue)
 
-    shown = plots.cycle_picture(selection, catalogue.by_designation["HPN-20A-5"])
+    shown = plots.cycle_picture(subject)
 
     named = [mark.symbol for mark in shown.names]
     assert named[-1] == "t_p"
@@ -222,41 +225,35 @@ def test_the_cycle_is_drawn_within_its_frame(catalogue: Catalogue, count: int) -
 
 def test_a_negative_torque_lies_below_zero(catalogue: Catalogue) -> None:
     document = cycle(phase(30, 100), phase(-20, 100))
-    shown = plots.cycle_picture(
-        select(Application.model_validate(document), catalogue), catalogue.by_designation["HPN-20A-5"]
-    )
+    shown = plots.cycle_picture(shown_on(document, catalogue))
     heights = [float(part.split("H")[0]) for part in shown.torque.outline.split("V")[1:]]
     assert heights[0] < shown.torque.zero < heights[1]
 
 
 def test_limits_far_above_the_cycle_are_named_beyond_the_scale(catalogue: Catalogue) -> None:
-    selection = selected(catalogue, emergency_stop={"torque_Nm": 200.0})
-    torque = plots.cycle_picture(selection, catalogue.by_designation["HPN-20A-5"]).torque
+    subject = example(catalogue, emergency_stop={"torque_Nm": 200.0})
+    torque = plots.cycle_picture(subject).torque
     assert {mark.symbol for mark in torque.lines} == {"T_av", "T_N"}
     assert [(mark.symbol, mark.value) for mark in torque.beyond] == [("T_R", "149"), ("T_k", "200")]
 
 
 def test_extreme_durations_stay_in_the_frame_and_say_that_they_are_not_to_scale(catalogue: Catalogue) -> None:
     document = cycle(phase(1e6, 1e6, 1e9), phase(1e-300, 1e-6, 1e-300), pause_s=1e9)
-    shown = plots.cycle_picture(
-        select(Application.model_validate(document), catalogue), catalogue.by_designation["HPN-11A-4"]
-    )
+    shown = plots.cycle_picture(shown_on(document, catalogue, "HPN-11A-4"))
     assert not shown.to_scale
     assert "nan" not in shown.torque.outline + shown.speed.outline
 
 
 def test_a_reader_of_other_units_sees_other_numbers(catalogue: Catalogue) -> None:
-    pounds = replace(
-        plots.Words(),
-        convert=lambda value, unit: value / 2 if unit == "N" else value,
-        show=lambda quantity: f"{quantity.value / 2:g} half" if isinstance(quantity, Quantity) else "",
-        unit=lambda unit: "half",
-    )
-    shown = picture(selected(catalogue, output_load=LOADS))
-    figure, plain = plots.bearing_figure(shown, pounds), plots.bearing_figure(shown)
-    assert [2 * x for x in figure["data"][0]["x"]] == plain["data"][0]["x"]
-    assert figure["layout"]["xaxis"]["range"][1] * 2 == plain["layout"]["xaxis"]["range"][1]
-    assert figure["layout"]["xaxis"]["title"]["text"] == "radial load in half"
+    shown = picture(example(catalogue, output_load=LOADS))
+    figure, plain = plots.bearing_figure(shown, Reader(units=("lbf",))), plots.bearing_figure(shown)
+    pairs = [
+        (figure["data"][0]["x"], plain["data"][0]["x"]),
+        (figure["layout"]["xaxis"]["range"], plain["layout"]["xaxis"]["range"]),
+    ]
+    for pounds, newtons in pairs:
+        assert [N_PER_LBF * value for value in pounds] == pytest.approx(newtons, rel=1e-12)
+    assert figure["layout"]["xaxis"]["title"]["text"] == "radial load in lbf"
 
 
 @pytest.mark.parametrize("allowed", [1.0, 0.8, 0.5])
@@ -266,9 +263,9 @@ def test_a_size_carries_the_load_where_both_checks_of_its_bearing_pass(
     catalogue: Catalogue, allowed: float, radial: float, life: float
 ) -> None:
     loads = LOADS | {"radial_N": radial, "life_h": life}
-    selection = selected(catalogue, output_load=loads, requirements={"utilisation": allowed})
+    subject = example(catalogue, output_load=loads, requirements={"utilisation": allowed})
 
-    for use in plots.size_uses(selection):
+    for use in plots.size_uses(subject):
         codes = ("output_bearing_load", "output_bearing_life")
-        states = [check(selection, use.gear.designation, code)["status"] for code in codes]
+        states = [check(subject, use.gear.designation, code).status for code in codes]
         assert use.carries == (None if "not_rated" in states else states == ["pass", "pass"])

@@ -1,21 +1,33 @@
 """Remedies and reserves in words."""
 
 import pytest
+from msgspec import structs
 
 from hpn.application import Application
-from hpn.candidates import foremost
 from hpn.catalogue import Catalogue
 from hpn.remedy import followed, remedy_of, rooms_of, ways_of
-from hpn.selection import select
+from hpn.selection import Candidate, Selection, select
 from hpn.wording import rounded
-from tests.build import Json, answer, candidate, cycle, phase, worked_example
+from tests.build import Json, cycle, phase, worked_example
 from tests.conftest import Supplement
+
+
+def selected(application: Json, catalogue: Catalogue) -> Selection:
+    """Selection of an application given as JSON."""
+    return select(Application.model_validate(application), catalogue)
+
+
+def chosen(selection: Selection, designation: str) -> Candidate:
+    """A candidate that is there."""
+    candidate = selection.candidate(designation)
+    assert candidate is not None
+    return candidate
 
 
 def words(application: Json, designation: str, catalogue: Catalogue) -> str | None:
     """Remedy of a gear in English."""
     u = application.get("requirements", {}).get("utilisation", 1.0)
-    gear = candidate(answer(application, catalogue), designation)
+    gear = chosen(selected(application, catalogue), designation)
     remedy = remedy_of(gear, catalogue.by_designation[designation], u)
     return remedy.text if remedy else None
 
@@ -33,14 +45,14 @@ def test_a_suitable_and_an_unrated_gear_need_no_remedy(catalogue: Catalogue) -> 
 def test_a_gear_that_fails_what_is_known_of_it_gets_no_promise_about_what_is_not(catalogue: Catalogue) -> None:
     """Twice what any gear of the series may carry, on a motor a twentieth too slow for HPN-40A-7."""
     asked = cycle(phase(2000, 600), requirements={"motor": {"maximum_speed_rpm": 4000}})
-    reply = answer(asked, catalogue)
-    first = reply["candidates"][0]
+    selection = selected(asked, catalogue)
+    first = selection.candidates[0]
 
-    assert (first["designation"], first["status"]) == ("HPN-40A-7", "unsuitable")
+    assert (first.designation, first.status) == ("HPN-40A-7", "unsuitable")
     assert words(asked, "HPN-40A-7", catalogue) is None
     assert ways_of(first) == ()
     assert rooms_of(first) == ()
-    assert foremost(reply["candidates"])["size"] == "32A"
+    assert selection.foremost.size == "32A"
 
 
 def test_a_life_that_fails_alone_can_be_mended_by_torque_or_by_speed(catalogue: Catalogue) -> None:
@@ -83,15 +95,15 @@ def test_too_many_stops_may_be_gentler_or_rarer(catalogue: Catalogue) -> None:
 
 def test_following_the_remedy_makes_the_gear_of_the_worked_example_suitable(catalogue: Catalogue) -> None:
     application = Application.model_validate(worked_example())
-    gear = candidate(select(application, catalogue).reply("/"), "HPN-14A-5")
+    gear = chosen(select(application, catalogue), "HPN-14A-5")
     changed = followed(application, ways_of(gear)[0])
     assert [p.torque_Nm for p in changed.duty_cycle.phases] == [36.2, 28.96, 18.1]
     assert changed.emergency_stop is not None and changed.emergency_stop.torque_Nm == 107.0
-    assert candidate(select(changed, catalogue).reply("/"), "HPN-14A-5")["status"] == "suitable"
+    assert chosen(select(changed, catalogue), "HPN-14A-5").status == "suitable"
 
 
 def test_reserve_of_the_worked_example_says_which_check_limits_each_driver(catalogue: Catalogue) -> None:
-    rooms = rooms_of(candidate(answer(worked_example(), catalogue), "HPN-20A-5"))
+    rooms = rooms_of(chosen(selected(worked_example(), catalogue), "HPN-20A-5"))
     assert [(room.driver, room.bound.text, room.check) for room in rooms] == [
         ("torque", "up to 2.49 times", "average_torque"),
         ("speed", "up to 2.4 times", "maximum_input_speed"),
@@ -100,8 +112,9 @@ def test_reserve_of_the_worked_example_says_which_check_limits_each_driver(catal
 
 
 def test_torque_reserve_that_follows_an_efficiency_curve_says_why_it_is_missing(catalogue: Catalogue) -> None:
-    gear = candidate(answer(worked_example(), catalogue), "HPN-20A-5")
-    gear["reserve"]["torque_factor"] = None  # as with a supplied curve and a motor
+    gear = chosen(selected(worked_example(), catalogue), "HPN-20A-5")
+    unknown = structs.replace(gear.reserve, torque_factor=None)  # as with a supplied curve and a motor
+    gear = structs.replace(gear, reserve=unknown)
     assert "efficiency follows your curve" in rooms_of(gear)[0].bound.text
 
 
@@ -125,7 +138,7 @@ def test_what_is_tried_out_passes_to_the_last_digit(catalogue: Catalogue) -> Non
     """0.8 of this speed has more than twelve digits: rounded to the nearest it would be too much by a part in 1e12."""
     wishes = {"ratios": [35], "sizes": ["14A"], "utilisation": 0.8}
     asked = Application.model_validate(cycle(phase(1, 171.42857142857142), pause_s=3, requirements=wishes))
-    [way] = ways_of(select(asked, catalogue).reply("")["candidates"][0], 0.8)
+    [way] = ways_of(select(asked, catalogue).candidates[0], 0.8)
 
     assert select(followed(asked, way), catalogue).selected == "HPN-14A-35"
 

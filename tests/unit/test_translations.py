@@ -5,7 +5,7 @@ from string import Formatter
 
 import pytest
 
-from hpn.translation import LANGUAGES, catalogue, texts, translations
+from hpn.reader import LANGUAGES, catalogue, translations
 from tests.messages import missing
 
 OTHERS = [code for code in LANGUAGES if code != "en"]
@@ -36,8 +36,6 @@ def test_percent_signs_are_doubled_exactly_where_the_original_doubles_them(code:
 def test_language_without_a_catalogue_is_refused() -> None:
     with pytest.raises(KeyError):
         translations("fr")
-    with pytest.raises(KeyError):
-        texts("../de")
 
 
 def _listed(text: object) -> list[str]:

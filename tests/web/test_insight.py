@@ -5,6 +5,7 @@ from collections.abc import Iterator
 from urllib.parse import quote
 
 import pytest
+from httpx2 import Response
 from starlette.testclient import TestClient
 
 from hpn.web.app import create_app
@@ -24,8 +25,8 @@ def compared(html: str) -> list[str]:
 
 
 def pins(html: str) -> list[str]:
-    """Pins that the form carries on."""
-    return re.findall('<input type="hidden" name="pin" value="([^"]*)">', html)
+    """Pins that come with the next answer."""
+    return re.findall('name="pin" id="[^"]*" value="([^"]*)"', html)
 
 
 def test_without_pins_the_nearest_smaller_miss_stands_beside_the_selected_gear(client: TestClient) -> None:
@@ -111,14 +112,17 @@ def test_calculation_stands_on_the_page_in_MathML_folded(client: TestClient) -> 
     assert "1\u202f167\u202f275.94" in html
 
 
-def parts(client: TestClient, names: str, query: str = EXAMPLE) -> str:
-    """What a script gets that asks for these parts alone."""
-    return client.get(query, headers={**HTMX, "HPN-Parts": names}).text
+def changes(client: TestClient, target: str, unfolded: str = "", query: str = EXAMPLE) -> Response:
+    """What a script gets that asks for a part of the page, with some parts of the result unfolded."""
+    return client.get(query, headers={**HTMX, "HX-Target": target, "HPN-Parts": unfolded})
 
 
-def test_an_edit_brings_neither_the_form_nor_what_is_folded_away(client: TestClient) -> None:
-    html = parts(client, "result")
-    assert "<form id=" not in html
+RESULT = "section#result"
+
+
+def test_typing_brings_neither_the_form_nor_what_is_folded_away(client: TestClient) -> None:
+    html = changes(client, RESULT).text
+    assert 'id="application"' not in html
     assert 'id="calculation"' in html
     assert "<math" not in html
     assert "data-figure" not in html
@@ -126,22 +130,41 @@ def test_an_edit_brings_neither_the_form_nor_what_is_folded_away(client: TestCli
 
 
 def test_what_is_unfolded_comes_alone_or_with_the_result(client: TestClient) -> None:
-    alone = client.get(EXAMPLE, headers={**HTMX, "HPN-Parts": "calculation"})
+    alone = changes(client, "details#calculation")
     assert "<math" in alone.text
     assert "<table" not in alone.text
     assert "HX-Push-Url" not in alone.headers
     assert "HPN-Parts" in alone.headers["Vary"]
-    assert "data-figure" in parts(client, "stops_figure")
-    assert "<math" in parts(client, "result calculation")
+    assert "data-figure" in changes(client, "details#stops_figure").text
+    assert "<math" in changes(client, RESULT, "calculation").text
 
 
-def test_the_form_comes_where_there_is_something_to_correct(client: TestClient) -> None:
-    html = parts(client, "result", "/?T=fast&n=250&t=0.3")
-    assert 'aria-invalid="true"' in html
-    assert "<form id=" in html
+def test_typing_something_wrong_brings_a_list_that_names_its_fields_and_nothing_else(client: TestClient) -> None:
+    response = changes(client, RESULT, query="/?T=fast&n=250&t=0.3&u=2")
+    assert response.status_code == 422
+    assert re.findall(r'data-field="([^"]*)"', response.text) == ["T-0", "f-u"]
+    assert "is not a number" in response.text
+    assert "<input" not in response.text
+    assert len(response.content) < 1000
+
+
+@pytest.mark.parametrize(
+    ("target", "query"), [(RESULT, "&do=add"), ("form#application", ""), ("div#paste-preview", "")]
+)
+def test_what_takes_the_place_of_inputs_brings_the_form(client: TestClient, target: str, query: str) -> None:
+    response = changes(client, target, query=EXAMPLE + query)
+    assert response.text.lstrip().startswith('<form id="application"')
+    assert response.headers["HX-Retarget"] == "#application"
+    assert 'hx-target="#result"' in response.text
+
+
+def test_rows_say_where_they_stood_before_they_were_edited(client: TestClient) -> None:
+    rows = "/?T=1&n=1&t=1&T=2&n=1&t=1&T=3&n=1&t=1"
+    html = changes(client, RESULT, query=rows + "&do=down:1&do=remove:3&do=add").text
+    assert re.findall(r'<tr id="phase-(\d)"(?: data-was="(\d)")?', html) == [("0", "1"), ("1", "0"), ("2", "")]
 
 
 def test_a_cycle_too_long_to_repeat_its_link_brings_all_at_once(client: TestClient) -> None:
-    html = parts(client, "result", "/?" + "&".join(["T=40&n=250&t=0.3"] * 300))
+    html = changes(client, RESULT, query="/?" + "&".join(["T=40&n=250&t=0.3"] * 300)).text
     assert "<math" in html
     assert "hx-get" not in html

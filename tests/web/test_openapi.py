@@ -57,7 +57,7 @@ def fields(document: Json) -> Iterator[tuple[str, str, Json]]:
 
 
 def test_motor_torques_are_described_as_a_lower_bound_without_an_efficiency(document: Json) -> None:
-    candidate = document["components"]["schemas"]["CandidateReply"]["properties"]
+    candidate = document["components"]["schemas"]["Candidate"]["properties"]
     for name in ("motor_peak_torque_Nm", "motor_rated_torque_Nm"):
         assert "lower bound" in candidate[name]["description"]
 
@@ -192,7 +192,7 @@ def test_request_and_reply_of_select_are_valid_by_the_schemas_to_the_last_field(
     reply = api.post("/api/v1/select", json=APPLICATIONS[case])
 
     assert reply.status_code == 200
-    validator(document, "SelectReply").validate(reply.json())
+    validator(document, "Selection").validate(reply.json())
 
 
 def test_other_replies_are_valid_by_their_schemas_to_the_last_field(api: TestClient, document: Json) -> None:
@@ -224,6 +224,6 @@ def test_every_reply_is_described_by_its_model_alone(document: Json) -> None:
 
 def test_a_required_field_is_never_null_and_an_optional_reply_field_may_be_left_out(document: Json) -> None:
     """What a client generator relies on: `required` lists what is always there."""
-    for name in ("SelectReply", "CandidateReply", "CheckReply", "OneGearReply", "EnvelopeReply"):
+    for name in ("Selection", "Candidate", "CheckResult", "OneGearReply", "EnvelopeReply"):
         schema = document["components"]["schemas"][name]
         assert set(schema["required"]) == set(schema["properties"]), name

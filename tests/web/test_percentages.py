@@ -6,10 +6,9 @@ import re
 import pytest
 from starlette.testclient import TestClient
 
-from hpn.checks import telling_decimals
 from hpn.drawings.words import share
-from hpn.report.language import language
-from hpn.web import display
+from hpn.reader import Reader
+from hpn.wording import telling_decimals
 from tests.build import candidate, cycle, phase
 
 # Torque against T_N = 80 Nm of HPN-20A-5, u, and the percentage, by hand: T / 0.8 Nm.
@@ -54,10 +53,9 @@ def test_only_part_of_a_limit_is_allowed_where_the_user_says_so(api: TestClient)
 @pytest.mark.parametrize("allowed", [1.0, 0.8, 0.855, 1 / 3])
 @pytest.mark.parametrize("distance", [1e-1, 1e-3, 1e-6, 1e-9, 2e-12])
 def test_a_value_beside_its_bound_is_written_beside_it(allowed: float, distance: float) -> None:
-    for write in (display.percent, language("en").percent):
+    for write in (Reader().percent, Reader(digits=4).percent):
         under, at, over = (
-            float(write(allowed * (1 + sign * distance), allowed).split("\u202f")[0].split("\xa0")[0])
-            for sign in (-1, 0, 1)
+            float(write(allowed * (1 + sign * distance), allowed).split("\u202f%")[0]) for sign in (-1, 0, 1)
         )
         assert under < at < over or (distance * allowed < 1e-11 and under <= at <= over)
 

@@ -8,7 +8,7 @@ from html.parser import HTMLParser
 import pytest
 from starlette.testclient import TestClient
 
-from hpn.web import reader
+from hpn import reader
 from hpn.web.app import create_app
 
 EVERYTHING = (
@@ -33,7 +33,7 @@ PAGES = (
 SHOWN = ("aria-label", "title", "placeholder", "alt", "content")
 UNTRANSLATED = re.compile(
     r"HPN Select|HPN(-\w+)*|Deutsch|English|\b\d+A\b|\bSI\b|\bUS\b|ISO 281|\bJ\d\b|[\w.-]+\.csv|HPN_\w+|\bM\d+\b"
-    r"|strange|rank|^\s*(av|in|out)(\(max\))?\s*$|JSON|CSV|PDF|PNG|SVG|Ctrl|Alt|Enter|Esc|Strg|Shift|Tab|xx\.xx|AAS|BH-AF1|\bLb\d+\b|L10|L50|\bL\d+\b"
+    r"|strange|rank|^\s*(av|in|out)(,(av|max))?(\(max\))?\s*$|JSON|CSV|PDF|PNG|SVG|Ctrl|Alt|Enter|Esc|Strg|Shift|Tab|xx\.xx|AAS|BH-AF1|\bLb\d+\b|L10|L50|\bL\d+\b"
 )
 """Names of products, files, formats, keys and query parameters; indices of the handbook's symbols."""
 

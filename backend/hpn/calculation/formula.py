@@ -4,28 +4,54 @@ One tree serves all three, so that what a reader sees substituted is what the re
 """
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any, Self
+
+from hpn.equations import FloatArray
 
 SHOWN_TERMS = 6
 """A series over more phases is abbreviated."""
 
 
 @dataclass(frozen=True, slots=True)
-class Symbol:
+class Variable:
     """A letter of the handbook with its index, such as T and `av`."""
 
     letter: str
     index: str = ""
+
+    @classmethod
+    def of(cls, written: str) -> Self:
+        """Symbol as the tables of quantities and checks write it, its index behind an underscore: `T_av`."""
+        letter, _, index = written.partition("_")
+        return cls(letter, index)
+
+    def of_phase(self, index: str) -> "Variable":
+        """The same of one phase."""
+        return Variable(self.letter, ",".join(filter(None, (self.index, index))))
 
 
 @dataclass(frozen=True, slots=True)
 class Term:
     """A symbol and the value that stands for it; `unit` is a suffix such as `Nm`, blank for a pure number."""
 
-    symbol: Symbol
+    symbol: Variable
     value: float
     unit: str = ""
+
+
+@dataclass(frozen=True)
+class PhaseValues:
+    """A quantity of every phase; `values` has shape (phases,)."""
+
+    symbol: Variable
+    values: FloatArray
+    unit: str = ""
+
+    def term(self, index: str, place: int) -> Term:
+        """The quantity of one phase, written with an index."""
+        return Term(self.symbol.of_phase(index), self.values.item(place), self.unit)
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,7 +88,7 @@ class Series:
 
 
 @dataclass(frozen=True, slots=True)
-class Difference:
+class Subtraction:
     """One formula less another."""
 
     left: "Formula"
@@ -115,45 +141,68 @@ class Largest:
     of: "tuple[Formula, ...]"
 
 
-Formula = Term | Constant | Sum | Series | Difference | Product | Quotient | Power | Root | Magnitude | Largest
+Formula = Term | Constant | Sum | Series | Subtraction | Product | Quotient | Power | Root | Magnitude | Largest
 
 TEN_THIRDS = Quotient(Constant(10), Constant(3), flat=True)
 
 
-def value_of(formula: Formula) -> float:
-    """Value of a formula; raises what arithmetic raises, such as ZeroDivisionError."""
+def value_of(formula: Formula, instead: Mapping[Variable, float] | None = None) -> float:
+    """Value of a formula; raises what arithmetic raises, such as ZeroDivisionError.
+
+    `instead` gives some symbols another value, but for those in a series.
+    """
+    return float(_evaluated(formula, instead or {}))
+
+
+def values_of(formula: Formula, values: Mapping[Variable, FloatArray]) -> FloatArray:
+    """Values of a formula where some of its symbols have many values each."""
+    result: FloatArray = _evaluated(formula, values)
+    return result
+
+
+def _evaluated(formula: Formula, instead: Mapping[Variable, Any]) -> Any:
+    """Value of a formula, a number or an array as its symbols are."""
+
+    def each(formulas: Sequence[Formula]) -> list[Any]:
+        return [_evaluated(one, instead) for one in formulas]
+
     match formula:
-        case Term(value=value) | Constant(value=value) | Series(total=value):
+        case Term(symbol, value):
+            return instead.get(symbol, value)
+        case Constant(value=value) | Series(total=value):
             return value
         case Sum(terms):
-            return math.fsum(map(value_of, terms))
-        case Difference(left, right):
-            return value_of(left) - value_of(right)
+            return sum(each(terms))
+        case Subtraction(left, right):
+            return _evaluated(left, instead) - _evaluated(right, instead)
         case Product(factors):
-            return math.prod(map(value_of, factors))
+            return math.prod(each(factors))
         case Quotient(above, below):
-            return value_of(above) / value_of(below)
+            return _evaluated(above, instead) / _evaluated(below, instead)
         case Power(base, exponent):
-            return float(value_of(base) ** value_of(exponent))
+            return _evaluated(base, instead) ** _evaluated(exponent, instead)
         case Root(body, degree):
-            return float(value_of(body) ** (1 / value_of(degree) if degree else 0.5))
+            return _evaluated(body, instead) ** (1 / _evaluated(degree, instead) if degree else 0.5)
         case Magnitude(body):
-            return abs(value_of(body))
+            return abs(_evaluated(body, instead))
         case Largest(of):
-            return max(map(value_of, of))
+            return max(each(of))
 
 
-def over_phases(make: Callable[[str, int], Formula], count: int, total: Callable[[], float]) -> Series:
-    """Series over `count` phases; `make` gives the term of a phase, and the index it is written with.
+def over_phases(make: Callable[..., Formula], *quantities: PhaseValues) -> Series:
+    """Series over the phases; `make` gives the term of a phase from its quantities, in their order."""
+    count = len(quantities[0].values)
 
-    `total` is asked for only where the series is too long to keep its terms.
-    """
+    def term(index: str, place: int) -> Formula:
+        return make(*(quantity.term(index, place) for quantity in quantities))
+
     shown: Sequence[int] = range(count)
     if count > SHOWN_TERMS:
         shown = (*range(SHOWN_TERMS - 2), count - 1)
-    terms = tuple(make(str(k + 1), k) for k in shown)
-    pattern = (make("1", 0), make("2", 0), make("n", 0))
-    return Series(pattern, terms, count, total() if count > SHOWN_TERMS else math.fsum(map(value_of, terms)))
+    general = term("n", 0)
+    every = values_of(general, {quantity.symbol.of_phase("n"): quantity.values for quantity in quantities})
+    terms = tuple(term(str(place + 1), place) for place in shown)
+    return Series((term("1", 0), term("2", 0), general), terms, count, math.fsum(every.tolist()))
 
 
 def leaves_out(formula: Formula) -> bool:
@@ -165,7 +214,7 @@ def leaves_out(formula: Formula) -> bool:
             return formula.abbreviated
         case Sum(parts) | Product(parts) | Largest(parts):
             return any(map(leaves_out, parts))
-        case Difference(first, second) | Quotient(first, second) | Power(first, second):
+        case Subtraction(first, second) | Quotient(first, second) | Power(first, second):
             return leaves_out(first) or leaves_out(second)
         case Root(body) | Magnitude(body):
             return leaves_out(body)

@@ -6,17 +6,20 @@ from collections.abc import Iterable
 from hpn.calculation.formula import (
     TEN_THIRDS,
     Constant,
-    Difference,
     Magnitude,
     Power,
     Product,
     Quotient,
     Root,
-    Symbol,
+    Subtraction,
     Term,
+    Variable,
+    over_phases,
+    value_of,
 )
-from hpn.calculation.sheet import Line, Sheet, Step
+from hpn.calculation.sheet import Line, Sheet, Step, step_of_check
 from hpn.equations import ROUNDING
+from hpn.quantities import DUTY
 from hpn.wording import N_, Quantity, Sentence
 
 LARGEST_WORTH_ROUNDING = 1e6
@@ -35,14 +38,11 @@ def handbook_steps(sheet: Sheet) -> Iterable[Step]:
 
 
 def _average_torque(sheet: Sheet) -> Step:
-    above = sheet.series(
-        lambda index, k: Product(
-            (
-                Magnitude(Product((sheet.speed(index, k), sheet.time(index, k)))),
-                Power(sheet.torque(index, k), TEN_THIRDS),
-            )
-        ),
-        lambda: sheet.n * sheet.t * sheet.T ** (10 / 3),
+    above = over_phases(
+        lambda n, t, T: Product((Magnitude(Product((n, t))), Power(T, TEN_THIRDS))),
+        sheet.speed,
+        sheet.time,
+        sheet.torque,
     )
     notes = [
         Sentence(
@@ -54,112 +54,99 @@ def _average_torque(sheet: Sheet) -> Step:
     ]
     if any(phase.torque_Nm < 0 or phase.speed_rpm < 0 for phase in sheet.application.duty_cycle.phases):
         notes.append(Sentence(N_("Torques and speeds enter by magnitude, whatever their sign.")))
-    return Step(
-        "average_torque",
-        N_("Load limit 1: average output torque"),
-        "17.2",
-        (Line(sheet.T_av, Root(Quotient(above, sheet.travel), TEN_THIRDS)),),
-        sheet.compared("average_torque", sheet.T_av, Symbol("T", "A"), Symbol("T", "N"), figure="rated_torque_Nm"),
-        tuple(notes),
-    )
+    line = Line(sheet.T_av, Root(Quotient(above, sheet.travel), TEN_THIRDS))
+    return step_of_check("average_torque", (line,), sheet.compared("average_torque", sheet.T_av), tuple(notes))
 
 
 def _average_output_speed(sheet: Sheet) -> Step:
+    named = DUTY["average_output_speed_rpm"]
     line = Line(sheet.n_out_av, Quotient(sheet.travel, sheet.cycle_time))
-    return Step("average_output_speed", N_("Average output speed"), "17.4", (line,))
+    return Step("average_output_speed", named.name, named.equation, (line,))
+
+
+# --- Input speeds -----------------------------------------------------------------------------------------------------
 
 
 def _average_input_speed(sheet: Sheet) -> Step:
-    limit = sheet.compared(
-        "average_input_speed", sheet.n_in_av, Symbol("n", "av(max)"), figure="average_input_speed_rpm"
-    )
-    line = Line(sheet.n_in_av, Product((sheet.i, sheet.n_out_av)))
-    return Step(
-        "average_input_speed", N_("Average input speed"), "17.5", (line,), limit, _hand_input_speed(sheet), trivial=True
-    )
+    line = _average_input_speed_line(sheet)
+    limit = sheet.compared("average_input_speed", line.result)
+    return step_of_check("average_input_speed", (line,), limit, _hand_input_speed(sheet, line), trivial=True)
 
 
-def _hand_input_speed(sheet: Sheet) -> tuple[Sentence, ...]:
+def _average_input_speed_line(sheet: Sheet) -> Line:
+    return Line(sheet.n_in_av, Product((sheet.i, sheet.n_out_av)))
+
+
+def _hand_input_speed(sheet: Sheet, line: Line) -> tuple[Sentence, ...]:
     speed = _hand(sheet.n_out_av.value)
-    if speed is None or speed * sheet.gear.ratio == sheet.n_in_av.value:
+    if speed is None or (by_hand := line.by_hand({sheet.n_out_av.symbol: speed})) == line.result.value:
         return ()
-    values = {"speed": Quantity(speed, "rpm", 6), "result": Quantity(speed * sheet.gear.ratio, "rpm", 9)}
+    values = {"speed": Quantity(speed, "rpm", 6), "result": Quantity(by_hand, "rpm", 9)}
     text = N_("With n_out_av rounded to {speed} by hand you would get {result}; this tool rounds nothing in between.")
     return (Sentence(text, values),)
 
 
 def _maximum_input_speed(sheet: Sheet) -> Step:
-    limits = (
-        *sheet.compared(
-            "maximum_input_speed", sheet.n_in_max, Symbol("n", "in(max)"), figure="maximum_input_speed_rpm"
-        ),
-        *sheet.compared("motor_speed", sheet.n_in_max, Symbol("n", "motor")),
-    )
     line = Line(sheet.n_in_max, Product((sheet.n_out_max, sheet.i)))
-    return Step("maximum_input_speed", N_("Maximum input speed"), "17.6", (line,), limits, trivial=True)
+    codes = ("maximum_input_speed", "motor_speed")
+    limits = tuple(limit for code in codes for limit in sheet.compared(code, sheet.n_in_max))
+    return step_of_check("maximum_input_speed", (line,), limits, trivial=True)
+
+
+# --- Peaks ------------------------------------------------------------------------------------------------------------
 
 
 def _peaks(sheet: Sheet) -> Iterable[Step]:
-    limit = sheet.compared("repeated_peak_torque", sheet.T_max, Symbol("T", "R"), figure="repeated_peak_torque_Nm")
-    if limit:
-        yield Step("repeated_peak_torque", N_("Load limit 2: T_R"), "17.7", (), limit, trivial=True)
-    if sheet.T_k is None:
-        return
-    limit = sheet.compared("momentary_peak_torque", sheet.T_k, Symbol("T", "M"), figure="momentary_peak_torque_Nm")
-    if limit:
-        yield Step("momentary_peak_torque", N_("Load limit 3: T_M"), "17.8", (), limit, trivial=True)
+    tested = {"repeated_peak_torque": sheet.T_max, "momentary_peak_torque": sheet.T_k}
+    for code, torque in tested.items():
+        if torque is not None and (limit := sheet.compared(code, torque)):
+            yield step_of_check(code, (), limit, trivial=True)
 
 
 def _stops(sheet: Sheet) -> Iterable[Step]:
-    T_k, T_R = sheet.T_k, sheet.gear.repeated_peak_torque_Nm
+    T_k, T_R = sheet.T_k, sheet.rating("repeated_peak_torque_Nm")
     if T_k is None or T_R is None:
         return
-    title = N_("Allowable number of momentary peak torques")
-    if T_k.value <= T_R:
-        values = {"stop": Quantity(T_k.value, "Nm", 9), "limit": Quantity(T_R, "Nm", 9)}
-        note = Sentence(
-            N_("The equation holds for T_k > T_R. Here T_k is {stop} and T_R is {limit}: it sets no limit."), values
-        )
-        yield Step("momentary_peak_count", title, "17.9", notes=(note,))
+    allowed = sheet.figure("momentary_peak_count")
+    if allowed is None:
+        values = {"stop": Quantity(T_k.value, "Nm", 9), "limit": Quantity(T_R.value, "Nm", 9)}
+        text = N_("The equation holds for T_k > T_R. Here T_k is {stop} and T_R is {limit}: it sets no limit.")
+        yield step_of_check("momentary_peak_count", notes=(Sentence(text, values),))
         return
-    x = 8.5 - 1.5 * (T_k.value / T_R)
-    exponent = Term(Symbol("x"), x)
-    ratio = Quotient(T_k, Term(Symbol("T", "R"), T_R, "Nm"))
-    allowed = Term(Symbol("N", "k max"), sheet.candidate["momentary_peak_count"])
-    lines = (
-        Line(exponent, Difference(Constant(8.5), Product((Constant(1.5), ratio)))),
-        Line(allowed, Power(Constant(10), exponent), rounded_down=True),
-    )
-    stop = sheet.application.emergency_stop
-    count = Term(Symbol("N", "k"), stop.count) if stop and stop.count is not None else allowed
-    limit = sheet.compared("momentary_peak_count", count, allowed.symbol, figure="repeated_peak_torque_Nm")
-    yield Step("momentary_peak_count", title, "17.9", lines, limit, _hand_stops(x, allowed.value))
+    exponent = Subtraction(Constant(8.5), Product((Constant(1.5), Quotient(T_k, T_R))))
+    x = Term(Variable("x"), value_of(exponent))
+    count = Line(allowed, Power(Constant(10), x), rounded_down=True)
+    expected = sheet.given("emergency_stop.count") or allowed
+    limit = sheet.compared("momentary_peak_count", expected)
+    yield step_of_check("momentary_peak_count", (Line(x, exponent), count), limit, _hand_stops(x, count))
 
 
-def _hand_stops(x: float, allowed: float) -> tuple[Sentence, ...]:
-    by_hand = float(math.floor(10.0 ** round(x, 2) * (1 + ROUNDING)))
-    if by_hand == allowed:
+def _hand_stops(x: Term, count: Line) -> tuple[Sentence, ...]:
+    rounded = round(x.value, 2)
+    by_hand = count.by_hand({x.symbol: rounded})
+    if by_hand == count.result.value:
         return ()
-    values = {"x": Quantity(round(x, 2), "", 6), "result": Quantity(by_hand, "", 15)}
+    values = {"x": Quantity(rounded, "", 6), "result": Quantity(by_hand, "", 15)}
     return (Sentence(N_("With x rounded to {x} by hand you would get {result} stops."), values),)
 
 
+# --- Life -------------------------------------------------------------------------------------------------------------
+
+
 def _life(sheet: Sheet) -> Iterable[Step]:
-    T_N, life = sheet.gear.rated_torque_Nm, sheet.candidate["life_L10_h"]
+    T_N, L_10 = sheet.rating("rated_torque_Nm"), sheet.figure("life_L10_h")
     if T_N is None:
         return
-    L_10 = Term(Symbol("L", "10"), 0.0 if life is None else life, "h")
-    limit = sheet.compared("life", L_10, Symbol("L", "required"))
-    if life is None:
+    if L_10 is None:
         note = Sentence(N_("T_av is 0 or so small that the equation gives a life without limit."))
-        yield Step("life", N_("Life"), "17.10", notes=(note,))
+        yield step_of_check("life", notes=(note,))
         return
-    rated = Term(Symbol("n", "rated"), sheet.catalogue.rated_input_speed_rpm, "rpm")
+    rated = Term(Variable("n", "rated"), sheet.catalogue.rated_input_speed_rpm, "rpm")
     formula = Product(
         (
             Constant(sheet.catalogue.life_at_rated_torque_h, "h"),
             Quotient(rated, sheet.n_in_av),
-            Power(Quotient(Term(Symbol("T", "N"), T_N, "Nm"), sheet.T_av), TEN_THIRDS),
+            Power(Quotient(T_N, sheet.T_av), TEN_THIRDS),
         )
     )
     basis = Sentence(
@@ -168,18 +155,17 @@ def _life(sheet: Sheet) -> Iterable[Step]:
             "rated torque on a basis of 50 % failures. The handbook does not settle which holds."
         )
     )
-    notes = (*_hand_life(sheet, T_N, life), basis)
-    yield Step("life", N_("Life"), "17.10", (Line(L_10, formula),), limit, notes)
+    line = Line(L_10, formula)
+    yield step_of_check("life", (line,), sheet.compared("life", L_10), (*_hand_life(sheet, line), basis))
 
 
-def _hand_life(sheet: Sheet, T_N: float, life: float) -> tuple[Sentence, ...]:
-    torque, speed = _hand(sheet.T_av.value), _hand_speed(sheet)
-    if not torque or not speed:
+def _hand_life(sheet: Sheet, line: Line) -> tuple[Sentence, ...]:
+    torque, output_speed = _hand(sheet.T_av.value), _hand(sheet.n_out_av.value)
+    if not torque or not output_speed:
         return ()
-    catalogue = sheet.catalogue
-    rated = catalogue.life_at_rated_torque_h * catalogue.rated_input_speed_rpm
-    by_hand = rated / speed * (T_N / torque) ** (10 / 3)
-    if math.isclose(by_hand, life, rel_tol=ROUNDING):
+    speed = _average_input_speed_line(sheet).by_hand({sheet.n_out_av.symbol: output_speed})
+    by_hand = line.by_hand({sheet.T_av.symbol: torque, sheet.n_in_av.symbol: speed})
+    if math.isclose(by_hand, line.result.value, rel_tol=ROUNDING):
         return ()
     values = {
         "torque": Quantity(torque, "Nm", 6),
@@ -206,9 +192,3 @@ def _hand(value: float) -> float | None:
     if not 0.01 <= value < LARGEST_WORTH_ROUNDING:
         return None
     return float(round(value)) if value >= 10 else float(f"{value:.2g}")
-
-
-def _hand_speed(sheet: Sheet) -> float | None:
-    """Average input speed from the rounded average output speed."""
-    speed = _hand(sheet.n_out_av.value)
-    return None if speed is None else speed * sheet.gear.ratio

@@ -1,66 +1,70 @@
 """Torques at the motor: peak without the emergency stop, and RMS over the cycle with its pause. Not in the handbook."""
 
 from collections.abc import Iterable
+from dataclasses import replace
 
-import numpy as np
-from numpy.typing import NDArray
-
-from hpn.calculation.formula import Constant, Formula, Power, Product, Quotient, Root, Symbol, Term
-from hpn.calculation.sheet import Line, Sheet, Step
+from hpn.calculation.formula import (
+    Constant,
+    Formula,
+    PhaseValues,
+    Power,
+    Product,
+    Quotient,
+    Root,
+    Term,
+    Variable,
+    over_phases,
+    values_of,
+)
+from hpn.calculation.sheet import Line, Sheet, Step, known, step_of_check
+from hpn.figures import efficiency_along
+from hpn.quantities import INPUTS
 from hpn.wording import N_, Sentence
+
+SQUARED = Constant(2)
+EFFICIENCY = Variable.of(INPUTS["requirements.efficiency"].symbol)
 
 
 def motor_steps(sheet: Sheet) -> Iterable[Step]:
     """Peak and RMS torque, loss-free where no efficiency is known."""
-    curve = sheet.catalogue.efficiency.get(sheet.gear.designation)
-    stated = sheet.application.requirements.efficiency
-    if stated is None and curve is not None:
-        yield from _by_curve(sheet, np.interp(sheet.T, *curve, left=1.0, right=1.0))
-        return
-    eta = Term(Symbol("η"), stated or 1.0)
-    note = Sentence(
-        N_("η as you state it.") if stated else N_("η = 1, since no efficiency is known: loss-free, a lower bound.")
-    )
+    stated = sheet.given("requirements.efficiency")
+    along = efficiency_along(sheet.catalogue, sheet.gear, sheet.torque.values)
+    if stated is None and along is not None:
+        return _by_curve(sheet, PhaseValues(EFFICIENCY, along))
+    eta = stated or Term(EFFICIENCY, 1.0)
+    note = N_("η as you state it.") if stated else N_("η = 1, since no efficiency is known: loss-free, a lower bound.")
     shaft = Product((sheet.i, eta))
-    squares = sheet.series(
-        lambda index, k: Product((Power(sheet.torque(index, k), Constant(2)), sheet.time(index, k))),
-        lambda: sheet.T**2 * sheet.t,
-    )
-    yield _peak(sheet, Quotient(sheet.T_max, shaft), note)
-    yield _rated(sheet, Quotient(Root(Quotient(squares, sheet.cycle_time)), shaft), note)
+    squares = over_phases(lambda T, t: Product((Power(T, SQUARED), t)), sheet.torque, sheet.time)
+    peak = Quotient(sheet.T_max, shaft)
+    rated = Quotient(Root(Quotient(squares, sheet.cycle_time)), shaft)
+    return _steps(sheet, peak, rated, Sentence(note))
 
 
-def _by_curve(sheet: Sheet, eta: NDArray[np.float64]) -> Iterable[Step]:
+def _by_curve(sheet: Sheet, eta: PhaseValues) -> Iterable[Step]:
     """Motor torques phase by phase, each with its own efficiency."""
-    torque = sheet.T / (sheet.gear.ratio * eta)
-    k = int(torque.argmax())
-    note = Sentence(N_("η of every phase from the efficiency curve that you supplied; 1 where the curve says nothing."))
-    peak = Quotient(sheet.torque(str(k + 1), k), Product((sheet.i, Term(Symbol("η", str(k + 1)), eta.item(k)))))
-    squares = sheet.series(
-        lambda index, k: Product(
-            (
-                Power(
-                    Quotient(sheet.torque(index, k), Product((sheet.i, Term(Symbol("η", index), eta.item(k))))),
-                    Constant(2),
-                ),
-                sheet.time(index, k),
-            )
-        ),
-        lambda: torque**2 * sheet.t,
+
+    def at_motor(T: Formula, eta: Formula) -> Formula:
+        return Quotient(T, Product((sheet.i, eta)))
+
+    def of_phase(index: str, place: int) -> Formula:
+        return at_motor(sheet.torque.term(index, place), eta.term(index, place))
+
+    every = {quantity.symbol.of_phase("n"): quantity.values for quantity in (sheet.torque, eta)}
+    largest = int(values_of(of_phase("n", 0), every).argmax())
+    squares = over_phases(
+        lambda T, eta, t: Product((Power(at_motor(T, eta), SQUARED), t)), sheet.torque, eta, sheet.time
     )
-    yield _peak(sheet, peak, note)
-    yield _rated(sheet, Root(Quotient(squares, sheet.cycle_time)), note)
+    note = N_("η of every phase from the efficiency curve that you supplied; 1 where the curve says nothing.")
+    rated = Root(Quotient(squares, sheet.cycle_time))
+    return _steps(sheet, of_phase(str(largest + 1), largest), rated, Sentence(note))
 
 
-def _peak(sheet: Sheet, formula: Formula, note: Sentence) -> Step:
-    peak = Term(Symbol("T", "motor"), sheet.candidate["motor_peak_torque_Nm"], "Nm")
-    limit = sheet.compared("motor_peak_torque", peak, Symbol("T", "motor peak"))
-    return Step(
-        "motor_peak_torque", N_("Peak torque at the motor"), None, (Line(peak, formula),), limit, (note,), trivial=True
-    )
-
-
-def _rated(sheet: Sheet, formula: Formula, note: Sentence) -> Step:
-    rated = Term(Symbol("T", "motor rms"), sheet.candidate["motor_rated_torque_Nm"], "Nm")
-    limit = sheet.compared("motor_rated_torque", rated, Symbol("T", "motor rated"))
-    return Step("motor_rated_torque", N_("RMS torque at the motor"), None, (Line(rated, formula),), limit, (note,))
+def _steps(sheet: Sheet, peak: Formula, rated: Formula, note: Sentence) -> Iterable[Step]:
+    formulas = {
+        "motor_peak_torque": (Variable("T", "in,max"), peak),
+        "motor_rated_torque": (Variable("T", "in,rms"), rated),
+    }
+    for code, (symbol, formula) in formulas.items():
+        torque = replace(known(sheet.figure(f"{code}_Nm")), symbol=symbol)
+        limit, trivial = sheet.compared(code, torque), code == "motor_peak_torque"
+        yield step_of_check(code, (Line(torque, formula),), limit, (note,), trivial=trivial)

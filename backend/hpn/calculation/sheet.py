@@ -1,15 +1,34 @@
 """What a calculation consists of, and the sheet of figures that its steps draw on."""
 
-from collections.abc import Callable, Mapping
+import math
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from functools import cached_property
 
-import numpy as np
-
-from hpn.calculation.formula import Formula, Magnitude, Product, Series, Sum, Symbol, Term, leaves_out, over_phases
-from hpn.catalogue import Catalogue
+from hpn.application import Application
+from hpn.calculation.formula import (
+    Formula,
+    Magnitude,
+    PhaseValues,
+    Product,
+    Series,
+    Sum,
+    Term,
+    Variable,
+    leaves_out,
+    over_phases,
+    value_of,
+)
+from hpn.catalogue import Catalogue, GearList
+from hpn.check import Check
+from hpn.checks import BY_CODE
 from hpn.duty import Duty
+from hpn.equations import ROUNDING, FloatArray
+from hpn.evaluation import CheckStatus
 from hpn.gear import Gear
+from hpn.quantities import CANDIDATE, DUTY, GEAR, INPUTS, Named
+from hpn.selection import Candidate
+from hpn.units import suffix_of
 from hpn.wording import Sentence
 
 
@@ -20,6 +39,11 @@ class Line:
     result: Term
     formula: Formula
     rounded_down: bool = False
+
+    def by_hand(self, rounded: Mapping[Variable, float]) -> float:
+        """What it would give with rounded values for some of its symbols."""
+        value = value_of(self.formula, rounded)
+        return float(math.floor(value * (1 + ROUNDING))) if self.rounded_down else value
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,10 +59,10 @@ class Comparison:
     unit: str
     relation: str
     limit: float
-    limit_names: tuple[Symbol, ...]
+    limit_names: tuple[Variable, ...]
     source: str
     utilisation: float | None
-    status: str
+    status: CheckStatus
     allowed: float
 
     @property
@@ -65,75 +89,112 @@ class Step:
         return any(leaves_out(line.formula) for line in self.lines)
 
 
+def step_of_check(
+    code: str,
+    lines: tuple[Line, ...] = (),
+    comparisons: tuple[Comparison, ...] = (),
+    notes: tuple[Sentence, ...] = (),
+    *,
+    trivial: bool = False,
+) -> Step:
+    """The step that works out a check; it has the check's title and equation."""
+    check = BY_CODE[code]
+    return Step(code, check.title, check.equation, lines, comparisons, notes, trivial)
+
+
+def known(term: Term | None) -> Term:
+    """A term of what is always there."""
+    assert term is not None
+    return term
+
+
 class Sheet:
-    """What the steps of one gear draw on: the reply's figures, the gear's, and the phases."""
+    """What the steps of one gear draw on: the candidate's figures, the gear's, the duty's and the phases."""
 
-    def __init__(self, candidate: Mapping[str, Any], gear: Gear, duty: Duty, catalogue: Catalogue) -> None:
-        self.candidate, self.gear, self.duty, self.catalogue = candidate, gear, duty, catalogue
-        self.application = duty.applications[0]
-        self.count = len(self.application.duty_cycle.phases)
-        self.T, self.n, self.t = duty.torque_Nm[0], duty.speed_rpm[0], duty.duration_s[0]
-        self.checks = {check["code"]: check for check in candidate["checks"]}
-        self.i = Term(Symbol("i"), gear.ratio)
-        self.T_av = Term(Symbol("T", "av"), duty.average_torque_Nm.item(0), "Nm")
-        stop = duty.emergency_stop_torque_Nm.item(0) if self.application.emergency_stop else None
-        self.T_k = None if stop is None else Term(Symbol("T", "k"), stop, "Nm")
-        self.T_max = Term(Symbol("T", "max"), duty.maximum_torque_Nm.item(0), "Nm")
-        self.n_out_av = Term(Symbol("n", "out av"), duty.average_output_speed_rpm.item(0), "rpm")
-        self.n_out_max = Term(Symbol("n", "out max"), duty.maximum_output_speed_rpm.item(0), "rpm")
-        self.n_in_av = Term(Symbol("n", "in av"), candidate["average_input_speed_rpm"], "rpm")
-        self.n_in_max = Term(Symbol("n", "in max"), candidate["maximum_input_speed_rpm"], "rpm")
+    def __init__(self, candidate: Candidate, gear: Gear, application: Application, catalogue: Catalogue) -> None:
+        self.candidate, self.gear, self.application, self.catalogue = candidate, gear, application, catalogue
+        self.duty = Duty.of([application])
+        self.torque = self._of_phases("torque_Nm")
+        self.speed = self._of_phases("speed_rpm")
+        self.time = self._of_phases("duration_s")
+        self.radial = self._of_phases("radial_N")
+        self.axial = self._of_phases("axial_N")
+        self.T_av, self.n_out_av = self._of_duty("average_torque_Nm"), self._of_duty("average_output_speed_rpm")
+        self.T_max, self.n_out_max = self._of_duty("maximum_torque_Nm"), self._of_duty("maximum_output_speed_rpm")
+        self.i = known(self.rating("ratio"))
+        self.n_in_av = known(self.figure("average_input_speed_rpm"))
+        self.n_in_max = known(self.figure("maximum_input_speed_rpm"))
+        self.T_k = self.given("emergency_stop.torque_Nm")
 
-    def series(self, make: Callable[[str, int], Formula], values: Callable[[], Any]) -> Series:
-        """Sum over the phases; `values` are all of its terms as an array."""
-        return over_phases(make, self.count, lambda: float(np.sum(values())))
+    def _of_phases(self, name: str) -> PhaseValues:
+        values: FloatArray = getattr(self.duty.phases, name)[0, 0]
+        return PhaseValues(Variable.of(INPUTS[f"phase.{name}"].symbol), values, suffix_of(name) or "")
 
-    def torque(self, index: str, k: int) -> Term:
-        """Torque of a phase."""
-        return Term(Symbol("T", index), self.T.item(k), "Nm")
+    def _of_duty(self, name: str) -> Term:
+        return _term(DUTY[name], name, getattr(self.duty, name).item())
 
-    def speed(self, index: str, k: int) -> Term:
-        """Speed of a phase."""
-        return Term(Symbol("n", index), self.n.item(k), "rpm")
+    def figure(self, name: str) -> Term | None:
+        """A figure of the candidate; None where it has none."""
+        value: float | None = getattr(self.candidate, name)
+        return None if value is None else _term(CANDIDATE[name], name, value)
 
-    def time(self, index: str, k: int) -> Term:
-        """Duration of a phase."""
-        return Term(Symbol("t", index), self.t.item(k), "s")
+    def rating(self, name: str) -> Term | None:
+        """A figure of the catalogue; None where it is not published."""
+        value: float | None = getattr(self.gear, name)
+        return None if value is None else _term(GEAR[name], name, value)
 
-    @property
+    def given(self, place: str) -> Term | None:
+        """A number that the application gives, by magnitude; None where it doesn't."""
+        value = abs(self.duty.asked[place].item())
+        return None if math.isnan(value) else _term(INPUTS[place], place, value)
+
+    @cached_property
+    def gears(self) -> GearList:
+        """The gear alone, as what works out figures takes it."""
+        return GearList([self.gear], [self.catalogue.curves.get(self.gear.size)])
+
+    @cached_property
     def travel(self) -> Series:
         """|n_1| t_1 + … + |n_n| t_n."""
-        return self.series(
-            lambda index, k: Product((Magnitude(self.speed(index, k)), self.time(index, k))), lambda: self.n * self.t
-        )
+        return over_phases(lambda n, t: Product((Magnitude(n), t)), self.speed, self.time)
 
-    @property
+    @cached_property
     def cycle_time(self) -> Sum:
         """t_1 + … + t_n + t_p."""
-        return Sum((self.series(self.time, lambda: self.t), Term(Symbol("t", "p"), self.duty.pause_s.item(0), "s")))
+        return Sum((over_phases(lambda t: t, self.time), known(self.given("duty_cycle.pause_s"))))
 
-    def compared(
-        self, code: str, tested: Formula, *names: Symbol, unit: str = "", figure: str = ""
-    ) -> tuple[Comparison, ...]:
-        """The check of a code, where the application asks for it and the gear's figures are published.
-
-        `names` are the symbols of the limit, `figure` is the catalogue's field that it comes from.
-        """
-        check = self.checks.get(code)
-        if check is None or None in (check["limit"], check["demand"]):
+    def compared(self, code: str, tested: Formula) -> tuple[Comparison, ...]:
+        """The check of a code, where the application asks for it and the gear's figures are published."""
+        check, result = BY_CODE[code], self.candidate.check(code)
+        if result is None or result.demand is None or result.limit is None:
             return ()
         return (
             Comparison(
                 code=code,
                 tested=tested,
-                value=check["demand"],
-                unit=unit or getattr(tested, "unit", ""),
-                relation="≥" if code == "life" else "≤",
-                limit=check["limit"],
-                limit_names=names,
-                source=self.gear.sources.get(figure, ""),
-                utilisation=check["utilisation"],
-                status=check["status"],
-                allowed=self.application.requirements.utilisation,
+                value=result.demand,
+                unit=check.unit,
+                relation="≥" if check.kind == "minimum" else "≤",
+                limit=result.limit,
+                limit_names=_limit_names(check),
+                source=self._source(check),
+                utilisation=result.utilisation,
+                status=result.status,
+                allowed=check.allowed(self.application.requirements.utilisation),
             ),
         )
+
+    def _source(self, check: Check) -> str:
+        """Where the limit of a check is printed; blank where it is the user's own, as what is required at least is."""
+        figure = None if check.kind == "minimum" else check.limited_by
+        return self.gear.sources.get(figure, "") if figure else ""
+
+
+def _term(named: Named, name: str, value: float) -> Term:
+    return Term(Variable.of(named.symbol), value, suffix_of(name) or "")
+
+
+def _limit_names(check: Check) -> tuple[Variable, ...]:
+    """Symbols of a check's limit, as its relation writes them: `T_av ≤ T_A = T_N`; none where it is a number."""
+    names = check.relation.replace("≥", "≤").partition(" ≤ ")[2].split(" = ")
+    return tuple(Variable.of(name) for name in names if not name.isdigit())

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hpn.bearing import Curve
-from hpn.gear import Gear, canonical_designation, canonical_size
+from hpn.gear import Gear, GearColumns, canonical_designation, canonical_size
 
 FloatArray = NDArray[np.float64]
 
@@ -41,42 +41,21 @@ class OutputVersion:
     source: str
 
 
-class GearColumns:
-    """Figures of some gears as arrays, shape (gears,); NaN where a figure is not published."""
-
-    ratio: FloatArray
-    repeated_peak_torque_Nm: FloatArray
-    rated_torque_Nm: FloatArray
-    momentary_peak_torque_Nm: FloatArray
-    maximum_input_speed_rpm: FloatArray
-    average_input_speed_rpm: FloatArray
-    ambient_temperature_minimum_degC: FloatArray
-    ambient_temperature_maximum_degC: FloatArray
-    weight_kg: FloatArray
-    backlash_arcmin: FloatArray
-    torsional_stiffness_Nm_per_rad: FloatArray
-    length_min_mm: FloatArray
-    length_max_mm: FloatArray
-    dynamic_radial_load_N: FloatArray
-    dynamic_axial_load_N: FloatArray
-
-    def __init__(self, gears: Sequence[Gear]) -> None:
-        for name in self.__class__.__annotations__:
-            column = np.array([np.nan if (v := getattr(gear, name)) is None else v for gear in gears], dtype=float)
-            column.flags.writeable = False
-            setattr(self, name, column)
-
-
 class GearList:
-    """Some gears of the catalogue in its order, once as rows and once as columns."""
+    """Some gears of the catalogue in its order, once as rows and once as columns.
+
+    What belongs to a size, as its output bearing does, is worked out once for each: `of_size` (gears,) tells which of
+    the sizes a gear has, `first_of_size` (sizes,) is a gear of each.
+    """
 
     def __init__(self, gears: Sequence[Gear], curves: Sequence[Curve | None]) -> None:
         self.rows = tuple(gears)
         self.columns = GearColumns(self.rows)
         self.curves = tuple(curves)
-        self.names = tuple(
-            tuple(getattr(gear, field) for gear in self.rows) for field in ("designation", "size", "ratio", "stages")
-        )
+        sizes = [gear.size for gear in self.rows]
+        known = list(dict.fromkeys(sizes))
+        self.first_of_size = np.array([sizes.index(size) for size in known], dtype=np.intp)
+        self.of_size = np.array([known.index(size) for size in sizes], dtype=np.intp)
 
 
 @dataclass(frozen=True, eq=False)

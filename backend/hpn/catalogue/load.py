@@ -32,6 +32,7 @@ from hpn.catalogue.tables import (
     WeightTable,
 )
 from hpn.gear import ClampBolt, Gear, HousingBolts
+from hpn.source import printed_source, supplied_source
 
 FloatArray = NDArray[np.float64]
 HANDBOOK_FOLDER = Path(__file__).parents[3] / "catalogue"
@@ -129,9 +130,9 @@ class _Book(dict[type[Table], list[Table]]):
         """Where one figure comes from; what the user supplied says so."""
         cell = row.cells[column]
         if cell.supplied:
-            return f"supplied by the user: {cell.source or Path(cell.file).name}"
+            return supplied_source(cell.source or Path(cell.file).name)
         page = next(entry.page for entry in self.of(SourceTable) if entry.source == cell.source)
-        return f"{cell.source}, page {page}"
+        return printed_source(cell.source, page)
 
 
 def _check(book: _Book) -> None:

@@ -6,13 +6,13 @@ row. A supplement has files of the same form that are merged cell by cell; a bla
 
 import csv
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, TypeVar
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, create_model
 
-from hpn.gear import canonical_size
+from hpn.gear import Gear, canonical_size
 from hpn.units import SYMBOLS
 
 MAXIMUM_FILE_BYTES = 4_000_000
@@ -92,61 +92,48 @@ class GearTable(Table):
     stages: Count
 
 
-class RatingTable(Table):
-    file = "ratings.csv"
+class RatioRow(Table):
+    """Row of a table of figures that each gear has of its own."""
+
     key = ("size", "ratio")
     size: Size
     ratio: Count
-    repeated_peak_torque_Nm: Positive | None = None
-    rated_torque_Nm: Positive | None = None
-    momentary_peak_torque_Nm: Positive | None = None
 
 
-class SizeTable(Table):
-    file = "sizes.csv"
+class SizeRow(Table):
+    """Row of a table of figures that all gears of a size share."""
+
     key = ("size",)
     size: Size
-    maximum_input_speed_rpm: Positive | None = None
-    average_input_speed_rpm: Positive | None = None
-    ambient_temperature_minimum_degC: Figure | None = None
-    ambient_temperature_maximum_degC: Figure | None = None
-    dynamic_radial_load_N: Positive | None = None
-    dynamic_axial_load_N: Positive | None = None
     note: str | None = None
 
 
-class WeightTable(Table):
-    file = "weights.csv"
+class StageRow(Table):
+    """Row of a table of figures that all gears of a size and number of stages share."""
+
     key = ("size", "stages")
     size: Size
     stages: Count
-    weight_kg: Positive | None = None
 
 
-class LengthTable(Table):
-    file = "lengths.csv"
-    key = ("size", "stages")
-    size: Size
-    stages: Count
-    length_min_mm: Positive | None = None
-    length_max_mm: Positive | None = None
+def _with_figures(file: str, base: type[TableRow]) -> type[TableRow]:
+    """Table of the figures that the fields of `Gear` say they have from this file."""
+    figures: dict[str, Any] = {
+        field.name: (Figure | None if field.metadata["signed"] else Positive | None, None)
+        for field in fields(Gear)
+        if field.metadata.get("file") == file
+    }
+    table: type[TableRow] = create_model(file, __base__=base, **figures)
+    table.file = file
+    return table
 
 
-class AccuracyTable(Table):
-    file = "accuracy.csv"
-    key = ("size", "stages")
-    size: Size
-    stages: Count
-    backlash_arcmin: Positive | None = None
-    transmission_accuracy_arcmin: Positive | None = None
-
-
-class StiffnessTable(Table):
-    file = "stiffness.csv"
-    key = ("size", "stages")
-    size: Size
-    stages: Count
-    torsional_stiffness_Nm_per_rad: Positive | None = None
+RatingTable = _with_figures("ratings.csv", RatioRow)
+SizeTable = _with_figures("sizes.csv", SizeRow)
+WeightTable = _with_figures("weights.csv", StageRow)
+LengthTable = _with_figures("lengths.csv", StageRow)
+AccuracyTable = _with_figures("accuracy.csv", StageRow)
+StiffnessTable = _with_figures("stiffness.csv", StageRow)
 
 
 class FlangeBoltTable(Table):

@@ -5,9 +5,18 @@ Data and axes are made here; colours are names of the page's theme (`var(--plot-
 
 from hpn.drawings.bearing import bearing_figure, sizes_figure
 from hpn.drawings.cycle import CyclePicture, cycle_picture
-from hpn.drawings.picture import BearingPicture, NamedCurve, SizeUse, bearing_picture, bearing_verdict, size_uses
+from hpn.drawings.layout import Figure
+from hpn.drawings.picture import (
+    BearingPicture,
+    NamedCurve,
+    SizeUse,
+    bearing_picture,
+    bearing_verdict,
+    picture_of,
+    size_uses,
+)
 from hpn.drawings.stops import emergency_stop_figure, emergency_stop_words
-from hpn.drawings.words import Figure, Words
+from hpn.drawings.subject import Subject
 
 __all__ = [
     "BearingPicture",
@@ -15,13 +24,14 @@ __all__ = [
     "Figure",
     "NamedCurve",
     "SizeUse",
-    "Words",
+    "Subject",
     "bearing_figure",
     "bearing_picture",
     "bearing_verdict",
     "cycle_picture",
     "emergency_stop_figure",
     "emergency_stop_words",
+    "picture_of",
     "size_uses",
     "sizes_figure",
 ]

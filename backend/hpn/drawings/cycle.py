@@ -3,15 +3,16 @@
 Coordinates are those of a drawing WIDTH wide, y downwards; the template only writes them down as SVG.
 """
 
-import math
-import sys
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 from hpn.application import DutyCycle
-from hpn.drawings.words import ENGLISH, Words
-from hpn.gear import Gear
-from hpn.selection import Selection
+from hpn.drawings.axis import round_numbers, slices
+from hpn.drawings.subject import Subject
+from hpn.drawings.words import axis_title
+from hpn.quantities import DUTY, GEAR, INPUTS
+from hpn.reader import DEFAULT, Reader
 from hpn.wording import N_, Quantity, Sentence, Value
 
 WIDTH, LEFT, RIGHT = 344.0, 34.0, 282.0
@@ -43,7 +44,7 @@ class Mark:
 
 @dataclass(frozen=True, slots=True)
 class Panel:
-    """One step diagram: its axis, its steps and its lines."""
+    """One step diagram: its axis, its steps and its lines; `beyond` are those beyond the scale, from the right edge."""
 
     title: str
     top: float
@@ -54,7 +55,6 @@ class Panel:
     ticks: list[Mark]
     lines: list[Mark]
     beyond: list[Mark]
-    """Lines beyond the scale, from the right edge inwards."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,38 +73,58 @@ class CyclePicture:
 
 
 @dataclass(frozen=True, slots=True)
-class _Line:
+class _Level:
     """A level to compare the steps with."""
 
     symbol: str
-    value: float | None
+    value: float
     kind: str
 
 
-def cycle_picture(selection: Selection, gear: Gear, words: Words = ENGLISH) -> CyclePicture:
+@dataclass(frozen=True)
+class _Diagram:
+    """What a panel shows: the phases' values and levels, and its place in the drawing."""
+
+    quantity: str
+    unit: str
+    top: float
+    height: float
+    values: list[float]
+    levels: list[_Level]
+
+    @cached_property
+    def range(self) -> tuple[float, float]:
+        """From the smallest to the largest step, 0 and the levels that are near them included."""
+        low, high = min(0.0, *self.values), max(0.0, *self.values)
+        largest = max(-low, high)
+        high = max(high, *(level.value for level in self.levels if level.value <= largest * OUT_OF_SCALE), 0.0)
+        return (low, high) if high > low else (0.0, 1.0)
+
+    def y(self, value: float) -> float:
+        """Where a value stands."""
+        lowest, highest = (HEADROOM * end for end in self.range)
+        return round(self.top + self.height * (highest - value) / (highest - lowest), 2)
+
+
+def cycle_picture(subject: Subject, reader: Reader = DEFAULT) -> CyclePicture:
     """The cycle of an application, beside the limits of one gear."""
-    cycle = selection.application.duty_cycle
+    cycle = subject.application.duty_cycle
     edges, to_scale, broken = _edges(cycle)
-    torque = _panel(
-        words.axis(N_("Torque"), "Nm"), "Nm", TORQUE_TOP, TORQUE_HEIGHT, edges,
-        [phase.torque_Nm for phase in cycle.phases], _torque_lines(selection, gear), words,
-    )  # fmt: skip
+    torques, speeds = ([getattr(phase, name) for phase in cycle.phases] for name in ("torque_Nm", "speed_rpm"))
     top = TORQUE_TOP + TORQUE_HEIGHT + BETWEEN
-    speed = _panel(
-        words.axis(N_("Speed"), "rpm"), "rpm", top, SPEED_HEIGHT, edges,
-        [phase.speed_rpm for phase in cycle.phases], _speed_lines(selection, gear), words,
-    )  # fmt: skip
+    torque = _Diagram(N_("Torque"), "Nm", TORQUE_TOP, TORQUE_HEIGHT, torques, _torque_levels(subject))
+    speed = _Diagram(N_("Speed"), "rpm", top, SPEED_HEIGHT, speeds, _speed_levels(subject))
     count = len(cycle.phases)
     return CyclePicture(
         height=top + SPEED_HEIGHT + 6,
-        torque=torque,
-        speed=speed,
+        torque=_panel(torque, edges, reader),
+        speed=_panel(speed, edges, reader),
         names=_names(edges, count, TORQUE_TOP + TORQUE_HEIGHT + 11),
         boundaries=edges[1 : count + 1] if count <= NAMED_PHASES else [],
         pause=(edges[count], edges[-1]) if cycle.pause_s > 0 else None,
         pause_broken=broken,
         to_scale=to_scale,
-        words=_in_words(selection),
+        words=_in_words(torques, speeds, cycle.pause_s),
     )
 
 
@@ -164,132 +184,99 @@ def _names(edges: list[float], count: int, y: float) -> list[Mark]:
 # --- One diagram ------------------------------------------------------------------------------------------------------
 
 
-def _panel(
-    title: str,
-    unit: str,
-    top: float,
-    height: float,
-    edges: Sequence[float],
-    values: Sequence[float],
-    lines: Sequence[_Line],
-    words: Words,
-) -> Panel:
-    low, high = _range(values, lines)
-    lowest, highest = low * HEADROOM, high * HEADROOM
-
-    def at(value: float) -> float:
-        return round(top + height * (highest - value) / (highest - lowest), 2)
-
-    bottom = top + height
-    outline, area = _steps(edges, values, at)
-    ticks = [Mark(LEFT - 5, at(v) + 3.5, text, line=at(v)) for v, text in _ticks(low, high, unit, words)]
-    marks, beyond = _placed(lines, high, at, top, unit, words)
-    return Panel(title, top, bottom, at(0.0), outline, area, ticks, marks, beyond)
+def _panel(diagram: _Diagram, edges: Sequence[float], reader: Reader) -> Panel:
+    bottom = diagram.top + diagram.height
+    outline, area = _steps(edges, diagram.values, diagram.y)
+    marks, beyond = _placed(diagram, reader)
+    title = axis_title(diagram.quantity, diagram.unit, reader)
+    return Panel(title, diagram.top, bottom, diagram.y(0.0), outline, area, _ticks(diagram, reader), marks, beyond)
 
 
-def _range(values: Sequence[float], lines: Sequence[_Line]) -> tuple[float, float]:
-    """From the smallest to the largest step, 0 and the lines that are near them included."""
-    low, high = min(0.0, *values), max(0.0, *values)
-    largest = max(-low, high)
-    near = [line.value for line in lines if line.value is not None and line.value <= largest * OUT_OF_SCALE]
-    high = max(high, *near, 0.0)
-    return (low, high) if high > low else (0.0, 1.0)
-
-
-def _steps(edges: Sequence[float], values: Sequence[float], at: Callable[[float], float]) -> tuple[str, str]:
+def _steps(edges: Sequence[float], values: Sequence[float], y: Callable[[float], float]) -> tuple[str, str]:
     """Path of the steps, and of the area between them and zero; of very many, the range in each slice of time."""
-    zero = at(0.0)
+    zero = y(0.0)
     if len(values) > MOST_STEPS:
-        return _ranges(edges, values, at)
+        return _ranges(edges, values, y)
     path = [f"M{edges[0]:.2f} {zero}"]
     for k, value in enumerate(values):
-        path.append(f"V{at(value)}H{edges[k + 1]:.2f}")
+        path.append(f"V{y(value)}H{edges[k + 1]:.2f}")
     outline = "".join(path) + f"V{zero}" + (f"H{edges[-1]:.2f}" if len(edges) > len(values) + 1 else "")
     return outline, "".join(path) + f"V{zero}Z"
 
 
-def _ranges(edges: Sequence[float], values: Sequence[float], at: Callable[[float], float]) -> tuple[str, str]:
-    slices: dict[int, tuple[float, float]] = {}
-    for k, value in enumerate(values):
-        for place in range(int(edges[k]), max(math.ceil(edges[k + 1]), int(edges[k]) + 1)):
-            low, high = slices.get(place, (value, value))
-            slices[place] = min(low, value), max(high, value)
-    zero = at(0.0)
-    outline = "".join(f"M{x + 0.5} {at(low) + 0.5:.2f}V{at(high) - 0.5:.2f}" for x, (low, high) in slices.items())
-    area = "".join(f"M{x} {at(max(high, 0))}h1V{at(min(low, 0))}h-1Z" for x, (low, high) in slices.items())
-    return outline, area or f"M{edges[0]} {zero}"
+def _ranges(edges: Sequence[float], values: Sequence[float], y: Callable[[float], float]) -> tuple[str, str]:
+    found = slices(edges, values)
+    outline = "".join(f"M{x + 0.5} {y(low) + 0.5:.2f}V{y(high) - 0.5:.2f}" for x, (low, high) in found.items())
+    area = "".join(f"M{x} {y(max(high, 0))}h1V{y(min(low, 0))}h-1Z" for x, (low, high) in found.items())
+    return outline, area or f"M{edges[0]} {y(0.0)}"
 
 
-def _ticks(low: float, high: float, unit: str, words: Words) -> list[tuple[float, str]]:
-    """Values on the wire and texts in the reader's unit, at round numbers of the latter."""
-    start, end = words.convert(low, unit), words.convert(high, unit)
+def _ticks(diagram: _Diagram, reader: Reader) -> list[Mark]:
+    """Marks at round numbers of the reader's unit."""
+    low, high = diagram.range
+    start, end = (reader.measure(diagram.unit).shown(value) for value in (low, high))
     scale = (end - start) / (high - low)
-    if not end - start > sys.float_info.min:  # no room for round numbers between them
-        return []
-    step = _round_step((end - start) / 3)
-    places = range(math.ceil(start / step - 1e-9), math.floor(end / step + 1e-9) + 1)
-    return [(k * step / scale, words.number(k * step / scale, unit)) for k in places]
+    places = ((diagram.y(number / scale), number) for number in round_numbers(start, end, 3))
+    return [Mark(LEFT - 5, y + 3.5, reader.tick(number), line=y) for y, number in places]
 
 
-def _round_step(rough: float) -> float:
-    scale = 10.0 ** math.floor(math.log10(rough))
-    return scale * next(factor for factor in (1, 2, 5, 10) if factor >= rough / scale - 1e-9)
-
-
-def _placed(
-    lines: Sequence[_Line], high: float, at: Callable[[float], float], top: float, unit: str, words: Words
-) -> tuple[list[Mark], list[Mark]]:
-    """Lines with their names at the right, none over another; and those beyond the scale, which only have a name."""
-    known = sorted((line for line in lines if line.value is not None), key=lambda line: -(line.value or 0.0))
+def _placed(diagram: _Diagram, reader: Reader) -> tuple[list[Mark], list[Mark]]:
+    """Levels with their names at the right, none over another; and those beyond the scale, which only have a name."""
     marks: list[Mark] = []
     beyond: list[Mark] = []
+    top, (_, high) = diagram.top, diagram.range
     y = top - LETTER
-    for line in known:
-        value = line.value or 0.0
-        shown = words.number(value, unit)
-        if value > high * (1 + 1e-9):
-            beyond.append(Mark(WIDTH, top - 5, line.symbol, shown, line.kind))
+    for level in sorted(diagram.levels, key=lambda level: -level.value):
+        text = reader.figure(level.value, diagram.unit)
+        if level.value > high * (1 + 1e-9):
+            beyond.append(Mark(WIDTH, top - 5, level.symbol, text, level.kind))
             continue
-        y = max(y + LETTER, at(value) + 3.5)
-        marks.append(Mark(RIGHT + 4, y, line.symbol, shown if unit == "Nm" else "", line.kind, at(value)))
+        line = diagram.y(level.value)
+        y = max(y + LETTER, line + 3.5)
+        marks.append(Mark(RIGHT + 4, y, level.symbol, text if diagram.unit == "Nm" else "", level.kind, line))
     return marks, beyond[::-1]
 
 
 # --- What is compared -------------------------------------------------------------------------------------------------
 
 
-def _torque_lines(selection: Selection, gear: Gear) -> list[_Line]:
-    stop, average = selection.application.emergency_stop, selection.evaluation.duty.average_torque_Nm
-    return [
-        _Line("T_av", average.item(selection.index), "average"),
-        _Line("T_N", gear.rated_torque_Nm, "limit"),
-        _Line("T_R", gear.repeated_peak_torque_Nm, "limit"),
-        _Line("T_k", abs(stop.torque_Nm) if stop else None, "stop"),
-    ]
+def _torque_levels(subject: Subject) -> list[_Level]:
+    gear = subject.gear
+    return _known(
+        (DUTY["average_torque_Nm"].symbol, subject.duty.average_torque_Nm.item(), "average"),
+        (GEAR["rated_torque_Nm"].symbol, gear.rated_torque_Nm, "limit"),
+        (GEAR["repeated_peak_torque_Nm"].symbol, gear.repeated_peak_torque_Nm, "limit"),
+        (INPUTS["emergency_stop.torque_Nm"].symbol, subject.emergency_stop_torque_Nm, "stop"),
+    )
 
 
-def _speed_lines(selection: Selection, gear: Gear) -> list[_Line]:
+def _speed_levels(subject: Subject) -> list[_Level]:
     """At the output: the limits of the input over the ratio."""
-    average = selection.evaluation.duty.average_output_speed_rpm.item(selection.index)
-    limits = (("n_av(max)/i", gear.average_input_speed_rpm), ("n_in(max)/i", gear.maximum_input_speed_rpm))
-    at_output = [_Line(name, value / gear.ratio if value else None, "limit") for name, value in limits]
-    return [_Line("n_av", average, "average"), *at_output]
+    limits = {name: getattr(subject.gear, name) for name in ("average_input_speed_rpm", "maximum_input_speed_rpm")}
+    return _known(
+        (DUTY["average_output_speed_rpm"].symbol, subject.duty.average_output_speed_rpm.item(), "average"),
+        *(
+            (f"{GEAR[name].symbol}/{GEAR['ratio'].symbol}", value and value / subject.gear.ratio, "limit")
+            for name, value in limits.items()
+        ),
+    )
 
 
-def _in_words(selection: Selection) -> list[Sentence]:
-    cycle = selection.application.duty_cycle
-    torques, speeds = ([getattr(p, name) for p in cycle.phases] for name in ("torque_Nm", "speed_rpm"))
-    one = len(cycle.phases) == 1
-    phases = Sentence("One phase.") if one else Sentence("{count} phases.", {"count": len(cycle.phases)})
+def _known(*levels: tuple[str, float | None, str]) -> list[_Level]:
+    """Levels whose value is there."""
+    return [_Level(symbol, value, kind) for symbol, value, kind in levels if value is not None]
+
+
+def _in_words(torques: Sequence[float], speeds: Sequence[float], pause_s: float) -> list[Sentence]:
+    count = len(torques)
     sentences = [
-        phases,
+        Sentence("One phase.") if count == 1 else Sentence("{count} phases.", {"count": count}),
         Sentence("Torque from {low} to {high}.", _extremes(torques, "Nm")),
         Sentence("Speed from {low} to {high}.", _extremes(speeds, "rpm")),
     ]
-    pause = Sentence("Pause {pause}.", {"pause": Quantity(cycle.pause_s, "s", 6)})
-    return [*sentences, pause] if cycle.pause_s > 0 else sentences
+    pause = Sentence("Pause {pause}.", {"pause": Quantity(pause_s, "s", 6)})
+    return [*sentences, pause] if pause_s > 0 else sentences
 
 
-def _extremes(values: Iterable[float], unit: str) -> dict[str, Value]:
-    known = list(values)
-    return {"low": Quantity(min(known), unit, 6), "high": Quantity(max(known), unit, 6)}
+def _extremes(values: Sequence[float], unit: str) -> dict[str, Value]:
+    return {"low": Quantity(min(values), unit, 6), "high": Quantity(max(values), unit, 6)}

@@ -1,10 +1,10 @@
 """The load envelope of a size as a small drawing: points on a canvas, with round marks on both axes."""
 
 from dataclasses import dataclass
-from math import floor, log10
 
 from hpn.application import InputError
 from hpn.catalogue import Catalogue
+from hpn.drawings.axis import round_numbers
 from hpn.envelopes import EnvelopeCurve, EnvelopeQuery, life_envelopes
 from hpn.gear import Gear
 
@@ -15,9 +15,12 @@ LEFT, RIGHT, TOP, BOTTOM = 56, 62, 12, 36
 SPACE = 1.06
 """Room beyond the largest load."""
 
+MOST_SPACES = 6
+"""Spaces between round numbers along an axis."""
+
 
 @dataclass(frozen=True, slots=True)
-class Mark:
+class AxisMark:
     """A number on an axis, and where it stands."""
 
     place: float
@@ -25,7 +28,7 @@ class Mark:
 
 
 @dataclass(frozen=True, slots=True)
-class Line:
+class CurveLine:
     """One envelope: corner points as loads, and as the text of an SVG polyline."""
 
     curve: EnvelopeCurve
@@ -36,9 +39,9 @@ class Line:
 class Drawing:
     """Radial load to the right, axial load upwards, as in the plots of a selection."""
 
-    lines: tuple[Line, ...]
-    radial_marks: tuple[Mark, ...]
-    axial_marks: tuple[Mark, ...]
+    lines: tuple[CurveLine, ...]
+    radial_marks: tuple[AxisMark, ...]
+    axial_marks: tuple[AxisMark, ...]
     supplied: bool
 
 
@@ -58,20 +61,13 @@ def drawing(catalogue: Catalogue, gear: Gear) -> Drawing | None:
     def y(load: float) -> float:
         return round(HEIGHT - BOTTOM - load / axial * (HEIGHT - TOP - BOTTOM), 1)
 
-    def line(curve: EnvelopeCurve) -> Line:
+    def line(curve: EnvelopeCurve) -> CurveLine:
         points = zip(curve.radial_N, curve.axial_N, strict=True)
-        return Line(curve, " ".join(f"{x(along)},{y(up)}" for along, up in points))
+        return CurveLine(curve, " ".join(f"{x(along)},{y(up)}" for along, up in points))
 
     return Drawing(
         tuple(map(line, curves)),
-        tuple(Mark(x(value), value) for value in _marks(radial)),
-        tuple(Mark(y(value), value) for value in _marks(axial)),
+        tuple(AxisMark(x(value), value) for value in round_numbers(0.0, radial, MOST_SPACES)),
+        tuple(AxisMark(y(value), value) for value in round_numbers(0.0, axial, MOST_SPACES)),
         supplied,
     )
-
-
-def _marks(largest: float) -> list[float]:
-    """Round numbers from 0 up to a largest one, four to eight of them."""
-    step = 10.0 ** floor(log10(largest / 4))
-    step *= max(factor for factor in (1, 2, 5) if factor * step * 4 <= largest)
-    return [k * step for k in range(int(largest / step) + 1)]

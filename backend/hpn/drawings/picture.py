@@ -5,15 +5,15 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
 
-import numpy as np
-
 from hpn import bearing
 from hpn.application import OutputLoad
-from hpn.drawings.words import numbers, share
-from hpn.envelopes import EnvelopeCurve, EnvelopeQuery, envelope_curve, life_envelopes
+from hpn.drawings.subject import Subject
+from hpn.drawings.words import phase_numbers, share
+from hpn.duty import Duty
+from hpn.envelopes import EnvelopeCurve, envelope_curve, envelopes_for
 from hpn.equations import ROUNDING
+from hpn.figures import phase_loads
 from hpn.gear import Gear
-from hpn.selection import Selection
 from hpn.wording import Quantity, Sentence, Value
 
 MOST_LOADS = 200
@@ -32,12 +32,12 @@ class PhaseLoad:
     @property
     def phases(self) -> str:
         """Numbers of the phases as a reader counts them."""
-        return numbers(self.places)
+        return phase_numbers(self.places)
 
     @property
     def magnitude_N(self) -> float:
         """Length of the load vector."""
-        return float(np.hypot(self.radial_N, self.axial_N))
+        return math.hypot(self.radial_N, self.axial_N)
 
     @property
     def distance_N(self) -> float | None:
@@ -45,11 +45,14 @@ class PhaseLoad:
         return self.magnitude_N * (1 / self.published - 1) if self.published > 1e-300 else None
 
 
+CurveKind = Literal["own", "life", "published", "equivalent"]
+
+
 @dataclass(frozen=True, slots=True)
 class NamedCurve:
     """One curve of the picture, and the condition that it stands for; `kind` tells the curves apart in the figure."""
 
-    kind: Literal["own", "life", "published", "equivalent"]
+    kind: CurveKind
     name: Sentence
     curve: EnvelopeCurve
 
@@ -63,7 +66,8 @@ class NamedCurve:
 class BearingPicture:
     """Loads of one application on the output bearing of one candidate.
 
-    `mean` is P_m without f_w, `life_utilisation` f_w P_m over k; `loads` are in the order of the phases.
+    `mean` is P_m without f_w, `life_factor` the k that speed and required life allow; `loads` are in the order of the
+    phases, and `hidden` is the number of those left out.
     """
 
     gear: Gear
@@ -72,9 +76,7 @@ class BearingPicture:
     hidden: int
     mean: float
     life_factor: float
-    life_L50_h: float
     average_output_speed_rpm: float
-    life_utilisation: float
     curves: list[EnvelopeCurve]
     published_curve: EnvelopeCurve
     mean_curve: EnvelopeCurve
@@ -83,6 +85,11 @@ class BearingPicture:
     def worst(self) -> PhaseLoad:
         """The load that uses the published envelope most."""
         return max(self.loads, key=lambda load: load.published)
+
+    @property
+    def life_utilisation(self) -> float:
+        """Equivalent load over what its life allows: f_w P_m over k."""
+        return self.mean * self.load.load_coefficient / self.life_factor
 
     @property
     def constant_load_utilisation(self) -> float:
@@ -113,6 +120,61 @@ def _coefficient(curve: EnvelopeCurve) -> dict[str, Value]:
     return {"f_w": Quantity(curve.load_coefficient, "", 6)}
 
 
+def beyond_limit(utilisation: float, allowed: float) -> bool:
+    """Whether so much of a limit is more than is allowed, floating-point rounding apart."""
+    return utilisation > allowed * (1 + ROUNDING)
+
+
+def bearing_picture(subject: Subject) -> BearingPicture | None:
+    """Loads on the bearing of a gear, or None without loads or where the bearing of its size is not rated."""
+    if subject.application.loads is None:
+        return None
+    mean = subject.of_sizes.bearing_mean_load.item(0, subject.place)
+    return None if math.isnan(mean) else picture_of(subject, mean, subject.of_sizes.bearing_life_factor.item())
+
+
+def picture_of(subject: Subject, mean_load: float, life_factor: float) -> BearingPicture:
+    """The same with f_w P_m and k that are known, as a saved selection has them: what its check of the life compares.
+
+    The application must give loads, and the bearing must be rated.
+    """
+    load, catalogue, gear = subject.application.loads, subject.catalogue, subject.gear
+    assert load is not None
+    f_w = load.load_coefficient
+    loads = different_loads(subject.duty, phase_loads(subject.duty, subject.sizes)[0, subject.place].tolist())
+    return BearingPicture(
+        gear=gear,
+        load=load,
+        loads=_foremost(loads),
+        hidden=max(len(loads) - MOST_LOADS, 0),
+        mean=mean_load / f_w,
+        life_factor=life_factor,
+        average_output_speed_rpm=subject.duty.average_output_speed_rpm.item(),
+        curves=envelopes_for(catalogue, gear, load.model, f_w, life_factor),
+        published_curve=envelope_curve(catalogue, gear, load.model, f_w),
+        mean_curve=envelope_curve(catalogue, gear, load.model, 1.0, mean_load / f_w),
+    )
+
+
+def different_loads(duty: Duty, published: Sequence[float]) -> list[PhaseLoad]:
+    """Different loads of a cycle, in the order in which they first occur; `published` is f_w P of each phase."""
+    found: dict[tuple[float, float], PhaseLoad] = {}
+    series = (duty.phases.radial_N[0, 0].tolist(), duty.phases.axial_N[0, 0].tolist(), published)
+    for place, (radial, axial, used) in enumerate(zip(*series, strict=True)):
+        found.setdefault((radial, axial), PhaseLoad([], radial, axial, used)).places.append(place)
+    return list(found.values())
+
+
+def _foremost(loads: list[PhaseLoad]) -> list[PhaseLoad]:
+    if len(loads) <= MOST_LOADS:
+        return loads
+    kept = sorted(loads, key=lambda load: load.published, reverse=True)[:MOST_LOADS]
+    return sorted(kept, key=lambda load: load.places[0])
+
+
+# --- All sizes --------------------------------------------------------------------------------------------------------
+
+
 @dataclass(frozen=True, slots=True)
 class SizeUse:
     """How far the loads use the bearing of one size; None where it is not rated. `allowed` is the user's u."""
@@ -130,80 +192,18 @@ class SizeUse:
         return not beyond_limit(max(self.constant_load, self.published), self.allowed)
 
 
-def beyond_limit(utilisation: float, allowed: float) -> bool:
-    """Whether so much of a limit is more than is allowed, floating-point rounding apart."""
-    return utilisation > allowed * (1 + ROUNDING)
-
-
-def condition(selection: Selection) -> EnvelopeQuery:
-    """Speed, life, load coefficient and model at which the application asks for envelopes."""
-    load = selection.load or OutputLoad()
-    return EnvelopeQuery(
-        speed_rpm=selection.evaluation.duty.average_output_speed_rpm.item(selection.index),
-        life_h=bearing.required_L50(load.life_h, load.life_basis),
-        load_coefficient=load.load_coefficient,
-        model=load.model,
-    )
-
-
-def bearing_picture(selection: Selection, gear: Gear) -> BearingPicture | None:
-    """Loads on the bearing of a candidate, or None without loads or where the bearing of its size is not rated."""
-    load, evaluation = selection.load, selection.evaluation
-    index, n = selection.gears.rows.index(gear), selection.index
-    mean = evaluation.bearing_mean_load.item(n, index)
-    if load is None or math.isnan(mean):
-        return None
-    catalogue, f_w, k = selection.catalogue, load.load_coefficient, evaluation.bearing_life_factor(n)
-    count = len(selection.application.duty_cycle.phases)
-    loads = phase_loads(selection, evaluation.bearing_loads()[n, :count, index].tolist())
-    return BearingPicture(
-        gear=gear,
-        load=load,
-        loads=_foremost(loads),
-        hidden=max(len(loads) - MOST_LOADS, 0),
-        mean=mean / f_w,
-        life_factor=k,
-        life_L50_h=evaluation.bearing_life_L50_h.item(n, index),
-        average_output_speed_rpm=selection.evaluation.duty.average_output_speed_rpm.item(n),
-        life_utilisation=mean / k,
-        curves=life_envelopes(catalogue, gear, condition(selection)),
-        published_curve=envelope_curve(catalogue, gear, load.model, f_w),
-        mean_curve=envelope_curve(catalogue, gear, load.model, 1.0, mean / f_w),
-    )
-
-
-def phase_loads(selection: Selection, published: Sequence[float]) -> list[PhaseLoad]:
-    """Different loads of the cycle, in the order in which they first occur."""
-    radial, axial = (component[selection.index].tolist() for component in selection.evaluation.duty.loads_N)
-    found: dict[tuple[float, float], PhaseLoad] = {}
-    for place, used in enumerate(published):
-        load = (radial[place], axial[place])
-        found.setdefault(load, PhaseLoad([], *load, used)).places.append(place)
-    return list(found.values())
-
-
-def _foremost(loads: list[PhaseLoad]) -> list[PhaseLoad]:
-    if len(loads) <= MOST_LOADS:
-        return loads
-    kept = sorted(loads, key=lambda load: load.published, reverse=True)[:MOST_LOADS]
-    return sorted(kept, key=lambda load: load.places[0])
-
-
-def size_uses(selection: Selection) -> list[SizeUse]:
-    """Use of the bearing of every size among the candidates."""
-    evaluation, n, uses = selection.evaluation, selection.index, {}
-    for index, gear in enumerate(selection.gears.rows):
-        if selection.load is None or gear.size in uses:
-            continue
-        mean, largest = evaluation.bearing_mean_load.item(n, index), evaluation.bearing_largest_load.item(n, index)
-        rated = not math.isnan(mean)
-        uses[gear.size] = SizeUse(
-            gear,
-            mean / min(1.0, evaluation.bearing_life_factor(n)) if rated else None,
-            largest if rated else None,
-            selection.application.requirements.utilisation,
-        )
-    return list(uses.values())
+def size_uses(subject: Subject) -> list[SizeUse]:
+    """Use of the bearing of every size of the catalogue; none without loads."""
+    if subject.application.loads is None:
+        return []
+    figures, allowed = subject.of_sizes, subject.application.requirements.utilisation
+    most = min(1.0, figures.bearing_life_factor.item())
+    uses = []
+    for place, gear in enumerate(subject.sizes.rows):
+        mean, largest = figures.bearing_mean_load.item(0, place), figures.bearing_load.item(0, place)
+        is_rated = not math.isnan(mean)
+        uses.append(SizeUse(gear, mean / most if is_rated else None, largest if is_rated else None, allowed))
+    return uses
 
 
 # --- In words ---------------------------------------------------------------------------------------------------------

@@ -5,9 +5,12 @@ from math import ceil, inf, log10
 import numpy as np
 
 from hpn import equations
-from hpn.drawings.words import ENGLISH, Figure, Words, layout, share, widened
-from hpn.gear import Gear
-from hpn.selection import Selection
+from hpn.drawings.axis import widened
+from hpn.drawings.layout import Figure, layout, points
+from hpn.drawings.subject import Subject
+from hpn.drawings.words import axis_title, said, share, shown
+from hpn.equations import FloatArray
+from hpn.reader import DEFAULT, Reader
 from hpn.wording import N_, Quantity, Sentence, Value
 
 TOP = 8
@@ -16,33 +19,43 @@ TOP = 8
 LOW = 10
 """Number of stops below which a label has no room under its point."""
 
+DRAWN_TORQUES = 60
 
-def emergency_stop_figure(selection: Selection, gear: Gear, words: Words = ENGLISH) -> Figure | None:
+
+def emergency_stop_figure(subject: Subject, reader: Reader = DEFAULT) -> Figure | None:
     """Allowed number of emergency stops against their torque (equation 17.9), with the user's stop on it.
 
     None where the gear's ratings are not published.
     """
+    gear = subject.gear
     T_R, T_M = gear.repeated_peak_torque_Nm, gear.momentary_peak_torque_Nm
     if T_R is None or T_M is None:
         return None
-    stop = selection.application.emergency_stop
-    T_k = abs(stop.torque_Nm) if stop else 0.0
+    stop = subject.application.emergency_stop
     top = max(TOP, ceil(log10(stop.count)) if stop and stop.count else 0)
-    torque = np.linspace(T_R, max(T_M, T_R), 60)
-    marked = _stop(selection, gear, top, words)
-    beyond = any("top" in stop["textposition"] for stop in marked)
-    data = [_line(torque.tolist(), (10 ** (8.5 - 1.5 * torque / T_R)).tolist(), words, named_below=beyond)]
+    torque = np.linspace(T_R, max(T_M, T_R), DRAWN_TORQUES)
+    number = equations.momentary_peaks_at(emergency_stop_torque_Nm=torque, repeated_peak_torque_Nm=T_R)
+    marked = _stop(subject, top, reader)
+    is_beyond = any("top" in point["textposition"] for point in marked)
+    return {
+        "data": [_line(torque, number, reader, named_below=is_beyond), *marked],
+        "layout": _layout(subject, T_R, T_M, top, reader),
+    }
+
+
+def _layout(subject: Subject, T_R: float, T_M: float, top: int, reader: Reader) -> Figure:
+    designation, torque = subject.gear.designation, reader.measure("Nm")
     figure = layout(
-        words,
-        words.axis(N_("emergency-stop torque T_k"), "Nm"),
-        words.translate(N_("number of stops")),
-        title=words.say(Sentence("Allowed emergency stops of {gear}, equation 17.9", {"gear": gear.designation})),
-        revision=gear.designation,
+        reader,
+        axis_title(N_("emergency-stop torque T_k"), "Nm", reader),
+        reader.text(N_("number of stops")),
+        title=said(Sentence("Allowed emergency stops of {gear}, equation 17.9", {"gear": designation}), reader),
+        revision=designation,
     )
-    edge = [words.convert(T, "Nm") for T in (T_R, T_M)]
-    figure["shapes"] = [_free(edge[0]), *(_vertical(x) for x in edge)]
-    figure["annotations"] = [_label(edge[0], "T<sub>R</sub>"), _label(edge[1], "T<sub>M</sub>"), _free_label(words)]
-    figure["xaxis"]["range"] = [0, words.convert(widened(T_M, [T_k]), "Nm") * 1.06]
+    edge = [torque.shown(T_R), torque.shown(T_M)]
+    figure["shapes"] = [_free(edge[0]), *map(_vertical, edge)]
+    figure["annotations"] = [_label(edge[0], "T<sub>R</sub>"), _label(edge[1], "T<sub>M</sub>"), _free_label(reader)]
+    figure["xaxis"]["range"] = [0, torque.shown(widened(T_M, [subject.emergency_stop_torque_Nm or 0.0])) * 1.06]
     figure["yaxis"] |= {
         "type": "log",
         "range": [0, top],
@@ -50,11 +63,11 @@ def emergency_stop_figure(selection: Selection, gear: Gear, words: Words = ENGLI
         "dtick": 1,
         "tickfont": {"size": 11},
     }
-    return {"data": [*data, *marked], "layout": figure}
+    return figure
 
 
-def _line(torque: list[float], number: list[float], words: Words, *, named_below: bool) -> Figure:
-    name = words.say(Sentence("Allowed number N_k max"))
+def _line(torque: FloatArray, number: FloatArray, reader: Reader, *, named_below: bool) -> Figure:
+    name = said(Sentence("Allowed number N_k max"), reader)
     named = len(torque) // (2 if named_below else 4)
     return {
         "type": "scatter",
@@ -63,87 +76,81 @@ def _line(torque: list[float], number: list[float], words: Words, *, named_below
         "text": [name if place == named else "" for place in range(len(torque))],
         "textposition": "bottom left" if named_below else "top right",
         "textfont": {"color": "var(--ink)", "size": 12},
-        "x": words.convert_all(torque, "Nm"),
-        "y": number,
+        "x": shown(torque.tolist(), "Nm", reader),
+        "y": number.tolist(),
         "line": {"color": "var(--plot-own)", "width": 3},
         "fill": "tozeroy",
         "fillcolor": "var(--plot-own-soft)",
         "hovertext": [
-            words.say(
-                Sentence("{torque}: {number} stops", {"torque": Quantity(T, "Nm"), "number": Quantity(int(N), "", 7)})
+            said(
+                Sentence("{torque}: {number} stops", {"torque": Quantity(T, "Nm"), "number": Quantity(int(N), "", 7)}),
+                reader,
             )
-            for T, N in zip(torque, number, strict=True)
+            for T, N in zip(torque.tolist(), number.tolist(), strict=True)
         ],
         "hoverinfo": "text",
         "meta": {"kind": "allowed"},
     }
 
 
-def _stop(selection: Selection, gear: Gear, top: int, words: Words) -> list[Figure]:
-    stop, allowed = selection.application.emergency_stop, allowed_stops(selection, gear)
-    if stop is None or allowed is None:
+def _stop(subject: Subject, top: int, reader: Reader) -> list[Figure]:
+    stop, torque = subject.application.emergency_stop, subject.emergency_stop_torque_Nm
+    allowed = allowed_stops(subject)
+    if stop is None or torque is None or allowed is None:
         return []
     number = float(stop.count) if stop.count else min(allowed, 10.0**top)
     if number <= 0:
         return []
-    name = words.say(Sentence("your stops") if stop.count else Sentence("your stop torque"))
+    name = said(Sentence("your stops") if stop.count else Sentence("your stop torque"), reader)
     # Its label stands on the other side of the line than the line's own, and not on the numbers of the axis.
     side = "top" if number > allowed * (1 + 1e-9) or number < LOW else "bottom"
     return [
-        {
-            "type": "scatter",
+        points("stop", size=12)
+        | {
             "mode": "markers+text",
             "name": name,
             "text": [name],
             "textposition": f"{side} left",
             "textfont": {"color": "var(--ink)", "size": 12},
-            "x": [words.convert(abs(stop.torque_Nm), "Nm")],
+            "x": shown([torque], "Nm", reader),
             "y": [number],
-            "cliponaxis": False,
-            "marker": {
-                "size": 12,
-                "color": "var(--plot-load)",
-                "symbol": "diamond",
-                "line": {"color": "var(--card)", "width": 1},
-            },
-            "hovertext": [f"{name}<br>{words.show(Quantity(abs(stop.torque_Nm), 'Nm'))}"],
-            "hoverinfo": "text",
-            "meta": {"kind": "stop"},
+            "hovertext": [f"{name}<br>{reader.quantity(Quantity(torque, 'Nm'))}"],
         }
     ]
 
 
-def allowed_stops(selection: Selection, gear: Gear) -> float | None:
+def allowed_stops(subject: Subject) -> float | None:
     """Allowed number at the user's torque, infinite at or below T_R; None without a stop or a rating."""
-    stop, T_R = selection.application.emergency_stop, gear.repeated_peak_torque_Nm
-    if stop is None or T_R is None:
+    torque, T_R = subject.emergency_stop_torque_Nm, subject.gear.repeated_peak_torque_Nm
+    if torque is None or T_R is None:
         return None
-    return float(
-        equations.allowed_momentary_peaks(emergency_stop_torque_Nm=abs(stop.torque_Nm), repeated_peak_torque_Nm=T_R)
-    )
+    return equations.allowed_momentary_peaks(emergency_stop_torque_Nm=torque, repeated_peak_torque_Nm=T_R).item()
 
 
-def emergency_stop_words(selection: Selection, gear: Gear) -> list[Sentence]:
+# --- In words ---------------------------------------------------------------------------------------------------------
+
+
+def emergency_stop_words(subject: Subject) -> list[Sentence]:
     """How many stops are allowed at the user's torque, and how much of that budget they use."""
-    stop, T_R, T_M = selection.application.emergency_stop, gear.repeated_peak_torque_Nm, gear.momentary_peak_torque_Nm
+    gear, stop, torque = subject.gear, subject.application.emergency_stop, subject.emergency_stop_torque_Nm
+    T_R, T_M, allowed = gear.repeated_peak_torque_Nm, gear.momentary_peak_torque_Nm, allowed_stops(subject)
     if T_R is None or T_M is None:
         return [Sentence("Not rated: the peak torques of {gear} are not published.", {"gear": gear.name})]
-    allowed = allowed_stops(selection, gear)
-    if stop is None or allowed is None:
+    if stop is None or torque is None or allowed is None:
         return [Sentence("Enter an emergency-stop torque to see how many such stops this gear allows.")]
-    torque: dict[str, Value] = {"torque": Quantity(abs(stop.torque_Nm), "Nm", 6)}
-    too_hard = abs(stop.torque_Nm) > T_M * (1 + equations.ROUNDING)
-    excess = [
-        Sentence("{torque} is above T_M = {limit}, whatever the number.", torque | {"limit": Quantity(T_M, "Nm", 6)})
-    ]
+    given: dict[str, Value] = {"torque": Quantity(torque, "Nm", 6)}
     if allowed == inf:
         return [
             Sentence(
                 "{torque} is at or below T_R = {limit}: equation 17.9 sets no limit to the number.",
-                torque | {"limit": Quantity(T_R, "Nm", 6)},
+                given | {"limit": Quantity(T_R, "Nm", 6)},
             )
         ]
-    return [*(excess if too_hard else []), _budget(stop.count, allowed, torque)]
+    budget = _budget(stop.count, allowed, given)
+    if torque <= T_M * (1 + equations.ROUNDING):
+        return [budget]
+    values = given | {"limit": Quantity(T_M, "Nm", 6)}
+    return [Sentence("{torque} is above T_M = {limit}, whatever the number.", values), budget]
 
 
 def _budget(count: int | None, allowed: float, torque: dict[str, Value]) -> Sentence:
@@ -157,6 +164,9 @@ def _budget(count: int | None, allowed: float, torque: dict[str, Value]) -> Sent
         "At {torque} equation 17.9 allows {allowed} stops over the life; your {count} use {used} of that budget.",
         values | used,
     )
+
+
+# --- Parts of the plot ------------------------------------------------------------------------------------------------
 
 
 def _free(x: float) -> Figure:
@@ -174,7 +184,7 @@ def _free(x: float) -> Figure:
     }
 
 
-def _free_label(words: Words) -> Figure:
+def _free_label(reader: Reader) -> Figure:
     return {
         "x": 0.01,
         "xref": "paper",
@@ -182,7 +192,7 @@ def _free_label(words: Words) -> Figure:
         "yref": "paper",
         "xanchor": "left",
         "yanchor": "bottom",
-        "text": words.say(Sentence("no limit by equation 17.9")),
+        "text": said(Sentence("no limit by equation 17.9"), reader),
         "showarrow": False,
         "font": {"size": 12, "color": "var(--muted)"},
     }

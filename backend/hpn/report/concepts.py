@@ -3,52 +3,40 @@
 The ids are UUIDs made from names: they claim no number of ECLASS, IEC or the maker that we could not check.
 """
 
+from collections.abc import Mapping
 from uuid import NAMESPACE_URL, uuid5
 
 from basyx.aas import model
 from basyx.aas.model.concept import ConceptDescription
 
-from hpn.report.language import LANGUAGES, language
+from hpn.quantities import CANDIDATE, CHECK, DUTY, GEAR, Named
+from hpn.reader import LANGUAGES, Reader
+from hpn.report.export import DIGITS
 from hpn.units import symbol_of
-from hpn.wording import N_
+from hpn.wording import Sentence
 
 IEC61360 = "https://admin-shell.io/DataSpecificationTemplates/DataSpecificationIec61360/3"
 
-CONCEPTS = {
-    "size": N_("Size"),
-    "ratio": N_("Ratio"),
-    "stages": N_("Number of stages"),
-    "rated_torque_Nm": N_("Rated torque"),
-    "repeated_peak_torque_Nm": N_("Repeated peak torque"),
-    "momentary_peak_torque_Nm": N_("Momentary peak torque"),
-    "average_input_speed_rpm": N_("Average input speed"),
-    "maximum_input_speed_rpm": N_("Maximum input speed"),
-    "ambient_temperature_minimum_degC": N_("Lowest ambient temperature"),
-    "ambient_temperature_maximum_degC": N_("Highest ambient temperature"),
-    "weight_kg": N_("Weight"),
-    "backlash_arcmin": N_("Backlash"),
-    "transmission_accuracy_arcmin": N_("Transmission accuracy"),
-    "torsional_stiffness_Nm_per_rad": N_("Torsional stiffness"),
-    "length_min_mm": N_("Shortest length"),
-    "length_max_mm": N_("Longest length"),
-    "dynamic_radial_load_N": N_("Largest radial load"),
-    "dynamic_axial_load_N": N_("Largest axial load"),
-    "average_torque_Nm": N_("Average torque"),
-    "maximum_torque_Nm": N_("Largest torque"),
-    "average_output_speed_rpm": N_("Average output speed"),
-    "maximum_output_speed_rpm": N_("Largest output speed"),
-    "life_L10_h": N_("Gear life"),
-    "momentary_peak_count": N_("Allowed emergency stops"),
-    "bearing_life_L50_h": N_("Bearing life L50"),
-    "bearing_life_L10_h": N_("Bearing life L10"),
-    "motor_peak_torque_Nm": N_("Peak motor torque needed"),
-    "motor_rated_torque_Nm": N_("RMS motor torque needed"),
-    "demand": N_("Value"),
-    "limit": N_("Limit"),
-    "utilisation": N_("Utilisation"),
-    "status": N_("Verdict"),
+_TEXTS_AND_PARTS = (
+    *("designation", "rank", "governing_check", "reason", "reserve", "checks", "code"),
+    *("clamp_bolts", "housing_bolts", "note", "sources"),
+)
+"""Fields that are no property of their own."""
+
+
+def published(field: str) -> str:
+    """Concept of a published figure; its name says so where a calculated figure has the same field."""
+    same = CANDIDATE.get(field, GEAR[field]).name == GEAR[field].name
+    return field if same else f"published_{field}"
+
+
+CONCEPTS: Mapping[str, Named] = {
+    name: named
+    for table in ({published(field): named for field, named in GEAR.items()}, DUTY, CANDIDATE, CHECK)
+    for name, named in table.items()
+    if name not in _TEXTS_AND_PARTS
 }
-"""Properties by name, with the name for people."""
+"""What the properties mean, by name."""
 
 
 def urn(*parts: str) -> str:
@@ -68,15 +56,20 @@ def concept_id(name: str) -> str:
 
 def texts(english: str) -> dict[str, str]:
     """A text in every language."""
-    return {code: language(code).filled(english) for code in LANGUAGES}
+    return {code: Reader(code).text(english) for code in LANGUAGES}
+
+
+def told(sentence: Sentence) -> dict[str, str]:
+    """A sentence in every language."""
+    return {code: Reader(code, digits=DIGITS).told(sentence) for code in LANGUAGES}
 
 
 def concept(name: str) -> ConceptDescription:
     """Description of a concept by IEC 61360."""
-    unit = symbol_of(name)
+    unit, names = symbol_of(name), texts(CONCEPTS[name].name)
     content = model.DataSpecificationIEC61360(
-        preferred_name=model.PreferredNameTypeIEC61360(texts(CONCEPTS[name])),
-        definition=model.DefinitionTypeIEC61360(texts(CONCEPTS[name])),
+        preferred_name=model.PreferredNameTypeIEC61360(names),
+        definition=model.DefinitionTypeIEC61360(names),
         unit=unit or None,
         data_type=model.DataTypeIEC61360.REAL_MEASURE if unit else None,
     )

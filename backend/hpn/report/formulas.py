@@ -1,50 +1,62 @@
 """The calculation as spreadsheet formulas, each written once for the chosen gear and for the list of all.
 
-Names such as `T_av` are defined names of the workbook. `{T_N}` stands for a figure of one gear: a defined name where
-the chosen gear is calculated, a cell of its row in the list of candidates. A blank figure is not published. Blocks of
-the cycle are summed by SUMPRODUCT, which every spreadsheet program evaluates without array formulas.
+Names such as `T_av` are defined names of the workbook, made of the symbols. `{T_N}` stands for a figure of one gear: a
+defined name where the chosen gear is calculated, a cell of its row in the list of candidates. A blank figure is not
+published. Blocks of the cycle are summed by SUMPRODUCT, which every spreadsheet program evaluates without array
+formulas.
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from string import Formatter
 
+from hpn.check import Check
+from hpn.checks import CHECKS
+from hpn.quantities import CANDIDATE, DUTY, GEAR, INPUTS, Named
+from hpn.units import suffix_of
 from hpn.wording import N_
 
 UNLIMITED, NOT_RATED, NONE = N_("unlimited"), N_("not rated"), "–"
 """What stands where a number would: no limit, figure not published, failed without a number."""
 
-RATINGS = {
-    "ratio": "ratio",
-    "T_N": "rated_torque_Nm",
-    "T_R": "repeated_peak_torque_Nm",
-    "T_M": "momentary_peak_torque_Nm",
-    "n_av_limit": "average_input_speed_rpm",
-    "n_in_limit": "maximum_input_speed_rpm",
-    "F_R_dyn": "dynamic_radial_load_N",
-    "F_A_dyn": "dynamic_axial_load_N",
-    "amb_min": "ambient_temperature_minimum_degC",
-    "amb_max": "ambient_temperature_maximum_degC",
-    "backlash": "backlash_arcmin",
-    "K_3": "torsional_stiffness_Nm_per_rad",
-    "weight": "weight_kg",
-    "L_max": "length_max_mm",
+_NAMES = {
+    "η": "eta",
+    "t_p": "pause_s",
+    "k": "k_b",
+    "t_min": "amb_min",
+    "t_max": "amb_max",
+    "L_b,50": "L_b50",
+    "T_max/(i·η)": "T_mot_peak",
+    "T_rms/(i·η)": "T_mot_rms",
+    "f_w·P_max": "P_max",
+    "f_w·P_m": "P_m",
 }
-"""Figures of a gear: name in formulas, field of the catalogue."""
+"""Symbols that are no defined name, or that differ from another in their capitals alone, which a workbook ignores."""
 
+
+def cell_name(symbol: str) -> str:
+    """Defined name of a symbol: `T_mot,N` is `T_mot_N`, `n_in(max)` is `n_in_limit`."""
+    return _NAMES.get(symbol) or symbol.replace("(max)", "_limit").replace(",", "_")
+
+
+RATINGS = {cell_name(named.symbol): field for field, named in GEAR.items() if named.symbol}
+"""Published figures of a gear: name in formulas, field of the catalogue."""
 
 MOTOR_TORQUES = ("T_mot_peak", "T_mot_rms")
 
 
 @dataclass(frozen=True, slots=True)
-class Term:
-    """A calculated quantity: its name in formulas, its symbol, what it is, its unit, and how it is calculated."""
+class CellTerm:
+    """A calculated quantity: what it is, the suffix of its unit, and how it is calculated."""
 
-    name: str
-    symbol: str
-    label: str
+    named: Named
     unit: str
     formula: str
-    equation: str = ""
+
+    @property
+    def name(self) -> str:
+        """Its name in formulas."""
+        return cell_name(self.named.symbol)
 
     @property
     def by_efficiency(self) -> bool:
@@ -52,86 +64,78 @@ class Term:
         return self.name in MOTOR_TORQUES
 
 
+def _duty(field: str, formula: str) -> CellTerm:
+    return CellTerm(DUTY[field], suffix_of(field) or "", formula)
+
+
+def _result(field: str, formula: str) -> CellTerm:
+    return CellTerm(CANDIDATE[field], suffix_of(field) or "", formula)
+
+
+# --- The cycle --------------------------------------------------------------------------------------------------------
+
 _WORK = "SUMPRODUCT(ABS(speed_rpm)*duration_s)"
 _CYCLE_TIME = "(SUM(duration_s)+pause_s)"
 
 CYCLE_TERMS = (
-    Term("T_max", "T_max", N_("Largest torque"), "Nm", "SUMPRODUCT(MAX(ABS(torque_Nm)))"),
-    Term(
-        "T_av",
-        "T_av",
-        N_("Average torque"),
-        "Nm",
+    _duty("maximum_torque_Nm", "SUMPRODUCT(MAX(ABS(torque_Nm)))"),
+    _duty(
+        "average_torque_Nm",
         f"IF(T_max=0,0,T_max*(SUMPRODUCT(ABS(speed_rpm)*duration_s*(ABS(torque_Nm)/T_max)^(10/3))/{_WORK})^0.3)",
-        "17.2",
     ),
-    Term(
-        "T_rms",
-        "T_rms",
-        N_("RMS torque"),
+    CellTerm(
+        Named(N_("RMS torque"), "T_rms"),
         "Nm",
         f"IF(T_max=0,0,T_max*SQRT(SUMPRODUCT((torque_Nm/T_max)^2*duration_s)/{_CYCLE_TIME}))",
     ),
-    Term("n_out_max", "n_out,max", N_("Largest output speed"), "rpm", "SUMPRODUCT(MAX(ABS(speed_rpm)))"),
-    Term("n_out_av", "n_out,av", N_("Average output speed"), "rpm", f"{_WORK}/{_CYCLE_TIME}", "17.4"),
-    Term(
-        "k_b",
-        "k",
-        N_("Load factor of bearing life and speed"),
+    _duty("maximum_output_speed_rpm", "SUMPRODUCT(MAX(ABS(speed_rpm)))"),
+    _duty("average_output_speed_rpm", f"{_WORK}/{_CYCLE_TIME}"),
+    CellTerm(
+        Named(N_("Load factor of bearing life and speed"), "k"),
         "",
         '(bearing_speed*bearing_life/(n_out_av*L_b*IF(life_basis="L10",5,1)))^(1/3)',
     ),
 )
 """What the cycle comes to, whatever the gear."""
 
-_R, _A = "(radial_used/{F_R_dyn})", "(axial_used/{F_A_dyn})"
+
+# --- The gear ---------------------------------------------------------------------------------------------------------
+
+_R, _A = "(radial_used/{F_R_dyn_limit})", "(axial_used/{F_A_dyn_limit})"
 _P = f'({_R}+{_A}+(model="iso281")*(({_R}+0.56*{_R}+{_A}+ABS({_R}-0.56*{_R}-{_A}))/2-{_R}-{_A}))'
 _LOADED = "COUNT(F_R,F_A,radial_N,axial_N)>0"
 
 
 def _bearing(formula: str) -> str:
-    return f'IF(NOT({_LOADED}),"",IF(OR({{F_R_dyn}}="",{{F_A_dyn}}=""),"",{formula}))'
+    return f'IF(NOT({_LOADED}),"",IF(OR({{F_R_dyn_limit}}="",{{F_A_dyn_limit}}=""),"",{formula}))'
 
 
 GEAR_TERMS = (
-    Term("n_in_av", "n_in,av", N_("Average input speed"), "rpm", "{ratio}*n_out_av", "17.5"),
-    Term("n_in_max", "n_in,max", N_("Largest input speed"), "rpm", "{ratio}*n_out_max", "17.6"),
-    Term(
-        "N_k_max",
-        "N_k,max",
-        N_("Allowed emergency stops"),
-        "",
+    _result("average_input_speed_rpm", "{i}*n_out_av"),
+    _result("maximum_input_speed_rpm", "{i}*n_out_max"),
+    _result(
+        "momentary_peak_count",
         'IF(OR(T_k="",{T_R}=""),"",IF(ABS(T_k)<={T_R},"[unlimited]",IFERROR(INT(10^(8.5-1.5*ABS(T_k)/{T_R})*(1+1E-12)),0)))',
-        "17.9",
     ),
-    Term(
-        "L_10",
-        "L_10",
-        N_("Gear life"),
-        "h",
+    _result(
+        "life_L10_h",
         'IF({T_N}="","",IF(T_av=0,"[unlimited]",'
         'IFERROR(rated_life*rated_speed/{n_in_av}*({T_N}/T_av)^(10/3),"[unlimited]")))',
-        "17.10",
     ),
-    Term("P_max", "f_w·P_max", N_("Largest bearing load"), "", _bearing(f"f_w*SUMPRODUCT(MAX({_P}))")),
-    Term(
-        "P_m",
-        "f_w·P_m",
-        N_("Equivalent bearing load"),
+    CellTerm(Named(N_("Largest bearing load"), "f_w·P_max"), "", _bearing(f"f_w*SUMPRODUCT(MAX({_P}))")),
+    CellTerm(
+        Named(N_("Equivalent bearing load"), "f_w·P_m"),
         "",
         _bearing(f"f_w*(SUMPRODUCT(ABS(speed_rpm)*duration_s*{_P}^3)/{_WORK})^(1/3)"),
     ),
-    Term(
-        "L_b50",
-        "L_b,50",
-        N_("Bearing life L50"),
-        "h",
-        'IF({P_m}="","",IFERROR(bearing_life*bearing_speed/n_out_av/{P_m}^3,"[unlimited]"))',
-    ),
-    Term("T_mot_peak", "T_max/(i·η)", N_("Peak motor torque needed"), "Nm", 'T_max/({ratio}*IF(eta="",1,eta))'),
-    Term("T_mot_rms", "T_rms/(i·η)", N_("RMS motor torque needed"), "Nm", 'T_rms/({ratio}*IF(eta="",1,eta))'),
+    _result("bearing_life_L50_h", 'IF({P_m}="","",IFERROR(bearing_life*bearing_speed/n_out_av/{P_m}^3,"[unlimited]"))'),
+    _result("motor_peak_torque_Nm", 'T_max/({i}*IF(eta="",1,eta))'),
+    _result("motor_rated_torque_Nm", 'T_rms/({i}*IF(eta="",1,eta))'),
 )
 """What a gear comes to under the cycle."""
+
+
+# --- Checks -----------------------------------------------------------------------------------------------------------
 
 
 @dataclass(frozen=True, slots=True)
@@ -141,14 +145,13 @@ class SheetCheck:
     asked: str
     demand: str
     limit: str
-    utilisation: str = ""
+    utilisation: str
 
     @property
     def ratio(self) -> str:
         """Utilisation; blank where not asked for, words where there is no number."""
-        used = self.utilisation or f"{self.demand}/{self.limit}"
         unknown = f'OR({self.demand}="",{self.limit}="")'
-        return f'IF(NOT({self.asked}),"",IF({unknown},"[not rated]",{used}))'
+        return f'IF(NOT({self.asked}),"",IF({unknown},"[not rated]",{self.utilisation}))'
 
     @property
     def shown_demand(self) -> str:
@@ -161,41 +164,66 @@ class SheetCheck:
         return f'IF({self.asked},{self.limit},"")'
 
 
-def _given(name: str) -> str:
-    return f'{name}<>""'
+_CELLS: Mapping[str, str] = {
+    "1": "1",
+    "maxf_w·P_i": "{P_max}",
+    **{named.symbol: cell_name(named.symbol) for path, named in INPUTS.items() if not path.startswith("phase.")},
+    **{term.named.symbol: term.name for term in CYCLE_TERMS},
+    **{GEAR[field].symbol: f"{{{name}}}" for name, field in RATINGS.items()},
+    **{term.named.symbol: f"{{{term.name}}}" for term in GEAR_TERMS},
+}
+"""Cells by the symbol of what they hold, as a relation writes it without its blanks."""
+
+
+def _plain(check: Check) -> SheetCheck | None:
+    """A check that compares two cells, as its relation says; None where one of them is in no cell."""
+    demand, limit = (_CELLS.get(side.split("=")[-1]) for side in _sides(check.relation))
+    if demand is None or limit is None:
+        return None
+    asked = f'{cell_name(INPUTS[check.asked].symbol)}<>""' if check.asked else "TRUE"
+    share = f"{limit}/{demand}" if check.kind == "minimum" else f"{demand}/{limit}"
+    return SheetCheck(asked, demand, limit, share)
+
+
+def _sides(relation: str) -> tuple[str, str]:
+    left, _, right = relation.replace(" ", "").replace("≥", "≤").partition("≤")
+    return left, right
 
 
 _MIDDLE, _HALF = "(({amb_min}+{amb_max})/2)", "(({amb_max}-{amb_min})/2)"
 
-CHECKS = {
-    "average_torque": SheetCheck("TRUE", "T_av", "{T_N}"),
-    "repeated_peak_torque": SheetCheck("TRUE", "T_max", "{T_R}"),
-    "momentary_peak_torque": SheetCheck(_given("T_k"), "ABS(T_k)", "{T_M}"),
-    "momentary_peak_count": SheetCheck(
-        'AND(T_k<>"",N_k<>"")',
-        "N_k",
-        "{N_k_max}",
-        'IF({N_k_max}="[unlimited]",0,IF({N_k_max}=0,"–",N_k/{N_k_max}))',
-    ),
-    "average_input_speed": SheetCheck("TRUE", "{n_in_av}", "{n_av_limit}"),
-    "maximum_input_speed": SheetCheck("TRUE", "{n_in_max}", "{n_in_limit}"),
-    "life": SheetCheck(_given("L_10_req"), "{L_10}", "L_10_req", 'IF({L_10}="[unlimited]",0,L_10_req/{L_10})'),
-    "output_bearing_load": SheetCheck(_LOADED, "{P_max}", "1"),
-    "output_bearing_life": SheetCheck(_LOADED, "{P_m}", "k_b"),
-    "motor_speed": SheetCheck(_given("n_mot"), "{n_in_max}", "n_mot"),
-    "motor_peak_torque": SheetCheck(_given("T_mot"), "{T_mot_peak}", "T_mot"),
-    "motor_rated_torque": SheetCheck(_given("T_mot_N"), "{T_mot_rms}", "T_mot_N"),
-    "ambient_temperature": SheetCheck(
-        _given("t_amb"),
-        "t_amb",
-        'IF(OR({amb_min}="",{amb_max}=""),"",IF(t_amb>=' + _MIDDLE + ",{amb_max},{amb_min}))",
-        f"ABS(t_amb-{_MIDDLE})/{_HALF}",
-    ),
-    "backlash": SheetCheck(_given("j_req"), "{backlash}", "j_req"),
-    "torsional_stiffness": SheetCheck(_given("K_3_req"), "{K_3}", "K_3_req", "K_3_req/{K_3}"),
-    "weight": SheetCheck(_given("m_req"), "{weight}", "m_req"),
-    "length": SheetCheck(_given("L_req"), "{L_max}", "L_req"),
+_OWN: Mapping[str, Mapping[str, str]] = {
+    "momentary_peak_torque": {"demand": "ABS(T_k)", "utilisation": "ABS(T_k)/{T_M}"},
+    "momentary_peak_count": {
+        "asked": 'AND(T_k<>"",N_k<>"")',
+        "utilisation": 'IF({N_k_max}="[unlimited]",0,IF({N_k_max}=0,"–",N_k/{N_k_max}))',
+    },
+    "life": {"utilisation": 'IF({L_10}="[unlimited]",0,L_10_req/{L_10})'},
+    "output_bearing_load": {"asked": _LOADED},
+    "output_bearing_life": {"asked": _LOADED},
 }
+"""What a check has otherwise than a plain comparison."""
+
+_RANGE = SheetCheck(
+    't_amb<>""',
+    "t_amb",
+    'IF(OR({amb_min}="",{amb_max}=""),"",IF(t_amb>=' + _MIDDLE + ",{amb_max},{amb_min}))",
+    f"ABS(t_amb-{_MIDDLE})/{_HALF}",
+)
+
+
+def formulas_of(check: Check) -> SheetCheck | None:
+    """A check as formulas; None where its relation names what is in no cell."""
+    if check.code == "ambient_temperature":
+        return _RANGE
+    plain = _plain(check)
+    return replace(plain, **_OWN.get(check.code, {})) if plain else None
+
+
+CHECK_FORMULAS: Mapping[str, SheetCheck] = {
+    check.code: formulas for check in CHECKS if (formulas := formulas_of(check)) is not None
+}
+"""Checks that the workbook calculates, by code; the others stand in it as saved."""
 
 
 def written(formula: str, names: Mapping[str, str], words: Mapping[str, str]) -> str:
@@ -203,3 +231,8 @@ def written(formula: str, names: Mapping[str, str], words: Mapping[str, str]) ->
     for english, word in words.items():
         formula = formula.replace(f'"[{english}]"', '"' + word.replace('"', '""') + '"')
     return "=" + formula.format_map(names)
+
+
+def terms_of(formula: str) -> set[str]:
+    """Figures of the gear that a formula takes."""
+    return {name for _, name, *_ in Formatter().parse(formula) if name}

@@ -2,33 +2,26 @@
 
 from typing import Any
 
-from xlsxwriter.utility import xl_rowcol_to_cell
+from xlsxwriter.utility import xl_range_abs, xl_rowcol_to_cell
 
 from hpn import bearing
-from hpn.application import OutputLoad
-from hpn.explanations import EXPLANATIONS
-from hpn.report import inputs, standings
+from hpn.application import NUMBERS, OutputLoad
+from hpn.check import Check
+from hpn.checks import CHECKS
+from hpn.quantities import GEAR, INPUTS
 from hpn.report.candidates import LOAD
-from hpn.report.content import RATINGS as PUBLISHED
 from hpn.report.export import LOSS_FREE
-from hpn.report.formulas import CHECKS, CYCLE_TERMS, GEAR_TERMS, NONE, RATINGS, Term, written
-from hpn.report.sheets import Book, Known
-from hpn.units import symbol_of
+from hpn.report.formulas import CHECK_FORMULAS, CYCLE_TERMS, GEAR_TERMS, NONE, RATINGS, CellTerm, cell_name, written
+from hpn.report.inputs import LOADS, REQUIREMENTS, Value, value_of
+from hpn.report.known import Known, demand_of, limit_of
+from hpn.report.sheets import Book
+from hpn.report.verdict import STATUS
+from hpn.report.words import equation, origin
+from hpn.selection import CheckResult
+from hpn.units import suffix_of
 from hpn.wording import N_
 
-NAMES = {
-    "L_10,req": "L_10_req",
-    "η": "eta",
-    "T_mot,N": "T_mot_N",
-    "K_3,req": "K_3_req",
-    "t_p": "pause_s",
-}
-"""Symbols that are no defined name as they stand."""
-
-NAMES_BY_FIELD = {"life_basis": "life_basis", "model": "model"}
-
-DEFAULTS = {"f_w": 1.0, "L_b": 20_000.0, "life_basis": "L50", "model": "linear"}
-"""Inputs that a load needs, should the reader add one."""
+LOAD_PATH = "output_load."
 
 REFERENCES = (
     ("rated_speed", N_("Rated input speed"), "rpm", 3000.0),
@@ -45,7 +38,7 @@ class Overview:
     def __init__(self, book: Book, sheet: Any, candidates: range) -> None:
         self.book, self.sheet, self.candidates = book, sheet, candidates
         self.known = Known(book.export, book.export.candidate, book.words)
-        self.text = book.language.text
+        self.text = book.reader.text
         self.row = 0
 
     def write(self) -> None:
@@ -66,7 +59,7 @@ class Overview:
         self.sheet.freeze_panes(1, 0)
         lines = [
             (N_("Reference"), export.reference),
-            (N_("Saved"), self.book.language.date(export.created) if export.created else ""),
+            (N_("Saved"), self.book.reader.date(export.created) if export.created else ""),
             (N_("Link"), export.link if len(export.link) < 32_000 else ""),
         ]
         self.row = 1
@@ -89,43 +82,37 @@ class Overview:
     def _line(self, label: str, symbol: str, unit: str, source: str = "") -> None:
         self.sheet.write_string(self.row, 0, self.text(label), self.book.style("label"))
         self.sheet.write_string(self.row, 1, symbol, self.book.style("quiet"))
-        self.sheet.write_string(self.row, 3, self.book.language.unit(unit), self.book.style("quiet"))
+        self.sheet.write_string(self.row, 3, self.book.reader.unit(unit), self.book.style("quiet"))
         self.sheet.write_string(self.row, 4, source, self.book.style("quiet"))
 
     def _gear(self) -> None:
         self._section(N_("Gear"))
         self._line(N_("Chosen gear (any candidate)"), "", "")
-        cell, designation = (self.row, 2), self.book.export.candidate["designation"]
+        cell, designation = (self.row, 2), self.known.candidate.designation
         self.sheet.write_string(*cell, designation, self.book.style("input"))
         self.sheet.data_validation(*cell, *cell, {"validate": "list", "source": "=candidates"})
         self.book.name_cell("gear", self.sheet, *cell)
         self.row += 1
-        verdicts = (self.known.candidate["status"], self.known.candidate["utilisation"])
-        for label, column, saved in zip((N_("Verdict"), N_("Utilisation")), (1, 2), verdicts, strict=True):
-            self._line(label, "", "")
-            first, last = (
-                xl_rowcol_to_cell(row, column, True, True) for row in (self.candidates[0], self.candidates[-1])
-            )
-            block = f"'{self.text(N_('Candidates'))}'!{first}:{last}"
-            value = self.book.words[saved] if column == 1 else self._overall(saved)
-            style = self.book.style("verdict" if column == 1 else "share")
-            self.sheet.write_formula(self.row, 2, f"=INDEX({block},MATCH(gear,candidates,0))", style, value)
-            self.row += 1
+        verdict = self.book.words[self.known.candidate.status]
+        self._looked_up(N_("Verdict"), 1, "verdict", verdict)
+        self._looked_up(N_("Utilisation"), 2, "share", self.known.overall())
         for name, rating in self.known.ratings().items():
             self._rating(name, rating)
         self.row += 1
 
-    def _overall(self, saved: float | None) -> float | str:
-        unlimited = NONE if self.known.candidate["status"] == "unsuitable" else ""
-        return unlimited if saved is None else saved
+    def _looked_up(self, label: str, column: int, style: str, saved: float | str) -> None:
+        """A column of the list of candidates, for the chosen gear."""
+        self._line(label, "", "")
+        block = xl_range_abs(self.candidates[0], column, self.candidates[-1], column)
+        formula = f"=INDEX('{self.text(N_('Candidates'))}'!{block},MATCH(gear,candidates,0))"
+        self.sheet.write_formula(self.row, 2, formula, self.book.style(style), saved)
+        self.row += 1
 
     def _rating(self, name: str, value: float | None) -> None:
-        labels = {field: (symbol, label) for field, symbol, label in PUBLISHED}
         field = RATINGS[name]
-        symbol, label = labels.get(field, ("i", N_("Ratio")))
-        gear = self.book.export.gear(self.book.export.candidate["designation"])
-        source = self.book.language.filled(gear.sources.get(field, "")) if gear else ""
-        self._line(label, symbol, symbol_of(field), source)
+        gear = self.book.export.gear(self.known.candidate)
+        source = self.book.reader.source(gear.sources.get(field, "")) if gear else ""
+        self._line(GEAR[field].name, GEAR[field].symbol, suffix_of(field) or "", source)
         block = f"INDEX({name}_all,MATCH(gear,candidates,0))"
         saved = "" if value is None else value
         self.sheet.write_formula(self.row, 2, f'=IF({block}="","",{block})', self.book.style("figure"), saved)
@@ -137,12 +124,12 @@ class Overview:
     def _names(self) -> dict[str, str]:
         return {name: name for name in (*RATINGS, *(term.name for term in GEAR_TERMS))}
 
-    def _terms(self, title: str, terms: tuple[Term, ...], values: dict[str, float | str]) -> None:
+    def _terms(self, title: str, terms: tuple[CellTerm, ...], values: dict[str, float | str]) -> None:
         self._section(title)
         fixed = self.known.fixed()
         for term in terms:
-            equation = self.text(N_("eq. {number}")).format(number=term.equation) if term.equation else ""
-            self._line(term.label, term.symbol, term.unit, equation)
+            named = term.named
+            self._line(named.name, named.symbol, term.unit, equation(named.equation, self.book.reader))
             if term.name in fixed:
                 self.sheet.write(self.row, 2, values[term.name], self.book.style("fixed"))
             else:
@@ -164,89 +151,85 @@ class Overview:
             self.sheet.write_formula(self.row, 4, formula, self.book.style("quiet"), saved)
 
     def _cycle_values(self) -> dict[str, float | str]:
-        duty, loads = self.book.export.reply["duty"], self.book.export.application.loads or OutputLoad()
+        duty, loads = self.book.export.selection.duty, self.book.export.application.loads or OutputLoad()
         speed, life = self._series()[2:]
         factor = bearing.life_factor(
-            average_output_speed_rpm=duty["average_output_speed_rpm"],
-            required_life_L50_h=bearing.required_L50(loads.life_h, loads.life_basis),
+            average_output_speed_rpm=duty.average_output_speed_rpm,
+            required_life_L50_h=bearing.required_L50(life_h=loads.life_h, basis=loads.life_basis),
             reference_speed_rpm=speed,
             reference_life_h=life,
         )
         return {
-            "T_max": duty["maximum_torque_Nm"],
-            "T_av": duty["average_torque_Nm"],
-            "T_rms": self.book.export.rms_torque_Nm,
-            "n_out_max": duty["maximum_output_speed_rpm"],
-            "n_out_av": duty["average_output_speed_rpm"],
-            "k_b": float(factor),
+            "T_max": duty.maximum_torque_Nm,
+            "T_av": duty.average_torque_Nm,
+            "T_rms": self.book.export.duty.rms_torque_Nm.item(),
+            "n_out_max": duty.maximum_output_speed_rpm,
+            "n_out_av": duty.average_output_speed_rpm,
+            "k_b": factor.item(),
         }
 
     def _checks(self) -> None:
         heads = (N_("Check"), N_("Relation"), N_("Value"), N_("Limit"), N_("Utilisation"), N_("Verdict"))
         self._section(N_("Checks"), *heads, N_("As saved"), N_("Source"))
-        for code in CHECKS:
-            self._check(code)
+        for check in CHECKS:
+            self._check(check)
         self.row += 1
 
-    def _check(self, code: str) -> None:
-        check, style, saved = CHECKS[code], self.book.style, self.book.export.check(code)
-        title, unit = self.text(EXPLANATIONS[code].title), self.book.language.unit(EXPLANATIONS[code].unit)
-        self.sheet.write_string(self.row, 0, f"{title} [{unit}]" if unit else title, style("label"))
-        self.sheet.write_string(self.row, 1, standings.STANDINGS[code].relation, style("quiet"))
-        used = self.known.utilisation(code)
-        fixed = code in self.known.fixed()
-        formulas = (check.shown_demand, check.shown_limit, check.ratio)
-        values = (_value(saved, "demand"), _value(saved, "limit"), used)
+    def _check(self, check: Check) -> None:
+        style, saved, used = self.book.style, self.known.candidate.check(check.code), self.known.utilisation(check.code)
+        self.sheet.write_string(self.row, 0, self.book.head(self.text(check.title), check.unit), style("label"))
+        self.sheet.write_string(self.row, 1, check.relation, style("quiet"))
+        values = (demand_of(saved), limit_of(saved), used)
+        own = None if check.code in self.known.fixed() else CHECK_FORMULAS.get(check.code)
+        formulas = (own.shown_demand, own.shown_limit, own.ratio) if own else (None, None, None)
         for column, (formula, value) in enumerate(zip(formulas, values, strict=True), 2):
             look = style("share" if column == 4 else "result")
-            if fixed:
+            if formula is None:
                 self.sheet.write(self.row, column, value, look)
             else:
                 self.sheet.write_formula(self.row, column, self._written(formula), look, value)
-        self._status(code, saved)
+        self._status(check, saved)
         self.sheet.write(self.row, 6, used, style("share"))
-        self.sheet.write_string(self.row, 7, self._source(code) if saved else "", style("quiet"))
+        source = origin(self.book.export, check.code, self.book.reader) if saved else ""
+        self.sheet.write_string(self.row, 7, source, style("quiet"))
         self.row += 1
 
     def _written(self, formula: str) -> str:
         return written(formula, self._names(), self.book.words)
 
-    def _status(self, code: str, saved: Any) -> None:
-        words = self.book.words
-        used = xl_rowcol_to_cell(self.row, 4)
-        bound = ("u" if code in LOAD else "1") + "*(1+1E-12)"
+    def _status(self, check: Check, saved: CheckResult | None) -> None:
+        words, used = self.book.words, xl_rowcol_to_cell(self.row, 4)
+        bound = ("u" if check.code in LOAD else "1") + "*(1+1E-12)"
         formula = (
             f'=IF({used}="","",IF({used}="{NONE}","{words["fails"]}",IF(ISTEXT({used}),{used},'
             f'IF({used}<={bound},"{words["passes"]}","{words["fails"]}"))))'
         )
-        word = {"pass": words["passes"], "fail": words["fails"], "not_rated": words["not rated"]}
-        self.sheet.write_formula(
-            self.row, 5, formula, self.book.style("verdict"), word[saved["status"]] if saved else ""
-        )
-
-    def _source(self, code: str) -> str:
-        equation = self.book.export.definitions[code]["equation"]
-        where = [self.text(N_("eq. {number}")).format(number=equation)] if equation else []
-        return " · ".join([*where, standings.source(self.book.export, code, self.book.language)])
+        word = words[STATUS[saved.status]] if saved else ""
+        self.sheet.write_formula(self.row, 5, formula, self.book.style("verdict"), word)
 
     # --- Inputs -------------------------------------------------------------------------------------------------------
 
     def _inputs(self) -> None:
         self._section(N_("Inputs"))
-        for entry in (*inputs.LOADS, *inputs.REQUIREMENTS):
-            value = entry.value(self.book.export.application)
-            name = NAMES_BY_FIELD.get(entry.path[-1]) or NAMES.get(entry.symbol, entry.symbol)
-            live = bool(name) and name != "i"
-            value = DEFAULTS.get(name) if value is None else value
-            self._line(entry.label, entry.symbol, entry.unit)
-            if isinstance(value, tuple):
-                value = ", ".join(map(str, value))
-            style = self.book.style("input" if live else "label")
-            self.sheet.write(self.row, 2, value, style)
+        for path in (*LOADS, *REQUIREMENTS):
+            self._line(INPUTS[path].name, INPUTS[path].symbol, suffix_of(path) or "")
+            live = tuple(path.split(".")) in NUMBERS or path.startswith(LOAD_PATH)
+            value = self._input(path)
+            shown = ", ".join(map(str, value)) if isinstance(value, tuple) else value
+            self.sheet.write(self.row, 2, shown, self.book.style("input" if live else "label"))
             if live:
+                name = cell_name(INPUTS[path].symbol) or path.removeprefix(LOAD_PATH)
                 self.book.name_cell(name, self.sheet, self.row, 2)
             self.row += 1
         self.row += 1
+
+    def _input(self, path: str) -> Value | None:
+        """What the application says, and of a load also what it has by default, should the reader add one."""
+        value = value_of(self.book.export.application, path)
+        if value is None and path.startswith(LOAD_PATH):
+            default: Value | None = getattr(OutputLoad(), path.removeprefix(LOAD_PATH))
+            return default
+        return value
 
     def _references(self) -> None:
         self._section(N_("Figures of the series"))
@@ -261,8 +244,3 @@ class Overview:
         if figures is None:
             return [figure for *_, figure in REFERENCES]
         return [figures.rated_input_speed_rpm, figures.life_at_rated_torque_h, *figures.bearing_reference]
-
-
-def _value(check: Any, name: str) -> float | str:
-    value = check[name] if check else None
-    return "" if value is None else float(value)

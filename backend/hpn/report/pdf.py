@@ -9,9 +9,9 @@ from typing import Any
 
 import typst
 
+from hpn.reader import Reader
 from hpn.report.content import content
 from hpn.report.export import Export
-from hpn.report.language import Language
 
 TEMPLATE = Path(__file__).parent / "report.typ"
 USER_TEXTS = ("title", "reference")
@@ -28,12 +28,12 @@ _WIDER = (*_WESTERN, (0x5D0, 0x5EA), (0x621, 0x64A), (0x2030, 0x22FF))
 """Characters that the fonts of the report surely have, and those that they most likely have."""
 
 
-def pdf(export: Export, language: Language) -> bytes:
+def pdf(export: Export, reader: Reader) -> bytes:
     """The report on an export.
 
     PDF/UA refuses a text that no font can show. Only the user's texts can hold one; it is replaced, and a note says so.
     """
-    data = content(export, language)
+    data = content(export, reader)
     seconds = int(export.created.timestamp()) if export.created else 0
     for printable in (None, _WIDER, _WESTERN):
         try:

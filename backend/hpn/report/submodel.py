@@ -8,19 +8,26 @@ designation is only part of an order code. `SelectionResult` is ours; no registe
 from collections.abc import Iterable, Iterator, Mapping
 from datetime import UTC
 from io import BytesIO
-from typing import Any
 from zipfile import ZIP_DEFLATED, ZipFile, ZipInfo
 
-import orjson
 from basyx.aas import model
 from basyx.aas.adapter import aasx
 from pyecma376_2.core_properties import OPCCoreProperties
 
-from hpn.gear import Gear
-from hpn.report.concepts import CONCEPTS, concept, concept_id, reference, texts, urn
+from hpn.quantities import DUTY, GEAR
+from hpn.report.concepts import CONCEPTS, concept, concept_id, published, reference, texts, told, urn
 from hpn.report.export import LOSS_FREE, Export
 from hpn.report.formulas import RATINGS
-from hpn.report.sheets import Known
+from hpn.report.known import Known
+from hpn.selection import FIGURES, Candidate, CheckResult, DutyFigures, encode
+from hpn.source import source_sentence
+from hpn.wording import Sentence
+
+Value = str | int | float | None
+
+MOTOR_TORQUES = ("motor_peak_torque_Nm", "motor_rated_torque_Nm")
+CALCULATED = ("ratio", "stages", "utilisation", *FIGURES)
+"""Fields of a candidate that are figures."""
 
 MANUFACTURER = "Harmonic Drive AG"
 TECHNICAL_DATA = "https://admin-shell.io/ZVEI/TechnicalData/"
@@ -42,7 +49,7 @@ def package(export: Export) -> bytes:
     files = aasx.DictSupplementaryFileContainer()  # type: ignore[no-untyped-call]
     application = export.application.model_dump_json(exclude_none=True).encode()
     files.add_file(APPLICATION_PART, BytesIO(application), "application/json")
-    files.add_file(RESULT_PART, BytesIO(orjson.dumps(export.reply)), "application/json")
+    files.add_file(RESULT_PART, BytesIO(export.reply or encode(export.selection)), "application/json")
     packed = BytesIO()
     with aasx.AASXWriter(packed, failsafe=False) as writer:
         writer.write_core_properties(_properties(export))
@@ -53,9 +60,9 @@ def package(export: Export) -> bytes:
 def environment(export: Export) -> model.DictIdentifiableStore[model.Identifiable]:
     """Shell, submodels and concept descriptions of an export."""
     submodels = [_selection_result(export)]
-    if export.reply["selected"] is not None:
+    if export.selection.selected is not None:
         submodels.insert(0, _technical_data(export))
-    kind = model.AssetKind.TYPE if export.reply["selected"] else model.AssetKind.NOT_APPLICABLE
+    kind = model.AssetKind.TYPE if export.selection.selected else model.AssetKind.NOT_APPLICABLE
     shell = model.AssetAdministrationShell(
         model.AssetInformation(kind, global_asset_id=urn("asset", export.link)),
         urn("shell", export.link),
@@ -79,10 +86,9 @@ class _InOrder(set[model.ModelReference[model.Submodel]]):
 
 
 def _technical_data(export: Export) -> model.Submodel:
-    gear = export.gear(export.candidate["designation"])
     return model.Submodel(
         urn("technical-data", export.link),
-        [_general_information(export), _technical_properties(export, gear), _further_information(export)],
+        [_general_information(export), _technical_properties(export), _further_information()],
         id_short="TechnicalData",
         administration=model.AdministrativeInformation(version="1", revision="2"),
         semantic_id=reference(TECHNICAL_DATA + "Submodel/1/2"),
@@ -90,7 +96,7 @@ def _technical_data(export: Export) -> model.Submodel:
 
 
 def _general_information(export: Export) -> model.SubmodelElementCollection:
-    designation = export.candidate["designation"]
+    designation = export.candidate.designation
     names = {"en": f"{designation} planetary gear", "de": f"{designation} Planetengetriebe"}
     ids = {name: reference(value) for name, value in GENERAL_INFORMATION.items()}
 
@@ -113,23 +119,25 @@ def _general_information(export: Export) -> model.SubmodelElementCollection:
     )
 
 
-def _technical_properties(export: Export, gear: Gear | None) -> model.SubmodelElementCollection:
+def _technical_properties(export: Export) -> model.SubmodelElementCollection:
     """Published figures; what is not published is left out."""
-    candidate = export.candidate
-    figures: dict[str, Any] = {name: candidate[name] for name in ("size", "ratio", "stages")}
+    gear, candidate = export.gear(export.candidate), export.candidate
+    figures: dict[str, Value] = {"size": candidate.size, "ratio": candidate.ratio, "stages": candidate.stages}
+    sources: dict[str, Sentence] = {}
     if gear:
-        figures |= {name: getattr(gear, name) for name in CONCEPTS if hasattr(gear, name)}
+        figures |= {published(name): getattr(gear, name) for name in GEAR if published(name) in CONCEPTS}
+        sources = {published(name): source_sentence(source) for name, source in gear.sources.items() if name in GEAR}
     else:
         known = Known(export, candidate, {}).ratings()
-        figures |= {RATINGS[name]: value for name, value in known.items() if name != "ratio"}
+        figures |= {published(RATINGS[name]): value for name, value in known.items() if RATINGS[name] != "ratio"}
     return model.SubmodelElementCollection(
         "TechnicalProperties",
-        _properties_of(figures, gear.sources if gear else {}),
+        _properties_of(figures, sources),
         semantic_id=reference(TECHNICAL_DATA + "TechnicalProperties/1/1"),
     )
 
 
-def _further_information(export: Export) -> model.SubmodelElementCollection:
+def _further_information() -> model.SubmodelElementCollection:
     statement = {
         "en": "Figures of the maker's engineering data, written by an independent tool; not a statement of the maker.",
         "de": "Angaben aus den Projektierungsunterlagen des Herstellers, von einem unabhängigen Werkzeug geschrieben; "
@@ -156,9 +164,9 @@ def _selection_result(export: Export) -> model.Submodel:
         *_texts(export),
         model.File("Application", "application/json", APPLICATION_PART),
         model.File("Result", "application/json", RESULT_PART),
-        model.SubmodelElementCollection("Duty", _properties_of(export.reply["duty"])),
-        model.SubmodelElementCollection("Figures", _properties_of(_figures(export), _standings(export))),
-        model.SubmodelElementCollection("Checks", [_check(export, check) for check in export.candidate["checks"]]),
+        model.SubmodelElementCollection("Duty", _properties_of(_fields(export.selection.duty, DUTY))),
+        model.SubmodelElementCollection("Figures", _calculated(export)),
+        model.SubmodelElementCollection("Checks", [_check(export, check) for check in export.candidate.checks]),
         model.SubmodelElementCollection("Notices", _notices(export)),
     ]
     return model.Submodel(
@@ -173,70 +181,67 @@ def _selection_result(export: Export) -> model.Submodel:
 
 
 def _texts(export: Export) -> Iterable[model.Property]:
-    reply, candidate = export.reply, export.candidate
+    selection, candidate = export.selection, export.candidate
     values = {
-        "Selected": reply["selected"],
-        "Candidate": candidate["designation"],
-        "Status": candidate["status"],
-        "GoverningCheck": candidate["governing_check"],
+        "Selected": selection.selected,
+        "Candidate": candidate.designation,
+        "Status": candidate.status,
+        "GoverningCheck": candidate.governing_check,
         "Title": export.title or None,
         "Reference": export.reference or None,
         "Created": export.created.astimezone(UTC).isoformat() if export.created else None,
         "Link": export.link,
-        "EngineVersion": reply["engine_version"],
-        "CatalogueVersion": reply["catalogue_version"],
+        "EngineVersion": selection.engine_version,
+        "CatalogueVersion": selection.catalogue_version,
     }
     return [model.Property(name, str, value) for name, value in values.items() if value is not None]
 
 
-def _figures(export: Export) -> dict[str, Any]:
-    """Calculated figures of the candidate."""
-    return {name: value for name, value in export.candidate.items() if isinstance(value, int | float)} | {"rank": None}
+def _calculated(export: Export) -> list[model.Property]:
+    """Figures of the candidate; motor torques without an efficiency are described as a lower bound."""
+    loss_free = MOTOR_TORQUES if export.is_lower_bound(export.candidate) else ()
+    return _properties_of(_fields(export.candidate, CALCULATED), dict.fromkeys(loss_free, Sentence(LOSS_FREE)))
 
 
-def _standings(export: Export) -> dict[str, str]:
-    """What is to be known of calculated figures: motor torques without an efficiency are a lower bound."""
-    if not export.is_lower_bound(export.candidate):
-        return {}
-    return dict.fromkeys(("motor_peak_torque_Nm", "motor_rated_torque_Nm"), LOSS_FREE)
+def _fields(part: DutyFigures | Candidate | CheckResult, names: Iterable[str]) -> dict[str, Value]:
+    """Fields of a part of the selection."""
+    return {name: getattr(part, name) for name in names}
 
 
-def _check(export: Export, check: Mapping[str, Any]) -> model.SubmodelElementCollection:
-    definition = export.definitions[check["code"]]
-    figures = {name: check[name] for name in ("demand", "limit", "utilisation", "status")}
+def _check(export: Export, check: CheckResult) -> model.SubmodelElementCollection:
+    definition = export.selection.check_definitions[check.code]
+    figures = _fields(check, ("demand", "limit", "utilisation", "status"))
     return model.SubmodelElementCollection(
-        check["code"],
-        [*_properties_of(figures), *([model.Property("unit", str, definition["unit"])] if definition["unit"] else [])],
-        display_name=model.MultiLanguageNameType(texts(definition["title"])),
-        description=model.MultiLanguageTextType(texts(definition["basis"])),
+        check.code,
+        [*_properties_of(figures), *([model.Property("unit", str, definition.unit)] if definition.unit else [])],
+        display_name=model.MultiLanguageNameType(texts(definition.title)),
+        description=model.MultiLanguageTextType(texts(definition.basis)),
     )
 
 
 def _notices(export: Export) -> Iterable[model.MultiLanguageProperty]:
     return [
-        model.MultiLanguageProperty(f"{notice['code']}_{number}", model.MultiLanguageTextType(texts(notice["text"])))
-        for number, notice in enumerate(export.reply["notices"], 1)
+        model.MultiLanguageProperty(f"{notice.code}_{number}", model.MultiLanguageTextType(told(notice.sentence)))
+        for number, notice in enumerate(export.selection.notices, 1)
     ]
 
 
-def _properties_of(figures: Mapping[str, Any], described: Mapping[str, str] | None = None) -> list[model.Property]:
-    """Properties of the figures that have a value and a concept, described by their source or standing."""
+def _properties_of(
+    figures: Mapping[str, Value], described: Mapping[str, Sentence] | None = None
+) -> list[model.Property]:
+    """Properties of the figures that have a value, described by their source or by what is to be known of them."""
     described = described or {}
     return [
         model.Property(
             name,
-            _type(value),
+            type(value),
             value,
             semantic_id=reference(concept_id(name)),
-            description=model.MultiLanguageTextType(texts(described[name])) if name in described else None,
+            description=model.MultiLanguageTextType(told(described[name])) if name in described else None,
         )
         for name, value in figures.items()
-        if value is not None and name in CONCEPTS
+        if value is not None
     ]
-
-
-def _type(value: Any) -> type[str] | type[int] | type[float]:
-    return str if isinstance(value, str) else int if isinstance(value, int) else float
 
 
 # --- Package ----------------------------------------------------------------------------------------------------------

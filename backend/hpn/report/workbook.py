@@ -7,20 +7,20 @@ from typing import Any
 
 import xlsxwriter
 
+from hpn.reader import Reader
 from hpn.report.candidates import CandidatesSheet
-from hpn.report.content import catalogue_version
 from hpn.report.export import Export
 from hpn.report.formulas import NOT_RATED, UNLIMITED
-from hpn.report.language import Language
 from hpn.report.overview import Overview
 from hpn.report.sheets import Book, CycleSheet
+from hpn.report.words import catalogue_version
 from hpn.wording import N_
 
 UNDATED = datetime(1980, 1, 1)
 """Creation time of the workbook of a selection that is not saved: the earliest that its container can hold."""
 
 
-def workbook(export: Export, language: Language) -> bytes:
+def workbook(export: Export, reader: Reader) -> bytes:
     """The workbook on an export; the same bytes for the same selection."""
     file = BytesIO()
     book = xlsxwriter.Workbook(
@@ -29,19 +29,19 @@ def workbook(export: Export, language: Language) -> bytes:
     created = export.created.astimezone(UTC).replace(tzinfo=None) if export.created else UNDATED
     book.set_properties({"title": export.title, "author": "HPN Select", "created": created})
     book.set_calc_mode("auto")
-    _fill(Book(book, export, language, words(language)))
+    _fill(Book(book, export, reader, words(reader)))
     book.close()
     return file.getvalue()
 
 
-def words(language: Language) -> Mapping[str, str]:
+def words(reader: Reader) -> Mapping[str, str]:
     """Words that formulas write, by their English ones."""
     english = (UNLIMITED, NOT_RATED, N_("passes"), N_("fails"), N_("suitable"), N_("unsuitable"), N_("unrated"))
-    return {word: language.text(word) for word in english}
+    return {word: reader.text(word) for word in english}
 
 
 def _fill(book: Book) -> None:
-    names = [book.language.text(name) for name in (N_("Selection"), N_("Duty cycle"), N_("Candidates"), N_("Notes"))]
+    names = [book.reader.text(name) for name in (N_("Selection"), N_("Duty cycle"), N_("Candidates"), N_("Notes"))]
     overview, cycle, candidates, notes = (book.file.add_worksheet(name) for name in names)
     CycleSheet(book, cycle).write()
     rows = CandidatesSheet(book, candidates).write()
@@ -52,17 +52,17 @@ def _fill(book: Book) -> None:
 
 def _notes(book: Book, sheet: Any) -> None:
     """Every assumption, and what each check stands on."""
-    text, export = book.language.text, book.export
+    text, export = book.reader.text, book.export
     sheet.set_column(0, 0, 34)
     sheet.set_column(1, 1, 110)
     sheet.freeze_panes(1, 0)
     sheet.write_row(0, 0, [text(N_("Subject")), text(N_("Assumptions and notes"))], book.style("head"))
-    rows = [("", book.language.filled(notice["text"])) for notice in export.reply["notices"]]
-    for definition in export.definitions.values():
-        rows.append((text(definition["title"]), f"{text(definition['tests'])} {text(definition['basis'])}"))
+    rows = [("", book.reader.told(notice.sentence)) for notice in export.selection.notices]
+    for definition in export.selection.check_definitions.values():
+        rows.append((text(definition.title), f"{text(definition.tests)} {text(definition.basis)}"))
     rows += [
-        (text(N_("Engine")), export.reply["engine_version"]),
-        (text(N_("Catalogue")), catalogue_version(export, book.language)),
+        (text(N_("Engine")), export.selection.engine_version),
+        (text(N_("Catalogue")), catalogue_version(export, book.reader)),
     ]
     for row, (subject, note) in enumerate(rows, 1):
         sheet.write_string(row, 0, subject, book.style("label"))

@@ -11,13 +11,21 @@ from uvicorn.middleware.proxy_headers import ProxyHeadersMiddleware
 
 from hpn import ENGINE_VERSION
 from hpn.application import Application
-from hpn.catalogue import Catalogue, load_catalogue
-from hpn.compiled import compile_equations
-from hpn.selection import select
+from hpn.catalogue import load_catalogue
 from hpn.store import Store, StoreUnavailableError
-from hpn.web.api import embeds, health, openapi, schemas, selection_schemas, selections, streaming
-from hpn.web.api import files as exports
-from hpn.web.api import select as api
+from hpn.web import archive
+from hpn.web.api import (
+    batch,
+    catalogue,
+    embeds,
+    files,
+    health,
+    openapi,
+    schemas,
+    select,
+    selections,
+    streaming,
+)
 from hpn.web.door import problems, readers
 from hpn.web.door.access import Gate
 from hpn.web.door.logs import make_logger
@@ -59,7 +67,7 @@ CORS: dict[str, Any] = {
 
 UNPACKED = (
     *DEFAULT_EXCLUDED_CONTENT_TYPES,
-    *(file.media_type for file in exports.FILES),
+    *(file.media_type for file in files.FILES),
     *streaming.MEDIA_TYPES,
 )
 """Kinds of content that are not compressed on their way: compressed already, or lines that must not wait."""
@@ -68,12 +76,13 @@ ROUTERS: tuple[APIRouter, ...] = (
     health.router,
     health.metrics_router,
     openapi.router,
-    api.router,
-    api.batch_router,
+    select.router,
+    batch.router,
+    catalogue.router,
     selections.router,
-    exports.saved_files,
-    exports.posted_files,
-    exports.linked_files,
+    files.saved_files,
+    files.posted_files,
+    files.linked_files,
     embeds.router,
     pages.router,
     assets.router,
@@ -106,27 +115,18 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     )
     app.state.settings = settings
     app.state.catalogue = load_catalogue(settings.catalogue_folder, settings.catalogue_supplement)
-    _compile(app.state.catalogue)
     app.state.gate = Gate(settings)
     app.state.metrics = Metrics()
     app.state.store = CountedStore(
         settings.database_url.get_secret_value(), seconds=settings.database_seconds, metrics=app.state.metrics
     )
     problems.install(app, catalogue_pages.nowhere)
-    app.add_exception_handler(StoreUnavailableError, selections.unavailable)
+    app.add_exception_handler(StoreUnavailableError, archive.unavailable)
     for router in ROUTERS:
         app.include_router(router)
-    openapi.install(app, Application, schemas.Batch, selection_schemas.SaveRequest)
+    openapi.install(app, Application, schemas.Batch, archive.SaveRequest)
     _add_middleware(app, settings)
     return app
-
-
-def _compile(catalogue: Catalogue) -> None:
-    """Compile what requests run, or load what was compiled before, so that none of them has to wait for it."""
-    compile_equations()
-    selection = select(Application.worked_example(), catalogue)
-    selection.json("/")
-    selection.evaluation.bearing_loads()
 
 
 def _add_middleware(app: FastAPI, settings: Settings) -> None:

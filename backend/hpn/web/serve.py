@@ -11,7 +11,7 @@ from uvicorn.supervisors import Multiprocess
 
 from hpn.web.app import create_app
 from hpn.web.door import logs, metrics
-from hpn.web.pages import calculator as pages
+from hpn.web.pages import templates
 from hpn.web.settings import Settings
 
 WORKER_ANSWER_SECONDS = 30
@@ -22,7 +22,7 @@ def served_app() -> FastAPI:
     settings = Settings()
     logs.configure(settings.log_level)
     app = create_app(settings)
-    pages.prepare(app.state)
+    templates.prepare(app.state)
     gc.collect()
     gc.freeze()  # catalogue, templates and modules are never garbage; to search them takes 90 ms each time
     return app

@@ -14,7 +14,7 @@ from pydantic_settings import BaseSettings, NoDecode, SettingsConfigDict
 from hpn.catalogue import HANDBOOK_FOLDER
 from hpn.web.door.keys import ApiKey
 
-Group = Literal["calculator", "batch", "writing", "listing", "deleting", "reading", "metrics"]
+RouteGroup = Literal["calculator", "batch", "writing", "listing", "deleting", "reading", "metrics"]
 """Kinds of requests that keys and rate limits tell apart; each route declares its own."""
 
 
@@ -111,7 +111,7 @@ class Settings(BaseSettings):
     api_keys: Annotated[tuple[ApiKey, ...], NoDecode, BeforeValidator(_keys), BeforeValidator(_split)] = Field(
         (), description="Keys as name:sha256 pairs, separated by commas or spaces; `hpn key NAME` makes one."
     )
-    guarded: Annotated[frozenset[Group], NoDecode, BeforeValidator(_split)] = Field(
+    guarded: Annotated[frozenset[RouteGroup], NoDecode, BeforeValidator(_split)] = Field(
         frozenset({"batch", "writing", "listing", "deleting"}),
         description="What needs a key where there are keys, out of calculator, batch, writing, listing, deleting, "
         "reading and metrics.",

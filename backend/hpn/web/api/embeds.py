@@ -1,40 +1,24 @@
 """What a pasted link unfolds into: gear and verdict, by Open Graph and oEmbed."""
 
-from collections.abc import Mapping
-from dataclasses import dataclass
-from typing import Annotated, Any
-from urllib.parse import parse_qsl, urlencode, urlsplit
+from typing import Annotated
+from urllib.parse import parse_qsl, urlsplit
 
-import orjson
 from fastapi import APIRouter, Query
 from pydantic import BaseModel, Field
 from starlette.requests import Request
 
-from hpn.candidates import foremost
-from hpn.report.language import language
-from hpn.selection import select
+from hpn.selection import decode, select
 from hpn.web.api import schemas
 from hpn.web.api.files import absolute, application_of
 from hpn.web.door.access import admit
 from hpn.web.door.problems import Problem
 from hpn.web.form.read import MAXIMUM_QUERY_BYTES
 from hpn.web.form.write import to_link
+from hpn.web.preview import Preview, preview_of
 
 SAVED = "/selections/"
-LONGEST_PATH = 2000
-"""Length of a link from which a page doesn't carry it a second time."""
-
 router = APIRouter(dependencies=[admit("reading")])
 """oEmbed tells of saved selections too, so it belongs to reading."""
-
-
-@dataclass(frozen=True, slots=True)
-class Preview:
-    """Title and description of a result, and where its oEmbed stands; empty for a very long link."""
-
-    title: str
-    description: str
-    oembed: str
 
 
 class OEmbedReply(BaseModel):
@@ -47,22 +31,6 @@ class OEmbedReply(BaseModel):
     provider_name: str = Field(description="This service.")
     provider_url: str = Field(description="Its address.")
     cache_age: int = Field(description="Seconds for which it may be kept.")
-
-
-def preview(reply: Mapping[str, Any], path: str, title: str | None = None) -> Preview:
-    """Gear and verdict of a reply that stands at a path of this service."""
-    best, english = foremost(reply["candidates"]), language("en")
-    selected = reply["selected"]
-    verdict = f"{selected}, suitable" if selected else "no suitable gear"
-    duty = reply["duty"]
-    parts = [
-        f"Average torque {english.figure(duty['average_torque_Nm'])} Nm",
-        f"largest torque {english.figure(duty['maximum_torque_Nm'])} Nm",
-        f"average speed {english.figure(duty['average_output_speed_rpm'])} rpm",
-    ]
-    parts.append(f"{best['designation']}: {best['reason'].removesuffix('.')}")
-    address = "/oembed?" + urlencode({"url": path, "format": "json"}) if len(path) <= LONGEST_PATH else ""
-    return Preview(f"{title}: {verdict}" if title else f"HPN Select: {verdict}", ", ".join(parts) + ".", address)
 
 
 @router.get(
@@ -105,7 +73,7 @@ async def _preview_of(request: Request, url: str) -> Preview:
         saved = await request.app.state.store.find(address.path.removeprefix(SAVED))
         if saved is None:
             raise unknown
-        return preview(orjson.loads(saved.result), address.path, saved.title)
+        return preview_of(decode(saved.result), address.path, saved.title)
     if address.path not in ("", "/") or not address.query:
         raise unknown
     try:
@@ -113,4 +81,4 @@ async def _preview_of(request: Request, url: str) -> Preview:
     except Problem:
         raise unknown from None
     link = to_link(application)
-    return preview(select(application, request.app.state.catalogue).reply(link), link)
+    return preview_of(select(application, request.app.state.catalogue, link), link)

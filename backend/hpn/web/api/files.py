@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import Annotated, Any, Literal
 from urllib.parse import parse_qsl
 
-import orjson
+import msgspec
 from anyio import CapacityLimiter
 from anyio.to_thread import run_sync
 from fastapi import APIRouter, Query
@@ -16,15 +16,15 @@ from starlette.responses import Response
 
 from hpn.application import Application
 from hpn.catalogue import Catalogue
-from hpn.report.export import Export
-from hpn.report.language import Language, language
+from hpn.reader import Reader
+from hpn.report.export import DIGITS, Export
 from hpn.report.pdf import pdf
 from hpn.report.submodel import package
 from hpn.report.workbook import workbook
-from hpn.selection import select
+from hpn.selection import decode, select
 from hpn.store import SavedSelection
 from hpn.web.api import schemas
-from hpn.web.api.selections import url_of, with_catalogue
+from hpn.web.archive import url_of, with_catalogue
 from hpn.web.door.access import admit
 from hpn.web.door.bodies import read_body
 from hpn.web.door.conditions import etag_of, has_already
@@ -51,12 +51,12 @@ class File:
     name: str
     media_type: str
     summary: str
-    build: Callable[[Export, Language], bytes]
+    build: Callable[[Export, Reader], bytes]
     disposition: str = "attachment"
 
     def named(self, export: Export) -> str:
         """File name for a download; ASCII, whatever the selection is called."""
-        return f"{export.candidate['designation']}.{self.name.rpartition('.')[2]}"
+        return f"{export.candidate.designation}.{self.name.rpartition('.')[2]}"
 
 
 FILES = (
@@ -126,7 +126,7 @@ for _file in FILES:
 async def application_schema() -> Response:
     """JSON Schema of an application, with the unit of every field."""
     schema = {"$schema": "https://json-schema.org/draft/2020-12/schema", "$id": "application.schema.json"}
-    document = orjson.dumps(schema | Application.model_json_schema())
+    document = msgspec.json.encode(schema | Application.model_json_schema())
     return Response(document, media_type="application/schema+json")
 
 
@@ -141,20 +141,21 @@ def _of_saved(saved: SavedSelection, catalogue: Catalogue | None, request: Reque
         raise Problem(409, "the saved input does not fit this version's model any more") from None
     return Export(
         application=application,
-        reply=orjson.loads(saved.result),
+        selection=decode(saved.result),
         link=absolute(request, url_of(saved.id)),
         title=saved.title or "",
         reference=saved.reference or "",
         created=saved.created,
         catalogue=catalogue,
+        reply=saved.result,
     )
 
 
 def _computed(application: Application, request: Request) -> Export:
     catalogue = request.app.state.catalogue
     link = to_link(application)
-    reply = select(application, catalogue).reply(link)
-    return Export(application=application, reply=reply, link=absolute(request, link), catalogue=catalogue)
+    selection = select(application, catalogue, link)
+    return Export(application=application, selection=selection, link=absolute(request, link), catalogue=catalogue)
 
 
 def linked_application(request: Request) -> Application:
@@ -170,7 +171,7 @@ def application_of(pairs: links.Pairs) -> Application:
     """Application of the parameters of a link; Problem 422 names each that can't be read."""
     form = links.parse(pairs)
     errors = [
-        ((problem.name, *(() if problem.index is None else (problem.index,))), str(problem.message))
+        ((problem.name, *(() if problem.index is None else (problem.index,))), problem.message.text)
         for problem in form.problems
     ]
     if form.application is None:
@@ -201,13 +202,13 @@ async def _answer(request: Request, file: File, lang: str | None, make: Make) ->
     headers = {"ETag": etag_of(content), "Cache-Control": "no-cache", "Vary": "Accept-Language"}
     if request.method == "GET" and has_already(request, headers["ETag"]):
         return Response(status_code=304, headers=headers)
-    headers |= {"Content-Language": reader.code, "Content-Disposition": f'{file.disposition}; filename="{name}"'}
+    headers |= {"Content-Language": reader.language, "Content-Disposition": f'{file.disposition}; filename="{name}"'}
     return Response(content, headers=headers, media_type=file.media_type)
 
 
-def spoken(request: Request, lang: str | None) -> Language:
-    """The language asked for, else the browser's."""
-    return language(lang or accepted_language(request.headers.get("accept-language", "")))
+def spoken(request: Request, lang: str | None) -> Reader:
+    """Reader of a file: the language asked for, else the browser's, in the units of the wire."""
+    return Reader(lang or accepted_language(request.headers.get("accept-language", "")), digits=DIGITS)
 
 
 def _limiter(state: State) -> CapacityLimiter:

@@ -15,7 +15,7 @@ from hpn.catalogue import Catalogue
 from hpn.units import suffix_of, symbol_of
 from hpn.web.api import samples, schemas
 from hpn.web.door.access import OPEN, group_of
-from hpn.web.settings import Group, Settings
+from hpn.web.settings import RouteGroup, Settings
 
 PATH_PARAMETERS = {
     "designation": "Designation in any of the printed spellings, such as HPN-20A-5.",
@@ -62,7 +62,7 @@ def install(app: FastAPI, *bodies: type[BaseModel]) -> None:
 
 def complete(
     document: dict[str, Any],
-    groups: Mapping[tuple[str, str], Group | None],
+    groups: Mapping[tuple[str, str], RouteGroup | None],
     catalogue: Catalogue,
     settings: Settings,
     bodies: Sequence[type[BaseModel]],
@@ -71,12 +71,12 @@ def complete(
 
     `groups` tells by method and path who may use a route.
     """
-    models: list[Any] = [(model, "validation") for model in (*bodies, schemas.ProblemReply)]
+    models: list[Any] = [(model, "validation") for model in bodies]
     _, definitions = models_json_schema(models, ref_template="#/components/schemas/{model}")
     components = document.setdefault("components", {})
     components["securitySchemes"] = KEY_SCHEMES
     named = components.setdefault("schemas", {})
-    named.update(definitions["$defs"])
+    named.update(definitions["$defs"] | schemas.components())
     for method, path, operation in _operations(document):
         _give_examples(operation)
         _say_problems(operation)
@@ -96,7 +96,7 @@ def _operations(document: dict[str, Any]) -> Iterator[tuple[str, str, dict[str, 
             yield method.upper(), path, operation
 
 
-def _say_keys(operation: dict[str, Any], group: Group | None, settings: Settings) -> None:
+def _say_keys(operation: dict[str, Any], group: RouteGroup | None, settings: Settings) -> None:
     """Keys and rate limits stand in front of every route that is not open to all."""
     if group is None:
         return

@@ -1,22 +1,22 @@
 """Examples for every field of the OpenAPI document: what this very service makes of one full application."""
 
 from collections.abc import Mapping
-from dataclasses import asdict
 from itertools import islice
 from typing import Any
 
-import orjson
+import msgspec
 
 from hpn import ENGINE_VERSION
 from hpn.application import WORKED_EXAMPLE, Application, InputError
 from hpn.catalogue import Catalogue
 from hpn.differences import FigureDifference, differences
 from hpn.envelopes import EnvelopeQuery, life_envelopes
-from hpn.selection import select
+from hpn.selection import Selection, select
 from hpn.web.api.batch import batch_lines
-from hpn.web.api.embeds import preview
+from hpn.web.api.replies import encode
 from hpn.web.door.problems import Problem
 from hpn.web.form.write import to_link
+from hpn.web.preview import preview_of
 
 Json = dict[str, Any]
 
@@ -54,9 +54,9 @@ def _samples(catalogue: Catalogue) -> Json:
     """A value of each schema that no other contains."""
     application = Application.model_validate(FULL)
     link = to_link(application)
-    reply = select(application, catalogue).reply(link)
-    best = reply["candidates"][0]["designation"]
-    gear = orjson.loads(orjson.dumps(catalogue.by_designation[best]))
+    selection = select(application, catalogue, link)
+    reply, best = _plain(selection), selection.foremost.designation
+    gear = _plain(catalogue.by_designation[best])
     versions = {"engine_version": ENGINE_VERSION, "catalogue_version": catalogue.version}
     where = {"id": "q83vASNFZ4mrze8BI0Vniw", "url": "/selections/q83vASNFZ4mrze8BI0Vniw"}
     summary = {**where, "created": "2026-11-21T10:00:00.000000Z", **WHOLE["SaveRequest"], "selected": best, **versions}
@@ -64,14 +64,14 @@ def _samples(catalogue: Catalogue) -> Json:
         **WHOLE,
         "Application": FULL,
         "BatchItem": {"reference": "axis-7", **FULL},
-        "SelectReply": reply,
-        "BatchReply": {"results": batch_lines([WHOLE["Batch"]["applications"][0]], catalogue)},
-        "BatchLine": batch_lines([{"reference": "axis-8"}], catalogue)[0],
+        "Selection": reply,
+        "BatchReply": {"results": _plain(batch_lines(WHOLE["Batch"]["applications"], catalogue))},
+        "BatchLine": _plain(batch_lines([{"reference": "axis-8"}], catalogue)[0]),
         "ProblemReply": _refusal().body(),
         "CatalogueReply": {
             "gears": [gear],
             "catalogue_version": catalogue.version,
-            "series": {name: asdict(figure) for name, figure in catalogue.series.items()},
+            "series": _plain(catalogue.series),
         },
         "OneGearReply": {"catalogue_version": catalogue.version, **gear, "gears": [gear]},
         "EnvelopeReply": _envelopes(catalogue, gear["size"]),
@@ -82,7 +82,7 @@ def _samples(catalogue: Catalogue) -> Json:
             "application": WORKED_EXAMPLE,
             "gear": gear,
             "result": reply,
-            "today": versions | _changes(reply, catalogue),
+            "today": versions | _changes(selection, catalogue),
         },
         "Readiness": {
             "status": "ok",
@@ -91,8 +91,13 @@ def _samples(catalogue: Catalogue) -> Json:
             "store": "ok",
         },
         "Health": {"status": "ok"},
-        "OEmbedReply": asdict(preview(reply, link)) | _PROVIDER,
+        "OEmbedReply": _plain(preview_of(selection, link)) | _PROVIDER,
     }
+
+
+def _plain(reply: Any) -> Any:
+    """A reply as its reader gets it."""
+    return msgspec.json.decode(encode(reply))
 
 
 _PROVIDER = {
@@ -112,25 +117,25 @@ def _refusal() -> Problem:
 def _envelopes(catalogue: Catalogue, size: str) -> Json:
     gear = catalogue.find_size(size)
     try:
-        curves = [asdict(curve) for curve in life_envelopes(catalogue, gear, EnvelopeQuery())] if gear else []
+        curves = _plain(life_envelopes(catalogue, gear, EnvelopeQuery())) if gear else []
     except InputError:  # a catalogue whose first choice has no published limits
         curves = []
     limits = {name: source for name, source in gear.sources.items() if name.startswith("dynamic_")} if gear else {}
     return {"size": size, "model": "linear", "curves": curves, "sources": limits}
 
 
-def _changes(reply: Json, catalogue: Catalogue) -> Json:
+def _changes(selection: Selection, catalogue: Catalogue) -> Json:
     """What has changed since, had the cycle been a tenth heavier then, and were the best gear's weight new."""
     phases = [phase | {"torque_Nm": 1.1 * phase["torque_Nm"]} for phase in FULL["duty_cycle"]["phases"]]
     heavier = Application.model_validate(FULL | {"duty_cycle": {"phases": phases}})
-    found = differences(select(heavier, catalogue).reply(to_link(heavier)), reply)
+    found = differences(select(heavier, catalogue, to_link(heavier)), selection)
     figures = next(difference for difference in found if difference.check)
-    best = reply["candidates"][0]["designation"]
+    best = selection.foremost.designation
     weight = FigureDifference(best, "weight_kg", None, catalogue.by_designation[best].weight_kg)
     return {
         "difference_count": len(found),
-        "differences": [asdict(figures)],
-        "figure_differences": [asdict(weight)],
+        "differences": [_plain(figures)],
+        "figure_differences": [_plain(weight)],
         "problem": None,
     }
 

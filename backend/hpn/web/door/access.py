@@ -14,9 +14,9 @@ from hpn.web.door.keys import holder, presented_key
 from hpn.web.door.observation import add_headers
 from hpn.web.door.problems import Problem
 from hpn.web.door.rates import Limiter, subject_of
-from hpn.web.settings import Group, Settings
+from hpn.web.settings import RouteGroup, Settings
 
-LIMIT_OF: Mapping[Group, str] = {
+LIMIT_OF: Mapping[RouteGroup, str] = {
     "calculator": "calculator",
     "reading": "calculator",
     "listing": "calculator",
@@ -41,7 +41,7 @@ class Gate:
             }
         )
 
-    def admit(self, request: Request, group: Group) -> None:
+    def admit(self, request: Request, group: RouteGroup) -> None:
         """Count a request; raises Problem 429 where there were too many, then 401 where a key is needed."""
         name = request.state.api_key = self._holder(request)
         counted = self._limiter.admit(LIMIT_OF.get(group, ""), f"key {name}" if name else _subject(request))
@@ -60,7 +60,7 @@ class Gate:
 class _Admission:
     """The dependency by which a route belongs to a group."""
 
-    def __init__(self, group: Group) -> None:
+    def __init__(self, group: RouteGroup) -> None:
         self.group = group
 
     async def __call__(self, request: Request) -> None:
@@ -73,7 +73,7 @@ async def _pass(request: Request) -> None:
     """Neither guarded nor limited."""
 
 
-def admit(group: Group) -> Any:
+def admit(group: RouteGroup) -> Any:
     """The dependency of a route of this group."""
     return Depends(_Admission(group))
 
@@ -82,7 +82,7 @@ OPEN: Any = Depends(_pass)
 """The dependency of a route that load balancers and browsers must always reach."""
 
 
-def group_of(route: RouteContext) -> Group | None:
+def group_of(route: RouteContext) -> RouteGroup | None:
     """Group that a route declares, None for one that is open; LookupError for one that declares neither."""
     declared = getattr(route, "dependencies", ())  # a route of Starlette's own has none
     for dependency in declared:

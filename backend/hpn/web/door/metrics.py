@@ -5,9 +5,9 @@ the client library's multiprocess mode, for which `serve.py` sets PROMETHEUS_MUL
 """
 
 import os
+from collections import Counter as Counts
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
-from typing import Any
 
 from prometheus_client import CollectorRegistry, Counter, Histogram, ProcessCollector, generate_latest
 from prometheus_client.multiprocess import MultiProcessCollector
@@ -57,16 +57,9 @@ class Metrics:
         self._requests.labels(route, method, str(status)).inc()
         self._seconds.labels(route, method).observe(seconds)
 
-    def selection(self, selected: str | None) -> None:
-        """Count an evaluated application."""
-        self._selections.labels("none" if selected is None else "selected").inc()
-
-    def batch(self, lines: Iterable[dict[str, Any]]) -> None:
-        """Count the lines of a batch."""
-        counts = {"selected": 0, "none": 0, "refused": 0}
-        for line in lines:
-            counts["refused" if line["status"] == "error" else "selected" if line["selected"] else "none"] += 1
-        for verdict, count in counts.items():
+    def selections(self, verdicts: Iterable[str]) -> None:
+        """Count evaluated applications, each by its verdict: `selected`, `none` or `refused`."""
+        for verdict, count in Counts(verdicts).items():
             self._selections.labels(verdict).inc(count)
 
     def store_operation(self, name: str, outcome: str) -> None:

@@ -14,6 +14,7 @@ from starlette.routing import Match
 from starlette.types import Scope
 
 from hpn.application import InputError
+from hpn.wording import Sentence
 
 MEDIA_TYPE = "application/problem+json"
 
@@ -43,7 +44,12 @@ Location = Sequence[str | int]
 
 
 class Problem(HTTPException):
-    """A refusal with its status, a text for people, and the fields it is about."""
+    """A refusal with its status, a text for people, and the fields it is about.
+
+    `sentences` say the same in any language; a page that has none shows the text.
+    """
+
+    sentences: tuple[Sentence, ...] = ()
 
     def __init__(
         self,
@@ -59,7 +65,9 @@ class Problem(HTTPException):
     def of(cls, error: ValidationError | InputError) -> "Problem":
         """Problem for input that the models or the selection refuse."""
         if isinstance(error, InputError):
-            return cls(422, str(error), error.problems)
+            problem = cls(422, str(error), error.problems)
+            problem.sentences = tuple(sentence for _, sentence in error.sentences)
+            return problem
         found = error.errors(include_url=False, include_context=False, include_input=False)
         if found and found[0]["type"] == "json_invalid":
             return cls(400, found[0]["msg"])

@@ -13,12 +13,12 @@ from starlette.requests import Request
 from starlette.responses import RedirectResponse, Response
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from hpn.translation import LANGUAGES
-from hpn.web import measures
+from hpn import units
+from hpn.reader import LANGUAGES, Reader
 from hpn.web.door.access import admit
 from hpn.web.door.bodies import read_body
 from hpn.web.door.requests import require_same_origin
-from hpn.web.reader import VISIT, Reader, Visit, current
+from hpn.web.door.visit import VISIT, Visit, current
 
 LANGUAGE, UNITS = "hpn_language", "hpn_units"
 """Cookies; what they hold is no secret and names nobody."""
@@ -61,7 +61,7 @@ def reader_from(headers: Headers) -> Reader:
     language = cookies.get(LANGUAGE, "")
     if language not in LANGUAGES:
         language = accepted_language(headers.get("accept-language", ""))
-    return Reader(language, measures.codes_of(cookies.get(UNITS, "")))
+    return Reader(language, units.codes_of(cookies.get(UNITS, "")))
 
 
 def accepted_language(header: str) -> str:
@@ -98,10 +98,10 @@ async def change(request: Request) -> Response:
     response = RedirectResponse(_own(given.get("back", "")), 303, {"Cache-Control": "no-store"})
     if (language := given.get("language", "")) in LANGUAGES:
         _keep(request, response, LANGUAGE, language)
-    if given.get("preset") in measures.PRESETS:
-        _keep(request, response, UNITS, ".".join(measures.PRESETS[given["preset"]]))
-    elif any(name in given for name in measures.CHOICES):
-        codes = measures.codes_of(".".join(given.get(name, "") for name in measures.CHOICES))
+    if given.get("preset") in units.PRESETS:
+        _keep(request, response, UNITS, ".".join(units.PRESETS[given["preset"]]))
+    elif any(name in given for name in units.CHOICES):
+        codes = units.codes_of(".".join(given.get(name, "") for name in units.CHOICES))
         _keep(request, response, UNITS, ".".join(codes))
     return response
 

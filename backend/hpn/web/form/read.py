@@ -1,6 +1,6 @@
-"""Links and the form: the mapping between the symbols of a query and the application model.
+"""Links and the form: from the symbols of a query to the application model.
 
-The form, the address bar and every link that somebody writes by hand go through `parse`; `canonical.to_link` is the way
+The form, the address bar and every link that somebody writes by hand go through `parse`; `write.to_link` is the way
 back. Names are the handbook's symbols, values are in the units of the API.
 """
 
@@ -14,10 +14,10 @@ from urllib.parse import urlencode
 from pydantic import ValidationError
 
 from hpn.application import MAXIMUM_PHASES, MOST_WISHES, Application
+from hpn.reader import Reader
 from hpn.units import suffix_of
-from hpn.web.form import entries
-from hpn.web.form.entries import WAS, WRITTEN
-from hpn.web.form.messages import N_, Message
+from hpn.web.form import numbers
+from hpn.web.form.numbers import WAS, WRITTEN, read_value
 from hpn.web.form.symbols import (
     BY_NAME,
     BY_PATH,
@@ -28,9 +28,7 @@ from hpn.web.form.symbols import (
     UNITS,
     Symbol,
 )
-from hpn.web.form.typed import read_value
-from hpn.web.reader import Reader
-from hpn.wording import Quantity, Sentence
+from hpn.wording import N_, Quantity, Sentence
 
 MAXIMUM_QUERY_BYTES = 60_000
 """Longest query that is read: servers and proxies on the way allow little more."""
@@ -40,6 +38,9 @@ Pairs = Sequence[tuple[str, str]]
 PAGE_NAMES = ("gear", "pin", "unpin", "do", WRITTEN, WAS)
 """Parameters of the page alone: the candidate looked at, those pinned beside it (repeated), one to take away, and
 the buttons that edit the rows, one after the other."""
+
+ORDER_NAMES = ("order_output", "order_motor")
+"""What the ordering code is put together from, which no address keeps."""
 
 ROWS_IN_TABLE = 100
 """A longer duty cycle is edited as text: a field for each of its figures would weigh megabytes."""
@@ -51,12 +52,12 @@ _PARTS = {("duty_cycle",): "T", ("duty_cycle", "phases"): "T", ("output_load",):
 
 
 @dataclass(frozen=True)
-class Problem:
+class FieldProblem:
     """What is wrong with one input: the query name and, for a repeated one, which of its values."""
 
     name: str
     index: int | None
-    message: Message | Sentence
+    message: Sentence
 
     @property
     def of_phase(self) -> bool:
@@ -71,20 +72,26 @@ class Problem:
 
 @dataclass(frozen=True)
 class Form:
-    """A query as given, and the application it describes, or why it describes none."""
+    """A query as given, and the application it describes, or why it describes none.
+
+    `origins` are the places at which the rows of the duty table stood before the buttons that edit it.
+    """
 
     rows: tuple[Mapping[str, str], ...]
+    origins: tuple[int | None, ...]
     texts: Mapping[str, str]
     lists: Mapping[str, tuple[str, ...]]
     with_loads: bool = False
     gear: str = ""
     pins: tuple[str, ...] = ()
     focus: str | None = None
-    problems: tuple[Problem, ...] = ()
+    problems: tuple[FieldProblem, ...] = ()
     application: Application | None = None
     written: str = ""
     was: str = ""
     typed: str | None = None
+    output: str = ""
+    motor: str = ""
 
     @property
     def long(self) -> bool:
@@ -101,14 +108,9 @@ class Form:
         """Nobody has filled in a phase yet: neither an application nor an error."""
         return self.application is None and not self.problems
 
-    def messages(self, name: str, index: int | None = None) -> list[Message | Sentence]:
+    def messages(self, name: str, index: int | None = None) -> list[Sentence]:
         """What is wrong with one input."""
         return [problem.message for problem in self.problems if (problem.name, problem.index) == (name, index)]
-
-    @property
-    def general(self) -> list[Problem]:
-        """Problems that belong to no field of the form."""
-        return [problem for problem in self.problems if problem.name not in BY_NAME | PHASE_BY_NAME]
 
 
 def address_of_empty(form: Form) -> str:
@@ -134,6 +136,7 @@ def parse(pairs: Pairs) -> Form:
         problems += refused
     return Form(
         rows=tuple(rows),
+        origins=given.origins,
         texts={name: texts[0] for name, texts in given.scalars.items()},
         lists={name: tuple(texts) for name, texts in given.lists.items()},
         with_loads=given.with_loads,
@@ -143,19 +146,21 @@ def parse(pairs: Pairs) -> Form:
         problems=tuple(problems),
         application=None if problems else application,
         written=written,
+        output=given.page.get("order_output", ""),
+        motor=given.page.get("order_motor", ""),
     )
 
 
 def in_wire_units(pairs: Pairs) -> tuple[Pairs, str]:
-    """Pairs of a form as a link has them, and the marker of what they were written in: see `entries`."""
-    return entries.to_wire(pairs, UNITS)
+    """Pairs of a form as a link has them, and the marker of what they were written in: see `numbers`."""
+    return numbers.to_wire(pairs, UNITS)
 
 
 def for_reader(form: Form, reader: Reader) -> Form:
     """The same form with what the reader's fields show: their units and decimal mark."""
     cells = [(text, UNITS[name]) for row in form.rows for name, text in row.items()]
     named = {name: text for name, text in form.texts.items() if name in UNITS}
-    shown = entries.to_fields([*cells, *((text, UNITS[name]) for name, text in named.items())], reader, form.written)
+    shown = numbers.to_fields([*cells, *((text, UNITS[name]) for name, text in named.items())], reader, form.written)
     texts = iter(shown.texts)
     rows = tuple({name: next(texts) for name in row} for row in form.rows)
     return replace(
@@ -165,6 +170,10 @@ def for_reader(form: Form, reader: Reader) -> Form:
         written=reader.marker,
         was=shown.was,
     )
+
+
+_Placed = tuple[int | None, dict[str, str]]
+"""A row of the duty table, and where it stood before the buttons that edit it."""
 
 
 class _Given:
@@ -179,6 +188,7 @@ class _Given:
         self.pins: list[str] = []
         self.unknown: list[str] = []
         self.with_loads = False
+        self.origins: tuple[int | None, ...] = (None,)
 
     def add(self, name: str, text: str) -> None:
         """Take one pair of the query."""
@@ -188,7 +198,7 @@ class _Given:
             self.presses.append(text)
         elif name == "pin":
             self.pins += [text.strip()] if text.strip() else []
-        elif name in PAGE_NAMES:
+        elif name in PAGE_NAMES or name in ORDER_NAMES:
             self.page[name] = text
         elif name not in BY_NAME:
             self.unknown.append(name)
@@ -200,39 +210,43 @@ class _Given:
     def edited(self) -> tuple[list[dict[str, str]], str | None]:
         """Rows of the duty table after the buttons that were pressed, and the element to go on from."""
         self.with_loads = any(name in self.columns for name in _LOADS)
-        shown = [name for name in PHASE_BY_NAME if name in _REQUIRED or self.with_loads]
         length = max((len(texts) for texts in self.columns.values()), default=0)
-        rows = [
-            {name: texts[k] if k < len(texts := self.columns.get(name, [])) else "" for name in shown}
+        shown = self._shown()
+        placed: list[_Placed] = [
+            (k, {name: texts[k] if k < len(texts := self.columns.get(name, [])) else "" for name in shown})
             for k in range(min(length, MAXIMUM_PHASES + 1))
         ]
         focus = None
         for press in self.presses[:50]:
-            focus = self._press(press, rows)
-        return rows or [dict.fromkeys(shown, "")], focus
+            focus = self._press(press, placed)
+        placed = placed or [(None, dict.fromkeys(self._shown(), ""))]
+        self.origins = tuple(origin for origin, _ in placed)
+        return [row for _, row in placed], focus
 
-    def _press(self, press: str, rows: list[dict[str, str]]) -> str | None:
+    def _shown(self) -> list[str]:
+        return [name for name in PHASE_BY_NAME if name in _REQUIRED or self.with_loads]
+
+    def _press(self, press: str, placed: list[_Placed]) -> str | None:
+        """Edit the rows as one button does; the element to go on from, if it does anything."""
         do, _, number = press.partition(":")
         k = int(number) - 1 if re.fullmatch(r"[0-9]{1,5}", number) else -1
         if do == "add":
-            rows.append(dict.fromkeys(rows[0] if rows else _REQUIRED, ""))
-            return f"T-{len(rows) - 1}"
+            placed.append((None, dict.fromkeys(self._shown(), "")))
+            return f"T-{len(placed) - 1}"
         if do == "loads":
             self.with_loads = not self.with_loads
-            for row in rows:
-                for name in _LOADS:
-                    row.setdefault(name, "") if self.with_loads else row.pop(name, None)
+            placed[:] = [(origin, {name: row.get(name, "") for name in self._shown()}) for origin, row in placed]
             return "loads"
-        if not 0 <= k < len(rows):
+        if not 0 <= k < len(placed):
             return None
         if do == "remove":
-            del rows[k]
-            return f"T-{min(k, max(len(rows) - 1, 0))}"
+            del placed[k]
+            return f"T-{min(k, max(len(placed) - 1, 0))}"
         if do in ("up", "down"):
-            to = min(max(k + (1 if do == "down" else -1), 0), len(rows) - 1)
-            rows.insert(to, rows.pop(k))
+            to = min(max(k + (1 if do == "down" else -1), 0), len(placed) - 1)
+            placed.insert(to, placed.pop(k))
             # At either end the way on is back.
-            onward = do if 0 < to < len(rows) - 1 else "down" if to == 0 else "up"
+            onward = do if 0 < to < len(placed) - 1 else "down" if to == 0 else "up"
             return f"{onward}-{to}"
         return None
 
@@ -240,42 +254,42 @@ class _Given:
         """Pinned gears, without the one whose button takes it away."""
         return tuple(pin for pin in self.pins if pin != self.page.get("unpin"))
 
-    def problems(self) -> Iterable[Problem]:
+    def problems(self) -> Iterable[FieldProblem]:
         """Names that are unknown, repeated, or repeated unequally often."""
         for name in self.unknown[:20]:
-            yield Problem(name[:60], None, _unknown(name))
+            yield FieldProblem(name[:60], None, _unknown(name))
         for name, texts in self.scalars.items():
             if len(texts) > 1:
                 listed = ", ".join(text.strip()[:20] for text in texts[:5])
-                yield Problem(name, None, Message(N_("takes one value, given were %(texts)s"), {"texts": listed}))
+                yield FieldProblem(name, None, Sentence(N_("takes one value, given were {texts}"), {"texts": listed}))
         if self.columns and not self.presses:
             yield from self._unequal()
 
-    def _unequal(self) -> Iterable[Problem]:
+    def _unequal(self) -> Iterable[FieldProblem]:
         counts = {name: len(self.columns.get(name, [])) for name in (*_REQUIRED, *self.columns)}
         longest = max(counts, key=lambda name: counts[name])
         for name, count in counts.items():
             if count < counts[longest]:
                 values = {"count": str(count), "name": name, "most": str(counts[longest]), "longest": longest}
-                template = N_("missing: the link gives %(count)s × %(name)s, but %(most)s × %(longest)s")
-                yield Problem(name, min(count, MAXIMUM_PHASES), Message(template, values))
+                template = N_("missing: the link gives {count} × {name}, but {most} × {longest}")
+                yield FieldProblem(name, min(count, MAXIMUM_PHASES), Sentence(template, values))
 
 
-def _unknown(name: str) -> Message:
+def _unknown(name: str) -> Sentence:
     leaves = {s.path[-1].lower(): s.name for s in (*SYMBOLS, *PHASE_SYMBOLS)}
     names = {known.lower(): known for known in (*PHASE_BY_NAME, *BY_NAME, *PAGE_NAMES)}
     near = difflib.get_close_matches(name[:60].lower(), leaves | names, n=1, cutoff=0.4)
     if not near:
-        return Message(N_("%(name)s is not a parameter of this page"), {"name": name[:60]})
+        return Sentence(N_("{name} is not a parameter of this page"), {"name": name[:60]})
     values = {"name": name[:60], "near": (leaves | names)[near[0]]}
-    return Message(N_("%(name)s is not a parameter of this page; did you mean %(near)s?"), values)
+    return Sentence(N_("{name} is not a parameter of this page; did you mean {near}?"), values)
 
 
-def _list_problems(given: _Given) -> Iterable[Problem]:
+def _list_problems(given: _Given) -> Iterable[FieldProblem]:
     for name, texts in given.lists.items():
         for k, text in enumerate(texts):
-            if BY_NAME[name].kind != "text" and isinstance(message := read_value(text, "whole"), Message):
-                yield Problem(name, k, message)
+            if BY_NAME[name].kind != "text" and isinstance(message := read_value(text, "whole"), Sentence):
+                yield FieldProblem(name, k, message)
 
 
 def _untouched(given: _Given, rows: list[dict[str, str]]) -> bool:
@@ -287,31 +301,33 @@ def _filled(row: Mapping[str, str]) -> bool:
     return any(text.strip() for text in row.values())
 
 
-def _document(rows: Sequence[Mapping[str, str]], given: _Given) -> tuple[dict[str, Any], list[Problem]]:
+def _document(rows: Sequence[Mapping[str, str]], given: _Given) -> tuple[dict[str, Any], list[FieldProblem]]:
     """Nested input of the application model; what can't be read is left out and reported."""
-    problems: list[Problem] = []
+    problems: list[FieldProblem] = []
     phases: list[dict[str, Any]] = []
     for k, row in enumerate(rows):
         if _filled(row):
             phase: dict[str, Any] = {}
             phases.append(phase)
             for name, text in row.items():
-                _put(phase, PHASE_BY_NAME[name], text, Problem(name, k, Message("")), problems)
+                _put(phase, PHASE_BY_NAME[name], text, FieldProblem(name, k, Sentence("")), problems)
     document: dict[str, Any] = {"duty_cycle": {"phases": phases}}
     for name, texts in given.scalars.items():
-        _put(document, BY_NAME[name], texts[0], Problem(name, None, Message("")), problems)
+        _put(document, BY_NAME[name], texts[0], FieldProblem(name, None, Sentence("")), problems)
     for name, texts in given.lists.items():
-        values = [value for text in texts if not isinstance(value := read_value(text, BY_NAME[name].kind), Message)]
+        values = [value for text in texts if not isinstance(value := read_value(text, BY_NAME[name].kind), Sentence)]
         document.setdefault(BY_NAME[name].path[0], {})[BY_NAME[name].path[1]] = values or None
     return document, problems
 
 
-def _put(document: dict[str, Any], symbol: Symbol, text: str, place: Problem, problems: list[Problem]) -> None:
+def _put(
+    document: dict[str, Any], symbol: Symbol, text: str, place: FieldProblem, problems: list[FieldProblem]
+) -> None:
     if not text.strip():
         return
     value = read_value(text, symbol.kind)
-    if isinstance(value, Message):
-        problems.append(Problem(place.name, place.index, value))
+    if isinstance(value, Sentence):
+        problems.append(FieldProblem(place.name, place.index, value))
         return
     for step in symbol.path[:-1]:
         document = document.setdefault(step, {})
@@ -319,8 +335,8 @@ def _put(document: dict[str, Any], symbol: Symbol, text: str, place: Problem, pr
 
 
 def _validated(
-    document: dict[str, Any], rows: Sequence[Mapping[str, str]], known: Sequence[Problem]
-) -> tuple[Application | None, list[Problem]]:
+    document: dict[str, Any], rows: Sequence[Mapping[str, str]], known: Sequence[FieldProblem]
+) -> tuple[Application | None, list[FieldProblem]]:
     kept = [k for k, row in enumerate(rows) if _filled(row)] or [0]
     places = {(problem.name, problem.index) for problem in known}
     try:
@@ -336,7 +352,7 @@ def _validated(
         consequence = known and error["type"] in ("no_motion", "no_load")
         refused_phases = error["type"] == "too_short" and any(map(_filled, rows))
         if (name, index) not in places and not consequence and not refused_phases:
-            problems.append(Problem(name, index, _refusal(error)))
+            problems.append(FieldProblem(name, index, _refusal(error)))
     return None, problems
 
 
@@ -354,25 +370,25 @@ def place_of(location: Sequence[int | str], rows: Sequence[int] = ()) -> tuple[s
 
 
 _BOUNDS = {
-    "greater_than": (N_("must be above %(bound)s"), "gt"),
-    "greater_than_equal": (N_("must be at least %(bound)s"), "ge"),
-    "less_than": (N_("must be below %(bound)s"), "lt"),
-    "less_than_equal": (N_("must be at most %(bound)s"), "le"),
+    "greater_than": (N_("must be above {bound}"), "gt"),
+    "greater_than_equal": (N_("must be at least {bound}"), "ge"),
+    "less_than": (N_("must be below {bound}"), "lt"),
+    "less_than_equal": (N_("must be at most {bound}"), "le"),
 }
 
 
-def _refusal(error: Any) -> Message:
+def _refusal(error: Any) -> Sentence:
     """Text for one error of the model."""
     context = error.get("ctx", {})
     if error["type"] in _BOUNDS:
         template, key = _BOUNDS[error["type"]]
-        return Message(template, {"bound": Quantity(context[key], suffix_of(str(error["loc"][-1])) or "", 12)})
+        return Sentence(template, {"bound": Quantity(context[key], suffix_of(str(error["loc"][-1])) or "", 12)})
     if error["type"] == "no_load":
-        return Message(N_("give a radial or an axial load, here or in a phase"))
+        return Sentence(N_("give a radial or an axial load, here or in a phase"))
     if error["type"] in ("missing", "too_short"):
-        return Message(N_("is missing"))
+        return Sentence(N_("is missing"))
     if error["type"] == "too_long":
-        return Message(N_("takes at most %(bound)s values"), {"bound": str(context["max_length"])})
+        return Sentence(N_("takes at most {bound} values"), {"bound": str(context["max_length"])})
     if error["type"] == "literal_error":
-        return Message(N_("must be one of %(expected)s"), {"expected": context["expected"].replace("'", "")})
-    return Message(error["msg"])
+        return Sentence(N_("must be one of {expected}"), {"expected": context["expected"].replace("'", "")})
+    return Sentence("{text}", {"text": error["msg"]}, ("text",))

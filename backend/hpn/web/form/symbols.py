@@ -1,21 +1,67 @@
-"""The symbols of links and of the form, and the field of the application that each stands for."""
+"""The one table of inputs: symbol in links, place in the application, and how the form shows each.
 
-from dataclasses import dataclass
+Form, link writer and link reader are loops over it. What an input is called and its sign stand in `hpn.quantities`.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from typing import Literal
 
+from hpn.notices import AREAS
+from hpn.quantities import CANDIDATE, INPUTS, Named
 from hpn.units import suffix_of
+from hpn.wording import N_
 
 Kind = Literal["number", "whole", "text"]
 
 
 @dataclass(frozen=True, slots=True)
 class Symbol:
-    """A query name, and the field of the application that it stands for."""
+    """A query name, the field of the application that it stands for, and what the form says beside it.
+
+    `choices` are the codes of a text, the first being what counts where none is given. `offered` is a figure of the
+    gears whose values are offered while typing, or such values themselves.
+    """
 
     name: str
     path: tuple[str, ...]
     kind: Kind = "number"
     many: bool = False
+    choices: Mapping[str, str] = field(default_factory=dict)
+    placeholder: str = ""
+    hint: str = ""
+    offered: str | tuple[float, ...] = ()
+
+    @property
+    def place(self) -> str:
+        """Its place as `hpn.quantities` names it."""
+        return ".".join(self.path if len(self.path) > 1 or self.path[0] in INPUTS else ("phase", *self.path))
+
+    @property
+    def named(self) -> Named:
+        """Its name and its sign."""
+        return INPUTS[self.place]
+
+    @property
+    def unit(self) -> str:
+        """Suffix of its unit, blank for a pure number or a text."""
+        return suffix_of(self.path[-1]) or ""
+
+
+@dataclass(frozen=True, slots=True)
+class FormGroup:
+    """Inputs under one heading of the form, in its order; one that is folded opens where something is given in it."""
+
+    code: str
+    title: str
+    names: tuple[str, ...]
+    folded: bool = True
+    hint: str = ""
+
+    @property
+    def symbols(self) -> tuple["Symbol", ...]:
+        """Its inputs."""
+        return tuple(BY_NAME[name] for name in self.names)
 
 
 PHASE_SYMBOLS = (
@@ -33,34 +79,108 @@ SYMBOLS = (
     Symbol("Nk", ("emergency_stop", "count"), "whole"),
     Symbol("FR", ("output_load", "radial_N")),
     Symbol("FA", ("output_load", "axial_N")),
-    Symbol("fw", ("output_load", "load_coefficient")),
-    Symbol("Lb", ("output_load", "life_h")),
-    Symbol("Lbb", ("output_load", "life_basis"), "text"),
-    Symbol("bm", ("output_load", "model"), "text"),
+    Symbol(
+        "fw",
+        ("output_load", "load_coefficient"),
+        placeholder="1",
+        offered=(1, 1.2, 1.5),
+        hint=N_(
+            "1 to 1.2 without impact, 1.2 to 1.5 normal, 1.5 to 3 with impact: guidance of the maker’s other "
+            "handbooks, not of this one."
+        ),
+    ),
+    Symbol("Lb", ("output_load", "life_h"), placeholder="20000"),
+    Symbol(
+        "Lbb",
+        ("output_load", "life_basis"),
+        "text",
+        choices={"L50": N_("L50: half reach it"), "L10": N_("L10: nine of ten do")},
+    ),
+    Symbol(
+        "bm",
+        ("output_load", "model"),
+        "text",
+        choices={
+            "linear": N_("straight line (safe)"),
+            "iso281": N_("ISO 281"),
+            "digitised": N_("digitised graph"),
+        },
+        hint=N_(
+            "Straight line: between the two published limits, and inside every curve that the bearing theory allows. "
+            "ISO 281: the bearing standard’s factors, with more room where both loads act. Digitised graph: along "
+            "points of the printed graph that you supply."
+        ),
+    ),
     Symbol("i", ("requirements", "ratios"), "whole", many=True),
     Symbol("size", ("requirements", "sizes"), "text", many=True),
     Symbol("Lh", ("requirements", "life_h")),
-    Symbol("ta", ("requirements", "ambient_temperature_degC")),
-    Symbol("bl", ("requirements", "backlash_arcmin")),
-    Symbol("K3", ("requirements", "torsional_stiffness_Nm_per_rad")),
-    Symbol("m", ("requirements", "weight_kg")),
-    Symbol("L", ("requirements", "length_mm")),
-    Symbol("u", ("requirements", "utilisation")),
-    Symbol("eta", ("requirements", "efficiency")),
-    Symbol("aa", ("application_area",), "text"),
-    Symbol("rank", ("rank_by",), "text"),
+    Symbol("ta", ("requirements", "ambient_temperature_degC"), offered=(0, 25, 40)),
+    Symbol("bl", ("requirements", "backlash_arcmin"), offered="backlash_arcmin"),
+    Symbol("K3", ("requirements", "torsional_stiffness_Nm_per_rad"), offered="torsional_stiffness_Nm_per_rad"),
+    Symbol("m", ("requirements", "weight_kg"), offered="weight_kg"),
+    Symbol("L", ("requirements", "length_mm"), offered="length_max_mm"),
+    Symbol(
+        "u",
+        ("requirements", "utilisation"),
+        placeholder="1",
+        offered=(0.7, 0.8, 0.9, 1),
+        hint=N_("Your own reserve: 0.8 keeps every load at or below 80 % of its limit."),
+    ),
+    Symbol(
+        "eta",
+        ("requirements", "efficiency"),
+        placeholder="1",
+        hint=N_("Your assumption, between 0 and 1. Without one the motor side is loss-free, a lower bound."),
+    ),
+    Symbol(
+        "aa",
+        ("application_area",),
+        "text",
+        choices={"": N_("none"), **AREAS},
+        hint=N_("These need a risk assessment and the maker’s approval."),
+    ),
+    Symbol(
+        "rank",
+        ("rank_by",),
+        "text",
+        choices={
+            "weight": N_("lowest weight"),
+            "utilisation": N_("largest reserve"),
+            "length": N_("shortest length"),
+            "motor_torque": N_("lowest motor torque"),
+            "life": N_("longest life"),
+            "stiffness": N_("highest stiffness"),
+        },
+    ),
     Symbol("nm", ("requirements", "motor", "maximum_speed_rpm")),
     Symbol("Tm", ("requirements", "motor", "peak_torque_Nm")),
     Symbol("Tmn", ("requirements", "motor", "rated_torque_Nm")),
 )
 """Everything but the phases, in the order of a canonical link: one part of an application at a time."""
 
+GROUPS = (
+    FormGroup("stop", N_("Emergency stop"), ("Tk", "Nk"), folded=False),
+    FormGroup("wishes", N_("Wishes"), ("i", "size", "Lh", "rank"), folded=False, hint=N_("none chosen: any")),
+    FormGroup("limits", N_("Limits and surroundings"), ("u", "bl", "K3", "m", "L", "ta", "aa")),
+    FormGroup("motor", N_("Motor"), ("nm", "Tm", "Tmn", "eta")),
+    FormGroup(
+        "load",
+        N_("Load on the output shaft"),
+        ("FR", "FA", "fw", "Lb", "Lbb", "bm"),
+        hint=N_(
+            "Radial at the centre of the shaft, axial along its axis. A load elsewhere can’t be judged from the "
+            "published data."
+        ),
+    ),
+)
+"""The form below its duty cycle, which the pause belongs to."""
+
 PHASE_BY_NAME = {symbol.name: symbol for symbol in PHASE_SYMBOLS}
 PHASE_BY_LEAF = {symbol.path[0]: symbol for symbol in PHASE_SYMBOLS}
 BY_NAME = {symbol.name: symbol for symbol in SYMBOLS}
 BY_PATH = {symbol.path: symbol for symbol in SYMBOLS}
-UNITS = {
-    symbol.name: suffix_of(symbol.path[-1]) or ""
-    for symbol in (*PHASE_SYMBOLS, *SYMBOLS)
-    if symbol.kind != "text" and not symbol.many
+UNITS = {symbol.name: symbol.unit for symbol in (*PHASE_SYMBOLS, *SYMBOLS) if symbol.kind != "text" and not symbol.many}
+LABELS = {symbol.name: symbol.named.name for symbol in (*PHASE_SYMBOLS, *SYMBOLS)} | {
+    "gear": CANDIDATE["designation"].name
 }
+"""What a list of errors calls the fields of the form."""

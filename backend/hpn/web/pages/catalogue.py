@@ -12,9 +12,9 @@ from hpn.catalogue import Catalogue
 from hpn.drawings.envelope import HEIGHT, WIDTH, drawing
 from hpn.gear import Gear, canonical_designation, canonical_size
 from hpn.web.door.access import admit
-from hpn.web.pages.calculator import environment
-from hpn.web.pages.gear_figures import figures_of, is_supplied, neighbours, supplements_for
+from hpn.web.pages.gear_figures import figures_of, neighbours, supplements_for
 from hpn.web.pages.ordering import ordering_code
+from hpn.web.pages.templates import environment
 
 OWN_NAMES = ("output", "motor", "gear", "find")
 """Parameters of these pages; every other one belongs to the selection that the reader came from."""
@@ -48,7 +48,6 @@ def show_catalogue(request: Request) -> Response:
         ratios=[_filter(str(i), ratio == str(i), size=size, i="" if ratio == str(i) else i) for i in catalogue.ratios],
         filtered=bool(size or ratio),
         canonical=f"{str(request.base_url).rstrip('/')}/catalogue",
-        is_supplied=is_supplied,
     )
 
 

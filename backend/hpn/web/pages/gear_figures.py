@@ -5,62 +5,51 @@ from dataclasses import dataclass
 from hpn.catalogue import Catalogue
 from hpn.catalogue.tables import TABLES
 from hpn.gear import Gear
+from hpn.quantities import GEAR, Named
 from hpn.units import suffix_of
 from hpn.wording import N_
-
-SUPPLIED = "supplied by the user"
 
 
 @dataclass(frozen=True, slots=True)
 class Label:
-    """Fields of a figure (two for a range), what it is called, its symbol, and whether it is an upper limit."""
+    """Fields of a figure (two for a range, which has a name of its own), and whether it is an upper limit."""
 
     fields: tuple[str, ...]
-    name: str
-    letter: str = ""
-    index: str = ""
+    range: str = ""
     at_most: bool = False
+
+    @property
+    def named(self) -> Named:
+        """What it is called, and its symbol."""
+        return Named(self.range) if self.range else GEAR[self.fields[0]]
 
 
 GROUPS: tuple[tuple[str, tuple[Label, ...]], ...] = (
     (
         N_("Torque at the output"),
-        (
-            Label(("rated_torque_Nm",), N_("Rated torque"), "T", "N"),
-            Label(("repeated_peak_torque_Nm",), N_("Repeated peak torque"), "T", "R"),
-            Label(("momentary_peak_torque_Nm",), N_("Momentary peak torque"), "T", "M"),
-        ),
+        (Label(("rated_torque_Nm",)), Label(("repeated_peak_torque_Nm",)), Label(("momentary_peak_torque_Nm",))),
     ),
     (
         N_("Speed at the input, temperature"),
         (
-            Label(("maximum_input_speed_rpm",), N_("Maximum input speed"), "n", "in (max)"),
-            Label(("average_input_speed_rpm",), N_("Average input speed"), "n", "av (max)"),
+            Label(("maximum_input_speed_rpm",)),
+            Label(("average_input_speed_rpm",)),
             Label(("ambient_temperature_minimum_degC", "ambient_temperature_maximum_degC"), N_("Ambient temperature")),
         ),
     ),
     (
         N_("Accuracy and stiffness"),
         (
-            Label(("backlash_arcmin",), N_("Backlash"), at_most=True),
-            Label(("transmission_accuracy_arcmin",), N_("Transmission accuracy"), at_most=True),
-            Label(("torsional_stiffness_Nm_per_rad",), N_("Torsional stiffness"), "K", "3"),
+            Label(("backlash_arcmin",), at_most=True),
+            Label(("transmission_accuracy_arcmin",), at_most=True),
+            Label(("torsional_stiffness_Nm_per_rad",)),
         ),
     ),
     (
         N_("Size and weight"),
-        (
-            Label(("length_min_mm", "length_max_mm"), N_("Length, depending on the motor"), "L"),
-            Label(("weight_kg",), N_("Weight"), "m"),
-        ),
+        (Label(("length_min_mm", "length_max_mm"), N_("Length, depending on the motor")), Label(("weight_kg",))),
     ),
-    (
-        N_("Output bearing"),
-        (
-            Label(("dynamic_radial_load_N",), N_("Radial load without axial load"), "F", "R, dyn (max)"),
-            Label(("dynamic_axial_load_N",), N_("Axial load without radial load"), "F", "A, dyn (max)"),
-        ),
-    ),
+    (N_("Output bearing"), (Label(("dynamic_radial_load_N",)), Label(("dynamic_axial_load_N",)))),
 )
 """Figures of a gear as its page groups them; None is shown as not published."""
 
@@ -94,13 +83,8 @@ def _figure(gear: Gear, label: Label) -> Figure:
     values = [getattr(gear, name) for name in label.fields]
     known = tuple(dict.fromkeys(value for value in values if value is not None))
     source = next((gear.sources[name] for name in label.fields if name in gear.sources), "")
-    supplied = any(is_supplied(gear, name) for name in label.fields)
+    supplied = any(gear.is_supplied(name) for name in label.fields)
     return Figure(label, known, suffix_of(label.fields[0]) or "", source, supplied)
-
-
-def is_supplied(gear: Gear, field: str) -> bool:
-    """Whether a figure comes from the user's supplement."""
-    return gear.sources.get(field, "").startswith(SUPPLIED)
 
 
 def supplements_for(gear: Gear) -> list[SupplementFile]:

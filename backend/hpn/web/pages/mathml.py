@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterable
 from html import escape
-from typing import Any, Protocol
+from typing import Any
 
 from jinja2 import pass_context
 from jinja2.runtime import Context
@@ -11,7 +11,6 @@ from markupsafe import Markup
 from hpn.calculation import Comparison, Line
 from hpn.calculation.formula import (
     Constant,
-    Difference,
     Formula,
     Largest,
     Magnitude,
@@ -20,37 +19,26 @@ from hpn.calculation.formula import (
     Quotient,
     Root,
     Series,
+    Subtraction,
     Sum,
-    Symbol,
     Term,
+    Variable,
     value_of,
 )
-from hpn.web import reader as readers
+from hpn.reader import Reader
+from hpn.web.door.visit import current
 from hpn.wording import Quantity
 
 DIGITS = 9
 """Significant digits of a substituted number: enough to work out the next line by hand."""
 
 
-class Reader(Protocol):
-    """Who reads: numbers and units as they see them."""
-
-    def quantity(self, quantity: Quantity) -> str:
-        """A number with its unit."""
-        ...
-
-    def unit(self, unit: str) -> str:
-        """Symbol of a unit."""
-        ...
+def number(reader: Reader, value: float, unit: str) -> str:
+    """A value as its reader sees it, without its unit."""
+    return reader.number(Quantity(value, unit, DIGITS))
 
 
-def number(reader: Reader, value: float, unit: str, digits: int = DIGITS) -> tuple[str, str]:
-    """A value as its reader sees it, number and unit apart."""
-    symbol = reader.unit(unit) if unit else ""
-    return reader.quantity(Quantity(value, unit, digits)).removesuffix(symbol).strip(), symbol
-
-
-Part = tuple[Formula | Symbol, bool] | str
+Part = tuple[Formula | Variable, bool] | str
 """A formula and whether its numbers are substituted, or the relation between two of them."""
 
 
@@ -92,7 +80,7 @@ def compared(reader: Reader, comparison: Comparison) -> Markup:
             parts += [(name, False), "="]
         return mathml(reader, *parts, (limit, True))
     named = Term(comparison.limit_names[-1], 0.0) if comparison.limit_names else limit
-    reserve = Term(Symbol("u"), u)
+    reserve = Term(Variable("u"), u)
     for numbers, factor in ((False, named), (True, limit)):
         reserved = Product((reserve, factor)) if comparison.relation == "≤" else Quotient(factor, reserve)
         parts += [(reserved, numbers), "="]
@@ -109,10 +97,10 @@ class _Writer:
     def __init__(self, reader: Reader, numbers: bool) -> None:
         self.reader, self.numbers = reader, numbers
 
-    def write(self, formula: Formula | Symbol) -> str:
+    def write(self, formula: Formula | Variable) -> str:
         """One formula, as one element."""
         match formula:
-            case Symbol():
+            case Variable():
                 return self.symbol(formula)
             case Term():
                 return self.number(formula.value, formula.unit) if self.numbers else self.symbol(formula.symbol)
@@ -122,7 +110,7 @@ class _Writer:
                 return self.row("+", map(self.write, terms))
             case Series():
                 return self.row("+", self.terms(formula))
-            case Difference(left, right):
+            case Subtraction(left, right):
                 return self.row("−", (self.write(left), self.write(right)))
             case Product(factors):
                 return self.row("·", map(self.factor, factors))
@@ -158,7 +146,9 @@ class _Writer:
 
     def factor(self, formula: Formula) -> str:
         """A factor of a product, in brackets where it is a sum."""
-        return self.fenced("(", formula, ")") if isinstance(formula, Sum | Difference | Series) else self.write(formula)
+        return (
+            self.fenced("(", formula, ")") if isinstance(formula, Sum | Subtraction | Series) else self.write(formula)
+        )
 
     def base(self, formula: Formula) -> str:
         """A base of a power, in brackets unless it is a symbol or a number without unit."""
@@ -176,7 +166,7 @@ class _Writer:
 
     dots = "<mo>…</mo>"
 
-    def symbol(self, symbol: Symbol) -> str:
+    def symbol(self, symbol: Variable) -> str:
         """A letter with its index."""
         if not symbol.index:
             return f"<mi>{escape(symbol.letter)}</mi>"
@@ -185,10 +175,10 @@ class _Writer:
 
     def number(self, value: float, unit: str) -> str:
         """A number with its unit."""
-        text, symbol = number(self.reader, value, unit)
-        if not symbol:
-            return f"<mn>{escape(text)}</mn>"
-        return f'<mrow><mn>{escape(text)}</mn><mtext class="unit">\u202f{escape(symbol)}</mtext></mrow>'
+        text = f"<mn>{escape(number(self.reader, value, unit))}</mn>"
+        if not unit:
+            return text
+        return f'<mrow>{text}<mtext class="unit">\u202f{escape(self.reader.unit(unit))}</mtext></mrow>'
 
 
 class _Liner(_Writer):
@@ -223,18 +213,19 @@ class _Liner(_Writer):
         """A function of some arguments."""
         return f"{name}({'; '.join(arguments)})"
 
-    def symbol(self, symbol: Symbol) -> str:
+    def symbol(self, symbol: Variable) -> str:
         """A letter with its index."""
         return f"{symbol.letter}_{symbol.index}" if symbol.index else symbol.letter
 
     def number(self, value: float, unit: str) -> str:
         """A number with its unit."""
-        return " ".join(filter(None, number(self.reader, value, unit)))
+        text = number(self.reader, value, unit)
+        return f"{text} {self.reader.unit(unit)}" if unit else text
 
 
 def _for_reader(write: Callable[[Reader, Any], Markup]) -> Callable[..., Markup]:
     def filtered(_: Context, argument: Any) -> Markup:
-        return write(readers.current(), argument)
+        return write(current(), argument)
 
     return pass_context(filtered)
 

@@ -25,7 +25,7 @@ from hpn.web.form.read import Pairs
 from hpn.web.form.symbols import PHASE_SYMBOLS
 from hpn.web.form.write import to_link
 from hpn.web.pages import long_cycles
-from hpn.web.pages.calculator import environment
+from hpn.web.pages.templates import environment
 from hpn.wording import N_, Sentence
 
 FIRST_ROWS, LAST_ROWS = 6, 2
@@ -40,7 +40,7 @@ _PHASE_NAMES = {symbol.name for symbol in PHASE_SYMBOLS}
 
 
 @dataclass(frozen=True, slots=True)
-class Row:
+class TableRow:
     """A row of a preview: its number, its cells, and for each whether another reading says otherwise."""
 
     number: int
@@ -48,7 +48,7 @@ class Row:
 
 
 @dataclass(frozen=True, slots=True)
-class Preview:
+class TablePreview:
     """One reading of a table as the page shows it."""
 
     index: int
@@ -56,18 +56,18 @@ class Preview:
     decimal: str
     columns: tuple[str, ...]
     count: int
-    first: tuple[Row, ...]
-    last: tuple[Row, ...]
+    first: tuple[TableRow, ...]
+    last: tuple[TableRow, ...]
     total_s: float | None
 
 
 @dataclass(frozen=True, slots=True)
-class Draft:
+class PasteDraft:
     """State of the page: the form that it came from, the text, and what can be made of it."""
 
     link: str
     text: str = ""
-    previews: tuple[Preview, ...] = ()
+    previews: tuple[TablePreview, ...] = ()
     application: Application | None = None
     problems: tuple[Sentence, ...] = ()
     has_phases: bool = False
@@ -84,7 +84,7 @@ async def paste(request: Request) -> Response:
         fields = await read_fields(request)
     except Problem as problem:
         text = Sentence(NO_TEXT) if problem.detail == NO_TEXT else _plain(problem.detail)
-        return _render(request, Draft("", problems=(text,)), problem.status_code)
+        return _render(request, PasteDraft("", problems=(text,)), problem.status_code)
     return await run_in_threadpool(_answer, request, fields)
 
 
@@ -105,10 +105,10 @@ def _answer(request: Request, fields: dict[str, str]) -> Response:
     return _render(request, draft, 422 if draft.problems else 200)
 
 
-def _opened(link: str, text: str) -> Draft:
+def _opened(link: str, text: str) -> PasteDraft:
     """Draft of a text that begins like an object of JSON."""
     try:
-        return Draft(link, text, application=Application.model_validate_json(text))
+        return PasteDraft(link, text, application=Application.model_validate_json(text))
     except ValidationError as error:
         found = error.errors(include_url=False, include_context=False, include_input=False)
         problems = [
@@ -118,12 +118,12 @@ def _opened(link: str, text: str) -> Draft:
             )
             for entry in found[:20]
         ]
-        return Draft(link, text, problems=tuple(problems))
+        return PasteDraft(link, text, problems=tuple(problems))
 
 
-def _draft(link: str, text: str = "", pasted: Pasted = NOTHING) -> Draft:
+def _draft(link: str, text: str = "", pasted: Pasted = NOTHING) -> PasteDraft:
     """Draft of a table, or of nothing yet."""
-    return Draft(
+    return PasteDraft(
         link,
         text,
         previews=tuple(_preview(pasted, index) for index in range(len(pasted.readings))),
@@ -132,17 +132,17 @@ def _draft(link: str, text: str = "", pasted: Pasted = NOTHING) -> Draft:
     )
 
 
-def _preview(pasted: Pasted, index: int) -> Preview:
+def _preview(pasted: Pasted, index: int) -> TablePreview:
     reading = pasted.readings[index]
     others = [other for other in pasted.readings if other.columns == reading.columns and other is not reading]
     count = len(reading.rows)
     shown = count <= FIRST_ROWS + LAST_ROWS + 1
     total_s = sum(float(row[reading.columns.index("t")] or 0) for row in reading.rows)
 
-    def rows(numbers: Sequence[int]) -> tuple[Row, ...]:
-        return tuple(Row(k + 1, _marked(reading.rows[k], [other.rows[k] for other in others])) for k in numbers)
+    def rows(numbers: Sequence[int]) -> tuple[TableRow, ...]:
+        return tuple(TableRow(k + 1, _marked(reading.rows[k], [other.rows[k] for other in others])) for k in numbers)
 
-    return Preview(
+    return TablePreview(
         index=index,
         separator=SEPARATORS[reading.separator],
         decimal=DECIMALS[reading.decimal],
@@ -182,7 +182,7 @@ def _plain(text: str) -> Sentence:
     return Sentence("{text}", {"text": text})
 
 
-def _render(request: Request, draft: Draft, status: int) -> Response:
+def _render(request: Request, draft: PasteDraft, status: int) -> Response:
     name = "_paste_preview.html" if "hx-request" in request.headers else "paste.html"
     template = environment(request.app.state).get_template(name)
     content = template.render(draft=draft, column_units=COLUMN_UNITS)

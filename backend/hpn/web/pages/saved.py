@@ -2,7 +2,7 @@
 
 import hashlib
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 from urllib.parse import parse_qsl
@@ -16,57 +16,35 @@ from starlette.responses import HTMLResponse, RedirectResponse, Response
 
 from hpn import ENGINE_VERSION
 from hpn.application import Application, InputError
-from hpn.candidates import foremost
 from hpn.catalogue import Catalogue
 from hpn.differences import Difference
-from hpn.report.inputs import LOADS, REQUIREMENTS, WORDS
-from hpn.store import SavedSelection, StoreUnavailableError
+from hpn.quantities import CANDIDATE, CHECK, DUTY, RESERVE, VERDICTS
+from hpn.report.inputs import LOADS, REQUIREMENTS, given
+from hpn.selection import Selection, reason_of
+from hpn.store import StoreUnavailableError
 from hpn.units import symbol_of
-from hpn.web.api.selection_schemas import Labels
-from hpn.web.api.selections import RETRY_SECONDS, Today, found, save, url_of
+from hpn.web.archive import RETRY_SECONDS, Labels, Reopened, found, save, url_of
 from hpn.web.door.access import admit
 from hpn.web.door.bodies import read_form
 from hpn.web.door.problems import Problem
 from hpn.web.door.requests import require_same_origin
+from hpn.web.door.visit import current
 from hpn.web.form import read as links
-from hpn.web.form.messages import N_
-from hpn.web.pages.calculator import environment
 from hpn.web.pages.gear_figures import Figure, figures_of
 from hpn.web.pages.long_cycles import expanded
-from hpn.web.reader import current
+from hpn.web.pages.result import Result, lighter_miss, remedies_of
+from hpn.web.pages.templates import environment
+from hpn.wording import N_
 
 DIFFERENCES_ON_PAGE = 100
 ONCE = re.compile(r"[A-Za-z0-9_-]{22}")
 
-FIELDS = {
-    "selected": N_("selected gear"),
-    "status": N_("verdict"),
-    "governing_check": N_("deciding check"),
-    "rank": N_("rank"),
-    "reason": N_("reason"),
-    "utilisation": N_("utilisation"),
-    "demand": N_("demand"),
-    "limit": N_("limit"),
-    "text": N_("notice"),
-    "life_L10_h": N_("gear life L10"),
-    "momentary_peak_count": N_("allowed emergency stops"),
-    "average_torque_Nm": N_("average torque"),
-    "maximum_torque_Nm": N_("maximum torque"),
-    "average_output_speed_rpm": N_("average output speed"),
-    "maximum_output_speed_rpm": N_("maximum output speed"),
-    "average_input_speed_rpm": N_("average input speed"),
-    "maximum_input_speed_rpm": N_("maximum input speed"),
+NAMES: Mapping[str, str] = {
+    "selected": N_("Selected gear"),
+    "text": N_("Notice"),
+    **{field: named.name for table in (DUTY, RESERVE, CHECK, CANDIDATE) for field, named in table.items()},
 }
 """Fields of a reply in words; any other stands with its own name."""
-
-VERDICTS = {
-    "suitable": N_("suitable"),
-    "unsuitable": N_("not suitable"),
-    "unrated": N_("not rated"),
-    "pass": N_("passes"),
-    "fail": N_("fails"),
-    "not_rated": N_("not rated"),
-}
 
 EXPORTS = (
     ("report.pdf", N_("PDF report")),
@@ -77,16 +55,15 @@ EXPORTS = (
 
 async def show_selection(request: Request) -> Response:
     """The selection as it was saved, and beside it what today's engine and catalogue say differently."""
-    id = request.path_params["id"]
     try:
-        saved, today = await found(request.app.state, id)
+        reopened = await found(request.app.state, request.path_params["id"])
     except (Problem, StoreUnavailableError) as error:
         return _refused(request, error)
-    return await run_in_threadpool(_shown, request, saved, today)
+    return await run_in_threadpool(_shown, request, reopened)
 
 
-def _shown(request: Request, saved: SavedSelection, today: Today) -> Response:
-    page = _page(saved, today, request.query_params.get("gear", ""), request.app.state.catalogue)
+def _shown(request: Request, reopened: Reopened) -> Response:
+    page = _page(reopened, request.query_params.get("gear", ""), request.app.state.catalogue)
     return _render(request, "selection.html", 200, **page)
 
 
@@ -134,7 +111,7 @@ def _refused(
     if error.status_code == 410 and fields:
         fields = {**fields, "once": ""}  # whoever saves it again means to
     shown = {
-        "detail": error.detail,
+        "problem": error,
         "errors": {location[0]: text for location, text in error.errors if location},
         "fields": fields,
         "answer": {"link": f"/?{query}"},
@@ -153,7 +130,7 @@ def _render(request: Request, template: str, status: int, **context: Any) -> HTM
 
 
 @dataclass(frozen=True, slots=True)
-class Line:
+class ChangedField:
     """One difference, ready to read."""
 
     candidate: str | None
@@ -165,29 +142,37 @@ class Line:
     today: str
 
 
-def _page(saved: SavedSelection, today: Today, designation: str, catalogue: Catalogue) -> dict[str, Any]:
-    reply = orjson.loads(saved.result)
-    candidates = reply["candidates"]
-    chosen = next((entry for entry in candidates if entry["designation"] == designation), foremost(candidates))
-    try:
-        application = Application.model_validate_json(saved.application)
-    except ValidationError:  # saved by a version with other inputs; they are shown as they were written
-        application = None
+def _page(reopened: Reopened, designation: str, catalogue: Catalogue) -> dict[str, Any]:
+    answer = _result(reopened, designation)
+    application = reopened.application
     return {
-        "saved": saved,
-        "reply": reply,
-        "chosen": chosen,
-        "today": today,
-        "lines": [_line(difference, reply) for difference in today.differences[:DIFFERENCES_ON_PAGE]],
+        "reopened": reopened,
+        "answer": answer,
+        "lines": [_line(difference, reopened) for difference in reopened.differences[:DIFFERENCES_ON_PAGE]],
         "catalogue_version": catalogue.version,
-        "published": _published(today.then, catalogue, chosen["designation"]),
-        "changed_gears": sorted({difference.candidate for difference in today.figures or ()}, key=_number),
+        "published": _published(reopened.then, catalogue, answer.chosen.designation),
+        "changed_gears": sorted({difference.candidate for difference in reopened.figures or ()}, key=_number),
         "engine_version": ENGINE_VERSION,
-        "application": application,
-        "document": saved.application.decode(),
-        "inputs": [] if application is None else list(_inputs(application)),
+        "document": reopened.saved.application.decode(),
+        "inputs": list(given(application, (*LOADS, *REQUIREMENTS), current())) if application else [],
         "exports": EXPORTS,
     }
+
+
+def _result(reopened: Reopened, designation: str) -> Result:
+    selection, then, application = reopened.selection, reopened.then, reopened.application
+    chosen, gears = selection.candidate(designation), then.by_designation if then else {}
+    u = application.requirements.utilisation if application else 1.0
+    return Result(
+        selection=selection,
+        application=application,
+        chosen=chosen or selection.foremost,
+        asked=chosen is not None,
+        catalogue=then,
+        remedies=remedies_of(selection.candidates, gears, u),
+        lighter=lighter_miss(selection, gears),
+        choosing=f"{url_of(reopened.saved.id)}?gear=",
+    )
 
 
 def _published(then: Catalogue | None, today: Catalogue, designation: str) -> list[tuple[Figure, Figure | None]]:
@@ -207,45 +192,52 @@ def _number(designation: str) -> list[int]:
     return [int(digits) for digits in re.findall(r"\d+", designation)]
 
 
-def _inputs(application: Application) -> Iterable[tuple[str, str, bool]]:
-    """Label, value with unit, and whether the value is a text to translate, of every input that is given."""
-    for entry in (*LOADS, *REQUIREMENTS):
-        value = entry.value(application)
-        if isinstance(value, tuple):
-            yield entry.label, ", ".join(str(item) for item in value), False
-        elif isinstance(value, str):
-            yield entry.label, WORDS[value], True
-        elif value is not None:
-            yield entry.label, f"{current().exact(value, entry.unit)} {current().unit(entry.unit)}".rstrip(), False
-
-
-def _line(difference: Difference, reply: Mapping[str, Any]) -> Line:
-    definitions = reply["check_definitions"]
-    definition = definitions.get(difference.check, {})
-    own = difference.field in ("demand", "limit")
-    titles = {code: entry["title"] for code, entry in definitions.items()}
-    unit = definition.get("unit", "") if own else symbol_of(difference.field)
-    saved, today = _texts(difference.saved, difference.today, unit)
-    return Line(
+def _line(difference: Difference, reopened: Reopened) -> ChangedField:
+    definitions = reopened.selection.check_definitions
+    titles = {code: definition.title for code, definition in definitions.items()}
+    own = difference.check in definitions and difference.field in ("demand", "limit")
+    unit = definitions[difference.check or ""].unit if own else symbol_of(difference.field)
+    if _is_number(difference.saved) and _is_number(difference.today):
+        saved, today = _told_apart(difference.saved, difference.today, unit)
+    else:
+        saved = _text(difference.saved, difference, reopened.selection, reopened, unit)
+        today = _text(difference.today, difference, reopened.today, reopened, unit)
+    return ChangedField(
         candidate=difference.candidate,
-        check=titles.get(difference.check, difference.check),
-        field=FIELDS.get(difference.field, difference.field),
+        check=titles.get(difference.check or "", difference.check or ""),
+        field=NAMES.get(difference.field, difference.field),
         unit=unit,
         verdict=difference.kind == "verdict",
-        saved=(VERDICTS | titles).get(saved, saved),
-        today=(VERDICTS | titles).get(today, today),
+        saved=saved,
+        today=today,
     )
 
 
-def _texts(saved: Any, today: Any, unit: str) -> tuple[str, str]:
-    """Two values for reading, with as many digits as it takes to tell numbers apart."""
+def _text(value: Any, difference: Difference, selection: Selection | None, reopened: Reopened, unit: str) -> str:
+    """A value of a difference in the reader's language; what its version kept no values of, as it was written."""
     reader = current()
-    before, after = (reader.figure(value, unit) if _is_number(value) else str(value or "–") for value in (saved, today))
-    if before == after and _is_number(saved) and _is_number(today):
+    if value is None or selection is None:
+        return "–"
+    if _is_number(value):
+        return reader.figure(value, unit)
+    candidate = selection.candidate(difference.candidate or "")
+    if difference.field == "reason" and candidate is not None and reopened.application is not None:
+        return reader.told(reason_of(candidate, reopened.application.requirements.utilisation))
+    if notice := next((notice for notice in selection.notices if notice.text == value), None):
+        return reader.told(notice.sentence)
+    definition = selection.check_definitions.get(value)
+    return reader.text(definition.title if definition else VERDICTS.get(value, str(value)))
+
+
+def _told_apart(saved: float, today: float, unit: str) -> tuple[str, str]:
+    """Two numbers for reading, with as many digits as it takes to tell them apart."""
+    reader = current()
+    before, after = reader.figure(saved, unit), reader.figure(today, unit)
+    if before == after:
         measure = reader.measure(unit)
         pairs = ((measure.written(saved, digits), measure.written(today, digits)) for digits in range(3, 18))
-        first, second = next((pair for pair in pairs if len(set(pair)) == 2), (before, after))
-        return reader.localised(first), reader.localised(second)
+        first, second = next((pair for pair in pairs if len(set(pair)) == 2), ("", ""))
+        return (reader.written(first), reader.written(second)) if first else (before, after)
     return before, after
 
 

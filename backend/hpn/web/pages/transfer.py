@@ -43,7 +43,7 @@ def _read(query: str) -> tuple[Application, Decimal]:
         raise Problem(422, "decimal is a point or a comma", [(("decimal",), "must be . or ,")])
     form = read_query(urlencode([pair for pair in pairs if pair[0] != "decimal"]).encode())
     if form.application is None:
-        errors = [((problem.name,), str(problem.message)) for problem in form.problems]
+        errors = [((problem.name,), problem.message.text) for problem in form.problems]
         raise Problem(422, "; ".join(f"{name}: {text}" for (name,), text in errors) or "no phase is given", errors)
     return form.application, cast(Decimal, decimal)
 

@@ -1,0 +1,42 @@
+"""Round numbers along an axis, ranges of axes, and steps of cycles that are too long to draw each."""
+
+import math
+import sys
+from collections.abc import Iterable, Sequence
+
+WIDENED = (1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0)
+"""Axes widen by these factors where a value lies outside, so that a plot doesn't jump while somebody types."""
+
+
+def round_numbers(low: float, high: float, spaces: int) -> list[float]:
+    """Multiples of 1, 2 or 5 times a power of ten from `low` to `high`, at most so many spaces between them.
+
+    None where the range is too small for floating point to tell them apart.
+    """
+    if not high - low > sys.float_info.min:
+        return []
+    step = _round_step((high - low) / spaces)
+    return [k * step for k in range(math.ceil(low / step - 1e-9), math.floor(high / step + 1e-9) + 1)]
+
+
+def _round_step(rough: float) -> float:
+    """Smallest round step that is not below a rough one."""
+    scale = 10.0 ** math.floor(math.log10(rough))
+    return scale * next(factor for factor in (1, 2, 5, 10) if factor >= rough / scale - 1e-9)
+
+
+def widened(limit: float, values: Iterable[float]) -> float:
+    """The limit times the smallest of WIDENED that holds all values; beyond the last just what holds them."""
+    largest = max(values, default=0.0)
+    return next((limit * step for step in WIDENED if largest <= limit * step), largest)
+
+
+def slices(edges: Sequence[float], values: Sequence[float]) -> dict[int, tuple[float, float]]:
+    """Least and largest value in each slice of width 1; value k holds from edge k to the next, 0 or more."""
+    found: dict[int, tuple[float, float]] = {}
+    for k, value in enumerate(values):
+        first = int(edges[k])
+        for place in range(first, max(math.ceil(edges[k + 1]), first + 1)):
+            low, high = found.get(place, (value, value))
+            found[place] = min(low, value), max(high, value)
+    return found

@@ -1,0 +1,56 @@
+"""The catalogue over REST: every gear, one gear, and the envelopes of a size's output bearing."""
+
+import dataclasses
+from typing import Annotated
+
+from fastapi import APIRouter, Query
+from starlette.requests import Request
+from starlette.responses import Response
+
+from hpn.catalogue import Catalogue
+from hpn.envelopes import EnvelopeQuery, life_envelopes
+from hpn.source import supplied_source
+from hpn.web.api import schemas
+from hpn.web.api.replies import CatalogueReply, EnvelopeReply, JSONBytes, json_response
+from hpn.web.door.access import admit
+from hpn.web.door.problems import Problem
+
+router = APIRouter(prefix="/api/v1", dependencies=[admit("calculator")], default_response_class=JSONBytes)
+
+
+@router.get("/catalogue", summary="Every gear", responses=schemas.answers("CatalogueReply", 406))
+async def catalogue(request: Request) -> Response:
+    """Every gear of the series with every published figure and its source; null where not published."""
+    book: Catalogue = request.app.state.catalogue
+    return json_response(CatalogueReply(book.version, book.gears, book.series))
+
+
+@router.get("/catalogue/{designation}", summary="One gear", responses=schemas.answers(schemas.ONE_GEAR, 404))
+async def gear(request: Request, designation: str) -> Response:
+    """One gear, by its designation in any of the printed spellings: by itself, and as the list has it."""
+    book: Catalogue = request.app.state.catalogue
+    found = book.find(designation)
+    if found is None:
+        raise Problem(404, f"the catalogue has no gear {designation[:60]!r}; a designation is written like HPN-20A-5")
+    fields = {field.name: getattr(found, field.name) for field in dataclasses.fields(found)}
+    return json_response({"catalogue_version": book.version, **fields, "gears": [found]})
+
+
+@router.get(
+    "/bearing-envelopes/{size}",
+    summary="Life envelopes of a size's output bearing",
+    responses=schemas.answers("EnvelopeReply", 404, 422),
+)
+async def bearing_envelopes(request: Request, size: str, query: Annotated[EnvelopeQuery, Query()]) -> Response:
+    """What a constant load may be at this speed and life: one curve per load coefficient, from axial to radial axis."""
+    book: Catalogue = request.app.state.catalogue
+    gear = book.find_size(size)
+    if gear is None:
+        raise Problem(404, f"the catalogue has no size {size[:60]!r}; there are {', '.join(book.sizes)}")
+    curves = life_envelopes(book, gear, query)
+    sources = (
+        {"curve": supplied_source("points of bearing_envelopes.csv")}
+        if query.model == "digitised"
+        else {name: gear.sources[name] for name in ("dynamic_radial_load_N", "dynamic_axial_load_N")}
+    )
+    return json_response(EnvelopeReply(gear.size, query.model, curves, sources))

@@ -1,0 +1,208 @@
+"""What people type: numbers in their own units and with their decimal mark, turned into the wire's and back.
+
+A form that shows something else than the wire's units in plain notation says so in its field `written`. Nothing is lost
+on the way: a number that is shown shorter than it is stands in the field `was`, and counts as long as nobody edits it.
+"""
+
+import re
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
+from math import isfinite
+from typing import NamedTuple
+
+from hpn.reader import Reader
+from hpn.units import NUMBER, SYMBOLS
+from hpn.web.form.symbols import Kind
+from hpn.wording import N_, Sentence
+
+WRITTEN, WAS = "written", "was"
+"""Fields that say how the others are written, and which exact numbers stand behind them."""
+
+DIGITS = 5
+"""Digits that a number from elsewhere is shown with in another unit."""
+
+_GROUPED = re.compile(r"[+-]?[1-9][0-9]{0,2}(\.[0-9]{3})+")
+_LONGEST = 60
+"""Characters of a text or a number."""
+
+Units = Mapping[str, str]
+"""Names of the fields that take numbers -> the suffix of their unit, blank for a pure number."""
+
+
+class Entry(str):
+    """A number in the wire's notation, with what stands in its field, and why it can't be read if it can't."""
+
+    shown: str
+    refusal: Sentence | None
+
+    def __new__(cls, wire: str, shown: str, refusal: Sentence | None = None) -> "Entry":
+        """A text that behaves as `wire`."""
+        entry = super().__new__(cls, wire)
+        entry.shown, entry.refusal = shown, refusal
+        return entry
+
+
+class Shown(NamedTuple):
+    """Texts for the fields, by the texts of the wire that were asked for, and the field `was`."""
+
+    texts: list[str]
+    was: str
+
+
+def to_wire(pairs: Sequence[tuple[str, str]], units: Units) -> tuple[list[tuple[str, str]], str]:
+    """Pairs of a form in the wire's units and notation, and the marker of what they were written in."""
+    given = dict(reversed(pairs))
+    reader = Reader.of_marker(given.get(WRITTEN, ""))
+    plain = [(name, text) for name, text in pairs if name not in (WRITTEN, WAS)]
+    if not reader.marker:
+        return plain, ""
+    known = _Known(reader, given.get(WAS, ""))
+    return [(name, known.entry(text, units[name]) if name in units else text) for name, text in plain], reader.marker
+
+
+class _Known:
+    """Numbers that a form was rendered from, and reading of what its reader writes."""
+
+    def __init__(self, reader: Reader, was: str) -> None:
+        self.reader = reader
+        self.was: dict[tuple[str, str], float] = {}
+        for token in was.split():
+            unit, _, text = token.partition(":")
+            if unit in SYMBOLS and len(text) <= _LONGEST and NUMBER.fullmatch(text) and isfinite(float(text)):
+                self.was[unit, reader.measure(unit).written(float(text), DIGITS)] = float(text)
+
+    def entry(self, text: str, unit: str) -> str:
+        """A text of a field as an entry; what is no number stays as it is."""
+        plain = read_decimal(text, self.reader.decimal)
+        if isinstance(plain, Sentence):
+            return Entry(f"{text}?", text, plain)
+        if plain is None:
+            return text
+        measure = self.reader.measure(unit)
+        if measure.same:
+            return Entry(plain, text)
+        value = self.was.get((unit, plain), measure.wire(plain))
+        return Entry(_plain(value) if isfinite(value) else plain, text)
+
+
+def read_decimal(text: str, decimal: str) -> str | Sentence | None:
+    """A number in plain notation; None where it is none, a message where it could be two."""
+    plain = text.strip().replace("\N{MINUS SIGN}", "-")
+    if len(plain) > _LONGEST:
+        return None
+    if decimal == ",":
+        if _GROUPED.fullmatch(plain) and plain.count(".") == 1:
+            values = {"first": plain.replace(".", ","), "second": plain.replace(".", "")}
+            return Sentence(N_("write {first} or {second}"), values)
+        plain = _with_point(plain)
+    return plain if NUMBER.fullmatch(plain) else None
+
+
+def _with_point(text: str) -> str:
+    """A text with a decimal comma, perhaps with points between thousands, in plain notation."""
+    if text.count(",") == 1:
+        whole, _, fraction = text.partition(",")
+        return f"{whole.replace('.', '') if _GROUPED.fullmatch(whole) else whole}.{fraction}"
+    return text.replace(".", "") if _GROUPED.fullmatch(text) else text
+
+
+def to_fields(entries: Iterable[tuple[str, str]], reader: Reader, written: str) -> Shown:
+    """Texts of the wire, with their units, as the reader's form shows them; `written` marks how they came in.
+
+    What the reader has typed stands there as typed. What comes from elsewhere is shown to five digits in another unit,
+    or to all where two numbers would look alike, and is remembered where that is not all of it.
+    """
+    listed = [_Field(text, unit, reader, own=reader.marker == written) for text, unit in entries]
+    alike = Counter(short for short, _ in {(field.short, field.value) for field in listed if field.value is not None})
+    texts, was = [], []
+    for field in listed:
+        texts.append(field.text if alike[field.short] < 2 else field.exact)
+        if field.value is not None and field.read(texts[-1]) != field.value:
+            was.append(f"{field.unit}:{_plain(field.value)}")
+    return Shown(texts, " ".join(dict.fromkeys(was)))
+
+
+class _Field:
+    """A text of the wire, and how its field shows it; `value` is None where it shows the wire's own unit."""
+
+    def __init__(self, wire: str, unit: str, reader: Reader, *, own: bool) -> None:
+        self.unit, self.reader, self.measure = unit, reader, reader.measure(unit)
+        plain = wire.strip().replace("\N{MINUS SIGN}", "-")
+        number = bool(NUMBER.fullmatch(plain))
+        self.value = float(plain) if number and not self.measure.same and isfinite(float(plain)) else None
+        self.short = "" if self.value is None else self.measure.written(self.value, DIGITS), unit
+        self.typed = wire.shown if isinstance(wire, Entry) and (own or wire.refusal) else None
+        self.wire = self._marked(wire) if number else wire
+
+    @property
+    def text(self) -> str:
+        """As typed, else short."""
+        if self.typed is not None:
+            return self.typed
+        return self.wire if self.value is None else self._marked(self.short[0])
+
+    @property
+    def exact(self) -> str:
+        """As typed, else with every digit."""
+        if self.typed is not None:
+            return self.typed
+        return self.wire if self.value is None else self._marked(self.measure.shortest(self.value))
+
+    def read(self, text: str) -> float | None:
+        """Number of the wire that a text would be read as, without memory."""
+        plain = read_decimal(text, self.reader.decimal)
+        return self.measure.wire(plain) if isinstance(plain, str) else None
+
+    def _marked(self, number: str) -> str:
+        return number.replace(".", self.reader.decimal)
+
+
+def _plain(value: float) -> str:
+    return repr(value).removesuffix(".0").replace("e+", "e").replace("e-0", "e-")
+
+
+# --- Values -----------------------------------------------------------------------------------------------------------
+
+_ANY_NUMBER = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?")
+_COMMAS = re.compile(r"[+-]?[0-9]{1,3}(,[0-9]{3})+(?![0-9,])")
+
+
+def read_value(text: str, kind: Kind) -> float | int | str | Sentence:
+    """Value that a text stands for, or what to write instead."""
+    if isinstance(text, Entry) and text.refusal:
+        return text.refusal
+    text = text.strip()
+    if kind == "text":
+        return text if len(text) <= _LONGEST else Sentence(N_("is too long"))
+    plain = text.replace("\N{MINUS SIGN}", "-")
+    if len(plain) > _LONGEST or not _ANY_NUMBER.fullmatch(plain):
+        return _not_a_number(plain)
+    value = float(plain)
+    if value in (float("inf"), float("-inf")):
+        return Sentence(N_("is too large"))
+    if kind == "number":
+        return value
+    return int(value) if value.is_integer() else Sentence(N_("must be a whole number"))
+
+
+def _not_a_number(text: str) -> Sentence:
+    """What to write instead, where it can be told."""
+    tight = re.sub(r"[\s'’]", "", text)
+    if len(tight) > _LONGEST:
+        return Sentence(N_("is too long for a number"))
+    readings = [reading for reading in _readings(tight) if _ANY_NUMBER.fullmatch(reading)]
+    if len(readings) > 1:
+        return Sentence(N_("write {first} or {second}"), {"first": readings[0], "second": readings[1]})
+    if readings:
+        return Sentence(N_("write {number}"), {"number": readings[0]})
+    return Sentence(N_("is not a number; write one such as 9.3"))
+
+
+def _readings(text: str) -> list[str]:
+    """Numbers that a text with commas may stand for; `1,234` is either of two."""
+    if text.rfind(".") > text.rfind(",") or text.count(",") > 1:
+        return [text.replace(",", "")] if _COMMAS.match(text) else []
+    decimal = text.replace(".", "").replace(",", ".")
+    if re.fullmatch(r"[+-]?[1-9][0-9]{0,2},[0-9]{3}", text):
+        return [decimal, text.replace(",", "")]
+    return [decimal]

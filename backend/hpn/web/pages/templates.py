@@ -1,0 +1,176 @@
+"""The templates, and what they all use: texts, numbers and sentences in the language and units of the reader."""
+
+import re
+import secrets
+from collections.abc import Callable
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+from jinja2 import Environment, FileSystemLoader, StrictUndefined, pass_context
+from jinja2.runtime import Context
+from markupsafe import Markup, escape
+from starlette.datastructures import State
+
+from hpn import units
+from hpn.calculation import calculation_of
+from hpn.checks import BY_CODE
+from hpn.drawings.picture import beyond_limit
+from hpn.quantities import GEAR, LISTED, QUANTITIES, VERDICTS, unit_of
+from hpn.reader import GROUP, LANGUAGE_NAMES, Reader
+from hpn.remedy import DRIVER_NAMES
+from hpn.selection import Candidate, reason_of
+from hpn.web.door.visit import address, current
+from hpn.web.form import symbols
+from hpn.web.pages import assets, mathml, pictures
+from hpn.web.pages.ordering import MOTOR_CODE, ordering_code
+from hpn.web.pages.result import BEST
+from hpn.web.preview import preview_of
+from hpn.wording import Sentence
+
+TEMPLATES = Path(__file__).parents[4] / "frontend/templates"
+
+
+def environment(state: State) -> Environment:
+    """Templates of an application, with what they all use; made once per application."""
+    if not hasattr(state, "assets"):
+        state.assets = assets.Assets.load()
+    if not hasattr(state, "templates"):
+        state.templates = _templates(state.assets)
+    templates: Environment = state.templates
+    return templates
+
+
+def prepare(state: State) -> None:
+    """Compile all templates, so that the first page need not wait for it."""
+    templates = environment(state)
+    for name in templates.list_templates():
+        templates.get_template(name)
+
+
+def _templates(static: assets.Assets) -> Environment:
+    """Templates for any reader. `_()` takes a format, the filter `t` a text of the domain that may hold a `%`."""
+    templates = Environment(
+        loader=FileSystemLoader(TEMPLATES),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        auto_reload=False,
+        extensions=["jinja2.ext.i18n"],
+    )
+    templates.install_gettext_callables(  # type: ignore[attr-defined]
+        _for_reader("text"), _for_reader("plural"), newstyle=True
+    )
+    templates.filters |= FILTERS | pictures.FILTERS | mathml.FILTERS
+    templates.tests |= {"beyond_limit": beyond_limit}
+    templates.globals |= pictures.GLOBALS | GLOBALS | {"asset": static.url}
+    return templates
+
+
+# --- For whoever reads the page ---------------------------------------------------------------------------------------
+
+
+def _for_reader(method: str) -> Callable[..., Any]:
+    # With the context, because Jinja works out filters of constants only once otherwise.
+    def filtered(_: Context, *arguments: Any) -> Any:
+        return getattr(current(), method)(*arguments)
+
+    return pass_context(filtered)
+
+
+@lru_cache(maxsize=4096)
+def _written(reader: Reader, value: float | None, unit: str) -> str:
+    """A number of the wire as a reader sees it; most numbers of a page are the catalogue's, again and again."""
+    return reader.figure(value, unit)
+
+
+@pass_context
+def _figure(_: Context, value: float | None, unit: str = "") -> str:
+    return _written(current(), value, unit)
+
+
+@pass_context
+def _say(_: Context, message: Sentence) -> str:
+    """What is wrong with an input, beside a field that shows its unit."""
+    reader = current()
+    return message.render(reader.text, reader.bound)
+
+
+@pass_context
+def _reason(_: Context, candidate: Candidate, utilisation: float) -> str:
+    """Why a candidate stands where it does; `utilisation` is the user's u."""
+    return current().told(reason_of(candidate, utilisation))
+
+
+@pass_context
+def _as_read(_: Context, number: str) -> str:
+    """A number of a pasted table with every digit and the reader's marks: `1 234.5`."""
+    sign = "\N{MINUS SIGN}" if number.startswith("-") else ""
+    whole, point, fraction = number.lstrip("+-").partition(".")
+    if whole.isdigit():
+        whole = f"{int(whole):,}".replace(",", GROUP)
+    return sign + whole + point.replace(".", current().decimal) + fraction
+
+
+@pass_context
+def _as_typed(_: Context, value: float, unit: str) -> str:
+    """A figure of the catalogue as the reader would type it into a field, in their unit and with their decimal mark."""
+    reader = current()
+    measure = reader.measure(unit)
+    return (f"{value:.12g}" if measure.same else measure.written(value, 6)).replace(".", reader.decimal)
+
+
+_SYMBOL = re.compile(r"\b([A-Za-z])_([A-Za-z0-9]+(?:_[a-z]+)*(?:\([a-z]+\))?)")
+
+
+def with_symbols(text: str) -> Markup:
+    """Text with the handbook's symbols set as such: `T_R` with R as an index, `n_out_av` with two words as one."""
+    return Markup(_SYMBOL.sub(_set, str(escape(text))))
+
+
+def _set(symbol: re.Match[str]) -> str:
+    return f'<var class="symbol">{symbol[1]}<sub>{symbol[2].replace("_", " ")}</sub></var>'
+
+
+def _once() -> str:
+    """A key that nobody can guess, for a form that is to count once however often it is sent."""
+    return secrets.token_urlsafe(16)
+
+
+FILTERS: dict[str, Callable[..., Any]] = {
+    "as_read": _as_read,
+    "as_typed": _as_typed,
+    "capital": lambda text: text[:1].upper() + text[1:],
+    "figure": _figure,
+    "reason": _reason,
+    "say": _say,
+    "symbols": with_symbols,
+    "t": _for_reader("text"),
+    **{
+        name: _for_reader(name)
+        for name in ("exact", "percent", "capped_percent", "unit", "told", "source", "translated")
+    },
+}
+"""`{{ 40 | figure("Nm") }}`, `{{ "Nm" | unit }}`, `{{ sentence | told }}`: for whoever reads the page."""
+
+GLOBALS: dict[str, Any] = {
+    "BEST": BEST,
+    "calculation_of": calculation_of,
+    "CHECKS": BY_CODE,
+    "DRIVER_NAMES": DRIVER_NAMES,
+    "GEAR": GEAR,
+    "here": address,
+    "LANGUAGE_NAMES": LANGUAGE_NAMES,
+    "LISTED": LISTED,
+    "unit_of": unit_of,
+    "units": units,
+    "motor_pattern": MOTOR_CODE,
+    "once": _once,
+    "ordering_code": ordering_code,
+    "preview_of": preview_of,
+    "QUANTITIES": QUANTITIES,
+    "reader": current,
+    "symbols": symbols,
+    "VERDICTS": VERDICTS,
+}

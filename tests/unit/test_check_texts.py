@@ -1,0 +1,109 @@
+"""Every check explains itself, and the codes and their order are those of the contract."""
+
+import pytest
+
+from hpn.catalogue import Catalogue
+from hpn.checks import BY_CODE, CHECKS
+from hpn.units import suffix_of
+from tests.build import answer, cycle, phase
+
+IN_ORDER = [
+    *("average_torque", "repeated_peak_torque", "momentary_peak_torque", "momentary_peak_count"),
+    *("average_input_speed", "maximum_input_speed", "life", "output_bearing_load", "output_bearing_life"),
+    *("motor_speed", "motor_peak_torque", "motor_rated_torque"),
+    *("ambient_temperature", "backlash", "torsional_stiffness", "weight", "length"),
+]
+LOAD_CHECKS = IN_ORDER[:12]
+EVERYTHING = cycle(
+    phase(10, 100, radial_N=100),
+    emergency_stop={"torque_Nm": 50, "count": 10},
+    requirements={
+        "life_h": 1,
+        "backlash_arcmin": 7,
+        "torsional_stiffness_Nm_per_rad": 1,
+        "weight_kg": 9,
+        "length_mm": 200,
+        "ambient_temperature_degC": 20,
+        "motor": {"maximum_speed_rpm": 4000, "peak_torque_Nm": 20, "rated_torque_Nm": 8},
+    },
+)
+
+
+def test_the_checks_stand_in_the_order_of_the_contract() -> None:
+    assert [check.code for check in CHECKS] == IN_ORDER
+    assert [check.code for check in CHECKS if check.group == "load"] == LOAD_CHECKS
+
+
+@pytest.mark.parametrize("code", IN_ORDER)
+def test_every_check_has_all_its_texts(code: str) -> None:
+    check = BY_CODE[code]
+
+    for name in ("title", "name", "limit_name", "source", "relation"):
+        text = getattr(check, name)
+        assert text and text.strip() == text, name
+    for name in ("tests", "consequence", "basis", "remedy"):
+        assert getattr(check, name).endswith("."), name
+        assert len(getattr(check, name)) > 12, name
+    assert check.kind in ("maximum", "minimum", "range")
+
+
+def test_a_remedy_has_words_for_every_check() -> None:
+    """One without would go unsaid, and "fits if …" would be wrong on a gear that fails it besides another."""
+    of_its_own = {"momentary_peak_torque", "momentary_peak_count", "ambient_temperature"}
+
+    for check in CHECKS:
+        assert [bool(check.moves), "{value}" in check.accepted, check.code in of_its_own].count(True) == 1, check.code
+        assert not check.accepted or (check.asked and suffix_of(check.asked)), check.code
+
+
+def test_no_check_is_listed_twice() -> None:
+    assert list(BY_CODE) == [check.code for check in CHECKS]
+
+
+def test_a_minimum_is_a_minimum_and_units_are_those_of_the_demand() -> None:
+    assert {code for code, check in BY_CODE.items() if check.kind == "minimum"} == {"life", "torsional_stiffness"}
+    assert {code for code, check in BY_CODE.items() if check.kind == "range"} == {"ambient_temperature"}
+    units = {
+        "Nm": {"average_torque", "repeated_peak_torque", "momentary_peak_torque", "motor_peak_torque"}
+        | {"motor_rated_torque"},
+        "rpm": {"average_input_speed", "maximum_input_speed", "motor_speed"},
+        "h": {"life"},
+        "": {"momentary_peak_count", "output_bearing_load", "output_bearing_life"},
+        "°C": {"ambient_temperature"},
+        "arcmin": {"backlash"},
+        "Nm/rad": {"torsional_stiffness"},
+        "kg": {"weight"},
+        "mm": {"length"},
+    }
+    assert {code: check.unit for code, check in BY_CODE.items()} == {
+        code: unit for unit, codes in units.items() for code in codes
+    }
+
+
+def test_equations_are_numbered_as_printed() -> None:
+    numbers = {code: check.equation for code, check in BY_CODE.items() if check.equation}
+
+    assert numbers == {
+        "average_torque": "17.2",
+        "repeated_peak_torque": "17.7",
+        "momentary_peak_torque": "17.8",
+        "momentary_peak_count": "17.9",
+        "average_input_speed": "17.5",
+        "maximum_input_speed": "17.6",
+        "life": "17.10",
+        "motor_speed": "17.6",
+    }
+
+
+def test_a_reply_defines_every_check_that_it_contains_and_no_other(catalogue: Catalogue) -> None:
+    everything, little = answer(EVERYTHING, catalogue), answer(cycle(phase(1, 1)), catalogue)
+
+    assert list(everything["check_definitions"]) == IN_ORDER
+    always = ["average_torque", "repeated_peak_torque", "average_input_speed", "maximum_input_speed"]
+    assert list(little["check_definitions"]) == always
+    for reply, codes in ((everything, IN_ORDER), (little, always)):
+        for gear in reply["candidates"]:
+            assert [check["code"] for check in gear["checks"]] == codes
+    definition = everything["check_definitions"]["average_torque"]
+    for name in ("title", "equation", "unit", "kind", "tests", "basis", "remedy"):
+        assert definition[name]

@@ -1,0 +1,80 @@
+"""The selection as callers of the interface see it: JSON in, JSON out, over the typed flow."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import msgspec
+
+from hpn import calculation, fleet, remedy, reserve, selection
+from hpn.application import Application, InputError
+from hpn.calculation import Step
+from hpn.catalogue import Catalogue
+from hpn.checks import BY_CODE
+from hpn.gear import Gear
+
+Json = dict[str, Any]
+
+EXPLANATIONS = BY_CODE
+MOVES: Mapping[str, Mapping[str, float]] = {str(driver): powers for driver, powers in reserve.MOVES.items()}
+
+
+@dataclass(frozen=True)
+class Selection:
+    """An application on its gears, as `POST /api/v1/select` and a line of a batch give it."""
+
+    judged: selection.Judged
+
+    def json(self, link: str) -> bytes:
+        """The reply as JSON."""
+        return selection.encode(self.judged.selection(link))
+
+    def reply(self, link: str) -> Json:
+        """The reply as plain Python values."""
+        reply: Json = msgspec.json.decode(self.json(link))
+        return reply
+
+    def summary(self, link: str) -> Json:
+        """The answer in brief."""
+        return self.judged.outcome()._asdict() | {"link": link}
+
+    @property
+    def evaluation(self) -> "Selection":
+        """What the answer comes from."""
+        return self
+
+    @property
+    def duty(self) -> Application:
+        """What its duty comes from."""
+        return self.judged.application
+
+
+def select(application: Application, catalogue: Catalogue) -> Selection:
+    """Selection of one application."""
+    return Selection(selection.judge(application, catalogue))
+
+
+def select_fleet(applications: Sequence[Application], catalogue: Catalogue) -> list[Selection | InputError]:
+    """Selections of many applications."""
+    judged = fleet.judge_fleet(applications, catalogue)
+    return [one if isinstance(one, InputError) else Selection(one) for one in judged]
+
+
+def candidate_of(entry: Json) -> selection.Candidate:
+    """A candidate of a reply, typed."""
+    return msgspec.convert(entry, selection.Candidate)
+
+
+def ways_of(entry: Json, reserve_utilisation: float = 1.0) -> tuple[remedy.Way, ...]:
+    """Ways to make a candidate of a reply pass."""
+    return remedy.ways_of(candidate_of(entry), reserve_utilisation)
+
+
+def rooms_of(entry: Json, reserve_utilisation: float = 1.0) -> tuple[remedy.Room, ...]:
+    """Reserve of a candidate of a reply."""
+    return remedy.rooms_of(candidate_of(entry), reserve_utilisation)
+
+
+def calculation_of(entry: Json, gear: Gear, application: Application, catalogue: Catalogue) -> tuple[Step, ...]:
+    """Calculation of a candidate of a reply."""
+    return calculation.calculation_of(candidate_of(entry), gear, application, catalogue)
