@@ -75,7 +75,7 @@ $(UV): requirements-uv.lock
 $(VENV)/.run: requirements.lock
 $(VENV)/.dev: requirements-dev.lock
 $(VENV)/.run $(VENV)/.dev: $(UV) pyproject.toml
-	$(UV) pip sync --quiet --python $(BIN)/python --require-hashes $(filter %.lock,$^)
+	$(UV) pip sync --quiet --compile-bytecode --python $(BIN)/python --require-hashes $(filter %.lock,$^)
 	$(UV) pip install --quiet --python $(BIN)/python --offline --no-deps --editable .
 	@touch $@
 

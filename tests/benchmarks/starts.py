@@ -40,7 +40,8 @@ def _seconds(command: Sequence[str], folder: Path) -> float:
 def first_starts(checkouts: Mapping[str, Checkout], folder: Path) -> dict[str, Any]:
     """Seconds of `hpn serve` in a fresh clone until its page answers, and megabytes of the clone's packages.
 
-    The clone is of the last commit. What Python or a compiler has kept is deleted before each start.
+    The clone is of the last commit. What an earlier start has kept beside its code is deleted; packages stay as they
+    were installed.
     """
     clones = {name: _installed_clone(checkout, folder / name) for name, checkout in checkouts.items()}
 
@@ -60,7 +61,7 @@ def _installed_clone(checkout: Checkout, place: Path) -> Checkout:
 
 
 def _first_start(clone: Checkout, folder: Path) -> float:
-    for cache in list(clone.folder.rglob("__pycache__")):
+    for cache in list((clone.folder / "backend").rglob("__pycache__")):
         shutil.rmtree(cache)
     start = time.perf_counter()
     with product(clone, folder):
