@@ -247,6 +247,7 @@ function describe(field, keep, added) {
 // --- Parts that come when somebody unfolds them -----------------------------------------------------------------------
 
 const addressOf = (part) => document.getElementById(part.id)?.getAttribute("hx-get");
+const isOutdated = (ctx) => ctx.partOf !== undefined && ctx.partOf !== addressOf(ctx.sourceElement);
 const bring = (part) => part.childElementCount === 1 && htmx.trigger(part, "unfold");
 
 document.addEventListener("toggle", (event) => event.target.open && event.target.matches("[data-part]") && bring(event.target), true);
@@ -259,7 +260,14 @@ document.addEventListener("htmx:config:request", (event) => {
 
 document.addEventListener("htmx:before:swap", (event) => {
   const { ctx } = event.detail;
-  if (ctx.partOf !== undefined && ctx.partOf !== addressOf(ctx.sourceElement)) event.preventDefault();
+  if (isOutdated(ctx)) event.preventDefault();
+});
+
+// Whoever unfolded it still waits for the part of the later answer.
+document.addEventListener("htmx:finally:request", (event) => {
+  const { ctx } = event.detail;
+  const part = isOutdated(ctx) ? document.getElementById(ctx.sourceElement.id) : null;
+  if (part?.open) bring(part);
 });
 
 // --- Rows that are still being typed ----------------------------------------------------------------------------------
