@@ -24,7 +24,7 @@ endif
 export UV_SYSTEM_CERTS ?= true
 export NODE_USE_SYSTEM_CA ?= 1
 
-.PHONY: run install assets test soak check bench screenshots browser office curl messages lock clean
+.PHONY: run install assets test soak check bench screenshots browser office curl messages lock digests clean
 .DELETE_ON_ERROR:
 
 run: install
@@ -134,6 +134,15 @@ lock: $(UV) | $(NODE)
 	$(BIN)/python -c "import json, pathlib; path = pathlib.Path('frontend/package-lock.json'); lock = json.loads(path.read_text()); \
 	  [package.pop('funding', None) for package in lock['packages'].values()]; path.write_text(json.dumps(lock, indent=2) + '\n')"
 	! grep -nE 'https?:|file:|find-links' requirements*.lock frontend/package-lock.json
+
+# Images are named by digest; this asks their registry for today's and writes them, all or none.
+PINNED := docker-compose.yml backend/Dockerfile
+digests:
+	@set -e; script=; for image in $$(grep -ohE '[a-z]+:[A-Za-z0-9_.-]+@sha256:[0-9a-f]{64}' $(PINNED)); do \
+	    tag=$${image%@*}; digest=$$(docker buildx imagetools inspect "$$tag" --format '{{.Manifest.Digest}}') \
+	        || { echo "no digest of $$tag: this needs docker with buildx, and the registry" >&2; exit 1; }; \
+	    echo "$$tag@$$digest"; script="$$script;s|$$image|$$tag@$$digest|"; \
+	done; sed -i "$$script" $(PINNED)
 
 clean:
 	rm -rf $(VENV) $(MODULES) frontend/dist .*_cache .hypothesis
