@@ -23,7 +23,7 @@ from hpn.web.settings import Settings
 from tests.build import Json, worked_example
 from tests.report.conftest import Recalculate, recalculate
 from tests.report.test_workbook import assert_agrees
-from tests.store.drafts import change
+from tests.store.drafts import change, draft
 
 __all__ = ["recalculate"]
 
@@ -166,7 +166,10 @@ def test_a_database_from_before_is_brought_up_to_date_with_what_it_has(database:
         await store.open()
         found = await store.find("A" * 22)
         assert found is not None
-        assert (found.application, found.result) == (b"{}", b"xyz")
+        assert (found.application, found.result, found.owner) == (b"{}", b"xyz", None)
+        kept = await store.find(await store.save(draft(owner="plm")))
+        assert kept is not None
+        assert kept.owner == "plm"
         assert await store.catalogue("v") is None
         await store.close()
 

@@ -13,6 +13,7 @@ from hpn.catalogue import Catalogue
 class Draft:
     """A selection that is about to be saved: the application as it was given, and the reply it got, byte for byte.
 
+    `owner` is the name of the API key that saves it, None without one.
     `catalogue` is the one that was asked; the store keeps one copy of each version.
     """
 
@@ -24,6 +25,7 @@ class Draft:
     title: str | None = None
     reference: str | None = None
     idempotency_key: str | None = None
+    owner: str | None = None
     catalogue: Catalogue | None = field(default=None, repr=False)
 
     @property
@@ -48,8 +50,9 @@ class Summary:
 
 @dataclass(frozen=True, slots=True)
 class SavedSelection(Summary):
-    """A saved selection, whole."""
+    """A saved selection, whole; `owner` is the name of the API key that saved it, None without one."""
 
+    owner: str | None
     application: bytes = field(repr=False)
     result: bytes = field(repr=False)
 

@@ -88,7 +88,7 @@ class Store:
         """The selection with this id, or None."""
         if not ID.fullmatch(id):
             return None
-        columns = [*SUMMARY, selections.c.application, selections.c.result_packed]
+        columns = [*SUMMARY, selections.c.owner, selections.c.application, selections.c.result_packed]
         async with self._reading() as connection:
             row = (await connection.execute(select(*columns).where(selections.c.id == id))).one_or_none()
         if row is None:

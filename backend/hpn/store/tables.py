@@ -38,6 +38,7 @@ selections = Table(
     Column("result_packed", LargeBinary, nullable=False),
     Column("idempotency_key", Text),
     Column("digest", String(64)),
+    Column("owner", Text),  # name of the API key that saved it
     Index("selections_created", "created", "id"),
     Index("selections_reference", "reference", "created", "id"),
     Index("selections_idempotency_key", "idempotency_key", unique=True),

@@ -47,6 +47,7 @@ def _row_of(draft: Draft) -> dict[str, Any]:
         "result_packed": packed(draft.result),
         "idempotency_key": draft.idempotency_key,
         "digest": draft.digest if draft.idempotency_key else None,
+        "owner": draft.owner,
     }
 
 

@@ -17,6 +17,7 @@ from hpn.catalogue import Catalogue
 from hpn.differences import Difference, FigureDifference, differences, figure_differences
 from hpn.selection import Selection, decode, encode, select
 from hpn.store import Draft, KeyReusedError, KeySpentError, SavedSelection
+from hpn.web.door.observation import note
 from hpn.web.door.problems import Problem
 from hpn.web.form.write import to_link
 
@@ -84,12 +85,13 @@ def url_of(id: str) -> str:
     return f"/selections/{id}"
 
 
-async def save(state: State, application: Application, labels: Labels, key: str | None = None) -> str:
-    """Select and save; the id under which it is durable.
+async def save(request: Request, application: Application, labels: Labels, key: str | None) -> str:
+    """Select and save for whoever asks; the id under which it is durable.
 
     Raises InputError as `select` does, before the store is asked; Problem 422 or 410 for a key that was used before.
     """
-    draft = await run_in_threadpool(draft_of, state.catalogue, application, labels, key)
+    state, owner = request.app.state, request.state.api_key
+    draft = await run_in_threadpool(draft_of, state.catalogue, application, labels, key, owner)
     state.metrics.selections(["none" if draft.selected is None else "selected"])
     try:
         id: str = await state.store.save(draft)
@@ -97,10 +99,13 @@ async def save(state: State, application: Application, labels: Labels, key: str 
         raise Problem(422, str(error)) from None
     except KeySpentError as error:
         raise Problem(410, str(error)) from None
+    note(request, selection=id)
     return id
 
 
-def draft_of(catalogue: Catalogue, application: Application, labels: Labels, key: str | None) -> Draft:
+def draft_of(
+    catalogue: Catalogue, application: Application, labels: Labels, key: str | None, owner: str | None = None
+) -> Draft:
     """What is saved of an application: its own JSON, and the reply that `select` gives it."""
     selection = select(application, catalogue, to_link(application))
     return Draft(
@@ -112,6 +117,7 @@ def draft_of(catalogue: Catalogue, application: Application, labels: Labels, key
         title=labels.title,
         reference=labels.reference,
         idempotency_key=key,
+        owner=owner,
         catalogue=catalogue,
     )
 

@@ -24,16 +24,18 @@ from hpn.web.api.replies import (
 )
 from hpn.web.api.replies import encode as encode_reply
 from hpn.web.archive import Line, Reopened, SaveRequest, found, not_found, save, url_of
-from hpn.web.door.access import admit
+from hpn.web.door.access import Gate, admit
 from hpn.web.door.bodies import read_body
 from hpn.web.door.conditions import conditional, idempotency_key, preferred_return, require_match
+from hpn.web.door.observation import note
 from hpn.web.door.problems import Problem
 from hpn.web.settings import Settings
 
 DIFFERENCES_SHOWN = 500
 KEY = (
-    "Makes a retry safe: the same key and content is saved once, other content is a 422. A key belongs to its caller "
-    "and lasts: once its selection is deleted it is answered with 410, so that a late retry saves nothing anew."
+    "Makes a retry safe: the same key and content is saved once, other content is a 422. A key belongs to its caller, "
+    "an API key or else an address, and lasts: once its selection is deleted it is answered with 410, so that a late "
+    "retry saves nothing anew."
 )
 
 router = APIRouter(prefix="/api/v1/selections")
@@ -62,7 +64,7 @@ async def save_selection(request: Request) -> Response:
     body = await read_body(request, maximum_bytes=settings.maximum_body_bytes, seconds=settings.body_seconds)
     wanted = SaveRequest.model_validate_json(body)
     try:
-        id = await save(request.app.state, wanted.application, wanted, key)
+        id = await save(request, wanted.application, wanted, key)
     except InputError as error:
         raise error.below("application") from None
     headers = {"Location": f"/api/v1/selections/{id}"}
@@ -124,16 +126,24 @@ async def list_selections(
     dependencies=[admit("deleting")],
     summary="Delete a saved selection",
     status_code=204,
-    responses=schemas.problems(404, 412, 503),
+    responses=schemas.problems(403, 404, 412, 503),
     openapi_extra={"parameters": [schemas.header("If-Match", "Delete only this state of it.")]},
 )
 async def delete_selection(request: Request, id: str) -> Response:
-    """Deletes a saved selection for good. A retry of saving it, with its Idempotency-Key, is then answered with 410."""
+    """Deletes a saved selection for good. A retry of saving it, with its Idempotency-Key, is then answered with 410.
+
+    Where the service has API keys, a key deletes what it has saved, and the one named `admin` deletes any.
+    """
     store: Store = request.app.state.store
+    gate: Gate = request.app.state.gate
+    if (saved := await store.find(id)) is None:
+        raise not_found(id)
+    gate.admit_deletion(request, saved.owner)
     if "if-match" in request.headers:
         require_match(request, await _representation(request, id))
     if not await store.delete(id):
         raise not_found(id)
+    note(request, selection=id)
     return Response(status_code=204)
 
 

@@ -23,8 +23,15 @@ LIMIT_OF: Mapping[RouteGroup, str] = {
     "batch": "batch",
     "writing": "writing",
     "deleting": "writing",
+    "metrics": "metrics",
 }
 """Which rate counts a group's requests."""
+
+SAVED: frozenset[RouteGroup] = frozenset({"reading", "listing", "writing", "deleting"})
+"""Groups whose answers tell of saved selections."""
+
+ADMIN = "admin"
+"""Name of the key that deletes what any key, or none, has saved."""
 
 
 class Gate:
@@ -38,19 +45,29 @@ class Gate:
                 "calculator": settings.calculator_rate,
                 "batch": settings.batch_rate,
                 "writing": settings.writing_rate,
+                "metrics": settings.calculator_rate,  # counted apart, so that a busy page leaves room to look at it
             }
         )
 
     def admit(self, request: Request, group: RouteGroup) -> None:
         """Count a request; raises Problem 429 where there were too many, then 401 where a key is needed."""
         name = request.state.api_key = self._holder(request)
-        counted = self._limiter.admit(LIMIT_OF.get(group, ""), f"key {name}" if name else _subject(request))
+        caller = request.state.caller = f"key {name}" if name else _subject(request)
+        if group in SAVED:
+            add_headers(request, {"Cache-Control": "private, no-cache"})
+        counted = self._limiter.admit(LIMIT_OF[group], caller)
         if counted is not None:
             add_headers(request, counted.headers)
             if not counted.granted:
                 raise too_many(counted.rate, counted.wait_seconds)
         if name is None and group in self._guarded:
             raise key_needed(request.url.path)
+
+    def admit_deletion(self, request: Request, owner: str | None) -> None:
+        """Raise Problem 403 unless the request's key owns what it is to delete; without keys everybody may."""
+        name = request.state.api_key
+        if self._keys and name != ADMIN and (name is None or name != owner):
+            raise Problem(403, f"only the key that saved this selection, or the one named {ADMIN}, may delete it")
 
     def _holder(self, request: Request) -> str | None:
         presented = presented_key(request.headers.raw) if self._keys else None

@@ -53,7 +53,9 @@ def idempotency_key(request: Request) -> str | None:
     match = IDEMPOTENCY_KEY.fullmatch(given.strip())
     if match is None:
         raise Problem(400, "Idempotency-Key must be 1 to 200 visible ASCII characters, such as a UUID")
-    return f"{request.state.api_key or ''}:{match[1]}"
+    name, caller = request.state.api_key, request.state.caller
+    # An address is kept as part of a hash alone; the blank keeps it apart from the names of keys.
+    return f"{name}:{match[1]}" if name else f"address {hashlib.sha256(f'{caller} {match[1]}'.encode()).hexdigest()}"
 
 
 def preferred_return(request: Request) -> str | None:

@@ -32,6 +32,11 @@ def add_headers(request: Request, headers: Mapping[str, str]) -> None:
     request.state.response_headers.update(headers)
 
 
+def note(request: Request, **fields: str) -> None:
+    """Have the request's line in the log say this, too."""
+    request.scope["state"].setdefault("noted", {}).update(fields)
+
+
 class Observation:
     """Gives each request an id, and counts and logs it. What goes wrong is logged once, and answered as a problem."""
 
@@ -80,6 +85,7 @@ class Observation:
             duration_ms=round(1000 * seconds, 3),
             client=client[0] if client else None,
             key=scope["state"].get("api_key"),
+            **scope["state"].get("noted", {}),
         )
 
 

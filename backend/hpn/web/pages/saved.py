@@ -75,7 +75,7 @@ async def save_from_page(request: Request) -> Response:
     query = fields.get("link", "").removeprefix("/").removeprefix("?")
     try:
         labels = Labels.model_validate({name: fields.get(name, "") for name in Labels.model_fields})
-        id = await save(request.app.state, _application(query), labels, _key(fields))
+        id = await save(request, _application(query), labels, _key(fields))
     except (ValidationError, InputError) as error:
         return _refused(request, Problem.of(error), fields, query)
     except (Problem, StoreUnavailableError) as error:

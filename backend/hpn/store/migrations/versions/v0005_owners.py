@@ -1,0 +1,12 @@
+"""The API key that saved a selection. Those saved before have none."""
+
+import sqlalchemy as sa
+from alembic import op
+
+revision = "0005"
+down_revision = "0004"
+
+
+def upgrade() -> None:
+    """Add the column."""
+    op.add_column("selections", sa.Column("owner", sa.Text()))
