@@ -33,9 +33,15 @@ ApplicationArea = Literal[
 ]
 
 
-def _not_vanishing(value: float) -> float:
-    """Refuse what is above 0 but so small that a quotient by it could overflow."""
-    if value < 1e-12:
+LEAST = 1e-12
+"""Smallest number that stands below a fraction: a quotient by a smaller one could overflow."""
+
+
+def _above_zero(value: float) -> float:
+    """Refuse what is not above 0, and what is but so small that a quotient by it could overflow."""
+    if value <= 0:
+        raise PydanticKnownError("greater_than", {"gt": 0})
+    if value < LEAST:
         raise PydanticCustomError("vanishing", "must be at least 1e-12")
     return value
 
@@ -55,12 +61,17 @@ def _at_most(most: int) -> BeforeValidator:
 MOST_WISHES = 100
 """Ratios or sizes that may be asked for."""
 
+WISHES: Any = Field(min_length=1, max_length=MOST_WISHES)
+"""Bounds of the list itself: beside the field they would be taken for those of a text, since it may be null."""
+
 Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
 Torque = Annotated[Number, Field(ge=-1e6, le=1e6)]
 Speed = Annotated[Number, Field(ge=-1e6, le=1e6)]
 Load = Annotated[Number, Field(ge=-1e9, le=1e9)]
-Hours = Annotated[Number, Field(gt=0, le=1e9), AfterValidator(_not_vanishing)]
-Positive = Annotated[Number, Field(gt=0, le=1e12), AfterValidator(_not_vanishing)]
+SAYS_LEAST: Any = Field(json_schema_extra={"minimum": LEAST})
+Hours = Annotated[Number, Field(le=1e9), AfterValidator(_above_zero), SAYS_LEAST]
+Positive = Annotated[Number, Field(le=1e12), AfterValidator(_above_zero), SAYS_LEAST]
+Share = Annotated[Number, Field(le=1), AfterValidator(_above_zero), SAYS_LEAST]
 Ratio = Annotated[int, Field(strict=True, ge=1, le=10_000)]
 Size = Annotated[str, Field(max_length=20), BeforeValidator(canonical_size)]
 
@@ -147,11 +158,11 @@ class Motor(Model):
 class Requirements(Model):
     """`ratios` and `sizes` restrict the list of candidates; every other requirement becomes a check."""
 
-    ratios: Annotated[tuple[Ratio, ...], _at_most(MOST_WISHES)] | None = Field(
-        None, min_length=1, max_length=MOST_WISHES, description="Only these ratios.", examples=[[5]]
+    ratios: Annotated[tuple[Ratio, ...], WISHES, _at_most(MOST_WISHES)] | None = Field(
+        None, description="Only these ratios.", examples=[[5]]
     )
-    sizes: Annotated[tuple[Size, ...], _at_most(MOST_WISHES)] | None = Field(
-        None, min_length=1, max_length=MOST_WISHES, description="Only these sizes.", examples=[["14A", "20A"]]
+    sizes: Annotated[tuple[Size, ...], WISHES, _at_most(MOST_WISHES)] | None = Field(
+        None, description="Only these sizes.", examples=[["14A", "20A"]]
     )
     life_h: Hours | None = Field(None, description="Required gear life L10 (eq. 17.10).", examples=[20000.0])
     backlash_arcmin: Positive | None = Field(None, description="Largest acceptable backlash.", examples=[7.0])
@@ -163,10 +174,10 @@ class Requirements(Model):
     ambient_temperature_degC: Annotated[Number, Field(ge=-273.15, le=1000)] | None = Field(
         None, description="Ambient temperature of the gear.", examples=[25.0]
     )
-    utilisation: Annotated[Number, Field(gt=0, le=1), AfterValidator(_not_vanishing)] = Field(
+    utilisation: Share = Field(
         1.0, description="Largest acceptable utilisation u of the load checks: your own reserve.", examples=[1.0]
     )
-    efficiency: Annotated[Number, Field(gt=0, le=1), AfterValidator(_not_vanishing)] | None = Field(
+    efficiency: Share | None = Field(
         None, description="Your assumption for the gear's efficiency; without it the motor side is loss-free."
     )
     motor: Motor | None = Field(None, description="Limits of the motor.")

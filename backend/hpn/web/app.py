@@ -110,6 +110,8 @@ def create_app(settings: Settings | None = None) -> FastAPI:
         docs_url=None,
         redoc_url=None,
         openapi_url=None,
+        openapi_tags=openapi.TAGS,
+        servers=openapi.SERVERS,
         license_info={"name": "Apache-2.0", "identifier": "Apache-2.0"},
         lifespan=_with_store,
     )

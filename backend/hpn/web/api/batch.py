@@ -32,11 +32,12 @@ BATCH_SLICE = 256
 
 RETRY_SECONDS = 5
 
-router = APIRouter(prefix="/api/v1", dependencies=[admit("batch")])
+router = APIRouter(prefix="/api/v1", tags=["Selection"], dependencies=[admit("batch")])
 
 
 @router.post(
     "/select/batch",
+    operation_id="selectBatch",
     summary="Select gears for many applications",
     openapi_extra=schemas.batch_body(),
     responses=schemas.batch_answers(400, 408, 413, 415, 422, 503),

@@ -15,17 +15,32 @@ from hpn.web.api.replies import CatalogueReply, EnvelopeReply, JSONBytes, json_r
 from hpn.web.door.access import admit
 from hpn.web.door.problems import Problem
 
-router = APIRouter(prefix="/api/v1", dependencies=[admit("calculator")], default_response_class=JSONBytes)
+router = APIRouter(
+    prefix="/api/v1",
+    tags=["Catalogue"],
+    dependencies=[admit("calculator")],
+    default_response_class=JSONBytes,
+)
 
 
-@router.get("/catalogue", summary="Every gear", responses=schemas.answers("CatalogueReply", 406))
+@router.get(
+    "/catalogue",
+    operation_id="getCatalogue",
+    summary="Every gear",
+    responses=schemas.answers("CatalogueReply", 406),
+)
 async def catalogue(request: Request) -> Response:
     """Every gear of the series with every published figure and its source; null where not published."""
     book: Catalogue = request.app.state.catalogue
     return json_response(CatalogueReply(book.version, book.gears, book.series))
 
 
-@router.get("/catalogue/{designation}", summary="One gear", responses=schemas.answers(schemas.ONE_GEAR, 404))
+@router.get(
+    "/catalogue/{designation}",
+    operation_id="getGear",
+    summary="One gear",
+    responses=schemas.answers(schemas.ONE_GEAR, 404),
+)
 async def gear(request: Request, designation: str) -> Response:
     """One gear, by its designation in any of the printed spellings: by itself, and as the list has it."""
     book: Catalogue = request.app.state.catalogue
@@ -38,6 +53,7 @@ async def gear(request: Request, designation: str) -> Response:
 
 @router.get(
     "/bearing-envelopes/{size}",
+    operation_id="getBearingEnvelopes",
     summary="Life envelopes of a size's output bearing",
     responses=schemas.answers("EnvelopeReply", 404, 422),
 )

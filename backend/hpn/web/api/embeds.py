@@ -17,7 +17,7 @@ from hpn.web.form.write import to_link
 from hpn.web.preview import Preview, preview_of
 
 SAVED = "/selections/"
-router = APIRouter(dependencies=[admit("reading")])
+router = APIRouter(tags=["Service"], dependencies=[admit("reading")])
 """oEmbed tells of saved selections too, so it belongs to reading."""
 
 
@@ -35,6 +35,7 @@ class OEmbedReply(BaseModel):
 
 @router.get(
     "/oembed",
+    operation_id="getOEmbed",
     summary="What a link to a selection unfolds into",
     response_model=OEmbedReply,
     responses=schemas.problems(404, 406, 422),

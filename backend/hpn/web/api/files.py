@@ -39,6 +39,7 @@ AT_ONCE = 2
 
 MOST_WAITING = 32
 RETRY_SECONDS = 5
+SCHEMA_TYPE = "application/schema+json"
 
 Lang = Annotated[Literal["en", "de"] | None, Query(description="Language; by default the browser's.")]
 Make = Callable[[], Export]
@@ -46,9 +47,10 @@ Make = Callable[[], Export]
 
 @dataclass(frozen=True, slots=True)
 class File:
-    """A kind of file: its name, its media type, what it is, and how it is made."""
+    """A kind of file: its name, what the API calls it, its media type, what it is, and how it is made."""
 
     name: str
+    noun: str
     media_type: str
     summary: str
     build: Callable[[Export, Reader], bytes]
@@ -60,29 +62,35 @@ class File:
 
 
 FILES = (
-    File("report.pdf", "application/pdf", "PDF report", pdf, "inline"),
+    File("report.pdf", "Report", "application/pdf", "PDF report", pdf, "inline"),
     File(
         "report.xlsx",
+        "Workbook",
         "application/vnd.openxmlformats-officedocument.spreadsheetml.sheet",
         "Workbook with live formulas",
         workbook,
     ),
     File(
         "submodel.aasx",
+        "Submodel",
         "application/asset-administration-shell-package",
         "Asset Administration Shell: technical data and selection",
         lambda export, _: package(export),
     ),
 )
 
-saved_files = APIRouter(prefix="/api/v1/selections/{id}", dependencies=[admit("reading")])
-posted_files = APIRouter(prefix="/api/v1", dependencies=[admit("calculator")])
+saved_files = APIRouter(prefix="/api/v1/selections/{id}", tags=["Files"], dependencies=[admit("reading")])
+posted_files = APIRouter(prefix="/api/v1", tags=["Files"], dependencies=[admit("calculator")])
 linked_files = APIRouter(include_in_schema=False, dependencies=[admit("calculator")])
 
 
 def _route(file: File) -> None:
     content: dict[int | str, dict[str, Any]] = {
-        200: {"content": {file.media_type: {"schema": {"type": "string", "format": "binary"}}}}
+        200: {
+            "description": "The file.",
+            "content": {file.media_type: {"schema": {"type": "string", "format": "binary"}}},
+            "headers": schemas.headers("ETag", "Content-Disposition", "Content-Language"),
+        }
     }
 
     async def of_saved(request: Request, id: str, lang: Lang = None) -> Response:
@@ -102,13 +110,15 @@ def _route(file: File) -> None:
     saved_files.add_api_route(
         f"/{file.name}",
         of_saved,
+        operation_id=f"getSelection{file.noun}",
         **shared,
         description=f"{file.summary} of a saved selection, as it was saved.",
-        responses=content | schemas.problems(404, 409, 422, 503),
+        responses=content | schemas.HAS_IT_ALREADY | schemas.problems(404, 409, 422, 503),
     )
     posted_files.add_api_route(
         f"/{file.name}",
         of_posted,
+        operation_id=f"make{file.noun}",
         methods=["POST"],
         description=f"{file.summary} of an application, computed now; nothing is saved.",
         openapi_extra=schemas.request_body(Application),
@@ -122,12 +132,18 @@ for _file in FILES:
     _route(_file)
 
 
-@posted_files.get("/application.schema.json", summary="JSON Schema of an application", response_class=Response)
+@posted_files.get(
+    "/application.schema.json",
+    operation_id="getApplicationSchema",
+    summary="JSON Schema of an application",
+    responses={200: {"description": "The schema.", "content": {SCHEMA_TYPE: {"schema": {"type": "object"}}}}},
+    response_class=Response,
+)
 async def application_schema() -> Response:
     """JSON Schema of an application, with the unit of every field."""
     schema = {"$schema": "https://json-schema.org/draft/2020-12/schema", "$id": "application.schema.json"}
     document = msgspec.json.encode(schema | Application.model_json_schema())
-    return Response(document, media_type="application/schema+json")
+    return Response(document, media_type=SCHEMA_TYPE)
 
 
 # --- What goes into a file --------------------------------------------------------------------------------------------

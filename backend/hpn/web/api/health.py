@@ -10,8 +10,8 @@ from hpn.web.api.schemas import problems
 from hpn.web.door.access import OPEN, admit
 from hpn.web.door.metrics import CONTENT_TYPE
 
-router = APIRouter(dependencies=[OPEN])
-metrics_router = APIRouter(dependencies=[admit("metrics")])
+router = APIRouter(tags=["Service"], dependencies=[OPEN])
+metrics_router = APIRouter(tags=["Service"], dependencies=[admit("metrics")])
 
 
 class Health(BaseModel):
@@ -28,13 +28,13 @@ class Readiness(Health):
     store: str = Field(description="ok while the database of the saved selections answers.")
 
 
-@router.get("/healthz", summary="Is the process alive")
+@router.get("/healthz", operation_id="getHealth", summary="Is the process alive")
 async def healthz() -> Health:
     """The process answers."""
     return Health(status="ok")
 
 
-@router.get("/readyz", summary="Is the service ready", responses=problems(503))
+@router.get("/readyz", operation_id="getReadiness", summary="Is the service ready", responses=problems(503))
 async def readyz(request: Request) -> Readiness:
     """The catalogue is loaded and the database of the saved selections answers; else 503."""
     catalogue = request.app.state.catalogue
@@ -42,7 +42,9 @@ async def readyz(request: Request) -> Readiness:
     return Readiness(status="ok", catalogue_version=catalogue.version, gears=len(catalogue.gears), store="ok")
 
 
-@metrics_router.get("/metrics", summary="Metrics for Prometheus", response_class=PlainTextResponse)
+@metrics_router.get(
+    "/metrics", operation_id="getMetrics", summary="Metrics for Prometheus", response_class=PlainTextResponse
+)
 async def metrics(request: Request) -> Response:
     """What Prometheus counts: requests, selections by verdict, operations of the store."""
     return Response(await run_in_threadpool(request.app.state.metrics.exposition), media_type=CONTENT_TYPE)

@@ -14,6 +14,7 @@ from starlette.responses import JSONResponse
 from hpn.catalogue import Catalogue
 from hpn.units import suffix_of, symbol_of
 from hpn.web.api import samples, schemas
+from hpn.web.api.exchanges import SUMMARIES, Exchange, exchanges
 from hpn.web.door.access import OPEN, group_of
 from hpn.web.settings import RouteGroup, Settings
 
@@ -25,6 +26,15 @@ PATH_PARAMETERS = {
 
 FRAMEWORK = ("HTTPValidationError", "ValidationError")
 
+TAGS = [
+    {"name": "Selection", "description": "Which gear fits an application, for one or for many."},
+    {"name": "Catalogue", "description": "Published figures of the gears, each with its source."},
+    {"name": "Saved selections", "description": "Selections that last: save, list, read with what differs, delete."},
+    {"name": "Files", "description": "Report, workbook and Asset Administration Shell of a selection."},
+    {"name": "Service", "description": "State of the service, and what a pasted link unfolds into."},
+]
+
+SERVERS = [{"url": "/", "description": "The service that has sent this document."}]
 
 KEY_SCHEMES = {
     "bearer": {"type": "http", "scheme": "bearer", "description": "A key of the service, where it has keys."},
@@ -75,12 +85,15 @@ def complete(
     _, definitions = models_json_schema(models, ref_template="#/components/schemas/{model}")
     components = document.setdefault("components", {})
     components["securitySchemes"] = KEY_SCHEMES
+    components["headers"] = schemas.header_components()
     named = components.setdefault("schemas", {})
     named.update(definitions["$defs"] | schemas.components())
+    shown = exchanges(catalogue)
     for method, path, operation in _operations(document):
-        _give_examples(operation)
         _say_problems(operation)
+        _give_examples(operation, shown.get(operation["operationId"], ()))
         _say_keys(operation, groups[method, path], settings)
+        _say_headers(operation)
         _mend_replies(operation)
         for parameter in operation.get("parameters", ()):
             _describe(parameter)
@@ -99,6 +112,7 @@ def _operations(document: dict[str, Any]) -> Iterator[tuple[str, str, dict[str, 
 def _say_keys(operation: dict[str, Any], group: RouteGroup | None, settings: Settings) -> None:
     """Keys and rate limits stand in front of every route that is not open to all."""
     if group is None:
+        operation["security"] = []
         return
     needed = bool(settings.api_keys) and group in settings.guarded
     operation["security"] = [*({name: []} for name in KEY_SCHEMES), *([] if needed else [{}])]
@@ -106,13 +120,31 @@ def _say_keys(operation: dict[str, Any], group: RouteGroup | None, settings: Set
     operation["responses"] = dict(sorted((refusals | operation["responses"]).items()))
 
 
-def _give_examples(operation: dict[str, Any]) -> None:
+def _say_headers(operation: dict[str, Any]) -> None:
+    """Headers of every response of an operation; those of its rate where it has one."""
+    always = schemas.headers("X-Request-ID", *(("RateLimit", "RateLimit-Policy") if operation["security"] else ()))
+    for response in operation["responses"].values():
+        response["headers"] = response.get("headers", {}) | always
+
+
+def _give_examples(operation: dict[str, Any], shown: Sequence[Exchange]) -> None:
+    """Whole requests, and the answers that they get where those are always the same."""
     body = operation.get("requestBody", {}).get("content", {}).get("application/json")
     name = body["schema"].get("$ref", "").rpartition("/")[2] if body else ""
     if name in samples.WHOLE:
-        body["examples"] = {
-            "worked_example": {"summary": "The handbook's worked example", "value": samples.WHOLE[name]}
-        }
+        body["examples"] = _example("worked_example", samples.WHOLE[name])
+    for exchange in shown:
+        for parameter in operation.get("parameters", ()):
+            if parameter["name"] in exchange.parameters:
+                parameter["example"] = exchange.parameters[parameter["name"]]
+        if exchange.lines:
+            operation["requestBody"]["content"][schemas.LINES]["examples"] = _example(exchange.name, exchange.lines)
+        content = operation["responses"][str(exchange.status)]["content"]
+        content[exchange.media_type]["examples"] = _example(exchange.name, exchange.answer)
+
+
+def _example(name: str, value: Any) -> dict[str, Any]:
+    return {name: {"summary": SUMMARIES[name], "value": value}}
 
 
 def _say_problems(operation: dict[str, Any]) -> None:
@@ -134,5 +166,15 @@ def _mend_replies(operation: dict[str, Any]) -> None:
 def _describe(parameter: dict[str, Any]) -> None:
     if parameter["in"] == "path":
         parameter.setdefault("description", PATH_PARAMETERS[parameter["name"]])
+    if parameter["in"] == "query":
+        _leave_out_null(parameter["schema"])
     if suffix_of(parameter["name"]):
         parameter["schema"]["x-unit"] = symbol_of(parameter["name"])
+
+
+def _leave_out_null(schema: dict[str, Any]) -> None:
+    """FastAPI says of a parameter that may be left out that it may be null, which no query can say."""
+    options = [option for option in schema.get("anyOf", ()) if option != {"type": "null"}]
+    if len(options) == 1:
+        del schema["anyOf"]
+        schema |= options[0]

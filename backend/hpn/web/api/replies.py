@@ -16,6 +16,10 @@ from hpn.selection import Selection
 
 encode = msgspec.json.Encoder().encode
 
+DIFFERENCES_SHOWN = 500
+SELECTIONS_LISTED = 200
+"""Most lines of a part of the list of saved selections."""
+
 Version = Annotated[str, Meta(description="Hash of the catalogue's content, supplement included.")]
 
 

@@ -33,10 +33,12 @@ FULL: Json = {
 }
 """The handbook's worked example with the rest of what may be asked; no size and no ratio, so any catalogue has it."""
 
+LABELS = {"title": "Worked example", "reference": "axis-7"}
+
 WHOLE: Json = {
     "Application": WORKED_EXAMPLE,
     "Batch": {"applications": [{"reference": "axis-7", **WORKED_EXAMPLE}]},
-    "SaveRequest": {"application": WORKED_EXAMPLE, "title": "Worked example", "reference": "axis-7"},
+    "SaveRequest": {"application": WORKED_EXAMPLE, **LABELS},
 }
 """A whole request per body schema: the handbook's worked example (chapter 4.1)."""
 
@@ -55,26 +57,26 @@ def _samples(catalogue: Catalogue) -> Json:
     application = Application.model_validate(FULL)
     link = to_link(application)
     selection = select(application, catalogue, link)
-    reply, best = _plain(selection), selection.foremost.designation
-    gear = _plain(catalogue.by_designation[best])
+    reply, best = plain(selection), selection.foremost.designation
+    gear = plain(catalogue.by_designation[best])
     versions = {"engine_version": ENGINE_VERSION, "catalogue_version": catalogue.version}
     where = {"id": "q83vASNFZ4mrze8BI0Vniw", "url": "/selections/q83vASNFZ4mrze8BI0Vniw"}
-    summary = {**where, "created": "2026-11-21T10:00:00.000000Z", **WHOLE["SaveRequest"], "selected": best, **versions}
+    summary = {**where, "created": "2026-11-21T10:00:00.000000Z", **LABELS, "selected": best, **versions}
     return {
         **WHOLE,
         "Application": FULL,
         "BatchItem": {"reference": "axis-7", **FULL},
         "Selection": reply,
-        "BatchReply": {"results": _plain(batch_lines(WHOLE["Batch"]["applications"], catalogue))},
-        "BatchLine": _plain(batch_lines([{"reference": "axis-8"}], catalogue)[0]),
-        "ProblemReply": _refusal().body(),
+        "BatchReply": {"results": plain(batch_lines(WHOLE["Batch"]["applications"], catalogue))},
+        "BatchLine": plain(batch_lines([{"reference": "axis-8"}], catalogue)[0]),
+        "ProblemReply": refusal().body(),
         "CatalogueReply": {
             "gears": [gear],
             "catalogue_version": catalogue.version,
-            "series": _plain(catalogue.series),
+            "series": plain(catalogue.series),
         },
-        "OneGearReply": {"catalogue_version": catalogue.version, **gear, "gears": [gear]},
-        "EnvelopeReply": _envelopes(catalogue, gear["size"]),
+        "OneGearReply": one_gear(catalogue, gear),
+        "EnvelopeReply": envelopes(catalogue, gear["size"]),
         "SelectionListReply": {"selections": [summary], "next_cursor": None},
         "SavedReply": where,
         "SavedSelectionReply": {
@@ -91,11 +93,11 @@ def _samples(catalogue: Catalogue) -> Json:
             "store": "ok",
         },
         "Health": {"status": "ok"},
-        "OEmbedReply": _plain(preview_of(selection, link)) | _PROVIDER,
+        "OEmbedReply": plain(preview_of(selection, link)) | _PROVIDER,
     }
 
 
-def _plain(reply: Any) -> Any:
+def plain(reply: Any) -> Any:
     """A reply as its reader gets it."""
     return msgspec.json.decode(encode(reply))
 
@@ -109,15 +111,22 @@ _PROVIDER = {
 }
 
 
-def _refusal() -> Problem:
+def one_gear(catalogue: Catalogue, gear: Json) -> Json:
+    """A gear by itself and as the list has it."""
+    return {"catalogue_version": catalogue.version, **gear, "gears": [gear]}
+
+
+def refusal() -> Problem:
+    """Of an application whose first phase lasts no time."""
     location = ("duty_cycle", "phases", 0, "duration_s")
     return Problem.at([(location, "greater_than", "must be greater than 0")])
 
 
-def _envelopes(catalogue: Catalogue, size: str) -> Json:
+def envelopes(catalogue: Catalogue, size: str) -> Json:
+    """Of a size at the published condition."""
     gear = catalogue.find_size(size)
     try:
-        curves = _plain(life_envelopes(catalogue, gear, EnvelopeQuery())) if gear else []
+        curves = plain(life_envelopes(catalogue, gear, EnvelopeQuery())) if gear else []
     except InputError:  # a catalogue whose first choice has no published limits
         curves = []
     limits = {name: source for name, source in gear.sources.items() if name.startswith("dynamic_")} if gear else {}
@@ -134,8 +143,8 @@ def _changes(selection: Selection, catalogue: Catalogue) -> Json:
     weight = FigureDifference(best, "weight_kg", None, catalogue.by_designation[best].weight_kg)
     return {
         "difference_count": len(found),
-        "differences": [_plain(figures)],
-        "figure_differences": [_plain(weight)],
+        "differences": [plain(figures)],
+        "figure_differences": [plain(weight)],
         "problem": None,
     }
 
@@ -155,14 +164,14 @@ def _illustrate(schemas: Json, schema: Json, value: Any) -> None:
                 _illustrate(schemas, more, item)
         for name, field in schema.get("properties", {}).items():
             if name in value:
-                field.setdefault("examples", [_brief(value[name])])
+                field.setdefault("examples", [_brief(value[name], field.get("minItems", 1))])
                 _illustrate(schemas, field, value[name])
 
 
-def _brief(value: Any) -> Any:
-    """A value with few items in each list and mapping of objects."""
+def _brief(value: Any, least: int = 1) -> Any:
+    """A value with few items in each list and mapping of objects, the list itself with the `least` it may have."""
     if isinstance(value, list):
-        return [_brief(item) for item in value[: 1 if value and isinstance(value[0], Mapping) else ITEMS_SHOWN]]
+        return [_brief(item) for item in value[: least if value and isinstance(value[0], Mapping) else ITEMS_SHOWN]]
     if isinstance(value, Mapping):
         nested = all(isinstance(item, Mapping) for item in value.values())
         return {name: _brief(item) for name, item in islice(value.items(), 1 if nested else None)}

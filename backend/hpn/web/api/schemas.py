@@ -13,7 +13,7 @@ from hpn.application import BatchItem, Model, name_units
 from hpn.quantities import BOLT, CANDIDATE, CHECK, DUTY, ENVELOPE, GEAR, RESERVE, SERIES, Named
 from hpn.selection import Selection
 from hpn.web.api import replies
-from hpn.web.door.problems import MEDIA_TYPE, TITLES
+from hpn.web.door.problems import MAXIMUM_ERRORS, MEDIA_TYPE, TITLES
 
 DESCRIBED: Mapping[str, Mapping[str, Named]] = {
     "DutyFigures": DUTY,
@@ -40,12 +40,31 @@ REPLIES: tuple[type, ...] = (
 )
 
 ONE_GEAR = "OneGearReply"
+LINES = "application/x-ndjson"
+MOST_AT_ONCE = 10_000
+"""Applications of a batch as one JSON object."""
+
+ITEMS: Mapping[tuple[str, str], tuple[int, int | None]] = {
+    ("Selection", "candidates"): (1, None),
+    ("Candidate", "checks"): (1, None),
+    ("BatchReply", "results"): (0, MOST_AT_ONCE),
+    ("ProblemReply", "errors"): (1, MAXIMUM_ERRORS),
+    ("CatalogueReply", "gears"): (1, None),
+    ("OneGearReply", "gears"): (1, 1),
+    ("EnvelopeReply", "curves"): (3, 4),
+    ("EnvelopeCurve", "radial_N"): (2, None),
+    ("EnvelopeCurve", "axial_N"): (2, None),
+    ("SelectionListReply", "selections"): (0, replies.SELECTIONS_LISTED),
+    ("TodayReply", "differences"): (0, replies.DIFFERENCES_SHOWN),
+    ("TodayReply", "figure_differences"): (0, replies.DIFFERENCES_SHOWN),
+}
+"""Least and most items of a reply's lists, where they are bounded."""
 
 
 class Batch(Model):
     """Applications to select gears for."""
 
-    applications: tuple[BatchItem, ...] = Field(max_length=10_000, description="Up to 10000 applications.")
+    applications: tuple[BatchItem, ...] = Field(max_length=MOST_AT_ONCE, description="Up to 10000 applications.")
 
 
 def components() -> dict[str, Any]:
@@ -53,7 +72,18 @@ def components() -> dict[str, Any]:
     _, found = msgspec.json.schema_components(REPLIES, ref_template="#/components/schemas/{name}")
     for name, schema in found.items():
         _complete(schema, DESCRIBED.get(name, {}))
-    return found | {ONE_GEAR: _one_gear(found["Gear"])}
+    found[ONE_GEAR] = _one_gear(found["Gear"])
+    for (name, field), bounds in ITEMS.items():
+        _bound(found[name]["properties"][field], *bounds)
+    return found
+
+
+def _bound(entry: dict[str, Any], least: int, most: int | None) -> None:
+    """Say how many items a list has; one that may be null says it of the list."""
+    lists = [option for option in (entry, *entry.get("anyOf", ())) if option.get("type") == "array"]
+    for option in lists:
+        option |= {"minItems": least} if least else {}
+        option |= {} if most is None else {"maxItems": most}
 
 
 def _complete(schema: dict[str, Any], named: Mapping[str, Named]) -> None:
@@ -96,36 +126,68 @@ def request_body(model: type[BaseModel]) -> dict[str, Any]:
 def batch_body() -> dict[str, Any]:
     """OpenAPI entry of a batch's body, as one JSON object or as lines."""
     body = request_body(Batch)
-    body["requestBody"]["content"]["application/x-ndjson"] = {
+    body["requestBody"]["content"][LINES] = {
         "schema": {
             "type": "string",
-            "description": "One application with its reference per line, each a JSON object (schema BatchItem).",
+            "description": "Lines that end in a line feed, each a JSON object as the schema BatchItem says: an "
+            "application with its reference. Any number of them; blank lines are skipped.",
         }
     }
     return body
 
 
-def problems(*statuses: int) -> dict[int | str, dict[str, Any]]:
-    """OpenAPI entries of the problems that a route can answer."""
-    later = {"headers": {"Retry-After": _text("Seconds after which to come again.")}}
-    return {
-        status: {
-            "description": TITLES[status],
-            "content": {MEDIA_TYPE: {"schema": {"$ref": "#/components/schemas/ProblemReply"}}},
-            **(later if status in (429, 503) else {}),
-        }
-        for status in statuses
-    }
+# --- Responses --------------------------------------------------------------------------------------------------------
+
+HEADERS = {
+    "X-Request-ID": "Id of the request, as in the log of the service.",
+    "RateLimit": "What is left of the rate, and when it begins anew; where there is a rate.",
+    "RateLimit-Policy": "How many requests are allowed in how many seconds; where there is a rate.",
+    "Retry-After": "Seconds after which to come again.",
+    "WWW-Authenticate": "Kind of key that is needed.",
+    "ETag": "Tag of this state, for If-None-Match and If-Match.",
+    "Location": "Address of what was saved.",
+    "Link": "Address of the part that follows, rel=next; none at the end.",
+    "Preference-Applied": "Which preference of `Prefer` was followed.",
+    "Content-Disposition": "File name for a download.",
+    "Content-Language": "Language of the file.",
+}
+"""Headers of responses, and what they say; components of the document."""
+
+
+def headers(*names: str) -> dict[str, Any]:
+    """OpenAPI entries of the headers of a response."""
+    return {name: {"$ref": f"#/components/headers/{name}"} for name in names}
+
+
+def header_components() -> dict[str, Any]:
+    """Headers of responses by name."""
+    return {name: _text(description) for name, description in HEADERS.items()}
 
 
 def _text(description: str) -> dict[str, Any]:
     return {"description": description, "schema": {"type": "string"}}
 
 
-ETAG = {"ETag": _text("Tag of this state, for If-None-Match and If-Match.")}
-LOCATION = {"Location": _text("Address of what was saved.")}
-NEXT_PART = {"Link": _text("Address of the part that follows, rel=next.")}
-HAS_IT_ALREADY: dict[int | str, dict[str, Any]] = {304: {"description": "The client has it already.", "headers": ETAG}}
+OF_STATUS = {401: headers("WWW-Authenticate"), 429: headers("Retry-After"), 503: headers("Retry-After")}
+"""Headers of problems."""
+
+
+def problems(*statuses: int) -> dict[int | str, dict[str, Any]]:
+    """OpenAPI entries of the problems that a route can answer."""
+    return {
+        status: {
+            "description": TITLES[status],
+            "content": {MEDIA_TYPE: {"schema": {"$ref": "#/components/schemas/ProblemReply"}}},
+            **({"headers": dict(OF_STATUS[status])} if status in OF_STATUS else {}),
+        }
+        for status in statuses
+    }
+
+
+HAS_IT_ALREADY: dict[int | str, dict[str, Any]] = {
+    304: {"description": "The client has it already.", "headers": headers("ETag")}
+}
+DELETED: dict[int | str, dict[str, Any]] = {204: {"description": "It is deleted."}}
 
 
 def answers(reply: str, *statuses: int, status: int = 200, **more: Any) -> dict[int | str, dict[str, Any]]:
@@ -137,10 +199,38 @@ def answers(reply: str, *statuses: int, status: int = 200, **more: Any) -> dict[
 def batch_answers(*statuses: int) -> dict[int | str, dict[str, Any]]:
     """OpenAPI entries of a batch's answer, which comes in the form of its body."""
     entries = answers("BatchReply", *statuses)
-    entries[200]["content"]["application/x-ndjson"] = {
-        "schema": {"type": "string", "description": "One BatchLine as JSON per line."}
+    entries[200]["content"][LINES] = {
+        "schema": {
+            "type": "string",
+            "description": "Lines that end in a line feed, each a JSON object as the schema BatchLine says: the answer "
+            "to one line, in their order, sent while others still arrive.",
+        }
     }
     return entries
+
+
+# --- From one operation to the next -----------------------------------------------------------------------------------
+
+
+def _links(id: str, *operations: str) -> dict[str, Any]:
+    """OpenAPI entries that lead to operations on a saved selection, whose id is where the expression says."""
+    return {name: {"operationId": name, "parameters": {"id": id}} for name in operations}
+
+
+OF_A_SELECTION = ("getSelectionReport", "getSelectionWorkbook", "getSelectionSubmodel", "deleteSelection")
+FROM_SAVED = _links("$response.body#/id", "getSelection", *OF_A_SELECTION)
+FROM_SELECTION = _links("$request.path.id", *OF_A_SELECTION)
+FROM_LIST = {
+    **_links("$response.body#/selections/0/id", "getSelection", "deleteSelection"),
+    "listSelections": {
+        "operationId": "listSelections",
+        "parameters": {"cursor": "$response.body#/next_cursor"},
+        "description": "The part that follows.",
+    },
+}
+
+
+# --- Requests ---------------------------------------------------------------------------------------------------------
 
 
 def header(name: str, description: str) -> dict[str, Any]:

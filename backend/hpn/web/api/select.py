@@ -18,11 +18,12 @@ from hpn.web.settings import Settings
 LONG_CYCLE = 500
 """Phases from which a single selection leaves the event loop to others."""
 
-router = APIRouter(prefix="/api/v1", dependencies=[admit("calculator")])
+router = APIRouter(prefix="/api/v1", tags=["Selection"], dependencies=[admit("calculator")])
 
 
 @router.post(
     "/select",
+    operation_id="select",
     summary="Select a gear for one application",
     openapi_extra=schemas.request_body(Application),
     responses=schemas.answers("Selection", 400, 408, 413, 415, 422),

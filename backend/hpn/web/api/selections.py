@@ -14,6 +14,8 @@ from hpn.catalogue import Catalogue
 from hpn.store import Store, Summary
 from hpn.web.api import schemas
 from hpn.web.api.replies import (
+    DIFFERENCES_SHOWN,
+    SELECTIONS_LISTED,
     JSONBytes,
     ProblemReply,
     SavedReply,
@@ -31,20 +33,20 @@ from hpn.web.door.observation import note
 from hpn.web.door.problems import Problem
 from hpn.web.settings import Settings
 
-DIFFERENCES_SHOWN = 500
 KEY = (
     "Makes a retry safe: the same key and content is saved once, other content is a 422. A key belongs to its caller, "
     "an API key or else an address, and lasts: once its selection is deleted it is answered with 410, so that a late "
     "retry saves nothing anew."
 )
 
-router = APIRouter(prefix="/api/v1/selections")
+router = APIRouter(prefix="/api/v1/selections", tags=["Saved selections"])
 """Its routes are of different groups, which each declares."""
 
 
 @router.post(
     "",
     dependencies=[admit("writing")],
+    operation_id="saveSelection",
     summary="Save a selection",
     status_code=201,
     openapi_extra=schemas.request_body(SaveRequest)
@@ -54,7 +56,13 @@ router = APIRouter(prefix="/api/v1/selections")
             schemas.header("Prefer", "return=minimal: no body; return=representation: the whole saved selection."),
         ]
     },
-    responses=schemas.answers("SavedReply", 400, 408, 410, 413, 415, 422, 503, status=201, headers=schemas.LOCATION),
+    responses=schemas.answers(
+        "SavedReply",
+        *(400, 408, 410, 413, 415, 422, 503),
+        status=201,
+        headers=schemas.headers("Location", "Preference-Applied"),
+        links=schemas.FROM_SAVED,
+    ),
     response_class=JSONBytes,
 )
 async def save_selection(request: Request) -> Response:
@@ -81,9 +89,13 @@ async def save_selection(request: Request) -> Response:
 @router.get(
     "/{id}",
     dependencies=[admit("reading")],
+    operation_id="getSelection",
     summary="Read a saved selection",
     openapi_extra=schemas.IF_NONE_MATCH,
-    responses=schemas.answers("SavedSelectionReply", 404, 503, headers=schemas.ETAG) | schemas.HAS_IT_ALREADY,
+    responses=schemas.answers(
+        "SavedSelectionReply", 404, 503, headers=schemas.headers("ETag"), links=schemas.FROM_SELECTION
+    )
+    | schemas.HAS_IT_ALREADY,
     response_class=JSONBytes,
 )
 async def read_selection(request: Request, id: str) -> Response:
@@ -94,9 +106,12 @@ async def read_selection(request: Request, id: str) -> Response:
 @router.get(
     "",
     dependencies=[admit("listing")],
+    operation_id="listSelections",
     summary="List saved selections",
     openapi_extra=schemas.IF_NONE_MATCH,
-    responses=schemas.answers("SelectionListReply", 422, 503, headers=schemas.ETAG | schemas.NEXT_PART)
+    responses=schemas.answers(
+        "SelectionListReply", 422, 503, headers=schemas.headers("ETag", "Link"), links=schemas.FROM_LIST
+    )
     | schemas.HAS_IT_ALREADY,
     response_class=JSONBytes,
 )
@@ -104,7 +119,7 @@ async def list_selections(
     request: Request,
     reference: Annotated[Line | None, Query(description="Only those with this reference.")] = None,
     cursor: Annotated[str | None, Query(max_length=200, description="From an earlier part of the list.")] = None,
-    limit: Annotated[int, Query(ge=1, le=200, description="How many at most.")] = 50,
+    limit: Annotated[int, Query(ge=1, le=SELECTIONS_LISTED, description="How many at most.")] = 50,
 ) -> Response:
     """Saved selections, newest first; the Link header leads to the next part."""
     store: Store = request.app.state.store
@@ -124,9 +139,10 @@ async def list_selections(
 @router.delete(
     "/{id}",
     dependencies=[admit("deleting")],
+    operation_id="deleteSelection",
     summary="Delete a saved selection",
     status_code=204,
-    responses=schemas.problems(403, 404, 412, 503),
+    responses=schemas.DELETED | schemas.problems(403, 404, 412, 503),
     openapi_extra={"parameters": [schemas.header("If-Match", "Delete only this state of it.")]},
 )
 async def delete_selection(request: Request, id: str) -> Response:

@@ -1,0 +1,293 @@
+"""What the OpenAPI document says is what the service does: names, bounds, examples, headers, links."""
+
+import copy
+import math
+import re
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+from starlette.testclient import TestClient
+
+from hpn.web.api.schemas import HEADERS
+from hpn.web.app import create_app
+from hpn.web.door.keys import new_key
+from hpn.web.door.observation import SECURITY_HEADERS
+from hpn.web.settings import Settings
+from tests.build import worked_example
+from tests.web.test_openapi import FULL
+
+Json = dict[str, Any]
+Path = tuple[str | int, ...]
+
+OPERATIONS = {
+    "deleteSelection": "DELETE /api/v1/selections/{id}",
+    "getApplicationSchema": "GET /api/v1/application.schema.json",
+    "getBearingEnvelopes": "GET /api/v1/bearing-envelopes/{size}",
+    "getCatalogue": "GET /api/v1/catalogue",
+    "getGear": "GET /api/v1/catalogue/{designation}",
+    "getHealth": "GET /healthz",
+    "getMetrics": "GET /metrics",
+    "getOEmbed": "GET /oembed",
+    "getReadiness": "GET /readyz",
+    "getSelection": "GET /api/v1/selections/{id}",
+    "getSelectionReport": "GET /api/v1/selections/{id}/report.pdf",
+    "getSelectionSubmodel": "GET /api/v1/selections/{id}/submodel.aasx",
+    "getSelectionWorkbook": "GET /api/v1/selections/{id}/report.xlsx",
+    "listSelections": "GET /api/v1/selections",
+    "makeReport": "POST /api/v1/report.pdf",
+    "makeSubmodel": "POST /api/v1/submodel.aasx",
+    "makeWorkbook": "POST /api/v1/report.xlsx",
+    "saveSelection": "POST /api/v1/selections",
+    "select": "POST /api/v1/select",
+    "selectBatch": "POST /api/v1/select/batch",
+}
+"""Generated clients name their functions by these: rename none without a new version of the API."""
+
+
+def operations(document: Json) -> Iterator[tuple[str, str, Json]]:
+    """Method, path and entry of every operation."""
+    for path, entries in document["paths"].items():
+        for method, entry in entries.items():
+            yield method.upper(), path, entry
+
+
+# --- Names ------------------------------------------------------------------------------------------------------------
+
+
+def test_operations_keep_their_ids(document: Json) -> None:
+    assert {entry["operationId"]: f"{method} {path}" for method, path, entry in operations(document)} == OPERATIONS
+
+
+def test_every_operation_has_one_tag_and_every_tag_says_what_it_holds(document: Json) -> None:
+    used = [tuple(entry["tags"]) for _, _, entry in operations(document)]
+
+    assert all(len(tags) == 1 for tags in used)
+    assert {tag["name"] for tag in document["tags"]} == {tag for (tag,) in used}
+    assert all(tag["description"] for tag in document["tags"])
+
+
+def test_the_server_is_whoever_sent_the_document(document: Json) -> None:
+    assert [server["url"] for server in document["servers"]] == ["/"]
+
+
+def test_every_link_leads_to_an_operation_with_such_a_parameter(document: Json) -> None:
+    taken = {
+        entry["operationId"]: {parameter["name"] for parameter in entry.get("parameters", ())}
+        for _, _, entry in operations(document)
+    }
+    followed = 0
+    for _, _, entry in operations(document):
+        for response in entry["responses"].values():
+            for link in response.get("links", {}).values():
+                assert set(link["parameters"]) <= taken[link["operationId"]], link
+                followed += 1
+    assert followed > 10
+
+
+# --- Bounds -----------------------------------------------------------------------------------------------------------
+
+
+def resolved(document: Json, schema: Json) -> Json:
+    """A schema without its reference, and without that it may be null."""
+    options = [option for option in schema.get("anyOf", ()) if option.get("type") != "null"]
+    schema = options[0] if options else schema
+    return document["components"]["schemas"][schema["$ref"].rpartition("/")[2]] if "$ref" in schema else schema
+
+
+def leaves(document: Json, schema: Json, path: Path = ()) -> Iterator[tuple[Path, Json]]:
+    """Every part of a schema with its path, lists by their first item."""
+    schema = resolved(document, schema)
+    yield path, schema
+    for name, entry in schema.get("properties", {}).items():
+        yield from leaves(document, entry, (*path, name))
+    if "items" in schema:
+        yield from leaves(document, schema["items"], (*path, 0))
+
+
+def tries(schema: Json, there: Any = None) -> Iterator[tuple[Any, bool]]:
+    """Values at every bound of a schema, which it allows, and just beyond, which it refuses."""
+    whole = schema.get("type") == "integer"
+    for name, beyond in (("minimum", -math.inf), ("maximum", math.inf)):
+        if name in schema:
+            bound = schema[name]
+            yield bound, True
+            yield bound + int(math.copysign(1, beyond)) if whole else math.nextafter(bound, beyond), False
+    if "exclusiveMinimum" in schema:
+        yield math.nextafter(schema["exclusiveMinimum"], math.inf), True
+        yield schema["exclusiveMinimum"], False
+    if "maxLength" in schema:
+        yield "a" * schema["maxLength"], True
+        yield "a" * (schema["maxLength"] + 1), False
+    for name, step in (("minItems", -1), ("maxItems", 1)):
+        if name in schema:
+            yield there[:1] * schema[name], True
+            yield there[:1] * (schema[name] + step), False
+
+
+def with_value(body: Json, path: Path, value: Any) -> Json:
+    """A copy of a body with another value at a path."""
+    changed: Any = copy.deepcopy(body)
+    place = changed
+    for step in path[:-1]:
+        place = place[step]
+    place[path[-1]] = value
+    return dict(changed)
+
+
+def at(body: Json, path: Path) -> Any:
+    """Value at a path, or None."""
+    value: Any = body
+    for step in path:
+        value = value.get(step) if isinstance(value, dict) else value[step]
+    return value
+
+
+def refusals(response: Any, pointer: str) -> list[str]:
+    """What the models refuse at a place; that the catalogue or the list has no such thing is no bound."""
+    assert response.status_code in (200, 201, 404, 406, 413, 422), response.text
+    errors = response.json().get("errors", []) if response.status_code in (413, 422) else []
+    found = [error["detail"] for error in errors if error["pointer"] == pointer]
+    return [text for text in found if not re.match("the catalogue has no|is not a cursor", text)]
+
+
+WHOLE: Json = FULL | {
+    "requirements": FULL["requirements"] | {"ratios": [5], "sizes": ["20A"]},
+    "duty_cycle": FULL["duty_cycle"]
+    | {"phases": [phase | {"radial_N": 1, "axial_N": 1} for phase in FULL["duty_cycle"]["phases"]]},
+}
+BODIES: dict[str, tuple[str, Json]] = {
+    "Application": ("/api/v1/select", WHOLE),
+    "SaveRequest": ("/api/v1/selections", {"application": worked_example(), "title": "t", "reference": "r"}),
+    "Batch": ("/api/v1/select/batch", {"applications": [{}]}),
+}
+
+
+@pytest.mark.parametrize("name", BODIES)
+def test_each_bound_of_a_body_is_the_one_that_is_applied(api: TestClient, document: Json, name: str) -> None:
+    address, body = BODIES[name]
+    tried = 0
+    for path, schema in leaves(document, document["components"]["schemas"][name]):
+        if path[:1] == ("application",) or path[:2] == ("applications", 0):  # tried by itself
+            continue
+        for value, allowed in tries(schema, at(body, path)):
+            response = api.post(address, json=with_value(body, path, value))
+            pointer = "".join(f"/{step}" for step in path)
+            assert (refusals(response, pointer) == []) is allowed, (pointer, str(value)[:60], response.text[:300])
+            tried += 1
+    assert tried >= (2 if name == "Batch" else 4)
+
+
+def test_each_bound_of_a_query_is_the_one_that_is_applied(api: TestClient, document: Json) -> None:
+    tried = 0
+    for _, path, operation in operations(document):
+        for parameter in operation.get("parameters", ()):
+            for value, allowed in tries(parameter["schema"]) if parameter["in"] == "query" else ():
+                query = {"url": "/"} | {parameter["name"]: value}
+                address = path.format(size="20A", designation="HPN-20A-5", id="A" * 22)
+                response = api.get(address, params=query if "oembed" in path else {parameter["name"]: value})
+                found = refusals(response, f"/{parameter['name']}")
+                assert (found == []) is allowed, (path, parameter["name"], value, found)
+                tried += 1
+    assert tried >= 16
+
+
+def test_no_list_is_bounded_as_a_text(document: Json) -> None:
+    for name, schema in document["components"]["schemas"].items():
+        for path, part in leaves(document, schema) if name in BODIES else ():
+            assert part.get("type") != "array" or not {"minLength", "maxLength"} & set(part), (name, path)
+
+
+# --- Examples ---------------------------------------------------------------------------------------------------------
+
+
+def test_what_stands_as_an_example_gives_the_answer_that_stands_beside_it(api: TestClient, document: Json) -> None:
+    compared = []
+    for method, path, operation in operations(document):
+        address = path.format(**{entry["name"]: entry.get("example", "") for entry in operation.get("parameters", ())})
+        for status, response in operation["responses"].items():
+            for media_type, content in response.get("content", {}).items():
+                for name, example in content.get("examples", {}).items():
+                    answer = asked(api, method, address, operation, media_type, name)
+                    shown = answer.text if media_type.endswith("ndjson") else answer.json()
+                    assert (answer.status_code, shown) == (int(status), example["value"]), (path, name)
+                    compared.append((operation["operationId"], name))
+    assert compared == [
+        ("select", "worked_example"),
+        ("select", "no_duration"),
+        ("selectBatch", "worked_example"),
+        ("selectBatch", "two_lines"),
+        ("getGear", "first_gear"),
+        ("getBearingEnvelopes", "first_size"),
+    ]
+
+
+def asked(api: TestClient, method: str, address: str, operation: Json, media_type: str, name: str) -> Any:
+    """Answer to the request that stands as an example."""
+    bodies = operation.get("requestBody", {}).get("content", {})
+    if media_type.endswith("ndjson"):
+        lines = bodies[media_type]["examples"][name]["value"]
+        return api.request(method, address, content=lines, headers={"Content-Type": media_type})
+    if not bodies:
+        return api.request(method, address)
+    body = bodies["application/json"]["examples"]["worked_example"]["value"]
+    if name == "no_duration":
+        body = with_value(body, ("duty_cycle", "phases", 0, "duration_s"), 0)
+    return api.request(method, address, json=body)
+
+
+# --- Headers ----------------------------------------------------------------------------------------------------------
+
+OF_HTTP = {"cache-control", "content-encoding", "content-length", "content-type", "vary", "x-accel-buffering"}
+OF_HTTP |= {name.lower() for name in SECURITY_HEADERS}
+"""Headers that say nothing of the selection."""
+
+
+def test_every_answer_is_in_the_document_with_each_of_its_headers(api: TestClient, document: Json) -> None:
+    application = worked_example()
+    saved = api.post("/api/v1/selections", json={"application": application}, headers={"Prefer": "return=minimal"})
+    api.post("/api/v1/selections", json={"application": application})
+    own = saved.headers["location"]
+    tag = api.get(own).headers["etag"]
+    answers = {
+        "saveSelection": [saved, api.post("/api/v1/selections", json={})],
+        "getSelection": [api.get(own), api.get(own, headers={"If-None-Match": tag}), api.get(own[:-1])],
+        "listSelections": [api.get("/api/v1/selections?limit=1"), api.get("/api/v1/selections?limit=0")],
+        "getSelectionReport": [
+            report := api.get(f"{own}/report.pdf"),
+            api.get(f"{own}/report.pdf", headers={"If-None-Match": report.headers["etag"]}),
+        ],
+        "deleteSelection": [api.delete(own, headers={"If-Match": '"x"'}), api.delete(own), api.delete(own)],
+        "select": [api.post("/api/v1/select", json=application), api.post("/api/v1/select", content="{}")],
+        "selectBatch": [api.post("/api/v1/select/batch", headers={"Content-Type": "application/x-ndjson"})],
+        "getApplicationSchema": [api.get("/api/v1/application.schema.json")],
+        "getMetrics": [api.get("/metrics")],
+        "getHealth": [api.get("/healthz")],
+        "makeReport": [with_keys().post("/api/v1/report.pdf", json=application)],
+    }
+    entries = {entry["operationId"]: entry for _, _, entry in operations(document)}
+    for name, responses in answers.items():
+        for response in responses:
+            entry = entries[name]["responses"][str(response.status_code)]
+            media_type = response.headers.get("content-type", "").partition(";")[0]
+            assert not response.content or media_type in entry["content"], (name, response.status_code)
+            sent = {header for header in response.headers if header not in OF_HTTP}
+            said = {header.lower() for header in entry["headers"]}
+            assert sent <= said, (name, response.status_code)
+
+
+def with_keys() -> TestClient:
+    """Client without a key of a service that wants one for every calculation."""
+    _, pair = new_key("plm")
+    return TestClient(create_app(Settings(api_keys=pair, guarded="calculator")))
+
+
+def test_every_header_in_the_document_is_used_by_some_answer(document: Json) -> None:
+    used = {
+        name
+        for _, _, entry in operations(document)
+        for response in entry["responses"].values()
+        for name in response["headers"]
+    }
+
+    assert used == set(HEADERS) == set(document["components"]["headers"])
