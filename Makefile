@@ -11,7 +11,7 @@ UV := $(VENV)/uv/bin/uv
 MODULES := frontend/node_modules
 ASSETS := frontend/dist/manifest.json
 # What is installed: enough to run, or all of it. Once a tree has the tools, `make run` must not take them away again.
-FOR := $(if $(filter check test soak bench screenshots browser messages,$(MAKECMDGOALS))$(wildcard $(VENV)/.dev),dev,run)
+FOR := $(if $(filter check test soak bench screenshots browser messages licences sbom audit,$(MAKECMDGOALS))$(wildcard $(VENV)/.dev),dev,run)
 PAGE_FOR := $(if $(filter test soak,$(MAKECMDGOALS))$(wildcard $(MODULES)/.dev),dev,run)
 ENVIRONMENT := $(VENV)/.$(FOR)
 PACKAGES := $(MODULES)/.$(PAGE_FOR)
@@ -24,7 +24,7 @@ endif
 export UV_SYSTEM_CERTS ?= true
 export NODE_USE_SYSTEM_CA ?= 1
 
-.PHONY: run install assets test soak check bench screenshots browser office curl messages lock digests clean
+.PHONY: run install assets test soak check bench screenshots browser office curl messages lock licences audit digests clean
 .DELETE_ON_ERROR:
 
 run: install
@@ -134,6 +134,14 @@ lock: $(UV) | $(NODE)
 	$(BIN)/python -c "import json, pathlib; path = pathlib.Path('frontend/package-lock.json'); lock = json.loads(path.read_text()); \
 	  [package.pop('funding', None) for package in lock['packages'].values()]; path.write_text(json.dumps(lock, indent=2) + '\n')"
 	! grep -nE 'https?:|file:|find-links' requirements*.lock frontend/package-lock.json
+
+# Licences of everything in the locks, into docs/licences.md.
+licences: $(ENVIRONMENT)
+	$(BIN)/python -m tests.supply.licences
+
+# The locks against known vulnerabilities: ends with 1 where there is one, 3 where no database can be asked.
+audit: $(ENVIRONMENT) | $(NODE)
+	$(BIN)/python -m tests.supply.audit
 
 # Images are named by digest; this asks their registry for today's and writes them, all or none.
 PINNED := docker-compose.yml backend/Dockerfile

@@ -1,0 +1,36 @@
+"""What the locks name."""
+
+import json
+import re
+from pathlib import Path
+from typing import Any, NamedTuple
+
+ROOT = Path(__file__).parents[2]
+RUN_LOCK = ROOT / "requirements.lock"
+DEVELOPMENT_LOCKS = tuple(ROOT / f"requirements-{name}.lock" for name in ("dev", "uv", "node"))
+PAGE = ROOT / "frontend"
+ENTRY = re.compile(r"^([\w.-]+)==(\S+)[^\\]*\\\n((?: +--hash=.*\n)+)", re.M)
+
+
+class Package(NamedTuple):
+    """A package of a lock; of one name there may be two, for older and newer versions of Python."""
+
+    name: str
+    version: str
+    hashes: str = ""
+
+
+def python(lock: Path) -> list[Package]:
+    """Packages of a requirements lock, on whatever machine they are for."""
+    text = lock.read_text()
+    packages = [Package(*entry) for entry in ENTRY.findall(text)]
+    assert len(packages) == len(re.findall(r"^\w", text, re.M)), (
+        f"{lock.name} is written in another way than this reads"
+    )
+    return packages
+
+
+def page() -> dict[str, dict[str, Any]]:
+    """Packages of the page's lock, by their folder."""
+    packages: dict[str, dict[str, Any]] = json.loads((PAGE / "package-lock.json").read_text())["packages"]
+    return {folder: package for folder, package in packages.items() if folder}
