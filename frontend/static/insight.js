@@ -45,6 +45,8 @@ document.addEventListener("htmx:after:swap", (event) => {
 const stepsOf = (button) => [...document.querySelectorAll(button.dataset.unfold)];
 const allOpen = (button) => stepsOf(button).every((step) => step.open);
 
+let opened = false; // what the switch was last set to
+
 function showState() {
   for (const button of document.querySelectorAll("[data-unfold]")) button.setAttribute("aria-checked", allOpen(button));
 }
@@ -52,9 +54,15 @@ function showState() {
 document.addEventListener("click", (event) => {
   const button = event.target.closest("[data-unfold]");
   if (!button) return;
-  const open = !allOpen(button);
-  for (const step of stepsOf(button)) step.open = open;
+  opened = !allOpen(button);
+  for (const step of stepsOf(button)) step.open = opened;
   showState();
+});
+
+// A calculation that is fetched anew, and not merged into the one before, has its steps as the switch says.
+document.addEventListener("htmx:after:swap", (event) => {
+  if (!opened || !event.detail.ctx?.sourceElement.matches("[data-part]")) return;
+  for (const button of document.querySelectorAll("[data-unfold]")) for (const step of stepsOf(button)) step.open = true;
 });
 
 document.addEventListener("toggle", showState, true);

@@ -158,6 +158,21 @@ def test_calculation_opened_after_an_edit_is_that_of_the_edit(visitor: Visitor) 
     expect(peak).to_contain_text("42")
 
 
+def test_trivial_steps_stay_open_where_the_calculation_is_fetched_anew(visitor: Visitor) -> None:
+    page = visitor.open(EXAMPLE)
+    open_calculation(page, "HPN-20A-5")
+    page.get_by_role("switch", name="Open the trivial steps too").click()
+    peak = page.get_by_role("group", name="Formulas: Load limit 2: repeated peak torque")
+    expect(peak).to_contain_text("40")
+    open_calculation(page, "HPN-20A-5")
+    torque(page, 1).fill("42")
+    expect(page.get_by_role("row", name="Average torque").first).to_contain_text("32.2")
+    expect(page.get_by_role("math", include_hidden=True)).to_have_count(0)
+    open_calculation(page, "HPN-20A-5")
+    expect(peak).to_contain_text("42")
+    expect(page.get_by_role("switch", name="Open the trivial steps too")).to_be_checked()
+
+
 def test_calculation_opens_without_script(visitor: Visitor) -> None:
     page = visitor.open(EXAMPLE, script=False)
     open_calculation(page, "HPN-20A-5")
