@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from hpn.catalogue import load_catalogue
-from hpn.catalogue.tables import TABLES, CatalogueError, Table
+from hpn.catalogue import CatalogueError, load_catalogue
+from hpn.catalogue.tables import TABLES, Table
 from hpn.web.app import create_app
 from hpn.web.settings import Settings
 from tests.conftest import Supplement

@@ -2,6 +2,7 @@
 
 import hashlib
 from collections import defaultdict
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any, cast
 
@@ -11,9 +12,9 @@ from numpy.typing import NDArray
 from hpn.bearing import Curve, CurveError, curve_through
 from hpn.catalogue import tables
 from hpn.catalogue.catalogue import Catalogue, FlangeBolt, OutputVersion, SeriesFigure
+from hpn.catalogue.files import CatalogueError, read_folder
 from hpn.catalogue.tables import (
     AccuracyTable,
-    CatalogueError,
     ClampBoltTable,
     EfficiencyTable,
     EnvelopeTable,
@@ -35,6 +36,7 @@ from hpn.gear import ClampBolt, Gear, HousingBolts
 from hpn.source import printed_source, supplied_source
 
 FloatArray = NDArray[np.float64]
+FILES = tuple(table.file for table in tables.TABLES)
 HANDBOOK_FOLDER = Path(__file__).parents[3] / "catalogue"
 
 SERIES_FIGURES = {
@@ -64,16 +66,13 @@ def load_catalogue(folder: Path = HANDBOOK_FOLDER, supplement: Path | None = Non
 
     Raises CatalogueError, which names file, line and column, for the first thing that is wrong.
     """
-    _refuse_unknown_files(supplement)
+    parts = [(part, read_folder(part, FILES)) for part in (folder, supplement) if part]
     book = _Book()
     for table in tables.TABLES:
-        rows = tables.read(folder, table, supplied=False)
-        if supplement:
-            rows = tables.merge(rows, tables.read(supplement, table, supplied=True))
-        book[table] = tables.validated(table, rows)
+        book[table] = tables.validated(table, _rows(table, parts))
     _check(book)
     return Catalogue(
-        version=_version(folder, supplement),
+        version=_version([contents for _, contents in parts]),
         gears=_gears(book),
         series=_series(book),
         flange_bolts=tuple(
@@ -90,27 +89,25 @@ def load_catalogue(folder: Path = HANDBOOK_FOLDER, supplement: Path | None = Non
     )
 
 
-def _refuse_unknown_files(supplement: Path | None) -> None:
-    if supplement is None:
-        return
-    if not supplement.is_dir():
-        raise CatalogueError(supplement, None, None, "is not a folder")
-    known = {table.file for table in tables.TABLES}
-    for path in sorted(supplement.glob("*.csv")):
-        if path.name not in known:
-            raise CatalogueError(
-                path, None, None, f"is not a table of the catalogue; there are {', '.join(sorted(known))}"
-            )
+def _rows(table: type[Table], parts: Sequence[tuple[Path, dict[str, bytes]]]) -> dict[tables.Key, tables.Cells]:
+    """Rows of the catalogue's folder, and those of the supplement over them where it has this table."""
+    (folder, contents), *supplements = parts
+    if table.file not in contents:
+        raise CatalogueError(folder / table.file, None, None, "is missing")
+    rows = tables.read(folder / table.file, contents[table.file], table, supplied=False)
+    for supplement, files in supplements:
+        if table.file in files:
+            over = tables.read(supplement / table.file, files[table.file], table, supplied=True)
+            rows = tables.merge(rows, over)
+    return rows
 
 
-def _version(folder: Path, supplement: Path | None) -> str:
+def _version(parts: Iterable[dict[str, bytes]]) -> str:
     digest = hashlib.sha256()
-    for part in filter(None, (folder, supplement)):
-        for table in tables.TABLES:
-            path = part / table.file
-            if path.exists():
-                content = path.read_bytes().replace(b"\r\n", b"\n")
-                digest.update(f"{table.file} {len(content)}\n".encode() + content)
+    for contents in parts:
+        for name in filter(contents.__contains__, FILES):
+            content = contents[name].replace(b"\r\n", b"\n")
+            digest.update(f"{name} {len(content)}\n".encode() + content)
         digest.update(b"--\n")
     return digest.hexdigest()[:16]
 
@@ -118,21 +115,29 @@ def _version(folder: Path, supplement: Path | None) -> str:
 class _Book(dict[type[Table], list[Table]]):
     """Validated rows by table."""
 
+    def __init__(self) -> None:
+        self._by_key: dict[tuple[object, ...], Table] = {}
+
+    def __setitem__(self, table: type[Table], rows: list[Table]) -> None:
+        super().__setitem__(table, rows)
+        self._by_key |= {(table, *(getattr(row, name) for name in table.key)): row for row in rows}
+
     def of(self, table: type[TableRow]) -> list[TableRow]:
         """Rows of one table, typed."""
         return cast(list[TableRow], self[table])
 
-    def find(self, table: type[TableRow], **key: object) -> TableRow | None:
+    def find(self, table: type[TableRow], *key: object) -> TableRow | None:
         """Row with this key, or None."""
-        return next((row for row in self.of(table) if all(getattr(row, k) == v for k, v in key.items())), None)
+        return cast(TableRow | None, self._by_key.get((table, *key)))
 
     def source(self, row: Table, column: str) -> str:
         """Where one figure comes from; what the user supplied says so."""
         cell = row.cells[column]
         if cell.supplied:
             return supplied_source(cell.source or Path(cell.file).name)
-        page = next(entry.page for entry in self.of(SourceTable) if entry.source == cell.source)
-        return printed_source(cell.source, page)
+        printed = self.find(SourceTable, cell.source)
+        assert printed is not None  # `_check` has looked
+        return printed_source(cell.source, printed.page)
 
 
 def _check(book: _Book) -> None:
@@ -156,7 +161,7 @@ def _check(book: _Book) -> None:
     _check_orderings(book)
     _check_complete(book)
     for name, unit in SERIES_FIGURES.items():
-        figure = book.find(SeriesTable, name=name)
+        figure = book.find(SeriesTable, name)
         if figure is None:
             raise CatalogueError("series.csv", None, "name", f"{name} is missing")
         if figure.unit != unit:
@@ -165,9 +170,9 @@ def _check(book: _Book) -> None:
 
 def _check_stages(book: _Book) -> None:
     """A ratio has the same number of stages in every size, and fewer stages never make a larger ratio."""
-    gears = book.of(GearTable)
-    for gear in gears:
-        for other in gears:
+    kinds = {(gear.ratio, gear.stages): gear for gear in reversed(book.of(GearTable))}
+    for gear in kinds.values():
+        for other in kinds.values():
             if (gear.ratio <= other.ratio and gear.stages > other.stages) or (
                 gear.ratio == other.ratio and gear.stages != other.stages
             ):
@@ -196,12 +201,12 @@ def _check_complete(book: _Book) -> None:
         if gear.size not in rated:
             continue
         rows: dict[type[Table], Table | None] = {
-            RatingTable: book.find(RatingTable, size=gear.size, ratio=gear.ratio),
-            SizeTable: book.find(SizeTable, size=gear.size),
-            WeightTable: book.find(WeightTable, size=gear.size, stages=gear.stages),
-            LengthTable: book.find(LengthTable, size=gear.size, stages=gear.stages),
-            AccuracyTable: book.find(AccuracyTable, size=gear.size, stages=gear.stages),
-            StiffnessTable: book.find(StiffnessTable, size=gear.size, stages=gear.stages),
+            RatingTable: book.find(RatingTable, gear.size, gear.ratio),
+            SizeTable: book.find(SizeTable, gear.size),
+            WeightTable: book.find(WeightTable, gear.size, gear.stages),
+            LengthTable: book.find(LengthTable, gear.size, gear.stages),
+            AccuracyTable: book.find(AccuracyTable, gear.size, gear.stages),
+            StiffnessTable: book.find(StiffnessTable, gear.size, gear.stages),
         }
         for table, row in rows.items():
             if row is None:
@@ -231,9 +236,9 @@ def _gears(book: _Book) -> tuple[Gear, ...]:
     gears = []
     for row in sorted(book.of(GearTable), key=lambda row: (int(row.size[:-1]), row.ratio)):
         parts: list[Table | None] = [
-            book.find(RatingTable, size=row.size, ratio=row.ratio),
-            book.find(SizeTable, size=row.size),
-            *(book.find(table, size=row.size, stages=row.stages) for table in PER_STAGE),
+            book.find(RatingTable, row.size, row.ratio),
+            book.find(SizeTable, row.size),
+            *(book.find(table, row.size, row.stages) for table in PER_STAGE),
         ]
         values: dict[str, Any] = {}
         sources = {"ratio": book.source(row, "ratio"), "stages": book.source(row, "stages")}
@@ -263,7 +268,7 @@ def _gears(book: _Book) -> tuple[Gear, ...]:
 
 
 def _housing_bolts(book: _Book, size: str) -> HousingBolts | None:
-    row = book.find(HousingBoltTable, size=size)
+    row = book.find(HousingBoltTable, size)
     if row is None:
         return None
     source = book.source(row, "tightening_torque_Nm")

@@ -4,7 +4,9 @@ A table is a pydantic model: its fields are the columns, in their units, and `ke
 row. A supplement has files of the same form that are merged cell by cell; a blank cell keeps what was there.
 """
 
+import codecs
 import csv
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass, fields
 from pathlib import Path
@@ -12,18 +14,14 @@ from typing import Annotated, Any, ClassVar, TypeVar
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, create_model
 
+from hpn.catalogue.files import CatalogueError
 from hpn.gear import Gear, canonical_size
 from hpn.units import SYMBOLS
 
-MAXIMUM_FILE_BYTES = 4_000_000
+LONGEST_CELL = 1000
 
-
-class CatalogueError(ValueError):
-    """A catalogue or supplement file that can't be used; the text names file, line and column."""
-
-    def __init__(self, file: Path | str, line: int | None, column: str | None, detail: str) -> None:
-        where = f"{file}" + (f", line {line}" if line else "") + (f", column {column}" if column else "")
-        super().__init__(f"{where}: {detail}")
+UNPRINTABLE = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069\ufeff\ufffe\uffff]")
+"""Control characters, separators of lines that editors don't count, marks that turn the text around them."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,6 +57,8 @@ class Table(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid")
     file: ClassVar[str]
     key: ClassVar[tuple[str, ...]]
+    most_rows: ClassVar[int] = 1000
+    may_be_empty: ClassVar[bool] = False
     source: str | None = Field(None, min_length=1)
     cells: Cells = Field(default_factory=dict, exclude=True)
 
@@ -182,6 +182,8 @@ class EnvelopeTable(Table):
 
     file = "bearing_envelopes.csv"
     key = ("size", "load_coefficient", "axial_N", "radial_N")
+    most_rows = 10_000
+    may_be_empty = True
     size: Size
     load_coefficient: Annotated[Figure, Field(ge=1, le=3)]
     axial_N: Annotated[Figure, Field(ge=0, le=1e12)]
@@ -193,6 +195,8 @@ class EfficiencyTable(Table):
 
     file = "efficiency.csv"
     key = ("size", "ratio", "torque_Nm")
+    most_rows = 10_000
+    may_be_empty = True
     size: Size
     ratio: Count
     torque_Nm: Positive
@@ -221,16 +225,14 @@ TABLES: tuple[type[Table], ...] = (
 Key = tuple[str, ...]
 
 
-def read(folder: Path, table: type[Table], *, supplied: bool) -> dict[Key, Cells]:
-    """Cells of one CSV file by key; empty where a supplement lacks the file.
+def read(path: Path, content: bytes, table: type[Table], *, supplied: bool) -> dict[Key, Cells]:
+    """Cells of one CSV file by key.
 
-    Raises CatalogueError for a missing file, a wrong header, a row of the wrong length, a blank or repeated key.
+    Raises CatalogueError for what is no text, a wrong header, no row or too many, a row of the wrong length, a blank or
+    repeated key.
     """
-    path = folder / table.file
-    if supplied and not path.exists():
-        return {}
     rows: dict[Key, Cells] = {}
-    for line, row in _lines(path, table):
+    for line, row in _lines(path, _text(path, content), table):
         texts = dict(zip(table.columns(), (text.strip() for text in row), strict=True))
         cells = {column: Cell(text, texts["source"], str(path), line, supplied) for column, text in texts.items()}
         for column in table.key:
@@ -240,7 +242,11 @@ def read(folder: Path, table: type[Table], *, supplied: bool) -> dict[Key, Cells
         if key in rows:
             first = next(iter(rows[key].values())).line
             raise CatalogueError(path, line, table.key[0], f"repeats the row of line {first}")
+        if len(rows) == table.most_rows:
+            raise CatalogueError(path, line, None, f"the table has more than {table.most_rows} rows")
         rows[key] = cells
+    if not rows and (supplied or not table.may_be_empty):
+        raise CatalogueError(path, 1, None, "there is a header, but no row below it")
     return rows
 
 
@@ -265,34 +271,44 @@ def validated(table: type[TableRow], rows: dict[Key, Cells]) -> list[TableRow]:
             first = error.errors()[0]
             column = str(first["loc"][0])
             cell = cells[column]
-            detail = f"{first['msg'].removeprefix('Value error, ')} (found {cell.text!r})"
+            message = first["msg"].removeprefix("Value error, ").replace("Input should", "must")
+            detail = f"{message} (found {cell.text[:60]!r})"
             raise CatalogueError(cell.file, cell.line, column, detail) from None
     return result
 
 
-def _lines(path: Path, table: type[Table]) -> Iterator[tuple[int, list[str]]]:
+def _text(path: Path, content: bytes) -> str:
+    content = content.removeprefix(codecs.BOM_UTF8)
     try:
-        if path.stat().st_size > MAXIMUM_FILE_BYTES:
-            raise CatalogueError(path, None, None, f"is larger than {MAXIMUM_FILE_BYTES} bytes")
-        content = path.read_bytes()
-        text = content.decode("utf-8-sig")
-    except FileNotFoundError:
-        raise CatalogueError(path, None, None, "is missing") from None
-    except OSError as error:
-        raise CatalogueError(path, None, None, f"can't be read: {error}") from None
+        text = content.decode()
     except UnicodeDecodeError as error:
-        lines = (content[: error.start] + b"?").decode("utf-8-sig").splitlines()
-        header, broken = next(csv.reader(lines)), next(csv.reader(lines[-1:]))
-        column = header[len(broken) - 1] if len(broken) <= len(header) and len(lines) > 1 else None
+        place = _place(content[: error.start].decode())
         detail = f"byte {content[error.start]:#04x} is not UTF-8 text; save the file as UTF-8"
-        raise CatalogueError(path, len(lines), column, detail) from None
+        raise CatalogueError(path, *place, detail) from None
+    if found := UNPRINTABLE.search(text):
+        detail = f"the character U+{ord(found[0]):04X} does not belong in a table; save the file as UTF-8 text"
+        raise CatalogueError(path, *_place(text[: found.start()]), detail)
+    return text
+
+
+def _place(before: str) -> tuple[int, str | None]:
+    """Line and column of what follows a text."""
+    lines = (before + "?").splitlines()
+    try:
+        header, broken = next(csv.reader(lines)), next(csv.reader(lines[-1:]))
+    except csv.Error:  # the text is no table either
+        return len(lines), None
+    return len(lines), header[len(broken) - 1] if len(broken) <= len(header) and len(lines) > 1 else None
+
+
+def _lines(path: Path, text: str, table: type[Table]) -> Iterator[tuple[int, list[str]]]:
     reader = csv.reader(text.splitlines(), strict=True)
     columns = table.columns()
     try:
         header = next(reader, [])
         if sorted(header) != sorted(columns):
-            wrong = sorted(set(header) ^ set(columns)) or header
-            detail = f"the header must have the columns {', '.join(columns)}; see {', '.join(wrong)}"
+            wrong = [name[:40] for name in sorted(set(header) ^ set(columns)) or header]
+            detail = f"the header must have the columns {', '.join(columns)}; see {', '.join(wrong[:20])}"
             raise CatalogueError(path, 1, None, detail)
         order = [header.index(column) for column in columns]
         for row in reader:
@@ -302,9 +318,14 @@ def _lines(path: Path, table: type[Table]) -> Iterator[tuple[int, list[str]]]:
                 place = header[min(len(row), len(header) - 1)]  # the first column without a cell, else the last of all
                 detail = f"has {len(row)} cells where the header has {len(columns)} (a decimal comma splits a cell)"
                 raise CatalogueError(path, reader.line_num, place, f"the row {detail}")
+            if max(map(len, row)) > LONGEST_CELL:
+                place = next(column for column, cell in zip(header, row, strict=True) if len(cell) > LONGEST_CELL)
+                detail = f"the cell has more than {LONGEST_CELL} characters"
+                raise CatalogueError(path, reader.line_num, place, detail)
             yield reader.line_num, [row[index] for index in order]
     except csv.Error as error:
-        raise CatalogueError(path, reader.line_num, None, str(error)) from None
+        detail = {"unexpected end of data": "a quote is opened and not closed"}.get(str(error), str(error))
+        raise CatalogueError(path, reader.line_num, None, detail) from None
 
 
 def _key_text(column: str, text: str) -> str:
