@@ -2,7 +2,9 @@
 
 import io
 import json
+import os
 import signal
+import socket
 import subprocess
 import sys
 from pathlib import Path
@@ -11,6 +13,8 @@ from types import SimpleNamespace
 import orjson
 import pytest
 
+from hpn import ENGINE_VERSION
+from hpn.catalogue import Catalogue
 from hpn.cli import main
 from tests.build import Json, cycle, phase, worked_example
 
@@ -93,6 +97,111 @@ def test_wrong_input_is_exit_code_2_with_the_place_on_standard_error(
 def test_a_file_that_is_not_there_is_exit_code_2(tmp_path: Path, capsys: Output) -> None:
     assert main(["select", str(tmp_path / "none.json")]) == 2
     assert "none.json" in capsys.readouterr().err
+
+
+def test_a_file_with_a_byte_order_mark_is_read(file: Path, capsys: Output) -> None:
+    file.write_bytes(b"\xef\xbb\xbf" + orjson.dumps(worked_example()))
+
+    assert main(["select", str(file), "--table"]) == 0
+    assert capsys.readouterr().out.startswith("selected: HPN-20A-4\n")
+
+
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [
+        ("", "is a folder, where a file belongs"),
+        ("none.json", "there is no such file"),
+        ("none/none.json", "there is no such file"),
+        ("text.txt", "Invalid JSON: expected ident at line 1 column 2; an application is a JSON object"),
+        ("endless", "is larger than an application can be"),
+    ],
+)
+def test_a_file_that_is_no_application_is_named_in_one_line(
+    tmp_path: Path, name: str, words: str, capsys: Output
+) -> None:
+    (tmp_path / "text.txt").write_text("torque speed time", encoding="utf-8")
+    (tmp_path / "endless").symlink_to("/dev/zero")
+
+    assert main(["select", str(tmp_path / name)]) == 2
+    error = capsys.readouterr().err
+    assert error.startswith(f"{tmp_path / name}: {words}")
+    assert error.count("\n") == 1
+
+
+def test_many_wrong_fields_are_the_first_twenty(file: Path, capsys: Output) -> None:
+    write(file, cycle(*[{**phase(1, 1), "duration_s": "long"}] * 5000))
+
+    assert main(["select", str(file)]) == 2
+    lines = capsys.readouterr().err.splitlines()
+    assert len(lines) <= 21
+    assert lines[0] == "/duty_cycle/phases/0/duration_s: must be a JSON number, such as 9.3"
+
+
+def test_version_names_engine_and_catalogue(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: Output, catalogue: Catalogue
+) -> None:
+    assert main(["--version"]) == 0
+    assert capsys.readouterr().out == f"HPN Select {ENGINE_VERSION}, catalogue {catalogue.version}\n"
+
+    (tmp_path / "weights.csv").write_text("size,stages,weight_kg,source\n20A,1,2.7,mine\n", encoding="utf-8")
+    monkeypatch.setenv("HPN_CATALOGUE_SUPPLEMENT", str(tmp_path))
+    assert main(["--version"]) == 0
+    assert catalogue.version not in capsys.readouterr().out
+
+
+def test_a_port_that_is_taken_or_no_address_of_this_machine_is_a_sentence(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: Output
+) -> None:
+    monkeypatch.setenv("HPN_DATABASE_URL", f"sqlite:///{tmp_path}/store.sqlite3")
+    with socket.create_server(("127.0.0.1", 0)) as other:
+        port = other.getsockname()[1]
+
+        assert main(["serve", "--port", str(port)]) == 2
+    assert capsys.readouterr().err == (
+        f"127.0.0.1 port {port} (HPN_HOST, HPN_PORT): another program listens there; choose another port\n"
+    )
+    assert main(["serve", "--host", "192.0.2.1", "--port", "0"]) == 2
+    assert "192.0.2.1 port 0 (HPN_HOST, HPN_PORT): can't be listened on: Cannot assign" in capsys.readouterr().err
+
+
+def test_a_mistake_of_the_program_is_exit_code_1_in_words_and_a_trace_for_who_asks_for_it(
+    monkeypatch: pytest.MonkeyPatch, capsys: Output
+) -> None:
+    monkeypatch.setattr("hpn.cli.catalogue.load_catalogue", lambda *folders: 1 / 0)
+
+    assert main(["catalogue"]) == 1
+    assert capsys.readouterr().err == (
+        "hpn made a mistake: ZeroDivisionError: division by zero\nHPN_LOG_LEVEL=debug shows where\n"
+    )
+    monkeypatch.setenv("HPN_LOG_LEVEL", "debug")
+    with pytest.raises(ZeroDivisionError):
+        main(["catalogue"])
+
+
+SHELL = {
+    "output on a full disk": ("hpn catalogue > /dev/full", 1, "hpn can't go on: No space left on device\n"),
+    "no output": ("hpn catalogue >&-", 0, ""),
+    "no input": ("hpn select - <&-", 2, "standard input: is closed\n"),
+}
+
+
+@pytest.mark.parametrize("case", SHELL, ids=list(SHELL))
+def test_what_a_shell_may_take_away_is_a_line_at_most(case: str) -> None:
+    command, code, error = SHELL[case]
+    path = f"{Path(sys.executable).parent}:/usr/bin:/bin"
+    done = subprocess.run(["sh", "-c", command], env={"PATH": path}, capture_output=True, text=True, timeout=60)
+
+    assert (done.returncode, done.stderr) == (code, error)
+
+
+def test_an_interruption_ends_it_without_a_word(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "pipe")
+    command = [sys.executable, "-m", "hpn.cli", "select", str(tmp_path / "pipe")]
+    process = subprocess.Popen(command, stderr=subprocess.PIPE)
+    with process, (tmp_path / "pipe").open("wb"):  # opens when the command reads
+        process.send_signal(signal.SIGINT)
+        assert process.stderr and process.stderr.read() == b""
+    assert process.returncode == 128 + signal.SIGINT
 
 
 def test_catalogue_lists_every_gear_and_shows_one(capsys: Output) -> None:
@@ -178,13 +287,17 @@ def test_a_reader_who_has_seen_enough_ends_it_quietly(arguments: list[str]) -> N
     assert process.returncode == 128 + signal.SIGPIPE  # as a shell says it of a program that SIGPIPE has ended
 
 
-@pytest.mark.parametrize("arguments", [[], ["selct"], ["select"], ["serve", "--port", "http"]])
+@pytest.mark.parametrize(
+    "arguments", [[], ["selct"], ["select"], ["select", "a", "b"], ["serve", "--port", "http"], ["--port"], ["key"]]
+)
 def test_a_wrong_command_is_exit_code_2_with_usage(arguments: list[str], capsys: Output) -> None:
     with pytest.raises(SystemExit) as exit_:
         main(arguments)
 
     assert exit_.value.code == 2
-    assert "usage: hpn" in capsys.readouterr().err
+    error = capsys.readouterr().err
+    assert error.startswith("usage: hpn")
+    assert error.count("\n") == 2 and "error: " in error
 
 
 def test_help_names_every_command(capsys: Output) -> None:

@@ -1,36 +1,72 @@
-"""Command line: `hpn select application.json`, `hpn catalogue`, `hpn serve`, `hpn key NAME`.
+"""Command line: `hpn select application.json`, `hpn catalogue`, `hpn serve`, `hpn key NAME`, `hpn --version`.
 
 Each command is a module of this package, which is imported when the command runs: none waits for what others need.
 """
 
 import argparse
+import io
 import os
 import signal
 import sys
 from importlib import import_module
 
+COMMANDS = "select, catalogue, serve or key"
+
 
 def main(arguments: list[str] | None = None) -> int:
-    """Run a command; 0 for success, 1 where no gear is suitable, 2 for input that can't be used."""
-    options = _parser().parse_args(arguments)
+    """Run a command.
+
+    0 for success; 1 where no gear is suitable, or something went wrong; 2 for what the caller can mend; 128 and the
+    number of the signal that ended it, as a shell says it.
+    """
+    parser = _parser()
+    options = parser.parse_args(arguments)
+    if options.command is None:
+        parser.error(f"a command is required: {COMMANDS}")
+    if sys.stdout is None:  # closed by the caller, who wants to see nothing
+        sys.stdout = io.StringIO()
     try:
         result: int = import_module(f"hpn.cli.{options.command}").run(options)
         sys.stdout.flush()
         return result
     except BrokenPipeError:  # whoever reads has seen enough, such as head
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # else the interpreter's last flush complains
+        _discard_output()
         return 128 + signal.SIGPIPE
+    except KeyboardInterrupt:
+        return 128 + signal.SIGINT
     except Exception as error:
-        lines = import_module("hpn.cli.refusals").lines_of(error, options)
-        if lines is None:
-            raise
-        print("\n".join(lines), file=sys.stderr)
-        return 2
+        return _refused(error, options)
+
+
+def _refused(error: Exception, options: argparse.Namespace) -> int:
+    """Say in words what went wrong; the exit code says whose mistake it is."""
+    module = "hpn.cli.system" if isinstance(error, OSError) else "hpn.cli.refusals"
+    code, lines = import_module(module).words_of(error, options)
+    if lines is None:
+        if os.environ.get("HPN_LOG_LEVEL", "").lower() == "debug":
+            raise error
+        lines = [f"hpn made a mistake: {type(error).__name__}: {error}", "HPN_LOG_LEVEL=debug shows where"]
+    print("\n".join(lines), file=sys.stderr)
+    if isinstance(error, OSError) and error.filename is None:  # may be the output itself, on a full disk
+        _discard_output()
+    return int(code)
+
+
+def _discard_output() -> None:
+    """Write what is left of the output nowhere, else the interpreter's last flush complains."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser("hpn", description="Select a Harmonic Drive HPN planetary gear.")
-    commands = parser.add_subparsers(required=True, metavar="command", dest="command")
+    parser.add_argument(
+        "--version",
+        action="store_const",
+        const="version",
+        dest="command",
+        help="print versions of engine and catalogue",
+    )
+    commands = parser.add_subparsers(metavar="command", dest="command")
     one = commands.add_parser("select", help="select a gear for an application file (JSON; - for standard input)")
     one.add_argument("file")
     form = one.add_mutually_exclusive_group()
@@ -40,8 +76,15 @@ def _parser() -> argparse.ArgumentParser:
     listing.add_argument("designation", nargs="?")
     serve = commands.add_parser("serve", help="serve page and API")
     serve.add_argument("--host", help="address to listen on, instead of HPN_HOST")
-    serve.add_argument("--port", type=int, help="port to listen on, instead of HPN_PORT")
-    serve.add_argument("--workers", type=int, help="number of processes, instead of HPN_WORKERS")
+    serve.add_argument("--port", type=_number, help="port to listen on, instead of HPN_PORT")
+    serve.add_argument("--workers", type=_number, help="number of processes, instead of HPN_WORKERS")
     key = commands.add_parser("key", help="make an API key")
     key.add_argument("name", help="who gets it; the logs name it")
     return parser
+
+
+def _number(text: str) -> int:
+    try:
+        return int(text)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"must be a whole number, such as 4; {text[:40]!r} is none") from None

@@ -1,4 +1,4 @@
-"""Errors that are the caller's, in lines that name the place."""
+"""What went wrong in lines that name the place and say what would be right, and whose mistake it is."""
 
 import argparse
 
@@ -6,22 +6,33 @@ from pydantic import ValidationError
 
 from hpn.application import InputError
 from hpn.catalogue import CatalogueError
+from hpn.cli.system import CALLERS, OTHERS
 from hpn.store import StoreError
 from hpn.web.door.problems import Problem, plain_message
 from hpn.web.settings import Settings
 
+MOST_LINES = 20
 
-def lines_of(error: Exception, options: argparse.Namespace) -> list[str] | None:
-    """Lines for an error of input, settings, files or database; None for a mistake of the program."""
-    if isinstance(error, CatalogueError | StoreError | OSError):
-        return [str(error)]
+
+def words_of(error: Exception, options: argparse.Namespace) -> tuple[int, list[str] | None]:
+    """Exit code and lines for an error of input, settings, catalogue or database; no lines for one of the program."""
+    if isinstance(error, CatalogueError | StoreError):
+        return CALLERS, [str(error)]
     if isinstance(error, ValidationError) and error.title == Settings.__name__:
-        return _wrong_settings(error, options)
+        return CALLERS, _wrong_settings(error, options)
     if isinstance(error, ValidationError | InputError):
-        problem = Problem.of(error)
-        lines = [f"{entry['pointer'] or '/'}: {entry['detail']}" for entry in problem.body().get("errors", ())]
-        return lines or [str(problem.detail)]
-    return None
+        return CALLERS, _wrong_input(error, options)
+    return OTHERS, None
+
+
+def _wrong_input(error: ValidationError | InputError, options: argparse.Namespace) -> list[str]:
+    """A line for each field, named by its pointer; for what is no JSON a line that names the file."""
+    problem = Problem.of(error)
+    lines = [f"{entry['pointer'] or '/'}: {entry['detail']}" for entry in problem.body().get("errors", ())]
+    if len(lines) > MOST_LINES:
+        lines[MOST_LINES:] = [f"and {len(lines) - MOST_LINES} more"]
+    file = "standard input" if options.file == "-" else options.file
+    return lines or [f"{file}: {problem.detail}; an application is a JSON object, such as README.md shows"]
 
 
 def _wrong_settings(error: ValidationError, options: argparse.Namespace) -> list[str]:

@@ -1,8 +1,9 @@
 """`hpn select`: a gear for an application file."""
 
 import argparse
+import codecs
+import errno
 import sys
-from pathlib import Path
 
 from hpn.application import Application
 from hpn.catalogue import load_catalogue
@@ -12,11 +13,13 @@ from hpn.web.form.write import to_link
 from hpn.web.settings import Settings
 from hpn.wording import telling_decimals
 
+MAXIMUM_FILE_BYTES = 32_000_000
+"""Of an application: 10,000 phases, however they are laid out."""
+
 
 def run(options: argparse.Namespace) -> int:
     """Print the reply, as JSON into a pipe and as a table on a terminal unless asked otherwise."""
-    content = sys.stdin.buffer.read() if options.file == "-" else Path(options.file).read_bytes()
-    application, settings = Application.model_validate_json(content), Settings()
+    application, settings = Application.model_validate_json(_content(options.file)), Settings()
     catalogue = load_catalogue(settings.catalogue_folder, settings.catalogue_supplement)
     selection = select(application, catalogue, to_link(application))
     if options.json or not (options.table or sys.stdout.isatty()):
@@ -24,6 +27,20 @@ def run(options: argparse.Namespace) -> int:
     else:
         _print_table(selection, application.requirements.utilisation)
     return 0 if selection.selected else 1
+
+
+def _content(name: str) -> bytes:
+    """Content of a file, - for standard input; a mark at the beginning, as some editors write it, is dropped."""
+    if name == "-":
+        if sys.stdin is None:
+            raise OSError(errno.EBADF, "is closed", "standard input")
+        content = sys.stdin.buffer.read(MAXIMUM_FILE_BYTES + 1)
+    else:
+        with open(name, "rb") as file:
+            content = file.read(MAXIMUM_FILE_BYTES + 1)
+    if len(content) > MAXIMUM_FILE_BYTES:
+        raise OSError(errno.EFBIG, f"is larger than an application can be, {MAXIMUM_FILE_BYTES} bytes", name)
+    return content.removeprefix(codecs.BOM_UTF8)
 
 
 def _print_table(selection: Selection, utilisation: float) -> None:

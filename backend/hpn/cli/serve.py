@@ -2,6 +2,8 @@
 
 import argparse
 import asyncio
+import errno
+import socket
 from contextlib import suppress
 
 from hpn.catalogue import load_catalogue
@@ -16,8 +18,25 @@ def run(options: argparse.Namespace) -> int:
     settings = Settings(**{name: value for name, value in given.items() if value is not None})
     load_catalogue(settings.catalogue_folder, settings.catalogue_supplement)
     asyncio.run(_migrate(Store(settings.database_url.get_secret_value(), seconds=settings.database_seconds)))
+    _require_free(settings.host, settings.port)
     serve.run(settings)
     return 0
+
+
+def _require_free(host: str, port: int) -> None:
+    """Raise OSError, which says so, where nobody can listen there; the server itself would only write it to its log."""
+    place = f"{host} port {port} (HPN_HOST, HPN_PORT)"
+    try:
+        for family, kind, protocol, _, address in socket.getaddrinfo(host, port, type=socket.SOCK_STREAM):
+            with socket.socket(family, kind, protocol) as probe:
+                probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+                if family == socket.AF_INET6:
+                    probe.setsockopt(socket.IPPROTO_IPV6, socket.IPV6_V6ONLY, 1)
+                probe.bind(address)
+    except OSError as error:
+        if error.errno == errno.EADDRINUSE:
+            raise OSError(error.errno, "another program listens there; choose another port", place) from None
+        raise OSError(error.errno, f"can't be listened on: {error.strerror}", place) from None
 
 
 async def _migrate(store: Store) -> None:
