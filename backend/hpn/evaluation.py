@@ -125,9 +125,10 @@ def _order(case: Case, verdict: NDArray[np.int8], used: FloatArray) -> PlaceArra
     """
     shape = verdict.shape
     wish = np.where(verdict == UNSUITABLE, used, np.arange(shape[1], dtype=np.float64))
-    for rank_by in set(case.asked.rank_by.ravel().tolist()):
+    for rank_by, wished in RANKED_BY.items():
         wanted = (case.asked.rank_by == rank_by) & (verdict == SUITABLE)
-        wish = np.where(wanted, RANKED_BY[rank_by](case, used), wish)
+        if wanted.any():
+            wish = np.where(wanted, wished(case, used), wish)
     ties = (case.gears.weight_kg, used, -case.figures.life_L10_h, case.gears.ratio)
     keys = [np.broadcast_to(key, shape) for key in (verdict, wish, *ties)]
     return np.lexsort(keys[::-1], axis=-1)  # the last key decides first
