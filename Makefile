@@ -24,7 +24,7 @@ endif
 export UV_SYSTEM_CERTS ?= true
 export NODE_USE_SYSTEM_CA ?= 1
 
-.PHONY: run install assets test soak check bench screenshots browser office curl messages lock licences audit digests clean
+.PHONY: run install assets test soak check bench screenshots browser office curl messages lock licences sbom audit digests clean
 .DELETE_ON_ERROR:
 
 run: install
@@ -139,6 +139,10 @@ lock: $(UV) | $(NODE)
 licences: $(ENVIRONMENT)
 	$(BIN)/python -m tests.supply.licences
 
+# What an installed service consists of, as CycloneDX; the same locks give the same bytes.
+sbom: $(ENVIRONMENT)
+	$(BIN)/python -m tests.supply.sbom sbom.cdx.json
+
 # The locks against known vulnerabilities: ends with 1 where there is one, 3 where no database can be asked.
 audit: $(ENVIRONMENT) | $(NODE)
 	$(BIN)/python -m tests.supply.audit
@@ -153,4 +157,4 @@ digests:
 	done; sed -i "$$script" $(PINNED)
 
 clean:
-	rm -rf $(VENV) $(MODULES) frontend/dist .*_cache .hypothesis
+	rm -rf $(VENV) $(MODULES) frontend/dist sbom.cdx.json .*_cache .hypothesis
