@@ -137,7 +137,7 @@ def test_selection_travels_along_and_back(client: TestClient) -> None:
 
 def test_robots_may_read_the_catalogue(client: TestClient) -> None:
     text = client.get("/robots.txt").text
-    assert "Disallow: /selections/" in text
+    assert "Disallow: /selections\n" in text
     assert "Disallow: /catalogue" not in text
 
 

@@ -28,6 +28,8 @@ PAGES = (
     "/catalogue/HPN-20A-5",
     "/catalogue/HPN-40A-5",
     "/catalogue/HPN-99A-5",
+    "/selections",
+    "/selections?reference=%07",
     "/selections/nothing",
 )
 SHOWN = ("aria-label", "title", "placeholder", "alt", "content")

@@ -4,7 +4,7 @@ import asyncio
 import base64
 import logging
 import re
-from collections.abc import AsyncIterator, Awaitable, Callable
+from collections.abc import AsyncIterator, Awaitable, Callable, Sequence
 from contextlib import asynccontextmanager
 from datetime import UTC, datetime
 from typing import TypeVar
@@ -120,6 +120,12 @@ class Store:
             found = [Summary(*row) for row in await connection.execute(query)]
         more = len(found) > limit
         return Page(found[:limit], _cursor(found[limit - 1]) if more else None)
+
+    async def results(self, ids: Sequence[str]) -> dict[str, bytes]:
+        """Replies of these selections as they were saved, by id; of one that is deleted meanwhile there is none."""
+        query = select(selections.c.id, selections.c.result_packed).where(selections.c.id.in_(ids))
+        async with self._reading() as connection:
+            return {id: unpacked(packed) for id, packed in await connection.execute(query)}
 
     async def delete(self, id: str) -> bool:
         """Delete a selection; False where there is none with this id."""

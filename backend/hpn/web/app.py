@@ -32,7 +32,7 @@ from hpn.web.door.logs import make_logger
 from hpn.web.door.metrics import CountedStore, Metrics
 from hpn.web.door.observation import Observation
 from hpn.web.door.readers import Readers
-from hpn.web.pages import assets, long_cycles, paste, transfer
+from hpn.web.pages import assets, long_cycles, paste, saved_list, transfer
 from hpn.web.pages import calculator as pages
 from hpn.web.pages import catalogue as catalogue_pages
 from hpn.web.pages import saved as selection_pages
@@ -91,6 +91,7 @@ ROUTERS: tuple[APIRouter, ...] = (
     long_cycles.router,
     paste.router,
     transfer.router,
+    saved_list.router,
     selection_pages.router,
 )
 

@@ -6,7 +6,7 @@ the client library's multiprocess mode, for which `serve.py` sets PROMETHEUS_MUL
 
 import os
 from collections import Counter as Counts
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 
 from prometheus_client import CollectorRegistry, Counter, Histogram, ProcessCollector, generate_latest
@@ -109,6 +109,11 @@ class CountedStore(Store):
         """See Store."""
         with self._counted("page"):
             return await super().page(reference=reference, cursor=cursor, limit=limit)
+
+    async def results(self, ids: Sequence[str]) -> dict[str, bytes]:
+        """See Store."""
+        with self._counted("results"):
+            return await super().results(ids)
 
     async def delete(self, id: str) -> bool:
         """See Store."""

@@ -137,7 +137,7 @@ def _render(request: Request, template: str, status: int, **context: Any) -> Res
 
 def robots(request: Request) -> Response:
     """What search engines may read: the calculator and the catalogue, not saved selections or the API."""
-    return PlainTextResponse("User-agent: *\nDisallow: /selections/\nDisallow: /api/\nDisallow: /paste\n")
+    return PlainTextResponse("User-agent: *\nDisallow: /selections\nDisallow: /api/\nDisallow: /paste\n")
 
 
 router = APIRouter(include_in_schema=False, dependencies=[admit("calculator")])

@@ -58,7 +58,7 @@ async def show_selection(request: Request) -> Response:
     try:
         reopened = await found(request.app.state, request.path_params["id"])
     except (Problem, StoreUnavailableError) as error:
-        return _refused(request, error)
+        return refused(request, error)
     return await run_in_threadpool(_shown, request, reopened)
 
 
@@ -77,9 +77,9 @@ async def save_from_page(request: Request) -> Response:
         labels = Labels.model_validate({name: fields.get(name, "") for name in Labels.model_fields})
         id = await save(request, _application(query), labels, _key(fields))
     except (ValidationError, InputError) as error:
-        return _refused(request, Problem.of(error), fields, query)
+        return refused(request, Problem.of(error), fields, query)
     except (Problem, StoreUnavailableError) as error:
-        return _refused(request, error, fields, query)
+        return refused(request, error, fields, query)
     return RedirectResponse(url_of(id), 303)
 
 
@@ -102,7 +102,7 @@ def _application(query: str) -> Application:
     return form.application
 
 
-def _refused(
+def refused(
     request: Request, error: Problem | StoreUnavailableError, fields: Mapping[str, str] | None = None, query: str = ""
 ) -> Response:
     """Page that says why, and still has what was typed."""
