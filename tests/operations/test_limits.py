@@ -82,6 +82,13 @@ def test_health_and_assets_are_never_limited(make_client: MakeClient) -> None:
     assert {client.get(path).status_code for path in ("/healthz", "/readyz", "/metrics")} == {200}
 
 
+def test_metrics_and_the_document_are_within_limits_too(make_client: MakeClient) -> None:
+    client = make_client(calculator_rate="2/minute")
+
+    assert [client.get("/metrics").status_code for _ in range(3)] == [200, 200, 429]
+    assert [client.get("/openapi.json").status_code for _ in range(3)] == [200, 200, 429]
+
+
 def test_a_limit_can_be_switched_off(make_client: MakeClient) -> None:
     client = make_client(calculator_rate="off")
 

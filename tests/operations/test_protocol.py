@@ -115,3 +115,14 @@ def test_a_request_is_answered_although_the_head_behind_it_stalls(connection: so
     answers = everything(connection)
     assert answers.startswith(b"HTTP/1.1 200")
     assert answers.endswith(b"abcd")
+
+
+@pytest.mark.parametrize("length", [70_000, 100_000, 200_000])
+def test_an_address_that_no_parser_takes_is_a_414_with_words(connection: socket.socket, length: int) -> None:
+    with suppress(OSError):  # it is closed before all has been sent
+        connection.sendall(b"GET /?T=" + b"9" * length + b" HTTP/1.1\r\nHost: x\r\n\r\n")
+
+    answer = connection.recv(2000)
+    assert answer.startswith(b"HTTP/1.1 414 ")
+    assert b"application/problem+json" in answer
+    assert b"65535 bytes" in answer

@@ -17,7 +17,7 @@ def run(options: argparse.Namespace) -> int:
     given = {name: getattr(options, name) for name in ("host", "port", "workers")}
     settings = Settings(**{name: value for name, value in given.items() if value is not None})
     load_catalogue(settings.catalogue_folder, settings.catalogue_supplement)
-    asyncio.run(_migrate(Store(settings.database_url.get_secret_value(), seconds=settings.database_seconds)))
+    asyncio.run(_migrate(Store(**settings.database())))
     _require_free(settings.host, settings.port)
     serve.run(settings)
     return 0

@@ -13,10 +13,11 @@ WRITES = {"writes": True}
 """Execution options of an engine whose transactions write: on SQLite they take the write lock when they begin."""
 
 
-def make_engine(address: str, *, seconds: float) -> AsyncEngine:
+def make_engine(address: str, *, seconds: float, password: str | None = None) -> AsyncEngine:
     """Engine for `sqlite:///file` or `postgresql://user:password@host/database`; connects when it is first used.
 
-    `seconds` is the longest wait for a connection or for another writer's lock.
+    `seconds` is the longest wait for a connection or for another writer's lock. `password` is that of the database's
+    user, of any characters; in the address some of them have to be written as %40 and the like.
     """
     try:
         url = make_url(address)
@@ -26,7 +27,7 @@ def make_engine(address: str, *, seconds: float) -> AsyncEngine:
     if backend == "sqlite" and url.database not in (None, "", ":memory:"):
         return _sqlite(url, seconds)
     if backend in ("postgresql", "postgres"):
-        return _postgresql(url, seconds)
+        return _postgresql(url if password is None else url.set(password=password), seconds)
     raise StoreError(
         "HPN_DATABASE_URL must be sqlite:///file.sqlite3 (four slashes for an absolute path) "
         "or postgresql://user:password@host/database"

@@ -40,9 +40,9 @@ class Store:
     works again as soon as it can. Nothing is connected before it is needed.
     """
 
-    def __init__(self, address: str, *, seconds: float = 5.0) -> None:
+    def __init__(self, address: str, *, seconds: float = 5.0, password: str | None = None) -> None:
         # A database that is only busy gives up by itself, just before we would.
-        self._engine = make_engine(address, seconds=seconds * 0.8)
+        self._engine = make_engine(address, seconds=seconds * 0.8, password=password)
         self._seconds = seconds
         self._turn = asyncio.Lock()
         self._opening: asyncio.Task[None] | None = None

@@ -28,11 +28,13 @@ from hpn.web.api import (
 )
 from hpn.web.door import problems, readers
 from hpn.web.door.access import Gate
+from hpn.web.door.heads import Heads
+from hpn.web.door.hosts import Hosts
 from hpn.web.door.logs import make_logger
 from hpn.web.door.metrics import CountedStore, Metrics
 from hpn.web.door.observation import Observation
 from hpn.web.door.readers import Readers
-from hpn.web.pages import assets, long_cycles, paste, saved_list, transfer
+from hpn.web.pages import assets, long_cycles, paste, refusals, saved_list, transfer
 from hpn.web.pages import calculator as pages
 from hpn.web.pages import catalogue as catalogue_pages
 from hpn.web.pages import saved as selection_pages
@@ -120,10 +122,8 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     app.state.catalogue = load_catalogue(settings.catalogue_folder, settings.catalogue_supplement)
     app.state.gate = Gate(settings)
     app.state.metrics = Metrics()
-    app.state.store = CountedStore(
-        settings.database_url.get_secret_value(), seconds=settings.database_seconds, metrics=app.state.metrics
-    )
-    problems.install(app, catalogue_pages.nowhere)
+    app.state.store = CountedStore(app.state.metrics, **settings.database())
+    problems.install(app, refusals.page_of)
     app.add_exception_handler(StoreUnavailableError, archive.unavailable)
     for router in ROUTERS:
         app.include_router(router)
@@ -137,8 +137,11 @@ def _add_middleware(app: FastAPI, settings: Settings) -> None:
     app.add_middleware(Readers)
     # Nothing secret stands beside what a page repeats of its query, so its length after compression tells nothing.
     app.add_middleware(GZipMiddleware, compresslevel=4, exclude_content_types=UNPACKED)
+    app.add_middleware(Heads)
     if settings.cors_origins:
         app.add_middleware(CORSMiddleware, allow_origins=settings.cors_origins, **CORS)
+    if settings.allowed_hosts:
+        app.add_middleware(Hosts, allowed=settings.allowed_hosts)
     app.add_middleware(Observation, logger=make_logger(settings.log_level), metrics=app.state.metrics)
     if settings.trusted_proxies:
         app.add_middleware(ProxyHeadersMiddleware, trusted_hosts=list(settings.trusted_proxies))

@@ -5,7 +5,7 @@ import re
 from difflib import get_close_matches
 from ipaddress import ip_network
 from pathlib import Path
-from typing import Annotated, Literal, Self
+from typing import Annotated, Literal, Self, TypedDict
 
 import limits
 from pydantic import AfterValidator, BeforeValidator, Field, SecretStr, model_validator
@@ -57,6 +57,16 @@ def _origins(words: tuple[str, ...]) -> tuple[str, ...]:
     return words
 
 
+def _hosts(words: tuple[str, ...]) -> tuple[str, ...]:
+    for word in words:
+        if not HOST.fullmatch(word):
+            raise ValueError(
+                "must be hosts without scheme, port or path, in small letters, such as plm.example, *.plm.example or "
+                f"[2001:db8::1]; {word!r} is none"
+            )
+    return words
+
+
 def _folder(path: Path | None) -> Path | None:
     if path is not None and not (path.is_dir() and os.access(path, os.W_OK | os.X_OK)):
         raise ValueError(f"must be a folder that exists and can be written to; {str(path)!r} is none")
@@ -66,8 +76,17 @@ def _folder(path: Path | None) -> Path | None:
 ORIGIN = re.compile(
     r"(?!http://[^/]*:80$|https://[^/]*:443$)[a-z][a-z0-9+.-]*://([a-z0-9._-]+|\[[0-9a-f:]+\])(:[0-9]+)?"
 )
+HOST = re.compile(r"(\*\.)?[a-z0-9_-]+(\.[a-z0-9_-]+)*|\[[0-9a-f:.]+\]")
 Words = Annotated[tuple[str, ...], NoDecode, BeforeValidator(_split)]
 Rate = Annotated[str, AfterValidator(_rate)]
+
+
+class DatabaseSettings(TypedDict):
+    """Arguments of a store."""
+
+    address: str
+    seconds: float
+    password: str | None
 
 
 class Settings(BaseSettings):
@@ -85,6 +104,9 @@ class Settings(BaseSettings):
         SecretStr("sqlite:///hpn.sqlite3"),
         description="Database of the saved selections: sqlite:///file, relative to the working directory (four slashes "
         "for an absolute path), or postgresql://user:password@host/database.",
+    )
+    database_password: SecretStr | None = Field(
+        None, description="Password of PostgreSQL's user, of any characters, instead of one in the address."
     )
     database_seconds: float = Field(5.0, gt=0, description="Longest wait for the database.")
     maximum_body_bytes: int = Field(2_000_000, gt=0, description="Largest body of a request for one application.")
@@ -126,10 +148,24 @@ class Settings(BaseSettings):
         (),
         description="Addresses or networks of proxies whose X-Forwarded-For and X-Forwarded-Proto count; * for all.",
     )
+    allowed_hosts: Annotated[Words, AfterValidator(_hosts)] = Field(
+        (),
+        description="Hosts that the service answers for, such as plm.example or *.plm.example, whatever the port; any "
+        "by default.",
+    )
     cors_origins: Annotated[Words, AfterValidator(_origins)] = Field(
         (),
         description="Origins whose scripts may use the API, such as https://plm.example.",
     )
+
+    def database(self) -> "DatabaseSettings":
+        """What a store is opened with."""
+        password = self.database_password and self.database_password.get_secret_value()
+        return {
+            "address": self.database_url.get_secret_value(),
+            "seconds": self.database_seconds,
+            "password": password or None,
+        }
 
     @model_validator(mode="after")
     def _no_name_misspelt(self) -> Self:

@@ -11,8 +11,9 @@ from hpn.catalogue import Catalogue
 from hpn.envelopes import EnvelopeQuery, life_envelopes
 from hpn.source import supplied_source
 from hpn.web.api import schemas
-from hpn.web.api.replies import CatalogueReply, EnvelopeReply, JSONBytes, json_response
+from hpn.web.api.replies import CatalogueReply, EnvelopeReply, JSONBytes, encode
 from hpn.web.door.access import admit
+from hpn.web.door.conditions import conditional
 from hpn.web.door.problems import Problem
 
 router = APIRouter(
@@ -27,19 +28,21 @@ router = APIRouter(
     "/catalogue",
     operation_id="getCatalogue",
     summary="Every gear",
-    responses=schemas.answers("CatalogueReply", 406),
+    openapi_extra=schemas.IF_NONE_MATCH,
+    responses=schemas.answers("CatalogueReply", 406, headers=schemas.headers("ETag")) | schemas.HAS_IT_ALREADY,
 )
 async def catalogue(request: Request) -> Response:
     """Every gear of the series with every published figure and its source; null where not published."""
     book: Catalogue = request.app.state.catalogue
-    return json_response(CatalogueReply(book.version, book.gears, book.series))
+    return conditional(request, encode(CatalogueReply(book.version, book.gears, book.series)))
 
 
 @router.get(
     "/catalogue/{designation}",
     operation_id="getGear",
     summary="One gear",
-    responses=schemas.answers(schemas.ONE_GEAR, 404),
+    openapi_extra=schemas.IF_NONE_MATCH,
+    responses=schemas.answers(schemas.ONE_GEAR, 404, headers=schemas.headers("ETag")) | schemas.HAS_IT_ALREADY,
 )
 async def gear(request: Request, designation: str) -> Response:
     """One gear, by its designation in any of the printed spellings: by itself, and as the list has it."""
@@ -48,14 +51,15 @@ async def gear(request: Request, designation: str) -> Response:
     if found is None:
         raise Problem(404, f"the catalogue has no gear {designation[:60]!r}; a designation is written like HPN-20A-5")
     fields = {field.name: getattr(found, field.name) for field in dataclasses.fields(found)}
-    return json_response({"catalogue_version": book.version, **fields, "gears": [found]})
+    return conditional(request, encode({"catalogue_version": book.version, **fields, "gears": [found]}))
 
 
 @router.get(
     "/bearing-envelopes/{size}",
     operation_id="getBearingEnvelopes",
     summary="Life envelopes of a size's output bearing",
-    responses=schemas.answers("EnvelopeReply", 404, 422),
+    openapi_extra=schemas.IF_NONE_MATCH,
+    responses=schemas.answers("EnvelopeReply", 404, 422, headers=schemas.headers("ETag")) | schemas.HAS_IT_ALREADY,
 )
 async def bearing_envelopes(request: Request, size: str, query: Annotated[EnvelopeQuery, Query()]) -> Response:
     """What a constant load may be at this speed and life: one curve per load coefficient, from axial to radial axis."""
@@ -69,4 +73,4 @@ async def bearing_envelopes(request: Request, size: str, query: Annotated[Envelo
         if query.model == "digitised"
         else {name: gear.sources[name] for name in ("dynamic_radial_load_N", "dynamic_axial_load_N")}
     )
-    return json_response(EnvelopeReply(gear.size, query.model, curves, sources))
+    return conditional(request, encode(EnvelopeReply(gear.size, query.model, curves, sources)))

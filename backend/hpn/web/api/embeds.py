@@ -12,7 +12,6 @@ from hpn.web.api import schemas
 from hpn.web.api.files import absolute, application_of
 from hpn.web.door.access import admit
 from hpn.web.door.problems import Problem
-from hpn.web.form.read import MAXIMUM_QUERY_BYTES
 from hpn.web.form.write import to_link
 from hpn.web.preview import Preview, preview_of
 
@@ -42,7 +41,7 @@ class OEmbedReply(BaseModel):
 )
 async def oembed(
     request: Request,
-    url: Annotated[str, Query(max_length=MAXIMUM_QUERY_BYTES, description="Address of a selection of this service.")],
+    url: Annotated[str, Query(description="Address of a selection of this service.")],
     format: Annotated[str, Query(max_length=20, description="json; there is no other.")] = "json",
     maxwidth: Annotated[int | None, Query(description="Of no effect: a link has no size.")] = None,
     maxheight: Annotated[int | None, Query(description="Of no effect: a link has no size.")] = None,
@@ -68,7 +67,7 @@ async def _preview_of(request: Request, url: str) -> Preview:
         address = urlsplit(url)
     except ValueError:
         raise unknown from None
-    if address.netloc not in ("", request.url.netloc) or address.scheme not in ("", "http", "https"):
+    if address.netloc not in ("", request.base_url.netloc) or address.scheme not in ("", "http", "https"):
         raise unknown
     if address.path.startswith(SAVED):
         saved = await request.app.state.store.find(address.path.removeprefix(SAVED))

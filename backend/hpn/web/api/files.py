@@ -175,11 +175,8 @@ def _computed(application: Application, request: Request) -> Export:
 
 
 def linked_application(request: Request) -> Application:
-    """Application of the request's query; Problem 422 names each parameter that can't be read, 414 a query too long."""
-    query = request.scope["query_string"]
-    if len(query) > links.MAXIMUM_QUERY_BYTES:
-        raise Problem(414, f"a link may have {links.MAXIMUM_QUERY_BYTES} bytes at most; post the application instead")
-    pairs = parse_qsl(query.decode("latin-1"), keep_blank_values=True)
+    """Application of the request's query; Problem 422 names each parameter that can't be read."""
+    pairs = parse_qsl(request.scope["query_string"].decode("latin-1"), keep_blank_values=True)
     return application_of([(name, value) for name, value in pairs if name != "lang"])
 
 

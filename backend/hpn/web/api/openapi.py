@@ -15,7 +15,7 @@ from hpn.catalogue import Catalogue
 from hpn.units import suffix_of, symbol_of
 from hpn.web.api import samples, schemas
 from hpn.web.api.exchanges import SUMMARIES, Exchange, exchanges
-from hpn.web.door.access import OPEN, group_of
+from hpn.web.door.access import admit, group_of
 from hpn.web.settings import RouteGroup, Settings
 
 PATH_PARAMETERS = {
@@ -42,10 +42,10 @@ KEY_SCHEMES = {
 }
 
 
-router = APIRouter(include_in_schema=False, dependencies=[OPEN])
+router = APIRouter(include_in_schema=False, dependencies=[admit("calculator")])
 
 
-@router.api_route("/openapi.json", methods=["GET", "HEAD"])
+@router.get("/openapi.json")
 def document(request: Request) -> JSONResponse:
     """The OpenAPI document."""
     return JSONResponse(request.app.openapi())
@@ -110,13 +110,13 @@ def _operations(document: dict[str, Any]) -> Iterator[tuple[str, str, dict[str, 
 
 
 def _say_keys(operation: dict[str, Any], group: RouteGroup | None, settings: Settings) -> None:
-    """Keys and rate limits stand in front of every route that is not open to all."""
+    """Keys, rate limits and a longest query stand in front of every route that is not open to all."""
     if group is None:
         operation["security"] = []
         return
     needed = bool(settings.api_keys) and group in settings.guarded
     operation["security"] = [*({name: []} for name in KEY_SCHEMES), *([] if needed else [{}])]
-    refusals = {str(status): entry for status, entry in schemas.problems(401, 429).items()}
+    refusals = {str(status): entry for status, entry in schemas.problems(401, 414, 429).items()}
     operation["responses"] = dict(sorted((refusals | operation["responses"]).items()))
 
 

@@ -27,6 +27,9 @@ LIMIT_OF: Mapping[RouteGroup, str] = {
 }
 """Which rate counts a group's requests."""
 
+MAXIMUM_QUERY_BYTES = 60_000
+"""Longest query, which servers and proxies on the way let through."""
+
 SAVED: frozenset[RouteGroup] = frozenset({"reading", "listing", "writing", "deleting"})
 """Groups whose answers tell of saved selections."""
 
@@ -61,7 +64,9 @@ class Gate:
             if not counted.granted:
                 raise too_many(counted.rate, counted.wait_seconds)
         if name is None and group in self._guarded:
-            raise key_needed(request.url.path)
+            raise key_needed(request.scope["path"])
+        if len(request.scope.get("query_string", b"")) > MAXIMUM_QUERY_BYTES:
+            raise Problem(414, f"a link may have {MAXIMUM_QUERY_BYTES} bytes at most; post what is longer")
 
     def admit_deletion(self, request: Request, owner: str | None) -> None:
         """Raise Problem 403 unless the request's key owns what it is to delete; without keys everybody may."""

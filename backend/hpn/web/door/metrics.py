@@ -81,8 +81,8 @@ CALLERS_MISTAKES = (KeyReusedError, KeySpentError, ValueError)
 class CountedStore(Store):
     """A store whose operations are counted."""
 
-    def __init__(self, address: str, *, seconds: float, metrics: Metrics) -> None:
-        super().__init__(address, seconds=seconds)
+    def __init__(self, metrics: Metrics, address: str, *, seconds: float, password: str | None) -> None:
+        super().__init__(address, seconds=seconds, password=password)
         self._metrics = metrics
 
     async def check(self) -> None:

@@ -33,6 +33,7 @@ TITLES = {
     413: "The request is too large",
     414: "The address is too long",
     415: "The content type is not supported",
+    421: "Not the host of this service",
     422: "The input has errors",
     429: "Too many requests",
     431: "The head of the request is too large",
@@ -137,10 +138,10 @@ def _methods_at(app: FastAPI, scope: Scope) -> list[str]:
     ]
 
 
-def install(app: FastAPI, nowhere: Callable[[Request], Response]) -> None:
+def install(app: FastAPI, page_of: Callable[[Request, HTTPException], Response | None]) -> None:
     """Answer every refusal of `app` as a problem; `observation.py` answers what goes wrong.
 
-    `nowhere` is the page for a browser at an address that leads nowhere.
+    `page_of` gives the page for a reader, or None where the problem says it.
     """
 
     async def refused(request: Request, error: Exception) -> Response:
@@ -148,13 +149,13 @@ def install(app: FastAPI, nowhere: Callable[[Request], Response]) -> None:
             return Problem.of(error).response()
         if isinstance(error, RequestValidationError):
             return Problem.at((entry["loc"][1:], entry["type"], entry["msg"]) for entry in error.errors()).response()
+        assert isinstance(error, HTTPException)
+        page = page_of(request, error)
+        if page is not None:
+            return page
         if isinstance(error, Problem):
             return error.response()
-        assert isinstance(error, HTTPException)
-        read = "text/html" in request.headers.get("accept", "") and not request.url.path.startswith("/api/")
-        if error.status_code == 404 and read:
-            return nowhere(request)
-        text = {404: f"there is nothing at {request.url.path}", 405: f"{request.method} is not possible here"}
+        text = {404: f"there is nothing at {request.scope['path']}", 405: f"{request.method} is not possible here"}
         headers = dict(error.headers) if error.headers else None
         if error.status_code == 405:  # several routes may share a path, each with a method of its own
             headers = {"Allow": ", ".join(_methods_at(app, request.scope))}

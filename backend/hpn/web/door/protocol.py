@@ -6,12 +6,15 @@ from typing import Any
 from uvicorn.protocols.http.flow_control import service_unavailable
 from uvicorn.protocols.http.httptools_impl import HttpToolsProtocol
 
-from hpn.web.door.problems import Problem
+from hpn.web.door.problems import MEDIA_TYPE, Problem
 
 HEAD_BYTES = 128 * 1024
 """Enough for the longest link."""
 HEADER_COUNT = 100
+URL_BYTES = 0xFFFF
+"""More can't be parsed; what is longer than a link may be is refused by its route."""
 TOO_LARGE = b"HTTP/1.1 431 Request Header Fields Too Large\r\nContent-Length: 0\r\nConnection: close\r\n\r\n"
+TOO_LONG = Problem(414, f"an address may have {URL_BYTES} bytes at most; post what is longer")
 BUSY = Problem(503, "all connections are taken; try again in 1 s", headers={"Retry-After": "1", "Connection": "close"})
 
 
@@ -20,6 +23,7 @@ class BoundedProtocol(HttpToolsProtocol):
 
     head_s = 20.0
     _unread_bytes = 0  # since the last complete head or part of a body
+    url = b""
     _timer: asyncio.TimerHandle | None = None
 
     def connection_made(self, transport: Any) -> None:
@@ -40,6 +44,20 @@ class BoundedProtocol(HttpToolsProtocol):
     def on_message_begin(self) -> None:
         super().on_message_begin()
         self._expect_head()
+
+    def on_url(self, url: bytes) -> None:
+        super().on_url(url)
+        if len(self.url) > URL_BYTES:
+            raise ValueError("too long")  # the parser stops, and `send_400_response` is called
+
+    def send_400_response(self, msg: str) -> None:
+        if len(self.url) <= URL_BYTES:
+            super().send_400_response(msg)
+            return
+        body = TOO_LONG.response().body
+        head = f"HTTP/1.1 414 URI Too Long\r\nContent-Type: {MEDIA_TYPE}\r\nContent-Length: {len(body)}\r\n"
+        self.transport.write(head.encode() + b"Connection: close\r\n\r\n" + bytes(body))
+        self.transport.close()
 
     def on_header(self, name: bytes, value: bytes) -> None:
         if len(self.headers) >= HEADER_COUNT:

@@ -16,6 +16,7 @@ from pydantic import ValidationError
 from hpn.application import MAXIMUM_PHASES, MOST_WISHES, Application
 from hpn.reader import Reader
 from hpn.units import suffix_of
+from hpn.web.door.access import MAXIMUM_QUERY_BYTES as MAXIMUM_QUERY_BYTES
 from hpn.web.form import numbers
 from hpn.web.form.numbers import WAS, WRITTEN, read_value
 from hpn.web.form.symbols import (
@@ -29,9 +30,6 @@ from hpn.web.form.symbols import (
     Symbol,
 )
 from hpn.wording import N_, Quantity, Sentence
-
-MAXIMUM_QUERY_BYTES = 60_000
-"""Longest query that is read: servers and proxies on the way allow little more."""
 
 Pairs = Sequence[tuple[str, str]]
 

@@ -72,4 +72,4 @@ def accepted_codings(header: str) -> list[str]:
 
 
 router = APIRouter(include_in_schema=False, dependencies=[OPEN])
-router.add_api_route("/static/{name:path}", serve, methods=["GET", "HEAD"])
+router.add_api_route("/static/{name:path}", serve)

@@ -64,10 +64,12 @@ class Answer(Result):
 
 def show(request: Request) -> Response:
     """The page of `/`, or only the part that changes with the input where htmx asks for it."""
-    query = request.scope["query_string"]
-    if len(query) > links.MAXIMUM_QUERY_BYTES:
-        return _render(request, "too_long.html", 414, limit=links.MAXIMUM_QUERY_BYTES)
-    return respond(request, read_query(query))
+    return respond(request, read_query(request.scope["query_string"]))
+
+
+def too_long(request: Request) -> Response:
+    """The page of an address that is too long for any page."""
+    return _render(request, "too_long.html", 414, limit=links.MAXIMUM_QUERY_BYTES)
 
 
 def respond(request: Request, form: Form) -> Response:
@@ -192,4 +194,4 @@ def _address(answer: Answer | None, form: Form | None) -> str | None:
 
 
 router = APIRouter(include_in_schema=False, dependencies=[admit("calculator")])
-router.add_api_route("/", show, methods=["GET", "HEAD"])
+router.add_api_route("/", show)

@@ -141,7 +141,7 @@ def robots(request: Request) -> Response:
 
 
 router = APIRouter(include_in_schema=False, dependencies=[admit("calculator")])
-router.add_api_route("/robots.txt", robots, methods=["GET", "HEAD"])
-router.add_api_route("/catalogue", show_catalogue, methods=["GET", "HEAD"])
-router.add_api_route("/catalogue/{designation}", show_gear, methods=["GET", "HEAD"])
-router.add_api_route("/find", find_gear, methods=["GET", "HEAD"])
+router.add_api_route("/robots.txt", robots)
+router.add_api_route("/catalogue", show_catalogue)
+router.add_api_route("/catalogue/{designation}", show_gear)
+router.add_api_route("/find", find_gear)

@@ -190,5 +190,5 @@ def _render(request: Request, draft: PasteDraft, status: int) -> Response:
 
 
 router = APIRouter(include_in_schema=False, dependencies=[admit("calculator")])
-router.add_api_route("/paste", start, methods=["GET", "HEAD"])
+router.add_api_route("/paste", start)
 router.add_api_route("/paste", paste, methods=["POST"])

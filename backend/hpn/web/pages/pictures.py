@@ -96,7 +96,7 @@ def sample(trace: dict[str, Any]) -> Markup:
     """Attributes of the line that stands for a trace in the legend."""
     line = trace["line"]
     dash = DASHES.get(line["dash"], "none")
-    return Markup(f'stroke-width="{line["width"]}" stroke-dasharray="{dash}" style="stroke: {line["color"]}"')
+    return Markup(f'stroke-width="{line["width"]}" stroke-dasharray="{dash}" stroke="{line["color"]}"')
 
 
 GLOBALS = {"pictures_of": pictures_of}

@@ -247,4 +247,4 @@ def _is_number(value: Any) -> bool:
 
 router = APIRouter(include_in_schema=False)
 router.add_api_route("/selections", save_from_page, methods=["POST"], dependencies=[admit("writing")])
-router.add_api_route("/selections/{id}", show_selection, methods=["GET", "HEAD"], dependencies=[admit("reading")])
+router.add_api_route("/selections/{id}", show_selection, dependencies=[admit("reading")])

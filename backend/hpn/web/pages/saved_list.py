@@ -82,4 +82,4 @@ async def _rendered(request: Request, status: int, shown: dict[str, Any]) -> Res
 
 
 router = APIRouter(include_in_schema=False, dependencies=[admit("listing")])
-router.add_api_route(ADDRESS, show_selections, methods=["GET", "HEAD"])
+router.add_api_route(ADDRESS, show_selections)

@@ -54,5 +54,5 @@ def _file(content: str, name: str, media_type: str) -> Response:
 
 
 router = APIRouter(include_in_schema=False, dependencies=[admit("calculator")])
-router.add_api_route("/application.json", application_file, methods=["GET", "HEAD", "POST"])
-router.add_api_route("/cycle.csv", cycle_file, methods=["GET", "HEAD", "POST"])
+router.add_api_route("/application.json", application_file, methods=["GET", "POST"])
+router.add_api_route("/cycle.csv", cycle_file, methods=["GET", "POST"])

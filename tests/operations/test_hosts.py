@@ -1,0 +1,110 @@
+"""Names under which the service answers: links name no other."""
+
+import zlib
+
+import pytest
+from starlette.testclient import TestClient
+
+from tests.operations.conftest import MakeClient
+
+LINK = "/?T=40&n=250&t=1&i=5"
+ALLOWED = "plm.example, *.erp.example, [2001:db8::1], 192.0.2.7"
+
+
+def status(client: TestClient, host: str, path: str = "/api/v1/catalogue/HPN-20A-5") -> int:
+    """Answer to a request for a host."""
+    return client.get(path, headers={"Host": host}, follow_redirects=False).status_code
+
+
+@pytest.mark.parametrize(
+    "host",
+    [
+        "plm.example",
+        "PLM.Example",
+        "plm.example:8443",
+        "a.erp.example",
+        "[2001:db8::1]",
+        "[2001:db8::1]:80",
+        "192.0.2.7",
+    ],
+)
+def test_a_permitted_host_is_answered_whatever_the_port(host: str, make_client: MakeClient) -> None:
+    assert status(make_client(allowed_hosts=ALLOWED), host) == 200
+
+
+@pytest.mark.parametrize(
+    "host",
+    [
+        "evil.example",
+        "plm.example.evil.example",
+        "evilplm.example",
+        "erp.example",
+        "erp.example.",
+        "[2001:db8::2]",
+        "plm.example@evil.example",
+        "evil.example/plm.example",
+        "evil.example#plm.example",
+        "[",
+        "[::1",
+        "a b",
+        ":80",
+        "",
+        '"><script>',
+        "plm.example:99999999",
+        "plm.example, evil.example",
+        "\xff",
+    ],
+)
+def test_any_other_host_is_a_421(host: str, make_client: MakeClient) -> None:
+    client = make_client(allowed_hosts=ALLOWED)
+
+    answer = client.get(LINK, headers={b"Host": host.encode("latin-1")})
+
+    assert answer.status_code == 421
+    assert answer.headers["Content-Type"] == "application/problem+json"
+    assert answer.json()["title"] == "Not the host of this service"
+    assert "evil" not in answer.text
+    assert answer.headers["X-Request-ID"]
+
+
+def test_load_balancers_ask_by_address(make_client: MakeClient) -> None:
+    client = make_client(allowed_hosts=ALLOWED)
+
+    assert [status(client, "10.1.2.3:8000", path) for path in ("/healthz", "/readyz", "/healthz/")] == [200, 200, 421]
+
+
+def test_any_host_is_answered_where_none_is_named_and_a_wrong_one_stands_in_no_link(make_client: MakeClient) -> None:
+    client = make_client()
+
+    for host in ("anything.example", "[", '"><script>', "evil.example/x", "a b"):
+        page = client.get("/catalogue", headers={"Host": host})
+        assert page.status_code == 200
+        assert ("anything.example/catalogue" in page.text) == (host == "anything.example")
+        assert "evil.example" not in page.text
+        assert "<script>" not in page.text
+
+
+def test_links_name_a_permitted_host(make_client: MakeClient) -> None:
+    client = make_client(allowed_hosts=ALLOWED)
+    asked = {"Host": "plm.example:8443"}
+
+    canonical = client.get("/catalogue", headers=asked).text
+    provider = client.get("/oembed", params={"url": LINK}, headers=asked).json()["provider_url"]
+    report = client.get(f"/report.pdf{LINK.removeprefix('/')}", headers=asked).content
+    moved = client.get("/catalogue/", headers=asked, follow_redirects=False).headers.get("Location", "")
+
+    assert '<link rel="canonical" href="http://plm.example:8443/catalogue"' in canonical
+    assert provider == "http://plm.example:8443/"
+    assert b"http://plm.example:8443/?T=40" in report or b"http://plm.example:8443/?T=40" in streams(report)
+    assert moved in ("", "http://plm.example:8443/catalogue")
+
+
+def streams(document: bytes) -> bytes:
+    """Everything that is packed in a PDF."""
+    found = b""
+    for part in document.split(b"stream\n")[1:]:
+        try:
+            found += zlib.decompressobj().decompress(part)
+        except zlib.error:
+            continue
+    return found
