@@ -11,7 +11,7 @@ UV := $(VENV)/uv/bin/uv
 MODULES := frontend/node_modules
 ASSETS := frontend/dist/manifest.json
 # What is installed: enough to run, or all of it. Once a tree has the tools, `make run` must not take them away again.
-FOR := $(if $(filter check test soak bench screenshots browser messages licences sbom audit,$(MAKECMDGOALS))$(wildcard $(VENV)/.dev),dev,run)
+FOR := $(if $(filter check test soak mutants bench screenshots browser messages licences sbom audit,$(MAKECMDGOALS))$(wildcard $(VENV)/.dev),dev,run)
 PAGE_FOR := $(if $(filter test soak,$(MAKECMDGOALS))$(wildcard $(MODULES)/.dev),dev,run)
 ENVIRONMENT := $(VENV)/.$(FOR)
 PACKAGES := $(MODULES)/.$(PAGE_FOR)
@@ -24,7 +24,7 @@ endif
 export UV_SYSTEM_CERTS ?= true
 export NODE_USE_SYSTEM_CA ?= 1
 
-.PHONY: run install assets test soak check bench screenshots browser office curl messages lock licences sbom audit digests clean
+.PHONY: run install assets test soak mutants check bench screenshots browser office curl messages lock licences sbom audit digests clean
 .DELETE_ON_ERROR:
 
 run: install
@@ -48,6 +48,10 @@ endif
 soak: install browser office curl
 	$(BIN)/pytest --soak tests/browser/test_lighthouse.py
 	$(BIN)/pytest --soak --ignore tests/browser/test_lighthouse.py $(TOGETHER)
+
+# Each small change of the modules that decide has to make a test fail; what no test finds is explained or listed.
+mutants: install
+	$(BIN)/python -m tests.mutants $(ONLY)
 
 check: $(ENVIRONMENT)
 	$(BIN)/ruff format --check

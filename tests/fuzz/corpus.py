@@ -1,0 +1,129 @@
+"""Valid inputs of every door, from which the broken ones are made."""
+
+import csv
+import io
+import json
+from collections.abc import Iterator
+from typing import Any
+
+from hpn.application import Application
+from hpn.catalogue import HANDBOOK_FOLDER, load_catalogue
+from hpn.catalogue.tables import TABLES
+from hpn.reader import Reader
+from hpn.report.export import Export
+from hpn.report.workbook import workbook
+from hpn.selection import select
+from hpn.web.form.pasted import write_table
+from hpn.web.form.symbols import BY_NAME
+from hpn.web.form.write import to_link
+from tests.build import cycle, phase, worked_example
+
+Json = dict[str, Any]
+
+REQUIREMENTS: Json = {
+    "ratios": [5, 10],
+    "sizes": ["14A", "20A"],
+    "life_h": 20000,
+    "backlash_arcmin": 7,
+    "torsional_stiffness_Nm_per_rad": 5000,
+    "weight_kg": 5,
+    "length_mm": 200,
+    "ambient_temperature_degC": 25,
+    "utilisation": 0.9,
+    "efficiency": 0.95,
+    "motor": {"maximum_speed_rpm": 4000, "peak_torque_Nm": 20, "rated_torque_Nm": 8},
+}
+LOAD = {"radial_N": 500, "axial_N": 200, "load_coefficient": 1.2, "life_h": 20000, "model": "iso281"}
+
+APPLICATIONS: tuple[Json, ...] = (
+    cycle(phase(40, 250)),
+    worked_example(),
+    worked_example(output_load=LOAD, requirements=REQUIREMENTS, application_area="vacuum", rank_by="life"),
+    worked_example(output_load={"axial_N": 100, "life_basis": "L10"}, emergency_stop={"torque_Nm": 200, "count": 1000}),
+    cycle(phase(-40, 250, 0.5, radial_N=50), phase(0, -1e3, 2.5, axial_N=7), pause_s=4.0, output_load={}),
+    cycle(phase(9.3, 0), phase(1e-3, 1e4, 1e-3), requirements={"ratios": [5]}, rank_by="motor_torque"),
+    cycle(*(phase(k, 100 + k, 0.1) for k in range(1, 40)), pause_s=1.5),
+)
+
+_MODELS = [Application.model_validate(entry) for entry in APPLICATIONS]
+
+JSON = tuple(json.dumps(entry).encode() for entry in APPLICATIONS)
+BATCHES = tuple(
+    json.dumps({"applications": [{"reference": f"axis {k}", **entry} for k, entry in enumerate(part)]}).encode()
+    for part in (APPLICATIONS[:1], APPLICATIONS[:4], APPLICATIONS[2:6])
+)
+SAVES = tuple(
+    json.dumps({"application": entry, "title": "Axis 7", "reference": "plm-4711"}).encode() for entry in APPLICATIONS
+)
+LINES = tuple(
+    b"\n".join(json.dumps({"reference": f"axis {k}", **entry}).encode() for k, entry in enumerate(part)) + b"\n"
+    for part in (APPLICATIONS[:1], APPLICATIONS[:3], APPLICATIONS[2:6], APPLICATIONS)
+)
+LINKS = tuple(to_link(model).removeprefix("/?").encode() for model in _MODELS)
+FORMS = (
+    *LINKS,
+    *(link + b"&do=" + do for link in LINKS[1:4] for do in (b"add", b"remove:1", b"up:1", b"duplicate:0", b"example")),
+    b"phases=40+250+0.3%0A32+500+3%0A20%09250%090.4&tp=4&Tk=200&i=5",
+    b"phases=1%3B2%3B3%3B4%3B5&written=de.lb_in.lbf&was=Nm%3A40+N%3A1.5&Tk=200%2C5&gear=HPN-20A-5&pin=HPN-14A-5",
+    b"T=354%2C03&n=250&t=0%2C3&written=de.lb_in&was=Nm%3A40&FR=1.234%2C5&gear=HPN-14A-5&pin=HPN-20A-5&unpin=HPN-20A-5",
+)
+TABLES_OF_PHASES = (
+    *(write_table(model.duty_cycle).encode() for model in _MODELS),
+    *(write_table(model.duty_cycle, ",").encode() for model in _MODELS[1:]),
+    b"Drehmoment [Nm]\tDrehzahl [1/min]\tDauer [s]\n40\t250\t0,3\n32\t500\t3\n",
+    "T_Nm;n;t_s;Radiallast (N);Axiallast in N\n1.234;2;3;4;5\n1’234,5;2;3;;\n".encode("cp1252"),
+    "\ufefftorque speed duration\r\n40 250 0.3\r\n".encode(),
+    "40\t250\t0.3\n32\t500\t3\n".encode("utf-16"),
+    b"1.234\t2\t3\n1,234\t2\t3\n",
+)
+
+
+def _workbook() -> bytes:
+    catalogue = load_catalogue()
+    selection = select(_MODELS[1], catalogue)
+    return workbook(Export(application=_MODELS[1], selection=selection, link="/", catalogue=catalogue), Reader("en"))
+
+
+WORKBOOKS = (_workbook(),)
+"""What is no text: a workbook is refused where a table is taken."""
+
+SIZES = ("14A", "40A")
+"""Sizes of the small catalogue that supplements are laid over, so that loading it costs little."""
+
+
+def small_catalogue() -> Iterator[tuple[str, str]]:
+    """The shipped catalogue's files with the rows of two sizes: name and content."""
+    for table in TABLES:
+        rows = list(csv.reader((HANDBOOK_FOLDER / table.file).read_text(encoding="utf-8").splitlines()))
+        written = io.StringIO()
+        place = rows[0].index("size") if "size" in rows[0] else None
+        csv.writer(written).writerows(row for row in rows if place is None or row[place] in ("size", *SIZES))
+        yield table.file, written.getvalue()
+
+
+SUPPLEMENTS = (
+    *(f"{name}\n{content}".encode() for name, content in small_catalogue()),
+    b"ratings.csv\nsize,ratio,repeated_peak_torque_Nm,rated_torque_Nm,momentary_peak_torque_Nm,source\n"
+    b"40A,5,752,400,1250,page 12\n",
+    b"bearing_envelopes.csv\nsize,load_coefficient,axial_N,radial_N,source\n"
+    b"14A,1,0,500,graph\n14A,1,200,400,graph\n14A,1,600,0,graph\n14A,1.2,0,400,graph\n14A,1.2,500,0,graph\n",
+    b"efficiency.csv\nsize,ratio,torque_Nm,efficiency,source\n14A,5,1,0.5,graph\n14A,5,10,0.9,graph\n",
+)
+"""A file of a supplement each: its name in the first line, its content below."""
+
+SYMBOLS = tuple(b"&%s=" % name.encode() for name in (*BY_NAME, "gear", "pin", "do", "phases", "written", "was"))
+FIELDS = tuple(
+    b'"%s"' % name.encode()
+    for name in (
+        *("duty_cycle", "phases", "pause_s", "torque_Nm", "speed_rpm", "duration_s", "radial_N", "axial_N"),
+        *("emergency_stop", "count", "output_load", "load_coefficient", "life_h", "life_basis", "model", "linear"),
+        *("requirements", *REQUIREMENTS, "application_area", "vacuum", "rank_by", "reference", "title", "application"),
+        *("applications", "digitised", "L10", "", "x" * 300, "\\ud800", "\\u0000", "\u202e"),
+    )
+)
+MARKS = (*FIELDS, b"{}", b"[]", b"[null]", b'""', b"null", b"true", b"{", b"}", b"[", b"]", b",", b":", b"\n", b"\r")
+HEADINGS = (
+    *(b"torque", b"speed", b"duration", b"Dauer [s]", b"n [1/min]", b"T_Nm", b"radial_N", b"Axiallast in N", b"in"),
+    *(b"\t", b";", b",", b" ", b"\n", b"\r\n", b'"', b'""', b"'", b"\x00", b"1.234", b"1,234", b"1 234"),
+)
+COLUMNS = tuple({name.encode() for table in TABLES for name in table.columns()} | {b"14A", b"40A", b"5", b",", b"\n"})

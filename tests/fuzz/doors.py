@@ -1,0 +1,177 @@
+"""The doors: what is sent through each, and what its answer must be like."""
+
+from collections.abc import AsyncIterator, Awaitable, Callable, Sequence
+from contextlib import asynccontextmanager, suppress
+from dataclasses import dataclass
+from pathlib import Path
+from random import Random
+from urllib.parse import quote, urlencode
+
+import msgspec
+from pydantic import SecretStr
+
+from hpn.application import Application, InputError
+from hpn.catalogue import CatalogueError, load_catalogue
+from hpn.catalogue.tables import TABLES
+from hpn.selection import encode, select
+from hpn.web.app import create_app
+from hpn.web.door.protocol import HEAD_BYTES
+from hpn.web.settings import Settings
+from tests.fuzz import corpus
+from tests.fuzz.caller import Caller, Header, Reply
+
+FORM = (b"content-type", b"application/x-www-form-urlencoded")
+JSON = (b"content-type", b"application/json")
+LINES = (b"content-type", b"application/x-ndjson")
+FILE = (b"content-type", b"multipart/form-data; boundary=boundary")
+EDIT = ((b"hx-request", b"true"), (b"hx-target", b"section#result"))
+READERS: tuple[tuple[Header, ...], ...] = ((), ((b"cookie", b"hpn_language=de; hpn_units=lb_in.lbf"),))
+_ON_THE_WIRE = "".join(map(chr, range(0x21, 0x7F)))
+"""Characters that a server lets through in an address; the rest is percent-encoded."""
+
+
+class World:
+    """What the inputs meet: the service on a database of its own, and a small catalogue to lay supplements over."""
+
+    def __init__(self, folder: Path) -> None:
+        self.app = create_app(
+            Settings(
+                database_url=SecretStr(f"sqlite:///{folder}/fuzz.sqlite3"),
+                log_level="error",
+                calculator_rate="off",
+                batch_rate="off",
+                writing_rate="off",
+            )
+        )
+        self.call = Caller(self.app)
+        self.handbook, self.supplement = folder / "catalogue", folder / "supplement"
+        for place in (self.handbook, self.supplement):
+            place.mkdir()
+        for name, content in corpus.small_catalogue():
+            (self.handbook / name).write_text(content, encoding="utf-8")
+
+    @classmethod
+    @asynccontextmanager
+    async def opened(cls, folder: Path) -> "AsyncIterator[World]":
+        """A world whose service runs."""
+        world = cls(folder)
+        async with world.app.router.lifespan_context(world.app):
+            yield world
+
+
+Send = Callable[[World, Random, bytes], Awaitable[str]]
+"""Sends an input, and gives what was answered in a word; raises AssertionError for what must not be answered."""
+
+
+@dataclass(frozen=True)
+class Door:
+    """One way in: valid inputs, the names and marks of their format, and how an input is sent."""
+
+    send: Send
+    corpus: Sequence[bytes]
+    words: Sequence[bytes]
+
+
+def judged(reply: Reply, *, api: bool) -> str:
+    """Status of an answer that is well-formed: no server error, JSON that can be read, problems with their members."""
+    assert reply.status < 500, f"answered with {reply.status}: {reply.body[:300]!r}"
+    if reply.media_type.endswith("json"):
+        answered = msgspec.json.decode(reply.body)
+        if reply.status >= 400:
+            assert {"type", "title", "status", "detail"} <= answered.keys(), f"no problem: {reply.body[:300]!r}"
+    else:
+        reply.body.decode()
+    if api and reply.status >= 400:
+        assert reply.media_type == "application/problem+json", f"{reply.status} as {reply.media_type}"
+    return str(reply.status)
+
+
+async def _link(world: World, random: Random, content: bytes) -> str:
+    query = quote(content, safe=_ON_THE_WIRE).encode()[: HEAD_BYTES - 500]  # no server takes more
+    path = random.choice(("/", "/", "/oembed", "/paste", *["/cycle.csv"] * 4, *["/application.json"] * 8))
+    headers = [*random.choice(READERS), *(() if random.random() < 0.2 else EDIT)] if path == "/" else []
+    if path == "/oembed":
+        query = urlencode({"url": b"/?" + query}).encode()
+    return judged(await world.call("GET", path, query=query, headers=headers), api=path == "/oembed")
+
+
+async def _form(world: World, random: Random, content: bytes) -> str:
+    headers = [FORM, *random.choice(READERS), *(() if random.random() < 0.1 else EDIT)]
+    return judged(await world.call("POST", "/", headers=headers, body=content), api=False)
+
+
+async def _paste(world: World, random: Random, content: bytes) -> str:
+    fields = {"text": content, "link": random.choice(corpus.LINKS[:2]), "take": random.choice(_TAKES)}
+    headers = [FORM, *random.choice(READERS), EDIT[0]]
+    return judged(await world.call("POST", "/paste", headers=headers, body=urlencode(fields).encode()), api=False)
+
+
+async def _upload(world: World, random: Random, content: bytes) -> str:
+    parts = (
+        b'name="link"\r\n\r\nT=1&n=1&t=1',
+        b'name="take"\r\n\r\n' + random.choice(_TAKES).encode(),
+        b'filename="duty.csv"; name="file"\r\n\r\n' + content,
+    )
+    body = b"".join(b"--boundary\r\nContent-Disposition: form-data; " + part + b"\r\n" for part in parts)
+    reply = await world.call("POST", "/paste", headers=[FILE, EDIT[0]], body=body + b"--boundary--\r\n")
+    return judged(reply, api=False)
+
+
+_TAKES = ("", "", "", "", "", "", "append:0", "replace:0")
+
+
+async def _lines(world: World, random: Random, content: bytes) -> str:
+    reply = await world.call("POST", "/api/v1/select/batch", headers=[LINES], body=content)
+    assert reply.status == 200, f"answered with {reply.status}"
+    sent = [line for line in content.split(b"\n") if line.removeprefix(b"\xef\xbb\xbf").strip()]
+    answers = [msgspec.json.decode(line) for line in reply.body.splitlines()]
+    assert len(answers) == len(sent), f"{len(answers)} answers to {len(sent)} lines"
+    assert all(answer["problem"]["status"] < 500 for answer in answers if answer["status"] == "error")
+    return "ok" if any(answer["status"] == "ok" for answer in answers) else "error"
+
+
+async def _json(world: World, random: Random, content: bytes) -> str:
+    path = "/api/v1/select"
+    if b'"applications"' in content:
+        path = "/api/v1/select/batch"
+    elif b'"application"' in content:
+        path = "/api/v1/selections"
+    return judged(await world.call("POST", path, headers=[JSON], body=content), api=True)
+
+
+_QUESTIONS = [Application.model_validate(entry) for entry in corpus.APPLICATIONS[1:3]]
+_QUESTIONS.append(
+    Application.model_validate(corpus.APPLICATIONS[0] | {"output_load": {"radial_N": 9, "model": "digitised"}})
+)
+
+
+async def _supplement(world: World, random: Random, content: bytes) -> str:
+    """Lay one file over the small catalogue; what is accepted must answer every question that can be asked of it."""
+    name, _, text = content.partition(b"\n")
+    file = world.supplement / (name.decode("latin-1") if name in _FILES else "ratings.csv")
+    file.write_bytes(text)
+    try:
+        catalogue = load_catalogue(world.handbook, world.supplement)
+    except CatalogueError as refusal:
+        assert str(file) in str(refusal) or str(world.handbook) in str(refusal), f"names no file: {refusal}"
+        return "refused"
+    finally:
+        file.unlink()
+    for question in _QUESTIONS:
+        with suppress(InputError):  # a supplement may take a size or a curve away
+            encode(select(question, catalogue))
+    return "accepted"
+
+
+_FILES = {table.file.encode() for table in TABLES}
+
+DOORS = {
+    "link": Door(_link, corpus.LINKS, corpus.SYMBOLS),
+    "form": Door(_form, corpus.FORMS, corpus.SYMBOLS),
+    "paste": Door(_paste, corpus.TABLES_OF_PHASES, corpus.HEADINGS),
+    "csv": Door(_upload, corpus.TABLES_OF_PHASES, corpus.HEADINGS),
+    "xlsx": Door(_upload, corpus.WORKBOOKS, corpus.HEADINGS),
+    "ndjson": Door(_lines, corpus.LINES, corpus.MARKS),
+    "supplement": Door(_supplement, corpus.SUPPLEMENTS, corpus.COLUMNS),
+    "json": Door(_json, (*corpus.JSON, *corpus.JSON, *corpus.BATCHES, *corpus.SAVES), corpus.MARKS),
+}

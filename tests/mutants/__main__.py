@@ -1,0 +1,94 @@
+"""`python -m tests.mutants [MODULE …]`: puts every mutant on trial, and lists those that no test finds."""
+
+import argparse
+import os
+import sys
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+from tests.mutants.changes import Mutant, mutants_of
+from tests.mutants.explained import EXPLAINED
+
+# What the modules need is imported once, so that a forked process has it; the modules and tests themselves are not.
+import babel.numbers  # noqa: F401  isort: skip
+import fastapi  # noqa: F401  isort: skip
+import jsonschema_rs  # noqa: F401  isort: skip
+import mpmath  # noqa: F401  isort: skip
+import msgspec  # noqa: F401  isort: skip
+import numpy  # noqa: F401  isort: skip
+import orjson  # noqa: F401  isort: skip
+import pint  # noqa: F401  isort: skip
+import pydantic  # noqa: F401  isort: skip
+import pydantic_settings  # noqa: F401  isort: skip
+import starlette.testclient  # noqa: F401  isort: skip
+
+from tests.mutants.trial import timed
+
+PACKAGE = Path(__file__).parents[2] / "backend" / "hpn"
+MODULES = ("equations", "bearing", "checks", "selection")
+
+STAGES = (
+    [
+        *("tests/reference/test_worked_example.py", "tests/reference/test_equations.py"),
+        *("tests/reference/test_bearing.py", "tests/unit/test_checks.py"),
+    ],
+    [
+        *("tests/unit/test_check_texts.py", "tests/unit/test_notices.py", "tests/unit/test_remedy.py"),
+        *("tests/unit/test_application.py", "tests/unit/test_calculation.py", "tests/unit/test_comparison.py"),
+        *("tests/unit/test_supplements.py", "tests/property/test_arrays.py", "tests/property/test_reserve.py"),
+        *("tests/property/test_envelopes.py", "tests/property/test_invariances.py"),
+    ],
+    ["tests/property/test_contract.py", "tests/property/test_calculation.py", "tests/web/test_select.py"],
+)
+"""Tests by what they cost; what a mutant passes is followed by the next."""
+
+
+def main() -> int:
+    """Print each survivor that is not explained, and counts; 1 where there is one."""
+    parser = argparse.ArgumentParser(prog="python -m tests.mutants", description=__doc__)
+    parser.add_argument("modules", nargs="*", metavar="MODULE", help=f"out of {', '.join(MODULES)}; all by default")
+    parser.add_argument("--list", action="store_true", help="list the mutants, and try none")
+    parser.add_argument("--only", default="", help="only those whose name contains this")
+    given = parser.parse_args()
+    os.nice(19)
+    os.environ["PYTEST_DISABLE_PLUGIN_AUTOLOAD"] = "1"  # none of the tests needs one, and each takes its time
+    found = 0
+    for module in given.modules or MODULES:
+        path = PACKAGE / f"{module}.py"
+        mutants = [m for m in mutants_of(module, path.read_text(encoding="utf-8")) if given.only in m.name]
+        if given.list:
+            print(*(mutant.name for mutant in mutants), sep="\n")
+            continue
+        found += _report(module, path, mutants)
+    return min(found, 1)
+
+
+def _report(module: str, path: Path, mutants: list[Mutant]) -> int:
+    """Try the mutants, but not those again and again of which it is known that no test finds them."""
+    survivors = _survivors(path, mutants, STAGES[0])
+    explained = [mutant for mutant in survivors if mutant.name in EXPLAINED]
+    survivors = [mutant for mutant in survivors if mutant not in explained]
+    for tests in STAGES[1:]:
+        survivors = _survivors(path, survivors, tests)
+    killed = len(mutants) - len(explained) - len(survivors)
+    print(
+        f"{module}: {len(mutants)} mutants, {killed} killed, {len(explained)} explained, {len(survivors)} survived",
+        *(f"  line {mutant.line}: {mutant.name}" for mutant in survivors),
+        sep="\n",
+        flush=True,
+    )
+    return len(survivors)
+
+
+def _survivors(path: Path, mutants: list[Mutant], tests: list[str]) -> list[Mutant]:
+    def passes(mutant: Mutant) -> bool:
+        passed, seconds = timed(path, mutant.source, tests)
+        print("PASSED" if passed else "killed", f"{seconds:.1f} s {mutant.name}", file=sys.stderr, flush=True)
+        return passed
+
+    with ThreadPoolExecutor(2) as pool:  # each waits for a process of its own
+        return [mutant for mutant, passed in zip(mutants, pool.map(passes, mutants), strict=True) if passed]
+
+
+if __name__ == "__main__":
+    sys.exit(main())

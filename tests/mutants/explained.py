@@ -1,0 +1,3 @@
+"""Mutants that no test can or should find, and why."""
+
+EXPLAINED: dict[str, str] = {}

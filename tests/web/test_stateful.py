@@ -1,0 +1,66 @@
+"""Requests that go on from earlier answers, by the links of the OpenAPI document: save, read, export, list, delete."""
+
+from collections import Counter
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+import schemathesis
+from hypothesis import HealthCheck, Phase, settings
+from pydantic import SecretStr
+from schemathesis import Case, Response
+from schemathesis.checks import not_a_server_error
+from schemathesis.specs.openapi.checks import (
+    content_type_conformance,
+    ensure_resource_availability,
+    response_schema_conformance,
+    status_code_conformance,
+    use_after_free,
+)
+from starlette.testclient import TestClient
+
+from hpn.web.app import create_app
+from hpn.web.settings import Settings
+
+CHECKS = [
+    *(not_a_server_error, status_code_conformance, content_type_conformance, response_schema_conformance),
+    *(use_after_free, ensure_resource_availability),
+]
+STEPS = 6
+"""Requests of one scenario at most."""
+
+
+@pytest.fixture(scope="module")
+def schema(tmp_path_factory: pytest.TempPathFactory) -> Iterator[schemathesis.BaseSchema]:
+    """The document of a service with a database of its own, which runs while its operations are tried."""
+    file = tmp_path_factory.mktemp("stateful") / "selections.sqlite3"
+
+    app = create_app(Settings(database_url=SecretStr(f"sqlite:///{file}"), log_level="error", calculator_rate="off"))
+    with TestClient(app):
+        yield schemathesis.openapi.from_asgi("/openapi.json", app)
+
+
+def test_no_chain_of_requests_brings_the_service_to_a_mistake_or_to_an_answer_that_is_not_in_the_document(
+    schema: schemathesis.BaseSchema, soak: bool
+) -> None:
+    answered: Counter[tuple[str, int]] = Counter()
+
+    class Chains(schema.as_state_machine()):  # type: ignore[misc]
+        def validate_response(self, response: Response, case: Case[Any], **more: Any) -> None:
+            answered[case.operation.label, response.status_code] += 1
+            case.validate_response(response, checks=CHECKS, recorder=self.recorder)
+
+    few = settings(
+        max_examples=4000 if soak else 12,
+        stateful_step_count=STEPS,
+        phases=[Phase.generate],
+        deadline=None,
+        suppress_health_check=list(HealthCheck),
+    )
+    while answered.total() < (20_000 if soak else 1):
+        Chains.run(settings=few)
+
+    print(answered.total(), "requests:", dict(answered))
+    saved = "POST /api/v1/selections"
+    assert answered[saved, 201]
+    assert any(path.endswith(("{id}", "{id}/report.pdf")) and status == 200 for path, status in answered)
