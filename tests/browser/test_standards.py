@@ -1,0 +1,98 @@
+"""Every page by axe with the rules that it leaves out by itself, and what a finger has to hit."""
+
+import httpx
+import pytest
+from playwright.sync_api import Page
+
+from tests.browser.conftest import AXE, Visitor
+from tests.build import worked_example
+
+RULES = ("target-size", "label-content-name-mismatch")
+"""WCAG 2.5.8 and 2.5.3: axe runs them where they are asked for."""
+
+FULL = (
+    "/?T=40&n=250&t=0.3&FRi=500&T=32&n=500&t=3&FRi=&T=20&n=250&t=0.4&FRi=700&tp=4&Tk=200&i=5&FR=500&fw=1.2&Lh=20000"
+    "&nm=4000&Tm=20&gear=HPN-14A-5&pin=HPN-20A-5"
+)
+PAGES = (
+    "/",
+    FULL,
+    "/?T=9,3&n=&t=1",
+    "/?T=&n=&t=",
+    "/?T=" + "1" * 61_000,
+    "/paste",
+    "/catalogue",
+    "/catalogue?size=20A",
+    "/catalogue/HPN-20A-5",
+    "/catalogue/HPN-40A-5",
+    "/catalogue/HPN-99A-5",
+    "/selections",
+    "/selections?reference=none",
+    "/selections?reference=%07",
+    "/selections/nothing",
+    "/nowhere",
+    "SAVED",
+)
+SHORT = (FULL, "/paste", "/catalogue?size=20A", "/catalogue/HPN-20A-5", "/selections", "/nowhere")
+
+MAIN = ".masthead nav *, .reader > .link, .field :is(input, select), .duty input, .quiet, .primary, summary, .filter a"
+LEAST_PX, TOUCH_PX = 24, 44
+TOO_SMALL = """([main, least, touch]) => [...document.querySelectorAll(main + ', .icon')].map(
+  element => [element.innerText || element.id, element.getBoundingClientRect(), element.matches('.icon')]
+).filter(([name, box, icon]) => box.width && (box.height < touch - 0.5 || box.width < least)).map(([name]) => name)"""
+
+
+@pytest.fixture(scope="module")
+def saved(server: str) -> str:
+    """Path of a saved selection."""
+    body = {"application": worked_example(), "title": "Axis 7", "reference": "4711"}
+    return str(httpx.post(f"{server}/api/v1/selections", json=body, trust_env=False).json()["url"])
+
+
+def unfolded(visitor: Visitor, path: str, width: int, *, dark: bool = False, touch: bool = False) -> Page:
+    """A page with everything open that can be."""
+    page = visitor.open(path, width, dark=dark, touch=touch)
+    page.evaluate("document.querySelectorAll('details').forEach(part => { part.open = true })")
+    page.wait_for_load_state("networkidle")
+    for watch in visitor.watches:  # the browser says of a page that is refused or not found that it is
+        watch.console = [text for text in watch.console if "responded with a status of 4" not in text]
+    return page
+
+
+def violations(page: Page, **options: object) -> list[object]:
+    """What axe finds, and where."""
+    page.evaluate(AXE.read_text())
+    found = page.evaluate("options => axe.run(options).then(result => result.violations)", options)
+    return [(entry["id"], [node["target"] for node in entry["nodes"]]) for entry in found]
+
+
+@pytest.mark.parametrize("path", SHORT)
+def test_what_a_finger_has_to_hit_is_big_enough_and_called_what_it_shows(
+    visitor: Visitor, saved: str, path: str
+) -> None:
+    page = unfolded(visitor, path, 390, touch=True)
+
+    assert violations(page, runOnly=RULES) == []
+    assert page.evaluate(TOO_SMALL, [MAIN, LEAST_PX, TOUCH_PX]) == []
+
+
+@pytest.mark.soak
+@pytest.mark.parametrize("width", [390, 1440])
+@pytest.mark.parametrize("path", PAGES, ids=lambda path: path[:40])
+def test_axe_finds_nothing_on_any_page_with_these_rules_too(
+    visitor: Visitor, saved: str, path: str, width: int
+) -> None:
+    page = unfolded(visitor, path.replace("SAVED", saved), width, touch=width == 390)
+    switched_on = {rule: {"enabled": True} for rule in RULES}
+
+    for scheme in ("light", "dark"):
+        page.emulate_media(color_scheme=scheme)
+        assert violations(page, rules=switched_on) == [], scheme
+    assert width == 1440 or page.evaluate(TOO_SMALL, [MAIN, LEAST_PX, TOUCH_PX]) == []
+
+
+@pytest.mark.parametrize(("dark", "shade"), [(False, "rgba(23, 33, 43, 0.06)"), (True, "rgba(0, 0, 0, 0)")])
+def test_panels_have_a_shadow_in_the_light(visitor: Visitor, dark: bool, shade: str) -> None:
+    page = visitor.open("/paste", dark=dark)
+
+    assert page.locator(".panel").first.evaluate("panel => getComputedStyle(panel).boxShadow").startswith(shade)
