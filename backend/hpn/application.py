@@ -4,11 +4,11 @@ Every field name ends in its unit. Torque, speed and load may be signed; the equ
 The bounds keep every power in chapter 4 far inside the range of a floating-point number.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from types import UnionType
 from typing import Annotated, Any, Literal, Self, Union, get_args, get_origin
 
-from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, field_validator
+from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, WrapValidator, field_validator
 from pydantic_core import PydanticCustomError, PydanticKnownError
 
 from hpn.gear import canonical_size
@@ -56,6 +56,22 @@ def _at_most(most: int) -> BeforeValidator:
         return value
 
     return BeforeValidator(check)
+
+
+PART = 500
+
+
+def _in_parts(value: Any, validate: Callable[[Any], tuple[Any, ...]]) -> tuple[Any, ...]:
+    """Validate a long list part by part: other threads get their turn in between, and only one part has errors.
+
+    What is validated stays in front, so that an error is told at its place in the whole.
+    """
+    if not isinstance(value, list | tuple) or len(value) <= PART:
+        return validate(value)
+    done: tuple[Any, ...] = ()
+    for start in range(0, len(value), PART):
+        done = validate((*done, *value[start : start + PART]))
+    return done
 
 
 MOST_WISHES = 100
@@ -106,7 +122,7 @@ class Phase(Model):
 class DutyCycle(Model):
     """Load phases and the pause t_p that follows them."""
 
-    phases: Annotated[tuple[Phase, ...], _at_most(MAXIMUM_PHASES)] = Field(
+    phases: Annotated[tuple[Phase, ...], WrapValidator(_in_parts), _at_most(MAXIMUM_PHASES)] = Field(
         min_length=1, max_length=MAXIMUM_PHASES, description="Load phases; at least one moves."
     )
     pause_s: Annotated[Number, Field(ge=0, le=1e9)] = Field(

@@ -18,6 +18,7 @@ from hpn.web.api.batch import batch_lines, line_evaluator
 from hpn.web.api.replies import encode
 from hpn.web.api.streaming import MEMORY_BYTES, Line, LineSplitter, LineStream, Spool
 from hpn.web.door.metrics import Metrics
+from hpn.web.door.pools import Places, Pool
 from tests.build import worked_example
 from tests.operations.conftest import MakeClient
 from tests.operations.service import Service
@@ -185,7 +186,10 @@ class Peer:
 
 def stream(evaluate: Callable[[Any], bytes] = echo, *, spool: int = 10_000_000, seconds: float = 20) -> LineStream:
     """A stream with small limits."""
-    return LineStream(evaluate, maximum_line_bytes=100_000, maximum_spool_bytes=spool, seconds=seconds)
+    pool = Pool(Places(1, 3))
+    return LineStream(
+        evaluate, pool=pool, subject="", maximum_line_bytes=100_000, maximum_spool_bytes=spool, seconds=seconds
+    )
 
 
 def ends_with(peer: Peer, end: bytes) -> bool:

@@ -14,8 +14,8 @@ import pytest
 from starlette.testclient import TestClient
 
 from hpn.store import Store, StoreUnavailableError
-from hpn.web.api.select import LONG_CYCLE
 from hpn.web.app import create_app
+from hpn.web.door.pools import SMALL_BYTES
 from hpn.web.settings import Settings
 from tests.build import cycle, phase, worked_example
 from tests.databases import PostgreSQL
@@ -142,7 +142,7 @@ def test_a_file_that_cannot_be_opened_keeps_only_the_store_from_working(tmp_path
         assert client.post("/api/v1/select", json=SAVE["application"]).status_code == 200
 
 
-@pytest.mark.parametrize("phases", [1, LONG_CYCLE + 1])
+@pytest.mark.parametrize("phases", [1, SMALL_BYTES // 40])
 def test_what_has_to_be_refused_does_not_wait_behind_who_is_stuck(outage: tuple[str, Outage], phases: int) -> None:
     database, broken = outage
     wrong = cycle(*[phase(1, 1)] * phases, requirements={"ratios": [6]})

@@ -9,9 +9,9 @@ from starlette.testclient import TestClient
 
 from hpn.application import Application, InputError
 from hpn.selection import encode, select
-from hpn.web.api.select import LONG_CYCLE
 from hpn.web.app import create_app
 from hpn.web.archive import Labels, draft_of
+from hpn.web.door.pools import SMALL_BYTES
 from hpn.web.form.write import to_link
 from hpn.web.settings import Settings
 from tests.build import Json, cycle, phase
@@ -54,7 +54,7 @@ def test_savers_at_once_each_find_their_own(client: TestClient) -> None:
     """Short cycles and long ones, which are computed in another thread, some under one key and some refused."""
 
     def body(number: int) -> Json:
-        phases = [phase(1 + number / 10, 100)] * (LONG_CYCLE + 1 if number % 8 == 0 else 1 + number % 5)
+        phases = [phase(1 + number / 10, 100)] * (SMALL_BYTES // 40 if number % 8 == 0 else 1 + number % 5)
         wishes = {"ratios": [6 if number % 10 == 9 else 5]}
         return {"application": cycle(*phases, requirements=wishes), "title": f"axis {number % 40}"}
 

@@ -33,6 +33,7 @@ from hpn.web.door.hosts import Hosts
 from hpn.web.door.logs import make_logger
 from hpn.web.door.metrics import CountedStore, Metrics
 from hpn.web.door.observation import Observation
+from hpn.web.door.pools import Pools
 from hpn.web.door.readers import Readers
 from hpn.web.pages import assets, long_cycles, paste, refusals, saved_list, transfer
 from hpn.web.pages import calculator as pages
@@ -121,6 +122,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     app.state.settings = settings
     app.state.catalogue = load_catalogue(settings.catalogue_folder, settings.catalogue_supplement)
     app.state.gate = Gate(settings)
+    app.state.pools = Pools()
     app.state.metrics = Metrics()
     app.state.store = CountedStore(app.state.metrics, **settings.database())
     problems.install(app, refusals.page_of)

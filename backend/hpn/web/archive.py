@@ -1,12 +1,12 @@
 """Saving a selection and opening it again, for the API and the pages alike."""
 
 import re
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Annotated
+from typing import Annotated, TypeVar
 
 from pydantic import AfterValidator, Field, StringConstraints, ValidationError
 from pydantic_core import PydanticCustomError
-from starlette.concurrency import run_in_threadpool
 from starlette.datastructures import State
 from starlette.requests import Request
 from starlette.responses import Response
@@ -18,8 +18,11 @@ from hpn.differences import Difference, FigureDifference, differences, figure_di
 from hpn.selection import Selection, decode, encode, select
 from hpn.store import Draft, KeyReusedError, KeySpentError, SavedSelection
 from hpn.web.door.observation import note
+from hpn.web.door.pools import compute
 from hpn.web.door.problems import Problem
 from hpn.web.form.write import to_link
+
+T = TypeVar("T")
 
 CONTROLS = re.compile(r"[\x00-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069\ufffe\uffff]")
 """Control characters, line separators, marks that turn the direction of the text around them, and no characters."""
@@ -85,13 +88,9 @@ def url_of(id: str) -> str:
     return f"/selections/{id}"
 
 
-async def save(request: Request, application: Application, labels: Labels, key: str | None) -> str:
-    """Select and save for whoever asks; the id under which it is durable.
-
-    Raises InputError as `select` does, before the store is asked; Problem 422 or 410 for a key that was used before.
-    """
-    state, owner = request.app.state, request.state.api_key
-    draft = await run_in_threadpool(draft_of, state.catalogue, application, labels, key, owner)
+async def keep(request: Request, draft: Draft) -> str:
+    """Save for whoever asks; the id under which it is durable. Problem 422 or 410 for a key that was used before."""
+    state: State = request.app.state
     state.metrics.selections(["none" if draft.selected is None else "selected"])
     try:
         id: str = await state.store.save(draft)
@@ -106,7 +105,7 @@ async def save(request: Request, application: Application, labels: Labels, key: 
 def draft_of(
     catalogue: Catalogue, application: Application, labels: Labels, key: str | None, owner: str | None = None
 ) -> Draft:
-    """What is saved of an application: its own JSON, and the reply that `select` gives it."""
+    """What is saved of an application: its own JSON, and the reply that `select` gives it; InputError as that."""
     selection = select(application, catalogue, to_link(application))
     return Draft(
         application=application.model_dump_json(exclude_unset=True).encode(),
@@ -122,10 +121,11 @@ def draft_of(
     )
 
 
-async def found(state: State, id: str) -> Reopened:
-    """A saved selection and what differs today; Problem 404 where there is none."""
+async def found(request: Request, id: str, work: Callable[[Reopened], T]) -> T:
+    """What comes of a saved selection and what differs today, on a worker; Problem 404 where there is none."""
+    state: State = request.app.state
     saved, then = await with_catalogue(state, id)
-    return await run_in_threadpool(reopen, saved, then, state.catalogue)
+    return await compute(request, "pages", lambda: work(reopen(saved, then, state.catalogue)))
 
 
 async def with_catalogue(state: State, id: str) -> tuple[SavedSelection, Catalogue | None]:

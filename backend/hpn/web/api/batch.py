@@ -1,14 +1,13 @@
 """`POST /api/v1/select/batch`: one result line per application, as one JSON object or as a stream of lines."""
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
 import msgspec
 from fastapi import APIRouter
 from pydantic import ValidationError
 from pydantic_core import from_json
-from starlette.concurrency import run_in_threadpool
 from starlette.datastructures import State
 from starlette.requests import Request
 from starlette.responses import Response
@@ -18,17 +17,19 @@ from hpn.catalogue import Catalogue
 from hpn.fleet import judge_fleet
 from hpn.selection import Judged
 from hpn.web.api import schemas, streaming
-from hpn.web.api.replies import BatchLine, BatchReply, JSONBytes, ProblemReply, encode, json_response
+from hpn.web.api.items import Span, items_of
+from hpn.web.api.replies import BatchLine, JSONBytes, ProblemReply, encode
 from hpn.web.api.streaming import Line
 from hpn.web.door.access import admit
-from hpn.web.door.bodies import content_type_of, read_body
+from hpn.web.door.bodies import content_type_of, read_body, require_bounded
 from hpn.web.door.metrics import Metrics
+from hpn.web.door.pools import Pool, pool_of, while_present
 from hpn.web.door.problems import Problem
 from hpn.web.form.write import to_link
 from hpn.web.settings import Settings
 
-BATCH_SLICE = 256
-"""Items between two looks at the clock."""
+SLICE_ITEMS, SLICE_BYTES = 256, 1_000_000
+"""Items that are evaluated in one go, and the bytes of their JSON."""
 
 RETRY_SECONDS = 5
 
@@ -51,44 +52,75 @@ async def select_batch(request: Request) -> Response:
     state: State = request.app.state
     settings: Settings = state.settings
     if content_type_of(request) in streaming.MEDIA_TYPES:
-        return _stream(state)
+        return _stream(request)
     body = await read_body(request, maximum_bytes=settings.maximum_batch_body_bytes, seconds=settings.body_seconds)
-    items = batch_items(body, settings.maximum_batch_count)
-    lines: list[BatchLine] = []
+    pool = pool_of(request, "batches")
+    with pool.place(request.state.caller):
+        lines = await while_present(request, _answered(body, state, pool))
+    return JSONBytes(b'{"results":[' + lines[:-1].replace(b"\n", b",") + b"]}")
+
+
+async def _answered(body: bytes, state: State, pool: Pool) -> bytes:
+    """Result lines of a batch, a slice at a time, so that others get their turn and one that was left ends."""
+    settings: Settings = state.settings
     deadline = time.monotonic() + settings.batch_seconds
-    for start in range(0, len(items), BATCH_SLICE):
+    spans = await pool.run(_cut, body, settings)
+    lines: list[bytes] = []
+    for part in _slices(spans):
         if time.monotonic() > deadline:
             text = f"the batch took longer than {settings.batch_seconds:g} s; send fewer items at once"
             raise Problem(503, text, headers={"Retry-After": str(RETRY_SECONDS)})
-        lines += await run_in_threadpool(batch_lines, items[start : start + BATCH_SLICE], state.catalogue)
-    state.metrics.selections(line.verdict for line in lines)
-    return json_response(BatchReply(lines))
+        lines.append(await pool.run(_evaluated, body, part, state))
+    return b"".join(lines)
 
 
-def batch_items(body: bytes, maximum: int) -> list[Any]:
-    """Items of a JSON batch, not yet validated; Problem 400, 413 or 422 for what is none."""
+def _cut(body: bytes, settings: Settings) -> list[Span]:
     try:
-        batch = _parsed(body)
+        return items_of(body, settings.maximum_batch_count, settings.maximum_body_bytes)
     except ValueError as error:
-        raise Problem(400, f"the body is not JSON: {error}") from None
-    if not isinstance(batch, dict) or not isinstance(batch.get("applications"), list):
-        raise Problem(422, 'the body must be {"applications": [ … ]}', [(("applications",), "must be a list")])
-    unknown = [((name,), "is not a field of this object") for name in batch if name != "applications"]
-    if unknown:
-        raise Problem(422, 'the body must be {"applications": [ … ]} alone', unknown)
-    items: list[Any] = batch["applications"]
-    if len(items) > maximum:
-        raise Problem(
-            413,
-            f"at most {maximum} applications at once",
-            [(("applications",), f"has {len(items)} items, at most {maximum}")],
-        )
-    return items
+        raise _no_json("body", error) from None
 
 
-def _parsed(text: bytes) -> Any:
-    """Value of JSON as pydantic reads it: a number that is none leads to an error of its field, not of the whole."""
+def _slices(spans: Sequence[Span]) -> Iterator[list[Span]]:
+    """Items that are evaluated together: so many, and so many bytes."""
+    part: list[Span] = []
+    for span in spans:
+        if part and (len(part) == SLICE_ITEMS or span.end - part[0].start > SLICE_BYTES):
+            yield part
+            part = []
+        part.append(span)
+    if part:
+        yield part
+
+
+def _evaluated(body: bytes, spans: Sequence[Span], state: State) -> bytes:
+    try:
+        items = [_item(body[span.start : span.end]) for span in spans]
+    except ValueError as error:
+        raise _no_json("body", error) from None
+    return _encoded(items, state.catalogue, state.metrics)
+
+
+def _item(text: bytes) -> Any:
+    """Value of JSON as pydantic reads it: a number that is none leads to an error of its field, not of the whole.
+
+    A Problem for JSON with more in it than any application has; raises ValueError for what is no JSON.
+    """
+    try:
+        require_bounded(text)
+    except Problem as problem:
+        return problem
     return from_json(text)
+
+
+def _no_json(what: str, error: ValueError) -> Problem:
+    return Problem(400, f"the {what} is not JSON: {error}")
+
+
+def _encoded(items: Sequence[Any], catalogue: Catalogue, metrics: Metrics) -> bytes:
+    results = batch_lines(items, catalogue)
+    metrics.selections(result.verdict for result in results)
+    return b"".join([encode(result) + b"\n" for result in results])
 
 
 def batch_lines(items: Sequence[Any], catalogue: Catalogue) -> list[BatchLine]:
@@ -126,10 +158,13 @@ def _line(item: Any, outcome: Judged | InputError | Problem) -> BatchLine:
 # --- Lines ------------------------------------------------------------------------------------------------------------
 
 
-def _stream(state: State) -> Response:
+def _stream(request: Request) -> Response:
+    state: State = request.app.state
     settings: Settings = state.settings
     return streaming.LineStream(
         line_evaluator(state.catalogue, state.metrics, settings.maximum_body_bytes),
+        pool=pool_of(request, "batches"),
+        subject=request.state.caller,
         maximum_line_bytes=settings.maximum_body_bytes,
         maximum_spool_bytes=settings.maximum_spool_bytes,
         spool_folder=settings.spool_folder,
@@ -146,13 +181,11 @@ def line_evaluator(
         if line is None:
             return Problem(413, f"a line may have {maximum_line_bytes} bytes at most")
         try:
-            return _parsed(line)
+            return _item(line)
         except ValueError as error:
-            return Problem(400, f"the line is not JSON: {error}")
+            return _no_json("line", error)
 
     def evaluate(lines: Sequence[Line]) -> bytes:
-        results = batch_lines([read(line) for line in lines], catalogue)
-        metrics.selections(result.verdict for result in results)
-        return b"".join([encode(result) + b"\n" for result in results])
+        return _encoded([read(line) for line in lines], catalogue, metrics)
 
     return evaluate

@@ -1,16 +1,19 @@
 """What a pasted link unfolds into: gear and verdict, by Open Graph and oEmbed."""
 
 from typing import Annotated
-from urllib.parse import parse_qsl, urlsplit
+from urllib.parse import urlsplit
 
 from fastapi import APIRouter, Query
 from pydantic import BaseModel, Field
 from starlette.requests import Request
 
+from hpn.catalogue import Catalogue
 from hpn.selection import decode, select
 from hpn.web.api import schemas
 from hpn.web.api.files import absolute, application_of
 from hpn.web.door.access import admit
+from hpn.web.door.bodies import pairs_of
+from hpn.web.door.pools import compute
 from hpn.web.door.problems import Problem
 from hpn.web.form.write import to_link
 from hpn.web.preview import Preview, preview_of
@@ -73,12 +76,16 @@ async def _preview_of(request: Request, url: str) -> Preview:
         saved = await request.app.state.store.find(address.path.removeprefix(SAVED))
         if saved is None:
             raise unknown
-        return preview_of(decode(saved.result), address.path, saved.title)
+        return await compute(request, "pages", lambda: preview_of(decode(saved.result), address.path, saved.title))
     if address.path not in ("", "/") or not address.query:
         raise unknown
     try:
-        application = application_of(parse_qsl(address.query, keep_blank_values=True))
-    except Problem:
-        raise unknown from None
+        return await compute(request, "pages", _linked, address.query, request.app.state.catalogue)
+    except Problem as problem:
+        raise (unknown if problem.status_code == 422 else problem) from None
+
+
+def _linked(query: str, catalogue: Catalogue) -> Preview:
+    application = application_of(pairs_of(query))
     link = to_link(application)
-    return preview_of(select(application, request.app.state.catalogue, link), link)
+    return preview_of(select(application, catalogue, link), link)

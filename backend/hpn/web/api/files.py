@@ -2,15 +2,12 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache
 from typing import Annotated, Any, Literal
-from urllib.parse import parse_qsl
 
 import msgspec
-from anyio import CapacityLimiter
-from anyio.to_thread import run_sync
 from fastapi import APIRouter, Query
 from pydantic import ValidationError
-from starlette.datastructures import State
 from starlette.requests import Request
 from starlette.responses import Response
 
@@ -26,19 +23,15 @@ from hpn.store import SavedSelection
 from hpn.web.api import schemas
 from hpn.web.archive import url_of, with_catalogue
 from hpn.web.door.access import admit
-from hpn.web.door.bodies import read_body
+from hpn.web.door.bodies import pairs_of, parsed, read_body
 from hpn.web.door.conditions import etag_of, has_already
+from hpn.web.door.pools import compute
 from hpn.web.door.problems import Problem
 from hpn.web.door.readers import accepted_language
 from hpn.web.form import read as links
 from hpn.web.form.write import to_link
 from hpn.web.settings import Settings
 
-AT_ONCE = 2
-"""Files that one process makes at the same time; they cost processor time alone."""
-
-MOST_WAITING = 32
-RETRY_SECONDS = 5
 SCHEMA_TYPE = "application/schema+json"
 
 Lang = Annotated[Literal["en", "de"] | None, Query(description="Language; by default the browser's.")]
@@ -100,8 +93,7 @@ def _route(file: File) -> None:
     async def of_posted(request: Request, lang: Lang = None) -> Response:
         settings: Settings = request.app.state.settings
         body = await read_body(request, maximum_bytes=settings.maximum_body_bytes, seconds=settings.body_seconds)
-        application = Application.model_validate_json(body)
-        return await _answer(request, file, lang, lambda: _computed(application, request))
+        return await _answer(request, file, lang, lambda: _computed(parsed(Application, body), request))
 
     async def of_link(request: Request, lang: Lang = None) -> Response:
         return await _answer(request, file, lang, lambda: _computed(linked_application(request), request))
@@ -141,9 +133,13 @@ for _file in FILES:
 )
 async def application_schema() -> Response:
     """JSON Schema of an application, with the unit of every field."""
+    return Response(_schema(), media_type=SCHEMA_TYPE)
+
+
+@cache
+def _schema() -> bytes:
     schema = {"$schema": "https://json-schema.org/draft/2020-12/schema", "$id": "application.schema.json"}
-    document = msgspec.json.encode(schema | Application.model_json_schema())
-    return Response(document, media_type=SCHEMA_TYPE)
+    return msgspec.json.encode(schema | Application.model_json_schema())
 
 
 # --- What goes into a file --------------------------------------------------------------------------------------------
@@ -176,7 +172,7 @@ def _computed(application: Application, request: Request) -> Export:
 
 def linked_application(request: Request) -> Application:
     """Application of the request's query; Problem 422 names each parameter that can't be read."""
-    pairs = parse_qsl(request.scope["query_string"].decode("latin-1"), keep_blank_values=True)
+    pairs = pairs_of(request.scope["query_string"].decode("latin-1"))
     return application_of([(name, value) for name, value in pairs if name != "lang"])
 
 
@@ -204,15 +200,13 @@ def absolute(request: Request, path: str) -> str:
 async def _answer(request: Request, file: File, lang: str | None, make: Make) -> Response:
     reader = spoken(request, lang)
 
-    def work() -> tuple[bytes, str]:
+    def work() -> tuple[bytes, str, str]:
         export = make()
-        return file.build(export, reader), file.named(export)
+        content = file.build(export, reader)
+        return content, file.named(export), etag_of(content)
 
-    limiter = _limiter(request.app.state)
-    if limiter.statistics().tasks_waiting >= MOST_WAITING:
-        raise Problem(503, "too many files are being made", headers={"Retry-After": str(RETRY_SECONDS)})
-    content, name = await run_sync(work, limiter=limiter)
-    headers = {"ETag": etag_of(content), "Cache-Control": "no-cache", "Vary": "Accept-Language"}
+    content, name, etag = await compute(request, "exports", work)
+    headers = {"ETag": etag, "Cache-Control": "no-cache", "Vary": "Accept-Language"}
     if request.method == "GET" and has_already(request, headers["ETag"]):
         return Response(status_code=304, headers=headers)
     headers |= {"Content-Language": reader.language, "Content-Disposition": f'{file.disposition}; filename="{name}"'}
@@ -222,10 +216,3 @@ async def _answer(request: Request, file: File, lang: str | None, make: Make) ->
 def spoken(request: Request, lang: str | None) -> Reader:
     """Reader of a file: the language asked for, else the browser's, in the units of the wire."""
     return Reader(lang or accepted_language(request.headers.get("accept-language", "")), digits=DIGITS)
-
-
-def _limiter(state: State) -> CapacityLimiter:
-    if not hasattr(state, "files_at_once"):
-        state.files_at_once = CapacityLimiter(AT_ONCE)
-    limiter: CapacityLimiter = state.files_at_once
-    return limiter

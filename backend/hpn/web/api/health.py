@@ -2,13 +2,13 @@
 
 from fastapi import APIRouter
 from pydantic import BaseModel, Field
-from starlette.concurrency import run_in_threadpool
 from starlette.requests import Request
 from starlette.responses import PlainTextResponse, Response
 
 from hpn.web.api.schemas import problems
 from hpn.web.door.access import OPEN, admit
 from hpn.web.door.metrics import CONTENT_TYPE
+from hpn.web.door.pools import compute
 
 router = APIRouter(tags=["Service"], dependencies=[OPEN])
 metrics_router = APIRouter(tags=["Service"], dependencies=[admit("metrics")])
@@ -47,4 +47,5 @@ async def readyz(request: Request) -> Readiness:
 )
 async def metrics(request: Request) -> Response:
     """What Prometheus counts: requests, selections by verdict, operations of the store."""
-    return Response(await run_in_threadpool(request.app.state.metrics.exposition), media_type=CONTENT_TYPE)
+    text = await compute(request, "metrics", request.app.state.metrics.exposition)
+    return Response(text, media_type=CONTENT_TYPE)

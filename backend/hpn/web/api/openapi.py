@@ -8,14 +8,18 @@ from fastapi import APIRouter, FastAPI
 from fastapi.routing import iter_route_contexts
 from pydantic import BaseModel
 from pydantic.json_schema import models_json_schema
+from starlette.datastructures import State
 from starlette.requests import Request
-from starlette.responses import JSONResponse
+from starlette.responses import Response
 
 from hpn.catalogue import Catalogue
 from hpn.units import suffix_of, symbol_of
 from hpn.web.api import samples, schemas
 from hpn.web.api.exchanges import SUMMARIES, Exchange, exchanges
+from hpn.web.api.replies import encode
 from hpn.web.door.access import admit, group_of
+from hpn.web.door.conditions import conditional
+from hpn.web.door.pools import compute
 from hpn.web.settings import RouteGroup, Settings
 
 PATH_PARAMETERS = {
@@ -46,9 +50,12 @@ router = APIRouter(include_in_schema=False, dependencies=[admit("calculator")])
 
 
 @router.get("/openapi.json")
-def document(request: Request) -> JSONResponse:
+async def document(request: Request) -> Response:
     """The OpenAPI document."""
-    return JSONResponse(request.app.openapi())
+    state: State = request.app.state
+    if not hasattr(state, "openapi"):
+        state.openapi = await compute(request, "pages", lambda: encode(request.app.openapi()))
+    return conditional(request, state.openapi)
 
 
 def install(app: FastAPI, *bodies: type[BaseModel]) -> None:

@@ -1,7 +1,6 @@
 """`POST /api/v1/select`: a gear for one application."""
 
 from fastapi import APIRouter
-from starlette.concurrency import run_in_threadpool
 from starlette.datastructures import State
 from starlette.requests import Request
 from starlette.responses import Response
@@ -11,12 +10,10 @@ from hpn.selection import encode, select
 from hpn.web.api import schemas
 from hpn.web.api.replies import JSONBytes
 from hpn.web.door.access import admit
-from hpn.web.door.bodies import read_body
+from hpn.web.door.bodies import parsed, read_body
+from hpn.web.door.pools import calculate
 from hpn.web.form.write import to_link
 from hpn.web.settings import Settings
-
-LONG_CYCLE = 500
-"""Phases from which a single selection leaves the event loop to others."""
 
 router = APIRouter(prefix="/api/v1", tags=["Selection"], dependencies=[admit("calculator")])
 
@@ -34,13 +31,12 @@ async def select_one(request: Request) -> Response:
     state: State = request.app.state
     settings: Settings = state.settings
     body = await read_body(request, maximum_bytes=settings.maximum_body_bytes, seconds=settings.body_seconds)
-    application = Application.model_validate_json(body)
-    long = len(application.duty_cycle.phases) > LONG_CYCLE
-    selected, reply = await run_in_threadpool(_reply, application, state) if long else _reply(application, state)
+    selected, reply = await calculate(request, len(body), _reply, body, state)
     state.metrics.selections(["none" if selected is None else "selected"])
     return JSONBytes(reply)
 
 
-def _reply(application: Application, state: State) -> tuple[str | None, bytes]:
+def _reply(body: bytes, state: State) -> tuple[str | None, bytes]:
+    application = parsed(Application, body)
     selection = select(application, state.catalogue, to_link(application))
     return selection.selected, encode(selection)

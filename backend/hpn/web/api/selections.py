@@ -1,5 +1,6 @@
 """Saved selections over REST: save, read with what differs today, list, delete."""
 
+from functools import partial
 from typing import Annotated
 from urllib.parse import urlencode
 
@@ -11,7 +12,7 @@ from starlette.responses import Response
 from hpn import ENGINE_VERSION
 from hpn.application import InputError
 from hpn.catalogue import Catalogue
-from hpn.store import Store, Summary
+from hpn.store import Draft, Store, Summary
 from hpn.web.api import schemas
 from hpn.web.api.replies import (
     DIFFERENCES_SHOWN,
@@ -25,11 +26,12 @@ from hpn.web.api.replies import (
     json_response,
 )
 from hpn.web.api.replies import encode as encode_reply
-from hpn.web.archive import Line, Reopened, SaveRequest, found, not_found, save, url_of
+from hpn.web.archive import Line, Reopened, SaveRequest, draft_of, found, keep, not_found, url_of
 from hpn.web.door.access import Gate, admit
-from hpn.web.door.bodies import read_body
+from hpn.web.door.bodies import parsed, read_body
 from hpn.web.door.conditions import conditional, idempotency_key, preferred_return, require_match
 from hpn.web.door.observation import note
+from hpn.web.door.pools import calculate
 from hpn.web.door.problems import Problem
 from hpn.web.settings import Settings
 
@@ -70,11 +72,8 @@ async def save_selection(request: Request) -> Response:
     settings: Settings = request.app.state.settings
     key = idempotency_key(request)
     body = await read_body(request, maximum_bytes=settings.maximum_body_bytes, seconds=settings.body_seconds)
-    wanted = SaveRequest.model_validate_json(body)
-    try:
-        id = await save(request, wanted.application, wanted, key)
-    except InputError as error:
-        raise error.below("application") from None
+    owner, catalogue = request.state.api_key, request.app.state.catalogue
+    id = await keep(request, await calculate(request, len(body), _draft, body, catalogue, key, owner))
     headers = {"Location": f"/api/v1/selections/{id}"}
     preferred = preferred_return(request)
     if preferred:
@@ -84,6 +83,14 @@ async def save_selection(request: Request) -> Response:
     if preferred == "representation":
         return JSONBytes(await _representation(request, id), 201, headers)
     return json_response(SavedReply(id, url_of(id)), 201, headers)
+
+
+def _draft(body: bytes, catalogue: Catalogue, key: str | None, owner: str | None) -> Draft:
+    wanted = parsed(SaveRequest, body)
+    try:
+        return draft_of(catalogue, wanted.application, wanted, key, owner)
+    except InputError as error:
+        raise error.below("application") from None
 
 
 @router.get(
@@ -165,7 +172,10 @@ async def delete_selection(request: Request, id: str) -> Response:
 
 async def _representation(request: Request, id: str) -> bytes:
     """What `SavedSelectionReply` describes; application and result are the saved bytes."""
-    reopened = await found(request.app.state, id)
+    return await found(request, id, partial(_represented, catalogue=request.app.state.catalogue))
+
+
+def _represented(reopened: Reopened, catalogue: Catalogue) -> bytes:
     saved, then = reopened.saved, reopened.then
     first = reopened.selection.foremost.designation
     return encode_reply(
@@ -174,7 +184,7 @@ async def _representation(request: Request, id: str) -> bytes:
             "application": Raw(saved.application),
             "gear": then and then.by_designation.get(first),
             "result": Raw(saved.result),
-            "today": _today(reopened, request.app.state.catalogue),
+            "today": _today(reopened, catalogue),
         }
     )
 

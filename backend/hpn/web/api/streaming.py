@@ -8,11 +8,11 @@ from pathlib import Path
 from typing import IO
 
 import orjson
-from starlette.concurrency import run_in_threadpool
 from starlette.responses import Response
 from starlette.types import Message, Receive, Scope, Send
 
 from hpn.web.door.bodies import late
+from hpn.web.door.pools import Pool
 from hpn.web.door.problems import Problem
 
 MEDIA_TYPES = ("application/x-ndjson", "application/ndjson", "application/jsonl")
@@ -123,6 +123,8 @@ class LineStream(Response):
         self,
         evaluate: Callable[[Sequence[Line]], bytes],
         *,
+        pool: Pool,
+        subject: str,
         maximum_line_bytes: int,
         maximum_spool_bytes: int,
         spool_folder: Path | None = None,
@@ -131,7 +133,7 @@ class LineStream(Response):
         self.status_code = 200
         self.background = None
         self.init_headers({"X-Accel-Buffering": "no", "Cache-Control": "no-store"})
-        self._evaluate = evaluate
+        self._evaluate, self._pool, self._subject = evaluate, pool, subject
         self._splitter = LineSplitter(maximum_line_bytes)
         self._maximum_spool = maximum_spool_bytes
         self._seconds = seconds
@@ -140,7 +142,11 @@ class LineStream(Response):
         self._done = self._gone = self._sending = False
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Run both directions until every line is answered, or the client has gone."""
+        """Run both directions until every line is answered, or the client has gone; raises Problem 503 at once."""
+        with self._pool.place(self._subject):
+            await self._run(scope, receive, send)
+
+    async def _run(self, scope: Scope, receive: Receive, send: Send) -> None:
         try:
             async with asyncio.timeout(self._seconds):
                 first = await receive()  # before the head: only asking for the body answers `Expect: 100-continue`
@@ -182,7 +188,7 @@ class LineStream(Response):
 
     async def _answer(self, lines: Sequence[Line]) -> None:
         for start in range(0, len(lines), LINES_AT_ONCE):
-            answers = await run_in_threadpool(self._evaluate, lines[start : start + LINES_AT_ONCE])
+            answers = await self._pool.run(self._evaluate, lines[start : start + LINES_AT_ONCE])
             self._progress()
             while len(self._spool) > self._maximum_spool:
                 self._drained.clear()

@@ -1,11 +1,23 @@
 """Reading a request's body within limits of type, size and time."""
 
 import asyncio
+from typing import TypeVar
+from urllib.parse import parse_qsl
 
+from pydantic import BaseModel
 from starlette.requests import ClientDisconnect, Request
 
+from hpn.application import MAXIMUM_PHASES
 from hpn.web.door.problems import Problem
 from hpn.web.settings import Settings
+
+M = TypeVar("M", bound=BaseModel)
+
+MOST_OBJECTS, MOST_NAMES, MOST_LISTS = MAXIMUM_PHASES + 100, 5 * MAXIMUM_PHASES + 1000, 1000
+"""What the JSON of the longest application stays below."""
+
+MOST_PAIRS = MOST_NAMES
+"""Parameters of the longest form."""
 
 
 async def read_body(
@@ -34,6 +46,37 @@ async def read_body(
     except ClientDisconnect:
         raise Problem(400, "the connection closed before the body was complete") from None
     return bytes(body)
+
+
+def parsed(model: type[M], text: bytes | str) -> M:
+    """Value of a model in JSON; raises ValidationError, or Problem as `require_bounded` does."""
+    require_bounded(text)
+    return model.model_validate_json(text)
+
+
+def require_bounded(text: bytes | str) -> None:
+    """Raise Problem 422 for JSON with more in it than any application has, before it is parsed.
+
+    Of a text within the limit of bytes, values can take a hundred times as much memory, and errors seconds.
+    """
+    marks = ("{", ":", "[") if isinstance(text, str) else (b"{", b":", b"[")
+    objects, names, lists = (text.count(mark) for mark in marks)  # type: ignore[arg-type]
+    if objects > MOST_OBJECTS:  # phases are the only objects that an application has many of
+        detail = f"must have at most {MAXIMUM_PHASES} phases"
+        raise Problem(422, detail, [(("duty_cycle", "phases"), detail)])
+    if names > MOST_NAMES or lists > MOST_LISTS:
+        detail = f"has {names} fields and {lists} lists, an application at most {MOST_NAMES} and {MOST_LISTS}"
+        raise Problem(422, detail, [((), detail)])
+
+
+def pairs_of(text: str | bytes) -> list[tuple[str, str]]:
+    """Names and values of a query or form, in their order; Problem 422 for more than any form has."""
+    try:
+        return parse_qsl(
+            text if isinstance(text, str) else text.decode(errors="replace"), True, max_num_fields=MOST_PAIRS
+        )
+    except ValueError:
+        raise Problem(422, f"a form may have {MOST_PAIRS} fields at most") from None
 
 
 def late(seconds: float) -> Problem:

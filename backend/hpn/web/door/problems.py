@@ -18,7 +18,12 @@ from hpn.wording import Sentence
 
 MEDIA_TYPE = "application/problem+json"
 
-MAXIMUM_ERRORS = 100
+MAXIMUM_ERRORS = 20
+"""Errors that an answer names."""
+
+LISTED_ERRORS = 5000
+"""Errors up to which they are listed at all; of more it is only told how many there are."""
+
 TITLES = {
     400: "The request can't be read",
     401: "An API key is needed",
@@ -59,8 +64,11 @@ class Problem(HTTPException):
         errors: Iterable[tuple[Location, str]] = (),
         headers: dict[str, str] | None = None,
     ) -> None:
-        super().__init__(status, detail, headers)
         self.errors = list(errors)
+        if len(self.errors) > MAXIMUM_ERRORS:
+            detail += f"; {len(self.errors)} errors in all, of which the first {MAXIMUM_ERRORS} are named"
+            del self.errors[MAXIMUM_ERRORS:]
+        super().__init__(status, detail, headers)
 
     @classmethod
     def of(cls, error: ValidationError | InputError) -> "Problem":
@@ -69,6 +77,9 @@ class Problem(HTTPException):
             problem = cls(422, str(error), error.problems)
             problem.sentences = tuple(sentence for _, sentence in error.sentences)
             return problem
+        if error.error_count() > LISTED_ERRORS:
+            text = f"has {error.error_count()} errors"
+            return cls(422, text, [((), text)])
         found = error.errors(include_url=False, include_context=False, include_input=False)
         if found and found[0]["type"] == "json_invalid":
             return cls(400, found[0]["msg"])
@@ -85,7 +96,8 @@ class Problem(HTTPException):
             for location, kind, message in entries
             if kind != "too_short" or tuple(location) not in items
         ]
-        return cls(422, "; ".join(": ".join(filter(None, (pointer(at), text))) for at, text in errors[:3]), errors)
+        detail = "; ".join(": ".join(filter(None, (pointer(at), text))) for at, text in errors[:3])
+        return cls(422, detail, errors)
 
     def body(self) -> dict[str, Any]:
         """The problem as a JSON object."""
@@ -96,9 +108,7 @@ class Problem(HTTPException):
             "detail": self.detail,
         }
         if self.errors:
-            body["errors"] = [
-                {"pointer": pointer(location), "detail": detail} for location, detail in self.errors[:MAXIMUM_ERRORS]
-            ]
+            body["errors"] = [{"pointer": pointer(location), "detail": detail} for location, detail in self.errors]
         return body
 
     def response(self) -> Response:

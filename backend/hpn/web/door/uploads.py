@@ -1,11 +1,11 @@
 """Forms that a browser posts, with or without files, within limits of size and time."""
 
 import re
-from urllib.parse import parse_qsl
 
 from starlette.requests import Request
 
-from hpn.web.door.bodies import content_type_of, read_body
+from hpn.web.door.bodies import content_type_of, pairs_of, read_body
+from hpn.web.door.pools import compute
 from hpn.web.door.problems import Problem
 from hpn.web.settings import Settings
 from hpn.wording import N_
@@ -24,8 +24,9 @@ async def read_fields(request: Request) -> dict[str, str]:
         request, content_type, maximum_bytes=settings.maximum_body_bytes, seconds=settings.body_seconds
     )
     if content_type == FORM:
-        return dict(parse_qsl(body.decode(errors="replace"), keep_blank_values=True))
-    return {name: decoded(content) for name, content in parts_of(request.headers["content-type"], body)}
+        return dict(await compute(request, "pages", pairs_of, body))
+    parts = await compute(request, "pages", parts_of, request.headers["content-type"], body)
+    return {name: decoded(content) for name, content in parts}
 
 
 _BOUNDARY = re.compile(r"""boundary="?([A-Za-z0-9'()+_,./:=? -]{1,70})""", re.IGNORECASE)

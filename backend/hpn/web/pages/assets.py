@@ -47,7 +47,7 @@ class Assets:
         return self.folder / hashed_name if hashed_name in self.manifest.values() else None
 
 
-def serve(request: Request) -> Response:
+async def serve(request: Request) -> Response:
     """Send a file in the best coding that the client accepts."""
     path = request.app.state.assets.file(request.path_params["name"])
     if path is None:

@@ -3,7 +3,6 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any
-from urllib.parse import parse_qsl
 
 from fastapi import APIRouter
 from starlette.requests import Request
@@ -14,6 +13,8 @@ from hpn.catalogue import Catalogue
 from hpn.gear import Gear
 from hpn.selection import Candidate, Selection, select
 from hpn.web.door.access import admit
+from hpn.web.door.bodies import pairs_of
+from hpn.web.door.pools import worked
 from hpn.web.door.visit import current
 from hpn.web.form import read as links
 from hpn.web.form.numbers import WRITTEN
@@ -90,7 +91,7 @@ def respond(request: Request, form: Form) -> Response:
 def read_query(query: bytes) -> Form:
     """Form of a query; without one, the handbook's worked example."""
     text = query.decode("latin-1") or to_link(Application.worked_example()).removeprefix("/?")
-    return links.parse(parse_qsl(text, keep_blank_values=True))
+    return links.parse(pairs_of(text))
 
 
 def answered(form: Form, catalogue: Catalogue) -> tuple[Form, Answer | None]:
@@ -194,4 +195,4 @@ def _address(answer: Answer | None, form: Form | None) -> str | None:
 
 
 router = APIRouter(include_in_schema=False, dependencies=[admit("calculator")])
-router.add_api_route("/", show)
+router.add_api_route("/", worked(show))

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 from typing import Any
-from urllib.parse import parse_qsl, quote, urlencode
+from urllib.parse import quote, urlencode
 
 from fastapi import APIRouter
 from starlette.requests import Request
@@ -12,6 +12,8 @@ from hpn.catalogue import Catalogue
 from hpn.drawings.envelope import HEIGHT, WIDTH, drawing
 from hpn.gear import Gear, canonical_designation, canonical_size
 from hpn.web.door.access import admit
+from hpn.web.door.bodies import pairs_of
+from hpn.web.door.pools import worked
 from hpn.web.pages.gear_figures import figures_of, neighbours, supplements_for
 from hpn.web.pages.ordering import ordering_code
 from hpn.web.pages.templates import environment
@@ -95,7 +97,7 @@ def _unknown(request: Request, name: str) -> Response:
 def find_gear(request: Request) -> Response:
     """From the field that takes a gear by any spelling to that gear in the selection, with everything else as it is."""
     query = request.query_params
-    pairs = parse_qsl(query.get("link", "").removeprefix("/").removeprefix("?"), keep_blank_values=True)
+    pairs = pairs_of(query.get("link", "").removeprefix("/").removeprefix("?"))
     gear = request.app.state.catalogue.find(query.get("gear", ""))
     if gear is None:
         return _unknown(request, query.get("gear", ""))
@@ -135,13 +137,13 @@ def _render(request: Request, template: str, status: int, **context: Any) -> Res
     return HTMLResponse(shown, status, {"Cache-Control": "no-cache"})
 
 
-def robots(request: Request) -> Response:
+async def robots(request: Request) -> Response:
     """What search engines may read: the calculator and the catalogue, not saved selections or the API."""
     return PlainTextResponse("User-agent: *\nDisallow: /selections\nDisallow: /api/\nDisallow: /paste\n")
 
 
 router = APIRouter(include_in_schema=False, dependencies=[admit("calculator")])
 router.add_api_route("/robots.txt", robots)
-router.add_api_route("/catalogue", show_catalogue)
-router.add_api_route("/catalogue/{designation}", show_gear)
-router.add_api_route("/find", find_gear)
+router.add_api_route("/catalogue", worked(show_catalogue))
+router.add_api_route("/catalogue/{designation}", worked(show_gear))
+router.add_api_route("/find", worked(find_gear))

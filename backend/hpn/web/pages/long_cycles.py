@@ -2,16 +2,15 @@
 
 import re
 from dataclasses import replace
-from urllib.parse import parse_qsl
 
 from fastapi import APIRouter
-from starlette.concurrency import run_in_threadpool
 from starlette.requests import Request
 from starlette.responses import Response
 
 from hpn.application import MAXIMUM_PHASES
 from hpn.web.door.access import admit
-from hpn.web.door.bodies import read_form
+from hpn.web.door.bodies import pairs_of, read_form
+from hpn.web.door.pools import compute
 from hpn.web.form import read as links
 from hpn.web.form.read import Pairs
 from hpn.web.form.symbols import PHASE_SYMBOLS
@@ -24,11 +23,11 @@ TEXT = "phases"
 async def calculate(request: Request) -> Response:
     """The page of a posted form, or only the part that changes; nothing is kept."""
     body = await read_form(request)
-    return await run_in_threadpool(_answer, request, body)
+    return await compute(request, "pages", _answer, request, body)
 
 
 def _answer(request: Request, body: bytes) -> Response:
-    return respond(request, parse_qsl(body.decode(errors="replace"), keep_blank_values=True))
+    return respond(request, pairs_of(body))
 
 
 def respond(request: Request, pairs: Pairs) -> Response:

@@ -7,16 +7,17 @@ comes along as the field `link`, so that nothing typed is lost on the way.
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import isfinite
-from urllib.parse import parse_qsl, urlencode
+from urllib.parse import urlencode
 
 from fastapi import APIRouter
 from pydantic import ValidationError
-from starlette.concurrency import run_in_threadpool
 from starlette.requests import Request
 from starlette.responses import HTMLResponse, RedirectResponse, Response
 
 from hpn.application import Application
 from hpn.web.door.access import admit
+from hpn.web.door.bodies import pairs_of, parsed
+from hpn.web.door.pools import compute, worked
 from hpn.web.door.problems import Problem, plain_message, pointer
 from hpn.web.door.uploads import NO_TEXT, read_fields
 from hpn.web.form import read as links
@@ -73,7 +74,7 @@ class PasteDraft:
     has_phases: bool = False
 
 
-async def start(request: Request) -> Response:
+def start(request: Request) -> Response:
     """The page with an empty field."""
     return _render(request, _draft(request.url.query), 200)
 
@@ -85,7 +86,7 @@ async def paste(request: Request) -> Response:
     except Problem as problem:
         text = Sentence(NO_TEXT) if problem.detail == NO_TEXT else _plain(problem.detail)
         return _render(request, PasteDraft("", problems=(text,)), problem.status_code)
-    return await run_in_threadpool(_answer, request, fields)
+    return await compute(request, "pages", _answer, request, fields)
 
 
 def _answer(request: Request, fields: dict[str, str]) -> Response:
@@ -95,7 +96,7 @@ def _answer(request: Request, fields: dict[str, str]) -> Response:
         draft = _opened(link, text)
         if draft.application and (take or "hx-request" not in request.headers):
             query = to_link(draft.application).removeprefix("/?")
-            return _proceed(request, parse_qsl(query, keep_blank_values=True))
+            return _proceed(request, pairs_of(query))
         return _render(request, draft, 422 if draft.problems else 200)
     pasted = read_table(text) if text.strip() else NOTHING
     mode, _, index = take.partition(":")
@@ -108,7 +109,9 @@ def _answer(request: Request, fields: dict[str, str]) -> Response:
 def _opened(link: str, text: str) -> PasteDraft:
     """Draft of a text that begins like an object of JSON."""
     try:
-        return PasteDraft(link, text, application=Application.model_validate_json(text))
+        return PasteDraft(link, text, application=parsed(Application, text))
+    except Problem as problem:
+        return PasteDraft(link, text, problems=(_plain(problem.detail),))
     except ValidationError as error:
         found = error.errors(include_url=False, include_context=False, include_input=False)
         problems = [
@@ -128,7 +131,7 @@ def _draft(link: str, text: str = "", pasted: Pasted = NOTHING) -> PasteDraft:
         text,
         previews=tuple(_preview(pasted, index) for index in range(len(pasted.readings))),
         problems=(pasted.problem,) if pasted.problem else (),
-        has_phases=any(name in {*_PHASE_NAMES, "phases"} and value for name, value in parse_qsl(link)),
+        has_phases=any(name in {*_PHASE_NAMES, "phases"} and value for name, value in pairs_of(link)),
     )
 
 
@@ -160,7 +163,7 @@ def _marked(row: Sequence[str], others: Sequence[Sequence[str]]) -> tuple[tuple[
 
 def taken(link: str, reading: Reading, *, append: bool) -> list[tuple[str, str]]:
     """Pairs of the form with the phases of a reading, instead of its own or after them."""
-    pairs, _ = links.in_wire_units(long_cycles.expanded(parse_qsl(link, keep_blank_values=True)))
+    pairs, _ = links.in_wire_units(long_cycles.expanded(pairs_of(link)))
     rest = [(name, value) for name, value in pairs if value.strip() and name not in {*_PHASE_NAMES, "do", "phases"}]
     rows = [dict(zip(reading.columns, row, strict=True)) for row in reading.rows]
     if append:
@@ -190,5 +193,5 @@ def _render(request: Request, draft: PasteDraft, status: int) -> Response:
 
 
 router = APIRouter(include_in_schema=False, dependencies=[admit("calculator")])
-router.add_api_route("/paste", start)
+router.add_api_route("/paste", worked(start))
 router.add_api_route("/paste", paste, methods=["POST"])

@@ -4,13 +4,12 @@ import hashlib
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
-from urllib.parse import parse_qsl
 
 import orjson
 from fastapi import APIRouter
 from pydantic import ValidationError
-from starlette.concurrency import run_in_threadpool
 from starlette.requests import Request
 from starlette.responses import HTMLResponse, RedirectResponse, Response
 
@@ -21,11 +20,12 @@ from hpn.differences import Difference
 from hpn.quantities import CANDIDATE, CHECK, DUTY, RESERVE, VERDICTS
 from hpn.report.inputs import LOADS, REQUIREMENTS, given
 from hpn.selection import Selection, reason_of
-from hpn.store import StoreUnavailableError
+from hpn.store import Draft, StoreUnavailableError
 from hpn.units import symbol_of
-from hpn.web.archive import RETRY_SECONDS, Labels, Reopened, found, save, url_of
+from hpn.web.archive import RETRY_SECONDS, Labels, Reopened, draft_of, found, keep, url_of
 from hpn.web.door.access import admit
-from hpn.web.door.bodies import read_form
+from hpn.web.door.bodies import pairs_of, read_form
+from hpn.web.door.pools import compute
 from hpn.web.door.problems import Problem
 from hpn.web.door.requests import require_same_origin
 from hpn.web.door.visit import current
@@ -56,10 +56,9 @@ EXPORTS = (
 async def show_selection(request: Request) -> Response:
     """The selection as it was saved, and beside it what today's engine and catalogue say differently."""
     try:
-        reopened = await found(request.app.state, request.path_params["id"])
+        return await found(request, request.path_params["id"], partial(_shown, request))
     except (Problem, StoreUnavailableError) as error:
         return refused(request, error)
-    return await run_in_threadpool(_shown, request, reopened)
 
 
 def _shown(request: Request, reopened: Reopened) -> Response:
@@ -71,16 +70,22 @@ async def save_from_page(request: Request) -> Response:
     """Saves what the live page shows, and leads to the page of the saved selection."""
     require_same_origin(request)
     body = await read_form(request)
-    fields = dict(parse_qsl(body.decode(errors="replace"), keep_blank_values=True))
+    fields = dict(await compute(request, "pages", pairs_of, body))
     query = fields.get("link", "").removeprefix("/").removeprefix("?")
     try:
-        labels = Labels.model_validate({name: fields.get(name, "") for name in Labels.model_fields})
-        id = await save(request, _application(query), labels, _key(fields))
+        owner, catalogue = request.state.api_key, request.app.state.catalogue
+        draft = await compute(request, "pages", _draft, fields, query, catalogue, owner)
+        return RedirectResponse(url_of(await keep(request, draft)), 303)
     except (ValidationError, InputError) as error:
-        return refused(request, Problem.of(error), fields, query)
+        problem: Problem | StoreUnavailableError = Problem.of(error)
     except (Problem, StoreUnavailableError) as error:
-        return refused(request, error, fields, query)
-    return RedirectResponse(url_of(id), 303)
+        problem = error
+    return await compute(request, "pages", refused, request, problem, fields, query)
+
+
+def _draft(fields: Mapping[str, str], query: str, catalogue: Catalogue, owner: str | None) -> Draft:
+    labels = Labels.model_validate({name: fields.get(name, "") for name in Labels.model_fields})
+    return draft_of(catalogue, _application(query), labels, _key(fields), owner)
 
 
 def _key(fields: Mapping[str, str]) -> str | None:
@@ -96,7 +101,7 @@ def _key(fields: Mapping[str, str]) -> str | None:
 
 
 def _application(query: str) -> Application:
-    form = links.parse(expanded(parse_qsl(query, keep_blank_values=True))) if query else None
+    form = links.parse(expanded(pairs_of(query))) if query else None
     if form is None or form.application is None or form.problems:
         raise Problem(422, "the inputs have errors: correct them on the page, then save")
     return form.application

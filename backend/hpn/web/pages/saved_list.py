@@ -6,7 +6,6 @@ from urllib.parse import urlencode
 
 from fastapi import APIRouter
 from pydantic import ValidationError
-from starlette.concurrency import run_in_threadpool
 from starlette.requests import Request
 from starlette.responses import HTMLResponse, Response
 
@@ -14,6 +13,7 @@ from hpn.selection import Candidate, decode
 from hpn.store import Page, Store, StoreUnavailableError, Summary
 from hpn.web.archive import Labels, url_of
 from hpn.web.door.access import admit
+from hpn.web.door.pools import compute
 from hpn.web.door.problems import Problem
 from hpn.web.pages.saved import refused
 from hpn.web.pages.templates import environment
@@ -58,7 +58,7 @@ async def show_selections(request: Request) -> Response:
     except StoreUnavailableError as error:
         return refused(request, error)
     shown["older"] = page.next_cursor and _address(reference, cursor=page.next_cursor)
-    shown["lines"] = await run_in_threadpool(_lines, page, results)
+    shown["lines"] = await compute(request, "pages", _lines, page, results)
     return await _rendered(request, 200, shown)
 
 
@@ -77,7 +77,7 @@ def _address(reference: str, **more: str) -> str:
 
 async def _rendered(request: Request, status: int, shown: dict[str, Any]) -> Response:
     template = environment(request.app.state).get_template("selections.html")
-    content = await run_in_threadpool(template.render, shown)
+    content = await compute(request, "pages", template.render, shown)
     return HTMLResponse(content, status, {"Cache-Control": "no-cache"})
 
 

@@ -1,7 +1,7 @@
 """The application as files: JSON as the API takes it, and the duty cycle as CSV for a spreadsheet."""
 
 from typing import cast
-from urllib.parse import parse_qsl, urlencode
+from urllib.parse import urlencode
 
 from fastapi import APIRouter
 from starlette.requests import Request
@@ -9,6 +9,8 @@ from starlette.responses import Response
 
 from hpn.application import Application
 from hpn.web.door.access import admit
+from hpn.web.door.bodies import pairs_of
+from hpn.web.door.pools import compute
 from hpn.web.door.problems import Problem
 from hpn.web.door.uploads import read_fields
 from hpn.web.form.pasted import Decimal, write_table
@@ -17,13 +19,21 @@ from hpn.web.pages.calculator import read_query
 
 async def application_file(request: Request) -> Response:
     """The application of a link as JSON: the body of `POST /api/v1/select`."""
-    application, _ = _read(await _query(request))
+    return await compute(request, "pages", _json_of, await _query(request))
+
+
+def _json_of(query: str) -> Response:
+    application, _ = _read(query)
     return _file(application.model_dump_json(indent=2, exclude_unset=True), "application.json", "application/json")
 
 
 async def cycle_file(request: Request) -> Response:
     """The duty cycle of a link as CSV; `decimal=,` writes it as spreadsheets in German expect it."""
-    application, decimal = _read(await _query(request))
+    return await compute(request, "pages", _csv_of, await _query(request))
+
+
+def _csv_of(query: str) -> Response:
+    application, decimal = _read(query)
     return _file(write_table(application.duty_cycle, decimal), "duty-cycle.csv", "text/csv")
 
 
@@ -37,7 +47,7 @@ async def _query(request: Request) -> str:
 
 
 def _read(query: str) -> tuple[Application, Decimal]:
-    pairs = parse_qsl(query, keep_blank_values=True)
+    pairs = pairs_of(query)
     decimal = dict(pairs).get("decimal", ".")
     if decimal not in (".", ","):
         raise Problem(422, "decimal is a point or a comma", [(("decimal",), "must be . or ,")])

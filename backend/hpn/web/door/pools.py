@@ -1,0 +1,140 @@
+"""Where work is done that would hold the event loop: pools of few workers, in which few may wait.
+
+A worker that computes shares the interpreter's lock with the loop, so more of them would make nothing faster.
+"""
+
+import asyncio
+import contextvars
+from collections import Counter
+from collections.abc import Awaitable, Callable, Coroutine, Iterator, Mapping
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
+from functools import partial
+from typing import Any, Literal, NamedTuple, ParamSpec, TypeVar
+
+from starlette.requests import Request
+from starlette.responses import Response
+
+from hpn.web.door.observation import GONE
+from hpn.web.door.problems import Problem
+
+P = ParamSpec("P")
+T = TypeVar("T")
+PoolName = Literal["pages", "exports", "batches", "metrics"]
+
+
+class Places(NamedTuple):
+    """How many may work at once, and how many more may wait for them."""
+
+    workers: int
+    waiting: int
+
+
+PLACES: Mapping[PoolName, Places] = {
+    "pages": Places(2, 30),
+    "exports": Places(2, 14),
+    "batches": Places(1, 15),
+    "metrics": Places(1, 3),
+}
+"""Pages and long calculations; files; batches and streams, each for its whole time; what Prometheus asks."""
+
+SMALL_BYTES = 16 * 1024
+"""Input up to this size is computed at once: that takes a few milliseconds, about what a change of threads may take."""
+
+RETRY_SECONDS = 2
+PATIENCE_SECONDS = 0.1
+"""Time after which somebody looks whether a client still waits."""
+
+
+class Pool:
+    """Workers for one kind of work. One subject, a key or an address, has at most half of all places."""
+
+    def __init__(self, places: Places) -> None:
+        self._executor = ThreadPoolExecutor(places.workers)
+        self._most = places.workers + places.waiting
+        self._taken: Counter[str] = Counter()
+
+    @property
+    def taken(self) -> int:
+        """Places that are taken."""
+        return self._taken.total()
+
+    @contextmanager
+    def place(self, subject: str) -> Iterator[None]:
+        """Take a place for a while; Problem 503 where all are taken, or the subject's half of them."""
+        if self.taken >= self._most or self._taken[subject] >= max(self._most // 2, 1):
+            text = f"too much of this kind is being computed; try again in {RETRY_SECONDS} s"
+            raise Problem(503, text, headers={"Retry-After": str(RETRY_SECONDS)})
+        self._taken[subject] += 1
+        try:
+            yield
+        finally:
+            self._taken[subject] -= 1
+            if not self._taken[subject]:
+                del self._taken[subject]
+
+    async def run(self, work: Callable[P, T], *args: P.args, **kwargs: P.kwargs) -> T:
+        """Result of work on a worker. Who is cancelled while it waits gives up its place in the queue."""
+        context = contextvars.copy_context()
+        return await asyncio.wrap_future(self._executor.submit(context.run, partial(work, *args, **kwargs)))
+
+
+class Pools:
+    """The pools of one process, at `app.state.pools`."""
+
+    def __init__(self) -> None:
+        self._pools = {name: Pool(places) for name, places in PLACES.items()}
+
+    def __getitem__(self, name: PoolName) -> Pool:
+        return self._pools[name]
+
+
+def pool_of(request: Request, name: PoolName) -> Pool:
+    """Pool of the application that a request has come to."""
+    pool: Pool = request.app.state.pools[name]
+    return pool
+
+
+async def compute(request: Request, name: PoolName, work: Callable[P, T], *args: P.args, **kwargs: P.kwargs) -> T:
+    """Result of work on a worker of a pool, for a request whose body has been read."""
+    pool = pool_of(request, name)
+    with pool.place(request.state.caller):
+        return await while_present(request, pool.run(work, *args, **kwargs))
+
+
+async def calculate(request: Request, size: int, work: Callable[P, T], *args: P.args, **kwargs: P.kwargs) -> T:
+    """Result of work on input of `size` bytes: of a small one here and now, of a long one on a worker of the pages."""
+    if size <= SMALL_BYTES:
+        return work(*args, **kwargs)
+    return await compute(request, "pages", work, *args, **kwargs)
+
+
+def worked(work: Callable[[Request], Response]) -> Callable[[Request], Awaitable[Response]]:
+    """Route that renders a page on a worker."""
+
+    async def route(request: Request) -> Response:
+        return await compute(request, "pages", work, request)
+
+    return route
+
+
+async def while_present(request: Request, work: Coroutine[Any, Any, T]) -> T:
+    """Result of work, which is given up when the client leaves; the body of the request has been read."""
+    working, leaving = asyncio.create_task(work), None
+    try:
+        await asyncio.wait({working}, timeout=PATIENCE_SECONDS)  # most work needs no watch
+        if not working.done():
+            leaving = asyncio.create_task(_left(request))
+            await asyncio.wait({working, leaving}, return_when=asyncio.FIRST_COMPLETED)
+        if not working.done():
+            raise Problem(GONE, "the client has left")
+        return working.result()
+    finally:
+        working.cancel()
+        if leaving is not None:
+            leaving.cancel()
+
+
+async def _left(request: Request) -> None:
+    while (await request.receive())["type"] != "http.disconnect":
+        pass
