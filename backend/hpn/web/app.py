@@ -33,6 +33,7 @@ from hpn.web.door.hosts import Hosts
 from hpn.web.door.logs import make_logger
 from hpn.web.door.metrics import CountedStore, Metrics
 from hpn.web.door.observation import Observation
+from hpn.web.door.overload import Budget, Overload, Pieces
 from hpn.web.door.pools import Pools
 from hpn.web.door.readers import Readers
 from hpn.web.pages import assets, long_cycles, paste, refusals, saved_list, transfer
@@ -123,6 +124,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     app.state.catalogue = load_catalogue(settings.catalogue_folder, settings.catalogue_supplement)
     app.state.gate = Gate(settings)
     app.state.pools = Pools()
+    app.state.budget = Budget(settings.maximum_bytes_in_flight)
     app.state.metrics = Metrics()
     app.state.store = CountedStore(app.state.metrics, **settings.database())
     problems.install(app, refusals.page_of)
@@ -136,6 +138,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
 
 def _add_middleware(app: FastAPI, settings: Settings) -> None:
     """What every request passes, from the inside out."""
+    app.add_middleware(Pieces, budget=app.state.budget)
     app.add_middleware(Readers)
     # Nothing secret stands beside what a page repeats of its query, so its length after compression tells nothing.
     app.add_middleware(GZipMiddleware, compresslevel=4, exclude_content_types=UNPACKED)
@@ -144,9 +147,11 @@ def _add_middleware(app: FastAPI, settings: Settings) -> None:
         app.add_middleware(CORSMiddleware, allow_origins=settings.cors_origins, **CORS)
     if settings.allowed_hosts:
         app.add_middleware(Hosts, allowed=settings.allowed_hosts)
-    app.add_middleware(Observation, logger=make_logger(settings.log_level), metrics=app.state.metrics)
+    logger = make_logger(settings.log_level)
+    app.add_middleware(Observation, logger=logger, metrics=app.state.metrics)
     if settings.trusted_proxies:
         app.add_middleware(ProxyHeadersMiddleware, trusted_hosts=list(settings.trusted_proxies))
+    app.add_middleware(Overload, budget=app.state.budget, metrics=app.state.metrics, logger=logger)
 
 
 @asynccontextmanager

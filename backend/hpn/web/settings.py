@@ -112,6 +112,12 @@ class Settings(BaseSettings):
     maximum_body_bytes: int = Field(2_000_000, gt=0, description="Largest body of a request for one application.")
     maximum_batch_body_bytes: int = Field(32_000_000, gt=0, description="Largest body of a batch request.")
     maximum_batch_count: int = Field(10_000, gt=0, le=10_000, description="Most applications in one batch request.")
+    maximum_bytes_in_flight: int = Field(
+        160_000_000,
+        gt=0,
+        description="Most bytes of bodies and answers that one process holds at once; more get a 503. A batch "
+        "counts as three times its body.",
+    )
     body_seconds: float = Field(30.0, gt=0, description="Longest time for a body to arrive.")
     batch_seconds: float = Field(60.0, gt=0, description="Longest computing time of one batch request.")
     spool_folder: Annotated[Path | None, AfterValidator(_folder)] = Field(

@@ -31,6 +31,9 @@ from hpn.web.settings import Settings
 SLICE_ITEMS, SLICE_BYTES = 256, 1_000_000
 """Items that are evaluated in one go, and the bytes of their JSON."""
 
+RESULTS_PER_BYTE = 2
+"""Memory that a batch takes beside its body, in the worst case: for its results, and what one slice is parsed to."""
+
 RETRY_SECONDS = 5
 
 router = APIRouter(prefix="/api/v1", tags=["Selection"], dependencies=[admit("batch")])
@@ -54,6 +57,7 @@ async def select_batch(request: Request) -> Response:
     if content_type_of(request) in streaming.MEDIA_TYPES:
         return _stream(request)
     body = await read_body(request, maximum_bytes=settings.maximum_batch_body_bytes, seconds=settings.body_seconds)
+    request.state.held.take(RESULTS_PER_BYTE * len(body))
     pool = pool_of(request, "batches")
     with pool.place(request.state.caller):
         lines = await while_present(request, _answered(body, state, pool))

@@ -13,7 +13,7 @@ from hpn.web.settings import Settings
 
 M = TypeVar("M", bound=BaseModel)
 
-MOST_OBJECTS, MOST_NAMES, MOST_LISTS = MAXIMUM_PHASES + 100, 5 * MAXIMUM_PHASES + 1000, 1000
+MOST_OBJECTS, MOST_NAMES, MOST_LISTS = MAXIMUM_PHASES + 100, 5 * MAXIMUM_PHASES + 1000, 10_000
 """What the JSON of the longest application stays below."""
 
 MOST_PAIRS = MOST_NAMES
@@ -39,6 +39,7 @@ async def read_body(
         async with asyncio.timeout(seconds):
             async for part in request.stream():
                 body += part
+                request.state.held.take(len(part))
                 if len(body) > maximum_bytes:
                     raise too_large
     except TimeoutError:

@@ -66,7 +66,7 @@ class Problem(HTTPException):
     ) -> None:
         self.errors = list(errors)
         if len(self.errors) > MAXIMUM_ERRORS:
-            detail += f"; {len(self.errors)} errors in all, of which the first {MAXIMUM_ERRORS} are named"
+            detail += f"; {len(self.errors)} errors were found, of which the first {MAXIMUM_ERRORS} are named"
             del self.errors[MAXIMUM_ERRORS:]
         super().__init__(status, detail, headers)
 
