@@ -6,7 +6,7 @@ import socket
 import subprocess
 import sys
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -61,13 +61,18 @@ def free_port() -> int:
 
 
 @contextmanager
-def serving(folder: Path, environment: Mapping[str, str] | None = None, *arguments: str) -> Iterator[Service]:
-    """Run `hpn serve` with a new database in `folder` until the block ends."""
+def serving(
+    folder: Path,
+    environment: Mapping[str, str] | None = None,
+    *arguments: str,
+    program: Sequence[str] = (str(HPN), "serve"),
+) -> Iterator[Service]:
+    """Run `hpn serve`, or another program in its place, with a new database in `folder` until the block ends."""
     port = free_port()
     log = folder / "service.log"
     database = f"sqlite:///{folder}/store.sqlite3"
     clean = {name: value for name, value in os.environ.items() if not name.startswith("HPN_")}
-    command = [str(HPN), "serve", "--port", str(port), *arguments]
+    command = [*program, "--port", str(port), *arguments]
     with log.open("wb") as output:
         process = subprocess.Popen(
             command, stdout=output, stderr=output, env={**clean, "HPN_DATABASE_URL": database, **(environment or {})}

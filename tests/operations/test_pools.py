@@ -1,0 +1,168 @@
+"""Pools of workers: bounded, half for one caller, and left by who leaves; and what a process holds at once."""
+
+import asyncio
+import json
+import threading
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager
+from inspect import iscoroutinefunction
+from pathlib import Path
+from typing import Any
+
+import pytest
+from fastapi.routing import iter_route_contexts
+from starlette.requests import Request
+
+from hpn.web.app import create_app
+from hpn.web.door.keys import new_key
+from hpn.web.door.observation import GONE
+from hpn.web.door.pools import Places, Pool, while_present
+from hpn.web.door.problems import Problem
+from hpn.web.settings import Settings
+from tests.build import worked_example
+from tests.operations.conftest import MakeClient
+
+
+@contextmanager
+def holding(pool: Pool, *callers: str) -> Iterator[None]:
+    """The pool with these places taken."""
+    with ExitStack() as stack:
+        for caller in callers:
+            stack.enter_context(pool.place(caller))
+        yield
+
+
+def test_one_caller_takes_half_of_the_places_and_two_take_all() -> None:
+    pool = Pool(Places(1, 3))
+    with holding(pool, "one", "one"):
+        with pytest.raises(Problem) as refused, pool.place("one"):
+            pass
+        with holding(pool, "two", "two"), pytest.raises(Problem), pool.place("three"):
+            pass
+
+    assert refused.value.status_code == 503
+    assert int((refused.value.headers or {})["Retry-After"]) > 0
+    assert pool.taken == 0
+
+
+def request_of(*messages: str) -> Request:
+    """A request whose body has been read, and of which this comes next."""
+    coming = list(messages)
+
+    async def receive() -> dict[str, Any]:
+        if coming:
+            return {"type": coming.pop(0)}
+        await asyncio.Event().wait()
+        raise AssertionError
+
+    return Request({"type": "http"}, receive)
+
+
+@pytest.mark.anyio
+async def test_who_leaves_while_waiting_gives_up_the_place_and_nothing_is_computed() -> None:
+    pool, busy = Pool(Places(1, 3)), threading.Event()
+    done: list[int] = []
+    first = asyncio.create_task(pool.run(busy.wait, 20))
+
+    with pytest.raises(Problem) as left:
+        await while_present(request_of("http.request", "http.disconnect"), pool.run(done.append, 1))
+    await asyncio.sleep(0)  # the loop hears of it
+    await asyncio.sleep(0)
+    busy.set()
+    await first
+    await pool.run(done.append, 2)
+
+    assert left.value.status_code == GONE
+    assert done == [2]
+
+
+@pytest.mark.anyio
+async def test_work_in_slices_ends_when_its_client_leaves() -> None:
+    pool = Pool(Places(1, 3))
+    slices: list[int] = []
+
+    async def work() -> None:
+        for number in range(10_000):
+            await pool.run(slices.append, number)
+            await asyncio.sleep(0.001)
+
+    with pytest.raises(Problem):
+        await while_present(request_of("http.disconnect"), work())
+
+    assert 0 < len(slices) < 10_000
+
+
+@pytest.mark.anyio
+async def test_who_stays_gets_the_result() -> None:
+    assert await while_present(request_of(), Pool(Places(1, 0)).run(sum, [1, 2])) == 3
+
+
+@pytest.mark.parametrize(
+    ("name", "method", "path", "body"),
+    [
+        ("pages", "GET", "/", None),
+        ("exports", "POST", "/api/v1/report.pdf", worked_example()),
+        ("batches", "POST", "/api/v1/select/batch", {"applications": []}),
+    ],
+)
+def test_a_full_pool_is_a_503_that_says_when_to_try_again(
+    name: Any, method: str, path: str, body: Any, make_client: MakeClient
+) -> None:
+    (one, first), (two, second) = new_key("one"), new_key("two")
+    client = make_client(api_keys=f"{first},{second}")
+    pool: Pool = client.app.state.pools[name]  # type: ignore[attr-defined]
+    with ExitStack() as stack:
+        with pytest.raises(Problem):
+            while True:
+                stack.enter_context(pool.place("key one"))
+        refused = client.request(method, path, json=body, headers={"X-API-Key": one})
+        other = client.request(method, path, json=body, headers={"X-API-Key": two})
+        small = client.post("/api/v1/select", json=worked_example(), headers={"X-API-Key": one})
+
+    assert (refused.status_code, refused.headers["content-type"]) == (503, "application/problem+json")
+    assert int(refused.headers["retry-after"]) > 0
+    assert (other.status_code, small.status_code) == (200, 200)
+
+
+def test_no_route_computes_in_the_frameworks_threads(tmp_path: Path) -> None:
+    app = create_app(Settings(database_url=f"sqlite:///{tmp_path}/store.sqlite3"))
+
+    plain = [route.path for route in iter_route_contexts(app.routes) if not iscoroutinefunction(route.endpoint)]
+
+    assert plain == []
+
+
+# --- Bytes in flight --------------------------------------------------------------------------------------------------
+
+
+def test_beyond_the_bytes_in_flight_bodies_and_then_all_requests_are_refused(make_client: MakeClient) -> None:
+    client = make_client(maximum_bytes_in_flight=1000)
+    budget = client.app.state.budget  # type: ignore[attr-defined]
+
+    large = client.post("/api/v1/select", content=b" " * 1001, headers={"Content-Type": "application/json"})
+    assert (large.status_code, budget.held) == (503, 0)
+    assert client.post("/api/v1/select", json=worked_example()).status_code == 200
+
+    budget.held = 1000
+    refused = client.get("/api/v1/catalogue")
+    assert (refused.status_code, refused.headers["content-type"]) == (503, "application/problem+json")
+    assert int(refused.headers["retry-after"]) > 0
+    assert client.get("/healthz").status_code == 200
+
+
+def test_an_answer_counts_until_it_is_sent(make_client: MakeClient) -> None:
+    client = make_client(maximum_bytes_in_flight=70_000)
+    budget = client.app.state.budget  # type: ignore[attr-defined]
+
+    with client.stream("GET", "/api/v1/catalogue", headers={"Accept-Encoding": "identity"}) as reply:
+        assert len(reply.read()) > 70_000
+
+    assert budget.held == 0
+
+
+def test_a_batch_counts_with_what_it_makes(make_client: MakeClient) -> None:
+    batch = {"applications": [worked_example()] * 10}
+    size = len(json.dumps(batch, separators=(",", ":")).encode())
+
+    assert make_client(maximum_bytes_in_flight=3 * size).post("/api/v1/select/batch", json=batch).status_code == 200
+    assert make_client(maximum_bytes_in_flight=2 * size).post("/api/v1/select/batch", json=batch).status_code == 503

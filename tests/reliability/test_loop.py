@@ -1,0 +1,138 @@
+"""No request holds the event loop: whatever is asked, others are answered meanwhile."""
+
+import json
+import sys
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+from urllib.parse import quote, urlencode
+
+import pytest
+from fastapi.routing import iter_route_contexts
+
+from hpn.web.app import create_app
+from hpn.web.settings import Settings
+from tests.build import cycle, phase
+from tests.operations.service import Service, serving
+
+HELD_S = 0.25
+"""Five times what the service is built for, since other tests take their part of the machine."""
+
+JSON = {"Content-Type": "application/json"}
+FORM = {"Content-Type": "application/x-www-form-urlencoded"}
+LINES = {"Content-Type": "application/x-ndjson"}
+
+
+@dataclass(frozen=True)
+class Hostile:
+    """A request made to cost much."""
+
+    method: str
+    path: str
+    body: bytes = b""
+    headers: dict[str, str] = field(default_factory=dict)
+
+
+LONG = cycle(*[phase(40 + k % 7 / 3, 250 + k % 11 / 3, 1 / 3) for k in range(10_000)])
+LONG_JSON = json.dumps(LONG).encode()
+LINK = "&".join(f"T={40 + k % 7}&n=250&t=0.3" for k in range(3500))
+UNKNOWN = ("{" + ",".join(f'"k{k}":1' for k in range(150_000)) + "}").encode()
+ODD = ("{" + ",".join(f'"k{k}":1' for k in range(50_000)) + "}").encode()
+NESTED = b'{"a":' + b"[" * 100 + b",".join([b"[]"] * 600_000) + b"]" * 100 + b"}"
+WRONG = json.dumps({"duty_cycle": {"phases": [{"a": 1, "b": 2, "c": 3}] * 10_000}}).encode()
+PAIRS = urlencode([(f"k{k}", "1") for k in range(150_000)]).encode()
+TABLE = "\n".join(f"{40 + k % 7}\t250\t0.3" for k in range(10_000))
+PHASES = urlencode({"phases": TABLE}).encode()
+COOKIE = {"Cookie": 'a="' + r"\"" * 3900 + '"'}
+BODIES = (LONG_JSON, UNKNOWN, ODD, NESTED, WRONG)
+
+
+def hostile(saved: str, *, whole: bool) -> Iterator[Hostile]:
+    """Of every route what costs it most; `saved` is the id of a selection with as many phases as there may be."""
+    few = BODIES if whole else BODIES[:2]
+    yield from (Hostile("POST", "/api/v1/select", body, JSON) for body in BODIES)
+    for name in ("report.pdf", "submodel.aasx", "report.xlsx"):
+        yield from (Hostile("POST", f"/api/v1/{name}", body, JSON) for body in few[not whole :])
+        yield Hostile("GET", f"/{name}?{LINK if whole else LINK[:5000].rpartition('&T=')[0]}")
+    for body in few:
+        yield Hostile("POST", "/api/v1/select/batch", b'{"applications": [' + body + b"]}", JSON)
+        yield Hostile("POST", "/api/v1/select/batch", body + b"\n" + body, LINES)
+        yield Hostile("POST", "/api/v1/selections", b'{"application": ' + body + b"}", JSON)
+    items = b",".join([json.dumps(cycle(*[phase(40, 250)] * 20)).encode()] * 3000)
+    yield Hostile("POST", "/api/v1/select/batch", b'{"applications": [' + items + b"]}", JSON)
+    yield Hostile("POST", "/api/v1/select/batch", b'{"applications": [' + b"[]," * 10_000_000 + b"1]}", JSON)
+    for path in ("/", "/cycle.csv", "/application.json", "/paste"):
+        yield Hostile("GET", f"{path}?{LINK}")
+    yield Hostile("GET", f"/oembed?url={quote('/?' + LINK[:30_000].rpartition('&T=')[0])}")
+    yield Hostile("GET", f"/find?{urlencode({'link': '/?' + LINK[:30_000]})}&gear=HPN-20A-5")
+    for path in ("/", "/paste", "/selections", "/cycle.csv", "/application.json"):
+        yield Hostile("POST", path, PAIRS, FORM)
+        yield Hostile("POST", path, urlencode({"link": "/?" + LINK, "text": TABLE}).encode(), FORM)
+    yield Hostile("POST", "/", PHASES, FORM)
+    yield Hostile("POST", "/", PHASES, FORM | {"HX-Request": "true", "HX-Target": "section#result"})
+    yield Hostile("POST", "/paste", urlencode({"text": TABLE, "take": "replace:0"}).encode(), FORM)
+    yield Hostile("POST", "/paste", urlencode({"text": LONG_JSON.decode()}).encode(), FORM)
+    yield Hostile("POST", "/paste", urlencode({"text": UNKNOWN.decode()}).encode(), FORM)
+    yield Hostile("POST", "/reader", urlencode({"back": "/?" + LINK}).encode(), FORM)
+    one = f"/api/v1/selections/{saved}"
+    for path in (one, f"/selections/{saved}", f"{one}/report.pdf", f"{one}/submodel.aasx"):
+        yield Hostile("GET", path)
+    yield Hostile("GET", f"/api/v1/selections/{'x' * 22}/report.xlsx")
+    yield Hostile("GET", f"/oembed?url=/selections/{saved}")
+    yield Hostile("GET", "/selections?reference=" + "a" * 60_000)
+    yield Hostile("GET", "/api/v1/selections?" + "&".join(f"k{k}=1" for k in range(8000)))
+    yield Hostile("GET", "/api/v1/bearing-envelopes/20A?" + "&".join(f"k{k}=1" for k in range(8000)))
+    for path in ("/", "/catalogue", "/catalogue/HPN-20A-5", f"/catalogue?{LINK}", "/robots.txt"):
+        yield Hostile("GET", path, b"", COOKIE)
+    for path in (
+        "/openapi.json",
+        "/api/v1/catalogue",
+        "/api/v1/catalogue/HPN-20A-5",
+        "/api/v1/application.schema.json",
+    ):
+        yield Hostile("GET", path)
+    yield from (Hostile("GET", path) for path in ("/healthz", "/readyz", "/metrics", "/static/none"))
+    yield Hostile("DELETE", one)
+
+
+@pytest.fixture(scope="module")
+def beating(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Service]:
+    """A service that tells for how long its loop was held."""
+    program = (sys.executable, "-m", "tests.reliability.heart")
+    with serving(tmp_path_factory.mktemp("heart"), {"HPN_LOG_LEVEL": "error"}, program=program) as running:
+        yield running
+
+
+def test_no_request_holds_the_event_loop(beating: Service, soak: bool, record_property: Any) -> None:
+    saved = beating.client.post("/api/v1/selections", json={"application": LONG}).json()["id"]
+    longest: dict[str, float] = {}
+    for asked in hostile(saved, whole=soak):
+        beating.client.get("/held")
+        reply = beating.client.request(asked.method, asked.path, content=asked.body, headers=asked.headers)
+        held = beating.client.get("/held").json()
+        name = f"{asked.method} {asked.path[:60]} {len(asked.body)} bytes: {reply.status_code}"
+        longest[name] = max(held, longest.get(name, 0.0))
+        assert reply.status_code < 500, name
+    worst = sorted(longest.items(), key=lambda entry: -entry[1])[:10]
+    for name, held in worst:
+        record_property(name, round(held, 4))
+    print("\n".join(f"{1000 * held:6.1f} ms  {name}" for name, held in worst))
+
+    assert worst[0][1] < HELD_S, worst
+
+
+def test_the_table_of_hostile_requests_has_every_route(tmp_path: Path) -> None:
+    app = create_app(Settings(database_url=f"sqlite:///{tmp_path}/store.sqlite3"))
+    asked = {(request.method, request.path.partition("?")[0]) for request in hostile("{id}", whole=False)}
+    routes = [route for route in iter_route_contexts(app.routes) if route.methods]
+
+    missing = [
+        (method, route.path)
+        for route in routes
+        for method in route.methods or ()
+        if method != "HEAD"
+        and not any(asked_method == method and route.path_regex.match(path) for asked_method, path in asked)
+    ]
+
+    assert missing == []
