@@ -157,10 +157,17 @@ def test_several_mistakes_are_reported_at_once(api: TestClient) -> None:
     assert set(found) == {"/duty_cycle/phases/0/torque_Nm", "/duty_cycle/phases/1/duration_s", "/rank_by"}
 
 
-def test_very_many_mistakes_are_cut_off(api: TestClient) -> None:
-    found = api.post(PATH, json=cycle(*[phase(1, 1, -1)] * 5000)).json()
+def test_of_very_many_mistakes_the_first_20_are_named_and_the_others_counted(api: TestClient) -> None:
+    found = api.post(PATH, json=cycle(*[phase(1, 1, -1)] * 100)).json()
 
-    assert len(found["errors"]) == 100
+    assert [error["pointer"] for error in found["errors"]] == [f"/duty_cycle/phases/{k}/duration_s" for k in range(20)]
+    assert "100 errors were found" in found["detail"]
+
+
+def test_a_mistake_late_in_a_long_cycle_is_told_at_its_place(api: TestClient) -> None:
+    found = refused(api, cycle(*[phase(1, 1)] * 9_998, phase(1, 1, -1)))
+
+    assert set(found) == {"/duty_cycle/phases/9998/duration_s"}
 
 
 @pytest.mark.parametrize("body", [[], "text", 5, True])
