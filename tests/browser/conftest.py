@@ -34,7 +34,8 @@ def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
     log, database = folder / "log", f"sqlite:///{folder}/selections.sqlite3"
     command = [sys.executable, "-m", "uvicorn", "--factory", "hpn.web.app:create_app", "--port", str(port)]
     with log.open("w") as output:
-        environment = {**os.environ, "HPN_DATABASE_URL": database}
+        origins = f"http://localhost:{port}"  # another origin than 127.0.0.1
+        environment = {**os.environ, "HPN_DATABASE_URL": database, "HPN_CORS_ORIGINS": origins}
         process = subprocess.Popen(command, stdout=output, stderr=subprocess.STDOUT, env=environment)
     try:
         _wait_for(f"http://127.0.0.1:{port}/healthz", process, log)
