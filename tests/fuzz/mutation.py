@@ -7,6 +7,9 @@ from random import Random
 LONGEST = 400_000
 """Bytes of an input; the limits of the service on bodies have tests of their own."""
 
+PART = 2_000
+"""Bytes in which a change looks for tokens."""
+
 _TOKENS = re.compile(rb'"[^"\n]{0,80}"|[A-Za-z_]+|[0-9.eE+-]+|\s+|.', re.DOTALL)
 _NUMBER = re.compile(rb"-?[0-9]+(?:\.[0-9]+)?(?:[eE][+-]?[0-9]+)?")
 
@@ -117,37 +120,46 @@ def _splice(random: Random, content: bytes, corpus: Sequence[bytes], words: Sequ
 
 def _replace_tokens(random: Random, content: bytes, corpus: Sequence[bytes], words: Sequence[bytes]) -> bytes:
     """Other tokens in place of some: what is left of the format is read, so that the change arrives behind it."""
-    tokens = _TOKENS.findall(content) or [b""]
+    head, part, tail = _part(random, content)
+    tokens = _TOKENS.findall(part) or [b""]
     for _ in range(random.randint(1, 3)):
         tokens[random.randrange(len(tokens))] = random.choice((_word(random, words), random.choice(tokens)))
-    return b"".join(tokens)
+    return head + b"".join(tokens) + tail
 
 
 def _replace_number(random: Random, content: bytes, corpus: Sequence[bytes], words: Sequence[bytes]) -> bytes:
-    numbers = list(_NUMBER.finditer(content))
-    if not numbers:
-        return content
-    number = random.choice(numbers)
-    return content[: number.start()] + random.choice(NUMBERS) + content[number.end() :]
+    return _with_number(random, content, random.choice(NUMBERS))
 
 
 def _resize(random: Random, content: bytes, corpus: Sequence[bytes], words: Sequence[bytes]) -> bytes:
     """Another number, as every format writes it, where one stood."""
-    numbers = list(_NUMBER.finditer(content))
+    notation = random.choice((b"%d", b"-%d", b"%de3", b"%de-9", b"0.%d", b"%d.0", b"%de300"))
+    return _with_number(random, content, notation % random.randrange(1, 1000))
+
+
+def _with_number(random: Random, content: bytes, other: bytes) -> bytes:
+    head, part, tail = _part(random, content)
+    numbers = list(_NUMBER.finditer(part))
     if not numbers:
         return content
     number = random.choice(numbers)
-    other = random.choice((b"%d", b"-%d", b"%de3", b"%de-9", b"0.%d", b"%d.0", b"%de300")) % random.randrange(1, 1000)
-    return content[: number.start()] + other + content[number.end() :]
+    return head + part[: number.start()] + other + part[number.end() :] + tail
 
 
 def _exchange(random: Random, content: bytes, corpus: Sequence[bytes], words: Sequence[bytes]) -> bytes:
     """A name or number of the same format where another stood."""
-    tokens = _TOKENS.findall(content)
+    head, part, tail = _part(random, content)
+    tokens = _TOKENS.findall(part)
     places = [place for place, token in enumerate(tokens) if len(token) > 1 or token.isalnum()]
     if places:
         tokens[random.choice(places)] = random.choice((tokens[random.choice(places)], random.choice(words)))
-    return b"".join(tokens)
+    return head + b"".join(tokens) + tail
+
+
+def _part(random: Random, content: bytes) -> tuple[bytes, bytes, bytes]:
+    """A long input in three: what is looked at costs no more than what is sent."""
+    start = random.randrange(max(len(content) - PART, 0) + 1)
+    return content[:start], content[start : start + PART], content[start + PART :]
 
 
 def _nest(random: Random, content: bytes, corpus: Sequence[bytes], words: Sequence[bytes]) -> bytes:
