@@ -358,10 +358,7 @@ def _key(status: Status, failed: int) -> str:
 def _told_percent(used: float, code: str, u: float) -> float:
     """Utilisation in percent, with as many decimals as tell it from what is allowed."""
     percent = 100 * used
-    if percent > 1e15:  # no decimal is left to round
-        return percent
-    decimals = telling_decimals(percent, 100 * allowed(code, u), 1)
-    return float(round(percent * 10**decimals) / 10**decimals)
+    return round(percent, telling_decimals(percent, 100 * allowed(code, u), 1))
 
 
 # --- Which gears ------------------------------------------------------------------------------------------------------
@@ -395,7 +392,7 @@ def _restricted(catalogue: Catalogue, sizes: tuple[str, ...] | None, ratios: tup
     if not gears.rows:
         offered = "; ".join(
             f"{size}: {', '.join(str(gear.ratio) for gear in catalogue.gears if gear.size == size)}"
-            for size in sizes or ()
+            for size in dict.fromkeys(sizes or ())
         )
         raise InputError(
             (

@@ -1,0 +1,135 @@
+"""Reasons, refusals and the answer in brief, by two limits of HPN-20A-5: T_N = 80 Nm and T_R = 149 Nm."""
+
+import pytest
+
+from hpn.application import Application, InputError
+from hpn.catalogue import Catalogue
+from hpn.selection import Candidate, Selection, judge, reason_of, select
+from tests.build import Json, cycle, phase
+
+ONLY = {"sizes": ["20A"], "ratios": [5]}
+TORQUE = "Load limit 1: average torque"
+
+
+def first(application: Json, catalogue: Catalogue) -> Candidate:
+    return select(Application.model_validate(application), catalogue).candidates[0]
+
+
+@pytest.mark.parametrize(
+    ("torque", "reason", "told"),
+    [
+        (40, f"Every check passes; the closest is {TORQUE} at 50.0 % of its limit.", "at 50 %"),
+        (40.046, f"Every check passes; the closest is {TORQUE} at 50.1 % of its limit.", "at 50.1 %"),
+        (100, f"{TORQUE} is at 125.0 % of its limit.", "at 125 %"),
+        (80.0008, f"{TORQUE} is at 100.001 % of its limit.", "at 100.001 %"),
+        (160, f"{TORQUE} is at 200.0 % of its limit; checks that fail: 2.", "at 200 %"),
+    ],
+)
+def test_a_reason_names_the_closest_check_in_percent_that_tell_it_from_its_limit(
+    catalogue: Catalogue, torque: float, reason: str, told: str
+) -> None:
+    gear = first(cycle(phase(torque, 100), requirements=ONLY), catalogue)
+
+    assert gear.reason == reason
+    sentence = reason_of(gear, 1.0)
+    assert told in sentence.text
+    assert sentence.text.replace(told, "") == reason.replace(f"{told.removesuffix(' %')}.0 %", "").replace(told, "")
+    assert sentence.translated == ("check",)
+
+
+def test_a_share_that_the_user_allows_is_what_the_percent_are_told_from(catalogue: Catalogue) -> None:
+    """40.0004 Nm are 50.0005 % of T_N: with fewer decimals than three it would read like what is allowed."""
+    gear = first(cycle(phase(40.0004, 100), requirements=ONLY | {"utilisation": 0.5}), catalogue)
+
+    assert gear.reason == f"{TORQUE} is at 50.001 % of its limit."
+    assert "50.001 %" in reason_of(gear, 0.5).text
+
+
+def test_percent_too_large_for_decimals_are_told_as_they_are(catalogue: Catalogue) -> None:
+    """1e6 Nm over i = 5 on a motor of 3e-9 Nm: two thirds of 1e14 times the limit."""
+    gear = first(cycle(phase(1e6, 100), requirements=ONLY | {"motor": {"peak_torque_Nm": 3e-9}}), catalogue)
+
+    assert gear.utilisation == pytest.approx(2e14 / 3, rel=1e-15)
+    assert gear.reason.startswith(f"Motor peak torque is at {100 * gear.utilisation!r} %")
+
+
+def test_where_there_is_no_utilisation_the_reason_says_why(catalogue: Catalogue) -> None:
+    stop = {"torque_Nm": 52, "count": 0}  # more than 17/3 of T_R = 9 Nm: not one stop
+    hard = first(cycle(phase(1, 1), emergency_stop=stop, requirements={"sizes": ["11A"], "ratios": [10]}), catalogue)
+    unrated = first(cycle(phase(1, 1), requirements={"sizes": ["40A"], "ratios": [5]}), catalogue)
+
+    assert hard.reason == "The emergency stop is so hard that not one is allowed (equation 17.9)."
+    assert unrated.reason == "Not rated: figures of HPN-40A that the checks need are not published."
+    for gear in (hard, unrated):
+        assert reason_of(gear, 1.0).text == gear.reason
+
+
+@pytest.mark.parametrize(
+    ("wishes", "problems"),
+    [
+        (
+            {"sizes": ["20A", "99A"]},
+            [(("requirements", "sizes", 1), "the catalogue has no 99A; there are 11A, 14A, 20A, 32A, 40A")],
+        ),
+        (
+            {"sizes": ["98A"], "ratios": [5, 6]},
+            [
+                (("requirements", "sizes", 0), "the catalogue has no 98A; there are 11A, 14A, 20A, 32A, 40A"),
+                (
+                    ("requirements", "ratios", 1),
+                    "the catalogue has no 6; there are 3, 4, 5, 7, 10, 15, 20, 25, 30, 35, 40, 45, 50",
+                ),
+            ],
+        ),
+        (
+            {"sizes": ["11A", "11A"], "ratios": [3]},
+            [
+                (
+                    ("requirements", "ratios"),
+                    "no gear has such a size and ratio together; there are "
+                    "11A: 4, 5, 7, 10, 15, 20, 25, 30, 35, 40, 45, 50",
+                )
+            ],
+        ),
+    ],
+)
+def test_a_wish_that_leaves_no_gear_is_refused_with_what_there_is(
+    catalogue: Catalogue, wishes: Json, problems: list[object]
+) -> None:
+    with pytest.raises(InputError) as refused:
+        select(Application.model_validate(cycle(phase(1, 1), requirements=wishes)), catalogue)
+
+    assert list(refused.value.problems) == problems
+
+
+def test_printed_curves_that_nobody_supplied_are_refused_where_they_are_asked_for(catalogue: Catalogue) -> None:
+    for model in ("linear", "iso281"):
+        assert first(cycle(phase(1, 1), output_load={"radial_N": 1, "model": model}), catalogue)
+    with pytest.raises(InputError) as refused:
+        first(cycle(phase(1, 1), output_load={"radial_N": 1, "model": "digitised"}), catalogue)
+
+    [(location, text)] = refused.value.problems
+    assert location == ("output_load", "model")
+    assert text.startswith("no candidate has points of a printed curve: put them into bearing_envelopes.csv")
+    assert text.endswith("or choose linear or iso281")
+
+
+def test_the_answer_in_brief_is_that_of_the_first_suitable_gear(catalogue: Catalogue) -> None:
+    fits, fails = (Application.model_validate(cycle(phase(T, 100), requirements=ONLY)) for T in (40, 160))
+
+    assert judge(fits, catalogue).outcome() == ("HPN-20A-5", "average_torque", 0.5, 1)
+    assert judge(fails, catalogue).outcome() == (None, None, None, 0)
+
+
+def test_the_foremost_gear_is_judged_wherever_one_is(catalogue: Catalogue) -> None:
+    def selected(sizes: list[str]) -> Selection:
+        wishes = {"sizes": sizes, "ratios": [5]}
+        return select(Application.model_validate(cycle(phase(1000, 1), requirements=wishes)), catalogue)
+
+    assert selected(["20A", "40A"]).foremost.designation == "HPN-20A-5"
+    assert selected(["40A"]).foremost.designation == "HPN-40A-5"
+    found = selected(["20A", "32A"])
+    assert [gear and gear.size for gear in (found.candidate("HPN-32A-5"), found.candidate("HPN-9A-5"))] == ["32A", None]
+    assert [check.code for check in found.candidates[0].failing] == ["average_torque", "repeated_peak_torque"]
+    assert found.selected is None
+    assert found.link == ""
