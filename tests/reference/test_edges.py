@@ -1,4 +1,4 @@
-"""Equations at the edges of floating point, where the answer is known by mental arithmetic."""
+"""Equations and curves where mental arithmetic knows the answer: edges of floating point, corners, wrong points."""
 
 import numpy as np
 import pytest
@@ -36,3 +36,76 @@ def test_an_equation_gives_float64_of_whole_numbers() -> None:
         bearing.required_L50(life_h=20_000, basis="L50"),
     ):
         assert value.dtype == np.float64
+
+
+CURVE = [(0.0, 50.0), (100.0, 0.0), (80.0, 60.0)]
+"""Corners (radial, axial) in no order: from (100, 0) over (80, 60) to (0, 50)."""
+
+
+@pytest.mark.parametrize(
+    "point",
+    [
+        *((100, 0), (80, 60), (0, 50)),  # the corners
+        *((90, 30), (40, 55)),  # halfway
+        *((80.2, 59.4), (79.2, 59.9)),  # a hundredth of the way before and behind the middle corner
+        *((99.8, 0.6), (0.8, 50.1)),  # and beside the axes
+    ],
+)
+def test_a_load_exceeds_a_curve_by_the_factor_that_its_own_direction_says(point: tuple[float, float]) -> None:
+    curve = bearing.curve_through(CURVE)
+    assert (curve.radial_N.tolist(), curve.axial_N.tolist()) == ([100, 80, 0], [0, 60, 50])
+    factors = np.array([0.25, 1.0, 3.0])
+
+    P = curve.equivalent_load(factors * point[0], factors * point[1])
+
+    assert P.dtype == np.float64
+    assert P.tolist() == pytest.approx(factors.tolist(), rel=1e-13)  # a load's two products and their difference
+
+
+def test_a_curve_of_two_points_is_a_straight_line() -> None:
+    line = bearing.curve_through([(0, 50), (100, 0)])
+
+    assert line.equivalent_load(np.array([50.0]), np.array([25.0])).tolist() == [1]
+
+
+@pytest.mark.parametrize(
+    ("points", "index", "says"),
+    [
+        ([], 0, "at least two points"),
+        ([(100, 0)], 0, "at least two points"),
+        ([(0, 50), (100, 1)], 1, "no point lies on the radial axis"),
+        ([(0, 50), (100, -1)], 1, "no point lies on the radial axis"),
+        ([(0, 50), (0, 0)], 1, "no point lies on the radial axis"),
+        ([(100, 0), (1, 50)], 1, "no point lies on the axial axis"),
+        ([(-1, 50), (100, 0)], 0, "no point lies on the axial axis"),
+        ([(100, 0), (0, 0)], 1, "no point lies on the axial axis"),
+        ([(100, 0), (0, 50), (50, 50), (40, 40)], 3, "not star-shaped"),
+        ([(100, 0), (90, 0), (0, 50)], 1, "not star-shaped"),
+        ([(0, 50), (100, 0), (0, 60)], 2, "not star-shaped"),
+    ],
+)
+def test_points_that_make_no_curve_are_refused_with_the_first_wrong_one(
+    points: list[tuple[float, float]], index: int, says: str
+) -> None:
+    with pytest.raises(bearing.CurveError, match=says) as refused:
+        bearing.curve_through(points)
+
+    assert refused.value.index == index
+
+
+def test_the_envelope_of_a_curve_is_the_curve_from_the_axial_axis_scaled() -> None:
+    limits = {"radial_limit_N": 1.0, "axial_limit_N": 1.0}  # of no effect: the curve has its own
+    radial, axial = bearing.envelope(model="digitised", curve=bearing.curve_through(CURVE), factor=0.5, **limits)
+
+    assert (radial.tolist(), axial.tolist()) == ([0, 40, 50], [25, 30, 0])
+    with pytest.raises(ValueError, match="needs the points of a printed curve"):
+        bearing.envelope(model="digitised", curve=None, factor=1, **limits)
+
+
+def test_the_straight_line_has_two_corners_and_the_iso_model_a_third() -> None:
+    limits = {"radial_limit_N": 100.0, "axial_limit_N": 50.0}
+    line = bearing.envelope(model="linear", curve=None, factor=2, **limits)
+    knee = bearing.envelope(model="iso281", curve=None, factor=2, **limits)
+
+    assert [part.tolist() for part in line] == [[0, 200], [100, 0]]
+    assert [part.tolist() for part in knee] == [[0, 200, 200], [100, pytest.approx(44, rel=1e-15), 0]]

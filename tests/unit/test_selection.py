@@ -49,6 +49,7 @@ def test_percent_too_large_for_decimals_are_told_as_they_are(catalogue: Catalogu
     """1e6 Nm over i = 5 on a motor of 3e-9 Nm: two thirds of 1e14 times the limit."""
     gear = first(cycle(phase(1e6, 100), requirements=ONLY | {"motor": {"peak_torque_Nm": 3e-9}}), catalogue)
 
+    assert gear.utilisation is not None
     assert gear.utilisation == pytest.approx(2e14 / 3, rel=1e-15)
     assert gear.reason.startswith(f"Motor peak torque is at {100 * gear.utilisation!r} %")
 
