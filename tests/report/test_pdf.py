@@ -12,6 +12,7 @@ from pypdf import PdfReader
 from hpn.catalogue import Catalogue
 from hpn.reader import Reader
 from hpn.report.pdf import pdf
+from hpn.report.tables import MOST_PHASES
 from tests.build import worked_example
 from tests.report.cases import CASES, EVERYTHING, language, typed_export_of
 
@@ -23,7 +24,7 @@ HOSTILE = {
     "typst code": '#eval("1") $x$ *b* _a_ @ref <label> #sys.inputs \\ "',
     "right to left": "מערכת הנעה 7 مرحبا",
     "turns direction": "axis \u202e7\u202c",
-    "no font has it": "中文 轴 7 😀",
+    "no font has it": "བོད 𒀀 7",
     "very long": "x" * 5000,
     "controls": "a\x00b\x1b\n\tc\ud7ff",
     "empty": "",
@@ -56,10 +57,15 @@ def pixels(document: bytes, page: int) -> NDArray[np.uint8]:
 
 
 @pytest.mark.parametrize("case", CASES)
-def test_report_has_two_pages_and_only_vectors(case: str, catalogue: Catalogue) -> None:
-    document = read(pdf(typed_export_of(CASES[case], catalogue), ENGLISH))
-    assert len(document.pages) == 2
-    assert not any(page.images for page in document.pages)
+def test_report_has_two_pages_before_the_phases_of_a_long_cycle_and_only_vectors(
+    case: str, catalogue: Catalogue
+) -> None:
+    export = typed_export_of(CASES[case], catalogue)
+    document = read(pdf(export, ENGLISH))
+    behind = document.pages[2:]
+    assert bool(behind) == (len(export.application.duty_cycle.phases) > MOST_PHASES)
+    assert "Versions" in document.pages[1].extract_text()
+    assert not any(page.images for page in document.pages[:5])
 
 
 @pytest.mark.parametrize(("reader", "decimal"), [(ENGLISH, "."), (GERMAN, ",")])

@@ -10,6 +10,7 @@ from hpn.reader import Reader
 from hpn.report import plots, tables
 from hpn.report.export import Export
 from hpn.report.inputs import LOADS, REQUIREMENTS
+from hpn.report.listing import listing
 from hpn.report.symbols import sentence
 from hpn.report.verdict import alternatives, checks, verdict
 from hpn.report.words import catalogue_version
@@ -20,6 +21,9 @@ LONGEST_QR_LINK = 600
 LONGEST_PRINTED_LINK = 240
 LONGEST_LINK = 2000
 """Readers open no longer address from a document."""
+
+_TURNING = re.compile("[\u202a-\u202e\u2066-\u2069]")
+"""Characters that turn the direction of whatever follows them."""
 
 LABELS = {
     "product": N_("HPN Select"),
@@ -55,7 +59,8 @@ LABELS = {
     ),
     "unsaved": N_("Not saved: made from the link alone, therefore undated."),
     "too_long_link": N_("The link is too long to print; it carries every phase."),
-    "unprintable": N_("□ stands for characters of the title or reference that the report's fonts lack."),
+    "unprintable": N_("□ stands for characters that the report's fonts lack: {codes}."),
+    "each_phase": N_("Each phase of the duty cycle"),
 }
 
 LEGEND = {
@@ -84,6 +89,7 @@ def content(export: Export, reader: Reader) -> dict[str, Any]:
         "loads": tables.given(export, LOADS, reader),
         "requirements": tables.given(export, REQUIREMENTS, reader),
         "phases": tables.phases(export, reader),
+        "listing": listing(export, reader),
         "derived": tables.derived(export, reader),
         "cycle": {"panels": plots.cycle(export, reader), "alt": text(N_("Torque and speed of the cycle over time"))},
         "bearing": plots.envelope(export, reader),
@@ -100,15 +106,8 @@ def content(export: Export, reader: Reader) -> dict[str, Any]:
 
 
 def _shortened(text: str, most: int) -> str:
-    plain = " ".join(
-        "".join(c if c.isprintable() or c.isspace() else "\N{REPLACEMENT CHARACTER}" for c in text).split()
-    )
-    return _breakable(plain if len(plain) <= most else plain[: most - 1] + "…")
-
-
-def _breakable(text: str) -> str:
-    """A text with places to break its line in long words."""
-    return re.sub(r"\S{24}(?=\S)", "\\g<0>\N{ZERO WIDTH SPACE}", text)
+    plain = " ".join(_TURNING.sub("\N{REPLACEMENT CHARACTER}", text).split())
+    return plain if len(plain) <= most else plain[: most - 1] + "…"
 
 
 def _link(link: str) -> dict[str, Any]:
@@ -116,7 +115,7 @@ def _link(link: str) -> dict[str, Any]:
     target = link if len(link) <= LONGEST_LINK else ""
     return {
         "link": target,
-        "link_text": _breakable(shown) if target else "",
+        "link_text": shown if target else "",
         "qr": _qr(link) if len(link) <= LONGEST_QR_LINK else "",
     }
 

@@ -1,5 +1,6 @@
 """One selection as it leaves the service: what was asked and what was answered, never computed again."""
 
+import re
 from dataclasses import dataclass
 from datetime import datetime
 from functools import cached_property
@@ -23,6 +24,10 @@ LOWER_BOUND = N_("lower bound where η = 1")
 """What is to be known of motor torques, in full and where there is little room."""
 
 
+_NO_XML = re.compile("[^\t\n\r\x20-\x7e\xa0-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+"""Control characters and what else XML can't hold, and with it no workbook, no shell and no metadata of a PDF."""
+
+
 @dataclass(frozen=True)
 class Export:
     """An application, the selection for it, and what a reader needs to find both again.
@@ -40,6 +45,11 @@ class Export:
     created: datetime | None = None
     catalogue: Catalogue | None = None
     reply: bytes = b""
+
+    def __post_init__(self) -> None:
+        """Replace what no file can hold, in texts that anybody may have written."""
+        for name in ("title", "reference"):
+            object.__setattr__(self, name, _NO_XML.sub("\N{REPLACEMENT CHARACTER}", getattr(self, name)))
 
     @property
     def candidate(self) -> Candidate:

@@ -1,8 +1,9 @@
 """Tables of the report: duty cycle, what it and the gear come to, and the gear's published figures."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
+from hpn.application import Phase
 from hpn.quantities import CANDIDATE, DUTY, GEAR, INPUTS
 from hpn.reader import Reader
 from hpn.report import inputs
@@ -30,25 +31,30 @@ def given(export: Export, paths: Sequence[str], reader: Reader) -> list[dict[str
 def phases(export: Export, reader: Reader) -> dict[str, Any]:
     """The duty cycle: each phase, or of a long cycle least, largest and sum."""
     listed = export.application.duty_cycle.phases
-    names = [*_ALWAYS, *(name for name in _WHERE_GIVEN if any(getattr(p, name) is not None for p in listed))]
-    columns: list[Column] = [[getattr(phase, name) for phase in listed] for name in names]
+    given = columns(listed)
     if len(listed) <= MOST_PHASES:
-        cells = [["" if value is None else reader.exact(value) for value in column] for column in columns]
+        cells = [["" if value is None else reader.exact(value) for value in column] for column in given.values()]
         rows, note = [[str(k), *row] for k, row in enumerate(zip(*cells, strict=True), 1)], ""
     else:
-        rows = _summary(names, columns, reader)
-        text = N_("{count} phases, summarised here; the workbook and the link have each.")
+        rows = _summary(given, reader)
+        text = N_("{count} phases, summarised here; each stands on the pages behind the second.")
         note = reader.told(Sentence(text, {"count": reader.exact(len(listed))}))
-    heads = [[formula(INPUTS[f"phase.{name}"].symbol), reader.unit(suffix_of(name) or "")] for name in names]
+    heads = [[formula(INPUTS[f"phase.{name}"].symbol), reader.unit(suffix_of(name) or "")] for name in given]
     return {"header": [[[], ""], *heads], "rows": rows, "note": note}
 
 
-def _summary(names: Sequence[str], columns: Sequence[Column], reader: Reader) -> list[list[str]]:
-    known = [[value for value in column if value is not None] for column in columns]
-    sums = [reader.figure(sum(c)) if name == "duration_s" else "" for name, c in zip(names, known, strict=True)]
+def columns(phases: Sequence[Phase]) -> dict[str, Column]:
+    """Columns of the duty cycle by field: what each phase says, and None where it says nothing."""
+    optional = (name for name in _WHERE_GIVEN if any(getattr(phase, name) is not None for phase in phases))
+    return {name: [getattr(phase, name) for phase in phases] for name in (*_ALWAYS, *optional)}
+
+
+def _summary(given: Mapping[str, Column], reader: Reader) -> list[list[str]]:
+    known = {name: [value for value in column if value is not None] for name, column in given.items()}
+    sums = [reader.figure(sum(values)) if name == "duration_s" else "" for name, values in known.items()]
     return [
-        [reader.text(N_("least")), *(reader.figure(min(column)) for column in known)],
-        [reader.text(N_("largest")), *(reader.figure(max(column)) for column in known)],
+        [reader.text(N_("least")), *(reader.figure(min(values)) for values in known.values())],
+        [reader.text(N_("largest")), *(reader.figure(max(values)) for values in known.values())],
         [reader.text(N_("sum")), *sums],
     ]
 

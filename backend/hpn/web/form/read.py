@@ -43,6 +43,9 @@ ORDER_NAMES = ("order_output", "order_motor")
 ROWS_IN_TABLE = 100
 """A longer duty cycle is edited as text: a field for each of its figures would weigh megabytes."""
 
+_UNSEEN = re.compile("[\u00ad\u200b-\u200d\u2060\ufeff]")
+"""Characters without width, which come with links copied from documents that break their lines with them."""
+
 _REQUIRED = ("T", "n", "t")
 _LOADS = ("FRi", "FAi")
 # Where an error of a whole part of the model is shown.
@@ -151,7 +154,7 @@ def parse(pairs: Pairs) -> Form:
 
 def in_wire_units(pairs: Pairs) -> tuple[Pairs, str]:
     """Pairs of a form as a link has them, and the marker of what they were written in: see `numbers`."""
-    return numbers.to_wire(pairs, UNITS)
+    return numbers.to_wire([(_UNSEEN.sub("", name), _UNSEEN.sub("", text)) for name, text in pairs], UNITS)
 
 
 def for_reader(form: Form, reader: Reader) -> Form:

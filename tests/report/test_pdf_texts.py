@@ -1,0 +1,155 @@
+"""Texts of the PDF report: every script, links that copy as they are, and each phase of a long cycle."""
+
+import re
+import subprocess
+import sys
+from dataclasses import replace
+from io import BytesIO
+from urllib.parse import parse_qsl, quote
+
+import pikepdf
+import pypdfium2
+import pytest
+from pypdf import PdfReader
+
+from hpn.application import Application
+from hpn.catalogue import Catalogue
+from hpn.report.pdf import pdf
+from hpn.web.form.read import parse
+from hpn.web.form.write import to_link
+from tests.build import cycle, phase, worked_example
+from tests.conftest import Supplement
+from tests.report.cases import CASES, language, long_cycle, typed_export_of
+
+ENGLISH, GERMAN = language("en"), language("de")
+
+SHOWN = {
+    "Latin": "Çinçilla Łódź",
+    "Cyrillic": "Поворотный",
+    "Greek": "Περιστροφή",
+    "Hebrew": "שולחן",
+    "Arabic": "طاولة",
+    "Chinese": "旋转工作台",
+    "Japanese": "回転テーブル",
+    "Korean": "회전",
+    "Thai": "โต๊ะ",
+    "Devanagari": "घूर्णन",
+    "Tamil": "சுழலும்",
+    "Armenian": "Պտտվող",
+    "Georgian": "მბრუნავი",
+    "Amharic": "የሚሽከረከር",
+    "emoji": "😀👩\u200d🔧🇩🇪",
+    "marks that combine": "Z\u0338\u0321a\u0310 e\u0301",
+    "marks that turn": "\u200f7\u200e",
+}
+PLAIN = ("Latin", "Cyrillic", "Greek", "Hebrew", "Chinese", "Japanese", "Korean", "emoji")
+"""Scripts whose letters stand in a PDF in the order of the text."""
+
+UNSEEN = re.compile("[\u00ad\u200b-\u200d\u2060\ufeff]")
+
+
+def by_pypdf(document: bytes, page: int) -> str:
+    """Text of a page."""
+    return PdfReader(BytesIO(document)).pages[page].extract_text()
+
+
+def by_pdfium(document: bytes, page: int) -> str:
+    """Text of a page, as a browser copies it."""
+    return str(pypdfium2.PdfDocument(document)[page].get_textpage().get_text_range())
+
+
+def test_a_title_of_any_script_is_shown_and_kept_in_the_metadata(catalogue: Catalogue) -> None:
+    words = list(SHOWN.values())
+    title, reference = " ".join(words[:9]), " ".join(words[9:])
+    document = pdf(typed_export_of(CASES["example"], catalogue, title=title, reference=reference), ENGLISH)
+    page = by_pdfium(document, 0).replace("\r\n", "")
+    assert "□" not in page + by_pdfium(document, 1)
+    for script in PLAIN:
+        assert SHOWN[script] in page, script
+    information = PdfReader(BytesIO(document)).metadata
+    assert information is not None and information.title == title
+
+
+def test_what_no_font_has_is_replaced_named_and_kept_in_the_metadata(catalogue: Catalogue) -> None:
+    title = "axis བོ 𒀀 \u0378 \uf8ff end"
+    document = pdf(typed_export_of(CASES["example"], catalogue, title=title), ENGLISH)
+    assert "axis □□ □ □ □ end" in by_pdfium(document, 0)
+    assert "fonts lack: U+0378, U+0F56, U+0F7C, U+F8FF, U+12000." in by_pdfium(document, 1)
+    information = PdfReader(BytesIO(document)).metadata
+    assert information is not None and information.title == title
+
+
+def test_texts_of_a_supplement_are_shown_or_replaced(supplemented: Supplement) -> None:
+    catalogue = supplemented(weights="size,stages,weight_kg,source\n20A,1,3.6,测试 бланк བོ\n")
+    found = by_pdfium(pdf(typed_export_of(CASES["example"], catalogue), ENGLISH), 1)
+    assert "测试 бланк □□" in found
+
+
+@pytest.mark.parametrize("phases", [1, 8])
+def test_the_printed_link_copies_as_it_is(phases: int, catalogue: Catalogue) -> None:
+    """Lines may end inside the link, but nothing stands in it that was not in the link."""
+    asked = worked_example() | cycle(*(phase(10.25 + k, 100.5, 0.125) for k in range(phases)))
+    link = "http://hpn.example:8443" + to_link(Application.model_validate(asked))
+    document = pdf(replace(typed_export_of(asked, catalogue), link=link), GERMAN)
+    for text in (by_pypdf(document, 0), by_pdfium(document, 0)):
+        assert link in re.sub(r"\r?\n", "", text)
+        assert not UNSEEN.search(text)
+    with pikepdf.open(BytesIO(document)) as opened:
+        targets = {str(note["/A"]["/URI"]) for note in opened.pages[0]["/Annots"].as_list()}
+    assert targets == {link}
+
+
+@pytest.mark.parametrize("unseen", ["\u200b", "\u2060", "\ufeff", "\u00ad", "\u200d"])
+def test_a_link_that_an_older_report_broke_reads_as_it_was_meant(unseen: str) -> None:
+    query = to_link(Application.model_validate(worked_example())).partition("?")[2]
+    broken = quote(re.sub(r"(.{24})", rf"\1{unseen}", query), safe="=&%")
+    assert broken != query
+    assert parse(parse_qsl(broken)).application == parse(parse_qsl(query)).application is not None
+
+
+def test_every_phase_of_a_long_cycle_is_printed_under_heads_on_numbered_pages(catalogue: Catalogue) -> None:
+    asked = long_cycle(700, output_load={"radial_N": 300})
+    export = typed_export_of(asked, catalogue)
+    document = pdf(export, GERMAN)
+    pages = [by_pdfium(document, page) for page in range(len(PdfReader(BytesIO(document)).pages))]
+    rows = iter(row for page in pages[2:] for row in re.findall(r"^ *(\d+) +(\S+) +(\S+) +(\S+)\r?$", page, re.M))
+    for number, given in enumerate(export.application.duty_cycle.phases, 1):
+        shown = (str(number), *(GERMAN.exact(value) for value in (given.torque_Nm, given.speed_rpm, given.duration_s)))
+        assert next(rows) == shown
+    for number, page in enumerate(pages, 1):
+        assert f"Seite {number} von {len(pages)}" in page
+        assert number < 3 or "n [min⁻¹]" in page
+
+
+def test_the_document_is_sound_and_its_phases_are_tagged(catalogue: Catalogue) -> None:
+    document = pdf(typed_export_of(long_cycle(300), catalogue), ENGLISH)
+    with pikepdf.open(BytesIO(document)) as opened:
+        assert opened.check_pdf_syntax() == []
+        kinds = [str(item.get("/S")) for item in opened.objects if isinstance(item, pikepdf.Dictionary)]
+    assert kinds.count("/TD") > 30 and "/TH" in kinds and "/Figure" in kinds
+
+
+MEASURE = """
+import resource, sys, time
+from hpn.catalogue import load_catalogue
+from hpn.report.pdf import pdf
+from tests.report.cases import language, long_cycle, typed_export_of
+phases, turns = map(int, sys.argv[1:])
+export = typed_export_of(long_cycle(phases), load_catalogue())
+for turn in range(turns):
+    start = time.process_time()
+    size = len(pdf(export, language("en")))
+    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss // 1024
+    print(turn, round(time.process_time() - start, 1), "s", size // 1024, "kB", peak, flush=True)
+"""
+
+
+def test_memory_of_a_long_cycle_is_bounded_and_given_back(soak: bool) -> None:
+    """typst by itself keeps the layout of the last ten reports: 3 GB of 10,000 phases."""
+    phases, turns, most = ("10000", "20", 500) if soak else ("2000", "3", 300)
+    run = [sys.executable, "-c", MEASURE, phases, turns]
+    lines = subprocess.run(run, capture_output=True, text=True, check=True).stdout.splitlines()
+    print(*lines, sep="\n")
+    first, last = (int(line.split()[-1]) for line in (lines[0], lines[-1]))
+    assert last < most
+    assert last < 1.2 * first
