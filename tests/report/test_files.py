@@ -1,9 +1,12 @@
 """The files over HTTP, and what a pasted link unfolds into."""
 
 import html
+import json
 import re
 from collections.abc import Iterator
+from io import BytesIO
 from pathlib import Path
+from zipfile import ZipFile
 
 import jsonschema  # type: ignore[import-untyped]
 import pytest
@@ -85,6 +88,42 @@ def test_what_is_refused(name: str, client: TestClient, saved: str) -> None:
     assert (comma.status_code, comma.json()["errors"][0]["pointer"]) == (422, "/T/0")
     assert client.get(f"/{name}").status_code == 422
     assert client.post(f"/api/v1/{name}", json={"duty_cycle": {"phases": []}}).status_code == 422
+
+
+def test_a_package_is_of_metamodel_30_and_of_31_on_request(client: TestClient, saved: str) -> None:
+    for path, method in (
+        (f"{saved}/submodel.aasx", "GET"),
+        ("/submodel.aasx", "GET"),
+        ("/api/v1/submodel.aasx", "POST"),
+    ):
+        query = "&" + QUERY if path == "/submodel.aasx" else ""
+        body = WORKED_EXAMPLE if method == "POST" else None
+        for asked, shown in (("", "3/0"), ("aas=3.0", "3/0"), ("aas=3.1", "3/1")):
+            response = client.request(method, f"{path}?{asked}{query}", json=body)
+            content = ZipFile(BytesIO(response.content)).read("aasx/data.xml")
+            assert re.findall(rb'xmlns:aas="https://admin-shell.io/aas/([^"]+)"', content) == [shown.encode()]
+        refused = client.request(method, f"{path}?aas=2{query}", json=body)
+        assert (refused.status_code, refused.json()["errors"][0]["pointer"]) == (422, "/aas")
+
+
+ANY_TITLE = (
+    'Ося 轴 مرحبا 😀\u200d \u202e7 \u0301 \u0378 \ue000 བོ \x00\x1b\x7f\uffff \U0001ffff"\r\nX-Header: 1;\t' + "x" * 60
+)
+
+
+@pytest.mark.parametrize("title", [ANY_TITLE, "a\ud800b"], ids=["any character", "half a character"])
+def test_a_title_of_any_characters_makes_every_file(title: str, client: TestClient) -> None:
+    content = json.dumps({"application": WORKED_EXAMPLE, "title": title, "reference": title})
+    answer = client.post("/api/v1/selections", content=content, headers={"Content-Type": "application/json"})
+    if title != ANY_TITLE:
+        assert 400 <= answer.status_code < 500  # no text in Unicode has half a character
+        return
+    address = answer.headers["location"]
+    for name, (media_type, _) in FILES.items():
+        response = client.get(f"{address}/{name}")
+        assert (response.status_code, response.headers["content-type"]) == (200, media_type)
+        assert "x-header" not in response.headers
+        assert response.headers["content-disposition"].isascii()
 
 
 def test_schema_of_the_application_accepts_what_the_service_accepts(client: TestClient) -> None:

@@ -4,20 +4,25 @@ import hashlib
 import subprocess
 import sys
 from dataclasses import replace
+from datetime import datetime, timedelta, timezone
 from io import BytesIO
+from typing import Any
 from zipfile import ZipFile
 
-import aas_core3_1.verification as verification
-import aas_core3_1.xmlization as xmlization
+import aas_core3.verification
+import aas_core3.xmlization
+import aas_core3_1.verification
+import aas_core3_1.xmlization
 import msgspec
 import pytest
+from aas_test_engines.file import check_aasx_file
 from basyx.aas import model
 from basyx.aas.adapter import aasx
 
 from hpn.application import Application
 from hpn.catalogue import Catalogue
 from hpn.report.export import LOSS_FREE
-from hpn.report.submodel import TECHNICAL_DATA, package
+from hpn.report.submodel import ARTICLE_NUMBER, ORDER_CODE, TECHNICAL_DATA, Metamodel, package
 from hpn.selection import decode, encode
 from tests.build import worked_example
 from tests.report.cases import CASES, EVERYTHING, typed_export_of
@@ -47,7 +52,7 @@ def values(collection: object) -> dict[str, object]:
 @pytest.mark.parametrize("case", CASES)
 def test_package_says_what_the_reply_says(case: str, catalogue: Catalogue) -> None:
     export = typed_export_of(CASES[case], catalogue)
-    submodels, files = read(package(export))
+    submodels, files = read(package(export, "3.1"))
     result = submodels["SelectionResult"]
     assert values(result.get_referable("Duty")) == msgspec.to_builtins(export.selection.duty)
     checks = result.get_referable("Checks")
@@ -73,32 +78,67 @@ def test_package_holds_a_saved_reply_to_the_byte(catalogue: Catalogue) -> None:
     saved = msgspec.json.encode(reply)
     result = BytesIO()
 
-    read(package(replace(export, selection=decode(saved), reply=saved)))[1].write_file("/aasx/result.json", result)
+    read(package(replace(export, selection=decode(saved), reply=saved), "3.1"))[1].write_file(
+        "/aasx/result.json", result
+    )
 
     assert result.getvalue() == saved
 
 
 @pytest.mark.parametrize("case", CASES)
-def test_package_is_valid_by_an_independent_implementation(case: str, catalogue: Catalogue) -> None:
-    content = ZipFile(BytesIO(package(typed_export_of(CASES[case], catalogue)))).read("aasx/data.xml")
-    environment = xmlization.environment_from_str(content.decode())
-    assert [f"{error.path}: {error.cause}" for error in verification.verify(environment)] == []
+@pytest.mark.parametrize(("metamodel", "core"), [("3.0", aas_core3), ("3.1", aas_core3_1)])
+def test_package_is_valid_by_an_independent_implementation(
+    case: str, metamodel: Metamodel, core: Any, catalogue: Catalogue
+) -> None:
+    content = ZipFile(BytesIO(package(typed_export_of(CASES[case], catalogue), metamodel))).read("aasx/data.xml")
+    environment = core.xmlization.environment_from_str(content.decode())
+    assert [f"{error.path}: {error.cause}" for error in core.verification.verify(environment)] == []
+
+
+@pytest.mark.parametrize("case", ["example", "everything", "nothing suitable", "not rated"])
+def test_package_passes_the_test_engines_of_IDTA(case: str, catalogue: Catalogue) -> None:
+    """They check package, metamodel and constraints, and read 3.0 alone."""
+    hostile = "<&> \U0001f600 བོ"
+    given = typed_export_of(CASES[case], catalogue, title=hostile, reference=hostile)
+    check: Any = check_aasx_file  # its annotation asks for text, of which no package is made
+    result = check(BytesIO(package(given)))
+    assert result.ok(), vars(result)
+    assert not check(BytesIO(package(given, "3.1"))).ok()
 
 
 def test_technical_data_has_the_published_figures_and_no_invented_number(catalogue: Catalogue) -> None:
-    technical = read(package(typed_export_of(EVERYTHING, catalogue)))[0]["TechnicalData"]
+    technical = read(package(typed_export_of(EVERYTHING, catalogue), "3.1"))[0]["TechnicalData"]
     gear = catalogue.by_designation["HPN-20A-5"]
     figures = values(technical.get_referable("TechnicalProperties"))
     assert figures["rated_torque_Nm"] == gear.rated_torque_Nm
     assert all(figures[name] == getattr(gear, name.removeprefix("published_")) for name in figures)
     general = values(technical.get_referable("GeneralInformation"))
-    assert general["ManufacturerArticleNumber"] is None and general["ManufacturerOrderCode"] is None
+    assert general["ManufacturerArticleNumber"] == general["ManufacturerOrderCode"] == gear.designation
     assert technical.semantic_id is not None
     assert technical.semantic_id.key[0].value == TECHNICAL_DATA + "Submodel/1/2"
 
 
+def test_article_number_and_order_code_say_what_they_are(catalogue: Catalogue) -> None:
+    technical = read(package(typed_export_of(EVERYTHING, catalogue), "3.1"))[0]["TechnicalData"]
+    general = technical.get_referable("GeneralInformation")
+    assert isinstance(general, model.SubmodelElementCollection)
+    said: dict[str, Any] = {
+        name: general.get_referable(f"Manufacturer{name}").description for name in ("ArticleNumber", "OrderCode")
+    }
+    assert said == {"ArticleNumber": ARTICLE_NUMBER, "OrderCode": ORDER_CODE}
+
+
+def test_data_are_valid_from_the_day_they_were_saved(catalogue: Catalogue) -> None:
+    """What is not saved has no date."""
+    export = typed_export_of(EVERYTHING, catalogue)
+    for created, shown in ((datetime(2026, 3, 1, 1, tzinfo=timezone(timedelta(hours=2))), "2026-02-28"), (None, None)):
+        technical = read(package(replace(export, created=created), "3.1"))[0]["TechnicalData"]
+        day = values(technical.get_referable("FurtherInformation")).get("ValidDate")
+        assert (day and str(day)) == shown
+
+
 def test_what_is_not_published_is_left_out(catalogue: Catalogue) -> None:
-    submodels, _ = read(package(typed_export_of(CASES["standing loads"], catalogue)))
+    submodels, _ = read(package(typed_export_of(CASES["standing loads"], catalogue), "3.1"))
     figures = values(submodels["SelectionResult"].get_referable("Figures"))
     assert "life_L10_h" not in figures  # unlimited
     assert None not in figures.values()
@@ -109,7 +149,7 @@ def test_motor_torques_without_an_efficiency_are_described_as_a_lower_bound(
     efficiency: float | None, catalogue: Catalogue
 ) -> None:
     asked = worked_example(requirements={"efficiency": efficiency})
-    submodels, _ = read(package(typed_export_of(asked, catalogue)))
+    submodels, _ = read(package(typed_export_of(asked, catalogue), "3.1"))
     figures = submodels["SelectionResult"].get_referable("Figures")
     assert isinstance(figures, model.SubmodelElementCollection)
     for name in ("motor_peak_torque_Nm", "motor_rated_torque_Nm"):
@@ -118,11 +158,11 @@ def test_motor_torques_without_an_efficiency_are_described_as_a_lower_bound(
 
 
 def test_no_technical_data_where_no_gear_is_selected(catalogue: Catalogue) -> None:
-    assert set(read(package(typed_export_of(CASES["nothing suitable"], catalogue)))[0]) == {"SelectionResult"}
+    assert set(read(package(typed_export_of(CASES["nothing suitable"], catalogue), "3.1"))[0]) == {"SelectionResult"}
 
 
 def test_ids_are_our_own_urns(catalogue: Catalogue) -> None:
-    submodels, _ = read(package(typed_export_of(EVERYTHING, catalogue)))
+    submodels, _ = read(package(typed_export_of(EVERYTHING, catalogue), "3.1"))
     assert all(submodel.id.startswith("urn:uuid:") for submodel in submodels.values())
 
 

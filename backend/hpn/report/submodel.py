@@ -1,13 +1,18 @@
 """The Asset Administration Shell: technical data of the selected gear, and the selection with every check.
 
 `TechnicalData` follows IDTA 02003-1-2 (Generic Frame for Technical Data for Industrial Equipment in Manufacturing, 1.2)
-with its semantic ids. Its mandatory article number and order code have no value: the handbook prints neither, and a
-designation is only part of an order code. `SelectionResult` is ours; no registered template exists for it.
+with its semantic ids. Article number and order code are the designation: the handbook prints no article number, and a
+full order code names output version and motor adaption too; their descriptions say so. What is not saved has no date,
+hence no `ValidDate`. `SelectionResult` is ours; no registered template exists for it.
+
+The library writes metamodel 3.1, whose elements are those of 3.0 as far as they are used here: the namespace tells
+which one a package claims. Most other tools read 3.0 alone.
 """
 
 from collections.abc import Iterable, Iterator, Mapping
 from datetime import UTC
 from io import BytesIO
+from typing import Literal
 from zipfile import ZIP_DEFLATED, ZipFile, ZipInfo
 
 from basyx.aas import model
@@ -39,13 +44,29 @@ GENERAL_INFORMATION = {
 }
 """Elements of the template and their semantic ids, as the template of IDTA gives them."""
 
+ARTICLE_NUMBER = {
+    "en": "Designation of the gear: the maker's engineering data print no article number.",
+    "de": "Bezeichnung des Getriebes: Die Projektierungsunterlagen des Herstellers nennen keine Artikelnummer.",
+}
+ORDER_CODE = {
+    "en": "Ordering code as far as it is known: output version and motor adaption follow (table 9.1).",
+    "de": "Bestellschlüssel, soweit bekannt: Abtriebsausführung und Motoranbindung folgen (Tab. 9.1).",
+}
+
+Metamodel = Literal["3.0", "3.1"]
+WRITTEN: Metamodel = "3.1"
+NAMESPACES: Mapping[Metamodel, bytes] = {
+    "3.0": b"https://admin-shell.io/aas/3/0",
+    "3.1": b"https://admin-shell.io/aas/3/1",
+}
+
 DATA_PART, APPLICATION_PART, RESULT_PART = "/aasx/data.xml", "/aasx/application.json", "/aasx/result.json"
 FIRST_DATE = (1980, 1, 1, 0, 0, 0)
 """Earliest time that a zip entry can have; the content says when the selection was saved."""
 
 
-def package(export: Export) -> bytes:
-    """The .aasx package on an export; the same bytes for the same selection."""
+def package(export: Export, metamodel: Metamodel = "3.0") -> bytes:
+    """The .aasx package on an export in a version of the metamodel; the same bytes for the same selection."""
     files = aasx.DictSupplementaryFileContainer()  # type: ignore[no-untyped-call]
     application = export.application.model_dump_json(exclude_none=True).encode()
     files.add_file(APPLICATION_PART, BytesIO(application), "application/json")
@@ -54,7 +75,7 @@ def package(export: Export) -> bytes:
     with aasx.AASXWriter(packed, failsafe=False) as writer:
         writer.write_core_properties(_properties(export))
         writer.write_all_aas_objects(DATA_PART, environment(export), files)
-    return _undated(packed.getvalue())
+    return _finished(packed.getvalue(), metamodel)
 
 
 def environment(export: Export) -> model.DictIdentifiableStore[model.Identifiable]:
@@ -88,7 +109,7 @@ class _InOrder(set[model.ModelReference[model.Submodel]]):
 def _technical_data(export: Export) -> model.Submodel:
     return model.Submodel(
         urn("technical-data", export.link),
-        [_general_information(export), _technical_properties(export), _further_information()],
+        [_general_information(export), _technical_properties(export), _further_information(export)],
         id_short="TechnicalData",
         administration=model.AdministrativeInformation(version="1", revision="2"),
         semantic_id=reference(TECHNICAL_DATA + "Submodel/1/2"),
@@ -100,8 +121,9 @@ def _general_information(export: Export) -> model.SubmodelElementCollection:
     names = {"en": f"{designation} planetary gear", "de": f"{designation} Planetengetriebe"}
     ids = {name: reference(value) for name, value in GENERAL_INFORMATION.items()}
 
-    def element(name: str, value: str | None) -> model.Property:
-        return model.Property(name, str, value, semantic_id=ids[name])
+    def element(name: str, value: str, description: Mapping[str, str] | None = None) -> model.Property:
+        text = model.MultiLanguageTextType(dict(description)) if description else None
+        return model.Property(name, str, value, semantic_id=ids[name], description=text)
 
     return model.SubmodelElementCollection(
         "GeneralInformation",
@@ -112,8 +134,8 @@ def _general_information(export: Export) -> model.SubmodelElementCollection:
                 model.MultiLanguageTextType(names),
                 semantic_id=ids["ManufacturerProductDesignation"],
             ),
-            element("ManufacturerArticleNumber", None),
-            element("ManufacturerOrderCode", None),
+            element("ManufacturerArticleNumber", designation, ARTICLE_NUMBER),
+            element("ManufacturerOrderCode", designation, ORDER_CODE),
         ],
         semantic_id=reference(TECHNICAL_DATA + "GeneralInformation/1/1"),
     )
@@ -137,21 +159,26 @@ def _technical_properties(export: Export) -> model.SubmodelElementCollection:
     )
 
 
-def _further_information() -> model.SubmodelElementCollection:
+def _further_information(export: Export) -> model.SubmodelElementCollection:
     statement = {
         "en": "Figures of the maker's engineering data, written by an independent tool; not a statement of the maker.",
         "de": "Angaben aus den Projektierungsunterlagen des Herstellers, von einem unabhängigen Werkzeug geschrieben; "
         "keine Aussage des Herstellers.",
     }
+    elements: list[model.SubmodelElement] = [
+        model.MultiLanguageProperty(
+            "TextStatement01",
+            model.MultiLanguageTextType(statement),
+            semantic_id=reference(TECHNICAL_DATA + "TextStatement/1/1"),
+        )
+    ]
+    if export.created:
+        day = model.datatypes.Date(*export.created.astimezone(UTC).timetuple()[:3])
+        valid = reference(TECHNICAL_DATA + "ValidDate/1/1")
+        elements.append(model.Property("ValidDate", model.datatypes.Date, day, semantic_id=valid))
     return model.SubmodelElementCollection(
         "FurtherInformation",
-        [
-            model.MultiLanguageProperty(
-                "TextStatement01",
-                model.MultiLanguageTextType(statement),
-                semantic_id=reference(TECHNICAL_DATA + "TextStatement/1/1"),
-            )
-        ],
+        elements,
         semantic_id=reference(TECHNICAL_DATA + "FurtherInformation/1/1"),
     )
 
@@ -255,12 +282,15 @@ def _properties(export: Export) -> OPCCoreProperties:
     return properties
 
 
-def _undated(packed: bytes) -> bytes:
-    """The same package without the time of its making."""
+def _finished(packed: bytes, metamodel: Metamodel) -> bytes:
+    """The same package in the namespace of a metamodel, and without the time of its making."""
     result = BytesIO()
     with ZipFile(BytesIO(packed)) as source, ZipFile(result, "w", ZIP_DEFLATED) as target:
         for name in source.namelist():
             entry = ZipInfo(name, FIRST_DATE)
             entry.compress_type = ZIP_DEFLATED
-            target.writestr(entry, source.read(name))
+            content = source.read(name)
+            if f"/{name}" == DATA_PART:
+                content = content.replace(NAMESPACES[WRITTEN], NAMESPACES[metamodel], 1)
+            target.writestr(entry, content)
     return result.getvalue()

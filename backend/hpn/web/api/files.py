@@ -6,7 +6,7 @@ from functools import cache
 from typing import Annotated, Any, Literal
 
 import msgspec
-from fastapi import APIRouter, Query
+from fastapi import APIRouter, Depends, Query
 from pydantic import ValidationError
 from starlette.requests import Request
 from starlette.responses import Response
@@ -16,7 +16,7 @@ from hpn.catalogue import Catalogue
 from hpn.reader import Reader
 from hpn.report.export import DIGITS, Export
 from hpn.report.pdf import pdf
-from hpn.report.submodel import package
+from hpn.report.submodel import Metamodel, package
 from hpn.report.workbook import workbook
 from hpn.selection import decode, select
 from hpn.store import SavedSelection
@@ -38,16 +38,33 @@ Lang = Annotated[Literal["en", "de"] | None, Query(description="Language; by def
 Make = Callable[[], Export]
 
 
+Options = dict[str, Any]
+"""What a caller may choose of a kind of file beside its language, by the names of the function that makes it."""
+
+
+def _nothing() -> Options:
+    return {}
+
+
+def _metamodel(
+    aas: Annotated[Metamodel, Query(description="Version of the AAS metamodel in whose namespace it is.")] = "3.0",
+) -> Options:
+    return {"metamodel": aas}
+
+
 @dataclass(frozen=True, slots=True)
 class File:
-    """A kind of file: its name, what the API calls it, its media type, what it is, and how it is made."""
+    """A kind of file: its name, what the API calls it, its media type, what it is, how it is made and what of it may
+    be chosen.
+    """
 
     name: str
     noun: str
     media_type: str
     summary: str
-    build: Callable[[Export, Reader], bytes]
+    build: Callable[..., bytes]
     disposition: str = "attachment"
+    options: Callable[..., Options] = _nothing
 
     def named(self, export: Export) -> str:
         """File name for a download; ASCII, whatever the selection is called."""
@@ -68,7 +85,8 @@ FILES = (
         "Submodel",
         "application/asset-administration-shell-package",
         "Asset Administration Shell: technical data and selection",
-        lambda export, _: package(export),
+        lambda export, _, **options: package(export, **options),
+        options=_metamodel,
     ),
 )
 
@@ -86,17 +104,19 @@ def _route(file: File) -> None:
         }
     }
 
-    async def of_saved(request: Request, id: str, lang: Lang = None) -> Response:
-        saved, catalogue = await with_catalogue(request.app.state, id)
-        return await _answer(request, file, lang, lambda: _of_saved(saved, catalogue, request))
+    Chosen = Annotated[Options, Depends(file.options)]
 
-    async def of_posted(request: Request, lang: Lang = None) -> Response:
+    async def of_saved(request: Request, id: str, chosen: Chosen, lang: Lang = None) -> Response:
+        saved, catalogue = await with_catalogue(request.app.state, id)
+        return await _answer(request, file, lang, chosen, lambda: _of_saved(saved, catalogue, request))
+
+    async def of_posted(request: Request, chosen: Chosen, lang: Lang = None) -> Response:
         settings: Settings = request.app.state.settings
         body = await read_body(request, maximum_bytes=settings.maximum_body_bytes, seconds=settings.body_seconds)
-        return await _answer(request, file, lang, lambda: _computed(parsed(Application, body), request))
+        return await _answer(request, file, lang, chosen, lambda: _computed(parsed(Application, body), request))
 
-    async def of_link(request: Request, lang: Lang = None) -> Response:
-        return await _answer(request, file, lang, lambda: _computed(linked_application(request), request))
+    async def of_link(request: Request, chosen: Chosen, lang: Lang = None) -> Response:
+        return await _answer(request, file, lang, chosen, lambda: _computed(linked_application(request), request))
 
     shared: dict[str, Any] = {"response_class": Response, "summary": file.summary}
     saved_files.add_api_route(
@@ -173,7 +193,7 @@ def _computed(application: Application, request: Request) -> Export:
 def linked_application(request: Request) -> Application:
     """Application of the request's query; Problem 422 names each parameter that can't be read."""
     pairs = pairs_of(request.scope["query_string"].decode("latin-1"))
-    return application_of([(name, value) for name, value in pairs if name != "lang"])
+    return application_of([(name, value) for name, value in pairs if name not in ("lang", "aas")])
 
 
 def application_of(pairs: links.Pairs) -> Application:
@@ -197,12 +217,12 @@ def absolute(request: Request, path: str) -> str:
 # --- Making it --------------------------------------------------------------------------------------------------------
 
 
-async def _answer(request: Request, file: File, lang: str | None, make: Make) -> Response:
+async def _answer(request: Request, file: File, lang: str | None, chosen: Options, make: Make) -> Response:
     reader = spoken(request, lang)
 
     def work() -> tuple[bytes, str, str]:
         export = make()
-        content = file.build(export, reader)
+        content = file.build(export, reader, **chosen)
         return content, file.named(export), etag_of(content)
 
     content, name, etag = await compute(request, "exports", work)
