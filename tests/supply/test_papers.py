@@ -1,0 +1,26 @@
+"""What SECURITY.md and docs/resilience.md point at is there."""
+
+import re
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+PAPERS = [ROOT / "SECURITY.md", ROOT / "docs" / "resilience.md"]
+
+
+@pytest.mark.parametrize("paper", PAPERS, ids=lambda path: path.name)
+def test_every_test_and_target_that_a_paper_names_exists(paper: Path) -> None:
+    text = paper.read_text()
+    named = set(re.findall(r"`(?:tests/)?([a-z]+/(?:test_\w+)?)(?:\.py)?`", text)) - {"tests/"}
+    targets = set(re.findall(r"`make (\w+)", text))
+
+    assert named and targets
+    assert {name for name in named if not [*(ROOT / "tests").glob(f"{name.rstrip('/')}*")]} == set()
+    assert targets <= set(re.findall(r"^(\w+):", (ROOT / "Makefile").read_text(), re.M))
+
+
+def test_the_readme_leads_to_the_papers() -> None:
+    readme = (ROOT / "README.md").read_text()
+
+    assert [paper.name for paper in PAPERS if paper.name not in readme] == []
