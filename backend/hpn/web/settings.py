@@ -146,8 +146,8 @@ class Settings(BaseSettings):
     )
     calculator_rate: Rate = Field(
         "120000/minute",
-        description="Most calculations, readings and pages, and apart from them metrics, per key or address and process; "
-        "off for no limit.",
+        description="Most calculations, readings and pages, and apart from them metrics, per key or address and "
+        "process; off for no limit.",
     )
     batch_rate: Rate = Field("1200/minute", description="Most batches per key or address and process, or off.")
     writing_rate: Rate = Field("60000/minute", description="Most savings and deletions likewise, or off.")
