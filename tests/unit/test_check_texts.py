@@ -107,3 +107,29 @@ def test_a_reply_defines_every_check_that_it_contains_and_no_other(catalogue: Ca
     definition = everything["check_definitions"]["average_torque"]
     for name in ("title", "equation", "unit", "kind", "tests", "basis", "remedy"):
         assert definition[name]
+
+
+# Code: the check in the handbook's symbols, and the catalogue's figure that bounds it, None where the user does.
+BOUNDS = {
+    "average_torque": ("T_av ≤ T_A = T_N", "rated_torque_Nm"),
+    "repeated_peak_torque": ("T_max ≤ T_R", "repeated_peak_torque_Nm"),
+    "momentary_peak_torque": ("T_k ≤ T_M", "momentary_peak_torque_Nm"),
+    "momentary_peak_count": ("N_k ≤ N_k,max", "repeated_peak_torque_Nm"),
+    "average_input_speed": ("n_in,av ≤ n_av(max)", "average_input_speed_rpm"),
+    "maximum_input_speed": ("n_in,max ≤ n_in(max)", "maximum_input_speed_rpm"),
+    "life": ("L_10 ≥ L_10,req", "rated_torque_Nm"),
+    "output_bearing_load": ("max f_w · P_i ≤ 1", "dynamic_radial_load_N"),
+    "output_bearing_life": ("f_w · P_m ≤ k", "dynamic_radial_load_N"),
+    "motor_speed": ("n_in,max ≤ n_mot", None),
+    "motor_peak_torque": ("T_max / (i · η) ≤ T_mot", None),
+    "motor_rated_torque": ("T_rms / (i · η) ≤ T_mot,N", None),
+    "ambient_temperature": ("t_min ≤ t_amb ≤ t_max", "ambient_temperature_maximum_degC"),
+    "backlash": ("j ≤ j_req", "backlash_arcmin"),
+    "torsional_stiffness": ("K_3 ≥ K_3,req", "torsional_stiffness_Nm_per_rad"),
+    "weight": ("m ≤ m_req", "weight_kg"),
+    "length": ("L_max ≤ L_req", "length_max_mm"),
+}
+
+
+def test_a_check_says_in_symbols_what_it_compares_and_which_figure_bounds_it() -> None:
+    assert {code: (check.relation, check.limited_by) for code, check in BY_CODE.items()} == BOUNDS

@@ -5,6 +5,7 @@ from collections.abc import Callable
 import pytest
 
 from hpn.catalogue import Catalogue
+from hpn.checks import allowed
 from tests.build import Json, answer, candidate, check, cycle, phase
 
 GEAR = "HPN-20A-5"
@@ -118,3 +119,24 @@ def test_a_tie_for_governing_goes_to_the_first_check(catalogue: Catalogue) -> No
     used = {c["code"]: c["utilisation"] for c in candidate(reply, GEAR)["checks"]}
     assert used["average_torque"] == used["average_input_speed"] == 1
     assert candidate(reply, GEAR)["governing_check"] == "average_torque"
+
+
+@pytest.mark.parametrize(("asked", "limit", "used"), [(10, 0, 0.5), (20, 40, 0), (35, 40, 0.75), (-5, 0, 1.25)])
+def test_the_limit_of_a_temperature_is_the_end_of_the_range_that_it_is_nearer_to(
+    catalogue: Catalogue, asked: float, limit: float, used: float
+) -> None:
+    """0 to 40 °C: the middle is 20, half of the range 20."""
+    found = check(answer(with_wish(ambient_temperature_degC=asked), catalogue), GEAR, "ambient_temperature")
+
+    assert (found["demand"], found["limit"], found["utilisation"]) == (asked, limit, used)
+
+
+def test_a_temperature_is_not_rated_where_no_range_is_published(catalogue: Catalogue) -> None:
+    wishes = {"sizes": ["40A"], "ratios": [5], "ambient_temperature_degC": 20}
+    found = check(answer(cycle(phase(1, 1), requirements=wishes), catalogue), "HPN-40A-5", "ambient_temperature")
+
+    assert (found["limit"], found["utilisation"], found["status"]) == (None, None, "not_rated")
+
+
+def test_the_users_share_bounds_load_checks_alone() -> None:
+    assert [allowed(code, 0.8) for code in (None, "weight", "life", "motor_speed")] == [1, 1, 0.8, 0.8]

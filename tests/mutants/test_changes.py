@@ -1,0 +1,47 @@
+"""The mutants are changes that Python takes, and what is explained of them is there."""
+
+import ast
+
+import pytest
+
+from tests.mutants.__main__ import MODULES, PACKAGE
+from tests.mutants.changes import Mutant, mutants_of
+from tests.mutants.explained import EXPLAINED
+
+SOURCES = {module: (PACKAGE / f"{module}.py").read_text(encoding="utf-8") for module in MODULES}
+MUTANTS = {module: list(mutants_of(module, source)) for module, source in SOURCES.items()}
+
+
+@pytest.mark.parametrize("module", MODULES)
+def test_every_mutant_is_another_program_under_a_name_of_its_own(module: str) -> None:
+    mutants = MUTANTS[module]
+
+    assert len(mutants) >= 90
+    assert len({mutant.name for mutant in mutants}) == len(mutants)
+    assert [mutant.name for mutant in mutants if mutant.source == SOURCES[module]] == []
+    for mutant in mutants[::20]:
+        ast.parse(mutant.source)
+
+
+def test_what_is_explained_is_a_mutant() -> None:
+    there = {mutant.name for mutants in MUTANTS.values() for mutant in mutants}
+
+    assert EXPLAINED.keys() - there == set()
+
+
+@pytest.mark.parametrize(
+    ("source", "changed"),
+    [
+        ("a = b < c", ["a = (b) <= (c)", "a = (b) > (c)"]),
+        ("a = b + c * d", ["a = ((b) - (c * d))", "a = b + ((c) / (d))"]),
+        ("a = f(b=c, d=e)", ["a = f( d=e)", "a = f(b=c, )"]),
+        ("a = np.where(b, c, d)", ["a = np.where(b, d, c)"]),
+        ("if a:\n    raise b", ["if (not (a)):\n    raise b", "if a:\n    pass"]),
+        ("a: int = N_('text')", []),
+        ('"""Docstring."""', []),
+    ],
+)
+def test_a_change_replaces_one_expression(source: str, changed: list[str]) -> None:
+    found: list[Mutant] = list(mutants_of("m", source))
+
+    assert [mutant.source for mutant in found] == changed
