@@ -159,9 +159,11 @@ async def delete_selection(request: Request, id: str) -> Response:
     """
     store: Store = request.app.state.store
     gate: Gate = request.app.state.gate
-    if (saved := await store.find(id)) is None:
-        raise not_found(id)
-    gate.admit_deletion(request, saved.owner)
+    if gate.has_keys:
+        saved = await store.find(id)
+        if saved is None:
+            raise not_found(id)
+        gate.require_owner(request, saved.owner)
     if "if-match" in request.headers:
         require_match(request, await _representation(request, id))
     if not await store.delete(id):

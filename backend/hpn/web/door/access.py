@@ -68,10 +68,15 @@ class Gate:
         if len(request.scope.get("query_string", b"")) > MAXIMUM_QUERY_BYTES:
             raise Problem(414, f"a link may have {MAXIMUM_QUERY_BYTES} bytes at most; post what is longer")
 
-    def admit_deletion(self, request: Request, owner: str | None) -> None:
-        """Raise Problem 403 unless the request's key owns what it is to delete; without keys everybody may."""
+    @property
+    def has_keys(self) -> bool:
+        """Whether what is saved belongs to keys; without any, everybody may delete."""
+        return bool(self._keys)
+
+    def require_owner(self, request: Request, owner: str | None) -> None:
+        """Raise Problem 403 unless the request's key owns what it is to delete, or is the one that may delete any."""
         name = request.state.api_key
-        if self._keys and name != ADMIN and (name is None or name != owner):
+        if name is None or name not in (ADMIN, owner):
             raise Problem(403, f"only the key that saved this selection, or the one named {ADMIN}, may delete it")
 
     def _holder(self, request: Request) -> str | None:
