@@ -23,6 +23,7 @@ AS_SPDX = {
 """What metadata says in words, as an SPDX expression."""
 
 READ = {
+    "aas-test-engines": "Apache-2.0",
     "colorama": "BSD-3-Clause",
     "defusedxml": "PSF-2.0",
     "flexcache": "BSD-3-Clause",
@@ -61,6 +62,7 @@ INSIDE = """## What is inside packages
 | what | package | licence |
 |---|---|---|
 | fonts in the PDF: Libertinus Serif | typst | OFL-1.1 |
+| fonts in the PDF: Noto | manimgx-fonts, manimgx-fonts-cjk | OFL-1.1 |
 | fonts in the PDF: DejaVu Sans Mono | typst | Bitstream-Vera, changes in the public domain |
 | fonts not used: New Computer Modern | typst | LicenseRef-GUST-Font-License |
 | OpenBLAS, LAPACK | numpy | BSD-3-Clause |

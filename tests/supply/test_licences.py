@@ -19,6 +19,8 @@ PERMISSIVE = {
     "CC0-1.0",
     "ISC",
     "MIT",
+    "MIT-CMU",
+    "OFL-1.1",
     "PSF-2.0",
     "Zlib",
 }
