@@ -105,6 +105,101 @@ def test_files_are_read_in_the_encodings_of_spreadsheets(client: TestClient, enc
     assert "Columns apart by semicolon" in page.text
 
 
+@pytest.mark.parametrize("encoding", ["utf-16-le", "utf-16-be", "utf-32-le", "utf-32-be"])
+def test_files_are_read_in_the_encoding_that_their_mark_promises(client: TestClient, encoding: str) -> None:
+    content = ("\ufeff" + GERMAN).encode(encoding)
+    page = client.post("/paste", files={"file": ("zyklus.txt", content)}, headers=HTMX)
+    assert page.status_code == 200
+    assert "<td>9.3</td>" in page.text
+
+
+@pytest.mark.parametrize(
+    ("content", "words"),
+    [
+        (b"\xef\xbb\xbf40\t250\t3\n4\xfc\t1\t1\n", "as UTF-8, but in line 2 the byte 0xfc, number 14"),
+        (b"\xef\xbb\xbf40\t250\t3\xc3", "as UTF-8, but in line 1 the byte 0xc3, number 12"),
+        ("\ufeff40\t250\t3\n".encode("utf-16-le")[:-1], "as UTF-16-LE, but in line 1 the byte 0x0a, number 19"),
+        ("\ufeff4\n".encode("utf-16-be") + b"\xd8\x00\x00\x34", "as UTF-16-BE, but in line 2 the byte 0xd8, number 7"),
+        ("\ufeff40".encode("utf-32-le") + b"\xff\xff\xff\xff", "as UTF-32-LE, but in line 1 the byte 0xff, number 13"),
+        ("40\t250\t3\n".encode("utf-16-le"), "the file is no text: save the sheet as CSV"),
+        (b"40\t250\t3\x81", "the file is no text: save the sheet as CSV"),
+    ],
+)
+def test_a_byte_that_breaks_the_promise_of_the_mark_is_named_with_its_place(
+    client: TestClient, content: bytes, words: str
+) -> None:
+    page = client.post("/paste", files={"file": ("zyklus.csv", content)})
+    assert page.status_code == 422
+    assert words in page.text
+
+
+NO_NUMBERS = [
+    *(
+        "e6",
+        "E6",
+        "+",
+        "-",
+        "+e6",
+        "-e6",
+        ".",
+        ",",
+        ".e6",
+        ",e6",
+        "+.",
+        "-,",
+        "e",
+        "1e",
+        "1e+",
+        "e+6",
+        "--1",
+        "1-",
+        "+-1",
+    ),
+    *(
+        "1e6e6",
+        "0x10",
+        "1_0",
+        "nan",
+        "inf",
+        "∞",
+        "\N{MINUS SIGN}",
+        "\N{MINUS SIGN}e6",
+        "'",
+        "1'",
+        "²",
+        "١",
+        "'000",
+        "1" * 401,
+    ),
+    *("1\x002", "1\ufeff2", "\x00"),
+]
+ODD_NUMBERS = [
+    "1e999",
+    "1e-999",
+    "-1e999",
+    "9" * 399,
+    "1,000.",
+    "1.000,",
+    ",000",
+    ".5e3",
+    "5.e3",
+    "1 2",
+    "\u202f1",
+    " ",
+]
+
+
+@pytest.mark.parametrize("column", [0, 1, 2])
+def test_no_odd_cell_is_an_error_of_the_server(client: TestClient, column: int) -> None:
+    for cell in NO_NUMBERS + ODD_NUMBERS:
+        cells = ["1", "2", "3"]
+        cells[column] = cell
+        text = "\t".join(cells)
+        shown = client.post("/paste", data={"text": text}, headers=HTMX)
+        taken = client.post("/paste", data={"text": text, "take": "replace:0"}, follow_redirects=True)
+        assert {shown.status_code, taken.status_code} <= ({422} if cell in NO_NUMBERS else {200, 422}), repr(cell)
+
+
 def test_a_workbook_is_refused_with_a_way_on(client: TestClient) -> None:
     page = client.post("/paste", files={"file": ("a.xlsx", b"PK\x03\x04\x00\x00")})
     assert page.status_code == 422

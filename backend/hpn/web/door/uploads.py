@@ -1,6 +1,8 @@
 """Forms that a browser posts, with or without files, within limits of size and time."""
 
+import codecs
 import re
+from contextlib import suppress
 
 from starlette.requests import Request
 
@@ -8,9 +10,22 @@ from hpn.web.door.bodies import content_type_of, pairs_of, read_body
 from hpn.web.door.pools import compute
 from hpn.web.door.problems import Problem
 from hpn.web.settings import Settings
-from hpn.wording import N_
+from hpn.wording import N_, Sentence
 
 NO_TEXT = N_("the file is no text: save the sheet as CSV, or copy its cells")
+WRONG_BYTE = N_(
+    "the file is marked as {encoding}, but in line {line} the byte {byte}, number {place} of the file, does not belong "
+    "to it: save the sheet as CSV again"
+)
+MARKS = (
+    (codecs.BOM_UTF8, "utf-8"),
+    (codecs.BOM_UTF32_LE, "utf-32-le"),  # before UTF-16, whose mark is the beginning of this one
+    (codecs.BOM_UTF32_BE, "utf-32-be"),
+    (codecs.BOM_UTF16_LE, "utf-16-le"),
+    (codecs.BOM_UTF16_BE, "utf-16-be"),
+)
+"""Byte order marks, and what each promises of the bytes behind it."""
+
 FORM, MULTIPART = "application/x-www-form-urlencoded", "multipart/form-data"
 
 
@@ -54,16 +69,35 @@ def parts_of(content_type: str, body: bytes) -> list[tuple[str, bytes]]:
 
 
 def decoded(content: bytes) -> str:
-    """Text of a file: UTF-8, UTF-16 where it begins with its mark, else Windows-1252 as spreadsheets write CSV."""
-    if content.startswith((b"\xff\xfe", b"\xfe\xff")):
-        encodings = ["utf-16"]
-    elif b"\x00" in content:
-        encodings = []  # a workbook or a picture
-    else:
-        encodings = ["utf-8-sig", "cp1252"]
-    for encoding in encodings:
-        try:
-            return content.decode(encoding)
-        except UnicodeDecodeError:
-            continue
-    raise Problem(422, NO_TEXT)
+    """Text of a file: in the encoding that its byte order mark promises, else UTF-8, else Windows-1252 as spreadsheets
+    write CSV. Raises Problem 422, which names the place of a byte that breaks the promise.
+    """
+    for mark, encoding in MARKS:
+        if content.startswith(mark):
+            return _marked(content.removeprefix(mark), encoding, len(mark))
+    if b"\x00" not in content:  # a workbook or a picture
+        for encoding in ("utf-8", "cp1252"):
+            with suppress(UnicodeDecodeError):
+                return content.decode(encoding)
+    raise _refused(NO_TEXT)
+
+
+def _marked(content: bytes, encoding: str, mark: int) -> str:
+    try:
+        return content.decode(encoding)
+    except UnicodeDecodeError as error:
+        line = 1 + content[: error.start].decode(encoding).count("\n")
+        raise _refused(
+            WRONG_BYTE,
+            encoding=encoding.upper(),
+            line=line,
+            byte=f"0x{content[error.start]:02x}",
+            place=mark + error.start + 1,
+        ) from None
+
+
+def _refused(template: str, **values: str | int) -> Problem:
+    sentence = Sentence(template, dict(values))
+    problem = Problem(422, sentence.text)
+    problem.sentences = (sentence,)
+    return problem

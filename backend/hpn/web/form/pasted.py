@@ -90,7 +90,7 @@ def read_table(text: str) -> Pasted:
 def _lines(text: str) -> list[str]:
     if len(text) > MAXIMUM_CHARACTERS:
         raise _RefusedError(N_("the text is too long: at most {most} characters"), most=MAXIMUM_CHARACTERS)
-    lines = [line for line in text.replace("\ufeff", "").replace("\x00", "").splitlines() if line.strip()]
+    lines = [line for line in text.removeprefix("\ufeff").splitlines() if line.strip()]
     if not lines:
         raise _RefusedError(N_("there is nothing in the text"))
     if len(lines) > MAXIMUM_PHASES + 1:

@@ -19,7 +19,7 @@ from hpn.web.door.access import admit
 from hpn.web.door.bodies import pairs_of, parsed
 from hpn.web.door.pools import compute, worked
 from hpn.web.door.problems import Problem, plain_message, pointer
-from hpn.web.door.uploads import NO_TEXT, read_fields
+from hpn.web.door.uploads import read_fields
 from hpn.web.form import read as links
 from hpn.web.form.pasted import COLUMNS, SEPARATORS, Pasted, Reading, read_table
 from hpn.web.form.read import Pairs
@@ -84,8 +84,8 @@ async def paste(request: Request) -> Response:
     try:
         fields = await read_fields(request)
     except Problem as problem:
-        text = Sentence(NO_TEXT) if problem.detail == NO_TEXT else _plain(problem.detail)
-        return _render(request, PasteDraft("", problems=(text,)), problem.status_code)
+        problems = problem.sentences or (_plain(problem.detail),)
+        return _render(request, PasteDraft("", problems=problems), problem.status_code)
     return await compute(request, "pages", _answer, request, fields)
 
 
