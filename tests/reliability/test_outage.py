@@ -1,61 +1,28 @@
 """A database that is gone or stuck takes down saving, nothing else; and saving comes back by itself."""
 
 import asyncio
-import sqlite3
 import threading
 import time
-from collections.abc import Callable, Iterator
-from contextlib import AbstractContextManager, contextmanager
 from pathlib import Path
-from typing import Any
 
-import psycopg
 import pytest
-from starlette.testclient import TestClient
 
 from hpn.store import Store, StoreUnavailableError
-from hpn.web.app import create_app
 from hpn.web.door.pools import SMALL_BYTES
-from hpn.web.settings import Settings
-from tests.build import cycle, phase, worked_example
+from tests.build import cycle, phase
 from tests.databases import PostgreSQL
+from tests.reliability.faults import (
+    SAVE,
+    SLACK_S,
+    WAIT_S,
+    Outage,
+    assert_unavailable,
+    client_of,
+    postgresql_locked,
+    sqlite_locked,
+    stopped,
+)
 from tests.store.drafts import draft
-
-SAVE = {"application": worked_example()}
-WAIT_S = 1.0
-"""Longest wait for the database in these tests."""
-
-SLACK_S = 5.0
-"""For a busy machine: what an answer may take beyond the wait."""
-
-Outage = Callable[[], AbstractContextManager[None]]
-
-
-@contextmanager
-def _sqlite_locked(path: Path) -> Iterator[None]:
-    """Another process writes, and does not come to an end."""
-    connection = sqlite3.connect(path, isolation_level=None)
-    connection.execute("BEGIN IMMEDIATE")
-    yield
-    connection.execute("ROLLBACK")
-    connection.close()
-
-
-@contextmanager
-def _postgresql_locked(address: str) -> Iterator[None]:
-    with psycopg.connect(address) as connection:
-        connection.execute("LOCK TABLE selections IN ACCESS EXCLUSIVE MODE")
-        yield
-        connection.rollback()
-
-
-@contextmanager
-def _stopped(server: PostgreSQL) -> Iterator[None]:
-    server.stop()
-    try:
-        yield
-    finally:
-        server.start()
 
 
 @pytest.fixture(params=["sqlite locked", "postgresql locked", "postgresql stopped"])
@@ -63,25 +30,12 @@ def outage(request: pytest.FixtureRequest, tmp_path: Path) -> tuple[str, Outage]
     """Address of a database, and what makes it unusable for a while."""
     if request.param == "sqlite locked":
         path = tmp_path / "store.sqlite3"
-        return f"sqlite:///{path}", lambda: _sqlite_locked(path)
+        return f"sqlite:///{path}", lambda: sqlite_locked(path)
     server: PostgreSQL = request.getfixturevalue("postgresql")
     address = server.new_database()
     if request.param == "postgresql locked":
-        return address, lambda: _postgresql_locked(address)
-    return address, lambda: _stopped(server)
-
-
-def client_of(database: str) -> TestClient:
-    """A client of a service that does not wait long."""
-    return TestClient(create_app(Settings(database_url=database, database_seconds=WAIT_S)))
-
-
-def assert_unavailable(response: Any) -> None:
-    """The answer of a service whose store is out of reach."""
-    assert response.status_code == 503
-    assert response.headers["content-type"] == "application/problem+json"
-    assert int(response.headers["retry-after"]) > 0
-    assert response.json()["title"] == "Not available at the moment"
+        return address, lambda: postgresql_locked(address)
+    return address, lambda: stopped(server)
 
 
 def test_while_the_database_is_gone_saving_says_when_to_retry_and_the_calculator_works_on(
@@ -108,7 +62,7 @@ def test_while_the_database_is_gone_saving_says_when_to_retry_and_the_calculator
 def test_while_the_server_is_stopped_nothing_of_the_store_answers_and_readiness_says_so(postgresql: PostgreSQL) -> None:
     with client_of(postgresql.new_database()) as client:
         saved = client.post("/api/v1/selections", json=SAVE).json()
-        with _stopped(postgresql):
+        with stopped(postgresql):
             address = f"/api/v1/selections/{saved['id']}"
             for response in (client.get(address), client.get("/api/v1/selections"), client.delete(address)):
                 assert_unavailable(response)
@@ -122,7 +76,7 @@ def test_while_the_server_is_stopped_nothing_of_the_store_answers_and_readiness_
 
 def test_a_service_that_starts_before_its_database_saves_as_soon_as_it_can(postgresql: PostgreSQL) -> None:
     database = postgresql.new_database()
-    with _stopped(postgresql):
+    with stopped(postgresql):
         client = client_of(database)
         client.__enter__()
         assert client.post("/api/v1/select", json=SAVE["application"]).status_code == 200
@@ -197,7 +151,7 @@ def test_the_event_loop_runs_on_while_the_database_is_stuck(tmp_path: Path) -> N
         store = Store(f"sqlite:///{path}", seconds=WAIT_S)
         await store.open()
         turns = 0
-        with _sqlite_locked(path):
+        with sqlite_locked(path):
             saving = asyncio.create_task(store.save(draft()))
             while not saving.done():
                 await asyncio.sleep(WAIT_S / 100)

@@ -2,19 +2,21 @@
 
 import asyncio
 import hashlib
+import time
 from datetime import UTC, datetime, timedelta, tzinfo
 from pathlib import Path
 
 import brotli
 import pytest
 import zstandard
-from sqlalchemy import Connection, text
+from sqlalchemy import Connection, event, text
 
 from hpn.catalogue import Catalogue
-from hpn.store import KeyReusedError, KeySpentError, Store, StoreError, writing
+from hpn.store import KeyReusedError, KeySpentError, Store, StoreError, StoreUnavailableError, writing
 from hpn.store.engine import WRITES
 from hpn.store.packing import unpacked
-from tests.store.drafts import draft
+from hpn.store.store import TRIAL_SECONDS
+from tests.store.drafts import change, draft
 
 pytestmark = pytest.mark.anyio
 
@@ -368,3 +370,27 @@ def test_an_address_that_cannot_be_used_says_what_can_without_repeating_secrets(
         Store(address)
 
     assert "secret" not in str(caught.value)
+
+
+async def test_readiness_is_tried_by_a_transaction_that_leaves_nothing_and_at_most_once_a_second(store: Store) -> None:
+    tried: list[Connection] = []
+    event.listen(store._engine.sync_engine, "commit", tried.append)
+    start = time.monotonic()
+    for _ in range(10):
+        await asyncio.gather(*(store.check() for _ in range(20)))
+    spent = time.monotonic() - start
+
+    assert 1 <= len(tried) <= 1 + spent / TRIAL_SECONDS
+    assert await count(store) == 0
+    await asyncio.sleep(TRIAL_SECONDS)
+    before = len(tried)
+    await store.check()
+    assert len(tried) == before + 1
+
+
+@pytest.mark.parametrize("table", ["selections", "catalogues", "spent_keys"])
+async def test_a_table_that_is_missing_is_no_readiness(store: Store, table: str) -> None:
+    await change(store, lambda connection: connection.execute(text(f"DROP TABLE {table}")))
+
+    with pytest.raises(StoreUnavailableError):
+        await store.check()

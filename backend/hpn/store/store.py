@@ -4,14 +4,16 @@ import asyncio
 import base64
 import logging
 import re
+import sqlite3
+import time
 from collections.abc import AsyncIterator, Awaitable, Callable, Sequence
 from contextlib import asynccontextmanager
 from datetime import UTC, datetime
 from typing import TypeVar
 
 import brotli
-from sqlalchemy import select, text, tuple_
-from sqlalchemy.exc import SQLAlchemyError
+from sqlalchemy import select, tuple_
+from sqlalchemy.exc import DBAPIError, SQLAlchemyError
 from sqlalchemy.ext.asyncio import AsyncConnection
 
 from hpn.catalogue import Catalogue
@@ -22,10 +24,13 @@ from hpn.store.packing import unpacked
 from hpn.store.saved import Draft, Page, SavedSelection, Summary
 from hpn.store.tables import catalogues, selections
 from hpn.store.upgrade import bring_up_to_date
-from hpn.store.writing import insert, remove
+from hpn.store.writing import insert, rehearse, remove
 
 logger = logging.getLogger(__name__)
 T = TypeVar("T")
+
+TRIAL_SECONDS = 1.0
+UNAVAILABLE = "saved selections are not available at the moment"
 
 ID = re.compile(r"[A-Za-z0-9_-]{22}")
 """An id: 128 random bits."""
@@ -46,6 +51,8 @@ class Store:
         self._seconds = seconds
         self._turn = asyncio.Lock()
         self._opening: asyncio.Task[None] | None = None
+        self._trial: asyncio.Task[bool] | None = None
+        self._next_trial = 0.0
 
     async def open(self) -> None:
         """Bring the database up to date, however long it takes; once done, this costs nothing.
@@ -66,15 +73,30 @@ class Store:
 
     async def close(self) -> None:
         """Close the connections; the next call opens new ones. What SQLite is writing is finished first."""
-        if self._opening is not None:
-            self._opening.cancel()
+        for task in (self._opening, self._trial):
+            if task is not None:
+                task.cancel()
         async with self._turn:
             await self._engine.dispose()
 
     async def check(self) -> None:
-        """Raise StoreUnavailableError unless the database answers."""
-        async with self._reading() as connection:
-            await connection.execute(text("SELECT 1"))
+        """Raise StoreUnavailableError unless something could be saved now.
+
+        That is tried, at most once in TRIAL_SECONDS; who asks in between gets the same answer.
+        """
+        now = time.monotonic()
+        if self._trial is None or (self._trial.done() and now >= self._next_trial):
+            self._next_trial = now + TRIAL_SECONDS
+            self._trial = asyncio.create_task(self._try_saving())
+        if not await asyncio.shield(self._trial):
+            raise StoreUnavailableError(UNAVAILABLE)
+
+    async def _try_saving(self) -> bool:
+        try:
+            await self._write(rehearse)
+        except StoreUnavailableError:
+            return False
+        return True
 
     async def save(self, draft: Draft) -> str:
         """Id of the saved selection: a new one, or the one that the same idempotency key has saved before.
@@ -164,13 +186,21 @@ class Store:
             return await asyncio.shield(transaction)
 
     async def _transact(self, work: Callable[[AsyncConnection], Awaitable[T]]) -> T:
-        async with self._engine.execution_options(**WRITES).begin() as connection:
-            return await work(connection)
+        async with self._engine.execution_options(**WRITES).connect() as connection:
+            try:
+                async with connection.begin():
+                    return await work(connection)
+            except DBAPIError as error:
+                # A connection may keep what is wrong, such as that the database is read-only; the next one is new.
+                await connection.invalidate()
+                if getattr(error.orig, "sqlite_errorcode", 0) & 0xFF == sqlite3.SQLITE_READONLY:
+                    await self._engine.dispose()  # all of a process share what SQLite knows of the file
+                raise
 
 
 def _unavailable(error: Exception) -> StoreUnavailableError:
     logger.warning("the store is not available: %s: %s", type(error).__name__, error)
-    return StoreUnavailableError("saved selections are not available at the moment")
+    return StoreUnavailableError(UNAVAILABLE)
 
 
 def _cursor(last: Summary) -> str:

@@ -7,7 +7,7 @@ from datetime import UTC, datetime
 from typing import Any
 
 import brotli
-from sqlalchemy import Table, delete, select
+from sqlalchemy import Table, delete, literal, select
 from sqlalchemy.dialects import postgresql, sqlite
 from sqlalchemy.ext.asyncio import AsyncConnection
 
@@ -17,6 +17,9 @@ from hpn.store.errors import KeyReusedError, KeySpentError
 from hpn.store.packing import packed
 from hpn.store.saved import Draft
 from hpn.store.tables import catalogues, selections, spent_keys
+
+NOTHING = Draft(application=b"", result=b"", engine_version="", catalogue_version="", selected=None)
+"""What a rehearsal saves; nobody ever sees it."""
 
 
 async def insert(connection: AsyncConnection, draft: Draft) -> str:
@@ -79,6 +82,15 @@ async def _holder(connection: AsyncConnection, key: str, digest: str) -> str:
             "this idempotency key was used before, with other content; take a new key for a new selection"
         )
     return str(held.id)
+
+
+async def rehearse(connection: AsyncConnection) -> None:
+    """Do to the tables what saving does, and take it back in the same transaction: fails where saving would fail."""
+    for table in (catalogues, spent_keys):
+        await connection.execute(select(literal(1)).select_from(table).limit(1))
+    row = _row_of(NOTHING)
+    await _insert_new(connection, selections, row)
+    await connection.execute(delete(selections).where(selections.c.id == row["id"]))
 
 
 async def remove(connection: AsyncConnection, id: str) -> bool:

@@ -25,7 +25,7 @@ class Readiness(Health):
 
     catalogue_version: str = Field(description="Hash of the loaded catalogue's content.")
     gears: int = Field(description="Number of gears in the catalogue.")
-    store: str = Field(description="ok while the database of the saved selections answers.")
+    store: str = Field(description="ok while selections can be saved.")
 
 
 @router.get("/healthz", operation_id="getHealth", summary="Is the process alive")
@@ -36,7 +36,7 @@ async def healthz() -> Health:
 
 @router.get("/readyz", operation_id="getReadiness", summary="Is the service ready", responses=problems(503))
 async def readyz(request: Request) -> Readiness:
-    """The catalogue is loaded and the database of the saved selections answers; else 503."""
+    """The catalogue is loaded and a selection could be saved, which is tried at most once a second; else 503."""
     catalogue = request.app.state.catalogue
     await request.app.state.store.check()
     return Readiness(status="ok", catalogue_version=catalogue.version, gears=len(catalogue.gears), store="ok")
