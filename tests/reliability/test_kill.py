@@ -96,8 +96,8 @@ def application(number: int) -> Json:
     return cycle(phase(chance.uniform(1, 60), 200.0 + number, 1.5), phase(-5.0, 100.0, 2.0), pause_s=1.0)
 
 
-async def read_back(database: str, clients: Clients, catalogue: Catalogue) -> None:
-    """Every acknowledged selection is there, once and whole."""
+async def read_back(database: str, clients: Clients, catalogue: Catalogue, fault: str) -> None:
+    """Every acknowledged selection is there, once and whole; says how many those are."""
     store = Store(database)
     await store.open()
     for id, body in clients.acknowledged.items():
@@ -116,7 +116,9 @@ async def read_back(database: str, clients: Clients, catalogue: Catalogue) -> No
             break
     await store.close()
     assert len(titles) == len(set(titles)), "a repeated request was saved twice"
-    assert {body["title"] for body in clients.acknowledged.values()} <= set(titles)
+    wanted_titles = {body["title"] for body in clients.acknowledged.values()}
+    print(f"\n{fault}: acknowledged {len(clients.acknowledged)}, found {len(wanted_titles & set(titles))}")
+    assert wanted_titles <= set(titles)
 
 
 def test_every_acknowledged_selection_survives_a_kill_at_any_moment(
@@ -138,4 +140,4 @@ def test_every_acknowledged_selection_survives_a_kill_at_any_moment(
     assert clients.unexpected == []
     assert clients.broken >= kills / 4, "too few kills met a request"
     assert len(clients.acknowledged) >= kills
-    asyncio.run(read_back(database, clients, catalogue))
+    asyncio.run(read_back(database, clients, catalogue, f"{kills} kills, {database.partition(':')[0]}"))

@@ -19,8 +19,7 @@ def run(options: argparse.Namespace) -> int:
     load_catalogue(settings.catalogue_folder, settings.catalogue_supplement)
     asyncio.run(_migrate(Store(**settings.database())))
     _require_free(settings.host, settings.port)
-    serve.run(settings)
-    return 0
+    return serve.run(settings)
 
 
 def _require_free(host: str, port: int) -> None:

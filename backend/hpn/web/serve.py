@@ -1,20 +1,32 @@
 """Running the service: processes, limits of the server, logs, and an end that lets running requests finish."""
 
+import asyncio
 import gc
+import logging
 import os
+import sys
 import tempfile
+import threading
+import time
+import traceback
+from contextlib import suppress
 from typing import Any
 
 import uvicorn
 from fastapi import FastAPI
+from uvicorn.config import STARTUP_FAILURE
 from uvicorn.supervisors import Multiprocess
 
+from hpn.catalogue import CatalogueError
+from hpn.store import StoreError
 from hpn.web.app import create_app
 from hpn.web.door import logs, metrics
 from hpn.web.pages import templates
 from hpn.web.settings import Settings
 
-WORKER_ANSWER_SECONDS = 30
+logger = logging.getLogger(__name__)
+RETRY_SECONDS = 2
+"""Time after which a worker that could not start is tried again."""
 
 
 def served_app() -> FastAPI:
@@ -26,6 +38,44 @@ def served_app() -> FastAPI:
     gc.collect()
     gc.freeze()  # catalogue, templates and modules are never garbage; to search them takes 90 ms each time
     return app
+
+
+def worker_app() -> FastAPI:
+    """The application in one of several processes, which the others outlive.
+
+    What keeps a new one from starting, such as a catalogue that was spoilt since, is a line of the log.
+    """
+    try:
+        app = served_app()
+    except (CatalogueError, StoreError, OSError) as error:
+        logger.error("a worker can't start, and is tried again: %s", error)
+        time.sleep(RETRY_SECONDS)
+        sys.exit(1)
+    _end_when_stuck(app.state.settings.worker_seconds)
+    return app
+
+
+def _end_when_stuck(seconds: float) -> None:
+    """End this process, saying where it stands, once its event loop has not turned for so long.
+
+    The parent can't tell: a thread of its own answers it.
+    """
+    loop, main, turned = asyncio.get_running_loop(), threading.get_ident(), threading.Event()
+
+    def watch() -> None:
+        while not loop.is_closed():
+            turned.clear()
+            with suppress(RuntimeError):  # closed a moment ago
+                loop.call_soon_threadsafe(turned.set)
+            if not turned.wait(seconds) and not loop.is_closed():
+                stack = "".join(traceback.format_stack(sys._current_frames()[main]))
+                logger.error(
+                    "the event loop has stood still for %s s, so this worker ends; it was at\n%s", seconds, stack
+                )
+                os._exit(1)
+            time.sleep(1)
+
+    threading.Thread(target=watch, daemon=True).start()
 
 
 def options(settings: Settings) -> dict[str, Any]:
@@ -43,20 +93,22 @@ def options(settings: Settings) -> dict[str, Any]:
         "server_header": False,
         "limit_concurrency": settings.maximum_connections,
         "timeout_graceful_shutdown": settings.shutdown_seconds,
-        "timeout_worker_healthcheck": WORKER_ANSWER_SECONDS,
+        "timeout_worker_healthcheck": settings.worker_seconds,
     }
 
 
-def run(settings: Settings) -> None:
-    """Serve until a signal says otherwise."""
+def run(settings: Settings) -> int:
+    """Serve until a signal says otherwise; 1 where the workers could not start."""
     logs.configure(settings.log_level)
     if settings.workers == 1:
         uvicorn.run("hpn.web.serve:served_app", **options(settings))
-        return
+        return 0
     with tempfile.TemporaryDirectory(prefix="hpn-metrics-") as folder:
         os.environ[metrics.FOLDER] = folder
-        config = uvicorn.Config("hpn.web.serve:served_app", **options(settings))
-        Workers(config, sockets=[config.bind_socket()]).run()
+        config = uvicorn.Config("hpn.web.serve:worker_app", **options(settings))
+        workers = Workers(config, sockets=[config.bind_socket()])
+        workers.run()
+        return int(any(process.exitcode == STARTUP_FAILURE for process in workers.processes))
 
 
 class Workers(Multiprocess):

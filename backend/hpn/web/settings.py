@@ -133,6 +133,9 @@ class Settings(BaseSettings):
     host: str = Field("127.0.0.1", description="Address that `hpn serve` listens on.")
     port: int = Field(8000, ge=0, le=65535, description="Port that `hpn serve` listens on.")
     workers: int = Field(1, ge=1, le=64, description="Processes that `hpn serve` starts.")
+    worker_seconds: int = Field(
+        30, gt=0, description="Time without an answer after which one of several processes is replaced."
+    )
     maximum_connections: int = Field(1000, gt=0, description="Most connections of one process; more get a 503.")
     shutdown_seconds: int = Field(30, ge=0, description="Longest time that running requests get to finish at the end.")
     log_level: Literal["debug", "info", "warning", "error"] = Field("info", description="Least level that is logged.")
