@@ -12,10 +12,16 @@ from typing import Any
 import pytest
 from fastapi.routing import iter_route_contexts
 from starlette.requests import Request
+from starlette.responses import Response
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from hpn.web.app import create_app
+from hpn.web.door import overload
 from hpn.web.door.keys import new_key
+from hpn.web.door.logs import make_logger
+from hpn.web.door.metrics import Metrics
 from hpn.web.door.observation import GONE
+from hpn.web.door.overload import Budget
 from hpn.web.door.pools import Places, Pool, while_present
 from hpn.web.door.problems import Problem
 from hpn.web.settings import Settings
@@ -166,3 +172,50 @@ def test_a_batch_counts_with_what_it_makes(make_client: MakeClient) -> None:
 
     assert make_client(maximum_bytes_in_flight=3 * size).post("/api/v1/select/batch", json=batch).status_code == 200
     assert make_client(maximum_bytes_in_flight=2 * size).post("/api/v1/select/batch", json=batch).status_code == 503
+
+
+# --- Overload ---------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.anyio
+async def test_a_crowd_that_stays_is_an_overload_of_which_each_turn_answers_the_first(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(overload, "WINDOW_SECONDS", 0.05)
+    app = overload.Overload(_answer, Budget(1), Metrics(), make_logger("error"))
+
+    async def crowd(count: int, seconds: float) -> list[int]:
+        answered = []
+        end = asyncio.get_running_loop().time() + seconds
+        while asyncio.get_running_loop().time() < end:
+            answered.append(sum(await asyncio.gather(*(_asked(app) for _ in range(count)))))
+            await asyncio.sleep(0.001)
+        return answered
+
+    assert set(await crowd(overload.CROWD, 0.3)) == {overload.CROWD}, "a crowd of this size passes"
+    assert (await crowd(3 * overload.CROWD, 0.01))[0] == overload.CROWD, "and this many of a larger one"
+    assert (await crowd(3 * overload.CROWD, 0.5))[-1] == overload.ANSWERED
+    assert (await crowd(overload.ANSWERED, 0.3))[-1] == overload.ANSWERED
+    assert (await crowd(overload.CROWD, 0.04))[0] == overload.CROWD, "it has ended"
+
+
+async def _answer(scope: Scope, receive: Receive, send: Send) -> None:
+    await Response().__call__(scope, receive, send)
+
+
+async def _asked(app: ASGIApp) -> bool:
+    """Whether a request is answered."""
+    statuses = []
+
+    async def send(message: Message) -> None:
+        statuses.append(message.get("status"))
+
+    async def receive() -> Message:
+        return {"type": "http.request"}
+
+    await asyncio.create_task(_call(app, receive, send))
+    return statuses[0] == 200
+
+
+async def _call(app: ASGIApp, receive: Receive, send: Send) -> None:
+    await app({"type": "http", "method": "GET", "path": "/", "headers": []}, receive, send)

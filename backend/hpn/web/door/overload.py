@@ -11,11 +11,14 @@ from hpn.web.door.problems import Problem
 PIECE_BYTES = 64 * 1024
 """What the server is handed of an answer at once; it takes the next piece when the client has read enough."""
 
-CROWD, CROWDED_SECONDS = 32, 1.0
-"""More requests than this waiting in every turn of the event loop, for as long as this, are an overload."""
+CROWD = 64
+"""Requests that one turn of the event loop answers at most."""
 
 ANSWERED = 2
-"""Requests of each turn that are answered in an overload: that is how long an answer then waits."""
+"""Requests that a turn answers in an overload: that is how long an answer then waits."""
+
+WINDOW_SECONDS, CROWDED_WINDOWS = 1.0, 2
+"""More requests than a crowd in so many windows of time on end are an overload."""
 
 RETRY_SECONDS = 1
 ALWAYS = frozenset({"/healthz", "/readyz", "/metrics"})
@@ -93,8 +96,8 @@ class Pieces:
 class Overload:
     """Refuses what the process can't do in time, at the cost of an answer that is ready.
 
-    Requests that have arrived wait for a turn of the event loop. A crowd is served as long as it passes; of one that
-    stays, each turn serves the first few, so that these are served soon, until a second has gone by without a refusal.
+    Requests that have arrived wait for a turn of the event loop. A crowd is served; where more come again and again,
+    each turn serves the first few, and these soon, until a window has gone by without a refusal.
     """
 
     def __init__(self, app: ASGIApp, budget: Budget, metrics: Metrics, logger: FilteringBoundLogger) -> None:
@@ -103,7 +106,8 @@ class Overload:
         self._refusal = _busy().response()
         self._count = self._refused = 0
         self._overloaded = False
-        self._since: float | None = None
+        self._most = self._windows = 0
+        self._end = 0.0
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Pass the request on, or refuse it."""
@@ -118,18 +122,25 @@ class Overload:
         if not self._count:
             asyncio.get_running_loop().call_soon(self._end_turn)  # behind all that have arrived by now
         self._count += 1
-        return (self._overloaded and self._count > ANSWERED) or self._budget.held >= self._budget.total
+        return self._count > self._limit or self._budget.held >= self._budget.total
+
+    @property
+    def _limit(self) -> int:
+        return ANSWERED if self._overloaded else CROWD
 
     def _end_turn(self) -> None:
-        """Change the state when, for as long as it takes, each turn has said that it should be the other."""
         now = asyncio.get_running_loop().time()
-        crowded = self._count > (ANSWERED if self._overloaded else CROWD)
-        self._count = 0
-        if crowded == self._overloaded:
-            self._since = None
-            return
-        self._since = now if self._since is None else self._since
-        if now - self._since > CROWDED_SECONDS:
-            self._overloaded, self._since = crowded, None
+        self._most, self._count = max(self._most, self._count), 0
+        if now >= self._end:
+            self._end_window()
+            self._end = now + WINDOW_SECONDS
+
+    def _end_window(self) -> None:
+        """Begin or end an overload where the windows have said so for long enough."""
+        crowded = self._most > self._limit
+        self._most = 0
+        self._windows = 0 if crowded == self._overloaded else self._windows + 1
+        if self._windows >= (1 if self._overloaded else CROWDED_WINDOWS):
+            self._overloaded, self._windows = crowded, 0
             self._logger.warning("overload begins" if crowded else "overload ends", refused=self._refused)
             self._refused = 0
