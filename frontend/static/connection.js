@@ -83,7 +83,7 @@ document.addEventListener("htmx:finally:request", (event) => event.detail.ctx ==
 // A cycle that no address holds would be lost with the page.
 let downloading = false;
 document.addEventListener("submit", (event) => {
-  downloading = event.target.id === "long-files";
+  downloading = event.submitter?.getAttribute("form") === "long-files";
   setTimeout(() => (downloading = false), 1000);
 });
 addEventListener("beforeunload", (event) => {

@@ -76,7 +76,7 @@ def hostile(saved: str, *, whole: bool) -> Iterator[Hostile]:
     yield Hostile("POST", "/paste", urlencode({"text": UNKNOWN.decode()}).encode(), FORM)
     yield Hostile("POST", "/reader", urlencode({"back": "/?" + LINK}).encode(), FORM)
     one = f"/api/v1/selections/{saved}"
-    for path in (one, f"/selections/{saved}", f"{one}/report.pdf", f"{one}/submodel.aasx"):
+    for path in (one, f"/selections/{saved}", f"/selections/{saved}/copy", f"{one}/report.pdf", f"{one}/submodel.aasx"):
         yield Hostile("GET", path)
     yield Hostile("GET", f"/api/v1/selections/{'x' * 22}/report.xlsx")
     yield Hostile("GET", f"/oembed?url=/selections/{saved}")

@@ -1,5 +1,6 @@
 """Input made to cost much: it is refused before it does, and never with a server error."""
 
+import html
 import re
 import time
 from typing import Any
@@ -124,6 +125,34 @@ def test_a_text_that_is_no_table_is_refused(api: TestClient, text: str) -> None:
 
     assert reply.status_code == 422
     assert re.search(r'class="[^"]*error', reply.text)
+
+
+def test_no_page_of_the_longest_cycle_has_3_MB(api: TestClient) -> None:
+    names = ("torque_Nm", "speed_rpm", "duration_s", "radial_N", "axial_N")
+    rows = [[value + k / 7e4 for value in (40.0, 250.0, 1.0, 90.0, 50.0)] for k in range(10_000)]
+    text = "\n".join("\t".join(map(repr, row)) for row in rows)
+    application = cycle(*[dict(zip(names, row, strict=True)) for row in rows])
+    saved = api.post("/api/v1/selections", json={"application": application}).json()["url"]
+
+    posted = api.post("/", data={"phases": text})
+    copied = api.get(f"{saved}/copy")
+    pages = [posted, copied, api.get(saved), api.post("/paste", data={"text": text})]
+    files = [api.post(f"/{name}", data={"link": _link(posted.text)}) for name in ("application.json", "cycle.csv")]
+
+    assert [page.status_code for page in pages + files] == [200] * 6
+    assert max(len(page.content) for page in pages) < 3_000_000
+    assert len(api.get(saved).content) < 300_000
+    assert _link(copied.text) == _link(posted.text)
+    assert files[0].json()["duty_cycle"]["phases"] == application["duty_cycle"]["phases"]
+    kept = api.post("/selections", data={"link": _link(posted.text), "once": ""}, follow_redirects=False)
+    assert kept.status_code == 303
+
+
+def _link(page: str) -> str:
+    """The link of the form that saves."""
+    found = re.findall(r'name="link" value="(/\?T=[^"]*)"', page)
+    assert len(found) == 1, "each copy is a megabyte"
+    return html.unescape(found[0])
 
 
 @pytest.mark.parametrize("origin", ["http://[", "null", "", "http://"])

@@ -30,6 +30,7 @@ from hpn.web.door.problems import Problem
 from hpn.web.door.requests import require_same_origin
 from hpn.web.door.visit import current
 from hpn.web.form import read as links
+from hpn.web.pages import calculator
 from hpn.web.pages.gear_figures import Figure, figures_of
 from hpn.web.pages.long_cycles import expanded
 from hpn.web.pages.result import Result, lighter_miss, remedies_of
@@ -64,6 +65,15 @@ async def show_selection(request: Request) -> Response:
 def _shown(request: Request, reopened: Reopened) -> Response:
     page = _page(reopened, request.query_params.get("gear", ""), request.app.state.catalogue)
     return _render(request, "selection.html", 200, **page)
+
+
+async def copy_selection(request: Request) -> Response:
+    """The live page with a copy of what was saved, for a duty cycle that is too long for a link."""
+    return await found(request, request.path_params["id"], partial(_copied, request))
+
+
+def _copied(request: Request, reopened: Reopened) -> Response:
+    return calculator.respond(request, calculator.read_query(reopened.link.removeprefix("/?").encode()))
 
 
 async def save_from_page(request: Request) -> Response:
@@ -119,7 +129,7 @@ def refused(
         "problem": error,
         "errors": {location[0]: text for location, text in error.errors if location},
         "fields": fields,
-        "answer": {"link": f"/?{query}"},
+        "answer": {"link": f"/?{query}", "too_long": len(query) > links.MAXIMUM_QUERY_BYTES},
     }
     response = _render(request, "selection_refused.html", error.status_code, **shown)
     response.headers.update(error.headers or {})
@@ -161,6 +171,7 @@ def _page(reopened: Reopened, designation: str, catalogue: Catalogue) -> dict[st
         "document": reopened.saved.application.decode(),
         "inputs": list(given(application, (*LOADS, *REQUIREMENTS), current())) if application else [],
         "exports": EXPORTS,
+        "longest_link": links.MAXIMUM_QUERY_BYTES,
     }
 
 
@@ -253,3 +264,4 @@ def _is_number(value: Any) -> bool:
 router = APIRouter(include_in_schema=False)
 router.add_api_route("/selections", save_from_page, methods=["POST"], dependencies=[admit("writing")])
 router.add_api_route("/selections/{id}", show_selection, dependencies=[admit("reading")])
+router.add_api_route("/selections/{id}/copy", copy_selection, dependencies=[admit("reading")])
