@@ -1,0 +1,129 @@
+"""Memory is bounded, whatever is asked at once: a worker in 768 MB is never killed for it."""
+
+import json
+import os
+import socket
+import sys
+import threading
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from typing import Any
+
+import httpx
+import pytest
+
+from tests.build import cycle, phase
+from tests.operations.service import HPN, Service, serving
+
+LIMIT_BYTES = 768_000_000
+GROUPS = Path("/sys/fs/cgroup")
+JSON = {"Content-Type": "application/json"}
+LONG = cycle(*[phase(40 + k % 7 / 3, 250 + k % 11 / 3, 1 / 3) for k in range(10_000)])
+ITEM = json.dumps(cycle(*[phase(40 + k % 7 / 3, 250, 0.3) for k in range(40)]))
+
+pytestmark = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="memory is read from /proc")
+
+
+@contextmanager
+def limited(folder: Path) -> Iterator[tuple[tuple[str, ...], str]]:
+    """A program that serves in a control group with the limit, where one can be made; and what kind that is."""
+    second = (GROUPS / "cgroup.controllers").exists()
+    group = (GROUPS if second else GROUPS / "memory") / f"hpn-{os.getpid()}"
+    plain = (str(HPN), "serve")
+    try:
+        group.mkdir()
+        (group / ("memory.max" if second else "memory.limit_in_bytes")).write_text(str(LIMIT_BYTES))
+    except OSError:
+        with suppress(OSError):
+            group.rmdir()
+        yield plain, "no control group; the peak alone is looked at"
+        return
+    yield (
+        ("/bin/sh", "-c", f'echo $$ > {group}/cgroup.procs && exec {HPN} serve "$@"', "serve"),
+        f"control group of version {2 if second else 1}",
+    )
+    group.rmdir()
+
+
+def peak_MB(service: Service) -> float:
+    """Most memory that the process has had."""
+    status = Path(f"/proc/{service.process.pid}/status").read_text()
+    return int(status.partition("VmHWM:")[2].split()[0]) / 1024
+
+
+def unread(port: int, path: str, count: int) -> list[socket.socket]:
+    """Clients that ask and don't read."""
+    clients = []
+    for _ in range(count):
+        client = socket.socket()
+        client.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
+        client.connect(("127.0.0.1", port))
+        client.sendall(f"GET {path} HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n".encode())
+        clients.append(client)
+    return clients
+
+
+def half_sent(port: int, size: int, count: int) -> list[socket.socket]:
+    """Clients that send all but the last byte of a body."""
+    head = "POST /api/v1/select HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Type: application/json\r\n"
+    clients = []
+    for _ in range(count):
+        client = socket.create_connection(("127.0.0.1", port), timeout=20)
+        client.setblocking(True)
+        with suppress(OSError):
+            client.sendall(f"{head}Content-Length: {size}\r\n\r\n".encode() + b" " * (size - 1))
+        clients.append(client)
+    return clients
+
+
+def test_a_worker_in_768_MB_outlives_everything_at_once(tmp_path: Path, soak: bool, record_property: Any) -> None:
+    batch = ('{"applications": [' + ",".join([ITEM] * (9_900 if soak else 1_000)) + "]}").encode()
+    nested = b'{"applications": [' + b"[]," * 9_000_000 + b"1]}"
+    long = json.dumps(LONG).encode()
+    statuses: list[int] = []
+
+    def ask(service: Service, method: str, path: str, body: bytes, turns: int) -> None:
+        with httpx.Client(base_url=service.url, timeout=300, trust_env=False) as client:
+            for _ in range(turns):
+                statuses.append(client.request(method, path, content=body, headers=JSON).status_code)
+                time.sleep(0.1)
+
+    with (
+        limited(tmp_path) as (program, kind),
+        serving(tmp_path, {"HPN_LOG_LEVEL": "warning"}, program=program) as service,
+    ):
+        saved = service.client.post("/api/v1/selections", content=b'{"application": %s}' % long, headers=JSON).json()
+        asked = [
+            ("POST", "/api/v1/select/batch", batch),
+            ("POST", "/api/v1/select/batch", nested),
+            ("POST", "/api/v1/select", long),
+            ("POST", "/api/v1/report.pdf", long),
+            ("GET", saved["url"], b""),
+            ("GET", f"/api/v1{saved['url']}", b""),
+            ("GET", f"{saved['url']}/copy", b""),
+        ]
+        if soak:
+            asked.append(("POST", "/api/v1/report.xlsx", long))
+        peers = unread(service.port, f"/api/v1{saved['url']}", 200 if soak else 20)
+        peers += half_sent(service.port, 1_900_000, 100 if soak else 20)
+        threads = [
+            threading.Thread(target=ask, args=(service, *one, 10 if soak else 1)) for one in asked * (6 if soak else 1)
+        ]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        for peer in peers:
+            peer.close()
+        peak = peak_MB(service)
+        alive = service.process.poll() is None
+        small = service.client.post("/api/v1/select", json=cycle(phase(40, 250))).status_code
+    record_property("peak_MB", peak)
+    print(f"{peak:.0f} MB at most, {kind}; {dict((s, statuses.count(s)) for s in set(statuses))}")
+
+    assert alive
+    assert small == 200
+    assert set(statuses) <= {200, 413, 422, 503}
+    assert peak * 2**20 < LIMIT_BYTES
