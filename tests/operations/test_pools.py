@@ -181,22 +181,20 @@ def test_a_batch_counts_with_what_it_makes(make_client: MakeClient) -> None:
 async def test_a_crowd_that_stays_is_an_overload_of_which_each_turn_answers_the_first(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr(overload, "WINDOW_SECONDS", 0.05)
+    monkeypatch.setattr(overload, "WINDOW_SECONDS", 0)  # each turn is a window
     app = overload.Overload(_answer, Budget(1), Metrics(), make_logger("error"))
 
-    async def crowd(count: int, seconds: float) -> list[int]:
-        answered = []
-        end = asyncio.get_running_loop().time() + seconds
-        while asyncio.get_running_loop().time() < end:
-            answered.append(sum(await asyncio.gather(*(_asked(app) for _ in range(count)))))
-            await asyncio.sleep(0.001)
+    async def crowd(count: int) -> int:
+        answered = sum(await asyncio.gather(*(_asked(app) for _ in range(count))))
+        await asyncio.sleep(0)
         return answered
 
-    assert set(await crowd(overload.CROWD, 0.3)) == {overload.CROWD}, "a crowd of this size passes"
-    assert (await crowd(3 * overload.CROWD, 0.01))[0] == overload.CROWD, "and this many of a larger one"
-    assert (await crowd(3 * overload.CROWD, 0.5))[-1] == overload.ANSWERED
-    assert (await crowd(overload.ANSWERED, 0.3))[-1] == overload.ANSWERED
-    assert (await crowd(overload.CROWD, 0.04))[0] == overload.CROWD, "it has ended"
+    most, few = overload.CROWD, overload.ANSWERED
+
+    assert [await crowd(most) for _ in range(5)] == [most] * 5, "a crowd is served"
+    assert [await crowd(3 * most), await crowd(1), await crowd(3 * most)] == [most, 1, most], "and much of a larger one"
+    assert [await crowd(3 * most) for _ in range(5)] == [most] + [few] * 4
+    assert [await crowd(few), await crowd(most)] == [few, most], "it has ended"
 
 
 async def _answer(scope: Scope, receive: Receive, send: Send) -> None:

@@ -44,7 +44,8 @@ def limited(folder: Path) -> Iterator[tuple[tuple[str, ...], str]]:
         ("/bin/sh", "-c", f'echo $$ > {group}/cgroup.procs && exec {HPN} serve "$@"', "serve"),
         f"control group of version {2 if second else 1}",
     )
-    group.rmdir()
+    with suppress(OSError):  # a process that was killed is still on its way out
+        group.rmdir()
 
 
 def peak_MB(service: Service) -> float:
@@ -70,8 +71,7 @@ def half_sent(port: int, size: int, count: int) -> list[socket.socket]:
     head = "POST /api/v1/select HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Type: application/json\r\n"
     clients = []
     for _ in range(count):
-        client = socket.create_connection(("127.0.0.1", port), timeout=20)
-        client.setblocking(True)
+        client = socket.create_connection(("127.0.0.1", port), timeout=1)
         with suppress(OSError):
             client.sendall(f"{head}Content-Length: {size}\r\n\r\n".encode() + b" " * (size - 1))
         clients.append(client)
@@ -109,7 +109,8 @@ def test_a_worker_in_768_MB_outlives_everything_at_once(tmp_path: Path, soak: bo
         peers = unread(service.port, f"/api/v1{saved['url']}", 200 if soak else 20)
         peers += half_sent(service.port, 1_900_000, 100 if soak else 20)
         threads = [
-            threading.Thread(target=ask, args=(service, *one, 10 if soak else 1)) for one in asked * (6 if soak else 1)
+            threading.Thread(target=ask, args=(service, *one, 10 if soak else 1), daemon=True)
+            for one in asked * (6 if soak else 1)
         ]
         for thread in threads:
             thread.start()
