@@ -24,7 +24,7 @@ endif
 export UV_SYSTEM_CERTS ?= true
 export NODE_USE_SYSTEM_CA ?= 1
 
-.PHONY: run install assets test soak mutants check bench screenshots browser office curl clock messages lock licences sbom audit digests clean
+.PHONY: run install assets test soak mutants check bench screenshots browser office curl clock pdfua messages lock licences sbom audit digests clean
 .DELETE_ON_ERROR:
 
 run: install
@@ -45,7 +45,7 @@ else
 endif
 
 # What is long by nature, in its long form: hundreds of kills, examples by the thousand, Lighthouse over all pages.
-soak: install browser office curl clock
+soak: install browser office curl clock pdfua
 	$(BIN)/pytest --soak tests/browser/test_lighthouse.py
 	$(BIN)/pytest --soak --ignore tests/browser/test_lighthouse.py $(TOGETHER)
 
@@ -126,6 +126,15 @@ clock:
 	if [ "$$(id -u)" = 0 ] && [ -f /etc/debian_version ] && apt-get update -q \
 	    && apt-get install -q -y --no-install-recommends libfaketime; then exit 0; fi; \
 	echo "No libfaketime found, and none could be installed: the test of a clock that jumps is skipped" >&2
+
+# An independent check of PDF/UA for `make soak`: veraPDF's library from Maven Central, where Java and Maven are at hand.
+pdfua:
+	@command -v java && command -v mvn && $(MAKE) --no-print-directory $(VENV)/pdfua/.installed \
+	    || echo "No Java, Maven or Maven Central: the reports are not checked against PDF/UA by veraPDF" >&2
+
+$(VENV)/pdfua/.installed: tests/report/pdfua/pom.xml $(ENVIRONMENT)
+	mvn --batch-mode --quiet --file $< dependency:copy-dependencies -DoutputDirectory="$(CURDIR)/$(@D)"
+	@touch $@
 
 # --- Upkeep -----------------------------------------------------------------------------------------------------------
 

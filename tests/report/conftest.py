@@ -10,23 +10,39 @@ import pytest
 from openpyxl.workbook import Workbook
 
 Recalculate = Callable[[Mapping[str, Workbook]], dict[str, Workbook]]
+Print = Callable[[Mapping[str, Workbook]], dict[str, bytes]]
+Convert = Callable[[Mapping[str, Workbook], str], dict[str, Path]]
 
 
 @pytest.fixture(scope="session")
-def recalculate(tmp_path_factory: pytest.TempPathFactory) -> Recalculate:
-    """Workbooks as LibreOffice calculates them; the saved values of formulas are gone before it sees them."""
+def convert(tmp_path_factory: pytest.TempPathFactory) -> Convert:
+    """Files that LibreOffice makes of workbooks; the saved values of formulas are gone before it sees them."""
     program = shutil.which("soffice") or shutil.which("libreoffice")
     assert program, "LibreOffice is missing; `make office` installs it"
     folder = tmp_path_factory.mktemp("office")
 
-    def run(books: Mapping[str, Workbook]) -> dict[str, Workbook]:
+    def run(books: Mapping[str, Workbook], kind: str) -> dict[str, Path]:
         sources = [_saved(book, folder / f"{name}.xlsx") for name, book in books.items()]
         profile = f"-env:UserInstallation={(folder / 'profile').as_uri()}"
-        command = [program, "--headless", profile, "--convert-to", "xlsx", "--outdir", str(folder / "out")]
+        command = [program, "--headless", profile, "--convert-to", kind, "--outdir", str(folder / "out")]
         subprocess.run([*command, *map(str, sources)], check=True, capture_output=True, timeout=300)
-        return {name: openpyxl.load_workbook(folder / "out" / f"{name}.xlsx", data_only=True) for name in books}
+        return {name: folder / "out" / f"{name}.{kind}" for name in books}
 
     return run
+
+
+@pytest.fixture(scope="session")
+def recalculate(convert: Convert) -> Recalculate:
+    """Workbooks as LibreOffice calculates them."""
+    return lambda books: {
+        name: openpyxl.load_workbook(path, data_only=True) for name, path in convert(books, "xlsx").items()
+    }
+
+
+@pytest.fixture(scope="session")
+def print_out(convert: Convert) -> Print:
+    """Workbooks as LibreOffice prints them."""
+    return lambda books: {name: path.read_bytes() for name, path in convert(books, "pdf").items()}
 
 
 def _saved(book: Workbook, path: Path) -> Path:

@@ -41,8 +41,18 @@ class CandidatesSheet:
         blocks = {"candidates": 0, **{f"{name}_all": self.columns[name] for name in RATINGS}}
         for name, column in blocks.items():
             self.book.name(name, self.sheet, xl_range_abs(rows[0], column, rows[-1], column))
+        self._colours(rows)
+        self.sheet.repeat_rows(0)
+        self.sheet.repeat_columns(0)
+        self.book.page(self.sheet, across=3)
         self.sheet.autofilter(0, 0, rows[-1], USED + len(CHECKS) - 1)
         return rows
+
+    def _colours(self, rows: range) -> None:
+        self.book.colour(self.sheet, rows[0], 1, rows[-1], 1)
+        properties = USED + len(LOAD)
+        self.book.colour_failures(self.sheet, rows[0], USED, rows[-1], properties - 1, bound="u")
+        self.book.colour_failures(self.sheet, rows[0], properties, rows[-1], USED + len(CHECKS) - 1, bound="1")
 
     def _heads(self) -> None:
         text, head = self.book.reader.text, self.book.head
@@ -53,9 +63,9 @@ class CandidatesSheet:
         heads += [text(check.title) for check in CHECKS]
         for column, shown in enumerate(heads):
             self.sheet.write_string(0, column, shown, self.book.style("head"))
-        self.sheet.set_row(0, 48)
+        self.sheet.set_row(0, 80)
         self.sheet.set_column(0, 0, 14)
-        self.sheet.set_column(1, len(heads) - 1, 12)
+        self.sheet.set_column(1, len(heads) - 1, 14)
         self.sheet.freeze_panes(1, 1)
 
     def _row(self, row: int, candidate: Candidate) -> None:

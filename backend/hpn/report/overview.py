@@ -43,7 +43,7 @@ class Overview:
 
     def write(self) -> None:
         """Write the sheet."""
-        for column, width in enumerate((44, 14, 18, 16, 14, 14, 14, 46)):
+        for column, width in enumerate((52, 24, 18, 16, 14, 16, 14, 38)):
             self.sheet.set_column(column, column, width)
         self._head()
         self._gear()
@@ -52,6 +52,7 @@ class Overview:
         self._terms(N_("What the gear comes to"), GEAR_TERMS, self.known.terms())
         self._inputs()
         self._references()
+        self.book.page(self.sheet)
 
     def _head(self) -> None:
         export = self.book.export
@@ -82,7 +83,7 @@ class Overview:
     def _line(self, label: str, symbol: str, unit: str, source: str = "") -> None:
         self.sheet.write_string(self.row, 0, self.text(label), self.book.style("label"))
         self.sheet.write_string(self.row, 1, symbol, self.book.style("quiet"))
-        self.sheet.write_string(self.row, 3, self.book.reader.unit(unit), self.book.style("quiet"))
+        self.sheet.write_string(self.row, 3, self.book.reader.unit(unit), self.book.style("unit"))
         self.sheet.write_string(self.row, 4, source, self.book.style("quiet"))
 
     def _gear(self) -> None:
@@ -94,6 +95,7 @@ class Overview:
         self.book.name_cell("gear", self.sheet, *cell)
         self.row += 1
         verdict = self.book.words[self.known.candidate.status]
+        self.book.colour(self.sheet, self.row, 2, self.row, 2)
         self._looked_up(N_("Verdict"), 1, "verdict", verdict)
         self._looked_up(N_("Utilisation"), 2, "share", self.known.overall())
         for name, rating in self.known.ratings().items():
@@ -171,6 +173,7 @@ class Overview:
     def _checks(self) -> None:
         heads = (N_("Check"), N_("Relation"), N_("Value"), N_("Limit"), N_("Utilisation"), N_("Verdict"))
         self._section(N_("Checks"), *heads, N_("As saved"), N_("Source"))
+        self.book.colour(self.sheet, self.row, 5, self.row + len(CHECKS) - 1, 5)
         for check in CHECKS:
             self._check(check)
         self.row += 1

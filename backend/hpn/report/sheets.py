@@ -9,7 +9,7 @@ from xlsxwriter.utility import xl_range_abs, xl_rowcol_to_cell
 from hpn.quantities import INPUTS
 from hpn.reader import Reader
 from hpn.report.export import Export
-from hpn.report.formulas import cell_name
+from hpn.report.formulas import NONE, cell_name
 from hpn.units import symbol_of
 from hpn.wording import N_
 
@@ -20,6 +20,7 @@ STYLES: dict[str, dict[str, Any]] = {
     "head": {"bold": True, "font_color": "#FFFFFF", "bg_color": ACCENT, "text_wrap": True, "valign": "top"},
     "label": {"valign": "top"},
     "quiet": {"font_color": "#5B6875", "valign": "top"},
+    "unit": {"font_color": "#5B6875", "valign": "top", "indent": 1},
     "wrap": {"text_wrap": True, "valign": "top"},
     "input": {"bg_color": "#FFF8DC", "border": 1, "border_color": "#D5DBE1", "locked": False},
     "figure": {"bg_color": "#F3F6F9"},
@@ -27,9 +28,28 @@ STYLES: dict[str, dict[str, Any]] = {
     "count": {"num_format": "#,##0"},
     "share": {"num_format": "0.0##%"},
     "fixed": {"num_format": "#,##0.00##", "italic": True, "font_color": "#8A6100"},
-    "verdict": {"bold": True},
+    "verdict": {"bold": True, "indent": 1},
 }
 """Yellow cells are inputs; amber italics are values that a formula can't give."""
+
+PASSED, FAILED, OPEN = (
+    {"font_color": "#1B7F3B", "bg_color": "#E6F4EA"},
+    {"font_color": "#B3261E", "bg_color": "#FCE8E6"},
+    {"font_color": "#8A6100", "bg_color": "#FFF4D6"},
+)
+COLOURS: Mapping[str, Mapping[str, str]] = {
+    "passes": PASSED,
+    "suitable": PASSED,
+    "fails": FAILED,
+    "unsuitable": FAILED,
+    "not rated": OPEN,
+    "unrated": OPEN,
+}
+"""Colours of verdicts, which follow the formulas."""
+
+A4 = 9
+LONGEST_HEADER_TEXT = 100
+LONGEST_FOOTER_LINK = 100
 
 SPARE_PHASES = 20
 
@@ -58,6 +78,35 @@ class Book:
         """Head of a column: a text or symbol, with a unit if there is one."""
         return f"{text} [{self.reader.unit(unit)}]" if unit else text
 
+    def colour(self, sheet: Any, *block: int) -> None:
+        """Colour the verdicts of a block of cells, by the words that stand in them now."""
+        for word, look in COLOURS.items():
+            rule = {"type": "cell", "criteria": "==", "value": f'"{self.words[word]}"'}
+            sheet.conditional_format(*block, rule | {"format": self.file.add_format(look)})
+
+    def colour_failures(self, sheet: Any, *block: int, bound: str) -> None:
+        """Colour the utilisations of a block of cells that are beyond a bound, or fail without a number."""
+        first = xl_rowcol_to_cell(*block[:2])
+        failed = f'=OR(AND(ISNUMBER({first}),{first}>{bound}*(1+1E-12)),{first}="{NONE}")'
+        look = self.file.add_format(FAILED)
+        sheet.conditional_format(*block, {"type": "formula", "criteria": failed, "format": look})
+
+    def page(self, sheet: Any, *, across: int = 1, landscape: bool = True) -> None:
+        """Set a sheet on paper: everything written on so many pages across, its heads on each."""
+        if landscape:
+            sheet.set_landscape()
+        sheet.set_paper(A4)
+        sheet.set_margins(left=0.5, right=0.4, top=0.7, bottom=0.7)
+        sheet.print_area(0, 0, sheet.dim_rowmax, sheet.dim_colmax)
+        sheet.fit_to_pages(across, 0)
+        export, text = self.export, self.reader.text
+        title = " ".join(f"{export.title} {export.reference}".split())[:LONGEST_HEADER_TEXT]
+        saved = self.reader.date(export.created) if export.created else ""
+        link = export.link if len(export.link) <= LONGEST_FOOTER_LINK else ""
+        numbers = text(N_("Page {page} of {pages}")).format(page="&P", pages="&N")
+        sheet.set_header(f"&L{_plain(title)}&R{_plain(saved)}")
+        sheet.set_footer(f"&LHPN Select {_plain(link)}&R{numbers}")
+
     def name(self, name: str, sheet: Any, reference: str) -> None:
         """Define a name for a cell or a block of a sheet."""
         title = sheet.get_name().replace("'", "''")
@@ -66,6 +115,11 @@ class Book:
     def name_cell(self, name: str, sheet: Any, row: int, column: int) -> None:
         """Define a name for one cell."""
         self.name(name, sheet, xl_rowcol_to_cell(row, column, row_abs=True, col_abs=True))
+
+
+def _plain(text: str) -> str:
+    """A text of a header, in which & begins a command."""
+    return text.replace("&", "&&")
 
 
 class CycleSheet:
@@ -85,12 +139,15 @@ class CycleSheet:
             self.sheet.write_string(
                 0, column, self.book.head(self.book.reader.text(head), unit), self.book.style("head")
             )
+        self.sheet.set_row(0, 32)
         self.sheet.set_column(0, len(heads) - 1, 15)
         self.sheet.freeze_panes(1, 0)
         for column, name in enumerate((*PHASE, *USED), 1):
             self.book.name(name, self.sheet, xl_range_abs(1, column, self.last, column))
         for row in range(1, self.last + 1):
             self._phase(row)
+        self.sheet.repeat_rows(0)
+        self.book.page(self.sheet, landscape=False)
 
     def _phase(self, row: int) -> None:
         phase = self.phases[row - 1] if row <= len(self.phases) else None

@@ -67,3 +67,5 @@ def _notes(book: Book, sheet: Any) -> None:
     for row, (subject, note) in enumerate(rows, 1):
         sheet.write_string(row, 0, subject, book.style("label"))
         sheet.write_string(row, 1, note, book.style("wrap"))
+    sheet.repeat_rows(0)
+    book.page(sheet)

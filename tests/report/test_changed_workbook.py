@@ -1,0 +1,104 @@
+"""The workbook with changed inputs, and on paper: LibreOffice calculates, prints and colours it."""
+
+from collections.abc import Iterator
+from io import BytesIO
+
+import numpy as np
+import openpyxl
+import pypdfium2
+import pytest
+from openpyxl.workbook import Workbook
+
+from hpn.catalogue import Catalogue
+from tests.build import answer, cycle, phase, worked_example
+from tests.report.cases import EVERYTHING, export_of, language, workbook
+from tests.report.conftest import Print, Recalculate
+from tests.report.test_workbook import assert_agrees, got, opened, put, same
+
+SHEETS = {"Selection": (1, "A2"), "Duty cycle": (1, "A2"), "Candidates": (3, "B2"), "Notes": (1, "A2")}
+"""Sheets, on how many pages across each fits, and what stays in view."""
+
+GREEN, RED = (0xE6, 0xF4, 0xEA), (0xFC, 0xE8, 0xE6)
+
+STOP = {"torque_Nm": 900, "count": 1000}
+SAVED = worked_example(requirements={"ratios": [5]})
+MEANT = cycle(
+    phase(40, 250, 0.3),
+    phase(500, 500, 3),
+    phase(20, 250, 0.4),
+    pause_s=4,
+    emergency_stop=STOP,
+    requirements={"ratios": [5]},
+)
+"""What is saved, and what `changed` makes of it: no gear is left that passes."""
+
+
+def changed(catalogue: Catalogue) -> Workbook:
+    """The workbook on SAVED after its cells were changed to what is MEANT."""
+    book = opened(SAVED, catalogue)
+    put(book, "torque_Nm", 500, 1)
+    put(book, "T_k", STOP["torque_Nm"])
+    put(book, "N_k", STOP["count"])
+    return book
+
+
+def shows(document: bytes, colour: tuple[int, int, int]) -> bool:
+    """Whether an area of the first page has a colour."""
+    image = pypdfium2.PdfDocument(document)[0].render(rev_byteorder=True).to_numpy()[..., :3]
+    return int(np.equal(image, colour).all(axis=-1).sum()) > 100
+
+
+@pytest.fixture(scope="module")
+def printed(catalogue: Catalogue, print_out: Print) -> Iterator[dict[str, bytes]]:
+    """Workbooks as LibreOffice prints them, all in one start."""
+    hostile = 'R & D &P &"Wingdings" 轴 ' * 20
+    books = {
+        "saved": opened(SAVED, catalogue),
+        "changed": changed(catalogue),
+        "everything": opened(EVERYTHING, catalogue, code="de"),
+        "hostile": openpyxl.load_workbook(
+            BytesIO(workbook(export_of(worked_example(), catalogue, title=hostile), language("en")))
+        ),
+    }
+    yield print_out(books)
+
+
+def test_inputs_that_fail_every_gear_recalculate_to_what_the_service_says(
+    catalogue: Catalogue, recalculate: Recalculate
+) -> None:
+    reply = answer(MEANT, catalogue)
+    fresh = recalculate({"failing": changed(catalogue)})["failing"]
+    assert_agrees(fresh, reply)
+    assert {candidate["status"] for candidate in reply["candidates"]} == {"unsuitable", "unrated"}
+    assert same(got(fresh, "T_av"), reply["duty"]["average_torque_Nm"])
+    words = {row[5].value for row in fresh["Selection"].iter_rows()}
+    assert {"fails", "passes"} <= words
+
+
+def test_what_passed_and_now_fails_turns_from_green_to_red(printed: dict[str, bytes]) -> None:
+    assert shows(printed["saved"], GREEN) and not shows(printed["saved"], RED)
+    assert shows(printed["changed"], RED)
+
+
+@pytest.mark.parametrize("name", ["saved", "everything", "hostile"])
+def test_a_workbook_is_printed_on_few_pages_with_numbers_and_heads(name: str, printed: dict[str, bytes]) -> None:
+    document = pypdfium2.PdfDocument(printed[name])
+    assert len(document) <= 9
+    pages = [document[page].get_textpage().get_text_range() for page in range(len(document))]
+    word = "Seite {} von {}" if name == "everything" else "Page {} of {}"
+    assert all(word.format(number, len(pages)) in page for number, page in enumerate(pages, 1))
+    assert "###" not in "".join(pages)
+    assert sum("HPN-20A-5" in page for page in pages) >= 3  # the column of gears stands on each page of candidates
+    for page in range(len(document)):
+        image = document[page].render(scale=1, grayscale=True).to_numpy()
+        assert (image[:, :8] > 200).all() and (image[:, -8:] > 200).all()
+
+
+def test_every_sheet_has_its_print_area_and_keeps_its_heads(catalogue: Catalogue) -> None:
+    book = opened(EVERYTHING, catalogue)
+    for name, (across, frozen) in SHEETS.items():
+        sheet = book[name]
+        assert sheet.freeze_panes == frozen
+        assert str(sheet.print_area).endswith(f"${sheet.max_row}")
+        assert (sheet.page_setup.fitToWidth or 1, sheet.page_setup.fitToHeight) == (across, 0)
+        assert name == "Selection" or sheet.print_title_rows == "$1:$1"
