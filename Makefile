@@ -24,7 +24,7 @@ endif
 export UV_SYSTEM_CERTS ?= true
 export NODE_USE_SYSTEM_CA ?= 1
 
-.PHONY: run install assets test soak mutants check bench screenshots browser office curl clock pdfua messages lock licences sbom audit digests clean
+.PHONY: run install assets test soak mutants check bench screenshots browser office curl clock nginx pdfua messages lock licences sbom audit digests clean
 .DELETE_ON_ERROR:
 
 run: install
@@ -36,7 +36,7 @@ assets: $(ASSETS)
 
 # Lighthouse measures, so it has the machine to itself; the rest takes two cores, a file at a time and browsers last.
 TOGETHER := --numprocesses 2 --dist loadfile --no-loadscope-reorder
-test: install browser office curl clock
+test: install browser office curl clock nginx
 ifdef PYTEST_ARGS
 	$(BIN)/pytest $(PYTEST_ARGS)
 else
@@ -45,7 +45,7 @@ else
 endif
 
 # What is long by nature, in its long form: hundreds of kills, examples by the thousand, Lighthouse over all pages.
-soak: install browser office curl clock pdfua
+soak: install browser office curl clock nginx pdfua
 	$(BIN)/pytest --soak tests/browser/test_lighthouse.py
 	$(BIN)/pytest --soak --ignore tests/browser/test_lighthouse.py $(TOGETHER)
 
@@ -135,6 +135,13 @@ pdfua:
 $(VENV)/pdfua/.installed: tests/report/pdfua/pom.xml $(ENVIRONMENT)
 	mvn --batch-mode --quiet --file $< dependency:copy-dependencies -DoutputDirectory="$(CURDIR)/$(@D)"
 	@touch $@
+
+# The reverse proxy of the compose file; envsubst fills in its configuration, openssl makes the tests' certificate.
+nginx:
+	@for name in nginx envsubst openssl; do command -v $$name || missing=1; done; [ -z "$$missing" ] && exit 0; \
+	if [ "$$(id -u)" = 0 ] && [ -f /etc/debian_version ] && apt-get update -q \
+	    && apt-get install -q -y --no-install-recommends nginx-light gettext-base openssl && command -v nginx; then exit 0; fi; \
+	echo "No nginx, envsubst and openssl found, and they could not be installed" >&2; exit 1
 
 # --- Upkeep -----------------------------------------------------------------------------------------------------------
 

@@ -41,11 +41,24 @@ def test_every_service_is_confined(name: str) -> None:
     assert "profiles" in service or service["restart"] == "unless-stopped"
 
 
-def test_only_the_service_is_published_and_only_on_this_machine() -> None:
-    assert [name for name, service in SERVICES.items() if "ports" in service] == ["web"]
-    assert SERVICES["web"]["ports"] == ["${HPN_PUBLISH:-127.0.0.1:8000}:8000"]
-    assert COMPOSE["networks"]["back"] == {"internal": True}
+def test_only_the_proxy_is_published_and_only_it_reaches_the_service() -> None:
+    assert [name for name, service in SERVICES.items() if "ports" in service] == ["proxy"]
+    assert SERVICES["proxy"]["ports"] == ["${HPN_PUBLISH_HTTP:-80}:8080", "${HPN_PUBLISH:-443}:8443"]
+    assert COMPOSE["networks"] == {"front": None, "middle": {"internal": True}, "back": {"internal": True}}
+    assert [name for name, service in SERVICES.items() if "middle" in service["networks"]] == ["proxy", "web"]
+    assert SERVICES["web"]["networks"] == ["middle", "back"]
     assert SERVICES["db"]["networks"] == ["back"]
+    assert SERVICES["web"]["environment"]["HPN_TRUSTED_PROXIES"] == "*"
+
+
+def test_the_proxy_waits_for_a_healthy_service_and_writes_to_memory_alone() -> None:
+    proxy = SERVICES["proxy"]
+
+    assert proxy["depends_on"]["web"]["condition"] == "service_healthy"
+    assert "healthcheck" in proxy
+    assert all(volume.endswith(":ro") for volume in proxy["volumes"])
+    assert (ROOT / proxy["volumes"][0].split(":")[0]).read_text().count("${PROXY_") == 6
+    assert proxy["tmpfs"][0].startswith(f"{proxy['working_dir']}:size=")
 
 
 def test_the_service_waits_for_a_healthy_database_and_has_time_to_end() -> None:
@@ -64,6 +77,7 @@ def test_what_compose_sets_are_settings() -> None:
 
 def test_every_named_volume_is_declared() -> None:
     used = {volume.split(":")[0] for service in SERVICES.values() for volume in service.get("volumes", ())}
+    used = {volume for volume in used if not volume.startswith("./")}
 
     assert used == set(COMPOSE["volumes"])
 

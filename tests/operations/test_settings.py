@@ -10,7 +10,7 @@ from hpn.cli import main
 from hpn.web.settings import Settings
 
 ROOT = Path(__file__).parents[2]
-OF_COMPOSE_ALONE = {"POSTGRES_PASSWORD", "HPN_PUBLISH"}
+OF_COMPOSE_ALONE = {"POSTGRES_PASSWORD", "HPN_PUBLISH", "HPN_PUBLISH_HTTP"}
 NAMES = {f"HPN_{name.upper()}" for name in Settings.model_fields}
 
 

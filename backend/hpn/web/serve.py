@@ -10,6 +10,7 @@ import threading
 import time
 import traceback
 from contextlib import suppress
+from functools import partial
 from typing import Any
 
 import uvicorn
@@ -21,6 +22,7 @@ from hpn.catalogue import CatalogueError
 from hpn.store import StoreError
 from hpn.web.app import create_app
 from hpn.web.door import logs, metrics
+from hpn.web.door.protocol import BoundedProtocol
 from hpn.web.pages import templates
 from hpn.web.settings import Settings
 
@@ -85,7 +87,7 @@ def options(settings: Settings) -> dict[str, Any]:
         "host": settings.host,
         "port": settings.port,
         "workers": settings.workers,
-        "http": "hpn.web.door.protocol:BoundedProtocol",
+        "http": partial(BoundedProtocol, head_s=settings.head_seconds, stalled_s=settings.body_seconds),
         "ws": "none",
         "log_config": None,
         "access_log": False,

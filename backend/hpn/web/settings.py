@@ -118,7 +118,13 @@ class Settings(BaseSettings):
         description="Most bytes of bodies and answers that one process holds at once; more get a 503. A batch "
         "counts as three times its body.",
     )
-    body_seconds: float = Field(30.0, gt=0, description="Longest time for a body to arrive.")
+    head_seconds: float = Field(20.0, gt=0, description="Longest time for a request's head to arrive.")
+    body_seconds: float = Field(
+        30.0,
+        gt=0,
+        description="Longest time for a body, or a line of a streamed batch, to arrive, and for a client to leave an "
+        "answer unread.",
+    )
     batch_seconds: float = Field(60.0, gt=0, description="Longest computing time of one batch request.")
     spool_folder: Annotated[Path | None, AfterValidator(_folder)] = Field(
         None,
@@ -136,7 +142,9 @@ class Settings(BaseSettings):
     worker_seconds: int = Field(
         30, gt=0, description="Time without an answer after which one of several processes is replaced."
     )
-    maximum_connections: int = Field(1000, gt=0, description="Most connections of one process; more get a 503.")
+    maximum_connections: int = Field(
+        1000, gt=0, description="Most connections of one process: an idle one makes room, else more get a 503."
+    )
     shutdown_seconds: int = Field(30, ge=0, description="Longest time that running requests get to finish at the end.")
     log_level: Literal["debug", "info", "warning", "error"] = Field("info", description="Least level that is logged.")
     api_keys: Annotated[tuple[ApiKey, ...], NoDecode, BeforeValidator(_keys), BeforeValidator(_split)] = Field(

@@ -111,10 +111,10 @@ class Spool:
 
 
 class LineStream(Response):
-    """Answers each line of the request's body with one line, while the body still arrives.
+    """Answers each line of the request's body with one line, while the body still arrives if its length is unknown.
 
-    `evaluate` gets some lines and returns their answers, each with its line end. A client that neither sends nor reads
-    for `seconds` is told so in a last line, and the stream ends.
+    `evaluate` gets some lines and returns their answers, each with its line end. A client that neither sends a
+    line nor reads for `seconds` is told so in a last line, and the stream ends.
     """
 
     media_type = MEDIA_TYPES[0]
@@ -138,8 +138,8 @@ class LineStream(Response):
         self._maximum_spool = maximum_spool_bytes
         self._seconds = seconds
         self._spool = Spool(spool_folder)
-        self._filled, self._drained = asyncio.Event(), asyncio.Event()
-        self._done = self._gone = self._sending = False
+        self._filled, self._drained, self._whole = asyncio.Event(), asyncio.Event(), asyncio.Event()
+        self._begun = self._done = self._gone = self._sending = False
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Run both directions until every line is answered, or the client has gone; raises Problem 503 at once."""
@@ -152,16 +152,22 @@ class LineStream(Response):
                 first = await receive()  # before the head: only asking for the body answers `Expect: 100-continue`
         except TimeoutError:
             raise late(self._seconds) from None
-        await send({"type": "http.response.start", "status": self.status_code, "headers": self.raw_headers})
         work = asyncio.create_task(self._work(first, receive))
         try:
             async with asyncio.timeout(self._seconds) as self._limit:
+                if any(name == b"content-length" for name, _ in scope.get("headers", ())):
+                    # nginx sends no more of a body once its answer has begun and the service has kept it waiting.
+                    await self._whole.wait()
+                await send({"type": "http.response.start", "status": self.status_code, "headers": self.raw_headers})
+                self._begun = True
                 await self._forward(send)
             if work.done():
                 work.result()  # raises what went wrong; the answer then stays without its end
             await send({"type": "http.response.body", "body": b"", "more_body": False})
         except TimeoutError:
             work.cancel()
+            if not self._begun:
+                raise late(self._seconds) from None
             await self._give_up(send)
         finally:
             work.cancel()
@@ -177,10 +183,10 @@ class LineStream(Response):
                     await self._answer(self._splitter.rest())
                     break
                 message = await receive()
-                self._progress()
         finally:
             self._done = True
             self._filled.set()
+            self._whole.set()
         while message["type"] == "http.request":
             message = await receive()
         self._gone = True
@@ -191,6 +197,7 @@ class LineStream(Response):
             answers = await self._pool.run(self._evaluate, lines[start : start + LINES_AT_ONCE])
             self._progress()
             while len(self._spool) > self._maximum_spool:
+                self._whole.set()
                 self._drained.clear()
                 await self._drained.wait()
             self._spool.write(answers)
@@ -217,6 +224,6 @@ class LineStream(Response):
     async def _give_up(self, send: Send) -> None:
         if self._sending:  # the client does not read; the server cuts the connection
             return
-        problem = Problem(408, f"nothing arrived for {self._seconds:g} s; the lines above are answered")
+        problem = Problem(408, f"no line arrived for {self._seconds:g} s; the lines above are answered")
         line = orjson.dumps({"reference": None, "status": "error", "problem": problem.body()}) + b"\n"
         await send({"type": "http.response.body", "body": line, "more_body": False})

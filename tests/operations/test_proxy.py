@@ -1,0 +1,173 @@
+"""nginx as docker-compose.yml puts it in front: TLS, headers, sizes, and what it passes on."""
+
+import http.client
+import json
+import subprocess
+from collections.abc import Iterator
+from contextlib import ExitStack, closing
+
+import httpx
+import orjson
+import pytest
+
+from tests.build import worked_example
+from tests.operations.proxy import Proxy, proxied
+from tests.operations.service import Service, serving
+
+BATCH = "/api/v1/select/batch"
+LINE = orjson.dumps({"reference": "axis", **worked_example(requirements={"ratios": [5]})}) + b"\n"
+
+
+@pytest.fixture(scope="module")
+def service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Service]:
+    """A service with the settings of the compose file."""
+    with serving(tmp_path_factory.mktemp("service"), {"HPN_TRUSTED_PROXIES": "*"}) as running:
+        yield running
+
+
+@pytest.fixture(scope="module")
+def proxy(service: Service) -> Iterator[Proxy]:
+    """nginx before it."""
+    with proxied(service.port) as running:
+        yield running
+
+
+@pytest.fixture(scope="module")
+def client(proxy: Proxy) -> Iterator[httpx.Client]:
+    """A client that comes through nginx."""
+    with httpx.Client(base_url=proxy.url, verify=proxy.trust(), timeout=60, trust_env=False) as client:
+        yield client
+
+
+def test_a_calculation_comes_through_and_says_that_it_wants_tls(client: httpx.Client) -> None:
+    answer = client.post("/api/v1/select", json=worked_example(requirements={"ratios": [5]}))
+
+    assert answer.json()["selected"] == "HPN-20A-5"
+    assert answer.headers["Strict-Transport-Security"] == "max-age=31536000"
+    assert answer.headers["X-Content-Type-Options"] == "nosniff"
+    assert "nginx/" not in answer.headers["Server"]
+
+
+def test_http_leads_on_to_https_with_method_and_body(proxy: Proxy) -> None:
+    answer = httpx.post(f"http://localhost:{proxy.http}/api/v1/select?a=b", trust_env=False)
+
+    assert (answer.status_code, answer.headers["Location"]) == (308, "https://localhost/api/v1/select?a=b")
+
+
+def test_http_2_is_spoken(proxy: Proxy) -> None:
+    command = ["curl", "--silent", "--http2", "--noproxy", "*", "--cacert", f"{proxy.folder}/fullchain.pem"]
+    answer = subprocess.run([*command, "--include", f"{proxy.url}/healthz"], check=True, capture_output=True).stdout
+
+    assert answer.startswith(b"HTTP/2 200")
+
+
+def test_the_service_learns_the_callers_address_host_and_id(proxy: Proxy, service: Service) -> None:
+    head = b"GET /oembed?url=https://localhost:%d/?T=40%%26n=250%%26t=1 HTTP/1.1\r\nHost: localhost:%d\r\n"
+    said = b"X-Forwarded-For: 192.0.2.7\r\nX-Request-ID: through-nginx\r\nConnection: close\r\n\r\n"
+    with proxy.connect(source="127.0.0.2") as connection:
+        connection.sendall(head % (proxy.https, proxy.https) + said)
+        answer = b"".join(iter(lambda: connection.recv(65536), b""))
+
+    assert b"x-request-id: through-nginx" in answer.lower()
+    assert b"https://localhost:%d/" % proxy.https in answer.partition(b"\r\n\r\n")[2]
+    assert service.event(request_id="through-nginx")["client"] == "127.0.0.2"
+
+
+def test_a_request_without_an_id_gets_one_for_both_logs(client: httpx.Client, proxy: Proxy, service: Service) -> None:
+    id = client.get("/api/v1/catalogue").headers["X-Request-ID"]
+
+    service.event(request_id=id)
+    logged = [orjson.loads(line) for line in (proxy.folder / "log").read_bytes().splitlines() if b"proxied" in line]
+    assert [line["status"] for line in logged if line["request_id"] == id] == [200]
+
+
+@pytest.mark.parametrize(
+    ("path", "size", "status"),
+    [
+        ("/api/v1/select", 2_000_000, 400),  # what the service says of a body of blanks
+        ("/api/v1/select", 2_000_001, 413),
+        (BATCH, 2_000_001, 400),
+        (BATCH, 32_000_001, 413),
+    ],
+)
+def test_bodies_are_as_large_as_the_settings_say(path: str, size: int, status: int, client: httpx.Client) -> None:
+    answer = client.post(path, content=b" " * size, headers={"Content-Type": "application/json"})
+
+    assert answer.status_code == answer.json()["status"] == status
+    assert answer.headers["Content-Type"] == "application/problem+json"
+
+
+@pytest.mark.parametrize(
+    ("path", "status"),
+    [("/?T=" + "1" * 59_000, 422), ("/?T=" + "1" * 61_000, 414)],
+)
+def test_the_longest_link_comes_through_and_the_service_refuses_a_longer_one(
+    path: str, status: int, client: httpx.Client
+) -> None:
+    assert client.get(path).status_code == status
+
+
+def test_a_head_that_is_too_large_is_refused_as_a_problem(client: httpx.Client) -> None:
+    answer = client.get("/", headers={"X-Long": "a" * 70_000})
+
+    assert answer.status_code == answer.json()["status"] == 431
+    assert answer.json()["title"] == "The head of the request is too large"
+
+
+def test_a_stream_of_lines_has_no_bound_and_is_answered_line_by_line(proxy: Proxy) -> None:
+    context, blank = proxy.trust(), b" " * 1_000_000 + b"\n"
+    with closing(http.client.HTTPSConnection("localhost", proxy.https, timeout=60, context=context)) as connection:
+        connection.putrequest("POST", BATCH)
+        connection.putheader("Content-Type", "application/x-ndjson; charset=utf-8")
+        connection.putheader("Transfer-Encoding", "chunked")
+        connection.endheaders(chunk(LINE))
+        with connection.getresponse() as response:
+            for _ in range(34):
+                assert json.loads(response.readline())["selected"] == "HPN-20A-5"
+                connection.send(chunk(blank + LINE))
+            connection.send(b"0\r\n\r\n")
+            assert len(response.read().splitlines()) == 1
+
+
+def test_a_file_of_lines_is_answered_whole_although_it_comes_faster_than_it_is_judged(client: httpx.Client) -> None:
+    blank = b" " * 1_000_000 + b"\n"
+    answer = client.post(BATCH, content=blank * 33 + LINE, headers={"Content-Type": "application/x-ndjson"})
+
+    assert answer.json()["selected"] == "HPN-20A-5"
+
+
+def chunk(piece: bytes) -> bytes:
+    """A piece of a body in chunks."""
+    return b"%x\r\n%b\r\n" % (len(piece), piece)
+
+
+def test_one_address_has_a_hundred_requests_at_once(proxy: Proxy) -> None:
+    with ExitStack() as held:
+        for _ in range(100):
+            connection = held.enter_context(proxy.connect())
+            connection.sendall(b"POST /api/v1/select HTTP/1.1\r\nHost: localhost\r\nContent-Length: 9\r\n\r\n")
+        for _ in range(50):  # until nginx has read all heads
+            if (status := status_from(proxy, "127.0.0.1")) == 429:
+                break
+        assert status == 429
+        assert status_from(proxy, "127.0.0.2") == 200
+
+
+def status_from(proxy: Proxy, address: str) -> int:
+    """Status that a caller from an address of loopback gets."""
+    with proxy.connect(source=address) as connection:
+        connection.sendall(b"GET /healthz HTTP/1.1\r\nHost: localhost\r\n\r\n")
+        return int(connection.recv(500)[9:12])
+
+
+def test_what_is_asked_is_in_no_line_of_the_log(client: httpx.Client, proxy: Proxy) -> None:
+    client.get("/", params={"T": "987654"})
+
+    assert "987654" not in (proxy.folder / "log").read_text()
+
+
+def test_without_the_service_the_answer_says_to_come_again() -> None:
+    with proxied(9) as alone:  # nobody listens on the port to discard
+        answer = httpx.get(f"{alone.url}/", verify=alone.trust(), trust_env=False)
+
+    assert answer.status_code == answer.json()["status"] == 503
