@@ -80,8 +80,8 @@ async def _attack(doors: Iterable[str], seeds: range, folder: Path) -> dict[str,
 
 async def _attack_door(world: World, door: str, seeds: range) -> Outcome:
     outcome = Outcome()
-    for valid in DOORS[door].corpus:  # what a process prepares once is no input's time
-        await DOORS[door].send(world, Random(0), valid)
+    for place, valid in enumerate(DOORS[door].corpus):  # what a process prepares once is no input's time
+        await DOORS[door].send(world, Random(place), valid)
     for seed in seeds:
         signal.signal(signal.SIGPROF, partial(_hanging, door, seed))
         signal.setitimer(signal.ITIMER_PROF, HANGING_SECONDS)

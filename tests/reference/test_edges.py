@@ -84,6 +84,7 @@ TWICE = "the curve is not star-shaped: two of its points lie in one direction fr
         ([(0, 50), (0, 0)], 1, NO_RADIAL),
         ([(100, 0), (1, 50)], 1, NO_AXIAL),
         ([(-1, 50), (100, 0)], 0, NO_AXIAL),
+        ([(100, 0), (1, 60), (50, 50)], 1, NO_AXIAL),
         ([(100, 0), (0, 0)], 1, NO_AXIAL),
         ([(100, 0), (0, 50), (50, 50), (40, 40)], 3, TWICE),
         ([(100, 0), (90, 0), (0, 50)], 1, TWICE),

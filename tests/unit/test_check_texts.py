@@ -133,3 +133,22 @@ BOUNDS = {
 
 def test_a_check_says_in_symbols_what_it_compares_and_which_figure_bounds_it() -> None:
     assert {code: (check.relation, check.limited_by) for code, check in BY_CODE.items()} == BOUNDS
+
+
+# Power with which a share grows with all torques, speeds or loads: by equations 17.2 to 17.10 and ISO 281's exponent 3.
+POWERS = {
+    "average_torque": {"torque": 1},
+    "repeated_peak_torque": {"torque": 1},
+    "average_input_speed": {"speed": 1},
+    "maximum_input_speed": {"speed": 1},
+    "motor_speed": {"speed": 1},
+    "motor_peak_torque": {"torque": 1},
+    "motor_rated_torque": {"torque": 1},
+    "life": {"torque": 10 / 3, "speed": 1},
+    "output_bearing_load": {"load": 1},
+    "output_bearing_life": {"load": 1, "speed": 1 / 3},
+}
+
+
+def test_a_check_grows_with_its_drivers_as_its_equation_says() -> None:
+    assert {code: check.moves for code, check in BY_CODE.items() if check.moves} == POWERS

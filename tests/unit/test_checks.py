@@ -7,6 +7,8 @@ import pytest
 from hpn.catalogue import Catalogue
 from hpn.checks import allowed
 from tests.build import Json, answer, candidate, check, cycle, phase
+from tests.conftest import Supplement
+from tests.unit.test_supplements import SIZES
 
 GEAR = "HPN-20A-5"
 ONLY = {"sizes": ["20A"], "ratios": [5]}
@@ -140,3 +142,14 @@ def test_a_temperature_is_not_rated_where_no_range_is_published(catalogue: Catal
 
 def test_the_users_share_bounds_load_checks_alone() -> None:
     assert [allowed(code, 0.8) for code in (None, "weight", "life", "motor_speed")] == [1, 1, 0.8, 0.8]
+
+
+def test_a_range_of_temperature_need_not_begin_at_zero(supplemented: Supplement) -> None:
+    """10 to 40 °C: the middle is 25, half of the range 15."""
+    colder = supplemented(sizes=SIZES + "20A,,,10,40,,,,mine\n")
+    used = [
+        check(answer(with_wish(ambient_temperature_degC=asked), colder), GEAR, "ambient_temperature")["utilisation"]
+        for asked in (10, 25, 31, 0)
+    ]
+
+    assert used == [1, 0, 0.4, pytest.approx(5 / 3, rel=1e-15)]

@@ -1,10 +1,11 @@
 """Reasons, refusals and the answer in brief, by two limits of HPN-20A-5: T_N = 80 Nm and T_R = 149 Nm."""
 
+import msgspec
 import pytest
 
 from hpn.application import Application, InputError
 from hpn.catalogue import Catalogue
-from hpn.selection import Candidate, Selection, judge, reason_of, select
+from hpn.selection import Candidate, CheckDefinition, Selection, judge, reason_of, select
 from tests.build import Json, cycle, phase
 
 ONLY = {"sizes": ["20A"], "ratios": [5]}
@@ -120,6 +121,8 @@ def test_the_answer_in_brief_is_that_of_the_first_suitable_gear(catalogue: Catal
 
     assert judge(fits, catalogue).outcome() == ("HPN-20A-5", "average_torque", 0.5, 1)
     assert judge(fails, catalogue).outcome() == (None, None, None, 0)
+    assert [judge(one, catalogue).selection().selected for one in (fits, fails)] == ["HPN-20A-5", None]
+    assert judge(fits, catalogue).selection().link == ""
 
 
 def test_the_foremost_gear_is_judged_wherever_one_is(catalogue: Catalogue) -> None:
@@ -134,3 +137,23 @@ def test_the_foremost_gear_is_judged_wherever_one_is(catalogue: Catalogue) -> No
     assert [check.code for check in found.candidates[0].failing] == ["average_torque", "repeated_peak_torque"]
     assert found.selected is None
     assert found.link == ""
+
+
+def test_a_gear_is_judged_where_every_check_is_rated_and_names_its_checks(catalogue: Catalogue) -> None:
+    wishes = {"sizes": ["20A", "40A"], "ratios": [5], "torsional_stiffness_Nm_per_rad": 1}
+    rated, unrated = select(Application.model_validate(cycle(phase(1, 1), requirements=wishes)), catalogue).candidates
+
+    assert [check.status == "not_rated" for check in unrated.checks] == [True, True, True, True, False]
+    assert (rated.is_judged, unrated.is_judged) == (True, False)
+    assert [found and found.code for found in map(rated.check, ("torsional_stiffness", "life"))] == [
+        "torsional_stiffness",
+        None,
+    ]
+
+
+def test_a_definition_that_was_saved_with_less_has_blank_texts() -> None:
+    saved = b'{"title": "Life", "equation": "17.10", "unit": "h", "kind": "minimum", "group": "load"}'
+    definition = msgspec.json.decode(saved, type=CheckDefinition)
+
+    blank = ("limit_name", "source", "tests", "consequence", "basis", "remedy")
+    assert [getattr(definition, name) for name in blank] == [""] * len(blank)
