@@ -157,3 +157,11 @@ def test_a_definition_that_was_saved_with_less_has_blank_texts() -> None:
 
     blank = ("limit_name", "source", "tests", "consequence", "basis", "remedy")
     assert [getattr(definition, name) for name in blank] == [""] * len(blank)
+
+
+def test_suitable_gears_are_counted_from_one_and_no_other(catalogue: Catalogue) -> None:
+    wishes = {"ratios": [5, 50]}  # four sizes with 5 suit; 50 is too fast for 120 rpm, and 40A is not rated
+    ranked = select(Application.model_validate(cycle(phase(10, 120), requirements=wishes)), catalogue).candidates
+
+    assert [gear.rank for gear in ranked if gear.status == "suitable"] == [1, 2, 3, 4]
+    assert {gear.rank for gear in ranked if gear.status != "suitable"} == {None}
