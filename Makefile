@@ -24,7 +24,7 @@ endif
 export UV_SYSTEM_CERTS ?= true
 export NODE_USE_SYSTEM_CA ?= 1
 
-.PHONY: run install assets test soak mutants check bench screenshots browser office curl clock nginx pdfua messages lock licences sbom audit digests clean
+.PHONY: run install assets test soak mutants check bench screenshots browser office curl nginx pdfua messages lock licences sbom audit digests clean
 .DELETE_ON_ERROR:
 
 run: install
@@ -36,7 +36,7 @@ assets: $(ASSETS)
 
 # Lighthouse measures, so it has the machine to itself; the rest takes two cores, a file at a time and browsers last.
 TOGETHER := --numprocesses 2 --dist loadfile --no-loadscope-reorder
-test: install browser office curl clock nginx
+test: install browser office curl nginx
 ifdef PYTEST_ARGS
 	$(BIN)/pytest $(PYTEST_ARGS)
 else
@@ -45,7 +45,7 @@ else
 endif
 
 # What is long by nature, in its long form: hundreds of kills, examples by the thousand, Lighthouse over all pages.
-soak: install browser office curl clock nginx pdfua
+soak: install browser office curl nginx pdfua
 	$(BIN)/pytest --soak tests/browser/test_lighthouse.py
 	$(BIN)/pytest --soak --ignore tests/browser/test_lighthouse.py $(TOGETHER)
 
@@ -118,14 +118,6 @@ curl:
 	if [ "$$(id -u)" = 0 ] && [ -f /etc/debian_version ] && apt-get update -q \
 	    && apt-get install -q -y --no-install-recommends curl && command -v curl; then exit 0; fi; \
 	echo "No curl found, and none could be installed" >&2; exit 1
-
-# Has a clock jump in the tests; without it that test is skipped.
-clock:
-	@for library in /usr/lib*/faketime/libfaketime.so.1 /usr/lib/*/faketime/libfaketime.so.1; do \
-	[ -e "$$library" ] && echo "$$library" && exit 0; done; \
-	if [ "$$(id -u)" = 0 ] && [ -f /etc/debian_version ] && apt-get update -q \
-	    && apt-get install -q -y --no-install-recommends libfaketime; then exit 0; fi; \
-	echo "No libfaketime found, and none could be installed: the test of a clock that jumps is skipped" >&2
 
 # An independent check of PDF/UA for `make soak`: veraPDF's library from Maven Central, where Java and Maven are at hand.
 pdfua:
