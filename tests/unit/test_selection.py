@@ -7,6 +7,7 @@ from hpn.application import Application, InputError
 from hpn.catalogue import Catalogue
 from hpn.selection import Candidate, CheckDefinition, Selection, judge, reason_of, select
 from tests.build import Json, cycle, phase
+from tests.conftest import Supplement
 
 ONLY = {"sizes": ["20A"], "ratios": [5]}
 TORQUE = "Load limit 1: average torque"
@@ -53,6 +54,7 @@ def test_percent_too_large_for_decimals_are_told_as_they_are(catalogue: Catalogu
     assert gear.utilisation is not None
     assert gear.utilisation == pytest.approx(2e14 / 3, rel=1e-15)
     assert gear.reason.startswith(f"Motor peak torque is at {100 * gear.utilisation!r} %")
+    assert "at 6.66666666667e+15 % of" in reason_of(gear, 1.0).text  # twelve digits
 
 
 def test_where_there_is_no_utilisation_the_reason_says_why(catalogue: Catalogue) -> None:
@@ -165,3 +167,12 @@ def test_suitable_gears_are_counted_from_one_and_no_other(catalogue: Catalogue) 
 
     assert [gear.rank for gear in ranked if gear.status == "suitable"] == [1, 2, 3, 4]
     assert {gear.rank for gear in ranked if gear.status != "suitable"} == {None}
+
+
+def test_of_several_sizes_each_is_told_with_its_ratios(supplemented: Supplement) -> None:
+    grown = supplemented(gears="size,ratio,stages,source\n50A,5,1,mine\n")
+    with pytest.raises(InputError) as refused:
+        first(cycle(phase(1, 1), requirements={"sizes": ["11A", "50A"], "ratios": [3]}), grown)
+
+    [(_, text)] = refused.value.problems
+    assert text.endswith("there are 11A: 4, 5, 7, 10, 15, 20, 25, 30, 35, 40, 45, 50; 50A: 5")
