@@ -1,6 +1,7 @@
 """What one process holds and has waiting at most; beyond it, requests are refused before they cost anything."""
 
 import asyncio
+from typing import Any
 
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from structlog.typing import FilteringBoundLogger
@@ -107,6 +108,7 @@ class Overload:
         self._count = self._refused = 0
         self._overloaded = False
         self._most = self._windows = 0
+        self._task: asyncio.Task[Any] | None = None
         self._end = 0.0
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
@@ -120,8 +122,11 @@ class Overload:
 
     def _is_too_much(self) -> bool:
         if not self._count:
+            self._task = None
             asyncio.get_running_loop().call_soon(self._end_turn)  # behind all that have arrived by now
-        self._count += 1
+        task = asyncio.current_task()
+        self._count += task is not self._task  # a caller in the same process may ask several times in its turn
+        self._task = task
         return self._count > self._limit or self._budget.held >= self._budget.total
 
     @property
