@@ -19,6 +19,9 @@ from hpn.wording import N_
 UNDATED = datetime(1980, 1, 1)
 """Creation time of the workbook of a selection that is not saved: the earliest that its container can hold."""
 
+LINE_POINTS, CHARACTERS_PER_LINE = 15, 95
+"""Height and length of a line of a note: no reader of the file fits the row to its text by itself."""
+
 
 def workbook(export: Export, reader: Reader) -> bytes:
     """The workbook on an export; the same bytes for the same selection."""
@@ -67,5 +70,6 @@ def _notes(book: Book, sheet: Any) -> None:
     for row, (subject, note) in enumerate(rows, 1):
         sheet.write_string(row, 0, subject, book.style("label"))
         sheet.write_string(row, 1, note, book.style("wrap"))
+        sheet.set_row(row, LINE_POINTS * (1 + len(note) // CHARACTERS_PER_LINE))
     sheet.repeat_rows(0)
     book.page(sheet)
