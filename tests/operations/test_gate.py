@@ -30,14 +30,18 @@ class Route(NamedTuple):
     group: RouteGroup | None
 
 
+CONTEXTS = list(iter_route_contexts(create_app().routes))
+GUARDED = {str(context.path) for context in CONTEXTS if group_of(context)}
+
+
 def every_route() -> Iterator[Route]:
     """Routes that declare a group, each also by HEAD where it has GET."""
-    for route in iter_route_contexts(create_app().routes):
-        path = str(route.path)
+    for context in CONTEXTS:
+        path = str(context.path)
         for name, value in VALUES.items():
             path = path.replace(name, value)
-        for method in sorted(route.methods or ()):
-            if (group := group_of(route)) is not None:
+        for method in sorted(context.methods or ()):
+            if (group := group_of(context)) is not None:
                 yield from (Route(each, path, group) for each in (method, *(["HEAD"] if method == "GET" else [])))
 
 
@@ -164,9 +168,8 @@ def admitted(service: Service, attempts: Iterable[tuple[str, str, tuple[str, ...
             status, body = wire.ask(method, target, *headers)
             if status not in allowed or b"Traceback" in body:
                 found.append((method, target, headers, status))
-    guarded_routes = {str(route.path) for route in iter_route_contexts(create_app().routes) if group_of(route)}
     for event in service.events()[before:]:
-        if event.get("route") in guarded_routes and event["status"] not in (401, 405):  # 405: of no route at all
+        if event.get("route") in GUARDED and event["status"] not in (401, 405):  # 405: of no route at all
             found.append(event)
     return count, found
 
@@ -216,24 +219,22 @@ def test_no_byte_anywhere_in_an_address_gets_past_the_gate(guarded: Service) -> 
     """Every byte, plain and encoded once and twice, at every place; every method; spellings of spellings."""
     methods = ("GET", "HEAD", "POST", "PUT", "PATCH", "DELETE", "OPTIONS", "TRACE", "get", "FOO", "PROPFIND", "QUERY")
     paths = sorted({route.path for route in ROUTES})
-    written = [
-        *(chr(byte) for byte in range(1, 256)),
-        *(f"%{byte:02x}" for byte in range(256)),
-        *(f"%25{byte:02X}" for byte in range(256)),
-    ]
+    encoded = [f"%{byte:02x}" for byte in range(256)]
+    written = [*(chr(byte) for byte in range(1, 256)), *encoded, *(f"%25{byte:02X}" for byte in range(256))]
 
     def attempts() -> Iterator[tuple[str, str, tuple[str, ...]]]:
-        for route, text in itertools.product(ROUTES, written):
+        for (method, path, _), text in itertools.product(OF_EACH_GROUP, written):
             if text not in "\r\n ":  # those end the address, and so the request line
-                yield route.method, route.path + text, ()
-                yield route.method, route.path[:-1] + text + route.path[-1], ()
-                yield route.method, "/" + text + route.path[1:], ()
+                for place in (1, len(path) - 1, len(path)):
+                    yield method, path[:place] + text + path[place:], ()
+        for (method, path, _), text in itertools.product(ROUTES, encoded):
+            yield method, path + text, ()
         for method, path, text in itertools.product(methods, paths, SPELLINGS):
             yield method, spelled(path, text), ()
-        for route, one, other in itertools.product(ROUTES, SPELLINGS, SPELLINGS):
-            yield route.method, spelled(spelled(route.path, one).replace("{", "%7b").replace("}", "%7d"), other), ()
+        for (method, path, _), one, other in itertools.product(OF_EACH_GROUP, SPELLINGS, SPELLINGS):
+            yield method, spelled(spelled(path, one), other), ()
 
     count, found = admitted(guarded, attempts())
 
-    assert count > 200_000
+    assert count > 80_000
     assert found == []
