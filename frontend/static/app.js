@@ -306,7 +306,7 @@ document.addEventListener("input", (event) => {
 // What is saved is what the form says, although its answer may still be under way.
 document.addEventListener("submit", (event) => {
   const form = formOf();
-  if (!event.target.matches("form.save")) return;
+  if (!event.target.matches("form.save") || event.submitter?.hasAttribute("formaction")) return; // a file is of the answer
   if (form.matches("[data-waiting]") || document.querySelector("#problems > *")) {
     event.preventDefault();
     document.querySelector('#connection [data-state="unsaved"]').hidden = false;
