@@ -14,13 +14,15 @@ from collections.abc import Iterator
 from dataclasses import asdict, dataclass, field
 from itertools import count
 
-from tests.build import cycle, phase
+from tests.build import worked_example
 
 CONNECTIONS = 256
 AT_ONCE = 8
 """Connections by which capacity is measured: fewer than make an overload."""
 
-BODY = json.dumps(cycle(phase(40, 250, 0.3), phase(32, 500, 3.0), phase(20, 250, 0.4), pause_s=4.0)).encode()
+BODY = json.dumps(worked_example()).encode()
+"""Its answer is short, so that reading it costs the client less than the service."""
+
 REQUEST = (
     b"POST /api/v1/select HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Type: application/json\r\n"
     b"Content-Length: %d\r\n\r\n%s" % (len(BODY), BODY)
@@ -69,6 +71,9 @@ async def _ask(reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> in
     return int(head.split(None, 2)[1])
 
 
+Stream = tuple[asyncio.StreamReader, asyncio.StreamWriter]
+
+
 class _Load:
     def __init__(self, port: int, rate: float, seconds: float) -> None:
         self._port, self._rate, self._seconds = port, rate, seconds
@@ -77,8 +82,10 @@ class _Load:
         self._statuses: dict[int, int] = {}
 
     async def run(self) -> Outcome:
+        # Opened before: a server accepts few connections in a turn, and requests behind these are not yet its own.
+        streams = [await self._open() for _ in range(CONNECTIONS if self._rate else AT_ONCE)]
         self._start = time.perf_counter() + 0.2
-        await asyncio.gather(*(self._connection() for _ in range(CONNECTIONS if self._rate else AT_ONCE)))
+        await asyncio.gather(*map(self._connection, streams))
         latencies = sorted(self._latencies) or [math.nan]
         return Outcome(
             time.perf_counter() - self._start,
@@ -96,14 +103,16 @@ class _Load:
                 return
             yield moment
 
-    async def _connection(self) -> None:
-        stream = None
+    async def _open(self) -> Stream:
+        return await asyncio.open_connection("127.0.0.1", self._port)
+
+    async def _connection(self, stream: Stream | None) -> None:
         for moment in self._moments():
             if (early := moment - time.perf_counter()) > 0:
                 await asyncio.sleep(early)
                 moment = time.perf_counter()  # a timer that is late is no delay of the service
             try:
-                stream = stream or await asyncio.open_connection("127.0.0.1", self._port)
+                stream = stream or await self._open()
                 status = await _ask(*stream)
             except (OSError, asyncio.IncompleteReadError):
                 status, stream = 0, None
