@@ -240,7 +240,7 @@ def _candidates(evaluation: Evaluation, index: int) -> Iterator[Candidate]:
     asked = [one for one in evaluation.checked if one.asked[index]]
     codes = [one.check.code for one in evaluation.checked]
     u = evaluation.case.asked["requirements.utilisation"].item(index)
-    figures = (_row(getattr(evaluation.case.figures, name), index) for name in FIGURES)
+    figures = (getattr(evaluation.case.figures, name)[index] for name in FIGURES)
     terms = (values[index] for one in asked for values in (one.demand, one.limit, one.utilisation))
     columns = iter(
         _columns([evaluation.utilisation[index], *figures, *reserves(evaluation, index).values(), *terms], order)
@@ -275,11 +275,6 @@ def _candidates(evaluation: Evaluation, index: int) -> Iterator[Candidate]:
             reserve=own_reserve,
             checks=results,
         )
-
-
-def _row(figure: FloatArray, index: int) -> FloatArray:
-    row: FloatArray = figure[index if len(figure) > 1 else 0]
-    return row
 
 
 def _columns(values: Sequence[FloatArray], order: PlaceArray) -> list[list[float | None]]:
