@@ -180,5 +180,5 @@ def test_a_wrong_wish_is_told_once(api: TestClient) -> None:
 
 
 def test_what_is_not_allowed_here_says_what_is(api: TestClient) -> None:
-    assert set(api.put("/api/v1/selections").headers["allow"].split(", ")) == {"GET", "POST"}
-    assert set(api.put("/api/v1/selections/x").headers["allow"].split(", ")) == {"GET", "DELETE"}
+    assert set(api.put("/api/v1/selections").headers["allow"].split(", ")) == {"GET", "HEAD", "POST"}
+    assert set(api.put("/api/v1/selections/x").headers["allow"].split(", ")) == {"GET", "HEAD", "DELETE"}
