@@ -65,6 +65,7 @@ def test_a_load_exceeds_a_curve_by_the_factor_that_its_own_direction_says(point:
 def test_a_curve_of_two_points_is_a_straight_line() -> None:
     line = bearing.curve_through([(0, 50), (100, 0)])
 
+    assert line.radial_N.dtype == line.axial_N.dtype == np.float64
     assert line.equivalent_load(np.array([50.0]), np.array([25.0])).tolist() == [1]
 
 
