@@ -96,7 +96,7 @@ _PINT = {
 _SUFFIXES = {symbol: suffix for suffix, symbol in SYMBOLS.items()}
 _OF_CODE = {code: next(iter(units)) for units in CHOICES.values() for code in units}
 _SYMBOL = {code: symbol for units in CHOICES.values() for code, symbol in units.items()}
-NUMBER = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]{1,3})?")
+NUMBER = re.compile(r"[+-]?([0-9]+(\.[0-9]*)?|\.[0-9]+)([eE][+-]?[0-9]{1,3})?")
 
 
 @dataclass(frozen=True, slots=True)

@@ -155,6 +155,16 @@ def _link(page: str) -> str:
     return html.unescape(found[0])
 
 
+@pytest.mark.parametrize("mark", ["", ".", "-"])
+def test_digits_without_end_cost_their_length_and_not_its_square(api: TestClient, mark: str) -> None:
+    """20,000 digits in front of what is no digit held the process for 20 s, and a link may have three times as many."""
+    start = time.monotonic()
+    reply = api.get(f"/?T={mark}{'9' * 20_000}x&n=1&t=1", headers={"HX-Request": "true"})
+
+    assert reply.status_code == 422
+    assert time.monotonic() - start < 5
+
+
 @pytest.mark.parametrize("origin", ["http://[", "null", "", "http://"])
 def test_a_form_from_a_place_that_is_none_is_refused(api: TestClient, origin: str) -> None:
     assert api.post("/reader", data={"language": "de"}, headers={"origin": origin}).status_code == 403
