@@ -38,6 +38,8 @@ def test_lighthouse_finds_the_page_fast_accessible_and_sound(
     best = 0
     for _ in range(TRIES):
         scores = _audit(server + path, preset, tmp_path)
+        if not scores:
+            continue
         best = max(best, scores.pop("performance"))
         assert scores == {"accessibility": 100, "best-practices": 100, "seo": 100}
         if best >= PERFORMANCE[preset]:
@@ -46,6 +48,7 @@ def test_lighthouse_finds_the_page_fast_accessible_and_sound(
 
 
 def _audit(address: str, preset: str, folder: Path) -> dict[str, int]:
+    """Scores by category; none where the browser lost its trace, which happens on a busy machine: run it again."""
     report = folder / "report.json"
     command = [
         shutil.which("node", path=f"{NODE}{os.pathsep}{os.environ['PATH']}") or "node",
@@ -59,6 +62,7 @@ def _audit(address: str, preset: str, folder: Path) -> dict[str, int]:
         f"--chrome-flags=--headless=new --no-sandbox '{OFFLINE}'",
     ]
     chrome = {"CHROME_PATH": path} if (path := next(filter(None, map(shutil.which, BROWSERS)), None)) else {}
-    subprocess.run(command, check=True, env={**os.environ, **chrome}, timeout=180)
+    if subprocess.run(command, env={**os.environ, **chrome}, timeout=180).returncode:
+        return {}
     categories: dict[str, Any] = json.loads(report.read_text())["categories"]
     return {name: round(100 * category["score"]) for name, category in categories.items()}

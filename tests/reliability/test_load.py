@@ -58,7 +58,7 @@ def test_at_four_times_capacity_answers_come_soon_and_the_rest_is_refused(
     time.sleep(2)
     after = load(quiet.port, most / 10, 5 if soak else 1)
     for name, found in (("unloaded", unloaded), ("loaded", loaded), ("after", after)):
-        record_property(name, found)
+        record_property(name, repr(found))  # a worker of pytest sends plain values alone
         print(f"{name}: {found}")
 
     assert unloaded.refused == after.refused == 0
