@@ -147,10 +147,10 @@ for turn in range(turns):
 
 def test_memory_of_a_long_cycle_is_bounded_and_given_back(soak: bool) -> None:
     """typst by itself keeps the layout of the last ten reports: 3 GB of 10,000 phases."""
-    phases, turns, most = ("10000", "20", 500) if soak else ("2000", "3", 300)
+    phases, turns, most = ("10000", "20", 500) if soak else ("2000", "6", 300)
     run = [sys.executable, "-c", MEASURE, phases, turns]
     lines = subprocess.run(run, capture_output=True, text=True, check=True).stdout.splitlines()
     print(*lines, sep="\n")
     first, last = (int(line.split()[-1]) for line in (lines[0], lines[-1]))
     assert last < most
-    assert last < 1.2 * first
+    assert last < 1.5 * first

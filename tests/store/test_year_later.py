@@ -21,11 +21,11 @@ from hpn.store import Store, upgrade
 from hpn.web.app import create_app
 from hpn.web.settings import Settings
 from tests.build import Json, worked_example
-from tests.report.conftest import Recalculate, recalculate
+from tests.report.conftest import Recalculate, convert, recalculate
 from tests.report.test_workbook import assert_agrees
 from tests.store.drafts import change, draft
 
-__all__ = ["recalculate"]
+__all__ = ["convert", "recalculate"]
 
 FILES = ("report.pdf", "report.xlsx", "submodel.aasx")
 APPLICATION = worked_example(

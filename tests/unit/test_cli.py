@@ -7,6 +7,7 @@ import signal
 import socket
 import subprocess
 import sys
+from functools import partial
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -197,7 +198,9 @@ def test_what_a_shell_may_take_away_is_a_line_at_most(case: str) -> None:
 def test_an_interruption_ends_it_without_a_word(tmp_path: Path) -> None:
     os.mkfifo(tmp_path / "pipe")
     command = [sys.executable, "-m", "hpn.cli", "select", str(tmp_path / "pipe")]
-    process = subprocess.Popen(command, stderr=subprocess.PIPE)
+    # Whoever starts the tests in the background has interruptions ignored, which processes inherit.
+    heard = partial(signal.signal, signal.SIGINT, signal.default_int_handler)
+    process = subprocess.Popen(command, stderr=subprocess.PIPE, preexec_fn=heard)
     with process, (tmp_path / "pipe").open("wb"):  # opens when the command reads
         process.send_signal(signal.SIGINT)
         assert process.stderr and process.stderr.read() == b""
