@@ -72,7 +72,9 @@ def test_the_plots_own_data_equal_the_APIs(visitor: Visitor, playwright_driver: 
     assert curves(drawn(page)["data"]) == asked
 
 
-@pytest.mark.parametrize(("model", "axial"), [("linear", 0.0), ("linear", 400.0), ("iso281", 900.0)])
+@pytest.mark.parametrize(
+    ("model", "axial"), [("linear", 0.0), pytest.param("linear", 400.0, marks=pytest.mark.soak), ("iso281", 900.0)]
+)
 def test_verdict_changes_where_the_constant_load_crosses_the_drawn_curve(
     visitor: Visitor, playwright_driver: Playwright, model: str, axial: float
 ) -> None:

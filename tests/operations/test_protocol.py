@@ -21,7 +21,7 @@ from hpn.web.door.protocol import HEAD_BYTES, HEADER_COUNT, SENDING_BYTES, WAITI
 HEAD = b"POST / HTTP/1.1\r\nHost: x\r\nContent-Length: 4\r\n\r\n"
 
 
-HEAD_S = 3.0
+HEAD_S = 2.0
 STALLED_S = 1.0
 
 

@@ -19,7 +19,7 @@ from tests.operations.service import Service, serving
 from tests.reliability.test_kill import Clients, read_back
 
 WORKERS = 3
-WORKER_SECONDS = 6
+WORKER_SECONDS = 4
 """A busy machine needs some of it to start a process that answers."""
 
 STUCK = "import signal, time; signal.signal(signal.SIGUSR1, lambda *_: time.sleep(3600))"
