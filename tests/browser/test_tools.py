@@ -180,6 +180,7 @@ def test_keys_edit_rows_and_are_listed(visitor: Visitor) -> None:
     torque(page, 3).focus()
     page.keyboard.press("Alt+Delete")
     expect(torque(page, 3)).to_have_count(0)
+    expect(torque(page, 2)).to_be_focused()  # the row that takes the place of the removed one
     page.keyboard.press("Alt+Enter")
     expect(torque(page, 3)).to_be_focused()
     page.keyboard.type("?")
