@@ -330,13 +330,13 @@ class TestWithoutServer:
 def test_ordering_code_follows_what_is_chosen_and_survives_the_next_answer(visitor: Visitor) -> None:
     page = visitor.open(EXAMPLE)
     page.get_by_role("radio", name="J8").check(force=True)
-    page.get_by_label("Motor adaption").fill("bh-af1")
+    page.get_by_label("Motor adapter").fill("bh-af1")
     code = page.get_by_role("region", name="Ordering code").get_by_role("status")
     expect(code).to_have_text("HPN-20A-5-J8-BH-AF1")
     page.get_by_role("checkbox", name="7", exact=True).check(force=True)
     page.get_by_role("checkbox", name="5", exact=True).uncheck(force=True)
     expect(code).to_have_text("HPN-20A-7-J8-BH-AF1")
-    page.get_by_label("Motor adaption").fill("bh af1!")
+    page.get_by_label("Motor adapter").fill("bh af1!")
     expect(code).to_have_text("HPN-20A-7-J8")
     expect(page.get_by_text("letters and digits")).to_be_visible()
 

@@ -7,7 +7,7 @@ back. Names are the handbook's symbols, values are in the units of the API.
 import difflib
 import re
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 from urllib.parse import urlencode
 
@@ -18,6 +18,7 @@ from hpn.reader import Reader
 from hpn.units import suffix_of
 from hpn.web.door.access import MAXIMUM_QUERY_BYTES as MAXIMUM_QUERY_BYTES
 from hpn.web.form import numbers
+from hpn.web.form.labels import LABELS, faults_of, query_of
 from hpn.web.form.numbers import WAS, WRITTEN, read_value
 from hpn.web.form.symbols import (
     BY_NAME,
@@ -36,9 +37,6 @@ Pairs = Sequence[tuple[str, str]]
 PAGE_NAMES = ("gear", "pin", "unpin", "do", WRITTEN, WAS)
 """Parameters of the page alone: the candidate looked at, those pinned beside it (repeated), one to take away, and
 the buttons that edit the rows, one after the other."""
-
-ORDER_NAMES = ("order_output", "order_motor")
-"""What the ordering code is put together from, which no address keeps."""
 
 ROWS_IN_TABLE = 100
 """A longer duty cycle is edited as text: a field for each of its figures would weigh megabytes."""
@@ -91,8 +89,7 @@ class Form:
     written: str = ""
     was: str = ""
     typed: str | None = None
-    output: str = ""
-    motor: str = ""
+    labels: Mapping[str, str] = field(default_factory=lambda: dict.fromkeys(LABELS, ""))
 
     @property
     def long(self) -> bool:
@@ -118,7 +115,7 @@ def address_of_empty(form: Form) -> str:
     """Address of a form without a phase, with all else that it says."""
     lists = [(name, text) for name, texts in form.lists.items() for text in texts]
     given = [(name, text) for name, text in (*form.texts.items(), *lists) if text.strip()]
-    return "/?" + urlencode([("T", ""), ("n", ""), ("t", ""), *given])
+    return "/?" + urlencode([("T", ""), ("n", ""), ("t", ""), *given]) + query_of(form.labels)
 
 
 def parse(pairs: Pairs) -> Form:
@@ -147,14 +144,15 @@ def parse(pairs: Pairs) -> Form:
         problems=tuple(problems),
         application=None if problems else application,
         written=written,
-        output=given.page.get("order_output", ""),
-        motor=given.page.get("order_motor", ""),
+        labels={name: given.labels.get(name, [""])[0] for name in LABELS},
     )
 
 
 def in_wire_units(pairs: Pairs) -> tuple[Pairs, str]:
     """Pairs of a form as a link has them, and the marker of what they were written in: see `numbers`."""
-    return numbers.to_wire([(_UNSEEN.sub("", name), _UNSEEN.sub("", text)) for name, text in pairs], UNITS)
+    # In the texts of people such characters join emoji and letters.
+    seen = [(_UNSEEN.sub("", name), text if name in LABELS else _UNSEEN.sub("", text)) for name, text in pairs]
+    return numbers.to_wire(seen, UNITS)
 
 
 def for_reader(form: Form, reader: Reader) -> Form:
@@ -184,6 +182,7 @@ class _Given:
         self.columns: dict[str, list[str]] = {}
         self.scalars: dict[str, list[str]] = {}
         self.lists: dict[str, list[str]] = {}
+        self.labels: dict[str, list[str]] = {}
         self.page: dict[str, str] = {}
         self.presses: list[str] = []
         self.pins: list[str] = []
@@ -199,8 +198,10 @@ class _Given:
             self.presses.append(text)
         elif name == "pin":
             self.pins += [text.strip()] if text.strip() else []
-        elif name in PAGE_NAMES or name in ORDER_NAMES:
+        elif name in PAGE_NAMES:
             self.page[name] = text
+        elif name in LABELS:
+            self.labels.setdefault(name, []).append(text)
         elif name not in BY_NAME:
             self.unknown.append(name)
         elif text.strip():  # the plain form submits blank fields too: they count as absent
@@ -259,10 +260,12 @@ class _Given:
         """Names that are unknown, repeated, or repeated unequally often."""
         for name in self.unknown[:20]:
             yield FieldProblem(name[:60], None, _unknown(name))
-        for name, texts in self.scalars.items():
+        for name, texts in (*self.scalars.items(), *self.labels.items()):
             if len(texts) > 1:
                 listed = ", ".join(text.strip()[:20] for text in texts[:5])
                 yield FieldProblem(name, None, Sentence(N_("takes one value, given were {texts}"), {"texts": listed}))
+        for name, texts in self.labels.items():
+            yield from (FieldProblem(name, None, fault) for fault in faults_of(texts[0]))
         if self.columns and not self.presses:
             yield from self._unequal()
 
@@ -278,7 +281,7 @@ class _Given:
 
 def _unknown(name: str) -> Sentence:
     leaves = {s.path[-1].lower(): s.name for s in (*SYMBOLS, *PHASE_SYMBOLS)}
-    names = {known.lower(): known for known in (*PHASE_BY_NAME, *BY_NAME, *PAGE_NAMES)}
+    names = {known.lower(): known for known in (*PHASE_BY_NAME, *BY_NAME, *PAGE_NAMES, *LABELS)}
     near = difflib.get_close_matches(name[:60].lower(), leaves | names, n=1, cutoff=0.4)
     if not near:
         return Sentence(N_("{name} is not a parameter of this page"), {"name": name[:60]})

@@ -10,6 +10,7 @@ from typing import Literal
 from hpn.notices import AREAS
 from hpn.quantities import CANDIDATE, INPUTS, Named
 from hpn.units import suffix_of
+from hpn.web.form import labels
 from hpn.wording import N_
 
 Kind = Literal["number", "whole", "text"]
@@ -180,7 +181,9 @@ PHASE_BY_LEAF = {symbol.path[0]: symbol for symbol in PHASE_SYMBOLS}
 BY_NAME = {symbol.name: symbol for symbol in SYMBOLS}
 BY_PATH = {symbol.path: symbol for symbol in SYMBOLS}
 UNITS = {symbol.name: symbol.unit for symbol in (*PHASE_SYMBOLS, *SYMBOLS) if symbol.kind != "text" and not symbol.many}
-LABELS = {symbol.name: symbol.named.name for symbol in (*PHASE_SYMBOLS, *SYMBOLS)} | {
-    "gear": CANDIDATE["designation"].name
+LABELS = {
+    **{symbol.name: symbol.named.name for symbol in (*PHASE_SYMBOLS, *SYMBOLS)},
+    "gear": CANDIDATE["designation"].name,
+    **labels.LABELS,
 }
 """What a list of errors calls the fields of the form."""

@@ -17,10 +17,12 @@ from hpn.web.door.bodies import pairs_of
 from hpn.web.door.pools import worked
 from hpn.web.door.visit import current
 from hpn.web.form import read as links
+from hpn.web.form.labels import query_of
 from hpn.web.form.numbers import WRITTEN
 from hpn.web.form.read import FieldProblem, Form
 from hpn.web.form.write import to_link
 from hpn.web.pages.insight import Insight, checked_pins, insight_of, tail_of
+from hpn.web.pages.ordering import OrderingCode, ordering_code
 from hpn.web.pages.result import Result, lighter_miss, remedies_of
 from hpn.web.pages.templates import environment
 from hpn.wording import N_, Sentence
@@ -47,12 +49,17 @@ class MapCell:
 
 @dataclass(frozen=True, kw_only=True)
 class Answer(Result):
-    """The result of the live page, with the gears beside the chosen one."""
+    """The result of the live page, with the gears beside the chosen one.
+
+    `link` is the application alone, `address` all that the form says; `label_tail` is its end that gives labels.
+    """
 
     application: Application
     catalogue: Catalogue
     link: str
     address: str
+    label_tail: str
+    order: OrderingCode
     map: tuple[tuple[int, tuple[MapCell | None, ...]], ...]
     insight: Insight
     live: bool = True
@@ -116,6 +123,9 @@ def _answer(application: Application, form: Form, catalogue: Catalogue) -> Answe
     gear = catalogue.find(form.gear or selection.foremost.designation)
     assert gear is not None  # `answered` refuses what the catalogue lacks
     chosen, gears = everything[gear.designation], catalogue.by_designation
+    order = ordering_code(catalogue, gear, form.labels["order_output"], form.labels["order_motor"])
+    labels = query_of({**form.labels, **order.labels})
+    tail = tail_of(form.pins) + labels
     lighter = lighter_miss(selection, gears)
     listed = {candidate.designation: candidate for candidate in (*selection.candidates, chosen)}
     return Answer(
@@ -128,8 +138,10 @@ def _answer(application: Application, form: Form, catalogue: Catalogue) -> Answe
         lighter=lighter,
         link=link,
         choosing=f"{link}&gear=",
-        tail=tail_of(form.pins),
-        address=link + (f"&gear={gear.designation}" if form.gear else "") + tail_of(form.pins),
+        tail=tail,
+        address=link + (f"&gear={gear.designation}" if form.gear else "") + tail,
+        label_tail=labels,
+        order=order,
         map=_map(selection, everything, catalogue),
         insight=insight_of(application, selection, everything, chosen, lighter, form.pins, catalogue),
     )

@@ -1,4 +1,4 @@
-"""Ordering codes: `HPN-20A-5-J6-BH-AF1` is gear, output version and code for the motor adaption (table 9.1)."""
+"""Ordering codes: `HPN-20A-5-J6-BH-AF1` is gear, output version and code for the motor adapter (table 9.1)."""
 
 import re
 from dataclasses import dataclass
@@ -8,7 +8,7 @@ from hpn.gear import Gear
 from hpn.wording import N_
 
 MOTOR_CODE = r"[A-Za-z0-9]{1,8}([.\-][A-Za-z0-9]{1,8}){0,3}"
-"""Codes for the motor adaption look like `BH-AF1` or `xx.xx`; which one fits a motor only the maker says."""
+"""Codes for the motor adapter look like `BH-AF1` or `xx.xx`; which one fits a motor only the maker says."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -20,6 +20,11 @@ class OrderingCode:
     motor: str
     versions: tuple[OutputVersion, ...]
     problem: str | None = None
+
+    @property
+    def labels(self) -> dict[str, str]:
+        """What an address says of it: nothing of the version that stands there by itself."""
+        return {"order_output": "" if self.output == self.versions[0].code else self.output, "order_motor": self.motor}
 
 
 def ordering_code(catalogue: Catalogue, gear: Gear, output: str = "", motor: str = "") -> OrderingCode:

@@ -1,0 +1,89 @@
+"""What people write on a selection rides along: in the address, through every edit, and never in the canonical link."""
+
+import html
+import re
+from urllib.parse import parse_qsl, urlencode
+
+import pytest
+from starlette.testclient import TestClient
+
+from hpn.web.form.labels import LABELS
+
+CYCLE = [("T", "40"), ("n", "250"), ("t", "0.3")]
+WRITTEN = {"title": "Rotary table <7> & Ä", "ref": "4711-07", "author": "M. Muster", "rev": "B"}
+ORDERED = {"order_output": "J8", "order_motor": "BH-AF1"}
+GIVEN = [*CYCLE, *WRITTEN.items(), *ORDERED.items()]
+ADDRESS = "/?" + urlencode(GIVEN)
+
+
+def edit(api: TestClient, pairs: list[tuple[str, str]], target: str = "section#result") -> str:
+    """Address after an edit of the form, as htmx is told it."""
+    reply = api.get("/?" + urlencode(pairs), headers={"HX-Request": "true", "HX-Target": target})
+    return str(reply.headers["hx-push-url"])
+
+
+def labels_in(address: str) -> dict[str, str]:
+    return {name: text for name, text in parse_qsl(address.partition("?")[2]) if name in LABELS}
+
+
+@pytest.mark.parametrize(
+    "more",
+    [[], [("tp", "4")], [("gear", "HPN-32A-5")], [("pin", "HPN-20A-4")], [("do", "add")], [("written", "de")]],
+)
+def test_an_edit_keeps_what_is_written_on_the_selection(api: TestClient, more: list[tuple[str, str]]) -> None:
+    assert labels_in(edit(api, [*GIVEN, *more])) == WRITTEN | ORDERED
+
+
+def test_a_form_without_a_phase_keeps_it_too(api: TestClient) -> None:
+    blank = [(name, "") for name, _ in CYCLE]
+    assert labels_in(edit(api, [*blank, *WRITTEN.items()])) == WRITTEN
+
+
+def test_what_says_nothing_stands_in_no_address(api: TestClient) -> None:
+    blank = {name: " " for name in LABELS} | {"order_output": "J6"}
+    assert edit(api, [*CYCLE, *blank.items()]) == "/?T=40&n=250&t=0.3"
+
+
+def test_it_is_no_part_of_the_canonical_link(api: TestClient) -> None:
+    page = api.get(ADDRESS).text
+    assert 'href="/application.json?T=40&amp;n=250&amp;t=0.3"' in page
+
+
+def test_every_link_of_the_page_to_another_of_its_states_keeps_it(api: TestClient) -> None:
+    page = api.get(ADDRESS + "&pin=HPN-32A-5").text
+    to_states = [link for link in map(html.unescape, re.findall(r'href="(/\?[^"]*)"', page)) if "T=40" in link]
+    assert len(to_states) > 60
+    assert [link for link in to_states if labels_in(link) != WRITTEN | ORDERED] == []
+
+
+def test_the_page_of_a_gear_gives_it_back(api: TestClient) -> None:
+    to_gear = re.search(r'href="(/catalogue/HPN-20A-5\?[^"]*)"', api.get(ADDRESS + "&gear=HPN-20A-5").text)
+    assert to_gear
+    back = re.search(r'href="([^"]*)">Use in selection', api.get(html.unescape(to_gear[1])).text)
+    assert back and labels_in(html.unescape(back[1])) == WRITTEN | ORDERED
+
+
+@pytest.mark.parametrize("name", LABELS)
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("a\nb", "must not contain control characters or line breaks"),
+        ("a\u202eb", "must not contain control characters or line breaks"),
+        ("x" * 201, "takes at most 200 characters"),
+    ],
+)
+def test_what_cannot_be_written_on_it_is_named(api: TestClient, name: str, text: str, message: str) -> None:
+    reply = api.get("/?" + urlencode([*CYCLE, (name, text)]))
+    assert reply.status_code == 422
+    assert re.search(rf'href="#f-{name}">{LABELS[name]}</a>: <span>{message}', reply.text)
+
+
+def test_what_is_written_twice_is_asked_for_once(api: TestClient) -> None:
+    reply = api.get("/?" + urlencode([*CYCLE, ("title", "a"), ("title", "b")]))
+    assert reply.status_code == 422
+    assert "takes one value, given were a, b" in reply.text
+
+
+def test_joined_characters_stay_joined(api: TestClient) -> None:
+    family = "\U0001f468\u200d\U0001f469\u200d\U0001f467"
+    assert labels_in(edit(api, [*CYCLE, ("title", family)])) == {"title": family}
