@@ -9,7 +9,9 @@ from pathlib import Path
 from zipfile import ZipFile
 
 import jsonschema  # type: ignore[import-untyped]
+import openpyxl
 import pytest
+from pypdf import PdfReader
 from starlette.testclient import TestClient
 
 from hpn.application import WORKED_EXAMPLE
@@ -72,6 +74,35 @@ def test_language_is_asked_for_or_the_browsers(client: TestClient, saved: str) -
     assert (
         client.get(f"{saved}/report.pdf", headers={"Accept-Language": "xx;q=,,;"}).headers["content-language"] == "en"
     )
+
+
+def test_a_link_too_long_for_an_address_is_posted(client: TestClient) -> None:
+    for name in FILES:
+        posted = client.post(f"/{name}", data={"link": f"/?{QUERY}", "once": "x", "title": ""})
+        assert posted.content == client.get(f"/{name}?{QUERY}").content
+        wrong = client.post(f"/{name}", data={"link": "/?T=1,5&n=2&t=3"})
+        assert (wrong.status_code, wrong.json()["errors"][0]["pointer"]) == (422, "/T/0")
+
+
+def test_a_link_with_a_gear_makes_files_of_that_gear(client: TestClient) -> None:
+    for gear in ("HPN-32A-5", "HPN-20A-7"):  # the ratio of the second is not asked for
+        report = client.get(f"/report.pdf?{QUERY}&gear={gear}")
+        assert f'"{gear}.pdf"' in report.headers["content-disposition"]
+        assert f"Checks of {gear}" in PdfReader(BytesIO(report.content)).pages[1].extract_text()
+        book = openpyxl.load_workbook(BytesIO(client.get(f"/report.xlsx?{QUERY}&gear={gear}").content))
+        assert gear in [cell.value for cell in book.worksheets[0]["C"]]
+    unknown = client.get(f"/report.pdf?{QUERY}&gear=HPN-99A-5")
+    assert (unknown.status_code, unknown.json()["errors"][0]["pointer"]) == (422, "/gear")
+
+
+def test_a_report_is_in_the_language_and_units_of_its_reader(client: TestClient, saved: str) -> None:
+    cookies = {"Cookie": "hpn_language=de; hpn_units=lb_in.lbf"}
+    for address in (f"/report.pdf?{QUERY}", f"{saved}/report.pdf"):
+        report = client.get(address, headers=cookies)
+        first = PdfReader(BytesIO(report.content)).pages[0].extract_text()
+        assert report.headers["content-language"] == "de"
+        assert "lb·in" in first and "Nm" not in first.replace("Drehmoment in Nm", "")
+        assert "Cookie" in report.headers["vary"]
 
 
 @pytest.mark.parametrize("name", FILES)

@@ -34,7 +34,8 @@ class Export:
 
     `link` is absolute. `created` is when the selection was saved, in a time zone; None for one that is not saved, whose
     files then carry no date. `catalogue` gives the figures behind the selection; one of another version is not used,
-    and the files say so. `reply` is a saved selection as it was saved, to the byte.
+    and the files say so. `reply` is a saved selection as it was saved, to the byte. `chosen` is the gear that somebody
+    looks at instead of the foremost.
     """
 
     application: Application
@@ -45,6 +46,7 @@ class Export:
     created: datetime | None = None
     catalogue: Catalogue | None = None
     reply: bytes = b""
+    chosen: str = ""
 
     def __post_init__(self) -> None:
         """Replace what no file can hold, in texts that anybody may have written."""
@@ -53,8 +55,8 @@ class Export:
 
     @property
     def candidate(self) -> Candidate:
-        """The selected gear, or the nearest miss where none is suitable."""
-        return self.selection.foremost
+        """The gear that was chosen to be looked at, else the selected one or the nearest miss."""
+        return self.selection.candidate(self.chosen) or self.selection.foremost
 
     @cached_property
     def duty(self) -> Duty:

@@ -10,11 +10,11 @@ from starlette.requests import Request
 from hpn.catalogue import Catalogue
 from hpn.selection import decode, select
 from hpn.web.api import schemas
-from hpn.web.api.files import absolute, application_of
+from hpn.web.api.files import absolute
 from hpn.web.door.access import admit
-from hpn.web.door.bodies import pairs_of
 from hpn.web.door.pools import compute
 from hpn.web.door.problems import Problem
+from hpn.web.form.linked import linked
 from hpn.web.form.write import to_link
 from hpn.web.preview import Preview, preview_of
 
@@ -86,6 +86,6 @@ async def _preview_of(request: Request, url: str) -> Preview:
 
 
 def _linked(query: str, catalogue: Catalogue) -> Preview:
-    application = application_of(pairs_of(query))
+    application = linked(query).application
     link = to_link(application)
     return preview_of(select(application, catalogue, link), link)

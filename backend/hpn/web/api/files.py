@@ -1,12 +1,13 @@
 """Selections as files: report, workbook and Asset Administration Shell, of what is saved, posted, or in a link."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from typing import Annotated, Any, Literal
 
 import msgspec
 from fastapi import APIRouter, Depends, Query
+from msgspec import structs
 from pydantic import ValidationError
 from starlette.requests import Request
 from starlette.responses import Response
@@ -23,12 +24,11 @@ from hpn.store import SavedSelection
 from hpn.web.api import schemas
 from hpn.web.archive import url_of, with_catalogue
 from hpn.web.door.access import admit
-from hpn.web.door.bodies import pairs_of, parsed, read_body
+from hpn.web.door.bodies import parsed, read_body
 from hpn.web.door.conditions import etag_of, has_already
 from hpn.web.door.pools import compute
 from hpn.web.door.problems import Problem
-from hpn.web.door.readers import accepted_language
-from hpn.web.form import read as links
+from hpn.web.form.linked import linked, query_of
 from hpn.web.form.write import to_link
 from hpn.web.settings import Settings
 
@@ -116,7 +116,8 @@ def _route(file: File) -> None:
         return await _answer(request, file, lang, chosen, lambda: _computed(parsed(Application, body), request))
 
     async def of_link(request: Request, chosen: Chosen, lang: Lang = None) -> Response:
-        return await _answer(request, file, lang, chosen, lambda: _computed(linked_application(request), request))
+        query = await query_of(request)
+        return await _answer(request, file, lang, chosen, lambda: _linked(query, request))
 
     shared: dict[str, Any] = {"response_class": Response, "summary": file.summary}
     saved_files.add_api_route(
@@ -137,7 +138,7 @@ def _route(file: File) -> None:
         responses=content | schemas.problems(400, 408, 413, 415, 422, 503),
         **shared,
     )
-    linked_files.add_api_route(f"/{file.name}", of_link, **shared)
+    linked_files.add_api_route(f"/{file.name}", of_link, methods=["GET", "POST"], **shared)
 
 
 for _file in FILES:
@@ -190,23 +191,31 @@ def _computed(application: Application, request: Request) -> Export:
     return Export(application=application, selection=selection, link=absolute(request, link), catalogue=catalogue)
 
 
-def linked_application(request: Request) -> Application:
-    """Application of the request's query; Problem 422 names each parameter that can't be read."""
-    pairs = pairs_of(request.scope["query_string"].decode("latin-1"))
-    return application_of([(name, value) for name, value in pairs if name not in ("lang", "aas")])
+def _linked(query: str, request: Request) -> Export:
+    """What the live page shows of a link: the gear that is chosen there, though it be outside of what is asked for."""
+    link = linked(query, "lang", "aas")
+    export = _computed(link.application, request)
+    gear = request.app.state.catalogue.find(link.gear) if link.gear else None
+    if gear is not None:
+        return _of_gear(export, gear.designation)
+    if link.gear:
+        raise Problem(422, f"gear {link.gear[:40]!r} is not in the catalogue", [(("gear",), "is not in the catalogue")])
+    return export
 
 
-def application_of(pairs: links.Pairs) -> Application:
-    """Application of the parameters of a link; Problem 422 names each that can't be read."""
-    form = links.parse(pairs)
-    errors = [
-        ((problem.name, *(() if problem.index is None else (problem.index,))), problem.message.text)
-        for problem in form.problems
-    ]
-    if form.application is None:
-        listed = "; ".join(f"{location[0]} {text}" for location, text in errors[:3])
-        raise Problem(422, listed or "the link has no application: give T, n and t for each phase", errors)
-    return form.application
+def _of_gear(export: Export, designation: str) -> Export:
+    """An export that is about one gear; where the sizes and ratios asked for leave it out, it comes last."""
+    selection, application = export.selection, export.application
+    if selection.candidate(designation) is None:
+        assert export.catalogue is not None
+        free = application.requirements.model_copy(update={"ratios": None, "sizes": None})
+        every = select(application.model_copy(update={"requirements": free}), export.catalogue)
+        chosen = every.candidate(designation)
+        assert chosen is not None  # nothing is asked of its size and ratio
+        beyond = structs.replace(chosen, rank=None)
+        selection = structs.replace(selection, candidates=(*selection.candidates, beyond))
+    link = f"{export.link}&gear={designation}"
+    return replace(export, selection=selection, link=link, chosen=designation)
 
 
 def absolute(request: Request, path: str) -> str:
@@ -226,7 +235,7 @@ async def _answer(request: Request, file: File, lang: str | None, chosen: Option
         return content, file.named(export), etag_of(content)
 
     content, name, etag = await compute(request, "exports", work)
-    headers = {"ETag": etag, "Cache-Control": "no-cache", "Vary": "Accept-Language"}
+    headers = {"ETag": etag, "Cache-Control": "no-cache", "Vary": "Accept-Language, Cookie"}
     if request.method == "GET" and has_already(request, headers["ETag"]):
         return Response(status_code=304, headers=headers)
     headers |= {"Content-Language": reader.language, "Content-Disposition": f'{file.disposition}; filename="{name}"'}
@@ -234,5 +243,6 @@ async def _answer(request: Request, file: File, lang: str | None, chosen: Option
 
 
 def spoken(request: Request, lang: str | None) -> Reader:
-    """Reader of a file: the language asked for, else the browser's, in the units of the wire."""
-    return Reader(lang or accepted_language(request.headers.get("accept-language", "")), digits=DIGITS)
+    """Reader of a file: the language asked for, else who looks at the page, in their units."""
+    reader: Reader = request.state.reader
+    return replace(reader, language=lang or reader.language, digits=DIGITS)

@@ -41,6 +41,7 @@ class Readers:
             await self.app(scope, receive, send)
             return
         reader = reader_from(Headers(scope=scope))
+        scope.setdefault("state", {})["reader"] = reader  # for files, which the API makes too
         scope["headers"] = [header for header in scope["headers"] if header[0] != b"cookie"]
         if scope["path"].startswith(("/api/", "/static/")):
             await self.app(scope, receive, send)

@@ -1,0 +1,51 @@
+"""A link as files are made of it, from the address or posted: its application, and the gear that is looked at."""
+
+from dataclasses import dataclass
+
+from starlette.requests import Request
+
+from hpn.application import Application
+from hpn.web.door.bodies import pairs_of
+from hpn.web.door.problems import Problem
+from hpn.web.door.uploads import read_fields
+from hpn.web.form import read
+
+
+@dataclass(frozen=True, slots=True)
+class Link:
+    """What a link says: an application, the gear chosen among its candidates or none, and what a file may choose."""
+
+    application: Application
+    gear: str
+    options: dict[str, str]
+
+
+async def query_of(request: Request, *options: str) -> str:
+    """Query of the link in the address, or in the field `link` of a form, where it is too long for an address.
+
+    Of the form's other fields only `options` are taken.
+    """
+    if request.method != "POST":
+        query: bytes = request.scope["query_string"]
+        return query.decode("latin-1")
+    fields = await read_fields(request)
+    posted = "".join(f"&{name}={fields[name]}" for name in options if name in fields)
+    return fields.get("link", "").removeprefix("/").removeprefix("?") + posted
+
+
+def linked(query: str, *options: str) -> Link:
+    """What the query of a link says; Problem 422 names each parameter that can't be read."""
+    pairs = pairs_of(query)
+    form = read.parse([pair for pair in pairs if pair[0] not in options])
+    if form.application is None:
+        raise _unreadable(form)
+    return Link(form.application, form.gear, {name: value for name, value in pairs if name in options})
+
+
+def _unreadable(form: read.Form) -> Problem:
+    errors = [
+        ((problem.name, *(() if problem.index is None else (problem.index,))), problem.message.text)
+        for problem in form.problems
+    ]
+    listed = "; ".join(f"{location[0]} {text}" for location, text in errors[:3])
+    return Problem(422, listed or "the link has no application: give T, n and t for each phase", errors)
