@@ -1,9 +1,10 @@
-"""Units: what `_Nm` at the end of a field's name means, and what a reader may see in place of it.
+"""Units: what `_Nm` at the end of a field's name means, what a reader may see in place of it, and what people type.
 
-Units for display are converted exactly, by pint.
+Units are converted exactly, by pint.
 """
 
 import re
+import unicodedata
 from dataclasses import dataclass
 from decimal import ROUND_HALF_EVEN, Context, Decimal
 from fractions import Fraction
@@ -92,10 +93,39 @@ _PINT = {
     "mrad": "milliradian",
     "degC": "degC",
     "degF": "degF",
+    "kNm": "kilonewton * meter",
+    "Nmm": "newton * millimeter",
+    "Ncm": "newton * centimeter",
+    "mNm": "millinewton * meter",
+    "oz_in": "force_ounce * inch",
+    "rev_per_s": "revolution / second",
+    "kN": "kilonewton",
+    "daN": "decanewton",
+    "g": "gram",
+    "cm": "centimeter",
+    "m": "meter",
+    "arcsec": "arcsecond",
+    "deg": "degree",
+    "s": "second",
+    "ms": "millisecond",
+    "us": "microsecond",
+    "min": "minute",
+    "h": "hour",
 }
+FURTHER = {
+    "torque": {"kNm": "kNm", "Ncm": "Ncm", "Nmm": "Nmm", "mNm": "mNm", "oz_in": "oz·in"},
+    "speed": {"rev_per_s": N_("rev/s")},
+    "force": {"kN": "kN", "daN": "daN"},
+    "weight": {"g": "g"},
+    "length": {"cm": "cm", "m": "m"},
+    "angle": {"deg": "°", "arcsec": "arcsec"},
+    "time": {"s": "s", "ms": "ms", "us": "µs", "min": "min", "h": "h"},
+}
+"""Units that are read, beside those that are shown: what is measured -> codes with their symbols."""
+
 _SUFFIXES = {symbol: suffix for suffix, symbol in SYMBOLS.items()}
 _OF_CODE = {code: next(iter(units)) for units in CHOICES.values() for code in units}
-_SYMBOL = {code: symbol for units in CHOICES.values() for code, symbol in units.items()}
+_SYMBOL = {code: symbol for table in (FURTHER, CHOICES) for units in table.values() for code, symbol in units.items()}
 NUMBER = re.compile(r"[+-]?([0-9]+(\.[0-9]*)?|\.[0-9]+)([eE][+-]?[0-9]{1,3})?")
 
 
@@ -162,7 +192,13 @@ def measure(unit: str, chosen: tuple[str, ...]) -> Measure:
 @cache
 def _measure(suffix: str, chosen: tuple[str, ...]) -> Measure:
     whole = suffix.removesuffix("_per_rad")
-    code = next((code for code in chosen if _OF_CODE[code] == whole), whole)
+    return entered(suffix, next((code for code in chosen if _OF_CODE[code] == whole), whole))
+
+
+@cache
+def entered(suffix: str, code: str) -> Measure:
+    """Measure of a number that is given in the unit of a code, for a unit of the wire with the same dimension."""
+    whole = suffix.removesuffix("_per_rad")
     symbol = _SYMBOL.get(code, SYMBOLS.get(suffix, suffix)) + ("/rad" if whole != suffix else "")
     if code == whole:
         return Measure(symbol)
@@ -182,3 +218,108 @@ def codes_of(text: str) -> tuple[str, ...]:
     given = text[:200].split(".")
     first = {_OF_CODE[code]: code for code in reversed(given) if code in CODES}
     return tuple(code for code in CODES if code in first.values())
+
+
+# --- Units that people type -------------------------------------------------------------------------------------------
+
+READ = {name: {**CHOICES.get(name, {}), **FURTHER.get(name, {})} for name in (*CHOICES, "time")}
+"""What is measured -> codes of the units that it may be given in, with their symbols."""
+
+_SPELLED = {
+    "rpm": "rpm 1/min /min U/min Umdr/min Umdr./min r/min rev/min Upm tr/min giri/min varv/min min-1 omw/min ot/min",
+    "rev_per_s": "rev/s rev/sec U/s r/s rps tr/s giri/s varv/s 1/s /s s-1 Hz",
+    "rad_per_s": "rad/s rad/sec rads-1 1/s /s s-1",
+    "deg_per_s": "°/s deg/s deg/sec degree/s degrees/s Grad/s degs-1 °s-1",
+    "N": "N Newton newtons",
+    "kN": "kN",
+    "daN": "daN",
+    "lbf": "lbf lb lbs",
+    "kg": "kg",
+    "g": "g",
+    "lb": "lb lbs",
+    "mm": "mm",
+    "cm": "cm",
+    "m": "m",
+    "in": "in inch",
+    "arcmin": "arcmin '",
+    "arcsec": "arcsec",
+    "deg": "° deg Grad",
+    "mrad": "mrad",
+    "degC": "°C C degC",
+    "degF": "°F F degF",
+    "s": "s sec sec. secs Sek Sek. second seconds Sekunde Sekunden secondes secondi segundos sekunder",
+    "ms": "ms msec msecs Millisekunden milliseconds millisecondes",
+    "us": "µs us usec",
+    "min": "min min. mins minute minutes Minuten",
+    "h": "h hr hrs hour hours Std Std. Stunde Stunden heures",
+}
+_ARMS = {
+    "Nm": ("N", "m"),
+    "kNm": ("kN", "m"),
+    "Ncm": ("N", "cm"),
+    "Nmm": ("N", "mm"),
+    "mNm": ("mN", "m"),
+    "oz_in": ("ozf oz", "in"),
+    "lb_in": ("lbf lb lbs", "in"),
+    "lb_ft": ("lbf lb lbs", "ft"),
+}
+"""Units of torque as force and arm; inch and foot may stand first."""
+
+_PRODUCT = re.compile(r"(?<=[A-Za-z])[ .·⋅∙•*×_-]+(?=[A-Za-z])")
+_SUPERSCRIPT = re.compile(r"\^?\(?-1\)?$")
+
+
+def _spelling(text: str) -> str:
+    """A unit with one sign for a product and one way of writing `per`: `N.m`, `N-m` and `N·m` are `N·m`."""
+    tight = unicodedata.normalize("NFKC", text).strip().replace("\N{MINUS SIGN}", "-").replace("μ", "µ")
+    inverse = _SUPERSCRIPT.sub("-1", tight)
+    if inverse != tight or inverse.endswith("-1"):
+        return re.sub(r"[ .·⋅∙•*×^()]", "", inverse)
+    return re.sub(r" *([/]) *", r"\1", _PRODUCT.sub("·", tight))
+
+
+def _spellings() -> dict[str, tuple[str, ...]]:
+    found: dict[str, list[str]] = {}
+    for code, words in _SPELLED.items():
+        for word in words.split():
+            found.setdefault(_spelling(word), []).append(code)
+    for code, (forces, arm) in _ARMS.items():
+        for force in forces.split():
+            for first, second in ((force, arm), (arm, force))[: 2 if arm in ("in", "ft") else 1]:
+                found[f"{first}·{second}"] = found[f"{first}{second}"] = [code]
+                found[f"{first}·{second}s"] = [code]
+    found["Newtonmeter"] = found["Newton·meter"] = found["newton·metres"] = ["Nm"]
+    return {spelling: tuple(codes) for spelling, codes in found.items()}
+
+
+SPELLINGS = _spellings()
+"""A unit as people write it -> the codes that it may stand for: `1/s` may count revolutions or radians."""
+
+_FOLDED = {
+    spelling.casefold(): codes
+    for spelling, codes in SPELLINGS.items()
+    if len({other for each, other in SPELLINGS.items() if each.casefold() == spelling.casefold()}) == 1
+    and not spelling.startswith(("mN", "Ms"))  # M and m are a factor of a thousand million
+}
+QUANTITY_OF = {code: name for name, codes in READ.items() for code in codes}
+"""Code of a unit -> what it measures."""
+
+
+def codes_for(text: str, quantity: str = "") -> tuple[str, ...]:
+    """Codes that a unit as somebody writes it may stand for, of one quantity or any; several where it is ambiguous."""
+    if len(text) > 40:
+        return ()
+    spelling = _spelling(text)
+    codes = SPELLINGS.get(spelling) or _FOLDED.get(spelling.casefold(), ())
+    return tuple(code for code in codes if quantity in ("", QUANTITY_OF[code]))
+
+
+def quantity_of(suffix: str) -> str:
+    """What a unit of the wire measures, or blank for a pure number."""
+    whole = suffix.removesuffix("_per_rad")
+    return QUANTITY_OF.get(whole, "")
+
+
+def symbol_of_code(code: str) -> str:
+    """Symbol of a unit by its code."""
+    return _SYMBOL[code]

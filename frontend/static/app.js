@@ -215,7 +215,7 @@ document.addEventListener("htmx:after:swap", (event) => {
   for (const field of document.querySelectorAll('#application details:not([open]) [aria-invalid="true"]')) field.closest("details").open = true;
 });
 
-// The result lists what is wrong; each message stands beside the field that it names.
+// The result lists what is wrong; each message stands beside the field that it names, of a cell below its table.
 function mark() {
   const form = formOf();
   for (const message of form.querySelectorAll("p.error")) message.remove();
@@ -228,11 +228,14 @@ function mark() {
     if (!form.contains(field)) continue;
     const first = !field.hasAttribute("aria-invalid");
     const id = `e-${field.id.replace(/^f-/, "")}`;
-    const message = Object.assign(document.createElement("p"), { className: "error", textContent: (field.id === "phases" ? item : item.querySelector("span")).textContent });
-    if (field.matches("fieldset")) field.append(message);
+    const ofCell = field.closest("#duty");
+    const message = Object.assign(document.createElement("p"), { className: "error" });
+    message.append(...(ofCell || field.id === "phases" ? item : item.querySelector("span")).cloneNode(true).childNodes);
+    if (ofCell) document.getElementById("duty-errors").append(message);
+    else if (field.matches("fieldset")) field.append(message);
     else (field.closest(".control") ?? field).after(message);
     if (!first) continue;
-    message.id = id;
+    (ofCell ? message.querySelector("span") : message).id = id;
     field.setAttribute("aria-invalid", "true");
     describe(field, () => true, id);
   }

@@ -2,6 +2,7 @@
 
 A form that shows something else than the wire's units in plain notation says so in its field `written`. Nothing is lost
 on the way: a number that is shown shorter than it is stands in the field `was`, and counts as long as nobody edits it.
+A number may carry a unit of its own, `40 Nm`, or be a sum, `=40*2`: the wire has the plain number.
 """
 
 import re
@@ -10,8 +11,10 @@ from collections.abc import Iterable, Mapping, Sequence
 from math import isfinite
 from typing import NamedTuple
 
+from hpn import units as measures
 from hpn.reader import Reader
 from hpn.units import NUMBER, SYMBOLS
+from hpn.web.form.arithmetic import worked_out
 from hpn.web.form.symbols import Kind
 from hpn.wording import N_, Sentence
 
@@ -24,6 +27,12 @@ DIGITS = 5
 _GROUPED = re.compile(r"[+-]?[1-9][0-9]{0,2}(\.[0-9]{3})+")
 _LONGEST = 60
 """Characters of a text or a number."""
+
+_WITH_UNIT = re.compile(
+    r"(?P<number>.*?[0-9][.,]?(?:[eE][+-]?[0-9]{1,3})?)"
+    r"(?:\s+(?P<per>1\s?/[^0-9]+)|\s*(?P<unit>(?![eE][+-]?[0-9])(?:[^\W\d_]|[°'/])[^0-9]*(?:\^?\(?-1\)?)?))"
+)
+"""A number and its unit: letters, or one divided by something."""
 
 Units = Mapping[str, str]
 """Names of the fields that take numbers -> the suffix of their unit, blank for a pure number."""
@@ -54,10 +63,14 @@ def to_wire(pairs: Sequence[tuple[str, str]], units: Units) -> tuple[list[tuple[
     given = dict(reversed(pairs))
     reader = Reader.of_marker(given.get(WRITTEN, ""))
     plain = [(name, text) for name, text in pairs if name not in (WRITTEN, WAS)]
-    if not reader.marker:
-        return plain, ""
     known = _Known(reader, given.get(WAS, ""))
     return [(name, known.entry(text, units[name]) if name in units else text) for name, text in plain], reader.marker
+
+
+def split_unit(text: str) -> tuple[str, str]:
+    """Number and unit of a text such as `40 Nm`; the unit is blank where there is none."""
+    match = _WITH_UNIT.fullmatch(text)
+    return (match["number"], (match["per"] or match["unit"]).strip()) if match else (text, "")
 
 
 class _Known:
@@ -73,16 +86,51 @@ class _Known:
 
     def entry(self, text: str, unit: str) -> str:
         """A text of a field as an entry; what is no number stays as it is."""
-        plain = read_decimal(text, self.reader.decimal)
+        if not self.reader.marker and NUMBER.fullmatch(text):
+            return text
+        plain, measure = self._number(text, unit)
         if isinstance(plain, Sentence):
             return Entry(f"{text}?", text, plain)
         if plain is None:
             return text
-        measure = self.reader.measure(unit)
         if measure.same:
-            return Entry(plain, text)
-        value = self.was.get((unit, plain), measure.wire(plain))
+            return Entry(plain, text) if self.reader.marker or plain != text.strip() else text
+        own = measure is self.reader.measure(unit)
+        value = self.was.get((unit, plain), measure.wire(plain)) if own else measure.wire(plain)
         return Entry(_plain(value) if isfinite(value) else plain, text)
+
+    def _number(self, text: str, unit: str) -> tuple[str | Sentence | None, measures.Measure]:
+        """Number in plain notation and the unit that it is in; None where it is none, a message for what is wrong."""
+        own, decimal = self.reader.measure(unit), self.reader.decimal
+        if text.lstrip().startswith("="):
+            return worked_out(text.strip(), lambda number: read_decimal(number, decimal)), own
+        plain = read_decimal(text, decimal)
+        if plain is not None or len(text) > _LONGEST:
+            return plain, own
+        number, spelled = split_unit(text.strip())
+        plain = read_decimal(number, decimal)
+        if not spelled or plain is None or isinstance(plain, Sentence):
+            return plain if spelled else None, own
+        code = unit_code(spelled, unit)
+        return (code, own) if isinstance(code, Sentence) else (plain, measures.entered(unit, code))
+
+
+def unit_code(spelled: str, unit: str) -> str | Sentence:
+    """Code of a unit as somebody writes it, for a quantity in a unit of the wire, or what is wrong with it."""
+    quantity = measures.quantity_of(unit)
+    per_rad = unit.endswith("_per_rad")
+    codes = measures.codes_for(spelled.removesuffix("/rad") if per_rad else spelled, quantity) if quantity else ()
+    if len(codes) == 1 and spelled.endswith("/rad") >= per_rad:
+        return codes[0]
+    if len(codes) > 1:
+        first, second = (measures.symbol_of_code(code) for code in codes[:2])
+        return Sentence(N_("{unit} can be {first} or {second}"), {"unit": spelled, "first": first, "second": second})
+    if not quantity:
+        return Sentence(N_("takes a number without a unit"))
+    listed = ", ".join(f"{symbol}{'/rad' if per_rad else ''}" for symbol in measures.READ[quantity].values())
+    return Sentence(
+        N_("{unit} is not a unit of this quantity; it takes {units}"), {"unit": spelled[:20], "units": listed}
+    )
 
 
 def read_decimal(text: str, decimal: str) -> str | Sentence | None:

@@ -1,0 +1,101 @@
+"""A number typed with a unit of its own, or as a sum; the link carries the plain number."""
+
+import pytest
+
+from hpn import units
+from hpn.application import Application
+from hpn.reader import Reader
+from hpn.web.form import read as links
+from hpn.web.form.write import to_link
+
+
+def typed(name: str, text: str, written: str = "") -> Application | str:
+    given = {"T": "40", "n": "250", "t": "0.3"} | {name: text, "written": written}
+    form = links.parse([*given.items(), ("Tk", given.get("Tk", "50"))] if name != "Tk" else list(given.items()))
+    return form.application or form.problems[0].message.text
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "link"),
+    [
+        ("T", "40 Nm", "T=40&"),
+        ("T", "40Nm", "T=40&"),
+        ("T", "0.04 kNm", "T=40&"),
+        ("T", "100 lbf·in", "T=11.2984829028&"),
+        ("T", "-1e2 N.m", "T=-100&"),
+        ("n", "360 °/s", "n=60&"),
+        ("n", "250 min-1", "n=250&"),
+        ("n", "250 1/min", "n=250&"),
+        ("n", "250 /min", "n=250&"),
+        ("n", "4 rev/s", "n=240&"),
+        ("t", "300 ms", "t=0.3&"),
+        ("t", "2 min", "t=120&"),
+        ("Lh", "60 min", "&Lh=1"),
+        ("ta", "77 °F", "&ta=25"),
+        ("K3", "2 kNm/rad", "&K3=2000"),
+        ("T", "=40*2", "T=80&"),
+        ("T", "=0.1+0.2", "T=0.3&"),
+        ("T", "=-(12 - 3.5) / 2", "T=-4.25&"),
+        ("T", "=8÷4·3×2", "T=12&"),
+        ("Nk", "=10*100", "&Nk=1000"),
+    ],
+)
+def test_link_of_a_typed_unit_or_sum_carries_the_plain_number(name: str, text: str, link: str) -> None:
+    application = typed(name, text)
+    assert isinstance(application, Application), application
+    assert link in to_link(application) + ("&" if link.endswith("&") else "")
+
+
+@pytest.mark.parametrize(
+    ("text", "torque"), [("40,5 Nm", 40.5), ("=40,5*2", 9.15177115124), ("100", 11.2984829028), ("0,1 kNm", 100.0)]
+)
+def test_unit_of_its_own_counts_before_the_readers_and_a_sum_is_in_the_readers(text: str, torque: float) -> None:
+    application = typed("T", text, "de.lb_in")
+    assert isinstance(application, Application)
+    assert application.duty_cycle.phases[0].torque_Nm == torque
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "problem"),
+    [
+        ("T", "5 N", "N is not a unit of this quantity; it takes Nm, lb·in"),
+        ("T", "5 MNm", "MNm is not a unit"),
+        ("n", "5 1/s", "1/s can be rev/s or rad/s"),
+        ("fw", "1 Nm", "takes a number without a unit"),
+        ("K3", "5 Nm", "Nm is not a unit of this quantity; it takes Nm/rad"),
+        ("T", "=40,5*2", "can’t be worked out"),
+        ("T", "=", "can’t be worked out"),
+        ("T", "=2**3", "can’t be worked out"),
+        ("T", "=(2", "can’t be worked out"),
+        ("T", "=2 3", "can’t be worked out"),
+        ("T", "=__import__('os')", "can’t be worked out"),
+        ("T", "=" + "(" * 59, "can’t be worked out"),
+        ("T", "=" + "9" * 5000, "can’t be worked out"),
+        ("T", "=9e999*9e999*9e999*9e999*9e999", "is too large"),
+        ("T", "=1/(2-2)", "divides by zero"),
+        ("Nk", "=1/3", "must be a whole number"),
+    ],
+)
+def test_what_is_wrong_with_a_unit_or_a_sum_is_said(name: str, text: str, problem: str) -> None:
+    assert problem in str(typed(name, text))
+
+
+def test_ambiguous_number_with_a_unit_is_asked_about() -> None:
+    assert typed("T", "1.234 Nm", "de") == "write 1,234 or 1234"
+
+
+def test_every_unit_is_read_by_its_own_symbol() -> None:
+    for quantity, codes in units.READ.items():
+        for code, symbol in codes.items():
+            assert units.codes_for(symbol, quantity) == (code,), symbol
+
+
+@pytest.mark.parametrize("spelling", ["mN", "MN", "MNm", "nN", "", "-1", "Pa", "x" * 300])
+def test_what_is_no_known_unit_is_none(spelling: str) -> None:
+    assert units.codes_for(spelling) == ()
+
+
+def test_sum_stands_in_its_field_as_it_was_typed() -> None:
+    form = links.parse([("T", "=40*2"), ("n", "250"), ("t", "300 ms")])
+    shown = links.for_reader(form, Reader())
+    assert dict(shown.rows[0]) == {"T": "=40*2", "n": "250", "t": "300 ms"}
