@@ -1,6 +1,7 @@
 """The workbook: the whole selection with live formulas, so that a changed torque changes every figure behind it."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 from datetime import UTC, datetime
 from io import BytesIO
 from typing import Any
@@ -32,7 +33,8 @@ def workbook(export: Export, reader: Reader) -> bytes:
     created = export.created.astimezone(UTC).replace(tzinfo=None) if export.created else UNDATED
     book.set_properties({"title": export.title, "author": "HPN Select", "created": created})
     book.set_calc_mode("auto")
-    _fill(Book(book, export, reader, words(reader)))
+    wire = replace(reader, units=())
+    _fill(Book(book, export, wire, words(wire)))
     book.close()
     return file.getvalue()
 
