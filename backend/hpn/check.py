@@ -41,8 +41,8 @@ class Check:
     `asked` is the input whose presence asks for it, None for a check that is always made. Utilisation is demand over
     limit, limit over demand for a minimum, or what `share` gives. `limited_by` is the catalogue figure behind the
     limit, None where that is the user's own. `relation` is the check in the handbook's symbols. `moves` gives the power
-    with which the utilisation grows with each driver; `accepted` says what lets a check pass that none of them moves,
-    with the input of `asked` as its {value}.
+    with which the utilisation grows with each driver; `accepted` says which {value} of the input `asked` lets it pass
+    where none of them moves it, or none in closed form.
     """
 
     code: str

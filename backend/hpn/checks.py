@@ -307,6 +307,7 @@ CHECKS: tuple[Check, ...] = (
         limit=lambda c: c.asked["requirements.motor.peak_torque_Nm"],
         relation="T_max / (i · η) ≤ T_mot",
         moves={"torque": 1.0},
+        accepted=N_("the motor’s peak torque rises to {value}"),
     ),
     Check(
         code="motor_rated_torque",
@@ -333,6 +334,7 @@ CHECKS: tuple[Check, ...] = (
         limit=lambda c: c.asked["requirements.motor.rated_torque_Nm"],
         relation="T_rms / (i · η) ≤ T_mot,N",
         moves={"torque": 1.0},
+        accepted=N_("the motor’s rated torque rises to {value}"),
     ),
     Check(
         code="ambient_temperature",
@@ -377,7 +379,7 @@ CHECKS: tuple[Check, ...] = (
         limit=lambda c: c.asked["requirements.backlash_arcmin"],
         limited_by="backlash_arcmin",
         relation="j ≤ j_req",
-        accepted=N_("{value} backlash are accepted"),
+        accepted=N_("the backlash limit rises to {value}"),
     ),
     Check(
         code="torsional_stiffness",
@@ -398,7 +400,7 @@ CHECKS: tuple[Check, ...] = (
         limit=lambda c: c.asked["requirements.torsional_stiffness_Nm_per_rad"],
         limited_by="torsional_stiffness_Nm_per_rad",
         relation="K_3 ≥ K_3,req",
-        accepted=N_("a torsional stiffness of {value} is accepted"),
+        accepted=N_("the required torsional stiffness drops to {value}"),
     ),
     Check(
         code="weight",
@@ -419,7 +421,7 @@ CHECKS: tuple[Check, ...] = (
         limit=lambda c: c.asked["requirements.weight_kg"],
         limited_by="weight_kg",
         relation="m ≤ m_req",
-        accepted=N_("a weight of {value} is accepted"),
+        accepted=N_("the weight limit rises to {value}"),
     ),
     Check(
         code="length",
@@ -440,7 +442,7 @@ CHECKS: tuple[Check, ...] = (
         limit=lambda c: c.asked["requirements.length_mm"],
         limited_by="length_max_mm",
         relation="L_max ≤ L_req",
-        accepted=N_("a length of {value} is accepted"),
+        accepted=N_("the length limit rises to {value}"),
     ),
 )
 """In the order of the contract; a tie for governing goes to the first."""

@@ -11,7 +11,7 @@ from hpn import equations
 from hpn.catalogue import Catalogue
 from hpn.gear import Gear
 from hpn.selection import Candidate
-from hpn.wording import N_, Quantity, Sentence
+from hpn.wording import N_, Quantity, Sentence, listed
 
 Kind = Literal["figure", "percent", "words"]
 MOST_PINS = 4
@@ -184,7 +184,7 @@ def _housing_bolts(column: Column) -> Sentence | None:
         parts.append(Sentence("Ø\u00a0{diameter}", {"diameter": Quantity(bolts.pitch_diameter_mm, "mm", 4)}))
     if bolts.tightening_torque_Nm is not None:
         parts.append(Sentence("{torque}", {"torque": Quantity(bolts.tightening_torque_Nm, "Nm", 4)}))
-    return _listed(parts)
+    return listed(parts)
 
 
 def _clamp_bolts(column: Column) -> Sentence | None:
@@ -196,14 +196,7 @@ def _clamp_bolts(column: Column) -> Sentence | None:
         )
         for bolt in column.gear.clamp_bolts
     ]
-    return _listed(parts, Sentence(N_("{first} or {rest}")).template) if parts else None
-
-
-def _listed(parts: Sequence[Sentence], template: str = "{first}, {rest}") -> Sentence:
-    *early, joined = parts
-    for part in reversed(early):
-        joined = Sentence(template, {"first": part, "rest": joined})
-    return joined
+    return listed(parts, Sentence(N_("{first} or {rest}")).template) if parts else None
 
 
 # --- Best compromises -------------------------------------------------------------------------------------------------

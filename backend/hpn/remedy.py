@@ -1,32 +1,28 @@
-"""What would make a rejected gear fit, and how far the drivers of a suitable one may grow, in words.
+"""What would make a rejected gear fit, and how far the drivers of each check may grow, in words.
 
 Built on the reserve's powers (`hpn.reserve.MOVES`) and on a candidate of the reply. Every bound in a sentence is
 rounded to the safe side, so that following the words passes.
 """
 
 import math
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
-from functools import reduce
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from typing import Any
 
-from hpn.application import Application
+from hpn.application import Application, EmergencyStop
 from hpn.check import Driver
 from hpn.checks import BY_CODE
 from hpn.equations import ROUNDING
-from hpn.gear import Gear
 from hpn.reserve import MOVES
-from hpn.selection import Candidate
+from hpn.selection import Candidate, CheckResult
 from hpn.units import suffix_of
-from hpn.wording import N_, Quantity, Sentence, rounded
+from hpn.wording import N_, Quantity, Sentence, listed, rounded
 
 LIVES = ("life", "output_bearing_life")
 """Checks that two drivers move: slower running mends them as well as a smaller torque or load."""
 
-_MOTOR_TORQUES = {
-    "motor_peak_torque": N_("the motor's peak torque is at least {value}"),
-    "motor_rated_torque": N_("the motor's rated torque is at least {value}"),
-}
+MOTOR_TORQUES = ("motor_peak_torque", "motor_rated_torque")
+"""Checks that no closed form follows where the torque at the motor goes by an efficiency curve."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,8 +50,7 @@ def ways_of(candidate: Candidate, reserve_utilisation: float = 1.0) -> tuple[Way
         return ()
     u = reserve_utilisation
     used = {check.code: check.utilisation for check in candidate.checks if check.utilisation is not None}
-    curve = candidate.reserve.torque_factor is None  # motor torques that no closed form follows
-    torque, speed, load = (_needed(used, u, driver, curve) for driver in MOVES)
+    torque, speed, load = (_needed(used, u, driver, _follows_curve(candidate)) for driver in MOVES)
     life = _excess(used.get("life", 0.0) * torque ** (10 / 3) * speed / u)
     bearing = _excess(used.get("output_bearing_life", 0.0) * load * speed ** (1 / 3) / u)
     stop = _stop(candidate, u)
@@ -69,10 +64,15 @@ def _needed(used: Mapping[str, float], u: float, driver: Driver, curve: bool) ->
     rooms = [
         u / used[code]
         for code in MOVES[driver]
-        if code in used and code not in LIVES and not (curve and code in _MOTOR_TORQUES)
+        if code in used and code not in LIVES and not (curve and code in MOTOR_TORQUES)
         if _excess(used[code] / u) > 1
     ]
     return min(rooms, default=1.0)
+
+
+def _follows_curve(candidate: Candidate) -> bool:
+    """Whether motor torques go by the gear's efficiency curve, so that no closed form follows them."""
+    return candidate.reserve.torque_factor is None and any(candidate.check(code) for code in MOTOR_TORQUES)
 
 
 def _excess(relative: float) -> float:
@@ -87,6 +87,82 @@ def _stop(candidate: Candidate, u: float) -> tuple[float | None, int | None]:
         return None, None
     fewer = math.floor(u * (count.limit or 0) * (1 + ROUNDING)) if count and not torque else 0
     return candidate.reserve.emergency_stop_torque_Nm, fewer or None
+
+
+# --- Alternatives -----------------------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class Requirement:
+    """A limit of the user that has to change: the path of the input, its new value and the clause that says so."""
+
+    path: str
+    value: Quantity
+    clause: str
+
+
+@dataclass(frozen=True, slots=True)
+class Alternative:
+    """Changes that together make a rejected gear pass every check. Of the emergency stop it changes one thing."""
+
+    way: Way
+    requirements: tuple[Requirement, ...] = ()
+
+
+def alternatives_of(candidate: Candidate, reserve_utilisation: float = 1.0) -> tuple[Alternative, ...]:
+    """Alternatives that each make a rejected gear suitable.
+
+    None for one that is not rejected, where not every check can be judged, and where torques have to drop though the
+    motor's torque goes by a curve: what the motor has to give then is a matter of the curve.
+    """
+    if candidate.status != "unsuitable" or not candidate.is_judged:
+        return ()
+    ways, changed = ways_of(candidate, reserve_utilisation), tuple(_requirements(candidate, reserve_utilisation))
+    if _follows_curve(candidate) and any(way.torque < 1 for way in ways):
+        return ()
+    return tuple(Alternative(one, changed) for way in ways or (Way(),) for one in _by_stop(way))
+
+
+def _by_stop(way: Way) -> Iterable[Way]:
+    """The way with a smaller emergency stop, and where that suffices with fewer of them."""
+    yield replace(way, emergency_stop_count=None)
+    if way.emergency_stop_count is not None:
+        yield replace(way, emergency_stop_torque_Nm=None)
+
+
+_AMBIENT = (N_("the ambient temperature drops to {value}"), N_("the ambient temperature rises to {value}"))
+
+
+def _requirements(candidate: Candidate, u: float) -> Iterable[Requirement]:
+    """What has to be required instead, for the checks that no driver moves."""
+    for check in candidate.failing:
+        known = BY_CODE[check.code]
+        if known.asked is None or check.demand is None or check.limit is None:
+            continue
+        if known.kind == "range":
+            rises = check.demand < check.limit
+            value = Quantity(check.limit, "degC", 6, "up" if rises else "down")
+            yield Requirement(known.asked, value, _AMBIENT[rises])
+        elif known.accepted and (not known.moves or _follows_curve(candidate)):
+            least, allowed = known.kind == "minimum", known.allowed(u)
+            needed = check.demand * (allowed if least else 1 / allowed)
+            digits = 4 if known.moves else 6  # a computed figure, or a published one in full
+            shown = Quantity(needed, suffix_of(known.asked) or "", digits, "down" if least else "up")
+            yield Requirement(known.asked, shown, known.accepted)
+
+
+def tried(application: Application, alternative: Alternative) -> Application:
+    """The application changed by an alternative, with its figures as the words print them."""
+    changed = followed(application, alternative.way)
+    for requirement in alternative.requirements:
+        value = requirement.value
+        changed = _with(changed, requirement.path.split("."), float(rounded(value.value, value.digits, value.rounding)))
+    return changed
+
+
+def _with(model: Any, path: Sequence[str], value: float) -> Any:
+    name, *below = path
+    return model.model_copy(update={name: _with(getattr(model, name), below, value) if below else value})
 
 
 def followed(application: Application, way: Way) -> Application:
@@ -107,10 +183,17 @@ def followed(application: Application, way: Way) -> Application:
     if (given := application.output_load) is not None:
         loads = {name: _scaled(getattr(given, name), load) for name in ("radial_N", "axial_N")}
         parts["output_load"] = given.model_copy(update={k: v for k, v in loads.items() if v is not None})
-    if (stop := application.emergency_stop) is not None and way.emergency_stop_torque_Nm is not None:
-        limit = _printed(way.emergency_stop_torque_Nm, 4)
-        parts["emergency_stop"] = stop.model_copy(update={"torque_Nm": math.copysign(limit, stop.torque_Nm)})
+    if (stop := application.emergency_stop) is not None:
+        parts["emergency_stop"] = _stopped(stop, way)
     return application.model_copy(update=parts)
+
+
+def _stopped(stop: EmergencyStop, way: Way) -> EmergencyStop:
+    """The emergency stop with its largest torque, else with its largest number, else as it is."""
+    if way.emergency_stop_torque_Nm is not None:
+        limit = _printed(way.emergency_stop_torque_Nm, 4)
+        return stop.model_copy(update={"torque_Nm": math.copysign(limit, stop.torque_Nm)})
+    return stop if way.emergency_stop_count is None else stop.model_copy(update={"count": way.emergency_stop_count})
 
 
 def _printed(value: float, digits: int) -> float:
@@ -126,109 +209,65 @@ def _scaled(value: float | None, factor: float) -> float | None:
 
 # --- In words ---------------------------------------------------------------------------------------------------------
 
-_CLAUSES = {
-    "torque": (N_("the duty torques are at most {factor} of these"), N_("the duty torques at most {factor} of these")),
-    "speed": (N_("the speeds are at most {factor} of these"), N_("the speeds at most {factor} of these")),
-    "load": (N_("the output loads are at most {factor} of these"), N_("the output loads at most {factor} of these")),
+_DRIVERS = {
+    "torque": (N_("torques drop to {value}"), N_("torques to {value}")),
+    "speed": (N_("speeds drop to {value}"), N_("speeds to {value}")),
+    "load": (N_("output loads drop to {value}"), N_("output loads to {value}")),
 }
-"""What is asked of a driver, as the first clause of a sentence and as a later one."""
-
-_STOP = (N_("T_k is at most {limit}"), N_("T_k at most {limit}"))
-_FEWER = (
-    N_("T_k is at most {limit} or the number of stops at most {count}"),
-    N_("T_k at most {limit} or the number of stops at most {count}"),
-)
+_STOP_TORQUE = (N_("T_k drops to {value}"), N_("T_k to {value}"))
+_STOP_COUNT = (N_("N_k drops to {value}"), N_("N_k to {value}"))
+"""What drops to which value, as the first clause of a sentence and as a later one."""
 
 
-def remedy_of(candidate: Candidate, gear: Gear, reserve_utilisation: float = 1.0) -> Sentence | None:
-    """What makes a rejected gear fit; None for one that is suitable, and where not every check can be judged."""
-    if candidate.status != "unsuitable" or not candidate.is_judged:
+def remedy_of(candidate: Candidate, reserve_utilisation: float = 1.0) -> Sentence | None:
+    """What makes a rejected gear fit, all alternatives in one sentence; None where there is none."""
+    conditions = [condition_of(alternative) for alternative in alternatives_of(candidate, reserve_utilisation)]
+    if not conditions:
         return None
-    found, motors = ways_of(candidate, reserve_utilisation), list(_motors(candidate, reserve_utilisation))
-    if motors and any(way.torque < 1 for way in found):
-        return None  # what the motor has to give at a smaller torque is a matter of the curve
-    ways, accepted = [_way(way) for way in found], _joined([*motors, *_accepted(candidate, gear, reserve_utilisation)])
-    if not ways:
-        return Sentence(N_("Fits if {conditions}."), {"conditions": accepted}) if accepted else None
-    conditions = reduce(_or, ways)
-    if accepted is None:
-        return Sentence(N_("Fits if {conditions}."), {"conditions": conditions})
-    template = N_("Fits if {conditions}, and if {accepted}.")
-    if len(ways) > 1:
-        template = N_("Fits if {conditions}; either way only if {accepted}.")
-    return Sentence(template, {"conditions": conditions, "accepted": accepted})
+    if len(conditions) == 1:
+        return Sentence(N_("Fits if {conditions}."), {"conditions": conditions[0]})
+    numbered = [
+        Sentence("({number}) {condition}", {"number": number, "condition": condition})
+        for number, condition in enumerate(conditions, start=1)
+    ]
+    return Sentence(
+        N_("Fits if one of these holds: {conditions}."), {"conditions": listed(numbered, "{first}; {rest}")}
+    )
 
 
-def _way(way: Way) -> Sentence:
-    clauses: list[Sentence] = []
-    for driver, wording in _CLAUSES.items():
+def condition_of(alternative: Alternative) -> Sentence:
+    """The changes of an alternative as a list in words: `a, b and c`."""
+    *early, last = _clauses(alternative)
+    if not early:
+        return last
+    return Sentence(N_("{first} and {second}"), {"first": listed(early, "{first}, {rest}"), "second": last})
+
+
+def _clauses(alternative: Alternative) -> list[Sentence]:
+    way, changes = alternative.way, []
+    for driver, wording in _DRIVERS.items():
         if (factor := getattr(way, driver)) < 1:
-            clauses.append(Sentence(wording[bool(clauses)], {"factor": _bound(factor, "")}))
-    if (limit := way.emergency_stop_torque_Nm) is not None:
-        later = bool(clauses)
-        if way.emergency_stop_count:
-            values = {"limit": _bound(limit, "Nm", 4), "count": _bound(way.emergency_stop_count, "", 16)}
-            clauses.append(Sentence(_FEWER[later], values))
-        else:
-            clauses.append(Sentence(_STOP[later], {"limit": _bound(limit, "Nm", 4)}))
-    joined = _joined(clauses)
-    assert joined is not None  # `ways_of` leaves out a way that changes nothing
-    return joined
+            changes.append((wording, _bound(100 * factor, "percent")))
+    if way.emergency_stop_torque_Nm is not None:
+        changes.append((_STOP_TORQUE, _bound(way.emergency_stop_torque_Nm, "Nm", 4)))
+    if way.emergency_stop_count is not None:
+        changes.append((_STOP_COUNT, _bound(way.emergency_stop_count, "", 16)))
+    drops = [Sentence(wording[place > 0], {"value": value}) for place, (wording, value) in enumerate(changes)]
+    return drops + [Sentence(one.clause, {"value": one.value}) for one in alternative.requirements]
 
 
 def _bound(value: float, unit: str, digits: int = 3) -> Quantity:
     return Quantity(value, unit, digits, "down")
 
 
-def _motors(candidate: Candidate, u: float) -> Iterable[Sentence]:
-    """What the motor has to give where its torque follows an efficiency curve."""
-    if candidate.reserve.torque_factor is not None:
-        return
-    for check in candidate.failing:
-        if check.code in _MOTOR_TORQUES:
-            yield Sentence(_MOTOR_TORQUES[check.code], {"value": Quantity((check.demand or 0.0) / u, "Nm", 4, "up")})
-
-
-def _accepted(candidate: Candidate, gear: Gear, u: float) -> Iterable[Sentence]:
-    """What would have to be accepted of the gear as it is."""
-    for check in candidate.failing:
-        known = BY_CODE[check.code]
-        if check.code == "ambient_temperature":
-            low, high = gear.ambient_temperature_minimum_degC, gear.ambient_temperature_maximum_degC
-            assert low is not None and high is not None  # a check that fails was rated
-            values = {"low": Quantity(low, "degC", 4), "high": Quantity(high, "degC", 4)}
-            yield Sentence(N_("the ambient temperature lies between {low} and {high}"), values)
-        elif known.accepted:
-            unit, allowed = suffix_of(known.asked or "") or "", known.allowed(u)
-            least = known.kind == "minimum"
-            value = (check.demand or 0.0) * (allowed if least else 1 / allowed)
-            yield Sentence(known.accepted, {"value": Quantity(value, unit, 6, "down" if least else "up")})
-
-
-def _joined(clauses: list[Sentence]) -> Sentence | None:
-    """Clauses as a list in words: `a, b and c`."""
-    if not clauses:
-        return None
-    *early, last = clauses
-    if not early:
-        return last
-    joined = Sentence(N_("{first} and {second}"), {"first": early.pop(), "second": last})
-    for clause in reversed(early):
-        joined = Sentence(N_("{first}, {rest}"), {"first": clause, "rest": joined})
-    return joined
-
-
-def _or(first: Sentence, second: Sentence) -> Sentence:
-    return Sentence(N_("{first}, or if {second}"), {"first": first, "second": second})
-
-
-# --- Room -------------------------------------------------------------------------------------------------------------
+# --- Reserve ----------------------------------------------------------------------------------------------------------
 
 DRIVER_NAMES = {
     "torque": N_("All duty torques"),
     "speed": N_("All speeds"),
     "load": N_("All output loads"),
     "emergency_stop": N_("Emergency-stop torque"),
+    "emergency_stop_count": N_("Emergency stops"),
 }
 
 
@@ -272,7 +311,11 @@ def _room(driver: Driver, factor: float | None, used: Mapping[str, float | None]
             return Room(driver, None, Sentence(N_("not in closed form: the efficiency follows your curve")), None)
         return Room(driver, None, Sentence(N_("without limit")), None)
     first = max(full, key=lambda code: full[code] ** (1 / MOVES[driver][code]))
-    return Room(driver, factor, Sentence(N_("up to {factor} times"), {"factor": _bound(factor, "")}), first)
+    return Room(driver, factor, _up_to(factor), first)
+
+
+def _up_to(factor: float) -> Sentence:
+    return Sentence(N_("up to {limit}"), {"limit": _bound(100 * factor, "percent")})
 
 
 def _limit_of_stop(candidate: Candidate, largest: float, u: float) -> str:
@@ -280,3 +323,49 @@ def _limit_of_stop(candidate: Candidate, largest: float, u: float) -> str:
     check = candidate.check("momentary_peak_torque")
     full = check is not None and check.limit is not None and largest >= u * check.limit * (1 - ROUNDING)
     return "momentary_peak_torque" if full else "momentary_peak_count"
+
+
+@dataclass(frozen=True, slots=True)
+class Growth:
+    """How far one driver may grow until one check is at its limit, the rest unchanged; None without a limit."""
+
+    driver: str
+    factor: float | None
+
+    @property
+    def bound(self) -> Sentence:
+        """In words: `up to 249 %`, rounded down."""
+        return Sentence(N_("without limit")) if self.factor is None else _up_to(self.factor)
+
+
+def growths_of(candidate: Candidate, reserve_utilisation: float = 1.0) -> dict[str, tuple[Growth, ...]]:
+    """For each check of a candidate, how far every driver of it may grow until that very check is at its limit.
+
+    Below 1 where the check fails. Empty for a check that no driver moves, for one that is not rated, and for motor
+    torques that go by an efficiency curve, which no closed form follows.
+    """
+    curve = _follows_curve(candidate)
+    return {
+        check.code: () if curve and check.code in MOTOR_TORQUES else tuple(_growths(check, reserve_utilisation))
+        for check in candidate.checks
+    }
+
+
+def _growths(check: CheckResult, u: float) -> Iterable[Growth]:
+    if check.utilisation is None:
+        return
+    if check.code == "momentary_peak_torque":
+        yield _growth("emergency_stop", check.utilisation / u, 1.0)
+    elif check.code == "momentary_peak_count" and check.demand:
+        most = None if check.limit is None else math.floor(u * check.limit * (1 + ROUNDING))
+        yield Growth("emergency_stop_count", None if most is None else most / check.demand)
+    for driver, power in BY_CODE[check.code].moves.items():
+        yield _growth(driver, check.utilisation / u, power)
+
+
+def _growth(driver: str, full: float, power: float) -> Growth:
+    return Growth(driver, full ** (-1 / power) if full > _LEAST else None)
+
+
+_LEAST = 1e-99
+"""Share of a limit below which its inverse, to the power 3, would overflow: as good as without a limit."""

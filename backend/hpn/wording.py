@@ -1,7 +1,7 @@
 """Sentences with numbers in them: an English template, and values that each reader sees in their own units."""
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Literal, Union
 
@@ -96,3 +96,11 @@ class Sentence:
             for name, value in self.values.items()
         }
         return translate(self.template).format(**values)
+
+
+def listed(parts: Sequence[Sentence], template: str = "{first}, {rest}") -> Sentence:
+    """Sentences in a row, one behind the other by a template with `first` and `rest`."""
+    *early, joined = parts
+    for part in reversed(early):
+        joined = Sentence(template, {"first": part, "rest": joined})
+    return joined

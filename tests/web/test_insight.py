@@ -87,7 +87,7 @@ def test_full_pins_offer_no_more(client: TestClient) -> None:
 def test_rejected_gear_leads_with_its_remedy_and_offers_to_try_it(client: TestClient) -> None:
     html = client.get(EXAMPLE + "&gear=HPN-14A-5").text
     text = re.sub(r"<[^>]*>", "", html).replace("\u202f", " ")
-    assert text.count("Fits if the duty torques are at most 0.905 of these and Tk at most 107 Nm.") >= 3
+    assert text.count("Fits if torques drop to 90.5 % and Tk to 107 Nm.") >= 3
     link = re.search(r'href="([^"]*)">Try it', html)
     assert link
     tried = client.get(link[1].replace("&amp;", "&")).text

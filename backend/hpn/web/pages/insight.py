@@ -7,7 +7,7 @@ from urllib.parse import quote
 from hpn.application import Application
 from hpn.catalogue import Catalogue
 from hpn.comparison import MOST_PINS, Column, RowGroup, groups_of, undominated
-from hpn.remedy import Room, followed, rooms_of, ways_of
+from hpn.remedy import Room, alternatives_of, rooms_of, tried
 from hpn.selection import Candidate, Selection
 from hpn.web.form.read import FieldProblem, Form
 from hpn.web.form.write import to_link
@@ -18,7 +18,7 @@ from hpn.wording import N_, Sentence
 class Insight:
     """What belongs to the chosen gear; `pins` are the gears that the reader pinned beside it.
 
-    `try_out` is the link that follows the remedy of the chosen gear; None where it has none that changes the duty.
+    `try_out` is the link that follows the first alternative of the chosen gear's remedy; None where it has none.
     """
 
     rooms: tuple[Room, ...]
@@ -72,7 +72,7 @@ def insight_of(
 ) -> Insight:
     """What belongs to the chosen gear; `everything` holds every gear of the catalogue by designation."""
     u = application.requirements.utilisation
-    ways = ways_of(chosen, u) if chosen.status == "unsuitable" else ()
+    alternatives = alternatives_of(chosen, u)
     shown = [chosen, *(everything[pin] for pin in pins if pin != chosen.designation)]
     if not pins and (second := _second(selection, chosen, lighter)):
         shown.append(second)
@@ -80,7 +80,7 @@ def insight_of(
     titles = {code: definition.title for code, definition in selection.check_definitions.items()}
     return Insight(
         rooms=rooms_of(chosen, u),
-        try_out=to_link(followed(application, ways[0])) if ways else None,
+        try_out=to_link(tried(application, alternatives[0])) if alternatives else None,
         pins=pins,
         columns=columns,
         groups=groups_of(columns, selection.duty.maximum_torque_Nm, titles),

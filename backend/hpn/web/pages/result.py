@@ -81,7 +81,7 @@ def remedies_of(
 ) -> dict[str, Sentence | None]:
     """What would make each candidate fit, by designation, as far as its catalogue figures are known."""
     return {
-        candidate.designation: remedy_of(candidate, gears[candidate.designation], utilisation)
+        candidate.designation: remedy_of(candidate, utilisation)
         for candidate in candidates
         if candidate.designation in gears
     }
