@@ -24,8 +24,11 @@ class Quantity:
     rounding: Rounding = "nearest"
 
     def __str__(self) -> str:
-        """English, in the unit of the wire."""
-        return f"{rounded(self.value, self.digits, self.rounding)} {SYMBOLS.get(self.unit, '')}".rstrip()
+        """English, in the unit of the wire; a large number in full, `5830` in place of `5.83e+03`."""
+        number = rounded(self.value, self.digits, self.rounding)
+        if "e+" in number and abs(self.value) < 1e12:
+            number = f"{float(number):.0f}"
+        return f"{number} {SYMBOLS.get(self.unit, '')}".rstrip()
 
 
 def rounded(value: float, digits: int, rounding: Rounding = "nearest") -> str:
