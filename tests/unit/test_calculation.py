@@ -5,10 +5,10 @@ import pytest
 from hpn.application import Application
 from hpn.calculation import Step, calculation_of
 from hpn.calculation.formula import Constant, Term, Variable
+from hpn.calculation.mathml import mathml, with_numbers
 from hpn.catalogue import Catalogue
 from hpn.reader import Reader
 from hpn.selection import select
-from hpn.web.pages.mathml import mathml, with_numbers
 from tests.build import Json, cycle, phase, worked_example
 from tests.conftest import Supplement
 
