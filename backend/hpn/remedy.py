@@ -337,6 +337,11 @@ class Growth:
         """In words: `up to 249 %`, rounded down."""
         return Sentence(N_("without limit")) if self.factor is None else _up_to(self.factor)
 
+    @property
+    def share(self) -> Quantity | None:
+        """The same for a column of a table: 249 %."""
+        return None if self.factor is None else _bound(100 * self.factor, "percent")
+
 
 def growths_of(candidate: Candidate, reserve_utilisation: float = 1.0) -> dict[str, tuple[Growth, ...]]:
     """For each check of a candidate, how far every driver of it may grow until that very check is at its limit.

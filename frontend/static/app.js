@@ -35,7 +35,6 @@ document.addEventListener("htmx:config:request", (event) => {
   ctx.restores = restoring;
   ctx.asked = contentOf(form);
   if (press || restoring) underWay = ctx;
-  ctx.request.headers["HPN-Parts"] = [...document.querySelectorAll("[data-part][open]")].map((part) => part.id).join(" ");
 });
 
 document.addEventListener("htmx:finally:request", (event) => {
@@ -172,7 +171,7 @@ function showSteps() {
 function showAddress(ctx) {
   if (!ctx.hx?.pushurl) return;
   addressed = ctx.kept ? contentOf(formOf()) : ctx.asked;
-  history.replaceState(history.state, "", ctx.hx.pushurl);
+  history.replaceState(history.state, "", ctx.hx.pushurl + location.hash);
 }
 
 document.addEventListener("click", (event) => {
@@ -189,17 +188,6 @@ document.addEventListener("keydown", (event) => {
   step(key === "y" || event.shiftKey ? 1 : -1);
 });
 
-// A link within the page is no edit: it takes no entry of its own.
-document.addEventListener("click", (event) => {
-  const link = event.target.closest('a[href^="#"]');
-  if (!link || event.button || event.ctrlKey || event.metaKey || event.shiftKey || event.altKey) return;
-  event.preventDefault();
-  const { state } = history;
-  const address = location.pathname + location.search;
-  location.replace(link.hash);
-  history.replaceState(state, "", address);
-});
-
 // --- After every answer -----------------------------------------------------------------------------------------------
 
 document.addEventListener("htmx:after:swap", (event) => {
@@ -210,7 +198,6 @@ document.addEventListener("htmx:after:swap", (event) => {
     mark();
   }
   showSteps();
-  for (const part of document.querySelectorAll("[data-part][open]")) bring(part);
   // Nothing works unseen: what is wrong is unfolded.
   for (const field of document.querySelectorAll('#application details:not([open]) [aria-invalid="true"]')) field.closest("details").open = true;
 });
@@ -246,32 +233,6 @@ function describe(field, keep, added) {
   if (ids.length) field.setAttribute("aria-describedby", ids.join(" "));
   else field.removeAttribute("aria-describedby");
 }
-
-// --- Parts that come when somebody unfolds them -----------------------------------------------------------------------
-
-const addressOf = (part) => document.getElementById(part.id)?.getAttribute("hx-get");
-const isOutdated = (ctx) => ctx.partOf !== undefined && ctx.partOf !== addressOf(ctx.sourceElement);
-const bring = (part) => part.childElementCount === 1 && htmx.trigger(part, "unfold");
-
-document.addEventListener("toggle", (event) => event.target.open && event.target.matches("[data-part]") && bring(event.target), true);
-
-// What a part was asked for belongs to one answer: beside a later one it would be wrong.
-document.addEventListener("htmx:config:request", (event) => {
-  const { ctx } = event.detail;
-  if (ctx.sourceElement.matches("[data-part]")) ctx.partOf = addressOf(ctx.sourceElement);
-});
-
-document.addEventListener("htmx:before:swap", (event) => {
-  const { ctx } = event.detail;
-  if (isOutdated(ctx)) event.preventDefault();
-});
-
-// Whoever unfolded it still waits for the part of the later answer.
-document.addEventListener("htmx:finally:request", (event) => {
-  const { ctx } = event.detail;
-  const part = isOutdated(ctx) ? document.getElementById(ctx.sourceElement.id) : null;
-  if (part?.open) bring(part);
-});
 
 // --- Rows that are still being typed ----------------------------------------------------------------------------------
 

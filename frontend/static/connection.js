@@ -83,7 +83,7 @@ document.addEventListener("htmx:finally:request", (event) => event.detail.ctx ==
 // A cycle that no address holds would be lost with the page.
 let downloading = false;
 document.addEventListener("submit", (event) => {
-  downloading = event.submitter?.getAttribute("form") === "long-files";
+  downloading = Boolean(event.submitter?.hasAttribute("formaction"));
   setTimeout(() => (downloading = false), 1000);
 });
 addEventListener("beforeunload", (event) => {

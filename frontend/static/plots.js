@@ -150,14 +150,3 @@ async function save(plot, format) {
   ];
   await window.Plotly.downloadImage({ data, layout, config: CONFIG }, { format, width: 900, height: 640 + 20 * rows, scale: format === "png" ? 2 : 1, filename: plot.dataset.file });
 }
-
-// --- Links to an input that is folded away ----------------------------------------------------------------------------
-
-document.addEventListener("click", (event) => {
-  const link = event.target.closest('a[href^="#"]');
-  const field = link && document.getElementById(link.hash.slice(1));
-  if (!field?.matches("input, select")) return;
-  event.preventDefault();
-  field.closest("details")?.setAttribute("open", "");
-  field.focus();
-});

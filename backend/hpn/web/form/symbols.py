@@ -51,13 +51,17 @@ class Symbol:
 
 @dataclass(frozen=True, slots=True)
 class FormGroup:
-    """Inputs under one heading of the form, in its order; one that is folded opens where something is given in it."""
+    """Inputs under one heading of the form, in its order; one that is folded opens where something is given in it.
+
+    `short` is its name in the line of links at the top, blank where it has none.
+    """
 
     code: str
     title: str
     names: tuple[str, ...]
     folded: bool = True
     hint: str = ""
+    short: str = ""
 
     @property
     def symbols(self) -> tuple["Symbol", ...]:
@@ -161,9 +165,13 @@ SYMBOLS = (
 
 GROUPS = (
     FormGroup("stop", N_("Emergency stop"), ("Tk", "Nk"), folded=False),
-    FormGroup("wishes", N_("Wishes"), ("i", "size", "Lh", "rank"), folded=False, hint=N_("none chosen: any")),
-    FormGroup("limits", N_("Limits and surroundings"), ("u", "bl", "K3", "m", "L", "ta", "aa")),
-    FormGroup("motor", N_("Motor"), ("nm", "Tm", "Tmn", "eta")),
+    FormGroup(
+        "wishes",
+        N_("Constraints"),
+        ("i", "size", "Lh", "rank"),
+        folded=False,
+        hint=N_("none selected = all"),
+    ),
     FormGroup(
         "load",
         N_("Load on the output shaft"),
@@ -172,6 +180,14 @@ GROUPS = (
             "Radial at the centre of the shaft, axial along its axis. A load elsewhere can’t be judged from the "
             "published data."
         ),
+        short=N_("Loads"),
+    ),
+    FormGroup("motor", N_("Motor"), ("nm", "Tm", "Tmn", "eta"), short=N_("Motor")),
+    FormGroup(
+        "limits",
+        N_("Requirements and environment"),
+        ("u", "bl", "K3", "m", "L", "ta", "aa"),
+        short=N_("Requirements"),
     ),
 )
 """The form below its duty cycle, which the pause belongs to."""

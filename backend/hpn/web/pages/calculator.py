@@ -21,14 +21,17 @@ from hpn.web.form.labels import query_of
 from hpn.web.form.numbers import WRITTEN
 from hpn.web.form.read import FieldProblem, Form
 from hpn.web.form.write import to_link
-from hpn.web.pages.insight import Insight, checked_pins, insight_of, tail_of
+from hpn.web.pages.insight import Insight, checked_pins, tail_of
 from hpn.web.pages.ordering import OrderingCode, ordering_code
-from hpn.web.pages.result import Result, lighter_miss, remedies_of
+from hpn.web.pages.result import Result
 from hpn.web.pages.templates import environment
 from hpn.wording import N_, Sentence
 
-FOLDED = frozenset(("calculation", "stops_figure"))
-"""Parts of a result that come with an edit only where somebody has unfolded them, as the header HPN-Parts says."""
+SECTIONS = ("overview", "bearing", "candidates", "compare", "calculation", "notes")
+"""The result by sections, in their order."""
+
+PARTS = frozenset((*SECTIONS[1:], "stops_figure"))
+"""What comes with an edit only where it is in sight, as the header HPN-Parts says, and else is asked for by itself."""
 
 
 @dataclass(frozen=True)
@@ -122,28 +125,24 @@ def _answer(application: Application, form: Form, catalogue: Catalogue) -> Answe
     everything = _unrestricted(application, selection, catalogue)
     gear = catalogue.find(form.gear or selection.foremost.designation)
     assert gear is not None  # `answered` refuses what the catalogue lacks
-    chosen, gears = everything[gear.designation], catalogue.by_designation
     order = ordering_code(catalogue, gear, form.labels["order_output"], form.labels["order_motor"])
     labels = query_of({**form.labels, **order.labels})
     tail = tail_of(form.pins) + labels
-    lighter = lighter_miss(selection, gears)
-    listed = {candidate.designation: candidate for candidate in (*selection.candidates, chosen)}
     return Answer(
         selection=selection,
         application=application,
-        chosen=chosen,
+        chosen=everything[gear.designation],
         asked=bool(form.gear),
         catalogue=catalogue,
-        remedies=remedies_of(listed.values(), gears, application.requirements.utilisation),
-        lighter=lighter,
         link=link,
+        example=application == Application.worked_example(),
         choosing=f"{link}&gear=",
         tail=tail,
         address=link + (f"&gear={gear.designation}" if form.gear else "") + tail,
         label_tail=labels,
         order=order,
         map=_map(selection, everything, catalogue),
-        insight=insight_of(application, selection, everything, chosen, lighter, form.pins, catalogue),
+        insight=Insight(application, selection, everything, everything[gear.designation], form.pins, catalogue),
     )
 
 
@@ -170,17 +169,17 @@ def _map(
 
 
 def _parts(request: Request, form: Form) -> frozenset[str]:
-    """Parts that the answer is to bring: of a page all, of an edit what it changes and what is unfolded.
+    """Parts that the answer is to bring: of a page all, of an edit what it changes and what is in sight.
 
     Typing changes the result alone. Buttons that edit rows, and what takes the place of all inputs, change the form.
     """
     if "hx-request" not in request.headers:
-        return FOLDED | {"form", "result"}
+        return PARTS | {"form", "result"}
     _, _, target = request.headers.get("hx-target", "").partition("#")
-    if target in FOLDED:
+    if target in PARTS:
         return frozenset((target,))
-    unfolded = FOLDED.intersection(request.headers.get("hpn-parts", "").split())
-    return unfolded | ({"result"} if target == "result" and not form.focus else {"form", "result"})
+    seen = PARTS.intersection(request.headers.get("hpn-parts", "").split())
+    return seen | ({"result"} if target == "result" and not form.focus else {"form", "result"})
 
 
 def _render(request: Request, template: str, status: int, **context: Any) -> Response:

@@ -2,31 +2,67 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from urllib.parse import quote
 
 from hpn.application import Application
 from hpn.catalogue import Catalogue
 from hpn.comparison import MOST_PINS, Column, RowGroup, groups_of, undominated
-from hpn.remedy import Room, alternatives_of, rooms_of, tried
+from hpn.remedy import alternatives_of, tried
 from hpn.selection import Candidate, Selection
 from hpn.web.form.read import FieldProblem, Form
 from hpn.web.form.write import to_link
+from hpn.web.pages.result import lighter_miss
 from hpn.wording import N_, Sentence
 
 
 @dataclass(frozen=True)
 class Insight:
-    """What belongs to the chosen gear; `pins` are the gears that the reader pinned beside it.
+    """What belongs to the chosen gear, each worked out when a section asks for it.
 
-    `try_out` is the link that follows the first alternative of the chosen gear's remedy; None where it has none.
+    `everything` holds every gear of the catalogue by designation; `pins` are the gears that the reader pinned.
     """
 
-    rooms: tuple[Room, ...]
-    try_out: str | None
+    application: Application
+    selection: Selection
+    everything: Mapping[str, Candidate]
+    chosen: Candidate
     pins: tuple[str, ...]
-    columns: tuple[Column, ...]
-    groups: tuple[RowGroup, ...]
-    undominated: frozenset[str]
+    catalogue: Catalogue
+
+    @property
+    def try_out(self) -> str | None:
+        """Link that follows the first alternative of the chosen gear's remedy; None where it has none."""
+        alternatives = alternatives_of(self.chosen, self.application.requirements.utilisation)
+        return to_link(tried(self.application, alternatives[0])) if alternatives else None
+
+    @cached_property
+    def columns(self) -> tuple[Column, ...]:
+        """The gears side by side: the chosen one, and those pinned or else the one that comes next."""
+        shown = [self.chosen, *(self.everything[pin] for pin in self.pins if pin != self.chosen.designation)]
+        if not self.pins and (second := self._second()):
+            shown.append(second)
+        return tuple(Column(entry, self.catalogue.by_designation[entry.designation]) for entry in shown)
+
+    @property
+    def groups(self) -> tuple[RowGroup, ...]:
+        """The rows of the comparison."""
+        titles = {code: definition.title for code, definition in self.selection.check_definitions.items()}
+        return groups_of(self.columns, self.selection.duty.maximum_torque_Nm, titles)
+
+    @cached_property
+    def undominated(self) -> frozenset[str]:
+        """Suitable gears that no other one beats."""
+        return undominated(self.selection.candidates, self.catalogue)
+
+    def _second(self) -> Candidate | None:
+        """The gear to compare with where none is pinned: the nearest smaller miss, else the next in line."""
+        lighter = lighter_miss(self.selection, self.catalogue.by_designation)
+        others = [lighter] if lighter else []
+        others += [candidate for candidate in self.selection.candidates if candidate.status != "unrated"]
+        if self.chosen.designation != self.selection.foremost.designation:
+            others.insert(0, self.selection.foremost)
+        return next((other for other in others if other.designation != self.chosen.designation), None)
 
     def with_pin(self, designation: str) -> str:
         """Tail of a link that pins one more gear."""
@@ -59,39 +95,3 @@ def checked_pins(form: Form, catalogue: Catalogue) -> Form:
         text = N_("at most {most} gears can be pinned; the link gives {count}")
         problems.append(FieldProblem("pin", None, Sentence(text, {"most": MOST_PINS, "count": len(known)})))
     return replace(form, pins=known[:MOST_PINS], problems=(*form.problems, *problems))
-
-
-def insight_of(
-    application: Application,
-    selection: Selection,
-    everything: Mapping[str, Candidate],
-    chosen: Candidate,
-    lighter: Candidate | None,
-    pins: tuple[str, ...],
-    catalogue: Catalogue,
-) -> Insight:
-    """What belongs to the chosen gear; `everything` holds every gear of the catalogue by designation."""
-    u = application.requirements.utilisation
-    alternatives = alternatives_of(chosen, u)
-    shown = [chosen, *(everything[pin] for pin in pins if pin != chosen.designation)]
-    if not pins and (second := _second(selection, chosen, lighter)):
-        shown.append(second)
-    columns = tuple(Column(entry, catalogue.by_designation[entry.designation]) for entry in shown)
-    titles = {code: definition.title for code, definition in selection.check_definitions.items()}
-    return Insight(
-        rooms=rooms_of(chosen, u),
-        try_out=to_link(tried(application, alternatives[0])) if alternatives else None,
-        pins=pins,
-        columns=columns,
-        groups=groups_of(columns, selection.duty.maximum_torque_Nm, titles),
-        undominated=undominated(selection.candidates, catalogue),
-    )
-
-
-def _second(selection: Selection, chosen: Candidate, lighter: Candidate | None) -> Candidate | None:
-    """The gear to compare with where none is pinned: the nearest smaller miss, else the next in line."""
-    others = [lighter] if lighter else []
-    others += [candidate for candidate in selection.candidates if candidate.status != "unrated"]
-    if chosen.designation != selection.foremost.designation:
-        others.insert(0, selection.foremost)
-    return next((other for other in others if other.designation != chosen.designation), None)

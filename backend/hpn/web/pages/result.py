@@ -1,13 +1,17 @@
 """What a page shows of a selection, computed just now or saved: the partials of the templates read it."""
 
-from collections.abc import Iterable, Mapping
+import itertools
+import math
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 from hpn.application import Application, RankBy
 from hpn.catalogue import Catalogue
 from hpn.checks import BY_CODE, allowed
+from hpn.equations import ROUNDING
 from hpn.gear import Gear
-from hpn.remedy import remedy_of
+from hpn.remedy import Growth, growths_of, remedy_of
 from hpn.selection import Candidate, Selection
 from hpn.wording import N_, Sentence
 
@@ -24,14 +28,53 @@ BEST: Mapping[RankBy, str] = {
 LONGEST_REPEATED = 3000
 """Length of a link up to which a page may carry it hundreds of times."""
 
+LISTED_AT_ONCE = 8
+"""Suitable gears that the list shows before somebody unfolds the rest."""
+
+
+@dataclass(frozen=True, slots=True)
+class Life:
+    """A life in hours by the name of the check that it belongs to; None where it is unlimited."""
+
+    check: str
+    life_h: float | None
+
+
+@dataclass(frozen=True, slots=True)
+class RejectedSize:
+    """The rejected gears of one size, nearest miss first."""
+
+    size: str
+    candidates: tuple[Candidate, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class CandidateList:
+    """The candidates as they are listed: suitable ones in parts, rejected ones by size, nearest miss first.
+
+    `ties` are runs of suitable gears of one size that differ neither in what they are ranked by nor in weight and
+    utilisation, so that L10 alone orders them.
+    """
+
+    first: tuple[Candidate, ...]
+    more: tuple[Candidate, ...]
+    rejected: tuple[RejectedSize, ...]
+    unrated: tuple[Candidate, ...]
+    ties: tuple[tuple[Candidate, ...], ...]
+
+    @property
+    def count(self) -> int:
+        """Number of suitable gears."""
+        return len(self.first) + len(self.more)
+
 
 @dataclass(frozen=True, kw_only=True)
 class Result:
     """A selection, and the candidate that the page looks at; `asked` tells whether the reader chose it.
 
     `application` is None where it was saved by a version with other inputs. `catalogue` is the one that the selection
-    was made from, None where that is not kept. `choosing` and `tail` stand before and behind the designation in the
-    address that looks at another candidate.
+    was made from, None where that is not kept. `example` tells whether the application is the handbook's. `choosing`
+    and `tail` stand before and behind the designation in the address that looks at another candidate.
     """
 
     selection: Selection
@@ -39,11 +82,10 @@ class Result:
     chosen: Candidate
     asked: bool
     catalogue: Catalogue | None
-    remedies: Mapping[str, Sentence | None]
-    lighter: Candidate | None
     choosing: str
     tail: str = ""
     live: bool = False
+    example: bool = False
 
     @property
     def gears(self) -> Mapping[str, Gear]:
@@ -71,20 +113,60 @@ class Result:
         return self.application.requirements.utilisation if self.application else 1.0
 
     @property
+    def rank_by(self) -> RankBy:
+        """What the candidates are ranked by."""
+        return self.application.rank_by if self.application else "weight"
+
+    @cached_property
+    def lighter(self) -> Candidate | None:
+        """The nearest miss that is lighter than the selected gear."""
+        return lighter_miss(self.selection, self.gears)
+
+    @property
+    def shortest_life(self) -> Life | None:
+        """The shortest L10 of the chosen gear, its own or its output bearing's; None where none is known."""
+        chosen, lives = self.chosen, []
+        if chosen.life_L10_h is not None or chosen.is_unlimited("life_L10_h"):
+            lives.append(Life("life", chosen.life_L10_h))
+        bearing = chosen.check("output_bearing_life")
+        if bearing and bearing.status != "not_rated":
+            lives.append(Life("output_bearing_life", chosen.bearing_life_L10_h))
+        return min(lives, key=lambda life: math.inf if life.life_h is None else life.life_h, default=None)
+
+    @cached_property
+    def listed(self) -> CandidateList:
+        """The candidates as they are listed."""
+        by_status: dict[str, list[Candidate]] = {"suitable": [], "unsuitable": [], "unrated": []}
+        for candidate in self.selection.candidates:
+            by_status[candidate.status].append(candidate)
+        suitable = tuple(by_status["suitable"])
+        sizes: dict[str, list[Candidate]] = {}
+        for candidate in by_status["unsuitable"]:
+            sizes.setdefault(candidate.size, []).append(candidate)
+        return CandidateList(
+            first=suitable[:LISTED_AT_ONCE],
+            more=suitable[LISTED_AT_ONCE:],
+            rejected=tuple(RejectedSize(size, tuple(group)) for size, group in sizes.items()),
+            unrated=tuple(by_status["unrated"]),
+            ties=_ties(suitable, self.rank_by),
+        )
+
+    def remedy(self, designation: str) -> Sentence | None:
+        """What would make a candidate fit, as far as its catalogue figures are known."""
+        gear, candidate = self.gears.get(designation), self.selection.candidate(designation)
+        if designation == self.chosen.designation:
+            candidate = self.chosen  # which may stand outside the ratios and sizes that were asked for
+        return remedy_of(candidate, self.utilisation) if gear and candidate else None
+
+    @property
+    def growths(self) -> Mapping[str, tuple[Growth, ...]]:
+        """How far every driver of each check of the chosen candidate may grow until that check is at its limit."""
+        return growths_of(self.chosen, self.utilisation)
+
+    @property
     def linked(self) -> bool:
         """Whether that address is short enough to stand once for each gear."""
         return len(self.choosing) <= LONGEST_REPEATED
-
-
-def remedies_of(
-    candidates: Iterable[Candidate], gears: Mapping[str, Gear], utilisation: float
-) -> dict[str, Sentence | None]:
-    """What would make each candidate fit, by designation, as far as its catalogue figures are known."""
-    return {
-        candidate.designation: remedy_of(candidate, utilisation)
-        for candidate in candidates
-        if candidate.designation in gears
-    }
 
 
 def lighter_miss(selection: Selection, gears: Mapping[str, Gear]) -> Candidate | None:
@@ -102,3 +184,15 @@ def lighter_miss(selection: Selection, gears: Mapping[str, Gear]) -> Candidate |
 def _weight(designation: str | None, gears: Mapping[str, Gear]) -> float | None:
     gear = gears.get(designation or "")
     return gear.weight_kg if gear else None
+
+
+def _ties(suitable: Sequence[Candidate], rank_by: RankBy) -> tuple[tuple[Candidate, ...], ...]:
+    if rank_by in ("life", "motor_torque"):
+        return ()  # these differ from ratio to ratio
+    runs = (tuple(run) for _, run in itertools.groupby(suitable, lambda c: (c.size, c.stages, _rounded(c.utilisation))))
+    return tuple(run for run in runs if len(run) > 1)
+
+
+def _rounded(utilisation: float | None) -> int | None:
+    """A utilisation as a number of roundings, which is the same for what differs in its last bits alone."""
+    return None if utilisation is None else round(utilisation / (1000 * ROUNDING))

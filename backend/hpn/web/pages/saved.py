@@ -33,7 +33,7 @@ from hpn.web.form import read as links
 from hpn.web.pages import calculator
 from hpn.web.pages.gear_figures import Figure, figures_of
 from hpn.web.pages.long_cycles import expanded
-from hpn.web.pages.result import Result, lighter_miss, remedies_of
+from hpn.web.pages.result import Result
 from hpn.web.pages.templates import environment
 from hpn.wording import N_
 
@@ -177,16 +177,13 @@ def _page(reopened: Reopened, designation: str, catalogue: Catalogue) -> dict[st
 
 def _result(reopened: Reopened, designation: str) -> Result:
     selection, then, application = reopened.selection, reopened.then, reopened.application
-    chosen, gears = selection.candidate(designation), then.by_designation if then else {}
-    u = application.requirements.utilisation if application else 1.0
+    chosen = selection.candidate(designation)
     return Result(
         selection=selection,
         application=application,
         chosen=chosen or selection.foremost,
         asked=chosen is not None,
         catalogue=then,
-        remedies=remedies_of(selection.candidates, gears, u),
-        lighter=lighter_miss(selection, gears),
         choosing=f"{url_of(reopened.saved.id)}?gear=",
     )
 

@@ -1,0 +1,84 @@
+// Sections of the result: one at a time on a wide screen, one below the other on a narrow one. What is not in sight is left out
+// of an answer and asked for when it comes into sight.
+
+const wide = matchMedia("(min-width: 1024px)");
+const AHEAD = 400; // pixels below the edge of the window that count as in sight
+
+const isPart = (element) => element.matches("[data-part]");
+const isSeen = (part) => part.checkVisibility() && (part.localName !== "details" || part.open) && part.getBoundingClientRect().top < innerHeight + AHEAD;
+const isEmpty = (part) => part.childElementCount === 1;
+const addressOf = (part) => document.getElementById(part.id)?.getAttribute("hx-get");
+const bring = (part) => isEmpty(part) && isSeen(part) && htmx.trigger(part, "unfold");
+
+// --- Which one is shown -----------------------------------------------------------------------------------------------
+
+const sectionOf = (element) => element?.closest(".section")?.id;
+
+function show(id) {
+  document.querySelector("main").dataset.section = id;
+  mark();
+}
+
+function mark() {
+  const { section } = document.querySelector("main").dataset;
+  for (const tab of document.querySelectorAll(".tabs a")) {
+    if (wide.matches && tab.hash === `#${section}`) tab.setAttribute("aria-current", "true");
+    else tab.removeAttribute("aria-current");
+  }
+}
+
+// A link within the page is no edit, and takes no entry of the history. What it leads to is shown: its section, its fold. The
+// address keeps a section, so that a reload comes back to it.
+document.addEventListener("click", (event) => {
+  const link = event.target.closest('a[href^="#"]');
+  const target = link && document.getElementById(link.hash.slice(1));
+  if (!target || event.button || event.ctrlKey || event.metaKey || event.shiftKey || event.altKey) return;
+  event.preventDefault();
+  const section = sectionOf(target);
+  if (section) {
+    show(section);
+    history.replaceState(history.state, "", `${location.pathname}${location.search}${section === "overview" ? "" : `#${section}`}`);
+  }
+  target.closest("details")?.setAttribute("open", "");
+  if (wide.matches && target.id === section) scrollTo({ top: 0 });
+  else target.scrollIntoView({ block: target.matches("input, select") ? "center" : "start" });
+  if (!link.matches(".tabs a")) target.focus({ preventScroll: true });
+});
+
+wide.addEventListener("change", mark);
+show(sectionOf(document.getElementById(location.hash.slice(1))) ?? "overview");
+
+// --- What is in sight -------------------------------------------------------------------------------------------------
+
+document.addEventListener("htmx:config:request", (event) => {
+  const { ctx } = event.detail;
+  if (ctx.sourceElement.id === "application") {
+    ctx.request.headers["HPN-Parts"] = [...document.querySelectorAll("[data-part]")].filter(isSeen).map((part) => part.id).join(" ");
+  } else if (isPart(ctx.sourceElement)) ctx.partOf = addressOf(ctx.sourceElement);
+});
+
+const watcher = new IntersectionObserver((entries) => entries.forEach(({ target, isIntersecting }) => isIntersecting && bring(target)), { rootMargin: `0px 0px ${AHEAD}px` });
+
+function watch() {
+  for (const part of document.querySelectorAll("[data-part]")) {
+    watcher.observe(part); // once more does no harm
+    bring(part);
+  }
+}
+
+document.addEventListener("toggle", (event) => isPart(event.target) && bring(event.target), true);
+document.addEventListener("htmx:after:swap", () => {
+  mark();
+  watch();
+});
+watch();
+
+// What a part was asked for belongs to one answer: beside a later one it would be wrong, and is asked for once more.
+const isOutdated = (ctx) => ctx.partOf !== undefined && ctx.partOf !== addressOf(ctx.sourceElement);
+
+document.addEventListener("htmx:before:swap", (event) => isOutdated(event.detail.ctx) && event.preventDefault());
+document.addEventListener("htmx:finally:request", (event) => {
+  const { ctx } = event.detail;
+  const part = isOutdated(ctx) ? document.getElementById(ctx.sourceElement.id) : null;
+  if (part) bring(part);
+});
