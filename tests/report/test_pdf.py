@@ -11,6 +11,7 @@ from pypdf import PdfReader
 
 from hpn.catalogue import Catalogue
 from hpn.reader import Reader
+from hpn.readings import readings_of
 from hpn.report.pdf import pdf
 from hpn.report.tables import MOST_PHASES
 from tests.build import worked_example
@@ -78,10 +79,13 @@ def test_every_check_stands_in_the_report_with_its_figures(
     table = page[: page.index(reader.text("Published figures of {gear}").partition(" {")[0])]
     titles = [reader.text(export.selection.check_definitions[check.code].title) for check in export.candidate.checks]
     starts = [_position(table, title) for title in titles]
+    definitions = export.selection.check_definitions
+    readings = readings_of(export.candidate, definitions, export.application, catalogue)
     for check, start, end in zip(export.candidate.checks, starts, [*starts[1:], len(table)], strict=True):
         row = table[start:end]
         shown = numbers(row, decimal)
-        for value in (check.demand, check.limit, check.utilisation and 100 * check.utilisation):
+        read = readings[check.code]
+        for value in (read.demand, read.limit, check.utilisation and 100 * check.utilisation):
             # Four digits are printed; a percentage has at least one behind the decimal mark.
             close = (abs(number - value) <= max(6e-4 * abs(value), 0.051) for number in shown if value is not None)
             assert value is None or any(close), (check, row)

@@ -3,8 +3,8 @@
 from collections.abc import Mapping
 from typing import Any
 
-from hpn.checks import BY_CODE
 from hpn.reader import Reader
+from hpn.readings import Reading, readings_of
 from hpn.report.export import Export
 from hpn.report.symbols import formula, sentence
 from hpn.report.words import bound_of, exact_percent, measured, origin, title_of, used
@@ -67,17 +67,22 @@ def verdict(export: Export, reader: Reader) -> dict[str, Any]:
 
 def checks(export: Export, reader: Reader) -> list[dict[str, Any]]:
     """Every check of the reported gear."""
-    return [_check(export, check, reader) for check in export.candidate.checks]
+    readings = _readings(export, export.candidate)
+    return [_check(export, check, readings[check.code], reader) for check in export.candidate.checks]
 
 
-def _check(export: Export, check: CheckResult, reader: Reader) -> dict[str, Any]:
+def _readings(export: Export, candidate: Candidate) -> dict[str, Reading]:
+    return readings_of(candidate, export.selection.check_definitions, export.application, export.figures)
+
+
+def _check(export: Export, check: CheckResult, read: Reading, reader: Reader) -> dict[str, Any]:
     definition, bound = export.selection.check_definitions[check.code], bound_of(export, check.code)
-    part = f" {'÷' if definition.kind == 'minimum' else '×'} {exact_percent(bound, reader)}" if bound < 1 else ""
+    part = f" {'÷' if read.kind == 'minimum' else '×'} {exact_percent(read.part, reader)}" if read.part < 1 else ""
     return {
         "title": title_of(export, check.code, reader),
-        "relation": formula(BY_CODE[check.code].relation),
-        "demand": measured(check.demand, definition.unit, reader),
-        "limit": measured(check.limit, definition.unit, reader) + part,
+        "relation": formula(read.relation),
+        "demand": _demand(read, reader),
+        "limit": measured(read.limit, read.unit, reader) + part,
         "utilisation": reader.percent(check.utilisation, bound),
         "share": _share(check),
         "bound": bound,
@@ -86,6 +91,10 @@ def _check(export: Export, check: CheckResult, reader: Reader) -> dict[str, Any]
         "where": origin(export, check.code, reader),
         "basis": sentence(reader.text(definition.basis)),
     }
+
+
+def _demand(read: Reading, reader: Reader) -> str:
+    return reader.text(N_("unlimited")) if read.is_unlimited else measured(read.demand, read.unit, reader)
 
 
 def _share(check: CheckResult) -> float:
@@ -121,7 +130,8 @@ def _in_a_sentence(export: Export, candidate: Candidate, reader: Reader) -> str:
     if gear and gear.weight_kg:
         name = f"{name} ({reader.with_unit(reader.exact(gear.weight_kg, 'kg'), 'kg')})"
     if candidate.failing:
-        failures = "; ".join(_failure(export, check, reader) for check in candidate.failing)
+        read = _readings(export, candidate)
+        failures = "; ".join(_failure(export, check, read[check.code], reader) for check in candidate.failing)
         return reader.told(Sentence(N_("{gear} fails: {failures}."), {"gear": name, "failures": failures}))
     values = {
         "gear": name,
@@ -131,12 +141,11 @@ def _in_a_sentence(export: Export, candidate: Candidate, reader: Reader) -> str:
     return reader.told(Sentence(N_("{gear} passes too; its closest check is “{check}” at {percent}."), values))
 
 
-def _failure(export: Export, check: CheckResult, reader: Reader) -> str:
-    unit = export.selection.check_definitions[check.code].unit
+def _failure(export: Export, check: CheckResult, read: Reading, reader: Reader) -> str:
     values = {
         "check": title_of(export, check.code, reader),
-        "demand": measured(check.demand, unit, reader),
-        "limit": measured(check.limit, unit, reader),
+        "demand": _demand(read, reader),
+        "limit": measured(read.limit, read.unit, reader),
         "percent": used(export, check.code, check.utilisation, reader),
     }
     return reader.told(Sentence(N_("{check} {demand} against {limit} ({percent})"), values))

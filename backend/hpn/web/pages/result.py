@@ -11,6 +11,7 @@ from hpn.catalogue import Catalogue
 from hpn.checks import BY_CODE, allowed
 from hpn.equations import ROUNDING
 from hpn.gear import Gear
+from hpn.readings import Reading, readings_of
 from hpn.remedy import Growth, growths_of, remedy_of
 from hpn.selection import Candidate, Selection
 from hpn.wording import N_, Sentence
@@ -101,6 +102,11 @@ class Result:
     def bounds(self) -> Mapping[str | None, float]:
         """Largest utilisation with which each check passes, by code; 1 where none governs."""
         return {code: allowed(code, self.utilisation) for code in (None, *self.selection.check_definitions)}
+
+    @property
+    def readings(self) -> Mapping[str, Reading]:
+        """Demand and limit of the chosen candidate's checks as an engineer reads them, by code."""
+        return readings_of(self.chosen, self.selection.check_definitions, self.application, self.catalogue)
 
     @property
     def gear(self) -> Gear | None:
