@@ -60,6 +60,13 @@ def envelopes_for(
     return [envelope_curve(catalogue, gear, model, f_w, min(1.0, life_factor)) for f_w in coefficients]
 
 
+def has_envelope(catalogue: Catalogue, gear: Gear, model: BearingModel) -> bool:
+    """Whether a size has published limits, or for the digitised model the points of its curve."""
+    if model == "digitised":
+        return gear.size in catalogue.curves
+    return gear.dynamic_radial_load_N is not None and gear.dynamic_axial_load_N is not None
+
+
 def envelope_curve(
     catalogue: Catalogue, gear: Gear, model: BearingModel, load_coefficient: float, factor: float = 1.0
 ) -> EnvelopeCurve:

@@ -1,4 +1,4 @@
-// Plots: data come with the page, the library only when one is about to be seen. Colours are names of the page's theme.
+// Plots: data come when somebody unfolds one, then the library. Colours are names of the page's theme.
 
 const CONFIG = { showSendToCloud: false, plotlyServerURL: "", displaylogo: false, displayModeBar: false, responsive: true };
 const drawn = new Map(); // place in the page -> the data that it shows
@@ -150,3 +150,29 @@ async function save(plot, format) {
   ];
   await window.Plotly.downloadImage({ data, layout, config: CONFIG }, { format, width: 900, height: 640 + 20 * rows, scale: format === "png" ? 2 : 1, filename: plot.dataset.file });
 }
+
+// --- One phase: its row, its step and its load are marked together ---------------------------------------------------
+
+const PHASE = '[data-phase], tr[id^="phase-"]';
+const placesOf = (part) => (part.dataset.phase ?? part.id.slice("phase-".length)).split(" ").filter(Boolean);
+let marked = [];
+
+function markPhases(part) {
+  marked = part ? placesOf(part) : [];
+  for (const each of document.querySelectorAll(PHASE)) each.classList.toggle("marked", placesOf(each).some((place) => marked.includes(place)));
+}
+
+// The pointer goes before the focus, which stays where somebody types.
+const phaseAt = (target) => target?.closest?.(PHASE) ?? null;
+document.addEventListener("pointerover", (event) => markPhases(phaseAt(event.target) ?? phaseAt(document.activeElement)));
+document.addEventListener("focusin", (event) => markPhases(phaseAt(event.target)));
+document.addEventListener("focusout", (event) => markPhases(phaseAt(event.relatedTarget)));
+
+// The rows stand in the form, which an answer leaves as it is: the phase that governs is told by the drawings.
+function markGoverning() {
+  const governing = new Set((document.querySelector("[data-governing]")?.dataset.governing ?? "").split(" "));
+  for (const row of document.querySelectorAll('tr[id^="phase-"]')) row.classList.toggle("governing", governing.has(placesOf(row)[0]));
+  markPhases(phaseAt(document.activeElement));
+}
+document.addEventListener("htmx:after:swap", markGoverning);
+markGoverning();

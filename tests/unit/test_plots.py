@@ -31,7 +31,9 @@ def example(catalogue: Catalogue, designation: str = "HPN-20A-5", **parts: objec
 
 
 def picture(subject: Subject) -> plots.BearingPicture:
-    found = plots.bearing_picture(subject)
+    loads = subject.application.loads
+    life = check(subject, subject.gear.designation, "output_bearing_life") if loads else None
+    found = plots.bearing_picture(subject, life)
     assert found is not None
     return found
 
@@ -60,10 +62,11 @@ def test_figures_of_the_bearing_are_valid_in_every_model(
     figure = plots.bearing_figure(shown)
 
     go.Figure(figure)
-    go.Figure(plots.sizes_figure(subject))
+    sizes = plots.sizes_figure(plots.size_uses(subject, shown), shown)
+    go.Figure(sizes)
     drawn = {trace["meta"]["load_coefficient"] for trace in traces(figure, "own") + traces(figure, "life")}
     assert drawn == {1.0, 1.2, 1.5, coefficient}
-    assert len(traces(plots.sizes_figure(subject), "size")) == (1 if model == "digitised" else 4)
+    assert len(traces(sizes, "size")) == (1 if model == "digitised" else 4)
 
 
 @pytest.mark.parametrize("model", ["linear", "iso281", "digitised"])
@@ -73,6 +76,9 @@ def test_the_picture_uses_what_the_checks_say(supplemented: Supplement, model: s
 
     largest, life = (check(subject, "HPN-20A-5", f"output_bearing_{name}") for name in ("load", "life"))
     assert shown.worst.published == largest.utilisation
+    candidate = select(subject.application, subject.catalogue).candidate("HPN-20A-5")
+    assert candidate is not None
+    assert shown.life_h == pytest.approx(candidate.bearing_life_L50_h, rel=1e-12)
     assert shown.life_utilisation == pytest.approx(life.utilisation, rel=1e-14)
     assert shown.life_factor == life.limit
 
@@ -121,36 +127,48 @@ def test_axes_stay_for_any_load_within_the_limits_and_widen_beyond(catalogue: Ca
     assert ranges(1e9)[0][1] > 1e9
 
 
-def test_the_verdict_says_which_question_decides(catalogue: Catalogue) -> None:
-    fast = cycle(phase(10, 500), output_load={"radial_N": 800.0})
-    slow = cycle(phase(10, 50), output_load={"radial_N": 800.0})
+def words(document: Json, catalogue: Catalogue) -> str:
+    shown = picture(shown_on(document, catalogue))
+    return " ".join(sentence.text for sentence in (plots.bearing_verdict(shown), *plots.bearing_words(shown)))
 
-    def said(document: Json) -> str:
-        subject = shown_on(document, catalogue)
-        return " ".join(sentence.text for sentence in plots.bearing_verdict(picture(subject)))
 
-    assert said(fast).endswith("The life of the bearing decides, not the largest single load.")
-    assert "uses 76 % of what a constant load may be at 500 rpm for 20000 h (L50)" in said(fast)
-    assert "f_w = 1.2 would use 91.2 %." in said(fast)
-    assert said(slow).endswith("The largest single load decides, not the life.")
-    assert "uses 44.4 % of the published maximum" in said(slow)
+def test_the_words_say_what_governs(catalogue: Catalogue) -> None:
+    fast = words(cycle(phase(10, 500), output_load={"radial_N": 800.0}), catalogue)
+    slow = words(cycle(phase(10, 50), output_load={"radial_N": 800.0}), catalogue)
+
+    assert "Bearing life governs." in fast
+    assert "Equivalent load: 76 % of the permissible constant load (500 rpm, 20000 h, L50)." in fast
+    assert "With f_w = 1.2: 91.2 %." in fast
+    assert "The largest single load governs." in slow
+    assert "Single load: 44.4 % of the published maximum." in slow
+
+
+@pytest.mark.parametrize(
+    ("radial", "said"),
+    [
+        (1260.0, "The output bearing carries these loads within u = 80 %."),
+        (1530.0, "The loads exceed u = 80 %: they use 85 % of what the output bearing may carry."),
+        (1980.0, "The output bearing does not carry these loads, u = 80 % apart."),
+    ],
+)
+def test_a_reserve_of_ones_own_is_named_and_no_load_within_the_maximum_is_said_not_to_be_carried(
+    catalogue: Catalogue, radial: float, said: str
+) -> None:
+    document = cycle(phase(10, 50), output_load={"radial_N": radial}, requirements={"utilisation": 0.8})
+    assert words(document, catalogue).startswith(said)
 
 
 def test_a_use_next_to_its_limit_is_never_called_100_percent(catalogue: Catalogue) -> None:
-    document = cycle(phase(10, 50), output_load={"radial_N": 1800.0001})
-    subject = shown_on(document, catalogue)
-    said = " ".join(sentence.text for sentence in plots.bearing_verdict(picture(subject)))
-    assert "uses 100 %" not in said
+    said = words(cycle(phase(10, 50), output_load={"radial_N": 1800.0001}), catalogue)
+    assert ": 100 %" not in said
     assert "100.00" in said
 
 
-def test_without_loads_or_limits_there_is_no_picture_of_the_bearing(catalogue: Catalogue) -> None:
-    plain = example(catalogue, output_load=LOADS)
-    bare = shown_on(cycle(phase(10, 100)), catalogue)
+def test_without_limits_there_is_no_picture_of_the_bearing(catalogue: Catalogue) -> None:
+    plain, unrated = example(catalogue, output_load=LOADS), example(catalogue, "HPN-40A-5", output_load=LOADS)
 
-    assert plots.bearing_picture(bare) is None
-    assert plots.bearing_picture(example(catalogue, "HPN-40A-5", output_load=LOADS)) is None
-    uses = {use.gear.size: use.carries for use in plots.size_uses(plain)}
+    assert plots.bearing_picture(unrated, check(unrated, "HPN-40A-5", "output_bearing_life")) is None
+    uses = {use.gear.size: use.carries for use in plots.size_uses(plain, picture(plain))}
     assert uses == {"11A": False, "14A": False, "20A": True, "32A": True, "40A": None}
 
 
@@ -212,11 +230,12 @@ def test_the_cycle_is_drawn_within_its_frame(catalogue: Catalogue, count: int) -
 
     shown = plots.cycle_picture(subject)
 
-    named = [mark.symbol for mark in shown.names]
-    assert named[-1] == "t_p"
-    assert len(named) == {1: 2, 3: 4}.get(count, len(named))
-    gaps = [after.x - before.x for before, after in pairwise(shown.names)]
-    assert min(gaps) >= 10  # about the width of a name
+    assert shown.names[-1].symbol == "t_p"
+    assert len(shown.discs) == {1: 1, 3: 3}.get(count, len(shown.discs))
+    assert (len(shown.discs) > 0) == (count <= 24)
+    places = [*(disc.x for disc in shown.discs), shown.names[-1].x]
+    gaps = [after - before for before, after in pairwise(places)]
+    assert min(gaps, default=18) >= 18  # a disc, and a little more
     for panel in (shown.torque, shown.speed):
         assert panel.top <= panel.zero <= panel.bottom
         assert len(panel.outline) + len(panel.area) < 30_000
@@ -265,7 +284,7 @@ def test_a_size_carries_the_load_where_both_checks_of_its_bearing_pass(
     loads = LOADS | {"radial_N": radial, "life_h": life}
     subject = example(catalogue, output_load=loads, requirements={"utilisation": allowed})
 
-    for use in plots.size_uses(subject):
+    for use in plots.size_uses(subject, picture(subject)):
         codes = ("output_bearing_load", "output_bearing_life")
         states = [check(subject, use.gear.designation, code).status for code in codes]
         assert use.carries == (None if "not_rated" in states else states == ["pass", "pass"])

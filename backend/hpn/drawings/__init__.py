@@ -1,37 +1,40 @@
-"""Pictures of a selection as plain data: Plotly figures, steps of the duty cycle, and what they say in words.
+"""Pictures of a selection as plain data: SVG drawings, Plotly figures, and what they say in words.
 
-Data and axes are made here; colours are names of the page's theme (`var(--plot-own)`), which the browser fills in.
+Data and axes are made here. Colours are those of a style sheet, or names of the page's theme (`var(--plot-own)`), which
+the browser fills in.
 """
 
 from hpn.drawings.bearing import bearing_figure, sizes_figure
 from hpn.drawings.cycle import CyclePicture, cycle_picture
+from hpn.drawings.envelope import GearEnvelope, envelope_drawing, gear_envelope, sizes_drawing
+from hpn.drawings.governing import governing_phases
 from hpn.drawings.layout import Figure
-from hpn.drawings.picture import (
-    BearingPicture,
-    NamedCurve,
-    SizeUse,
-    bearing_picture,
-    bearing_verdict,
-    picture_of,
-    size_uses,
-)
+from hpn.drawings.picture import BearingPicture, NamedCurve, bearing_picture
+from hpn.drawings.sizes import SizeUse, size_uses
 from hpn.drawings.stops import emergency_stop_figure, emergency_stop_words
 from hpn.drawings.subject import Subject
+from hpn.drawings.verdict import bearing_verdict, bearing_words, carries
 
 __all__ = [
     "BearingPicture",
     "CyclePicture",
     "Figure",
+    "GearEnvelope",
     "NamedCurve",
     "SizeUse",
     "Subject",
     "bearing_figure",
     "bearing_picture",
     "bearing_verdict",
+    "bearing_words",
+    "carries",
     "cycle_picture",
     "emergency_stop_figure",
     "emergency_stop_words",
-    "picture_of",
+    "envelope_drawing",
+    "gear_envelope",
+    "governing_phases",
     "size_uses",
+    "sizes_drawing",
     "sizes_figure",
 ]

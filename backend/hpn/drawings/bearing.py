@@ -1,4 +1,4 @@
-"""Plots of the output bearing: radial load on the x axis, axial load on the y axis, axes fixed per size."""
+"""Plots of the output bearing to zoom, hover and export; axes fixed per size, radial load to the right."""
 
 from collections.abc import Sequence
 from math import hypot
@@ -6,10 +6,10 @@ from math import hypot
 from hpn.application import OutputLoad
 from hpn.drawings.axis import widened
 from hpn.drawings.layout import Figure, layout, points
-from hpn.drawings.picture import BearingPicture, NamedCurve, PhaseLoad, different_loads
-from hpn.drawings.subject import Subject
+from hpn.drawings.picture import BearingPicture, NamedCurve, PhaseLoad
+from hpn.drawings.sizes import SizeUse
 from hpn.drawings.words import STANDING, STANDING_SUPPLIED, axis_title, said, share, shown
-from hpn.envelopes import EnvelopeCurve, envelope_curve
+from hpn.envelopes import EnvelopeCurve
 from hpn.gear import Gear
 from hpn.reader import DEFAULT, Reader
 from hpn.wording import N_, Quantity, Sentence, Value
@@ -47,59 +47,34 @@ SIZE_STYLES = (
 
 def bearing_figure(picture: BearingPicture, reader: Reader = DEFAULT) -> Figure:
     """Envelopes and loads of one candidate."""
-    load = picture.load
     curves = sorted(
         picture.named_curves, key=lambda named: ("life", "own", "published", "equivalent").index(named.kind)
     )
     data = [_named(named, reader) for named in curves]
-    if picture.worst.published > 0:
+    if picture.loads and picture.worst.published > 0:
         data.append(_distance(picture.worst, reader))
     data.append(_points(picture.loads, reader))
     heading = Sentence(
-        "Output bearing of {gear} at {speed} for {life} ({basis}), model {model}",
-        {
-            "gear": picture.gear.name,
-            "speed": Quantity(picture.average_output_speed_rpm, "rpm"),
-            "life": Quantity(load.life_h, "h", 6),
-            "basis": load.life_basis,
-            "model": load.model,
-        },
+        "Output bearing of {gear}: {condition}, model {model}",
+        {"gear": picture.gear.name, "condition": picture.condition, "model": picture.load.model},
     )
-    return {"data": data, "layout": _layout(picture.gear, picture.loads, heading, load, reader)}
+    return {"data": data, "layout": _layout(picture.gear, picture.loads, heading, picture.load, reader)}
 
 
-def sizes_figure(subject: Subject, reader: Reader = DEFAULT) -> Figure:
-    """Life envelopes of every size at the application's speed, life and load coefficient, with its loads."""
-    load, duty, catalogue = subject.application.loads, subject.duty, subject.catalogue
-    assert load is not None  # the page draws sizes where loads are given
-    factor = min(1.0, subject.of_sizes.bearing_life_factor.item())
-    drawn: list[Gear] = []
-    data: list[Figure] = []
-    for place, gear in enumerate(subject.sizes.rows):
-        if not _has_envelope(subject, gear, load):
-            continue
-        own = envelope_curve(catalogue, gear, load.model, load.load_coefficient, factor)
-        data.append(_size(own, gear, SIZE_STYLES[place % len(SIZE_STYLES)], reader))
-        drawn.append(gear)
-    loads = different_loads(duty, [0.0] * len(subject.application.duty_cycle.phases))
-    data.append(_points(loads[:LABELLED_LOADS], reader, with_use=False))
+def sizes_figure(uses: Sequence[SizeUse], picture: BearingPicture, reader: Reader = DEFAULT) -> Figure:
+    """What a constant load may be on each size, with the loads of the phases."""
+    drawn = [(use, use.curve) for use in uses if use.curve is not None]
+    data = [
+        _size(curve, use.gear, SIZE_STYLES[place % len(SIZE_STYLES)], reader)
+        for place, (use, curve) in enumerate(drawn)
+    ]
+    data.append(_points(picture.loads[:LABELLED_LOADS], reader, with_use=False))
     heading = Sentence(
-        "Constant load that each size carries at {speed} for {life} ({basis}), f_w = {f_w}",
-        {
-            "speed": Quantity(duty.average_output_speed_rpm.item(), "rpm"),
-            "life": Quantity(load.life_h, "h", 6),
-            "basis": load.life_basis,
-            "f_w": Quantity(load.load_coefficient, ""),
-        },
+        "Permissible constant load of each size: {condition}, f_w = {f_w}",
+        {"condition": picture.condition, "f_w": Quantity(picture.load.load_coefficient, "")},
     )
-    largest = max(drawn, key=lambda gear: gear.dynamic_radial_load_N or 0.0, default=None)
-    return {"data": data, "layout": _layout(largest, loads, heading, load, reader)}
-
-
-def _has_envelope(subject: Subject, gear: Gear, load: OutputLoad) -> bool:
-    if load.model == "digitised":
-        return gear.size in subject.catalogue.curves
-    return bool(gear.dynamic_radial_load_N and gear.dynamic_axial_load_N)
+    largest = max((use.gear for use, _ in drawn), key=lambda gear: gear.dynamic_radial_load_N or 0.0, default=None)
+    return {"data": data, "layout": _layout(largest, picture.loads, heading, picture.load, reader)}
 
 
 # --- Curves -----------------------------------------------------------------------------------------------------------
@@ -149,10 +124,8 @@ def _spelt(radial_N: float, axial_N: float, reader: Reader) -> str:
 
 def _distance(worst: PhaseLoad, reader: Reader) -> Figure:
     """Line from the worst phase's load to the published envelope, along the load's own direction."""
-    edge = min(1 / worst.published, 1e6)
-    name = Sentence(
-        "From phase {phase} to the published maximum along its own direction", {"phase": worst.places[0] + 1}
-    )
+    edge = min(worst.allowed / worst.published, 1e6)
+    name = Sentence("From phase {phase} to the limit of a single load in its direction", {"phase": worst.places[0] + 1})
     return {
         "type": "scatter",
         "mode": "lines",

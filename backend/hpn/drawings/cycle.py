@@ -15,15 +15,18 @@ from hpn.quantities import DUTY, GEAR, INPUTS
 from hpn.reader import DEFAULT, Reader
 from hpn.wording import N_, Quantity, Sentence, Value
 
-WIDTH, LEFT, RIGHT = 344.0, 34.0, 282.0
-TORQUE_TOP, TORQUE_HEIGHT, SPEED_HEIGHT, BETWEEN = 14.0, 92.0, 60.0, 30.0
-LETTER = 10.5
+WIDTH, LEFT, RIGHT = 344.0, 42.0, 268.0
+TORQUE_TOP, TORQUE_HEIGHT, SPEED_HEIGHT, BETWEEN = 16.0, 90.0, 62.0, 44.0
+LETTER = 13.0
 """Least distance of two texts below each other."""
 
 NAMED_PHASES = 24
-"""Phases up to which each has its name below it, and short ones are drawn wider than they are."""
+"""Phases up to which each has its number below it, and short ones are drawn wider than they are."""
 
-LEAST_WIDTH, MOST_PAUSE = 0.04, 0.35
+APART = 18.0
+"""Least distance of two numbers beside each other."""
+
+LEAST_WIDTH, MOST_PAUSE = 0.08, 0.35
 MOST_STEPS = 300
 HEADROOM = 1.08
 OUT_OF_SCALE = 2.2
@@ -58,12 +61,34 @@ class Panel:
 
 
 @dataclass(frozen=True, slots=True)
+class Step:
+    """The part of both diagrams that belongs to a phase, which `place` counts from 0."""
+
+    place: int
+    left: float
+    right: float
+
+
+@dataclass(frozen=True, slots=True)
+class Disc:
+    """The number of a phase below its step, as it stands at its load in the envelope."""
+
+    place: int
+    x: float
+    y: float
+
+
+@dataclass(frozen=True, slots=True)
 class CyclePicture:
-    """Both diagrams, the names of the phases between them, and the same in words."""
+    """Both diagrams, the numbers of the phases between them, and the same in words."""
 
     height: float
     torque: Panel
     speed: Panel
+    left: float
+    right: float
+    steps: list[Step]
+    discs: list[Disc]
     names: list[Mark]
     boundaries: list[float]
     pause: tuple[float, float] | None
@@ -119,7 +144,11 @@ def cycle_picture(subject: Subject, reader: Reader = DEFAULT) -> CyclePicture:
         height=top + SPEED_HEIGHT + 6,
         torque=_panel(torque, edges, reader),
         speed=_panel(speed, edges, reader),
-        names=_names(edges, count, TORQUE_TOP + TORQUE_HEIGHT + 11),
+        left=LEFT,
+        right=RIGHT,
+        steps=[Step(k, edges[k], edges[k + 1]) for k in range(count if count <= NAMED_PHASES else 0)],
+        discs=_discs(edges, count, TORQUE_TOP + TORQUE_HEIGHT + 12),
+        names=_names(edges, count, TORQUE_TOP + TORQUE_HEIGHT + 16),
         boundaries=edges[1 : count + 1] if count <= NAMED_PHASES else [],
         pause=(edges[count], edges[-1]) if cycle.pause_s > 0 else None,
         pause_broken=broken,
@@ -167,15 +196,20 @@ def _widened(widths: list[float], least: float, room: float) -> list[float]:
         short |= more
 
 
-def _names(edges: list[float], count: int, y: float) -> list[Mark]:
-    """Names of the phases below their steps, as many as have room, and of the pause."""
-    names: list[Mark] = []
-    if count > NAMED_PHASES:
-        names.append(Mark((edges[0] + edges[count]) / 2, y, f"t_1 … t_{count}"))
+def _discs(edges: list[float], count: int, y: float) -> list[Disc]:
+    """Numbers of the phases below their steps, as many as have room beside each other and the name of the pause."""
+    discs: list[Disc] = []
+    end = (edges[count] + edges[-1]) / 2 if len(edges) > count + 1 else edges[-1] + APART
     for k in range(count if count <= NAMED_PHASES else 0):
         x = (edges[k] + edges[k + 1]) / 2
-        if not names or x - names[-1].x >= (10.0 if k < 10 else 14.0):
-            names.append(Mark(x, y, f"t_{k + 1}"))
+        if x <= end - APART and (not discs or x - discs[-1].x >= APART):
+            discs.append(Disc(k, x, y))
+    return discs
+
+
+def _names(edges: list[float], count: int, y: float) -> list[Mark]:
+    """Name of the pause, and of all phases together where they are too many for numbers."""
+    names = [Mark((edges[0] + edges[count]) / 2, y, f"1 … {count}")] if count > NAMED_PHASES else []
     if len(edges) > count + 1:
         names.append(Mark((edges[count] + edges[-1]) / 2, y, "t_p"))
     return names
@@ -217,7 +251,7 @@ def _ticks(diagram: _Diagram, reader: Reader) -> list[Mark]:
     start, end = (reader.measure(diagram.unit).shown(value) for value in (low, high))
     scale = (end - start) / (high - low)
     places = ((diagram.y(number / scale), number) for number in round_numbers(start, end, 3))
-    return [Mark(LEFT - 5, y + 3.5, reader.tick(number), line=y) for y, number in places]
+    return [Mark(LEFT - 5, y + 4.0, reader.tick(number), line=y) for y, number in places]
 
 
 def _placed(diagram: _Diagram, reader: Reader) -> tuple[list[Mark], list[Mark]]:
@@ -230,9 +264,10 @@ def _placed(diagram: _Diagram, reader: Reader) -> tuple[list[Mark], list[Mark]]:
         text = reader.figure(level.value, diagram.unit)
         if level.value > high * (1 + 1e-9):
             beyond.append(Mark(WIDTH, top - 5, level.symbol, text, level.kind))
+            y = top - 5
             continue
         line = diagram.y(level.value)
-        y = max(y + LETTER, line + 3.5)
+        y = max(y + LETTER, line + 4.0)
         marks.append(Mark(RIGHT + 4, y, level.symbol, text if diagram.unit == "Nm" else "", level.kind, line))
     return marks, beyond[::-1]
 

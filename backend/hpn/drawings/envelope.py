@@ -1,73 +1,164 @@
-"""The load envelope of a size as a small drawing: points on a canvas, with round marks on both axes."""
+"""The drawings of load envelopes: of one gear under an application, of all sizes, and of a gear in the catalogue."""
 
+import math
+from collections.abc import Sequence
 from dataclasses import dataclass
+from xml.etree.ElementTree import Element
 
-from hpn.application import InputError
+from hpn.bearing import PRINTED_LOAD_COEFFICIENTS
 from hpn.catalogue import Catalogue
-from hpn.drawings.axis import round_numbers
-from hpn.envelopes import EnvelopeCurve, EnvelopeQuery, life_envelopes
+from hpn.drawings.chart import Bar, Line, Mark, chart
+from hpn.drawings.picture import BearingPicture, PhaseLoad, beyond_limit
+from hpn.drawings.sizes import SizeUse
+from hpn.drawings.words import share
+from hpn.envelopes import EnvelopeCurve, EnvelopeQuery, has_envelope, life_envelopes
 from hpn.gear import Gear
+from hpn.reader import DEFAULT, Reader
+from hpn.wording import N_, Quantity, Sentence
 
-WIDTH, HEIGHT = 420, 250
-LEFT, RIGHT, TOP, BOTTOM = 56, 62, 12, 36
-"""Canvas in user units of the SVG, and what its margins leave for numbers."""
 
-SPACE = 1.06
-"""Room beyond the largest load."""
+def envelope_drawing(picture: BearingPicture, reader: Reader = DEFAULT, governing: Sequence[int] = ()) -> Element:
+    """Envelopes and loads of one gear, and how far life and single loads use them; `governing` phases stand out."""
+    lines = [Line("limit", reader.text(N_("limit now")), _corners(picture, "own"), strong=True)]
+    lines += _of_coefficients(picture, reader)
+    if picture.life_factor < 1 and picture.loads:
+        lines.append(Line("single", reader.text(N_("single load")), _corners(picture, "published")))
+    if not picture.loads:
+        return chart(lines, [], [], reader)
+    marks = [_mark(load, load.is_outside, governing, reader) for load in picture.loads]
+    ray = None
+    if picture.mean > 0:
+        marks.append(_equivalent(picture, reader))
+        ray = max(picture.equivalent_N, (picture.worst.radial_N, picture.worst.axial_N))
+    return chart(lines, marks, bearing_bars(picture, reader), reader, ray)
 
-MOST_SPACES = 6
-"""Spaces between round numbers along an axis."""
+
+def sizes_drawing(
+    uses: Sequence[SizeUse], picture: BearingPicture, reader: Reader = DEFAULT, governing: Sequence[int] = ()
+) -> Element:
+    """What a constant load may be on each size, with the loads of the phases; the gear's own size stands out."""
+    lines = []
+    for place, use in enumerate(uses):
+        if use.curve is not None:
+            corners = list(zip(use.curve.radial_N, use.curve.axial_N, strict=True))
+            own = use.gear.size == picture.gear.size
+            lines.append(Line("limit" if own else f"size s{place % 4}", use.gear.size, corners, strong=own))
+    return chart(lines, [_mark(load, False, governing, reader) for load in picture.loads], [], reader)
 
 
 @dataclass(frozen=True, slots=True)
-class AxisMark:
-    """A number on an axis, and where it stands."""
+class GearEnvelope:
+    """Envelopes of a gear for f_w = 1, 1.2, 1.5; `supplied` tells whether they follow points of a supplement."""
 
-    place: float
-    value: float
-
-
-@dataclass(frozen=True, slots=True)
-class CurveLine:
-    """One envelope: corner points as loads, and as the text of an SVG polyline."""
-
-    curve: EnvelopeCurve
-    points: str
-
-
-@dataclass(frozen=True, slots=True)
-class Drawing:
-    """Radial load to the right, axial load upwards, as in the plots of a selection."""
-
-    lines: tuple[CurveLine, ...]
-    radial_marks: tuple[AxisMark, ...]
-    axial_marks: tuple[AxisMark, ...]
+    curves: list[EnvelopeCurve]
     supplied: bool
+    drawing: Element
 
 
-def drawing(catalogue: Catalogue, gear: Gear) -> Drawing | None:
+def gear_envelope(catalogue: Catalogue, gear: Gear, reader: Reader = DEFAULT) -> GearEnvelope | None:
     """Envelopes of a gear at the published speed and life, or None where its limits are not published."""
     supplied = gear.size in catalogue.curves
-    try:
-        curves = life_envelopes(catalogue, gear, EnvelopeQuery(model="digitised" if supplied else "linear"))
-    except InputError:
+    query = EnvelopeQuery(model="digitised" if supplied else "linear")
+    if not has_envelope(catalogue, gear, query.model):
         return None
-    axial = SPACE * max(value for curve in curves for value in curve.axial_N)
-    radial = SPACE * max(value for curve in curves for value in curve.radial_N)
+    curves = life_envelopes(catalogue, gear, query)
+    corners = [list(zip(curve.radial_N, curve.axial_N, strict=True)) for curve in curves]
+    lines = [_coefficient(c.load_coefficient, along, reader) for c, along in zip(curves, corners, strict=True)]
+    limit = Line("limit", reader.text(N_("published")), corners[0], strong=True)
+    return GearEnvelope(curves, supplied, chart([limit, *lines], [], [], reader))
 
-    def x(load: float) -> float:
-        return round(LEFT + load / radial * (WIDTH - LEFT - RIGHT), 1)
 
-    def y(load: float) -> float:
-        return round(HEIGHT - BOTTOM - load / axial * (HEIGHT - TOP - BOTTOM), 1)
+# --- Lines ------------------------------------------------------------------------------------------------------------
 
-    def line(curve: EnvelopeCurve) -> CurveLine:
-        points = zip(curve.radial_N, curve.axial_N, strict=True)
-        return CurveLine(curve, " ".join(f"{x(along)},{y(up)}" for along, up in points))
 
-    return Drawing(
-        tuple(map(line, curves)),
-        tuple(AxisMark(x(value), value) for value in round_numbers(0.0, radial, MOST_SPACES)),
-        tuple(AxisMark(y(value), value) for value in round_numbers(0.0, axial, MOST_SPACES)),
-        supplied,
+def _corners(picture: BearingPicture, kind: str) -> list[tuple[float, float]]:
+    return next(named.corners for named in picture.named_curves if named.kind == kind)
+
+
+def _of_coefficients(picture: BearingPicture, reader: Reader) -> list[Line]:
+    named = [named for named in picture.named_curves if named.kind in ("own", "life")]
+    by_coefficient = {one.curve.load_coefficient: one.corners for one in named}
+    return [_coefficient(f_w, by_coefficient[f_w], reader) for f_w in PRINTED_LOAD_COEFFICIENTS]
+
+
+def _coefficient(f_w: float, corners: list[tuple[float, float]], reader: Reader) -> Line:
+    return Line("coefficient", f"f_w {reader.exact(f_w)}", corners)
+
+
+# --- Loads ------------------------------------------------------------------------------------------------------------
+
+
+def _mark(load: PhaseLoad, outside: bool, governing: Sequence[int], reader: Reader) -> Mark:
+    told = reader.told(
+        Sentence(
+            "Phase {phases}: radial {radial}, axial {axial}, {used} of the published maximum",
+            {
+                "phases": load.phases,
+                "radial": Quantity(load.radial_N, "N", 4),
+                "axial": Quantity(load.axial_N, "N", 4),
+                "used": share(load.published),
+            },
+        )
     )
+    if outside:
+        told += ", " + reader.text(N_("outside the limit"))
+    kind = "load governing" if set(governing) & set(load.places) else "load"
+    label = load.phases if len(load.places) <= 3 or "–" in load.phases else f"{load.places[0] + 1} …"
+    return Mark(kind, label, (load.radial_N, load.axial_N), told, load.published, outside, load.places)
+
+
+def _equivalent(picture: BearingPicture, reader: Reader) -> Mark:
+    outside = beyond_limit(picture.constant_load_utilisation, picture.allowed)
+    told = reader.told(
+        Sentence(
+            "Equivalent load of the cycle: {used} of the permissible constant load",
+            {"used": share(picture.constant_load_utilisation)},
+        )
+    )
+    if outside:
+        told += ", " + reader.text(N_("outside the limit"))
+    return Mark("equivalent", "P_m", picture.equivalent_N, told, picture.worst.published, outside)
+
+
+# --- Bars -------------------------------------------------------------------------------------------------------------
+
+
+def bearing_bars(picture: BearingPicture, reader: Reader) -> list[Bar]:
+    """Largest single load and life: the share that the checks say, and demand and limit in words."""
+    worst, load, u = picture.worst, picture.load, picture.allowed
+    return [
+        _bar(reader.text(N_("Single load")), worst.published, u, (worst.magnitude_N, "≤", worst.limit_N, "N"), reader),
+        _bar(
+            f"{reader.text(N_('Life'))} {load.life_basis}",
+            picture.life_utilisation,
+            u,
+            (picture.life_h, "≥", load.life_h / u**3, "h"),
+            reader,
+        ),
+    ]
+
+
+def _bar(
+    label: str, used: float, allowed: float, compared: tuple[float, str, float | None, str], reader: Reader
+) -> Bar:
+    demand, sign, limit, unit = compared
+    outside = beyond_limit(used, allowed)
+    if outside:
+        sign = {"≤": ">", "≥": "<"}[sign]
+    numbers = f"{_told(demand, limit, unit, reader)} {reader.unit(unit)}"
+    if limit is not None:
+        numbers = (
+            f"{_told(demand, limit, unit, reader)} {sign} {_told(limit, demand, unit, reader)} {reader.unit(unit)}"
+        )
+    return Bar(label, used, allowed, f"{'✕' if outside else '✓'} {reader.percent(used, allowed)}\N{EN SPACE}{numbers}")
+
+
+def _told(value: float, other: float | None, unit: str, reader: Reader) -> str:
+    """A number with as many digits as it takes to tell it from another one."""
+    if math.isinf(value):
+        return "∞"
+    for digits in range(3, 7):
+        number = reader.number(Quantity(value, unit, digits))
+        if other is None or math.isinf(other) or number != reader.number(Quantity(other, unit, digits)):
+            break
+    return number

@@ -1,4 +1,4 @@
-"""Loads of one application on an output bearing: what plot, table and verdict are made from."""
+"""Loads of one application on an output bearing: what drawing, plot, table and verdict are made from."""
 
 import math
 from collections.abc import Sequence
@@ -8,12 +8,13 @@ from typing import Literal
 from hpn import bearing
 from hpn.application import OutputLoad
 from hpn.drawings.subject import Subject
-from hpn.drawings.words import phase_numbers, share
+from hpn.drawings.words import phase_numbers
 from hpn.duty import Duty
-from hpn.envelopes import EnvelopeCurve, envelope_curve, envelopes_for
+from hpn.envelopes import EnvelopeCurve, envelope_curve, envelopes_for, has_envelope
 from hpn.equations import ROUNDING
 from hpn.figures import phase_loads
 from hpn.gear import Gear
+from hpn.selection import CheckResult
 from hpn.wording import Quantity, Sentence, Value
 
 MOST_LOADS = 200
@@ -22,12 +23,13 @@ MOST_LOADS = 200
 
 @dataclass(frozen=True, slots=True)
 class PhaseLoad:
-    """One load in N, the phases that have it, and its f_w P: 1 on the published envelope over f_w."""
+    """One load in N, the phases that have it, and its f_w P, which may be `allowed`; the published envelope is 1."""
 
     places: list[int]
     radial_N: float
     axial_N: float
     published: float
+    allowed: float = 1.0
 
     @property
     def phases(self) -> str:
@@ -40,9 +42,19 @@ class PhaseLoad:
         return math.hypot(self.radial_N, self.axial_N)
 
     @property
+    def limit_N(self) -> float | None:
+        """Largest permissible load in its own direction."""
+        return self.magnitude_N * (self.allowed / self.published) if self.published > 1e-300 else None
+
+    @property
     def distance_N(self) -> float | None:
-        """From the load to the published envelope over f_w along its own direction; negative beyond it."""
-        return self.magnitude_N * (1 / self.published - 1) if self.published > 1e-300 else None
+        """From the load to that limit; negative beyond it."""
+        return None if self.limit_N is None else self.limit_N - self.magnitude_N
+
+    @property
+    def is_outside(self) -> bool:
+        """Whether it is more than a single load may be."""
+        return beyond_limit(self.published, self.allowed)
 
 
 CurveKind = Literal["own", "life", "published", "equivalent"]
@@ -64,14 +76,16 @@ class NamedCurve:
 
 @dataclass(frozen=True, slots=True)
 class BearingPicture:
-    """Loads of one application on the output bearing of one candidate.
+    """What the output bearing of one gear may carry at the speed and life of an application, and what it does carry.
 
-    `mean` is P_m without f_w, `life_factor` the k that speed and required life allow; `loads` are in the order of the
-    phases, and `hidden` is the number of those left out.
+    `mean` is P_m without f_w, `life_factor` the k that speed and required life allow, `allowed` the user's u, which
+    every curve but the equivalent load's is scaled by. `loads` are in the order of the phases, and `hidden` is the
+    number of those left out. Without a load `loads` is empty, and `load` holds the conditions that count by default.
     """
 
     gear: Gear
     load: OutputLoad
+    allowed: float
     loads: list[PhaseLoad]
     hidden: int
     mean: float
@@ -83,8 +97,15 @@ class BearingPicture:
 
     @property
     def worst(self) -> PhaseLoad:
-        """The load that uses the published envelope most."""
+        """The load that uses the published envelope most, where there are loads."""
         return max(self.loads, key=lambda load: load.published)
+
+    @property
+    def equivalent_N(self) -> tuple[float, float]:
+        """Constant load with the life of the cycle, radial and axial, in the direction of the worst load."""
+        worst = self.worst
+        share = self.mean * self.load.load_coefficient / worst.published if worst.published > 1e-300 else 0.0
+        return share * worst.radial_N, share * worst.axial_N
 
     @property
     def life_utilisation(self) -> float:
@@ -97,11 +118,22 @@ class BearingPicture:
         return self.mean * self.load.load_coefficient / min(1.0, self.life_factor)
 
     @property
+    def life_h(self) -> float:
+        """Life of the bearing on the basis of the required one; infinite without a load."""
+        used = self.life_utilisation
+        return self.load.life_h / used**3 if used > 1e-100 else math.inf
+
+    @property
+    def life_governs(self) -> bool:
+        """Whether the life of the cycle is nearer to its limit than the largest single load."""
+        return self.life_factor < 1 and self.life_utilisation >= self.worst.published
+
+    @property
     def named_curves(self) -> list[NamedCurve]:
         """All curves, the user's own first."""
         f_w = self.load.load_coefficient
         own = [
-            NamedCurve("own", Sentence("Constant load, f_w = {f_w} (yours)", _coefficient(curve)), curve)
+            NamedCurve("own", Sentence("Limit now: constant load, f_w = {f_w}", _coefficient(curve)), curve)
             for curve in self.curves
             if curve.load_coefficient == f_w
         ]
@@ -110,10 +142,24 @@ class BearingPicture:
             for curve in self.curves
             if curve.load_coefficient != f_w
         ]
-        published = Sentence("Any single phase: published maximum over f_w = {f_w}", _coefficient(self.published_curve))
+        published = Sentence("Single load: published maximum over f_w = {f_w}", _coefficient(self.published_curve))
         named = [*own, *others, NamedCurve("published", published, self.published_curve)]
         equivalent = NamedCurve("equivalent", Sentence("Equivalent load of the cycle, P = P_m"), self.mean_curve)
         return [*named, equivalent] if self.mean > 0 else named
+
+    @property
+    def condition(self) -> Sentence:
+        """Speed and life that the curves hold for, and the user's u where it is below 1."""
+        values: dict[str, Value] = {
+            "speed": Quantity(self.average_output_speed_rpm, "rpm"),
+            "life": Quantity(self.load.life_h, "h", 6),
+            "basis": self.load.life_basis,
+        }
+        if self.allowed == 1:
+            return Sentence("{speed}, {life}, {basis}", values)
+        return Sentence(
+            "{speed}, {life}, {basis}, u = {allowed}", values | {"allowed": Quantity(100 * self.allowed, "percent", 6)}
+        )
 
 
 def _coefficient(curve: EnvelopeCurve) -> dict[str, Value]:
@@ -125,43 +171,56 @@ def beyond_limit(utilisation: float, allowed: float) -> bool:
     return utilisation > allowed * (1 + ROUNDING)
 
 
-def bearing_picture(subject: Subject) -> BearingPicture | None:
-    """Loads on the bearing of a gear, or None without loads or where the bearing of its size is not rated."""
-    if subject.application.loads is None:
-        return None
-    mean = subject.of_sizes.bearing_mean_load.item(0, subject.place)
-    return None if math.isnan(mean) else picture_of(subject, mean, subject.of_sizes.bearing_life_factor.item())
+def bearing_picture(subject: Subject, life: CheckResult | None = None) -> BearingPicture | None:
+    """Picture of the bearing of a gear, or None where its size has no envelope or its loads are not rated.
 
-
-def picture_of(subject: Subject, mean_load: float, life_factor: float) -> BearingPicture:
-    """The same with f_w P_m and k that are known, as a saved selection has them: what its check of the life compares.
-
-    The application must give loads, and the bearing must be rated.
+    `life` is the check of the bearing's life, just made or saved: it compares f_w P_m and k.
     """
-    load, catalogue, gear = subject.application.loads, subject.catalogue, subject.gear
-    assert load is not None
-    f_w = load.load_coefficient
-    loads = different_loads(subject.duty, phase_loads(subject.duty, subject.sizes)[0, subject.place].tolist())
+    application, catalogue, gear = subject.application, subject.catalogue, subject.gear
+    load, allowed = application.loads or OutputLoad(), application.requirements.utilisation
+    if not has_envelope(catalogue, gear, load.model):
+        return None
+    loads: list[PhaseLoad] = []
+    mean, k = 0.0, _life_factor(subject, load)
+    if application.loads is not None:
+        if life is None or life.demand is None or life.limit is None:
+            return None
+        mean, k = life.demand / load.load_coefficient, life.limit
+        published = phase_loads(subject.duty, subject.sizes)[0, subject.place].tolist()
+        loads = different_loads(subject.duty, published, allowed)
     return BearingPicture(
         gear=gear,
         load=load,
+        allowed=allowed,
         loads=_foremost(loads),
         hidden=max(len(loads) - MOST_LOADS, 0),
-        mean=mean_load / f_w,
-        life_factor=life_factor,
+        mean=mean,
+        life_factor=k,
         average_output_speed_rpm=subject.duty.average_output_speed_rpm.item(),
-        curves=envelopes_for(catalogue, gear, load.model, f_w, life_factor),
-        published_curve=envelope_curve(catalogue, gear, load.model, f_w),
-        mean_curve=envelope_curve(catalogue, gear, load.model, 1.0, mean_load / f_w),
+        curves=envelopes_for(catalogue, gear, load.model, load.load_coefficient, allowed * min(1.0, k)),
+        published_curve=envelope_curve(catalogue, gear, load.model, load.load_coefficient, allowed),
+        mean_curve=envelope_curve(catalogue, gear, load.model, 1.0, mean),
     )
 
 
-def different_loads(duty: Duty, published: Sequence[float]) -> list[PhaseLoad]:
+def _life_factor(subject: Subject, load: OutputLoad) -> float:
+    """k of an application: what speed and required life make of the published limits."""
+    speed, life = subject.catalogue.bearing_reference
+    k = bearing.life_factor(
+        average_output_speed_rpm=subject.duty.average_output_speed_rpm,
+        required_life_L50_h=bearing.required_L50(life_h=load.life_h, basis=load.life_basis),
+        reference_speed_rpm=speed,
+        reference_life_h=life,
+    )
+    return k.item()
+
+
+def different_loads(duty: Duty, published: Sequence[float], allowed: float) -> list[PhaseLoad]:
     """Different loads of a cycle, in the order in which they first occur; `published` is f_w P of each phase."""
     found: dict[tuple[float, float], PhaseLoad] = {}
     series = (duty.phases.radial_N[0, 0].tolist(), duty.phases.axial_N[0, 0].tolist(), published)
     for place, (radial, axial, used) in enumerate(zip(*series, strict=True)):
-        found.setdefault((radial, axial), PhaseLoad([], radial, axial, used)).places.append(place)
+        found.setdefault((radial, axial), PhaseLoad([], radial, axial, used, allowed)).places.append(place)
     return list(found.values())
 
 
@@ -170,82 +229,3 @@ def _foremost(loads: list[PhaseLoad]) -> list[PhaseLoad]:
         return loads
     kept = sorted(loads, key=lambda load: load.published, reverse=True)[:MOST_LOADS]
     return sorted(kept, key=lambda load: load.places[0])
-
-
-# --- All sizes --------------------------------------------------------------------------------------------------------
-
-
-@dataclass(frozen=True, slots=True)
-class SizeUse:
-    """How far the loads use the bearing of one size; None where it is not rated. `allowed` is the user's u."""
-
-    gear: Gear
-    constant_load: float | None
-    published: float | None
-    allowed: float
-
-    @property
-    def carries(self) -> bool | None:
-        """Whether both questions are answered with yes; None where it is not rated."""
-        if self.constant_load is None or self.published is None:
-            return None
-        return not beyond_limit(max(self.constant_load, self.published), self.allowed)
-
-
-def size_uses(subject: Subject) -> list[SizeUse]:
-    """Use of the bearing of every size of the catalogue; none without loads."""
-    if subject.application.loads is None:
-        return []
-    figures, allowed = subject.of_sizes, subject.application.requirements.utilisation
-    most = min(1.0, figures.bearing_life_factor.item())
-    uses = []
-    for place, gear in enumerate(subject.sizes.rows):
-        mean, largest = figures.bearing_mean_load.item(0, place), figures.bearing_load.item(0, place)
-        is_rated = not math.isnan(mean)
-        uses.append(SizeUse(gear, mean / most if is_rated else None, largest if is_rated else None, allowed))
-    return uses
-
-
-# --- In words ---------------------------------------------------------------------------------------------------------
-
-
-def bearing_verdict(picture: BearingPicture) -> list[Sentence]:
-    """What the picture says, in words: the life of the cycle, the largest single load, the next f_w, what decides."""
-    worst = picture.worst
-    sentences = [
-        Sentence(
-            "The cycle uses {used} of what a constant load may be at {speed} for {life} ({basis}).",
-            {
-                "used": share(picture.constant_load_utilisation),
-                "speed": Quantity(picture.average_output_speed_rpm, "rpm"),
-                "life": Quantity(picture.load.life_h, "h", 6),
-                "basis": picture.load.life_basis,
-            },
-        ),
-        _worst_phase(worst, alone=len(picture.loads) == 1),
-        *_next_load_coefficient(picture),
-    ]
-    if picture.life_factor >= 1 or picture.life_utilisation < worst.published:
-        return [*sentences, Sentence("The largest single load decides, not the life.")]
-    return [*sentences, Sentence("The life of the bearing decides, not the largest single load.")]
-
-
-def _worst_phase(worst: PhaseLoad, *, alone: bool) -> Sentence:
-    used = share(worst.published)
-    if alone:
-        return Sentence("The load uses {used} of the published maximum.", {"used": used})
-    return Sentence("Phase {phase} uses {used} of the published maximum.", {"phase": worst.places[0] + 1, "used": used})
-
-
-def _next_load_coefficient(picture: BearingPicture) -> list[Sentence]:
-    """What the next printed load coefficient would do to the first sentence."""
-    f_w, used = picture.load.load_coefficient, picture.constant_load_utilisation
-    larger = next((printed for printed in bearing.PRINTED_LOAD_COEFFICIENTS if printed > f_w), None)
-    if larger is None or used == 0:
-        return []
-    used = used * larger / f_w
-    values: dict[str, Value] = {"coefficient": Quantity(larger, "")}
-    if used > 1:
-        values["excess"] = Quantity(100 * (used - 1), "percent")
-        return [Sentence("f_w = {coefficient} would exceed the first by {excess}.", values)]
-    return [Sentence("f_w = {coefficient} would use {used}.", values | {"used": share(used)})]

@@ -6,8 +6,8 @@ from collections.abc import Iterable, Sequence
 from hpn.reader import Reader
 from hpn.wording import N_, Quantity, Sentence, telling_decimals
 
-STANDING = N_("Computed between the two published limits; the handbook’s printed curve was not available.")
-STANDING_SUPPLIED = N_("Along curve points that you supplied; the handbook’s printed curve was not available.")
+STANDING = N_("Basis: interpolated between the two published limits; printed curve not available.")
+STANDING_SUPPLIED = N_("Basis: curve points that you supplied; printed curve not available.")
 
 _SYMBOL = re.compile(r"\b([A-Za-z])_([A-Za-z]+(?:\([a-z]+\))?)")
 

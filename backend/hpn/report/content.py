@@ -63,14 +63,6 @@ LABELS = {
     "each_phase": N_("Each phase of the duty cycle"),
 }
 
-LEGEND = {
-    "own": N_("life envelope, f_w as stated"),
-    "life": N_("life envelopes, f_w 1, 1.2, 1.5"),
-    "published": N_("published limits over f_w"),
-    "equivalent": N_("equivalent load P_m"),
-    "point": N_("load of a phase"),
-}
-
 
 def content(export: Export, reader: Reader) -> dict[str, Any]:
     """Everything that the template sets, as JSON-ready data."""
@@ -80,7 +72,6 @@ def content(export: Export, reader: Reader) -> dict[str, Any]:
     return {
         "lang": reader.language,
         "labels": labels,
-        "legend": [[kind, sentence(text(label))] for kind, label in LEGEND.items()],
         "title": _shortened(export.title.strip() or labels["untitled"], LONGEST_TITLE),
         "reference": _shortened(export.reference.strip(), LONGEST_TITLE),
         "created": reader.date(export.created) if export.created else "",

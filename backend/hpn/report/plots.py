@@ -6,9 +6,9 @@ from itertools import accumulate, pairwise
 from typing import Any
 
 from hpn.application import Application
-from hpn.bearing import PRINTED_LOAD_COEFFICIENTS
-from hpn.drawings import Subject, picture_of
+from hpn.drawings import Subject, bearing_picture, envelope_drawing, governing_phases
 from hpn.drawings.axis import round_numbers, slices
+from hpn.drawings.svg import markup
 from hpn.reader import Reader
 from hpn.report.export import Export
 from hpn.report.symbols import formula
@@ -20,13 +20,38 @@ LABELLED_PHASES = 20
 MOST_STEPS = 400
 """Steps up to which a plot over time draws each phase; beyond, the range of each slice of time."""
 
-LABELLED_LOADS = 20
-"""Loads up to which each is named in a plot."""
-
 MOST_SPACES = 7
 """Spaces between the round numbers along an axis."""
 
 LIFE = "output_bearing_life"
+
+ON_PAPER = """
+text { font: 12px "Noto Sans"; fill: #5b6875 }
+.line, .grid, .axis, .ray, .leader, .cross, .allowed, .ring { fill: none }
+.grid { stroke: #d5dbe1; stroke-width: .6 }
+.axis { stroke: #16202b }
+.area { fill: #eef4fa }
+.line { stroke: #5b6875 }
+.line.limit { stroke: #0b5394; stroke-width: 2.6 }
+.line.single { stroke: #16202b; stroke-dasharray: 6 4 }
+.ray, .leader { stroke: #7d8894; stroke-width: .8 }
+.ray { stroke-dasharray: 2 3 }
+.name { paint-order: stroke; stroke: #fff; stroke-width: 6px; stroke-linejoin: round }
+.name.limit { fill: #0b5394; font-weight: bold }
+.letter, .index { font-style: italic }
+.disc { fill: #fff; stroke: #16202b }
+.dot, .number, .told, .bar .name { fill: #16202b }
+.number { font-size: 11px; font-weight: bold }
+.equivalent .disc, .equivalent .dot { fill: #eef4fa; stroke: #0b5394 }
+.governing .disc, .governing .dot { fill: #0b5394; stroke: #0b5394 }
+.governing .number { fill: #fff }
+.ring, .cross { stroke: #b3261e; stroke-width: 2 }
+.track { fill: #f3f6f9; stroke: #7d8894; stroke-width: .5 }
+.used { fill: #1b7f3b }
+.outside .used, .outside .told { fill: #b3261e }
+.allowed { stroke: #16202b; stroke-width: 1.5 }
+"""
+"""Style sheet of a drawing in the report."""
 
 SMALLEST_SPAN = 1e-200
 """Range below which an axis has no ticks, or shows nothing but zero."""
@@ -167,21 +192,16 @@ def _name_phases(application: Application, plot: Plot, reader: Reader) -> None:
 
 
 def envelope(export: Export, reader: Reader) -> dict[str, Any] | None:
-    """Loads of the phases in the envelopes of the output bearing; None without loads or without the gear's limits."""
-    gear, life = export.gear(export.candidate), export.candidate.check(LIFE)
-    if gear is None or export.figures is None or life is None or life.demand is None or life.limit is None:
+    """The drawing of the page in the colours of the report, and its condition; None without the gear's limits."""
+    gear, application = export.gear(export.candidate), export.application
+    if gear is None or export.figures is None:
         return None
-    picture = picture_of(Subject(export.application, gear, export.figures), life.demand, life.limit)
-    points = [(load.radial_N, load.axial_N) for load in picture.loads]
-    curves = [named for named in picture.named_curves if named.kind != "equivalent"]
-    reach = [*points, *(corner for named in curves for corner in named.corners)]
-    plot = Plot(_span(x for x, _ in reach), _span(y for _, y in reach))
-    plot.x_label, plot.y_label = reader.text(N_("Radial load in N")), reader.text(N_("Axial load in N"))
-    for named in picture.named_curves:
-        plot.line(named.kind, named.corners)
-        if named.kind in ("own", "life") and named.curve.load_coefficient in PRINTED_LOAD_COEFFICIENTS:
-            plot.mark("above", named.corners[-1], f"f_w {reader.exact(named.curve.load_coefficient)}")
-    is_named = len(picture.loads) <= LABELLED_LOADS
-    for point, load in zip(points, picture.loads, strict=True):
-        plot.mark("point", point, load.phases if is_named else "")
-    return plot.data(reader)
+    subject = Subject(application, gear, export.figures)
+    picture = bearing_picture(subject, export.candidate.check(LIFE))
+    if picture is None:
+        return None
+    governing = governing_phases(subject, export.candidate.governing_check, picture)
+    return {
+        "drawing": markup(envelope_drawing(picture, reader, governing), ON_PAPER),
+        "condition": formula(reader.told(picture.condition)),
+    }

@@ -30,7 +30,10 @@ from hpn.wording import N_, Sentence
 SECTIONS = ("overview", "bearing", "candidates", "compare", "calculation", "notes")
 """The result by sections, in their order."""
 
-PARTS = frozenset((*SECTIONS[1:], "stops_figure"))
+FIGURES = frozenset(("bearing_figure", "sizes_figure", "stops_figure"))
+"""Plots, which come only when somebody unfolds them: without script there is no use for their data."""
+
+PARTS = FIGURES.union(SECTIONS[1:])
 """What comes with an edit only where it is in sight, as the header HPN-Parts says, and else is asked for by itself."""
 
 
@@ -174,7 +177,7 @@ def _parts(request: Request, form: Form) -> frozenset[str]:
     Typing changes the result alone. Buttons that edit rows, and what takes the place of all inputs, change the form.
     """
     if "hx-request" not in request.headers:
-        return PARTS | {"form", "result"}
+        return PARTS - FIGURES | {"form", "result"}
     _, _, target = request.headers.get("hx-target", "").partition("#")
     if target in PARTS:
         return frozenset((target,))

@@ -9,11 +9,12 @@ from starlette.requests import Request
 from starlette.responses import HTMLResponse, PlainTextResponse, RedirectResponse, Response
 
 from hpn.catalogue import Catalogue
-from hpn.drawings.envelope import HEIGHT, WIDTH, drawing
+from hpn.drawings import gear_envelope
 from hpn.gear import Gear, canonical_designation, canonical_size
 from hpn.web.door.access import admit
 from hpn.web.door.bodies import pairs_of
 from hpn.web.door.pools import worked
+from hpn.web.door.visit import current
 from hpn.web.pages.gear_figures import figures_of, neighbours, supplements_for
 from hpn.web.pages.ordering import ordering_code
 from hpn.web.pages.templates import environment
@@ -75,8 +76,7 @@ def show_gear(request: Request) -> Response:
         gear=gear,
         groups=figures_of(gear),
         missing=supplements_for(gear),
-        drawing=drawing(catalogue, gear),
-        canvas=(WIDTH, HEIGHT),
+        envelope=gear_envelope(catalogue, gear, current()),
         neighbours=neighbours(catalogue, gear),
         order=ordering_code(catalogue, gear, query.get("output", ""), query.get("motor", "")),
         carried=_carried(request),

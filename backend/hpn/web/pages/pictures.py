@@ -2,31 +2,32 @@
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from xml.etree.ElementTree import Element
 
 import orjson
-from jinja2 import pass_context
-from jinja2.runtime import Context
 from markupsafe import Markup
 
 from hpn import drawings
 from hpn.application import Application
 from hpn.catalogue import Catalogue
-from hpn.drawings import BearingPicture, CyclePicture, Figure, NamedCurve, SizeUse, Subject
+from hpn.drawings import BearingPicture, CyclePicture, Figure, SizeUse, Subject
+from hpn.drawings.svg import markup
 from hpn.gear import Gear
 from hpn.reader import Reader
+from hpn.selection import Candidate
 from hpn.web.door.visit import current
 from hpn.wording import Sentence
-
-DASHES = {"dot": "2 3", "dash": "7 4", "longdash": "11 4", "dashdot": "7 3 2 3", "longdashdot": "11 3 2 3"}
-"""Plotly's dashes as `stroke-dasharray` of a sample in the legend."""
 
 
 @dataclass(frozen=True)
 class Pictures:
-    """What the templates draw or hand to Plotly; each is made when a template asks for it."""
+    """What the templates draw or hand to Plotly; each is made when a template asks for it.
+
+    `chosen` is the candidate that is looked at, as it was judged just now or when it was saved.
+    """
 
     subject: Subject
+    chosen: Candidate
     reader: Reader
 
     @cached_property
@@ -35,9 +36,20 @@ class Pictures:
         return drawings.cycle_picture(self.subject, self.reader)
 
     @cached_property
+    def governing(self) -> tuple[int, ...]:
+        """Places of the phases that the governing check of the candidate goes by."""
+        return drawings.governing_phases(self.subject, self.chosen.governing_check, self.bearing)
+
+    @cached_property
     def bearing(self) -> BearingPicture | None:
-        """Loads on the output bearing, or None without loads or where it is not rated."""
-        return drawings.bearing_picture(self.subject)
+        """What the output bearing may carry and does, or None where it is not rated."""
+        return drawings.bearing_picture(self.subject, self.chosen.check("output_bearing_life"))
+
+    @cached_property
+    def envelope(self) -> Element:
+        """Drawing of `bearing`, which must be there."""
+        assert self.bearing is not None
+        return drawings.envelope_drawing(self.bearing, self.reader, self.governing)
 
     @cached_property
     def bearing_figure(self) -> Figure:
@@ -45,29 +57,41 @@ class Pictures:
         assert self.bearing is not None
         return drawings.bearing_figure(self.bearing, self.reader)
 
-    @property
-    def legend(self) -> list[tuple[NamedCurve, Figure]]:
-        """Curves of `bearing`, each with its trace in the figure."""
-        assert self.bearing is not None
-        traces = {(t["meta"]["kind"], t["meta"].get("load_coefficient")): t for t in self.bearing_figure["data"]}
-        return [(named, traces[named.kind, named.curve.load_coefficient]) for named in self.bearing.named_curves]
-
     @cached_property
+    def sizes(self) -> list[SizeUse]:
+        """Bearing of every size under the conditions of `bearing`, which must be there."""
+        assert self.bearing is not None
+        return drawings.size_uses(self.subject, self.bearing)
+
+    @property
+    def sizes_drawing(self) -> Element:
+        """Drawing of all sizes."""
+        assert self.bearing is not None
+        return drawings.sizes_drawing(self.sizes, self.bearing, self.reader, self.governing)
+
+    @property
     def sizes_figure(self) -> Figure:
-        """Plotly figure of all sizes, where loads are given."""
-        return drawings.sizes_figure(self.subject, self.reader)
+        """Plotly figure of all sizes."""
+        assert self.bearing is not None
+        return drawings.sizes_figure(self.sizes, self.bearing, self.reader)
 
     @property
-    def sizes(self) -> list[tuple[SizeUse, Figure | None]]:
-        """Use of the bearing of every size, each with its trace in `sizes_figure`."""
-        traces = {trace["name"]: trace for trace in self.sizes_figure["data"] if trace["meta"]["kind"] == "size"}
-        return [(use, traces.get(use.gear.name)) for use in drawings.size_uses(self.subject)]
+    def carries(self) -> bool:
+        """Whether the bearing carries the loads, which must be given."""
+        assert self.bearing is not None
+        return drawings.carries(self.bearing)
 
     @property
-    def verdict(self) -> list[Sentence]:
-        """`bearing` in words."""
+    def verdict(self) -> Sentence:
+        """Verdict on `bearing`, which must have loads."""
         assert self.bearing is not None
         return drawings.bearing_verdict(self.bearing)
+
+    @property
+    def words(self) -> list[Sentence]:
+        """What the verdict goes by."""
+        assert self.bearing is not None
+        return drawings.bearing_words(self.bearing)
 
     @cached_property
     def stop_figure(self) -> Figure | None:
@@ -80,10 +104,14 @@ class Pictures:
         return drawings.emergency_stop_words(self.subject)
 
 
-@pass_context
-def pictures_of(_: Context, application: Application, gear: Gear, catalogue: Catalogue) -> Pictures:
+def pictures_of(application: Application, gear: Gear, chosen: Candidate, catalogue: Catalogue) -> Pictures:
     """Pictures of one gear under an application, for whoever reads the page."""
-    return Pictures(Subject(application, gear, catalogue), current())
+    return Pictures(Subject(application, gear, catalogue), chosen, current())
+
+
+def inline(drawing: Element) -> Markup:
+    """A drawing as part of a page; an XML library made it, which escapes what it writes."""
+    return Markup(markup(drawing))
 
 
 def as_attribute(figure: Figure) -> Markup:
@@ -92,12 +120,4 @@ def as_attribute(figure: Figure) -> Markup:
     return Markup(text.replace("&", "&amp;").replace("'", "&#39;").replace("<", "&lt;"))
 
 
-def sample(trace: dict[str, Any]) -> Markup:
-    """Attributes of the line that stands for a trace in the legend."""
-    line = trace["line"]
-    dash = DASHES.get(line["dash"], "none")
-    return Markup(f'stroke-width="{line["width"]}" stroke-dasharray="{dash}" stroke="{line["color"]}"')
-
-
-GLOBALS = {"pictures_of": pictures_of}
-FILTERS = {"as_attribute": as_attribute, "sample": sample}
+FILTERS = {"as_attribute": as_attribute, "inline": inline}

@@ -14,6 +14,7 @@ from hpn.gear import Gear
 from hpn.readings import Reading, readings_of
 from hpn.remedy import Growth, growths_of, remedy_of
 from hpn.selection import Candidate, Selection
+from hpn.web.pages.pictures import Pictures, pictures_of
 from hpn.wording import N_, Sentence
 
 BEST: Mapping[RankBy, str] = {
@@ -112,6 +113,13 @@ class Result:
     def gear(self) -> Gear | None:
         """Catalogue figures of the chosen candidate."""
         return self.gears.get(self.chosen.designation)
+
+    @cached_property
+    def pictures(self) -> Pictures | None:
+        """Pictures of the chosen candidate, or None where what they need is not kept."""
+        if self.application is None or self.gear is None or self.catalogue is None:
+            return None
+        return pictures_of(self.application, self.gear, self.chosen, self.catalogue)
 
     @property
     def utilisation(self) -> float:

@@ -16,6 +16,7 @@ from hpn import units
 from hpn.calculation import calculation_of
 from hpn.checks import BY_CODE
 from hpn.drawings.picture import beyond_limit
+from hpn.drawings.words import STANDING, STANDING_SUPPLIED
 from hpn.quantities import GEAR, LISTED, QUANTITIES, VERDICTS, unit_of
 from hpn.reader import GROUP, LANGUAGE_NAMES, Reader
 from hpn.remedy import DRIVER_NAMES
@@ -64,7 +65,7 @@ def _templates(static: assets.Assets) -> Environment:
     )
     templates.filters |= FILTERS | pictures.FILTERS | mathml.FILTERS
     templates.tests |= {"beyond_limit": beyond_limit}
-    templates.globals |= pictures.GLOBALS | GLOBALS | {"asset": static.url}
+    templates.globals |= GLOBALS | {"asset": static.url}
     return templates
 
 
@@ -171,6 +172,8 @@ GLOBALS: dict[str, Any] = {
     "preview_of": preview_of,
     "QUANTITIES": QUANTITIES,
     "reader": current,
+    "STANDING": STANDING,
+    "STANDING_SUPPLIED": STANDING_SUPPLIED,
     "symbols": symbols,
     "VERDICTS": VERDICTS,
 }

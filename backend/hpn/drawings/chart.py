@@ -1,0 +1,291 @@
+"""The drawing of loads in their envelopes: radial load to the right, axial load upwards, and how far limits are used.
+
+One description for every page and for the report: `chart` makes it, a style sheet gives it its colours.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from xml.etree.ElementTree import Element, SubElement
+
+from hpn.drawings.axis import round_numbers
+from hpn.drawings.placing import Box, Places, around
+from hpn.drawings.svg import LETTER, Point, add, canvas, path, text, width_of
+from hpn.drawings.words import axis_title
+from hpn.reader import Reader
+from hpn.wording import N_
+
+WIDTH, HEIGHT = 440.0, 250.0
+"""Size of the drawing; each bar below it adds ROW to its height."""
+
+TOP, RIGHT, BOTTOM, ROW = 8.0, 16.0, 40.0, 22.0
+ROOM = 1.15
+"""Axes reach this far beyond the largest value."""
+
+MOST_SPACES, GAP = 6, 8.0
+"""Most spaces between round numbers, and the least one between two of them, in units of the drawing."""
+
+RADIUS, DOT, RING = 9.5, 2.5, 12.5
+MARGIN = 3.5
+MOST_DISCS = 24
+"""Loads that have a numbered disc, those nearest to their limit first; other phases are dots."""
+
+BAR_END = 1.5
+"""Utilisation at which a bar ends."""
+
+LEAST_BAR = 24.0
+ALONG = (0.5, 0.42, 0.58, 0.34, 0.66, 0.26, 0.74, 0.18, 0.82)
+
+
+@dataclass(frozen=True, slots=True)
+class Line:
+    """An envelope by its corners (radial, axial) in N, from the axial to the radial axis.
+
+    A strong one has its label on it, others at their end; `kind` is what the style sheet calls it.
+    """
+
+    kind: str
+    label: str
+    corners: Sequence[Point]
+    strong: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Mark:
+    """A load in N: a dot at its exact place, and a disc with its label at it or beside it.
+
+    `phases` are the places of the phases that have it, `told` is what it is in words, `used` its share of its limit.
+    """
+
+    kind: str
+    label: str
+    load: Point
+    told: str
+    used: float = 0.0
+    outside: bool = False
+    phases: Sequence[int] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Bar:
+    """How far a limit is used, and how far it may be."""
+
+    label: str
+    used: float
+    allowed: float
+    told: str
+
+
+@dataclass(frozen=True, slots=True)
+class Frame:
+    """Where loads stand in the drawing."""
+
+    left: float
+    radial: float
+    axial: float
+
+    @property
+    def box(self) -> Box:
+        """The part of the drawing between the axes."""
+        return Box(self.left, TOP, WIDTH - RIGHT, HEIGHT - BOTTOM)
+
+    @property
+    def room(self) -> Box:
+        """The part that discs and names may use: a little beyond the axes, up to their numbers."""
+        box = self.box
+        return Box(box.left - MARGIN, box.top, box.right + MARGIN, box.bottom + MARGIN)
+
+    def at(self, load: Point) -> Point:
+        """Place of a load."""
+        box = self.box
+        x = box.left + load[0] / self.radial * (box.right - box.left)
+        return x, box.bottom - load[1] / self.axial * (box.bottom - box.top)
+
+
+def chart(
+    lines: Sequence[Line], marks: Sequence[Mark], bars: Sequence[Bar], reader: Reader, ray: Point | None = None
+) -> Element:
+    """Envelopes, loads and bars. `ray` is a load whose direction from the origin is drawn."""
+    frame = _frame([*(corner for line in lines for corner in line.corners), *(mark.load for mark in marks)], reader)
+    drawing = canvas(WIDTH, HEIGHT + ROW * len(bars))
+    still = add(drawing, "g", "still", aria_hidden="true")
+    _axes(still, frame, reader)
+    places = Places(frame.room)
+    for line in lines:
+        corners = [frame.at(corner) for corner in line.corners]
+        if line.strong:
+            add(still, "path", "area", d=path([frame.at((0, 0)), *corners], closed=True))
+        places.lines += pairwise(corners)
+    for line in sorted(lines, key=lambda line: line.strong):
+        add(still, "path", f"line {line.kind}", d=path(frame.at(corner) for corner in line.corners))
+    if ray:
+        add(still, "path", "ray", d=path([frame.at((0, 0)), frame.at(ray)]))
+    _marks(drawing, frame, marks, places)
+    _labels(drawing, frame, lines, places)
+    _bars(drawing, bars)
+    return drawing
+
+
+# --- Axes -------------------------------------------------------------------------------------------------------------
+
+
+def _frame(loads: Sequence[Point], reader: Reader) -> Frame:
+    radial, axial = (ROOM * max(values) or 1.0 for values in zip(*loads, strict=True))
+    numbers = _numbers(axial, MOST_SPACES - 1, reader)
+    return Frame(LETTER + 12 + max(width_of(label) for _, label in numbers), radial, axial)
+
+
+def _numbers(largest: float, spaces: int, reader: Reader) -> list[tuple[float, str]]:
+    """Round numbers of the reader's unit along an axis: each in N, and as it is written."""
+    end = reader.measure("N").shown(largest)
+    return [(largest * number / end, reader.tick(number)) for number in round_numbers(0.0, end, spaces)] or [(0.0, "0")]
+
+
+def _axes(drawing: Element, frame: Frame, reader: Reader) -> None:
+    box = frame.box
+    for load, label in _numbers(frame.axial, MOST_SPACES - 1, reader):
+        _, y = frame.at((0.0, load))
+        add(drawing, "path", "grid", d=path([(box.left, y), (box.right, y)]))
+        text(drawing, "tick", (box.left - 5, y + 4.5), label, "end")
+    for load, label in _spread(frame, reader):
+        x, _ = frame.at((load, 0.0))
+        add(drawing, "path", "grid", d=path([(x, box.top), (x, box.bottom)]))
+        text(drawing, "tick", (min(x, WIDTH - width_of(label) / 2), box.bottom + 16), label, "middle")
+    add(drawing, "path", "axis", d=path([(box.left, box.top), (box.left, box.bottom), (box.right, box.bottom)]))
+    middle = (box.left + box.right) / 2, HEIGHT - 7
+    text(drawing, "title", middle, axis_title(N_("radial load"), "N", reader), "middle")
+    title = text(drawing, "title", (0, 0), axis_title(N_("axial load"), "N", reader), "middle")
+    title.set("transform", f"translate({LETTER - 1:g} {(box.top + box.bottom) / 2:g}) rotate(-90)")
+
+
+def _spread(frame: Frame, reader: Reader) -> list[tuple[float, str]]:
+    """Numbers of the radial axis, as many as have room beside each other."""
+    for spaces in range(MOST_SPACES, 1, -1):
+        numbers = _numbers(frame.radial, spaces, reader)
+        widest = max(width_of(label) for _, label in numbers)
+        steps = [frame.at((load, 0.0))[0] for load, _ in numbers]
+        if all(after - before >= widest + GAP for before, after in pairwise(steps)):
+            return numbers
+    return numbers[:1]
+
+
+# --- Loads ------------------------------------------------------------------------------------------------------------
+
+
+def _marks(drawing: Element, frame: Frame, marks: Sequence[Mark], places: Places) -> None:
+    """Dots first, so that no disc hides one that is not its own; then the discs, the most used load first, P_m last."""
+    ordered = sorted(range(len(marks)), key=lambda place: -marks[place].used)
+    loads = [place for place in ordered if marks[place].phases]
+    named = [*loads[:MOST_DISCS], *(place for place in ordered if not marks[place].phases)]
+    dots = [Box.around(frame.at(mark.load), 2 * DOT, 2 * DOT) for mark in marks]
+    leaders = add(drawing, "g", "still", aria_hidden="true")
+    groups = [_group(drawing, mark, dot.centre) for mark, dot in zip(marks, dots, strict=True)]
+    for place in named:
+        mark, dot = marks[place], dots[place]
+        others = [other for other in dots if not (other.left == dot.left and other.top == dot.top)]
+        taken = places.taken
+        places.taken = [*taken, *others]
+        size = _size(mark)
+        spot = places.first([Box.around(dot.centre, *size), *around(dot.centre, *size)])
+        places.taken = [*taken, *([spot] if spot else [])]
+        if spot:
+            _disc(groups[place], leaders, mark, dot.centre, spot)
+    places.taken += dots
+
+
+def _group(drawing: Element, mark: Mark, dot: Point) -> Element:
+    state = " outside" if mark.outside else ""
+    group = add(drawing, "g", f"mark {mark.kind}{state}", role="img", data_phase=" ".join(map(str, mark.phases)))
+    SubElement(group, "title").text = mark.told
+    add(group, "circle", "dot", cx=dot[0], cy=dot[1], r=DOT)
+    return group
+
+
+def _size(mark: Mark) -> tuple[float, float]:
+    """Room for a disc, and for the ring and the cross of a load beyond its limit."""
+    ring = RING if mark.outside else RADIUS
+    return 2 * ring + _excess(mark.label) + 1, 2 * ring + 1
+
+
+def _excess(label: str) -> float:
+    """What a label is wider than two digits, which a disc is made for."""
+    return max(width_of(label) - width_of("00"), 0.0)
+
+
+def _disc(group: Element, leaders: Element, mark: Mark, dot: Point, spot: Box) -> None:
+    (x, y), half = spot.centre, RADIUS + _excess(mark.label) / 2
+    if (x, y) != dot:
+        add(leaders, "path", "leader", d=path([dot, (x, y)]))
+    if mark.outside:
+        wide = half + RING - RADIUS
+        add(group, "rect", "ring", x=x - wide, y=y - RING, width=2 * wide, height=2 * RING, rx=RING)
+        across, up = x + wide - 4, y - RING + 4
+        add(group, "path", "cross", d=f"M{across - 4:.1f} {up - 4:.1f}l8 8m0 -8l-8 8")
+    group.set("tabindex", "0")
+    add(group, "rect", "disc", x=x - half, y=y - RADIUS, width=2 * half, height=2 * RADIUS, rx=RADIUS)
+    text(group, "number", (x, y + 4.3), mark.label, "middle")
+
+
+# --- Names of the lines -----------------------------------------------------------------------------------------------
+
+
+def _labels(drawing: Element, frame: Frame, lines: Sequence[Line], places: Places) -> None:
+    group = add(drawing, "g", "still", aria_hidden="true")
+    for line in sorted(lines, key=lambda line: not line.strong):
+        corners = [frame.at(corner) for corner in line.corners]
+        width, height = width_of(line.label) + 4, LETTER + 2
+        candidates = [Box.around(_along(corners, share), width, height) for share in ALONG] if line.strong else []
+        if not line.strong:
+            candidates = [*_beside(corners[-1], width, height), *_beside(corners[0], width, height)]
+            candidates += [Box.around(_along(corners, share), width, height) for share in reversed(ALONG)]
+        known = places.lines
+        if line.strong:  # its name is to lie on it
+            places.lines = [segment for segment in known if segment not in set(pairwise(corners))]
+        spot = places.clearest(candidates)
+        places.lines = known
+        if spot:
+            x, _ = spot.centre
+            text(group, f"name {line.kind}", (x, spot.bottom - 4), line.label, "middle")
+
+
+def _beside(end: Point, width: float, height: float) -> list[Box]:
+    """Places above and to the right of the end of a line, the nearest first."""
+    x, y = end
+    return [
+        Box(x + right, y - up - height, x + right + width, y - up)
+        for up in (1.0, 6.0, 12.0, 18.0)
+        for right in (3.0, -width / 2, 12.0)
+    ]
+
+
+def _along(corners: Sequence[Point], share: float) -> Point:
+    """Point at a share of the way along a line, by its extent across and down."""
+    lengths = [abs(x1 - x0) + abs(y1 - y0) for (x0, y0), (x1, y1) in pairwise(corners)]
+    rest = share * sum(lengths)
+    for length, (start, end) in zip(lengths, pairwise(corners), strict=True):
+        if rest <= length:
+            part = rest / length if length else 0.0
+            return start[0] + part * (end[0] - start[0]), start[1] + part * (end[1] - start[1])
+        rest -= length
+    return corners[-1]
+
+
+# --- Bars -------------------------------------------------------------------------------------------------------------
+
+
+def _bars(drawing: Element, bars: Sequence[Bar]) -> None:
+    """Name, bar on a scale to BAR_END with a tick at what is allowed, and the numbers."""
+    if not bars:
+        return
+    left = 16 + max(width_of(bar.label) for bar in bars)
+    right = max(WIDTH - 12 - max(width_of(bar.told) for bar in bars), left + LEAST_BAR)
+    unit = (right - left) / BAR_END
+    for place, bar in enumerate(bars):
+        top = HEIGHT + 4 + ROW * place
+        group = add(drawing, "g", "bar outside" if bar.used > bar.allowed else "bar")
+        text(group, "name", (8, top + 12), bar.label)
+        add(group, "rect", "track", x=left, y=top + 1, width=right - left, height=13)
+        add(group, "rect", "used", x=left, y=top + 1, width=unit * min(bar.used, BAR_END), height=13)
+        tick = left + unit * bar.allowed
+        add(group, "path", "allowed", d=path([(tick, top - 2), (tick, top + 17)]))
+        text(group, "told", (right + 8, top + 12), bar.told)
