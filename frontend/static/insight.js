@@ -67,3 +67,20 @@ document.addEventListener("htmx:after:swap", (event) => {
 
 document.addEventListener("toggle", showState, true);
 document.addEventListener("htmx:after:swap", showState);
+
+// What a check tests comes from its own page when somebody asks for it.
+document.addEventListener("click", async (event) => {
+  const link = event.target.closest("a[data-explains]");
+  if (!link || !plain(event)) return;
+  event.preventDefault();
+  const place = document.getElementById("about-check");
+  const reply = await fetch(link.href).catch(() => null);
+  if (!reply?.ok) return location.assign(link.href);
+  const page = new DOMParser().parseFromString(await reply.text(), "text/html");
+  const title = Object.assign(document.createElement("h3"), { id: "about-check-title", textContent: page.querySelector("#check h2").textContent });
+  place.replaceChildren(title, page.querySelector("#check .explanation"));
+  place.tabIndex = -1;
+  place.showPopover();
+  place.focus();
+  place.addEventListener("toggle", (closing) => closing.newState === "closed" && link.focus(), { once: true });
+});

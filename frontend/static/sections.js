@@ -47,6 +47,7 @@ document.addEventListener("click", (event) => {
 
 wide.addEventListener("change", mark);
 show(sectionOf(document.getElementById(location.hash.slice(1))) ?? "overview");
+if (wide.matches && location.hash) addEventListener("load", () => scrollTo({ top: 0 }));
 
 // --- What is in sight -------------------------------------------------------------------------------------------------
 

@@ -132,6 +132,20 @@ def visitor(chromium: Browser, server: str) -> Iterator[Visitor]:
     assert strangers == []
 
 
+def open_section(page: Page, name: str) -> None:
+    """Show a section of the result."""
+    page.get_by_role("navigation", name="Sections of the result").get_by_role("link", name=name).click()
+
+
+def violations(page: Page) -> list[tuple[str, list[str]]]:
+    """What axe finds on a page in both themes; only contrast depends on them."""
+    page.evaluate(AXE.read_text())
+    found = page.evaluate("axe.run({ resultTypes: ['violations'] })")["violations"]
+    page.emulate_media(color_scheme="dark")
+    found += page.evaluate("axe.run({ runOnly: ['color-contrast'], resultTypes: ['violations'] })")["violations"]
+    return [(entry["id"], [node["html"] for node in entry["nodes"]]) for entry in found]
+
+
 @contextmanager
 def answer_held_back(page: Page, after: Callable[[], None]) -> Iterator[None]:
     """What the page asks the server for in consequence is under way and not answered before the block ends."""

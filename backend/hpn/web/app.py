@@ -39,6 +39,7 @@ from hpn.web.door.readers import Readers
 from hpn.web.pages import assets, long_cycles, paste, refusals, saved_list, transfer
 from hpn.web.pages import calculator as pages
 from hpn.web.pages import catalogue as catalogue_pages
+from hpn.web.pages import checks as check_pages
 from hpn.web.pages import saved as selection_pages
 from hpn.web.settings import Settings
 
@@ -92,6 +93,7 @@ ROUTERS: tuple[APIRouter, ...] = (
     assets.router,
     readers.router,
     catalogue_pages.router,
+    check_pages.router,
     long_cycles.router,
     paste.router,
     transfer.router,
