@@ -98,8 +98,11 @@ class Reader:
 
     def date(self, moment: datetime) -> str:
         """Day and time in UTC."""
-        utc = moment.astimezone(UTC)
-        return f"{format_date(utc.date(), 'long', locale=_DATES[self.language])}, {utc:%H:%M} UTC"
+        return f"{self.day(moment)}, {moment.astimezone(UTC):%H:%M} UTC"
+
+    def day(self, moment: datetime) -> str:
+        """Day in UTC."""
+        return format_date(moment.astimezone(UTC).date(), "long", locale=_DATES[self.language])
 
     # --- Units --------------------------------------------------------------------------------------------------------
 

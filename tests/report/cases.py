@@ -72,8 +72,7 @@ def typed_export_of(
         application=asked,
         selection=select(asked, catalogue, to_link(asked)),
         link="http://hpn.example/selections/0123456789abcdefghijkl",
-        title=title,
-        reference=reference,
+        heading=export.Heading(title, reference),
         created=CREATED,
         catalogue=catalogue,
     )
@@ -108,8 +107,7 @@ class Export:
             application=self.application,
             selection=msgspec.convert(self.reply, Selection),
             link="http://hpn.example/selections/0123456789abcdefghijkl",
-            title=self.title,
-            reference=self.reference,
+            heading=export.Heading(self.title, self.reference),
             created=CREATED,
             catalogue=self.catalogue,
         )

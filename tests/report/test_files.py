@@ -88,7 +88,7 @@ def test_a_link_with_a_gear_makes_files_of_that_gear(client: TestClient) -> None
     for gear in ("HPN-32A-5", "HPN-20A-7"):  # the ratio of the second is not asked for
         report = client.get(f"/report.pdf?{QUERY}&gear={gear}")
         assert f'"{gear}.pdf"' in report.headers["content-disposition"]
-        assert f"Checks of {gear}" in PdfReader(BytesIO(report.content)).pages[1].extract_text()
+        assert f"Checks of {gear}" in PdfReader(BytesIO(report.content)).pages[0].extract_text()
         book = openpyxl.load_workbook(BytesIO(client.get(f"/report.xlsx?{QUERY}&gear={gear}").content))
         assert gear in [cell.value for cell in book.worksheets[0]["C"]]
     unknown = client.get(f"/report.pdf?{QUERY}&gear=HPN-99A-5")

@@ -24,7 +24,7 @@ def test_every_text_of_the_files_is_translated(
     original = Reader.text
 
     def noting(reader: Reader, english: str) -> str:
-        if english and english not in known and re.search("[a-z]{2}", english):
+        if english and english not in known and re.search("[a-z]{2}", re.sub(r"{\w+}", "", english)):
             lacking.add(english)
         return original(reader, english)
 
@@ -35,8 +35,8 @@ def test_every_text_of_the_files_is_translated(
     assert lacking <= UNTRANSLATED
 
 
-UNTRANSLATED = {"Nm", "Nm/rad", "kg", "mm", "arcmin", "{text}"}
-"""Symbols of units that every language writes alike, and a sentence that is a value alone."""
+UNTRANSLATED = {"Nm", "Nm/rad", "kg", "mm", "arcmin"}
+"""Symbols of units that every language writes alike."""
 
 
 def test_sources_are_told_in_the_language_of_the_file() -> None:

@@ -112,13 +112,14 @@ def test_every_phase_of_a_long_cycle_is_printed_under_heads_on_numbered_pages(ca
     export = typed_export_of(asked, catalogue)
     document = pdf(export, GERMAN)
     pages = [by_pdfium(document, page) for page in range(len(PdfReader(BytesIO(document)).pages))]
-    rows = iter(row for page in pages[2:] for row in re.findall(r"^ *(\d+) +(\S+) +(\S+) +(\S+)\r?$", page, re.M))
+    first = next(k for k, page in enumerate(pages) if "Jede Phase des Lastzyklus" in page)
+    rows = iter(row for page in pages[first:] for row in re.findall(r"^ *(\d+) +(\S+) +(\S+) +(\S+)\r?$", page, re.M))
     for number, given in enumerate(export.application.duty_cycle.phases, 1):
         shown = (str(number), *(GERMAN.exact(value) for value in (given.torque_Nm, given.speed_rpm, given.duration_s)))
         assert next(rows) == shown
     for number, page in enumerate(pages, 1):
         assert f"Seite {number} von {len(pages)}" in page
-        assert number < 3 or "n [min⁻¹]" in page
+        assert number <= first or "n [min⁻¹]" in page
 
 
 def test_the_document_is_sound_and_its_phases_are_tagged(catalogue: Catalogue) -> None:

@@ -6,14 +6,15 @@ from typing import Any
 
 import segno
 
-from hpn.reader import Reader
+from hpn.reader import NOTHING, Reader
 from hpn.report import plots, tables
 from hpn.report.export import Export
 from hpn.report.inputs import LOADS, REQUIREMENTS
 from hpn.report.listing import listing
+from hpn.report.steps import steps
 from hpn.report.symbols import sentence
 from hpn.report.verdict import alternatives, checks, verdict
-from hpn.report.words import catalogue_version
+from hpn.report.words import catalogue_version, paper
 from hpn.wording import N_
 
 LONGEST_TITLE = 160
@@ -29,8 +30,6 @@ LABELS = {
     "product": N_("HPN Select"),
     "heading": N_("Gear selection report"),
     "untitled": N_("Untitled selection"),
-    "reference": N_("Reference"),
-    "created": N_("Saved"),
     "loads": N_("Pause, emergency stop and loads"),
     "requirements": N_("Requirements"),
     "phases": N_("Duty cycle"),
@@ -57,24 +56,42 @@ LABELS = {
         "Made by an independent tool from the maker's engineering data. Check the selection with the maker before you "
         "order."
     ),
-    "unsaved": N_("Not saved: made from the link alone, therefore undated."),
+    "unsaved": N_("Not saved: the link carries every input."),
     "too_long_link": N_("The link is too long to print; it carries every phase."),
     "unprintable": N_("□ stands for characters that the report's fonts lack: {codes}."),
+    "calculation": N_("Calculation of {gear}"),
+    "digits": N_(
+        "Numbers to nine digits, so that each line can be checked from the one before; this tool rounds nothing in "
+        "between."
+    ),
     "each_phase": N_("Each phase of the duty cycle"),
 }
+
+CAVEATS = (
+    N_("Lives are hours of operation of the whole cycle, its pause included."),
+    N_(
+        "L10: 90 % of all units reach this life; L50: half of them. Equation 17.10 calls its result L10, while the "
+        "glossary describes the rated torque on a basis of 50 % failures; the handbook does not settle which holds."
+    ),
+    N_("Motor torques leave out the inertia of motor and gear, and losses where no efficiency is known."),
+)
+"""What is to be known of the figures of cycle and gear, where they stand."""
 
 
 def content(export: Export, reader: Reader) -> dict[str, Any]:
     """Everything that the template sets, as JSON-ready data."""
     text, selection = reader.text, export.selection
     labels = {key: text(label) for key, label in LABELS.items()}
-    labels |= {key: labels[key].format(gear=export.candidate.designation) for key in ("checks", "ratings")}
+    named = ("checks", "ratings", "calculation")
+    labels |= {key: labels[key].format(gear=export.candidate.designation) for key in named}
     return {
         "lang": reader.language,
+        "paper": paper(reader),
         "labels": labels,
-        "title": _shortened(export.title.strip() or labels["untitled"], LONGEST_TITLE),
-        "reference": _shortened(export.reference.strip(), LONGEST_TITLE),
-        "created": reader.date(export.created) if export.created else "",
+        "title": _shortened(export.heading.title.strip() or labels["untitled"], LONGEST_TITLE),
+        "author": export.heading.author.strip(),
+        "block": _block(export, reader),
+        "saved": export.created is not None,
         **_link(export.link),
         "verdict": verdict(export, reader),
         "loads": tables.given(export, LOADS, reader),
@@ -82,18 +99,36 @@ def content(export: Export, reader: Reader) -> dict[str, Any]:
         "phases": tables.phases(export, reader),
         "listing": listing(export, reader),
         "derived": tables.derived(export, reader),
+        "caveats": [sentence(text(caveat)) for caveat in CAVEATS],
         "cycle": {"panels": plots.cycle(export, reader), "alt": text(N_("Torque and speed of the cycle over time"))},
         "bearing": plots.envelope(export, reader),
         "bearing_alt": text(N_("Loads of the phases within the envelopes of the output bearing")),
         "checks": checks(export, reader),
         "ratings": tables.ratings(export, reader),
         "alternatives": alternatives(export, reader),
+        "steps": steps(export, reader),
         "notices": [sentence(reader.told(notice.sentence)) for notice in selection.notices],
         "versions": [
             [text(N_("Engine")), selection.engine_version],
             [text(N_("Catalogue")), catalogue_version(export, reader)],
         ],
     }
+
+
+def _block(export: Export, reader: Reader) -> list[list[str]]:
+    """Fields of the title block below the title; one that nobody filled in has a dash."""
+    heading, made = export.heading, export.made
+    dated = reader.date(export.created) if export.created else reader.day(made) if made else ""
+    fields = {
+        N_("Reference"): heading.reference,
+        N_("Revision"): heading.revision,
+        N_("Author"): heading.author,
+        N_("Saved") if export.created else N_("Date"): dated,
+        N_("Ordering code"): heading.ordering_code,
+    }
+    return [
+        [reader.text(label), _shortened(value.strip(), LONGEST_TITLE) or NOTHING] for label, value in fields.items()
+    ]
 
 
 def _shortened(text: str, most: int) -> str:

@@ -1,7 +1,7 @@
 """One selection as it leaves the service: what was asked and what was answered, never computed again."""
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, field, fields
 from datetime import datetime
 from functools import cached_property
 
@@ -29,29 +29,41 @@ _NO_XML = re.compile("[^\t\n\r\x20-\x7e\xa0-\ud7ff\ue000-\ufffd\U00010000-\U0010
 
 
 @dataclass(frozen=True)
+class Heading:
+    """The title block: what people call a selection, who answers for it, and what is ordered."""
+
+    title: str = ""
+    reference: str = ""
+    author: str = ""
+    revision: str = ""
+    ordering_code: str = ""
+
+    def __post_init__(self) -> None:
+        """Replace what no file can hold, in texts that anybody may have written."""
+        for part in fields(self):
+            shown = _NO_XML.sub("\N{REPLACEMENT CHARACTER}", getattr(self, part.name))
+            object.__setattr__(self, part.name, shown)
+
+
+@dataclass(frozen=True)
 class Export:
     """An application, the selection for it, and what a reader needs to find both again.
 
     `link` is absolute. `created` is when the selection was saved, in a time zone; None for one that is not saved, whose
-    files then carry no date. `catalogue` gives the figures behind the selection; one of another version is not used,
-    and the files say so. `reply` is a saved selection as it was saved, to the byte. `chosen` is the gear that somebody
-    looks at instead of the foremost.
+    files show the day of `made` instead, when they are made. `catalogue` gives the figures behind the selection; one of
+    another version is not used, and the files say so. `reply` is a saved selection as it was saved, to the byte.
+    `chosen` is the gear that somebody looks at instead of the foremost.
     """
 
     application: Application
     selection: Selection
     link: str
-    title: str = ""
-    reference: str = ""
+    heading: Heading = field(default_factory=Heading)
     created: datetime | None = None
+    made: datetime | None = None
     catalogue: Catalogue | None = None
     reply: bytes = b""
     chosen: str = ""
-
-    def __post_init__(self) -> None:
-        """Replace what no file can hold, in texts that anybody may have written."""
-        for name in ("title", "reference"):
-            object.__setattr__(self, name, _NO_XML.sub("\N{REPLACEMENT CHARACTER}", getattr(self, name)))
 
     @property
     def candidate(self) -> Candidate:
@@ -107,20 +119,22 @@ class Export:
         return bool(((torques > 0) & ((torques < known[0]) | (torques > known[-1]))).any())
 
     @property
-    def runner_up(self) -> Candidate | None:
-        """The second suitable gear, or None."""
-        second = self.selection.candidates[1:2]
-        return second[0] if second and second[0].status == "suitable" else None
+    def others(self) -> list[Candidate]:
+        """Suitable gears beside the reported one, best first."""
+        reported = self.candidate.designation
+        return [c for c in self.selection.candidates if c.status == "suitable" and c.designation != reported]
 
     @property
-    def smaller(self) -> Candidate | None:
-        """The nearest miss among the smaller sizes: of the same ratio where there is one, else of any."""
-        own = _frame(self.candidate)
-        misses = [c for c in self.selection.candidates if c.status == "unsuitable" and _frame(c) < own]
-        same = [candidate for candidate in misses if candidate.ratio == self.candidate.ratio]
-        return next(iter(same or misses), None)
+    def misses(self) -> list[Candidate]:
+        """Rejected gears beside the reported one that are worth a word: the nearest of those that are lighter, or the
+        nearest of all where it fails itself.
+        """
+        rejected = [c for c in self.selection.candidates if c.status == "unsuitable" and c.is_judged]
+        if self.candidate.status != "suitable":
+            return [c for c in rejected if c.designation != self.candidate.designation][:2]
+        weight = self._weight(self.candidate)
+        return [c for c in rejected if weight and (own := self._weight(c)) and own < weight][:1]
 
-
-def _frame(candidate: Candidate) -> int:
-    """Number in the size of a candidate: 20 for 20A."""
-    return int(candidate.size.rstrip("A"))
+    def _weight(self, candidate: Candidate) -> float | None:
+        gear = self.gear(candidate)
+        return gear.weight_kg if gear else None

@@ -26,8 +26,9 @@ def listing(export: Export, reader: Reader) -> dict[str, Any] | None:
         return None
     table = [[reader.text(N_("Phase")), *(str(number) for number in range(1, len(phases) + 1))]]
     for name, values in columns(phases).items():
-        head = f"{INPUTS[f'phase.{name}'].symbol} [{reader.unit(suffix_of(name) or '')}]"
-        table.append([head, *("" if value is None else reader.exact(value) for value in values)])
+        unit = suffix_of(name) or ""
+        head = f"{INPUTS[f'phase.{name}'].symbol} [{reader.unit(unit)}]"
+        table.append([head, *("" if value is None else reader.exact(value, unit) for value in values)])
     widths = [max(map(len, column)) for column in table]
     head, *lines = (
         "  ".join(cell.rjust(w) for cell, w in zip(row, widths, strict=True)) for row in zip(*table, strict=True)

@@ -56,10 +56,12 @@ class Overview:
 
     def _head(self) -> None:
         export = self.book.export
-        self.sheet.write_string(0, 0, export.title or self.text(N_("Untitled selection")), self.book.style("title"))
+        self.sheet.write_string(
+            0, 0, export.heading.title or self.text(N_("Untitled selection")), self.book.style("title")
+        )
         self.sheet.freeze_panes(1, 0)
         lines = [
-            (N_("Reference"), export.reference),
+            (N_("Reference"), export.heading.reference),
             (N_("Saved"), self.book.reader.date(export.created) if export.created else ""),
             (N_("Link"), export.link if len(export.link) < 32_000 else ""),
         ]

@@ -33,7 +33,7 @@ def pdf(export: Export, reader: Reader) -> bytes:
 
     PDF/UA refuses a text that no font can show, so what typst names as such is replaced, and a note says what it was.
     """
-    data, title = content(export, reader), export.title.strip()
+    data, title = content(export, reader), export.heading.title.strip()
     seconds = int(export.created.timestamp()) if export.created else 0
     unshown: set[str] = set()
     while True:

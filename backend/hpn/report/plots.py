@@ -9,10 +9,12 @@ from hpn.application import Application
 from hpn.drawings import Subject, bearing_picture, envelope_drawing, governing_phases
 from hpn.drawings.axis import round_numbers, slices
 from hpn.drawings.svg import markup
+from hpn.quantities import INPUTS
 from hpn.reader import Reader
 from hpn.report.export import Export
 from hpn.report.symbols import formula
-from hpn.wording import N_
+from hpn.units import suffix_of
+from hpn.wording import N_, Sentence
 
 LABELLED_PHASES = 20
 """Phases up to which each is named in a plot."""
@@ -146,26 +148,21 @@ def _span(values: Iterable[float]) -> Point:
 def cycle(export: Export, reader: Reader) -> list[dict[str, Any]]:
     """Torque and speed over time, phases as steps and the pause at the end, as in illustration 17.1."""
     application, duty = export.application, export.selection.duty
-    torque = _over_time(application, "torque_Nm", reader.text(N_("Torque in Nm")))
-    torque.line("average", [(0.0, T := duty.average_torque_Nm), (torque.x_range[1], T)], "T_av", (torque.x_range[1], T))
-    speed = _over_time(application, "speed_rpm", reader.text(N_("Speed in rpm")))
-    speed.line(
-        "average",
-        [(0.0, n := duty.average_output_speed_rpm), (speed.x_range[1], n)],
-        "n_out,av",
-        (speed.x_range[1], n),
-    )
+    torque = _over_time(application, "torque_Nm", duty.average_torque_Nm, "T_av", reader)
+    speed = _over_time(application, "speed_rpm", duty.average_output_speed_rpm, "n_out,av", reader)
     speed.x_label = reader.text(N_("Time in s"))
     _name_phases(application, torque, reader)
     return [torque.data(reader), speed.data(reader)]
 
 
-def _over_time(application: Application, name: str, label: str) -> Plot:
-    cycle = application.duty_cycle
-    values = [*(getattr(phase, name) for phase in cycle.phases), 0.0]
+def _over_time(application: Application, name: str, average: float, symbol: str, reader: Reader) -> Plot:
+    cycle, unit, named = application.duty_cycle, suffix_of(name) or "", INPUTS[f"phase.{name}"]
+    shown = reader.measure(unit).shown
+    values = [*(shown(getattr(phase, name)) for phase in cycle.phases), 0.0]
     edges = [*accumulate((phase.duration_s for phase in cycle.phases), initial=0.0)]
     edges.append(end := edges[-1] + cycle.pause_s)
-    plot = Plot((0.0, end), _span(values), y_label=label)
+    label = Sentence(N_("{quantity} in {unit}"), {"quantity": named.name, "unit": reader.unit(unit)}, ("quantity",))
+    plot = Plot((0.0, end), _span(values), y_label=reader.told(label))
     if len(cycle.phases) <= MOST_STEPS:
         ends = [(edges[k + place], value) for k, value in enumerate(values) for place in (0, 1)]
         plot.line(name, [(0.0, 0.0), *ends])
@@ -173,6 +170,8 @@ def _over_time(application: Application, name: str, label: str) -> Plot:
         width = end / MOST_STEPS
         ranges = slices([edge / width for edge in edges], values)
         plot.line(f"range_{name}", [((k + 0.5) * width, value) for k, ends in ranges.items() for value in ends])
+    mean = shown(average)
+    plot.line("average", [(0.0, mean), (end, mean)], symbol, (end, mean))
     return plot
 
 
@@ -182,7 +181,11 @@ def _name_phases(application: Application, plot: Plot, reader: Reader) -> None:
         return
     for number, phase in enumerate(phases, 1):
         if phase.duration_s > 0.025 * end:
-            plot.mark("phase", (time + phase.duration_s / 2, max(phase.torque_Nm, 0.0)), f"t_{number}")
+            plot.mark(
+                "phase",
+                (time + phase.duration_s / 2, reader.measure("Nm").shown(max(phase.torque_Nm, 0.0))),
+                f"t_{number}",
+            )
         time += phase.duration_s
     if application.duty_cycle.pause_s > 0.05 * end:
         plot.mark("phase", ((time + end) / 2, 0.0), "t_p")

@@ -100,7 +100,7 @@ class Book:
         sheet.print_area(0, 0, sheet.dim_rowmax, sheet.dim_colmax)
         sheet.fit_to_pages(across, 0)
         export, text = self.export, self.reader.text
-        title = " ".join(f"{export.title} {export.reference}".split())[:LONGEST_HEADER_TEXT]
+        title = " ".join(f"{export.heading.title} {export.heading.reference}".split())[:LONGEST_HEADER_TEXT]
         saved = self.reader.date(export.created) if export.created else ""
         link = export.link if len(export.link) <= LONGEST_FOOTER_LINK else ""
         numbers = text(N_("Page {page} of {pages}")).format(page="&P", pages="&N")

@@ -81,9 +81,10 @@ def package(export: Export, metamodel: Metamodel = "3.0") -> bytes:
 def environment(export: Export) -> model.DictIdentifiableStore[model.Identifiable]:
     """Shell, submodels and concept descriptions of an export."""
     submodels = [_selection_result(export)]
-    if export.selection.selected is not None:
+    suitable = export.candidate.status == "suitable"
+    if suitable:
         submodels.insert(0, _technical_data(export))
-    kind = model.AssetKind.TYPE if export.selection.selected else model.AssetKind.NOT_APPLICABLE
+    kind = model.AssetKind.TYPE if suitable else model.AssetKind.NOT_APPLICABLE
     shell = model.AssetAdministrationShell(
         model.AssetInformation(kind, global_asset_id=urn("asset", export.link)),
         urn("shell", export.link),
@@ -214,8 +215,11 @@ def _texts(export: Export) -> Iterable[model.Property]:
         "Candidate": candidate.designation,
         "Status": candidate.status,
         "GoverningCheck": candidate.governing_check,
-        "Title": export.title or None,
-        "Reference": export.reference or None,
+        "Title": export.heading.title or None,
+        "Reference": export.heading.reference or None,
+        "Author": export.heading.author or None,
+        "Revision": export.heading.revision or None,
+        "OrderingCode": export.heading.ordering_code or None,
         "Created": export.created.astimezone(UTC).isoformat() if export.created else None,
         "Link": export.link,
         "EngineVersion": selection.engine_version,
@@ -278,7 +282,7 @@ def _properties(export: Export) -> OPCCoreProperties:
     """Who made it and what it is called; its time stands in the content, where no library chooses the prefix."""
     properties = OPCCoreProperties()  # type: ignore[no-untyped-call]
     properties.creator = "HPN Select"
-    properties.title = export.title or None
+    properties.title = export.heading.title or None
     return properties
 
 

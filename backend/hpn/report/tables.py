@@ -33,13 +33,16 @@ def phases(export: Export, reader: Reader) -> dict[str, Any]:
     listed = export.application.duty_cycle.phases
     given = columns(listed)
     if len(listed) <= MOST_PHASES:
-        cells = [["" if value is None else reader.exact(value) for value in column] for column in given.values()]
+        cells = [
+            ["" if value is None else reader.exact(value, _unit(name)) for value in column]
+            for name, column in given.items()
+        ]
         rows, note = [[str(k), *row] for k, row in enumerate(zip(*cells, strict=True), 1)], ""
     else:
         rows = _summary(given, reader)
-        text = N_("{count} phases, summarised here; each stands on the pages behind the second.")
+        text = N_("{count} phases, summarised here; each stands on the last pages.")
         note = reader.told(Sentence(text, {"count": reader.exact(len(listed))}))
-    heads = [[formula(INPUTS[f"phase.{name}"].symbol), reader.unit(suffix_of(name) or "")] for name in given]
+    heads = [[formula(INPUTS[f"phase.{name}"].symbol), reader.unit(_unit(name))] for name in given]
     return {"header": [[[], ""], *heads], "rows": rows, "note": note}
 
 
@@ -53,10 +56,14 @@ def _summary(given: Mapping[str, Column], reader: Reader) -> list[list[str]]:
     known = {name: [value for value in column if value is not None] for name, column in given.items()}
     sums = [reader.figure(sum(values)) if name == "duration_s" else "" for name, values in known.items()]
     return [
-        [reader.text(N_("least")), *(reader.figure(min(values)) for values in known.values())],
-        [reader.text(N_("largest")), *(reader.figure(max(values)) for values in known.values())],
+        [reader.text(N_("least")), *(reader.figure(min(values), _unit(name)) for name, values in known.items())],
+        [reader.text(N_("largest")), *(reader.figure(max(values), _unit(name)) for name, values in known.items())],
         [reader.text(N_("sum")), *sums],
     ]
+
+
+def _unit(name: str) -> str:
+    return suffix_of(name) or ""
 
 
 def derived(export: Export, reader: Reader) -> list[dict[str, Any]]:

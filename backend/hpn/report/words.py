@@ -1,5 +1,7 @@
 """Numbers and places of a check in words, alike in the report and in the workbook."""
 
+from typing import Literal
+
 from hpn.checks import allowed
 from hpn.reader import GROUP, Reader
 from hpn.report.export import Export
@@ -46,6 +48,16 @@ def used(export: Export, code: str | None, utilisation: float | None, reader: Re
 def measured(value: float | None, unit: str, reader: Reader) -> str:
     """A computed number with its unit, given as suffix or symbol."""
     return reader.with_unit(reader.figure(value, unit), unit)
+
+
+def rounded(value: float, unit: str, reader: Reader) -> str:
+    """A life or a count in a summary: three significant digits say as much as the equations behind them."""
+    return reader.with_unit(reader.tick(float(f"{value:.3g}")), unit)
+
+
+def paper(reader: Reader) -> Literal["a4", "us-letter"]:
+    """Paper of a reader: that of the country whose units they read."""
+    return "us-letter" if reader.preset == "US" else "a4"
 
 
 def catalogue_version(export: Export, reader: Reader) -> str:

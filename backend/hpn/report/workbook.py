@@ -31,7 +31,7 @@ def workbook(export: Export, reader: Reader) -> bytes:
         file, {"in_memory": True, "strings_to_formulas": False, "strings_to_urls": False, "nan_inf_to_errors": False}
     )
     created = export.created.astimezone(UTC).replace(tzinfo=None) if export.created else UNDATED
-    book.set_properties({"title": export.title, "author": "HPN Select", "created": created})
+    book.set_properties({"title": export.heading.title, "author": "HPN Select", "created": created})
     book.set_calc_mode("auto")
     wire = replace(reader, units=())
     _fill(Book(book, export, wire, words(wire)))

@@ -15,7 +15,7 @@ from starlette.responses import Response
 from hpn.application import Application
 from hpn.catalogue import Catalogue
 from hpn.reader import Reader
-from hpn.report.export import DIGITS, Export
+from hpn.report.export import DIGITS, Export, Heading
 from hpn.report.pdf import pdf
 from hpn.report.submodel import Metamodel, package
 from hpn.report.workbook import workbook
@@ -176,8 +176,7 @@ def _of_saved(saved: SavedSelection, catalogue: Catalogue | None, request: Reque
         application=application,
         selection=decode(saved.result),
         link=absolute(request, url_of(saved.id)),
-        title=saved.title or "",
-        reference=saved.reference or "",
+        heading=Heading(saved.title or "", saved.reference or ""),
         created=saved.created,
         catalogue=catalogue,
         reply=saved.result,
