@@ -46,14 +46,21 @@ def rows(page: str) -> list[list[str]]:
     """Texts of the cells of the table, row by row."""
     body = re.search("<tbody>(.*?)</tbody>", page, re.S)
     found = re.findall("<tr.*?</tr>", body[1], re.S) if body else []
-    return [
-        [" ".join(html.unescape(re.sub("<[^>]*>", "", cell)).split()) for cell in re.findall(r"<t[hd].*?</t[hd]>", row)]
-        for row in found
-    ]
+    cells = [re.findall(r"<t[hd].*?</t[hd]>", row, re.S) for row in found]
+    return [[_text(cell) for cell in row if _says(cell)] for row in cells]
+
+
+def _text(cell: str) -> str:
+    return " ".join(html.unescape(re.sub("<[^>]*>", "", cell)).split())
+
+
+def _says(cell: str) -> bool:
+    """Whether a cell says something of the selection, and isn't there to do something with it."""
+    return 'class="pick"' not in cell and 'class="changes"' not in cell
 
 
 def test_a_line_says_what_was_saved_and_leads_to_its_page(client: TestClient) -> None:
-    address = saved(client, title="Axis <7>", reference="4711")
+    address = saved(client, title="Axis <7>", reference="4711", author="M. Muster")
     reply = client.get(f"/api/v1{address}").json()
 
     page = client.get("/selections")
@@ -61,24 +68,25 @@ def test_a_line_says_what_was_saved_and_leads_to_its_page(client: TestClient) ->
     best = next(entry for entry in reply["result"]["candidates"] if entry["rank"] == 1)
     share, when = f"{100 * best['utilisation']:.0f} %", reply["created"][:16].replace("T", " ")
     assert page.status_code == 200
-    assert rows(page.text) == [["Axis <7>", "4711", reply["selected"], "✓ suitable", share, when]]
+    assert rows(page.text) == [["Axis <7>", "4711", "M. Muster", reply["selected"], "✓ suitable", share, when]]
     assert f'<a href="{address}">Axis &lt;7&gt;</a>' in page.text
 
 
 def test_without_a_suitable_gear_the_nearest_stands_there_as_its_page_shows_it(client: TestClient) -> None:
     address = saved(client, HEAVY, reference="4712")
 
-    [[title, _, gear, verdict, share, _]] = rows(client.get("/selections").text)
+    [[title, _, _, gear, verdict, share, _]] = rows(client.get("/selections").text)
 
     assert (title, verdict) == ("4712", "✕ not suitable")
     assert float(share.rstrip(" %").replace(" ", "")) > 100
     assert f'id="verdict">{gear}' in client.get(address).text
 
 
-def test_what_today_says_changes_no_line(client: TestClient, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_list_unpacks_and_computes_nothing(client: TestClient, monkeypatch: pytest.MonkeyPatch) -> None:
     saved(client)
     before = rows(client.get("/selections").text)
-    monkeypatch.setattr("hpn.selection.evaluate", None)
+    for name in ("hpn.selection.evaluate", "hpn.store.store.unpacked"):
+        monkeypatch.setattr(name, None)
 
     assert rows(client.get("/selections").text) == before
 
@@ -154,24 +162,6 @@ def test_what_no_list_has_is_refused_on_the_page(client: TestClient, query: str,
     assert text in page.text
 
 
-def test_a_selection_deleted_between_the_two_readings_is_left_out(
-    client: TestClient, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    for title in ("a", "b"):
-        saved(client, title=title)
-    store = client.app.state.store  # type: ignore[attr-defined]
-    results = store.results
-
-    async def later(ids: list[str]) -> dict[str, bytes]:
-        await store.delete(ids[0])
-        found: dict[str, bytes] = await results(ids)
-        return found
-
-    monkeypatch.setattr(store, "results", later)
-
-    assert [row[0] for row in rows(client.get("/selections").text)] == ["a"]
-
-
 def test_the_api_answers_json_to_a_browser_too(client: TestClient) -> None:
     response = client.get("/api/v1/selections", headers={"Accept": "text/html,*/*;q=0.8"})
 
@@ -202,3 +192,96 @@ def test_a_list_out_of_reach_says_so_in_words(tmp_path: Path) -> None:
     assert response.status_code == 503
     assert "Saved selections are out of reach for the moment." in response.text
     assert response.headers["retry-after"]
+
+
+# --- Searching, renaming and deleting, without script -----------------------------------------------------------------
+
+
+def test_a_search_keeps_its_words_and_its_parts(client: TestClient) -> None:
+    for title in ("drive 1", "other", "drive 2", "drive 3"):
+        saved(client, title=title)
+
+    page = client.get("/selections", params={"search": "drive HPN-20A"}).text
+    older = re.search('<a href="([^"]*)" rel="next">', page)
+
+    assert older
+    assert 'value="drive HPN-20A"' in page
+    assert [row[0] for row in rows(page)] == ["drive 3", "drive 2"]
+    assert [row[0] for row in rows(client.get(html.unescape(older[1])).text)] == ["drive 1"]
+    assert "No saved selection has “x y”" in client.get("/selections?search=x+y").text
+
+
+def form(page: str, action: str) -> dict[str, str]:
+    """Fields of the form with this action, as they stand there."""
+    found = re.search(rf'<form[^>]*action="{re.escape(action)}".*?</form>', page, re.S)
+    assert found, action
+    fields = re.findall(r'name="(\w+)"[^>]*value="([^"]*)"', found[0])
+    return {name: html.unescape(value) for name, value in fields}
+
+
+def test_a_selection_is_renamed_in_the_list_and_stays_in_view(client: TestClient) -> None:
+    address, here = saved(client, title="old", reference="4711"), "/selections?search=4711"
+    fields = form(client.get(here).text, f"{address}/rename")
+
+    answer = client.post(f"{address}/rename", data=fields | {"title": "new"}, follow_redirects=False)
+
+    assert (answer.status_code, answer.headers["location"]) == (303, here)
+    assert [row[:2] for row in rows(client.get(here).text)] == [["new", "4711"]]
+
+
+def test_a_selection_is_deleted_once_somebody_has_said_so_twice(client: TestClient) -> None:
+    address, here = saved(client, title="Axis <7>"), "/selections?search=axis"
+    fields = form(client.get(here).text, f"{address}/delete")
+
+    question = client.get(f"{address}/delete", params=fields).text
+    assert "Delete this selection?" in question and "Axis &lt;7&gt;" in question
+    assert client.get(address).status_code == 200
+    answer = client.post(f"{address}/delete", data=form(question, f"{address}/delete"), follow_redirects=False)
+
+    assert (answer.status_code, answer.headers["location"]) == (303, here)
+    gone = [client.get(address), client.get(f"{address}/delete")]
+    gone += [client.post(f"{address}/{change}", data={"title": "x"}) for change in ("delete", "rename")]
+    assert [answer.status_code for answer in gone] == [404] * 4
+
+
+@pytest.mark.parametrize("change", ["rename", "delete"])
+def test_no_other_site_changes_anything_and_no_change_leads_to_one(client: TestClient, change: str) -> None:
+    address = saved(client, title="t")
+
+    foreign = client.post(f"{address}/{change}", headers={"Sec-Fetch-Site": "cross-site"})
+    assert foreign.status_code == 403
+    assert client.get(f"/api/v1{address}").json()["title"] == "t"
+
+    for back in ("https://elsewhere.example/", "//elsewhere.example", "/selections.elsewhere", "/selections?a\nb"):
+        other = saved(client, title="t")
+        answer = client.post(f"{other}/{change}", data={"back": back}, follow_redirects=False)
+        assert (answer.status_code, answer.headers["location"]) == (303, "/selections")
+
+
+def test_a_name_that_cannot_be_is_refused_in_words(client: TestClient) -> None:
+    address = saved(client, title="t")
+
+    answer = client.post(f"{address}/rename", data={"title": "x" * 201, "ref": "a\nb"})
+
+    assert answer.status_code == 422
+    assert "takes at most 200 characters" in answer.text and "must not contain control characters" in answer.text
+    assert client.get(f"/api/v1{address}").json()["title"] == "t"
+
+
+def test_where_there_are_keys_the_page_asks_for_the_owners(tmp_path: Path) -> None:
+    keys = {name: new_key(name) for name in ("plm", "erp")}
+    settings = Settings(
+        database_url=f"sqlite:///{tmp_path}/store.sqlite3",
+        api_keys=",".join(pair for _, pair in keys.values()),
+        guarded="writing",
+    )
+    with TestClient(create_app(settings)) as client:
+        body, header = {"application": worked_example()}, {"X-API-Key": keys["plm"][0]}
+        address = client.post("/api/v1/selections", json=body, headers=header).json()["url"]
+        assert client.patch(f"/api/v1{address}", json={"title": "x"}).status_code == 403
+        owner, other = (("anybody", keys[name][0]) for name in ("plm", "erp"))
+        for change in ("rename", "delete"):
+            place, data = f"{address}/{change}", {"title": "x"}
+            asked = client.post(place, data=data)
+            assert (asked.status_code, asked.headers["www-authenticate"]) == (401, 'Basic realm="HPN Select"')
+            assert [client.post(place, data=data, auth=who).status_code for who in (other, owner)] == [403, 200]

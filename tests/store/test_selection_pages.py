@@ -35,14 +35,15 @@ def sent(client: TestClient, **fields: str) -> str:
 
 
 def test_the_form_saves_and_leads_to_the_page(client: TestClient) -> None:
-    address = sent(client, title="Axis <7>", reference="4711")
+    address = sent(client, title="Axis <7>", ref="4711")
 
     page = client.get(address)
 
     assert page.status_code == 200
     assert "Axis &lt;7&gt;" in page.text
     assert "<7>" not in page.text
-    for text in ("HPN-20A-5", "Reference 4711", "Today the result is the same", f'href="{html.escape(LINK)}"'):
+    again = LINK + "&title=Axis+%3C7%3E&ref=4711"
+    for text in ("HPN-20A-5", "<dd>4711</dd>", "Today the result is the same", f'href="{html.escape(again)}"'):
         assert text in page.text
 
 
@@ -109,17 +110,18 @@ def test_a_form_whose_selection_was_deleted_says_so_and_can_be_sent_anew(client:
 
 
 def test_labels_can_be_left_blank(client: TestClient) -> None:
-    saved = client.get(f"/api/v1{sent(client, title='', reference=' ')}").json()
+    saved = client.get(f"/api/v1{sent(client, title='', ref=' ')}").json()
 
     assert (saved["title"], saved["reference"]) == (None, None)
 
 
 def test_a_label_that_cannot_be_comes_back_with_what_was_typed_and_a_message(client: TestClient) -> None:
-    response = client.post("/selections", data={"link": LINK, "title": "a\x07b", "reference": "4711"})
+    response = client.post("/selections", data={"link": LINK, "title": "a\x07b", "ref": "4711"})
 
     assert response.status_code == 422
     assert 'value="4711"' in response.text
-    assert 'aria-describedby="e-save-title"' in response.text
+    assert 'aria-describedby="e-title"' in response.text
+    assert "must not contain control characters" in response.text
     assert f'value="{html.escape(LINK)}"' in response.text
 
 

@@ -13,7 +13,8 @@ from hpn.catalogue import Catalogue
 class Draft:
     """A selection that is about to be saved: the application as it was given, and the reply it got, byte for byte.
 
-    `owner` is the name of the API key that saves it, None without one.
+    `designation` is the gear that its page shows first, with its status and utilisation. `owner` is the name of the API
+    key that saves it, None without one.
     `catalogue` is the one that was asked; the store keeps one copy of each version.
     """
 
@@ -24,6 +25,12 @@ class Draft:
     selected: str | None
     title: str | None = None
     reference: str | None = None
+    author: str | None = None
+    revision: str | None = None
+    ordering_code: str | None = None
+    designation: str | None = None
+    status: str | None = None
+    utilisation: float | None = None
     idempotency_key: str | None = None
     owner: str | None = None
     catalogue: Catalogue | None = field(default=None, repr=False)
@@ -31,19 +38,31 @@ class Draft:
     @property
     def digest(self) -> str:
         """Fingerprint of what the caller sent; equal for equal requests, whatever engine or catalogue answered."""
-        sent = orjson.dumps([self.application.decode(), self.title, self.reference])
-        return hashlib.sha256(sent).hexdigest()
+        sent: list[object] = [self.application.decode(), self.title, self.reference]
+        later = [self.author, self.revision, self.ordering_code]
+        # Earlier versions knew none of these: a retry of what they saved has the same fingerprint.
+        return hashlib.sha256(orjson.dumps(sent + later if any(later) else sent)).hexdigest()
 
 
 @dataclass(frozen=True, slots=True)
 class Summary:
-    """One line of a list of saved selections."""
+    """One line of a list of saved selections.
+
+    `designation` is the gear that its page shows first, as it was judged then; None where an earlier version has saved
+    a reply that can't be read.
+    """
 
     id: str
     created: datetime
     title: str | None
     reference: str | None
+    author: str | None
+    revision: str | None
+    ordering_code: str | None
     selected: str | None
+    designation: str | None
+    status: str | None
+    utilisation: float | None
     engine_version: str
     catalogue_version: str
 
@@ -63,3 +82,8 @@ class Page:
 
     selections: list[Summary]
     next_cursor: str | None
+
+
+def search_text(*texts: str | None) -> str:
+    """What a search looks through: texts in one case, each on a line."""
+    return "\n".join(filter(None, texts)).casefold()

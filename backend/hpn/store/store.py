@@ -6,7 +6,7 @@ import logging
 import re
 import sqlite3
 import time
-from collections.abc import AsyncIterator, Awaitable, Callable, Sequence
+from collections.abc import AsyncIterator, Awaitable, Callable, Mapping
 from contextlib import asynccontextmanager
 from datetime import UTC, datetime
 from typing import TypeVar
@@ -21,10 +21,10 @@ from hpn.catalogue.copy import UnreadableCopyError, read_copy
 from hpn.store.engine import WRITES, make_engine
 from hpn.store.errors import NewerDatabaseError, StoreUnavailableError
 from hpn.store.packing import unpacked
-from hpn.store.saved import Draft, Page, SavedSelection, Summary
+from hpn.store.saved import Draft, Page, SavedSelection, Summary, search_text
 from hpn.store.tables import catalogues, selections
 from hpn.store.upgrade import bring_up_to_date
-from hpn.store.writing import insert, rehearse, remove
+from hpn.store.writing import insert, rehearse, remove, rename
 
 logger = logging.getLogger(__name__)
 T = TypeVar("T")
@@ -39,7 +39,7 @@ SUMMARY = [selections.c[name] for name in Summary.__dataclass_fields__]
 
 
 class Store:
-    """Saved selections. What `save` has returned is durable, and nothing is ever rewritten.
+    """Saved selections. What `save` has returned is durable; of it only title and reference can be changed.
 
     Every function raises StoreUnavailableError where the database can't be reached or takes longer than `seconds`, and
     works again as soon as it can. Nothing is connected before it is needed.
@@ -130,12 +130,20 @@ class Store:
             logger.warning("catalogue %s: %s", version, error)
             return None
 
-    async def page(self, *, reference: str | None = None, cursor: str | None = None, limit: int = 50) -> Page:
-        """Saved selections, newest first, all or those of a reference; ValueError for a cursor that isn't one."""
+    async def page(
+        self, *, reference: str | None = None, search: str | None = None, cursor: str | None = None, limit: int = 50
+    ) -> Page:
+        """Saved selections, newest first: all, those of a reference, or those that have every word of a search.
+
+        Words are found in title, reference, author, gear and ordering code, in any case. ValueError for a cursor that
+        isn't one.
+        """
         c = selections.c
         query = select(*SUMMARY).order_by(c.created.desc(), c.id.desc()).limit(limit + 1)
         if reference is not None:
             query = query.where(c.reference == reference)
+        for word in search_text(search).split():
+            query = query.where(c.search_text.contains(word, autoescape=True))
         if cursor is not None:
             query = query.where(tuple_(c.created, c.id) < tuple_(*_position(cursor)))
         async with self._reading() as connection:
@@ -143,11 +151,11 @@ class Store:
         more = len(found) > limit
         return Page(found[:limit], _cursor(found[limit - 1]) if more else None)
 
-    async def results(self, ids: Sequence[str]) -> dict[str, bytes]:
-        """Replies of these selections as they were saved, by id; of one that is deleted meanwhile there is none."""
-        query = select(selections.c.id, selections.c.result_packed).where(selections.c.id.in_(ids))
-        async with self._reading() as connection:
-            return {id: unpacked(packed) for id, packed in await connection.execute(query)}
+    async def rename(self, id: str, names: Mapping[str, str | None]) -> bool:
+        """Give a selection another `title` or `reference`, or both; False where there is none with this id."""
+        if not ID.fullmatch(id):
+            return False
+        return await self._write(lambda connection: rename(connection, id, names))
 
     async def delete(self, id: str) -> bool:
         """Delete a selection; False where there is none with this id."""

@@ -2,7 +2,7 @@
 
 from datetime import UTC, datetime
 
-from sqlalchemy import Column, DateTime, Index, LargeBinary, MetaData, String, Table, Text
+from sqlalchemy import Column, DateTime, Double, Index, LargeBinary, MetaData, String, Table, Text
 from sqlalchemy.engine import Dialect
 from sqlalchemy.types import TypeDecorator
 
@@ -39,6 +39,14 @@ selections = Table(
     Column("idempotency_key", Text),
     Column("digest", String(64)),
     Column("owner", Text),  # name of the API key that saved it
+    Column("author", Text),
+    Column("revision", Text),
+    Column("ordering_code", Text),
+    # The gear that its page shows first, as it was judged then; null where an earlier version's reply can't be read.
+    Column("designation", Text),
+    Column("status", Text),
+    Column("utilisation", Double),
+    Column("search_text", Text, nullable=False, server_default=""),
     Index("selections_created", "created", "id"),
     Index("selections_reference", "reference", "created", "id"),
     Index("selections_idempotency_key", "idempotency_key", unique=True),

@@ -1,13 +1,15 @@
-"""What a transaction of saving or deleting does to the tables."""
+"""What a transaction of saving, renaming or deleting does to the tables."""
 
 import asyncio
 import hashlib
 import secrets
+from collections.abc import Mapping
 from datetime import UTC, datetime
+from types import SimpleNamespace
 from typing import Any
 
 import brotli
-from sqlalchemy import Table, delete, literal, select
+from sqlalchemy import Table, delete, literal, select, update
 from sqlalchemy.dialects import postgresql, sqlite
 from sqlalchemy.ext.asyncio import AsyncConnection
 
@@ -15,7 +17,7 @@ from hpn.catalogue import Catalogue
 from hpn.catalogue.copy import copy_of
 from hpn.store.errors import KeyReusedError, KeySpentError
 from hpn.store.packing import packed
-from hpn.store.saved import Draft
+from hpn.store.saved import Draft, search_text
 from hpn.store.tables import catalogues, selections, spent_keys
 
 NOTHING = Draft(application=b"", result=b"", engine_version="", catalogue_version="", selected=None)
@@ -51,7 +53,19 @@ def _row_of(draft: Draft) -> dict[str, Any]:
         "idempotency_key": draft.idempotency_key,
         "digest": draft.digest if draft.idempotency_key else None,
         "owner": draft.owner,
+        "author": draft.author,
+        "revision": draft.revision,
+        "ordering_code": draft.ordering_code,
+        "designation": draft.designation,
+        "status": draft.status,
+        "utilisation": draft.utilisation,
+        "search_text": _search_text(draft),
     }
+
+
+def _search_text(named: Any) -> str:
+    """What finds a selection, by the names of its columns."""
+    return search_text(named.title, named.reference, named.author, named.ordering_code, named.designation)
 
 
 async def _insert_new(connection: AsyncConnection, table: Table, row: dict[str, Any]) -> None:
@@ -91,6 +105,19 @@ async def rehearse(connection: AsyncConnection) -> None:
     row = _row_of(NOTHING)
     await _insert_new(connection, selections, row)
     await connection.execute(delete(selections).where(selections.c.id == row["id"]))
+
+
+async def rename(connection: AsyncConnection, id: str, names: Mapping[str, str | None]) -> bool:
+    """Give a selection another title or reference; False where there is none."""
+    c = selections.c
+    columns = (c.title, c.reference, c.author, c.ordering_code, c.designation)
+    row = (await connection.execute(select(*columns).where(c.id == id).with_for_update())).one_or_none()
+    if row is None:
+        return False
+    named = SimpleNamespace(**{**row._asdict(), **names})
+    values = {"title": named.title, "reference": named.reference, "search_text": _search_text(named)}
+    await connection.execute(update(selections).where(c.id == id).values(values))
+    return True
 
 
 async def remove(connection: AsyncConnection, id: str) -> bool:

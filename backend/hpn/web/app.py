@@ -36,7 +36,7 @@ from hpn.web.door.observation import Observation
 from hpn.web.door.overload import Budget, Overload, Pieces
 from hpn.web.door.pools import Pools
 from hpn.web.door.readers import Readers
-from hpn.web.pages import assets, long_cycles, paste, refusals, saved_list, transfer
+from hpn.web.pages import assets, long_cycles, paste, refusals, saved_list, saving, transfer
 from hpn.web.pages import calculator as pages
 from hpn.web.pages import catalogue as catalogue_pages
 from hpn.web.pages import checks as check_pages
@@ -44,7 +44,7 @@ from hpn.web.pages import saved as selection_pages
 from hpn.web.settings import Settings
 
 CORS: dict[str, Any] = {
-    "allow_methods": ["GET", "POST", "DELETE"],
+    "allow_methods": ["GET", "POST", "PATCH", "DELETE"],
     "allow_headers": [
         "Authorization",
         "Content-Type",
@@ -98,6 +98,7 @@ ROUTERS: tuple[APIRouter, ...] = (
     paste.router,
     transfer.router,
     saved_list.router,
+    saving.router,
     selection_pages.router,
 )
 
@@ -133,7 +134,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     app.add_exception_handler(StoreUnavailableError, archive.unavailable)
     for router in ROUTERS:
         app.include_router(router)
-    openapi.install(app, Application, schemas.Batch, archive.SaveRequest)
+    openapi.install(app, Application, schemas.Batch, archive.SaveRequest, archive.Names)
     _add_middleware(app, settings)
     return app
 

@@ -1,6 +1,5 @@
 """Saving a selection and opening it again, for the API and the pages alike."""
 
-import re
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Annotated, TypeVar
@@ -20,23 +19,23 @@ from hpn.store import Draft, KeyReusedError, KeySpentError, SavedSelection
 from hpn.web.door.observation import note
 from hpn.web.door.pools import compute
 from hpn.web.door.problems import Problem
+from hpn.web.form.labels import CONTROLS, LONGEST_LABEL, NO_CONTROLS, query_of
+from hpn.web.form.ordering import OrderingCode, read_ordering_code
 from hpn.web.form.write import to_link
+from hpn.wording import N_, Sentence
 
 T = TypeVar("T")
-
-CONTROLS = re.compile(r"[\x00-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069\ufffe\uffff]")
-"""Control characters, line separators, marks that turn the direction of the text around them, and no characters."""
 
 
 def _plain(text: str) -> str | None:
     if CONTROLS.search(text):
-        raise PydanticCustomError("control_characters", "must not contain control characters or line breaks")
+        raise PydanticCustomError("control_characters", NO_CONTROLS)
     return text or None
 
 
 Line = Annotated[
     str,
-    StringConstraints(strip_whitespace=True, max_length=200),
+    StringConstraints(strip_whitespace=True, max_length=LONGEST_LABEL),
     AfterValidator(_plain),
     Field(
         json_schema_extra={
@@ -50,11 +49,24 @@ RETRY_SECONDS = 5
 """Time after which to try a store that is out of reach again."""
 
 
-class Labels(Model):
-    """What people call a saved selection."""
+class Names(Model):
+    """What a saved selection is called, and may be called otherwise later."""
 
     title: Line | None = Field(None, description="Title for people.", examples=["Rotary table, axis 7"])
     reference: Line | None = Field(None, description="Your own number, such as a part number.", examples=["4711-07"])
+
+
+class Labels(Names):
+    """What people write on a saved selection."""
+
+    author: Line | None = Field(None, description="Who made it.", examples=["M. Muster"])
+    revision: Line | None = Field(None, description="Its revision in your own documents.", examples=["B"])
+    ordering_code: Line | None = Field(
+        None,
+        description="Gear, output version and motor adapter as ordered, as far as they are known. The gear has to be "
+        "a candidate; page and files then show it first.",
+        examples=["HPN-20A-5-J6-BH-AF1"],
+    )
 
 
 class SaveRequest(Labels):
@@ -68,8 +80,8 @@ class Reopened:
     """A saved selection as it was, and what today's engine and catalogue say to its application.
 
     `application` is None where a version with other inputs saved it. `problem` is why there is no answer `today`.
-    `link` leads to the live form with a copy of the application. `then` is the catalogue of that time, and `figures`
-    what today's publishes differently; None where that of then is not kept.
+    `link` leads to the live form with a copy of the application and its labels. `then` is the catalogue of that time,
+    and `figures` what today's publishes differently; None where that of then is not kept.
     """
 
     saved: SavedSelection
@@ -107,6 +119,9 @@ def draft_of(
 ) -> Draft:
     """What is saved of an application: its own JSON, and the reply that `select` gives it; InputError as that."""
     selection = select(application, catalogue, to_link(application))
+    code = _ordered(catalogue, selection, labels.ordering_code)
+    shown = selection.foremost if code is None else selection.candidate(code.gear.designation)
+    assert shown is not None  # `_ordered` refuses what is no candidate
     return Draft(
         application=application.model_dump_json(exclude_unset=True).encode(),
         result=encode(selection),
@@ -115,10 +130,40 @@ def draft_of(
         selected=selection.selected,
         title=labels.title,
         reference=labels.reference,
+        author=labels.author,
+        revision=labels.revision,
+        ordering_code=None if code is None else code.text,
+        designation=shown.designation,
+        status=shown.status,
+        utilisation=shown.utilisation,
         idempotency_key=key,
         owner=owner,
         catalogue=catalogue,
     )
+
+
+def _ordered(catalogue: Catalogue, selection: Selection, text: str | None) -> OrderingCode | None:
+    """Ordering code of one of the candidates; InputError for any other."""
+    if text is None:
+        return None
+    code = read_ordering_code(catalogue, text)
+    if isinstance(code, OrderingCode) and selection.candidate(code.gear.designation) is None:
+        values = {"gear": code.gear.designation}
+        code = Sentence(N_("{gear} is none of the candidates: the ratios or sizes asked for leave it out"), values)
+    if isinstance(code, Sentence):
+        raise InputError((("ordering_code",), code))
+    return code
+
+
+def _link(saved: SavedSelection, selection: Selection, catalogue: Catalogue) -> str:
+    """Address of the live page with what was saved: its application, the gear of its ordering code, its labels."""
+    labels = {"title": saved.title, "ref": saved.reference, "author": saved.author, "rev": saved.revision}
+    gear, code = "", read_ordering_code(catalogue, saved.ordering_code or "")
+    if isinstance(code, OrderingCode):
+        labels |= code.labels
+        shown = code.gear.designation
+        gear = "" if shown == selection.foremost.designation else f"&gear={shown}"
+    return selection.link + gear + query_of({name: text or "" for name, text in labels.items()})
 
 
 async def found(request: Request, id: str, work: Callable[[Reopened], T]) -> T:
@@ -138,6 +183,17 @@ async def with_catalogue(state: State, id: str) -> tuple[SavedSelection, Catalog
     return saved, await state.store.catalogue(saved.catalogue_version)
 
 
+async def changeable(request: Request, id: str) -> SavedSelection:
+    """A saved selection that whoever asks may rename and delete; Problem 404, 403, or on a page 401 without a key."""
+    state: State = request.app.state
+    saved: SavedSelection | None = await state.store.find(id)
+    if saved is None:
+        raise not_found(id)
+    if state.gate.has_keys:
+        state.gate.require_owner(request, saved.owner)
+    return saved
+
+
 def not_found(id: str) -> Problem:
     """There is no such saved selection."""
     return Problem(404, f"there is no saved selection {id[:60]!r}; it may have been deleted")
@@ -153,8 +209,10 @@ def reopen(saved: SavedSelection, then: Catalogue | None, catalogue: Catalogue) 
         application = Application.model_validate_json(saved.application)
         after = select(application, catalogue, to_link(application))
     except (ValidationError, InputError) as error:
-        return Reopened(saved, before, application, None, [], Problem.of(error), before.link, then, figures)
-    return Reopened(saved, before, application, after, differences(before, after), None, after.link, then, figures)
+        link = _link(saved, before, catalogue)
+        return Reopened(saved, before, application, None, [], Problem.of(error), link, then, figures)
+    link = _link(saved, after, catalogue)
+    return Reopened(saved, before, application, after, differences(before, after), None, link, then, figures)
 
 
 async def unavailable(request: Request, error: Exception) -> Response:

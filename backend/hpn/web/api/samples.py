@@ -33,12 +33,14 @@ FULL: Json = {
 }
 """The handbook's worked example with the rest of what may be asked; no size and no ratio, so any catalogue has it."""
 
-LABELS = {"title": "Worked example", "reference": "axis-7"}
+NAMES = {"title": "Worked example", "reference": "axis-7"}
+LABELS = {**NAMES, "author": "M. Muster", "revision": "B", "ordering_code": "HPN-20A-5-J6-BH-AF1"}
 
 WHOLE: Json = {
     "Application": WORKED_EXAMPLE,
     "Batch": {"applications": [{"reference": "axis-7", **WORKED_EXAMPLE}]},
     "SaveRequest": {"application": WORKED_EXAMPLE, **LABELS},
+    "Names": NAMES,
 }
 """A whole request per body schema: the handbook's worked example (chapter 4.1)."""
 
@@ -61,7 +63,8 @@ def _samples(catalogue: Catalogue) -> Json:
     gear = plain(catalogue.by_designation[best])
     versions = {"engine_version": ENGINE_VERSION, "catalogue_version": catalogue.version}
     where = {"id": "q83vASNFZ4mrze8BI0Vniw", "url": "/selections/q83vASNFZ4mrze8BI0Vniw"}
-    summary = {**where, "created": "2026-11-21T10:00:00.000000Z", **LABELS, "selected": best, **versions}
+    shown = {name: reply["candidates"][0][name] for name in ("designation", "status", "utilisation")}
+    summary = {**where, "created": "2026-11-21T10:00:00.000000Z", **LABELS, "selected": best, **shown, **versions}
     return {
         **WHOLE,
         "Application": FULL,

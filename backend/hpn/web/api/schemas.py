@@ -217,7 +217,13 @@ def _links(id: str, *operations: str) -> dict[str, Any]:
     return {name: {"operationId": name, "parameters": {"id": id}} for name in operations}
 
 
-OF_A_SELECTION = ("getSelectionReport", "getSelectionWorkbook", "getSelectionSubmodel", "deleteSelection")
+OF_A_SELECTION = (
+    "getSelectionReport",
+    "getSelectionWorkbook",
+    "getSelectionSubmodel",
+    "renameSelection",
+    "deleteSelection",
+)
 FROM_SAVED = _links("$response.body#/id", "getSelection", *OF_A_SELECTION)
 FROM_SELECTION = _links("$request.path.id", *OF_A_SELECTION)
 FROM_LIST = {

@@ -1,7 +1,7 @@
-"""Saved selections over REST: save, read with what differs today, list, delete."""
+"""Saved selections over REST: save, read with what differs today, list, search, rename, delete."""
 
 from functools import partial
-from typing import Annotated
+from typing import Annotated, Any
 from urllib.parse import urlencode
 
 from fastapi import APIRouter, Query
@@ -26,10 +26,21 @@ from hpn.web.api.replies import (
     json_response,
 )
 from hpn.web.api.replies import encode as encode_reply
-from hpn.web.archive import Line, Reopened, SaveRequest, draft_of, found, keep, not_found, url_of
-from hpn.web.door.access import Gate, admit
+from hpn.web.archive import (
+    Line,
+    Names,
+    Reopened,
+    SaveRequest,
+    changeable,
+    draft_of,
+    found,
+    keep,
+    not_found,
+    url_of,
+)
+from hpn.web.door.access import admit
 from hpn.web.door.bodies import parsed, read_body
-from hpn.web.door.conditions import conditional, idempotency_key, preferred_return, require_match
+from hpn.web.door.conditions import conditional, etag_of, idempotency_key, preferred_return, require_match
 from hpn.web.door.observation import note
 from hpn.web.door.pools import calculate
 from hpn.web.door.problems import Problem
@@ -90,6 +101,8 @@ def _draft(body: bytes, catalogue: Catalogue, key: str | None, owner: str | None
     try:
         return draft_of(catalogue, wanted.application, wanted, key, owner)
     except InputError as error:
+        if error.sentences[0][0] == ("ordering_code",):
+            raise
         raise error.below("application") from None
 
 
@@ -125,22 +138,58 @@ async def read_selection(request: Request, id: str) -> Response:
 async def list_selections(
     request: Request,
     reference: Annotated[Line | None, Query(description="Only those with this reference.")] = None,
+    search: Annotated[
+        Line | None,
+        Query(description="Only those with each of these words in title, reference, author, gear or ordering code."),
+    ] = None,
     cursor: Annotated[str | None, Query(max_length=200, description="From an earlier part of the list.")] = None,
     limit: Annotated[int, Query(ge=1, le=SELECTIONS_LISTED, description="How many at most.")] = 50,
 ) -> Response:
     """Saved selections, newest first; the Link header leads to the next part."""
     store: Store = request.app.state.store
     try:
-        page = await store.page(reference=reference, cursor=cursor, limit=limit)
+        page = await store.page(reference=reference, search=search, cursor=cursor, limit=limit)
     except ValueError as error:
         raise Problem(422, f"cursor {error}", [(("cursor",), str(error))]) from None
     lines = [_summary(selection) for selection in page.selections]
     response = conditional(request, encode_reply(SelectionListReply(lines, page.next_cursor)))
     if page.next_cursor:
-        query = {"reference": reference, "cursor": page.next_cursor, "limit": limit}
+        query = {"reference": reference, "search": search, "cursor": page.next_cursor, "limit": limit}
         address = urlencode({name: value for name, value in query.items() if value is not None})
         response.headers["Link"] = f'</api/v1/selections?{address}>; rel="next"'
     return response
+
+
+@router.patch(
+    "/{id}",
+    dependencies=[admit("deleting")],
+    operation_id="renameSelection",
+    summary="Rename a saved selection",
+    openapi_extra=schemas.request_body(Names)
+    | {"parameters": [schemas.header("If-Match", "Rename only this state of it.")]},
+    responses=schemas.answers(
+        "SavedSelectionReply", *(400, 403, 404, 408, 412, 413, 415, 422, 503), headers=schemas.headers("ETag")
+    ),
+    response_class=JSONBytes,
+)
+async def rename_selection(request: Request, id: str) -> Response:
+    """Gives a saved selection another title or reference; null takes one away, and what is left out stays.
+
+    What was calculated is never rewritten. Where the service has API keys, a key renames what it has saved, and the one
+    named `admin` renames any.
+    """
+    settings: Settings = request.app.state.settings
+    store: Store = request.app.state.store
+    body = await read_body(request, maximum_bytes=settings.maximum_body_bytes, seconds=settings.body_seconds)
+    names = parsed(Names, body).model_dump(exclude_unset=True)
+    await changeable(request, id)
+    if "if-match" in request.headers:
+        require_match(request, await _representation(request, id))
+    if not await store.rename(id, names):
+        raise not_found(id)
+    note(request, selection=id)
+    renamed = await _representation(request, id)
+    return JSONBytes(renamed, headers={"ETag": etag_of(renamed), "Cache-Control": "no-cache"})
 
 
 @router.delete(
@@ -158,12 +207,7 @@ async def delete_selection(request: Request, id: str) -> Response:
     Where the service has API keys, a key deletes what it has saved, and the one named `admin` deletes any.
     """
     store: Store = request.app.state.store
-    gate: Gate = request.app.state.gate
-    if gate.has_keys:
-        saved = await store.find(id)
-        if saved is None:
-            raise not_found(id)
-        gate.require_owner(request, saved.owner)
+    await changeable(request, id)
     if "if-match" in request.headers:
         require_match(request, await _representation(request, id))
     if not await store.delete(id):
@@ -204,13 +248,6 @@ def _today(reopened: Reopened, catalogue: Catalogue) -> TodayReply:
 
 
 def _summary(selection: Summary) -> SummaryReply:
-    return SummaryReply(
-        id=selection.id,
-        url=url_of(selection.id),
-        created=selection.created.isoformat(timespec="microseconds").replace("+00:00", "Z"),
-        title=selection.title,
-        reference=selection.reference,
-        selected=selection.selected,
-        engine_version=selection.engine_version,
-        catalogue_version=selection.catalogue_version,
-    )
+    own: dict[str, Any] = {name: getattr(selection, name, None) for name in SummaryReply.__struct_fields__}
+    created = selection.created.isoformat(timespec="microseconds").replace("+00:00", "Z")
+    return SummaryReply(**own | {"url": url_of(selection.id), "created": created})

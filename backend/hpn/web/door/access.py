@@ -34,7 +34,7 @@ SAVED: frozenset[RouteGroup] = frozenset({"reading", "listing", "writing", "dele
 """Groups whose answers tell of saved selections."""
 
 ADMIN = "admin"
-"""Name of the key that deletes what any key, or none, has saved."""
+"""Name of the key that renames and deletes what any key, or none, has saved."""
 
 
 class Gate:
@@ -70,14 +70,20 @@ class Gate:
 
     @property
     def has_keys(self) -> bool:
-        """Whether what is saved belongs to keys; without any, everybody may delete."""
+        """Whether what is saved belongs to keys; without any, everybody may rename and delete."""
         return bool(self._keys)
 
     def require_owner(self, request: Request, owner: str | None) -> None:
-        """Raise Problem 403 unless the request's key owns what it is to delete, or is the one that may delete any."""
-        name = request.state.api_key
+        """Raise Problem 403 unless the request's key owns what it is to change, or is the one that may change any.
+
+        On a page, where no key was sent, raise 401: the browser then asks for one.
+        """
+        name, path = request.state.api_key, request.scope["path"]
+        if name is None and not path.startswith("/api/"):
+            raise key_needed(path)
         if name is None or name not in (ADMIN, owner):
-            raise Problem(403, f"only the key that saved this selection, or the one named {ADMIN}, may delete it")
+            text = f"only the key that saved this selection, or the one named {ADMIN}, may rename or delete it"
+            raise Problem(403, text)
 
     def _holder(self, request: Request) -> str | None:
         presented = presented_key(request.headers.raw) if self._keys else None

@@ -6,7 +6,7 @@ the client library's multiprocess mode, for which `serve.py` sets PROMETHEUS_MUL
 
 import os
 from collections import Counter as Counts
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 
 from prometheus_client import CollectorRegistry, Counter, Histogram, ProcessCollector, generate_latest
@@ -110,15 +110,17 @@ class CountedStore(Store):
         with self._counted("catalogue"):
             return await super().catalogue(version)
 
-    async def page(self, *, reference: str | None = None, cursor: str | None = None, limit: int = 50) -> Page:
+    async def page(
+        self, *, reference: str | None = None, search: str | None = None, cursor: str | None = None, limit: int = 50
+    ) -> Page:
         """See Store."""
         with self._counted("page"):
-            return await super().page(reference=reference, cursor=cursor, limit=limit)
+            return await super().page(reference=reference, search=search, cursor=cursor, limit=limit)
 
-    async def results(self, ids: Sequence[str]) -> dict[str, bytes]:
+    async def rename(self, id: str, names: Mapping[str, str | None]) -> bool:
         """See Store."""
-        with self._counted("results"):
-            return await super().results(ids)
+        with self._counted("rename"):
+            return await super().rename(id, names)
 
     async def delete(self, id: str) -> bool:
         """See Store."""

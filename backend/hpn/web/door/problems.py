@@ -142,7 +142,7 @@ def mistake() -> Problem:
 
 def _methods_at(app: FastAPI, scope: Scope) -> list[str]:
     """Methods that there are for the path of a request."""
-    tried = [(method, {**scope, "method": method}) for method in ("GET", "POST", "DELETE")]
+    tried = [(method, {**scope, "method": method}) for method in ("GET", "POST", "PATCH", "DELETE")]
     found = [
         method for method, scope in tried if any(route.matches(scope)[0] is Match.FULL for route in app.router.routes)
     ]

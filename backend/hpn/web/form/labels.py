@@ -30,11 +30,13 @@ LABELS: Mapping[str, str] = {
 CONTROLS = re.compile(r"[\x00-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069\ufffe\uffff]")
 """Control characters, line separators, marks that turn the direction of the text around them, and no characters."""
 
+NO_CONTROLS = N_("must not contain control characters or line breaks")
+
 
 def faults_of(text: str) -> Iterator[Sentence]:
     """Why a text can't be a label."""
     if CONTROLS.search(text):
-        yield Sentence(N_("must not contain control characters or line breaks"))
+        yield Sentence(NO_CONTROLS)
     if len(text.strip()) > LONGEST_LABEL:
         yield Sentence(N_("takes at most {most} characters"), {"most": str(LONGEST_LABEL)})
 

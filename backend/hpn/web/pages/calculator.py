@@ -19,10 +19,10 @@ from hpn.web.door.visit import current
 from hpn.web.form import read as links
 from hpn.web.form.labels import query_of
 from hpn.web.form.numbers import WRITTEN
+from hpn.web.form.ordering import OrderingCode, ordering_code
 from hpn.web.form.read import FieldProblem, Form
 from hpn.web.form.write import to_link
 from hpn.web.pages.insight import Insight, checked_pins, tail_of
-from hpn.web.pages.ordering import OrderingCode, ordering_code
 from hpn.web.pages.result import Result
 from hpn.web.pages.templates import environment
 from hpn.wording import N_, Sentence

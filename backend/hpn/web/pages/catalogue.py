@@ -15,8 +15,8 @@ from hpn.web.door.access import admit
 from hpn.web.door.bodies import pairs_of
 from hpn.web.door.pools import worked
 from hpn.web.door.visit import current
+from hpn.web.form.ordering import ordering_code
 from hpn.web.pages.gear_figures import figures_of, neighbours, supplements_for
-from hpn.web.pages.ordering import ordering_code
 from hpn.web.pages.templates import environment
 
 OWN_NAMES = ("output", "motor", "gear", "find")

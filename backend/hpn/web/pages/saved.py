@@ -1,44 +1,36 @@
-"""The page of a saved selection, and the form of the live page that saves one."""
+"""The page of a saved selection, and a copy of it on the live page."""
 
-import hashlib
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
-import orjson
 from fastapi import APIRouter
-from pydantic import ValidationError
 from starlette.requests import Request
-from starlette.responses import HTMLResponse, RedirectResponse, Response
+from starlette.responses import HTMLResponse, Response
 
 from hpn import ENGINE_VERSION
-from hpn.application import Application, InputError
 from hpn.catalogue import Catalogue
 from hpn.differences import Difference
 from hpn.quantities import CANDIDATE, CHECK, DUTY, RESERVE, VERDICTS
 from hpn.report.inputs import LOADS, REQUIREMENTS, given
 from hpn.selection import Selection, reason_of
-from hpn.store import Draft, StoreUnavailableError
+from hpn.store import StoreUnavailableError
 from hpn.units import symbol_of
-from hpn.web.archive import RETRY_SECONDS, Labels, Reopened, draft_of, found, keep, url_of
+from hpn.web.archive import Reopened, found, url_of
 from hpn.web.door.access import admit
-from hpn.web.door.bodies import pairs_of, read_form
-from hpn.web.door.pools import compute
 from hpn.web.door.problems import Problem
-from hpn.web.door.requests import require_same_origin
 from hpn.web.door.visit import current
 from hpn.web.form import read as links
 from hpn.web.pages import calculator
 from hpn.web.pages.gear_figures import Figure, figures_of
-from hpn.web.pages.long_cycles import expanded
 from hpn.web.pages.result import Result
+from hpn.web.pages.saving import refused
 from hpn.web.pages.templates import environment
 from hpn.wording import N_
 
 DIFFERENCES_ON_PAGE = 100
-ONCE = re.compile(r"[A-Za-z0-9_-]{22}")
 
 NAMES: Mapping[str, str] = {
     "selected": N_("Selected gear"),
@@ -74,66 +66,6 @@ async def copy_selection(request: Request) -> Response:
 
 def _copied(request: Request, reopened: Reopened) -> Response:
     return calculator.respond(request, calculator.read_query(reopened.link.removeprefix("/?").encode()))
-
-
-async def save_from_page(request: Request) -> Response:
-    """Saves what the live page shows, and leads to the page of the saved selection."""
-    require_same_origin(request)
-    body = await read_form(request)
-    fields = dict(await compute(request, "pages", pairs_of, body))
-    query = fields.get("link", "").removeprefix("/").removeprefix("?")
-    try:
-        owner, catalogue = request.state.api_key, request.app.state.catalogue
-        draft = await compute(request, "pages", _draft, fields, query, catalogue, owner)
-        return RedirectResponse(url_of(await keep(request, draft)), 303)
-    except (ValidationError, InputError) as error:
-        problem: Problem | StoreUnavailableError = Problem.of(error)
-    except (Problem, StoreUnavailableError) as error:
-        problem = error
-    return await compute(request, "pages", refused, request, problem, fields, query)
-
-
-def _draft(fields: Mapping[str, str], query: str, catalogue: Catalogue, owner: str | None) -> Draft:
-    labels = Labels.model_validate({name: fields.get(name, "") for name in Labels.model_fields})
-    return draft_of(catalogue, _application(query), labels, _key(fields), owner)
-
-
-def _key(fields: Mapping[str, str]) -> str | None:
-    """Idempotency key of a form and what is in it: sent twice it saves once, edited it saves another.
-
-    The blank keeps it apart from the keys of API callers.
-    """
-    once = fields.get("once", "")
-    if ONCE.fullmatch(once) is None:
-        return None
-    content = orjson.dumps([fields.get(name, "") for name in ("link", *Labels.model_fields)])
-    return f"form {once} {hashlib.sha256(content).hexdigest()[:32]}"
-
-
-def _application(query: str) -> Application:
-    form = links.parse(expanded(pairs_of(query))) if query else None
-    if form is None or form.application is None or form.problems:
-        raise Problem(422, "the inputs have errors: correct them on the page, then save")
-    return form.application
-
-
-def refused(
-    request: Request, error: Problem | StoreUnavailableError, fields: Mapping[str, str] | None = None, query: str = ""
-) -> Response:
-    """Page that says why, and still has what was typed."""
-    if isinstance(error, StoreUnavailableError):
-        error = Problem(503, str(error), headers={"Retry-After": str(RETRY_SECONDS)})
-    if error.status_code == 410 and fields:
-        fields = {**fields, "once": ""}  # whoever saves it again means to
-    shown = {
-        "problem": error,
-        "errors": {location[0]: text for location, text in error.errors if location},
-        "fields": fields,
-        "answer": {"link": f"/?{query}", "too_long": len(query) > links.MAXIMUM_QUERY_BYTES},
-    }
-    response = _render(request, "selection_refused.html", error.status_code, **shown)
-    response.headers.update(error.headers or {})
-    return response
 
 
 def _render(request: Request, template: str, status: int, **context: Any) -> HTMLResponse:
@@ -177,12 +109,12 @@ def _page(reopened: Reopened, designation: str, catalogue: Catalogue) -> dict[st
 
 def _result(reopened: Reopened, designation: str) -> Result:
     selection, then, application = reopened.selection, reopened.then, reopened.application
-    chosen = selection.candidate(designation)
+    chosen = selection.candidate(designation or reopened.saved.designation or "")
     return Result(
         selection=selection,
         application=application,
         chosen=chosen or selection.foremost,
-        asked=chosen is not None,
+        asked=chosen is not None and chosen is not selection.foremost,
         catalogue=then,
         choosing=f"{url_of(reopened.saved.id)}?gear=",
     )
@@ -259,6 +191,5 @@ def _is_number(value: Any) -> bool:
 
 
 router = APIRouter(include_in_schema=False)
-router.add_api_route("/selections", save_from_page, methods=["POST"], dependencies=[admit("writing")])
 router.add_api_route("/selections/{id}", show_selection, dependencies=[admit("reading")])
 router.add_api_route("/selections/{id}/copy", copy_selection, dependencies=[admit("reading")])

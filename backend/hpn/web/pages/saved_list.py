@@ -1,21 +1,23 @@
-"""The table of saved selections: newest first, in parts, all or those of a reference."""
+"""The list of saved selections: newest first, in parts, searched; what stands in it is renamed and deleted there."""
 
-from dataclasses import dataclass
 from typing import Any
 from urllib.parse import urlencode
 
 from fastapi import APIRouter
 from pydantic import ValidationError
 from starlette.requests import Request
-from starlette.responses import HTMLResponse, Response
+from starlette.responses import HTMLResponse, RedirectResponse, Response
 
-from hpn.selection import Candidate, decode
-from hpn.store import Page, Store, StoreUnavailableError, Summary
-from hpn.web.archive import Labels, url_of
+from hpn.store import SavedSelection, Store, StoreUnavailableError
+from hpn.web.archive import Line, Names, changeable
 from hpn.web.door.access import admit
+from hpn.web.door.bodies import pairs_of, read_form
+from hpn.web.door.observation import note
 from hpn.web.door.pools import compute
 from hpn.web.door.problems import Problem
-from hpn.web.pages.saved import refused
+from hpn.web.door.requests import require_same_origin
+from hpn.web.form.labels import faults_of
+from hpn.web.pages.saving import refused
 from hpn.web.pages.templates import environment
 from hpn.wording import N_
 
@@ -24,62 +26,106 @@ LINES_ON_PAGE = 25
 NO_SUCH_PART = N_("This part of the list can’t be found; its address is not whole.")
 
 
-@dataclass(frozen=True, slots=True)
-class Line:
-    """A saved selection, and the gear that its page shows first, as it was judged then."""
+class Wanted(Names):
+    """What the list is to show: those of a reference, or those with every word of a search."""
 
-    saved: Summary
-    address: str
-    gear: Candidate
+    search: Line | None = None
 
 
 async def show_selections(request: Request) -> Response:
     """Saved selections, newest first. `/api/v1/selections` says the same as JSON, also to a browser."""
-    query = request.query_params
-    reference, cursor = query.get("reference", ""), query.get("cursor") or None
+    given = {name: request.query_params.get(name, "") for name in ("search", "reference")}
+    cursor = request.query_params.get("cursor") or None
     shown: dict[str, Any] = {
-        "reference": reference,
+        **given,
         "lines": [],
-        "error": "",
+        "errors": {},
         "problem": "",
         "older": "",
-        "newest": _address(reference),
+        "newest": _address(given),
         "later": bool(cursor),
     }
     store: Store = request.app.state.store
     try:
-        wanted = Labels.model_validate({"reference": reference}).reference
-        page = await store.page(reference=wanted, cursor=cursor, limit=LINES_ON_PAGE)
-        results = await store.results([saved.id for saved in page.selections])
+        wanted = Wanted.model_validate(given)
+        page = await store.page(reference=wanted.reference, search=wanted.search, cursor=cursor, limit=LINES_ON_PAGE)
     except ValidationError as error:
-        return await _rendered(request, 422, shown | {"error": Problem.of(error).errors[0][1]})
+        errors = {location[0]: text for location, text in Problem.of(error).errors}
+        return await _rendered(request, "selections.html", 422, shown | {"errors": errors})
     except ValueError:
-        return await _rendered(request, 422, shown | {"problem": NO_SUCH_PART})
+        return await _rendered(request, "selections.html", 422, shown | {"problem": NO_SUCH_PART})
     except StoreUnavailableError as error:
         return refused(request, error)
-    shown["older"] = page.next_cursor and _address(reference, cursor=page.next_cursor)
-    shown["lines"] = await compute(request, "pages", _lines, page, results)
-    return await _rendered(request, 200, shown)
+    shown["older"] = page.next_cursor and _address(given | {"cursor": page.next_cursor})
+    shown["lines"] = page.selections
+    return await _rendered(request, "selections.html", 200, shown)
 
 
-def _lines(page: Page, results: dict[str, bytes]) -> list[Line]:
-    return [
-        Line(saved, url_of(saved.id), decode(results[saved.id]).foremost)
-        for saved in page.selections
-        if saved.id in results
-    ]
-
-
-def _address(reference: str, **more: str) -> str:
-    query = urlencode(({"reference": reference} if reference else {}) | more)
+def _address(given: dict[str, str]) -> str:
+    query = urlencode({name: text for name, text in given.items() if text})
     return f"{ADDRESS}?{query}" if query else ADDRESS
 
 
-async def _rendered(request: Request, status: int, shown: dict[str, Any]) -> Response:
-    template = environment(request.app.state).get_template("selections.html")
-    content = await compute(request, "pages", template.render, shown)
+async def rename_selection(request: Request) -> Response:
+    """Gives a saved selection another title and reference, and leads back to the list."""
+    return await _changed(request, _rename)
+
+
+async def _rename(request: Request, saved: SavedSelection, fields: dict[str, str]) -> None:
+    names = {"title": fields.get("title", "").strip(), "reference": fields.get("ref", "").strip()}
+    faults = [fault for text in names.values() for fault in faults_of(text)]
+    if faults:
+        problem = Problem(422, "; ".join(fault.text for fault in faults))
+        problem.sentences = tuple(faults)
+        raise problem
+    await request.app.state.store.rename(saved.id, {name: text or None for name, text in names.items()})
+
+
+async def ask_to_delete(request: Request) -> Response:
+    """The question whether a saved selection is to go for good."""
+    try:
+        saved = await changeable(request, request.path_params["id"])
+    except (Problem, StoreUnavailableError) as error:
+        return refused(request, error)
+    back = _back(request.query_params.get("back", ""))
+    return await _rendered(request, "selection_delete.html", 200, {"saved": saved, "back": back})
+
+
+async def delete_selection(request: Request) -> Response:
+    """Deletes a saved selection for good, and leads back to the list."""
+    return await _changed(request, _delete)
+
+
+async def _delete(request: Request, saved: SavedSelection, fields: dict[str, str]) -> None:
+    await request.app.state.store.delete(saved.id)
+
+
+async def _changed(request: Request, change: Any) -> Response:
+    """Where to go after a change of a saved selection that the list has asked for."""
+    try:
+        require_same_origin(request)
+        fields = dict(pairs_of(await read_form(request)))
+        saved = await changeable(request, request.path_params["id"])
+        await change(request, saved, fields)
+    except (Problem, StoreUnavailableError) as error:
+        return await compute(request, "pages", refused, request, error)
+    note(request, selection=saved.id)
+    return RedirectResponse(_back(fields.get("back", "")), 303)
+
+
+def _back(address: str) -> str:
+    """Part of the list that a change was asked for on, and no other place."""
+    query = address.removeprefix(f"{ADDRESS}?")
+    return address if query != address and query.isascii() and query.isprintable() else ADDRESS
+
+
+async def _rendered(request: Request, template: str, status: int, shown: dict[str, Any]) -> Response:
+    content = await compute(request, "pages", environment(request.app.state).get_template(template).render, shown)
     return HTMLResponse(content, status, {"Cache-Control": "no-cache"})
 
 
-router = APIRouter(include_in_schema=False, dependencies=[admit("listing")])
-router.add_api_route(ADDRESS, show_selections)
+router = APIRouter(include_in_schema=False)
+router.add_api_route(ADDRESS, show_selections, dependencies=[admit("listing")])
+router.add_api_route(f"{ADDRESS}/{{id}}/rename", rename_selection, methods=["POST"], dependencies=[admit("deleting")])
+router.add_api_route(f"{ADDRESS}/{{id}}/delete", ask_to_delete, dependencies=[admit("deleting")])
+router.add_api_route(f"{ADDRESS}/{{id}}/delete", delete_selection, methods=["POST"], dependencies=[admit("deleting")])

@@ -23,8 +23,8 @@ from hpn.remedy import DRIVER_NAMES
 from hpn.selection import Candidate, reason_of
 from hpn.web.door.visit import address, current
 from hpn.web.form import symbols
+from hpn.web.form.ordering import MOTOR_CODE, ordering_code
 from hpn.web.pages import assets, mathml, pictures
-from hpn.web.pages.ordering import MOTOR_CODE, ordering_code
 from hpn.web.pages.result import BEST
 from hpn.web.preview import preview_of
 from hpn.wording import Sentence

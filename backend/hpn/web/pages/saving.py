@@ -1,0 +1,129 @@
+"""Saving what the live page shows, and the page that says why something can't be saved or shown."""
+
+import hashlib
+import re
+import secrets
+from dataclasses import dataclass
+from typing import Any
+from urllib.parse import urlencode
+
+import orjson
+from fastapi import APIRouter
+from starlette.requests import Request
+from starlette.responses import HTMLResponse, RedirectResponse, Response
+
+from hpn.application import InputError
+from hpn.catalogue import Catalogue
+from hpn.store import Draft, StoreUnavailableError
+from hpn.web.archive import RETRY_SECONDS, Labels, draft_of, keep, url_of
+from hpn.web.door.access import admit
+from hpn.web.door.bodies import pairs_of, read_form
+from hpn.web.door.pools import compute
+from hpn.web.door.problems import Problem
+from hpn.web.door.requests import require_same_origin
+from hpn.web.form import read as links
+from hpn.web.form.labels import TITLE_BLOCK, query_of
+from hpn.web.form.read import Form, Pairs
+from hpn.web.pages import calculator
+from hpn.web.pages.calculator import Answer
+from hpn.web.pages.long_cycles import expanded
+from hpn.web.pages.templates import environment
+from hpn.wording import N_
+
+ONCE = re.compile(r"[A-Za-z0-9_-]{22}")
+
+
+@dataclass(frozen=True, slots=True)
+class Posted:
+    """What a form that saves says, and the key by which it counts once however often it is sent."""
+
+    pairs: Pairs
+    once: str
+    form: Form
+
+    @property
+    def key(self) -> str | None:
+        """Idempotency key: sent twice the form saves once, edited it saves another.
+
+        The blank keeps it apart from the keys of API callers.
+        """
+        if ONCE.fullmatch(self.once) is None:
+            return None
+        return f"form {self.once} {hashlib.sha256(orjson.dumps(self.pairs)).hexdigest()[:32]}"
+
+    @property
+    def link(self) -> str:
+        """Address of what it says, without the title block."""
+        return "/?" + urlencode([pair for pair in self.pairs if pair[0] not in TITLE_BLOCK])
+
+    @property
+    def address(self) -> str:
+        """Address of the live page with all that it says; its start page where that is too long for one."""
+        whole = self.link + query_of({name: self.form.labels[name] for name in TITLE_BLOCK})
+        return whole if len(whole) <= links.MAXIMUM_QUERY_BYTES else "/"
+
+
+async def save_from_page(request: Request) -> Response:
+    """Saves what the live page shows, and leads to the page of the saved selection."""
+    require_same_origin(request)
+    body = await read_form(request)
+    posted = await compute(request, "pages", _posted, body)
+    try:
+        owner, catalogue = request.state.api_key, request.app.state.catalogue
+        draft = await compute(request, "pages", _draft, posted, catalogue, owner)
+        return RedirectResponse(url_of(await keep(request, draft)), 303)
+    except InputError as error:
+        problem: Problem | StoreUnavailableError = Problem.of(error)
+    except (Problem, StoreUnavailableError) as error:
+        problem = error
+    return await compute(request, "pages", refused, request, problem, posted)
+
+
+def _posted(body: bytes) -> Posted:
+    """Fields of the form; `link` stands for those of an address, and what is given beside it goes first."""
+    fields = pairs_of(body)
+    named = dict(fields)
+    own = [(name, text) for name, text in fields if name not in ("link", "once")]
+    given = {name for name, _ in own}
+    linked = pairs_of(named.get("link", "").removeprefix("/").removeprefix("?"))
+    pairs = [*own, *(pair for pair in linked if pair[0] not in given)]
+    return Posted(pairs, named.get("once", ""), links.parse(expanded(pairs)))
+
+
+def _draft(posted: Posted, catalogue: Catalogue, owner: str | None) -> Draft:
+    form, answer = calculator.answered(posted.form, catalogue)
+    if answer is None:
+        errors = [((problem.name,), problem.message.text) for problem in form.problems]
+        raise Problem(422, N_("the inputs have errors: correct them on the page, then save"), errors)
+    written = {"title": "title", "reference": "ref", "author": "author", "revision": "rev"}
+    labels = Labels(**{field: form.labels[name] for field, name in written.items()}, ordering_code=_code(form, answer))
+    return draft_of(catalogue, answer.application, labels, posted.key, owner)
+
+
+def _code(form: Form, answer: Answer) -> str | None:
+    """Ordering code as the page shows it; none of a gear that does not suit and that nobody has chosen."""
+    if answer.order.problem:
+        raise Problem(422, answer.order.problem, [(("order_motor",), answer.order.problem)])
+    chosen = form.gear or answer.selection.selected or any(answer.order.labels.values())
+    return answer.order.text if chosen else None
+
+
+def refused(request: Request, error: Problem | StoreUnavailableError, posted: Posted | None = None) -> Response:
+    """Page that says why, and still has what was typed."""
+    if isinstance(error, StoreUnavailableError):
+        error = Problem(503, str(error), headers={"Retry-After": str(RETRY_SECONDS)})
+    spent = error.status_code == 410  # whoever saves it again means to
+    shown: dict[str, Any] = {
+        "status": error.status_code,
+        "problem": error,
+        "posted": posted,
+        "form": posted and posted.form,
+        "once_more": secrets.token_urlsafe(16) if spent or posted is None else posted.once,
+    }
+    content = environment(request.app.state).get_template("selection_refused.html").render(shown)
+    headers = {"Cache-Control": "no-cache", **(error.headers or {})}
+    return HTMLResponse(content, error.status_code, headers)
+
+
+router = APIRouter(include_in_schema=False)
+router.add_api_route("/selections", save_from_page, methods=["POST"], dependencies=[admit("writing")])
