@@ -112,10 +112,10 @@ class Phase(Model):
     speed_rpm: Speed = Field(description="Output speed n; 0 is a holding phase.", examples=[250.0])
     duration_s: Annotated[Number, Field(gt=0, le=1e9)] = Field(description="Duration t of the phase.", examples=[0.3])
     radial_N: Load | None = Field(
-        None, description="Radial load on the shaft centre in this phase; without it the cycle's.", examples=[500.0]
+        None, description="Radial load on the shaft centre in this phase; without it the cycle’s.", examples=[500.0]
     )
     axial_N: Load | None = Field(
-        None, description="Axial load on the shaft axis in this phase; without it the cycle's.", examples=[200.0]
+        None, description="Axial load on the shaft axis in this phase; without it the cycle’s.", examples=[200.0]
     )
 
 
@@ -159,7 +159,7 @@ class OutputLoad(Model):
         1.0, description="Load coefficient f_w multiplies the load; printed curves: 1, 1.2, 1.5.", examples=[1.2]
     )
     life_h: Hours = Field(20_000.0, description="Required life of the output bearing.", examples=[20000.0])
-    life_basis: LifeBasis = Field("L50", description="L50: half of the bearings reach it. L10: nine of ten do.")
+    life_basis: LifeBasis = Field("L50", description="L50: 50 % of the bearings survive it. L10: 90 % do.")
     model: BearingModel = Field("linear", description="How the envelope runs between the two published limits.")
 
 
@@ -181,20 +181,20 @@ class Requirements(Model):
         None, description="Only these sizes.", examples=[["14A", "20A"]]
     )
     life_h: Hours | None = Field(None, description="Required gear life L10 (eq. 17.10).", examples=[20000.0])
-    backlash_arcmin: Positive | None = Field(None, description="Largest acceptable backlash.", examples=[7.0])
+    backlash_arcmin: Positive | None = Field(None, description="Maximum backlash.", examples=[7.0])
     torsional_stiffness_Nm_per_rad: Positive | None = Field(
-        None, description="Smallest acceptable torsional stiffness K3.", examples=[5000.0]
+        None, description="Minimum torsional stiffness K_3.", examples=[5000.0]
     )
-    weight_kg: Positive | None = Field(None, description="Largest acceptable weight.", examples=[5.0])
-    length_mm: Positive | None = Field(None, description="Largest acceptable length L.", examples=[200.0])
+    weight_kg: Positive | None = Field(None, description="Maximum weight.", examples=[5.0])
+    length_mm: Positive | None = Field(None, description="Maximum length L.", examples=[200.0])
     ambient_temperature_degC: Annotated[Number, Field(ge=-273.15, le=1000)] | None = Field(
         None, description="Ambient temperature of the gear.", examples=[25.0]
     )
     utilisation: Share = Field(
-        1.0, description="Largest acceptable utilisation u of the load checks: your own reserve.", examples=[1.0]
+        1.0, description="Maximum utilisation u of the load checks: your own reserve.", examples=[1.0]
     )
     efficiency: Share | None = Field(
-        None, description="Your assumption for the gear's efficiency; without it the motor side is loss-free."
+        None, description="Your assumption for the gear’s efficiency; without it the motor side is loss-free."
     )
     motor: Motor | None = Field(None, description="Limits of the motor.")
 
@@ -207,7 +207,7 @@ class Application(Model):
     output_load: OutputLoad | None = Field(None, description="Load on the output shaft and what its bearing must last.")
     requirements: Requirements = Field(default_factory=Requirements, description="What is required of the gear.")
     application_area: ApplicationArea | None = Field(
-        None, description="An area of use that needs the maker's risk assessment and approval (handbook 2.4)."
+        None, description="An area of use that needs the maker’s risk assessment and approval (handbook 2.4)."
     )
     rank_by: RankBy = Field("weight", description="What the suitable gears are ordered by.")
 

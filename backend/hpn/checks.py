@@ -38,7 +38,7 @@ def _distance_from_middle(case: Case) -> FloatArray:
 
 
 RATING_TABLES = N_("rating tables 10.1 to 12.2")
-BEARING_LIMITS = N_("F_R dyn(max) and F_A dyn(max), rating tables 10.1 to 12.2")
+BEARING_LIMITS = N_("F_R,dyn(max) and F_A,dyn(max), rating tables 10.1 to 12.2")
 
 CHECKS: tuple[Check, ...] = (
     Check(
@@ -124,16 +124,16 @@ CHECKS: tuple[Check, ...] = (
         unit="",
         kind="maximum",
         group="load",
-        limit_name=N_("N_k max"),
+        limit_name=N_("N_k,max"),
         source=RATING_TABLES,
-        tests=N_("The expected number of emergency stops stays within the number that T_k / T_R allows."),
+        tests=N_("The expected number of emergency stops stays within the number that T_k / T_R permits."),
         consequence=N_("Each stop uses up part of a fatigue budget; when it is spent, teeth may break."),
         basis=N_(
             "The equation holds where T_k is above T_R; at or below T_R it sets no limit. The number is a count, "
             "rounded down."
         ),
         remedy=N_(
-            "Make emergency stops rarer or gentler: the allowed number grows tenfold when T_k falls by two thirds"
+            "Make emergency stops rarer or gentler: the permitted number grows tenfold when T_k falls by two thirds"
             " of T_R."
         ),
         asked="emergency_stop.count",
@@ -178,7 +178,10 @@ CHECKS: tuple[Check, ...] = (
         source=RATING_TABLES,
         tests=N_("The largest output speed of the cycle times the ratio stays within the maximum input speed."),
         consequence=N_("Input bearing and seal overheat, and the lubricant film breaks down."),
-        basis=N_("Limit n_in(max) of the rating table, for grease."),
+        basis=N_(
+            "Limit n_in(max) of the rating table, for grease and for short periods (glossary); the average has its own "
+            "limit."
+        ),
         remedy=N_("Lower the top speed, or take a smaller ratio."),
         demand=lambda c: c.figures.maximum_input_speed_rpm,
         limit=lambda c: c.gears.maximum_input_speed_rpm,
@@ -199,9 +202,9 @@ CHECKS: tuple[Check, ...] = (
         tests=N_("The calculated life of the gear reaches the life that you require."),
         consequence=N_("The gear wears out before the planned end of its service."),
         basis=N_(
-            "The equation prints the result as L10 and so does this tool. The glossary describes the rated torque"
-            " on a basis of 50 % failures; the handbook does not settle which holds. Rated input speed 3000 rpm "
-            "(glossary)."
+            "The equation prints the result as L10 (90 % survive) and so does this tool. The glossary describes the "
+            "rated torque on a basis of 50 % failures (L50); the handbook does not settle which holds. Rated input "
+            "speed 3000 rpm (glossary). The hours include the pause."
         ),
         remedy=N_("Lower the torque (life grows with the power 10/3), the speed or the duty, or take a larger gear."),
         asked="requirements.life_h",
@@ -224,8 +227,8 @@ CHECKS: tuple[Check, ...] = (
         tests=N_("In every phase the load times f_w stays inside the envelope of the published maxima."),
         consequence=N_("Balls and raceways are indented, or the shaft deflects so far that the teeth run crooked."),
         basis=N_(
-            "Computed between the two published limits; the handbook's printed curve was not available. That the "
-            "limits belong to f_w = 1 is our reading. Slower running never enlarges this envelope."
+            "Interpolated between the two published limits; printed curve not available. That the limits belong to "
+            "f_w = 1 is our reading. Slower running never enlarges this envelope."
         ),
         remedy=N_("Support the load outside the gear, move it, or take a larger size."),
         asked="output_load.load_coefficient",
@@ -252,7 +255,8 @@ CHECKS: tuple[Check, ...] = (
         consequence=N_("The output bearing pits: play, noise and leakage at the shaft seal."),
         basis=N_(
             "Life by ISO 281 with exponent 3 from the published condition of 100 rpm and 20000 h as L50. L10 = "
-            "L50 / 5 is the relation of the maker's other handbooks, not printed in this one."
+            "L50 / 5 is the relation of the maker’s other handbooks, not printed in this one. The hours include the "
+            "pause."
         ),
         remedy=N_("Lower load, speed or required life, choose f_w with more care, or take a larger size."),
         asked="output_load.load_coefficient",
@@ -270,10 +274,10 @@ CHECKS: tuple[Check, ...] = (
         unit="rpm",
         kind="maximum",
         group="load",
-        limit_name=N_("motor's maximum"),
+        limit_name=N_("motor’s maximum"),
         source=N_("your input"),
-        tests=N_("The largest output speed times the ratio stays within the motor's maximum speed."),
-        consequence=N_("The motor can't reach the speed that the cycle asks for."),
+        tests=N_("The largest output speed times the ratio stays within the motor’s maximum speed."),
+        consequence=N_("The motor can’t reach the speed that the cycle asks for."),
         basis=N_("Limit as you stated it."),
         remedy=N_("Take a smaller ratio, a faster motor, or a lower top speed."),
         asked="requirements.motor.maximum_speed_rpm",
@@ -290,16 +294,16 @@ CHECKS: tuple[Check, ...] = (
         unit="Nm",
         kind="maximum",
         group="load",
-        limit_name=N_("motor's peak torque"),
+        limit_name=N_("motor’s peak torque"),
         source=N_("your input"),
         tests=N_(
-            "The largest torque of the cycle over ratio and efficiency stays within the motor's peak torque. The "
+            "The largest torque of the cycle over ratio and efficiency stays within the motor’s peak torque. The "
             "emergency stop does not count."
         ),
-        consequence=N_("The motor can't accelerate the load as the cycle asks."),
+        consequence=N_("The motor can’t accelerate the load as the cycle asks."),
         basis=N_(
-            "T_max / (i eta) with the efficiency that you state or a supplement gives; without one loss-free, a "
-            "lower bound: the handbook's efficiency curves were not available."
+            "T_max / (i · η) with the efficiency that you state or a supplement gives; without one loss-free, a "
+            "lower bound. The inertia of motor and gear and losses without load are left out."
         ),
         remedy=N_("Take a larger ratio, a stronger motor, or accelerate more gently."),
         asked="requirements.motor.peak_torque_Nm",
@@ -317,16 +321,16 @@ CHECKS: tuple[Check, ...] = (
         unit="Nm",
         kind="maximum",
         group="load",
-        limit_name=N_("motor's rated torque"),
+        limit_name=N_("motor’s rated torque"),
         source=N_("your input"),
         tests=N_(
             "The RMS of the torque over the cycle, pause included, over ratio and efficiency stays within the "
-            "motor's rated torque."
+            "motor’s rated torque."
         ),
         consequence=N_("The motor overheats."),
         basis=N_(
-            "RMS of T / (i eta) with the efficiency that you state or a supplement gives; without one loss-free, "
-            "a lower bound: the handbook's efficiency curves were not available."
+            "RMS of T / (i · η) with the efficiency that you state or a supplement gives; without one loss-free, a "
+            "lower bound. The inertia of motor and gear and losses without load are left out."
         ),
         remedy=N_("Take a larger ratio, a stronger motor, or add pause."),
         asked="requirements.motor.rated_torque_Nm",
@@ -349,8 +353,8 @@ CHECKS: tuple[Check, ...] = (
         tests=N_("The ambient temperature lies in the range of the rating table."),
         consequence=N_("Cold grease does not flow; warm grease ages and leaks."),
         basis=N_(
-            "Utilisation is the distance from the middle of the range over half the range. The lubricant's own "
-            "lower limit of -10 °C is not the gear's."
+            "Utilisation is the distance from the middle of the range over half the range. The lubricant’s range "
+            "reaches down to -10 °C, the gear’s does not."
         ),
         remedy=N_("Heat, cool or shield the gear, or ask the maker for another lubricant."),
         asked="requirements.ambient_temperature_degC",
@@ -370,7 +374,7 @@ CHECKS: tuple[Check, ...] = (
         group="property",
         limit_name=N_("your limit"),
         source=N_("table 15.1"),
-        tests=N_("The largest backlash of the gear stays within what you accept."),
+        tests=N_("The largest backlash of the gear stays within your limit."),
         consequence=N_("Positioning error and knocking at reversal."),
         basis=N_("The published figure is an upper limit for new gears and follows the number of stages."),
         remedy=N_("Take a single-stage ratio, or accept more backlash."),
@@ -391,9 +395,9 @@ CHECKS: tuple[Check, ...] = (
         group="property",
         limit_name=N_("your limit"),
         source=N_("table 15.2"),
-        tests=N_("The torsional stiffness K3 of the gear reaches what you require."),
+        tests=N_("The torsional stiffness K_3 of the gear reaches what you require."),
         consequence=N_("The output winds up under torque and swings after a move."),
-        basis=N_("K3 holds above 15 % of the rated torque (glossary)."),
+        basis=N_("K_3 holds above 15 % of the rated torque (glossary)."),
         remedy=N_("Take a larger size."),
         asked="requirements.torsional_stiffness_Nm_per_rad",
         demand=lambda c: c.gears.torsional_stiffness_Nm_per_rad,
@@ -412,7 +416,7 @@ CHECKS: tuple[Check, ...] = (
         group="property",
         limit_name=N_("your limit"),
         source=RATING_TABLES,
-        tests=N_("The net weight of the standard version stays within what you accept."),
+        tests=N_("The net weight of the standard version stays within your limit."),
         consequence=N_("The axis that carries the gear becomes slower."),
         basis=N_("Net weight without packing, by number of stages."),
         remedy=N_("Take a smaller size or a single-stage ratio."),
@@ -433,9 +437,9 @@ CHECKS: tuple[Check, ...] = (
         group="property",
         limit_name=N_("your limit"),
         source=N_("tables 11.2 to 13.4"),
-        tests=N_("The largest length L of the gear, which depends on the motor, stays within what you accept."),
+        tests=N_("The largest length L of the gear, which depends on the motor, stays within your limit."),
         consequence=N_("The gear does not fit its space."),
-        basis=N_("L max of the table; with a small motor the gear may be as short as L min."),
+        basis=N_("L_max of the table; with a small motor the gear may be as short as L_min."),
         remedy=N_("Take a smaller size or a single-stage ratio, or check the drawing for your motor."),
         asked="requirements.length_mm",
         demand=lambda c: c.gears.length_max_mm,

@@ -91,15 +91,15 @@ def _results(columns: Sequence[Column], maximum_torque_Nm: float) -> Iterable[Ro
     yield _row(columns, "life", N_("Life"), _unlimited_result("life_L10_h"), "L_10", "h", lowest=False)
     if any(column.candidate.momentary_peak_count is not None for column in columns):
         stops = _unlimited_result("momentary_peak_count")
-        yield _row(columns, "stops", N_("Allowed stops"), stops, "N_k max", lowest=False)
+        yield _row(columns, "stops", N_("Permitted stops"), stops, "N_k,max", lowest=False)
     if any(column.candidate.bearing_life_L50_h is not None for column in columns):
         bearing_life = _unlimited_result("bearing_life_L50_h")
-        yield _row(columns, "bearing_life", N_("Bearing life"), bearing_life, "L_50", "h", lowest=False)
+        yield _row(columns, "bearing_life", N_("Bearing life"), bearing_life, "L_b,50", "h", lowest=False)
     peak, average = _result("motor_peak_torque_Nm"), _result("average_input_speed_rpm")
     yield _row(columns, "motor_torque", _motor_title(columns, maximum_torque_Nm), peak, "", "Nm", lowest=True)
-    yield _row(columns, "input_speed", N_("Average input speed"), average, "n_in av", "rpm")
+    yield _row(columns, "input_speed", N_("Average input speed"), average, "n_in,av", "rpm")
     largest = _result("maximum_input_speed_rpm")
-    yield _row(columns, "largest_input_speed", N_("Maximum input speed"), largest, "n_in max", "rpm")
+    yield _row(columns, "largest_input_speed", N_("Maximum input speed"), largest, "n_in,max", "rpm")
 
 
 def _motor_title(columns: Sequence[Column], maximum_torque_Nm: float) -> str:
@@ -118,7 +118,7 @@ def _accuracies(columns: Sequence[Column], maximum_torque_Nm: float) -> Iterable
 
     title = N_("Torsion at T_max, from 15 % of T_N on")
     yield _row(columns, "torsion", title, torsion, "", "arcmin", lowest=True)
-    yield _row(columns, "backlash", N_("Backlash, at most"), backlash, "", "arcmin", lowest=True)
+    yield _row(columns, "backlash", N_("Backlash, at most"), backlash, "j", "arcmin", lowest=True)
     yield _row(columns, "accuracy", N_("Transmission accuracy, at most"), accuracy, "", "arcmin", lowest=True)
     yield _row(columns, "stiffness", N_("Torsional stiffness"), stiffness, "K_3", "Nm_per_rad", lowest=False)
 
@@ -148,8 +148,8 @@ def _ratings(columns: Sequence[Column]) -> Iterable[Row]:
 def _mounting(columns: Sequence[Column]) -> Iterable[Row]:
     weight, length, longest = _figure("weight_kg"), _figure("length_min_mm"), _figure("length_max_mm")
     yield _row(columns, "weight", N_("Weight"), weight, "m", "kg", lowest=True)
-    yield _row(columns, "length", N_("Length, at least"), length, "L", "mm", lowest=True)
-    yield _row(columns, "longest", N_("Length, at most"), longest, "L", "mm", lowest=True)
+    yield _row(columns, "length", N_("Length, at least"), length, "L_min", "mm", lowest=True)
+    yield _row(columns, "longest", N_("Length, at most"), longest, "L_max", "mm", lowest=True)
     yield _row(columns, "housing_bolts", N_("Housing bolts"), _housing_bolts, kind="words")
     yield _row(columns, "clamp_bolts", N_("Motor coupling bolt"), _clamp_bolts, kind="words")
 
@@ -199,7 +199,7 @@ def _clamp_bolts(column: Column) -> Sentence | None:
     return listed(parts, Sentence(N_("{first} or {rest}")).template) if parts else None
 
 
-# --- Best compromises -------------------------------------------------------------------------------------------------
+# --- Not dominated (Pareto) -------------------------------------------------------------------------------------------
 
 
 def undominated(candidates: Sequence[Candidate], catalogue: Catalogue) -> frozenset[str]:

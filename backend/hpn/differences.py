@@ -41,7 +41,7 @@ class Difference(Struct, frozen=True):
     pointer: Annotated[
         str,
         Meta(
-            description="JSON pointer into the saved result; into today's where change is added, since the saved "
+            description="JSON pointer into the saved result; into today’s where change is added, since the saved "
             "lacks it."
         ),
     ]
@@ -155,7 +155,7 @@ class FigureDifference(Struct, frozen=True):
         str, Meta(description="Name of the figure in the catalogue; designation where only one has the gear.")
     ]
     saved: Annotated[Any, Meta(description="Figure in the catalogue of then; null where it was not published.")]
-    today: Annotated[Any, Meta(description="Figure in today's catalogue; null where it is not published.")]
+    today: Annotated[Any, Meta(description="Figure in today’s catalogue; null where it is not published.")]
 
 
 def figure_differences(saved: Catalogue, today: Catalogue, designations: Iterable[str]) -> list[FigureDifference]:

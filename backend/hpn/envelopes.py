@@ -85,7 +85,8 @@ def envelope_curve(
     radial_limit, axial_limit = gear.dynamic_radial_load_N, gear.dynamic_axial_load_N
     if model != "digitised" and (radial_limit is None or axial_limit is None):
         unpublished = Sentence(
-            "the bearing limits of {name} are not published, so it has no envelope", {"name": gear.name}
+            "the bearing limits of {name} are not in this catalogue’s source, so it has no envelope",
+            {"name": gear.name},
         )
         raise InputError((("size",), unpublished))
     radial, axial = bearing.envelope(

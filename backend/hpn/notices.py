@@ -25,7 +25,7 @@ DIGITS: Mapping[str | None, int] = {"Nm": 6, "percent": 3}
 
 NOTICES: Mapping[str, str] = {
     "application_area": N_(
-        "Use in this area ({area}) needs a risk assessment and the maker's approval (handbook 2.4)."
+        "Use in this area ({area}) needs a risk assessment and the maker’s approval (handbook 2.4)."
     ),
     "emergency_stop_below_maximum": N_(
         "The emergency-stop torque of {stop_Nm} is below the largest torque of the cycle, {largest_Nm}: is it really "
@@ -40,15 +40,15 @@ NOTICES: Mapping[str, str] = {
     ),
     "bearing_envelope_supplied": N_("The output bearing is judged along curve points that you supplied."),
     "bearing_envelope_computed": N_(
-        "The envelope of the output bearing is computed between the two published limits; the handbook's printed curve "
+        "The envelope of the output bearing is computed between the two published limits; the handbook’s printed curve "
         "was not available."
     ),
     "bearing_load_position": N_(
-        "Loads act at the centre of the output shaft and along its axis; a load that acts elsewhere can't be judged "
+        "Loads act at the centre of the output shaft and along its axis; a load that acts elsewhere can’t be judged "
         "from the published data."
     ),
     "bearing_life_basis": N_(
-        "Bearing life L10 = L50 / 5 is the relation of the maker's other handbooks, not printed in this one; a Weibull "
+        "Bearing life L10 = L50 / 5 is the relation of the maker’s other handbooks, not printed in this one; a Weibull "
         "slope of 10/9 gives 5.45."
     ),
     "bearing_life_unlimited": N_(
@@ -59,7 +59,7 @@ NOTICES: Mapping[str, str] = {
         "Motor torques use the efficiency curves that you supplied; where they say nothing, loss-free: a lower bound."
     ),
     "efficiency_unknown": N_(
-        "Motor torques are loss-free, a lower bound: the handbook's efficiency curves were not available and no "
+        "Motor torques are loss-free, a lower bound: the handbook’s efficiency curves were not available and no "
         "efficiency is stated."
     ),
     "size_unrated": N_("{name} is not rated. {note}"),

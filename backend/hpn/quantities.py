@@ -38,34 +38,34 @@ INPUTS: Mapping[str, Named] = {
     "output_load.axial_N": Named(N_("Axial load of the cycle"), "F_A"),
     "output_load.load_coefficient": Named(N_("Load coefficient"), "f_w"),
     "output_load.life_h": Named(N_("Required bearing life"), "L_b"),
-    "output_load.life_basis": Named(N_("Basis of the bearing life")),
+    "output_load.life_basis": Named(N_("Life basis")),
     "output_load.model": Named(N_("Model of the bearing envelope")),
     "requirements.life_h": Named(N_("Required gear life"), "L_10,req"),
-    "requirements.utilisation": Named(N_("Largest acceptable utilisation"), "u"),
+    "requirements.utilisation": Named(N_("Maximum utilisation"), "u"),
     "requirements.efficiency": Named(N_("Assumed efficiency"), "η"),
     "requirements.motor.maximum_speed_rpm": Named(N_("Maximum motor speed"), "n_mot"),
     "requirements.motor.peak_torque_Nm": Named(N_("Peak motor torque"), "T_mot"),
     "requirements.motor.rated_torque_Nm": Named(N_("Rated motor torque"), "T_mot,N"),
     "requirements.ambient_temperature_degC": Named(N_("Ambient temperature"), "t_amb"),
-    "requirements.backlash_arcmin": Named(N_("Largest acceptable backlash"), "j_req"),
-    "requirements.torsional_stiffness_Nm_per_rad": Named(N_("Smallest acceptable torsional stiffness"), "K_3,req"),
-    "requirements.weight_kg": Named(N_("Largest acceptable weight"), "m_req"),
-    "requirements.length_mm": Named(N_("Largest acceptable length"), "L_req"),
+    "requirements.backlash_arcmin": Named(N_("Maximum backlash"), "j_req"),
+    "requirements.torsional_stiffness_Nm_per_rad": Named(N_("Minimum torsional stiffness"), "K_3,req"),
+    "requirements.weight_kg": Named(N_("Maximum weight"), "m_req"),
+    "requirements.length_mm": Named(N_("Maximum length"), "L_req"),
     "requirements.sizes": Named(N_("Only these sizes")),
     "requirements.ratios": Named(N_("Only these ratios"), "i"),
     "application_area": Named(N_("Area of use")),
-    "rank_by": Named(N_("Ranked by")),
+    "rank_by": Named(N_("Rank by")),
 }
 """Inputs, in the order in which a file lists them."""
 
 DUTY: Mapping[str, Named] = {
     "average_torque_Nm": Named(N_("Average torque"), "T_av", "Average output torque T_av.", "17.2"),
     "average_output_speed_rpm": Named(
-        N_("Average output speed"), "n_out,av", "Average output speed n_out_av, pause included.", "17.4"
+        N_("Average output speed"), "n_out,av", "Average output speed n_out,av, pause included.", "17.4"
     ),
     "maximum_torque_Nm": Named(N_("Maximum torque"), "T_max", "Largest torque T_max of the cycle."),
     "maximum_output_speed_rpm": Named(
-        N_("Maximum output speed"), "n_out,max", "Largest output speed n_out_max of the cycle."
+        N_("Maximum output speed"), "n_out,max", "Largest output speed n_out,max of the cycle."
     ),
 }
 
@@ -83,18 +83,27 @@ CANDIDATE: Mapping[str, Named] = {
     "reason": Named(N_("Reason"), "", "Why the candidate stands where it does."),
     "average_input_speed_rpm": Named(N_("Average input speed"), "n_in,av", "Average input speed.", "17.5"),
     "maximum_input_speed_rpm": Named(N_("Maximum input speed"), "n_in,max", "Maximum input speed.", "17.6"),
-    "life_L10_h": Named(N_("Gear life"), "L_10", "Life; null where unlimited or not rated.", "17.10"),
+    "life_L10_h": Named(
+        N_("Gear life"),
+        "L_10",
+        "Life as equation 17.10 gives it, named L10; the hours include the pause. Null where unlimited or not rated.",
+        "17.10",
+    ),
     "momentary_peak_count": Named(
-        N_("Allowed emergency stops"),
+        N_("Permitted emergency stops"),
         "N_k,max",
-        "Allowed number of emergency stops; null where the equation sets no limit.",
+        "Permitted number of emergency stops; null where the equation sets no limit.",
         "17.9",
     ),
     "bearing_life_L50_h": Named(
-        N_("Bearing life L50"), "L_b,50", "Life of the output bearing that half of the bearings reach."
+        N_("Bearing life L50"),
+        "L_b,50",
+        "Life of the output bearing on the basis L50: 50 % of the bearings survive it.",
     ),
     "bearing_life_L10_h": Named(
-        N_("Bearing life L10"), "L_b,10", "Life of the output bearing that nine of ten reach: L50 / 5."
+        N_("Bearing life L10"),
+        "L_b,10",
+        "Life of the output bearing on the basis L10: 90 % of the bearings survive it, L50 / 5.",
     ),
     "motor_peak_torque_Nm": Named(
         N_("Peak motor torque needed"),
@@ -130,9 +139,9 @@ RESERVE: Mapping[str, Named] = {
 CHECK: Mapping[str, Named] = {
     "code": Named(N_("Check"), "", "Code of the check; its definition stands in check_definitions."),
     "demand": Named(
-        N_("Demand"), "", "The value tested, in the check's unit; null where it is unlimited or not published."
+        N_("Demand"), "", "The value tested, in the check’s unit; null where it is unlimited or not published."
     ),
-    "limit": Named(N_("Limit"), "", "Its bound, in the check's unit; null where it is unlimited or not published."),
+    "limit": Named(N_("Limit"), "", "Its bound, in the check’s unit; null where it is unlimited or not published."),
     "utilisation": Named(
         N_("Utilisation"), "", "Demand over limit (limit over demand for a minimum); null where there is none."
     ),
@@ -165,7 +174,7 @@ GEAR: Mapping[str, Named] = {
     ),
     "backlash_arcmin": Named(N_("Backlash"), "j", "Largest backlash."),
     "transmission_accuracy_arcmin": Named(N_("Transmission accuracy"), "", "Largest transmission error."),
-    "torsional_stiffness_Nm_per_rad": Named(N_("Torsional stiffness"), "K_3", "Torsional stiffness K3."),
+    "torsional_stiffness_Nm_per_rad": Named(N_("Torsional stiffness"), "K_3", "Torsional stiffness K_3."),
     "weight_kg": Named(N_("Weight"), "m", "Net weight of the standard version."),
     "length_min_mm": Named(N_("Shortest length"), "L_min", "Shortest length L; it depends on the motor."),
     "length_max_mm": Named(N_("Longest length"), "L_max", "Longest length L; it depends on the motor."),

@@ -125,28 +125,28 @@ class CheckDefinition(msgspec.Struct, frozen=True):
     """What is the same of a check for every candidate; `Check` says what its fields mean."""
 
     title: Annotated[str, Meta(description="Name of the check.")]
-    equation: Annotated[str | None, Meta(description="Number of the handbook's equation, where it has one.")]
+    equation: Annotated[str | None, Meta(description="Number of the handbook’s equation, where it has one.")]
     unit: Annotated[str, Meta(description="Unit of demand and limit; empty for a pure number.")]
     kind: Annotated[Kind, Meta(description="Which way the limit bounds the demand.")]
     group: Annotated[
         Group,
-        Meta(description="Load checks count in the candidate's utilisation; property checks only where they fail."),
+        Meta(description="Load checks count in the candidate’s utilisation; property checks only where they fail."),
     ]
     limit_name: Annotated[str, Meta(description="Symbol of the limit.")] = ""
     source: Annotated[str, Meta(description="Where the limit comes from.")] = ""
-    tests: Annotated[str, Meta(description="What it tests.")] = ""
-    consequence: Annotated[str, Meta(description="What goes wrong where it fails.")] = ""
+    tests: Annotated[str, Meta(description="What is checked.")] = ""
+    consequence: Annotated[str, Meta(description="What happens if the limit is exceeded.")] = ""
     basis: Annotated[str, Meta(description="On which basis it stands.")] = ""
-    remedy: Annotated[str, Meta(description="What to turn.")] = ""
+    remedy: Annotated[str, Meta(description="What to change.")] = ""
 
 
 class Selection(msgspec.Struct, frozen=True):
     """The answer to one application. `link` is the address of the page that shows the application."""
 
     engine_version: Annotated[str, Meta(description="Version of the calculation.")]
-    catalogue_version: Annotated[str, Meta(description="Hash of the catalogue's content, supplement included.")]
+    catalogue_version: Annotated[str, Meta(description="Hash of the catalogue’s content, supplement included.")]
     link: Annotated[str, Meta(description="Address of the page that shows this application.")]
-    duty: Annotated[DutyFigures, Meta(description="The duty cycle's own figures.")]
+    duty: Annotated[DutyFigures, Meta(description="The duty cycle’s own figures.")]
     selected: Annotated[str | None, Meta(description="Designation of the first suitable candidate, or null.")]
     candidates: Annotated[tuple[Candidate, ...], Meta(description="Every gear considered, best first.")]
     check_definitions: Annotated[dict[str, CheckDefinition], Meta(description="Definitions by check code.")]
@@ -321,8 +321,8 @@ REASONS = {
     "suitable": N_("Every check passes; the closest is {check} at {percent} of its limit."),
     "unsuitable": N_("{check} is at {percent} of its limit."),
     "unsuitable_more": N_("{check} is at {percent} of its limit; checks that fail: {failed}."),
-    "no_stop_allowed": N_("The emergency stop is so hard that not one is allowed (equation 17.9)."),
-    "unrated": N_("Not rated: figures of {name} that the checks need are not published."),
+    "no_stop_allowed": N_("T_k is too high: no emergency stop is permitted (eq. 17.9)."),
+    "unrated": N_("Not rated: figures of {name} that the checks need are not in this catalogue’s source."),
 }
 """Why a candidate stands where it does: templates of sentences."""
 

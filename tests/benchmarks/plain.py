@@ -269,7 +269,7 @@ class Selector:
 
     def _reason(self, row: dict[str, Any], governing: Check | None, failed: int) -> str:
         if governing is None or governing.utilisation is None:
-            return f"Not rated: figures of HPN-{row['size']} that the checks need are not published."
+            return f"Not rated: figures of HPN-{row['size']} that the checks need are not in this catalogue’s source."
         title, percent = self.definitions[governing.code].title, f"{100 * governing.utilisation:.1f} %"
         if failed > 1:
             return f"{title} is at {percent} of its limit; checks that fail: {failed}."

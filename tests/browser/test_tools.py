@@ -190,7 +190,7 @@ def test_keys_edit_rows_and_are_listed(visitor: Visitor) -> None:
     page.keyboard.press("Control+Enter")
     expect(page.get_by_role("region", name="Result")).to_be_focused()
     page.keyboard.press("?")
-    expect(page.get_by_role("dialog", name="Keys")).to_contain_text("Alt+Enter")
+    expect(page.get_by_role("dialog", name="Shortcuts")).to_contain_text("Alt+Enter")
     page.keyboard.press("Escape")
     expect(page.get_by_role("region", name="Result")).to_be_focused()
     page.keyboard.press("Escape")
@@ -404,7 +404,7 @@ def test_accessibility_check_finds_nothing_in_the_dialogs(visitor: Visitor, stat
         paste(page, "1.234\t250\t3")
         expect(page.get_by_text("Which one is meant?")).to_be_visible()
     if state == "keys":
-        button(page, "Keys").click()
+        button(page, "Shortcuts").click()
     page.evaluate(AXE.read_text())
     violations = page.evaluate("axe.run().then(result => result.violations)")
     assert [(v["id"], [node["target"] for node in v["nodes"]]) for v in violations] == []

@@ -190,7 +190,7 @@ def test_a_list_out_of_reach_says_so_in_words(tmp_path: Path) -> None:
         response = client.get("/selections")
 
     assert response.status_code == 503
-    assert "Saved selections are out of reach for the moment." in response.text
+    assert "Saved selections are temporarily unavailable." in response.text
     assert response.headers["retry-after"]
 
 

@@ -29,7 +29,7 @@ def test_worked_example_says_what_rounding_by_hand_would_give(catalogue: Catalog
     assert "218 rpm by hand you would get 1090 rpm" in speed
     assert "x rounded to 6.49 by hand you would get 3090295 stops" in stops
     assert (
-        "32 Nm and n_in_av to 1090 rpm by hand you would get 1167324 h, as the handbook does in equation 18.9" in life
+        "32 Nm and n_in,av to 1090 rpm by hand you would get 1167324 h, as the handbook does in equation 18.9" in life
     )
 
 

@@ -58,7 +58,7 @@ WRONG: dict[str, tuple[Callable[[Path], None], str, str]] = {
         "ratings.csv",
         "link that leads nowhere",
     ),
-    "a link to itself": (to_itself, "ratings.csv", "can't be read"),
+    "a link to itself": (to_itself, "ratings.csv", "can’t be read"),
     "a link out of the folder": (out_of_the_folder, "ratings.csv", "link out of its folder, to .*elsewhere.csv"),
     "a link to an endless device": (
         lambda folder: (folder / "ratings.csv").symlink_to("/dev/zero"),
@@ -169,7 +169,7 @@ def test_a_folder_or_a_file_that_permissions_close_is_named(closed: str) -> None
             load_catalogue(supplement=folder)
 
         folder.chmod(0o755)
-    assert str(refusal.value) == f"{folder / closed}: can't be read: Permission denied"
+    assert str(refusal.value) == f"{folder / closed}: can’t be read: Permission denied"
 
 
 def test_links_inside_the_folder_and_files_that_are_no_tables_are_let_be(tmp_path: Path) -> None:

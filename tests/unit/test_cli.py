@@ -162,7 +162,7 @@ def test_a_port_that_is_taken_or_no_address_of_this_machine_is_a_sentence(
         f"127.0.0.1 port {port} (HPN_HOST, HPN_PORT): another program listens there; choose another port\n"
     )
     assert main(["serve", "--host", "192.0.2.1", "--port", "0"]) == 2
-    assert "192.0.2.1 port 0 (HPN_HOST, HPN_PORT): can't be listened on: Cannot assign" in capsys.readouterr().err
+    assert "192.0.2.1 port 0 (HPN_HOST, HPN_PORT): can’t be listened on: Cannot assign" in capsys.readouterr().err
 
 
 def test_a_mistake_of_the_program_is_exit_code_1_in_words_and_a_trace_for_who_asks_for_it(
@@ -180,7 +180,7 @@ def test_a_mistake_of_the_program_is_exit_code_1_in_words_and_a_trace_for_who_as
 
 
 SHELL = {
-    "output on a full disk": ("hpn catalogue > /dev/full", 1, "hpn can't go on: No space left on device\n"),
+    "output on a full disk": ("hpn catalogue > /dev/full", 1, "hpn can’t go on: No space left on device\n"),
     "no output": ("hpn catalogue >&-", 0, ""),
     "no input": ("hpn select - <&-", 2, "standard input: is closed\n"),
 }

@@ -189,11 +189,11 @@ def test_figure_of_the_emergency_stops_is_valid(catalogue: Catalogue, stop: Json
 @pytest.mark.parametrize(
     ("stop", "said"),
     [
-        ({"torque_Nm": 200.0, "count": 1000}, "allows 3066035 stops over the life; your 1000 use 0.0326 %"),
-        ({"torque_Nm": -200.0}, "At 200 Nm equation 17.9 allows 3066035 stops over the life."),
+        ({"torque_Nm": 200.0, "count": 1000}, "permits 3066035 stops over the life; your 1000 use 0.0326 %"),
+        ({"torque_Nm": -200.0}, "At 200 Nm equation 17.9 permits 3066035 stops over the life."),
         ({"torque_Nm": 149.0}, "149 Nm is at or below T_R = 149 Nm: equation 17.9 sets no limit"),
         ({"torque_Nm": 300.0}, "300 Nm is above T_M = 256 Nm, whatever the number."),
-        ({"torque_Nm": 1e6}, "allows not even one stop"),
+        ({"torque_Nm": 1e6}, "no emergency stop is permitted (eq. 17.9)"),
         (None, "Enter an emergency-stop torque"),
     ],
 )
@@ -217,7 +217,7 @@ def test_labels_of_line_and_stop_stand_on_different_sides_of_the_line(catalogue:
 def test_emergency_stops_of_an_unrated_gear_have_words_but_no_plot(catalogue: Catalogue) -> None:
     subject = example(catalogue, "HPN-40A-5")
     assert plots.emergency_stop_figure(subject) is None
-    assert "not published" in plots.emergency_stop_words(subject)[0].text
+    assert "not in this catalogue’s source" in plots.emergency_stop_words(subject)[0].text
 
 
 # --- The cycle over time ----------------------------------------------------------------------------------------------

@@ -62,8 +62,8 @@ def test_where_there_is_no_utilisation_the_reason_says_why(catalogue: Catalogue)
     hard = first(cycle(phase(1, 1), emergency_stop=stop, requirements={"sizes": ["11A"], "ratios": [10]}), catalogue)
     unrated = first(cycle(phase(1, 1), requirements={"sizes": ["40A"], "ratios": [5]}), catalogue)
 
-    assert hard.reason == "The emergency stop is so hard that not one is allowed (equation 17.9)."
-    assert unrated.reason == "Not rated: figures of HPN-40A that the checks need are not published."
+    assert hard.reason == "T_k is too high: no emergency stop is permitted (eq. 17.9)."
+    assert unrated.reason == "Not rated: figures of HPN-40A that the checks need are not in this catalogue’s source."
     for gear in (hard, unrated):
         assert reason_of(gear, 1.0).text == gear.reason
 

@@ -164,7 +164,7 @@ def test_a_size_without_published_limits_is_drawn_and_judged_along_the_points_th
 
     assert check(reply, "HPN-40A-5", "output_bearing_load")["utilisation"] == 0.5
     assert (curves[0].radial_N, curves[0].axial_N) == ([0, 8000], [6000, 0])
-    with pytest.raises(InputError, match="not published"):
+    with pytest.raises(InputError, match="not in this catalogue’s source"):
         life_envelopes(drawn, gear, EnvelopeQuery.model_validate({"model": "linear"}))
 
 

@@ -59,7 +59,7 @@ def test_an_address_that_leads_nowhere_is_a_page_for_readers_alone(client: TestC
     page = client.get("/nope", headers=read)
 
     assert (page.status_code, page.headers["content-type"]) == (404, "text/html; charset=utf-8")
-    assert "Diese Adresse führt nirgendwohin" in page.text
+    assert "Seite nicht gefunden" in page.text
     for path, headers in (("/nope", {}), ("/api/v1/nope", read)):
         answer = client.get(path, headers=headers)
         assert (answer.status_code, answer.headers["content-type"]) == (404, "application/problem+json")
@@ -91,7 +91,7 @@ def test_finding_keeps_the_selection(client: TestClient) -> None:
 
 def test_missing_figures_say_how_to_supply_them_and_what_is_supplied_is_marked(tmp_path: Path) -> None:
     page = TestClient(create_app()).get("/catalogue/HPN-40A-5").text
-    assert page.count("not published") >= 9
+    assert page.count("not in this catalogue’s source") >= 9
     files = dict(re.findall(r"<strong>(\w+\.csv)</strong></p>\s*<pre[^>]*>([^<]*)</pre>", page))
     assert set(files) == {"ratings.csv", "sizes.csv", "weights.csv", "lengths.csv"}
     header, row = files["ratings.csv"].strip().splitlines()

@@ -215,6 +215,6 @@ def test_a_gear_whose_rating_lacks_has_no_unlimited_life(client: TestClient) -> 
     free = client.get("/", params=query | {"T": 0, "Tk": 1, "gear": "HPN-20A-5"}).text
     unasked = client.get("/", params={"T": 0, "n": 10, "t": 1, "gear": "HPN-20A-5"}).text
 
-    assert (figure(unrated, "Gear life"), figure(unrated, "Allowed emergency stops")) == ("–", "–")
-    assert (figure(free, "Gear life"), figure(free, "Allowed emergency stops")) == ("unlimited", "unlimited")
-    assert (figure(unasked, "Gear life"), figure(unasked, "Allowed emergency stops")) == ("unlimited", "–")
+    assert (figure(unrated, "Gear life"), figure(unrated, "Permitted emergency stops")) == ("–", "–")
+    assert (figure(free, "Gear life"), figure(free, "Permitted emergency stops")) == ("unlimited", "unlimited")
+    assert (figure(unasked, "Gear life"), figure(unasked, "Permitted emergency stops")) == ("unlimited", "–")

@@ -82,7 +82,7 @@ def _hand_input_speed(sheet: Sheet, line: Line) -> tuple[Sentence, ...]:
     if speed is None or (by_hand := line.by_hand({sheet.n_out_av.symbol: speed})) == line.result.value:
         return ()
     values = {"speed": Quantity(speed, "rpm", 6), "result": Quantity(by_hand, "rpm", 9)}
-    text = N_("With n_out_av rounded to {speed} by hand you would get {result}; this tool rounds nothing in between.")
+    text = N_("With n_out,av rounded to {speed} by hand you would get {result}; this tool rounds nothing in between.")
     return (Sentence(text, values),)
 
 
@@ -172,10 +172,10 @@ def _hand_life(sheet: Sheet, line: Line) -> tuple[Sentence, ...]:
         "speed": Quantity(speed, "rpm", 6),
         "result": Quantity(round(by_hand), "h", 15),
     }
-    text = N_("With T_av rounded to {torque} and n_in_av to {speed} by hand you would get {result}.")
+    text = N_("With T_av rounded to {torque} and n_in,av to {speed} by hand you would get {result}.")
     if _is_printed(sheet):
         text = N_(
-            "With T_av rounded to {torque} and n_in_av to {speed} by hand you would get {result}, as the handbook does "
+            "With T_av rounded to {torque} and n_in,av to {speed} by hand you would get {result}, as the handbook does "
             "in equation 18.9."
         )
     return (Sentence(text, values),)

@@ -24,9 +24,9 @@ from hpn.quantities import CANDIDATE
 from hpn.wording import N_, Sentence
 
 SHOWN_LOADS = 6
-STANDING = Sentence(N_("Computed between the two published limits; the handbook's printed curve was not available."))
+STANDING = Sentence(N_("Interpolated between the two published limits; printed curve not available."))
 SUPPLIED = Sentence(
-    N_("P is the factor by which the load exceeds the curve that you supplied, along the load's own direction.")
+    N_("P is the factor by which the load exceeds the curve that you supplied, along the load’s own direction.")
 )
 EXPONENT = Constant(3)
 P = Variable("P")
@@ -115,7 +115,7 @@ def _life(sheet: Sheet, mean: Term, f_w: Term) -> Step:
     )
     note = Sentence(
         N_(
-            "L10 = L50 / 5 is the relation of the maker's other handbooks, not printed in this one; a Weibull slope "
+            "L10 = L50 / 5 is the relation of the maker’s other handbooks, not printed in this one; a Weibull slope "
             "of 10/9 gives 5.45."
         )
     )

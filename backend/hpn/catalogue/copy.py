@@ -43,7 +43,7 @@ def read_copy(content: bytes) -> Catalogue:
             )
         return msgspec.json.decode(head.catalogue, type=Catalogue, dec_hook=_array)
     except msgspec.MsgspecError as error:
-        raise UnreadableCopyError(f"the copy of the catalogue can't be read: {error}") from None
+        raise UnreadableCopyError(f"the copy of the catalogue can’t be read: {error}") from None
 
 
 def _plain(value: Any) -> Any:

@@ -38,7 +38,7 @@ def read_folder(folder: Path, tables: Collection[str]) -> dict[str, bytes]:
     except (FileNotFoundError, NotADirectoryError):
         raise CatalogueError(folder, None, None, "is not a folder") from None
     except OSError as error:
-        raise CatalogueError(folder, None, None, f"can't be read: {error.strerror}") from None
+        raise CatalogueError(folder, None, None, f"can’t be read: {error.strerror}") from None
     for name in found:
         if name not in tables and _is_meant(name, tables):
             detail = f"is not a table of the catalogue; there are {', '.join(sorted(tables))}"
@@ -66,7 +66,7 @@ def _content(path: Path) -> bytes:
     except FileNotFoundError:
         raise CatalogueError(path, None, None, "is a link that leads nowhere") from None
     except (OSError, RuntimeError) as error:  # RuntimeError: a link to itself
-        raise CatalogueError(path, None, None, f"can't be read: {getattr(error, 'strerror', None) or error}") from None
+        raise CatalogueError(path, None, None, f"can’t be read: {getattr(error, 'strerror', None) or error}") from None
     if len(content) > MAXIMUM_FILE_BYTES:
         raise CatalogueError(path, None, None, f"is larger than {MAXIMUM_FILE_BYTES} bytes")
     return content

@@ -35,7 +35,7 @@ def _require_free(host: str, port: int) -> None:
     except OSError as error:
         if error.errno == errno.EADDRINUSE:
             raise OSError(error.errno, "another program listens there; choose another port", place) from None
-        raise OSError(error.errno, f"can't be listened on: {error.strerror}", place) from None
+        raise OSError(error.errno, f"can’t be listened on: {error.strerror}", place) from None
 
 
 async def _migrate(store: Store) -> None:

@@ -15,5 +15,5 @@ def words_of(error: OSError, options: argparse.Namespace) -> tuple[int, list[str
     """Exit code and line: the caller's mistake where the error names a file, or what else was given."""
     text = MEANING.get(error.errno or 0) or error.strerror or str(error)
     if error.filename is None:
-        return OTHERS, [f"hpn can't go on: {text}"]
+        return OTHERS, [f"hpn can’t go on: {text}"]
     return CALLERS, [f"{error.filename}: {text}"]

@@ -49,7 +49,7 @@ def _layout(subject: Subject, T_R: float, T_M: float, top: int, reader: Reader) 
         reader,
         axis_title(N_("emergency-stop torque T_k"), "Nm", reader),
         reader.text(N_("number of stops")),
-        title=said(Sentence("Allowed emergency stops of {gear}, equation 17.9", {"gear": designation}), reader),
+        title=said(Sentence("Permitted emergency stops of {gear}, equation 17.9", {"gear": designation}), reader),
         revision=designation,
     )
     edge = [torque.shown(T_R), torque.shown(T_M)]
@@ -67,7 +67,7 @@ def _layout(subject: Subject, T_R: float, T_M: float, top: int, reader: Reader) 
 
 
 def _line(torque: FloatArray, number: FloatArray, reader: Reader, *, named_below: bool) -> Figure:
-    name = said(Sentence("Allowed number N_k max"), reader)
+    name = said(Sentence("Permitted number N_k,max"), reader)
     named = len(torque) // (2 if named_below else 4)
     return {
         "type": "scatter",
@@ -135,9 +135,11 @@ def emergency_stop_words(subject: Subject) -> list[Sentence]:
     gear, stop, torque = subject.gear, subject.application.emergency_stop, subject.emergency_stop_torque_Nm
     T_R, T_M, allowed = gear.repeated_peak_torque_Nm, gear.momentary_peak_torque_Nm, allowed_stops(subject)
     if T_R is None or T_M is None:
-        return [Sentence("Not rated: the peak torques of {gear} are not published.", {"gear": gear.name})]
+        return [
+            Sentence("Not rated: the peak torques of {gear} are not in this catalogue’s source.", {"gear": gear.name})
+        ]
     if stop is None or torque is None or allowed is None:
-        return [Sentence("Enter an emergency-stop torque to see how many such stops this gear allows.")]
+        return [Sentence("Enter an emergency-stop torque to see how many such stops this gear permits.")]
     given: dict[str, Value] = {"torque": Quantity(torque, "Nm", 6)}
     if allowed == inf:
         return [
@@ -155,13 +157,13 @@ def emergency_stop_words(subject: Subject) -> list[Sentence]:
 
 def _budget(count: int | None, allowed: float, torque: dict[str, Value]) -> Sentence:
     if allowed < 1:
-        return Sentence("At {torque} equation 17.9 allows not even one stop.", torque)
+        return Sentence("At {torque} no emergency stop is permitted (eq. 17.9).", torque)
     values = torque | {"allowed": Quantity(allowed, "", 12)}
     if count is None:
-        return Sentence("At {torque} equation 17.9 allows {allowed} stops over the life.", values)
+        return Sentence("At {torque} equation 17.9 permits {allowed} stops over the life.", values)
     used: dict[str, Value] = {"count": Quantity(count, "", 16), "used": share(count / allowed)}
     return Sentence(
-        "At {torque} equation 17.9 allows {allowed} stops over the life; your {count} use {used} of that budget.",
+        "At {torque} equation 17.9 permits {allowed} stops over the life; your {count} use {used} of that budget.",
         values | used,
     )
 

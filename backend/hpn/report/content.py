@@ -51,9 +51,9 @@ LABELS = {
     "source": N_("Source"),
     "open": N_("Open"),
     "page": N_("Page {page} of {pages}"),
-    "bars": N_("A bar's full width is 125 %; the stroke marks what is acceptable."),
+    "bars": N_("A bar’s full width is 125 %; the stroke marks what is acceptable."),
     "disclaimer": N_(
-        "Made by an independent tool from the maker's engineering data. Check the selection with the maker before you "
+        "Made by an independent tool from the maker’s engineering data. Check the selection with the maker before you "
         "order."
     ),
     "unsaved": N_("Not saved: the link carries every input."),

@@ -2,7 +2,7 @@
 
 `TechnicalData` follows IDTA 02003-1-2 (Generic Frame for Technical Data for Industrial Equipment in Manufacturing, 1.2)
 with its semantic ids. Article number and order code are the designation: the handbook prints no article number, and a
-full order code names output version and motor adaption too; their descriptions say so. What is not saved has no date,
+full order code names output version and motor adapter too; their descriptions say so. What is not saved has no date,
 hence no `ValidDate`. `SelectionResult` is ours; no registered template exists for it.
 
 The library writes metamodel 3.1, whose elements are those of 3.0 as far as they are used here: the namespace tells
@@ -45,12 +45,12 @@ GENERAL_INFORMATION = {
 """Elements of the template and their semantic ids, as the template of IDTA gives them."""
 
 ARTICLE_NUMBER = {
-    "en": "Designation of the gear: the maker's engineering data print no article number.",
+    "en": "Designation of the gear: the maker’s engineering data print no article number.",
     "de": "Bezeichnung des Getriebes: Die Projektierungsunterlagen des Herstellers nennen keine Artikelnummer.",
 }
 ORDER_CODE = {
-    "en": "Ordering code as far as it is known: output version and motor adaption follow (table 9.1).",
-    "de": "Bestellschlüssel, soweit bekannt: Abtriebsausführung und Motoranbindung folgen (Tab. 9.1).",
+    "en": "Ordering code as far as it is known: output version and motor adapter follow (table 9.1).",
+    "de": "Bestellschlüssel, soweit bekannt: Abtriebsausführung und Motoradapter folgen (Tab. 9.1).",
 }
 
 Metamodel = Literal["3.0", "3.1"]
@@ -162,7 +162,7 @@ def _technical_properties(export: Export) -> model.SubmodelElementCollection:
 
 def _further_information(export: Export) -> model.SubmodelElementCollection:
     statement = {
-        "en": "Figures of the maker's engineering data, written by an independent tool; not a statement of the maker.",
+        "en": "Figures of the maker’s engineering data, written by an independent tool; not a statement of the maker.",
         "de": "Angaben aus den Projektierungsunterlagen des Herstellers, von einem unabhängigen Werkzeug geschrieben; "
         "keine Aussage des Herstellers.",
     }

@@ -24,7 +24,9 @@ VERDICTS: Mapping[str, str] = {
     "unlimited": N_(
         "No gear is suitable. {gear} comes closest, but T_k is too high: no emergency stop is permitted (eq. 17.9)."
     ),
-    "unrated": N_("No gear is suitable. {gear} can’t be judged: figures that the checks need are not published."),
+    "unrated": N_(
+        "No gear is suitable. {gear} can’t be judged: figures that the checks need are not in this catalogue’s source."
+    ),
 }
 """What is said of the reported gear where it is the selected one or none is suitable."""
 

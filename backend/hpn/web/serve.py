@@ -50,7 +50,7 @@ def worker_app() -> FastAPI:
     try:
         app = served_app()
     except (CatalogueError, StoreError, OSError) as error:
-        logger.error("a worker can't start, and is tried again: %s", error)
+        logger.error("a worker can’t start, and is tried again: %s", error)
         time.sleep(RETRY_SECONDS)
         sys.exit(1)
     _end_when_stuck(app.state.settings.worker_seconds)

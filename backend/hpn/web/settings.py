@@ -96,7 +96,7 @@ class Settings(BaseSettings):
         env_prefix="HPN_", env_ignore_empty=True, extra="ignore", hide_input_in_errors=True
     )
 
-    catalogue_folder: Path = Field(HANDBOOK_FOLDER, description="Folder of the catalogue's CSV files.")
+    catalogue_folder: Path = Field(HANDBOOK_FOLDER, description="Folder of the catalogue’s CSV files.")
     catalogue_supplement: Path | None = Field(
         None, description="Folder of CSV files that fill or correct catalogue cells."
     )
@@ -106,7 +106,7 @@ class Settings(BaseSettings):
         "for an absolute path), or postgresql://user:password@host/database.",
     )
     database_password: SecretStr | None = Field(
-        None, description="Password of PostgreSQL's user, of any characters, instead of one in the address."
+        None, description="Password of PostgreSQL’s user, of any characters, instead of one in the address."
     )
     database_seconds: float = Field(5.0, gt=0, description="Longest wait for the database.")
     maximum_body_bytes: int = Field(2_000_000, gt=0, description="Largest body of a request for one application.")
@@ -118,7 +118,7 @@ class Settings(BaseSettings):
         description="Most bytes of bodies and answers that one process holds at once; more get a 503. A batch "
         "counts as three times its body.",
     )
-    head_seconds: float = Field(20.0, gt=0, description="Longest time for a request's head to arrive.")
+    head_seconds: float = Field(20.0, gt=0, description="Longest time for a request’s head to arrive.")
     body_seconds: float = Field(
         30.0,
         gt=0,
@@ -128,7 +128,7 @@ class Settings(BaseSettings):
     batch_seconds: float = Field(60.0, gt=0, description="Longest computing time of one batch request.")
     spool_folder: Annotated[Path | None, AfterValidator(_folder)] = Field(
         None,
-        description="Folder for what a streamed batch has to set aside; the system's for temporary files by default.",
+        description="Folder for what a streamed batch has to set aside; the system’s for temporary files by default.",
     )
     maximum_spool_bytes: int = Field(
         2_000_000_000,

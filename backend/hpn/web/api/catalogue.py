@@ -58,7 +58,7 @@ async def gear(request: Request, designation: str) -> Response:
 @router.get(
     "/bearing-envelopes/{size}",
     operation_id="getBearingEnvelopes",
-    summary="Life envelopes of a size's output bearing",
+    summary="Life envelopes of a size’s output bearing",
     dependencies=[Depends(few_parameters)],
     openapi_extra=schemas.IF_NONE_MATCH,
     responses=schemas.answers("EnvelopeReply", 404, 414, 422, headers=schemas.headers("ETag")) | schemas.HAS_IT_ALREADY,

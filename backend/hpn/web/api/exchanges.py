@@ -14,7 +14,7 @@ from hpn.web.door.problems import MEDIA_TYPE
 from hpn.web.form.write import to_link
 
 SUMMARIES = {
-    "worked_example": "The handbook's worked example",
+    "worked_example": "The handbook’s worked example",
     "no_duration": "The same, its first phase lasting 0 s",
     "two_lines": "Two axes, one of them without a duty cycle",
     "first_gear": "The smallest gear",

@@ -34,7 +34,7 @@ from hpn.web.settings import Settings
 
 SCHEMA_TYPE = "application/schema+json"
 
-Lang = Annotated[Literal["en", "de"] | None, Query(description="Language; by default the browser's.")]
+Lang = Annotated[Literal["en", "de"] | None, Query(description="Language; by default the browser’s.")]
 Make = Callable[[], Export]
 
 
@@ -171,7 +171,7 @@ def _of_saved(saved: SavedSelection, catalogue: Catalogue | None, request: Reque
     try:
         application = Application.model_validate_json(saved.application)
     except ValidationError:
-        raise Problem(409, "the saved input does not fit this version's model any more") from None
+        raise Problem(409, "the saved input does not fit this version’s model any more") from None
     return Export(
         application=application,
         selection=decode(saved.result),

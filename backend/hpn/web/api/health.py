@@ -23,7 +23,7 @@ class Health(BaseModel):
 class Readiness(Health):
     """State of the service and of what it needs."""
 
-    catalogue_version: str = Field(description="Hash of the loaded catalogue's content.")
+    catalogue_version: str = Field(description="Hash of the loaded catalogue’s content.")
     gears: int = Field(description="Number of gears in the catalogue.")
     store: str = Field(description="ok while selections can be saved.")
 

@@ -20,7 +20,7 @@ DIFFERENCES_SHOWN = 500
 SELECTIONS_LISTED = 200
 """Most lines of a part of the list of saved selections."""
 
-Version = Annotated[str, Meta(description="Hash of the catalogue's content, supplement included.")]
+Version = Annotated[str, Meta(description="Hash of the catalogue’s content, supplement included.")]
 
 
 class JSONBytes(Response):
@@ -54,7 +54,7 @@ class ProblemReply(Struct, omit_defaults=True):
 class BatchLine(Struct):
     """Result of one item: its answer in brief, or why it has none."""
 
-    reference: Annotated[str | None, Meta(description="The item's own reference.")]
+    reference: Annotated[str | None, Meta(description="The item’s own reference.")]
     status: Annotated[Literal["ok", "error"], Meta(description="Whether the item could be evaluated.")]
     selected: Annotated[str | UnsetType | None, Meta(description="Designation of the selected gear, or null.")] = UNSET
     governing_check: Annotated[
@@ -133,7 +133,7 @@ class SummaryReply(Struct):
     status: Annotated[str | None, Meta(description="Verdict on that gear, as saved.")]
     utilisation: Annotated[float | None, Meta(description="Utilisation of that gear, as saved.")]
     engine_version: Annotated[str, Meta(description="Version of the calculation then.")]
-    catalogue_version: Annotated[str, Meta(description="Hash of the catalogue's content then.")]
+    catalogue_version: Annotated[str, Meta(description="Hash of the catalogue’s content then.")]
 
 
 class SelectionListReply(Struct):
@@ -147,7 +147,7 @@ class TodayReply(Struct):
     """What today's engine and catalogue say to the saved application."""
 
     engine_version: Annotated[str, Meta(description="Version of the calculation today.")]
-    catalogue_version: Annotated[str, Meta(description="Hash of the catalogue's content today.")]
+    catalogue_version: Annotated[str, Meta(description="Hash of the catalogue’s content today.")]
     difference_count: Annotated[int, Meta(description="Number of fields that differ.")]
     differences: Annotated[list[Difference], Meta(description="The first 500 of them.")]
     figure_differences: Annotated[
@@ -160,7 +160,7 @@ class TodayReply(Struct):
     problem: Annotated[
         ProblemReply | None,
         Meta(
-            description="Why the application can't be answered today, for example because the catalogue lacks a ratio."
+            description="Why the application can’t be answered today, for example because the catalogue lacks a ratio."
         ),
     ]
 

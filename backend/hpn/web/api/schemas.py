@@ -101,7 +101,7 @@ def _complete(schema: dict[str, Any], named: Mapping[str, Named]) -> None:
 def _one_gear(gear: dict[str, Any]) -> dict[str, Any]:
     """One gear by itself, and once more in the form of the whole catalogue, so that one reader serves both."""
     own = {
-        "catalogue_version": {"type": "string", "description": "Hash of the catalogue's content, supplement included."},
+        "catalogue_version": {"type": "string", "description": "Hash of the catalogue’s content, supplement included."},
         "gears": {
             "type": "array",
             "items": {"$ref": "#/components/schemas/Gear"},

@@ -36,7 +36,7 @@ def new_key(name: str) -> tuple[str, str]:
     key = KEY_PREFIX + secrets.token_urlsafe(24)
     pair = f"{name}:{hashlib.sha256(key.encode()).hexdigest()}"
     if PAIR.fullmatch(pair) is None:
-        raise ValueError("a key's name has 1 to 64 letters, digits, dots, dashes or underscores")
+        raise ValueError("a key’s name has 1 to 64 letters, digits, dots, dashes or underscores")
     return key, pair
 
 

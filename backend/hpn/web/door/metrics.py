@@ -33,7 +33,7 @@ class Metrics:
         )
         self._seconds = Histogram(
             "hpn_http_request_duration_seconds",
-            "Time from a request's head to the end of its answer.",
+            "Time from a request’s head to the end of its answer.",
             ("route", "method"),
             buckets=BUCKETS,
             registry=registry,

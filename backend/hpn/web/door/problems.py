@@ -25,7 +25,7 @@ LISTED_ERRORS = 5000
 """Errors up to which they are listed at all; of more it is only told how many there are."""
 
 TITLES = {
-    400: "The request can't be read",
+    400: "The request can’t be read",
     401: "An API key is needed",
     403: "Not allowed",
     404: "Not found",

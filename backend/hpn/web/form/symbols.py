@@ -99,7 +99,7 @@ SYMBOLS = (
         "Lbb",
         ("output_load", "life_basis"),
         "text",
-        choices={"L50": N_("L50: half reach it"), "L10": N_("L10: nine of ten do")},
+        choices={"L50": N_("L50 (50 % survive)"), "L10": N_("L10 (90 % survive)")},
     ),
     Symbol(
         "bm",

@@ -122,7 +122,7 @@ def _as_typed(_: Context, value: float, unit: str) -> str:
     return (f"{value:.12g}" if measure.same else measure.written(value, 6)).replace(".", reader.decimal)
 
 
-_SYMBOL = re.compile(r"\b([A-Za-z])_([A-Za-z0-9]+(?:_[a-z]+)*(?:\([a-z]+\))?)")
+_SYMBOL = re.compile(r"\b([A-Za-z])_([A-Za-z0-9]+(?:[_,][a-z0-9]+)*(?:\([a-z]+\))?)")
 
 
 def with_symbols(text: str) -> Markup:
