@@ -58,7 +58,7 @@ LABELS = {
     ),
     "unsaved": N_("Not saved: the link carries every input."),
     "too_long_link": N_("The link is too long to print; it carries every phase."),
-    "unprintable": N_("□ stands for characters that the report's fonts lack: {codes}."),
+    "unprintable": N_("□ stands for characters that the report’s fonts lack: {codes}."),
     "calculation": N_("Calculation of {gear}"),
     "digits": N_(
         "Numbers to nine digits, so that each line can be checked from the one before; this tool rounds nothing in "
