@@ -24,14 +24,13 @@ class State:
     path: str
     width: int = 1440
     dark: bool = False
-    region: str = ""
     language: str = "en"
 
 
 STATES = (
     State("answer-1440-light", "/"),
     State("rejected-1440-light", EXAMPLE + "&gear=HPN-14A-5"),
-    State("bearing-1440-light", LOADED, region=".bearing"),
+    State("bearing-1440-light", LOADED + "#bearing"),
     State("german-1440-dark", "/", dark=True, language="de"),
     State("answer-390-light", "/", width=390),
 )
@@ -57,14 +56,7 @@ def _take(browser: Browser, address: str, state: State) -> None:
     )
     page = context.new_page()
     page.goto(address + state.path, wait_until="networkidle")
-    path = FOLDER / f"{state.name}.png"
-    if state.region:
-        region = page.locator(state.region)
-        region.scroll_into_view_if_needed()
-        region.locator(".main-svg").first.wait_for()  # a plot is drawn when somebody comes near it
-        region.screenshot(path=path)
-    else:
-        page.screenshot(path=path)
+    page.screenshot(path=FOLDER / f"{state.name}.png")
     context.close()
 
 

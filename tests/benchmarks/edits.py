@@ -20,7 +20,8 @@ QUIET_MS = 60
 
 BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
 OFFLINE = "--host-resolver-rules=MAP * ~NOTFOUND , EXCLUDE 127.0.0.1 , EXCLUDE localhost"
-PAGES = {"5_gears": "/", "64_gears": "/?T=40&n=250&t=0.3&T=32&n=500&t=3&T=20&n=250&t=0.4&tp=4&Tk=200"}
+ALL = "/?T=40&n=250&t=0.3&T=32&n=500&t=3&T=20&n=250&t=0.4&tp=4&Tk=200"
+PAGES = {"5_gears": "/", "64_gears": ALL, "64_gears_loaded": f"{ALL}&FR=500&FA=200"}
 
 WATCH = """quiet => {
   performance.setResourceTimingBufferSize(10000);

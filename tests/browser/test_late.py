@@ -6,7 +6,7 @@ from typing import Any
 
 from playwright.sync_api import Page, Route, expect
 
-from tests.browser.conftest import Visitor, answer_held_back
+from tests.browser.conftest import Visitor, answer_held_back, open_section
 
 EXAMPLE = "/?T=40&n=250&t=0.3&T=32&n=500&t=3&T=20&n=250&t=0.4&tp=4&Tk=200&i=5"
 
@@ -19,25 +19,21 @@ def pause(page: Page) -> Any:
     return page.get_by_label("Pause")
 
 
-def unfold(page: Page, text: str) -> None:
-    page.locator("summary", has_text=text).first.click()
-
-
 def average_torque(first: float) -> str:
     """T_av of the example by equation 17.2, as the page rounds it, with another torque in its first phase."""
     phases = ((first, 250 * 0.3), (32, 500 * 3), (20, 250 * 0.4))
     return f"{(sum(T ** (10 / 3) * turns for T, turns in phases) / sum(turns for _, turns in phases)) ** 0.3:.1f}"
 
 
-def test_calculation_that_is_unfolded_meanwhile_is_that_of_the_answer(visitor: Visitor) -> None:
+def test_calculation_that_is_opened_meanwhile_is_that_of_the_answer(visitor: Visitor) -> None:
     page = visitor.open(EXAMPLE)
     shown = page.locator("#calculation")
     for first in (80, 96):  # once without a calculation so far, once with that of before
         with answer_held_back(page, partial(torque(page, 1).fill, str(first))):
-            unfold(page, "Show the calculation")
+            open_section(page, "Calculation")
         expect(shown).to_contain_text(f"{average_torque(first)}\u202fNm ≤ 80\u202fNm")
         expect(shown).not_to_contain_text("32.0\u202fNm ≤ 80\u202fNm")
-        unfold(page, "Show the calculation")
+        open_section(page, "Overview")
 
 
 def test_going_back_meanwhile_takes_back_the_edit_that_is_under_way(visitor: Visitor) -> None:
@@ -64,7 +60,6 @@ def test_going_back_meanwhile_takes_back_the_edit_that_is_under_way(visitor: Vis
 
 def test_what_is_saved_is_what_the_form_says(visitor: Visitor) -> None:
     page = visitor.open(EXAMPLE)
-    unfold(page, "Save this selection")
     page.evaluate(
         "() => { const field = document.getElementById('T-0'); field.value = '90';"
         " field.dispatchEvent(new Event('input', { bubbles: true }));"
@@ -77,7 +72,6 @@ def test_what_is_saved_is_what_the_form_says(visitor: Visitor) -> None:
 def test_what_is_saved_is_what_the_form_says_in_german_and_inches(visitor: Visitor) -> None:
     page = visitor.open(EXAMPLE)
     page.get_by_role("button", name="Deutsch").click()
-    page.locator(".saving > summary").click()
     page.locator("#T-0").fill("90,5")
     page.locator("form.save").evaluate("form => form.requestSubmit()")
     expect(page).to_have_url(re.compile("/selections/"))
@@ -86,10 +80,9 @@ def test_what_is_saved_is_what_the_form_says_in_german_and_inches(visitor: Visit
 
 def test_what_is_wrong_is_not_saved(visitor: Visitor) -> None:
     page = visitor.open(EXAMPLE)
-    unfold(page, "Save this selection")
     torque(page, 1).fill("abc")
     expect(torque(page, 1)).to_have_attribute("aria-invalid", "true")
-    page.locator("form.save").get_by_role("button", name="Save").click()
+    page.get_by_role("button", name="Save", exact=True).click()
     expect(page.get_by_text("Not saved: first correct the marked inputs.")).to_be_visible()
     expect(torque(page, 1)).to_have_value("abc")
 
@@ -112,7 +105,8 @@ def test_undo_takes_back_the_gear_that_was_chosen_just_now_and_no_more(visitor: 
     page = visitor.open(EXAMPLE)
     torque(page, 1).fill("50")
     expect(page).to_have_url(re.compile("T=50&"))
-    row = page.get_by_role("table", name="Candidates").get_by_role("link", name="HPN-32A-5", exact=True)
+    open_section(page, "Candidates")
+    row = page.get_by_role("table", name="Suitable").get_by_role("link", name="HPN-32A-5", exact=True)
     with answer_held_back(page, row.click):
         page.get_by_role("button", name="Undo").click()
     expect(page.get_by_role("button", name="Redo")).to_have_attribute("aria-disabled", "false")
@@ -123,15 +117,19 @@ def test_undo_takes_back_the_gear_that_was_chosen_just_now_and_no_more(visitor: 
 
 def test_gears_pinned_in_quick_succession_are_all_compared(visitor: Visitor) -> None:
     page = visitor.open(EXAMPLE)
-    pins = page.get_by_role("table", name="Candidates")
+    open_section(page, "Candidates")
+    page.get_by_text("14A: one gear").click()
+    pins = page.get_by_role("region", name="Candidates")
     with answer_held_back(page, pins.get_by_role("link", name="Compare HPN-14A-5").click):
         pins.get_by_role("link", name="Compare HPN-32A-5").click()
     expect(page).to_have_url(re.compile("pin=HPN-14A-5&pin=HPN-32A-5"))
+    open_section(page, "Compare")
     expect(page.get_by_role("table", name="Comparison of HPN-20A-5, HPN-14A-5, HPN-32A-5")).to_be_visible()
 
 
 def test_a_name_that_no_gear_has_is_said_where_it_was_typed_and_changes_nothing(visitor: Visitor) -> None:
     page = visitor.open(EXAMPLE)
+    open_section(page, "Candidates")
     field = page.get_by_role("combobox", name="Find a gear")
     with page.expect_response("**/api/v1/catalogue/foo"):
         field.fill("foo")

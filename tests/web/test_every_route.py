@@ -15,6 +15,8 @@ from tests.build import phase, worked_example
 
 LINK = "T=40&n=250&t=0.3&T=32&n=500&t=3&tp=4&i=5"
 QUERIES = {
+    "/application.json": LINK,
+    "/cycle.csv": LINK,
     "/report.pdf": LINK,
     "/report.xlsx": LINK,
     "/submodel.aasx": LINK,
@@ -49,6 +51,7 @@ class Address:
             "{id}": saved,
             "{designation}": "HPN-20A-5",
             "{size}": "20A",
+            "{code}": "average_torque",
             "{name:path}": Assets.load().url("app.css").removeprefix("/static/"),
         }
 

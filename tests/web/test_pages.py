@@ -192,7 +192,7 @@ def test_only_built_files_are_served(client: TestClient, name: str) -> None:
 
 
 def test_first_view_stays_light(client: TestClient) -> None:
-    """Issue 4's budget of 120 kB for everything but the plots, the page itself compressed as a proxy would."""
+    """60 kB for everything but the plots, the page itself compressed as a proxy would."""
     page = client.get("/")
     addresses = set(re.findall(r'(?:href|src)="(/static/[^"]+)"', page.text))
     total = len(gzip.compress(page.content))
