@@ -401,14 +401,6 @@ def test_accessibility_check_finds_nothing_in_the_dialogs(visitor: Visitor, stat
     if state == "paste":
         paste(page, "1.234\t250\t3")
         expect(page.get_by_text("Which one is meant?")).to_be_visible()
-<<<<<<< HEAD
-    if state == "keys":
-        button(page, "Shortcuts").click()
-    page.evaluate(AXE.read_text())
-    violations = page.evaluate("axe.run().then(result => result.violations)")
-    assert [(v["id"], [node["target"] for node in v["nodes"]]) for v in violations] == []
-=======
     if state == "shortcuts":
         button(page, "Shortcuts").click()
     assert violations(page) == []
->>>>>>> c52dd98 (wip6)
