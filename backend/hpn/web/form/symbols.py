@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Literal
 
+from hpn.catalogue import Catalogue
 from hpn.notices import AREAS
 from hpn.quantities import CANDIDATE, INPUTS, Named
 from hpn.units import suffix_of
@@ -21,7 +22,8 @@ class Symbol:
     """A query name, the field of the application that it stands for, and what the form says beside it.
 
     `choices` are the codes of a text, the first being what counts where none is given. `offered` is a figure of the
-    gears whose values are offered while typing, or such values themselves.
+    gears whose values are offered while typing, or such values themselves. `supplied` names the table of the catalogue
+    without which a choice is not offered.
     """
 
     name: str
@@ -29,6 +31,7 @@ class Symbol:
     kind: Kind = "number"
     many: bool = False
     choices: Mapping[str, str] = field(default_factory=dict)
+    supplied: Mapping[str, str] = field(default_factory=dict)
     placeholder: str = ""
     hint: str = ""
     offered: str | tuple[float, ...] = ()
@@ -37,6 +40,10 @@ class Symbol:
     def place(self) -> str:
         """Its place as `hpn.quantities` names it."""
         return ".".join(self.path if len(self.path) > 1 or self.path[0] in INPUTS else ("phase", *self.path))
+
+    def is_offered(self, choice: str, catalogue: Catalogue) -> bool:
+        """Whether a choice is of use with a catalogue; a link that asks for it is read all the same."""
+        return choice not in self.supplied or bool(getattr(catalogue, self.supplied[choice]))
 
     @property
     def named(self) -> Named:
@@ -112,9 +119,9 @@ SYMBOLS = (
         },
         hint=N_(
             "Straight line: between the two published limits, and inside every curve that the bearing theory allows. "
-            "ISO 281: the bearing standard’s factors, with more room where both loads act. Digitised graph: along "
-            "points of the printed graph that you supply."
+            "ISO 281: the bearing standard’s factors, with more room where both loads act."
         ),
+        supplied={"digitised": "curves"},
     ),
     Symbol("i", ("requirements", "ratios"), "whole", many=True),
     Symbol("size", ("requirements", "sizes"), "text", many=True),

@@ -1,0 +1,128 @@
+"""Loads in their envelopes on the pages: at once and without script, with and without a load, live and saved."""
+
+import re
+from collections.abc import Iterator
+from html import unescape
+from pathlib import Path
+
+import pytest
+from starlette.testclient import TestClient
+
+from hpn.web.app import create_app
+from hpn.web.settings import Settings
+
+EXAMPLE = "/?T=40&n=250&t=0.3&T=32&n=500&t=3&T=20&n=250&t=0.4&tp=4&i=5"
+LOADED = EXAMPLE + "&fw=1.2&FRi=900&FRi=500&FRi=700&FAi=300&FAi=200&FAi=500&gear=HPN-20A-5"
+CURVE = "size,load_coefficient,axial_N,radial_N,source\n20A,1,2200,0,mine\n20A,1,0,1800,mine\n"
+
+
+@pytest.fixture(scope="module")
+def client(tmp_path_factory: pytest.TempPathFactory) -> Iterator[TestClient]:
+    folder = tmp_path_factory.mktemp("pages")
+    settings = Settings(database_url=f"sqlite:///{folder}/selections.sqlite3")
+    with TestClient(create_app(settings)) as client:
+        yield client
+
+
+def section(page: str, name: str) -> str:
+    """The figure or section of a page with an id."""
+    found = re.search(rf'<(figure|section)[^>]* id="{name}".*?</\1>', page, re.DOTALL)
+    assert found, name
+    return found[0]
+
+
+def phases(part: str, kind: str) -> list[str]:
+    """Places of the phases that the elements of a kind belong to."""
+    return re.findall(rf'class="{kind}[^"]*"[^>]* data-phase="([^"]*)"', part)
+
+
+def test_the_overview_has_the_drawing_at_once_without_a_load_and_leads_to_its_field(client: TestClient) -> None:
+    page = client.get(EXAMPLE).text
+    figure = section(page, "envelope")
+
+    assert 'class="line limit"' in figure
+    assert "218\u202frpm, 20\u202f000\u202fh, L50" in unescape(figure)
+    assert '<a href="#f-FR">Add a load</a>' in figure
+    assert 'id="f-FR"' in page
+    assert 'class="mark' not in figure
+
+
+def test_phase_row_step_and_load_carry_the_same_number(client: TestClient) -> None:
+    page = client.get(LOADED).text
+
+    assert phases(section(page, "envelope"), "mark load") == ["0", "1", "2"]
+    assert phases(section(page, "cycle"), "phase-step") == ["0", "1", "2"]
+    assert re.findall(r'<tr id="phase-(\d)"', page) == ["0", "1", "2"]
+    assert "Add a load" not in page
+
+
+def test_the_phase_that_governs_is_marked_alike_in_chart_and_drawing(client: TestClient) -> None:
+    page = client.get(LOADED + "&FRi=5000&FAi=0&T=1&n=100&t=1").text
+    chart, figure = section(page, "cycle"), section(page, "envelope")
+
+    assert 'data-governing="3"' in chart
+    assert phases(chart, "phase-step governing") == phases(figure, "mark load governing") == ["3"]
+
+
+def test_data_for_the_plot_library_come_only_when_somebody_unfolds_them(client: TestClient) -> None:
+    page = client.get(LOADED).text
+    part = client.get(LOADED, headers={"HX-Request": "true", "HX-Target": "details#bearing_figure"}).text
+
+    assert "data-figure" not in section(page, "bearing")
+    assert "plotly" not in section(page, "envelope")
+    assert "data-figure" in part
+
+
+@pytest.mark.parametrize(
+    ("query", "said"),
+    [("&gear=HPN-40A-5", "This catalogue lacks the bearing limits of HPN-40A"), ("&gear=HPN-40A-5&FR=1", "Not rated.")],
+)
+def test_a_gear_without_limits_has_a_message_in_place_of_the_drawing(client: TestClient, query: str, said: str) -> None:
+    figure = section(client.get(EXAMPLE + query).text, "envelope")
+    assert said in unescape(figure)
+    assert "<svg" not in figure
+
+
+def test_the_digitised_graph_is_offered_only_where_a_supplement_has_points(client: TestClient, tmp_path: Path) -> None:
+    (tmp_path / "bearing_envelopes.csv").write_text(CURVE)
+    settings = Settings(database_url=f"sqlite:///{tmp_path}/s.sqlite3", catalogue_supplement=str(tmp_path))
+
+    assert "digitised graph" not in client.get(EXAMPLE).text.partition("_bearing_help")[0].partition("</form>")[0]
+    asked = client.get(EXAMPLE + "&FR=1&bm=digitised")
+    assert '<option value="digitised" selected>digitised graph</option>' in asked.text
+    assert "bearing_envelopes.csv" in asked.text
+    with TestClient(create_app(settings)) as supplied:
+        assert '<option value="digitised">digitised graph</option>' in supplied.get(EXAMPLE).text
+        assert 'class="line limit"' in section(supplied.get(EXAMPLE + "&FR=1&bm=digitised").text, "envelope")
+
+
+@pytest.mark.parametrize("query", [EXAMPLE, LOADED])
+def test_the_saved_page_has_the_chart_of_the_cycle_the_envelope_and_the_life_of_the_bearing(
+    client: TestClient, query: str
+) -> None:
+    page = client.post("/selections", data={"link": query}).text
+
+    assert phases(section(page, "cycle"), "phase-step") == ["0", "1", "2"]
+    bearing = section(page, "bearing")
+    assert 'class="line limit"' in bearing
+    if query == LOADED:
+        assert "The largest single load governs." in bearing
+        assert phases(bearing, "mark load") == ["0", "1", "2", "0", "1", "2"]  # this size, all sizes
+        assert "75\u202f594" in unescape(bearing)
+    else:
+        assert "Add a load" not in bearing
+
+
+def test_the_page_of_a_gear_has_the_same_drawing(client: TestClient) -> None:
+    page = client.get("/catalogue/HPN-20A-5").text
+    assert page.count('class="line coefficient"') == 3
+    assert 'class="line limit"' in page
+    assert "Basis: interpolated between the two published limits" in page
+    assert 'class="line' not in client.get("/catalogue/HPN-40A-5").text
+
+
+def test_a_cycle_too_long_for_a_link_brings_the_data_along(client: TestClient) -> None:
+    rows = "\n".join(f"1 {100 + k % 7} 1 {k % 900} 100" for k in range(3000))
+    page = client.post("/", data={"phases": rows}).text
+    assert "data-figure" in section(page, "bearing")
+    assert len(phases(section(page, "envelope"), "mark load")) == 200
