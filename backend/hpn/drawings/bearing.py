@@ -212,6 +212,8 @@ def _layout(
         revision=f"{gear and gear.size} {radial:g} {axial:g}",
     )
     measure = reader.measure("N")
+    figure["showlegend"] = True
+    figure["legend"] = {"x": 1, "y": 1, "xanchor": "right", "yanchor": "top", "font": {"size": 11}}
     figure["xaxis"]["range"] = [0, measure.shown(radial) * 1.08]
     figure["yaxis"]["range"] = [0, measure.shown(axial) * 1.08]
     return figure

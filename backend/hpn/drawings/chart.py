@@ -9,7 +9,7 @@ from itertools import pairwise
 from xml.etree.ElementTree import Element, SubElement
 
 from hpn.drawings.axis import round_numbers
-from hpn.drawings.placing import Box, Places, around
+from hpn.drawings.placing import LETTERS, Box, Places, around
 from hpn.drawings.svg import LETTER, Point, add, canvas, path, text, width_of
 from hpn.drawings.words import axis_title
 from hpn.reader import Reader
@@ -26,7 +26,7 @@ MOST_SPACES, GAP = 6, 8.0
 """Most spaces between round numbers, and the least one between two of them, in units of the drawing."""
 
 RADIUS, DOT, RING = 9.5, 2.5, 12.5
-MARGIN = 3.5
+MARGIN, SAME = 3.5, 0.1
 MOST_DISCS = 24
 """Loads that have a numbered disc, those nearest to their limit first; other phases are dots."""
 
@@ -34,7 +34,10 @@ BAR_END = 1.5
 """Utilisation at which a bar ends."""
 
 LEAST_BAR = 24.0
+TICK, CROSS = "M0 5l3 4l5 -9", "M0 0l8 8m0 -8l-8 8"
 ALONG = (0.5, 0.42, 0.58, 0.34, 0.66, 0.26, 0.74, 0.18, 0.82)
+ENDS = (0.12, 0.88, 0.16, 0.84, 0.2, 0.8, 0.08, 0.92, *ALONG)
+"""Shares of the way along a line at which its name may stand, the best first."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,6 +76,7 @@ class Bar:
     label: str
     used: float
     allowed: float
+    outside: bool
     told: str
 
 
@@ -115,7 +119,7 @@ def chart(
         corners = [frame.at(corner) for corner in line.corners]
         if line.strong:
             add(still, "path", "area", d=path([frame.at((0, 0)), *corners], closed=True))
-        places.lines += pairwise(corners)
+        places.lines.append(corners)
     for line in sorted(lines, key=lambda line: line.strong):
         add(still, "path", f"line {line.kind}", d=path(frame.at(corner) for corner in line.corners))
     if ray:
@@ -182,11 +186,11 @@ def _marks(drawing: Element, frame: Frame, marks: Sequence[Mark], places: Places
     groups = [_group(drawing, mark, dot.centre) for mark, dot in zip(marks, dots, strict=True)]
     for place in named:
         mark, dot = marks[place], dots[place]
-        others = [other for other in dots if not (other.left == dot.left and other.top == dot.top)]
+        others = [other for other in dots if max(abs(other.left - dot.left), abs(other.top - dot.top)) > SAME]
         taken = places.taken
         places.taken = [*taken, *others]
         size = _size(mark)
-        spot = places.first([Box.around(dot.centre, *size), *around(dot.centre, *size)])
+        spot = places.first(around(dot.centre, *size))
         places.taken = [*taken, *([spot] if spot else [])]
         if spot:
             _disc(groups[place], leaders, mark, dot.centre, spot)
@@ -220,7 +224,7 @@ def _disc(group: Element, leaders: Element, mark: Mark, dot: Point, spot: Box) -
         wide = half + RING - RADIUS
         add(group, "rect", "ring", x=x - wide, y=y - RING, width=2 * wide, height=2 * RING, rx=RING)
         across, up = x + wide - 4, y - RING + 4
-        add(group, "path", "cross", d=f"M{across - 4:.1f} {up - 4:.1f}l8 8m0 -8l-8 8")
+        add(group, "path", "cross", d=CROSS, transform=f"translate({across - 4:.1f} {up - 4:.1f})")
     group.set("tabindex", "0")
     add(group, "rect", "disc", x=x - half, y=y - RADIUS, width=2 * half, height=2 * RADIUS, rx=RADIUS)
     text(group, "number", (x, y + 4.3), mark.label, "middle")
@@ -230,32 +234,22 @@ def _disc(group: Element, leaders: Element, mark: Mark, dot: Point, spot: Box) -
 
 
 def _labels(drawing: Element, frame: Frame, lines: Sequence[Line], places: Places) -> None:
+    """Each line has its name on it, where the fewest lines cross it: a strong one in its middle, others at an end."""
     group = add(drawing, "g", "still", aria_hidden="true")
     for line in sorted(lines, key=lambda line: not line.strong):
         corners = [frame.at(corner) for corner in line.corners]
-        width, height = width_of(line.label) + 4, LETTER + 2
-        candidates = [Box.around(_along(corners, share), width, height) for share in ALONG] if line.strong else []
-        if not line.strong:
-            candidates = [*_beside(corners[-1], width, height), *_beside(corners[0], width, height)]
-            candidates += [Box.around(_along(corners, share), width, height) for share in reversed(ALONG)]
-        known = places.lines
-        if line.strong:  # its name is to lie on it
-            places.lines = [segment for segment in known if segment not in set(pairwise(corners))]
-        spot = places.clearest(candidates)
-        places.lines = known
+        size = width_of(line.label) + 4, LETTER + 2
+        shares = ALONG if line.strong else ENDS
+        spot = places.clearest([Box.around(_along(corners, share), *size) for share in shares])
         if spot:
-            x, _ = spot.centre
-            text(group, f"name {line.kind}", (x, spot.bottom - 4), line.label, "middle")
+            _name(group, line, spot)
 
 
-def _beside(end: Point, width: float, height: float) -> list[Box]:
-    """Places above and to the right of the end of a line, the nearest first."""
-    x, y = end
-    return [
-        Box(x + right, y - up - height, x + right + width, y - up)
-        for up in (1.0, 6.0, 12.0, 18.0)
-        for right in (3.0, -width / 2, 12.0)
-    ]
+def _name(group: Element, line: Line, spot: Box) -> None:
+    width, height = LETTERS * (spot.right - spot.left), spot.bottom - spot.top - 2
+    back = Box.around(spot.centre, width, height)
+    add(group, "rect", "back", x=back.left, y=back.top, width=width, height=height)
+    text(group, f"name {line.kind}", (spot.centre[0], spot.bottom - 4), line.label, "middle")
 
 
 def _along(corners: Sequence[Point], share: float) -> Point:
@@ -278,14 +272,16 @@ def _bars(drawing: Element, bars: Sequence[Bar]) -> None:
     if not bars:
         return
     left = 16 + max(width_of(bar.label) for bar in bars)
-    right = max(WIDTH - 12 - max(width_of(bar.told) for bar in bars), left + LEAST_BAR)
+    right = max(WIDTH - 26 - max(width_of(bar.told) for bar in bars), left + LEAST_BAR)
     unit = (right - left) / BAR_END
     for place, bar in enumerate(bars):
         top = HEIGHT + 4 + ROW * place
-        group = add(drawing, "g", "bar outside" if bar.used > bar.allowed else "bar")
+        outside = bar.outside
+        group = add(drawing, "g", "bar outside" if outside else "bar")
         text(group, "name", (8, top + 12), bar.label)
         add(group, "rect", "track", x=left, y=top + 1, width=right - left, height=13)
         add(group, "rect", "used", x=left, y=top + 1, width=unit * min(bar.used, BAR_END), height=13)
         tick = left + unit * bar.allowed
         add(group, "path", "allowed", d=path([(tick, top - 2), (tick, top + 17)]))
-        text(group, "told", (right + 8, top + 12), bar.told)
+        add(group, "path", "sign", d=CROSS if outside else TICK, transform=f"translate({right + 8:.1f} {top + 3:.1f})")
+        text(group, "told", (right + 22, top + 12), bar.told)

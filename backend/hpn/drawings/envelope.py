@@ -150,7 +150,7 @@ def _bar(
         numbers = (
             f"{_told(demand, limit, unit, reader)} {sign} {_told(limit, demand, unit, reader)} {reader.unit(unit)}"
         )
-    return Bar(label, used, allowed, f"{'✕' if outside else '✓'} {reader.percent(used, allowed)}\N{EN SPACE}{numbers}")
+    return Bar(label, used, allowed, outside, f"{reader.percent(used, allowed)}\N{EN SPACE}{numbers}")
 
 
 def _told(value: float, other: float | None, unit: str, reader: Reader) -> str:

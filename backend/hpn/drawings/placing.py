@@ -2,11 +2,15 @@
 
 from collections.abc import Iterable
 from dataclasses import dataclass
-from math import cos, pi, sin
+from itertools import pairwise
+from math import cos, inf, pi, sin
 
 from hpn.drawings.svg import Point
 
 DISTANCES = (21.0, 29.0, 39.0, 52.0, 70.0)
+LETTERS = 0.75
+"""Part of a label's room that its letters fill in most fonts: a line beside them does no harm."""
+
 DIRECTIONS = tuple((cos(turn * pi / 6), -sin(turn * pi / 6)) for turn in (1, 2, 0, 3, 11, 5, 10, 4, 9, 6, 8, 7))
 """Upwards to the right first, where a load has room beyond it."""
 
@@ -61,7 +65,7 @@ class Places:
     def __init__(self, frame: Box) -> None:
         self.frame = frame
         self.taken: list[Box] = []
-        self.lines: list[tuple[Point, Point]] = []
+        self.lines: list[list[Point]] = []
 
     def is_free(self, box: Box) -> bool:
         """Whether a box lies inside the frame and over nothing that is taken."""
@@ -73,7 +77,14 @@ class Places:
 
     def clearest(self, candidates: Iterable[Box]) -> Box | None:
         """Take the first of the free boxes that the fewest lines cross; None where none is free."""
-        return self._take(min(filter(self.is_free, candidates), key=self._crossings, default=None))
+        best, least = None, inf
+        for box in filter(self.is_free, candidates):
+            crossings = self._crossings(box)
+            if crossings < least:
+                best, least = box, crossings
+            if least == 0:
+                break
+        return self._take(best)
 
     def _take(self, box: Box | None) -> Box | None:
         if box is not None:
@@ -81,11 +92,13 @@ class Places:
         return box
 
     def _crossings(self, box: Box) -> int:
-        return sum(box.is_crossed(start, end) for start, end in self.lines)
+        letters = Box.around(box.centre, LETTERS * (box.right - box.left), LETTERS * (box.bottom - box.top))
+        return sum(letters.is_crossed(start, end) for line in self.lines for start, end in pairwise(line))
 
 
 def around(point: Point, width: float, height: float) -> Iterable[Box]:
-    """Boxes of a size about a point, the nearest first."""
+    """Boxes of a size at a point and about it, the nearest first."""
+    yield Box.around(point, width, height)
     for distance in DISTANCES:
         for across, down in DIRECTIONS:
             reach = distance + abs(across) * (width - height) / 2

@@ -50,7 +50,7 @@ def _run(element: Element, kind: str, content: str, shift: float) -> None:
 
 def width_of(content: str) -> float:
     """Most room that a text takes."""
-    return WIDE * LETTER * len(content.replace("_", ""))
+    return WIDE * LETTER * (len(content) - content.count("_") / 2)
 
 
 def path(points: Iterable[Point], *, closed: bool = False) -> str:

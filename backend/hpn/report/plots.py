@@ -28,7 +28,7 @@ MOST_SPACES = 7
 LIFE = "output_bearing_life"
 
 ON_PAPER = """
-text { font: 12px "Noto Sans"; fill: #5b6875 }
+text { font-size: 13px; font-family: "Libertinus Serif"; fill: #5b6875 }
 .line, .grid, .axis, .ray, .leader, .cross, .allowed, .ring { fill: none }
 .grid { stroke: #d5dbe1; stroke-width: .6 }
 .axis { stroke: #16202b }
@@ -38,11 +38,13 @@ text { font: 12px "Noto Sans"; fill: #5b6875 }
 .line.single { stroke: #16202b; stroke-dasharray: 6 4 }
 .ray, .leader { stroke: #7d8894; stroke-width: .8 }
 .ray { stroke-dasharray: 2 3 }
-.name { paint-order: stroke; stroke: #fff; stroke-width: 6px; stroke-linejoin: round }
+.back { fill: #fff; fill-opacity: .85 }
 .name.limit { fill: #0b5394; font-weight: bold }
 .letter, .index { font-style: italic }
 .disc { fill: #fff; stroke: #16202b }
-.dot, .number, .told, .bar .name { fill: #16202b }
+.dot, .number, .told { fill: #16202b }
+.sign { fill: none; stroke: #1b7f3b; stroke-width: 1.5 }
+.outside .sign { stroke: #b3261e }
 .number { font-size: 11px; font-weight: bold }
 .equivalent .disc, .equivalent .dot { fill: #eef4fa; stroke: #0b5394 }
 .governing .disc, .governing .dot { fill: #0b5394; stroke: #0b5394 }
