@@ -31,6 +31,11 @@ class CandidatesSheet:
         self.book, self.sheet = book, sheet
         self.columns = {name: FIGURES + k for k, name in enumerate(RATINGS)}
         self.columns |= {term.name: TERMS + k for k, term in enumerate(GEAR_TERMS)}
+        self.symbols = {name: GEAR[field].symbol for name, field in RATINGS.items()}
+        self.symbols |= {term.name: term.named.symbol for term in GEAR_TERMS}
+        units = {name: symbol_of(field) for name, field in RATINGS.items()}
+        units |= {term.name: term.unit for term in GEAR_TERMS}
+        self.converted = {name: unit for name, unit in units.items() if not book.shown.measure(unit).same}
 
     def write(self) -> range:
         """Write the sheet; the rows of the candidates."""
@@ -61,6 +66,8 @@ class CandidatesSheet:
         bound = f", {text(LOWER_BOUND)}"
         heads += [head(term.named.symbol, term.unit) + bound * term.by_efficiency for term in GEAR_TERMS]
         heads += [text(check.title) for check in CHECKS]
+        unit_of = self.book.shown.unit
+        heads += [f"{self.symbols[name]} [{unit_of(unit)}]" for name, unit in self.converted.items()]
         for column, shown in enumerate(heads):
             self.sheet.write_string(0, column, shown, self.book.style("head"))
         self.sheet.set_row(0, 80)
@@ -86,6 +93,10 @@ class CandidatesSheet:
             formula = written(formulas.ratio, names, self.book.words) if formulas else None
             self._cell(row, column, formula, known.utilisation(check.code), "share", "share")
         self._verdict(row, known)
+        figures = known.ratings() | terms
+        for column, (name, unit) in enumerate(self.converted.items(), USED + len(CHECKS)):
+            source = xl_rowcol_to_cell(row, self.columns[name])
+            self.book.converted(self.sheet, row, column, source, unit, figures[name])
 
     def _cell(self, row: int, column: int, formula: str | None, value: float | str, style: str, as_saved: str) -> None:
         """A formula with its value, or the value alone as it was saved."""

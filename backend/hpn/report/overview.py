@@ -60,9 +60,14 @@ class Overview:
             0, 0, export.heading.title or self.text(N_("Untitled selection")), self.book.style("title")
         )
         self.sheet.freeze_panes(1, 0)
+        heading, made = export.heading, export.made
         lines = [
-            (N_("Reference"), export.heading.reference),
+            (N_("Reference"), heading.reference),
+            (N_("Revision"), heading.revision),
+            (N_("Author"), heading.author),
+            (N_("Ordering code"), heading.ordering_code),
             (N_("Saved"), self.book.reader.date(export.created) if export.created else ""),
+            (N_("Made, not saved"), self.book.reader.day(made) if made and not export.created else ""),
             (N_("Link"), export.link if len(export.link) < 32_000 else ""),
         ]
         self.row = 1
@@ -77,10 +82,17 @@ class Overview:
 
     def _section(self, title: str, *heads: str) -> None:
         self.sheet.write_string(self.row, 0, self.text(title), self.book.style("section"))
+        if self.book.shown.units and not heads:
+            self.sheet.write_string(self.row, 5, self.text(N_("In your units")), self.book.style("quiet"))
         self.row += 1
         for column, head in enumerate(heads):
             self.sheet.write_string(self.row, column, self.text(head), self.book.style("head"))
         self.row += bool(heads)
+
+    def _converted(self, unit: str, value: float | str | None) -> None:
+        """The value of a line in the reader's own unit, where that is another."""
+        if self.book.converted(self.sheet, self.row, 5, xl_rowcol_to_cell(self.row, 2), unit, value):
+            self.sheet.write_string(self.row, 6, self.book.shown.unit(unit), self.book.style("unit"))
 
     def _line(self, label: str, symbol: str, unit: str, source: str = "") -> None:
         self.sheet.write_string(self.row, 0, self.text(label), self.book.style("label"))
@@ -121,6 +133,7 @@ class Overview:
         saved = "" if value is None else value
         self.sheet.write_formula(self.row, 2, f'=IF({block}="","",{block})', self.book.style("figure"), saved)
         self.book.name_cell(name, self.sheet, self.row, 2)
+        self._converted(suffix_of(field) or "", value)
         self.row += 1
 
     # --- Calculated ---------------------------------------------------------------------------------------------------
@@ -142,6 +155,7 @@ class Overview:
             if term.by_efficiency:
                 self._bound(term.name in fixed)
             self.book.name_cell(term.name, self.sheet, self.row, 2)
+            self._converted(term.unit, values[term.name])
             self.row += 1
         self.row += 1
 
@@ -174,7 +188,8 @@ class Overview:
 
     def _checks(self) -> None:
         heads = (N_("Check"), N_("Relation"), N_("Value"), N_("Limit"), N_("Utilisation"), N_("Verdict"))
-        self._section(N_("Checks"), *heads, N_("As saved"), N_("Source"))
+        own = (N_("Value"), N_("Limit"), N_("Your unit")) if self.book.shown.units else ()
+        self._section(N_("Checks"), *heads, N_("As saved"), N_("Source"), *own)
         self.book.colour(self.sheet, self.row, 5, self.row + len(CHECKS) - 1, 5)
         for check in CHECKS:
             self._check(check)
@@ -197,6 +212,12 @@ class Overview:
         self.sheet.write(self.row, 6, used, style("share"))
         source = origin(self.book.export, check.code, self.book.reader) if saved else ""
         self.sheet.write_string(self.row, 7, source, style("quiet"))
+        for column in (2, 3):
+            shown = self.book.converted(
+                self.sheet, self.row, column + 6, xl_rowcol_to_cell(self.row, column), check.unit, values[column - 2]
+            )
+            if shown:
+                self.sheet.write_string(self.row, 10, self.book.shown.unit(check.unit), style("unit"))
         self.row += 1
 
     def _written(self, formula: str) -> str:
@@ -222,6 +243,7 @@ class Overview:
             value = self._input(path)
             shown = ", ".join(map(str, value)) if isinstance(value, tuple) else value
             self.sheet.write(self.row, 2, shown, self.book.style("input" if live else "label"))
+            self._converted(suffix_of(path) or "", value if isinstance(value, float) else None)
             if live:
                 name = cell_name(INPUTS[path].symbol) or path.removeprefix(LOAD_PATH)
                 self.book.name_cell(name, self.sheet, self.row, 2)

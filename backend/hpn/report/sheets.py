@@ -10,6 +10,7 @@ from hpn.quantities import INPUTS
 from hpn.reader import Reader
 from hpn.report.export import Export
 from hpn.report.formulas import NONE, cell_name
+from hpn.report.words import Paper, paper
 from hpn.units import symbol_of
 from hpn.wording import N_
 
@@ -25,6 +26,7 @@ STYLES: dict[str, dict[str, Any]] = {
     "input": {"bg_color": "#FFF8DC", "border": 1, "border_color": "#D5DBE1", "locked": False},
     "figure": {"bg_color": "#F3F6F9"},
     "result": {"num_format": "#,##0.00##"},
+    "shown": {"num_format": "#,##0.00##", "font_color": "#5B6875"},
     "count": {"num_format": "#,##0"},
     "share": {"num_format": "0.0##%"},
     "fixed": {"num_format": "#,##0.00##", "italic": True, "font_color": "#8A6100"},
@@ -47,7 +49,9 @@ COLOURS: Mapping[str, Mapping[str, str]] = {
 }
 """Colours of verdicts, which follow the formulas."""
 
-A4 = 9
+PAPERS: Mapping[Paper, int] = {"a4": 9, "us-letter": 1}
+"""Numbers of the sizes of paper in the file format."""
+
 LONGEST_HEADER_TEXT = 100
 LONGEST_FOOTER_LINK = 100
 
@@ -60,11 +64,14 @@ USED = {"radial_used": "radial_N", "axial_used": "axial_N"}
 
 @dataclass
 class Book:
-    """A workbook in the making."""
+    """A workbook in the making. Its formulas compute in the units of the wire, as `reader` reads them; what `shown`
+    reads in another unit stands beside, converted by formula.
+    """
 
     file: Any
     export: Export
     reader: Reader
+    shown: Reader
     words: Mapping[str, str]
     styles: dict[str, Any] = field(default_factory=dict)
 
@@ -77,6 +84,16 @@ class Book:
     def head(self, text: str, unit: str) -> str:
         """Head of a column: a text or symbol, with a unit if there is one."""
         return f"{text} [{self.reader.unit(unit)}]" if unit else text
+
+    def converted(self, sheet: Any, row: int, column: int, source: str, unit: str, value: float | str | None) -> bool:
+        """Write what a cell says in the unit of whoever reads it; nothing, and False, where that is the wire's."""
+        measure = self.shown.measure(unit)
+        if measure.same:
+            return False
+        formula = f'=IF(ISNUMBER({source}),{source}*{float(measure.factor)!r}+{float(measure.offset)!r},"")'
+        saved = measure.shown(value) if isinstance(value, int | float) else ""
+        sheet.write_formula(row, column, formula, self.style("shown"), saved)
+        return True
 
     def colour(self, sheet: Any, *block: int) -> None:
         """Colour the verdicts of a block of cells, by the words that stand in them now."""
@@ -95,7 +112,7 @@ class Book:
         """Set a sheet on paper: everything written on so many pages across, its heads on each."""
         if landscape:
             sheet.set_landscape()
-        sheet.set_paper(A4)
+        sheet.set_paper(PAPERS[paper(self.shown)])
         sheet.set_margins(left=0.5, right=0.4, top=0.7, bottom=0.7)
         sheet.print_area(0, 0, sheet.dim_rowmax, sheet.dim_colmax)
         sheet.fit_to_pages(across, 0)
@@ -129,6 +146,7 @@ class CycleSheet:
         self.book, self.sheet = book, sheet
         self.phases = book.export.application.duty_cycle.phases
         self.last = len(self.phases) + SPARE_PHASES
+        self.converted = [name for name in PHASE if not book.shown.measure(symbol_of(name)).same]
         self.loads = {name: getattr(book.export.duty.phases, name)[0, 0] for name in USED.values()}
 
     def write(self) -> None:
@@ -142,12 +160,21 @@ class CycleSheet:
         self.sheet.set_row(0, 32)
         self.sheet.set_column(0, len(heads) - 1, 15)
         self.sheet.freeze_panes(1, 0)
+        self._heads_converted(len(heads))
         for column, name in enumerate((*PHASE, *USED), 1):
             self.book.name(name, self.sheet, xl_range_abs(1, column, self.last, column))
         for row in range(1, self.last + 1):
             self._phase(row)
         self.sheet.repeat_rows(0)
         self.book.page(self.sheet, landscape=False)
+
+    def _heads_converted(self, start: int) -> None:
+        """Heads of the columns in other units, behind all others."""
+        for column, name in enumerate(self.converted, start):
+            symbol = self.book.shown.unit(symbol_of(name))
+            head = f"{self.book.reader.text(INPUTS[f'phase.{name}'].name)} [{symbol}]"
+            self.sheet.write_string(0, column, head, self.book.style("head"))
+            self.sheet.set_column(column, column, 15)
 
     def _phase(self, row: int) -> None:
         phase = self.phases[row - 1] if row <= len(self.phases) else None
@@ -158,6 +185,9 @@ class CycleSheet:
                 self.sheet.write_blank(row, column, None, self.book.style("input"))
             else:
                 self.sheet.write_number(row, column, value, self.book.style("input"))
+        for column, name in enumerate(self.converted, 1 + len(PHASE) + len(USED)):
+            source = xl_rowcol_to_cell(row, 1 + PHASE.index(name))
+            self.book.converted(self.sheet, row, column, source, symbol_of(name), getattr(phase, name, None))
         duration = xl_rowcol_to_cell(row, 1 + PHASE.index("duration_s"))
         for column, (name, loads) in enumerate(self.loads.items(), 1 + len(PHASE)):
             own, whole = xl_rowcol_to_cell(row, 1 + PHASE.index(name)), cell_name(INPUTS[f"output_load.{name}"].symbol)

@@ -7,6 +7,8 @@ from hpn.reader import GROUP, Reader
 from hpn.report.export import Export
 from hpn.wording import N_, Sentence
 
+Paper = Literal["a4", "us-letter"]
+
 
 def bound_of(export: Export, code: str | None) -> float:
     """Largest utilisation with which a check passes."""
@@ -55,7 +57,7 @@ def rounded(value: float, unit: str, reader: Reader) -> str:
     return reader.with_unit(reader.tick(float(f"{value:.3g}")), unit)
 
 
-def paper(reader: Reader) -> Literal["a4", "us-letter"]:
+def paper(reader: Reader) -> Paper:
     """Paper of a reader: that of the country whose units they read."""
     return "us-letter" if reader.preset == "US" else "a4"
 

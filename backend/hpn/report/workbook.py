@@ -31,10 +31,11 @@ def workbook(export: Export, reader: Reader) -> bytes:
         file, {"in_memory": True, "strings_to_formulas": False, "strings_to_urls": False, "nan_inf_to_errors": False}
     )
     created = export.created.astimezone(UTC).replace(tzinfo=None) if export.created else UNDATED
-    book.set_properties({"title": export.heading.title, "author": "HPN Select", "created": created})
+    book.set_properties(
+        {"title": export.heading.title, "author": export.heading.author or "HPN Select", "created": created}
+    )
     book.set_calc_mode("auto")
-    wire = replace(reader, units=())
-    _fill(Book(book, export, wire, words(wire)))
+    _fill(Book(book, export, replace(reader, units=()), reader, words(reader)))
     book.close()
     return file.getvalue()
 
@@ -62,7 +63,7 @@ def _notes(book: Book, sheet: Any) -> None:
     sheet.set_column(1, 1, 110)
     sheet.freeze_panes(1, 0)
     sheet.write_row(0, 0, [text(N_("Subject")), text(N_("Assumptions and notes"))], book.style("head"))
-    rows = [("", book.reader.told(notice.sentence)) for notice in export.selection.notices]
+    rows = [("", book.shown.told(notice.sentence)) for notice in export.selection.notices]
     for definition in export.selection.check_definitions.values():
         rows.append((text(definition.title), f"{text(definition.tests)} {text(definition.basis)}"))
     rows += [
