@@ -95,6 +95,23 @@ def test_a_link_with_a_gear_makes_files_of_that_gear(client: TestClient) -> None
     assert (unknown.status_code, unknown.json()["errors"][0]["pointer"]) == (422, "/gear")
 
 
+def test_the_title_block_is_of_the_link_or_as_it_was_saved(client: TestClient) -> None:
+    labels = {"title": "Axis 7", "reference": "4711", "author": "M. Muster", "revision": "B"}
+    code = "HPN-32A-5-J8-BH-AF1"
+    body = {"application": WORKED_EXAMPLE, **labels, "ordering_code": code}
+    saved = client.post("/api/v1/selections", json=body).headers["location"]
+    link = f"{QUERY}&gear=HPN-32A-5&title=Axis+7&ref=4711&author=M.+Muster&rev=B&order_output=J8&order_motor=BH-AF1"
+    for address in (f"{saved}/report.pdf", f"/report.pdf?{link}"):
+        page = PdfReader(BytesIO(client.get(address).content)).pages[0]
+        found = page.extract_text()
+        for text in (*labels.values(), code, "Checks of HPN-32A-5"):
+            assert text in found, (address, text)
+        assert ("Not saved" in found) == ("report.pdf?" in address)
+    note = page["/Annots"][0].get_object()  # type: ignore[index]
+    opened = client.get(str(note["/A"]["/URI"])).text
+    assert "Axis 7" in opened and code in opened
+
+
 def test_a_report_is_in_the_language_and_units_of_its_reader(client: TestClient, saved: str) -> None:
     cookies = {"Cookie": "hpn_language=de; hpn_units=lb_in.lbf"}
     for address in (f"/report.pdf?{QUERY}", f"{saved}/report.pdf"):

@@ -1,7 +1,8 @@
 """Selections as files: report, workbook and Asset Administration Shell, of what is saved, posted, or in a link."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
+from datetime import UTC, datetime
 from functools import cache
 from typing import Annotated, Any, Literal
 
@@ -28,7 +29,9 @@ from hpn.web.door.bodies import parsed, read_body
 from hpn.web.door.conditions import etag_of, has_already
 from hpn.web.door.pools import compute
 from hpn.web.door.problems import Problem
+from hpn.web.form.labels import query_of as query_of_labels
 from hpn.web.form.linked import linked, query_of
+from hpn.web.form.ordering import ordering_code
 from hpn.web.form.write import to_link
 from hpn.web.settings import Settings
 
@@ -176,34 +179,44 @@ def _of_saved(saved: SavedSelection, catalogue: Catalogue | None, request: Reque
         application=application,
         selection=decode(saved.result),
         link=absolute(request, url_of(saved.id)),
-        heading=Heading(saved.title or "", saved.reference or ""),
+        heading=Heading(*(getattr(saved, part.name) or "" for part in fields(Heading))),
         created=saved.created,
         catalogue=catalogue,
         reply=saved.result,
+        chosen=saved.designation or "",
     )
 
 
 def _computed(application: Application, request: Request) -> Export:
-    catalogue = request.app.state.catalogue
-    link = to_link(application)
+    catalogue, link = request.app.state.catalogue, to_link(application)
     selection = select(application, catalogue, link)
-    return Export(application=application, selection=selection, link=absolute(request, link), catalogue=catalogue)
+    gear = catalogue.by_designation[selection.foremost.designation]
+    return Export(
+        application=application,
+        selection=selection,
+        link=absolute(request, link),
+        heading=Heading(ordering_code=ordering_code(catalogue, gear).text),
+        made=datetime.now(UTC),
+        catalogue=catalogue,
+    )
 
 
 def _linked(query: str, request: Request) -> Export:
-    """What the live page shows of a link: the gear that is chosen there, though it be outside of what is asked for."""
-    link = linked(query, "lang", "aas")
+    """What the live page shows of a link: its labels, and the gear that is chosen there."""
+    link, catalogue = linked(query, "lang", "aas"), request.app.state.catalogue
     export = _computed(link.application, request)
-    gear = request.app.state.catalogue.find(link.gear) if link.gear else None
-    if gear is not None:
-        return _of_gear(export, gear.designation)
-    if link.gear:
+    if link.gear and catalogue.find(link.gear) is None:
         raise Problem(422, f"gear {link.gear[:40]!r} is not in the catalogue", [(("gear",), "is not in the catalogue")])
-    return export
+    if link.gear:
+        export = _of_gear(export, catalogue.find(link.gear).designation)
+    labels, gear = link.labels, catalogue.by_designation[export.candidate.designation]
+    code = ordering_code(catalogue, gear, labels["order_output"], labels["order_motor"])
+    heading = Heading(labels["title"], labels["ref"], labels["author"], labels["rev"], code.text)
+    return replace(export, heading=heading, link=export.link + query_of_labels({**labels, **code.labels}))
 
 
 def _of_gear(export: Export, designation: str) -> Export:
-    """An export that is about one gear; where the sizes and ratios asked for leave it out, it comes last."""
+    """An export about one gear; where the sizes and ratios asked for leave it out, it comes last."""
     selection, application = export.selection, export.application
     if selection.candidate(designation) is None:
         assert export.catalogue is not None

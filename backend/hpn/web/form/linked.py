@@ -1,5 +1,6 @@
 """A link as files are made of it, from the address or posted: its application, and the gear that is looked at."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from starlette.requests import Request
@@ -13,11 +14,12 @@ from hpn.web.form import read
 
 @dataclass(frozen=True, slots=True)
 class Link:
-    """What a link says: an application, the gear chosen among its candidates or none, and what a file may choose."""
+    """What a link says: an application, the gear that is looked at or none, labels, and what a file may choose."""
 
     application: Application
     gear: str
-    options: dict[str, str]
+    labels: Mapping[str, str]
+    options: Mapping[str, str]
 
 
 async def query_of(request: Request, *options: str) -> str:
@@ -39,7 +41,7 @@ def linked(query: str, *options: str) -> Link:
     form = read.parse([pair for pair in pairs if pair[0] not in options])
     if form.application is None:
         raise _unreadable(form)
-    return Link(form.application, form.gear, {name: value for name, value in pairs if name in options})
+    return Link(form.application, form.gear, form.labels, {name: value for name, value in pairs if name in options})
 
 
 def _unreadable(form: read.Form) -> Problem:
