@@ -11,16 +11,17 @@ from typing import Annotated
 import msgspec
 import numpy as np
 from msgspec import Meta
+from numpy.typing import NDArray
 
 from hpn.application import Application, OutputLoad
 from hpn.catalogue import Catalogue, GearList
-from hpn.equations import FloatArray
-from hpn.evaluation import Evaluation
+from hpn.equations import ROUNDING, FloatArray
+from hpn.evaluation import SUITABLE, Evaluation
 from hpn.gear import Gear
 from hpn.units import suffix_of
 from hpn.wording import N_, Quantity, Sentence
 
-DIGITS: Mapping[str | None, int] = {"Nm": 6, "percent": 3}
+DIGITS: Mapping[str | None, int] = {"Nm": 6, "percent": 3, "s": 6}
 """Digits of the numbers in a notice, by unit."""
 
 NOTICES: Mapping[str, str] = {
@@ -28,20 +29,27 @@ NOTICES: Mapping[str, str] = {
         "Use in this area ({area}) needs a risk assessment and the maker’s approval (handbook 2.4)."
     ),
     "emergency_stop_below_maximum": N_(
-        "The emergency-stop torque of {stop_Nm} is below the largest torque of the cycle, {largest_Nm}: is it really "
-        "the emergency?"
+        "The emergency-stop torque of {stop_Nm} is below the largest torque of the cycle, {largest_Nm}: check T_k."
     ),
     "momentary_peak_count_unlimited": N_(
         "Where the emergency-stop torque is at or below T_R, equation 17.9 sets no limit to the number of stops: the "
-        "allowed number is empty there."
+        "permitted number is empty there."
     ),
     "life_unlimited": N_(
         "The average torque is 0 or so small that equation 17.10 gives a life without limit: the life is empty."
     ),
     "bearing_envelope_supplied": N_("The output bearing is judged along curve points that you supplied."),
+    "speed_above_average": N_(
+        "With ratio {ratios} the input runs above n_av(max) for {longest_s} on end. The handbook’s average has no time "
+        "scale: beyond {bound_s} (our assumption, setting HPN_AVERAGING_SECONDS) the thermal average may not hold."
+    ),
     "bearing_envelope_computed": N_(
-        "The envelope of the output bearing is computed between the two published limits; the handbook’s printed curve "
-        "was not available."
+        "The envelope of the output bearing is interpolated between the two published limits; printed curve not "
+        "available."
+    ),
+    "bearing_iso281": N_(
+        "Model ISO 281 keeps the factor Y constant, set by the published axial limit; the standard tabulates a Y that "
+        "falls as the axial load rises."
     ),
     "bearing_load_position": N_(
         "Loads act at the centre of the output shaft and along its axis; a load that acts elsewhere can’t be judged "
@@ -62,6 +70,7 @@ NOTICES: Mapping[str, str] = {
         "Motor torques are loss-free, a lower bound: the handbook’s efficiency curves were not available and no "
         "efficiency is stated."
     ),
+    "motor_torque_partial": N_("Motor torques leave out the inertia of motor and gear and losses without load."),
     "size_unrated": N_("{name} is not rated. {note}"),
     "gears_unrated": N_("{names} are not rated. {note}"),
     "catalogue_supplement": N_("Some catalogue figures are supplied by the user; their sources say so."),
@@ -126,6 +135,7 @@ def notices_of(application: Application, evaluation: Evaluation, index: int) -> 
     if application.application_area is not None:
         found.append(notice("application_area", area=AREAS[application.application_area]))
     found += _on_stop_and_life(evaluation, index)
+    found += _on_speed(evaluation, index)
     if application.loads is not None:
         found += _on_the_bearing(application.loads, evaluation, index)
     found += _on_the_motor(application, evaluation.catalogue)
@@ -149,8 +159,39 @@ def _on_stop_and_life(evaluation: Evaluation, index: int) -> Iterable[Notice]:
         yield notice("life_unlimited")
 
 
+def _on_speed(evaluation: Evaluation, index: int) -> Iterable[Notice]:
+    """Suitable gears whose input runs above the permissible average speed for longer than is taken to average out."""
+    bound, gears, phases = evaluation.catalogue.averaging_s, evaluation.gears.columns, evaluation.case.duty.phases
+    n, t = phases.speed_rpm[index, 0], phases.duration_s[index, 0]
+    if t.sum() <= bound:
+        return
+    circular = not evaluation.case.asked["duty_cycle.pause_s"].item(index)
+    longest: dict[float, float] = {}
+    for place in np.flatnonzero(evaluation.verdict[index] == SUITABLE).tolist():
+        i = gears.ratio.item(place)
+        time = _longest_run(n * i > gears.average_input_speed_rpm.item(place) * (1 + ROUNDING), t, circular=circular)
+        if time > bound * (1 + ROUNDING):
+            longest[i] = max(longest.get(i, 0.0), time)
+    if longest:
+        ratios = ", ".join(f"{i:g}" for i in sorted(longest))
+        yield notice("speed_above_average", ratios=ratios, longest_s=max(longest.values()), bound_s=bound)
+
+
+def _longest_run(above: NDArray[np.bool_], duration_s: FloatArray, *, circular: bool) -> float:
+    """Longest time on end of the phases that are above; without a pause the cycle's end runs into its start."""
+    if above.all() or not above.any():
+        return float(duration_s.sum()) if above.any() else 0.0
+    if circular:
+        start = int(np.argmin(above))  # a phase below, so that no run goes round the end
+        above, duration_s = np.roll(above, -start), np.roll(duration_s, -start)
+    ends = np.flatnonzero(~above)
+    return max(float(part.sum()) for part in np.split(np.where(above, duration_s, 0.0), ends))
+
+
 def _on_the_bearing(load: OutputLoad, evaluation: Evaluation, index: int) -> Iterable[Notice]:
     yield notice("bearing_envelope_supplied" if load.model == "digitised" else "bearing_envelope_computed")
+    if load.model == "iso281":
+        yield notice("bearing_iso281")
     yield notice("bearing_load_position")
     yield notice("bearing_life_basis")
     if _is_unlimited(evaluation.case.figures.bearing_life_L50_h, index):
@@ -163,6 +204,8 @@ def _on_the_motor(application: Application, catalogue: Catalogue) -> Iterable[No
         yield notice("efficiency_assumed", efficiency_percent=100 * asked.efficiency)
     elif asked.motor is not None or application.rank_by == "motor_torque":
         yield notice("efficiency_supplied" if catalogue.efficiency else "efficiency_unknown")
+    if asked.motor is not None or application.rank_by == "motor_torque":
+        yield notice("motor_torque_partial")
 
 
 @lru_cache(maxsize=256)

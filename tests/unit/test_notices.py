@@ -5,7 +5,7 @@ from typing import get_args
 import pytest
 
 from hpn.application import ApplicationArea
-from hpn.catalogue import Catalogue
+from hpn.catalogue import Catalogue, load_catalogue
 from hpn.notices import AREAS
 from tests.build import Json, answer, candidate, check, cycle, notices, phase
 from tests.conftest import Supplement
@@ -104,8 +104,8 @@ def test_bearing_loads_bring_the_standing_of_the_envelope_and_of_its_life(catalo
     reply = answer(PLAIN | {"output_load": {"radial_N": 100}}, catalogue)
 
     found = notices(reply)
-    assert "computed between the two published limits" in found["bearing_envelope_computed"]
-    assert "printed curve was not available" in found["bearing_envelope_computed"]
+    assert "interpolated between the two published limits" in found["bearing_envelope_computed"]
+    assert "printed curve not available" in found["bearing_envelope_computed"]
     assert "centre" in found["bearing_load_position"]
     assert "L50 / 5" in found["bearing_life_basis"]
     assert "5.45" in found["bearing_life_basis"]
@@ -126,5 +126,52 @@ def test_a_motor_without_a_stated_efficiency_is_a_lower_bound(catalogue: Catalog
     motor = {"motor": {"peak_torque_Nm": 20}, "sizes": ["20A"]}
 
     assert "lower bound" in notices(answer(PLAIN | {"requirements": motor}, catalogue))["efficiency_unknown"]
-    assert codes(PLAIN | {"rank_by": "motor_torque"}, catalogue) == {"efficiency_unknown"}
-    assert codes(PLAIN | {"requirements": motor | {"efficiency": 0.9}}, catalogue) == {"efficiency_assumed"}
+    assert codes(PLAIN | {"rank_by": "motor_torque"}, catalogue) == {"efficiency_unknown", "motor_torque_partial"}
+    stated = PLAIN | {"requirements": motor | {"efficiency": 0.9}}
+    assert codes(stated, catalogue) == {"efficiency_assumed", "motor_torque_partial"}
+
+
+def on_end(*seconds: float, pause_s: float = 0.0, ratio: int = 10, bound_s: float = 300.0) -> str | None:
+    """Notice on a cycle of 3500 and 500 rpm at the input in turn, which averages below 3000 rpm."""
+    fast, slow = 3500 / ratio, 500 / ratio
+    phases = [phase(1, fast if place % 2 == 0 else slow, t) for place, t in enumerate(seconds)]
+    asked = cycle(*phases, pause_s=pause_s, requirements={"sizes": ["20A"], "ratios": [ratio]})
+    return notices(answer(asked, load_catalogue(averaging_s=bound_s))).get("speed_above_average")
+
+
+@pytest.mark.parametrize(
+    ("seconds", "pause_s", "told"),
+    [
+        ((300.0, 300.0), 0.0, False),
+        ((300.1, 300.0), 0.0, True),
+        ((301.0, 0.001), 100.0, True),
+        ((200.0, 200.0, 150.0), 0.0, True),  # the end of the cycle runs into its start
+        ((200.0, 200.0, 150.0), 1.0, False),  # a pause parts them
+    ],
+)
+def test_running_on_end_above_the_average_speed_is_told_beyond_the_bound(
+    seconds: tuple[float, ...], pause_s: float, told: bool
+) -> None:
+    assert bool(on_end(*seconds, pause_s=pause_s)) == told
+
+
+def test_the_notice_on_long_runs_says_how_long_and_that_the_bound_is_ours() -> None:
+    text = on_end(60.5, 60.0, bound_s=60.0) or ""
+    assert text.startswith("With ratio 10 the input runs above n_av(max) for 60.5 s on end.")
+    assert "beyond 60 s (our assumption, setting HPN_AVERAGING_SECONDS)" in text
+
+
+def test_splitting_a_long_phase_changes_nothing_about_it() -> None:
+    asked = cycle(
+        phase(1, 350, 200), phase(1, 350, 200), phase(1, 50, 400), requirements={"sizes": ["20A"], "ratios": [10]}
+    )
+    assert "for 400 s on end" in notices(answer(asked, load_catalogue()))["speed_above_average"]
+
+
+def test_models_and_motor_torques_say_what_they_leave_out(catalogue: Catalogue) -> None:
+    load = {"output_load": {"radial_N": 10.0, "model": "iso281"}}
+    assert "bearing_iso281" in codes(PLAIN | load, catalogue)
+    load["output_load"]["model"] = "linear"
+    assert "bearing_iso281" not in codes(PLAIN | load, catalogue)
+    assert "motor_torque_partial" in codes(PLAIN | {"rank_by": "motor_torque"}, catalogue)
+    assert "motor_torque_partial" not in codes(PLAIN, catalogue)

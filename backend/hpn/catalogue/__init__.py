@@ -1,11 +1,12 @@
 """The catalogue: CSV tables and a supplement over them, as gears with a source for every figure."""
 
-from hpn.catalogue.catalogue import Catalogue, FlangeBolt, GearList, OutputVersion, SeriesFigure
+from hpn.catalogue.catalogue import AVERAGING_S, Catalogue, FlangeBolt, GearList, OutputVersion, SeriesFigure
 from hpn.catalogue.files import CatalogueError
 from hpn.catalogue.load import HANDBOOK_FOLDER, load_catalogue
 from hpn.gear import GearColumns
 
 __all__ = [
+    "AVERAGING_S",
     "HANDBOOK_FOLDER",
     "Catalogue",
     "CatalogueError",

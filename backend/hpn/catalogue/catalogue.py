@@ -58,9 +58,16 @@ class GearList:
         self.of_size = np.array([known.index(size) for size in sizes], dtype=np.intp)
 
 
+AVERAGING_S = 300.0
+"""Longest time on end above the permissible average speed that is taken to average out: ours, not the handbook's."""
+
+
 @dataclass(frozen=True, eq=False)
 class Catalogue:
-    """Every gear of the series, and what holds for it as a whole. Equal to itself alone, so it can be a key."""
+    """Every gear of the series, and what holds for it as a whole. Equal to itself alone, so it can be a key.
+
+    `averaging_s` is the service's own assumption, for a notice; no check depends on it.
+    """
 
     version: str
     gears: tuple[Gear, ...]
@@ -70,6 +77,7 @@ class Catalogue:
     curves: dict[str, Curve]
     efficiency: dict[str, tuple[FloatArray, FloatArray]]
     supplement: str | None
+    averaging_s: float = AVERAGING_S
 
     @cached_property
     def by_designation(self) -> dict[str, Gear]:

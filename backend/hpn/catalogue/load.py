@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from hpn.bearing import Curve, CurveError, curve_through
 from hpn.catalogue import tables
-from hpn.catalogue.catalogue import Catalogue, FlangeBolt, OutputVersion, SeriesFigure
+from hpn.catalogue.catalogue import AVERAGING_S, Catalogue, FlangeBolt, OutputVersion, SeriesFigure
 from hpn.catalogue.files import CatalogueError, read_folder
 from hpn.catalogue.tables import (
     AccuracyTable,
@@ -61,7 +61,9 @@ ORDERINGS = (
 """Table, smaller figure, larger figure, and whether they may be equal."""
 
 
-def load_catalogue(folder: Path = HANDBOOK_FOLDER, supplement: Path | None = None) -> Catalogue:
+def load_catalogue(
+    folder: Path = HANDBOOK_FOLDER, supplement: Path | None = None, averaging_s: float = AVERAGING_S
+) -> Catalogue:
     """Read, merge and validate the catalogue.
 
     Raises CatalogueError, which names file, line and column, for the first thing that is wrong.
@@ -86,6 +88,7 @@ def load_catalogue(folder: Path = HANDBOOK_FOLDER, supplement: Path | None = Non
         curves=_curves(book),
         efficiency=_efficiency(book),
         supplement=str(supplement) if supplement else None,
+        averaging_s=averaging_s,
     )
 
 

@@ -20,7 +20,7 @@ MAXIMUM_FILE_BYTES = 32_000_000
 def run(options: argparse.Namespace) -> int:
     """Print the reply, as JSON into a pipe and as a table on a terminal unless asked otherwise."""
     application, settings = Application.model_validate_json(_content(options.file)), Settings()
-    catalogue = load_catalogue(settings.catalogue_folder, settings.catalogue_supplement)
+    catalogue = load_catalogue(settings.catalogue_folder, settings.catalogue_supplement, settings.averaging_seconds)
     selection = select(application, catalogue, to_link(application))
     if options.json or not (options.table or sys.stdout.isatty()):
         sys.stdout.write(encode(selection).decode() + "\n")

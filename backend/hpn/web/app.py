@@ -124,7 +124,9 @@ def create_app(settings: Settings | None = None) -> FastAPI:
         lifespan=_with_store,
     )
     app.state.settings = settings
-    app.state.catalogue = load_catalogue(settings.catalogue_folder, settings.catalogue_supplement)
+    app.state.catalogue = load_catalogue(
+        settings.catalogue_folder, settings.catalogue_supplement, settings.averaging_seconds
+    )
     app.state.gate = Gate(settings)
     app.state.pools = Pools()
     app.state.budget = Budget(settings.maximum_bytes_in_flight)

@@ -11,7 +11,7 @@ import limits
 from pydantic import AfterValidator, BeforeValidator, Field, SecretStr, model_validator
 from pydantic_settings import BaseSettings, NoDecode, SettingsConfigDict
 
-from hpn.catalogue import HANDBOOK_FOLDER
+from hpn.catalogue import AVERAGING_S, HANDBOOK_FOLDER
 from hpn.web.door.keys import ApiKey
 
 RouteGroup = Literal["calculator", "batch", "writing", "listing", "deleting", "reading", "metrics"]
@@ -99,6 +99,12 @@ class Settings(BaseSettings):
     catalogue_folder: Path = Field(HANDBOOK_FOLDER, description="Folder of the catalogue’s CSV files.")
     catalogue_supplement: Path | None = Field(
         None, description="Folder of CSV files that fill or correct catalogue cells."
+    )
+    averaging_seconds: float = Field(
+        AVERAGING_S,
+        gt=0,
+        description="Longest time on end above n_av(max) that is taken to average out thermally; longer gets a notice. "
+        "Our assumption: the handbook gives no time scale.",
     )
     database_url: SecretStr = Field(
         SecretStr("sqlite:///hpn.sqlite3"),

@@ -116,9 +116,9 @@ class SummaryReply(Struct):
     url: Url
     created: Annotated[str, Meta(description="When it was saved, UTC, ISO 8601.")]
     title: Annotated[str | None, Meta(description="Title for people.")]
-    reference: Annotated[str | None, Meta(description="The caller's own number.")]
+    reference: Annotated[str | None, Meta(description="The caller’s own number.")]
     author: Annotated[str | None, Meta(description="Who made it.")]
-    revision: Annotated[str | None, Meta(description="Its revision in the caller's documents.")]
+    revision: Annotated[str | None, Meta(description="Its revision in the caller’s documents.")]
     ordering_code: Annotated[
         str | None, Meta(description="Gear, output version and motor adapter as ordered, as far as they were given.")
     ]
@@ -127,7 +127,7 @@ class SummaryReply(Struct):
         str | None,
         Meta(
             description="Gear that its page and files show first: that of the ordering code, else the selected one or "
-            "the nearest miss; null where an earlier version has saved what can't be read."
+            "the nearest miss; null where an earlier version has saved what can’t be read."
         ),
     ]
     status: Annotated[str | None, Meta(description="Verdict on that gear, as saved.")]
