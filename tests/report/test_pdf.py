@@ -183,6 +183,7 @@ def test_every_equation_stands_with_its_numbers(made: Make) -> None:
     page = "".join(text(made("example", GERMAN), GERMAN, slice(2, 5)).split())
     for number in ("17.2", "17.4", "17.5", "17.6", "17.7", "17.8", "17.9", "17.10"):
         assert f"({number})" in page
+    assert page.count("𝑇av=") >= 2 and "|𝑛1·𝑡1|" in page  # in symbols too
     for figures in ("=32,0210136Nm", "5·217,532468min⁻¹=1087,66234min⁻¹", "=1167275,94h", "3066035,52→3066035"):
         assert figures in page, figures
 

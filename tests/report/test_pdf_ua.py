@@ -7,7 +7,10 @@ from pathlib import Path
 import pytest
 
 from hpn.catalogue import Catalogue
+from hpn.reader import Reader
+from hpn.report.export import DIGITS
 from hpn.report.pdf import pdf
+from hpn.units import PRESETS
 from tests.report.cases import CASES, language, typed_export_of
 
 ROOT = Path(__file__).parents[2]
@@ -20,9 +23,9 @@ def test_reports_comply_with_PDF_UA(catalogue: Catalogue, tmp_path: Path) -> Non
     if not (LIBRARY / ".installed").is_file() or not shutil.which("java"):
         pytest.skip("no veraPDF here: `make pdfua` needs Java, Maven and Maven Central")
     for name, case in CASES.items():
-        for code in ("en", "de"):
+        for reader in (language("en"), language("de"), Reader("en", PRESETS["US"], DIGITS)):
             export = typed_export_of(case, catalogue, title=TITLES.get(name, "Rotary table"))
-            (tmp_path / f"{name} {code}.pdf").write_bytes(pdf(export, language(code)))
+            (tmp_path / f"{name} {reader.marker}.pdf").write_bytes(pdf(export, reader))
     files = sorted(map(str, tmp_path.iterdir()))
     run = subprocess.run(["java", "-cp", f"{LIBRARY}/*", str(CHECK), *files], capture_output=True, text=True)
     print(run.stdout)

@@ -51,7 +51,7 @@ LABELS = {
     "source": N_("Source"),
     "open": N_("Open"),
     "page": N_("Page {page} of {pages}"),
-    "bars": N_("A bar’s full width is 125 %; the stroke marks what is acceptable."),
+    "bars": N_("A bar’s full width is 150 %; the stroke marks what is acceptable."),
     "disclaimer": N_(
         "Made by an independent tool from the maker’s engineering data. Check the selection with the maker before you "
         "order."
@@ -70,7 +70,7 @@ LABELS = {
 CAVEATS = (
     N_("Lives are hours of operation of the whole cycle, its pause included."),
     N_(
-        "L10: 90 % of all units reach this life; L50: half of them. Equation 17.10 calls its result L10, while the "
+        "L10: 90 % survive; L50: 50 % survive. Equation 17.10 calls its result L10, while the "
         "glossary describes the rated torque on a basis of 50 % failures; the handbook does not settle which holds."
     ),
     N_("Motor torques leave out the inertia of motor and gear, and losses where no efficiency is known."),

@@ -12,7 +12,7 @@ from hpn.drawings.svg import markup
 from hpn.quantities import INPUTS
 from hpn.reader import Reader
 from hpn.report.export import Export
-from hpn.report.symbols import formula
+from hpn.report.symbols import formula, sentence
 from hpn.units import suffix_of
 from hpn.wording import N_, Sentence
 
@@ -208,5 +208,5 @@ def envelope(export: Export, reader: Reader) -> dict[str, Any] | None:
     governing = governing_phases(subject, export.candidate.governing_check, picture)
     return {
         "drawing": markup(envelope_drawing(picture, reader, governing), ON_PAPER),
-        "condition": formula(reader.told(picture.condition)),
+        "condition": sentence(reader.told(picture.condition)),
     }
