@@ -27,7 +27,7 @@ document.addEventListener("htmx:config:request", (event) => {
   }
   if (restoring) ctx.request.body = bodyOf(restoring.content);
   else note();
-  const waits = !press && !restoring && ctx.sourceEvent.type === "input" && unfinishedRow();
+  const waits = !press && !restoring && ctx.sourceEvent.type === "input" && (unfinishedNumber(ctx.sourceEvent.target) || unfinishedRow());
   form.toggleAttribute("data-waiting", Boolean(waits));
   if (waits) return event.preventDefault();
   if (restoring) ctx.request.headers["HX-Target"] = "form#application";
@@ -119,7 +119,7 @@ let noted = -1; // the edit that has its entry already
 let addressed = contentOf(formOf()); // what the form said when the address came to be
 
 document.addEventListener("focusin", () => visit++);
-document.addEventListener("input", () => (edit = visit));
+document.addEventListener("input", () => (edit = visit), true); // before the request that it leads to
 const startEdit = () => (edit = ++visit);
 
 function note(own = false) {
@@ -234,9 +234,13 @@ function describe(field, keep, added) {
   else field.removeAttribute("aria-describedby");
 }
 
-// --- Rows that are still being typed ----------------------------------------------------------------------------------
+// --- What is still being typed ----------------------------------------------------------------------------------------
 
-// A phase with a torque and no speed yet is no error of somebody who is about to type the speed.
+// A number that ends in its decimal mark, a sign or an operator is no error of somebody who is about to type on, nor is the 0
+// of a duration of 0.3.
+const unfinishedNumber = (field) => field.inputMode === "decimal" && (field.name === "t" ? /(^0|[-+*/(.,eE=])$/ : /[-+*/(.,eE=]$/).test(field.value.trim());
+
+// Neither is a phase with a torque and no speed yet.
 function unfinishedRow() {
   const row = document.activeElement?.closest("#duty tbody tr");
   if (!row || row.querySelector('[aria-invalid="true"]')) return null;
@@ -246,7 +250,8 @@ function unfinishedRow() {
 
 document.addEventListener("focusout", (event) => {
   const row = event.target.closest("#duty tbody tr");
-  if (row && formOf().matches("[data-waiting]") && !row.contains(event.relatedTarget)) formOf().requestSubmit();
+  const left = row && !unfinishedNumber(event.target) ? !row.contains(event.relatedTarget) : event.target.form === formOf();
+  if (left && formOf().matches("[data-waiting]")) formOf().requestSubmit();
 });
 
 // --- Inputs that stand in the result ----------------------------------------------------------------------------------

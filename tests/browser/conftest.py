@@ -19,7 +19,7 @@ AXE = Path(__file__).parents[2] / "frontend/node_modules/axe-core/axe.min.js"
 BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
 # The browser looks nothing up outside this machine.
 OFFLINE = "--host-resolver-rules=MAP * ~NOTFOUND , EXCLUDE 127.0.0.1 , EXCLUDE localhost"
-PATIENCE_S = 60
+PATIENCE_S = int(os.environ.get("HPN_TEST_PATIENCE_S", "60"))
 """How long anything may take on a busy machine; only what never comes takes that long."""
 expect.set_options(timeout=1000 * PATIENCE_S)
 

@@ -287,8 +287,7 @@ def test_long_wait_is_shown_and_a_short_one_is_not(visitor: Visitor) -> None:
     page.clock.install()
     result = page.get_by_role("region", name="Result")
     before = page.get_by_role("table", name="Load limits").bounding_box()
-    pause(page).fill("5")
-    with answer_held_back(page, lambda: page.clock.run_for(150)):
+    with answer_held_back(page, lambda: pause(page).fill("5")):
         page.clock.run_for(250)
         expect(result).not_to_have_attribute("aria-busy", "true")
         page.clock.run_for(100)

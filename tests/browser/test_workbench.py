@@ -1,0 +1,155 @@
+"""The workbench: what lies where at each width, what stays in sight, and which sections an edit brings."""
+
+import re
+from typing import Any
+
+import pytest
+from playwright.sync_api import Page, expect
+
+from tests.browser.conftest import Visitor, open_section
+from tests.browser.test_page import EXAMPLE, selected, torque
+
+SEVEN = (
+    "/?" + "&".join(f"T={10 * k}&n={60 * k}&t=0.{k}&FRi={150 * k}&FAi={50 * k}" for k in range(1, 8)) + "&tp=1&Tk=120"
+)
+STATES = {
+    "nothing": "/?T=&n=&t=",
+    "example": EXAMPLE,
+    "seven": SEVEN,
+    "none fits": "/?T=5000&n=250&t=0.3&T=32&n=500&t=3&tp=4&Tk=9000&FR=9000&u=0.8",
+    "all gears": EXAMPLE.replace("&i=5", "&FR=500&FA=200"),
+}
+SHORT = {("seven", 1440, "de"), ("none fits", 1024, "de"), ("all gears", 390, "de"), ("seven", 1920, "en")}
+
+CLASHES = """() => {
+  const texts = [];
+  const walker = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
+  while (walker.nextNode()) {
+    const node = walker.currentNode, owner = node.parentElement;
+    const aside = ".subject, .visually-hidden, .skip, option, dialog, [popover], .jump, math, sub, script";
+    if (!node.textContent.trim() || owner.closest(aside)) continue;
+    if (!owner.checkVisibility({ opacityProperty: true, visibilityProperty: true })) continue;
+    const range = document.createRange();
+    range.selectNodeContents(node);
+    const boxes = [...range.getClientRects()].filter((box) => box.width > 1 && box.height > 1);
+    texts.push(...boxes.map((box) => [node.textContent.trim(), box, owner]));
+  }
+  const clipped = (owner) => owner.closest(".application, .scroller, .head, .masthead");
+  const found = [];
+  for (let a = 0; a < texts.length; a++) for (let b = a + 1; b < texts.length; b++) {
+    const [one, p, left] = texts[a], [two, q, right] = texts[b];
+    if (left === right || left.contains(right) || right.contains(left) || clipped(left) !== clipped(right)) continue;
+    const wide = Math.min(p.right, q.right) - Math.max(p.left, q.left);
+    const high = Math.min(p.bottom, q.bottom) - Math.max(p.top, q.top);
+    if (wide > 2 && high > Math.min(p.height, q.height) / 2) found.push(`${one} / ${two}`);
+  }
+  return found;
+}"""
+"""Pairs of texts that lie over one another, within the same scrolling box."""
+
+SMALL = """() => [...document.querySelectorAll("main *, header *")].filter(element =>
+  [...element.childNodes].some(node => node.nodeType === 3 && node.textContent.trim())
+  && element.checkVisibility() && !element.closest("sub, .visually-hidden, option, math, svg")
+  && parseFloat(getComputedStyle(element).fontSize) < 11).map(element => element.textContent.trim())"""
+
+
+def in_sight(page: Page, *locators: Any) -> list[bool]:
+    """Whether each lies in the window from its first to its last line."""
+    height = page.viewport_size["height"] if page.viewport_size else 0
+    boxes = [locator.bounding_box() for locator in locators]
+    return [bool(box) and box["y"] >= 0 and box["y"] + box["height"] <= height for box in boxes]
+
+
+@pytest.mark.parametrize("path", [EXAMPLE, SEVEN], ids=["example", "seven phases with loads"])
+def test_verdict_checks_envelope_and_map_need_no_scrolling_at_1440_by_900(visitor: Visitor, path: str) -> None:
+    page = visitor.open(path)
+    checks, map_ = (page.get_by_role("table", name=name) for name in ("Load limits", "Size × ratio"))
+
+    assert in_sight(page, selected(page), checks, page.locator("#envelope"), map_) == [True] * 4
+    assert page.evaluate("document.documentElement.scrollWidth") == 1440
+
+
+@pytest.mark.parametrize(
+    ("state", "width", "language"),
+    [
+        pytest.param(state, width, language, marks=() if (state, width, language) in SHORT else pytest.mark.soak)
+        for state in STATES
+        for width in (390, 1024, 1440, 1920)
+        for language in ("en", "de")
+    ],
+)
+def test_no_text_lies_over_another_or_beyond_the_page(visitor: Visitor, state: str, width: int, language: str) -> None:
+    page = visitor.open(STATES[state], width)
+    if language == "de":
+        page.get_by_role("button", name="Deutsch").click()
+        expect(page.locator("html")).to_have_attribute("lang", "de")
+
+    assert page.evaluate(CLASHES) == []
+    assert page.evaluate(SMALL) == []
+    assert page.evaluate("document.documentElement.scrollWidth") == width
+
+
+def test_verdict_stays_in_sight_wherever_somebody_types_or_reads(visitor: Visitor) -> None:
+    page = visitor.open(SEVEN)
+    open_section(page, "Calculation")
+    page.mouse.move(900, 600)
+    page.mouse.wheel(0, 2000)
+    page.wait_for_function("scrollY > 300")
+    page.get_by_label("Expected emergency stops").fill("100")
+    expect(page).to_have_url(re.compile("Nk=100"))
+
+    assert in_sight(page, selected(page)) == [True]
+    expect(page.get_by_label("Expected emergency stops")).to_be_in_viewport()
+
+
+def test_an_edit_brings_what_is_in_sight_and_a_section_that_is_opened_follows_from_then_on(visitor: Visitor) -> None:
+    page = visitor.open(EXAMPLE)
+    with page.expect_request("**/?*") as first:
+        torque(page, 1).fill("41")
+    assert first.value.headers["hpn-parts"] == ""
+    expect(page.get_by_role("row", name="Average torque").first).to_contain_text("32.1")
+
+    open_section(page, "Compare")
+    comparison = page.get_by_role("table", name=re.compile("^Comparison of"))
+    expect(comparison).to_be_visible()
+    with page.expect_request("**/?*") as second:
+        torque(page, 1).fill("45")
+    assert second.value.headers["hpn-parts"] == "compare"
+    expect(comparison.get_by_role("row", name=re.compile("average torque"))).to_contain_text("41")
+
+    page.reload()
+    expect(comparison).to_be_visible()
+    expect(page.get_by_role("table", name="Load limits")).to_be_hidden()
+
+
+def test_a_cell_that_is_blanked_leaves_no_result_as_if_it_were_valid(visitor: Visitor) -> None:
+    page = visitor.open(EXAMPLE)
+    page.get_by_label("Speed, phase 2").fill("")
+    expect(page.get_by_text("Complete the phase to recalculate.")).to_be_visible()
+    verdict = page.locator(".head")
+    expect(verdict).to_have_css("opacity", "0.55")
+    page.get_by_label("Speed, phase 2").fill("500")
+    expect(verdict).to_have_css("opacity", "1")
+
+
+def test_the_link_is_copied_from_the_bar(visitor: Visitor) -> None:
+    page = visitor.open(EXAMPLE)
+    page.context.grant_permissions(["clipboard-write"])
+    torque(page, 1).fill("41")
+    expect(page).to_have_url(re.compile("T=41&"))
+    page.get_by_role("button", name="Copy link").click()
+    expect(page.get_by_role("button", name="Copied")).to_be_visible()
+    address = page.url
+    page.get_by_role("link", name="untitled selection").click()
+    page.keyboard.press("Control+v")
+    expect(page.get_by_role("textbox", name="Title")).to_have_value(address[:200])
+
+
+def test_ratios_that_tie_are_said_to_and_rejected_sizes_are_folded(visitor: Visitor) -> None:
+    page = visitor.open(EXAMPLE.replace("&i=5", ""))
+    open_section(page, "Candidates")
+    expect(page.get_by_text("20A: ratios 4, 5, 7 are equal in weight and utilisation for this input")).to_be_visible()
+    table = page.get_by_role("table", name="Not suitable, nearest miss first").first
+    expect(table).to_be_hidden()
+    page.get_by_text(re.compile("14A: 13 gears, nearest HPN-14A-4 at 182")).click()
+    expect(page.locator("#rejected-14A").get_by_role("row", name=re.compile("HPN-14A-50"))).to_be_visible()
