@@ -300,3 +300,7 @@ document.addEventListener("submit", async (event) => {
 
 history.replaceState({ at, content: contentOf(formOf()) }, "");
 showSteps();
+
+// What somebody has typed before this script had come is answered now.
+const isTyped = (field) => (field.type === "checkbox" ? field.checked !== field.defaultChecked : "defaultValue" in field && field.value !== field.defaultValue);
+document.addEventListener("DOMContentLoaded", () => [...formOf().elements].some(isTyped) && formOf().requestSubmit());
