@@ -313,9 +313,18 @@ def test_nothing_makes_the_page_scroll_sideways(visitor: Visitor, width: int) ->
 
 
 # Sections stand one below the other on a phone, so that all of them are checked there.
-@pytest.mark.parametrize("width", [390, 1440])
 @pytest.mark.parametrize(
-    "path", [EXAMPLE, EXAMPLE.replace("&i=5", "&FR=500&gear=14A-5"), "/?T=9,3&n=&t=1", "/?T=&n=&t="]
+    ("path", "width"),
+    [
+        pytest.param(EXAMPLE, 390),
+        pytest.param(EXAMPLE, 1440, marks=pytest.mark.soak),
+        pytest.param(EXAMPLE.replace("&i=5", "&FR=500&gear=14A-5"), 390),
+        pytest.param(EXAMPLE.replace("&i=5", "&FR=500&gear=14A-5"), 1440),
+        pytest.param("/?T=9,3&n=&t=1", 390),
+        pytest.param("/?T=9,3&n=&t=1", 1440, marks=pytest.mark.soak),
+        pytest.param("/?T=&n=&t=", 390, marks=pytest.mark.soak),
+        pytest.param("/?T=&n=&t=", 1440),
+    ],
 )
 def test_accessibility_check_finds_nothing_in_either_theme(visitor: Visitor, path: str, width: int) -> None:
     assert violations(visitor.open(path, width=width)) == []

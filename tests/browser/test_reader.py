@@ -21,8 +21,16 @@ def address(page: Page) -> str:
     return page.url.split("/", 3)[3]
 
 
-@pytest.mark.parametrize("script", [True, False], ids=["script", "plain"])
-@pytest.mark.parametrize("link", [EXAMPLE, ODD])
+@pytest.mark.parametrize(
+    ("link", "script"),
+    [
+        pytest.param(EXAMPLE, True, marks=pytest.mark.soak),
+        pytest.param(ODD, True),
+        pytest.param(EXAMPLE, False),
+        pytest.param(ODD, False, marks=pytest.mark.soak),
+    ],
+    ids=["example", "odd figures", "example without script", "odd figures without script"],
+)
 def test_switching_to_lb_in_and_german_and_back_loses_nothing(visitor: Visitor, link: str, script: bool) -> None:
     page = visitor.open(link, script=script)
     torque = page.locator("#T-0")

@@ -219,11 +219,11 @@ ROWS = [["40", "250", "0.3"], ["32", "500", "3"], ["20", "250", "0.4"]]
 @pytest.mark.parametrize(
     ("key", "phase", "column", "order", "lands", "at_once"),
     [
-        ("Alt+ArrowDown", 1, "T", [1, 0, 2], 2, False),
+        pytest.param("Alt+ArrowDown", 1, "T", [1, 0, 2], 2, False, marks=pytest.mark.soak),
         ("Alt+ArrowDown", 1, "n", [1, 0, 2], 2, True),
-        ("Alt+ArrowUp", 2, "T", [1, 0, 2], 1, True),
+        pytest.param("Alt+ArrowUp", 2, "T", [1, 0, 2], 1, True, marks=pytest.mark.soak),
         ("Alt+ArrowUp", 1, "t", [0, 1, 2], 1, False),
-        ("Alt+Delete", 1, "n", [1, 2], 1, False),
+        pytest.param("Alt+Delete", 1, "n", [1, 2], 1, False, marks=pytest.mark.soak),
         ("Alt+Delete", 3, "t", [0, 1], 2, True),
     ],
 )
@@ -381,7 +381,7 @@ def test_table_is_pasted_by_touch_on_a_phone(visitor: Visitor) -> None:
     assert page.evaluate("document.documentElement.scrollWidth") == 390
 
 
-@pytest.mark.parametrize("width", [390, 1440])
+@pytest.mark.parametrize("width", [390, pytest.param(1440, marks=pytest.mark.soak)])
 @pytest.mark.parametrize(
     "path",
     ["/catalogue", "/catalogue/HPN-20A-5", "/catalogue/HPN-40A-5", "/catalogue?size=11A&i=3", "/paste?T=1&n=2&t=3"],

@@ -88,7 +88,7 @@ def words(document: bytes) -> str:
     return found.replace("\u00a0", " ").replace("\u200b", "").replace("\u202f", "")
 
 
-@pytest.mark.parametrize("change", [by_supplement, by_csv])
+@pytest.mark.parametrize("change", [by_supplement, pytest.param(by_csv, marks=pytest.mark.soak)])
 def test_after_a_change_of_the_catalogue_every_file_is_the_same_byte_for_byte(
     database: str, change: Change, folder: Path, tmp_path: Path, recalculate: Recalculate
 ) -> None:
