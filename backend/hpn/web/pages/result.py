@@ -9,7 +9,6 @@ from functools import cached_property
 from hpn.application import Application, RankBy
 from hpn.catalogue import Catalogue
 from hpn.checks import BY_CODE, allowed
-from hpn.equations import ROUNDING
 from hpn.gear import Gear
 from hpn.readings import Reading, readings_of
 from hpn.remedy import Growth, growths_of, remedy_of
@@ -203,10 +202,5 @@ def _weight(designation: str | None, gears: Mapping[str, Gear]) -> float | None:
 def _ties(suitable: Sequence[Candidate], rank_by: RankBy) -> tuple[tuple[Candidate, ...], ...]:
     if rank_by in ("life", "motor_torque"):
         return ()  # these differ from ratio to ratio
-    runs = (tuple(run) for _, run in itertools.groupby(suitable, lambda c: (c.size, c.stages, _rounded(c.utilisation))))
+    runs = (tuple(run) for _, run in itertools.groupby(suitable, lambda c: (c.size, c.stages, c.utilisation)))
     return tuple(run for run in runs if len(run) > 1)
-
-
-def _rounded(utilisation: float | None) -> int | None:
-    """A utilisation as a number of roundings, which is the same for what differs in its last bits alone."""
-    return None if utilisation is None else round(utilisation / (1000 * ROUNDING))

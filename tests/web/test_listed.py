@@ -1,0 +1,74 @@
+"""How the page lists candidates, which ties it names, and whose life the verdict calls the shortest."""
+
+import pytest
+
+from hpn.catalogue import Catalogue
+from hpn.web.door.bodies import pairs_of
+from hpn.web.form.read import parse
+from hpn.web.pages.calculator import Answer, answered
+
+EXAMPLE = "T=40&n=250&t=0.3&T=32&n=500&t=3&T=20&n=250&t=0.4&tp=4&Tk=200"
+
+
+def answer_to(query: str, catalogue: Catalogue) -> Answer:
+    """What the page answers to a link."""
+    form, answer = answered(parse(pairs_of(query)), catalogue)
+    assert answer, form.problems
+    return answer
+
+
+@pytest.mark.parametrize(
+    "query", [EXAMPLE, EXAMPLE + "&FR=2000&rank=life", "T=5000&n=10&t=1", EXAMPLE + "&i=5&size=40A"]
+)
+def test_every_candidate_is_listed_once_in_the_order_of_the_reply(catalogue: Catalogue, query: str) -> None:
+    answer = answer_to(query, catalogue)
+    listed, given = answer.listed, answer.selection.candidates
+
+    rejected = [candidate for group in listed.rejected for candidate in group.candidates]
+    assert (*listed.first, *listed.more) == tuple(c for c in given if c.status == "suitable")
+    assert listed.unrated == tuple(c for c in given if c.status == "unrated")
+    assert sorted(rejected, key=given.index) == [c for c in given if c.status == "unsuitable"]
+    nearest = [given.index(group.candidates[0]) for group in listed.rejected]
+    assert nearest == sorted(nearest)
+    for group in listed.rejected:
+        assert {candidate.size for candidate in group.candidates} == {group.size}
+        assert list(group.candidates) == sorted(group.candidates, key=given.index)
+
+
+def test_ties_differ_in_nothing_that_ranks_them_but_life(catalogue: Catalogue) -> None:
+    answer = answer_to(EXAMPLE, catalogue)
+    (run,) = (run for run in answer.listed.ties if run[0].size == "20A")
+
+    # T_k over T_M of table 12.1 is the same for these three, and larger for ratios 3 and 10.
+    assert [candidate.ratio for candidate in run] == [4, 5, 7]
+    assert {candidate.utilisation for candidate in run} == {200 / 256}
+    lives = [candidate.life_L10_h or 0 for candidate in run]
+    assert lives == sorted(lives, reverse=True)
+    assert answer_to(EXAMPLE + "&rank=life", catalogue).listed.ties == ()
+
+
+@pytest.mark.parametrize(
+    ("query", "check"),
+    [
+        (EXAMPLE + "&i=5&size=20A", "life"),
+        (EXAMPLE + "&i=5&size=20A&FR=500", "output_bearing_life"),
+        (EXAMPLE + "&i=5&size=20A&FR=1", "life"),
+    ],
+)
+def test_the_shortest_life_is_the_gears_or_its_bearings(catalogue: Catalogue, query: str, check: str) -> None:
+    answer = answer_to(query, catalogue)
+    life, chosen = answer.shortest_life, answer.chosen
+
+    assert life and life.check == check
+    lives = [value for value in (chosen.life_L10_h, chosen.bearing_life_L10_h) if value is not None]
+    assert life.life_h == min(lives)
+
+
+def test_a_life_that_nothing_limits_is_no_shortest_one_beside_another(catalogue: Catalogue) -> None:
+    free = answer_to("T=0&n=10&t=1&size=20A", catalogue)
+    held = answer_to("T=0&n=10&t=1&size=20A&FR=500", catalogue)
+    unrated = answer_to("T=10&n=10&t=1&size=40A", catalogue)
+
+    assert free.shortest_life and free.shortest_life.life_h is None
+    assert held.shortest_life and held.shortest_life.check == "output_bearing_life"
+    assert unrated.shortest_life is None
