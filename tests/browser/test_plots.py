@@ -1,16 +1,25 @@
-"""Pictures in a real browser: plots follow the form, stay where they are, and say what the API says."""
+"""Pictures in a real browser: drawings at once, plots on demand; they follow the form and say what the API says."""
 
 import re
 from collections.abc import Callable
 from pathlib import Path
+from random import Random
 from typing import Any
 
 import pytest
-from playwright.sync_api import Page, Playwright, expect
+from playwright.sync_api import Browser, Page, Playwright, expect
 
-from tests.browser.conftest import AXE, PATIENCE_S, Visitor
+from hpn.application import Application
+from hpn.catalogue import load_catalogue
+from hpn.drawings import Subject, bearing_picture, envelope_drawing
+from hpn.drawings.svg import markup
+from hpn.reader import Reader
+from hpn.selection import select
+from tests.browser.conftest import PATIENCE_S, Visitor, open_section, violations
+from tests.build import cycle, phase
 
-CONSTANT = "/?T=40&n=300&t=1&i=5&FR={FR}&FA={FA}&bm={bm}&gear=HPN-20A-5"
+STATIC = Path(__file__).parents[2] / "frontend/static"
+CONSTANT = "/?T=40&n=300&t=1&i=5&FR={FR}&FA={FA}&bm={bm}&gear=HPN-20A-5#bearing"
 PHASES = (
     "/?T=40&n=250&t=0.3&T=32&n=500&t=3&T=20&n=250&t=0.4&tp=4&Tk=200&Nk=1000&i=5&fw=1.2"
     "&FRi=900&FRi=500&FRi=700&FAi=300&FAi=200&FAi=500"
@@ -22,15 +31,17 @@ def section(page: Page) -> Any:
     return page.get_by_role("region", name=re.compile("^Output bearing of"))
 
 
-def plot(page: Page, name: str = "Permissible loads") -> Any:
-    """A plot, once it is drawn."""
+def plot(page: Page, name: str = "Loads in the envelope") -> Any:
+    """A plot, unfolded and drawn."""
     found = page.get_by_role("img", name=re.compile(name))
+    if not found.is_visible():
+        page.locator("summary", has_text="Zoom and export").locator("visible=true").click()
     found.scroll_into_view_if_needed()
     expect(found.locator(".main-svg").first).to_be_visible()
     return found
 
 
-def drawn(page: Page, name: str = "Permissible loads") -> Any:
+def drawn(page: Page, name: str = "Loads in the envelope") -> Any:
     """Data and axes that Plotly holds of a plot."""
     return plot(page, name).evaluate(
         "({ firstElementChild: p }) => ({"
@@ -64,7 +75,7 @@ def envelopes(visitor: Visitor, driver: Playwright, size: str, **query: str | fl
 
 @pytest.mark.parametrize("model", ["linear", "iso281"])
 def test_the_plots_own_data_equal_the_APIs(visitor: Visitor, playwright_driver: Playwright, model: str) -> None:
-    page = visitor.open(f"{PHASES}&bm={model}&Lb=30000&Lbb=L10&gear=HPN-20A-5")
+    page = visitor.open(f"{PHASES}&bm={model}&Lb=30000&Lbb=L10&gear=HPN-20A-5#bearing")
     speed = page.get_by_text("Average output speed").locator("xpath=..").locator("data").get_attribute("value") or ""
     asked = envelopes(
         visitor, playwright_driver, "20A", speed_rpm=speed, life_h=150_000, load_coefficient=1.2, model=model
@@ -111,22 +122,23 @@ def test_typing_a_load_moves_its_point_and_no_axis(visitor: Visitor) -> None:
     assert [moved[side] for side in ("x", "width", "height")] == [frame[side] for side in ("x", "width", "height")]
 
 
-def test_library_is_fetched_only_when_a_plot_is_to_be_seen(visitor: Visitor) -> None:
-    page = visitor.open(EXAMPLE)
-    page.wait_for_timeout(600)
+def test_data_and_library_of_a_plot_come_when_somebody_unfolds_it(visitor: Visitor) -> None:
+    page = visitor.open(PHASES + "#bearing")
+    expect(section(page).locator("svg .line.limit").first).to_be_visible()
+    assert page.locator("[data-figure]").count() == 0
     assert not page.evaluate("performance.getEntriesByType('resource').some(entry => /plotly/.test(entry.name))")
-    page.get_by_text("Allowed number against torque").click()
-    plot(page, "Allowed number of emergency stops")
+    plot(page)
+    assert page.locator("[data-figure]").count() == 1
     assert page.evaluate("performance.getEntriesByType('resource').some(entry => /plotly/.test(entry.name))")
 
 
 def test_all_sizes_are_a_second_view_by_keyboard_that_stays_while_typing(visitor: Visitor) -> None:
-    page = visitor.open(PHASES)
-    plot(page)
+    page = visitor.open(PHASES + "#bearing")
     page.get_by_role("radio", name="This size").focus()
     page.keyboard.press("ArrowRight")
-    sizes = [trace for trace in drawn(page, "on each size")["data"] if trace["meta"]["kind"] == "size"]
-    assert len(sizes) == 4
+    drawing = page.get_by_role("figure", name=re.compile("on each size"))
+    expect(drawing.locator("text.name")).to_have_count(4)
+    assert len([t for t in drawn(page, "of each size")["data"] if t["meta"]["kind"] == "size"]) == 4
     table = page.get_by_role("table", name="Which size carries the load")
     expect(table.get_by_role("row", name=re.compile("14A"))).to_contain_text("does not carry it")
     expect(table.get_by_role("row", name=re.compile("20A"))).to_contain_text("carries the load")
@@ -137,7 +149,7 @@ def test_all_sizes_are_a_second_view_by_keyboard_that_stays_while_typing(visitor
 
 
 def test_of_two_questions_only_the_figure_that_fails_is_marked(visitor: Visitor) -> None:
-    page = visitor.open("/?T=40&n=250&t=0.3&T=32&n=500&t=3&FR=1200")
+    page = visitor.open("/?T=40&n=250&t=0.3&T=32&n=500&t=3&FR=1200#bearing")
     page.get_by_role("radio", name="All sizes").check()
     row = page.get_by_role("table", name="Which size carries the load").get_by_role("row", name=re.compile("20A"))
     weight = "cell => getComputedStyle(cell.firstElementChild).fontWeight"
@@ -147,7 +159,7 @@ def test_of_two_questions_only_the_figure_that_fails_is_marked(visitor: Visitor)
 
 
 def test_enlarged_part_stays_while_typing_until_the_whole_view_is_asked_for(visitor: Visitor) -> None:
-    page = visitor.open(PHASES)
+    page = visitor.open(PHASES + "#bearing")
     whole = drawn(page)["ranges"]
     frame = plot(page).bounding_box()
     page.mouse.move(frame["x"] + 150, frame["y"] + 80)
@@ -165,7 +177,7 @@ def test_enlarged_part_stays_while_typing_until_the_whole_view_is_asked_for(visi
 
 @pytest.mark.parametrize(("format", "start"), [("SVG", b"<svg"), ("PNG", b"\x89PNG")])
 def test_plot_is_saved_without_any_service(visitor: Visitor, tmp_path: Path, format: str, start: bytes) -> None:
-    page = visitor.open(PHASES)
+    page = visitor.open(PHASES + "#bearing")
     plot(page)
     with page.expect_download() as download:
         section(page).get_by_role("button", name=f"Save as {format}").first.click()
@@ -176,7 +188,7 @@ def test_plot_is_saved_without_any_service(visitor: Visitor, tmp_path: Path, for
     assert content.startswith(start)
     if format == "SVG":
         text = re.sub("<[^>]+>", "", content.decode())
-        assert "Computed between the two published limits" in text
+        assert "Basis: interpolated between the two published limits" in text
         assert "Output bearing of HPN-20A" in text
 
 
@@ -184,7 +196,7 @@ def test_plot_follows_the_switch_to_dark_and_prints_on_white(visitor: Visitor) -
     def colour(state: Any) -> Any:
         return state["data"][0]["line"]["color"]
 
-    page = visitor.open(PHASES)
+    page = visitor.open(PHASES + "#bearing")
     light = colour(drawn(page))
     page.emulate_media(color_scheme="dark")
     dark = colour(once(page, lambda state: colour(state) != light))
@@ -207,8 +219,8 @@ def test_going_back_brings_the_plot_of_the_earlier_load(visitor: Visitor) -> Non
 def test_without_script_sentence_and_tables_say_it_all(visitor: Visitor) -> None:
     page = visitor.open(PHASES, script=False)
     expect(section(page)).to_contain_text("The output bearing carries these loads.")
-    expect(section(page)).to_contain_text("Phase 1 uses 76.4")
-    expect(section(page)).to_contain_text("computed between the two published limits")
+    expect(section(page)).to_contain_text("Largest single load: 76.4")
+    expect(section(page)).to_contain_text("Basis: interpolated between the two published limits")
     page.get_by_text("Data: loads and curves as tables").click()
     expect(page.get_by_role("table", name="Loads of the phases").get_by_role("row")).to_have_count(5)
     expect(page.get_by_role("table", name="Which size carries the load")).to_be_visible()
@@ -216,20 +228,22 @@ def test_without_script_sentence_and_tables_say_it_all(visitor: Visitor) -> None
 
 
 def test_a_size_without_published_limits_says_why_it_has_no_envelope(visitor: Visitor) -> None:
-    page = visitor.open(PHASES + "&gear=HPN-40A-5")
+    page = visitor.open(PHASES + "&gear=HPN-40A-5#bearing")
     expect(section(page)).to_contain_text("Not rated.")
-    expect(section(page)).to_contain_text("not published")
+    expect(section(page)).to_contain_text("This catalogue lacks the bearing limits")
     expect(section(page)).to_contain_text("sizes.csv")
 
 
 def test_a_candidate_outside_the_wishes_has_its_pictures_too(visitor: Visitor) -> None:
-    page = visitor.open(PHASES + "&gear=HPN-32A-10")
+    page = visitor.open(PHASES + "&gear=HPN-32A-10#bearing")
     assert drawn(page)["data"][-1]["text"] == ["phase 1", "phase 2", "phase 3"]
 
 
-def test_without_loads_the_section_leads_to_the_field(visitor: Visitor) -> None:
+def test_without_loads_the_drawing_leads_to_the_field(visitor: Visitor) -> None:
     page = visitor.open(EXAMPLE)
-    page.get_by_role("link", name="Enter a radial or axial load").click()
+    drawing = page.get_by_role("figure", name="Load on the output shaft")
+    expect(drawing.locator(".line.limit")).to_be_in_viewport()
+    drawing.get_by_role("link", name="Add a load").click()
     expect(page.get_by_label("Radial load")).to_be_focused()
 
 
@@ -237,10 +251,10 @@ def test_picture_of_the_cycle_follows_the_form_and_outlives_an_error(visitor: Vi
     page = visitor.open(EXAMPLE)
     picture = page.get_by_role("img", name="Torque and speed over time, beside the limits of HPN-20A-5")
     expect(picture).to_be_in_viewport()
-    expect(page.get_by_text("3 phases. Torque from 20")).to_be_attached()
+    expect(page.locator("#cycle").get_by_text("3 phases. Torque from 20")).to_be_attached()
     before = picture.locator(".steps").first.get_attribute("d")
     page.get_by_label("Torque, phase 1").fill("-40")
-    expect(page.get_by_text(re.compile("Torque from [-−]40"))).to_be_attached()
+    expect(page.locator("#cycle").get_by_text(re.compile("Torque from [-−]40"))).to_be_attached()
     after = picture.locator(".steps").first.get_attribute("d")
     assert after != before
     place = picture.bounding_box()
@@ -251,18 +265,96 @@ def test_picture_of_the_cycle_follows_the_form_and_outlives_an_error(visitor: Vi
     assert box and place and box["width"] == place["width"]
 
 
-@pytest.mark.parametrize("dark", [False, True], ids=["light", "dark"])
-@pytest.mark.parametrize("view", ["This size", "All sizes"])
-def test_accessibility_check_of_the_plots_finds_nothing(visitor: Visitor, view: str, dark: bool) -> None:
-    page = visitor.open(PHASES, dark=dark)
-    page.get_by_role("radio", name=view).check(force=True)
-    plot(page, "Permissible loads" if view == "This size" else "on each size")
+def test_accessibility_check_of_drawings_and_plots_finds_nothing(visitor: Visitor) -> None:
+    page = visitor.open(PHASES)
+    assert violations(page) == []
+    page.emulate_media(color_scheme="light")
+    open_section(page, "Bearing")
     for summary in section(page).locator("summary:visible").all():
         summary.click()
-    page.get_by_text("Allowed number against torque").click()
-    plot(page, "Allowed number of emergency stops")
-    page.evaluate(AXE.read_text())
-    violations = page.evaluate(
-        "axe.run({ include: ['#bearing', '#stops', '#cycle'] }).then(result => result.violations)"
-    )
-    assert [(v["id"], [node["target"] for node in v["nodes"]]) for v in violations] == []
+    plot(page)
+    assert violations(page) == []
+
+
+# --- Drawings ---------------------------------------------------------------------------------------------------------
+
+
+def marked(page: Page) -> dict[str, list[str]]:
+    """Phases that are marked in the table, the chart of the cycle and the drawing."""
+    places = "each => each.dataset.phase ?? each.id.slice(6)"
+    kinds = {"row": "#duty tr.marked", "step": "#cycle .phase-step.marked", "load": "#envelope .mark.marked"}
+    return {kind: page.locator(path).evaluate_all(f"all => all.map({places})") for kind, path in kinds.items()}
+
+
+def test_row_step_and_load_of_a_phase_are_marked_together_by_pointer_and_by_focus(visitor: Visitor) -> None:
+    page = visitor.open(PHASES)
+    second = {"row": ["1"], "step": ["1"], "load": ["1"]}
+
+    page.locator('#envelope [data-phase="1"] .number').hover()
+    assert marked(page) == second
+    page.mouse.move(700, 880)
+    assert marked(page) == {"row": [], "step": [], "load": []}
+
+    page.get_by_label("Speed, phase 2").focus()
+    assert marked(page) == second
+    page.keyboard.type("0")
+    expect(page).to_have_url(re.compile("n=5000"))
+    expect(page.locator("#envelope .mark.marked")).to_have_count(1)
+    assert marked(page) == second
+
+    page.locator('#envelope [data-phase="2"]').focus()
+    assert marked(page) == {"row": ["2"], "step": ["2"], "load": ["2"]}
+    assert page.locator('#envelope [data-phase="2"]').evaluate("each => each.matches(':focus-visible')")
+
+
+@pytest.mark.parametrize(("width", "room"), [(1440, (440, 320)), (1920, (640, 480))])
+def test_the_drawing_fits_its_place_on_the_overview(visitor: Visitor, width: int, room: tuple[int, int]) -> None:
+    page = visitor.open(PHASES, width=width)
+    box = page.locator("#envelope").bounding_box()
+    assert box
+    assert room[0] * 0.85 <= box["width"] <= room[0]
+    assert box["height"] <= room[1]
+
+
+OVERLAPS = """(least) => [...document.querySelectorAll("svg")].flatMap((svg) => {
+  const frame = svg.getBoundingClientRect();
+  const found = [];
+  const scale = svg.getScreenCTM().a;
+  const sizeOf = (part) => parseFloat(getComputedStyle(part).fontSize);
+  const sizes = (text) => [text, ...text.querySelectorAll("tspan")].map(sizeOf);
+  const texts = [...svg.querySelectorAll("text")].map((text) => ({
+    said: text.textContent, box: text.getBoundingClientRect(), size: scale * Math.min(...sizes(text)) }));
+  texts.forEach(({ said, box, size }, k) => {
+    if (size < least) found.push([said, "small"]);
+    const inside = box.left > frame.left - 1 && box.right < frame.right + 1 && box.bottom < frame.bottom + 1;
+    if (!inside) found.push([said, "outside"]);
+    for (const other of texts.slice(k + 1)) {
+      const across = Math.min(box.right, other.box.right) - Math.max(box.left, other.box.left);
+      const down = Math.min(box.bottom, other.box.bottom) - Math.max(box.top, other.box.top);
+      if (across > 0.5 && down > 0.35 * Math.min(box.height, other.box.height)) found.push([said, other.said]);
+    }
+  });
+  return found;
+})"""
+
+
+def test_no_text_lies_over_another_as_a_browser_sets_them_and_none_is_smaller_than_11_pixels(chromium: Browser) -> None:
+    catalogue, chance = load_catalogue(), Random(16)
+    gears = [catalogue.by_designation[name] for name in ("HPN-11A-5", "HPN-20A-5", "HPN-32A-25")]
+    drawn = []
+    for count in (0, 1, 1, 2, 3, 7, 7, 12, 24, 40):
+        loads = [(chance.uniform(0, 3000), chance.uniform(0, 3000)) for _ in range(count)]
+        phases = [phase(1, chance.uniform(10, 900), radial_N=r, axial_N=a) for r, a in loads] or [phase(1, 300)]
+        subject = Subject(Application.model_validate(cycle(*phases)), chance.choice(gears), catalogue)
+        candidate = select(subject.application, catalogue).candidate(subject.gear.designation)
+        assert candidate is not None
+        picture = bearing_picture(subject, candidate.check("output_bearing_life"))
+        assert picture is not None
+        drawn += [markup(envelope_drawing(picture, reader)) for reader in (Reader(), Reader("de", ("lbf",)))]
+    page = chromium.new_page()
+    styles = "".join((STATIC / name).read_text() for name in ("app.css", "plots.css"))
+    for width in (346, 410, 440, 640):
+        figures = "".join(f'<figure class="envelope" style="width: {width}px">{svg}</figure>' for svg in drawn)
+        page.set_content(f"<style>{styles}</style><main>{figures}</main>")
+        assert page.evaluate(OVERLAPS, 10.95) == [], width
+    page.close()

@@ -25,7 +25,7 @@ ROOM = 1.15
 MOST_SPACES, GAP = 6, 8.0
 """Most spaces between round numbers, and the least one between two of them, in units of the drawing."""
 
-RADIUS, DOT, RING = 9.5, 2.5, 12.5
+RADIUS, DOT, RING = 10.5, 2.5, 13.5
 MARGIN, SAME = 3.5, 0.1
 MOST_DISCS = 24
 """Loads that have a numbered disc, those nearest to their limit first; other phases are dots."""

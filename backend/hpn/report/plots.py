@@ -45,7 +45,7 @@ text { font-size: 13px; font-family: "Libertinus Serif"; fill: #5b6875 }
 .dot, .number, .told { fill: #16202b }
 .sign { fill: none; stroke: #1b7f3b; stroke-width: 1.5 }
 .outside .sign { stroke: #b3261e }
-.number { font-size: 11px; font-weight: bold }
+.number { font-weight: bold }
 .equivalent .disc, .equivalent .dot { fill: #eef4fa; stroke: #0b5394 }
 .governing .disc, .governing .dot { fill: #0b5394; stroke: #0b5394 }
 .governing .number { fill: #fff }
