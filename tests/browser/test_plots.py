@@ -297,6 +297,7 @@ def test_row_step_and_load_of_a_phase_are_marked_together_by_pointer_and_by_focu
 
     page.get_by_label("Speed, phase 2").focus()
     assert marked(page) == second
+    page.keyboard.press("End")
     page.keyboard.type("0")
     expect(page).to_have_url(re.compile("n=5000"))
     expect(page.locator("#envelope .mark.marked")).to_have_count(1)

@@ -151,7 +151,7 @@ def test_without_a_load_the_drawing_shows_what_20_000_hours_allow_at_the_speed_o
 
     k = (100 / 300) ** (1 / 3)
     assert flat(drawn.line("limit")[0]) == near([(0, k * F_A), (k * F_R, 0)])
-    assert drawn.of("g", "mark") == drawn.of("g", "bar") == []
+    assert drawn.of("g", "mark") == drawn.of("g", "gauge") == []
 
 
 def test_axes_reach_115_percent_of_the_largest_value_with_round_numbers_in_the_readers_units() -> None:
@@ -170,7 +170,7 @@ def test_bars_say_what_the_checks_say() -> None:
     document = cycle(*THREE, pause_s=4.0, output_load={"load_coefficient": 1.2}, requirements={"utilisation": 0.7})
     drawn, candidate = shown(document), select(subject_of(document).application, CATALOGUE).candidate("HPN-20A-5")
     assert candidate is not None
-    for bar, code in zip(drawn.of("g", "bar"), ("output_bearing_load", "output_bearing_life"), strict=True):
+    for bar, code in zip(drawn.of("g", "gauge"), ("output_bearing_load", "output_bearing_life"), strict=True):
         judged = candidate.check(code)
         assert judged is not None
         assert judged.utilisation is not None

@@ -277,7 +277,7 @@ def _bars(drawing: Element, bars: Sequence[Bar]) -> None:
     for place, bar in enumerate(bars):
         top = HEIGHT + 4 + ROW * place
         outside = bar.outside
-        group = add(drawing, "g", "bar outside" if outside else "bar")
+        group = add(drawing, "g", "gauge outside" if outside else "gauge")
         text(group, "name", (8, top + 12), bar.label)
         add(group, "rect", "track", x=left, y=top + 1, width=right - left, height=13)
         add(group, "rect", "used", x=left, y=top + 1, width=unit * min(bar.used, BAR_END), height=13)
