@@ -33,7 +33,7 @@ SECTIONS = ("overview", "bearing", "candidates", "compare", "calculation", "note
 FIGURES = frozenset(("bearing_figure", "sizes_figure", "stops_figure"))
 """Plots, which come only when somebody unfolds them: without script there is no use for their data."""
 
-PARTS = FIGURES.union(SECTIONS[1:])
+PARTS = FIGURES.union(SECTIONS[1:], ["cycle_wide"])
 """What comes with an edit only where it is in sight, as the header HPN-Parts says, and else is asked for by itself."""
 
 
