@@ -23,7 +23,7 @@ MARKS = {
     "P": (0, 1),
     "Sentence": (0,),
     "_notice": (1,),
-    "_RefusedError": (0,),
+    "RefusedError": (0,),
     "PydanticCustomError": (1,),
 }
 """Calls that mark a text, and which of their arguments are texts."""

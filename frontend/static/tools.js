@@ -55,7 +55,7 @@ document.addEventListener("htmx:after:swap", (event) => {
     document.getElementById("paste").close();
     document.querySelector("#duty input, #phases")?.focus();
   } else if (ctx.sourceEvent.type === "submit") {
-    document.querySelector("#paste-preview .take button")?.focus({ preventScroll: false });
+    document.querySelector("#paste-preview select.asked, #paste-preview .take button")?.focus({ preventScroll: false });
   }
 });
 

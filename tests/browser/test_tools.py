@@ -42,12 +42,12 @@ def test_german_table_is_shown_and_taken_and_undone(visitor: Visitor) -> None:
     page = visitor.open(EXAMPLE)
     assert not paste(page, GERMAN)
     dialog = page.get_by_role("dialog", name="Paste a table or open a file")
-    expect(dialog.get_by_text("Columns apart by tab, a comma as decimal mark.")).to_be_visible()
+    expect(dialog.get_by_text("Columns apart by tab.")).to_be_visible()
     expect(dialog.get_by_role("row", name="1 9.3 1 250 0.3")).to_be_visible()
     expect(torque(page, 1)).to_have_value("40")  # nothing is taken yet
-    button(page, "Take these phases").click()
+    button(page, "Replace phases").click()
     expect(dialog).to_be_hidden()
-    expect(page).to_have_url(re.compile(r"\?T=9\.3&n=1250&t=0\.3&T=12\.5&n=500&t=1\.25&tp=4&Tk=200&i=5$"))
+    expect(page).to_have_url(re.compile(r"\?T=9\.3&n=1250&t=0\.3&T=12\.5&n=500&t=1\.25$"))
     expect(torque(page, 1)).to_have_value("9.3")
     expect(torque(page, 1)).to_be_focused()
     button(page, "Undo").click()
@@ -58,25 +58,41 @@ def test_german_table_is_shown_and_taken_and_undone(visitor: Visitor) -> None:
 def test_ambiguous_table_is_asked_about_by_keyboard(visitor: Visitor) -> None:
     page = visitor.open(EXAMPLE)
     paste(page, "1.234\t250\t3")
-    expect(page.get_by_text("Which one is meant?")).to_be_visible()
-    expect(page.get_by_role("region", name="With a point as decimal mark").get_by_role("cell").first).to_have_text(
-        "1.234"
-    )
-    comma = page.get_by_role("region", name="With a comma as decimal mark")
-    expect(comma.get_by_role("cell").first).to_have_text("1\u202f234")
+    expect(page.get_by_text("Which is the decimal mark?")).to_be_visible()
+    mark = page.get_by_label("The decimal mark is")
+    expect(mark).to_be_focused()
+    expect(button(page, "Replace phases")).to_be_disabled()
+    page.keyboard.press("ArrowDown")
+    expect(mark).to_have_value(".")
+    page.keyboard.press("ArrowDown")
+    expect(page.get_by_role("cell", name="1\u202f234", exact=True)).to_be_visible()
+    expect(mark).to_be_focused()  # the answer takes nobody's place away
+    expect(mark).to_have_value(",")
     for _ in range(12):
-        if comma.get_by_role("button", name="Take these phases").evaluate("b => b === document.activeElement"):
+        if button(page, "Replace phases").evaluate("b => b === document.activeElement"):
             break
         page.keyboard.press("Tab")
     page.keyboard.press("Enter")
     expect(torque(page, 1)).to_have_value("1234")
 
 
+def test_column_is_corrected_and_taken(visitor: Visitor) -> None:
+    page = visitor.open(EXAMPLE)
+    paste(page, "9.3\t1250\t300\n12.5\t500\t200\n")
+    page.get_by_label("Unit of column 3").select_option("ms")
+    expect(page.get_by_text("All phases take 0.5 s.")).to_be_visible()
+    page.get_by_label("Quantity of column 1").select_option("Speed")
+    expect(page.get_by_text("Two columns are the speed.")).to_be_visible()
+    page.get_by_label("Quantity of column 2").select_option("Torque")
+    button(page, "Replace phases").click()
+    expect(page).to_have_url(re.compile(r"\?T=1250&n=9\.3&t=0\.3&T=500&n=12\.5&t=0\.2$"))
+
+
 def test_what_can_not_be_read_is_said_and_nothing_is_taken(visitor: Visitor) -> None:
     page = visitor.open(EXAMPLE)
     paste(page, "40\tabc\t3")
     expect(page.get_by_role("alert")).to_contain_text("row 1: abc is not a number")
-    expect(button(page, "Take these phases")).to_have_count(0)
+    expect(button(page, "Replace phases")).to_have_count(0)
     page.keyboard.press("Escape")
     expect(page.get_by_role("dialog")).to_have_count(0)
     expect(torque(page, 1)).to_have_value("40")
@@ -92,7 +108,7 @@ def test_single_cell_pastes_as_ever(visitor: Visitor) -> None:
 def test_long_table_is_edited_as_text_and_kept_as_a_file(visitor: Visitor, tmp_path: Path) -> None:
     page = visitor.open(EXAMPLE)
     paste(page, "".join(f"40,{k % 10};{250 + k % 90};0,25\n" for k in range(3500)))
-    button(page, "Take these phases").click()
+    button(page, "Replace phases").click()
     text = page.get_by_role("textbox", name="Load phases")
     expect(text).to_be_visible()
     expect(page.get_by_text("This cycle is too long for a link: keep it as a file.")).to_be_visible()
@@ -127,7 +143,9 @@ def test_table_and_file_are_taken_without_script(visitor: Visitor, tmp_path: Pat
     button(page, "Paste table").click()
     page.get_by_label("Cells copied from a spreadsheet").fill("1.234;250;3\n2.345;100;1")
     button(page, "Show what is read").click()
-    page.get_by_role("region", name="With a point").get_by_role("button", name="Take these phases").click()
+    page.get_by_label("The decimal mark is").select_option("a point: 1.234")
+    button(page, "Show what is read").click()
+    button(page, "Replace phases").click()
     expect(torque(page, 2)).to_have_value("2.345")
     expect(pause(page)).to_have_value("5")
     file = tmp_path / "cycle.csv"
@@ -135,7 +153,7 @@ def test_table_and_file_are_taken_without_script(visitor: Visitor, tmp_path: Pat
     page.get_by_role("link", name="Open").click()
     page.get_by_label("or a file").set_input_files(file)
     button(page, "Show what is read").click()
-    button(page, "Add them to mine").click()
+    button(page, "Append").click()
     expect(torque(page, 3)).to_have_value("9.3")
 
 
@@ -376,7 +394,7 @@ def test_table_is_pasted_by_touch_on_a_phone(visitor: Visitor) -> None:
     page = visitor.open(EXAMPLE, width=390, touch=True)
     button(page, "Paste table").tap()
     page.get_by_label("Cells copied from a spreadsheet").fill(GERMAN)
-    button(page, "Take these phases").tap()
+    button(page, "Replace phases").tap()
     expect(torque(page, 2)).to_have_value("12.5")
     assert page.evaluate("document.documentElement.scrollWidth") == 390
 
@@ -399,7 +417,7 @@ def test_accessibility_check_finds_nothing_in_the_dialogs(visitor: Visitor, stat
     page = visitor.open(EXAMPLE if state != "long" else "/?" + "&".join(["T=40&n=250&t=1"] * 101))
     if state == "paste":
         paste(page, "1.234\t250\t3")
-        expect(page.get_by_text("Which one is meant?")).to_be_visible()
+        expect(page.get_by_text("Which is the decimal mark?")).to_be_visible()
     if state == "shortcuts":
         button(page, "Shortcuts").click()
     assert violations(page) == []

@@ -25,23 +25,90 @@ def query_of(location: str) -> dict[str, list[str]]:
     return parse_qs(urlsplit(location).query)
 
 
-def test_preview_names_separator_mark_and_every_number(client: TestClient) -> None:
+def cells(page: str) -> list[str]:
+    """What the rows of a preview say."""
+    return re.findall(r"<td>(?:<mark>)?([^<]+)(?:</mark>)?</td>", page)
+
+
+def chosen(page: str) -> dict[str, str]:
+    """What each select of a preview is set to; blank where it is asked."""
+    selects = re.findall(r'<select name="(\w+)".*?</select>', page, re.DOTALL)
+    found = re.findall(r'<select name="(\w+)"[^>]*>.*?<option(?: value="([^"]*)")? selected', page, re.DOTALL)
+    assert len(found) == len(selects)
+    return dict(found)
+
+
+def of(page: str) -> str:
+    """What the choices of a preview are tied to."""
+    found = re.search(r'name="of" value="(\w+)"', page)
+    assert found
+    return found[1]
+
+
+def test_preview_names_separator_columns_and_every_number(client: TestClient) -> None:
     page = client.post("/paste", data={"link": LINK, "text": GERMAN}, headers=HTMX)
     assert page.status_code == 200
     assert "<html" not in page.text
-    assert "Columns apart by tab, a comma as decimal mark." in page.text
-    assert re.findall(r"<td>([^<]+)</td>", page.text) == [
-        "9.3",
-        "1\u202f250",
-        "0.3",
-        "\N{MINUS SIGN}12.5",
-        "500",
-        "1.25",
-    ]
+    assert "Columns apart by tab." in page.text
+    assert chosen(page.text) == {"r0": "T", "u0": "Nm", "r1": "n", "u1": "rpm", "r2": "t", "u2": "s"}
+    assert cells(page.text) == ["9.3", "1\u202f250", "0.3", "\N{MINUS SIGN}12.5", "500", "1.25"]
+
+
+@pytest.mark.parametrize("headers", [HTMX, {}], ids=["with script", "without"])
+def test_each_column_can_be_read_as_something_else(client: TestClient, headers: dict[str, str]) -> None:
+    page = client.post("/paste", data={"link": LINK, "text": GERMAN}, headers=headers)
+    choices = chosen(page.text) | {"of": of(page.text), "u2": "ms", "r0": "n", "r1": "T"}
+    asked = client.post("/paste", data={"link": LINK, "text": GERMAN, **choices}, headers=headers)
+    assert chosen(asked.text) == {"r0": "n", "u0": "", "r1": "T", "u1": "", "r2": "t", "u2": "ms"}
+    choices |= {"u0": "rpm", "u1": "Nm"}
+    again = client.post("/paste", data={"link": LINK, "text": GERMAN, **choices}, headers=headers)
+    assert chosen(again.text) == {"r0": "n", "u0": "rpm", "r1": "T", "u1": "Nm", "r2": "t", "u2": "ms"}
+    took = client.post("/paste", data={"text": GERMAN, **choices, "take": "replace"}, headers=headers)
+    assert query_of(took.headers["location"]) == {
+        "T": ["1250", "500"],
+        "n": ["9.3", "-12.5"],
+        "t": ["0.0003", "0.00125"],
+    }
+
+
+def test_nothing_is_taken_while_anything_is_asked(client: TestClient) -> None:
+    page = client.post("/paste", data={"link": LINK, "text": "1.234\t250\t3", "take": "replace"}, headers=HTMX)
+    assert page.status_code == 200
+    assert "Which is the decimal mark?" in page.text
+    assert cells(page.text) == ["1.234", "250", "3"]
+    assert "<mark>1.234</mark>" in page.text
+    buttons = re.findall(r"<button[^>]*name=\"take\"[^>]*>", page.text)
+    assert len(buttons) == 2 and all("disabled" in button for button in buttons)
+
+
+EXAMPLE = "T=40&n=250&t=0.3&T=32&n=500&t=3&T=20&n=250&t=0.4&tp=4&Tk=200&i=5"
+EXAMPLE_IN_US = (
+    "written=de.lb_in&was=Nm:40 Nm:32 Nm:20 Nm:200&T=354,03&n=250&t=0,3&T=283,22&n=500&t=3&T=177,01&n=250&t=0,4"
+    "&tp=4&Tk=1770,1&Nk=&FR=&i=5"
+)
+
+
+@pytest.mark.parametrize("link", [EXAMPLE, EXAMPLE_IN_US], ids=["as a link", "as the form shows it"])
+def test_table_in_place_of_the_worked_example_starts_without_its_pause_stop_and_ratio(
+    client: TestClient, link: str
+) -> None:
+    page = client.post("/paste", data={"link": link, "text": GERMAN}, headers=HTMX)
+    assert "leaves out the worked example’s pause, emergency stop and ratio" in page.text
+    assert "Append" not in page.text
+    took = client.post("/paste", data={"link": link, "text": GERMAN, "take": "replace"})
+    assert query_of(took.headers["location"]).keys() == {"T", "n", "t"}
+
+
+def test_changed_example_keeps_what_it_says(client: TestClient) -> None:
+    link = EXAMPLE.replace("tp=4", "tp=5")
+    page = client.post("/paste", data={"link": link, "text": GERMAN}, headers=HTMX)
+    assert "worked example" not in page.text
+    took = client.post("/paste", data={"link": link, "text": GERMAN, "take": "replace"})
+    assert {"tp", "Tk", "i"} <= query_of(took.headers["location"]).keys()
 
 
 def test_taking_replaces_the_phases_and_keeps_everything_else(client: TestClient) -> None:
-    reply = client.post("/paste", data={"link": LINK, "text": GERMAN, "take": "replace:0"})
+    reply = client.post("/paste", data={"link": LINK, "text": GERMAN, "take": "replace"})
     assert reply.status_code == 303
     assert query_of(reply.headers["location"]) == {
         "T": ["9.3", "-12.5"],
@@ -54,32 +121,18 @@ def test_taking_replaces_the_phases_and_keeps_everything_else(client: TestClient
 
 
 def test_adding_puts_the_phases_behind_those_there(client: TestClient) -> None:
-    reply = client.post("/paste", data={"link": LINK, "text": "5\t10\t1\t300\t", "take": "append:0"})
+    reply = client.post("/paste", data={"link": LINK, "text": "T\tn\tt\tFR\n5\t10\t1\t300", "take": "append"})
     given = parse_qs(urlsplit(reply.headers["location"]).query, keep_blank_values=True)
     assert given["T"] == ["40", "32", "5"]
     assert given["FRi"] == ["", "", "300"]
     assert client.get(reply.headers["location"]).status_code == 200
 
 
-def test_two_readings_are_both_shown_and_the_chosen_one_is_taken(client: TestClient) -> None:
-    text = "1.234\t250\t3"
-    page = client.post("/paste", data={"link": LINK, "text": text}, headers=HTMX)
-    assert "Which one is meant?" in page.text
-    assert re.findall("<mark>([^<]+)</mark>", page.text) == ["1.234", "1\u202f234"]
-    taken = [
-        query_of(client.post("/paste", data={"link": "", "text": text, "take": f"replace:{k}"}).headers["location"])[
-            "T"
-        ]
-        for k in (0, 1)
-    ]
-    assert taken == [["1.234"], ["1234"]]
-
-
 @pytest.mark.parametrize(
     "text", ["40\tx\t3", "40\t250", "T\tn\tt", "{", '{"duty_cycle": {"phases": [{"torque_Nm": "a"}]}}']
 )
 def test_what_can_not_be_taken_is_422_and_says_why(client: TestClient, text: str) -> None:
-    page = client.post("/paste", data={"link": LINK, "text": text, "take": "replace:0"})
+    page = client.post("/paste", data={"link": LINK, "text": text, "take": "replace"})
     assert page.status_code == 422
     assert 'class="error"' in page.text
     assert quote("T=40")[0] in page.text and 'value="T=40' in page.text
@@ -92,7 +145,7 @@ def test_error_in_a_json_file_names_the_field(client: TestClient) -> None:
     assert "/duty_cycle/phases/0/duration_s" in page.text
 
 
-@pytest.mark.parametrize("take", ["replace:7", "append:-1", "replace:", "all", "x" * 999, "replace:²"])
+@pytest.mark.parametrize("take", ["", "all", "x" * 999, "replace²", "1"])
 def test_taking_what_is_not_there_only_shows(client: TestClient, take: str) -> None:
     assert client.post("/paste", data={"link": "%%%", "text": GERMAN, "take": take}).status_code == 200
 
@@ -103,6 +156,7 @@ def test_files_are_read_in_the_encodings_of_spreadsheets(client: TestClient, enc
     page = client.post("/paste", files={"file": ("zyklus.csv", text.encode(encoding))}, data={"link": LINK})
     assert page.status_code == 200
     assert "Columns apart by semicolon" in page.text
+    assert chosen(page.text)["r2"] == "t"
 
 
 @pytest.mark.parametrize("encoding", ["utf-16-le", "utf-16-be", "utf-32-le", "utf-32-be"])
@@ -196,14 +250,14 @@ def test_no_odd_cell_is_an_error_of_the_server(client: TestClient, column: int) 
         cells[column] = cell
         text = "\t".join(cells)
         shown = client.post("/paste", data={"text": text}, headers=HTMX)
-        taken = client.post("/paste", data={"text": text, "take": "replace:0"}, follow_redirects=True)
+        taken = client.post("/paste", data={"text": text, "take": "replace"}, follow_redirects=True)
         assert {shown.status_code, taken.status_code} <= ({422} if cell in NO_NUMBERS else {200, 422}), repr(cell)
 
 
 def test_a_workbook_is_refused_with_a_way_on(client: TestClient) -> None:
     page = client.post("/paste", files={"file": ("a.xlsx", b"PK\x03\x04\x00\x00")})
     assert page.status_code == 422
-    assert "save the sheet as CSV" in page.text
+    assert "save it as XLSX or CSV" in page.text
 
 
 def test_application_goes_out_as_a_file_and_comes_back_as_the_same_link(client: TestClient) -> None:
@@ -222,7 +276,7 @@ def test_cycle_goes_out_as_csv_and_comes_back(client: TestClient, decimal: str) 
     table = client.get(f"/cycle.csv?T=40.5&n=250&t=0.3&FRi=500&decimal={decimal}")
     assert table.headers["content-type"].startswith("text/csv")
     assert f"40{decimal}5" in table.text
-    back = client.post("/paste", data={"text": table.text, "take": "replace:0"})
+    back = client.post("/paste", data={"text": table.text, "take": "replace"})
     assert query_of(back.headers["location"]) == {"T": ["40.5"], "n": ["250"], "t": ["0.3"], "FRi": ["500"]} | {
         name: values for name, values in query_of(back.headers["location"]).items() if name == "FAi"
     }
@@ -238,7 +292,7 @@ def test_file_of_a_wrong_link_is_422(client: TestClient, path: str) -> None:
 
 
 def test_cycle_too_long_for_an_address_is_answered_where_it_is_taken(client: TestClient) -> None:
-    page = client.post("/paste", data={"link": LINK, "text": LONG, "take": "replace:0"}, headers=HTMX)
+    page = client.post("/paste", data={"link": LINK, "text": LONG, "take": "replace"}, headers=HTMX)
     assert page.status_code == 200
     assert page.headers["HX-Push-Url"] == "/paste"
     assert '<textarea id="phases"' in page.text
@@ -277,7 +331,7 @@ def test_row_edits_are_applied_in_the_order_they_were_pressed(client: TestClient
 
 
 def test_a_file_that_is_no_text_is_refused_in_the_readers_language(client: TestClient) -> None:
-    reply = client.post("/paste", files={"file": ("a.xlsx", b"PK\0\0")}, headers={"Accept-Language": "de"})
+    reply = client.post("/paste", files={"file": ("a.bin", b"\x7fELF\0\0")}, headers={"Accept-Language": "de"})
 
     assert reply.status_code == 422
     assert "die Datei ist kein Text" in reply.text

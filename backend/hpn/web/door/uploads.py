@@ -33,15 +33,19 @@ async def read_fields(request: Request) -> dict[str, str]:
     """Fields of a posted form, the last of a name; files as text. Raises Problem as `read_body` does, 422 for a file
     that is no text.
     """
+    return {name: decoded(content) for name, content in (await read_parts(request)).items()}
+
+
+async def read_parts(request: Request) -> dict[str, bytes]:
+    """Fields and files of a posted form as they were sent, the last of a name. Raises Problem as `read_body` does."""
     settings: Settings = request.app.state.settings
     content_type = MULTIPART if content_type_of(request) == MULTIPART else FORM
     body = await read_body(
         request, content_type, maximum_bytes=settings.maximum_body_bytes, seconds=settings.body_seconds
     )
     if content_type == FORM:
-        return dict(await compute(request, "pages", pairs_of, body))
-    parts = await compute(request, "pages", parts_of, request.headers["content-type"], body)
-    return {name: decoded(content) for name, content in parts}
+        return {name: text.encode(errors="replace") for name, text in await compute(request, "pages", pairs_of, body)}
+    return dict(await compute(request, "pages", parts_of, request.headers["content-type"], body))
 
 
 _BOUNDARY = re.compile(r"""boundary="?([A-Za-z0-9'()+_,./:=? -]{1,70})""", re.IGNORECASE)

@@ -1,222 +1,320 @@
-"""A duty table pasted from a spreadsheet or read from a CSV file, in whichever way numbers are written there.
+"""A duty table pasted from a spreadsheet or read from a file, in whichever way it is written there.
 
-Every way of reading the whole text (separator and decimal mark) is tried. Where exactly one reading makes numbers of
-all cells, it holds; where several do and differ (`1.234` is 1.234 or 1234), none is chosen: the user is asked.
+A number is never silently another number: what a table says in one way alone is read so and shown; where it can be
+read in two ways (`1.234` is 1.234 or 1234; 0.1, 0.2, 0.3 last so long or are points in time), none is chosen: the
+user is asked.
 """
 
-import csv
-import re
-from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import Literal
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from itertools import chain, pairwise
+from math import isfinite
 
+from hpn import units
 from hpn.application import MAXIMUM_PHASES, DutyCycle
+from hpn.web.form.cells import DECIMALS, Decimal, Entry, entry, is_blank
+from hpn.web.form.columns import NO_CHOICES, REQUIRED, SKIP, WIRE, Body, Choices, Column, body_of, columns_of
+from hpn.web.form.headings import QUANTITIES, heading_of
+from hpn.web.form.sheets import Grid, RefusedError, grids_of
 from hpn.wording import N_, Sentence
 
-Decimal = Literal[".", ","]
-MAXIMUM_CHARACTERS = 1_000_000
-COLUMNS = ("T", "n", "t", "FRi", "FAi")
-"""Columns of the duty table by their link symbols, in the order in which they stand without a header."""
+COLUMNS = tuple(QUANTITIES)
+"""Columns of the duty table by their link symbols."""
 
-SEPARATORS = {"\t": N_("tab"), ";": N_("semicolon"), ",": N_("comma"), " ": N_("space")}
-_HEADINGS = {
-    "T": ("t_nm", "torque", "drehmoment", "moment", "torque_nm"),
-    "n": ("n", "speed", "drehzahl", "speed_rpm"),
-    "t": ("t_s", "duration", "time", "dauer", "zeit", "duration_s"),
-    "FRi": ("fr", "fri", "radial", "radial_n", "radialkraft", "radiallast", "radial load"),
-    "FAi": ("fa", "fai", "axial", "axial_n", "axialkraft", "axiallast", "axial load"),
+TIMES = {
+    "durations": N_("how long each phase lasts"),
+    "ends": N_("when each phase ends"),
+    "starts": N_("when each phase starts; the last row ends the cycle"),
 }
-_NAMES = {name.replace("_", " "): column for column, names in _HEADINGS.items() for name in names}
-_UNITS = {
-    "T": ("nm", "n·m", "n m", "n*m"),
-    "n": ("rpm", "1/min", "min-1", "min^-1", "min⁻¹", "u/min", "r/min"),
-    "t": ("s", "sec"),
-    "FRi": ("n",),
-    "FAi": ("n",),
-}
-_NUMBER: dict[Decimal, re.Pattern[str]] = {
-    ".": re.compile(
-        r"[+-]?(?=[.,]?\d)(?:\d+|\d{1,3}(?:[,'’ \u00a0\u202f]\d{3})+)?(?:\.\d*)?(?:[eE][+-]?\d{1,3})?", re.ASCII
-    ),
-    ",": re.compile(
-        r"[+-]?(?=[.,]?\d)(?:\d+|\d{1,3}(?:[.'’ \u00a0\u202f]\d{3})+)?(?:,\d*)?(?:[eE][+-]?\d{1,3})?", re.ASCII
-    ),
-}
-LONGEST_CELL = 400
-"""Characters of a cell that could still be a number: written out, the largest has some 310 digits."""
+LAST = {"phase": N_("a phase"), "sum": N_("a sum: skip it")}
+"""What the times of a table, and its last row, can be."""
 
-LONGEST_HEADING = 80
-MOST_COLUMNS = 50
-_UNIT = re.compile(r"^(.*?)\s*(?:\[(.+)\]|\((.+)\)|\bin\s+(\S+)|/\s*(\S+))\s*$")
+Row = tuple[Entry | None, ...]
 
 
 @dataclass(frozen=True, slots=True)
-class Reading:
-    """One way of reading the text: numbers in plain notation, row by row, and the columns they belong to."""
+class Table:
+    """What a table is read as. It can be taken when there is no problem and no question.
 
-    separator: str
-    decimal: Decimal
-    columns: tuple[str, ...]
-    rows: tuple[tuple[str, ...], ...]
-
-
-@dataclass(frozen=True, slots=True)
-class Pasted:
-    """What a text can be read as: one reading is certain, several must be asked about, none has problems instead."""
-
-    readings: tuple[Reading, ...]
-    problem: Sentence | None = None
-
-
-class _RefusedError(ValueError):
-    def __init__(self, template: str, **values: str | int) -> None:
-        super().__init__(template)
-        self.sentence = Sentence(template, dict(values))
-
-
-def read_table(text: str) -> Pasted:
-    """Every distinct way of reading a pasted table of phases; raises nothing, `problem` says why there is none."""
-    try:
-        lines = _lines(text)
-        readings = [reading for separator in SEPARATORS for reading in _with_separator(lines, separator)]
-        distinct = {(reading.columns, reading.rows): reading for reading in reversed(readings)}
-        if distinct:
-            return Pasted(tuple(reversed(distinct.values())))
-        return Pasted((), _why_not(lines))
-    except _RefusedError as refused:
-        return Pasted((), refused.sentence)
-
-
-def _lines(text: str) -> list[str]:
-    if len(text) > MAXIMUM_CHARACTERS:
-        raise _RefusedError(N_("the text is too long: at most {most} characters"), most=MAXIMUM_CHARACTERS)
-    lines = [line for line in text.removeprefix("\ufeff").splitlines() if line.strip()]
-    if not lines:
-        raise _RefusedError(N_("there is nothing in the text"))
-    if len(lines) > MAXIMUM_PHASES + 1:
-        raise _RefusedError(N_("there are more than {most} rows"), most=MAXIMUM_PHASES)
-    return lines
-
-
-def _with_separator(lines: Sequence[str], separator: str) -> list[Reading]:
-    """Readings with one separator; none where rows have not three or five cells each, or cells are no numbers."""
-    try:
-        columns, body = _shaped(lines, separator)
-    except _RefusedError:
-        return []  # the refusal matters only if no separator makes sense; `_why_not` finds it again then
-    if not body or any(len(row) != len(columns) for row in body):
-        return []
-    readings = []
-    for decimal in _NUMBER:
-        if decimal != separator:
-            rows = tuple(tuple(_plain(cell, decimal) for cell in row) for row in body)
-            wanted = sum(bool(cell) for row in body for cell in row)
-            if sum(bool(cell) for row in rows for cell in row) == wanted:
-                readings.append(Reading(separator, decimal, columns, rows))
-    return readings
-
-
-def _shaped(lines: Sequence[str], separator: str) -> tuple[tuple[str, ...], list[list[str]]]:
-    """Columns and rows; where some rows carry loads, the others end in blank cells."""
-    table = [_cells(line, separator) for line in lines]
-    width = max(len(row) for row in table)
-    if width > MOST_COLUMNS:
-        raise _RefusedError(N_("a row has {cells} cells: paste the columns of the duty cycle alone"), cells=width)
-    columns, body = _header(table, width)
-    if len(columns) > 3:
-        body = [row + [""] * (len(columns) - len(row)) if len(row) >= 3 else row for row in body]
-    return columns, body
-
-
-def _cells(line: str, separator: str) -> list[str]:
-    if separator == " ":
-        return line.split()
-    try:
-        row = next(csv.reader([line], delimiter=separator), [])
-    except csv.Error:  # a cell longer than the module takes
-        raise _RefusedError(N_("a cell is longer than any number or heading")) from None
-    while len(row) > 3 and not row[-1].strip():
-        row.pop()  # spreadsheets end their rows with empty cells
-    return [cell.strip() for cell in row]
-
-
-def _header(table: list[list[str]], width: int) -> tuple[tuple[str, ...], list[list[str]]]:
-    """Columns and the rows below them. A first row without any digit is a header, and must say what they are.
-
-    Without one the order is fixed.
+    `phases` are plain numbers in units of the wire, in the order of COLUMNS, blank where a phase has no load.
     """
-    first = table[0]
-    if any(any(character.isdigit() for character in _heading(cell)[0]) for cell in first) or not any(first):
-        return COLUMNS[: 5 if width > 3 else 3], table
-    names = [_column_of(*_heading(cell)) for cell in first]
-    columns = tuple(name or "" for name in names)
-    if "" in columns or len(set(columns)) < len(columns) or not {"T", "n", "t"} <= set(columns):
-        raise _RefusedError(
-            N_("the header must name torque, speed and duration, and perhaps radial and axial load (found: {found})"),
-            found=", ".join(first)[:80],
+
+    problem: Sentence | None = None
+    questions: tuple[Sentence, ...] = ()
+    notes: tuple[Sentence, ...] = ()
+    separator: str = ""
+    separators: tuple[str, ...] = ()
+    turned: bool = False
+    decimal: Decimal | None = None
+    marks: tuple[tuple[str, str], ...] = ()
+    times: str = ""
+    asks_times: bool = False
+    last: str = ""
+    asks_last: bool = False
+    columns: tuple[Column, ...] = ()
+    body: Body | None = None
+    phases: tuple[tuple[str, ...], ...] = ()
+
+    @property
+    def whole(self) -> bool:
+        """Whether it can be taken as it is."""
+        return bool(self.phases) and not self.questions
+
+
+def read_text(text: str, choices: Choices = NO_CHOICES, assumed: Collection[str] = tuple(WIRE.values())) -> Table:
+    """What a pasted text is read as; raises nothing, `problem` says why it can't be."""
+    try:
+        grids = grids_of(text)
+    except RefusedError as refused:
+        return Table(refused.sentence)
+    tables = [read_grid(grid, choices, assumed) for grid in grids]
+    readable = [table for table in tables if table.problem is None]
+    distinct = list({_said(table): table for table in reversed(readable)}.values())[::-1]
+    if not distinct:
+        return tables[0]
+    names = tuple(table.separator for table in distinct)
+    if len(distinct) == 1:
+        return distinct[0]
+    chosen = next((table for table in distinct if table.separator == choices.separator), None)
+    if chosen:
+        return replace(chosen, separators=names)
+    question = Sentence(N_("Which mark stands between the columns?"))
+    return replace(distinct[0], separators=names, separator="", questions=(question,), phases=())
+
+
+def _said(table: Table) -> tuple[object, ...]:
+    """What tells two readings of one text apart."""
+    if table.whole:
+        return table.phases
+    return (table.separator,)
+
+
+def read_grid(grid: Grid, choices: Choices = NO_CHOICES, assumed: Collection[str] = tuple(WIRE.values())) -> Table:
+    """What a table of cells is read as; raises nothing, `problem` says why it can't be."""
+    try:
+        body = body_of(grid)
+        if len(body.rows) > MAXIMUM_PHASES:
+            raise RefusedError(N_("there are more than {most} rows"), most=MAXIMUM_PHASES)
+        columns = columns_of(body, choices, assumed)
+        return _Reading(body, columns, choices).table()
+    except RefusedError as refused:
+        return Table(refused.sentence, separator=grid.separator)
+
+
+class _Reading:
+    """One table on its way from cells to phases."""
+
+    def __init__(self, body: Body, columns: tuple[Column, ...], choices: Choices) -> None:
+        self.body, self.columns, self.choices = body, columns, choices
+        self.used = [column for column in columns if column.role in QUANTITIES]
+        self.questions: list[Sentence] = []
+
+    def table(self) -> Table:
+        """The table with what is to be asked, or with its phases; raises RefusedError."""
+        self._ask_columns()
+        readings = self._readings()
+        decimal, marks = self._decimal(readings)
+        rows = readings[decimal] if decimal else next(iter(readings.values()))
+        times, asks_times = self._times(rows)
+        rows, last, asks_last = self._last(rows, times)
+        open_ = bool(self.questions)
+        return Table(
+            questions=tuple(self.questions),
+            notes=self.body.notes,
+            separator=self.body.grid.separator,
+            turned=self.body.grid.turned,
+            decimal=decimal,
+            marks=marks,
+            times=times,
+            asks_times=asks_times,
+            last=last,
+            asks_last=asks_last,
+            columns=self.columns,
+            body=self.body,
+            phases=() if open_ else self._phases(rows, times),
         )
-    return columns, table[1:]
 
+    # --- Columns ------------------------------------------------------------------------------------------------------
 
-def _heading(cell: str) -> tuple[str, str | None]:
-    """Name and unit of a header cell: `Drehzahl [1/min]`, `Drehzahl 1/min`, `Drehzahl_1/min` are (drehzahl, 1/min)."""
-    cell = " ".join(cell.split())
-    if len(cell) > LONGEST_HEADING:
-        return cell, None
-    spelled = cell.replace("_", " ")
-    end = max((len(name) for name in _NAMES if f"{spelled.casefold()} ".startswith(f"{name} ")), default=0)
-    if end and not re.match(r" ?[\[(/]| in\b", spelled[end:]):
-        return spelled[:end], spelled[end:].strip() or None
-    match = _UNIT.match(cell)
-    if match is None:
-        return cell, None
-    return match[1].strip(), next(group for group in match.groups()[1:] if group)
+    def _ask_columns(self) -> None:
+        roles = [column.role for column in self.columns]
+        for column in self.columns:
+            if not column.role:
+                self._ask(N_("What is column {name}?"), name=_name(column))
+            elif column.role != SKIP and not column.unit:
+                self._ask(N_("Which unit is column {name} in?"), name=_name(column))
+        for role in QUANTITIES:
+            if role in REQUIRED and role not in roles and "" not in roles:
+                self._ask(MISSING[role])
+            if roles.count(role) > 1:
+                self._ask(TWICE[role])
 
+    def _ask(self, template: str, **values: str) -> None:
+        self.questions.append(Sentence(template, dict(values)))
 
-def _column_of(name: str, unit: str | None) -> str | None:
-    column = name if name in ("T", "t") else _NAMES.get(name.casefold(), "")
-    if column and unit is not None and unit.casefold().strip() not in _UNITS[column]:
-        raise _RefusedError(
-            N_("the column {name} is in {unit}: give it in {wanted}"), name=name, unit=unit, wanted=_WANTED[column]
+    # --- Numbers ------------------------------------------------------------------------------------------------------
+
+    def _readings(self) -> dict[Decimal, list[Row]]:
+        """Rows of the used columns by each decimal mark that makes numbers of all of them."""
+        readings: dict[Decimal, list[Row]] = {}
+        for decimal in DECIMALS:
+            rows = [tuple(self._entry(row, column, decimal) for column in self.used) for row in self.body.rows]
+            wanted = sum(not is_blank(row[column.place]) for row in self.body.rows for column in self.used)
+            if sum(cell is not None for row in rows for cell in row) == wanted:
+                readings[decimal] = rows
+        if not readings:
+            raise self._unreadable()
+        return readings
+
+    def _entry(self, row: Sequence[str], column: Column, decimal: Decimal) -> Entry | None:
+        return None if is_blank(row[column.place]) else entry(row[column.place], decimal)
+
+    def _unreadable(self) -> RefusedError:
+        for number, row in zip(self.body.numbers, self.body.rows, strict=True):
+            for column in self.used:
+                cell = row[column.place]
+                if not is_blank(cell) and not any(entry(cell, decimal) for decimal in DECIMALS):
+                    return RefusedError(N_("row {row}: {cell} is not a number"), row=number, cell=cell[:40])
+        return RefusedError(N_("the rows write their decimals in different ways: use a point or a comma throughout"))
+
+    def _decimal(self, readings: dict[Decimal, list[Row]]) -> tuple[Decimal | None, tuple[tuple[str, str], ...]]:
+        """Decimal mark, or None where two would give different numbers; and a number that they differ in, by mark."""
+        if len(readings) == 1:
+            return next(iter(readings)), ()
+        pairs = zip(*(chain.from_iterable(rows) for rows in readings.values()), strict=True)
+        differing = next(((a, b) for a, b in pairs if a != b), None)
+        if differing is None:
+            return DECIMALS[0], ()
+        marks = tuple((mark, cell.number) for mark, cell in zip(readings, differing, strict=True) if cell)
+        if self.choices.decimal in readings:
+            return next(mark for mark in readings if mark == self.choices.decimal), marks
+        self._ask(N_("Which is the decimal mark?"))
+        return None, marks
+
+    # --- Times and sums -----------------------------------------------------------------------------------------------
+
+    def _seconds(self, row: Row) -> Fraction | None:
+        """Time of a row in seconds, None where it is blank or its unit is to be asked."""
+        for column, cell in zip(self.used, row, strict=True):
+            if column.role == "t" and cell is not None and column.unit:
+                return Fraction(cell.number) / units.entered("s", self._code(cell, column)).factor
+        return None
+
+    def _times(self, rows: Sequence[Row]) -> tuple[str, bool]:
+        """What the times are, and whether that is asked: they may be points in time where they never go back."""
+        seconds = [self._seconds(row) for row in rows]
+        known = [each for each in seconds if each is not None]
+        lasting = any(column.lasting for column in self.used if column.role == "t")
+        rising = len(known) == len(rows) > 1 and known == sorted(known) and known[-1] > known[0]
+        if lasting or not rising:
+            return "durations", False
+        if self.choices.times in TIMES:
+            return self.choices.times, True
+        self._ask(N_("Do the times say how long a phase lasts, or when it is?"))
+        return "", True
+
+    def _last(self, rows: list[Row], times: str) -> tuple[list[Row], str, bool]:
+        """Rows of phases; what the last one is, and whether that is asked: it may be the sum of the others."""
+        partial = len(rows) > 1 and self._time_alone(rows[-1])
+        if times == "starts":
+            self._require_filled(rows[:-1])
+            return rows, "", False
+        self._require_filled(
+            rows[:-1] if partial and not times else rows[: -1 if partial and self._sums(rows) else None]
         )
-    return column or None
+        if times != "durations" or not self._sums(rows):
+            return rows, "", False
+        if partial:
+            return rows[:-1], "sum", False
+        if len(rows) == 2 and rows[0] != rows[1]:  # two phases that take equally long are no sign of a sum
+            return rows, "", False
+        if self.choices.last in LAST:
+            return (rows[:-1] if self.choices.last == "sum" else rows), self.choices.last, True
+        self._ask(N_("The last row takes as long as all others together. What is it?"))
+        return rows, "", True
+
+    def _time_alone(self, row: Row) -> bool:
+        """Whether a row has a time and nothing else of a phase."""
+        given = {column.role for column, cell in zip(self.used, row, strict=True) if cell is not None}
+        return "t" in given and not {"T", "n"} <= given
+
+    def _sums(self, rows: Sequence[Row]) -> bool:
+        """Whether the last row takes as long as all others together, to three digits."""
+        *before, last = [self._seconds(row) or Fraction(0) for row in rows]
+        return bool(before) and last > 0 and abs(last - sum(before)) <= last / 1000
+
+    def _require_filled(self, rows: Sequence[Row]) -> None:
+        """Raise RefusedError where torque, speed or duration of a phase is blank."""
+        for number, row in zip(self.body.numbers, rows, strict=False):
+            for column, cell in zip(self.used, row, strict=True):
+                if cell is None and column.role in REQUIRED:
+                    raise RefusedError(BLANK[column.role], row=number)
+
+    # --- Phases -------------------------------------------------------------------------------------------------------
+
+    def _code(self, cell: Entry, column: Column) -> str:
+        """Code of the unit that a number is in: its own, else its column's. Raises RefusedError where they differ."""
+        if not cell.unit:
+            return column.unit
+        codes = units.codes_for(cell.unit, column.quantity)
+        headed = any(heading_of(text).unit for text in self.body.headings[column.place])
+        if len(codes) != 1 or (headed and codes[0] != column.unit):
+            template = N_("{cell}: this unit does not belong to column {name}")
+            raise RefusedError(template, cell=f"{cell.number[:30]} {cell.unit[:30]}", name=_name(column))
+        return codes[0]
+
+    def _phases(self, rows: Sequence[Row], times: str) -> tuple[tuple[str, ...], ...]:
+        """Numbers in units of the wire; points in time become how long each phase lasts."""
+        phases = [
+            {column.role: self._wire(cell, column) for column, cell in zip(self.used, row, strict=True) if cell}
+            for row in rows
+        ]
+        if times in ("starts", "ends"):
+            at = [self._seconds(row) or Fraction(0) for row in rows]
+            at = at if times == "starts" else [Fraction(0), *at]
+            lasting = [_text(float(end - start)) for start, end in pairwise(at)]
+            phases = [{**phase, "t": t} for phase, t in zip(phases, lasting, strict=False)]
+        return tuple(tuple(phase.get(role, "") for role in COLUMNS) for phase in phases)
+
+    def _wire(self, cell: Entry, column: Column) -> str:
+        measure = units.entered(WIRE[column.role], self._code(cell, column))
+        if measure.same:
+            return cell.number
+        value = measure.wire(cell.number)
+        return _text(value) if isfinite(value) else cell.number
 
 
-_WANTED = {"T": "Nm", "n": "rpm", "t": "s", "FRi": "N", "FAi": "N"}
+MISSING = {
+    "T": N_("Which column is the torque?"),
+    "n": N_("Which column is the speed?"),
+    "t": N_("Which column is the duration?"),
+}
+TWICE = {
+    "T": N_("Two columns are the torque."),
+    "n": N_("Two columns are the speed."),
+    "t": N_("Two columns are the duration."),
+    "FRi": N_("Two columns are the radial load."),
+    "FAi": N_("Two columns are the axial load."),
+}
+BLANK = {
+    "T": N_("row {row}: the torque is blank"),
+    "n": N_("row {row}: the speed is blank"),
+    "t": N_("row {row}: the duration is blank"),
+}
 
 
-def _plain(cell: str, decimal: Decimal) -> str:
-    """A number as this decimal mark reads it, with a point and without grouping; empty where it is none."""
-    cell = cell.replace("\N{MINUS SIGN}", "-")
-    if len(cell) > LONGEST_CELL:
-        return ""
-    if not _NUMBER[decimal].fullmatch(cell) or not any(character.isdigit() for character in cell):
-        return ""
-    mantissa = re.sub(r"[^0-9eE+\-,.]", "", cell)
-    group = "," if decimal == "." else "."
-    return mantissa.replace(group, "").replace(decimal, ".")
+def _name(column: Column) -> str:
+    """What a question calls a column: its heading, else its number."""
+    return f"“{column.heading[:40]}”" if column.heading else str(column.place + 1)
 
 
-def _why_not(lines: Sequence[str]) -> Sentence:
-    """What keeps the text from being read, by its most likely separator."""
-    separator = next((mark for mark in ("\t", ";") if mark in lines[0]), " " if "," not in lines[0] else ",")
-    columns, body = _shaped(lines, separator)
-    if not body:
-        return Sentence(N_("there is a header, but no row of numbers below it"))
-    for number, row in enumerate(body, start=1 + len(lines) - len(body)):
-        if len(row) != len(columns):
-            return Sentence(
-                N_("row {row} has {cells} cells; a row has torque, speed and duration, or these and both loads"),
-                {"row": number, "cells": len(row)},
-            )
-        for cell in filter(None, row):
-            if not _plain(cell, ".") and not _plain(cell, ","):
-                return Sentence(N_("row {row}: {cell} is not a number"), {"row": number, "cell": cell[:40]})
-    return Sentence(N_("the rows write their decimals in different ways: use a point or a comma throughout"))
+def _text(value: float) -> str:
+    return repr(value).removesuffix(".0")
 
 
 def write_table(cycle: DutyCycle, decimal: Decimal = ".") -> str:
-    """Phases as CSV that `read_table` and a spreadsheet of that language read back exactly, with loads if any."""
+    """Phases as CSV that `read_text` and a spreadsheet of that language read back exactly, with loads if any."""
     separator = ";" if decimal == "," else ","
     fields = ["torque_Nm", "speed_rpm", "duration_s", "radial_N", "axial_N"]
     if all(phase.radial_N is None and phase.axial_N is None for phase in cycle.phases):

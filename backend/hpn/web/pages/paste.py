@@ -1,14 +1,18 @@
-"""Pasting a table or opening a file: first what would be taken, in words and numbers, then taking it.
+"""Pasting a table or opening a file: first what would be taken, each column to be corrected, then taking it.
 
 `GET /paste?<form>` is the page of that; `POST /paste` answers with it, or for htmx with the preview alone. The form
 comes along as the field `link`, so that nothing typed is lost on the way.
 """
 
-from collections.abc import Sequence
+import hashlib
+import re
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from math import isfinite
+from typing import Any
 from urllib.parse import urlencode
 
+import orjson
 from fastapi import APIRouter
 from pydantic import ValidationError
 from starlette.requests import Request
@@ -19,11 +23,18 @@ from hpn.web.door.access import admit
 from hpn.web.door.bodies import pairs_of, parsed
 from hpn.web.door.pools import compute, worked
 from hpn.web.door.problems import Problem, plain_message, pointer
-from hpn.web.door.uploads import read_fields
+from hpn.web.door.uploads import decoded, read_parts
+from hpn.web.door.visit import current
+from hpn.web.form import cells
 from hpn.web.form import read as links
-from hpn.web.form.pasted import COLUMNS, SEPARATORS, Pasted, Reading, read_table
+from hpn.web.form.cells import Decimal, Figure
+from hpn.web.form.columns import CELLS, SKIP, WIRE, Choices, Column
+from hpn.web.form.headings import QUANTITIES
+from hpn.web.form.pasted import COLUMNS, LAST, TIMES, Table, read_grid, read_text
 from hpn.web.form.read import Pairs
+from hpn.web.form.sheets import SEPARATORS, RefusedError, grid_of
 from hpn.web.form.symbols import PHASE_SYMBOLS
+from hpn.web.form.workbooks import MAGIC, OLD_MAGIC, Sheets, sheets_of
 from hpn.web.form.write import to_link
 from hpn.web.pages import long_cycles
 from hpn.web.pages.templates import environment
@@ -33,30 +44,37 @@ FIRST_ROWS, LAST_ROWS = 6, 2
 """Rows of a long table that the preview shows."""
 
 DECIMALS = {".": N_("a point"), ",": N_("a comma")}
-COLUMN_UNITS = dict(zip(COLUMNS, ("Nm", "rpm", "s", "N", "N"), strict=True))
-"""Units that a table is read in, whatever the page shows."""
+OLD_WORKBOOK = N_("a workbook of this old format can’t be read: save it as XLSX or CSV")
 
-NOTHING = Pasted(())
 _PHASE_NAMES = {symbol.name for symbol in PHASE_SYMBOLS}
+_PLACE = re.compile(r"([ru])([0-9]{1,6})")
 
 
 @dataclass(frozen=True, slots=True)
 class TableRow:
-    """A row of a preview: its number, its cells, and for each whether another reading says otherwise."""
+    """A row of a preview: its number in the table, and its cells."""
 
     number: int
-    cells: tuple[tuple[str, bool], ...]
+    cells: tuple["TableCell", ...]
+
+
+@dataclass(frozen=True, slots=True)
+class TableCell:
+    """A number as it is read, in plain notation, or a text as it is written; `asked` where it has two readings."""
+
+    text: str
+    unit: str = ""
+    read: bool = False
+    asked: bool = False
 
 
 @dataclass(frozen=True, slots=True)
 class TablePreview:
-    """One reading of a table as the page shows it."""
+    """A table as the page shows it."""
 
-    index: int
-    separator: str
-    decimal: str
-    columns: tuple[str, ...]
+    table: Table
     count: int
+    hidden: int
     first: tuple[TableRow, ...]
     last: tuple[TableRow, ...]
     total_s: float | None
@@ -64,14 +82,23 @@ class TablePreview:
 
 @dataclass(frozen=True, slots=True)
 class PasteDraft:
-    """State of the page: the form that it came from, the text, and what can be made of it."""
+    """State of the page: the form that it came from, what was given, and what can be made of it.
+
+    `of` names what the choices belong to: they end when another text or file is given. `book` carries the cells of a
+    workbook along where no script sends its file again.
+    """
 
     link: str
     text: str = ""
-    previews: tuple[TablePreview, ...] = ()
+    preview: TablePreview | None = None
     application: Application | None = None
     problems: tuple[Sentence, ...] = ()
     has_phases: bool = False
+    example: bool = False
+    of: str = ""
+    sheets: tuple[str, ...] = ()
+    sheet: str = ""
+    book: str = ""
 
 
 def start(request: Request) -> Response:
@@ -82,27 +109,108 @@ def start(request: Request) -> Response:
 async def paste(request: Request) -> Response:
     """Previews what was pasted or uploaded, or takes it."""
     try:
-        fields = await read_fields(request)
+        return await compute(request, "pages", _answer, request, await read_parts(request))
     except Problem as problem:
         problems = problem.sentences or (_plain(problem.detail),)
         return _render(request, PasteDraft("", problems=problems), problem.status_code)
-    return await compute(request, "pages", _answer, request, fields)
 
 
-def _answer(request: Request, fields: dict[str, str]) -> Response:
-    text = (fields.get("file", "") or fields.get("text", "")).removeprefix("\ufeff")
-    take, link = fields.get("take", ""), fields.get("link", "").removeprefix("/").removeprefix("?")
+def _answer(request: Request, parts: Mapping[str, bytes]) -> Response:
+    file = parts.get("file", b"")
+    fields = {name: decoded(content) for name, content in parts.items() if name != "file"}
+    link = fields.get("link", "").removeprefix("/").removeprefix("?")
+    if file.startswith((MAGIC, OLD_MAGIC)) or (fields.get("book") and not file and not fields.get("text", "").strip()):
+        return _of_workbook(request, link, file, fields)
+    text = (decoded(file) or fields.get("text", "")).removeprefix("\ufeff").replace("\r\n", "\n")
     if text.lstrip().startswith("{"):
-        draft = _opened(link, text)
-        if draft.application and (take or "hx-request" not in request.headers):
-            query = to_link(draft.application).removeprefix("/?")
-            return _proceed(request, pairs_of(query))
-        return _render(request, draft, 422 if draft.problems else 200)
-    pasted = read_table(text) if text.strip() else NOTHING
-    mode, _, index = take.partition(":")
-    if index.isascii() and index.isdigit() and int(index[:3]) < len(pasted.readings):
-        return _proceed(request, taken(link, pasted.readings[int(index[:3])], append=mode == "append"))
-    draft = _draft(link, text, pasted)
+        return _of_application(request, link, text, fields.get("take", ""))
+    of = _digest(text.encode(errors="replace"))
+    table = read_text(text, _choices(fields, of), _assumed()) if text.strip() else None
+    return _taken_or_shown(request, fields, _draft(link, text, table, of=of))
+
+
+def _of_workbook(request: Request, link: str, file: bytes, fields: Mapping[str, str]) -> Response:
+    if file.startswith(OLD_MAGIC):
+        return _render(request, PasteDraft(link, problems=(Sentence(OLD_WORKBOOK),)), 422)
+    try:
+        sheets = sheets_of(file) if file else _unpacked(fields["book"])
+    except RefusedError as refused:
+        return _render(request, PasteDraft(link, problems=(refused.sentence,)), 422)
+    book = _packed(sheets)
+    of = _digest(book)
+    chosen = fields.get("sheet", "") if fields.get("of") == of else ""
+    sheet = chosen if chosen in sheets else next(iter(sheets)) if len(sheets) == 1 else ""
+    table = _of_sheet(sheets[sheet], _choices(fields, of)) if sheet else None
+    carried = "" if "hx-request" in request.headers else book.decode()
+    draft = _draft(link, "", table, of=of, sheets=tuple(sheets), sheet=sheet, book=carried)
+    return _taken_or_shown(request, fields, draft)
+
+
+def _of_sheet(rows: Sequence[Sequence[str]], choices: Choices) -> Table:
+    try:
+        return read_grid(grid_of(rows), choices, _assumed())
+    except RefusedError as refused:
+        return Table(refused.sentence)
+
+
+def _packed(sheets: Sheets) -> bytes:
+    """Cells of a workbook as JSON: a number stands in a list of its own, so that it stays one."""
+    return orjson.dumps(
+        {
+            name: [[[str(c)] if isinstance(c, Figure) else c for c in row] for row in rows]
+            for name, rows in sheets.items()
+        }
+    )
+
+
+def _unpacked(book: str) -> Sheets:
+    """Cells as `_packed` wrote them; raises RefusedError for anything else."""
+    try:
+        return {
+            str(name): [[c if isinstance(c, str) else Figure(c[0]) for c in row] for row in rows]
+            for name, rows in orjson.loads(book).items()
+        }
+    except (ValueError, TypeError, KeyError, IndexError, AttributeError):
+        raise RefusedError(N_("there is nothing in the workbook")) from None
+
+
+def _digest(content: bytes) -> str:
+    return hashlib.sha256(content).hexdigest()[:16]
+
+
+def _choices(fields: Mapping[str, str], of: str) -> Choices:
+    """What was chosen for this very text; for another one, nothing is."""
+    if fields.get("of") != of:
+        return Choices()
+    said: dict[str, dict[int, str]] = {"r": {}, "u": {}}
+    for name, value in fields.items():
+        if place := _PLACE.fullmatch(name):
+            said[place[1]][int(place[2])] = value
+    named = {name: fields.get(name, "") for name in ("separator", "decimal", "times", "last")}
+    return Choices(**named, roles=said["r"], units=said["u"])
+
+
+def _assumed() -> tuple[str, ...]:
+    """Units that a column without one is taken to be in: those of the wire that the reader sees as well."""
+    reader = current()
+    return tuple(unit for unit in WIRE.values() if reader.measure(unit).same)
+
+
+def _taken_or_shown(request: Request, fields: Mapping[str, str], draft: PasteDraft) -> Response:
+    mode = fields.get("take", "").partition(":")[0]
+    if mode in ("replace", "append") and draft.preview and draft.preview.table.whole:
+        return _proceed(request, taken(draft, append=mode == "append"))
+    return _render(request, draft, 422 if draft.problems else 200)
+
+
+# --- Applications in JSON ---------------------------------------------------------------------------------------------
+
+
+def _of_application(request: Request, link: str, text: str, take: str) -> Response:
+    draft = _opened(link, text)
+    if draft.application and (take or "hx-request" not in request.headers):
+        query = to_link(draft.application).removeprefix("/?")
+        return _proceed(request, pairs_of(query))
     return _render(request, draft, 422 if draft.problems else 200)
 
 
@@ -124,48 +232,73 @@ def _opened(link: str, text: str) -> PasteDraft:
         return PasteDraft(link, text, problems=tuple(problems))
 
 
-def _draft(link: str, text: str = "", pasted: Pasted = NOTHING) -> PasteDraft:
+# --- Drafts and previews ----------------------------------------------------------------------------------------------
+
+
+def _draft(link: str, text: str = "", table: Table | None = None, **more: Any) -> PasteDraft:
     """Draft of a table, or of nothing yet."""
     return PasteDraft(
         link,
         text,
-        previews=tuple(_preview(pasted, index) for index in range(len(pasted.readings))),
-        problems=(pasted.problem,) if pasted.problem else (),
+        preview=_preview(table) if table and not table.problem else None,
+        problems=(table.problem,) if table and table.problem else (),
         has_phases=any(name in {*_PHASE_NAMES, "phases"} and value for name, value in pairs_of(link)),
+        example=table is not None and is_example(link),
+        **more,
     )
 
 
-def _preview(pasted: Pasted, index: int) -> TablePreview:
-    reading = pasted.readings[index]
-    others = [other for other in pasted.readings if other.columns == reading.columns and other is not reading]
-    count = len(reading.rows)
-    shown = count <= FIRST_ROWS + LAST_ROWS + 1
-    total_s = sum(float(row[reading.columns.index("t")] or 0) for row in reading.rows)
+def is_example(link: str) -> bool:
+    """Whether a form says what the handbook's worked example says, and nothing else."""
+    application = links.parse(long_cycles.expanded(pairs_of(link))).application if link else None
+    return application is not None and to_link(application) == to_link(Application.worked_example())
 
-    def rows(numbers: Sequence[int]) -> tuple[TableRow, ...]:
-        return tuple(TableRow(k + 1, _marked(reading.rows[k], [other.rows[k] for other in others])) for k in numbers)
 
+def _preview(table: Table) -> TablePreview:
+    assert table.body is not None  # only a table with a problem has none
+    count = len(table.body.rows)
+    short = count <= FIRST_ROWS + LAST_ROWS + 1
+    first, last = (range(count), range(0)) if short else (range(FIRST_ROWS), range(count - LAST_ROWS, count))
+    total_s = sum(float(phase[COLUMNS.index("t")] or 0) for phase in table.phases)
     return TablePreview(
-        index=index,
-        separator=SEPARATORS[reading.separator],
-        decimal=DECIMALS[reading.decimal],
-        columns=reading.columns,
-        count=count,
-        first=rows(range(count if shown else FIRST_ROWS)),
-        last=() if shown else rows(range(count - LAST_ROWS, count)),
-        total_s=total_s if isfinite(total_s) else None,
+        table=table,
+        count=len(table.phases),
+        hidden=count - len(first) - len(last),
+        first=tuple(_row(table, k) for k in first),
+        last=tuple(_row(table, k) for k in last),
+        total_s=total_s if table.phases and isfinite(total_s) else None,
     )
 
 
-def _marked(row: Sequence[str], others: Sequence[Sequence[str]]) -> tuple[tuple[str, bool], ...]:
-    return tuple((cell, any(other[k] != cell for other in others)) for k, cell in enumerate(row))
+def _row(table: Table, k: int) -> TableRow:
+    assert table.body is not None
+    row = table.body.rows[k]
+    return TableRow(table.body.numbers[k], tuple(_cell(table, column, row[column.place]) for column in table.columns))
 
 
-def taken(link: str, reading: Reading, *, append: bool) -> list[tuple[str, str]]:
-    """Pairs of the form with the phases of a reading, instead of its own or after them."""
-    pairs, _ = links.in_wire_units(long_cycles.expanded(pairs_of(link)))
-    rest = [(name, value) for name, value in pairs if value.strip() and name not in {*_PHASE_NAMES, "do", "phases"}]
-    rows = [dict(zip(reading.columns, row, strict=True)) for row in reading.rows]
+def _cell(table: Table, column: Column, cell: str) -> TableCell:
+    if column.role not in COLUMNS:
+        return TableCell(cell)
+    marks: tuple[Decimal, ...] = (table.decimal,) if table.decimal else cells.DECIMALS
+    found = {read for mark in marks if (read := cells.entry(cell, mark))}
+    if len(found) != 1:
+        return TableCell(cell, asked=bool(found))
+    read = found.pop()
+    return TableCell(read.number, read.unit, read=True)
+
+
+def taken(draft: PasteDraft, *, append: bool) -> list[tuple[str, str]]:
+    """Pairs of the form with the phases of a table, instead of its own or after them.
+
+    In place of the worked example they begin without its pause, emergency stop and ratio.
+    """
+    assert draft.preview is not None
+    pairs, _ = links.in_wire_units(long_cycles.expanded(pairs_of(draft.link)))
+    dropped = {*_PHASE_NAMES, "do", "phases"}
+    if draft.example and not append:
+        dropped |= {name for name, _ in pairs_of(to_link(Application.worked_example()).removeprefix("/?"))}
+    rest = [(name, value) for name, value in pairs if value.strip() and name not in dropped]
+    rows = [dict(zip(COLUMNS, phase, strict=True)) for phase in draft.preview.table.phases]
     if append:
         given = links.parse(pairs).rows
         rows = [dict(row) for row in given if any(text.strip() for text in row.values())] + rows
@@ -188,9 +321,20 @@ def _plain(text: str) -> Sentence:
 def _render(request: Request, draft: PasteDraft, status: int) -> Response:
     name = "_paste_preview.html" if "hx-request" in request.headers else "paste.html"
     template = environment(request.app.state).get_template(name)
-    content = template.render(draft=draft, column_units=COLUMN_UNITS)
+    content = template.render(draft=draft, paste=_WORDS)
     return HTMLResponse(content, status, {"Vary": "HX-Request", "Cache-Control": "no-store"})
 
+
+_WORDS = {
+    "columns": COLUMNS,
+    "skip": SKIP,
+    "cells": CELLS,
+    "separators": SEPARATORS,
+    "decimals": DECIMALS,
+    "times": TIMES,
+    "last": LAST,
+    "quantities": QUANTITIES,
+}
 
 router = APIRouter(include_in_schema=False, dependencies=[admit("calculator")])
 router.add_api_route("/paste", worked(start))

@@ -10,8 +10,9 @@ from hpn.application import Application
 from hpn.web.door.access import admit
 from hpn.web.door.pools import compute
 from hpn.web.door.problems import Problem
+from hpn.web.form.cells import Decimal
 from hpn.web.form.linked import linked, query_of
-from hpn.web.form.pasted import Decimal, write_table
+from hpn.web.form.pasted import write_table
 
 
 async def application_file(request: Request) -> Response:

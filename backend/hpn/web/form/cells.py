@@ -1,0 +1,97 @@
+"""Cells of a table: what is blank, and what is a number, perhaps with a unit, under either decimal mark.
+
+A mark between thousands stands before groups of exactly three digits, is the same throughout a number, and never
+follows a leading zero: `0,250` is a quarter under every reading.
+"""
+
+import re
+from functools import lru_cache
+from typing import Literal, NamedTuple
+
+from hpn.units import QUANTITY_OF, codes_for
+from hpn.web.form.numbers import split_unit
+
+Decimal = Literal[".", ","]
+DECIMALS: tuple[Decimal, ...] = (".", ",")
+
+BLANKS = " \u00a0\u2007\u2008\u2009\u202f"
+"""Blank, no-break, figure, punctuation, thin and narrow no-break space: each may stand between thousands."""
+
+UNSEEN = "\u00ad\u200b\u200c\u200d\u200e\u200f\u2060\ufeff"
+"""Characters without width, which come with cells copied from documents."""
+
+LONGEST_CELL = 400
+"""Characters of a cell that could still be a number: written out, the largest has some 310 digits."""
+
+_EXPONENT = r"(?:[eE][+-]?[0-9]{1,3})?"
+_NUMBER = {
+    decimal: re.compile(
+        rf"[+-]?(?:(?P<plain>(?:[0-9]+(?:[{decimal}][0-9]+)?{trailing}|[{decimal}][0-9]+){_EXPONENT})"
+        rf"|(?P<grouped>[1-9][0-9]{{0,2}}(?P<mark>[{group}'’{BLANKS}])[0-9]{{3}}(?:(?P=mark)[0-9]{{3}})*"
+        rf"(?:[{decimal}][0-9]+)?))"
+    )
+    for decimal, group, trailing in ((".", ",", r"\.?"), (",", ".", ""))
+}
+_DASHES = str.maketrans({"\N{MINUS SIGN}": "-", "\N{EN DASH}": "-"})
+_OF_PHASES = ("torque", "speed", "time", "force")
+_NOTHING = ("", "-", "–", "—")
+
+
+class Figure(str):
+    """A number that a workbook holds as such: in plain notation, with the unit of its format behind a blank."""
+
+    __slots__ = ()
+
+
+class Entry(NamedTuple):
+    """A number in plain notation, and the unit written behind it."""
+
+    number: str
+    unit: str
+
+
+def tidy(cell: str) -> str:
+    """A cell without what can't be seen at its ends."""
+    return cell.strip().strip(UNSEEN).strip()
+
+
+def is_blank(cell: str) -> bool:
+    """Whether a cell says nothing: empty, or a dash."""
+    return cell in _NOTHING
+
+
+def entry(cell: str, decimal: Decimal) -> Entry | None:
+    """A cell as a number under a decimal mark; None where it is none."""
+    if isinstance(cell, Figure):
+        number, _, unit = cell.partition(" ")
+        return Entry(number, unit)
+    return _entry(cell, decimal)
+
+
+@lru_cache(maxsize=20_000)
+def _entry(cell: str, decimal: Decimal) -> Entry | None:
+    if len(cell) > LONGEST_CELL or not any(map(str.isdigit, cell)):
+        return None
+    if (number := plain(cell, decimal)) is not None:
+        return Entry(number, "")
+    written, unit = split_unit(cell)
+    # `1/min` is a unit, and no number of its own; `1'` is no phase's.
+    known = any(QUANTITY_OF[code] in _OF_PHASES for code in codes_for(unit))
+    number = plain(written, decimal) if known and not codes_for(cell) else None
+    return None if number is None else Entry(number, unit)
+
+
+def plain(text: str, decimal: Decimal) -> str | None:
+    """A number with a point as decimal mark and nothing between thousands; None where it is no number."""
+    text = text.translate(_DASHES)
+    match = _NUMBER[decimal].fullmatch(text)
+    if match is None:
+        return None
+    if match["mark"]:
+        text = text.replace(match["mark"], "")
+    return text.replace(decimal, ".").removesuffix(".")
+
+
+def is_number(cell: str) -> bool:
+    """Whether a cell is a number under any decimal mark."""
+    return any(entry(cell, decimal) is not None for decimal in DECIMALS)

@@ -1,0 +1,264 @@
+"""What the rows and columns of a table are: header, units, phases, sums, and of each column the quantity and its unit.
+
+What has two readings is left blank here, and asked by `pasted`.
+"""
+
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+
+from hpn import units
+from hpn.web.form.cells import DECIMALS, entry, is_blank, is_number
+from hpn.web.form.headings import INDEX, LONGEST, QUANTITIES, SUM, UNIT, Heading, heading_of, is_total
+from hpn.web.form.sheets import Grid, RefusedError, require_even
+from hpn.wording import N_, Sentence
+
+WIRE = {"T": "Nm", "n": "rpm", "t": "s", "FRi": "N", "FAi": "N"}
+"""Link symbols of the columns of the duty table -> units of the wire."""
+
+REQUIRED = ("T", "n", "t")
+SKIP, CELLS = "skip", "cells"
+"""Of a column: not read; each cell says its own unit."""
+
+HEAD_ROWS = 20
+"""Rows among which the header is looked for."""
+
+
+@dataclass(frozen=True, slots=True)
+class Choices:
+    """What somebody has said about a table: blank where nothing is."""
+
+    separator: str = ""
+    decimal: str = ""
+    times: str = ""
+    last: str = ""
+    roles: Mapping[int, str] = field(default_factory=dict)
+    units: Mapping[int, str] = field(default_factory=dict)
+
+
+NO_CHOICES = Choices()
+
+
+@dataclass(frozen=True, slots=True)
+class Column:
+    """A column: its place, its heading as written, what it is read as (blank: to be asked), and why it is skipped."""
+
+    place: int
+    heading: str
+    role: str = ""
+    unit: str = ""
+    lasting: bool = False
+    skipped: Sentence | None = None
+    text: bool = False
+
+    @property
+    def quantity(self) -> str:
+        """What its unit measures."""
+        return QUANTITIES.get(self.role, "")
+
+
+@dataclass(frozen=True, slots=True)
+class Body:
+    """Rows of numbers with their numbers for the user, the headings above each column, and what was left out."""
+
+    rows: tuple[tuple[str, ...], ...]
+    numbers: tuple[int, ...]
+    headings: tuple[tuple[str, ...], ...]
+    notes: tuple[Sentence, ...]
+    grid: Grid
+
+    @property
+    def headed(self) -> bool:
+        """Whether anything stands above the numbers."""
+        return any(self.headings)
+
+
+def body_of(grid: Grid) -> Body:
+    """Rows of a table, the right way round; raises RefusedError where they make no table."""
+    grid = _upright(grid)
+    head, first, notes = _head(grid)
+    if first == len(grid.rows):
+        raise RefusedError(N_("there is a header, but no row of numbers below it"))
+    require_even(grid, first, len(head))
+    rows, numbers = [], []
+    for number, row in zip(grid.numbers[first:], grid.rows[first:], strict=True):
+        filled = [cell for cell in row if not is_blank(cell)]
+        label = next((cell for cell in filled if is_total(cell) and not is_number(cell)), None)
+        if label is not None:
+            notes.append(_note(N_("Row {row} is skipped: {text}"), number, label))
+        elif len(filled) == 1 and not is_number(filled[0]):
+            notes.append(_note(N_("Row {row} is skipped: {text}"), number, filled[0]))
+        elif filled:
+            rows.append(row)
+            numbers.append(number)
+    if not rows:
+        raise RefusedError(N_("there is a header, but no row of numbers below it"))
+    headings = tuple(tuple(row[k] for row in head if row[k]) for k in range(grid.width))
+    return Body(tuple(rows), tuple(numbers), headings, tuple(notes), grid)
+
+
+def _note(template: str, number: int, text: str) -> Sentence:
+    return Sentence(template, {"row": number, "text": text[:60]})
+
+
+def _upright(grid: Grid) -> Grid:
+    """The table with a row per phase: turned where its first column names the quantities."""
+    across = max(_named(row) for row in grid.rows[:HEAD_ROWS])
+    if len(grid.rows) > HEAD_ROWS:
+        return grid
+    turned = grid.transposed()
+    down = max(_named(row) for row in turned.rows[:HEAD_ROWS])
+    if down < 2:
+        return grid
+    if across >= 2:
+        raise RefusedError(N_("quantities are named both in a row and in a column: paste one table at a time"))
+    return turned
+
+
+def _named(row: Sequence[str]) -> int:
+    """How many quantities a row names, by name or by unit."""
+    found = set()
+    for cell in row:
+        heading = heading_of(cell)
+        if heading.kind in QUANTITIES:
+            found.add(heading.kind)
+        elif heading.kind == UNIT:
+            found |= {role for role in REQUIRED if QUANTITIES[role] in _quantities(heading.unit)}
+    return len(found)
+
+
+def _numbers_in(row: Sequence[str]) -> int:
+    return sum(is_number(cell) for cell in row)
+
+
+def _head(grid: Grid) -> tuple[list[tuple[str, ...]], int, list[Sentence]]:
+    """Rows of the header, the first row below it, and what stands above it and is skipped."""
+    named = [_named(row) for row in grid.rows[:HEAD_ROWS]]
+    notes: list[Sentence] = []
+    first = named.index(max(named)) if max(named) >= 2 else 0
+    for number, row in zip(grid.numbers[:first], grid.rows[:first], strict=True):
+        if _numbers_in(row) >= 3:
+            raise RefusedError(N_("row {row} has numbers above the header"), row=number)
+        if sum(_named([cell]) > 0 or heading_of(cell).kind == UNIT for cell in row if cell) < 2:
+            notes.append(_note(N_("Row {row} is skipped: {text}"), number, " ".join(filter(None, row))))
+    head = [row for row in grid.rows[:first] if sum(heading_of(cell).kind == UNIT for cell in row if cell) >= 2]
+    end = first
+    while end < len(grid.rows) and _numbers_in(grid.rows[end]) < min(2, grid.width):
+        row = grid.rows[end]
+        if sum(map(bool, row)) < 2 and grid.width > 2:
+            notes.append(_note(N_("Row {row} is skipped: {text}"), grid.numbers[end], " ".join(filter(None, row))))
+        else:
+            head.append(row)
+        end += 1
+    return head, end, notes
+
+
+# --- Columns ----------------------------------------------------------------------------------------------------------
+
+
+def columns_of(body: Body, choices: Choices, assumed: Collection[str]) -> tuple[Column, ...]:
+    """What each column is; `assumed` are the units of the wire that a column without a unit is taken to be in."""
+    proposed = [_column(body, k) for k in range(body.grid.width) if any(not is_blank(row[k]) for row in body.rows)]
+    numeric = [column for column in proposed if not column.text]
+    if len(numeric) < 3:
+        raise _too_few(body, proposed)
+    if not body.headed:
+        roles = _by_place(body, proposed)
+        proposed = [replace(column, role=roles.get(column.place, column.role)) for column in proposed]
+    doubled = {column.role for column in proposed if [other.role for other in proposed].count(column.role) > 1} - {SKIP}
+    proposed = [replace(column, role="") if column.role in doubled else column for column in proposed]
+    return tuple(_chosen(body, column, choices, assumed) for column in proposed)
+
+
+def _too_few(body: Body, columns: Sequence[Column]) -> RefusedError:
+    """Why there are not three columns of numbers."""
+    for number, row in zip(body.numbers, body.rows, strict=True):
+        wrong = next((cell for cell in row if not is_blank(cell) and not is_number(cell)), None)
+        if wrong and len(columns) >= 3:
+            return RefusedError(N_("row {row}: {cell} is not a number"), row=number, cell=wrong[:40])
+    cells = sum(not is_blank(cell) for cell in body.rows[0])
+    template = N_("row {row} has {cells} cells; a phase has torque, speed and duration at least")
+    return RefusedError(template, row=body.numbers[0], cells=cells)
+
+
+def _column(body: Body, place: int) -> Column:
+    """A column by what stands above it."""
+    heading = " ".join(" ".join(text.split()) for text in body.headings[place])[:LONGEST]
+    cells = [row[place] for row in body.rows if not is_blank(row[place])]
+    count = sum(map(is_number, cells))
+    said = [heading_of(text) for text in body.headings[place]]
+    names = {each.kind for each in said if each.kind != UNIT}
+    kind = names.pop() if len(names) == 1 else "" if names else _by_unit(said)
+    if count == 0 or (count < len(cells) and body.headed and kind not in QUANTITIES):
+        return Column(place, heading, SKIP, skipped=Sentence(N_("text")), text=True)
+    if kind in (INDEX, SUM):
+        why = Sentence(N_("numbers the phases")) if kind == INDEX else Sentence(N_("a sum"))
+        return Column(place, heading, SKIP, skipped=why)
+    return Column(place, heading, kind, lasting=any(each.lasting for each in said))
+
+
+def _by_unit(said: Sequence[Heading]) -> str:
+    """Quantity that a unit alone stands for; a force may be radial or axial."""
+    found = {quantity for each in said for quantity in _quantities(each.unit)}
+    return next((role for role in REQUIRED if found == {QUANTITIES[role]}), "")
+
+
+def _quantities(unit: str) -> set[str]:
+    return {units.QUANTITY_OF[code] for code in units.codes_for(unit)}
+
+
+def _by_place(body: Body, columns: Sequence[Column]) -> dict[int, str]:
+    """Quantities of columns without a heading: by the units in their cells, else torque, speed, duration in order.
+
+    Nothing is said of more than three columns, nor where the first may count the phases, or its texts name quantities.
+    """
+    numeric = [column.place for column in columns if not column.text]
+    by_unit = {place: _by_unit([Heading(UNIT, unit) for unit in _units_in(body, place)]) for place in numeric}
+    if any(_units_in(body, place) != {""} for place in numeric):
+        return by_unit
+    labelled = any(column.text for column in columns) and len(REQUIRED) <= len(body.rows) <= len(WIRE)
+    if len(numeric) != 3 or labelled or _counts(body, numeric[0]):
+        return {}
+    return dict(zip(numeric, REQUIRED, strict=True))
+
+
+def _counts(body: Body, place: int) -> bool:
+    """Whether a column of several rows goes 1, 2, 3 or 0, 1, 2."""
+    cells = [row[place].removesuffix(".") for row in body.rows]
+    return len(cells) > 1 and any(cells == [str(k + start) for k in range(len(cells))] for start in (0, 1))
+
+
+def _units_in(body: Body, place: int) -> set[str]:
+    """Units behind the numbers of a column, a blank one for a number without."""
+    found = set()
+    for row in body.rows:
+        read = next(filter(None, (entry(row[place], decimal) for decimal in DECIMALS)), None)
+        if read is not None:
+            found.add(read.unit)
+    return found
+
+
+def _chosen(body: Body, column: Column, choices: Choices, assumed: Collection[str]) -> Column:
+    """A column with what somebody has said about it, and with its unit."""
+    if column.text:
+        return column
+    role = choices.roles.get(column.place, "")
+    if role in (*QUANTITIES, SKIP):
+        column = replace(column, role=role, skipped=column.skipped if role == SKIP else None)
+    if column.role not in QUANTITIES:
+        return column
+    unit = choices.units.get(column.place, "")
+    known = unit in units.READ[column.quantity] or (unit == CELLS and "" not in _units_in(body, column.place))
+    return replace(column, unit=unit if known else _unit(body, column, assumed))
+
+
+def _unit(body: Body, column: Column, assumed: Collection[str]) -> str:
+    """Unit of a column as its heading or its cells say it, else that of the wire if it may be assumed; else blank."""
+    written = {heading_of(text).unit for text in body.headings[column.place]} - {""}
+    if written:
+        codes = {units.codes_for(unit, column.quantity) for unit in written}
+        only = codes.pop() if len(codes) == 1 else ()
+        return only[0] if len(only) == 1 else ""
+    inside = _units_in(body, column.place)
+    if inside == {""}:
+        return WIRE[column.role] if WIRE[column.role] in assumed else ""
+    return "" if "" in inside else CELLS

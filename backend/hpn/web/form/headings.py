@@ -1,0 +1,119 @@
+"""Headings of a table in several languages: which quantity a column holds, and in which unit."""
+
+import re
+from dataclasses import dataclass
+from functools import lru_cache
+
+from hpn import units
+from hpn.web.form.cells import is_blank, tidy
+
+QUANTITIES = {"T": "torque", "n": "speed", "t": "time", "FRi": "force", "FAi": "force"}
+"""Link symbols of the columns of the duty table -> what they measure."""
+
+INDEX, SUM, UNIT = "index", "sum", "unit"
+LONGEST = 80
+
+_EXACT = {"T": "T", "n": "n", "t": "t", "ω": "n", "Md": "T", "Δt": "t", "dt": "t", "FR": "FRi", "FA": "FAi"}
+_WORDS = {
+    "T": "torque; drehmoment; moment; lastmoment; abtriebsmoment; abtriebsdrehmoment; output torque; load torque; "
+    "t out; torque out; couple; coppia; momento; momento torcente; par; vridmoment; koppel",
+    "n": "speed; drehzahl; abtriebsdrehzahl; output speed; rotational speed; winkelgeschwindigkeit; angular velocity; "
+    "angular speed; omega; n out; vitesse; vitesse de rotation; velocità; velocità di rotazione; velocidad; "
+    "velocidad de giro; varvtal; toerental",
+    "t": "duration; dauer; zeitdauer; phasendauer; time; zeit; durée; temps; durata; tempo; duración; tiempo; tid; "
+    "varaktighet; tijd; duur; delta t; zeitpunkt; instant; timestamp; endzeit; startzeit; end time; start time; ende; "
+    "end; start; beginn; bis; von; until; from",
+    "FRi": "radial; radial load; radial force; radialkraft; radiallast; fr; fri; f r; charge radiale; force radiale; "
+    "carico radiale; carga radial; fuerza radial; radiallast",
+    "FAi": "axial; axial load; axial force; axialkraft; axiallast; fa; fai; f a; charge axiale; force axiale; "
+    "carico assiale; carga axial; fuerza axial",
+    INDEX: "nr; no; #; №; n°; nº; pos; index; idx; id; lfd nr; lfd-nr; lfdnr; nummer; number; num; phase; phase nr; "
+    "phase no; phasen-nr; phasennr; phasennummer; step; schritt; segment; abschnitt; row; zeile; étape; fase; steg; "
+    "i; k; line; item; point; punkt",
+}
+_NAMES = {word.strip(): kind for kind, words in _WORDS.items() for word in words.split(";")}
+DURATIONS = {"duration", "dauer", "zeitdauer", "phasendauer", "durée", "durata", "duración", "varaktighet", "duur"} | {
+    *("delta t", "δt", "dt")
+}
+"""Names that mean how long something lasts, and never a point in time."""
+
+_SUMS = re.compile(
+    r"(?:summe|sum|total|gesamt|insgesamt|kumuliert\w*|kumulativ\w*|kum|cumul\w*|cum|somme|somma|suma|totale|summa)\b.*"
+    r"|[σ∑].*"
+)
+_TOTALS = re.compile(
+    r"(?:mittel\w*|average|mean|avg|durchschnitt\w*|moyenne|media|medelvärde|maximum|max|minimum|min|rms|effektiv\w*)\b.*|ø.*"
+)
+_BRACKETS = re.compile(r"(.*?)\s*[\[(<{]\s*(.*?)\s*[\])>}]")
+_BETWEEN = re.compile(r"\s+in\s+|\s*/\s*|\s*,\s*|[\s_]+")
+
+
+@dataclass(frozen=True, slots=True)
+class Heading:
+    """What a heading says: the quantity, an index, a sum, a unit alone, or nothing that is known (`kind` blank)."""
+
+    kind: str
+    unit: str = ""
+    lasting: bool = False
+
+
+@lru_cache(maxsize=2000)
+def heading_of(cell: str) -> Heading:
+    """What a cell says as a heading."""
+    text = " ".join(tidy(cell).split()).rstrip(":").strip()
+    if is_blank(text.strip("[]()")):
+        return Heading(UNIT)
+    if len(text) > LONGEST:
+        return Heading("")
+    if not _kind(text, "") and (unit := _unit_alone(text)):
+        return Heading(UNIT, unit)
+    name, unit = _parts(text)
+    folded = _folded(name)
+    if _SUMS.fullmatch(folded):
+        return Heading(SUM, unit)
+    kind = _kind(name, unit)
+    codes = units.codes_for(unit)
+    if kind in QUANTITIES and codes and QUANTITIES[kind] not in {units.QUANTITY_OF[code] for code in codes}:
+        return Heading("", unit)
+    return Heading(kind, unit, folded in DURATIONS or name == "Δt")
+
+
+def _unit_alone(text: str) -> str:
+    """The unit that a cell is nothing but, or blank."""
+    inner = text.removeprefix("in ").strip("[]()<>{} ")
+    known = inner in units.SPELLINGS if len(inner) == 1 else bool(units.codes_for(inner))
+    return inner if known else ""
+
+
+def _parts(text: str) -> tuple[str, str]:
+    """Name and unit of `Drehzahl [1/min]`, `Drehzahl in 1/min`, `Drehzahl_1/min`, `n / min-1`."""
+    if _kind(text, ""):
+        return text, ""
+    if match := _BRACKETS.fullmatch(text):
+        return match[1].strip(" ,/"), match[2]
+    for between in _BETWEEN.finditer(text):
+        name, unit = text[: between.start()], text[between.end() :]
+        if name and units.codes_for(unit):
+            return name, unit
+    return text, ""
+
+
+def _kind(name: str, unit: str) -> str:
+    if name == "M":
+        return "T" if units.codes_for(unit, "torque") else ""
+    if name in _EXACT:
+        return _EXACT[name]
+    folded = _folded(name)
+    return "" if len(folded) == 1 and folded in "tnm" else _NAMES.get(folded, "")
+
+
+def _folded(name: str) -> str:
+    return " ".join(name.replace("_", " ").replace(".", ". ").casefold().split()).replace(".", "").strip()
+
+
+def is_total(cell: str) -> bool:
+    """Whether a cell labels its row as a sum or another figure of the whole table."""
+    if len(cell) > LONGEST:
+        return False
+    folded = _folded(cell.rstrip(":"))
+    return bool(_SUMS.fullmatch(folded) or _TOTALS.fullmatch(folded))

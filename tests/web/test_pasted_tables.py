@@ -1,0 +1,94 @@
+"""Tables as people paste them: what each becomes, or what is asked, or why it is refused; none is silently wrong."""
+
+import re
+import tomllib
+from html import unescape
+from pathlib import Path
+from typing import Any
+from urllib.parse import parse_qs, urlsplit
+
+import pytest
+from starlette.testclient import TestClient
+
+from hpn.web.app import create_app
+
+Case = dict[str, Any]
+
+FILE = Path(__file__).parent / "pasted/tables.toml"
+GROUPS: dict[str, dict[str, Case]] = tomllib.loads(FILE.read_text("utf-8"))
+CASES = [pytest.param(case, id=f"{group}: {name}") for group, cases in GROUPS.items() for name, case in cases.items()]
+SYMBOLS = ("T", "n", "t", "FRi", "FAi")
+
+
+@pytest.fixture(scope="module")
+def client() -> TestClient:
+    return TestClient(create_app(), follow_redirects=False)
+
+
+def outcome(client: TestClient, case: Case, chosen: dict[str, str]) -> tuple[str, str | list[str]]:
+    """What comes of a table: `becomes` with phases, `asks` with questions, or `refused` with the reason."""
+    fields = {"take": "replace", **chosen}
+    content = case["text"].encode(case["as"]) if "as" in case else b""
+    files = {"file": ("cycle.csv", content)} if "as" in case else None
+    fields |= {} if files else {"text": case["text"]}
+    reply = client.post("/paste", data=fields, files=files, headers={"Cookie": f"hpn_units={case.get('reader', '')}"})
+    assert reply.status_code in (200, 303, 422)
+    if reply.status_code == 303:
+        return "becomes", phases(reply.headers["location"])
+    said = [
+        unescape(text)
+        for text in re.findall(r"<li>(.*?)</li>|<p class=\"error\">(.*?)</p>", reply.text)
+        for text in text
+    ]
+    if reply.status_code == 422:
+        return "refused", "".join(said)
+    return "asks", list(filter(None, said))
+
+
+def phases(location: str) -> str:
+    given = parse_qs(urlsplit(location).query, keep_blank_values=True)
+    rows = zip(*(given[name] for name in SYMBOLS if name in given), strict=True)
+    return "; ".join(" ".join(cell or "-" for cell in row) for row in rows)
+
+
+def judge(found: tuple[str, str | list[str]], wanted: dict[str, str]) -> None:
+    kind, said = found
+    assert kind in wanted, (kind, said)
+    if kind == "becomes":
+        assert said == wanted[kind]
+    elif kind == "refused":
+        assert wanted[kind] in said
+    else:
+        parts = wanted[kind].split("; ")
+        assert len(parts) == len(said), said
+        assert all(part in question for part, question in zip(parts, said, strict=True)), said
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_pasted_table_becomes_what_it_says_or_is_asked_about_or_refused(client: TestClient, case: Case) -> None:
+    wanted = {str(kind): case[kind] for kind in ("becomes", "asks", "refused") if kind in case}
+    judge(outcome(client, case, {}), wanted)
+    if "chosen" in case:
+        then = outcome(client, case, {**case["chosen"], "of": of_table(client, case)})
+        judge(then, {"becomes": case["then"]} if "then" in case else {"asks": case["asks_then"]})
+
+
+def test_choices_about_one_table_say_nothing_about_another(client: TestClient) -> None:
+    case: Case = {"text": "1.234\t250\t3"}
+    chosen = {"decimal": ".", "of": of_table(client, case)}
+    assert outcome(client, case, chosen) == ("becomes", "1.234 250 3")
+    assert outcome(client, {"text": "1.235\t250\t3"}, chosen)[0] == "asks"
+
+
+def of_table(client: TestClient, case: Case) -> str:
+    """What the choices about a table are tied to, as its preview says."""
+    reply = client.post(
+        "/paste", data={"text": case["text"]}, headers={"Cookie": f"hpn_units={case.get('reader', '')}"}
+    )
+    found = re.search(r'name="of" value="(\w+)"', reply.text)
+    assert found, reply.text
+    return found[1]
+
+
+def test_there_are_at_least_150_tables() -> None:
+    assert len(CASES) >= 150
