@@ -48,12 +48,21 @@ document.addEventListener("htmx:config:request", (event) => {
   ctx.request.body.set("link", contentOf(form));
 });
 
+// The preview is exchanged whole, so that each select shows what the server read; who answers keeps the place.
+let answered = null;
+
+document.addEventListener("htmx:before:swap", (event) => {
+  if (event.detail.ctx?.sourceElement.id === "paste-form") answered = document.activeElement.closest("#paste-preview select")?.id;
+});
+
 document.addEventListener("htmx:after:swap", (event) => {
   const { ctx } = event.detail;
   if (ctx?.sourceElement.id !== "paste-form") return;
   if (ctx.kept) {
     document.getElementById("paste").close();
     document.querySelector("#duty input, #phases")?.focus();
+  } else if (answered) {
+    document.getElementById(answered)?.focus();
   } else if (ctx.sourceEvent.type === "submit") {
     document.querySelector("#paste-preview select.asked, #paste-preview .take button")?.focus({ preventScroll: false });
   }

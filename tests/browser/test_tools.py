@@ -43,7 +43,7 @@ def test_german_table_is_shown_and_taken_and_undone(visitor: Visitor) -> None:
     assert not paste(page, GERMAN)
     dialog = page.get_by_role("dialog", name="Paste a table or open a file")
     expect(dialog.get_by_text("Columns apart by tab.")).to_be_visible()
-    expect(dialog.get_by_role("row", name="1 9.3 1 250 0.3")).to_be_visible()
+    expect(dialog.get_by_role("row", name="2 9.3 1 250 0.3")).to_be_visible()
     expect(torque(page, 1)).to_have_value("40")  # nothing is taken yet
     button(page, "Replace phases").click()
     expect(dialog).to_be_hidden()

@@ -188,7 +188,7 @@ def _column(body: Body, place: int) -> Column:
     said = [heading_of(text) for text in body.headings[place]]
     names = {each.kind for each in said if each.kind != UNIT}
     kind = names.pop() if len(names) == 1 else "" if names else _by_unit(said)
-    if count == 0 or (count < len(cells) and body.headed and kind not in QUANTITIES):
+    if kind not in QUANTITIES and (count == 0 or (count < len(cells) and body.headed)):
         return Column(place, heading, SKIP, skipped=Sentence(N_("text")), text=True)
     if kind in (INDEX, SUM):
         why = Sentence(N_("numbers the phases")) if kind == INDEX else Sentence(N_("a sum"))

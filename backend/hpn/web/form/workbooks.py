@@ -10,9 +10,8 @@ from fractions import Fraction
 from io import BytesIO
 from typing import Any
 
-from hpn.application import MAXIMUM_PHASES
 from hpn.web.form.cells import Figure, tidy
-from hpn.web.form.sheets import MOST_CELLS, MOST_HEAD_ROWS, RefusedError
+from hpn.web.form.sheets import MOST_CELLS, RefusedError
 from hpn.wording import N_
 
 MAGIC = b"PK\x03\x04"
@@ -24,7 +23,6 @@ MAXIMUM_BYTES = 8_000_000
 
 MOST_PARTS = 300
 MOST_SHEETS = 20
-MOST_COLUMNS = 200
 
 Sheets = dict[str, list[list[str]]]
 _LITERAL = re.compile(r'"([^"]*)"|\\(.)')
@@ -71,9 +69,12 @@ def _rows(sheet: Any) -> list[list[str]]:
     sheet.reset_dimensions()  # what the file says of its size need not be so
     rows: list[list[str]] = []
     cells = 0
-    for row in sheet.iter_rows(max_row=MAXIMUM_PHASES + MOST_HEAD_ROWS + 1, max_col=MOST_COLUMNS):
-        rows.append([_text(cell) for cell in row])
-        cells += len(row)
+    for row in sheet.iter_rows():
+        said = [_text(cell) for cell in row]
+        while said and not said[-1]:
+            said.pop()
+        rows.append(said)
+        cells += len(said)
         if cells > MOST_CELLS:
             raise RefusedError(
                 N_("there are more than {most} cells: paste the columns of the duty cycle alone"), most=MOST_CELLS

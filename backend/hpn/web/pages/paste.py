@@ -166,12 +166,15 @@ def _packed(sheets: Sheets) -> bytes:
 def _unpacked(book: str) -> Sheets:
     """Cells as `_packed` wrote them; raises RefusedError for anything else."""
     try:
-        return {
+        sheets = {
             str(name): [[c if isinstance(c, str) else Figure(c[0]) for c in row] for row in rows]
             for name, rows in orjson.loads(book).items()
         }
     except (ValueError, TypeError, KeyError, IndexError, AttributeError):
-        raise RefusedError(N_("there is nothing in the workbook")) from None
+        sheets = {}
+    if not sheets:
+        raise RefusedError(N_("there is nothing in the workbook"))
+    return sheets
 
 
 def _digest(content: bytes) -> str:

@@ -1,0 +1,240 @@
+"""Workbooks as tables: what their cells show is what is read, and no file, however made, is an error of the server."""
+
+import io
+import re
+import time
+import zipfile
+from collections.abc import Callable, Sequence
+from datetime import date, timedelta
+from datetime import time as clock
+from html import unescape
+from typing import Any
+from urllib.parse import parse_qs, urlsplit
+
+import openpyxl
+import pytest
+from openpyxl.workbook import Workbook
+from starlette.testclient import TestClient
+
+from hpn.web.app import create_app
+from hpn.web.form.workbooks import MAXIMUM_BYTES, sheets_of
+
+Cell = str | float | date | clock | timedelta | bool | None | tuple[Any, str]
+HEADER: list[Cell] = ["Drehmoment [Nm]", "Drehzahl [1/min]", "Dauer [s]"]
+
+
+@pytest.fixture(scope="module")
+def client() -> TestClient:
+    return TestClient(create_app(), follow_redirects=False)
+
+
+def book(*rows: Sequence[Cell], name: str = "Tabelle1", into: Workbook | None = None) -> Workbook:
+    """A workbook with a sheet of these rows; a pair is a value with its number format."""
+    made = into or Workbook()
+    sheet = made.create_sheet(name) if into or made.active is None else made.active
+    sheet.title = name
+    for k, row in enumerate(rows, start=1):
+        for j, cell in enumerate(row, start=1):
+            value, style = cell if isinstance(cell, tuple) else (cell, None)
+            written = sheet.cell(k, j, value)
+            written.number_format = style or written.number_format
+    return made
+
+
+def content(made: Workbook) -> bytes:
+    out = io.BytesIO()
+    made.save(out)
+    return out.getvalue()
+
+
+def answer(client: TestClient, file: bytes, **fields: str) -> Any:
+    data = {"take": "replace", **fields}
+    return client.post("/paste", data=data, files={"file": ("zyklus.xlsx", file)}, headers={"HX-Request": "true"})
+
+
+def taken(reply: Any) -> list[tuple[str, ...]]:
+    given = parse_qs(urlsplit(reply.headers["location"]).query, keep_blank_values=True)
+    return list(zip(*(given[name] for name in ("T", "n", "t", "FRi", "FAi") if name in given), strict=True))
+
+
+def said(reply: Any) -> str:
+    return unescape(" ".join(re.findall(r"<li>(.*?)</li>|<p class=\"error\">(.*?)</p>", reply.text)[0]))
+
+
+@pytest.mark.parametrize(
+    ("rows", "phases"),
+    [
+        ([HEADER, [40.5, 1250, 0.3]], [("40.5", "1250", "0.3")]),
+        ([[40.5, 1250, 0.3]], [("40.5", "1250", "0.3")]),
+        ([[1.234, 250, 3]], [("1.234", "250", "3")]),  # a number is no text with two readings
+        (
+            [HEADER, [(1234.5, "#,##0.00"), (0.25, "0.000"), (0.123456789012345, "0.0")]],
+            [("1234.5", "0.25", "0.123456789012345")],
+        ),
+        ([["T", "n", "t"], [(0.04, '0.00" kNm"'), (360, '0"°/s"'), (300, '0\\ "ms"')]], [("40", "60", "0.3")]),
+        ([["T", "n", "Dauer"], [(40_000, '0.0," kNm"'), 250, 0.3]], [("40000", "250", "0.3")]),
+        ([["T", "n", "Dauer"], ["40,5", "250", "0,3"]], [("40.5", "250", "0.3")]),
+        ([["T", "n", "Dauer"], ["40,5 Nm", 250, 0.3]], [("40.5", "250", "0.3")]),
+        (
+            [["Zyklus 7"], [], ["Nr.", *HEADER, "Text"], [1, 40, 250, 0.3, "auf"], [2, 20, 250, 0.2, "ab"]],
+            [("40", "250", "0.3"), ("20", "250", "0.2")],
+        ),
+        (
+            [["Drehmoment", "kNm", 0.04, 0.03], ["Drehzahl", "U/s", 4, 5], ["Dauer", "ms", 300, 200]],
+            [("40", "240", "0.3"), ("30", "300", "0.2")],
+        ),
+        ([[None], [None, *HEADER], [None, 40, 250, 0.3]], [("40", "250", "0.3")]),
+        ([HEADER, [40, 250, 3], [20, 250, 0.2], ["Summe", None, 3.2]], [("40", "250", "3"), ("20", "250", "0.2")]),
+    ],
+)
+def test_workbook_becomes_what_its_cells_show(client: TestClient, rows: Any, phases: list[tuple[str, ...]]) -> None:
+    assert taken(answer(client, content(book(*rows)))) == phases
+
+
+@pytest.mark.parametrize(
+    ("cells", "words"),
+    [
+        ([(0.4, "0%"), 250, 3], "0.4 % is not a number"),
+        ([(40, "0 [$€-407]"), 250, "x"], "x is not a number"),
+        ([40, 250, clock(0, 0, 3)], "00:00:03 is not a number"),
+        ([40, 250, timedelta(seconds=3)], "0:00:03 is not a number"),
+        ([40, 250, date(2026, 3, 1)], "is not a number"),
+        ([True, 250, 3], "True is not a number"),
+        ([40, "#DIV/0!", 3], "#DIV/0! is not a number"),
+        (["=A1*2", 250, 3], "the torque is blank"),  # a formula that no program has worked out
+        (["1,5", "2.5", 3], "different ways"),
+    ],
+)
+def test_cell_that_shows_no_number_is_refused(client: TestClient, cells: list[Cell], words: str) -> None:
+    reply = answer(client, content(book(["T", "n", "Dauer", "FR"], [*cells, 1], [40, 250, 3, 1])))
+    assert reply.status_code == 422
+    assert words in said(reply)
+
+
+def test_unit_of_a_format_that_is_none_of_its_column_is_refused(client: TestClient) -> None:
+    reply = answer(client, content(book(["T", "n", "Dauer"], [(40, '0" €"'), 250, 3])))
+    assert reply.status_code == 422
+    assert "40 €: this unit does not belong" in said(reply)
+
+
+def test_row_far_below_is_no_less_read(client: TestClient) -> None:
+    far = b"<row/>" * 20_000 + b"<row><c><v>20</v></c><c><v>250</v></c><c><v>0.2</v></c></row></sheetData>"
+    file = parts(VALID, lambda name, old: old.replace(b"</sheetData>", far) if name == SHEET else old)
+    assert taken(answer(client, file)) == [("40", "250", "0.3"), ("20", "250", "0.2")]
+
+
+def test_text_with_two_readings_is_asked_in_a_workbook_too(client: TestClient) -> None:
+    file = content(book(["T", "n", "Dauer"], ["1,234", 250, 0.5]))
+    reply = answer(client, file)
+    assert "Which is the decimal mark?" in said(reply)
+    of = re.search(r'name="of" value="(\w+)"', reply.text)
+    assert of
+    assert taken(answer(client, file, of=of[1], decimal=",")) == [("1.234", "250", "0.5")]
+    assert taken(answer(client, file, of=of[1], decimal=".")) == [("1234", "250", "0.5")]
+
+
+def test_merged_cells_leave_their_row_without_a_torque(client: TestClient) -> None:
+    made = book(HEADER, [40, 250, 0.3], [None, 500, 0.2])
+    made.active.merge_cells("A2:A3")  # type: ignore[union-attr]
+    reply = answer(client, content(made))
+    assert reply.status_code == 422
+    assert "row 3: the torque is blank" in said(reply)
+
+
+def test_merged_title_and_heading_are_read(client: TestClient) -> None:
+    made = book(
+        ["Lastzyklus", None, None],
+        ["Last", None, "Dauer"],
+        ["Drehmoment [Nm]", "Drehzahl [1/min]", "[s]"],
+        [40, 250, 0.3],
+    )
+    for cells in ("A1:C1", "A2:B2"):
+        made.active.merge_cells(cells)  # type: ignore[union-attr]
+    assert taken(answer(client, content(made))) == [("40", "250", "0.3")]
+
+
+@pytest.mark.parametrize("script", [True, False])
+def test_sheet_is_asked_for_where_several_have_cells(client: TestClient, script: bool) -> None:
+    made = book(HEADER, [40, 250, 0.3], name="Achse 1")
+    book(HEADER, [1.234, 500, 3], name="Achse 2", into=made)
+    made.create_sheet("leer")
+    made.create_sheet("versteckt").append([1, 2, 3])
+    made["versteckt"].sheet_state = "hidden"
+    headers = {"HX-Request": "true"} if script else {}
+    file = content(made)
+    shown = client.post("/paste", files={"file": ("a.xlsx", file)}, headers=headers)
+    assert re.findall(r"<option>(.*?)</option>", shown.text) == ["Achse 1", "Achse 2"]
+    assert "Replace phases" not in shown.text
+    hidden = {name: unescape(value) for name, value in re.findall(r'name="(of|book)" value="([^"]*)"', shown.text)}
+    again = {"file": ("a.xlsx", file)} if script else {"file": ("", b"")}  # without script the file is not sent again
+    reply = client.post("/paste", data={**hidden, "sheet": "Achse 2", "take": "replace"}, files=again, headers=headers)
+    assert taken(reply) == [("1.234", "500", "3")]
+    assert ("book" in hidden) is not script
+
+
+# --- Files that nobody means well with --------------------------------------------------------------------------------
+
+
+def parts(file: bytes, change: Callable[[str, bytes], bytes]) -> bytes:
+    """A workbook with other parts."""
+    out = io.BytesIO()
+    with zipfile.ZipFile(io.BytesIO(file)) as old, zipfile.ZipFile(out, "w", zipfile.ZIP_DEFLATED) as new:
+        for name in old.namelist():
+            new.writestr(name, change(name, old.read(name)))
+    return out.getvalue()
+
+
+VALID = content(book(HEADER, [40, 250, 0.3]))
+SHEET = "xl/worksheets/sheet1.xml"
+ENTITIES = (
+    '<!DOCTYPE x [<!ENTITY a "'
+    + "9" * 100
+    + '">'
+    + "".join(f'<!ENTITY {chr(98 + k)} "{f"&{chr(97 + k)};" * 10}">' for k in range(9))
+    + "]>"
+)
+HOSTILE = {
+    "zip bomb": parts(VALID, lambda name, old: b" " * (MAXIMUM_BYTES + 1) if name == SHEET else old),
+    "entities": parts(
+        VALID, lambda name, old: ENTITIES.encode() + old.replace(b"<v>40</v>", b"<v>&j;</v>") if name == SHEET else old
+    ),
+    "outer entity": parts(
+        VALID,
+        lambda name, old: (
+            b'<!DOCTYPE x [<!ENTITY a SYSTEM "file:///etc/passwd">]>' + old.replace(b"<v>40<", b"<v>&a;<")
+            if name == SHEET
+            else old
+        ),
+    ),
+    "no sheet": parts(VALID, lambda name, old: b"" if name == SHEET else old),
+    "no workbook": parts(VALID, lambda name, old: b"<a/>" if name == "xl/workbook.xml" else old),
+    "cells without end": parts(
+        VALID, lambda name, old: old.replace(b"</row>", b"<c/>" * 1_500_000 + b"</row>") if name == SHEET else old
+    ),
+    "only the first bytes": VALID[:200],
+    "a zip of something else": parts(VALID, lambda name, old: b"x"),
+    "before XLSX": b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1" + b"\0" * 500,
+}
+
+
+@pytest.mark.parametrize("name", HOSTILE)
+def test_hostile_workbook_is_refused_in_reasonable_time(client: TestClient, name: str) -> None:
+    start = time.process_time()
+    reply = answer(client, HOSTILE[name])
+    assert reply.status_code == 422
+    assert 'class="error"' in reply.text
+    assert "root:" not in reply.text
+    assert time.process_time() - start < 20
+
+
+@pytest.mark.parametrize(
+    "carried", ["x", "[]", '{"a": 1}', '{"a": [1]}', '{"a": [[1]]}', '{"a": [[[]]]}', '{"a": [[["x"]]]}', "{}"]
+)
+def test_carried_cells_that_are_none_are_refused(client: TestClient, carried: str) -> None:
+    assert client.post("/paste", data={"book": carried}).status_code == 422
+
+
+def test_size_that_a_workbook_states_of_itself_is_not_believed() -> None:
+    file = parts(VALID, lambda name, old: old.replace(b'ref="A1:C2"', b'ref="A1:A1"') if name == SHEET else old)
+    assert sheets_of(file) == {"Tabelle1": [[*map(str, HEADER)], ["40", "250", "0.3"]]}
+    assert openpyxl.load_workbook(io.BytesIO(file), read_only=True).active is not None
