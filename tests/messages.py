@@ -28,7 +28,12 @@ MARKS = {
 }
 """Calls that mark a text, and which of their arguments are texts."""
 
-COLUMNS = {"sizes.csv": ("note",), "sources.csv": ("title",), "versions.csv": ("position", "description")}
+COLUMNS = {
+    "sizes.csv": ("note",),
+    "facts.csv": ("topic", "text"),
+    "sources.csv": ("title",),
+    "versions.csv": ("position", "description"),
+}
 """Texts of the catalogue of gears."""
 
 Text = str | tuple[str, str]

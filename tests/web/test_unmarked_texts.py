@@ -35,6 +35,7 @@ PAGES = (
 SHOWN = ("aria-label", "title", "placeholder", "alt", "content")
 UNTRANSLATED = re.compile(
     r"\b[0-9a-f]{16}\b|"
+    r"PYRONOC UNIVERSAL 00|"
     r"HPN Select|HPN(-\w+)*|Deutsch|English|\b\d+A\b|\bSI\b|\bUS\b|ISO 281|\bJ\d\b|[\w.-]+\.csv|HPN_\w+|\bM\d+\b"
     r"|strange|rank|^\s*(av|in|out)(,(av|max))?(\(max\))?\s*$|JSON|CSV|PDF|PNG|SVG|Ctrl|Alt|Enter|Esc|Strg|Shift|Tab|xx\.xx|AAS|BH-AF1|\bLb\d+\b|L10|L50|\bL\d+\b"
 )

@@ -41,6 +41,19 @@ class OutputVersion:
     source: str
 
 
+@dataclass(frozen=True, slots=True)
+class Fact:
+    """What the handbook says in words and holds for the whole series.
+
+    `check` is the code of the one that it bears on. What has no topic stands beside its check alone.
+    """
+
+    topic: str | None
+    text: str
+    check: str | None
+    source: str
+
+
 class GearList:
     """Some gears of the catalogue in its order, once as rows and once as columns.
 
@@ -78,6 +91,7 @@ class Catalogue:
     efficiency: dict[str, tuple[FloatArray, FloatArray]]
     supplement: str | None
     averaging_s: float = AVERAGING_S
+    facts: tuple[Fact, ...] = ()
 
     @cached_property
     def by_designation(self) -> dict[str, Gear]:
@@ -125,6 +139,19 @@ class Catalogue:
             if (sizes is None or gear.size in sizes) and (ratios is None or gear.ratio in ratios)
         ]
         return GearList(chosen, [self.curves.get(gear.size) for gear in chosen])
+
+    def facts_on(self, check: str) -> tuple[Fact, ...]:
+        """What bears on the check of a code."""
+        return tuple(fact for fact in self.facts if fact.check == check)
+
+    @cached_property
+    def facts_by_topic(self) -> dict[str, list[Fact]]:
+        """Every fact by its topic."""
+        topics: dict[str, list[Fact]] = {}
+        for fact in self.facts:
+            if fact.topic:
+                topics.setdefault(fact.topic, []).append(fact)
+        return topics
 
     def find(self, designation: str) -> Gear | None:
         """Gear of a designation in any of the printed spellings, or None."""

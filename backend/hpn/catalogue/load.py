@@ -11,13 +11,14 @@ from numpy.typing import NDArray
 
 from hpn.bearing import Curve, CurveError, curve_through
 from hpn.catalogue import tables
-from hpn.catalogue.catalogue import AVERAGING_S, Catalogue, FlangeBolt, OutputVersion, SeriesFigure
+from hpn.catalogue.catalogue import AVERAGING_S, Catalogue, Fact, FlangeBolt, OutputVersion, SeriesFigure
 from hpn.catalogue.files import CatalogueError, read_folder
 from hpn.catalogue.tables import (
     AccuracyTable,
     ClampBoltTable,
     EfficiencyTable,
     EnvelopeTable,
+    FactTable,
     FlangeBoltTable,
     GearTable,
     HousingBoltTable,
@@ -85,6 +86,7 @@ def load_catalogue(
             OutputVersion(row.position, row.code, row.description, book.source(row, "description"))
             for row in book.of(VersionTable)
         ),
+        facts=tuple(Fact(row.topic, row.text, row.check, book.source(row, "text")) for row in book.of(FactTable)),
         curves=_curves(book),
         efficiency=_efficiency(book),
         supplement=str(supplement) if supplement else None,

@@ -169,6 +169,15 @@ class VersionTable(Table):
     description: str
 
 
+class FactTable(Table):
+    file = "facts.csv"
+    key = ("name",)
+    name: str
+    topic: str | None = None
+    text: str
+    check: str | None = None
+
+
 class SeriesTable(Table):
     file = "series.csv"
     key = ("name",)
@@ -216,6 +225,7 @@ TABLES: tuple[type[Table], ...] = (
     ClampBoltTable,
     HousingBoltTable,
     VersionTable,
+    FactTable,
     SeriesTable,
     EnvelopeTable,
     EfficiencyTable,

@@ -16,7 +16,7 @@ from hpn.web.door.bodies import pairs_of
 from hpn.web.door.pools import worked
 from hpn.web.door.visit import current
 from hpn.web.form.ordering import ordering_code
-from hpn.web.pages.gear_figures import figures_of, neighbours, supplements_for
+from hpn.web.pages.gear_figures import figures_of, neighbours, series_figures, supplements_for
 from hpn.web.pages.templates import environment
 
 OWN_NAMES = ("output", "motor", "gear", "find")
@@ -76,6 +76,7 @@ def show_gear(request: Request) -> Response:
         gear=gear,
         groups=figures_of(gear),
         missing=supplements_for(gear),
+        series_figures=series_figures,
         envelope=gear_envelope(catalogue, gear, current()),
         neighbours=neighbours(catalogue, gear),
         order=ordering_code(catalogue, gear, query.get("output", ""), query.get("motor", "")),

@@ -17,7 +17,8 @@ def show_check(request: Request) -> Response:
     if check is None:
         return nowhere(request)
     template = environment(request.app.state).get_template("check.html")
-    return HTMLResponse(template.render(code=check.code, definition=check), headers={"Cache-Control": "no-cache"})
+    shown = template.render(code=check.code, definition=check, catalogue=request.app.state.catalogue)
+    return HTMLResponse(shown, headers={"Cache-Control": "no-cache"})
 
 
 router = APIRouter(include_in_schema=False, dependencies=[admit("calculator")])

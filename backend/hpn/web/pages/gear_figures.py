@@ -1,5 +1,6 @@
 """What the page of a gear says: its figures in groups, which are missing, and how a supplement would give them."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from hpn.catalogue import Catalogue
@@ -85,6 +86,42 @@ def _figure(gear: Gear, label: Label) -> Figure:
     source = next((gear.sources[name] for name in label.fields if name in gear.sources), "")
     supplied = any(gear.is_supplied(name) for name in label.fields)
     return Figure(label, known, suffix_of(label.fields[0]) or "", source, supplied)
+
+
+SERIES: Mapping[str, tuple[tuple[str, tuple[str, ...]], ...]] = {
+    "Lubrication": (
+        (N_("Lubricant"), ("lubricant",)),
+        (
+            N_("Ambient temperature of the lubricant"),
+            ("lubricant_ambient_temperature_minimum", "lubricant_ambient_temperature_maximum"),
+        ),
+        (N_("Highest operating temperature of the lubricant"), ("lubricant_operating_temperature_maximum",)),
+    ),
+    "Storage": ((N_("Storage temperature"), ("storage_temperature_minimum", "storage_temperature_maximum")),),
+}
+"""Figures of the whole series beside what the handbook says on a topic: what they are, and their names."""
+
+
+@dataclass(frozen=True, slots=True)
+class SeriesLine:
+    """A figure, range or text of the whole series."""
+
+    name: str
+    values: tuple[float, ...]
+    text: str
+    unit: str
+    source: str
+
+
+def series_figures(catalogue: Catalogue, topic: str) -> list[SeriesLine]:
+    """Figures of the whole series on a topic, as far as the catalogue has them."""
+    lines = []
+    for name, keys in SERIES.get(topic, ()):
+        if known := [catalogue.series[key] for key in keys if key in catalogue.series]:
+            values = tuple(one.value for one in known if isinstance(one.value, float))
+            text = next((one.value for one in known if isinstance(one.value, str)), "")
+            lines.append(SeriesLine(name, values, text, known[0].unit or "", known[0].source))
+    return lines
 
 
 def supplements_for(gear: Gear) -> list[SupplementFile]:
