@@ -7,14 +7,22 @@ import subprocess
 import sys
 from pathlib import Path
 
+import brotli
 import pytest
+import zstandard
+from alembic import command
 from alembic.autogenerate import compare_metadata
+from alembic.config import Config
 from alembic.migration import MigrationContext
 from alembic.script import ScriptDirectory
 from sqlalchemy import Connection, text
 
+from hpn.application import Application
+from hpn.catalogue import load_catalogue
+from hpn.selection import encode, select
 from hpn.store import NewerDatabaseError, Store, upgrade
 from hpn.store.tables import metadata
+from tests.build import cycle, phase
 from tests.store.drafts import change, draft
 
 pytestmark = pytest.mark.anyio
@@ -125,3 +133,54 @@ def test_many_workers_can_start_at_once_on_an_empty_database(database: str) -> N
         return len(page.selections)
 
     assert asyncio.run(rows()) == 5  # one each, and one for the key that all had
+
+
+# --- What earlier versions have saved ---------------------------------------------------------------------------------
+
+
+def _as_before(connection: Connection) -> None:
+    """Tables of before the list had columns of its own, with replies as those versions packed them."""
+    config = Config()
+    config.set_main_option("script_location", str(upgrade.MIGRATIONS))
+    config.attributes["connection"] = connection
+    command.upgrade(config, "0005")
+    reply = encode(select(Application.model_validate(HEAVY), load_catalogue()))
+    suits = encode(select(Application.worked_example(), load_catalogue()))
+    rows = [
+        {"id": f"{number:022}", "title": title, "packed": packed}
+        for number, (title, packed) in enumerate(
+            [
+                ("brotli", brotli.compress(suits)),
+                ("zstd", zstandard.compress(suits)),
+                ("nothing fits", zstandard.compress(reply)),
+                ("too short", brotli.compress(b'{"selected":"HPN-20A-5"}')),
+                *[("spoilt", b"no stream at all")] * 205,  # more than the upgrade reads at once
+            ]
+        )
+    ]
+    statement = (
+        "INSERT INTO selections (id, created, title, reference, engine_version, catalogue_version, application, "
+        "result_packed) VALUES (:id, '2026-01-02 03:04:05+00', :title, 'ÄB-1', '1', 'x', '{}', :packed)"
+    )
+    connection.execute(text(statement), rows)
+
+
+HEAVY = cycle(phase(9000, 100))
+
+
+async def test_what_earlier_versions_saved_is_listed_and_found_as_it_was(database: str) -> None:
+    store = Store(database)
+    await change(store, _as_before)
+
+    listed = {entry.title: entry for entry in (await store.page(limit=300)).selections}
+
+    assert [listed[title].designation for title in ("brotli", "zstd")] == ["HPN-20A-5"] * 2
+    best = listed["zstd"]
+    assert (best.status, round(best.utilisation or 0, 3)) == ("suitable", 0.781)
+    assert listed["nothing fits"].status == "unsuitable"
+    assert (listed["nothing fits"].utilisation or 0) > 1
+    assert {(listed[title].designation, listed[title].status) for title in ("too short", "spoilt")} == {(None, None)}
+    words = ("äb-1", "hpn-20a-5", "SPOILT", "SPOILT fits")
+    found = {word: len((await store.page(search=word, limit=300)).selections) for word in words}
+    assert found == {"äb-1": 209, "hpn-20a-5": 2, "SPOILT": 205, "SPOILT fits": 0}
+    await store.close()

@@ -22,6 +22,7 @@ QUERIES = {
     "/submodel.aasx": LINK,
     "/oembed": f"url={quote(f'/?{LINK}')}",
     "/find": "gear=HPN-20A-5",
+    "/selections/compare": "a={id}&b={id}",
 }
 """What routes need in their query, those that need any."""
 
@@ -57,11 +58,11 @@ class Address:
 
     def __call__(self, path: str) -> str:
         """Address of a path, with the query that it needs."""
-        query = QUERIES.get(path, "")
+        place = "?".join(filter(None, (path, QUERIES.get(path))))
         for name, value in self.values.items():
-            path = path.replace(name, value)
-        assert "{" not in path
-        return f"{path}?{query}" if query else path
+            place = place.replace(name, value)
+        assert "{" not in place
+        return place
 
 
 @pytest.fixture(scope="module")

@@ -36,7 +36,7 @@ from hpn.web.door.observation import Observation
 from hpn.web.door.overload import Budget, Overload, Pieces
 from hpn.web.door.pools import Pools
 from hpn.web.door.readers import Readers
-from hpn.web.pages import assets, long_cycles, paste, refusals, saved_list, saving, transfer
+from hpn.web.pages import assets, compared, long_cycles, paste, refusals, saved_list, saving, transfer
 from hpn.web.pages import calculator as pages
 from hpn.web.pages import catalogue as catalogue_pages
 from hpn.web.pages import checks as check_pages
@@ -97,6 +97,7 @@ ROUTERS: tuple[APIRouter, ...] = (
     long_cycles.router,
     paste.router,
     transfer.router,
+    compared.router,
     saved_list.router,
     saving.router,
     selection_pages.router,

@@ -11,12 +11,13 @@ from starlette.requests import Request
 from starlette.responses import HTMLResponse, Response
 
 from hpn import ENGINE_VERSION
+from hpn.application import Application
 from hpn.catalogue import Catalogue
 from hpn.differences import Difference
 from hpn.quantities import CANDIDATE, CHECK, DUTY, RESERVE, VERDICTS
 from hpn.report.inputs import LOADS, REQUIREMENTS, given
 from hpn.selection import Selection, reason_of
-from hpn.store import StoreUnavailableError
+from hpn.store import SavedSelection, StoreUnavailableError
 from hpn.units import symbol_of
 from hpn.web.archive import Reopened, found, url_of
 from hpn.web.door.access import admit
@@ -90,8 +91,8 @@ class ChangedField:
 
 
 def _page(reopened: Reopened, designation: str, catalogue: Catalogue) -> dict[str, Any]:
-    answer = _result(reopened, designation)
     application = reopened.application
+    answer = result_of(reopened.saved, reopened.selection, application, reopened.then, designation)
     return {
         "reopened": reopened,
         "answer": answer,
@@ -107,16 +108,22 @@ def _page(reopened: Reopened, designation: str, catalogue: Catalogue) -> dict[st
     }
 
 
-def _result(reopened: Reopened, designation: str) -> Result:
-    selection, then, application = reopened.selection, reopened.then, reopened.application
-    chosen = selection.candidate(designation or reopened.saved.designation or "")
+def result_of(
+    saved: SavedSelection,
+    selection: Selection,
+    application: Application | None,
+    then: Catalogue | None,
+    designation: str = "",
+) -> Result:
+    """What was saved as the templates read it, with the gear that is asked for or that its page shows first."""
+    chosen = selection.candidate(designation or saved.designation or "") or selection.foremost
     return Result(
         selection=selection,
         application=application,
-        chosen=chosen or selection.foremost,
-        asked=chosen is not None and chosen is not selection.foremost,
+        chosen=chosen,
+        asked=chosen is not selection.foremost,
         catalogue=then,
-        choosing=f"{url_of(reopened.saved.id)}?gear=",
+        choosing=f"{url_of(saved.id)}?gear=",
     )
 
 

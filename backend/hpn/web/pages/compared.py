@@ -1,0 +1,223 @@
+"""Two saved selections side by side: what was asked, what came of it, and where they differ."""
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from itertools import islice, zip_longest
+from typing import Any
+from urllib.parse import urlencode
+
+from fastapi import APIRouter
+from pydantic import ValidationError
+from starlette.requests import Request
+from starlette.responses import HTMLResponse, RedirectResponse, Response
+
+from hpn.application import Application, Phase
+from hpn.catalogue import Catalogue
+from hpn.check import Check
+from hpn.checks import BY_CODE
+from hpn.quantities import CANDIDATE, DUTY, Named, unit_of
+from hpn.readings import Reading
+from hpn.report.inputs import LOADS, REQUIREMENTS, InputLine, given
+from hpn.selection import FIGURES, Candidate, CheckResult, decode
+from hpn.store import SavedSelection, StoreUnavailableError
+from hpn.web.archive import with_catalogue
+from hpn.web.door.access import admit
+from hpn.web.door.pools import compute
+from hpn.web.door.problems import Problem
+from hpn.web.door.visit import current
+from hpn.web.form.symbols import PHASE_SYMBOLS
+from hpn.web.pages.gear_figures import Figure, figures_of
+from hpn.web.pages.result import Result
+from hpn.web.pages.saved import result_of
+from hpn.web.pages.saving import refused
+from hpn.web.pages.templates import environment
+from hpn.wording import N_
+
+PHASES_SHOWN = 50
+"""Phases that differ of which so many are shown."""
+
+LIMITLESS = frozenset(("life_L10_h", "momentary_peak_count", "bearing_life_L50_h"))
+"""Figures that may be empty because nothing limits them."""
+
+
+@dataclass(frozen=True, slots=True)
+class Side:
+    """One of the two as saved, and the gear that its page shows first."""
+
+    saved: SavedSelection
+    result: Result
+
+    @property
+    def chosen(self) -> Candidate:
+        """That gear, as it was judged."""
+        return self.result.chosen
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """One quantity of both; texts are in the reader's language, figures in the units of the wire."""
+
+    named: Named
+    values: tuple[Any, Any]
+    unit: str = ""
+
+    @property
+    def differs(self) -> bool:
+        """Whether the two say different things."""
+        return bool(self.values[0] != self.values[1])
+
+
+@dataclass(frozen=True, slots=True)
+class CheckRow:
+    """One check of both: its outcome and how that is read, None where it was not asked for."""
+
+    check: Check
+    sides: tuple[tuple[CheckResult, Reading] | None, tuple[CheckResult, Reading] | None]
+
+    @property
+    def differs(self) -> bool:
+        """Whether the two came to something else."""
+        return self.sides[0] != self.sides[1]
+
+
+Cells = list[tuple[float, str]]
+"""Figures of a phase, each with the suffix of its unit."""
+
+
+@dataclass(frozen=True, slots=True)
+class PhaseRow:
+    """One phase that differs: its number, and its figures on both sides, none where there is no such phase."""
+
+    number: int
+    sides: tuple[Cells, Cells]
+
+
+async def compare_selections(request: Request) -> Response:
+    """Two saved selections side by side; `id` twice, as a form with boxes sends it, leads to `a` and `b`."""
+    query = request.query_params
+    marked = query.getlist("id")
+    if len(marked) == 2:
+        return RedirectResponse(f"/selections/compare?{urlencode({'a': marked[0], 'b': marked[1]})}", 303)
+    ids = [query.get("a", ""), query.get("b", "")]
+    if marked or not all(ids):
+        return await _rendered(request, 422, {"missing": [], "sides": [], "marked": len(marked)})
+    found: list[tuple[SavedSelection, Catalogue | None]] = []
+    missing = []
+    for place, id in zip("AB", ids, strict=True):
+        try:
+            found.append(await with_catalogue(request.app.state, id))
+        except StoreUnavailableError as error:
+            return await compute(request, "pages", refused, request, error)
+        except Problem:
+            missing.append(place)
+    if missing:
+        left = [saved for saved, _ in found]
+        return await _rendered(request, 404, {"missing": missing, "sides": [], "left": left, "marked": 2})
+    return await _rendered(request, 200, {"missing": [], "found": found})
+
+
+def _side(saved: SavedSelection, catalogue: Catalogue | None) -> Side:
+    try:
+        application: Application | None = Application.model_validate_json(saved.application)
+    except ValidationError:
+        application = None
+    return Side(saved, result_of(saved, decode(saved.result), application, catalogue))
+
+
+def _compared(a: Side, b: Side) -> dict[str, Any]:
+    return {
+        "sides": (a, b),
+        "known": bool(a.result.application and b.result.application),
+        "inputs": list(_inputs(a, b)),
+        "phases": list(islice(_phases(a, b), PHASES_SHOWN + 1)),
+        "most_phases": PHASES_SHOWN,
+        "checks": list(_checks(a, b)),
+        "figures": list(_figures(a, b)),
+        "published": list(_published(a, b)),
+    }
+
+
+def _inputs(a: Side, b: Side) -> Iterator[Row]:
+    """Inputs beside the phases that differ."""
+    for path in (*LOADS, *REQUIREMENTS):
+        lines = [_line(side.result.application, path) for side in (a, b)]
+        line = lines[0] or lines[1]
+        if line is not None and lines[0] != lines[1]:
+            yield Row(Named(line.label, line.symbol), _pair(line and line.text for line in lines))
+
+
+def _line(application: Application | None, path: str) -> InputLine | None:
+    return next(iter(given(application, (path,), current())), None) if application else None
+
+
+def _phases(a: Side, b: Side) -> Iterator[PhaseRow]:
+    """Phases that differ."""
+    cycles = [side.result.application.duty_cycle.phases if side.result.application else () for side in (a, b)]
+    for number, phases in enumerate(zip_longest(*cycles), 1):
+        if phases[0] != phases[1]:
+            yield PhaseRow(number, _pair(list(_cells(phase)) for phase in phases))
+
+
+def _cells(phase: Phase | None) -> Iterator[tuple[float, str]]:
+    for symbol in PHASE_SYMBOLS if phase else ():
+        value: float | None = getattr(phase, symbol.path[0])
+        if value is not None:
+            yield value, symbol.unit
+
+
+def _checks(a: Side, b: Side) -> Iterator[CheckRow]:
+    """Checks that one or the other has, in the order of all checks."""
+    readings = a.result.readings, b.result.readings
+    for code, check in BY_CODE.items():
+        found = [side.chosen.check(code) for side in (a, b)]
+        if any(found):
+            sides = (result and (result, own[code]) for result, own in zip(found, readings, strict=True))
+            yield CheckRow(check, _pair(sides))
+
+
+def _figures(a: Side, b: Side) -> Iterator[Row]:
+    """Figures of the cycle and of the gear under it."""
+    for name, named in DUTY.items():
+        yield Row(named, _pair(getattr(side.result.selection.duty, name) for side in (a, b)), unit_of(name))
+    for name in FIGURES:
+        row = Row(CANDIDATE[name], _pair(_figure(side.chosen, name) for side in (a, b)), unit_of(name))
+        if row.values != (None, None):
+            yield row
+
+
+def _figure(candidate: Candidate, name: str) -> float | str | None:
+    if name in LIMITLESS and candidate.is_unlimited(name):
+        return current().text(N_("unlimited"))
+    value: float | None = getattr(candidate, name)
+    return value
+
+
+def _published(a: Side, b: Side) -> Iterator[tuple[Figure | None, Figure | None]]:
+    """Published figures of the two gears that differ, each by the catalogue of its time."""
+    for pair in zip_longest(_figures_of(a), _figures_of(b)):
+        before, after = (figure and figure.values for figure in pair)
+        if before != after:
+            yield pair
+
+
+def _figures_of(side: Side) -> list[Figure]:
+    gear = side.result.gear
+    return [figure for _, figures in figures_of(gear) for figure in figures] if gear else []
+
+
+def _pair(values: Iterable[Any]) -> tuple[Any, Any]:
+    first, second = values
+    return first, second
+
+
+async def _rendered(request: Request, status: int, shown: dict[str, Any]) -> Response:
+    def work() -> Response:
+        compared = _compared(*(_side(*one) for one in shown["found"])) if "found" in shown else {}
+        content = environment(request.app.state).get_template("compared.html").render(shown | compared)
+        return HTMLResponse(content, status, {"Cache-Control": "no-cache"})
+
+    return await compute(request, "pages", work)
+
+
+router = APIRouter(include_in_schema=False, dependencies=[admit("reading")])
+router.add_api_route("/selections/compare", compare_selections)
