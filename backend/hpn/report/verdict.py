@@ -215,6 +215,6 @@ def _failure(export: Export, check: CheckResult, read: Reading, reader: Reader) 
         "check": title_of(export, check.code, reader),
         "demand": _demand(read, reader),
         "limit": measured(read.limit, read.unit, reader),
-        "percent": used(export, check.code, check.utilisation, reader),
+        "percent": reader.percent(check.utilisation, bound_of(export, check.code)),
     }
     return reader.told(Sentence(N_("{check} {demand} against {limit} ({percent})"), values))
