@@ -6,6 +6,8 @@ import json
 from collections.abc import Iterator
 from typing import Any
 
+import openpyxl
+
 from hpn.application import Application
 from hpn.catalogue import HANDBOOK_FOLDER, load_catalogue
 from hpn.catalogue.tables import TABLES
@@ -75,6 +77,8 @@ TABLES_OF_PHASES = (
     "\ufefftorque speed duration\r\n40 250 0.3\r\n".encode(),
     "40\t250\t0.3\n32\t500\t3\n".encode("utf-16"),
     b"1.234\t2\t3\n1,234\t2\t3\n",
+    b"Zyklus 7\nNr.;T;n;Zeit\n-;kNm;rad/s;ms\n1;0,04;10;300\n2;0,03;20;400\nSumme;;;700\n",
+    b"Torque:\t40 Nm\t32 Nm\nSpeed:\t250 rpm\t500 rpm\nDuration:\t300 ms\t3 s\n",
 )
 
 
@@ -84,8 +88,19 @@ def _workbook() -> bytes:
     return workbook(Export(application=_MODELS[1], selection=selection, link="/", catalogue=catalogue), Reader("en"))
 
 
-WORKBOOKS = (_workbook(),)
-"""What is no text: a workbook is refused where a table is taken."""
+def _table() -> bytes:
+    book = openpyxl.Workbook()
+    sheet = book.create_sheet("Zyklus", 0)
+    for row in (["Nr.", "Drehmoment [Nm]", "Drehzahl [1/min]", "Dauer"], [1, 40, 250, 300], [2, "32,5", 500, 200]):
+        sheet.append(row)
+    sheet["D2"].number_format = '0" ms"'
+    content = io.BytesIO()
+    book.save(content)
+    return content.getvalue()
+
+
+WORKBOOKS = (_workbook(), _table())
+"""A report, whose sheets are no table of phases, and a table."""
 
 SIZES = ("14A", "40A")
 """Sizes of the small catalogue that supplements are laid over, so that loading it costs little."""
@@ -124,6 +139,19 @@ FIELDS = tuple(
 MARKS = (*FIELDS, b"{}", b"[]", b"[null]", b'""', b"null", b"true", b"{", b"}", b"[", b"]", b",", b":", b"\n", b"\r")
 HEADINGS = (
     *(b"torque", b"speed", b"duration", b"Dauer [s]", b"n [1/min]", b"T_Nm", b"radial_N", b"Axiallast in N", b"in"),
+    *(
+        b"Nr.",
+        b"Summe",
+        b"kNm",
+        b"1/s",
+        b"lbf\xc2\xb7in",
+        b"ms",
+        b"\xe2\x80\xaf",
+        b"\xc2\xa0",
+        b"\xe2\x88\x92",
+        b"%",
+        b"-",
+    ),
     *(b"\t", b";", b",", b" ", b"\n", b"\r\n", b'"', b'""', b"'", b"\x00", b"1.234", b"1,234", b"1 234"),
 )
 COLUMNS = tuple({name.encode() for table in TABLES for name in table.columns()} | {b"14A", b"40A", b"5", b",", b"\n"})

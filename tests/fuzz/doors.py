@@ -117,7 +117,7 @@ async def _upload(world: World, random: Random, content: bytes) -> str:
     return judged(reply, api=False)
 
 
-_TAKES = ("", "", "", "", "", "", "append:0", "replace:0")
+_TAKES = ("", "", "", "", "", "", "append", "replace")
 
 
 async def _lines(world: World, random: Random, content: bytes) -> str:

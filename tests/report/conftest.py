@@ -26,7 +26,7 @@ def convert(tmp_path_factory: pytest.TempPathFactory) -> Convert:
         profile = f"-env:UserInstallation={(folder / 'profile').as_uri()}"
         command = [program, "--headless", profile, "--convert-to", kind, "--outdir", str(folder / "out")]
         subprocess.run([*command, *map(str, sources)], check=True, capture_output=True, timeout=300)
-        return {name: folder / "out" / f"{name}.{kind}" for name in books}
+        return {name: folder / "out" / f"{name}.{kind.partition(':')[0]}" for name in books}
 
     return run
 
