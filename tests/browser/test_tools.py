@@ -382,8 +382,8 @@ def test_from_the_selection_to_a_gears_page_and_back_with_another_gear(visitor: 
 
 def test_envelope_of_a_gear_has_its_axes_as_the_plots_of_a_selection(visitor: Visitor) -> None:
     page = visitor.open("/catalogue/HPN-20A-5")
-    drawing = page.get_by_role("img", name="Permissible axial load against radial load of HPN-20A")
-    radial, axial = (drawing.get_by_text(f"{name} load N").bounding_box() for name in ("radial", "axial"))
+    drawing = page.get_by_role("figure", name="Permissible axial load against radial load of HPN-20A")
+    radial, axial = (drawing.get_by_text(f"{name} load in N").bounding_box() for name in ("radial", "axial"))
     assert radial and axial
     assert radial["width"] > radial["height"] and axial["height"] > axial["width"]
     corners = page.get_by_role("table", name="Corner points")

@@ -302,3 +302,25 @@ def test_corners_lie_in_order_so_that_the_area_below_the_limit_is_the_permissibl
     corners = shown(cycle(*THREE)).line("limit")[0]
     assert all(after[0] >= before[0] and after[1] <= before[1] for before, after in pairwise(corners))
     assert not any(math.isnan(value) for value in flat(corners))
+
+
+# --- The phases that govern -------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("check", "places"),
+    [
+        ("output_bearing_load", (1,)),
+        ("output_bearing_life", (1,)),
+        ("repeated_peak_torque", (2,)),
+        ("maximum_input_speed", (0, 3)),
+        ("average_torque", ()),
+        ("momentary_peak_count", ()),
+        ("weight", ()),
+        (None, ()),
+    ],
+)
+def test_phases_that_a_check_goes_by(check: str | None, places: tuple[int, ...]) -> None:
+    phases = (phase(10, 500, radial_N=10), phase(10, 100, axial_N=900), phase(-40, 100), phase(5, -500))
+    subject = subject_of(cycle(*phases))
+    assert drawings.governing_phases(subject, check, picture_of(subject)) == places

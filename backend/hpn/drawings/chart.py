@@ -26,10 +26,9 @@ MOST_SPACES, GAP = 6, 8.0
 """Most spaces between round numbers, and the least one between two of them, in units of the drawing."""
 
 RADIUS, DOT, RING = 10.5, 2.5, 13.5
-MARGIN, SAME = 3.5, 0.1
-MOST_DISCS = 24
-"""Loads that have a numbered disc, those nearest to their limit first; other phases are dots."""
-
+MARGIN = 3.5
+SAME, REACH = 0.1, 130.0
+"""Loads nearer than the first are one to the eye; those beyond the second are out of reach of a disc."""
 BAR_END = 1.5
 """Utilisation at which a bar ends."""
 
@@ -55,7 +54,7 @@ class Line:
 
 @dataclass(frozen=True, slots=True)
 class Mark:
-    """A load in N: a dot at its exact place, and a disc with its label at it or beside it.
+    """A load in N: a dot at its exact place, and where it has a label, a disc with it there or beside it.
 
     `phases` are the places of the phases that have it, `told` is what it is in words, `used` its share of its limit.
     """
@@ -178,15 +177,13 @@ def _spread(frame: Frame, reader: Reader) -> list[tuple[float, str]]:
 
 def _marks(drawing: Element, frame: Frame, marks: Sequence[Mark], places: Places) -> None:
     """Dots first, so that no disc hides one that is not its own; then the discs, the most used load first, P_m last."""
-    ordered = sorted(range(len(marks)), key=lambda place: -marks[place].used)
-    loads = [place for place in ordered if marks[place].phases]
-    named = [*loads[:MOST_DISCS], *(place for place in ordered if not marks[place].phases)]
+    named = sorted((place for place, mark in enumerate(marks) if mark.label), key=lambda place: -marks[place].used)
     dots = [Box.around(frame.at(mark.load), 2 * DOT, 2 * DOT) for mark in marks]
     leaders = add(drawing, "g", "still", aria_hidden="true")
     groups = [_group(drawing, mark, dot.centre) for mark, dot in zip(marks, dots, strict=True)]
     for place in named:
         mark, dot = marks[place], dots[place]
-        others = [other for other in dots if max(abs(other.left - dot.left), abs(other.top - dot.top)) > SAME]
+        others = [other for other in dots if SAME < max(abs(other.left - dot.left), abs(other.top - dot.top)) < REACH]
         taken = places.taken
         places.taken = [*taken, *others]
         size = _size(mark)
@@ -199,8 +196,10 @@ def _marks(drawing: Element, frame: Frame, marks: Sequence[Mark], places: Places
 
 def _group(drawing: Element, mark: Mark, dot: Point) -> Element:
     state = " outside" if mark.outside else ""
-    group = add(drawing, "g", f"mark {mark.kind}{state}", role="img", data_phase=" ".join(map(str, mark.phases)))
-    SubElement(group, "title").text = mark.told
+    group = add(drawing, "g", f"mark {mark.kind}{state}", data_phase=" ".join(map(str, mark.phases)))
+    if mark.told:
+        group.set("role", "img")
+        SubElement(group, "title").text = mark.told
     add(group, "circle", "dot", cx=dot[0], cy=dot[1], r=DOT)
     return group
 
@@ -240,7 +239,7 @@ def _labels(drawing: Element, frame: Frame, lines: Sequence[Line], places: Place
         corners = [frame.at(corner) for corner in line.corners]
         size = width_of(line.label) + 4, LETTER + 2
         shares = ALONG if line.strong else ENDS
-        spot = places.clearest([Box.around(_along(corners, share), *size) for share in shares])
+        spot = places.clearest(Box.around(_along(corners, share), *size) for share in shares)
         if spot:
             _name(group, line, spot)
 

@@ -16,6 +16,12 @@ from hpn.gear import Gear
 from hpn.reader import DEFAULT, Reader
 from hpn.wording import N_, Quantity, Sentence
 
+LAST = -1.0
+"""Use of a mark whose disc gives way to all others."""
+
+MOST_NUMBERS = 24
+"""Loads that have a numbered disc, those nearest to their limit; others are dots."""
+
 
 def envelope_drawing(picture: BearingPicture, reader: Reader = DEFAULT, governing: Sequence[int] = ()) -> Element:
     """Envelopes and loads of one gear, and how far life and single loads use them; `governing` phases stand out."""
@@ -25,7 +31,7 @@ def envelope_drawing(picture: BearingPicture, reader: Reader = DEFAULT, governin
         lines.append(Line("single", reader.text(N_("single load")), _corners(picture, "published")))
     if not picture.loads:
         return chart(lines, [], [], reader)
-    marks = [_mark(load, load.is_outside, governing, reader) for load in picture.loads]
+    marks = _marks(picture, governing, reader, judged=True)
     ray = None
     if picture.mean > 0:
         marks.append(_equivalent(picture, reader))
@@ -43,7 +49,7 @@ def sizes_drawing(
             corners = list(zip(use.curve.radial_N, use.curve.axial_N, strict=True))
             own = use.gear.size == picture.gear.size
             lines.append(Line("limit" if own else f"size s{place % 4}", use.gear.size, corners, strong=own))
-    return chart(lines, [_mark(load, False, governing, reader) for load in picture.loads], [], reader)
+    return chart(lines, _marks(picture, governing, reader, judged=False), [], reader)
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,7 +94,27 @@ def _coefficient(f_w: float, corners: list[tuple[float, float]], reader: Reader)
 # --- Loads ------------------------------------------------------------------------------------------------------------
 
 
-def _mark(load: PhaseLoad, outside: bool, governing: Sequence[int], reader: Reader) -> Mark:
+def _marks(picture: BearingPicture, governing: Sequence[int], reader: Reader, *, judged: bool) -> list[Mark]:
+    """The loads, of which those nearest to their limit are numbered; `judged`: by the limit of the picture's gear."""
+    order = sorted(range(len(picture.loads)), key=lambda place: -picture.loads[place].published)
+    numbered = set(order[:MOST_NUMBERS])
+    marks = []
+    for at, load in enumerate(picture.loads):
+        place, outside = (load.radial_N, load.axial_N), judged and load.is_outside
+        kind = "load governing" if set(governing) & set(load.places) else "load"
+        if at not in numbered:
+            marks.append(Mark(kind, "", place, "", load.published, outside, load.places))
+        else:
+            told = _told_of(load, outside, reader)
+            marks.append(Mark(kind, _label(load), place, told, load.published, outside, load.places))
+    return marks
+
+
+def _label(load: PhaseLoad) -> str:
+    return load.phases if len(load.places) <= 3 or "–" in load.phases else f"{load.places[0] + 1} …"
+
+
+def _told_of(load: PhaseLoad, outside: bool, reader: Reader) -> str:
     told = reader.told(
         Sentence(
             "Phase {phases}: radial {radial}, axial {axial}, {used} of the published maximum",
@@ -100,11 +126,7 @@ def _mark(load: PhaseLoad, outside: bool, governing: Sequence[int], reader: Read
             },
         )
     )
-    if outside:
-        told += ", " + reader.text(N_("outside the limit"))
-    kind = "load governing" if set(governing) & set(load.places) else "load"
-    label = load.phases if len(load.places) <= 3 or "–" in load.phases else f"{load.places[0] + 1} …"
-    return Mark(kind, label, (load.radial_N, load.axial_N), told, load.published, outside, load.places)
+    return f"{told}, {reader.text(N_('outside the limit'))}" if outside else told
 
 
 def _equivalent(picture: BearingPicture, reader: Reader) -> Mark:
@@ -117,7 +139,7 @@ def _equivalent(picture: BearingPicture, reader: Reader) -> Mark:
     )
     if outside:
         told += ", " + reader.text(N_("outside the limit"))
-    return Mark("equivalent", "P_m", picture.equivalent_N, told, picture.worst.published, outside)
+    return Mark("equivalent", "P_m", picture.equivalent_N, told, LAST, outside)
 
 
 # --- Bars -------------------------------------------------------------------------------------------------------------

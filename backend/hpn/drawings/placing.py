@@ -47,6 +47,8 @@ class Box:
 
     def is_crossed(self, start: Point, end: Point) -> bool:
         """Whether a line from start to end has a part inside (Liang and Barsky)."""
+        if max(start[0], end[0]) <= self.left or min(start[0], end[0]) >= self.right:
+            return False
         low, high = 0.0, 1.0
         edges = ((self.left, self.right), (self.top, self.bottom))
         for at, to, (first, last) in zip(start, end, edges, strict=True):
@@ -69,7 +71,7 @@ class Places:
 
     def is_free(self, box: Box) -> bool:
         """Whether a box lies inside the frame and over nothing that is taken."""
-        return box.within(self.frame) and not any(box.meets(other) for other in self.taken)
+        return box.within(self.frame) and all(not box.meets(other) for other in self.taken)
 
     def first(self, candidates: Iterable[Box]) -> Box | None:
         """Take the first free one of some boxes; None where there is none."""
