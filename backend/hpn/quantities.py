@@ -16,6 +16,8 @@ from hpn.wording import N_
 class Named:
     """Name of a quantity (an English msgid), its symbol, a sentence on it, and the handbook's equation that gives it.
 
+    `caveat` (a msgid too) is what its reader must know wherever it stands.
+
     An index stands behind an underscore: `T_av`. Of an input the sentence stands in the application model.
     """
 
@@ -23,6 +25,7 @@ class Named:
     symbol: str = ""
     sentence: str = ""
     equation: str = ""
+    caveat: str = ""
 
 
 INPUTS: Mapping[str, Named] = {
@@ -88,6 +91,7 @@ CANDIDATE: Mapping[str, Named] = {
         "L_10",
         "Life as equation 17.10 gives it, named L10; the hours include the pause. Null where unlimited or not rated.",
         "17.10",
+        caveat=N_("L10 as eq. 17.10 prints it; the glossary’s basis is L50. The hours include the pause."),
     ),
     "momentary_peak_count": Named(
         N_("Permitted emergency stops"),
@@ -104,6 +108,7 @@ CANDIDATE: Mapping[str, Named] = {
         N_("Bearing life L10"),
         "L_b,10",
         "Life of the output bearing on the basis L10: 90 % of the bearings survive it, L50 / 5.",
+        caveat=N_("L10 = L50 / 5, a relation of other handbooks. The hours include the pause."),
     ),
     "motor_peak_torque_Nm": Named(
         N_("Peak motor torque needed"),

@@ -137,6 +137,14 @@ class Reader:
             return self.written(f"{shown:.0f}")
         return self.written(f"{shown:#.{self.digits}g}".rstrip("."))
 
+    def brief(self, value: float | None, unit: str = "") -> str:
+        """A life or a count to three digits, from a million on as `1.17·10⁶`; None is a dash."""
+        if value is None:
+            return NOTHING
+        shown = self.measure(unit).shown(value)
+        short = f"{shown:.2e}"
+        return self._scientific(short) if abs(float(short)) >= 1e6 else self.written(f"{float(short):g}")
+
     def exact(self, value: float | None, unit: str = "") -> str:
         """An input as it was given, or to six digits in another unit; None is a dash."""
         if value is None:

@@ -134,3 +134,19 @@ def test_any_marker_is_read_as_what_is_known_of_it(marker: str) -> None:
 )
 def test_language_is_the_best_that_the_browser_asks_for(header: str, language: str) -> None:
     assert accepted_language(header) == language
+
+
+@pytest.mark.parametrize(
+    ("value", "english", "german"),
+    [
+        (None, "–", "–"),
+        (0.0, "0", "0"),
+        (90_642.0, "90\u202f600", "90.600"),
+        (999_400.0, "999\u202f000", "999.000"),
+        (999_600.0, "1.00·10⁶", "1,00·10⁶"),
+        (1_167_275.9, "1.17·10⁶", "1,17·10⁶"),
+        (12.345, "12.3", "12,3"),
+    ],
+)
+def test_lives_and_counts_have_three_digits_on_the_page(value: float | None, english: str, german: str) -> None:
+    assert (Reader().brief(value, "h"), GERMAN.brief(value, "h")) == (english, german)

@@ -150,7 +150,7 @@ FILTERS: dict[str, Callable[..., Any]] = {
     "t": _for_reader("text"),
     **{
         name: _for_reader(name)
-        for name in ("exact", "percent", "capped_percent", "unit", "told", "quantity", "source", "translated")
+        for name in ("brief", "exact", "percent", "capped_percent", "unit", "told", "quantity", "source", "translated")
     },
 }
 """`{{ 40 | figure("Nm") }}`, `{{ "Nm" | unit }}`, `{{ sentence | told }}`: for whoever reads the page."""

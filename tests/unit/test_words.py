@@ -1,0 +1,75 @@
+"""Texts are in the field's terms: none says what the lists of words replace, and all have one apostrophe."""
+
+import ast
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from babel.messages.catalog import Catalog
+
+from hpn.reader import catalogue
+from tests.messages import BACKEND, TEMPLATES, texts
+
+ENGLISH = (
+    r"\bof these and T_k\b|times$",
+    r"How far each may go|all else as given",
+    r"of what a constant load may be",
+    r"bearing decides, not",
+    r"\b[Ss]tanding\b",
+    r"\b[Ww]ish(es)?\b|^Prefer$",
+    r"half reach it|nine of ten|^which is$",
+    r"Limits and surroundings",
+    r"^What to turn|^Otherwise$|^Tests$",
+    r"so hard that|not even one stop|not one is allowed",
+    r"can’t be taken|^Take these phases|^Add them to mine",
+    r"out of reach|leads nowhere",
+    r"[Bb]est compromise|^Keys$|adaption",
+)
+"""What the left column of the English list has, as patterns."""
+
+GERMAN = (
+    r"\b[Ll]astfaktor",
+    r"^Stand:?$",
+    r"^Bedarf$|^besteht( nicht)?$|Wünsche|nichts gewählt",
+    r"[Uu]ntere Schranke|Not-Halte\b|^Tasten$",
+    r"\b[Ss]icher(n|t|ung)\b|gesichert\b|Gesichert\b",
+    r"-Fache[n]? betragen|höchstens das .*-Fache",
+)
+
+SYMBOLS = r"\bN_k max|n_out_(av|max)|n_in_(av|max)|n_in (av|max)| dyn\(max\)|\bK3\b|\bL max\b"
+"""Second spellings of symbols that `quantities.py` writes in one way."""
+
+STRAIGHT = re.compile(r"[A-Za-zäöüß]'(?:s|t|re|ve|ll|d)\b")
+
+
+def strings(messages: Catalog, translated: bool) -> list[str]:
+    """Texts of a catalogue, or their translations."""
+    found = [message.string if translated else message.id for message in messages if message.id]
+    return [str(text) for one in found for text in (one if isinstance(one, list | tuple) else [one])]
+
+
+@pytest.mark.parametrize("pattern", [*ENGLISH, SYMBOLS])
+def test_no_english_text_says_it_the_old_way(pattern: str) -> None:
+    assert [text for text in strings(texts(), translated=False) if re.search(pattern, text)] == []
+
+
+@pytest.mark.parametrize("pattern", [*GERMAN, SYMBOLS])
+def test_no_german_text_says_it_the_old_way(pattern: str) -> None:
+    assert [text for text in strings(catalogue("de"), translated=True) if re.search(pattern, text)] == []
+
+
+def constants(path: Path) -> Iterator[str]:
+    """String constants of a module that are no docstrings."""
+    tree = ast.parse(path.read_text())
+    statements = {id(node.value) for node in ast.walk(tree) if isinstance(node, ast.Expr)}
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Constant) and isinstance(node.value, str) and id(node) not in statements:
+            yield node.value
+
+
+def test_there_is_one_apostrophe() -> None:
+    code = [text for path in sorted(BACKEND.rglob("*.py")) for text in constants(path)]
+    pages = [re.sub(r"\{#.*?#\}", "", path.read_text(), flags=re.DOTALL) for path in sorted(TEMPLATES.glob("*.html"))]
+    german = strings(catalogue("de"), translated=True)
+    assert [found[0] for text in (*code, *pages, *german) if (found := STRAIGHT.search(text))] == []
