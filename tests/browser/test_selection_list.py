@@ -1,4 +1,6 @@
-"""The table of saved selections from the keyboard, without script."""
+"""The list of saved selections: saved from the page, found, renamed, compared and taken up again."""
+
+import re
 
 import httpx
 from playwright.sync_api import expect
@@ -7,13 +9,19 @@ from tests.browser.conftest import Visitor
 from tests.build import worked_example
 
 
-def test_the_list_is_filtered_and_a_selection_opened_by_keyboard_without_script(visitor: Visitor, server: str) -> None:
+def saved(server: str, **labels: str) -> str:
+    """Address of a selection that is now saved."""
+    body = {"application": worked_example(), **labels}
+    answer = httpx.post(f"{server}/api/v1/selections", json=body, trust_env=False).raise_for_status()
+    return str(answer.json()["url"])
+
+
+def test_the_list_is_searched_and_a_selection_opened_by_keyboard_without_script(visitor: Visitor, server: str) -> None:
     for reference in ("keys-1", "keys-2"):
-        body = {"application": worked_example(), "title": f"Axis {reference}", "reference": reference}
-        httpx.post(f"{server}/api/v1/selections", json=body, trust_env=False).raise_for_status()
+        saved(server, title=f"Axis {reference}", reference=reference)
     page = visitor.open("/selections", width=390, script=False)
 
-    page.get_by_role("textbox", name="Reference").focus()
+    page.get_by_role("searchbox", name="Search").focus()
     page.keyboard.type("keys-2")
     page.keyboard.press("Enter")
     rows = page.get_by_role("region", name="Saved selections").get_by_role("rowheader")
@@ -25,4 +33,35 @@ def test_the_list_is_filtered_and_a_selection_opened_by_keyboard_without_script(
     page.keyboard.press("Enter")
 
     expect(page.get_by_role("heading", level=1)).to_have_text("Saved selection")
-    expect(page.get_by_text("Axis keys-2")).to_be_visible()
+    expect(page.get_by_role("heading", name="Axis keys-2")).to_be_visible()
+
+
+def test_what_is_written_on_a_selection_survives_reload_saving_and_a_copy(visitor: Visitor) -> None:
+    written = "&title=Journey+1&ref=4711-J&author=M.+Muster&rev=B&order_output=J8&order_motor=BH-AF1"
+    page = visitor.open("/?T=40&n=250&t=0.3&i=5" + written)
+    page.reload()
+    page.get_by_role("button", name="Save", exact=True).click()
+
+    page.wait_for_url("**/selections/*")
+    for text in ("4711-J", "M. Muster", "HPN-14A-5-J8-BH-AF1"):
+        expect(page.get_by_text(text, exact=True)).to_be_visible()
+    page.get_by_role("link", name="Edit a copy").click()
+    expect(page).to_have_url(re.compile(re.escape(written)))
+
+
+def test_two_are_marked_renamed_and_compared(visitor: Visitor, server: str) -> None:
+    for title in ("pair one", "pair two"):
+        saved(server, title=title)
+    page = visitor.open("/selections?search=pair")
+
+    page.get_by_role("button", name="Rename pair one").click()
+    page.get_by_role("form", name="Rename pair one").get_by_label("Title").fill("pair three")
+    page.keyboard.press("Enter")
+    rows = page.get_by_role("region", name="Saved selections").get_by_role("rowheader")
+    expect(rows).to_have_text(["pair two", "pair three"])
+    for name in ("pair two", "pair three"):
+        page.get_by_role("checkbox", name=f"Compare {name}").check()
+    page.get_by_role("button", name="Compare two").click()
+
+    expect(page.get_by_role("heading", level=1)).to_have_text("Two selections side by side")
+    expect(page.get_by_text("None: both were asked the same.")).to_be_visible()

@@ -87,3 +87,32 @@ def test_what_is_written_twice_is_asked_for_once(api: TestClient) -> None:
 def test_joined_characters_stay_joined(api: TestClient) -> None:
     family = "\U0001f468\u200d\U0001f469\u200d\U0001f467"
     assert labels_in(edit(api, [*CYCLE, ("title", family)])) == {"title": family}
+
+
+@pytest.mark.parametrize("path", ["/catalogue", "/catalogue/HPN-20A-5", "/selections", "/paste"])
+def test_the_links_of_every_page_lead_back_to_the_whole_selection(api: TestClient, path: str) -> None:
+    query = urlencode([*GIVEN, ("i", "5"), ("gear", "HPN-32A-5"), ("pin", "HPN-20A-4")])
+    page = api.get(f"{path}?{query}").text
+
+    for name, place in (("Selection", "/"), ("Catalogue", "/catalogue"), ("Saved", "/selections")):
+        assert f'<a href="{place}?{html.escape(query)}">{name}</a>' in page
+
+
+def test_the_catalogue_shows_all_gears_whatever_the_selection_asks_for_and_filters_beside_it(api: TestClient) -> None:
+    query = urlencode([*GIVEN, ("i", "5"), ("size", "20A")])
+    whole = api.get(f"/catalogue?{query}").text
+    filtered = re.search(r'href="([^"]*only_size=14A)"', whole)
+
+    assert filtered
+    assert len(re.findall('<th scope="row"><a href="/catalogue/HPN', whole)) == 64
+    part = api.get(html.unescape(filtered[1])).text
+    gears = re.findall(r'<th scope="row"><a href="([^"]*)">(HPN-14A-[0-9]+)<', part)
+    assert len(re.findall('<th scope="row"><a href="/catalogue/HPN', part)) == len(gears) > 0
+    assert {labels_in(html.unescape(link)) == WRITTEN | ORDERED for link, _ in gears} == {True}
+
+
+def test_an_ordering_code_put_together_on_the_page_of_a_gear_goes_into_the_selection(api: TestClient) -> None:
+    page = api.get("/catalogue/HPN-20A-5?" + urlencode([*CYCLE, ("output", "J8"), ("motor", "BH-AF2")])).text
+    use = re.search(r'href="([^"]*)">Use in selection', page)
+
+    assert use and labels_in(html.unescape(use[1])) == {"order_output": "J8", "order_motor": "BH-AF2"}

@@ -1,5 +1,6 @@
 """The catalogue to read: one page for all gears, one for each, and the way to a gear by any spelling of its name."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 from urllib.parse import quote, urlencode
@@ -15,15 +16,11 @@ from hpn.web.door.access import admit
 from hpn.web.door.bodies import pairs_of
 from hpn.web.door.pools import worked
 from hpn.web.door.visit import current
-from hpn.web.form.ordering import ordering_code
+from hpn.web.form.labels import query_of
+from hpn.web.form.ordering import OrderingCode, ordering_code
+from hpn.web.pages.carried import carried_pairs, onward
 from hpn.web.pages.gear_figures import figures_of, neighbours, series_figures, supplements_for
 from hpn.web.pages.templates import environment
-
-OWN_NAMES = ("output", "motor", "gear", "find")
-"""Parameters of these pages; every other one belongs to the selection that the reader came from."""
-
-LONGEST_LINK = 4000
-"""Longest selection that is handed from page to page."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,24 +36,28 @@ def show_catalogue(request: Request) -> Response:
     """All gears in one table, or those of some sizes or ratios; `find` leads to the gear that it names."""
     catalogue: Catalogue = request.app.state.catalogue
     if find := request.query_params.get("find", "").strip():
-        return RedirectResponse(f"/catalogue/{_path(find)}?{_carried(request)}".rstrip("?"), 303)
-    size, ratio = canonical_size(request.query_params.get("size", "")), request.query_params.get("i", "")
+        return RedirectResponse(onward(f"/catalogue/{_path(find)}"), 303)
+    # Of a selection that is handed on, size and ratio are what it asks for.
+    names = ("only_size", "only_i") if carried_pairs() else ("size", "i")
+    size, ratio = (request.query_params.get(name, "") for name in names)
+    size = canonical_size(size)
     gears = [gear for gear in catalogue.gears if size in ("", gear.size) and ratio in ("", str(gear.ratio))]
     return _render(
         request,
         "catalogue.html",
         200 if gears else 404,
         gears=gears,
-        sizes=[_filter(name, size == name, size="" if size == name else name, i=ratio) for name in catalogue.sizes],
-        ratios=[_filter(str(i), ratio == str(i), size=size, i="" if ratio == str(i) else i) for i in catalogue.ratios],
+        sizes=[_filter(one, size == one, names, "" if size == one else one, ratio) for one in catalogue.sizes],
+        ratios=[
+            _filter(one, ratio == one, names, size, "" if ratio == one else one) for one in map(str, catalogue.ratios)
+        ],
         filtered=bool(size or ratio),
         canonical=f"{str(request.base_url).rstrip('/')}/catalogue",
     )
 
 
-def _filter(text: str, active: bool, **query: Any) -> Filter:
-    given = urlencode({name: value for name, value in query.items() if value})
-    return Filter(text, f"/catalogue?{given}" if given else "/catalogue", active)
+def _filter(text: str, active: bool, names: Sequence[str], *wanted: str) -> Filter:
+    return Filter(text, onward("/catalogue", **dict(zip(names, wanted, strict=True))), active)
 
 
 def show_gear(request: Request) -> Response:
@@ -69,6 +70,8 @@ def show_gear(request: Request) -> Response:
     if name != gear.designation:
         return RedirectResponse(f"/catalogue/{gear.designation}?{request.url.query}".rstrip("?"), 308)
     query = request.query_params
+    output, motor = (query.get(name, query.get(f"order_{name}", "")) for name in ("output", "motor"))
+    order = ordering_code(catalogue, gear, output, motor)
     return _render(
         request,
         "gear.html",
@@ -79,9 +82,8 @@ def show_gear(request: Request) -> Response:
         series_figures=series_figures,
         envelope=gear_envelope(catalogue, gear, current()),
         neighbours=neighbours(catalogue, gear),
-        order=ordering_code(catalogue, gear, query.get("output", ""), query.get("motor", "")),
-        carried=_carried(request),
-        use=_use(request, gear),
+        order=order,
+        use=_use(gear, order),
         canonical=f"{str(request.base_url).rstrip('/')}/catalogue/{gear.designation}",
     )
 
@@ -106,20 +108,11 @@ def find_gear(request: Request) -> Response:
     return RedirectResponse(f"/?{urlencode([*rest, ('gear', gear.designation)])}", 303)
 
 
-def _carried(request: Request) -> str:
-    """Query of the selection that the reader came from, or nothing."""
-    pairs = [(name, value) for name, value in request.query_params.multi_items() if name not in OWN_NAMES]
-    known = any(name == "T" for name, _ in pairs)
-    query = urlencode(pairs)
-    return query if known and len(query) <= LONGEST_LINK else ""
-
-
-def _use(request: Request, gear: Gear) -> str:
+def _use(gear: Gear, order: OrderingCode) -> str:
     """Selection with this gear in view: the reader's own, or a blank one for its size and ratio."""
-    carried = _carried(request)
-    if carried:
-        return f"/?{carried}&gear={gear.designation}"
-    return f"/?T=&n=&t=&i={gear.ratio}&size={gear.size}"
+    if carried_pairs():
+        return onward("/", gear=gear.designation, **order.labels)
+    return f"/?T=&n=&t=&i={gear.ratio}&size={gear.size}{query_of(order.labels)}"
 
 
 def _path(text: str) -> str:

@@ -25,6 +25,7 @@ from hpn.web.door.visit import address, current
 from hpn.web.form import symbols
 from hpn.web.form.ordering import MOTOR_CODE, ordering_code
 from hpn.web.pages import assets, mathml, pictures
+from hpn.web.pages.carried import carried_pairs, onward
 from hpn.web.pages.result import BEST
 from hpn.web.preview import preview_of
 from hpn.wording import Sentence
@@ -167,6 +168,8 @@ GLOBALS: dict[str, Any] = {
     "unit_of": unit_of,
     "units": units,
     "motor_pattern": MOTOR_CODE,
+    "carried_pairs": carried_pairs,
+    "onward": onward,
     "once": _once,
     "ordering_code": ordering_code,
     "preview_of": preview_of,
