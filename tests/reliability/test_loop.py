@@ -54,7 +54,9 @@ def hostile(saved: str, *, whole: bool) -> Iterator[Hostile]:
     yield from (Hostile("POST", "/api/v1/select", body, JSON) for body in BODIES)
     for name in ("report.pdf", "submodel.aasx", "report.xlsx"):
         yield from (Hostile("POST", f"/api/v1/{name}", body, JSON) for body in few[not whole :])
-        yield Hostile("GET", f"/{name}?{LINK if whole else LINK[:5000].rpartition('&T=')[0]}")
+        few_phases = LINK if whole else LINK[:5000].rpartition("&T=")[0]
+        yield Hostile("GET", f"/{name}?{few_phases}")
+        yield Hostile("POST", f"/{name}", urlencode({"link": f"/?{few_phases}"}).encode(), FORM)
     for body in few:
         yield Hostile("POST", "/api/v1/select/batch", b'{"applications": [' + body + b"]}", JSON)
         yield Hostile("POST", "/api/v1/select/batch", body + b"\n" + body, LINES)
@@ -93,6 +95,12 @@ def hostile(saved: str, *, whole: bool) -> Iterator[Hostile]:
     ):
         yield Hostile("GET", path)
     yield from (Hostile("GET", path) for path in ("/healthz", "/readyz", "/metrics", "/static/none"))
+    yield Hostile("GET", "/checks/" + "a" * 60_000)
+    yield Hostile("GET", f"/selections/compare?a={saved}&b={saved}")
+    yield Hostile("GET", f"/selections/{saved}/delete")
+    yield Hostile("POST", f"/selections/{saved}/rename", PAIRS, FORM)
+    yield Hostile("POST", f"/selections/{'x' * 22}/delete", PAIRS, FORM)
+    yield Hostile("PATCH", one, UNKNOWN, JSON)
     yield Hostile("DELETE", one)
 
 
