@@ -146,10 +146,12 @@ def _equivalent(picture: BearingPicture, reader: Reader) -> Mark:
 
 
 def bearing_bars(picture: BearingPicture, reader: Reader) -> list[Bar]:
-    """Largest single load and life: the share that the checks say, and demand and limit in words."""
+    """Largest single load and life: the share, demand and limit that the checks say, f_w counted as load."""
     worst, load, u = picture.worst, picture.load, picture.allowed
+    f_w = load.load_coefficient
+    limit = None if worst.limit_N is None else f_w * worst.limit_N
     return [
-        _bar(reader.text(N_("Single load")), worst.published, u, (worst.magnitude_N, "≤", worst.limit_N, "N"), reader),
+        _bar(reader.text(N_("Single load")), worst.published, u, (f_w * worst.magnitude_N, "≤", limit, "N"), reader),
         _bar(
             f"{reader.text(N_('Life'))} {load.life_basis}",
             picture.life_utilisation,
@@ -179,8 +181,6 @@ def _told(value: float, other: float | None, unit: str, reader: Reader) -> str:
     """A number with as many digits as it takes to tell it from another one."""
     if math.isinf(value):
         return "∞"
-    for digits in range(3, 7):
-        number = reader.number(Quantity(value, unit, digits))
-        if other is None or math.isinf(other) or number != reader.number(Quantity(other, unit, digits)):
-            break
-    return number
+    number = reader.figure(value, unit)
+    is_told_apart = other is None or math.isinf(other) or number != reader.figure(other, unit)
+    return number if is_told_apart else reader.number(Quantity(value, unit, 7))
