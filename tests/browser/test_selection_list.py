@@ -43,8 +43,9 @@ def test_what_is_written_on_a_selection_survives_reload_saving_and_a_copy(visito
     page.get_by_role("button", name="Save", exact=True).click()
 
     page.wait_for_url("**/selections/*")
-    for text in ("4711-J", "M. Muster", "HPN-14A-5-J8-BH-AF1"):
+    for text in ("4711-J", "M. Muster"):
         expect(page.get_by_text(text, exact=True)).to_be_visible()
+    expect(page.get_by_text(re.compile("^HPN-[0-9]+A-5-J8-BH-AF1$"))).to_be_visible()
     page.get_by_role("link", name="Edit a copy").click()
     expect(page).to_have_url(re.compile(re.escape(written)))
 
