@@ -149,7 +149,10 @@ def _head(how: Writing, units: tuple[str, ...], order: tuple[int, ...]) -> list[
     rows = []
     if how.headings >= 0:
         ends = [f" [{units[k]}]" if how.place_of_units == "header" else "" for k in order]
-        rows.append([*before, *(HEADINGS[LETTERS[k]][how.headings] + end for k, end in zip(order, ends, strict=True))])
+        names = [HEADINGS[LETTERS[k]][how.headings] for k in order]
+        if how.instants:  # a table whose points in time are called durations can't be told from one of durations
+            names = ["t" if k == 2 else name for k, name in zip(order, names, strict=True)]
+        rows.append([*before, *(name + end for name, end in zip(names, ends, strict=True))])
     if how.place_of_units == "row" or (how.place_of_units == "header" and how.headings < 0):
         rows.append([*["-"][: len(before)], *(units[k] for k in order)])
     return rows

@@ -3,6 +3,7 @@
 What has two readings is left blank here, and asked by `pasted`.
 """
 
+import re
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
@@ -18,6 +19,9 @@ WIRE = {"T": "Nm", "n": "rpm", "t": "s", "FRi": "N", "FAi": "N"}
 REQUIRED = ("T", "n", "t")
 SKIP, CELLS = "skip", "cells"
 """Of a column: not read; each cell says its own unit."""
+
+DIVIDED = N_("row {row}: {cell} can be one number or two")
+_DIVIDED = re.compile("[0-9] [0-9]")
 
 HEAD_ROWS = 20
 """Rows among which the header is looked for."""
@@ -82,18 +86,28 @@ def body_of(grid: Grid) -> Body:
     rows, numbers = [], []
     for number, row in zip(grid.numbers[first:], grid.rows[first:], strict=True):
         filled = [cell for cell in row if not is_blank(cell)]
-        label = next((cell for cell in filled if is_total(cell) and not is_number(cell)), None)
+        label = next(
+            (cell for cell in filled if is_total(cell) and not is_number(cell) and not units.codes_for(cell)), None
+        )
         if label is not None:
             notes.append(_note(N_("Row {row} is skipped: {text}"), number, label))
         elif len(filled) == 1 and not is_number(filled[0]):
             notes.append(_note(N_("Row {row} is skipped: {text}"), number, filled[0]))
         elif filled:
+            _require_undivided(grid, number, filled)
             rows.append(row)
             numbers.append(number)
     if not rows:
         raise RefusedError(N_("there is a header, but no row of numbers below it"))
     headings = tuple(tuple(row[k] for row in head if row[k]) for k in range(grid.width))
     return Body(tuple(rows), tuple(numbers), headings, tuple(notes), grid)
+
+
+def _require_undivided(grid: Grid, number: int, cells: Sequence[str]) -> None:
+    """Raise RefusedError where a blank between digits may end a column as well: `1 100,1 100,0` with decimal commas."""
+    for cell in cells if grid.separator == "comma" else ():
+        if _DIVIDED.search(cell) and is_number(cell):
+            raise RefusedError(DIVIDED, row=number, cell=cell[:40])
 
 
 def _note(template: str, number: int, text: str) -> Sentence:

@@ -14,7 +14,7 @@ from math import isfinite
 from hpn import units
 from hpn.application import MAXIMUM_PHASES, DutyCycle
 from hpn.web.form.cells import DECIMALS, Decimal, Entry, entry, is_blank
-from hpn.web.form.columns import NO_CHOICES, REQUIRED, SKIP, WIRE, Body, Choices, Column, body_of, columns_of
+from hpn.web.form.columns import DIVIDED, NO_CHOICES, REQUIRED, SKIP, WIRE, Body, Choices, Column, body_of, columns_of
 from hpn.web.form.headings import QUANTITIES, heading_of
 from hpn.web.form.sheets import Grid, RefusedError, grids_of
 from hpn.wording import N_, Sentence
@@ -69,6 +69,9 @@ def read_text(text: str, choices: Choices = NO_CHOICES, assumed: Collection[str]
     except RefusedError as refused:
         return Table(refused.sentence)
     tables = [read_grid(grid, choices, assumed) for grid in grids]
+    divided = next((table for table in tables if table.problem and table.problem.template == DIVIDED), None)
+    if divided:
+        return divided
     readable = [table for table in tables if table.problem is None]
     distinct = list({_said(table): table for table in reversed(readable)}.values())[::-1]
     if not distinct:
