@@ -125,7 +125,7 @@ def written(rows: list[tuple[Decimal, ...]], how: Writing) -> tuple[str, list[tu
         cells.append([*label[:shift], *sums])
     head = _head(how, units, order)
     table = [*head, *cells]
-    if how.turned:
+    if how.turned and head:  # bare numbers are rows of phases, as the page says
         table = [list(column) for column in zip(*table, strict=True)]
     return _text(table, how), wire
 
