@@ -34,20 +34,23 @@ run: install
 install: $(ENVIRONMENT) $(ASSETS)
 assets: $(ASSETS)
 
-# Lighthouse measures, so it has the machine to itself; the rest takes two cores, a file at a time and browsers last.
-TOGETHER := --numprocesses 2 --dist loadfile --no-loadscope-reorder
+# Lighthouse measures, so it has the machine to itself; the rest takes two cores, a file at a time but for the browsers.
+TOGETHER := --ignore tests/browser --numprocesses 2 --dist loadfile --no-loadscope-reorder
+BROWSERS := tests/browser --ignore tests/browser/test_lighthouse.py --numprocesses 2 --dist load
 test: install browser office curl nginx
 ifdef PYTEST_ARGS
 	$(BIN)/pytest $(PYTEST_ARGS)
 else
 	$(BIN)/pytest tests/browser/test_lighthouse.py
-	$(BIN)/pytest --ignore tests/browser/test_lighthouse.py $(TOGETHER)
+	$(BIN)/pytest $(TOGETHER)
+	$(BIN)/pytest $(BROWSERS)
 endif
 
 # What is long by nature, in its long form: hundreds of kills, examples by the thousand, Lighthouse over all pages.
 soak: install browser office curl nginx pdfua
 	$(BIN)/pytest --soak tests/browser/test_lighthouse.py
-	$(BIN)/pytest --soak --ignore tests/browser/test_lighthouse.py $(TOGETHER)
+	$(BIN)/pytest --soak $(TOGETHER)
+	$(BIN)/pytest --soak $(BROWSERS)
 
 # Each small change of the modules that decide has to make a test fail; what no test finds is explained or listed.
 mutants: install

@@ -2,6 +2,7 @@
 
 import re
 
+import pytest
 from playwright.sync_api import Locator, Page, expect
 
 from tests.browser.conftest import Visitor, open_section, violations
@@ -196,6 +197,7 @@ def test_calculation_and_comparison_scroll_in_their_own_boxes_on_a_phone(visitor
     assert head.evaluate("cell => cell.getBoundingClientRect().left") < 40
 
 
+@pytest.mark.soak  # all sections are checked on a phone
 def test_remedy_calculation_and_comparison_are_accessible_in_both_themes(visitor: Visitor) -> None:
     page = visitor.open(EXAMPLE + "&gear=HPN-14A-5&pin=HPN-20A-5&FR=300", width=1000)
     page.get_by_role("switch", name="Open the trivial steps too").click()

@@ -318,7 +318,7 @@ def test_nothing_makes_the_page_scroll_sideways(visitor: Visitor, width: int) ->
     [
         pytest.param(EXAMPLE, 390),
         pytest.param(EXAMPLE, 1440, marks=pytest.mark.soak),
-        pytest.param(EXAMPLE.replace("&i=5", "&FR=500&gear=14A-5"), 390),
+        pytest.param(EXAMPLE.replace("&i=5", "&FR=500&gear=14A-5"), 390, marks=pytest.mark.soak),
         pytest.param(EXAMPLE.replace("&i=5", "&FR=500&gear=14A-5"), 1440),
         pytest.param("/?T=9,3&n=&t=1", 390),
         pytest.param("/?T=9,3&n=&t=1", 1440, marks=pytest.mark.soak),

@@ -116,7 +116,13 @@ def test_units_are_chosen_by_keyboard_one_by_one(visitor: Visitor) -> None:
     expect(page.get_by_label("Torque, phase 1, in Nm")).to_have_value("40")
 
 
-@pytest.mark.parametrize("path", [ODD, "/?T=9,3&n=&t=1", "/catalogue/HPN-20A-5", "/paste"])
+@pytest.mark.parametrize(
+    "path",
+    [
+        ODD,
+        *(pytest.param(path, marks=pytest.mark.soak) for path in ("/?T=9,3&n=&t=1", "/catalogue/HPN-20A-5", "/paste")),
+    ],
+)
 def test_accessibility_check_finds_nothing_in_german_with_the_units_open(visitor: Visitor, path: str) -> None:
     page = visitor.open(path)
     page.get_by_role("button", name="Deutsch").click()

@@ -375,7 +375,7 @@ def test_from_the_selection_to_a_gears_page_and_back_with_another_gear(visitor: 
     page.get_by_role("link", name="catalogue page").click()
     expect(page.get_by_role("heading", level=2)).to_have_text("HPN-20A-5")
     page.get_by_role("link", name="larger HPN-32A-5").click()
-    expect(page.get_by_role("row", name="Rated torque")).to_contain_text("200 Nm")
+    expect(page.get_by_role("row", name="Rated torque TN")).to_contain_text("200 Nm")
     page.get_by_role("link", name="Use in selection").click()
     expect(page).to_have_url(re.compile(re.escape(EXAMPLE) + "&gear=HPN-32A-5$"))
 
@@ -402,7 +402,13 @@ def test_table_is_pasted_by_touch_on_a_phone(visitor: Visitor) -> None:
 @pytest.mark.parametrize("width", [390, pytest.param(1440, marks=pytest.mark.soak)])
 @pytest.mark.parametrize(
     "path",
-    ["/catalogue", "/catalogue/HPN-20A-5", "/catalogue/HPN-40A-5", "/catalogue?size=11A&i=3", "/paste?T=1&n=2&t=3"],
+    [
+        pytest.param("/catalogue", marks=pytest.mark.soak),
+        "/catalogue/HPN-20A-5",
+        pytest.param("/catalogue/HPN-40A-5", marks=pytest.mark.soak),
+        pytest.param("/catalogue?size=11A&i=3", marks=pytest.mark.soak),
+        "/paste?T=1&n=2&t=3",
+    ],
 )
 def test_accessibility_check_finds_nothing_on_the_pages_beside(visitor: Visitor, path: str, width: int) -> None:
     page = visitor.open(path, width=width)
@@ -412,7 +418,9 @@ def test_accessibility_check_finds_nothing_on_the_pages_beside(visitor: Visitor,
     assert violations(page) == []
 
 
-@pytest.mark.parametrize("state", ["paste", "shortcuts", "long"])
+@pytest.mark.parametrize(
+    "state", ["paste", *(pytest.param(state, marks=pytest.mark.soak) for state in ("shortcuts", "long"))]
+)
 def test_accessibility_check_finds_nothing_in_the_dialogs(visitor: Visitor, state: str) -> None:
     page = visitor.open(EXAMPLE if state != "long" else "/?" + "&".join(["T=40&n=250&t=1"] * 101))
     if state == "paste":

@@ -8,7 +8,7 @@ import pytest
 from tests.fuzz.doors import DOORS
 from tests.fuzz.run import Outcome, attack, attack_in_parts
 
-SHORT, LONG = 200, 200_000
+SHORT, LONG = 80, 200_000
 
 
 @pytest.fixture(scope="module")

@@ -43,7 +43,11 @@ class Example:
         return done.stdout
 
 
-@pytest.fixture(scope="module", params=[(PAIR, KEY), ("", None), ("", "")], ids=["guarded", "open", "empty key"])
+@pytest.fixture(
+    scope="module",
+    params=[(PAIR, KEY), ("", None), pytest.param(("", ""), marks=pytest.mark.soak)],
+    ids=["guarded", "open", "empty key"],
+)
 def example(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Example]:
     """A service that lets only the holder of the key save, list and send batches, and an open one, without a key."""
     pairs, key = request.param
