@@ -56,7 +56,8 @@ class Line:
 class Mark:
     """A load in N: a dot at its exact place, and where it has a label, a disc with it there or beside it.
 
-    `phases` are the places of the phases that have it, `told` is what it is in words, `used` its share of its limit.
+    `phases` are the places of the phases marked together with it, `told` is what it is in words, `used` its share of
+    its limit.
     """
 
     kind: str

@@ -103,10 +103,10 @@ def _marks(picture: BearingPicture, governing: Sequence[int], reader: Reader, *,
         place, outside = (load.radial_N, load.axial_N), judged and load.is_outside
         kind = "load governing" if set(governing) & set(load.places) else "load"
         if at not in numbered:
-            marks.append(Mark(kind, "", place, "", load.published, outside, load.places))
+            marks.append(Mark(kind, "", place, "", load.published, outside, load.marked))
         else:
             told = _told_of(load, outside, reader)
-            marks.append(Mark(kind, _label(load), place, told, load.published, outside, load.places))
+            marks.append(Mark(kind, _label(load), place, told, load.published, outside, load.marked))
     return marks
 
 

@@ -21,6 +21,10 @@ MOST_LOADS = 200
 """Different loads that plot and table show; of more, those that use the published maximum most."""
 
 
+MOST_MARKED = 100
+"""Phases from the first on that have a row of their own on a page, so that a load can be marked together with them."""
+
+
 @dataclass(frozen=True, slots=True)
 class PhaseLoad:
     """One load in N, the phases that have it, and its f_w P, which may be `allowed`; the published envelope is 1."""
@@ -35,6 +39,11 @@ class PhaseLoad:
     def phases(self) -> str:
         """Numbers of the phases as a reader counts them."""
         return phase_numbers(self.places)
+
+    @property
+    def marked(self) -> list[int]:
+        """Places of the phases whose rows are marked together with the load."""
+        return [place for place in self.places if place < MOST_MARKED]
 
     @property
     def magnitude_N(self) -> float:
