@@ -1,21 +1,19 @@
 """What the user asks: the one set of input models behind form, link, REST, batch, command line and file.
 
-Every field name ends in its unit. Torque, speed and load may be signed; the equations take their magnitudes.
-The bounds keep every power in chapter 4 far inside the range of a floating-point number.
+Torque, speed and load may be signed; the equations take their magnitudes.
 """
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from types import UnionType
 from typing import Annotated, Any, Literal, Self, Union, get_args, get_origin
 
-from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, WrapValidator, field_validator
-from pydantic_core import PydanticCustomError, PydanticKnownError
+from pydantic import BaseModel, BeforeValidator, Field, WrapValidator, field_validator
+from pydantic_core import PydanticCustomError
 
+from hpn.fields import Hours, Load, Model, Number, Positive, Ratio, Share, Torque, at_most, in_parts
 from hpn.gear import canonical_size
-from hpn.units import suffix_of, symbol_of
+from hpn.phase import MAXIMUM_PHASES, Phase
 from hpn.wording import Sentence
-
-MAXIMUM_PHASES = 10_000
 
 BearingModel = Literal["linear", "iso281", "digitised"]
 LifeBasis = Literal["L50", "L10"]
@@ -33,96 +31,19 @@ ApplicationArea = Literal[
 ]
 
 
-LEAST = 1e-12
-"""Smallest number that stands below a fraction: a quotient by a smaller one could overflow."""
-
-
-def _above_zero(value: float) -> float:
-    """Refuse what is not above 0, and what is but so small that a quotient by it could overflow."""
-    if value <= 0:
-        raise PydanticKnownError("greater_than", {"gt": 0})
-    if value < LEAST:
-        raise PydanticCustomError("vanishing", "must be at least 1e-12")
-    return value
-
-
-def _at_most(most: int) -> BeforeValidator:
-    """Refuse a longer list before its items are looked at: each wrong one would leave its errors behind."""
-
-    def check(value: object) -> object:
-        if isinstance(value, list | tuple) and len(value) > most:
-            counts = {"field_type": "Tuple", "max_length": most, "actual_length": len(value)}
-            raise PydanticKnownError("too_long", counts)
-        return value
-
-    return BeforeValidator(check)
-
-
-PART = 500
-
-
-def _in_parts(value: Any, validate: Callable[[Any], tuple[Any, ...]]) -> tuple[Any, ...]:
-    """Validate a long list part by part: other threads get their turn in between, and only one part has errors.
-
-    What is validated stays in front, so that an error is told at its place in the whole.
-    """
-    if not isinstance(value, list | tuple) or len(value) <= PART:
-        return validate(value)
-    done: tuple[Any, ...] = ()
-    for start in range(0, len(value), PART):
-        done = validate((*done, *value[start : start + PART]))
-    return done
-
-
 MOST_WISHES = 100
 """Ratios or sizes that may be asked for."""
 
 WISHES: Any = Field(min_length=1, max_length=MOST_WISHES)
 """Bounds of the list itself: beside the field they would be taken for those of a text, since it may be null."""
 
-Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
-Torque = Annotated[Number, Field(ge=-1e6, le=1e6)]
-Speed = Annotated[Number, Field(ge=-1e6, le=1e6)]
-Load = Annotated[Number, Field(ge=-1e9, le=1e9)]
-SAYS_LEAST: Any = Field(json_schema_extra={"minimum": LEAST})
-Hours = Annotated[Number, Field(le=1e9), AfterValidator(_above_zero), SAYS_LEAST]
-Positive = Annotated[Number, Field(le=1e12), AfterValidator(_above_zero), SAYS_LEAST]
-Share = Annotated[Number, Field(le=1), AfterValidator(_above_zero), SAYS_LEAST]
-Ratio = Annotated[int, Field(strict=True, ge=1, le=10_000)]
 Size = Annotated[str, Field(max_length=20), BeforeValidator(canonical_size)]
-
-
-def name_units(schema: dict[str, Any]) -> None:
-    """Put the unit of every field beside it in the JSON Schema, read from the field's own name."""
-    for name, entry in schema.get("properties", {}).items():
-        if suffix_of(name):
-            entry["x-unit"] = symbol_of(name)
-
-
-class Model(BaseModel):
-    """Frozen, and closed: an unknown field is an error, never ignored."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid", json_schema_extra=name_units)
-
-
-class Phase(Model):
-    """One load phase of the duty cycle (handbook, illustration 17.1)."""
-
-    torque_Nm: Torque = Field(description="Output torque T; its magnitude counts.", examples=[40.0])
-    speed_rpm: Speed = Field(description="Output speed n; 0 is a holding phase.", examples=[250.0])
-    duration_s: Annotated[Number, Field(gt=0, le=1e9)] = Field(description="Duration t of the phase.", examples=[0.3])
-    radial_N: Load | None = Field(
-        None, description="Radial load on the shaft centre in this phase; without it the cycle’s.", examples=[500.0]
-    )
-    axial_N: Load | None = Field(
-        None, description="Axial load on the shaft axis in this phase; without it the cycle’s.", examples=[200.0]
-    )
 
 
 class DutyCycle(Model):
     """Load phases and the pause t_p that follows them."""
 
-    phases: Annotated[tuple[Phase, ...], WrapValidator(_in_parts), _at_most(MAXIMUM_PHASES)] = Field(
+    phases: Annotated[tuple[Phase, ...], WrapValidator(in_parts), at_most(MAXIMUM_PHASES)] = Field(
         min_length=1, max_length=MAXIMUM_PHASES, description="Load phases; at least one moves."
     )
     pause_s: Annotated[Number, Field(ge=0, le=1e9)] = Field(
@@ -174,10 +95,10 @@ class Motor(Model):
 class Requirements(Model):
     """`ratios` and `sizes` restrict the list of candidates; every other requirement becomes a check."""
 
-    ratios: Annotated[tuple[Ratio, ...], WISHES, _at_most(MOST_WISHES)] | None = Field(
+    ratios: Annotated[tuple[Ratio, ...], WISHES, at_most(MOST_WISHES)] | None = Field(
         None, description="Only these ratios.", examples=[[5]]
     )
-    sizes: Annotated[tuple[Size, ...], WISHES, _at_most(MOST_WISHES)] | None = Field(
+    sizes: Annotated[tuple[Size, ...], WISHES, at_most(MOST_WISHES)] | None = Field(
         None, description="Only these sizes.", examples=[["14A", "20A"]]
     )
     life_h: Hours | None = Field(None, description="Required gear life L10 (eq. 17.10).", examples=[20000.0])

@@ -11,10 +11,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hpn import bearing, equations
-from hpn.application import NUMBERS, Application
+from hpn.application import NUMBERS, Application, OutputLoad
 from hpn.equations import FloatArray
 
 TextArray = NDArray[np.str_]
+
+_UNLOADED = OutputLoad()
 
 
 @dataclass(frozen=True)
@@ -22,7 +24,7 @@ class Phases:
     """Phases of N cycles by magnitude, each of shape (N, 1, phases).
 
     Shorter cycles are padded at the end with phases of no duration, which have no weight in any equation. Each load is
-    the phase's own, else the cycle's, else 0.
+    the phase's own, else the cycle's, else 0; peaks and RMS are those of a steady phase where none are given.
     """
 
     torque_Nm: FloatArray
@@ -30,30 +32,34 @@ class Phases:
     duration_s: FloatArray
     radial_N: FloatArray
     axial_N: FloatArray
+    peak_torque_Nm: FloatArray
+    peak_speed_rpm: FloatArray
+    rms_torque_Nm: FloatArray
 
     @classmethod
     def of(cls, applications: Sequence[Application]) -> "Phases":
         """Phases of applications, each padded to the longest cycle."""
         longest = max(len(application.duty_cycle.phases) for application in applications)
-        table = np.zeros((5, len(applications), 1, longest))
+        table = np.zeros((8, len(applications), 1, longest))
         for place, application in enumerate(applications):
             rows = _rows(application)
             table[:, place, 0, : len(rows)] = np.array(rows).T
         return cls(*np.abs(table))
 
 
-def _rows(application: Application) -> list[tuple[float, float, float, float, float]]:
-    load, phases = application.loads, application.duty_cycle.phases
-    if load is None:
-        return [(phase.torque_Nm, phase.speed_rpm, phase.duration_s, 0.0, 0.0) for phase in phases]
+def _rows(application: Application) -> list[tuple[float, ...]]:
+    load, phases = application.loads or _UNLOADED, application.duty_cycle.phases
     radial, axial = load.radial_N or 0.0, load.axial_N or 0.0
     return [
         (
-            phase.torque_Nm,
-            phase.speed_rpm,
+            T := phase.torque_Nm,
+            n := phase.speed_rpm,
             phase.duration_s,
             radial if phase.radial_N is None else phase.radial_N,
             axial if phase.axial_N is None else phase.axial_N,
+            T if phase.peak_torque_Nm is None else phase.peak_torque_Nm,
+            n if phase.peak_speed_rpm is None else phase.peak_speed_rpm,
+            T if phase.rms_torque_Nm is None else phase.rms_torque_Nm,
         )
         for phase in phases
     ]
@@ -120,9 +126,9 @@ class Duty:
         figures = {
             "average_torque_Nm": equations.average_output_torque(torque_Nm=T, speed_rpm=n, duration_s=t),
             "average_output_speed_rpm": equations.average_output_speed(speed_rpm=n, duration_s=t, pause_s=pause),
-            "maximum_torque_Nm": T.max(axis=-1),
-            "maximum_output_speed_rpm": n.max(axis=-1),
-            "rms_torque_Nm": equations.rms_torque(torque_Nm=T, duration_s=t, pause_s=pause),
+            "maximum_torque_Nm": self.phases.peak_torque_Nm.max(axis=-1),
+            "maximum_output_speed_rpm": self.phases.peak_speed_rpm.max(axis=-1),
+            "rms_torque_Nm": equations.rms_torque(torque_Nm=self.phases.rms_torque_Nm, duration_s=t, pause_s=pause),
             "emergency_stop_torque_Nm": np.abs(asked["emergency_stop.torque_Nm"]),
             "required_bearing_life_L50_h": bearing.required_L50(
                 life_h=asked["output_load.life_h"], basis=asked.life_basis

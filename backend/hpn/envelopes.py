@@ -6,8 +6,9 @@ from typing import Annotated
 from pydantic import Field
 
 from hpn import bearing
-from hpn.application import BearingModel, InputError, Model
+from hpn.application import BearingModel, InputError
 from hpn.catalogue import Catalogue
+from hpn.fields import Model
 from hpn.gear import Gear
 from hpn.wording import Sentence
 

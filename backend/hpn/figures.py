@@ -114,26 +114,42 @@ def _bearing_loads(duty: Duty, gears: GearList) -> tuple[FloatArray, FloatArray]
 def _motor_torques(duty: Duty, gears: GearList, catalogue: Catalogue) -> tuple[FloatArray, FloatArray]:
     """Peak and RMS torque at the motor, shape (N, G); loss-free where no efficiency is known.
 
-    A stated efficiency goes before a supplied curve. Outside of its curve the efficiency is not known: loss-free.
+    A stated efficiency goes before a supplied curve, which is read at a phase's peak for the peak and at its RMS for
+    the RMS.
     """
     stated, ratio = duty.asked["requirements.efficiency"], gears.columns.ratio
     eta = np.where(np.isnan(stated), 1.0, stated)
     peak = equations.motor_torque(output_torque_Nm=duty.maximum_torque_Nm, ratio=ratio, efficiency=eta)
     rated = equations.motor_torque(output_torque_Nm=duty.rms_torque_Nm, ratio=ratio, efficiency=eta)
-    T, unstated = duty.phases.torque_Nm[:, 0], np.isnan(stated)[:, 0]
+    peaks, squares, unstated = duty.phases.peak_torque_Nm[:, 0], duty.phases.rms_torque_Nm[:, 0], np.isnan(stated)[:, 0]
     for place, gear in enumerate(gears.rows):
-        if unstated.any() and (known := efficiency_along(catalogue, gear, T)) is not None:
-            torque = equations.motor_torque(output_torque_Nm=T, ratio=gear.ratio, efficiency=known)
-            rms = equations.rms_torque(
-                torque_Nm=torque,
-                duration_s=duty.phases.duration_s[:, 0],
-                pause_s=duty.asked["duty_cycle.pause_s"][:, 0],
+        if not unstated.any() or gear.designation not in catalogue.efficiency:
+            continue
+        at_peak, at_rms = (
+            equations.motor_torque(
+                output_torque_Nm=T, ratio=gear.ratio, efficiency=efficiency_along(catalogue, gear, T)
             )
-            peak[unstated, place], rated[unstated, place] = torque.max(axis=1)[unstated], rms[unstated]
+            for T in (peaks, squares)
+        )
+        rms = equations.rms_torque(
+            torque_Nm=at_rms,
+            duration_s=duty.phases.duration_s[:, 0],
+            pause_s=duty.asked["duty_cycle.pause_s"][:, 0],
+        )
+        peak[unstated, place], rated[unstated, place] = at_peak.max(axis=1)[unstated], rms[unstated]
     return peak, rated
 
 
-def efficiency_along(catalogue: Catalogue, gear: Gear, torque_Nm: FloatArray) -> FloatArray | None:
-    """Efficiency at torques by the curve that a supplement gives of a gear, 1 outside of it; None without a curve."""
-    curve = catalogue.efficiency.get(gear.designation)
-    return None if curve is None else np.interp(torque_Nm, *curve, left=1.0, right=1.0)
+def efficiency_along(catalogue: Catalogue, gear: Gear, torque_Nm: FloatArray) -> FloatArray:
+    """Efficiency at torques by the curve that a supplement gives of a gear; beyond its ends that of the nearer end.
+
+    Raises KeyError for a gear without a curve.
+    """
+    return np.interp(torque_Nm, *catalogue.efficiency[gear.designation])
+
+
+def leaves_curve(catalogue: Catalogue, gear: Gear, duty: Duty, index: int) -> bool:
+    """Whether a torque of application `index` lies beyond the ends of a gear's efficiency curve; one of 0 does not."""
+    known, _ = catalogue.efficiency[gear.designation]
+    torques = np.concatenate((duty.phases.peak_torque_Nm[index, 0], duty.phases.rms_torque_Nm[index, 0]))
+    return bool(((torques > 0) & ((torques < known[0]) | (torques > known[-1]))).any())

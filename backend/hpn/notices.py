@@ -17,6 +17,7 @@ from hpn.application import Application, OutputLoad
 from hpn.catalogue import Catalogue, GearList
 from hpn.equations import ROUNDING, FloatArray
 from hpn.evaluation import SUITABLE, Evaluation
+from hpn.figures import leaves_curve
 from hpn.gear import Gear
 from hpn.units import suffix_of
 from hpn.wording import N_, Quantity, Sentence
@@ -64,7 +65,11 @@ NOTICES: Mapping[str, str] = {
     ),
     "efficiency_assumed": N_("Motor torques use the efficiency of {efficiency_percent} that you assume."),
     "efficiency_supplied": N_(
-        "Motor torques use the efficiency curves that you supplied; where they say nothing, loss-free: a lower bound."
+        "Motor torques use the efficiency curves that you supplied; a gear without one is loss-free: a lower bound."
+    ),
+    "efficiency_beyond_curve": N_(
+        "Torques of the cycle lie beyond the ends of the efficiency curves of {names}: there the efficiency at the "
+        "nearer end counts."
     ),
     "efficiency_unknown": N_(
         "Motor torques are loss-free, a lower bound: the handbook’s efficiency curves were not available and no "
@@ -113,7 +118,7 @@ class Notice(msgspec.Struct, frozen=True):
 
 
 def _template_of(code: str, values: Mapping[str, Value]) -> str:
-    return "gears_unrated" if "names" in values else code
+    return "gears_unrated" if code == "size_unrated" and "names" in values else code
 
 
 def _sentence(template: str, values: Mapping[str, Value]) -> Sentence:
@@ -138,7 +143,7 @@ def notices_of(application: Application, evaluation: Evaluation, index: int) -> 
     found += _on_speed(evaluation, index)
     if application.loads is not None:
         found += _on_the_bearing(application.loads, evaluation, index)
-    found += _on_the_motor(application, evaluation.catalogue)
+    found += _on_the_motor(application, evaluation, index)
     found += _unrated(evaluation.gears, evaluation.catalogue)
     return (*found, *([notice("catalogue_supplement")] if evaluation.catalogue.supplement else ()))
 
@@ -198,12 +203,16 @@ def _on_the_bearing(load: OutputLoad, evaluation: Evaluation, index: int) -> Ite
         yield notice("bearing_life_unlimited")
 
 
-def _on_the_motor(application: Application, catalogue: Catalogue) -> Iterable[Notice]:
-    asked = application.requirements
+def _on_the_motor(application: Application, evaluation: Evaluation, index: int) -> Iterable[Notice]:
+    asked, catalogue = application.requirements, evaluation.catalogue
     if asked.efficiency is not None:
         yield notice("efficiency_assumed", efficiency_percent=100 * asked.efficiency)
     elif asked.motor is not None or application.rank_by == "motor_torque":
         yield notice("efficiency_supplied" if catalogue.efficiency else "efficiency_unknown")
+        curved = (gear for gear in evaluation.gears.rows if gear.designation in catalogue.efficiency)
+        left = [gear.designation for gear in curved if leaves_curve(catalogue, gear, evaluation.case.duty, index)]
+        if left:
+            yield notice("efficiency_beyond_curve", names=", ".join(left))
     if asked.motor is not None or application.rank_by == "motor_torque":
         yield notice("motor_torque_partial")
 

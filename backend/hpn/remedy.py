@@ -172,7 +172,10 @@ def followed(application: Application, way: Way) -> Application:
         phase.model_copy(
             update={
                 "torque_Nm": _scaled(phase.torque_Nm, torque),
+                "peak_torque_Nm": _scaled(phase.peak_torque_Nm, torque),
+                "rms_torque_Nm": _scaled(phase.rms_torque_Nm, torque),
                 "speed_rpm": _scaled(phase.speed_rpm, speed),
+                "peak_speed_rpm": _scaled(phase.peak_speed_rpm, speed),
                 "radial_N": _scaled(phase.radial_N, load),
                 "axial_N": _scaled(phase.axial_N, load),
             }

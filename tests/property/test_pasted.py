@@ -10,7 +10,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hpn.application import DutyCycle, Phase
+from hpn.application import DutyCycle
+from hpn.phase import Phase
 from hpn.web.form.cells import DECIMALS
 from hpn.web.form.cells import Decimal as Mark
 from hpn.web.form.columns import Choices

@@ -6,9 +6,10 @@ from typing import Any
 import pytest
 from pydantic import ValidationError
 
-from hpn.application import MAXIMUM_PHASES, Application, BatchItem, InputError
+from hpn.application import Application, BatchItem, InputError
 from hpn.catalogue import Catalogue
 from hpn.gear import canonical_designation, canonical_size
+from hpn.phase import MAXIMUM_PHASES
 from hpn.units import SYMBOLS, suffix_of, symbol_of
 from tests.build import Json, answer, check, cycle, phase, worked_example
 

@@ -233,6 +233,10 @@ def test_last_row_removed_leaves_a_blank_one() -> None:
     assert [dict(row) for row in read("T=1&n=1&t=1&do=remove:1").rows] == [{"T": "", "n": "", "t": ""}]
 
 
+WITHOUT_SYMBOL = {("duty_cycle", "phases", name) for name in ("peak_torque_Nm", "peak_speed_rpm", "rms_torque_Nm")}
+"""Fields that only JSON speaks so far (issue 18)."""
+
+
 def test_every_field_of_the_application_has_a_symbol() -> None:
     def leaves(model: type[BaseModel], path: tuple[str, ...] = ()) -> set[tuple[str, ...]]:
         found: set[tuple[str, ...]] = set()
@@ -244,7 +248,7 @@ def test_every_field_of_the_application_has_a_symbol() -> None:
         return found
 
     phases = {("duty_cycle", "phases", *symbol.path) for symbol in symbols.PHASE_SYMBOLS}
-    assert leaves(Application) == phases | {symbol.path for symbol in symbols.SYMBOLS}
+    assert leaves(Application) - WITHOUT_SYMBOL == phases | {symbol.path for symbol in symbols.SYMBOLS}
 
 
 def test_a_canonical_number_is_as_short_as_it_can_be() -> None:

@@ -200,20 +200,27 @@ def test_only_a_gear_with_a_curve_of_its_own_loses_the_torque_reserve_and_only_w
         assert torque_factor(designation, curved, **asked) == torque_factor(designation, catalogue, **asked) is not None
 
 
-def test_an_efficiency_curve_of_a_supplement_is_followed_between_its_points_and_lossfree_outside(
+def test_an_efficiency_curve_of_a_supplement_is_followed_between_its_points_and_holds_beyond_its_ends(
     supplemented: Supplement,
 ) -> None:
     curved = supplemented(efficiency=EFFICIENCY + "20A,5,80,0.9,\n20A,5,20,0.7,\n")
     application = cycle(phase(50, 100), requirements={"motor": {"peak_torque_Nm": 100}})
 
     inside = answer(application, curved)
-    outside = answer(cycle(phase(100, 100), requirements={"motor": {"peak_torque_Nm": 100}}), curved)
+    above, below = (
+        answer(cycle(phase(T, 100), requirements={"motor": {"peak_torque_Nm": 100}}), curved) for T in (90, 14)
+    )
     stated = answer(application | {"requirements": {"efficiency": 0.5}}, curved)
 
     # Half way between 20 Nm and 80 Nm the efficiency is 0.8: 50 / (5 · 0.8), by hand.
     assert candidate(inside, "HPN-20A-5")["motor_peak_torque_Nm"] == pytest.approx(12.5, rel=1e-15)
     assert candidate(inside, "HPN-20A-4")["motor_peak_torque_Nm"] == 12.5
-    assert candidate(outside, "HPN-20A-5")["motor_peak_torque_Nm"] == 20
+    # Beyond the ends 0.9 and 0.7 count: 90 / (5 · 0.9) and 14 / (5 · 0.7), by hand.
+    assert candidate(above, "HPN-20A-5")["motor_peak_torque_Nm"] == pytest.approx(20, rel=1e-15)
+    assert candidate(below, "HPN-20A-5")["motor_peak_torque_Nm"] == pytest.approx(4, rel=1e-15)
+    for reply in (above, below):
+        assert "efficiency curves of HPN-20A-5:" in notices(reply)["efficiency_beyond_curve"]
+    assert not {"efficiency_beyond_curve"} & {*notices(inside), *notices(stated)}
     assert candidate(stated, "HPN-20A-5")["motor_peak_torque_Nm"] == 20
     assert "efficiency_supplied" in notices(inside)
     assert "efficiency_assumed" in notices(stated)

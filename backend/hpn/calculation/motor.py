@@ -28,33 +28,36 @@ EFFICIENCY = Variable.of(INPUTS["requirements.efficiency"].symbol)
 def motor_steps(sheet: Sheet) -> Iterable[Step]:
     """Peak and RMS torque, loss-free where no efficiency is known."""
     stated = sheet.given("requirements.efficiency")
-    along = efficiency_along(sheet.catalogue, sheet.gear, sheet.torque.values)
-    if stated is None and along is not None:
-        return _by_curve(sheet, PhaseValues(EFFICIENCY, along))
+    if stated is None and sheet.gear.designation in sheet.catalogue.efficiency:
+        return _by_curve(sheet)
     eta = stated or Term(EFFICIENCY, 1.0)
     note = N_("η as you state it.") if stated else N_("η = 1, since no efficiency is known: loss-free, a lower bound.")
     shaft = Product((sheet.i, eta))
-    squares = over_phases(lambda T, t: Product((Power(T, SQUARED), t)), sheet.torque, sheet.time)
+    squares = over_phases(lambda T, t: Product((Power(T, SQUARED), t)), sheet.rms_torque, sheet.time)
     peak = Quotient(sheet.T_max, shaft)
     rated = Quotient(Root(Quotient(squares, sheet.cycle_time)), shaft)
     return _steps(sheet, peak, rated, Sentence(note))
 
 
-def _by_curve(sheet: Sheet, eta: PhaseValues) -> Iterable[Step]:
-    """Motor torques phase by phase, each with its own efficiency."""
+def _by_curve(sheet: Sheet) -> Iterable[Step]:
+    """Motor torques phase by phase, the efficiency read at the peak for the peak and at the RMS for the RMS."""
+    eta, eta_rms = (
+        PhaseValues(EFFICIENCY, efficiency_along(sheet.catalogue, sheet.gear, torque.values))
+        for torque in (sheet.peak_torque, sheet.rms_torque)
+    )
 
     def at_motor(T: Formula, eta: Formula) -> Formula:
         return Quotient(T, Product((sheet.i, eta)))
 
     def of_phase(index: str, place: int) -> Formula:
-        return at_motor(sheet.torque.term(index, place), eta.term(index, place))
+        return at_motor(sheet.peak_torque.term(index, place), eta.term(index, place))
 
-    every = {quantity.symbol.of_phase("n"): quantity.values for quantity in (sheet.torque, eta)}
+    every = {quantity.symbol.of_phase("n"): quantity.values for quantity in (sheet.peak_torque, eta)}
     largest = int(values_of(of_phase("n", 0), every).argmax())
     squares = over_phases(
-        lambda T, eta, t: Product((Power(at_motor(T, eta), SQUARED), t)), sheet.torque, eta, sheet.time
+        lambda T, eta, t: Product((Power(at_motor(T, eta), SQUARED), t)), sheet.rms_torque, eta_rms, sheet.time
     )
-    note = N_("η of every phase from the efficiency curve that you supplied; 1 where the curve says nothing.")
+    note = N_("η of every phase from the efficiency curve that you supplied; beyond its ends that of the nearer end.")
     rated = Root(Quotient(squares, sheet.cycle_time))
     return _steps(sheet, of_phase(str(largest + 1), largest), rated, Sentence(note))
 

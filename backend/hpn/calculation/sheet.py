@@ -115,6 +115,8 @@ class Sheet:
         self.candidate, self.gear, self.application, self.catalogue = candidate, gear, application, catalogue
         self.duty = Duty.of([application])
         self.torque = self._of_phases("torque_Nm")
+        self.peak_torque = self._varying("peak_torque_Nm", self.torque)
+        self.rms_torque = self._varying("rms_torque_Nm", self.torque)
         self.speed = self._of_phases("speed_rpm")
         self.time = self._of_phases("duration_s")
         self.radial = self._of_phases("radial_N")
@@ -129,6 +131,11 @@ class Sheet:
     def _of_phases(self, name: str) -> PhaseValues:
         values: FloatArray = getattr(self.duty.phases, name)[0, 0]
         return PhaseValues(Variable.of(INPUTS[f"phase.{name}"].symbol), values, suffix_of(name) or "")
+
+    def _varying(self, name: str, steady: PhaseValues) -> PhaseValues:
+        """A figure of phases that vary; what it is of a steady phase where none does."""
+        varying = self._of_phases(name)
+        return varying if (varying.values != steady.values).any() else steady
 
     def _of_duty(self, name: str) -> Term:
         return _term(DUTY[name], name, getattr(self.duty, name).item())

@@ -5,10 +5,10 @@ from hpn.drawings.subject import Subject
 from hpn.equations import FloatArray
 
 _EXTREME = {
-    "repeated_peak_torque": "torque_Nm",
-    "motor_peak_torque": "torque_Nm",
-    "maximum_input_speed": "speed_rpm",
-    "motor_speed": "speed_rpm",
+    "repeated_peak_torque": "peak_torque_Nm",
+    "motor_peak_torque": "peak_torque_Nm",
+    "maximum_input_speed": "peak_speed_rpm",
+    "motor_speed": "peak_speed_rpm",
 }
 """Checks of the largest value of a phase."""
 

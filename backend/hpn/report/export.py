@@ -107,16 +107,8 @@ class Export:
         return bool((np.abs(shown - loss_free) > 1e-9 * loss_free).any())
 
     def is_lower_bound(self, candidate: Candidate) -> bool:
-        """Whether the motor torques of a candidate are loss-free, in some phase at least: no efficiency is known."""
-        if self.application.requirements.efficiency is not None:
-            return False
-        if not self.follows_efficiency_curve(candidate):
-            return True
-        if self.figures is None:
-            return False
-        known, _ = self.figures.efficiency[candidate.designation]
-        torques = self.duty.phases.torque_Nm
-        return bool(((torques > 0) & ((torques < known[0]) | (torques > known[-1]))).any())
+        """Whether the motor torques of a candidate are loss-free: no efficiency is known."""
+        return self.application.requirements.efficiency is None and not self.follows_efficiency_curve(candidate)
 
     @property
     def others(self) -> list[Candidate]:

@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from hpn.application import Phase
+from hpn.phase import Phase
 from hpn.quantities import CANDIDATE, DUTY, GEAR, INPUTS
 from hpn.reader import Reader
 from hpn.report import inputs

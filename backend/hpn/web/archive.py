@@ -11,9 +11,10 @@ from starlette.requests import Request
 from starlette.responses import Response
 
 from hpn import ENGINE_VERSION
-from hpn.application import Application, InputError, Model
+from hpn.application import Application, InputError
 from hpn.catalogue import Catalogue
 from hpn.differences import Difference, FigureDifference, differences, figure_differences
+from hpn.fields import Model
 from hpn.selection import Selection, decode, encode, select
 from hpn.store import Draft, KeyReusedError, KeySpentError, SavedSelection
 from hpn.web.door.observation import note

@@ -9,7 +9,8 @@ from typing import Any
 import msgspec
 from pydantic import BaseModel, Field
 
-from hpn.application import BatchItem, Model, name_units
+from hpn.application import BatchItem
+from hpn.fields import Model, name_units
 from hpn.quantities import BOLT, CANDIDATE, CHECK, DUTY, ENVELOPE, GEAR, RESERVE, SERIES, Named
 from hpn.selection import Selection
 from hpn.web.api import replies

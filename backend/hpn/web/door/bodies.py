@@ -7,7 +7,7 @@ from urllib.parse import parse_qsl
 from pydantic import BaseModel
 from starlette.requests import ClientDisconnect, Request
 
-from hpn.application import MAXIMUM_PHASES
+from hpn.phase import MAXIMUM_PHASES
 from hpn.web.door.problems import Problem
 from hpn.web.settings import Settings
 

@@ -12,7 +12,8 @@ from itertools import chain, pairwise
 from math import isfinite
 
 from hpn import units
-from hpn.application import MAXIMUM_PHASES, DutyCycle
+from hpn.application import DutyCycle
+from hpn.phase import MAXIMUM_PHASES
 from hpn.web.form.cells import DECIMALS, Decimal, Entry, entry, is_blank
 from hpn.web.form.columns import DIVIDED, NO_CHOICES, REQUIRED, SKIP, WIRE, Body, Choices, Column, body_of, columns_of
 from hpn.web.form.headings import QUANTITIES, heading_of

@@ -13,7 +13,8 @@ from urllib.parse import urlencode
 
 from pydantic import ValidationError
 
-from hpn.application import MAXIMUM_PHASES, MOST_WISHES, Application
+from hpn.application import MOST_WISHES, Application
+from hpn.phase import MAXIMUM_PHASES
 from hpn.reader import Reader
 from hpn.units import suffix_of
 from hpn.web.door.access import MAXIMUM_QUERY_BYTES as MAXIMUM_QUERY_BYTES

@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import zip_longest
 
-from hpn.application import MAXIMUM_PHASES
+from hpn.phase import MAXIMUM_PHASES
 from hpn.web.form.cells import tidy
 from hpn.wording import N_, Sentence
 

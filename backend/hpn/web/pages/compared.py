@@ -11,10 +11,11 @@ from pydantic import ValidationError
 from starlette.requests import Request
 from starlette.responses import HTMLResponse, RedirectResponse, Response
 
-from hpn.application import Application, Phase
+from hpn.application import Application
 from hpn.catalogue import Catalogue
 from hpn.check import Check
 from hpn.checks import BY_CODE
+from hpn.phase import Phase
 from hpn.quantities import CANDIDATE, DUTY, Named, unit_of
 from hpn.readings import Reading
 from hpn.report.inputs import LOADS, REQUIREMENTS, InputLine, given
