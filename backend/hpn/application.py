@@ -7,11 +7,25 @@ from collections.abc import Iterator, Mapping
 from types import UnionType
 from typing import Annotated, Any, Literal, Self, Union, get_args, get_origin
 
-from pydantic import BaseModel, BeforeValidator, Field, WrapValidator, field_validator
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, WrapValidator, field_validator, model_validator
 from pydantic_core import PydanticCustomError
 
-from hpn.fields import Hours, Load, Model, Number, Positive, Ratio, Share, Torque, at_most, in_parts
+from hpn.fields import (
+    Hours,
+    Load,
+    Model,
+    Number,
+    Positive,
+    Ratio,
+    Share,
+    Torque,
+    at_most,
+    in_parts,
+    name_units,
+    refused,
+)
 from hpn.gear import canonical_size
+from hpn.motion import Motion
 from hpn.phase import MAXIMUM_PHASES, Phase
 from hpn.wording import Sentence
 
@@ -40,26 +54,52 @@ WISHES: Any = Field(min_length=1, max_length=MOST_WISHES)
 Size = Annotated[str, Field(max_length=20), BeforeValidator(canonical_size)]
 
 
-class DutyCycle(Model):
-    """Load phases and the pause t_p that follows them."""
+PHASES: Any = Field(min_length=1, max_length=MAXIMUM_PHASES)
 
-    phases: Annotated[tuple[Phase, ...], WrapValidator(in_parts), at_most(MAXIMUM_PHASES)] = Field(
-        min_length=1, max_length=MAXIMUM_PHASES, description="Load phases; at least one moves."
+
+def _one_of_two(schema: dict[str, Any]) -> None:
+    name_units(schema)
+    schema["oneOf"] = [{"required": ["phases"]}, {"required": ["motion"]}]
+
+
+class DutyCycle(Model):
+    """Load phases, or the motion that they come from, and the pause t_p that follows them."""
+
+    model_config = ConfigDict(json_schema_extra=_one_of_two)
+
+    phases: Annotated[tuple[Phase, ...], PHASES, WrapValidator(in_parts), at_most(MAXIMUM_PHASES)] | None = Field(
+        None, description="Load phases; at least one moves."
     )
+    motion: Motion | None = Field(None, description="Motion of a mechanism, in place of the phases.")
     pause_s: Annotated[Number, Field(ge=0, le=1e9)] = Field(
         0.0, description="Pause t_p: counts in the average speed (eq. 17.4), not in the average torque.", examples=[4.0]
     )
 
     @field_validator("phases")
     @classmethod
-    def _moves(cls, phases: tuple[Phase, ...]) -> tuple[Phase, ...]:
+    def _moves(cls, phases: tuple[Phase, ...] | None) -> tuple[Phase, ...] | None:
         # Below this product of relative speed and duration the sums of eq. 17.2 and 17.4 would vanish.
-        if not any(abs(phase.speed_rpm) * phase.duration_s > 1e-100 for phase in phases):
+        if phases is not None and not any(abs(phase.speed_rpm) * phase.duration_s > 1e-100 for phase in phases):
             raise PydanticCustomError(
                 "no_motion",
                 "no phase moves, so the cycle has no average torque (eq. 17.2): give at least one phase a speed",
             )
         return phases
+
+    @model_validator(mode="after")
+    def _says_it_once(self) -> Self:
+        if self.phases is None and self.motion is None:
+            raise refused(self, (("phases",), PydanticCustomError("no_cycle", "give phases, or a motion")))
+        if self.phases is not None and self.motion is not None:
+            raise refused(
+                self, (("motion",), PydanticCustomError("two_cycles", "give either phases or a motion, not both"))
+            )
+        return self
+
+    @property
+    def load_phases(self) -> tuple[Phase, ...]:
+        """Its phases, as they are typed or as they come out of the motion."""
+        return self.motion.phases if self.motion is not None else self.phases or ()
 
 
 class EmergencyStop(Model):
@@ -138,7 +178,7 @@ class Application(Model):
         cycle = info.data.get("duty_cycle")
         if load is None or cycle is None or load.radial_N is not None or load.axial_N is not None:
             return load
-        if any(phase.radial_N is not None or phase.axial_N is not None for phase in cycle.phases):
+        if any(phase.radial_N is not None or phase.axial_N is not None for phase in cycle.load_phases):
             return load
         raise PydanticCustomError(
             "no_load", "no load is given: state radial_N or axial_N here or in a phase, or leave output_load out"
@@ -148,7 +188,7 @@ class Application(Model):
     def loads(self) -> OutputLoad | None:
         """Conditions of the output load, or None where neither the cycle nor a phase carries a load."""
         if self.output_load is None:
-            for phase in self.duty_cycle.phases:
+            for phase in self.duty_cycle.load_phases:
                 if phase.radial_N is not None or phase.axial_N is not None:
                     return OutputLoad()
         return self.output_load
@@ -161,7 +201,7 @@ class Application(Model):
 
 def _number_paths(model: type[BaseModel], path: tuple[str, ...] = ()) -> Iterator[tuple[str, ...]]:
     for name, field in model.model_fields.items():
-        if field.annotation is not None:
+        if field.annotation is not None and name != "motion":
             yield from _paths_below(field.annotation, (*path, name))
 
 
@@ -176,7 +216,7 @@ def _paths_below(annotation: Any, path: tuple[str, ...]) -> Iterator[tuple[str, 
 
 
 NUMBERS = tuple(_number_paths(Application))
-"""Path of every single number of an application, such as ("requirements", "motor", "peak_torque_Nm")."""
+"""Path of every single number of an application but its motion: ("requirements", "motor", "peak_torque_Nm")."""
 
 
 class BatchItem(Application):

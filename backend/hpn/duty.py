@@ -39,7 +39,7 @@ class Phases:
     @classmethod
     def of(cls, applications: Sequence[Application]) -> "Phases":
         """Phases of applications, each padded to the longest cycle."""
-        longest = max(len(application.duty_cycle.phases) for application in applications)
+        longest = max(len(application.duty_cycle.load_phases) for application in applications)
         table = np.zeros((8, len(applications), 1, longest))
         for place, application in enumerate(applications):
             rows = _rows(application)
@@ -48,7 +48,7 @@ class Phases:
 
 
 def _rows(application: Application) -> list[tuple[float, ...]]:
-    load, phases = application.loads or _UNLOADED, application.duty_cycle.phases
+    load, phases = application.loads or _UNLOADED, application.duty_cycle.load_phases
     radial, axial = load.radial_N or 0.0, load.axial_N or 0.0
     return [
         (

@@ -62,6 +62,7 @@ Duration = Annotated[Number, Field(gt=0, le=1e9)]
 Load = Annotated[Number, Field(ge=-1e9, le=1e9)]
 SAYS_LEAST: Any = Field(json_schema_extra={"minimum": LEAST})
 Hours = Annotated[Number, Field(le=1e9), AfterValidator(_above_zero), SAYS_LEAST]
+MoveTime = Annotated[Number, Field(le=1e9), AfterValidator(_above_zero), SAYS_LEAST]
 Positive = Annotated[Number, Field(le=1e12), AfterValidator(_above_zero), SAYS_LEAST]
 Share = Annotated[Number, Field(le=1), AfterValidator(_above_zero), SAYS_LEAST]
 Ratio = Annotated[int, Field(strict=True, ge=1, le=10_000)]

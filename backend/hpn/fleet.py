@@ -41,7 +41,7 @@ def _chunks(indices: list[int], applications: Sequence[Application]) -> Iterable
     """Indices in chunks of cycles of like length, since every cycle of a chunk is padded to its longest."""
 
     def phases(index: int) -> int:
-        return len(applications[index].duty_cycle.phases)
+        return len(applications[index].duty_cycle.load_phases)
 
     chunk: list[int] = []
     for index in sorted(indices, key=phases):

@@ -3,7 +3,7 @@
 A notice is a code and values; its sentence is one of NOTICES, and is put together where it is shown.
 """
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from functools import lru_cache
 from string import Formatter
 from typing import Annotated
@@ -13,7 +13,7 @@ import numpy as np
 from msgspec import Meta
 from numpy.typing import NDArray
 
-from hpn.application import Application, OutputLoad
+from hpn.application import Application, DutyCycle, OutputLoad
 from hpn.catalogue import Catalogue, GearList
 from hpn.equations import ROUNDING, FloatArray
 from hpn.evaluation import SUITABLE, Evaluation
@@ -26,6 +26,10 @@ DIGITS: Mapping[str | None, int] = {"Nm": 6, "percent": 3, "s": 6}
 """Digits of the numbers in a notice, by unit."""
 
 NOTICES: Mapping[str, str] = {
+    "motion_triangle": N_("Moves {moves} leave no time to run: they are triangles, which nobody asked for."),
+    "motion_left_off": N_(
+        "The motion ends at another angle than it starts, so that the next cycle meets gravity otherwise than this one."
+    ),
     "application_area": N_(
         "Use in this area ({area}) needs a risk assessment and the maker’s approval (handbook 2.4)."
     ),
@@ -139,6 +143,7 @@ def notices_of(application: Application, evaluation: Evaluation, index: int) -> 
     found: list[Notice] = []
     if application.application_area is not None:
         found.append(notice("application_area", area=AREAS[application.application_area]))
+    found += _on_the_motion(application.duty_cycle)
     found += _on_stop_and_life(evaluation, index)
     found += _on_speed(evaluation, index)
     if application.loads is not None:
@@ -146,6 +151,26 @@ def notices_of(application: Application, evaluation: Evaluation, index: int) -> 
     found += _on_the_motor(application, evaluation, index)
     found += _unrated(evaluation.gears, evaluation.catalogue)
     return (*found, *([notice("catalogue_supplement")] if evaluation.catalogue.supplement else ()))
+
+
+def _on_the_motion(cycle: DutyCycle) -> Iterable[Notice]:
+    if cycle.motion is None:
+        return
+    if cycle.motion.triangles:
+        yield notice("motion_triangle", moves=_ranges(cycle.motion.triangles))
+    if cycle.motion.is_left_off:
+        yield notice("motion_left_off")
+
+
+def _ranges(places: Sequence[int]) -> str:
+    """Numbers of places, those in a row as a range: `1, 3–5`."""
+    rows: list[list[int]] = []
+    for place in places:
+        if rows and rows[-1][-1] == place - 1:
+            rows[-1].append(place)
+        else:
+            rows.append([place])
+    return ", ".join(f"{row[0] + 1}" if len(row) == 1 else f"{row[0] + 1}–{row[-1] + 1}" for row in rows)
 
 
 def _is_unlimited(figure: FloatArray, index: int) -> bool:

@@ -75,6 +75,25 @@ DUTY: Mapping[str, Named] = {
     ),
 }
 
+PHASE: Mapping[str, Named] = {
+    name.removeprefix("phase."): Named(named.name, named.symbol, sentence)
+    for (name, named), sentence in zip(
+        INPUTS.items(),
+        (
+            "Mean torque that equation 17.2 weighs, with the torque’s sign.",
+            "Mean speed, with the direction of the motion.",
+            "Duration.",
+            "Radial load; left out where the move has none.",
+            "Axial load; left out where the move has none.",
+            "Largest torque in the phase.",
+            "Largest speed in the phase.",
+            "RMS of the torque over the phase.",
+        ),
+        strict=False,
+    )
+}
+"""Figures of a phase that comes out of a motion."""
+
 CANDIDATE: Mapping[str, Named] = {
     "designation": Named(N_("Gear"), "", "Designation such as HPN-20A-5."),
     "size": Named(N_("Size"), "", "Size such as 20A."),

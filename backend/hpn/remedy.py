@@ -168,6 +168,7 @@ def _with(model: Any, path: Sequence[str], value: float) -> Any:
 def followed(application: Application, way: Way) -> Application:
     """The application changed by a way, with its figures as the words print them."""
     torque, speed, load = (_printed(factor, 3) for factor in (way.torque, way.speed, way.load))
+    cycle = application.duty_cycle
     phases = tuple(
         phase.model_copy(
             update={
@@ -180,9 +181,11 @@ def followed(application: Application, way: Way) -> Application:
                 "axial_N": _scaled(phase.axial_N, load),
             }
         )
-        for phase in application.duty_cycle.phases
+        for phase in cycle.load_phases
     )
-    parts: dict[str, Any] = {"duty_cycle": application.duty_cycle.model_copy(update={"phases": phases})}
+    parts: dict[str, Any] = {}
+    if cycle.motion is None or (torque, speed, load) != (1, 1, 1):
+        parts["duty_cycle"] = cycle.model_copy(update={"phases": phases, "motion": None})
     if (given := application.output_load) is not None:
         loads = {name: _scaled(getattr(given, name), load) for name in ("radial_N", "axial_N")}
         parts["output_load"] = given.model_copy(update={k: v for k, v in loads.items() if v is not None})

@@ -32,6 +32,7 @@ from hpn.evaluation import (
     evaluate,
 )
 from hpn.notices import Notice, notices_of
+from hpn.quantities import DUTY
 from hpn.reserve import reserves
 from hpn.wording import N_, Quantity, Sentence, Value, telling_decimals
 
@@ -112,13 +113,30 @@ _UNLIMITED_BY = {
 whether the gear has the rating that they come from."""
 
 
-class DutyFigures(msgspec.Struct, frozen=True):
-    """What the duty cycle comes to."""
+class PhaseFigures(msgspec.Struct, frozen=True, omit_defaults=True):
+    """A load phase that comes out of a motion, as one is typed."""
+
+    torque_Nm: float
+    speed_rpm: float
+    duration_s: float
+    peak_torque_Nm: float
+    peak_speed_rpm: float
+    rms_torque_Nm: float
+    radial_N: float | None = None
+    axial_N: float | None = None
+
+
+class DutyFigures(msgspec.Struct, frozen=True, omit_defaults=True):
+    """What the duty cycle comes to; phases and inertia where it is a motion."""
 
     average_torque_Nm: float
     average_output_speed_rpm: float
     maximum_torque_Nm: float
     maximum_output_speed_rpm: float
+    phases: Annotated[tuple[PhaseFigures, ...], Meta(description="Load phases that the motion comes to.")] = ()
+    load_inertia_kgm2: Annotated[
+        float | None, Meta(description="Moment of inertia of the motion’s load at the gear’s output.")
+    ] = None
 
 
 class CheckDefinition(msgspec.Struct, frozen=True):
@@ -206,9 +224,7 @@ class Judged:
             engine_version=ENGINE_VERSION,
             catalogue_version=evaluation.catalogue.version,
             link=link,
-            duty=DutyFigures(
-                *(getattr(evaluation.case.duty, name).item(index) for name in DutyFigures.__struct_fields__)
-            ),
+            duty=_duty(self.application, evaluation, index),
             selected=candidates[0].designation if candidates[0].status == "suitable" else None,
             candidates=candidates,
             check_definitions=dict(_definitions(checks)),
@@ -229,6 +245,15 @@ def judge(application: Application, catalogue: Catalogue) -> Judged:
     """The same, before it is put together; raises as `select` does."""
     gears = gears_for(application, catalogue)
     return Judged(application, evaluate([application], gears, catalogue))
+
+
+def _duty(application: Application, evaluation: Evaluation, index: int) -> DutyFigures:
+    figures = DutyFigures(*(getattr(evaluation.case.duty, name).item(index) for name in DUTY))
+    motion = application.duty_cycle.motion
+    if motion is None:
+        return figures
+    phases = tuple(PhaseFigures(**vars(phase)) for phase in motion.phases)
+    return msgspec.structs.replace(figures, phases=phases, load_inertia_kgm2=motion.load_inertia_kgm2)
 
 
 # --- Candidates -------------------------------------------------------------------------------------------------------

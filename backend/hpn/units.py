@@ -30,6 +30,12 @@ SYMBOLS = {
     "arcmin": "arcmin",
     "degC": "°C",
     "percent": "%",
+    "deg": "°",
+    "deg_per_s2": "°/s²",
+    "mm_per_s": "mm/s",
+    "mm_per_s2": "mm/s²",
+    "kgm2": "kg·m²",
+    "Nm_per_rpm": "Nm/rpm",
 }
 """Unit suffix of a field name -> the symbol a reader sees."""
 

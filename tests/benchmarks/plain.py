@@ -117,7 +117,7 @@ class Cycle:
     """The sums of a duty cycle, equations 17.2 and 17.4, and the RMS torque."""
 
     def __init__(self, application: Application) -> None:
-        phases, pause = application.duty_cycle.phases, application.duty_cycle.pause_s
+        phases, pause = application.duty_cycle.load_phases, application.duty_cycle.pause_s
         T = np.abs([phase.torque_Nm for phase in phases])
         n = np.abs([phase.speed_rpm for phase in phases])
         t = np.array([phase.duration_s for phase in phases])
@@ -297,7 +297,7 @@ def _order(candidate: Candidate, gears: Gears, g: int) -> tuple[float, ...]:
 def link_of(application: Application) -> str:
     """The application in the address bar."""
     pairs: list[tuple[str, float]] = []
-    for phase in application.duty_cycle.phases:
+    for phase in application.duty_cycle.load_phases:
         pairs += [("T", phase.torque_Nm), ("n", phase.speed_rpm), ("t", phase.duration_s)]
     pairs.append(("tp", application.duty_cycle.pause_s))
     if application.emergency_stop is not None:

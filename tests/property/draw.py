@@ -139,3 +139,88 @@ def at_random(chance: random.Random, models: Sequence[str] = ("linear", "iso281"
     if wishes:
         parts["requirements"] = wishes
     return cycle(*phases, pause_s=some(0, 20, 0) if maybe() else 0.0, **parts)
+
+
+# --- Motions ----------------------------------------------------------------------------------------------------------
+
+ways = st.builds(lambda sign, size: sign * size, signs, st.floats(1, 500))
+times = st.floats(0.2, 5)
+
+
+def _moves(way: str, speed: str, unit: float, acceleration: str, external: str) -> st.SearchStrategy[Json]:
+    """A possible move; what its ramps leave to say is said in each of the ways that there are."""
+
+    def of(profile: str, size: float, time: float, ramp: float, said: int, share: float, load: float | None) -> Json:
+        move: Json = {"profile": profile, "time_s": time}
+        if load is not None:
+            move[external] = load
+        if profile == "dwell":
+            return move
+        move[way] = size
+        if profile in ("modified_sine", "triangular") or said == 0:
+            return move
+        V = abs(size) / (time * (1 - ramp)) / unit
+        a = abs(size) / (time * (1 - ramp)) / (time * ramp) / (1 - share / 2 if profile == "s_curve" else 1)
+        if profile == "s_curve":
+            move["jerk_share"] = share
+        if said != 1:
+            move[acceleration] = a * (1 + 1e-6)
+        if said != 2:
+            move[speed] = V * (1 + 1e-6)
+        if said == 3:
+            del move["time_s"]
+        return move
+
+    return st.builds(
+        of,
+        st.sampled_from(["trapezoidal", "triangular", "s_curve", "modified_sine", "dwell"]),
+        ways,
+        times,
+        st.floats(0.05, 0.5),
+        st.integers(0, 3),
+        st.sampled_from([0.1, 0.5, 1.0]),
+        st.none() | st.floats(-40, 40),
+    )
+
+
+def _of(mechanism: st.SearchStrategy[Json], moves: st.SearchStrategy[Json], **more: Any) -> st.SearchStrategy[Json]:
+    listed = st.lists(moves, min_size=1, max_size=4).filter(lambda few: any(m["profile"] != "dwell" for m in few))
+    return st.fixed_dictionaries({"mechanism": mechanism, "moves": listed, **more})
+
+
+def rotary_motions() -> st.SearchStrategy[Json]:
+    """A possible motion of a mass that turns, with and without gravity."""
+    common = {
+        "friction_torque_Nm": st.floats(0, 10),
+        "viscous_friction_Nm_per_rpm": st.floats(0, 0.2),
+        "efficiency": st.floats(0.5, 1),
+        "ratio": st.floats(0.5, 4),
+    }
+    plain = st.fixed_dictionaries({"type": st.just("rotary"), "inertia_kgm2": st.floats(0.01, 5)}, optional=common)
+    gravity = {"gravity_mass_kg": st.floats(0.5, 20), "gravity_radius_mm": st.floats(10, 400)}
+    heavy = st.builds(lambda one, other: one | other, plain, st.fixed_dictionaries(gravity))
+    moves = _moves("angle_deg", "speed_rpm", 6.0, "acceleration_deg_per_s2", "external_torque_Nm")
+    return _of(plain | heavy, moves, start_deg=st.sampled_from([0, 90, -90, 180]) | st.floats(-400, 400))
+
+
+def linear_motions() -> st.SearchStrategy[Json]:
+    """A possible motion along a line."""
+    common = {
+        "incline_deg": st.floats(-90, 90),
+        "friction_coefficient": st.floats(0, 0.3),
+        "inertia_kgm2": st.floats(0, 0.1),
+        "efficiency": st.floats(0.5, 1),
+        "ratio": st.floats(0.5, 4),
+    }
+    size = {"rack_and_pinion": "diameter_mm", "belt": "diameter_mm", "ball_screw": "lead_mm"}
+    mechanism = st.sampled_from(sorted(size)).flatmap(
+        lambda kind: st.fixed_dictionaries(
+            {"type": st.just(kind), "mass_kg": st.floats(1, 500), size[kind]: st.floats(5, 200)}, optional=common
+        )
+    )
+    return _of(mechanism, _moves("distance_mm", "speed_mm_per_s", 1.0, "acceleration_mm_per_s2", "external_force_N"))
+
+
+def motions() -> st.SearchStrategy[Json]:
+    """Any possible motion."""
+    return rotary_motions() | linear_motions()

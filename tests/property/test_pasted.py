@@ -35,7 +35,7 @@ def test_a_written_table_reads_back_once_what_it_leaves_open_is_said(cycle: Duty
     text = write_table(cycle, decimal)
     table = read_text(text, Choices(decimal=decimal, last="phase"))
     assert not table.questions
-    wanted = [tuple(getattr(phase, name) for name in FIELDS) for phase in cycle.phases]
+    wanted = [tuple(getattr(phase, name) for name in FIELDS) for phase in cycle.load_phases]
     assert phases_of(table) == wanted
 
 

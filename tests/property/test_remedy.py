@@ -126,7 +126,7 @@ def test_following_a_way_for_the_reader_passes_every_load_check(application: Jso
     for designation in GEARS:
         for way in ways_of(candidate(reply, designation), u):
             changed = follow(Application.model_validate(application), way)
-            assume(any(abs(p.speed_rpm) * p.duration_s > 1e-9 for p in changed.duty_cycle.phases))
+            assume(any(abs(p.speed_rpm) * p.duration_s > 1e-9 for p in changed.duty_cycle.load_phases))
             checks = statuses(changed.model_dump(exclude_unset=True), designation)
             assert {code for code, status in checks.items() if status == "fail"} <= PROPERTIES, (designation, way)
 

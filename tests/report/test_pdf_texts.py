@@ -114,7 +114,7 @@ def test_every_phase_of_a_long_cycle_is_printed_under_heads_on_numbered_pages(ca
     pages = [by_pdfium(document, page) for page in range(len(PdfReader(BytesIO(document)).pages))]
     first = next(k for k, page in enumerate(pages) if "Jede Phase des Lastzyklus" in page)
     rows = iter(row for page in pages[first:] for row in re.findall(r"^ *(\d+) +(\S+) +(\S+) +(\S+)\r?$", page, re.M))
-    for number, given in enumerate(export.application.duty_cycle.phases, 1):
+    for number, given in enumerate(export.application.duty_cycle.load_phases, 1):
         shown = (str(number), *(GERMAN.exact(value) for value in (given.torque_Nm, given.speed_rpm, given.duration_s)))
         assert next(rows) == shown
     for number, page in enumerate(pages, 1):

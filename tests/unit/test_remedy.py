@@ -93,7 +93,7 @@ def test_following_the_remedy_makes_the_gear_of_the_worked_example_suitable(cata
     application = Application.model_validate(worked_example())
     gear = chosen(select(application, catalogue), "HPN-14A-5")
     changed = followed(application, ways_of(gear)[0])
-    assert [p.torque_Nm for p in changed.duty_cycle.phases] == [36.2, 28.96, 18.1]
+    assert [p.torque_Nm for p in changed.duty_cycle.load_phases] == [36.2, 28.96, 18.1]
     assert changed.emergency_stop is not None and changed.emergency_stop.torque_Nm == 107.0
     assert chosen(select(changed, catalogue), "HPN-14A-5").status == "suitable"
 

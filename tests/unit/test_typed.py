@@ -52,7 +52,7 @@ def test_link_of_a_typed_unit_or_sum_carries_the_plain_number(name: str, text: s
 def test_unit_of_its_own_counts_before_the_readers_and_a_sum_is_in_the_readers(text: str, torque: float) -> None:
     application = typed("T", text, "de.lb_in")
     assert isinstance(application, Application)
-    assert application.duty_cycle.phases[0].torque_Nm == torque
+    assert application.duty_cycle.load_phases[0].torque_Nm == torque
 
 
 @pytest.mark.parametrize(

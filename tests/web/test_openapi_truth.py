@@ -9,6 +9,7 @@ from typing import Any
 import pytest
 from starlette.testclient import TestClient
 
+from hpn.web.api.samples import LIFTING, TURNING
 from hpn.web.api.schemas import HEADERS
 from hpn.web.app import create_app
 from hpn.web.door.keys import new_key
@@ -164,13 +165,20 @@ BODIES: dict[str, tuple[str, Json]] = {
 }
 
 
+RACK: Json = LIFTING | {"mechanism": {"type": "rack_and_pinion", "mass_kg": 80.0, "diameter_mm": 60.0}}
+TRIED_BY_THEMSELVES: tuple[Path, ...] = (("applications", 0), ("duty_cycle", "motion"))
+
+
 @pytest.mark.parametrize("name", BODIES)
 def test_each_bound_of_a_body_is_the_one_that_is_applied(api: TestClient, document: Json, name: str) -> None:
     address, body = BODIES[name]
     tried = 0
     for path, schema in leaves(document, document["components"]["schemas"][name]):
         # Tried by themselves: applications, and a code that has to be one besides being no longer than it may.
-        if path[:1] in (("application",), ("ordering_code",)) or path[:2] == ("applications", 0):
+        if path[:1] in (("application",), ("ordering_code",)) or path[:2] in TRIED_BY_THEMSELVES:
+            continue
+        # Bounded by their phase besides.
+        if path[-1:] in (("peak_torque_Nm",), ("peak_speed_rpm",), ("rms_torque_Nm",)):
             continue
         for value, allowed in tries(schema, at(body, path)):
             response = api.post(address, json=with_value(body, path, value))
@@ -178,6 +186,22 @@ def test_each_bound_of_a_body_is_the_one_that_is_applied(api: TestClient, docume
             assert (refusals(response, pointer) == []) is allowed, (pointer, str(value)[:60], response.text[:300])
             tried += 1
     assert tried >= (2 if name == "Batch" else 4)
+
+
+@pytest.mark.parametrize(("name", "motion"), [("RotaryMotion", TURNING), ("LinearMotion", RACK)])
+def test_each_bound_of_a_motion_is_the_one_that_is_applied(
+    api: TestClient, document: Json, name: str, motion: Json
+) -> None:
+    tried = 0
+    for path, schema in leaves(document, document["components"]["schemas"][name]):
+        if path[:2] == ("moves", 0):  # each bounds the others
+            continue
+        for value, allowed in tries(schema, at(motion, path)):
+            response = api.post("/api/v1/select", json={"duty_cycle": {"motion": with_value(motion, path, value)}})
+            pointer = "".join(f"/{step}" for step in ("duty_cycle", "motion", *path))
+            assert (refusals(response, pointer) == []) is allowed, (pointer, str(value)[:60], response.text[:300])
+            tried += 1
+    assert tried >= 12
 
 
 def test_each_bound_of_a_query_is_the_one_that_is_applied(api: TestClient, document: Json) -> None:

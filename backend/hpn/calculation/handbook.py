@@ -52,7 +52,7 @@ def _average_torque(sheet: Sheet) -> Step:
             )
         )
     ]
-    if any(phase.torque_Nm < 0 or phase.speed_rpm < 0 for phase in sheet.application.duty_cycle.phases):
+    if any(phase.torque_Nm < 0 or phase.speed_rpm < 0 for phase in sheet.application.duty_cycle.load_phases):
         notes.append(Sentence(N_("Torques and speeds enter by magnitude, whatever their sign.")))
     line = Line(sheet.T_av, Root(Quotient(above, sheet.travel), TEN_THIRDS))
     return step_of_check("average_torque", (line,), sheet.compared("average_torque", sheet.T_av), tuple(notes))

@@ -135,11 +135,11 @@ def cycle_picture(subject: Subject, reader: Reader = DEFAULT) -> CyclePicture:
     """The cycle of an application, beside the limits of one gear."""
     cycle = subject.application.duty_cycle
     edges, to_scale, broken = _edges(cycle)
-    torques, speeds = ([getattr(phase, name) for phase in cycle.phases] for name in ("torque_Nm", "speed_rpm"))
+    torques, speeds = ([getattr(phase, name) for phase in cycle.load_phases] for name in ("torque_Nm", "speed_rpm"))
     top = TORQUE_TOP + TORQUE_HEIGHT + BETWEEN
     torque = _Diagram(N_("Torque"), "Nm", TORQUE_TOP, TORQUE_HEIGHT, torques, _torque_levels(subject))
     speed = _Diagram(N_("Speed"), "rpm", top, SPEED_HEIGHT, speeds, _speed_levels(subject))
-    count = len(cycle.phases)
+    count = len(cycle.load_phases)
     return CyclePicture(
         height=top + SPEED_HEIGHT + 6,
         torque=_panel(torque, edges, reader),
@@ -165,8 +165,8 @@ def _edges(cycle: DutyCycle) -> tuple[list[float], bool, bool]:
 
     So that a short phase beside a long one is still seen, it is drawn wider than it is.
     """
-    longest = max(phase.duration_s for phase in cycle.phases)
-    durations = [phase.duration_s / longest for phase in cycle.phases]  # no sum overflows or vanishes
+    longest = max(phase.duration_s for phase in cycle.load_phases)
+    durations = [phase.duration_s / longest for phase in cycle.load_phases]  # no sum overflows or vanishes
     total, pause = sum(durations), cycle.pause_s / longest
     share = pause / (total + pause)
     broken = share > MOST_PAUSE + 0.3
@@ -181,7 +181,7 @@ def _edges(cycle: DutyCycle) -> tuple[list[float], bool, bool]:
         edges.append(RIGHT)
     honest = [duration / total * (1 - share) for duration in durations]
     to_scale = broken or all(abs(a - b) < 0.01 for a, b in zip(widths, honest, strict=True))
-    return edges, to_scale and len(cycle.phases) > 0, broken
+    return edges, to_scale and len(cycle.load_phases) > 0, broken
 
 
 def _widened(widths: list[float], least: float, room: float) -> list[float]:

@@ -21,7 +21,7 @@ PAGE, GAP = 136, 6
 
 def listing(export: Export, reader: Reader) -> dict[str, Any] | None:
     """Each phase of a cycle that the first page only summarises; None where that page has them all."""
-    phases = export.application.duty_cycle.phases
+    phases = export.application.duty_cycle.load_phases
     if len(phases) <= MOST_PHASES:
         return None
     table = [[reader.text(N_("Phase")), *(str(number) for number in range(1, len(phases) + 1))]]

@@ -160,12 +160,12 @@ def cycle(export: Export, reader: Reader) -> list[dict[str, Any]]:
 def _over_time(application: Application, name: str, average: float, symbol: str, reader: Reader) -> Plot:
     cycle, unit, named = application.duty_cycle, suffix_of(name) or "", INPUTS[f"phase.{name}"]
     shown = reader.measure(unit).shown
-    values = [*(shown(getattr(phase, name)) for phase in cycle.phases), 0.0]
-    edges = [*accumulate((phase.duration_s for phase in cycle.phases), initial=0.0)]
+    values = [*(shown(getattr(phase, name)) for phase in cycle.load_phases), 0.0]
+    edges = [*accumulate((phase.duration_s for phase in cycle.load_phases), initial=0.0)]
     edges.append(end := edges[-1] + cycle.pause_s)
     label = Sentence(N_("{quantity} in {unit}"), {"quantity": named.name, "unit": reader.unit(unit)}, ("quantity",))
     plot = Plot((0.0, end), _span(values), y_label=reader.told(label))
-    if len(cycle.phases) <= MOST_STEPS:
+    if len(cycle.load_phases) <= MOST_STEPS:
         ends = [(edges[k + place], value) for k, value in enumerate(values) for place in (0, 1)]
         plot.line(name, [(0.0, 0.0), *ends])
     else:
@@ -178,7 +178,7 @@ def _over_time(application: Application, name: str, average: float, symbol: str,
 
 
 def _name_phases(application: Application, plot: Plot, reader: Reader) -> None:
-    phases, end, time = application.duty_cycle.phases, plot.x_range[1], 0.0
+    phases, end, time = application.duty_cycle.load_phases, plot.x_range[1], 0.0
     if len(phases) > LABELLED_PHASES:
         return
     for number, phase in enumerate(phases, 1):

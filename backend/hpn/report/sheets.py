@@ -144,7 +144,7 @@ class CycleSheet:
 
     def __init__(self, book: Book, sheet: Any) -> None:
         self.book, self.sheet = book, sheet
-        self.phases = book.export.application.duty_cycle.phases
+        self.phases = book.export.application.duty_cycle.load_phases
         self.last = len(self.phases) + SPARE_PHASES
         self.converted = [name for name in PHASE if not book.shown.measure(symbol_of(name)).same]
         self.loads = {name: getattr(book.export.duty.phases, name)[0, 0] for name in USED.values()}

@@ -53,6 +53,6 @@ def _sources(step: Step, export: Export, reader: Reader) -> Iterable[Sentence]:
         source = reader.source(comparison.source or "your input")
         yield Sentence(N_("Limit: {source}; used: {share}."), {"source": source, "share": share})
     if step.abbreviated:
-        count = len(export.application.duty_cycle.phases)
+        count = len(export.application.duty_cycle.load_phases)
         text = N_("Only some of the {count} phases are written out; the result counts them all.")
         yield Sentence(text, {"count": reader.exact(count)})

@@ -30,7 +30,7 @@ def given(export: Export, paths: Sequence[str], reader: Reader) -> list[dict[str
 
 def phases(export: Export, reader: Reader) -> dict[str, Any]:
     """The duty cycle: each phase, or of a long cycle least, largest and sum."""
-    listed = export.application.duty_cycle.phases
+    listed = export.application.duty_cycle.load_phases
     given = columns(listed)
     if len(listed) <= MOST_PHASES:
         cells = [

@@ -33,6 +33,31 @@ FULL: Json = {
 }
 """The handbook's worked example with the rest of what may be asked; no size and no ratio, so any catalogue has it."""
 
+TURNING: Json = {
+    "mechanism": {
+        "type": "rotary",
+        "inertia_kgm2": 0.8,
+        "gravity_mass_kg": 12.0,
+        "gravity_radius_mm": 250.0,
+        "friction_torque_Nm": 1.5,
+        "efficiency": 0.9,
+    },
+    "start_deg": 0.0,
+    "moves": [
+        {"profile": "trapezoidal", "angle_deg": 90.0, "time_s": 0.8, "acceleration_deg_per_s2": 900.0},
+        {"profile": "dwell", "time_s": 0.4, "external_torque_Nm": 30.0},
+        {"profile": "s_curve", "angle_deg": -90.0, "time_s": 1.0, "speed_rpm": 25.0, "jerk_share": 0.5},
+    ],
+}
+LIFTING: Json = {
+    "mechanism": {"type": "ball_screw", "mass_kg": 80.0, "lead_mm": 10.0, "incline_deg": 30.0, "inertia_kgm2": 0.002},
+    "moves": [
+        {"profile": "modified_sine", "distance_mm": 500.0, "time_s": 1.2, "external_force_N": 200.0},
+        {"profile": "triangular", "distance_mm": -500.0, "speed_mm_per_s": 800.0},
+    ],
+}
+"""Motions of a rotary and of a linear mechanism."""
+
 NAMES = {"title": "Worked example", "reference": "axis-7"}
 LABELS = {**NAMES, "author": "M. Muster", "revision": "B", "ordering_code": "HPN-20A-5-J6-BH-AF1"}
 
@@ -67,9 +92,13 @@ def _samples(catalogue: Catalogue) -> Json:
     summary = {**where, "created": "2026-11-21T10:00:00.000000Z", **LABELS, "selected": best, **shown, **versions}
     return {
         **WHOLE,
+        "RotaryMotion": TURNING,
+        "LinearMotion": LIFTING,
+        "DutyCycle": {"motion": TURNING},
         "Application": FULL,
         "BatchItem": {"reference": "axis-7", **FULL},
         "Selection": reply,
+        "DutyFigures": plain(select(_moving(TURNING), catalogue).duty),
         "BatchReply": {"results": plain(batch_lines(WHOLE["Batch"]["applications"], catalogue))},
         "BatchLine": plain(batch_lines([{"reference": "axis-8"}], catalogue)[0]),
         "ProblemReply": refusal().body(),
@@ -98,6 +127,12 @@ def _samples(catalogue: Catalogue) -> Json:
         "Health": {"status": "ok"},
         "OEmbedReply": plain(preview_of(selection, link)) | _PROVIDER,
     }
+
+
+def _moving(motion: Json) -> Application:
+    """A motion with loads in its moves."""
+    moves = [move | {"radial_N": 500.0, "axial_N": 200.0} for move in motion["moves"]]
+    return Application.model_validate({"duty_cycle": {"motion": motion | {"moves": moves}}})
 
 
 def plain(reply: Any) -> Any:

@@ -11,13 +11,14 @@ from pydantic import BaseModel, Field
 
 from hpn.application import BatchItem
 from hpn.fields import Model, name_units
-from hpn.quantities import BOLT, CANDIDATE, CHECK, DUTY, ENVELOPE, GEAR, RESERVE, SERIES, Named
+from hpn.quantities import BOLT, CANDIDATE, CHECK, DUTY, ENVELOPE, GEAR, PHASE, RESERVE, SERIES, Named
 from hpn.selection import Selection
 from hpn.web.api import replies
 from hpn.web.door.problems import MAXIMUM_ERRORS, MEDIA_TYPE, TITLES
 
 DESCRIBED: Mapping[str, Mapping[str, Named]] = {
     "DutyFigures": DUTY,
+    "PhaseFigures": PHASE,
     "Candidate": CANDIDATE,
     "CheckResult": CHECK,
     "Reserve": RESERVE,
@@ -28,6 +29,9 @@ DESCRIBED: Mapping[str, Mapping[str, Named]] = {
     "EnvelopeCurve": ENVELOPE,
 }
 """Replies whose fields are quantities."""
+
+SPARSE = ("DutyFigures", "PhaseFigures")
+"""Replies that leave out what they do not have."""
 
 REPLIES: tuple[type, ...] = (
     Selection,
@@ -93,7 +97,7 @@ def _complete(schema: dict[str, Any], named: Mapping[str, Named]) -> None:
         if field in named:
             equation = f" Equation {named[field].equation}." if named[field].equation else ""
             entry["description"] = named[field].sentence + equation
-        if ("default" in entry or field in named) and field not in schema["required"]:
+        if schema["title"] not in SPARSE and field not in schema["required"] and ("default" in entry or field in named):
             schema["required"].append(field)
         entry.pop("default", None)
     name_units(schema)

@@ -13,7 +13,7 @@ from hpn.web.settings import Settings
 
 M = TypeVar("M", bound=BaseModel)
 
-MOST_OBJECTS, MOST_NAMES, MOST_LISTS = MAXIMUM_PHASES + 100, 5 * MAXIMUM_PHASES + 1000, 10_000
+MOST_OBJECTS, MOST_NAMES, MOST_LISTS = MAXIMUM_PHASES + 100, 8 * MAXIMUM_PHASES + 1000, 10_000
 """What the JSON of the longest application stays below."""
 
 MOST_PARAMETERS = 100

@@ -321,10 +321,10 @@ def write_table(cycle: DutyCycle, decimal: Decimal = ".") -> str:
     """Phases as CSV that `read_text` and a spreadsheet of that language read back exactly, with loads if any."""
     separator = ";" if decimal == "," else ","
     fields = ["torque_Nm", "speed_rpm", "duration_s", "radial_N", "axial_N"]
-    if all(phase.radial_N is None and phase.axial_N is None for phase in cycle.phases):
+    if all(phase.radial_N is None and phase.axial_N is None for phase in cycle.load_phases):
         fields = fields[:3]
     lines = [separator.join(fields)]
-    for phase in cycle.phases:
+    for phase in cycle.load_phases:
         values = [getattr(phase, name) for name in fields]
         written = ["" if v is None else repr(v).removesuffix(".0").replace(".", decimal) for v in values]
         lines.append(separator.join(written))

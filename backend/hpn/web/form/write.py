@@ -39,7 +39,7 @@ def to_link(application: Application) -> str:
 
 
 def _phases(application: Application) -> str:
-    phases = application.duty_cycle.phases
+    phases = application.duty_cycle.load_phases
     pairs = [f"T={phase.torque_Nm!r}&n={phase.speed_rpm!r}&t={phase.duration_s!r}" for phase in phases]
     if application.loads is not None:
         loads = {"FRi": [phase.radial_N for phase in phases], "FAi": [phase.axial_N for phase in phases]}

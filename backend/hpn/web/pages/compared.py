@@ -153,7 +153,7 @@ def _line(application: Application | None, path: str) -> InputLine | None:
 
 def _phases(a: Side, b: Side) -> Iterator[PhaseRow]:
     """Phases that differ."""
-    cycles = [side.result.application.duty_cycle.phases if side.result.application else () for side in (a, b)]
+    cycles = [side.result.application.duty_cycle.load_phases if side.result.application else () for side in (a, b)]
     for number, phases in enumerate(zip_longest(*cycles), 1):
         if phases[0] != phases[1]:
             yield PhaseRow(number, _pair(list(_cells(phase)) for phase in phases))

@@ -1,0 +1,230 @@
+"""What must hold for every motion: samples, splits, energy, turned signs, and advice that works."""
+
+import copy
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import assume, given
+from hypothesis import strategies as st
+from pydantic import ValidationError
+
+from hpn.application import Application
+from hpn.catalogue import load_catalogue
+from hpn.duty import Duty
+from hpn.motion.course import course_along
+from hpn.motion.pieces import pieces_of
+from hpn.motion.torque import Torque, cut, integral
+from hpn.web.door.problems import Problem, pointer
+from tests.build import Json, answer
+from tests.property.draw import linear_motions, motions, rotary_motions, signs
+from tests.reference.motion import sampled
+
+CATALOGUE = load_catalogue()
+
+# Zeros and quadrature are good to 1e-13; what is small beside the whole loses some digits of that.
+CLOSE = 1e-9
+FIGURES = ("average_torque_Nm", "average_output_speed_rpm", "maximum_torque_Nm", "maximum_output_speed_rpm")
+
+
+def application_of(motion: Json, pause_s: float = 0.0) -> Application:
+    return Application.model_validate({"duty_cycle": {"motion": motion, "pause_s": pause_s}})
+
+
+@given(motions(), st.just(0.0) | st.floats(0, 10))
+def test_figures_of_a_motion_are_those_of_a_million_samples(motion: Json, pause_s: float) -> None:
+    duty = Duty.of([application_of(motion, pause_s)])
+    expected = sampled(motion, pause_s, 1_000_000)
+
+    # Speed and angle are summed up from the acceleration: a jump of it is misplaced by up to half a step.
+    room = 3e-4 * expected["maximum_torque_Nm"]
+    for name in (*FIGURES, "rms_torque_Nm"):
+        assert math.isclose(getattr(duty, name).item(), expected[name], rel_tol=3e-4, abs_tol=room), name
+
+
+@given(motions(), st.lists(st.floats(0.001, 0.999), min_size=1, max_size=4), st.randoms(use_true_random=False))
+def test_splitting_a_move_at_any_instant_changes_nothing(motion: Json, shares: list[float], chance: Any) -> None:
+    moving = application_of(motion).duty_cycle.motion
+    assert moving is not None
+    load = moving.mechanism.load
+    pieces = pieces_of(moving.moves, getattr(moving, "start_deg", 0.0), load)
+    parted = pieces
+    for share in shares:
+        place = chance.randrange(len(parted))
+        at = parted.start_s[place] + share * (parted.end_s[place] - parted.start_s[place])
+        parted = cut(parted, np.array([place]), np.array([at]))
+        parted.part[place + 1 :] += 10  # phases of their own from there on
+    whole, split = course_along(pieces, load), course_along(parted, load)
+
+    def totals(course: Any) -> list[float]:
+        n, t, T = np.abs(course.speed_rpm), course.duration_s, np.abs(course.torque_Nm)
+        return [
+            (n * t).sum(),
+            (n * t * T ** (10 / 3)).sum() ** 0.3,
+            t.sum(),
+            np.sqrt((course.rms_torque_Nm**2 * t).sum()),
+            course.peak_torque_Nm.max(),
+            course.peak_speed_rpm.max(),
+            course.square_torque.sum(),
+            course.square_acceleration.sum(),
+        ]
+
+    for one, other in zip(totals(whole), totals(split), strict=True):
+        assert math.isclose(one, other, rel_tol=CLOSE, abs_tol=1e-12)
+
+
+@given(motions())
+def test_the_phases_can_be_typed_and_give_the_same_reply(motion: Json) -> None:
+    moving = answer({"duty_cycle": {"motion": motion, "pause_s": 1.5}}, CATALOGUE)
+    typed = answer({"duty_cycle": {"phases": moving["duty"]["phases"], "pause_s": 1.5}}, CATALOGUE)
+
+    assert moving["candidates"] == typed["candidates"]
+    assert {name: moving["duty"][name] for name in FIGURES} == typed["duty"]
+
+
+@given(motions())
+def test_turned_signs_from_the_mirrored_start_give_phases_of_the_same_magnitudes(motion: Json) -> None:
+    turned = copy.deepcopy(motion)
+    if motion["mechanism"]["type"] == "rotary":
+        turned["start_deg"] = 180 - motion.get("start_deg", 0)
+    else:
+        turned["mechanism"]["incline_deg"] = -motion["mechanism"].get("incline_deg", 0)
+    for move in turned["moves"]:
+        for name in ("angle_deg", "distance_mm", "external_torque_Nm", "external_force_N"):
+            if name in move:
+                move[name] = -move[name]
+    one, other = (application_of(each).duty_cycle.load_phases for each in (motion, turned))
+
+    assert len(one) == len(other)
+    scale = max(phase.peak_torque_Nm or 0 for phase in one)
+    for phase, its in zip(one, other, strict=True):
+        for name in ("torque_Nm", "speed_rpm", "peak_torque_Nm", "peak_speed_rpm", "rms_torque_Nm", "duration_s"):
+            value, turned_value = abs(getattr(phase, name)), abs(getattr(its, name))
+            assert math.isclose(value, turned_value, rel_tol=CLOSE, abs_tol=1e-10 * scale), name
+
+
+@given(st.floats(-1, 1), st.floats(0.2, 400), st.floats(0.2, 3), st.floats(0, 5), st.floats(0, 0.1), st.floats(0, 9))
+def test_over_a_closed_cycle_the_energy_is_what_friction_takes(
+    start: float, angle: float, time: float, dry: float, viscous: float, mass: float
+) -> None:
+    """Trapezoids, a third of the time for each part, there and back: ∫ω² dt = V² (T/3 + 2/3 · T/3) each."""
+    mechanism = {"type": "rotary", "inertia_kgm2": 2, "friction_torque_Nm": dry, "viscous_friction_Nm_per_rpm": viscous}
+    if mass >= 1:
+        mechanism |= {"gravity_mass_kg": mass, "gravity_radius_mm": 300}
+    moves = [{"profile": "trapezoidal", "angle_deg": sign * angle, "time_s": time} for sign in (1, -1)]
+    moving = application_of({"mechanism": mechanism, "start_deg": 90 * start, "moves": moves}).duty_cycle.motion
+    assert moving is not None
+    load = moving.mechanism.load
+    pieces = course_along(pieces_of(moving.moves, 90 * start, load), load).pieces
+    torque = Torque(load.inertia_kgm2, load.viscous_Nms, load.gravity_Nm)
+
+    energy = integral(lambda p, t: torque.at(p, t) * p.speed_at(t), pieces).sum()
+    V, way = 1.5 * math.radians(angle) / time, 2 * math.radians(angle)
+    expected = dry * way + viscous * 30 / math.pi * 2 * V**2 * time * (1 / 3 + 2 / 9)
+
+    turned = 2 * V**2 + mass * 3 * way  # what is put in and taken out again
+    assert math.isclose(energy, expected, rel_tol=CLOSE, abs_tol=1e-12 * turned)
+
+
+# --- Errors -----------------------------------------------------------------------------------------------------------
+
+
+def refusals(motion: Json) -> list[Json]:
+    """Errors of a motion as the API gives them, with the values of each."""
+    try:
+        application_of(motion)
+    except ValidationError as refusal:
+        context = {pointer(error["loc"]): error.get("ctx", {}) for error in refusal.errors()}
+        return [entry | {"ctx": context[entry["pointer"]]} for entry in Problem.of(refusal).body()["errors"]]
+    return []
+
+
+def at(document: Any, pointer: str) -> Any:
+    """What a JSON pointer leads to; KeyError or IndexError where it leads nowhere."""
+    for step in pointer.split("/")[1:]:
+        document = document[int(step) if isinstance(document, list) else step]
+    return document
+
+
+NAMES = {
+    "rotary": ("angle_deg", "speed_rpm", "acceleration_deg_per_s2"),
+    "": ("distance_mm", "speed_mm_per_s", "acceleration_mm_per_s2"),
+}
+
+
+@given(
+    st.sampled_from(["rotary", ""]),
+    st.sampled_from(["trapezoidal", "s_curve", "triangular"]),
+    signs,
+    st.floats(0.5, 900),
+    st.tuples(*[st.none() | st.floats(0.01, 500)] * 3),
+    st.sampled_from([None, 0.2, 1.0]),
+)
+def test_what_the_error_of_a_move_advises_works(
+    kind: str, profile: str, sign: float, way: float, given_: tuple[float | None, ...], share: float | None
+) -> None:
+    names = NAMES[kind]
+    move: Json = {"profile": profile, names[0]: sign * way}
+    move |= {name: value for name, value in zip(("time_s", *names[1:]), given_, strict=True) if value is not None}
+    if share is not None and profile == "s_curve":
+        move["jerk_share"] = share
+    mechanism = {"type": "rotary", "inertia_kgm2": 1e-3} if kind else {"type": "belt", "mass_kg": 1, "diameter_mm": 50}
+    body = {"mechanism": mechanism, "moves": [move]}
+
+    for _ in range(3):
+        errors = refusals(body)
+        if not errors:
+            break
+        [error] = errors
+        at({"duty_cycle": {"motion": body}}, error["pointer"])
+        context, asked = error["ctx"], move
+        if "fields" in context:
+            kept = {"triangular": 1}.get(profile, 2)
+            offered = [name for name in context["fields"].split(", ") if name in asked]
+            for name in offered[kept:]:
+                del asked[name]
+            if not offered or (len(offered) == 1 and kept == 2 and offered != ["time_s"]):
+                asked["time_s"] = 1.0
+        else:
+            field = error["pointer"].rpartition("/")[2]
+            bound = float(context["bound"].partition(" ")[0])
+            asked[field] = bound if error["detail"].startswith("must be at least") else bound * 1.5
+            assert context["bound"].partition(" ")[0] in error["detail"]
+    assert refusals(body) == []
+
+
+@pytest.mark.parametrize("extra", ["speed_rpm", "jerk_share", "angle_deg", "acceleration_deg_per_s2"])
+def test_a_field_that_a_dwell_has_no_use_for_is_refused_where_it_stands(extra: str) -> None:
+    moves = [{"profile": "triangular", "angle_deg": 5, "time_s": 1}, {"profile": "dwell", "time_s": 1, extra: 0.5}]
+    body = {"mechanism": {"type": "rotary", "inertia_kgm2": 1}, "moves": moves}
+
+    [error] = refusals(body)
+    assert error["pointer"] == f"/duty_cycle/motion/moves/1/{extra}"
+    del moves[1][extra]
+    assert refusals(body) == []
+
+
+@given(rotary_motions() | linear_motions(), st.data())
+def test_a_field_of_another_mechanism_or_its_moves_is_refused(motion: Json, data: st.DataObject) -> None:
+    rotary = motion["mechanism"]["type"] == "rotary"
+    place, name = data.draw(
+        st.sampled_from(
+            [
+                ("mechanism", "lead_mm"),
+                ("mechanism", "mass_kg"),
+                ("moves", "distance_mm"),
+                ("moves", "external_force_N"),
+            ]
+            if rotary
+            else [("mechanism", "gravity_mass_kg"), ("moves", "angle_deg"), ("moves", "speed_rpm"), ("", "start_deg")]
+        )
+    )
+    assume(name not in motion["mechanism"])
+    body = copy.deepcopy(motion)
+    target = body["mechanism"] if place == "mechanism" else body["moves"][0] if place else body
+    target[name] = 1.0
+
+    pointers = {error["pointer"] for error in refusals(body)}
+    above = {"mechanism": "/mechanism", "moves": "/moves/0", "": ""}[place]
+    assert f"/duty_cycle/motion{above}/{name}" in pointers

@@ -1,0 +1,347 @@
+"""Motions worked out slowly from the contract alone: one instant at a time, in mpmath, with 30 digits.
+
+It shares no code with the product. A move is a function of time, its torque follows from the contract's formula, and
+what a phase comes to is integrated by mpmath between the instants at which ramp, run or the torque's sign change.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from mpmath import mp, mpf
+
+Json = dict[str, Any]
+mp.dps = 30
+G = mpf("9.80665")
+STEPS = 60
+"""Samples of a stretch between kinks, between which a torque is taken to change its sign once at most."""
+
+
+@dataclass
+class Way:
+    """Course of a move over its way of 1: instants of its kinks, ends of its parts, and place, speed, acceleration."""
+
+    kinks: list[Any]
+    parts: list[Any]
+    place: Callable[[Any], Any]
+    speed: Callable[[Any], Any]
+    acceleration: Callable[[Any], Any]
+
+
+def course(move: Json, way: Any, speed_unit: Any) -> Way:
+    """Course of a move, in its own units per second."""
+    T, D = (mpf(move["time_s"]) if "time_s" in move else None), abs(mpf(way))
+    V = next((mpf(move[name]) * speed_unit for name in ("speed_rpm", "speed_mm_per_s") if name in move), None)
+    a = next((mpf(move[k]) for k in ("acceleration_deg_per_s2", "acceleration_mm_per_s2") if k in move), None)
+    if move["profile"] == "modified_sine":
+        return modified_sine(T)
+    share = mpf(move.get("jerk_share", "0.5")) if move["profile"] == "s_curve" else mpf(0)
+    if move["profile"] == "triangular":
+        T = T or (2 * D / V if V else 2 * mp.sqrt(D / a))
+        return ramped(T / 2, mpf(0), share)
+    k = 1 - share / 2
+    if T and V:
+        ramp = min(T - D / V, T / 2)
+    elif T and a:
+        ramp = T / 2 - mp.sqrt(max(0, T**2 / 4 - D / (k * a)))
+    elif T:
+        ramp = T / 3
+    else:
+        ramp = V / (k * a)
+        if V * ramp >= D:
+            ramp = mp.sqrt(D / (k * a))
+            V = D / ramp
+        T = D / V + ramp
+    return ramped(ramp, T - 2 * ramp, share)
+
+
+def ramped(ramp: Any, run: Any, share: Any) -> Way:
+    """Ramp, run, ramp; jerk acts in the first and last half share of a ramp."""
+    T, rise = 2 * ramp + run, ramp * share / 2
+    V = 1 / (ramp + run)
+    a = V / (ramp - rise)
+
+    def acceleration(t: Any) -> Any:
+        if t > T / 2:
+            return -acceleration(T - t)
+        if t >= ramp:
+            return mpf(0)
+        return a * min(mpf(1), t / rise, (ramp - t) / rise) if rise else a
+
+    def speed(t: Any) -> Any:
+        if t > T / 2:
+            return speed(T - t)
+        if t >= ramp:
+            return V
+        if t > ramp / 2 and rise:
+            return V - speed(ramp - t)
+        return a * t**2 / (2 * rise) if rise and t < rise else a * (t - rise / 2)
+
+    def place(t: Any) -> Any:
+        if t > T / 2:
+            return 1 - place(T - t)
+        if t >= ramp:
+            return V * (t - ramp / 2)
+        if t > ramp / 2 and rise:
+            return V * (t - ramp / 2) + place(ramp - t)
+        if rise and t < rise:
+            return a * t**3 / (6 * rise)
+        return a * (t**2 / 2 - rise * t / 2 + rise**2 / 6)
+
+    half = [rise, ramp - rise, ramp] if rise else [ramp]
+    return Way(sorted({0, T, *half, *(T - t for t in half)}), [ramp, ramp + run, T], place, speed, acceleration)
+
+
+def modified_sine(T: Any) -> Way:
+    """Neklutin's curve as printed in tables of cam curves, in x = t / T."""
+    c = 1 / (4 + mp.pi)
+
+    def place(t: Any) -> Any:
+        x = t / T
+        if x <= mpf(1) / 8:
+            return c * (mp.pi * x - mp.sin(4 * mp.pi * x) / 4)
+        if x >= mpf(7) / 8:
+            return c * (4 + mp.pi * x - mp.sin(4 * mp.pi * x) / 4)
+        return c * (2 + mp.pi * x - 9 * mp.sin((mp.pi + 4 * mp.pi * x) / 3) / 4)
+
+    def speed(t: Any) -> Any:
+        x = t / T
+        slow = mpf(1) / 8 < x < mpf(7) / 8
+        return c * mp.pi * (1 - (3 * mp.cos((mp.pi + 4 * mp.pi * x) / 3) if slow else mp.cos(4 * mp.pi * x))) / T
+
+    def acceleration(t: Any) -> Any:
+        x = t / T
+        slow = mpf(1) / 8 < x < mpf(7) / 8
+        return 4 * c * mp.pi**2 * (mp.sin((mp.pi + 4 * mp.pi * x) / 3) if slow else mp.sin(4 * mp.pi * x)) / T**2
+
+    return Way([0, T / 8, T / 2, 7 * T / 8, T], [T / 2, T], place, speed, acceleration)
+
+
+@dataclass
+class Stretch:
+    """A phase: its move, torque (signed at the gear), speed and acceleration (rad/s, at the gear) as functions."""
+
+    move: int
+    start: Any
+    end: Any
+    kinks: list[Any]
+    torque: Callable[[Any], Any]
+    speed: Callable[[Any], Any]
+    acceleration: Callable[[Any], Any]
+
+    def integral(self, function: Callable[[Any], Any]) -> Any:
+        inner = [t for t in self.kinks if self.start < t < self.end]
+        return mp.quad(function, [self.start, *inner, self.end])
+
+
+def stretches(motion: Json) -> list[Stretch]:
+    """Every phase of a motion."""
+    mechanism, found = motion["mechanism"], []
+    theta = mpf(motion.get("start_deg", 0))
+    for index, move in enumerate(motion["moves"]):
+        found += list(_of_move(mechanism, index, move, theta))
+        theta += mpf(move.get("angle_deg", 0))
+    return found
+
+
+def _of_move(mechanism: Json, index: int, move: Json, theta: Any) -> list[Stretch]:
+    rotary = mechanism["type"] == "rotary"
+    rho = mpf(180) / mp.pi  # units of way per radian
+    if "lead_mm" in mechanism:
+        rho = mpf(mechanism["lead_mm"]) / (2 * mp.pi)
+    elif "diameter_mm" in mechanism:
+        rho = mpf(mechanism["diameter_mm"]) / 2
+    way = mpf(move.get("angle_deg" if rotary else "distance_mm", 0))
+    sign, ratio, eta = mp.sign(way), mpf(mechanism.get("ratio", 1)), mpf(mechanism.get("efficiency", 1))
+    if way == 0:
+        T = mpf(move["time_s"])
+        one = Way([0, T], [T], lambda t: mpf(0), lambda t: mpf(0), lambda t: mpf(0))
+    else:
+        one = course(move, way, 6 if rotary else 1)
+    load = _load(mechanism, move, rho, rotary)
+
+    def shaft(t: Any) -> Any:
+        at = (theta + way * one.place(t), way * one.speed(t) / rho, way * one.acceleration(t) / rho)
+        return load(*at, sign)
+
+    def at_gear(t: Any) -> Any:
+        T = shaft(t)
+        if sign == 0:
+            return T / ratio
+        return T / (eta * ratio) if T * sign > 0 else T * eta / ratio
+
+    found, start = [], mpf(0)
+    for end in one.parts:
+        kinks = sorted({start, *(t for t in one.kinks if start < t < end), end})
+        edges = [start, *_zeros(shaft, kinks), end] if sign else [start, end]
+        for low, high in itertools.pairwise(edges):
+            if high > low:
+                speed, acceleration = (
+                    _scaled(one.speed, way / rho * ratio),
+                    _scaled(one.acceleration, way / rho * ratio),
+                )
+                found.append(Stretch(index, low, high, one.kinks, at_gear, speed, acceleration))
+        start = end
+    return found
+
+
+def _scaled(function: Callable[[Any], Any], factor: Any) -> Callable[[Any], Any]:
+    return lambda t: factor * function(t)
+
+
+def _load(m: Json, move: Json, rho: Any, rotary: bool) -> Callable[[Any, Any, Any, Any], Any]:
+    """Torque of the load from place (deg), speed and acceleration (rad) and direction."""
+    if rotary:
+
+        def torque(theta: Any, omega: Any, alpha: Any, sign: Any) -> Any:
+            rpm = omega * 30 / mp.pi
+            gravity = mpf(m.get("gravity_mass_kg", 0)) * G * mpf(m.get("gravity_radius_mm", 0)) / 1000
+            return (
+                mpf(m["inertia_kgm2"]) * alpha
+                + mpf(m.get("friction_torque_Nm", 0)) * sign
+                + mpf(m.get("viscous_friction_Nm_per_rpm", 0)) * rpm
+                + gravity * mp.cos(theta * mp.pi / 180)
+                + mpf(move.get("external_torque_Nm", 0))
+            )
+
+        return torque
+
+    def linear(theta: Any, omega: Any, alpha: Any, sign: Any) -> Any:
+        r, mass, beta = rho / 1000, mpf(m["mass_kg"]), mpf(m.get("incline_deg", 0)) * mp.pi / 180
+        a = alpha * r
+        weight = mass * G * (mp.sin(beta) + mpf(m.get("friction_coefficient", 0)) * mp.cos(beta) * sign)
+        return (mass * a + weight + mpf(move.get("external_force_N", 0))) * r + mpf(m.get("inertia_kgm2", 0)) * a / r
+
+    return linear
+
+
+def _zeros(function: Callable[[Any], Any], kinks: list[Any]) -> list[Any]:
+    found = []
+    for start, end in itertools.pairwise(kinks):
+        grid = [start + (end - start) * (k + mpf("1e-9")) / (STEPS + mpf("2e-9")) for k in range(STEPS + 1)]
+        values = [function(t) for t in grid]
+        for a, b, fa, fb in zip(grid, grid[1:], values, values[1:], strict=False):
+            if fa * fb < 0:
+                found.append(mp.findroot(function, (a, b), solver="anderson", tol=1e-50, verify=False))
+    return found
+
+
+def phases(motion: Json) -> list[dict[str, float]]:
+    """What the contract calls the phases of a motion, with the six fields that vary."""
+    return [_phase(one) for one in stretches(motion)]
+
+
+def _phase(one: Stretch) -> dict[str, float]:
+    duration, middle = one.end - one.start, (one.start + one.end) / 2
+    angle = one.integral(lambda t: abs(one.speed(t)))
+    squares = one.integral(lambda t: one.torque(t) ** 2)
+    peak = _peak(one)
+    mean = peak
+    if angle:
+        damage = one.integral(lambda t: abs(one.speed(t)) * abs(one.torque(t)) ** (mpf(10) / 3))
+        mean = (damage / angle) ** (mpf(3) / 10)
+    return {
+        "move": one.move,
+        "torque_Nm": float(mp.sign(one.torque(middle)) * mean),
+        "speed_rpm": float(mp.sign(one.speed(middle)) * angle / duration * 30 / mp.pi),
+        "duration_s": float(duration),
+        "peak_torque_Nm": float(peak),
+        "peak_speed_rpm": float(max(abs(one.speed(t)) for t in (one.start, one.end)) * 30 / mp.pi),
+        "rms_torque_Nm": float(mp.sqrt(squares / duration)),
+    }
+
+
+def _peak(one: Stretch) -> Any:
+    """Supremum of |T|: the largest of a fine grid, and of a golden section about it."""
+    inside = (one.end - one.start) * mpf("1e-28")
+    low, high = one.start + inside, one.end - inside
+    grid = sorted({low, high, *(t for t in one.kinks if low < t < high), *mp.linspace(low, high, 101)})
+    best = max(range(len(grid)), key=lambda k: abs(one.torque(grid[k])))
+    a, b = grid[max(best - 1, 0)], grid[min(best + 1, len(grid) - 1)]
+    share = (mp.sqrt(5) - 1) / 2
+    for _ in range(75):
+        c, d = b - share * (b - a), a + share * (b - a)
+        a, b = (a, d) if abs(one.torque(c)) > abs(one.torque(d)) else (c, b)
+    return max(abs(one.torque(t)) for t in (grid[best], (a + b) / 2))
+
+
+# --- Samples ----------------------------------------------------------------------------------------------------------
+
+
+def sampled(motion: Json, pause_s: float, count: int) -> dict[str, float]:
+    """Figures of a cycle from samples of its motion at the middle of equal steps, in plain floats.
+
+    Speed and place are summed up from the acceleration alone.
+    """
+    mechanism, moves = motion["mechanism"], motion["moves"]
+    each = count // len(moves)
+    theta, weights, damage, squares, time = float(motion.get("start_deg", 0)), 0.0, 0.0, 0.0, pause_s
+    peak = fastest = 0.0
+    for move in moves:
+        duration, n, T = _samples(mechanism, move, theta, each)
+        theta += move.get("angle_deg", 0)
+        step = duration / each
+        weights, time = weights + n.sum() * step, time + duration
+        damage, squares = damage + (n * T ** (10 / 3)).sum() * step, squares + (T**2).sum() * step
+        peak, fastest = max(peak, T.max()), max(fastest, n.max())
+    return {
+        "average_torque_Nm": float((damage / weights) ** 0.3),
+        "average_output_speed_rpm": float(weights / time),
+        "maximum_torque_Nm": float(peak),
+        "maximum_output_speed_rpm": float(fastest),
+        "rms_torque_Nm": float((squares / time) ** 0.5),
+    }
+
+
+def _samples(mechanism: Json, move: Json, theta: float, count: int) -> tuple[float, Any, Any]:
+    """Duration, and |n| and |T| at the gear at the middle of steps."""
+    rotary = mechanism["type"] == "rotary"
+    per_rad = 180 / np.pi
+    if not rotary:
+        per_rad = mechanism["lead_mm"] / (2 * np.pi) if "lead_mm" in mechanism else mechanism["diameter_mm"] / 2
+    way = float(move.get("angle_deg") or move.get("distance_mm") or 0)
+    sign, eta, ratio = np.sign(way), mechanism.get("efficiency", 1), mechanism.get("ratio", 1)
+    if not way:
+        load = _load_of_floats(mechanism, move, per_rad, np.full(count, theta), np.zeros(count), np.zeros(count), 0)
+        return move["time_s"], np.zeros(count), np.abs(load) / ratio
+    one = course(move, way, 6 if rotary else 1)
+    duration = float(one.parts[-1])
+    step = duration / count
+    a = _acceleration(move, one, duration, (np.arange(count) + 0.5) * step)
+    v = np.cumsum(a) * step - a * step / 2
+    v *= 1 / (v.sum() * step)
+    a *= 1 / (np.abs(a).sum() * step / 2) * v.max()
+    x = np.cumsum(v) * step - v * step / 2
+    load = _load_of_floats(mechanism, move, per_rad, theta + way * x, way * v / per_rad, way * a / per_rad, sign)
+    T = np.abs(load) * np.where(load * sign > 0, 1 / eta, eta) / ratio
+    return duration, np.abs(way * v) / per_rad * ratio * 30 / np.pi, T
+
+
+def _acceleration(move: Json, one: Way, duration: float, t: Any) -> Any:
+    """Acceleration per way of 1 at instants, but for its scale."""
+    if move["profile"] == "modified_sine":
+        x = t / duration
+        return np.where((x > 1 / 8) & (x < 7 / 8), np.sin((np.pi + 4 * np.pi * x) / 3), np.sin(4 * np.pi * x))
+    ramp, run = float(one.parts[0]), float(one.parts[1] - one.parts[0])
+    share = move.get("jerk_share", 0.5) if move["profile"] == "s_curve" else 0
+    u = np.minimum(t, duration - t)
+    rise = ramp * share / 2
+    shape = np.minimum(1, np.minimum(u, ramp - u) / rise) if rise else np.ones_like(t)
+    return np.where(u < ramp, shape, 0) * np.where(t < ramp + run / 2, 1, -1)
+
+
+def _load_of_floats(m: Json, move: Json, per_rad: float, theta: Any, omega: Any, alpha: Any, sign: float) -> Any:
+    if m["type"] == "rotary":
+        gravity = m.get("gravity_mass_kg", 0) * 9.80665 * m.get("gravity_radius_mm", 0) / 1000
+        friction = m.get("friction_torque_Nm", 0) * sign
+        viscous = m.get("viscous_friction_Nm_per_rpm", 0) * omega * 30 / np.pi
+        held = gravity * np.cos(np.radians(theta)) + move.get("external_torque_Nm", 0)
+        return m["inertia_kgm2"] * alpha + friction + viscous + held
+    r, beta = per_rad / 1000, np.radians(m.get("incline_deg", 0))
+    weight = m["mass_kg"] * 9.80665 * (np.sin(beta) + m.get("friction_coefficient", 0) * np.cos(beta) * sign)
+    force = m["mass_kg"] * alpha * r + weight + move.get("external_force_N", 0)
+    return force * r + m.get("inertia_kgm2", 0) * alpha
