@@ -7,7 +7,16 @@ from collections.abc import Iterator, Mapping
 from types import UnionType
 from typing import Annotated, Any, Literal, Self, Union, get_args, get_origin
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, WrapValidator, field_validator, model_validator
+from pydantic import (
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    ValidationInfo,
+    WrapValidator,
+    field_validator,
+    model_validator,
+)
 from pydantic_core import PydanticCustomError
 
 from hpn.fields import (
@@ -124,12 +133,39 @@ class OutputLoad(Model):
     model: BearingModel = Field("linear", description="How the envelope runs between the two published limits.")
 
 
+LISTED_FIGURES = ("maximum_speed_rpm", "peak_torque_Nm", "rated_torque_Nm", "rated_speed_rpm", "inertia_kgm2")
+"""Figures of a motor that motors.csv lists."""
+
+
 class Motor(Model):
     """What the motor can do, at its shaft."""
 
     maximum_speed_rpm: Positive | None = Field(None, description="Maximum motor speed.", examples=[4000.0])
     peak_torque_Nm: Positive | None = Field(None, description="Peak motor torque.", examples=[20.0])
     rated_torque_Nm: Positive | None = Field(None, description="Continuous motor torque.", examples=[8.0])
+    rated_speed_rpm: Positive | None = Field(
+        None, description="Rated motor speed, which the average speed keeps within.", examples=[3000.0]
+    )
+    inertia_kgm2: Positive | None = Field(
+        None,
+        description="Moment of inertia of the motor’s rotor; with a motion it counts in the torques.",
+        examples=[0.00015],
+    )
+    inertia_ratio: Positive | None = Field(
+        None, description="Largest permitted load inertia over i² times the motor’s.", examples=[5.0]
+    )
+    designation: Annotated[str, Field(min_length=1, max_length=100)] | None = Field(
+        None, description="A motor of your motors.csv, in place of its figures.", examples=["M 40"]
+    )
+
+    @field_validator("designation")
+    @classmethod
+    def _stands_alone(cls, designation: str | None, info: ValidationInfo) -> str | None:
+        if designation is not None and any(info.data.get(name) is not None for name in LISTED_FIGURES):
+            raise PydanticCustomError(
+                "motor_twice", "stands for the figures of a motor in motors.csv: give either it or the figures"
+            )
+        return designation
 
 
 class Requirements(Model):
@@ -158,6 +194,9 @@ class Requirements(Model):
         None, description="Your assumption for the gear’s efficiency; without it the motor side is loss-free."
     )
     motor: Motor | None = Field(None, description="Limits of the motor.")
+    load_inertia_kgm2: Positive | None = Field(
+        None, description="Moment of inertia of the load at the gear’s output; a motion has its own.", examples=[0.8]
+    )
 
 
 class Application(Model):
@@ -183,6 +222,24 @@ class Application(Model):
         raise PydanticCustomError(
             "no_load", "no load is given: state radial_N or axial_N here or in a phase, or leave output_load out"
         )
+
+    @field_validator("requirements")
+    @classmethod
+    def _knows_its_inertias(cls, asked: Requirements, info: ValidationInfo) -> Requirements:
+        motion = info.data["duty_cycle"].motion if "duty_cycle" in info.data else None
+        motor, given = asked.motor or Motor(), asked.load_inertia_kgm2 is not None
+        if motion is not None and given:
+            problem = PydanticCustomError("inertia_twice", "the motion has its own inertia of the load: leave it out")
+            raise refused(asked, (("load_inertia_kgm2",), problem))
+        if motor.inertia_ratio is None or "duty_cycle" not in info.data:
+            return asked
+        place = ("motor", "inertia_ratio")
+        if motor.inertia_kgm2 is None and motor.designation is None:
+            raise refused(asked, (place, PydanticCustomError("inertia_of_motor", "needs the motor’s inertia_kgm2")))
+        if motion is None and not given:
+            problem = PydanticCustomError("inertia_of_load", "needs a motion, or requirements.load_inertia_kgm2")
+            raise refused(asked, (place, problem))
+        return asked
 
     @property
     def loads(self) -> OutputLoad | None:

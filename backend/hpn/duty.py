@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from hpn import bearing, equations
 from hpn.application import NUMBERS, Application, OutputLoad
 from hpn.equations import FloatArray
+from hpn.motion import Course
 
 TextArray = NDArray[np.str_]
 
@@ -108,10 +109,14 @@ def _numbers(application: Application) -> list[float | None]:
 
 @dataclass(frozen=True)
 class Duty:
-    """What N duty cycles come to, each figure of shape (N, 1), beside their phases and what is asked for."""
+    """What N duty cycles come to, each figure of shape (N, 1), beside their phases and what is asked for.
+
+    `courses` are those of the motions; None where phases are typed.
+    """
 
     phases: Phases
     asked: Asked
+    courses: tuple[Course | None, ...]
     average_torque_Nm: FloatArray = field(init=False)
     average_output_speed_rpm: FloatArray = field(init=False)
     maximum_torque_Nm: FloatArray = field(init=False)
@@ -119,6 +124,7 @@ class Duty:
     rms_torque_Nm: FloatArray = field(init=False)
     emergency_stop_torque_Nm: FloatArray = field(init=False)
     required_bearing_life_L50_h: FloatArray = field(init=False)
+    load_inertia_kgm2: FloatArray = field(init=False)
 
     def __post_init__(self) -> None:
         T, n, t = self.phases.torque_Nm, self.phases.speed_rpm, self.phases.duration_s
@@ -133,6 +139,11 @@ class Duty:
             "required_bearing_life_L50_h": bearing.required_L50(
                 life_h=asked["output_load.life_h"], basis=asked.life_basis
             ),
+            "load_inertia_kgm2": np.where(
+                [[course is None] for course in self.courses],
+                asked["requirements.load_inertia_kgm2"],
+                [[course.load_inertia_kgm2 if course else np.nan] for course in self.courses],
+            ),
         }
         for name, value in figures.items():
             object.__setattr__(self, name, value)
@@ -140,4 +151,6 @@ class Duty:
     @classmethod
     def of(cls, applications: Sequence[Application]) -> "Duty":
         """Duty of applications, in their order."""
-        return cls(Phases.of(applications), Asked.of(applications))
+        motions = (application.duty_cycle.motion for application in applications)
+        courses = tuple(motion.course if motion else None for motion in motions)
+        return cls(Phases.of(applications), Asked.of(applications), courses)

@@ -178,3 +178,9 @@ def rms_torque(*, torque_Nm: ArrayLike, duration_s: ArrayLike, pause_s: ArrayLik
     r = T / np.where(T_max == 0, 1.0, T_max)[..., None]
     T_rms: FloatArray = T_max * np.sqrt(total(r * r * t) / (total(t) + np.asarray(pause_s)))
     return T_rms
+
+
+@equation
+def inertia_ratio(*, load_inertia_kgm2: ArrayLike, ratio: ArrayLike, motor_inertia_kgm2: ArrayLike) -> FloatArray:
+    """Inertia of the load at the motor over the motor's own, J_L / (i² J_m) [-]."""
+    return np.divide(load_inertia_kgm2, np.multiply(np.square(ratio), motor_inertia_kgm2))

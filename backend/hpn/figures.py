@@ -9,6 +9,7 @@ from hpn.catalogue import Catalogue, GearList
 from hpn.duty import Duty
 from hpn.equations import FloatArray
 from hpn.gear import Gear
+from hpn.motion import Course, peak_torque, rms_torque
 
 
 @dataclass(frozen=True)
@@ -115,7 +116,7 @@ def _motor_torques(duty: Duty, gears: GearList, catalogue: Catalogue) -> tuple[F
     """Peak and RMS torque at the motor, shape (N, G); loss-free where no efficiency is known.
 
     A stated efficiency goes before a supplied curve, which is read at a phase's peak for the peak and at its RMS for
-    the RMS.
+    the RMS. Of a motion whose motor's inertia is known the torque counts at every instant, that inertia included.
     """
     stated, ratio = duty.asked["requirements.efficiency"], gears.columns.ratio
     eta = np.where(np.isnan(stated), 1.0, stated)
@@ -137,7 +138,43 @@ def _motor_torques(duty: Duty, gears: GearList, catalogue: Catalogue) -> tuple[F
             pause_s=duty.asked["duty_cycle.pause_s"][:, 0],
         )
         peak[unstated, place], rated[unstated, place] = at_peak.max(axis=1)[unstated], rms[unstated]
+    for index, course in enumerate(duty.courses):
+        inertia = duty.asked["requirements.motor.inertia_kgm2"].item(index)
+        if course is not None and not np.isnan(inertia):
+            peak[index], rated[index] = _with_own_inertia(duty, index, course, inertia, gears, catalogue)
     return peak, rated
+
+
+PIECES_AT_ONCE = 1_000_000
+"""Pieces times gears that are looked at together."""
+
+
+def _with_own_inertia(
+    duty: Duty, index: int, course: Course, inertia_kgm2: float, gears: GearList, catalogue: Catalogue
+) -> tuple[FloatArray, FloatArray]:
+    """Peak and RMS torque at the motor of application `index`, its own inertia included, shape (G,) each.
+
+    Gears of one ratio without a curve of their own have the same torques, which are worked out once.
+    """
+    stated = duty.asked["requirements.efficiency"].item(index)
+    curved = [np.isnan(stated) and gear.designation in catalogue.efficiency for gear in gears.rows]
+    kinds = [gear.designation if own else str(gear.ratio) for gear, own in zip(gears.rows, curved, strict=True)]
+    first = {kind: kinds.index(kind) for kind in kinds}
+    eta = np.full((2, len(first), len(course.move)), 1.0 if np.isnan(stated) else stated)
+    for row, place in enumerate(first.values()):
+        if curved[place]:
+            for at, T in enumerate((course.peak_torque_Nm, course.rms_torque_Nm)):
+                eta[at, row] = efficiency_along(catalogue, gears.rows[place], T)
+    ratio = gears.columns.ratio[list(first.values())]
+    step = max(1, PIECES_AT_ONCE // len(course.pieces))
+    peaks = [
+        peak_torque(course, ratio=ratio[k : k + step], efficiency=eta[0, k : k + step], motor_inertia_kgm2=inertia_kgm2)
+        for k in range(0, len(first), step)
+    ]
+    pause_s = duty.asked["duty_cycle.pause_s"].item(index)
+    rms = rms_torque(course, ratio=ratio, efficiency=eta[1], motor_inertia_kgm2=inertia_kgm2, pause_s=pause_s)
+    rows = [list(first).index(kind) for kind in kinds]
+    return np.concatenate(peaks)[rows], rms[rows]
 
 
 def efficiency_along(catalogue: Catalogue, gear: Gear, torque_Nm: FloatArray) -> FloatArray:

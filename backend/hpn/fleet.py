@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 from hpn.application import Application, InputError
 from hpn.catalogue import Catalogue, GearList
 from hpn.evaluation import evaluate
-from hpn.selection import Judged, gears_for
+from hpn.selection import Judged, gears_for, with_listed_motor
 
 CHUNK_CYCLES = 256
 CHUNK_PHASES = 100_000
@@ -23,15 +23,17 @@ def judge_fleet(applications: Sequence[Application], catalogue: Catalogue) -> li
     Applications with the same candidates are evaluated together, in chunks that stay inside the processor's cache.
     """
     results: list[Judged | InputError | None] = [None] * len(applications)
+    equipped = list(applications)
     groups: dict[GearList, list[int]] = defaultdict(list)
     for index, application in enumerate(applications):
         try:
+            equipped[index] = with_listed_motor(application, catalogue)
             groups[gears_for(application, catalogue)].append(index)
         except InputError as error:
             results[index] = error
     for gears, indices in groups.items():
         for chunk in _chunks(indices, applications):
-            evaluation = evaluate([applications[index] for index in chunk], gears, catalogue)
+            evaluation = evaluate([equipped[index] for index in chunk], gears, catalogue)
             for place, index in enumerate(chunk):
                 results[index] = Judged(applications[index], evaluation, place)
     return [result for result in results if result is not None]

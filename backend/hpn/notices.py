@@ -80,6 +80,10 @@ NOTICES: Mapping[str, str] = {
         "efficiency is stated."
     ),
     "motor_torque_partial": N_("Motor torques leave out the inertia of motor and gear and losses without load."),
+    "motor_inertia_included": N_(
+        "Motor torques include the motor’s own inertia; they leave out that of the gear and losses without load, which "
+        "are not published."
+    ),
     "size_unrated": N_("{name} is not rated. {note}"),
     "gears_unrated": N_("{names} are not rated. {note}"),
     "catalogue_supplement": N_("Some catalogue figures are supplied by the user; their sources say so."),
@@ -239,7 +243,9 @@ def _on_the_motor(application: Application, evaluation: Evaluation, index: int) 
         if left:
             yield notice("efficiency_beyond_curve", names=", ".join(left))
     if asked.motor is not None or application.rank_by == "motor_torque":
-        yield notice("motor_torque_partial")
+        included = not np.isnan(evaluation.case.asked["requirements.motor.inertia_kgm2"].item(index))
+        moving = application.duty_cycle.motion is not None
+        yield notice("motor_inertia_included" if moving and included else "motor_torque_partial")
 
 
 @lru_cache(maxsize=256)

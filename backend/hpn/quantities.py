@@ -52,6 +52,11 @@ INPUTS: Mapping[str, Named] = {
     "requirements.motor.maximum_speed_rpm": Named(N_("Maximum motor speed"), "n_mot"),
     "requirements.motor.peak_torque_Nm": Named(N_("Peak motor torque"), "T_mot"),
     "requirements.motor.rated_torque_Nm": Named(N_("Rated motor torque"), "T_mot,N"),
+    "requirements.motor.rated_speed_rpm": Named(N_("Rated motor speed"), "n_mot,N"),
+    "requirements.motor.inertia_kgm2": Named(N_("Inertia of the motor"), "J_m"),
+    "requirements.motor.inertia_ratio": Named(N_("Largest inertia ratio"), "r_J"),
+    "requirements.motor.designation": Named(N_("Motor of your list")),
+    "requirements.load_inertia_kgm2": Named(N_("Inertia of the load"), "J_L"),
     "requirements.ambient_temperature_degC": Named(N_("Ambient temperature"), "t_amb"),
     "requirements.backlash_arcmin": Named(N_("Maximum backlash"), "j_req"),
     "requirements.torsional_stiffness_Nm_per_rad": Named(N_("Minimum torsional stiffness"), "K_3,req"),
@@ -219,6 +224,16 @@ BOLT: Mapping[str, Named] = {
     "source": Named(N_("Source"), "", "Where the figures come from."),
 }
 
+MOTOR: Mapping[str, Named] = {
+    "designation": Named(N_("Motor"), "", "Designation of the motor."),
+    "maximum_speed_rpm": Named(N_("Maximum motor speed"), "n_mot", "Maximum speed."),
+    "rated_speed_rpm": Named(N_("Rated motor speed"), "n_mot,N", "Rated speed."),
+    "rated_torque_Nm": Named(N_("Rated motor torque"), "T_mot,N", "Continuous torque."),
+    "peak_torque_Nm": Named(N_("Peak motor torque"), "T_mot", "Peak torque."),
+    "inertia_kgm2": Named(N_("Inertia of the motor"), "J_m", "Moment of inertia of the rotor."),
+    "source": Named(N_("Source"), "", "Where the figures come from."),
+}
+
 SERIES: Mapping[str, Named] = {
     "value": Named(N_("Value"), "", "The figure or text."),
     "unit": Named(N_("Unit"), "", "Its unit."),
@@ -253,6 +268,7 @@ QUANTITIES: Mapping[str, Named] = {
             ("gear", GEAR),
             ("bolt", BOLT),
             ("series", SERIES),
+            ("motor", MOTOR),
             ("envelope", ENVELOPE),
         )
         for name, named in table.items()

@@ -186,6 +186,9 @@ def followed(application: Application, way: Way) -> Application:
     parts: dict[str, Any] = {}
     if cycle.motion is None or (torque, speed, load) != (1, 1, 1):
         parts["duty_cycle"] = cycle.model_copy(update={"phases": phases, "motion": None})
+    if cycle.motion is not None and "duty_cycle" in parts:
+        inertia = {"load_inertia_kgm2": cycle.motion.load_inertia_kgm2}
+        parts["requirements"] = application.requirements.model_copy(update=inertia)
     if (given := application.output_load) is not None:
         loads = {name: _scaled(getattr(given, name), load) for name in ("radial_N", "axial_N")}
         parts["output_load"] = given.model_copy(update={k: v for k, v in loads.items() if v is not None})

@@ -27,7 +27,8 @@ def reserves(evaluation: Evaluation, index: int) -> dict[str, FloatArray]:
 
     Factors on all torques of the duty cycle (not the emergency stop), on all speeds and on all loads, and the largest
     permissible emergency-stop torque in Nm. NaN also where the application moves no such check, and for the torque
-    factor where a motor torque follows the gear's efficiency curve, which no closed form does.
+    factor where a motor torque follows the gear's efficiency curve or has a part of its own inertia, which no closed
+    form follows.
     """
     asked = evaluation.case.asked
     u = asked["requirements.utilisation"].item(index)
@@ -41,7 +42,10 @@ def reserves(evaluation: Evaluation, index: int) -> dict[str, FloatArray]:
             [gear.designation in evaluation.catalogue.efficiency for gear in evaluation.gears.rows]
         )
         stated = not np.isnan(asked["requirements.efficiency"].item(index))
-        factors["torque_factor"] = np.where(follows_curve & ~np.bool_(stated), np.nan, factors["torque_factor"])
+        own_inertia = not np.isnan(asked["requirements.motor.inertia_kgm2"].item(index))
+        turns = own_inertia and evaluation.case.duty.courses[index] is not None
+        unknown = (follows_curve & ~np.bool_(stated)) | np.bool_(turns)
+        factors["torque_factor"] = np.where(unknown, np.nan, factors["torque_factor"])
     return {**factors, "emergency_stop_torque_Nm": _emergency_stop_torque(evaluation, index, u)}
 
 

@@ -14,7 +14,7 @@ import numpy as np
 from msgspec import Meta
 
 from hpn import ENGINE_VERSION
-from hpn.application import Application, InputError, Location
+from hpn.application import LISTED_FIGURES, Application, InputError, Location
 from hpn.catalogue import Catalogue, GearList
 from hpn.check import Check, Group, Kind
 from hpn.checks import BY_CODE, allowed
@@ -243,8 +243,8 @@ def select(application: Application, catalogue: Catalogue, link: str = "") -> Se
 
 def judge(application: Application, catalogue: Catalogue) -> Judged:
     """The same, before it is put together; raises as `select` does."""
-    gears = gears_for(application, catalogue)
-    return Judged(application, evaluate([application], gears, catalogue))
+    gears, equipped = gears_for(application, catalogue), with_listed_motor(application, catalogue)
+    return Judged(application, evaluate([equipped], gears, catalogue))
 
 
 def _duty(application: Application, evaluation: Evaluation, index: int) -> DutyFigures:
@@ -379,6 +379,36 @@ def _told_percent(used: float, code: str, u: float) -> float:
     """Utilisation in percent, with as many decimals as tell it from what is allowed."""
     percent = 100 * used
     return round(percent, telling_decimals(percent, 100 * allowed(code, u), 1))
+
+
+# --- Which motor ------------------------------------------------------------------------------------------------------
+
+MOTORS_NAMED = 20
+"""Motors that an error names."""
+
+
+def with_listed_motor(application: Application, catalogue: Catalogue) -> Application:
+    """The application with the figures of the motor that it names.
+
+    Raises InputError for a motor that is not listed, and for one without the inertia that an inertia ratio needs.
+    """
+    asked = application.requirements.motor
+    if asked is None or asked.designation is None:
+        return application
+    place = ("requirements", "motor", "designation")
+    listed = catalogue.motor_by_designation.get(asked.designation)
+    if listed is None:
+        names = list(catalogue.motor_by_designation)
+        if not names:
+            raise InputError((place, Sentence(N_("there are no motors: list them in motors.csv of a supplement"))))
+        more = ["…"] if len(names) > MOTORS_NAMED else []
+        values: dict[str, Value] = {"value": asked.designation, "listed": ", ".join(names[:MOTORS_NAMED] + more)}
+        raise InputError((place, Sentence(NOT_THERE, values)))
+    if asked.inertia_ratio is not None and listed.inertia_kgm2 is None:
+        raise InputError((place, Sentence(N_("motors.csv gives no inertia of this motor, which inertia_ratio needs"))))
+    motor = asked.model_copy(update={name: getattr(listed, name) for name in LISTED_FIGURES})
+    requirements = application.requirements.model_copy(update={"motor": motor})
+    return application.model_copy(update={"requirements": requirements})
 
 
 # --- Which gears ------------------------------------------------------------------------------------------------------

@@ -83,6 +83,11 @@ def at_random(chance: random.Random, models: Sequence[str] = ("linear", "iso281"
         T = chance.choice([1, -1]) * some(0, 300, 0, 9, 14, 26, 80, 149, 200, 376) * (1 if maybe() else scale)
         n = chance.choice([1, -1]) * some(1, 1200, 60, 100, 120, 200, 600, 1000, 1200) * (1 if maybe() else scale)
         entry = phase(T, n if k == 0 or maybe(0.8) else 0.0, some(0.01, 30, 1, 2))
+        if maybe(0.2):
+            entry["peak_torque_Nm"] = abs(T) * some(1, 3, 1)
+            entry["rms_torque_Nm"] = entry["peak_torque_Nm"] * some(0, 1, 1)
+        if entry["speed_rpm"] and maybe(0.2):
+            entry["peak_speed_rpm"] = abs(entry["speed_rpm"]) * some(1, 3, 1)
         phases.append(entry)
     if maybe(0.3):
         for entry in phases:
@@ -133,9 +138,13 @@ def at_random(chance: random.Random, models: Sequence[str] = ("linear", "iso281"
                 ("maximum_speed_rpm", some(500, 8000, 3000, 6000)),
                 ("peak_torque_Nm", some(0.5, 60, 8, 16)),
                 ("rated_torque_Nm", some(0.5, 40, 8)),
+                ("rated_speed_rpm", some(500, 6000, 3000)),
             )
             if maybe(0.6)
         }
+        if maybe():
+            wishes["motor"] |= {"inertia_kgm2": 10 ** chance.uniform(-5, -3), "inertia_ratio": some(1, 10, 3, 5)}
+            wishes["load_inertia_kgm2"] = 10 ** chance.uniform(-3, 0)
     if wishes:
         parts["requirements"] = wishes
     return cycle(*phases, pause_s=some(0, 20, 0) if maybe() else 0.0, **parts)

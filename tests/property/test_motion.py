@@ -117,7 +117,7 @@ def test_over_a_closed_cycle_the_energy_is_what_friction_takes(
     assert moving is not None
     load = moving.mechanism.load
     pieces = course_along(pieces_of(moving.moves, 90 * start, load), load).pieces
-    torque = Torque(load.inertia_kgm2, load.viscous_Nms, load.gravity_Nm)
+    torque = Torque(load.viscous_Nms, load.gravity_Nm)
 
     energy = integral(lambda p, t: torque.at(p, t) * p.speed_at(t), pieces).sum()
     V, way = 1.5 * math.radians(angle) / time, 2 * math.radians(angle)

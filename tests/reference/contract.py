@@ -133,7 +133,7 @@ class _Duty:
 
 def _duty(cycle: Mapping[str, Any]) -> _Duty:
     phases, pause = cycle["phases"], cycle.get("pause_s", 0)
-    T_max = max(abs(p["torque_Nm"]) for p in phases)
+    T_max = max(_peak(p, "torque_Nm") for p in phases)
     way = math.fsum(abs(p["speed_rpm"]) * p["duration_s"] for p in phases)
     time = math.fsum(p["duration_s"] for p in phases) + pause
     T_av = T_rms = 0.0
@@ -143,8 +143,18 @@ def _duty(cycle: Mapping[str, Any]) -> _Duty:
             for p in phases
         ]
         T_av = T_max * math.fsum(w * r ** (10 / 3) for w, r, _ in shares) ** 0.3
-        T_rms = T_max * math.sqrt(math.fsum(s * r**2 for _, r, s in shares))
-    return _Duty(T_av, way / time, T_max, max(abs(p["speed_rpm"]) for p in phases), T_rms)
+        squares = [(_own(p, "rms_torque_Nm", "torque_Nm") / T_max) ** 2 for p in phases]
+        T_rms = T_max * math.sqrt(math.fsum(s * r for (_, _, s), r in zip(shares, squares, strict=True)))
+    return _Duty(T_av, way / time, T_max, max(_peak(p, "speed_rpm") for p in phases), T_rms)
+
+
+def _own(phase: Mapping[str, Any], name: str, steady: str) -> float:
+    """A figure of a phase that varies; of a steady one the magnitude of its torque or speed."""
+    return abs(phase[steady]) if phase.get(name) is None else float(phase[name])
+
+
+def _peak(phase: Mapping[str, Any], name: str) -> float:
+    return _own(phase, f"peak_{name}", name)
 
 
 def _judge(application: Mapping[str, Any], wishes: Mapping[str, Any], duty: _Duty, gear: Gear) -> Candidate:
@@ -197,9 +207,13 @@ def _judge(application: Mapping[str, Any], wishes: Mapping[str, Any], duty: _Dut
         ("motor_speed", n_in_max, "maximum_speed_rpm"),
         ("motor_peak_torque", duty.T_max / loss, "peak_torque_Nm"),
         ("motor_rated_torque", duty.T_rms / loss, "rated_torque_Nm"),
+        ("motor_rated_speed", n_in_av, "rated_speed_rpm"),
     ):
         if motor.get(key) is not None:
             at_most(code, demand, motor[key])
+    if motor.get("inertia_ratio") is not None:
+        reflected = wishes["load_inertia_kgm2"] / gear.ratio**2
+        at_most("inertia_ratio", reflected / motor["inertia_kgm2"], motor["inertia_ratio"])
     load_checks = len(checks)
 
     temperature = wishes.get("ambient_temperature_degC")

@@ -91,7 +91,7 @@ def test_a_value_out_of_bounds_is_refused_where_it_stands(path: str, value: Any)
         "/emergency_stop/n",
         "/output_load/offset_mm",
         "/requirements/price",
-        "/requirements/motor/inertia_kgm2",
+        "/requirements/motor/voltage",
     ],
 )
 def test_an_unknown_field_is_refused_and_never_ignored(path: str) -> None:

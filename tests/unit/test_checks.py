@@ -30,6 +30,11 @@ AT: dict[str, Callable[[float], Json]] = {
     "motor_speed": lambda x: cycle(phase(1, 100), requirements=ONLY | {"motor": {"maximum_speed_rpm": 500 / x}}),
     "motor_peak_torque": lambda x: cycle(phase(40 * x, 100), requirements=ONLY | {"motor": {"peak_torque_Nm": 8}}),
     "motor_rated_torque": lambda x: cycle(phase(40 * x, 100), requirements=ONLY | {"motor": {"rated_torque_Nm": 8}}),
+    "motor_rated_speed": lambda x: cycle(phase(1, 100), requirements=ONLY | {"motor": {"rated_speed_rpm": 500 / x}}),
+    # A load of 25 times the motor's inertia at a ratio of 5
+    "inertia_ratio": lambda x: with_wish(
+        load_inertia_kgm2=0.025 * x, motor={"inertia_kgm2": 0.001, "inertia_ratio": 1}
+    ),
     # 80 Nm is T_N, so at 600 rpm (3000 rpm at the input) the life is 20000 h
     "life": lambda x: cycle(phase(80, 600), requirements=ONLY | {"life_h": 20000 * x}),
     "ambient_temperature": lambda x: with_wish(ambient_temperature_degC=20 - 20 * x),

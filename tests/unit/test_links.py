@@ -236,6 +236,8 @@ def test_last_row_removed_leaves_a_blank_one() -> None:
 WITHOUT_SYMBOL = {
     *(("duty_cycle", "phases", name) for name in ("peak_torque_Nm", "peak_speed_rpm", "rms_torque_Nm")),
     ("duty_cycle", "motion"),
+    *(("requirements", "motor", name) for name in ("designation", "inertia_kgm2", "inertia_ratio", "rated_speed_rpm")),
+    ("requirements", "load_inertia_kgm2"),
 }
 """Fields that only JSON speaks so far (issue 18)."""
 

@@ -27,6 +27,8 @@ EFFICIENCY = Variable.of(INPUTS["requirements.efficiency"].symbol)
 
 def motor_steps(sheet: Sheet) -> Iterable[Step]:
     """Peak and RMS torque, loss-free where no efficiency is known."""
+    if sheet.duty.courses[0] is not None and sheet.given("requirements.motor.inertia_kgm2") is not None:
+        return _along_the_motion(sheet)
     stated = sheet.given("requirements.efficiency")
     if stated is None and sheet.gear.designation in sheet.catalogue.efficiency:
         return _by_curve(sheet)
@@ -37,6 +39,15 @@ def motor_steps(sheet: Sheet) -> Iterable[Step]:
     peak = Quotient(sheet.T_max, shaft)
     rated = Quotient(Root(Quotient(squares, sheet.cycle_time)), shaft)
     return _steps(sheet, peak, rated, Sentence(note))
+
+
+def _along_the_motion(sheet: Sheet) -> Iterable[Step]:
+    """Torques with the motor's own inertia, which no single formula of the phases gives."""
+    text = N_("From T / (i · η) + J_m · i · α at every instant of the motion; T · η / i where the load drives.")
+    note = Sentence(text)
+    for code in ("motor_peak_torque", "motor_rated_torque"):
+        limit = sheet.compared(code, known(sheet.figure(f"{code}_Nm")))
+        yield step_of_check(code, (), limit, (note,), trivial=True)
 
 
 def _by_curve(sheet: Sheet) -> Iterable[Step]:

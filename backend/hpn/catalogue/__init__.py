@@ -1,6 +1,14 @@
 """The catalogue: CSV tables and a supplement over them, as gears with a source for every figure."""
 
-from hpn.catalogue.catalogue import AVERAGING_S, Catalogue, FlangeBolt, GearList, OutputVersion, SeriesFigure
+from hpn.catalogue.catalogue import (
+    AVERAGING_S,
+    Catalogue,
+    FlangeBolt,
+    GearList,
+    ListedMotor,
+    OutputVersion,
+    SeriesFigure,
+)
 from hpn.catalogue.files import CatalogueError
 from hpn.catalogue.load import HANDBOOK_FOLDER, load_catalogue
 from hpn.gear import GearColumns
@@ -13,6 +21,7 @@ __all__ = [
     "FlangeBolt",
     "GearColumns",
     "GearList",
+    "ListedMotor",
     "OutputVersion",
     "SeriesFigure",
     "load_catalogue",

@@ -54,6 +54,19 @@ class Fact:
     source: str
 
 
+@dataclass(frozen=True, slots=True)
+class ListedMotor:
+    """A motor of the user; None is a figure that is not known."""
+
+    designation: str
+    maximum_speed_rpm: float | None
+    rated_speed_rpm: float | None
+    rated_torque_Nm: float | None
+    peak_torque_Nm: float | None
+    inertia_kgm2: float | None
+    source: str
+
+
 class GearList:
     """Some gears of the catalogue in its order, once as rows and once as columns.
 
@@ -92,11 +105,17 @@ class Catalogue:
     supplement: str | None
     averaging_s: float = AVERAGING_S
     facts: tuple[Fact, ...] = ()
+    motors: tuple[ListedMotor, ...] = ()
 
     @cached_property
     def by_designation(self) -> dict[str, Gear]:
         """Gears by canonical designation."""
         return {gear.designation: gear for gear in self.gears}
+
+    @cached_property
+    def motor_by_designation(self) -> dict[str, ListedMotor]:
+        """The user's motors by designation."""
+        return {motor.designation: motor for motor in self.motors}
 
     @cached_property
     def sizes(self) -> tuple[str, ...]:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from hpn.bearing import Curve, CurveError, curve_through
 from hpn.catalogue import tables
-from hpn.catalogue.catalogue import AVERAGING_S, Catalogue, Fact, FlangeBolt, OutputVersion, SeriesFigure
+from hpn.catalogue.catalogue import AVERAGING_S, Catalogue, Fact, FlangeBolt, ListedMotor, OutputVersion, SeriesFigure
 from hpn.catalogue.files import CatalogueError, read_folder
 from hpn.catalogue.tables import (
     AccuracyTable,
@@ -23,6 +23,7 @@ from hpn.catalogue.tables import (
     GearTable,
     HousingBoltTable,
     LengthTable,
+    MotorTable,
     RatingTable,
     SeriesTable,
     SizeTable,
@@ -58,6 +59,8 @@ ORDERINGS = (
     (SizeTable, "average_input_speed_rpm", "maximum_input_speed_rpm", True),
     (SizeTable, "ambient_temperature_minimum_degC", "ambient_temperature_maximum_degC", False),
     (LengthTable, "length_min_mm", "length_max_mm", True),
+    (MotorTable, "rated_speed_rpm", "maximum_speed_rpm", True),
+    (MotorTable, "rated_torque_Nm", "peak_torque_Nm", True),
 )
 """Table, smaller figure, larger figure, and whether they may be equal."""
 
@@ -89,6 +92,7 @@ def load_catalogue(
         facts=tuple(Fact(row.topic, row.text, row.check, book.source(row, "text")) for row in book.of(FactTable)),
         curves=_curves(book),
         efficiency=_efficiency(book),
+        motors=_motors(book),
         supplement=str(supplement) if supplement else None,
         averaging_s=averaging_s,
     )
@@ -304,3 +308,11 @@ def _efficiency(book: _Book) -> dict[str, tuple[FloatArray, FloatArray]]:
         designation: (np.array([t for t, _ in sorted(curve)]), np.array([eta for _, eta in sorted(curve)]))
         for designation, curve in points.items()
     }
+
+
+def _motors(book: _Book) -> tuple[ListedMotor, ...]:
+    names = [name for name in MotorTable.columns() if name != "source"]
+    return tuple(
+        ListedMotor(**{name: getattr(row, name) for name in names}, source=book.source(row, "designation"))
+        for row in book.of(MotorTable)
+    )

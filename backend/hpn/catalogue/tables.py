@@ -212,6 +212,21 @@ class EfficiencyTable(Table):
     efficiency: Annotated[Figure, Field(gt=0, le=1)]
 
 
+class MotorTable(Table):
+    """A motor of the user; the handbook has none."""
+
+    file = "motors.csv"
+    key = ("designation",)
+    most_rows = 10_000
+    may_be_empty = True
+    designation: Annotated[str, Field(max_length=100)]
+    maximum_speed_rpm: Positive | None = None
+    rated_speed_rpm: Positive | None = None
+    rated_torque_Nm: Positive | None = None
+    peak_torque_Nm: Positive | None = None
+    inertia_kgm2: Positive | None = None
+
+
 TABLES: tuple[type[Table], ...] = (
     SourceTable,
     GearTable,
@@ -229,6 +244,7 @@ TABLES: tuple[type[Table], ...] = (
     SeriesTable,
     EnvelopeTable,
     EfficiencyTable,
+    MotorTable,
 )
 
 

@@ -2,5 +2,6 @@
 
 from hpn.motion.course import Course
 from hpn.motion.motion import MAXIMUM_MOVES, LinearMotion, Motion, RotaryMotion
+from hpn.motion.motor import peak_torque, rms_torque
 
-__all__ = ["MAXIMUM_MOVES", "Course", "LinearMotion", "Motion", "RotaryMotion"]
+__all__ = ["MAXIMUM_MOVES", "Course", "LinearMotion", "Motion", "RotaryMotion", "peak_torque", "rms_torque"]

@@ -43,6 +43,11 @@ class Course:
     torque_acceleration: FloatArray
     square_acceleration: FloatArray
 
+    @property
+    def load_inertia_kgm2(self) -> float:
+        """Moment of inertia of the load at the gear's output."""
+        return self.load.inertia_kgm2 / self.load.ratio**2
+
 
 def course_of(moves: Sequence[Move], start_deg: float, load: ShaftLoad) -> Course:
     """Course of moves.
@@ -54,7 +59,7 @@ def course_of(moves: Sequence[Move], start_deg: float, load: ShaftLoad) -> Cours
 
 def course_along(pieces: Pieces, load: ShaftLoad) -> Course:
     """Course along pieces, however they are cut."""
-    torque = Torque(load.inertia_kgm2, load.viscous_Nms, load.gravity_Nm)
+    torque = Torque(load.viscous_Nms, load.gravity_Nm)
     pieces = cut_at_zeros(torque.at, monotone(torque, _parted(pieces, load)))
     middle = (pieces.start_s + pieces.end_s) / 2
     above = torque.at(pieces, middle) >= 0

@@ -92,7 +92,7 @@ class _Motion(Model):
     @property
     def load_inertia_kgm2(self) -> float:
         """Moment of inertia of the load at the gear's output."""
-        return self.mechanism.load.inertia_kgm2 / self.mechanism.load.ratio**2
+        return self.course.load_inertia_kgm2
 
     @property
     def triangles(self) -> tuple[int, ...]:

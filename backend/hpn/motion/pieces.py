@@ -28,7 +28,7 @@ class Pieces:
 
     x = x_0 + ω_0 t + α_0 t²/2 + j t³/6 - S/w² sin(w t + φ) is the angle from `base`, of which cosine and sine are kept;
     `sign` is the direction of the move, 0 of a dwell. `held_Nm` is what neither moves nor turns with the shaft:
-    friction, weight and the external load.
+    friction, weight and the external load. `inertia_kgm2` is what the torque accelerates.
     """
 
     move: PlaceArray
@@ -46,6 +46,7 @@ class Pieces:
     base_cosine: FloatArray
     base_sine: FloatArray
     held_Nm: FloatArray
+    inertia_kgm2: FloatArray
 
     def __len__(self) -> int:
         return len(self.move)
@@ -128,7 +129,7 @@ def _rows(moves: Sequence[Move], start_deg: float, load: ShaftLoad) -> Iterator[
         sign = math.copysign(1.0, move.way) if move.way else 0.0
         held = load.friction_Nm * sign + load.constant_Nm + load.external_Nm * move.external
         end = math.fmod(position + move.way, 360.0) if load.gravity_Nm else 0.0
-        bases = [(cosine(angle), sine(angle), held) for angle in (position, end)]
+        bases = [(cosine(angle), sine(angle), held, load.inertia_kgm2) for angle in (position, end)]
         if not sign:
             yield (place, RUN, 0.0, move.time_s or 0.0, 0.0, *_coefficients(_Course(0.0, 0.0), 0.0), *bases[0])
             continue

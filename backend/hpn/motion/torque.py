@@ -14,25 +14,24 @@ Function = Callable[[Pieces, FloatArray], FloatArray]
 class Torque:
     """Torque J α + b ω + G cos θ + held over pieces, and its derivatives in time."""
 
-    inertia_kgm2: float
     viscous_Nms: float
     gravity_Nm: float
 
     def at(self, p: Pieces, t: FloatArray) -> FloatArray:
         """Torque in Nm."""
-        turning = self.inertia_kgm2 * p.acceleration_at(t) + p.held_Nm
+        turning = p.inertia_kgm2 * p.acceleration_at(t) + p.held_Nm
         if self.viscous_Nms:
             turning = turning + self.viscous_Nms * p.speed_at(t)
         return turning + self.gravity_Nm * p.cosine_at(t) if self.gravity_Nm else turning
 
     def slope(self, p: Pieces, t: FloatArray) -> FloatArray:
         """First derivative in Nm/s."""
-        slope = self.inertia_kgm2 * p.jerk_at(t) + self.viscous_Nms * p.acceleration_at(t)
+        slope = p.inertia_kgm2 * p.jerk_at(t) + self.viscous_Nms * p.acceleration_at(t)
         return slope - self.gravity_Nm * p.sine_at(t) * p.speed_at(t) if self.gravity_Nm else slope
 
     def curvature(self, p: Pieces, t: FloatArray) -> FloatArray:
         """Second derivative in Nm/s²."""
-        curvature = self.inertia_kgm2 * p.snap_at(t) + self.viscous_Nms * p.jerk_at(t)
+        curvature = p.inertia_kgm2 * p.snap_at(t) + self.viscous_Nms * p.jerk_at(t)
         if not self.gravity_Nm:
             return curvature
         turning = p.cosine_at(t) * p.speed_at(t) ** 2 + p.sine_at(t) * p.acceleration_at(t)

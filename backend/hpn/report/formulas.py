@@ -167,6 +167,7 @@ class SheetCheck:
 _CELLS: Mapping[str, str] = {
     "1": "1",
     "maxf_w·P_i": "{P_max}",
+    "J_L/(i²·J_m)": 'IF(J_L="","",J_L/({i}^2*J_m))',
     **{named.symbol: cell_name(named.symbol) for path, named in INPUTS.items() if not path.startswith("phase.")},
     **{term.named.symbol: term.name for term in CYCLE_TERMS},
     **{GEAR[field].symbol: f"{{{name}}}" for name, field in RATINGS.items()},

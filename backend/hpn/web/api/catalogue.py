@@ -11,7 +11,7 @@ from hpn.catalogue import Catalogue
 from hpn.envelopes import EnvelopeQuery, life_envelopes
 from hpn.source import supplied_source
 from hpn.web.api import schemas
-from hpn.web.api.replies import CatalogueReply, EnvelopeReply, JSONBytes, encode
+from hpn.web.api.replies import CatalogueReply, EnvelopeReply, JSONBytes, MotorsReply, encode
 from hpn.web.door.access import admit
 from hpn.web.door.bodies import few_parameters
 from hpn.web.door.conditions import conditional
@@ -53,6 +53,19 @@ async def gear(request: Request, designation: str) -> Response:
         raise Problem(404, f"the catalogue has no gear {designation[:60]!r}; a designation is written like HPN-20A-5")
     fields = {field.name: getattr(found, field.name) for field in dataclasses.fields(found)}
     return conditional(request, encode({"catalogue_version": book.version, **fields, "gears": [found]}))
+
+
+@router.get(
+    "/motors",
+    operation_id="getMotors",
+    summary="The user’s own motors",
+    openapi_extra=schemas.IF_NONE_MATCH,
+    responses=schemas.answers("MotorsReply", 406, headers=schemas.headers("ETag")) | schemas.HAS_IT_ALREADY,
+)
+async def motors(request: Request) -> Response:
+    """Motors of a supplement’s motors.csv; none where there is no such file, null where a figure is blank."""
+    book: Catalogue = request.app.state.catalogue
+    return conditional(request, encode(MotorsReply(book.version, book.motors)))
 
 
 @router.get(

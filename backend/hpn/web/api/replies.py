@@ -8,7 +8,7 @@ from msgspec import UNSET, Meta, Struct, UnsetType
 from starlette.responses import Response
 
 from hpn.application import BearingModel
-from hpn.catalogue import SeriesFigure
+from hpn.catalogue import ListedMotor, SeriesFigure
 from hpn.differences import Difference, FigureDifference
 from hpn.envelopes import EnvelopeCurve
 from hpn.gear import Gear
@@ -83,6 +83,13 @@ class CatalogueReply(Struct):
     catalogue_version: Version
     gears: Annotated[tuple[Gear, ...], Meta(description="Every gear, by size and ratio.")]
     series: Annotated[dict[str, SeriesFigure], Meta(description="Figures of the whole series.")]
+
+
+class MotorsReply(Struct):
+    """The user’s own motors."""
+
+    catalogue_version: Version
+    motors: Annotated[tuple[ListedMotor, ...], Meta(description="Every motor of motors.csv, in its order.")]
 
 
 class EnvelopeReply(Struct):

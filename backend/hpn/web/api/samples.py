@@ -58,6 +58,16 @@ LIFTING: Json = {
 }
 """Motions of a rotary and of a linear mechanism."""
 
+MOTOR: Json = {
+    "designation": "M 40",
+    "maximum_speed_rpm": 6000.0,
+    "rated_speed_rpm": 3000.0,
+    "rated_torque_Nm": 2.4,
+    "peak_torque_Nm": 7.2,
+    "inertia_kgm2": 0.00015,
+    "source": "supplied by the user: data sheet",
+}
+
 NAMES = {"title": "Worked example", "reference": "axis-7"}
 LABELS = {**NAMES, "author": "M. Muster", "revision": "B", "ordering_code": "HPN-20A-5-J6-BH-AF1"}
 
@@ -108,6 +118,7 @@ def _samples(catalogue: Catalogue) -> Json:
             "series": plain(catalogue.series),
         },
         "OneGearReply": one_gear(catalogue, gear),
+        "MotorsReply": {"catalogue_version": catalogue.version, "motors": [MOTOR]},
         "EnvelopeReply": envelopes(catalogue, gear["size"]),
         "SelectionListReply": {"selections": [summary], "next_cursor": None},
         "SavedReply": where,

@@ -11,7 +11,7 @@ from pydantic import BaseModel, Field
 
 from hpn.application import BatchItem
 from hpn.fields import Model, name_units
-from hpn.quantities import BOLT, CANDIDATE, CHECK, DUTY, ENVELOPE, GEAR, PHASE, RESERVE, SERIES, Named
+from hpn.quantities import BOLT, CANDIDATE, CHECK, DUTY, ENVELOPE, GEAR, MOTOR, PHASE, RESERVE, SERIES, Named
 from hpn.selection import Selection
 from hpn.web.api import replies
 from hpn.web.door.problems import MAXIMUM_ERRORS, MEDIA_TYPE, TITLES
@@ -27,6 +27,7 @@ DESCRIBED: Mapping[str, Mapping[str, Named]] = {
     "HousingBolts": BOLT,
     "SeriesFigure": SERIES,
     "EnvelopeCurve": ENVELOPE,
+    "ListedMotor": MOTOR,
 }
 """Replies whose fields are quantities."""
 
@@ -38,6 +39,7 @@ REPLIES: tuple[type, ...] = (
     replies.BatchReply,
     replies.CatalogueReply,
     replies.EnvelopeReply,
+    replies.MotorsReply,
     replies.SavedReply,
     replies.SavedSelectionReply,
     replies.SelectionListReply,

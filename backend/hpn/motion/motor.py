@@ -1,0 +1,66 @@
+"""Torque at the motor along a motion, its own inertia included: T / (i η) or T η / i, plus J_m i α."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from hpn.motion.course import Course
+from hpn.motion.pieces import FloatArray
+from hpn.motion.torque import Torque, monotone
+
+
+def rms_torque(
+    course: Course, *, ratio: FloatArray, efficiency: FloatArray, motor_inertia_kgm2: float, pause_s: float
+) -> FloatArray:
+    """RMS torque in Nm of the motor over the cycle, its pause included, on gears, shape (gears,).
+
+    `efficiency` broadcasts to (gears, phases). In a phase the motor's torque is a T + b α with an a and b of its own.
+    """
+    a, b = _share(course, ratio, efficiency), (motor_inertia_kgm2 * ratio)[:, None]
+    squares = a**2 * course.square_torque + 2 * a * b * course.torque_acceleration + b**2 * course.square_acceleration
+    rms: FloatArray = np.sqrt(np.maximum(squares.sum(axis=1), 0.0) / (course.duration_s.sum() + pause_s))
+    return rms
+
+
+def peak_torque(course: Course, *, ratio: FloatArray, efficiency: FloatArray, motor_inertia_kgm2: float) -> FloatArray:
+    """Largest torque in Nm of the motor on gears, shape (gears,); `efficiency` broadcasts to (gears, phases).
+
+    The ends of the pieces give it, unless it is larger in between: by no more than h² / 8 times the largest second
+    derivative. The pieces where that matters are cut at the extremes of the motor's own torque.
+    """
+    p, load = course.pieces, course.load
+    a = _share(course, ratio, efficiency)[:, course.phase] * course.factor
+    b = (motor_inertia_kgm2 * ratio * load.ratio)[:, None]
+    torque = Torque(load.viscous_Nms, load.gravity_Nm)
+    larger = np.maximum(*(np.abs(a * torque.at(p, t) + b * p.acceleration_at(t)) for t in (p.start_s, p.end_s)))
+    peak: FloatArray = larger.max(axis=1)
+
+    rows, places = np.nonzero(larger + _bow(course, a, b) > peak[:, None])
+    if rows.size:
+        own, some = a[rows, places], p.at(places)
+        with_motor = some.inertia_kgm2 + b[rows, 0] / own
+        some = monotone(torque, replace(some, inertia_kgm2=with_motor, move=np.arange(len(rows))))
+        for t in (some.start_s, some.end_s):
+            np.maximum.at(peak, rows[some.move], np.abs(torque.at(some, t)) * own[some.move])
+    return peak
+
+
+def _share(course: Course, ratio: FloatArray, efficiency: FloatArray) -> FloatArray:
+    """Motor's torque over the gear's output torque, shape (gears, phases): the gear loses in the sense of the power."""
+    drives = course.torque_Nm * course.speed_rpm >= 0
+    share: FloatArray = np.where(drives, 1 / efficiency, efficiency) / ratio[:, None]
+    return share
+
+
+def _bow(course: Course, a: FloatArray, b: FloatArray) -> FloatArray:
+    """How far a T + b α may rise above the line between the ends of a piece, at most; shape (gears, pieces)."""
+    p, load = course.pieces, course.load
+    ends = (p.start_s, p.end_s)
+    speed, acceleration, jerk = (
+        np.maximum(*(np.abs(function(t)) for t in ends)) for function in (p.speed_at, p.acceleration_at, p.jerk_at)
+    )
+    snap = np.abs(p.swing) * p.frequency**2
+    jerk = np.maximum(jerk, np.abs(p.swing) * p.frequency)
+    bend = load.viscous_Nms * jerk + load.gravity_Nm * (speed**2 + acceleration)
+    bow: FloatArray = (a * (bend + p.inertia_kgm2 * snap) + b * snap) * (p.end_s - p.start_s) ** 2 / 8
+    return bow
