@@ -239,8 +239,8 @@ def _phase(one: Stretch) -> dict[str, float]:
     duration, middle = one.end - one.start, (one.start + one.end) / 2
     angle = one.integral(lambda t: abs(one.speed(t)))
     squares = one.integral(lambda t: one.torque(t) ** 2)
-    peak = _peak(one)
-    mean = peak
+    largest = peak(one)
+    mean = largest
     if angle:
         damage = one.integral(lambda t: abs(one.speed(t)) * abs(one.torque(t)) ** (mpf(10) / 3))
         mean = (damage / angle) ** (mpf(3) / 10)
@@ -249,13 +249,13 @@ def _phase(one: Stretch) -> dict[str, float]:
         "torque_Nm": float(mp.sign(one.torque(middle)) * mean),
         "speed_rpm": float(mp.sign(one.speed(middle)) * angle / duration * 30 / mp.pi),
         "duration_s": float(duration),
-        "peak_torque_Nm": float(peak),
+        "peak_torque_Nm": float(largest),
         "peak_speed_rpm": float(max(abs(one.speed(t)) for t in (one.start, one.end)) * 30 / mp.pi),
         "rms_torque_Nm": float(mp.sqrt(squares / duration)),
     }
 
 
-def _peak(one: Stretch) -> Any:
+def peak(one: Stretch) -> Any:
     """Supremum of |T|: the largest of a fine grid, and of a golden section about it."""
     inside = (one.end - one.start) * mpf("1e-28")
     low, high = one.start + inside, one.end - inside

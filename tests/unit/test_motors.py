@@ -1,0 +1,143 @@
+"""The user's own motors: motors.csv of a supplement, its route, and an application that names one of them."""
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+from starlette.testclient import TestClient
+
+from hpn.application import Application, InputError
+from hpn.catalogue import Catalogue, CatalogueError
+from hpn.catalogue.copy import copy_of, read_copy
+from hpn.web.app import create_app
+from hpn.web.settings import Settings
+from tests.build import Json, answer, cycle, phase
+from tests.conftest import Supplement
+from tests.unit.test_application import refused
+from tests.wire import select_fleet
+
+HEADER = "designation,maximum_speed_rpm,rated_speed_rpm,rated_torque_Nm,peak_torque_Nm,inertia_kgm2,source\n"
+MOTORS = HEADER + "M 40,6000,3000,2.4,7.2,0.00015,data sheet\nM 60,4500,,4,12,,\n"
+FIGURES = {
+    "maximum_speed_rpm": 6000,
+    "rated_speed_rpm": 3000,
+    "rated_torque_Nm": 2.4,
+    "peak_torque_Nm": 7.2,
+    "inertia_kgm2": 0.00015,
+}
+
+
+def asking(motor: Json, **more: Any) -> Json:
+    return cycle(phase(20, 100), phase(5, 0, 2), requirements={"motor": motor, **more})
+
+
+def test_a_motor_of_the_list_stands_for_its_figures(supplemented: Supplement) -> None:
+    catalogue = supplemented(motors=MOTORS)
+    ratio = {"inertia_ratio": 5}
+    named = answer(asking({"designation": "M 40"} | ratio, load_inertia_kgm2=0.01), catalogue)
+    typed = answer(asking(FIGURES | ratio, load_inertia_kgm2=0.01), catalogue)
+
+    assert named == typed
+    codes = [check["code"] for check in named["candidates"][0]["checks"]]
+    assert codes[-5:] == [
+        *("motor_speed", "motor_peak_torque", "motor_rated_torque", "motor_rated_speed", "inertia_ratio"),
+    ]
+
+
+def test_what_is_blank_in_the_list_is_not_checked(supplemented: Supplement) -> None:
+    reply = answer(asking({"designation": "M 60"}), supplemented(motors=MOTORS))
+
+    codes = [check["code"] for check in reply["candidates"][0]["checks"]]
+    assert codes[-3:] == ["motor_speed", "motor_peak_torque", "motor_rated_torque"]
+
+
+def test_a_motor_that_is_not_listed_is_refused_by_name_with_those_there_are(
+    supplemented: Supplement, catalogue: Catalogue
+) -> None:
+    for book, said in ((supplemented(motors=MOTORS), "M 40, M 60"), (catalogue, r"motors\.csv")):
+        with pytest.raises(InputError, match=said) as refusal:
+            answer(asking({"designation": "M 41"}), book)
+        assert [place for place, _ in refusal.value.problems] == [("requirements", "motor", "designation")]
+
+
+def test_a_motor_without_inertia_has_no_inertia_ratio(supplemented: Supplement) -> None:
+    motor = {"designation": "M 60", "inertia_ratio": 5}
+    with pytest.raises(InputError, match="inertia_ratio needs") as refusal:
+        answer(asking(motor, load_inertia_kgm2=1), supplemented(motors=MOTORS))
+    assert [place for place, _ in refusal.value.problems] == [("requirements", "motor", "designation")]
+
+
+def test_in_a_batch_an_unlisted_motor_fails_alone(supplemented: Supplement) -> None:
+    motors = ("M 40", "M 41", "M 60")
+    applications = [Application.model_validate(asking({"designation": name})) for name in motors]
+    failed = [isinstance(one, InputError) for one in select_fleet(applications, supplemented(motors=MOTORS))]
+
+    assert failed == [False, True, False]
+
+
+@pytest.mark.parametrize(("name", "value"), FIGURES.items())
+def test_a_name_beside_figures_is_refused(name: str, value: float) -> None:
+    errors = refused(asking({"designation": "M 40", name: value}))
+    assert list(errors) == [("requirements", "motor", "designation")]
+    assert "either it or the figures" in errors["requirements", "motor", "designation"]
+
+
+@pytest.mark.parametrize(
+    ("motor", "more", "place", "said"),
+    [
+        ({"inertia_ratio": 5}, {"load_inertia_kgm2": 1}, ("motor", "inertia_ratio"), "inertia_kgm2"),
+        ({"inertia_ratio": 5, "inertia_kgm2": 1e-4}, {}, ("motor", "inertia_ratio"), "load_inertia_kgm2"),
+        ({"inertia_ratio": 0, "inertia_kgm2": 1e-4}, {}, ("motor", "inertia_ratio"), "greater than 0"),
+        ({}, {"load_inertia_kgm2": 0}, ("load_inertia_kgm2",), "greater than 0"),
+    ],
+)
+def test_an_inertia_ratio_needs_both_inertias(motor: Json, more: Json, place: tuple[str, ...], said: str) -> None:
+    errors = refused(asking(motor, **more))
+    assert list(errors) == [("requirements", *place)]
+    assert said in errors["requirements", *place]
+
+
+def test_a_motion_has_its_own_inertia_of_the_load() -> None:
+    moves = [{"profile": "triangular", "angle_deg": 90, "time_s": 1}]
+    motion = {"mechanism": {"type": "rotary", "inertia_kgm2": 1}, "moves": moves}
+    errors = refused({"duty_cycle": {"motion": motion}, "requirements": {"load_inertia_kgm2": 1}})
+    assert list(errors) == [("requirements", "load_inertia_kgm2")]
+
+
+# --- The list ---------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("rows", "said"),
+    [
+        ("M 40,6000,6001,2.4,7.2,0.1,\n", "rated_speed_rpm"),
+        ("M 40,6000,3000,7.3,7.2,0.1,\n", "rated_torque_Nm"),
+        ("M 40,6000,3000,2.4,7.2,-1,\n", "inertia_kgm2"),
+        (",6000,3000,2.4,7.2,1,\n", "designation"),
+        ("M 40,1,1,1,1,1,\nM 40,2,2,2,2,2,\n", "line 3"),
+    ],
+)
+def test_a_wrong_list_of_motors_is_refused_by_its_cell(supplemented: Supplement, rows: str, said: str) -> None:
+    with pytest.raises(CatalogueError, match=f"motors.csv.*{said}"):
+        supplemented(motors=HEADER + rows)
+
+
+def test_motors_change_the_version_and_outlast_their_file(supplemented: Supplement, catalogue: Catalogue) -> None:
+    listed = supplemented(motors=MOTORS)
+    assert listed.version != catalogue.version
+    assert read_copy(copy_of(listed)).motors == listed.motors
+
+
+def test_the_motors_are_told_with_their_source(tmp_path: Path) -> None:
+    (tmp_path / "motors.csv").write_text(MOTORS)
+    for settings, count in ((Settings(catalogue_supplement=tmp_path), 2), (Settings(), 0)):
+        with TestClient(create_app(settings)) as client:
+            reply = client.get("/api/v1/motors")
+            assert reply.status_code == 200
+            assert len(reply.json()["motors"]) == count
+            again = client.get("/api/v1/motors", headers={"If-None-Match": reply.headers["ETag"]})
+            assert again.status_code == 304
+            if count:
+                first, second = reply.json()["motors"]
+                assert first == FIGURES | {"designation": "M 40", "source": "supplied by the user: data sheet"}
+                assert second["inertia_kgm2"] is None
