@@ -145,7 +145,7 @@ def _motor_torques(duty: Duty, gears: GearList, catalogue: Catalogue) -> tuple[F
     return peak, rated
 
 
-PIECES_AT_ONCE = 1_000_000
+PIECES_AT_ONCE = 200_000
 """Pieces times gears that are looked at together."""
 
 

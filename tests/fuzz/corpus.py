@@ -15,6 +15,7 @@ from hpn.reader import Reader
 from hpn.report.export import Export
 from hpn.report.workbook import workbook
 from hpn.selection import select
+from hpn.web.api.samples import LIFTING, TURNING
 from hpn.web.form.pasted import write_table
 from hpn.web.form.symbols import BY_NAME
 from hpn.web.form.write import to_link
@@ -37,6 +38,9 @@ REQUIREMENTS: Json = {
 }
 LOAD = {"radial_N": 500, "axial_N": 200, "load_coefficient": 1.2, "life_h": 20000, "model": "iso281"}
 
+MOTOR = {"inertia_kgm2": 1e-4, "inertia_ratio": 5, "rated_speed_rpm": 3000}
+INERTIAS = {"load_inertia_kgm2": 0.2, "motor": MOTOR}
+
 APPLICATIONS: tuple[Json, ...] = (
     cycle(phase(40, 250)),
     worked_example(),
@@ -45,6 +49,9 @@ APPLICATIONS: tuple[Json, ...] = (
     cycle(phase(-40, 250, 0.5, radial_N=50), phase(0, -1e3, 2.5, axial_N=7), pause_s=4.0, output_load={}),
     cycle(phase(9.3, 0), phase(1e-3, 1e4, 1e-3), requirements={"ratios": [5]}, rank_by="motor_torque"),
     cycle(*(phase(k, 100 + k, 0.1) for k in range(1, 40)), pause_s=1.5),
+    cycle(phase(40, 250, 1, peak_torque_Nm=60, peak_speed_rpm=400, rms_torque_Nm=45), requirements=INERTIAS),
+    {"duty_cycle": {"motion": TURNING, "pause_s": 0.5}, "requirements": {"motor": MOTOR}},
+    {"duty_cycle": {"motion": LIFTING}, "rank_by": "motor_torque"},
 )
 
 _MODELS = [Application.model_validate(entry) for entry in APPLICATIONS]

@@ -78,7 +78,11 @@ def test_a_check_is_full_when_its_driver_has_grown_as_far_as_it_says(catalogue: 
     assert len(seen) > 10
 
 
-FIELDS = {"torque": ("torque_Nm",), "speed": ("speed_rpm",), "load": ("radial_N", "axial_N")}
+FIELDS = {
+    "torque": ("torque_Nm", "peak_torque_Nm", "rms_torque_Nm"),
+    "speed": ("speed_rpm", "peak_speed_rpm"),
+    "load": ("radial_N", "axial_N"),
+}
 
 
 def grown(application: Application, driver: str, factor: float) -> Application:

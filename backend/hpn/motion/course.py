@@ -11,7 +11,7 @@ from hpn.motion.moves import Move
 from hpn.motion.pieces import FloatArray, Pieces, PlaceArray, pieces_of
 from hpn.motion.torque import Torque, cut_at_zeros, halved_integral, integral, monotone
 
-LARGEST_TURN = np.pi / 8
+LARGEST_TURN = np.pi / 4
 """Angle in rad that a piece may turn under gravity, so that one rule integrates it and no extreme hides in it."""
 
 GRADED = 0.3
@@ -75,7 +75,8 @@ def course_along(pieces: Pieces, load: ShaftLoad) -> Course:
     moving = pieces.sign != 0
     peak, least = np.maximum.reduceat(ends.max(axis=0), starts), np.minimum.reduceat(ends.min(axis=0), starts)
     duration = np.add.reduceat(pieces.end_s - pieces.start_s, starts)
-    angle = np.add.reduceat(pieces.angle_at(pieces.end_s) - pieces.angle_at(pieces.start_s), starts) * moving[starts]
+    # Not the difference of two angles, which leaves a short piece of a long move few digits.
+    angle = np.add.reduceat(integral(Pieces.speed_at, pieces), starts) * moving[starts]
 
     squares = integral(lambda p, t: torque.at(p, t) ** 2, pieces) * factor**2
     crossed = integral(lambda p, t: torque.at(p, t) * p.acceleration_at(t), pieces) * factor * load.ratio

@@ -1,6 +1,7 @@
 """A motion as somebody describes it: a mechanism and its moves."""
 
 import math
+from collections.abc import Sequence
 from functools import cached_property
 from typing import Annotated, Any, NoReturn, Self
 
@@ -10,16 +11,20 @@ from pydantic_core import InitErrorDetails, PydanticKnownError, ValidationError
 
 from hpn.fields import Model, Number, at_most, in_parts, refused
 from hpn.motion.course import Course, course_of
-from hpn.motion.mechanisms import CLASSES, TYPES, LinearMechanism, Mechanism, Rotary
+from hpn.motion.mechanisms import CLASSES, RPM, TYPES, LinearMechanism, Mechanism, Rotary
 from hpn.motion.moves import Move, Stroke, Turn
+from hpn.motion.pieces import FloatArray, PlaceArray
 from hpn.motion.refusals import refusal
 from hpn.phase import MAXIMUM_PHASES, Phase
 from hpn.wording import Quantity
 
 MAXIMUM_MOVES = 1000
 
-MOST_DEGREES = 3_600_000.0
+MOST_DEGREES = 720_000.0
 """Sum of the angles of a motion under gravity, which is looked at eighth by eighth of a turn."""
+
+BOUNDS = {"motion_speed": 1e6, "motion_time": 1e9, "motion_torque": 1e6}
+"""Bounds of a typed phase, by the code of the refusal."""
 
 OF_ONE_TURN = 1e-9
 """Share of a turn within which a motion counts as back at its start."""
@@ -36,21 +41,25 @@ class _Motion(Model):
         moves = self.moves
         if not any(move.way for move in moves):
             raise refused(self, (("moves",), refusal("no_move")))
+        load = self.mechanism.load
         turned = math.fsum(abs(move.way) for move in moves)
-        if self.mechanism.load.gravity_Nm and turned > MOST_DEGREES:
+        if load.gravity_Nm and turned > MOST_DEGREES:
             self._refuse("motion_turns", turned, MOST_DEGREES, "deg")
+        self._require("motion_speed", "rpm", [load.ratio * m.peak_speed / load.way_per_rad / RPM for m in moves])
         course = self.course
-        for code, values, bound, unit in (
-            ("motion_time", course.duration_s, 1e9, "s"),
-            ("motion_speed", course.peak_speed_rpm, 1e6, "rpm"),
-            ("motion_torque", course.peak_torque_Nm, 1e6, "Nm"),
-        ):
-            place = int(np.argmax(values))
-            if not values[place] <= bound:
-                self._refuse(code, values.item(place), bound, unit, course.move.item(place))
         if len(course.move) > MAXIMUM_PHASES:
             self._refuse("motion_phases", len(course.move), MAXIMUM_PHASES, "")
+        self._require("motion_time", "s", course.duration_s, course.move)
+        self._require("motion_torque", "Nm", course.peak_torque_Nm, course.move)
         return self
+
+    def _require(
+        self, code: str, unit: str, values: Sequence[float] | FloatArray, move: PlaceArray | None = None
+    ) -> None:
+        """Refuse the move with the largest of some values where that is beyond what a typed phase may have."""
+        place = int(np.argmax(values))
+        if not values[place] <= BOUNDS[code]:
+            self._refuse(code, float(values[place]), BOUNDS[code], unit, place if move is None else int(move[place]))
 
     def _refuse(self, code: str, found: float, bound: float, unit: str, *move: int) -> NoReturn:
         said = {"found": str(Quantity(found, unit, 9, "up")), "bound": str(Quantity(bound, unit, 9))}

@@ -8,6 +8,9 @@ from hpn.motion.course import Course
 from hpn.motion.pieces import FloatArray
 from hpn.motion.torque import Torque, monotone
 
+LOOKED_AT_ONCE = 10_000
+"""Pieces that are cut together, those with the largest torque first."""
+
 
 def rms_torque(
     course: Course, *, ratio: FloatArray, efficiency: FloatArray, motor_inertia_kgm2: float, pause_s: float
@@ -35,13 +38,18 @@ def peak_torque(course: Course, *, ratio: FloatArray, efficiency: FloatArray, mo
     larger = np.maximum(*(np.abs(a * torque.at(p, t) + b * p.acceleration_at(t)) for t in (p.start_s, p.end_s)))
     peak: FloatArray = larger.max(axis=1)
 
-    rows, places = np.nonzero(larger + _bow(course, a, b) > peak[:, None])
-    if rows.size:
-        own, some = a[rows, places], p.at(places)
-        with_motor = some.inertia_kgm2 + b[rows, 0] / own
-        some = monotone(torque, replace(some, inertia_kgm2=with_motor, move=np.arange(len(rows))))
+    most = larger + _bow(course, a, b)
+    rows, places = np.nonzero(most > peak[:, None])
+    order = np.argsort(-most[rows, places])
+    for part in np.array_split(order, 1 + len(order) // LOOKED_AT_ONCE):
+        row, place = (which[part] for which in (rows, places))
+        open_ = most[row, place] > peak[row]  # what came before may have settled it
+        row, place = row[open_], place[open_]
+        own, some = a[row, place], p.at(place)
+        with_motor = some.inertia_kgm2 + b[row, 0] / own
+        some = monotone(torque, replace(some, inertia_kgm2=with_motor, move=np.arange(len(row))))
         for t in (some.start_s, some.end_s):
-            np.maximum.at(peak, rows[some.move], np.abs(torque.at(some, t)) * own[some.move])
+            np.maximum.at(peak, row[some.move], np.abs(torque.at(some, t)) * own[some.move])
     return peak
 
 

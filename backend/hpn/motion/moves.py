@@ -18,6 +18,9 @@ Profile = Literal["trapezoidal", "triangular", "s_curve", "modified_sine", "dwel
 
 DEFAULT_JERK_SHARE = 0.5
 
+MODIFIED_SINE_SPEED = 4 * math.pi / (4 + math.pi)
+"""Largest over mean speed of a modified sine, c_v."""
+
 ROOM = 1e-12
 """Relative room in which a bound counts as met, and below which a run counts as none."""
 
@@ -81,6 +84,13 @@ class Move(Model):
     def way(self) -> float:
         """Angle or distance with its sign; 0 of a dwell."""
         return getattr(self, self.WAY) or 0.0
+
+    @property
+    def peak_speed(self) -> float:
+        """Largest speed in units of way per second."""
+        if self.profile == "modified_sine":
+            return MODIFIED_SINE_SPEED * abs(self.way) / (self.time_s or 1.0)
+        return self.timing.peak_speed if self.way else 0.0
 
     @property
     def external(self) -> float:

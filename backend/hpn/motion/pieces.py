@@ -62,24 +62,32 @@ class Pieces:
     def angle_at(self, t: FloatArray) -> FloatArray:
         """Angle from the base in rad."""
         polynomial = self.angle + t * (self.speed + t * (self.acceleration / 2 + t * (self.jerk / 6)))
-        return polynomial - self.swing / self.frequency**2 * np.sin(self.frequency * t + self.shift)
+        return polynomial - self.swing / self.frequency**2 * np.sin(self._turn(t)) if self._swings else polynomial
 
     def speed_at(self, t: FloatArray) -> FloatArray:
         """Speed in rad/s."""
         polynomial = self.speed + t * (self.acceleration + t * (self.jerk / 2))
-        return polynomial - self.swing / self.frequency * np.cos(self.frequency * t + self.shift)
+        return polynomial - self.swing / self.frequency * np.cos(self._turn(t)) if self._swings else polynomial
 
     def acceleration_at(self, t: FloatArray) -> FloatArray:
         """Acceleration in rad/s²."""
-        return self.acceleration + t * self.jerk + self.swing * np.sin(self.frequency * t + self.shift)
+        polynomial = self.acceleration + t * self.jerk
+        return polynomial + self.swing * np.sin(self._turn(t)) if self._swings else polynomial
 
     def jerk_at(self, t: FloatArray) -> FloatArray:
         """Derivative of the acceleration in rad/s³."""
-        return self.jerk + self.swing * self.frequency * np.cos(self.frequency * t + self.shift)
+        return self.jerk + self.swing * self.frequency * np.cos(self._turn(t))
 
     def snap_at(self, t: FloatArray) -> FloatArray:
         """Derivative of the jerk in rad/s⁴."""
-        return -self.swing * self.frequency**2 * np.sin(self.frequency * t + self.shift)
+        return -self.swing * self.frequency**2 * np.sin(self._turn(t))
+
+    @property
+    def _swings(self) -> bool:
+        return bool(self.swing.any())
+
+    def _turn(self, t: FloatArray) -> FloatArray:
+        return self.frequency * t + self.shift
 
     def cosine_at(self, t: FloatArray) -> FloatArray:
         """Cosine of the angle from the horizontal."""

@@ -127,12 +127,13 @@ def integral(function: Function, pieces: Pieces) -> FloatArray:
 def halved_integral(function: Function, pieces: Pieces, whole: FloatArray, coarse: PlaceArray) -> FloatArray:
     """Integral of a function that is not smooth at the ends of some pieces, `coarse`.
 
-    Those are halved until nothing changes by more than ERROR of `whole`, the sum that an integral is part of.
+    Those are halved until nothing changes by more than ERROR of `whole`, the sum that an integral is part of. A zero at
+    an end leaves one half of two at each step; where more are left the torque is nothing but rounding errors.
     """
     result = integral(function, pieces)
     owner, part = coarse, pieces.at(coarse)
     before = result[coarse]
-    while owner.size:
+    while 0 < owner.size <= 4 * coarse.size:
         middle = (part.start_s + part.end_s) / 2
         halves = [part.windows(part.start_s, middle), part.windows(middle, part.end_s)]
         after = [integral(function, half) for half in halves]

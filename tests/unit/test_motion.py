@@ -1,0 +1,199 @@
+"""Motions as somebody sends them: what is refused and where, what is told, and how large they may be."""
+
+import math
+from typing import Any
+
+import pytest
+
+from hpn.application import Application
+from hpn.catalogue import Catalogue
+from hpn.phase import MAXIMUM_PHASES
+from tests.build import Json, answer, check, notices, phase
+from tests.unit.test_application import refused
+
+TABLE: Json = {"type": "rotary", "inertia_kgm2": 1.0}
+SCREW: Json = {"type": "ball_screw", "mass_kg": 100.0, "lead_mm": 10.0}
+TURN: Json = {"profile": "trapezoidal", "angle_deg": 90.0, "time_s": 0.8}
+
+
+def motion(*moves: Json, mechanism: Json = TABLE, **more: Any) -> Json:
+    return {"duty_cycle": {"motion": {"mechanism": mechanism, "moves": list(moves), **more}}}
+
+
+def phases_of(application: Json) -> tuple[Any, ...]:
+    return Application.model_validate(application).duty_cycle.load_phases
+
+
+@pytest.mark.parametrize(
+    ("changes", "place", "said"),
+    [
+        ({"speed_rpm": 18.75}, ("speed_rpm",), "above 18.75 rpm"),
+        ({"acceleration_deg_per_s2": 562}, ("acceleration_deg_per_s2",), "562.5 °/s²"),
+        (
+            {"profile": "s_curve", "acceleration_deg_per_s2": 562.5, "jerk_share": 1},
+            ("acceleration_deg_per_s2",),
+            "1125 °/s²",
+        ),
+        ({"speed_rpm": 30, "acceleration_deg_per_s2": 900}, (), "takes two of"),
+        ({"time_s": None, "speed_rpm": 30}, (), "given: speed_rpm"),
+        ({"time_s": None}, (), "given: none"),
+        ({"profile": "triangular", "speed_rpm": 30}, (), "takes one of"),
+        ({"profile": "triangular", "jerk_share": 0.5}, ("jerk_share",), "has no jerk_share"),
+        ({"profile": "modified_sine", "speed_rpm": 30}, ("speed_rpm",), "has no speed_rpm"),
+        ({"profile": "modified_sine", "time_s": None}, (), "needs time_s"),
+        ({"profile": "dwell"}, ("angle_deg",), "has no angle_deg"),
+        ({"angle_deg": 0}, ("angle_deg",), "must not be 0"),
+        ({"angle_deg": None}, (), "needs angle_deg"),
+        ({"time_s": 0}, ("time_s",), "greater than 0"),
+        ({"jerk_share": 1.1, "profile": "s_curve"}, ("jerk_share",), "1"),
+        ({"distance_mm": 5}, ("distance_mm",), "Extra inputs"),
+        ({"profile": "sine"}, ("profile",), "trapezoidal"),
+        ({"time_s": 1e-4}, (), "Nm at most"),
+        ({"angle_deg": 9e8, "time_s": 1}, (), "rpm at most"),
+        ({"time_s": None, "speed_rpm": 1e-10, "acceleration_deg_per_s2": 1}, (), "s at most"),
+    ],
+)
+def test_a_move_is_refused_where_it_stands_with_the_bound_that_would_do(
+    changes: Json, place: tuple[str, ...], said: str
+) -> None:
+    move = {name: value for name, value in (TURN | changes).items() if value is not None}
+    errors = refused(motion(TURN, move))
+    where = ("duty_cycle", "motion", "moves", 1, *place)
+    assert where in errors
+    assert said in errors[where]
+
+
+@pytest.mark.parametrize(
+    ("mechanism", "place", "said"),
+    [
+        ({"type": "rotary"}, ("inertia_kgm2",), "required"),
+        (TABLE | {"gravity_mass_kg": 5}, ("gravity_mass_kg",), "gravity_radius_mm"),
+        (TABLE | {"gravity_radius_mm": 5}, ("gravity_radius_mm",), "gravity_mass_kg"),
+        (TABLE | {"lead_mm": 5}, ("lead_mm",), "Extra inputs"),
+        (TABLE | {"inertia_kgm2": 0}, ("inertia_kgm2",), "greater than 0"),
+        (TABLE | {"efficiency": 1.01}, ("efficiency",), "1"),
+        (TABLE | {"ratio": 0}, ("ratio",), "greater than 0"),
+        (TABLE | {"friction_torque_Nm": -1}, ("friction_torque_Nm",), "0"),
+        ({"type": "crank"}, ("type",), "ball_screw"),
+        ({}, ("type",), "required"),
+        (7, (), "dictionary"),
+    ],
+)
+def test_a_mechanism_is_refused_where_it_stands(mechanism: Any, place: tuple[str, ...], said: str) -> None:
+    errors = refused(motion(TURN, mechanism=mechanism))
+    where = ("duty_cycle", "motion", "mechanism", *place)
+    assert where in errors
+    assert said in errors[where]
+
+
+@pytest.mark.parametrize(
+    ("mechanism", "place"),
+    [
+        (SCREW | {"incline_deg": 90.1}, "incline_deg"),
+        (SCREW | {"incline_deg": -90.1}, "incline_deg"),
+        (SCREW | {"friction_coefficient": -0.1}, "friction_coefficient"),
+        (SCREW | {"inertia_kgm2": -0.1}, "inertia_kgm2"),
+        (SCREW | {"diameter_mm": 5.0}, "diameter_mm"),
+        (SCREW | {"lead_mm": 0}, "lead_mm"),
+        ({"type": "belt", "mass_kg": 1.0}, "diameter_mm"),
+    ],
+)
+def test_a_linear_mechanism_likewise(mechanism: Json, place: str) -> None:
+    stroke = {"profile": "modified_sine", "distance_mm": 10, "time_s": 1}
+    assert list(refused(motion(stroke, mechanism=mechanism))) == [("duty_cycle", "motion", "mechanism", place)]
+
+
+def test_start_is_of_a_rotary_mechanism_alone() -> None:
+    stroke = {"profile": "modified_sine", "distance_mm": 10, "time_s": 1}
+    errors = refused(motion(stroke, mechanism=SCREW, start_deg=5))
+    assert list(errors) == [("duty_cycle", "motion", "start_deg")]
+
+
+def test_a_cycle_has_phases_or_a_motion_and_not_both() -> None:
+    both = motion(TURN)
+    both["duty_cycle"]["phases"] = [phase(1, 1)]
+    assert list(refused(both)) == [("duty_cycle", "motion")]
+    for neither in ({}, {"phases": None}, {"motion": None}):
+        assert list(refused({"duty_cycle": neither})) == [("duty_cycle", "phases")]
+    assert list(refused(motion({"profile": "dwell", "time_s": 1}))) == [("duty_cycle", "motion", "moves")]
+    assert ("duty_cycle", "motion", "moves") in refused(motion())
+    assert list(refused({"duty_cycle": {"motion": 5}})) == [("duty_cycle", "motion")]
+
+
+def test_a_thousand_moves_are_accepted_and_one_more_is_not() -> None:
+    assert len(phases_of(motion(*[TURN] * 1000))) == 3000
+    assert ("duty_cycle", "motion", "moves") in refused(motion(*[TURN] * 1001))
+
+
+def test_the_phases_that_come_out_are_no_more_than_may_be_typed() -> None:
+    """Two of a turn change their sign: a pendulum that nothing else moves."""
+    swing = TABLE | {"inertia_kgm2": 1e-3, "gravity_mass_kg": 1.0, "gravity_radius_mm": 100.0}
+    move = {"profile": "trapezoidal", "angle_deg": 360.0 * 1500, "time_s": 1000}
+    errors = refused(motion(move, move, mechanism=swing))
+    assert "720000" in errors["duty_cycle", "motion", "moves"]
+    six = [move | {"angle_deg": 360.0 * 300}] * 6
+    assert len(phases_of(motion(*six, mechanism=swing))) < MAXIMUM_PHASES
+
+
+@pytest.mark.parametrize(("speed", "is_cut"), [(30, False), (37.4, False), (37.5, True), (50, True)])
+def test_a_triangle_that_was_not_asked_for_is_told(catalogue: Catalogue, speed: float, is_cut: bool) -> None:
+    """90° in 0.8 s is 18.75 rpm on average: from twice that on there is no time to run."""
+    reply = answer(motion(TURN, TURN | {"speed_rpm": speed}), catalogue)
+    assert ("motion_triangle" in notices(reply)) is is_cut
+    if is_cut:
+        assert "Moves 2 " in notices(reply)["motion_triangle"]
+        assert math.isclose(reply["duty"]["phases"][-1]["peak_speed_rpm"], 37.5, rel_tol=1e-14)
+
+
+def test_a_speed_never_reached_and_an_acceleration_that_just_suffices_give_the_triangle_too(
+    catalogue: Catalogue,
+) -> None:
+    never = {"profile": "trapezoidal", "angle_deg": 90, "speed_rpm": 100, "acceleration_deg_per_s2": 900}
+    just = TURN | {"acceleration_deg_per_s2": 562.5}
+    for move in (never, just):
+        reply = answer(motion(move), catalogue)
+        assert "motion_triangle" in notices(reply)
+        assert len(reply["duty"]["phases"]) == 2
+    asked = answer(motion({"profile": "triangular", "angle_deg": 90, "time_s": 0.8}), catalogue)
+    assert "motion_triangle" not in notices(asked)
+
+
+@pytest.mark.parametrize(
+    ("angles", "gravity", "told"),
+    [((90, -90), 5, False), ((200, 160), 5, False), ((90,), 5, True), ((90,), None, False)],
+)
+def test_a_motion_that_ends_where_gravity_pulls_otherwise_is_told(
+    catalogue: Catalogue, angles: tuple[float, ...], gravity: float | None, told: bool
+) -> None:
+    mechanism = TABLE | ({"gravity_mass_kg": gravity, "gravity_radius_mm": 100.0} if gravity else {})
+    reply = answer(motion(*(TURN | {"angle_deg": angle} for angle in angles), mechanism=mechanism), catalogue)
+    assert ("motion_left_off" in notices(reply)) is told
+
+
+def test_a_move_carries_its_loads_and_the_cycle_fills_what_it_leaves(catalogue: Catalogue) -> None:
+    application = motion(TURN | {"radial_N": 900.0}, TURN)
+    application |= {"output_load": {"axial_N": 220.0}, "requirements": {"sizes": ["20A"], "ratios": [5]}}
+    reply = answer(application, catalogue)
+
+    assert [entry.get("radial_N") for entry in reply["duty"]["phases"]] == [900.0] * 3 + [None] * 3
+    demand = check(reply, "HPN-20A-5", "output_bearing_load")["demand"]
+    assert math.isclose(demand, 900 / 1800 + 220 / 2200, rel_tol=1e-14)
+
+
+def test_typed_phases_have_no_phases_in_the_reply(catalogue: Catalogue) -> None:
+    reply = answer({"duty_cycle": {"phases": [phase(1, 1)]}}, catalogue)
+    assert not {"phases", "load_inertia_kgm2"} & reply["duty"].keys()
+
+
+def test_a_ratio_of_the_mechanism_counts_in_speed_torque_and_inertia(catalogue: Catalogue) -> None:
+    one, three = (answer(motion(TURN, mechanism=TABLE | {"ratio": ratio}), catalogue)["duty"] for ratio in (1, 3))
+    assert math.isclose(one["load_inertia_kgm2"], 9 * three["load_inertia_kgm2"], rel_tol=1e-14)
+    for first, other in zip(one["phases"], three["phases"], strict=True):
+        assert math.isclose(first["torque_Nm"], 3 * other["torque_Nm"], rel_tol=1e-14)
+        assert math.isclose(3 * first["speed_rpm"], other["speed_rpm"], rel_tol=1e-14)
+
+
+def test_an_application_with_a_motion_survives_its_own_json() -> None:
+    application = Application.model_validate(motion(TURN, {"profile": "dwell", "time_s": 1}, start_deg=30))
+    assert Application.model_validate_json(application.model_dump_json()) == application
+    assert hash(application)
