@@ -5,6 +5,7 @@ from collections.abc import Iterable, Sequence
 
 from hpn.application import Application, InputError
 from hpn.catalogue import Catalogue, GearList
+from hpn.duty import Duty
 from hpn.evaluation import evaluate
 from hpn.selection import Judged, gears_for
 
@@ -31,7 +32,7 @@ def judge_fleet(applications: Sequence[Application], catalogue: Catalogue) -> li
             results[index] = error
     for gears, indices in groups.items():
         for chunk in _chunks(indices, applications):
-            evaluation = evaluate([applications[index] for index in chunk], gears, catalogue)
+            evaluation = evaluate(Duty.of([applications[index] for index in chunk]), gears, catalogue)
             for place, index in enumerate(chunk):
                 results[index] = Judged(applications[index], evaluation, place)
     return [result for result in results if result is not None]

@@ -33,7 +33,7 @@ def reserves(evaluation: Evaluation, index: int) -> dict[str, FloatArray]:
     u = asked["requirements.utilisation"].item(index)
     with np.errstate(all="ignore"):
         factors = {
-            f"{driver}_factor": _factor((one for one in evaluation.checked if one.asked[index]), index, driver, u)
+            f"{driver}_factor": _factor((one for one in evaluation.checked if one.asked.item(index)), index, driver, u)
             for driver in DRIVERS
         }
     if any(not np.isnan(asked[path].item(index)) for path in MOTOR_TORQUES):

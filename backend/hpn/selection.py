@@ -18,6 +18,7 @@ from hpn.application import Application, InputError, Location
 from hpn.catalogue import Catalogue, GearList
 from hpn.check import Check, Group, Kind
 from hpn.checks import BY_CODE, allowed
+from hpn.duty import Duty
 from hpn.equations import FloatArray
 from hpn.evaluation import (
     CHECK_STATUS,
@@ -201,7 +202,7 @@ class Judged:
         """The answer in full."""
         evaluation, index = self.evaluation, self.index
         candidates = tuple(_candidates(evaluation, index))
-        checks = tuple(one.check.code for one in evaluation.checked if one.asked[index])
+        checks = tuple(one.check.code for one in evaluation.checked if one.asked.item(index))
         return Selection(
             engine_version=ENGINE_VERSION,
             catalogue_version=evaluation.catalogue.version,
@@ -228,7 +229,7 @@ def select(application: Application, catalogue: Catalogue, link: str = "") -> Se
 def judge(application: Application, catalogue: Catalogue) -> Judged:
     """The same, before it is put together; raises as `select` does."""
     gears = gears_for(application, catalogue)
-    return Judged(application, evaluate([application], gears, catalogue))
+    return Judged(application, evaluate(Duty.of([application]), gears, catalogue))
 
 
 # --- Candidates -------------------------------------------------------------------------------------------------------
@@ -237,7 +238,7 @@ def judge(application: Application, catalogue: Catalogue) -> Judged:
 def _candidates(evaluation: Evaluation, index: int) -> Iterator[Candidate]:
     """Candidates of an application, best first."""
     order = evaluation.order[index]
-    asked = [one for one in evaluation.checked if one.asked[index]]
+    asked = [one for one in evaluation.checked if one.asked.item(index)]
     codes = [one.check.code for one in evaluation.checked]
     u = evaluation.case.asked["requirements.utilisation"].item(index)
     figures = (getattr(evaluation.case.figures, name)[index] for name in FIGURES)
