@@ -18,7 +18,7 @@ SHORT_CYCLE = 16
 """Phases up to which a cycle counts as long as this."""
 
 
-def judge_fleet(applications: Sequence[Application], catalogue: Catalogue) -> list[Judged | InputError]:
+def judge_batch(applications: Sequence[Application], catalogue: Catalogue) -> list[Judged | InputError]:
     """Each application on its gears, or the reason why it has none, in their order.
 
     Applications with the same candidates are evaluated together, in chunks that stay inside the processor's cache.
