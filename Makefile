@@ -151,7 +151,7 @@ messages: $(ENVIRONMENT)
 
 lock: $(UV) | $(NODE)
 	$(UV) $(COMPILE) pyproject.toml --output-file requirements.lock
-	$(UV) $(COMPILE) pyproject.toml --group dev --constraints requirements.lock --output-file requirements-dev.lock
+	$(UV) $(COMPILE) pyproject.toml --group dev --extra cluster --constraints requirements.lock --output-file requirements-dev.lock
 	$(UV) $(COMPILE) --group uv --output-file requirements-uv.lock
 	$(UV) $(COMPILE) --group node --output-file requirements-node.lock
 	cd frontend && npm install --package-lock-only --loglevel=error

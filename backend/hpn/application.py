@@ -37,6 +37,10 @@ LEAST = 1e-12
 """Smallest number that stands below a fraction: a quotient by a smaller one could overflow."""
 
 
+LEAST_MOTION = 1e-100
+"""Product of speed and duration up to which a phase rests: the sums of eq. 17.2 and 17.4 would vanish."""
+
+
 def _above_zero(value: float) -> float:
     """Refuse what is not above 0, and what is but so small that a quotient by it could overflow."""
     if value <= 0:
@@ -132,8 +136,7 @@ class DutyCycle(Model):
     @field_validator("phases")
     @classmethod
     def _moves(cls, phases: tuple[Phase, ...]) -> tuple[Phase, ...]:
-        # Below this product of relative speed and duration the sums of eq. 17.2 and 17.4 would vanish.
-        if not any(abs(phase.speed_rpm) * phase.duration_s > 1e-100 for phase in phases):
+        if not any(abs(phase.speed_rpm) * phase.duration_s > LEAST_MOTION for phase in phases):
             raise PydanticCustomError(
                 "no_motion",
                 "no phase moves, so the cycle has no average torque (eq. 17.2): give at least one phase a speed",

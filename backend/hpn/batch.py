@@ -1,21 +1,14 @@
 """Many applications at once: the batch behind a PLM system's ten thousand axes."""
 
 from collections import defaultdict
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 
 from hpn.application import Application, InputError
 from hpn.catalogue import Catalogue, GearList
+from hpn.chunks import chunks_of
 from hpn.duty import Duty
 from hpn.evaluation import evaluate
 from hpn.selection import Judged, gears_for
-
-CHUNK_CYCLES = 256
-CHUNK_PHASES = 100_000
-LIKE = 2
-"""How many times longer than the shortest cycle of a chunk the longest may be."""
-
-SHORT_CYCLE = 16
-"""Phases up to which a cycle counts as long as this."""
 
 
 def judge_batch(applications: Sequence[Application], catalogue: Catalogue) -> list[Judged | InputError]:
@@ -31,25 +24,9 @@ def judge_batch(applications: Sequence[Application], catalogue: Catalogue) -> li
         except InputError as error:
             results[index] = error
     for gears, indices in groups.items():
-        for chunk in _chunks(indices, applications):
-            evaluation = evaluate(Duty.of([applications[index] for index in chunk]), gears, catalogue)
-            for place, index in enumerate(chunk):
+        for chunk in chunks_of([len(applications[index].duty_cycle.phases) for index in indices]):
+            members = [indices[place] for place in chunk.tolist()]
+            evaluation = evaluate(Duty.of([applications[index] for index in members]), gears, catalogue)
+            for place, index in enumerate(members):
                 results[index] = Judged(applications[index], evaluation, place)
     return [result for result in results if result is not None]
-
-
-def _chunks(indices: list[int], applications: Sequence[Application]) -> Iterable[list[int]]:
-    """Indices in chunks of cycles of like length, since every cycle of a chunk is padded to its longest."""
-
-    def phases(index: int) -> int:
-        return len(applications[index].duty_cycle.phases)
-
-    chunk: list[int] = []
-    for index in sorted(indices, key=phases):
-        full = len(chunk) >= CHUNK_CYCLES or (len(chunk) + 1) * phases(index) > CHUNK_PHASES
-        if chunk and (full or phases(index) > LIKE * max(phases(chunk[0]), SHORT_CYCLE)):
-            yield chunk
-            chunk = []
-        chunk.append(index)
-    if chunk:
-        yield chunk

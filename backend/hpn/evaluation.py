@@ -91,9 +91,13 @@ class Evaluation:
     @cached_property
     def governing(self) -> PlaceArray:
         """Place in `checked` of the check that makes the utilisation of a gear, shape (N, G); of a tie, the first."""
-        place = np.zeros(self.verdict.shape, np.intp)
+        return self.governing_of(np.broadcast_to(np.arange(self.verdict.shape[1]), self.verdict.shape))
+
+    def governing_of(self, gears: PlaceArray) -> PlaceArray:
+        """The same for some gears of each application, by their places (N, any number)."""
+        used, place = np.take_along_axis(self.utilisation, gears, -1), np.zeros(gears.shape, np.intp)
         for index, one in reversed(tuple(enumerate(self.checked))):
-            place[_counted(one) == self.utilisation] = index
+            place[np.take_along_axis(_counted(one), gears, -1) == used] = index
         return place
 
     @cached_property

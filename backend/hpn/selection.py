@@ -201,7 +201,7 @@ class Judged:
     def selection(self, link: str = "") -> Selection:
         """The answer in full."""
         evaluation, index = self.evaluation, self.index
-        candidates = tuple(_candidates(evaluation, index))
+        candidates = tuple(candidates_of(evaluation, index))
         checks = tuple(one.check.code for one in evaluation.checked if one.asked.item(index))
         return Selection(
             engine_version=ENGINE_VERSION,
@@ -235,7 +235,7 @@ def judge(application: Application, catalogue: Catalogue) -> Judged:
 # --- Candidates -------------------------------------------------------------------------------------------------------
 
 
-def _candidates(evaluation: Evaluation, index: int) -> Iterator[Candidate]:
+def candidates_of(evaluation: Evaluation, index: int) -> Iterator[Candidate]:
     """Candidates of an application, best first."""
     order = evaluation.order[index]
     asked = [one for one in evaluation.checked if one.asked.item(index)]
@@ -363,10 +363,17 @@ NOT_THERE = N_("the catalogue has no {value}; there are {listed}")
 
 
 def gears_for(application: Application, catalogue: Catalogue) -> GearList:
-    """Gears that `ratios` and `sizes` leave; raises InputError as `select` does."""
+    """Gears that an application allows; raises InputError as `select` does."""
     asked, load = application.requirements, application.output_load
-    gears = _restricted(catalogue, asked.sizes, asked.ratios)
-    if load is not None and load.model == "digitised" and not any(gears.curves):
+    return gears_allowed(asked.sizes, asked.ratios, load.model if load else "", catalogue)
+
+
+def gears_allowed(
+    sizes: tuple[str, ...] | None, ratios: tuple[int, ...] | None, bearing_model: str, catalogue: Catalogue
+) -> GearList:
+    """Gears that `sizes` and `ratios` leave; raises InputError as `select` does."""
+    gears = _restricted(catalogue, sizes, ratios)
+    if bearing_model == "digitised" and not any(gears.curves):
         raise InputError(
             (
                 ("output_load", "model"),

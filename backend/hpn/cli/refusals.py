@@ -7,8 +7,9 @@ from pydantic import ValidationError
 from hpn.application import InputError
 from hpn.catalogue import CatalogueError
 from hpn.cli.system import CALLERS, OTHERS
+from hpn.faults import plain_message
 from hpn.store import StoreError
-from hpn.web.door.problems import Problem, plain_message
+from hpn.web.door.problems import Problem
 from hpn.web.settings import Settings
 
 MOST_LINES = 20
