@@ -72,7 +72,7 @@ INSIDE = """## What is inside packages
 | runtime libraries of GCC | numpy | GPL-3.0-or-later WITH GCC-exception-3.1, LGPL-2.1-or-later (libquadmath) |
 | libpq; OpenSSL; Kerberos, LDAP, SASL | psycopg-binary | PostgreSQL; Apache-2.0; as its SBOM lists |
 | libxml2, libxslt | lxml | MIT |
-| Apache Arrow and what it is built with (Thrift, Snappy, zstd, Brotli, OpenSSL and others) | pyarrow | as its LICENSE.txt lists |
+| what Apache Arrow is built with: Thrift, Snappy, zstd, Brotli and others | pyarrow | as its LICENSE.txt lists |
 | libuv | uvloop | MIT |
 
 Fonts that stand in a document put it under no licence. Packages in Rust (orjson, pydantic-core, typst, watchfiles) and
