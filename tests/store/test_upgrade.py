@@ -28,6 +28,12 @@ from tests.store.drafts import change, draft
 pytestmark = pytest.mark.anyio
 
 
+@pytest.fixture
+def ready_database(database: str) -> str:
+    """A new database: its migrations are what is tested here."""
+    return database
+
+
 async def run(store: Store, statement: str) -> None:
     await change(store, lambda connection: connection.execute(text(statement)))
 
