@@ -34,21 +34,24 @@ run: install
 install: $(ENVIRONMENT) $(ASSETS)
 assets: $(ASSETS)
 
-# Lighthouse measures, so it has the machine to itself; the rest takes two cores, a file at a time but for the browsers.
-TOGETHER := --ignore tests/browser --numprocesses 2 --dist loadfile --no-loadscope-reorder
+# Lighthouse measures, so that beside it runs only what waits for clocks; the rest takes two cores, a file at a time but
+# for the browsers.
+WAITING := tests/operations/test_protocol.py
+MEASURED := tests/browser/test_lighthouse.py $(WAITING) --numprocesses 2 --dist loadfile
+TOGETHER := --ignore tests/browser --ignore $(WAITING) --numprocesses 2 --dist loadfile --no-loadscope-reorder
 BROWSERS := tests/browser --ignore tests/browser/test_lighthouse.py --numprocesses 2 --dist load
 test: install browser office curl nginx
 ifdef PYTEST_ARGS
 	$(BIN)/pytest $(PYTEST_ARGS)
 else
-	$(BIN)/pytest tests/browser/test_lighthouse.py
+	$(BIN)/pytest $(MEASURED)
 	$(BIN)/pytest $(TOGETHER)
 	$(BIN)/pytest $(BROWSERS)
 endif
 
 # What is long by nature, in its long form: hundreds of kills, examples by the thousand, Lighthouse over all pages.
 soak: install browser office curl nginx pdfua
-	$(BIN)/pytest --soak tests/browser/test_lighthouse.py
+	$(BIN)/pytest --soak $(MEASURED)
 	$(BIN)/pytest --soak $(TOGETHER)
 	$(BIN)/pytest --soak $(BROWSERS)
 
