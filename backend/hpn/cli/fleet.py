@@ -3,11 +3,15 @@
 import argparse
 import os
 import sys
+from pathlib import Path
 
 from tqdm import tqdm
 
-from hpn.catalogue import load_catalogue
+from hpn.catalogue import Catalogue, load_catalogue
+from hpn.fleet.errors import FleetError
+from hpn.fleet.listing import listing_of
 from hpn.fleet.run import Engine, Order, processes, size_fleet
+from hpn.web.pages.fleet_report import report_of
 from hpn.web.settings import Settings
 
 
@@ -23,6 +27,8 @@ def run(options: argparse.Namespace) -> int:
         rejected=options.rejected,
         resume=options.resume,
     )
+    if options.report:
+        _require_report(options.report)
     with tqdm(unit="rows", unit_scale=True, disable=None, file=sys.stderr) as bar:
 
         def watch(done: int, total: int, counted: str) -> None:
@@ -30,6 +36,8 @@ def run(options: argparse.Namespace) -> int:
             bar.update(done - bar.n)
 
         rows = size_fleet(order, catalogue, _engine(options), watch)
+    if options.report:
+        _write_report(options, catalogue)
     if sys.stderr.isatty():
         print(f"{rows['answers']:,} axes; {options.output} is written", file=sys.stderr)
     return 0
@@ -42,3 +50,24 @@ def _engine(options: argparse.Namespace) -> Engine:
     from hpn.fleet.cluster import dask
 
     return dask(options.scheduler, workers)
+
+
+def _require_report(report: Path) -> None:
+    """Raise FleetError where a report could not be written."""
+    if report.suffix != ".html":
+        raise FleetError(f"{report}: the suffix of a report must be .html")
+    if not report.parent.is_dir():
+        raise FleetError(f"{report}: there is no folder {report.parent}")
+    if report.is_dir():
+        raise FleetError(f"{report}: is a folder, where a file belongs")
+
+
+def _write_report(options: argparse.Namespace, catalogue: Catalogue) -> None:
+    """Write the report, whole under its name or not at all."""
+    listing = listing_of(options.input, options.axes, options.output, catalogue)
+    written = options.report.with_name(f".{options.report.name}.{os.getpid()}")
+    try:
+        written.write_text(report_of(listing, options.input.name, catalogue, options.service.rstrip("/")))
+        os.replace(written, options.report)
+    finally:
+        written.unlink(missing_ok=True)

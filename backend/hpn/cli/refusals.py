@@ -8,6 +8,7 @@ from hpn.application import InputError
 from hpn.catalogue import CatalogueError
 from hpn.cli.system import CALLERS, OTHERS
 from hpn.faults import plain_message
+from hpn.fleet.errors import FleetError
 from hpn.store import StoreError
 from hpn.web.door.problems import Problem
 from hpn.web.settings import Settings
@@ -17,7 +18,7 @@ MOST_LINES = 20
 
 def words_of(error: Exception, options: argparse.Namespace) -> tuple[int, list[str] | None]:
     """Exit code and lines for an error of input, settings, catalogue or database; no lines for one of the program."""
-    if isinstance(error, CatalogueError | StoreError):
+    if isinstance(error, CatalogueError | StoreError | FleetError):
         return CALLERS, [str(error)]
     if isinstance(error, ValidationError) and error.title == Settings.__name__:
         return CALLERS, _wrong_settings(error, options)
