@@ -1,6 +1,8 @@
 """An open store, on each kind of database."""
 
+import multiprocessing
 from collections.abc import AsyncIterator
+from multiprocessing.context import ForkServerContext
 
 import pytest
 
@@ -33,3 +35,11 @@ async def store(ready_database: str) -> AsyncIterator[Store]:
     await store.open()
     yield store
     await store.close()
+
+
+@pytest.fixture(scope="session")
+def processes() -> ForkServerContext:
+    """Makes processes that share nothing with this one, and need not import what they use."""
+    context = multiprocessing.get_context("forkserver")
+    context.set_forkserver_preload(["tests.store.test_catalogues", "tests.store.test_upgrade"])
+    return context
