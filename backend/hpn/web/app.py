@@ -13,7 +13,7 @@ from hpn import ENGINE_VERSION
 from hpn.application import Application
 from hpn.catalogue import load_catalogue
 from hpn.store import Store, StoreUnavailableError
-from hpn.web import archive
+from hpn.web import archive, fleets
 from hpn.web.api import (
     batch,
     catalogue,
@@ -129,7 +129,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
         settings.catalogue_folder, settings.catalogue_supplement, settings.averaging_seconds
     )
     app.state.gate = Gate(settings)
-    app.state.pools = Pools()
+    app.state.pools = Pools(settings.fleet_processes)
     app.state.budget = Budget(settings.maximum_bytes_in_flight)
     app.state.metrics = Metrics()
     app.state.store = CountedStore(app.state.metrics, **settings.database())
@@ -163,6 +163,7 @@ def _add_middleware(app: FastAPI, settings: Settings) -> None:
 @asynccontextmanager
 async def _with_store(app: FastAPI) -> AsyncIterator[None]:
     store: Store = app.state.store
+    fleets.remove_leftovers(app.state.settings)
     with suppress(StoreUnavailableError):  # it is in the log, and the store opens as soon as it can
         await store.open()
     yield
