@@ -11,7 +11,6 @@ from hpn.catalogue import Catalogue, load_catalogue
 from hpn.fleet.errors import FleetError
 from hpn.fleet.listing import listing_of
 from hpn.fleet.run import Engine, Order, processes, size_fleet
-from hpn.web.pages.fleet_report import report_of
 from hpn.web.settings import Settings
 
 
@@ -64,6 +63,8 @@ def _require_report(report: Path) -> None:
 
 def _write_report(options: argparse.Namespace, catalogue: Catalogue) -> None:
     """Write the report, whole under its name or not at all."""
+    from hpn.web.pages.fleet_report import report_of  # a second of imports, which no fleet without a report waits for
+
     listing = listing_of(options.input, options.axes, options.output, catalogue)
     written = options.report.with_name(f".{options.report.name}.{os.getpid()}")
     try:

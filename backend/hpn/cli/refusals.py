@@ -20,6 +20,8 @@ def words_of(error: Exception, options: argparse.Namespace) -> tuple[int, list[s
     """Exit code and lines for an error of input, settings, catalogue or database; no lines for one of the program."""
     if isinstance(error, CatalogueError | StoreError | FleetError):
         return CALLERS, [str(error)]
+    if isinstance(error, MemoryError):
+        return OTHERS, ["hpn can’t go on: this takes more memory than there is"]
     if isinstance(error, ValidationError) and error.title == Settings.__name__:
         return CALLERS, _wrong_settings(error, options)
     if isinstance(error, ValidationError | InputError):
