@@ -3,7 +3,7 @@
 import csv
 import json
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +11,8 @@ import pyarrow as pa
 import pyarrow.csv as pacsv
 import pyarrow.parquet as pq
 
+from hpn.fleet.grouping import Part
+from hpn.fleet.job import Job, compute
 from tests.build import Json
 
 PHASE = ("torque_Nm", "speed_rpm", "duration_s", "radial_N", "axial_N")
@@ -139,6 +141,20 @@ def _long_table(rows: Sequence[Row]) -> pa.Table:
 
 def _cell(value: Any) -> Any:
     return "" if value is None else json.dumps(value) if isinstance(value, list) else value
+
+
+# --- Sizing -----------------------------------------------------------------------------------------------------------
+
+
+def here(job: Job, parts: Mapping[int, Part]) -> Iterator[int]:
+    """Engine that works in this process: what is not about processes needs none."""
+    for number, part in parts.items():
+        compute(job, number, part)
+        yield number
+
+
+def quiet(done: int, total: int, counted: str) -> None:
+    """Shows no progress."""
 
 
 # --- Reading ----------------------------------------------------------------------------------------------------------

@@ -11,7 +11,7 @@ from hpn.fleet.run import Order, processes, size_fleet
 from hpn.selection import select
 from tests.build import Json
 from tests.conftest import Supplement
-from tests.fleet.tables import FAULTS, Row, in_long_form, read, row_of, spoiled, write
+from tests.fleet.tables import FAULTS, Row, in_long_form, quiet, read, row_of, spoiled, write
 from tests.property.draw import at_random
 
 SUPPLEMENT = {
@@ -46,10 +46,6 @@ def expected(axis: object, application: Json, catalogue: Catalogue) -> Row:
         "average_torque_Nm": selection.duty.average_torque_Nm,
         "error": None,
     }
-
-
-def quiet(done: int, total: int, counted: str) -> None:
-    """Shows no progress."""
 
 
 @pytest.fixture(scope="module")

@@ -2,7 +2,9 @@
 
 import argparse
 import os
+import signal
 import sys
+from concurrent.futures import BrokenExecutor
 from pathlib import Path
 
 from tqdm import tqdm
@@ -13,9 +15,11 @@ from hpn.fleet.listing import listing_of
 from hpn.fleet.run import Engine, Order, processes, size_fleet
 from hpn.web.settings import Settings
 
+STOPPED = 1
+
 
 def run(options: argparse.Namespace) -> int:
-    """Size the axes; 0 where all went well, rejected rows included."""
+    """Size the axes: 0 when all are, rejected rows included; 1 when it is stopped."""
     settings = Settings()
     catalogue = load_catalogue(settings.catalogue_folder, settings.catalogue_supplement, settings.averaging_seconds)
     order = Order(
@@ -28,18 +32,34 @@ def run(options: argparse.Namespace) -> int:
     )
     if options.report:
         _require_report(options.report)
-    with tqdm(unit="rows", unit_scale=True, disable=None, file=sys.stderr) as bar:
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
+    try:
+        rows = _sized(order, catalogue, _engine(options))
+    except (KeyboardInterrupt, BrokenExecutor, OSError) as error:
+        print(f"{_reason(error)}; hpn fleet … --resume goes on with the parts in {order.folder}", file=sys.stderr)
+        return STOPPED
+    if options.report:
+        _write_report(options, catalogue)
+    if sys.stderr.isatty():
+        print(f"{rows['answers']:,} axes are in {options.output}", file=sys.stderr)
+    return 0
+
+
+def _sized(order: Order, catalogue: Catalogue, engine: Engine) -> dict[str, int]:
+    """Rows of the files by kind; a bar shows the progress on a terminal."""
+    with tqdm(unit_scale=True, disable=None, file=sys.stderr) as bar:
 
         def watch(done: int, total: int, counted: str) -> None:
             bar.total, bar.unit = total, counted
             bar.update(done - bar.n)
 
-        rows = size_fleet(order, catalogue, _engine(options), watch)
-    if options.report:
-        _write_report(options, catalogue)
-    if sys.stderr.isatty():
-        print(f"{rows['answers']:,} axes; {options.output} is written", file=sys.stderr)
-    return 0
+        return size_fleet(order, catalogue, engine, watch)
+
+
+def _reason(error: BaseException) -> str:
+    if isinstance(error, BrokenExecutor):
+        return "stopped: a worker has died, most likely for want of memory"
+    return f"stopped: {str(error).splitlines()[0]}" if str(error) else "stopped"
 
 
 def _engine(options: argparse.Namespace) -> Engine:

@@ -55,7 +55,7 @@ def assemble(job: Job, parts: int, targets: dict[str, Path]) -> dict[str, int]:
     written, rows = {}, {}
     try:
         for kind, target in targets.items():
-            written[kind] = target.with_name(f".{target.name}.{os.getpid()}")
+            written[kind] = target.with_name(f".{target.name}.unfinished")  # what a kill leaves is written over
             rows[kind] = _write(written[kind], format_of(target), schemas[kind], _tables(job, parts, kind, torn))
         for kind in sorted(targets, key="answers".__eq__):  # the answers last
             os.replace(written[kind], targets[kind])

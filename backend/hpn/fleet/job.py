@@ -118,6 +118,8 @@ def hashes_of(axis: pa.ChunkedArray) -> HashArray:
     """Hashes of 64 bits of axes, shape (N,): equal ones have one hash, and those of one hash are most likely equal."""
     texts = pc.binary_slice(axis.cast(pa.string()).cast(pa.binary()).fill_null(b""), 0, HASHED_BYTES)
     given = np.array(texts.to_pylist(), dtype=np.bytes_)
+    if not len(given):
+        return np.empty(0, np.uint64)
     words = given.astype(f"S{-(-given.dtype.itemsize // 8) * 8}").view(np.uint64).reshape(len(given), -1)
     hashes = np.full(len(given), START)
     for place in range(words.shape[1]):

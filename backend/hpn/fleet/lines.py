@@ -200,7 +200,7 @@ class CsvTable(LinesTable):
             found = next(csv.reader([line]), [])
         except csv.Error:
             return None
-        return found[place].encode() if min(cells, len(found)) > place + 1 else None
+        return (found[place].encode() or None) if min(cells, len(found)) > place + 1 else None
 
 
 def _parsed(cells: pa.Array, column: Column | None, wanted: pa.DataType) -> tuple[pa.Array, list[tuple[int, str]]]:

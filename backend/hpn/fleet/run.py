@@ -136,7 +136,9 @@ def _folder(order: Order, plan: Plan) -> Iterator[None]:
             for file in folder.iterdir():
                 if file.name != "lock":
                     file.unlink()
-            known.write_bytes(wanted)
+            whole = folder / "plan"
+            whole.write_bytes(wanted)
+            whole.replace(known)
         yield
         shutil.rmtree(folder)
 
