@@ -27,7 +27,7 @@ def dask(scheduler: str | None, workers: int) -> Engine:
         with ExitStack() as stack:
             address = scheduler or stack.enter_context(
                 distributed.LocalCluster(
-                    n_workers=workers, threads_per_worker=1, host="127.0.0.1", dashboard_address=None
+                    n_workers=workers, threads_per_worker=1, host="127.0.0.1", dashboard_address="127.0.0.1:0"
                 )
             )
             try:
