@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-CHUNK_CYCLES = 512
+CHUNK_CYCLES = 1024
 CHUNK_PHASES = 100_000
 """Cycles and phases of a chunk: its arrays stay in the processor's cache."""
 

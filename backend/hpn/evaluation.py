@@ -168,7 +168,7 @@ def _verdicts(checked: Sequence[Checked]) -> tuple[NDArray[np.int8], FloatArray]
     largest, unrated = np.full(shape, -np.inf), np.zeros(shape, np.bool_)
     fails = np.zeros(shape, np.bool_)
     for one in checked:
-        unrated |= one.asked & np.isnan(one.utilisation)
+        unrated |= np.isnan(one.utilisation) if one.asked.all() else one.asked & np.isnan(one.utilisation)
         np.fmax(largest, _counted(one), out=largest)
         fails |= one.utilisation > one.bound
     verdict = np.where(fails, UNSUITABLE, np.where(unrated, UNRATED, SUITABLE)).astype(np.int8)

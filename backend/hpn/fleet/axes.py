@@ -5,6 +5,7 @@ arrays; an axis that breaks one is told why by the models themselves (`faults.py
 """
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
@@ -143,11 +144,17 @@ class Axes:
 
     # --- What the engine takes ----------------------------------------------------------------------------------------
 
-    def gears(self, catalogue: Catalogue) -> list[GearList | None]:
-        """Gears that each axis allows, None where it is refused as `select` refuses it."""
-        known: dict[tuple[Any, ...], GearList | None] = {}
-        keys = zip(map(_key, self.lists(SIZES)), map(_key, self.lists(RATIOS)), self.texts(MODEL).tolist(), strict=True)
-        return [known[key] if key in known else known.setdefault(key, _allowed(*key, catalogue)) for key in keys]
+    def gears(self, catalogue: Catalogue) -> "Allowed":
+        """Gears that each axis allows; none where it is refused as `select` refuses it."""
+        if not any(map(self.has, (SIZES, RATIOS, MODEL))):
+            return Allowed([_allowed(None, None, "", catalogue)], np.zeros(self.count, np.intp))
+        numbers: dict[tuple[Any, ...], int] = {}
+        wishes = zip(
+            map(_key, self.lists(SIZES)), map(_key, self.lists(RATIOS)), self.texts(MODEL).tolist(), strict=True
+        )
+        which = np.array([numbers.setdefault(key, len(numbers)) for key in wishes], np.intp)
+        lists = [_allowed(sizes, ratios, model, catalogue) for sizes, ratios, model in numbers]
+        return Allowed(lists, which)
 
     def duty(self, rows: IntArray) -> Duty:
         """Duty of some sound axes."""
@@ -198,16 +205,25 @@ class Axes:
         return np.where(self.are_loaded, model, ""), np.where(self.are_loaded, basis, ""), rank_by
 
 
-def chunks(gears: list[GearList | None], axes: Axes) -> Iterator[tuple[GearList, IntArray]]:
-    """Axes that are evaluated together: of the same gears, of cycles of like length."""
-    groups: dict[GearList, list[int]] = {}
-    for index, allowed in enumerate(gears):
-        if allowed is not None:
-            groups.setdefault(allowed, []).append(index)
-    for allowed, members in groups.items():
-        places = np.array(members)
-        for chunk in chunks_of(axes.phase_counts[places]):
-            yield allowed, places[chunk]
+@dataclass(frozen=True)
+class Allowed:
+    """Lists of gears, None where there is none, and which of them each of N axes has, shape (N,)."""
+
+    lists: list[GearList | None]
+    which: IntArray
+
+    @property
+    def are_there(self) -> BoolArray:
+        """Which axes have gears."""
+        return np.array([gears is not None for gears in self.lists], np.bool_)[self.which]
+
+    def chunks(self, counts: IntArray) -> Iterator[tuple[GearList, IntArray]]:
+        """Axes that are evaluated together: of the same gears, of cycles with a like number of phases."""
+        for number, gears in enumerate(self.lists):
+            members = np.flatnonzero(self.which == number)
+            if gears is not None and len(members):
+                for chunk in chunks_of(counts[members]):
+                    yield gears, members[chunk]
 
 
 def _values(column: pa.ChunkedArray) -> FloatArray:

@@ -14,7 +14,7 @@ import pyarrow.dataset as datasets
 from hpn.application import Application
 from hpn.catalogue import Catalogue
 from hpn.evaluation import Evaluation, PlaceArray, evaluate
-from hpn.fleet.axes import Axes, chunks
+from hpn.fleet.axes import Axes
 from hpn.fleet.columns import AXIS, COLUMNS
 from hpn.fleet.grouping import axes_of, parts_of, with_others
 from hpn.fleet.opened import format_of, open_axes, open_requirements
@@ -110,7 +110,7 @@ def _asked(axes: Path, requirements: Path | None, names: pa.ChunkedArray) -> pa.
 def nearest_misses(axes: pa.Table, catalogue: Catalogue) -> pa.Table:
     """The gear that `select` puts first for each of some sound axes that none suits, with what governs it."""
     read, found = Axes(axes), dict[str, list[Any]]((name, [None] * axes.num_rows) for name in NEAREST.names)
-    for allowed, rows in chunks(read.gears(catalogue), read):
+    for allowed, rows in read.gears(catalogue).chunks(read.phase_counts):
         evaluation = evaluate(read.duty(rows), allowed, catalogue)
         best = _foremost(evaluation)
         used = np.take_along_axis(evaluation.utilisation, best, -1)[:, 0]

@@ -15,7 +15,7 @@ from hpn.checks import CHECKS
 from hpn.equations import FloatArray
 from hpn.evaluation import SUITABLE, Evaluation, evaluate
 from hpn.faults import faults_of
-from hpn.fleet.axes import Axes, BoolArray, IntArray, chunks, have_sound_lists
+from hpn.fleet.axes import Allowed, Axes, BoolArray, IntArray, have_sound_lists
 from hpn.fleet.columns import AXIS, COLUMNS
 from hpn.selection import Candidate, Reserve, candidates_of, gears_for
 
@@ -75,12 +75,12 @@ def outcome(
     mask[[fault.row for fault in faults]] = False
     axes = Axes(table if mask.all() else table.filter(pa.array(mask)))
     gears = axes.gears(catalogue)
-    sound = axes.are_sound & np.array([allowed is not None for allowed in gears], np.bool_)
+    sound = axes.are_sound & gears.are_there
     if not sound.all():
-        axes, gears = Axes(axes.table.filter(pa.array(sound))), [gears[row] for row in np.flatnonzero(sound)]
+        axes, gears = Axes(axes.table.filter(pa.array(sound))), Allowed(gears.lists, gears.which[sound])
         mask[mask] = sound
     answers, candidates, places = _Answers(table.num_rows), _Candidates(), np.flatnonzero(mask)
-    for allowed, rows in chunks(gears, axes):
+    for allowed, rows in gears.chunks(axes.phase_counts):
         evaluation = evaluate(axes.duty(rows), allowed, catalogue)
         answers.add(evaluation, places[rows])
         if with_candidates:

@@ -116,7 +116,7 @@ def _require_distinct(order: Order) -> None:
 
 def _fingerprint(path: Path) -> str:
     with path.open("rb") as file:
-        return hashlib.file_digest(file, "sha256").hexdigest()
+        return hashlib.file_digest(file, "blake2b").hexdigest()
 
 
 @contextmanager
