@@ -18,15 +18,15 @@ def size(catalogue: Catalogue, tmp_path: Path) -> Size:
     """Sizes rows: gives the answers. Files lie in the test's folder: `in`, `beside`, `out`, `rejected.ndjson`."""
 
     def run(
-        rows: list[Row] | str,
+        rows: list[Row] | str | bytes,
         suffix: str = ".ndjson",
         *,
         beside: list[Row] | None = None,
         candidates: Path | None = None,
     ) -> list[Row]:
         order = Order(tmp_path / f"in{suffix}", tmp_path / f"out{suffix}", rejected=tmp_path / "rejected.ndjson")
-        if isinstance(rows, str):
-            order.axes.write_text(rows)
+        if isinstance(rows, str | bytes):
+            order.axes.write_bytes(rows.encode() if isinstance(rows, str) else rows)
         else:
             write(order.axes, rows)
         if beside is not None:

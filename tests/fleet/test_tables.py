@@ -279,3 +279,13 @@ def test_candidates_are_those_of_the_reply(size: Size, tmp_path: Path, catalogue
             wanted.append({"axis": row["axis"], **fields, **reserve})
             del wanted[-1]["checks"]
     assert rows == wanted
+
+
+def test_a_name_that_is_no_utf8_rejects_the_axes_that_its_row_may_belong_to(size: Size, tmp_path: Path) -> None:
+    lines = phases("a", "b", "c", "d").replace("c,", "ä,").encode("latin-1")
+    assert [(row["axis"], bool(row["error"])) for row in size(lines, ".csv")] == [
+        ("a", False),
+        ("b", True),
+        ("d", True),
+    ]
+    assert ("b", "axis", "phase 2: must be UTF-8") in faults(tmp_path)

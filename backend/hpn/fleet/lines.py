@@ -33,6 +33,8 @@ NO_NUMBERS = "must be a JSON list of numbers, such as [40, 32.5]"
 NO_TEXTS = 'must be a JSON list of texts, such as ["14A", "20A"]'
 NO_TEXT = "must be text"
 NOT_UTF8 = "must be UTF-8"
+REPLACED = "\ufffd"
+"""Stands for bytes that are no UTF-8, here and in every text that was read so before."""
 
 
 class LinesTable(Table):
@@ -124,7 +126,7 @@ class CsvTable(LinesTable):
         first = next((batch.rows for batch in self._texts(0, ["torque_Nm"]) if batch.rows.num_rows), None)
         if first is None:
             return any(name in COLUMNS.others for name in self.names)
-        return (first[0][0].as_py() or b"").lstrip().startswith(b"[")
+        return (first[0][0].as_py() or "").lstrip().startswith("[")
 
     @property
     def axis_type(self) -> pa.DataType:
@@ -149,7 +151,7 @@ class CsvTable(LinesTable):
             yield Batch(pa.Table.from_arrays(columns, names=list(names)), faults)
 
     def _texts(self, unit: int, names: Sequence[str]) -> Iterator[Batch]:
-        """Cells as bytes; a row with too few or too many has none but its axis."""
+        """Cells as text; a row with too few or too many has none but its axis."""
         if unit + 1 >= len(self.cuts):
             return
         broken: list[pacsv.InvalidRow] = []
@@ -160,11 +162,11 @@ class CsvTable(LinesTable):
 
         try:
             rows = pacsv.read_csv(
-                io.BytesIO(self.content(unit)),
+                io.BytesIO(_as_utf8(self.content(unit))),
                 pacsv.ReadOptions(column_names=self.names, use_threads=False, block_size=MOST_LINE_BYTES),
                 pacsv.ParseOptions(newlines_in_values=True, invalid_row_handler=skip),
                 pacsv.ConvertOptions(
-                    column_types=dict.fromkeys(self.names, pa.binary()),
+                    column_types=dict.fromkeys(self.names, pa.string()),
                     include_columns=list(names),
                     null_values=[""],
                     strings_can_be_null=True,
@@ -174,7 +176,7 @@ class CsvTable(LinesTable):
         except pa.ArrowInvalid as error:
             if "Empty CSV" not in str(error):
                 raise self.unreadable(error) from None
-            rows = pa.table({name: pa.array([], pa.binary()) for name in names})
+            rows = pa.table({name: pa.array([], pa.string()) for name in names})
         rows, faults = self._with_broken(rows, broken)
         for start in range(0, rows.num_rows, BATCH_ROWS):
             here = [f._replace(row=f.row - start) for f in faults if start <= f.row < start + BATCH_ROWS]
@@ -186,31 +188,28 @@ class CsvTable(LinesTable):
         for place, row in enumerate(broken):
             whole = row.number - 1 - place
             axis = self._axis_of(row.text, row.actual_columns)
-            nothing = {name: pa.array([axis if name == AXIS else None], pa.binary()) for name in rows.column_names}
+            nothing = {name: pa.array([axis if name == AXIS else None], pa.string()) for name in rows.column_names}
             parts += [rows.slice(done, whole - done), pa.table(nothing)]
             reason = f"the row has {row.actual_columns} cells where the header has {row.expected_columns}"
             faults.append(CellFault(row.number - 1, AXIS, reason))
             done = whole
         return (pa.concat_tables([*parts, rows.slice(done)]), faults) if broken else (rows, faults)
 
-    def _axis_of(self, line: str, cells: int) -> bytes | None:
+    def _axis_of(self, line: str, cells: int) -> str | None:
         """Axis of a broken row, where its cell has an end."""
         place = list(self.names).index(AXIS)
         try:
             found = next(csv.reader([line]), [])
         except csv.Error:
             return None
-        return (found[place].encode() or None) if min(cells, len(found)) > place + 1 else None
+        return (found[place] or None) if min(cells, len(found)) > place + 1 else None
 
 
-def _parsed(cells: pa.Array, column: Column | None, wanted: pa.DataType) -> tuple[pa.Array, list[tuple[int, str]]]:
+def _parsed(texts: pa.Array, column: Column | None, wanted: pa.DataType) -> tuple[pa.Array, list[tuple[int, str]]]:
     """Values of cells of CSV, and the rows of those that are none, with what would be right."""
-    try:
-        texts = cells.cast(pa.string())
-    except pa.ArrowInvalid:
-        return _one_by_one(cells, bytes.decode, wanted, NOT_UTF8)
     if column is None or (column.kind == "string" and not is_list(wanted)):
-        return texts, []
+        broken = pc.fill_null(pc.match_substring(texts, REPLACED), False)
+        return pc.if_else(broken, None, texts), [(int(row), NOT_UTF8) for row in np.flatnonzero(np.asarray(broken))]
     if is_list(wanted):
         kind = list[str | None] if column.kind == "string" else list[float | None]
         return _one_by_one(texts, msgspec.json.Decoder(kind).decode, wanted, _no_list(column))
@@ -220,6 +219,14 @@ def _parsed(cells: pa.Array, column: Column | None, wanted: pa.DataType) -> tupl
     if len(wrong):
         texts = pc.if_else(numbers, texts, None)
     return texts.cast(wanted), [(int(row), NO_NUMBER) for row in wrong]
+
+
+def _as_utf8(content: bytes) -> bytes:
+    try:
+        content.decode()
+    except UnicodeDecodeError:
+        return content.decode(errors="replace").encode()
+    return content
 
 
 def _no_list(column: Column) -> str:

@@ -21,6 +21,10 @@ BATCH_ROWS = 16_384
 """Rows that are read at once."""
 
 
+UNREADABLE = (pa.ArrowException, OSError, UnicodeDecodeError)
+"""What Arrow raises for a file that it can't read."""
+
+
 class CellFault(NamedTuple):
     """A cell that can't be read: the row of its batch, its column, and what would be right."""
 
@@ -92,7 +96,10 @@ class TypedTable(Table):
 
     @property
     def names(self) -> Sequence[str]:
-        names: Sequence[str] = self.given.names
+        try:
+            names: Sequence[str] = self.given.names
+        except UnicodeDecodeError as error:
+            raise self.unreadable(error) from None
         return names
 
     @property
@@ -140,7 +147,7 @@ class ParquetTable(TypedTable):
     def _file(self) -> pq.ParquetFile:
         try:
             return pq.ParquetFile(self.path, memory_map=True)
-        except (pa.ArrowException, OSError) as error:
+        except UNREADABLE as error:
             raise self.unreadable(error) from None
 
     @property
@@ -155,8 +162,9 @@ class ParquetTable(TypedTable):
     def read(self, unit: int, names: Sequence[str]) -> Iterator[Batch]:
         try:
             for rows in self._file.iter_batches(BATCH_ROWS, [unit], list(names), use_threads=False):
+                rows.validate(full=True)  # texts are taken as they stand, UTF-8 or not
                 yield self._batch(rows, names)
-        except (pa.ArrowException, OSError) as error:
+        except UNREADABLE as error:
             raise self.unreadable(error, f"row group {unit + 1} ") from None
 
 
@@ -167,7 +175,7 @@ class ArrowTable(TypedTable):
     def _file(self) -> pa.RecordBatchFileReader:
         try:
             return pa.ipc.open_file(pa.memory_map(str(self.path)))
-        except (pa.ArrowException, OSError) as error:
+        except UNREADABLE as error:
             raise self.unreadable(error) from None
 
     @property
@@ -187,6 +195,6 @@ class ArrowTable(TypedTable):
         try:
             batch = self._file.get_batch(unit)
             batch.validate(full=True)
-        except (pa.ArrowException, OSError) as error:
+        except UNREADABLE as error:
             raise self.unreadable(error, f"record batch {unit + 1} ") from None
         return batch
