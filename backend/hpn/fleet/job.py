@@ -37,13 +37,17 @@ HashArray = NDArray[np.uint64]
 
 @dataclass(frozen=True)
 class Job:
-    """What is to be sized. The catalogue comes along as a copy, so that every worker has the same."""
+    """What is to be sized. The catalogue comes along as a copy, so that every worker has the same.
+
+    Fingerprints of the tables tell a job from one of files that had the same names.
+    """
 
     axes: Path
     requirements: Path | None
     folder: Path
     catalogue: bytes
     with_candidates: bool
+    fingerprints: tuple[str, ...] = ()
 
     def tables(self) -> tuple[Table, Table | None]:
         """The table of axes, and the one beside it."""
@@ -72,7 +76,7 @@ class Job:
 
 def compute(job: Job, number: int, part: Part) -> int:
     """Size the axes of a part; gives how many they are."""
-    table, requirements = job.tables()
+    table, requirements = opened(job)
     catalogue, schemas = _catalogue(job.catalogue), job.schemas(table.axis_type)
     files = {kind: job.file(number, f"{kind}.{os.getpid()}") for kind in (*schemas, "hashes")}
     hashes = [np.empty(0, np.uint64)]
@@ -103,6 +107,12 @@ def _are_whole(axis: pa.ChunkedArray) -> bool:
     if not is_text(axis.type):
         return True
     return bool(pc.all(pc.match_substring_regex(axis, WHOLE), min_count=0).as_py())
+
+
+@lru_cache(maxsize=1)
+def opened(job: Job) -> tuple[Table, Table | None]:
+    """Tables of a job, opened once by each process: where lines begin is found by reading all of them."""
+    return job.tables()
 
 
 @lru_cache(maxsize=2)

@@ -60,8 +60,7 @@ class Plan(msgspec.Struct, frozen=True):
 
     engine_version: str
     catalogue_version: str
-    axes: str
-    requirements: str | None
+    fingerprints: tuple[str, ...]
     with_candidates: bool
     parts: tuple[Part, ...]
 
@@ -72,19 +71,20 @@ def size_fleet(order: Order, catalogue: Catalogue, engine: Engine, watch: Watch)
     Raises FleetError for input that can't be used, and for parts that belong to another one.
     """
     _require_distinct(order)
-    job = Job(order.axes, order.requirements, order.folder, copy_of(catalogue), order.candidates is not None)
+    read = [path for path in (order.axes, order.requirements) if path is not None]
+    job = Job(
+        order.axes,
+        order.requirements,
+        order.folder,
+        copy_of(catalogue),
+        order.candidates is not None,
+        tuple(_fingerprint(path) for path in read if path.is_file()),
+    )
     table, requirements = job.tables()
     parts = parts_of(table)
     if requirements is not None:
         parts = with_others(table, parts, requirements)
-    plan = Plan(
-        ENGINE_VERSION,
-        catalogue.version,
-        _fingerprint(order.axes),
-        None if order.requirements is None else _fingerprint(order.requirements),
-        job.with_candidates,
-        tuple(parts),
-    )
+    plan = Plan(ENGINE_VERSION, catalogue.version, job.fingerprints, job.with_candidates, tuple(parts))
     with _folder(order, plan):
         _work(job, parts, table, engine, watch)
         return assemble(job, len(parts), order.targets)
@@ -152,7 +152,7 @@ def _difference(known: bytes, plan: Plan) -> str:
         return f"of engine {before.engine_version}, this is {plan.engine_version}"
     if before.catalogue_version != plan.catalogue_version:
         return "of another catalogue"
-    if (before.axes, before.requirements) != (plan.axes, plan.requirements):
+    if before.fingerprints != plan.fingerprints:
         return "of another input: a table has changed"
     return "of other options"
 
