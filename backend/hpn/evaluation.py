@@ -163,15 +163,18 @@ def _checked(case: Case) -> Iterator[Checked]:
 
 
 def _verdicts(checked: Sequence[Checked]) -> tuple[NDArray[np.int8], FloatArray]:
-    """Verdict on each gear, and its utilisation; that of an unrated one is NaN."""
+    """Verdict on each gear, and its utilisation; that of an unrated one is NaN.
+
+    What counts of a property check is above 1, and so above u: one comparison with the bound of the load checks, of
+    which the first is one, tells whether anything fails.
+    """
     shape = checked[0].utilisation.shape
     largest, unrated = np.full(shape, -np.inf), np.zeros(shape, np.bool_)
-    fails = np.zeros(shape, np.bool_)
     for one in checked:
         unrated |= np.isnan(one.utilisation) if one.asked.all() else one.asked & np.isnan(one.utilisation)
         np.fmax(largest, _counted(one), out=largest)
-        fails |= one.utilisation > one.bound
-    verdict = np.where(fails, UNSUITABLE, np.where(unrated, UNRATED, SUITABLE)).astype(np.int8)
+    fails = largest > checked[0].bound
+    verdict = np.where(fails, np.int8(UNSUITABLE), np.where(unrated, np.int8(UNRATED), np.int8(SUITABLE)))
     return verdict, np.where(verdict == UNRATED, np.nan, largest)
 
 
