@@ -192,7 +192,7 @@ def test_every_route_belongs_to_the_group_that_its_method_and_address_suggest() 
             assert group is None, path
         elif path == "/metrics":
             assert group == "metrics"
-        elif path.endswith("/select/batch"):
+        elif path.endswith(("/select/batch", "/fleet")):
             assert group == "batch"
         elif path == "/oembed":
             assert group == "reading"  # it tells of a saved selection

@@ -167,6 +167,11 @@ def processes(workers: int) -> Engine:
     """Engine of so many processes of this machine."""
 
     def run(job: Job, parts: Mapping[int, Part]) -> Iterator[int]:
+        if len(parts) == 1:  # a process takes longer to start than one part to compute
+            ((number, part),) = parts.items()
+            compute(job, number, part)
+            yield number
+            return
         for name, value in MEMORY.items():
             os.environ.setdefault(name, value)
         with ProcessPoolExecutor(workers, get_context("spawn"), _end_with_parent) as pool:

@@ -19,6 +19,7 @@ from hpn.web.api import (
     catalogue,
     embeds,
     files,
+    fleet,
     health,
     openapi,
     schemas,
@@ -74,6 +75,7 @@ UNPACKED = (
     *DEFAULT_EXCLUDED_CONTENT_TYPES,
     *(file.media_type for file in files.FILES),
     *streaming.MEDIA_TYPES,
+    *fleet.MEDIA_TYPES.values(),
 )
 """Kinds of content that are not compressed on their way: compressed already, or lines that must not wait."""
 
@@ -83,6 +85,7 @@ ROUTERS: tuple[APIRouter, ...] = (
     openapi.router,
     select.router,
     batch.router,
+    fleet.router,
     catalogue.router,
     selections.router,
     files.saved_files,

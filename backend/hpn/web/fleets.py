@@ -13,8 +13,8 @@ import signal
 import sys
 import tempfile
 from asyncio.subprocess import DEVNULL, STDOUT, Process
-from collections.abc import AsyncIterator, Mapping
-from contextlib import asynccontextmanager, suppress
+from collections.abc import AsyncIterator, Iterator, Mapping
+from contextlib import asynccontextmanager, contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
@@ -27,7 +27,11 @@ from hpn.web.settings import Settings
 
 Kind = Literal["answers", "rejected", "candidates"]
 
-SUFFIXES = (".parquet", ".arrow", ".csv", ".ndjson")
+MARKS = {".parquet": b"PAR1", ".arrow": b"ARROW1"}
+"""What files of a format begin and end with."""
+
+HEAD_BYTES = 2_000_000
+"""Beginning of a text, in which its first axis has to stand."""
 
 PREFIX = "hpn-fleet-"
 NICENESS = 10
@@ -35,7 +39,7 @@ WATCH_SECONDS = 0.5
 CALLERS = 2
 """Exit code of the command for what the caller can mend."""
 
-MESSAGE_BYTES = 4000
+MESSAGE_BYTES, DETAIL_LENGTH = 1_000_000, 2000
 RETRY_SECONDS = 30
 
 logger = logging.getLogger(__name__)
@@ -61,28 +65,30 @@ async def workplace(request: Request) -> AsyncIterator[Path]:
     pool = pool_of(request, "fleets")
     with pool.place(request.state.caller):
         folder = Path(tempfile.mkdtemp(prefix=PREFIX, dir=settings.spool_folder))
-        lock = os.open(folder, os.O_RDONLY)
-        try:
-            fcntl.flock(lock, fcntl.LOCK_EX)
-            yield folder
-        finally:
+        with locked(folder):
             try:
-                await asyncio.shield(pool.run(shutil.rmtree, folder, ignore_errors=True))
+                yield folder
             finally:
-                os.close(lock)
+                await asyncio.shield(pool.run(shutil.rmtree, folder, ignore_errors=True))
+
+
+@contextmanager
+def locked(folder: Path, *, wait: bool = True) -> Iterator[None]:
+    """Hold the lock of a folder, which ends with this process; OSError where there is no wait and another holds it."""
+    lock = os.open(folder, os.O_RDONLY | os.O_NOFOLLOW)
+    try:
+        fcntl.flock(lock, fcntl.LOCK_EX | (0 if wait else fcntl.LOCK_NB))
+        yield
+    finally:
+        os.close(lock)
 
 
 def remove_leftovers(settings: Settings) -> None:
     """Remove folders of services that were killed; one that is empty may have been made a moment ago."""
     for folder in Path(settings.spool_folder or tempfile.gettempdir()).glob(f"{PREFIX}*"):
-        with suppress(OSError):  # somebody else's, or locked
-            lock = os.open(folder, os.O_RDONLY | os.O_NOFOLLOW)
-            try:
-                fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-                if any(folder.iterdir()):
-                    shutil.rmtree(folder, ignore_errors=True)
-            finally:
-                os.close(lock)
+        with suppress(OSError), locked(folder, wait=False):  # else it is held, or somebody else's
+            if any(folder.iterdir()):
+                shutil.rmtree(folder, ignore_errors=True)
 
 
 async def size_fleet(
@@ -94,6 +100,7 @@ async def size_fleet(
     wait for its turn included. Who leaves ends the work. The body of the request has been read.
     """
     settings: Settings = request.app.state.settings
+    await pool_of(request, "fleets").run(_require_tables, tables)
     kinds: tuple[Kind, ...] = ("answers", "rejected", "candidates") if candidates else ("answers", "rejected")
     files = {kind: tables.input.with_name(f"{kind}{suffix or tables.input.suffix}") for kind in kinds}
     try:
@@ -103,6 +110,23 @@ async def size_fleet(
         text = f"the fleet was not sized within {settings.fleet_seconds:g} s; send fewer axes at once"
         raise Problem(503, text, headers={"Retry-After": str(RETRY_SECONDS)}) from None
     return files
+
+
+def _require_tables(tables: Tables) -> None:
+    """Raise Problem 422 for what a look shows to be no table of axes: no process is started for that."""
+    names = {tables.input: tables.input_name} | ({tables.axes: tables.axes_name} if tables.axes else {})
+    for path, name in names.items():
+        size, mark = path.stat().st_size, MARKS.get(path.suffix)
+        with path.open("rb") as file:
+            head = file.read(HEAD_BYTES if mark is None else len(mark))
+            file.seek(max(size - len(mark or b""), 0))
+            end = file.read()
+        if not size:
+            raise Problem(422, f"{name}: is empty, where a table belongs")
+        if mark is not None and (head, end) != (mark, mark):
+            raise Problem(422, f"{name}: can’t be read as {path.suffix[1:]}: it does not begin and end as such a file")
+        if mark is None and b"axis" not in head:
+            raise Problem(422, f"{name}: column axis is missing")
 
 
 async def _sized(tables: Tables, files: Mapping[Kind, Path], settings: Settings, pool: Pool) -> None:
@@ -115,8 +139,7 @@ async def _sized(tables: Tables, files: Mapping[Kind, Path], settings: Settings,
     async with pool.turn:
         code = await _run(command, messages, settings)
     if code:
-        with messages.open("rb") as file:
-            raise _refusal(code, file.read(MESSAGE_BYTES).decode(errors="replace").strip(), tables, settings)
+        raise _refusal(code, _end_of(messages), tables, settings)
 
 
 async def _run(command: list[str], messages: Path, settings: Settings) -> int:
@@ -175,16 +198,24 @@ def _size_of(folder: Path) -> int:
     return size
 
 
+def _end_of(messages: Path) -> str:
+    with messages.open("rb") as file:
+        file.seek(max(messages.stat().st_size - MESSAGE_BYTES, 0))
+        return file.read().decode(errors="replace").strip()
+
+
 def _refusal(code: int, text: str, tables: Tables, settings: Settings) -> Exception:
     """What is answered where the command has failed: names of files are the caller's, or nothing is told of it."""
     own = {str(tables.input): tables.input_name} | ({str(tables.axes): tables.axes_name} if tables.axes else {})
-    if code == CALLERS and text.startswith(tuple(f"{path}: " for path in own)):
+    last = text.rpartition("\n")[2]  # libraries may have said something before
+    if code == CALLERS and last.startswith(tuple(f"{path}: " for path in own)):
         for path, name in own.items():
-            text = text.replace(path, name)
-        return Problem(422, text.replace("--axes", tables.axes_name))
-    if "memory" in text:
+            last = last.replace(path, name)
+        last = last.replace("--axes", tables.axes_name)
+        return Problem(422, last if len(last) <= DETAIL_LENGTH else f"{last[:DETAIL_LENGTH]}…")
+    if "memory" in last:
         return Problem(413, f"the fleet takes more than {settings.fleet_memory_bytes} bytes of memory; send fewer axes")
-    if code < 0 or not text.startswith("hpn made a mistake"):
-        logger.error("a fleet was not sized: it ended with %s, and said %r", code, text)
+    if code < 0 or "hpn made a mistake" not in text:
+        logger.error("a fleet was not sized: it ended with %s, and said %r", code, text[-DETAIL_LENGTH:])
         return Problem(503, "fleets can’t be sized at the moment", headers={"Retry-After": str(RETRY_SECONDS)})
-    return RuntimeError(f"hpn fleet ended with {code}: {text}")
+    return RuntimeError(f"hpn fleet ended with {code}: {text[-DETAIL_LENGTH:]}")
