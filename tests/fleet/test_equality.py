@@ -1,17 +1,18 @@
 """A fleet gets what `select` gives each of its axes, bit for bit: every form, format and engine."""
 
 import random
+from dataclasses import replace
 from pathlib import Path
+from typing import NamedTuple
 
 import pytest
 
 from hpn.application import Application, InputError
-from hpn.catalogue import Catalogue
+from hpn.catalogue import Catalogue, load_catalogue
 from hpn.fleet.run import Order, processes, size_fleet
 from hpn.selection import select
 from tests.build import Json
-from tests.conftest import Supplement
-from tests.fleet.tables import FAULTS, Row, in_long_form, quiet, read, row_of, spoiled, write
+from tests.fleet.tables import FAULTS, Row, here, in_long_form, quiet, read, row_of, spoiled, write
 from tests.property.draw import at_random
 
 SUPPLEMENT = {
@@ -48,59 +49,57 @@ def expected(axis: object, application: Json, catalogue: Catalogue) -> Row:
     }
 
 
+class Fleet(NamedTuple):
+    """Rows of random axes, some of them spoiled, and what each has to get; an error by what it says."""
+
+    rows: list[Row]
+    wanted: dict[str, Row]
+    catalogue: Catalogue
+
+
 @pytest.fixture(scope="module")
-def fleet(soak: bool) -> tuple[list[Row], dict[str, Json], dict[str, str]]:
-    """Rows of random axes, their applications, and what is wrong with the spoiled ones."""
-    chance = random.Random(17)
-    rows, applications, wrong = [], {}, {}
-    for number in range(10_000 if soak else 700):
+def fleet(soak: bool, tmp_path_factory: pytest.TempPathFactory) -> Fleet:
+    """Random axes under a supplement with curves."""
+    folder = tmp_path_factory.mktemp("supplement")
+    for stem, content in SUPPLEMENT.items():
+        (folder / f"{stem}.csv").write_text(content)
+    chance, fleet = random.Random(17), Fleet([], {}, load_catalogue(supplement=folder))
+    for number in range(10_000 if soak else 600):
         axis, application = f"axis {number}", at_random(chance, MODELS)
         row = row_of(axis, application)
         if chance.random() < 0.1:
             fault = chance.choice(list(FAULTS))
-            row, wrong[axis] = spoiled(row, fault), fault
+            row, fleet.wanted[axis] = spoiled(row, fault), {"axis": axis, "error": fault}
         else:
-            applications[axis] = application
-        rows.append(row)
-    return rows, applications, wrong
+            fleet.wanted[axis] = expected(axis, application, fleet.catalogue)
+        fleet.rows.append(row)
+    return fleet
 
 
 @pytest.mark.parametrize("form", ["list", "long"])
 @pytest.mark.parametrize("suffix", [".parquet", ".arrow", ".csv", ".ndjson"])
-def test_every_axis_gets_what_select_answers(
-    suffix: str,
-    form: str,
-    fleet: tuple[list[Row], dict[str, Json], dict[str, str]],
-    supplemented: Supplement,
-    tmp_path: Path,
-) -> None:
-    rows, applications, wrong = fleet
-    catalogue = supplemented(**SUPPLEMENT)
+def test_every_axis_gets_what_select_answers(suffix: str, form: str, fleet: Fleet, tmp_path: Path) -> None:
     order = Order(tmp_path / f"in{suffix}", tmp_path / f"out{suffix}", rejected=tmp_path / "rejected.ndjson")
     if form == "long":
-        phases, beside = in_long_form(rows)
+        phases, beside = in_long_form(fleet.rows)
         write(order.axes, phases)
-        order = Order(order.axes, order.answers, write(tmp_path / f"beside{suffix}", beside), rejected=order.rejected)
+        order = replace(order, requirements=write(tmp_path / f"beside{suffix}", beside))
     else:
-        write(order.axes, rows)
+        write(order.axes, fleet.rows)
 
-    size_fleet(order, catalogue, processes(2), quiet)
+    size_fleet(order, fleet.catalogue, processes(2) if suffix == ".parquet" else here, quiet)
 
     answers = read(order.answers)
-    assert [row["axis"] for row in answers] == [row["axis"] for row in rows]
-    refused = set()
+    assert [row["axis"] for row in answers] == [row["axis"] for row in fleet.rows]
     for row in answers:
-        axis = row["axis"]
-        wanted = (
-            {"axis": axis, "error": wrong[axis]} if axis in wrong else expected(axis, applications[axis], catalogue)
-        )
+        wanted = fleet.wanted[row["axis"]]
         if wanted["error"]:
-            refused.add(axis)
             is_short = form == "long" and wanted["error"] == UNEQUAL  # a list that is too short ends in nulls there
             text = "is required" if is_short else wanted["error"]
             if not (wanted["error"] == NOT_A_NUMBER and suffix != ".parquet" and suffix != ".arrow"):  # no text has NaN
-                assert text in row["error"], axis
+                assert text in row["error"], row["axis"]
             assert all(value is None for name, value in row.items() if name not in ("axis", "error")), row
         else:
             assert row == wanted
+    refused = {axis for axis, wanted in fleet.wanted.items() if wanted["error"]}
     assert {row["axis"] for row in read(tmp_path / "rejected.ndjson")} == refused

@@ -26,14 +26,14 @@ from tests.reliability.faults import full, small_disk
 @pytest.fixture(scope="module")
 def many(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A table of many parts."""
-    rows = [row_of(number, at_random(random.Random(number))) for number in range(1000)]
-    return write(tmp_path_factory.mktemp("many") / "in.parquet", rows, unit_rows=25)
+    rows = [row_of(number, at_random(random.Random(number))) for number in range(400)]
+    return write(tmp_path_factory.mktemp("many") / "in.parquet", rows, unit_rows=10)
 
 
 @pytest.fixture
 def small_parts(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Parts of 25 axes."""
-    monkeypatch.setattr(grouping, "PART_AXES", 25)
+    """Parts of 10 axes."""
+    monkeypatch.setattr(grouping, "PART_AXES", 10)
 
 
 def files(folder: Path) -> list[str]:
@@ -97,8 +97,8 @@ def test_parts_of_another_input_are_refused_and_dropped_without_resume(
     order = Order(own, tmp_path / "out.parquet", resume=True)
     with pytest.raises(StoppedError):
         size_fleet(order, catalogue, up_to(3), quiet)
-    rows = [row_of(number, at_random(random.Random(number + 1))) for number in range(1000)]
-    write(own, rows, unit_rows=25)
+    rows = [row_of(number, at_random(random.Random(number + 1))) for number in range(400)]
+    write(own, rows, unit_rows=10)
 
     with pytest.raises(FleetError, match="a table has changed; run without --resume"):
         size_fleet(order, catalogue, here, quiet)
@@ -132,9 +132,9 @@ def test_two_runs_never_write_one_file(many: Path, small_parts: None, tmp_path: 
 # --- The command ------------------------------------------------------------------------------------------------------
 
 
-SMALL = "from hpn.fleet import grouping; grouping.PART_AXES = 25; from hpn.cli import main; raise SystemExit(main())"
+SMALL = "from hpn.fleet import grouping; grouping.PART_AXES = 10; from hpn.cli import main; raise SystemExit(main())"
 COMMAND = [sys.executable, "-c", SMALL, "fleet"]
-"""The command, with parts of 25 axes."""
+"""The command, with parts of 10 axes."""
 
 
 def ended(*arguments: object) -> subprocess.CompletedProcess[str]:
@@ -165,7 +165,7 @@ def wait_for_parts(run: subprocess.Popen[str], folder: Path) -> None:
 def test_the_command_sizes_a_table_and_is_quiet(many: Path, tmp_path: Path) -> None:
     run = ended(many, tmp_path / "out.csv", "--workers", 2)
     assert (run.stdout, run.stderr, run.returncode) == ("", "", 0)
-    assert len((tmp_path / "out.csv").read_text().splitlines()) == 1001
+    assert len((tmp_path / "out.csv").read_text().splitlines()) == 401
 
 
 def test_an_unusable_input_ends_with_2_and_its_name(tmp_path: Path) -> None:
@@ -256,4 +256,4 @@ def test_a_full_disk_is_said_and_the_run_can_go_on(many: Path, tmp_path: Path) -
             assert "No space left on device" in run.stderr
             assert not output.exists()
         assert ended(many, output, "--resume").returncode == 0
-        assert len(output.read_text().splitlines()) == 1000
+        assert len(output.read_text().splitlines()) == 400
