@@ -34,21 +34,24 @@ run: install
 install: $(ENVIRONMENT) $(ASSETS)
 assets: $(ASSETS)
 
-# Lighthouse measures, so it has the machine to itself; the rest takes two cores, a file at a time but for the browsers.
-TOGETHER := --ignore tests/browser --numprocesses 2 --dist loadfile --no-loadscope-reorder
+# Lighthouse measures, so that beside it runs only what waits for clocks; the rest takes two cores, a file at a time but
+# for the browsers.
+WAITING := tests/operations/test_protocol.py
+MEASURED := tests/browser/test_lighthouse.py $(WAITING) --numprocesses 2 --dist loadfile
+TOGETHER := --ignore tests/browser --ignore $(WAITING) --numprocesses 2 --dist loadfile --no-loadscope-reorder
 BROWSERS := tests/browser --ignore tests/browser/test_lighthouse.py --numprocesses 2 --dist load
 test: install browser office curl nginx
 ifdef PYTEST_ARGS
 	$(BIN)/pytest $(PYTEST_ARGS)
 else
-	$(BIN)/pytest tests/browser/test_lighthouse.py
+	$(BIN)/pytest $(MEASURED)
 	$(BIN)/pytest $(TOGETHER)
 	$(BIN)/pytest $(BROWSERS)
 endif
 
 # What is long by nature, in its long form: hundreds of kills, examples by the thousand, Lighthouse over all pages.
 soak: install browser office curl nginx pdfua
-	$(BIN)/pytest --soak tests/browser/test_lighthouse.py
+	$(BIN)/pytest --soak $(MEASURED)
 	$(BIN)/pytest --soak $(TOGETHER)
 	$(BIN)/pytest --soak $(BROWSERS)
 
@@ -101,11 +104,13 @@ $(MODULES)/.run $(MODULES)/.dev: frontend/package.json frontend/package-lock.jso
 $(ASSETS): $(shell find frontend/static 2>/dev/null) frontend/build.py $(PACKAGES) | $(ENVIRONMENT)
 	$(BIN)/python frontend/build.py
 
-# An installed Chromium, else Debian's, else Playwright's own build; the last line of whichever fails says why.
+# Debian's Chromium and its headless shell, which has the same engine at half the processor time; else an installed Chromium,
+# else Playwright's own build. The last line of whichever fails says why.
 browser: $(ENVIRONMENT)
-	@for name in chromium chromium-browser google-chrome google-chrome-stable; do command -v $$name && exit 0; done; \
-	if [ "$$(id -u)" = 0 ] && [ -f /etc/debian_version ] && apt-get update -q \
-	    && apt-get install -q -y --no-install-recommends chromium && command -v chromium; then exit 0; fi; \
+	@command -v chromium-headless-shell && command -v chromium && exit 0; \
+	get="apt-get install -q -y --no-install-recommends chromium chromium-headless-shell"; \
+	if [ "$$(id -u)" = 0 ] && [ -f /etc/debian_version ] && { $$get || { apt-get update -q && $$get; }; }; then exit 0; fi; \
+	for name in chromium chromium-browser google-chrome google-chrome-stable; do command -v $$name && exit 0; done; \
 	$(BIN)/playwright install chromium || { echo "No Chromium found, and none could be installed" >&2; exit 1; }
 
 # Recalculates the workbooks in the tests; like the browser, an installed one counts.
@@ -149,7 +154,7 @@ messages: $(ENVIRONMENT)
 
 lock: $(UV) | $(NODE)
 	$(UV) $(COMPILE) pyproject.toml --output-file requirements.lock
-	$(UV) $(COMPILE) pyproject.toml --group dev --constraints requirements.lock --output-file requirements-dev.lock
+	$(UV) $(COMPILE) pyproject.toml --group dev --extra cluster --constraints requirements.lock --output-file requirements-dev.lock
 	$(UV) $(COMPILE) --group uv --output-file requirements-uv.lock
 	$(UV) $(COMPILE) --group node --output-file requirements-node.lock
 	cd frontend && npm install --package-lock-only --loglevel=error

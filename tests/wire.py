@@ -6,7 +6,7 @@ from typing import Any
 
 import msgspec
 
-from hpn import calculation, fleet, remedy, reserve, selection
+from hpn import batch, calculation, remedy, reserve, selection
 from hpn.application import Application, InputError
 from hpn.calculation import Step
 from hpn.catalogue import Catalogue
@@ -56,7 +56,7 @@ def select(application: Application, catalogue: Catalogue) -> Selection:
 
 def select_fleet(applications: Sequence[Application], catalogue: Catalogue) -> list[Selection | InputError]:
     """Selections of many applications."""
-    judged = fleet.judge_fleet(applications, catalogue)
+    judged = batch.judge_batch(applications, catalogue)
     return [one if isinstance(one, InputError) else Selection(one) for one in judged]
 
 

@@ -54,6 +54,10 @@ ApplicationArea = Literal[
 ]
 
 
+LEAST_MOTION = 1e-100
+"""Product of speed and duration up to which a phase rests: the sums of eq. 17.2 and 17.4 would vanish."""
+
+
 MOST_WISHES = 100
 """Ratios or sizes that may be asked for."""
 
@@ -87,8 +91,7 @@ class DutyCycle(Model):
     @field_validator("phases")
     @classmethod
     def _moves(cls, phases: tuple[Phase, ...] | None) -> tuple[Phase, ...] | None:
-        # Below this product of relative speed and duration the sums of eq. 17.2 and 17.4 would vanish.
-        if phases is not None and not any(abs(phase.speed_rpm) * phase.duration_s > 1e-100 for phase in phases):
+        if phases is not None and not any(abs(phase.speed_rpm) * phase.duration_s > LEAST_MOTION for phase in phases):
             raise PydanticCustomError(
                 "no_motion",
                 "no phase moves, so the cycle has no average torque (eq. 17.2): give at least one phase a speed",

@@ -14,8 +14,8 @@ from hpn.wording import N_
 
 def _share_of_stops(case: Case) -> FloatArray:
     """Expected over allowed stops; infinite where not one is allowed, even for an expected number of 0."""
-    allowed = case.figures.momentary_peak_count
-    return np.where(allowed == 0, np.inf, case.asked["emergency_stop.count"] / allowed)
+    expected, allowed = case.asked["emergency_stop.count"], case.figures.momentary_peak_count
+    return np.where((allowed == 0) & ~np.isnan(expected), np.inf, expected / allowed)
 
 
 def _middle_and_half(case: Case) -> tuple[FloatArray, FloatArray]:

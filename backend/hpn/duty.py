@@ -111,12 +111,12 @@ def _numbers(application: Application) -> list[float | None]:
 class Duty:
     """What N duty cycles come to, each figure of shape (N, 1), beside their phases and what is asked for.
 
-    `courses` are those of the motions; None where phases are typed.
+    `courses` are those of the motions, by the place of their application.
     """
 
     phases: Phases
     asked: Asked
-    courses: tuple[Course | None, ...]
+    courses: Mapping[int, Course] = field(default_factory=dict)
     average_torque_Nm: FloatArray = field(init=False)
     average_output_speed_rpm: FloatArray = field(init=False)
     maximum_torque_Nm: FloatArray = field(init=False)
@@ -139,18 +139,21 @@ class Duty:
             "required_bearing_life_L50_h": bearing.required_L50(
                 life_h=asked["output_load.life_h"], basis=asked.life_basis
             ),
-            "load_inertia_kgm2": np.where(
-                [[course is None] for course in self.courses],
-                asked["requirements.load_inertia_kgm2"],
-                [[course.load_inertia_kgm2 if course else np.nan] for course in self.courses],
-            ),
+            "load_inertia_kgm2": self._load_inertia(),
         }
         for name, value in figures.items():
             object.__setattr__(self, name, value)
 
+    def _load_inertia(self) -> FloatArray:
+        """Inertia of the load at the output: the motion's own, else as it is given."""
+        inertia = self.asked["requirements.load_inertia_kgm2"].copy()
+        for place, course in self.courses.items():
+            inertia[place] = course.load_inertia_kgm2
+        return inertia
+
     @classmethod
     def of(cls, applications: Sequence[Application]) -> "Duty":
         """Duty of applications, in their order."""
-        motions = (application.duty_cycle.motion for application in applications)
-        courses = tuple(motion.course if motion else None for motion in motions)
+        motions = enumerate(application.duty_cycle.motion for application in applications)
+        courses = {place: motion.course for place, motion in motions if motion}
         return cls(Phases.of(applications), Asked.of(applications), courses)

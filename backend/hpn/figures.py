@@ -1,6 +1,7 @@
 """What gears come to under duty cycles: speeds, lives, stops, torques at the motor, load on the output bearing."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -12,69 +13,104 @@ from hpn.gear import Gear
 from hpn.motion import Course, peak_torque, rms_torque
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Figures:
-    """Figures of G gears under N applications, each array broadcasting to (N, G).
+    """Figures of G gears under N applications, each array broadcasting to (N, G) and computed when it is first read.
 
-    NaN: not published, or not asked for; infinity: without a limit. `bearing_load` is the largest f_w P of a phase,
-    `bearing_mean_load` f_w P_m of the cycle, `bearing_life_factor` the k that speed and required life allow.
+    NaN: not published, or not asked for; infinity: without a limit.
     """
 
-    average_input_speed_rpm: FloatArray
-    maximum_input_speed_rpm: FloatArray
-    life_L10_h: FloatArray
-    momentary_peak_count: FloatArray
-    bearing_life_L50_h: FloatArray
-    bearing_life_L10_h: FloatArray
-    motor_peak_torque_Nm: FloatArray
-    motor_rated_torque_Nm: FloatArray
-    bearing_load: FloatArray
-    bearing_mean_load: FloatArray
-    bearing_life_factor: FloatArray
+    duty: Duty
+    gears: GearList
+    catalogue: Catalogue
 
+    @cached_property
+    def average_input_speed_rpm(self) -> FloatArray:
+        """n_in_av, equation 17.5."""
+        return equations.average_input_speed(
+            ratio=self.gears.columns.ratio, average_output_speed_rpm=self.duty.average_output_speed_rpm
+        )
 
-def figures_of(duty: Duty, gears: GearList, catalogue: Catalogue) -> Figures:
-    """Figures of gears under the applications of a duty."""
-    columns, n_out_av = gears.columns, duty.average_output_speed_rpm
-    n_in_av = equations.average_input_speed(ratio=columns.ratio, average_output_speed_rpm=n_out_av)
-    reference_speed_rpm, reference_life_h = catalogue.bearing_reference
-    load, mean_load = _bearing_loads(duty, gears)
-    life_L50 = bearing.life_L50(
-        equivalent_load=mean_load,
-        average_output_speed_rpm=n_out_av,
-        reference_speed_rpm=reference_speed_rpm,
-        reference_life_h=reference_life_h,
-    )
-    motor_peak, motor_rated = _motor_torques(duty, gears, catalogue)
-    return Figures(
-        average_input_speed_rpm=n_in_av,
-        maximum_input_speed_rpm=equations.maximum_input_speed(
-            ratio=columns.ratio, maximum_output_speed_rpm=duty.maximum_output_speed_rpm
-        ),
-        life_L10_h=equations.life(
-            average_torque_Nm=duty.average_torque_Nm,
-            average_input_speed_rpm=n_in_av,
-            rated_torque_Nm=columns.rated_torque_Nm,
-            rated_input_speed_rpm=catalogue.rated_input_speed_rpm,
-            life_at_rated_torque_h=catalogue.life_at_rated_torque_h,
-        ),
-        momentary_peak_count=equations.allowed_momentary_peaks(
-            emergency_stop_torque_Nm=duty.emergency_stop_torque_Nm,
-            repeated_peak_torque_Nm=columns.repeated_peak_torque_Nm,
-        ),
-        bearing_life_L50_h=life_L50,
-        bearing_life_L10_h=life_L50 / bearing.L50_PER_L10,
-        motor_peak_torque_Nm=motor_peak,
-        motor_rated_torque_Nm=motor_rated,
-        bearing_load=load,
-        bearing_mean_load=mean_load,
-        bearing_life_factor=bearing.life_factor(
-            average_output_speed_rpm=n_out_av,
-            required_life_L50_h=duty.required_bearing_life_L50_h,
+    @cached_property
+    def maximum_input_speed_rpm(self) -> FloatArray:
+        """n_in_max, equation 17.6."""
+        return equations.maximum_input_speed(
+            ratio=self.gears.columns.ratio, maximum_output_speed_rpm=self.duty.maximum_output_speed_rpm
+        )
+
+    @cached_property
+    def life_L10_h(self) -> FloatArray:
+        """L10 of the gear, equation 17.10."""
+        return equations.life(
+            average_torque_Nm=self.duty.average_torque_Nm,
+            average_input_speed_rpm=self.average_input_speed_rpm,
+            rated_torque_Nm=self.gears.columns.rated_torque_Nm,
+            rated_input_speed_rpm=self.catalogue.rated_input_speed_rpm,
+            life_at_rated_torque_h=self.catalogue.life_at_rated_torque_h,
+        )
+
+    @cached_property
+    def momentary_peak_count(self) -> FloatArray:
+        """N_k max, equation 17.9."""
+        return equations.allowed_momentary_peaks(
+            emergency_stop_torque_Nm=self.duty.emergency_stop_torque_Nm,
+            repeated_peak_torque_Nm=self.gears.columns.repeated_peak_torque_Nm,
+        )
+
+    @cached_property
+    def bearing_load(self) -> FloatArray:
+        """Largest f_w P of a phase on the output bearing."""
+        return self._bearing_loads[0]
+
+    @cached_property
+    def bearing_mean_load(self) -> FloatArray:
+        """f_w P_m of the cycle on the output bearing."""
+        return self._bearing_loads[1]
+
+    @cached_property
+    def bearing_life_factor(self) -> FloatArray:
+        """Load factor k that speed and required life allow on the output bearing."""
+        reference_speed_rpm, reference_life_h = self.catalogue.bearing_reference
+        return bearing.life_factor(
+            average_output_speed_rpm=self.duty.average_output_speed_rpm,
+            required_life_L50_h=self.duty.required_bearing_life_L50_h,
             reference_speed_rpm=reference_speed_rpm,
             reference_life_h=reference_life_h,
-        ),
-    )
+        )
+
+    @cached_property
+    def bearing_life_L50_h(self) -> FloatArray:
+        """L50 of the output bearing."""
+        reference_speed_rpm, reference_life_h = self.catalogue.bearing_reference
+        return bearing.life_L50(
+            equivalent_load=self.bearing_mean_load,
+            average_output_speed_rpm=self.duty.average_output_speed_rpm,
+            reference_speed_rpm=reference_speed_rpm,
+            reference_life_h=reference_life_h,
+        )
+
+    @cached_property
+    def bearing_life_L10_h(self) -> FloatArray:
+        """L10 of the output bearing."""
+        return self.bearing_life_L50_h / bearing.L50_PER_L10
+
+    @cached_property
+    def motor_peak_torque_Nm(self) -> FloatArray:
+        """Largest torque of the cycle at the motor."""
+        return self._motor_torques[0]
+
+    @cached_property
+    def motor_rated_torque_Nm(self) -> FloatArray:
+        """RMS torque of the cycle at the motor."""
+        return self._motor_torques[1]
+
+    @cached_property
+    def _bearing_loads(self) -> tuple[FloatArray, FloatArray]:
+        return _bearing_loads(self.duty, self.gears)
+
+    @cached_property
+    def _motor_torques(self) -> tuple[FloatArray, FloatArray]:
+        return _motor_torques(self.duty, self.gears, self.catalogue)
 
 
 # --- Output bearing ---------------------------------------------------------------------------------------------------
@@ -138,9 +174,9 @@ def _motor_torques(duty: Duty, gears: GearList, catalogue: Catalogue) -> tuple[F
             pause_s=duty.asked["duty_cycle.pause_s"][:, 0],
         )
         peak[unstated, place], rated[unstated, place] = at_peak.max(axis=1)[unstated], rms[unstated]
-    for index, course in enumerate(duty.courses):
+    for index, course in duty.courses.items():
         inertia = duty.asked["requirements.motor.inertia_kgm2"].item(index)
-        if course is not None and not np.isnan(inertia):
+        if not np.isnan(inertia):
             peak[index], rated[index] = _with_own_inertia(duty, index, course, inertia, gears, catalogue)
     return peak, rated
 

@@ -34,7 +34,7 @@ def reserves(evaluation: Evaluation, index: int) -> dict[str, FloatArray]:
     u = asked["requirements.utilisation"].item(index)
     with np.errstate(all="ignore"):
         factors = {
-            f"{driver}_factor": _factor((one for one in evaluation.checked if one.asked[index]), index, driver, u)
+            f"{driver}_factor": _factor((one for one in evaluation.checked if one.asked.item(index)), index, driver, u)
             for driver in DRIVERS
         }
     if any(not np.isnan(asked[path].item(index)) for path in MOTOR_TORQUES):
@@ -43,7 +43,7 @@ def reserves(evaluation: Evaluation, index: int) -> dict[str, FloatArray]:
         )
         stated = not np.isnan(asked["requirements.efficiency"].item(index))
         own_inertia = not np.isnan(asked["requirements.motor.inertia_kgm2"].item(index))
-        turns = own_inertia and evaluation.case.duty.courses[index] is not None
+        turns = own_inertia and evaluation.case.duty.courses.get(index) is not None
         unknown = (follows_curve & ~np.bool_(stated)) | np.bool_(turns)
         factors["torque_factor"] = np.where(unknown, np.nan, factors["torque_factor"])
     return {**factors, "emergency_stop_torque_Nm": _emergency_stop_torque(evaluation, index, u)}

@@ -18,6 +18,7 @@ from hpn.application import LISTED_FIGURES, Application, InputError, Location
 from hpn.catalogue import Catalogue, GearList
 from hpn.check import Check, Group, Kind
 from hpn.checks import BY_CODE, allowed
+from hpn.duty import Duty
 from hpn.equations import FloatArray
 from hpn.evaluation import (
     CHECK_STATUS,
@@ -218,8 +219,8 @@ class Judged:
     def selection(self, link: str = "") -> Selection:
         """The answer in full."""
         evaluation, index = self.evaluation, self.index
-        candidates = tuple(_candidates(evaluation, index))
-        checks = tuple(one.check.code for one in evaluation.checked if one.asked[index])
+        candidates = tuple(candidates_of(evaluation, index))
+        checks = tuple(one.check.code for one in evaluation.checked if one.asked.item(index))
         return Selection(
             engine_version=ENGINE_VERSION,
             catalogue_version=evaluation.catalogue.version,
@@ -244,7 +245,7 @@ def select(application: Application, catalogue: Catalogue, link: str = "") -> Se
 def judge(application: Application, catalogue: Catalogue) -> Judged:
     """The same, before it is put together; raises as `select` does."""
     gears, equipped = gears_for(application, catalogue), with_listed_motor(application, catalogue)
-    return Judged(application, evaluate([equipped], gears, catalogue))
+    return Judged(application, evaluate(Duty.of([equipped]), gears, catalogue))
 
 
 def _duty(application: Application, evaluation: Evaluation, index: int) -> DutyFigures:
@@ -259,10 +260,10 @@ def _duty(application: Application, evaluation: Evaluation, index: int) -> DutyF
 # --- Candidates -------------------------------------------------------------------------------------------------------
 
 
-def _candidates(evaluation: Evaluation, index: int) -> Iterator[Candidate]:
+def candidates_of(evaluation: Evaluation, index: int) -> Iterator[Candidate]:
     """Candidates of an application, best first."""
     order = evaluation.order[index]
-    asked = [one for one in evaluation.checked if one.asked[index]]
+    asked = [one for one in evaluation.checked if one.asked.item(index)]
     codes = [one.check.code for one in evaluation.checked]
     u = evaluation.case.asked["requirements.utilisation"].item(index)
     figures = (getattr(evaluation.case.figures, name)[index] for name in FIGURES)
@@ -417,10 +418,17 @@ NOT_THERE = N_("the catalogue has no {value}; there are {listed}")
 
 
 def gears_for(application: Application, catalogue: Catalogue) -> GearList:
-    """Gears that `ratios` and `sizes` leave; raises InputError as `select` does."""
+    """Gears that an application allows; raises InputError as `select` does."""
     asked, load = application.requirements, application.output_load
-    gears = _restricted(catalogue, asked.sizes, asked.ratios)
-    if load is not None and load.model == "digitised" and not any(gears.curves):
+    return gears_allowed(asked.sizes, asked.ratios, load.model if load else "", catalogue)
+
+
+def gears_allowed(
+    sizes: tuple[str, ...] | None, ratios: tuple[int, ...] | None, bearing_model: str, catalogue: Catalogue
+) -> GearList:
+    """Gears that `sizes` and `ratios` leave; raises InputError as `select` does."""
+    gears = _restricted(catalogue, sizes, ratios)
+    if bearing_model == "digitised" and not any(gears.curves):
         raise InputError(
             (
                 ("output_load", "model"),

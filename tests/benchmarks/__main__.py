@@ -16,13 +16,13 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
-from tests.benchmarks import batches, edits, replies, starts
+from tests.benchmarks import batches, edits, fleets, replies, starts
 from tests.benchmarks.applications import EVERY, select_body
 from tests.benchmarks.turns import ratios
 from tests.benchmarks.variants import HERE, Checkout, Server, plain_service, product
 
 RESULTS = HERE / "bench-results.json"
-MEASURES = ("first_starts", "commands", "idle", "replies", "edits", "batches", "savings")
+MEASURES = ("first_starts", "commands", "idle", "replies", "edits", "batches", "savings", "fleets")
 IDLE_SECONDS = 2
 
 
@@ -56,7 +56,11 @@ def _measured(
     checkouts: Mapping[str, Checkout], folder: Path, wanted: Sequence[str]
 ) -> Iterator[tuple[str, dict[str, Any]]]:
     """Name and outcome of each measure that is wanted; the servers run only for those that need them."""
-    for name, measure in (("first_starts", starts.first_starts), ("commands", starts.commands)):
+    for name, measure in (
+        ("first_starts", starts.first_starts),
+        ("commands", starts.commands),
+        ("fleets", fleets.measure),
+    ):
         if name in wanted:
             yield name, measure(checkouts, folder)
     of_servers: dict[str, Callable[[Mapping[str, Server]], dict[str, Any]]] = {

@@ -31,6 +31,7 @@ def test_scripts_of_a_permitted_origin_read_the_api_and_no_page_embeds_anything(
 
 def test_the_page_copies_in_spite_of_the_features_it_does_without(visitor: Visitor) -> None:
     page = visitor.open("/catalogue/HPN-20A-5")
+    page.context.grant_permissions(["clipboard-write"])  # the headless shell asks nobody; a policy's refusal stands
     button = page.locator("[data-copies]").first
     done = button.get_attribute("data-done") or ""
 

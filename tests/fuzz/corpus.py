@@ -3,7 +3,9 @@
 import csv
 import io
 import json
+import tempfile
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 import openpyxl
@@ -11,6 +13,7 @@ import openpyxl
 from hpn.application import Application
 from hpn.catalogue import HANDBOOK_FOLDER, load_catalogue
 from hpn.catalogue.tables import TABLES
+from hpn.fleet.columns import COLUMNS as FLEET
 from hpn.reader import Reader
 from hpn.report.export import Export
 from hpn.report.workbook import workbook
@@ -20,6 +23,7 @@ from hpn.web.form.pasted import write_table
 from hpn.web.form.symbols import BY_NAME
 from hpn.web.form.write import to_link
 from tests.build import cycle, phase, worked_example
+from tests.fleet.tables import in_long_form, row_of, write
 
 Json = dict[str, Any]
 
@@ -87,6 +91,24 @@ TABLES_OF_PHASES = (
     b"Zyklus 7\nNr.;T;n;Zeit\n-;kNm;rad/s;ms\n1;0,04;10;300\n2;0,03;20;400\nSumme;;;700\n",
     b"Torque:\t40 Nm\t32 Nm\nSpeed:\t250 rpm\t500 rpm\nDuration:\t300 ms\t3 s\n",
 )
+
+
+def _fleets() -> Iterator[bytes]:
+    """The applications as tables of axes in both forms and text formats, a second table behind a mark."""
+    rows = [row_of(f"axis {number}", application) for number, application in enumerate(APPLICATIONS[:6])]
+    phases, beside = in_long_form(rows)
+    with tempfile.TemporaryDirectory() as folder:
+        for suffix in (".csv", ".ndjson"):
+            tables = [
+                write(Path(folder, f"{place}{suffix}"), part) for place, part in enumerate((rows, phases, beside))
+            ]
+            alone, *pair = (path.read_bytes() for path in tables)
+            yield alone
+            yield SECOND_TABLE.join(pair)
+
+
+SECOND_TABLE = b"\x1e\n"
+FLEETS = tuple(_fleets())
 
 
 def _workbook() -> bytes:
@@ -160,5 +182,8 @@ HEADINGS = (
         b"-",
     ),
     *(b"\t", b";", b",", b" ", b"\n", b"\r\n", b'"', b'""', b"'", b"\x00", b"1.234", b"1,234", b"1 234"),
+)
+FLEET_COLUMNS = tuple(
+    name.encode() for name in ("axis", *FLEET.all, "", "\n", ",", '"', "[", "]", "{", ":", "null", "[]")
 )
 COLUMNS = tuple({name.encode() for table in TABLES for name in table.columns()} | {b"14A", b"40A", b"5", b",", b"\n"})

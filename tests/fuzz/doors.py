@@ -1,6 +1,6 @@
 """The doors: what is sent through each, and what its answer must be like."""
 
-from collections.abc import AsyncIterator, Awaitable, Callable, Sequence
+from collections.abc import AsyncIterator, Awaitable, Callable, Iterator, Mapping, Sequence
 from contextlib import asynccontextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
@@ -13,6 +13,10 @@ from pydantic import SecretStr
 from hpn.application import Application, InputError
 from hpn.catalogue import CatalogueError, load_catalogue
 from hpn.catalogue.tables import TABLES
+from hpn.fleet.errors import FleetError
+from hpn.fleet.grouping import Part
+from hpn.fleet.job import Job, compute
+from hpn.fleet.run import Order, size_fleet
 from hpn.selection import encode, select
 from hpn.web.app import create_app
 from hpn.web.door.protocol import HEAD_BYTES
@@ -44,8 +48,8 @@ class World:
             )
         )
         self.call = Caller(self.app)
-        self.handbook, self.supplement = folder / "catalogue", folder / "supplement"
-        for place in (self.handbook, self.supplement):
+        self.handbook, self.supplement, self.fleet = (folder / name for name in ("catalogue", "supplement", "fleet"))
+        for place in (self.handbook, self.supplement, self.fleet):
             place.mkdir()
         for name, content in corpus.small_catalogue():
             (self.handbook / name).write_text(content, encoding="utf-8")
@@ -165,6 +169,32 @@ async def _supplement(world: World, random: Random, content: bytes) -> str:
 
 _FILES = {table.file.encode() for table in TABLES}
 
+
+async def _fleet(world: World, random: Random, content: bytes) -> str:
+    """Size a fleet as the command does, in this process; each axis gets figures or an error."""
+    suffix = ".ndjson" if content.lstrip().startswith(b"{") else ".csv"
+    names = ("input", "axes") if corpus.SECOND_TABLE in content else ("input",)
+    files = [world.fleet / f"{name}{suffix}" for name in names]
+    for file, table in zip(files, content.split(corpus.SECOND_TABLE, 1), strict=True):
+        file.write_bytes(table)
+    answers, rejected = world.fleet / "answers.ndjson", world.fleet / "rejected.ndjson"
+    order = Order(files[0], answers, files[1] if files[1:] else None, rejected=rejected)
+    try:
+        size_fleet(order, world.app.state.catalogue, _here, lambda *_: None)
+    except FleetError as refusal:
+        assert str(world.fleet) in str(refusal), f"names no file: {refusal}"
+        return "refused"
+    rows = [msgspec.json.decode(line) for line in order.answers.read_bytes().splitlines()]
+    assert all((row["error"] is None) == (row["average_torque_Nm"] is not None) for row in rows)
+    return "sized" if any(row["error"] is None for row in rows) else "rejected"
+
+
+def _here(job: Job, parts: Mapping[int, Part]) -> Iterator[int]:
+    for number, part in parts.items():
+        compute(job, number, part)
+        yield number
+
+
 DOORS = {
     "link": Door(_link, corpus.LINKS, corpus.SYMBOLS),
     "form": Door(_form, corpus.FORMS, corpus.SYMBOLS),
@@ -173,5 +203,6 @@ DOORS = {
     "xlsx": Door(_upload, corpus.WORKBOOKS, corpus.HEADINGS),
     "ndjson": Door(_lines, corpus.LINES, corpus.MARKS),
     "supplement": Door(_supplement, corpus.SUPPLEMENTS, corpus.COLUMNS),
+    "fleet": Door(_fleet, corpus.FLEETS, corpus.FLEET_COLUMNS),
     "json": Door(_json, (*corpus.JSON, *corpus.JSON, *corpus.BATCHES, *corpus.SAVES), corpus.MARKS),
 }

@@ -2,12 +2,16 @@
 
 import base64
 import hashlib
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack
+from functools import cache
 
 import pytest
 from fastapi import FastAPI
 from fastapi.routing import APIRoute, RouteContext, iter_route_contexts
 from pydantic import ValidationError
 from starlette.responses import Response
+from starlette.testclient import TestClient
 
 from hpn.cli import main
 from hpn.web.app import create_app
@@ -30,11 +34,28 @@ REQUESTS = {
 """One request of each group; 404 is an answer of the route, and so tells that the gate was open."""
 
 
+Guarding = Callable[[str], tuple[TestClient, str]]
+
+
+@pytest.fixture(scope="module")
+def guarding(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Guarding]:
+    """Client of a service that guards groups, and a key for it; one service for each choice of groups."""
+    with ExitStack() as stack:
+
+        @cache
+        def serve(guarded: str) -> tuple[TestClient, str]:
+            key, pair = new_key("plm")
+            database = f"sqlite:///{tmp_path_factory.mktemp('guarding')}/store.sqlite3"
+            app = create_app(Settings(database_url=database, api_keys=pair, guarded=guarded))
+            return stack.enter_context(TestClient(app, raise_server_exceptions=False)), key
+
+        yield serve
+
+
 @pytest.mark.parametrize("group", REQUESTS)
 @pytest.mark.parametrize("guarded", [*REQUESTS, "batch,writing,listing,deleting"])
-def test_a_guarded_group_needs_a_key_and_any_other_does_not(group: str, guarded: str, make_client: MakeClient) -> None:
-    key, pair = new_key("plm")
-    client = make_client(api_keys=pair, guarded=guarded)
+def test_a_guarded_group_needs_a_key_and_any_other_does_not(group: str, guarded: str, guarding: Guarding) -> None:
+    client, key = guarding(guarded)
     method, path, body = REQUESTS[group]
 
     without = client.request(method, path, json=body)
@@ -61,9 +82,9 @@ SPELLINGS = (
 
 @pytest.mark.parametrize("group", REQUESTS)
 @pytest.mark.parametrize("spelling", SPELLINGS)
-def test_no_other_spelling_of_a_path_walks_past_the_key(group: str, spelling: str, make_client: MakeClient) -> None:
+def test_no_other_spelling_of_a_path_walks_past_the_key(group: str, spelling: str, guarding: Guarding) -> None:
     """The router takes `/api/v1/selections` with a line feed behind it for the same: what it matches decides."""
-    client = make_client(api_keys=new_key("plm")[1], guarded=",".join(REQUESTS))
+    client, _ = guarding(",".join(REQUESTS))
     method, path, body = REQUESTS[group]
 
     response = client.request(method, spelling.format(path=path), json=body, follow_redirects=False)
@@ -171,7 +192,7 @@ def test_every_route_belongs_to_the_group_that_its_method_and_address_suggest() 
             assert group is None, path
         elif path == "/metrics":
             assert group == "metrics"
-        elif path.endswith("/select/batch"):
+        elif path.endswith(("/select/batch", "/fleet")):
             assert group == "batch"
         elif path == "/oembed":
             assert group == "reading"  # it tells of a saved selection

@@ -31,7 +31,10 @@ GENERATOR = {
         "application/pdf": "application/octet-stream",
         "application/schema+json": "application/json",
         "application/vnd.openxmlformats-officedocument.spreadsheetml.sheet": "application/octet-stream",
+        "application/vnd.apache.arrow.file": "application/octet-stream",
+        "application/vnd.apache.parquet": "application/octet-stream",
         "application/x-ndjson": "application/octet-stream",
+        "text/csv": "application/octet-stream",
     },
 }
 """The generator knows few media types: any other has to be told to be bytes."""

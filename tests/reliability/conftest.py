@@ -1,5 +1,6 @@
 """Databases to break."""
 
-from tests.databases import PostgreSQL, database, postgresql
+from tests.compiled import compiled_templates
+from tests.databases import PostgreSQL, database, kind, postgresql
 
-__all__ = ["PostgreSQL", "database", "postgresql"]
+__all__ = ["PostgreSQL", "compiled_templates", "database", "kind", "postgresql"]

@@ -50,7 +50,7 @@ def killed_server(database: str, kills: int) -> Iterator[tuple[int, "subprocess.
 
 @dataclass
 class Clients:
-    """Clients that save without pause, and repeat with the same key what was not acknowledged."""
+    """Clients that save, with a pause or without, and repeat with the same key what was not acknowledged."""
 
     port: int
     acknowledged: dict[str, Json] = field(default_factory=dict)
@@ -58,6 +58,7 @@ class Clients:
     unexpected: list[str] = field(default_factory=list)
     enough: threading.Event = field(default_factory=threading.Event)
     numbers: "itertools.count[int]" = field(default_factory=itertools.count)
+    pause_s: float = 0.0
 
     def run(self) -> None:
         """One client."""
@@ -70,6 +71,7 @@ class Clients:
                 id = self.save(body, f"key-{number}")
             if id is not None:
                 self.acknowledged[id] = body
+            self.enough.wait(self.pause_s)
 
     def save(self, body: Json, key: str) -> str | None:
         """Id if the service says that it is saved."""

@@ -1,13 +1,25 @@
 """An open store, on each kind of database."""
 
+import multiprocessing
 from collections.abc import AsyncIterator
+from multiprocessing.context import ForkServerContext
 
 import pytest
 
 from hpn.store import Store
-from tests.databases import PostgreSQL, database, postgresql
+from tests.compiled import compiled_templates
+from tests.databases import PostgreSQL, database, kind, migrated_database, migrated_file, postgresql, ready_database
 
-__all__ = ["PostgreSQL", "database", "postgresql"]
+__all__ = [
+    "PostgreSQL",
+    "compiled_templates",
+    "database",
+    "kind",
+    "migrated_database",
+    "migrated_file",
+    "postgresql",
+    "ready_database",
+]
 
 
 @pytest.fixture
@@ -17,9 +29,17 @@ def anyio_backend() -> str:
 
 
 @pytest.fixture
-async def store(database: str) -> AsyncIterator[Store]:
-    """A store on a new database."""
-    store = Store(database)
+async def store(ready_database: str) -> AsyncIterator[Store]:
+    """A store with nothing in it."""
+    store = Store(ready_database)
     await store.open()
     yield store
     await store.close()
+
+
+@pytest.fixture(scope="session")
+def processes() -> ForkServerContext:
+    """Makes processes that share nothing with this one, and need not import what they use."""
+    context = multiprocessing.get_context("forkserver")
+    context.set_forkserver_preload(["tests.store.test_catalogues", "tests.store.test_upgrade"])
+    return context

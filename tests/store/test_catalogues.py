@@ -2,7 +2,8 @@
 
 import asyncio
 import dataclasses
-import multiprocessing
+from multiprocessing.context import ForkServerContext
+from multiprocessing.synchronize import Barrier
 from typing import Any
 
 import numpy as np
@@ -160,7 +161,7 @@ async def test_a_catalogue_that_cannot_be_read_counts_as_not_kept(store: Store, 
     assert await store.catalogue(catalogue.version) is None
 
 
-def _save_under_two(database: str, barrier: "multiprocessing.synchronize.Barrier", first: bool) -> None:
+def _save_under_two(database: str, barrier: Barrier, first: bool) -> None:
     books = [load_catalogue(), dataclasses.replace(load_catalogue(), version="another")]
 
     async def main() -> None:
@@ -173,10 +174,11 @@ def _save_under_two(database: str, barrier: "multiprocessing.synchronize.Barrier
     asyncio.run(main())
 
 
-def test_many_workers_can_keep_the_same_catalogues_at_once(database: str, catalogue: Catalogue) -> None:
-    context = multiprocessing.get_context("spawn")
-    barrier = context.Barrier(4)
-    workers = [context.Process(target=_save_under_two, args=(database, barrier, k % 2 == 0)) for k in range(4)]
+def test_many_workers_can_keep_the_same_catalogues_at_once(
+    ready_database: str, catalogue: Catalogue, processes: ForkServerContext
+) -> None:
+    barrier = processes.Barrier(4)
+    workers = [processes.Process(target=_save_under_two, args=(ready_database, barrier, k % 2 == 0)) for k in range(4)]
 
     for worker in workers:
         worker.start()
@@ -184,7 +186,7 @@ def test_many_workers_can_keep_the_same_catalogues_at_once(database: str, catalo
         worker.join(240)
 
     async def kept() -> tuple[int, Catalogue | None]:
-        store = Store(database)
+        store = Store(ready_database)
         await store.open()
         result = await copies(store), await store.catalogue(catalogue.version)
         await store.close()

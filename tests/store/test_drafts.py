@@ -23,9 +23,9 @@ MODELS = ("linear", "iso281", "digitised")
 
 
 @pytest.fixture
-def client(database: str) -> Iterator[TestClient]:
+def client(ready_database: str) -> Iterator[TestClient]:
     """A client of a running service."""
-    with TestClient(create_app(Settings(database_url=database, database_seconds=60))) as client:
+    with TestClient(create_app(Settings(database_url=ready_database, database_seconds=60))) as client:
         yield client
 
 

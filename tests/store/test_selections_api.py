@@ -19,9 +19,9 @@ ADDRESS = "/api/v1/selections"
 
 
 @pytest.fixture
-def client(database: str) -> Iterator[TestClient]:
+def client(ready_database: str) -> Iterator[TestClient]:
     """A client of a running service."""
-    with TestClient(create_app(Settings(database_url=database))) as client:
+    with TestClient(create_app(Settings(database_url=ready_database))) as client:
         yield client
 
 

@@ -181,10 +181,10 @@ async def test_the_same_key_with_other_content_is_refused(store: Store, other: d
     assert await store.find(first) is not None
 
 
-async def test_a_late_retry_of_what_was_deleted_is_refused_and_saves_nothing(store: Store, database: str) -> None:
+async def test_a_late_retry_of_what_was_deleted_is_refused_and_saves_nothing(store: Store, ready_database: str) -> None:
     once = draft(idempotency_key="k", title="t")
     assert await store.delete(await store.save(once))
-    other = Store(database)  # another worker, or this one after a restart
+    other = Store(ready_database)  # another worker, or this one after a restart
 
     for each in (store, other):
         with pytest.raises(KeySpentError, match="has been deleted"):
@@ -218,8 +218,10 @@ async def test_a_deletion_leaves_nothing_of_the_key_but_its_hash(store: Store) -
     assert rows == [hashlib.sha256(b"part 4711").hexdigest()]
 
 
-async def test_retries_and_deletions_at_once_never_bring_back_what_was_deleted(store: Store, database: str) -> None:
-    other = Store(database)
+async def test_retries_and_deletions_at_once_never_bring_back_what_was_deleted(
+    store: Store, ready_database: str
+) -> None:
+    other = Store(ready_database)
     for number in range(20):
         once = draft(idempotency_key=f"k{number}")
         id = await store.save(once)
@@ -238,8 +240,10 @@ async def test_retries_and_deletions_at_once_never_bring_back_what_was_deleted(s
     await other.close()
 
 
-async def test_identical_requests_at_once_make_one_row_also_from_several_workers(store: Store, database: str) -> None:
-    others = [Store(database) for _ in range(3)]
+async def test_identical_requests_at_once_make_one_row_also_from_several_workers(
+    store: Store, ready_database: str
+) -> None:
+    others = [Store(ready_database) for _ in range(3)]
     stores = [store, *others] * 10
 
     ids = await asyncio.gather(*(each.save(draft(idempotency_key=f"k{n}")) for each in stores for n in range(3)))
@@ -249,9 +253,9 @@ async def test_identical_requests_at_once_make_one_row_also_from_several_workers
         await other.close()
 
 
-async def test_savers_who_come_together_each_get_their_own(store: Store, database: str) -> None:
+async def test_savers_who_come_together_each_get_their_own(store: Store, ready_database: str) -> None:
     """Each of them, and a retry of each, beside another worker's savers: one row each, with its own content."""
-    other = Store(database)
+    other = Store(ready_database)
     drafts = [draft(title=str(k), result=b"%d" % k, idempotency_key=f"k{k}" if k % 2 else None) for k in range(60)]
 
     ids = await asyncio.gather(*((store, other)[k % 2].save(each) for k, each in enumerate(drafts)))
@@ -349,9 +353,9 @@ async def test_sqlite_commits_reach_the_disk_and_readers_do_not_wait(tmp_path: P
 
 
 async def test_a_catalogue_is_kept_once_however_many_save_under_it(
-    store: Store, database: str, catalogue: Catalogue
+    store: Store, ready_database: str, catalogue: Catalogue
 ) -> None:
-    other = Store(database)
+    other = Store(ready_database)
     under = draft(catalogue=catalogue, catalogue_version=catalogue.version)
 
     await asyncio.gather(*(each.save(under) for each in (store, other) * 5))
@@ -389,8 +393,11 @@ async def test_readiness_is_tried_by_a_transaction_that_leaves_nothing_and_at_mo
 
 
 @pytest.mark.parametrize("table", ["selections", "catalogues", "spent_keys"])
-async def test_a_table_that_is_missing_is_no_readiness(store: Store, table: str) -> None:
+async def test_a_table_that_is_missing_is_no_readiness(database: str, table: str) -> None:
+    store = Store(database)
+    await store.open()
     await change(store, lambda connection: connection.execute(text(f"DROP TABLE {table}")))
 
     with pytest.raises(StoreUnavailableError):
         await store.check()
+    await store.close()

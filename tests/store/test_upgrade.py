@@ -1,10 +1,11 @@
 """Databases are brought up to date at start: once, completely, and never by a version that is too old."""
 
 import asyncio
-import multiprocessing
 import os
 import subprocess
 import sys
+from multiprocessing.context import ForkServerContext
+from multiprocessing.synchronize import Barrier
 from pathlib import Path
 
 import brotli
@@ -26,6 +27,12 @@ from tests.build import cycle, phase
 from tests.store.drafts import change, draft
 
 pytestmark = pytest.mark.anyio
+
+
+@pytest.fixture
+def ready_database(database: str) -> str:
+    """A new database: its migrations are what is tested here."""
+    return database
 
 
 async def run(store: Store, statement: str) -> None:
@@ -102,7 +109,7 @@ async def test_a_migration_that_breaks_off_leaves_nothing_behind(
     await store.close()
 
 
-def _open_and_save(database: str, barrier: "multiprocessing.synchronize.Barrier") -> None:
+def _open_and_save(database: str, barrier: Barrier) -> None:
     async def main() -> None:
         store = Store(database, seconds=20)
         barrier.wait(180)
@@ -114,10 +121,9 @@ def _open_and_save(database: str, barrier: "multiprocessing.synchronize.Barrier"
     asyncio.run(main())
 
 
-def test_many_workers_can_start_at_once_on_an_empty_database(database: str) -> None:
-    context = multiprocessing.get_context("spawn")
-    barrier = context.Barrier(4)
-    workers = [context.Process(target=_open_and_save, args=(database, barrier)) for _ in range(4)]
+def test_many_workers_can_start_at_once_on_an_empty_database(database: str, processes: ForkServerContext) -> None:
+    barrier = processes.Barrier(4)
+    workers = [processes.Process(target=_open_and_save, args=(database, barrier)) for _ in range(4)]
 
     for worker in workers:
         worker.start()

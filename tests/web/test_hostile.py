@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 from starlette.testclient import TestClient
 
-from hpn.web.door.uploads import MOST_PARTS, parts_of
+from hpn.web.door.uploads import MOST_PARTS, FormSplitter, PartHead, Write, parts_of
 from tests.build import cycle, phase, worked_example
 
 Json = dict[str, Any]
@@ -105,7 +105,20 @@ def test_parts_of_a_form_are_read_as_browsers_write_them() -> None:
         b"1\r\n--y\r\n2\r\n--x--\r\n"
     )
 
-    assert parts_of('multipart/form-data; boundary="x"', body) == [("link", b"T=1"), ("file", b"1\r\n--y\r\n2")]
+    parts = [("link", b"T=1"), ("file", b"1\r\n--y\r\n2")]
+    assert parts_of('multipart/form-data; boundary="x"', body) == parts
+    for size in range(1, len(body)):  # however it is cut on its way
+        found: list[tuple[str, bytearray]] = []
+
+        def begin(head: PartHead, found: list[tuple[str, bytearray]] = found) -> Write:
+            found.append((head.name, bytearray()))
+            return found[-1][1].extend
+
+        splitter = FormSplitter(FORM, begin)
+        for start in range(0, len(body), size):
+            splitter.feed(body[start : start + size])
+        assert splitter.ended
+        assert [(name, bytes(content)) for name, content in found] == parts
 
 
 @pytest.mark.parametrize(

@@ -44,6 +44,7 @@ OPERATIONS = {
     "saveSelection": "POST /api/v1/selections",
     "select": "POST /api/v1/select",
     "selectBatch": "POST /api/v1/select/batch",
+    "sizeFleet": "POST /api/v1/fleet",
 }
 """Generated clients name their functions by these: rename none without a new version of the API."""
 

@@ -27,7 +27,7 @@ EFFICIENCY = Variable.of(INPUTS["requirements.efficiency"].symbol)
 
 def motor_steps(sheet: Sheet) -> Iterable[Step]:
     """Peak and RMS torque, loss-free where no efficiency is known."""
-    if sheet.duty.courses[0] is not None and sheet.given("requirements.motor.inertia_kgm2") is not None:
+    if sheet.duty.courses and sheet.given("requirements.motor.inertia_kgm2") is not None:
         return _along_the_motion(sheet)
     stated = sheet.given("requirements.efficiency")
     if stated is None and sheet.gear.designation in sheet.catalogue.efficiency:

@@ -1,4 +1,5 @@
-"""Command line: `hpn select application.json`, `hpn catalogue`, `hpn serve`, `hpn key NAME`, `hpn --version`.
+"""Command line: `hpn select application.json`, `hpn fleet axes.parquet answers.parquet`, `hpn catalogue`, `hpn serve`,
+`hpn key NAME`, `hpn --version`.
 
 Each command is a module of this package, which is imported when the command runs: none waits for what others need.
 """
@@ -9,8 +10,9 @@ import os
 import signal
 import sys
 from importlib import import_module
+from pathlib import Path
 
-COMMANDS = "select, catalogue, serve or key"
+COMMANDS = "select, fleet, catalogue, serve or key"
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -72,6 +74,7 @@ def _parser() -> argparse.ArgumentParser:
     form = one.add_mutually_exclusive_group()
     form.add_argument("--json", action="store_true", help="print the whole reply of the API; the default into a pipe")
     form.add_argument("--table", action="store_true", help="print a table; the default on a terminal")
+    _add_fleet(commands.add_parser("fleet", help="select gears for a table of axes"))
     listing = commands.add_parser("catalogue", help="list the gears, or show one")
     listing.add_argument("designation", nargs="?")
     serve = commands.add_parser("serve", help="serve page and API")
@@ -81,6 +84,31 @@ def _parser() -> argparse.ArgumentParser:
     key = commands.add_parser("key", help="make an API key")
     key.add_argument("name", help="who gets it; the logs name it")
     return parser
+
+
+def _add_fleet(fleet: argparse.ArgumentParser) -> None:
+    formats = "Parquet, Arrow IPC, CSV or NDJSON, by the suffix .parquet, .arrow, .csv or .ndjson"
+    fleet.add_argument("input", type=Path, metavar="INPUT", help=f"the axes, or the phases of axes: {formats}")
+    fleet.add_argument("output", type=Path, metavar="OUTPUT", help="a row for each axis")
+    fleet.add_argument("--axes", type=Path, metavar="FILE", help="the other columns, where a row of INPUT is a phase")
+    fleet.add_argument("--candidates", type=Path, metavar="FILE", help="write every candidate of every axis")
+    fleet.add_argument(
+        "--rejected", type=Path, metavar="FILE", help="write what is wrong with axes that have no answer"
+    )
+    fleet.add_argument("--report", type=Path, metavar="FILE", help="write counts and the first 10,000 axes as HTML")
+    fleet.add_argument("--service", default="", metavar="URL", help="address of the service that its links lead to")
+    fleet.add_argument(
+        "--engine", choices=("local", "dask"), default="local", help="processes of this machine, or Dask"
+    )
+    fleet.add_argument("--scheduler", metavar="URL", help="address of a Dask cluster, such as tcp://host:8786")
+    fleet.add_argument("--workers", type=_workers, metavar="N", help="processes; as many as there are cores by default")
+    fleet.add_argument("--resume", action="store_true", help="go on with the parts of a run that was stopped")
+
+
+def _workers(text: str) -> int:
+    if not 1 <= (number := _number(text)) <= 1024:
+        raise argparse.ArgumentTypeError("must be from 1 to 1024")
+    return number
 
 
 def _number(text: str) -> int:

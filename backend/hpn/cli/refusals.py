@@ -7,8 +7,10 @@ from pydantic import ValidationError
 from hpn.application import InputError
 from hpn.catalogue import CatalogueError
 from hpn.cli.system import CALLERS, OTHERS
+from hpn.faults import plain_message
+from hpn.fleet.errors import FleetError
 from hpn.store import StoreError
-from hpn.web.door.problems import Problem, plain_message
+from hpn.web.door.problems import Problem
 from hpn.web.settings import Settings
 
 MOST_LINES = 20
@@ -16,8 +18,10 @@ MOST_LINES = 20
 
 def words_of(error: Exception, options: argparse.Namespace) -> tuple[int, list[str] | None]:
     """Exit code and lines for an error of input, settings, catalogue or database; no lines for one of the program."""
-    if isinstance(error, CatalogueError | StoreError):
+    if isinstance(error, CatalogueError | StoreError | FleetError):
         return CALLERS, [str(error)]
+    if isinstance(error, MemoryError):
+        return OTHERS, ["hpn can’t go on: this takes more memory than there is"]
     if isinstance(error, ValidationError) and error.title == Settings.__name__:
         return CALLERS, _wrong_settings(error, options)
     if isinstance(error, ValidationError | InputError):

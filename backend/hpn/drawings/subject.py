@@ -6,7 +6,7 @@ from functools import cached_property
 from hpn.application import Application
 from hpn.catalogue import Catalogue, GearList
 from hpn.duty import Duty
-from hpn.figures import Figures, figures_of
+from hpn.figures import Figures
 from hpn.gear import Gear
 
 
@@ -34,7 +34,7 @@ class Subject:
     @cached_property
     def of_sizes(self) -> Figures:
         """What the first gear of every size comes to."""
-        return figures_of(self.duty, self.sizes, self.catalogue)
+        return Figures(self.duty, self.sizes, self.catalogue)
 
     @property
     def place(self) -> int:

@@ -13,12 +13,13 @@ from hpn import ENGINE_VERSION
 from hpn.application import Application
 from hpn.catalogue import load_catalogue
 from hpn.store import Store, StoreUnavailableError
-from hpn.web import archive
+from hpn.web import archive, fleets
 from hpn.web.api import (
     batch,
     catalogue,
     embeds,
     files,
+    fleet,
     health,
     openapi,
     schemas,
@@ -74,6 +75,7 @@ UNPACKED = (
     *DEFAULT_EXCLUDED_CONTENT_TYPES,
     *(file.media_type for file in files.FILES),
     *streaming.MEDIA_TYPES,
+    *fleet.MEDIA_TYPES.values(),
 )
 """Kinds of content that are not compressed on their way: compressed already, or lines that must not wait."""
 
@@ -83,6 +85,7 @@ ROUTERS: tuple[APIRouter, ...] = (
     openapi.router,
     select.router,
     batch.router,
+    fleet.router,
     catalogue.router,
     selections.router,
     files.saved_files,
@@ -129,7 +132,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
         settings.catalogue_folder, settings.catalogue_supplement, settings.averaging_seconds
     )
     app.state.gate = Gate(settings)
-    app.state.pools = Pools()
+    app.state.pools = Pools(settings.fleet_processes)
     app.state.budget = Budget(settings.maximum_bytes_in_flight)
     app.state.metrics = Metrics()
     app.state.store = CountedStore(app.state.metrics, **settings.database())
@@ -163,6 +166,7 @@ def _add_middleware(app: FastAPI, settings: Settings) -> None:
 @asynccontextmanager
 async def _with_store(app: FastAPI) -> AsyncIterator[None]:
     store: Store = app.state.store
+    fleets.remove_leftovers(app.state.settings)
     with suppress(StoreUnavailableError):  # it is in the log, and the store opens as soon as it can
         await store.open()
     yield

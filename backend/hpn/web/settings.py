@@ -132,15 +132,29 @@ class Settings(BaseSettings):
         "answer unread.",
     )
     batch_seconds: float = Field(60.0, gt=0, description="Longest computing time of one batch request.")
+    maximum_fleet_bytes: int = Field(200_000_000, gt=0, description="Largest body of a request for a fleet.")
+    fleet_seconds: float = Field(
+        300.0,
+        gt=0,
+        description="Longest time for the body of a fleet to arrive, and again for its turn and its sizing.",
+    )
+    fleet_workers: int = Field(1, ge=1, le=64, description="Processes that size one fleet.")
+    fleet_processes: int = Field(
+        1, ge=1, le=64, description="Fleets that one process of the service has sized at once; few more wait."
+    )
+    fleet_memory_bytes: int = Field(
+        1_000_000_000, ge=500_000_000, description="Most memory of each process that sizes a fleet."
+    )
     spool_folder: Annotated[Path | None, AfterValidator(_folder)] = Field(
         None,
-        description="Folder for what a streamed batch has to set aside; the system’s for temporary files by default.",
+        description="Folder for what a streamed batch has to set aside, and for the files of fleets; the system’s for "
+        "temporary files by default.",
     )
     maximum_spool_bytes: int = Field(
         2_000_000_000,
         gt=0,
         description="Most bytes of results that one streamed batch keeps in a temporary file for a client that sends "
-        "without reading.",
+        "without reading; most bytes of all files of one fleet.",
     )
     host: str = Field("127.0.0.1", description="Address that `hpn serve` listens on.")
     port: int = Field(8000, ge=0, le=65535, description="Port that `hpn serve` listens on.")

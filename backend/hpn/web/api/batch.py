@@ -13,8 +13,8 @@ from starlette.requests import Request
 from starlette.responses import Response
 
 from hpn.application import BatchItem, InputError
+from hpn.batch import judge_batch
 from hpn.catalogue import Catalogue
-from hpn.fleet import judge_fleet
 from hpn.selection import Judged
 from hpn.web.api import schemas, streaming
 from hpn.web.api.items import Span, items_of
@@ -133,7 +133,7 @@ def batch_lines(items: Sequence[Any], catalogue: Catalogue) -> list[BatchLine]:
     An item that is a Problem already becomes its line.
     """
     read = [_validated(item) for item in items]
-    judged = iter(judge_fleet([item for item in read if isinstance(item, BatchItem)], catalogue))
+    judged = iter(judge_batch([item for item in read if isinstance(item, BatchItem)], catalogue))
     return [
         _line(item, next(judged) if isinstance(outcome, BatchItem) else outcome)
         for item, outcome in zip(items, read, strict=True)

@@ -3,7 +3,7 @@
 Names, sentences and units of quantities come from `hpn.quantities`; the rest stands beside the fields of the replies.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 import msgspec
@@ -143,6 +143,30 @@ def batch_body() -> dict[str, Any]:
     return body
 
 
+def fleet_body(media_types: Iterable[str]) -> dict[str, Any]:
+    """OpenAPI entry of a fleet's body: a table, or a form with two."""
+    table = {
+        "type": "string",
+        "format": "binary",
+        "description": "Axes in list form, a row for each: `axis`, lists named as the fields of a phase, and the other "
+        "fields of an application by their paths with dots, such as `requirements.life_h`.",
+    }
+    form = {
+        "type": "object",
+        "properties": {
+            "input": {
+                **table,
+                "description": "Axes in list form, or phases: a row for each, those of an axis together.",
+            },
+            "axes": {**table, "description": "Where `input` has phases: a row for each axis with what else is given."},
+        },
+        "required": ["input"],
+        "additionalProperties": False,
+    }
+    content = {media_type: {"schema": dict(table)} for media_type in media_types}
+    return {"requestBody": {"required": True, "content": content | {"multipart/form-data": {"schema": form}}}}
+
+
 # --- Responses --------------------------------------------------------------------------------------------------------
 
 HEADERS = {
@@ -214,6 +238,19 @@ def batch_answers(*statuses: int) -> dict[int | str, dict[str, Any]]:
         }
     }
     return entries
+
+
+def fleet_answers(media_types: Iterable[str], *statuses: int) -> dict[int | str, dict[str, Any]]:
+    """OpenAPI entries of a fleet's answer, which comes in the format of its input."""
+    table = {"type": "string", "format": "binary", "description": "The table."}
+    return {
+        200: {
+            "description": "The table, in the format of the input.",
+            "content": {media_type: {"schema": dict(table)} for media_type in media_types},
+            "headers": headers("Content-Disposition"),
+        },
+        **problems(*statuses),
+    }
 
 
 # --- From one operation to the next -----------------------------------------------------------------------------------

@@ -1,6 +1,7 @@
 """Reading a request's body within limits of type, size and time."""
 
 import asyncio
+from collections.abc import Awaitable, Callable
 from typing import TypeVar
 from urllib.parse import parse_qsl
 
@@ -16,6 +17,9 @@ M = TypeVar("M", bound=BaseModel)
 MOST_OBJECTS, MOST_NAMES, MOST_LISTS = MAXIMUM_PHASES + 100, 8 * MAXIMUM_PHASES + 1000, 10_000
 """What the JSON of the longest application stays below."""
 
+PIECE_BYTES = 1_000_000
+"""Size of the pieces that a long body is handed on in."""
+
 MOST_PARAMETERS = 100
 """Parameters of an address that is no link of an application."""
 
@@ -30,13 +34,9 @@ async def read_body(
 
     Raises Problem 415 for another content type, 413 above `maximum_bytes`, 408 when it has not arrived in `seconds`.
     """
-    given = content_type_of(request)
-    if given != content_type:
-        raise Problem(415, f"send the body as {content_type} (the Content-Type header says {given or 'nothing'})")
-    too_large = Problem(413, f"the body may have {maximum_bytes} bytes at most")
-    declared = request.headers.get("content-length", "")
-    if declared.isascii() and declared.isdigit() and int(declared[:20]) > maximum_bytes:
-        raise too_large
+    if content_type_of(request) != content_type:
+        raise wrong_type(request, content_type)
+    too_large = _too_large(request, maximum_bytes)
     body = bytearray()
     try:
         async with asyncio.timeout(seconds):
@@ -48,8 +48,61 @@ async def read_body(
     except TimeoutError:
         raise late(seconds) from None
     except ClientDisconnect:
-        raise Problem(400, "the connection closed before the body was complete") from None
+        raise _broken_off() from None
     return bytes(body)
+
+
+async def pass_body(
+    request: Request,
+    take: Callable[[bytes], Awaitable[None]],
+    *,
+    maximum_bytes: int,
+    pause_seconds: float,
+    seconds: float,
+) -> None:
+    """Hand a body on in pieces as it arrives, so that memory holds one of them.
+
+    Raises Problem 413 above `maximum_bytes`, 408 where nothing arrives for `pause_seconds`, or not all in `seconds`.
+    """
+    too_large = _too_large(request, maximum_bytes)
+    time, stream = asyncio.get_running_loop().time, request.stream()
+    end, count, piece = time() + seconds, 0, bytearray()
+    try:
+        while True:
+            async with asyncio.timeout(min(pause_seconds, end - time())):
+                arrived = await anext(stream, None)
+            piece += arrived or b""
+            count += len(arrived or b"")
+            if count > maximum_bytes:
+                raise too_large
+            if len(piece) >= PIECE_BYTES or arrived is None:
+                await take(bytes(piece))
+                piece.clear()
+            if arrived is None:
+                return
+    except TimeoutError:
+        raise late(min(pause_seconds, seconds)) from None
+    except ClientDisconnect:
+        raise _broken_off() from None
+
+
+def _too_large(request: Request, maximum_bytes: int) -> Problem:
+    """413 to be raised for a body that turns out to be too large; raised at once where it is said beforehand."""
+    problem = Problem(413, f"the body may have {maximum_bytes} bytes at most")
+    declared = request.headers.get("content-length", "")
+    if declared.isascii() and declared.isdigit() and int(declared[:20]) > maximum_bytes:
+        raise problem
+    return problem
+
+
+def wrong_type(request: Request, wanted: str) -> Problem:
+    """415."""
+    given = content_type_of(request) or "nothing"
+    return Problem(415, f"send the body as {wanted} (the Content-Type header says {given})")
+
+
+def _broken_off() -> Problem:
+    return Problem(400, "the connection closed before the body was complete")
 
 
 def parsed(model: type[M], text: bytes | str) -> M:

@@ -20,7 +20,7 @@ from hpn.web.door.problems import Problem
 
 P = ParamSpec("P")
 T = TypeVar("T")
-PoolName = Literal["pages", "exports", "batches", "metrics"]
+PoolName = Literal["pages", "exports", "batches", "metrics", "fleets"]
 
 
 class Places(NamedTuple):
@@ -35,8 +35,11 @@ PLACES: Mapping[PoolName, Places] = {
     "exports": Places(1, 15),  # the longest report takes 300 MB
     "batches": Places(1, 15),
     "metrics": Places(1, 3),
+    "fleets": Places(1, 3),
 }
-"""Pages and long calculations; files; batches and streams, each for its whole time; what Prometheus asks."""
+"""Pages and long calculations; files; batches and streams, each for its whole time; what Prometheus asks; fleets, which
+are sized in processes of their own, and whose number at once is a setting.
+"""
 
 SMALL_BYTES = 16 * 1024
 """Input up to this size is computed at once: that takes a few milliseconds, about what a change of threads may take."""
@@ -51,6 +54,7 @@ class Pool:
 
     def __init__(self, places: Places) -> None:
         self._executor = ThreadPoolExecutor(places.workers)
+        self.turn = asyncio.Semaphore(places.workers)  # of work that is done elsewhere: as many have one at once
         self._most = places.workers + places.waiting
         self._taken: Counter[str] = Counter()
 
@@ -82,8 +86,9 @@ class Pool:
 class Pools:
     """The pools of one process, at `app.state.pools`."""
 
-    def __init__(self) -> None:
-        self._pools = {name: Pool(places) for name, places in PLACES.items()}
+    def __init__(self, fleets: int = 1) -> None:
+        places = {**PLACES, "fleets": PLACES["fleets"]._replace(workers=fleets)}
+        self._pools = {name: Pool(places) for name, places in places.items()}
 
     def __getitem__(self, name: PoolName) -> Pool:
         return self._pools[name]
@@ -133,6 +138,7 @@ async def while_present(request: Request, work: Coroutine[Any, Any, T]) -> T:
         working.cancel()
         if leaving is not None:
             leaving.cancel()
+        await asyncio.wait({working})  # what it has started is ended, too
 
 
 async def _left(request: Request) -> None:

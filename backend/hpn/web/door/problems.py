@@ -1,6 +1,6 @@
 """Errors as RFC 9457 problem details: what was wrong, where, and what would be right."""
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable
 from typing import Any
 
 import orjson
@@ -14,6 +14,7 @@ from starlette.routing import Match
 from starlette.types import Scope
 
 from hpn.application import InputError
+from hpn.faults import Location, plain_faults
 from hpn.wording import Sentence
 
 MEDIA_TYPE = "application/problem+json"
@@ -45,8 +46,6 @@ TITLES = {
     500: "Internal error",
     503: "Not available at the moment",
 }
-
-Location = Sequence[str | int]
 
 
 class Problem(HTTPException):
@@ -88,14 +87,7 @@ class Problem(HTTPException):
     @classmethod
     def at(cls, found: Iterable[tuple[Location, str, str]]) -> "Problem":
         """Problem for pydantic's (location, type, message) entries."""
-        # A list whose items are wrong is also reported as too short; the items say it better.
-        entries = list(found)
-        items = {tuple(location[:end]) for location, _, _ in entries for end in range(len(location))}
-        errors = [
-            (location, plain_message(kind, message))
-            for location, kind, message in entries
-            if kind != "too_short" or tuple(location) not in items
-        ]
+        errors = plain_faults(found)
         detail = "; ".join(": ".join(filter(None, (pointer(at), text))) for at, text in errors[:3])
         return cls(422, detail, errors)
 
@@ -114,20 +106,6 @@ class Problem(HTTPException):
     def response(self) -> Response:
         """The problem as a response."""
         return Response(orjson.dumps(self.body()), self.status_code, self.headers, MEDIA_TYPE)
-
-
-def plain_message(kind: str, message: str) -> str:
-    """Pydantic's message in words that say what would be right."""
-    return {
-        "extra_forbidden": "is not a field of this object",
-        "missing": "is required",
-        "float_parsing": "must be a number, such as 9.3",
-        "finite_number": "must be a finite number",
-        "float_type": "must be a JSON number, such as 9.3",
-        "int_type": "must be a JSON integer, such as 5",
-        "tuple_type": "must be a list",
-        "model_type": "must be an object",
-    }.get(kind) or message.removeprefix("Value error, ").replace("Input should", "must").replace("Tuple should", "must")
 
 
 def pointer(location: Location) -> str:

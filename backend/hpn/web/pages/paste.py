@@ -19,10 +19,11 @@ from starlette.requests import Request
 from starlette.responses import HTMLResponse, RedirectResponse, Response
 
 from hpn.application import Application
+from hpn.faults import plain_message
 from hpn.web.door.access import admit
 from hpn.web.door.bodies import pairs_of, parsed
 from hpn.web.door.pools import compute, worked
-from hpn.web.door.problems import Problem, plain_message, pointer
+from hpn.web.door.problems import Problem, pointer
 from hpn.web.door.uploads import decoded, read_parts
 from hpn.web.door.visit import current
 from hpn.web.form import cells

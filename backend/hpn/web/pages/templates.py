@@ -30,7 +30,8 @@ from hpn.web.pages.result import BEST
 from hpn.web.preview import preview_of
 from hpn.wording import Sentence
 
-TEMPLATES = Path(__file__).parents[4] / "frontend/templates"
+FRONTEND = Path(__file__).parents[4] / "frontend"
+TEMPLATES, STATIC = FRONTEND / "templates", FRONTEND / "static"
 
 
 def environment(state: State) -> Environment:

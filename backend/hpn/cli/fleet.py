@@ -1,0 +1,94 @@
+"""`hpn fleet`: gears for a table of axes."""
+
+import argparse
+import os
+import signal
+import sys
+from concurrent.futures import BrokenExecutor
+from pathlib import Path
+
+from tqdm import tqdm
+
+from hpn.catalogue import Catalogue, load_catalogue
+from hpn.fleet.errors import FleetError
+from hpn.fleet.listing import listing_of
+from hpn.fleet.run import Engine, Order, processes, size_fleet
+from hpn.web.settings import Settings
+
+STOPPED = 1
+
+
+def run(options: argparse.Namespace) -> int:
+    """Size the axes: 0 when all are, rejected rows included; 1 when it is stopped."""
+    settings = Settings()
+    catalogue = load_catalogue(settings.catalogue_folder, settings.catalogue_supplement, settings.averaging_seconds)
+    order = Order(
+        axes=options.input,
+        answers=options.output,
+        requirements=options.axes,
+        candidates=options.candidates,
+        rejected=options.rejected,
+        resume=options.resume,
+    )
+    if options.report:
+        _require_report(options.report)
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
+    try:
+        rows = _sized(order, catalogue, _engine(options))
+    except (KeyboardInterrupt, BrokenExecutor, OSError) as error:
+        print(f"{_reason(error)}; hpn fleet … --resume goes on with the parts in {order.folder}", file=sys.stderr)
+        return STOPPED
+    if options.report:
+        _write_report(options, catalogue)
+    if sys.stderr.isatty():
+        print(f"{rows['answers']:,} axes are in {options.output}", file=sys.stderr)
+    return 0
+
+
+def _sized(order: Order, catalogue: Catalogue, engine: Engine) -> dict[str, int]:
+    """Rows of the files by kind; a bar shows the progress on a terminal."""
+    with tqdm(unit_scale=True, disable=None, file=sys.stderr) as bar:
+
+        def watch(done: int, total: int, counted: str) -> None:
+            bar.total, bar.unit = total, counted
+            bar.update(done - bar.n)
+
+        return size_fleet(order, catalogue, engine, watch)
+
+
+def _reason(error: BaseException) -> str:
+    if isinstance(error, BrokenExecutor):
+        return "stopped: a worker has died, most likely for want of memory"
+    return f"stopped: {str(error).splitlines()[0]}" if str(error) else "stopped"
+
+
+def _engine(options: argparse.Namespace) -> Engine:
+    workers = options.workers or len(os.sched_getaffinity(0))
+    if options.engine == "local":
+        return processes(workers)
+    from hpn.fleet.cluster import dask
+
+    return dask(options.scheduler, workers)
+
+
+def _require_report(report: Path) -> None:
+    """Raise FleetError where a report could not be written."""
+    if report.suffix != ".html":
+        raise FleetError(f"{report}: the suffix of a report must be .html")
+    if not report.parent.is_dir():
+        raise FleetError(f"{report}: there is no folder {report.parent}")
+    if report.is_dir():
+        raise FleetError(f"{report}: is a folder, where a file belongs")
+
+
+def _write_report(options: argparse.Namespace, catalogue: Catalogue) -> None:
+    """Write the report, whole under its name or not at all."""
+    from hpn.web.pages.fleet_report import report_of  # a second of imports, which no fleet without a report waits for
+
+    listing = listing_of(options.input, options.axes, options.output, catalogue)
+    written = options.report.with_name(f".{options.report.name}.{os.getpid()}")
+    try:
+        written.write_text(report_of(listing, options.input.name, catalogue, options.service.rstrip("/")))
+        os.replace(written, options.report)
+    finally:
+        written.unlink(missing_ok=True)

@@ -1,0 +1,43 @@
+"""What is wrong with an input, as (location, text) pairs in words that say what would be right."""
+
+from collections.abc import Iterable, Sequence
+
+from pydantic import ValidationError
+
+from hpn.application import InputError
+
+Location = Sequence[str | int]
+
+
+def faults_of(error: ValidationError | InputError) -> list[tuple[Location, str]]:
+    """Faults that the models or the selection have found."""
+    if isinstance(error, InputError):
+        return list(error.problems)
+    found = error.errors(include_url=False, include_context=False, include_input=False)
+    return plain_faults((entry["loc"], entry["type"], entry["msg"]) for entry in found)
+
+
+def plain_faults(found: Iterable[tuple[Location, str, str]]) -> list[tuple[Location, str]]:
+    """Faults for pydantic's (location, type, message) entries."""
+    # A list whose items are wrong is also reported as too short; the items say it better.
+    entries = list(found)
+    items = {tuple(location[:end]) for location, _, _ in entries for end in range(len(location))}
+    return [
+        (location, plain_message(kind, message))
+        for location, kind, message in entries
+        if kind != "too_short" or tuple(location) not in items
+    ]
+
+
+def plain_message(kind: str, message: str) -> str:
+    """Pydantic's message in words that say what would be right."""
+    return {
+        "extra_forbidden": "is not a field of this object",
+        "missing": "is required",
+        "float_parsing": "must be a number, such as 9.3",
+        "finite_number": "must be a finite number",
+        "float_type": "must be a JSON number, such as 9.3",
+        "int_type": "must be a JSON integer, such as 5",
+        "tuple_type": "must be a list",
+        "model_type": "must be an object",
+    }.get(kind) or message.removeprefix("Value error, ").replace("Input should", "must").replace("Tuple should", "must")

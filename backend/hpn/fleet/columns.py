@@ -1,0 +1,195 @@
+"""The columns of a table of axes: one for every field of an application, with the bounds of the models.
+
+A column is named by its path with dots, such as `requirements.life_h`; a field of a phase by itself, and it holds a
+list with an item per phase. `pause_s` stands for `duty_cycle.pause_s`. Names, kinds and bounds are read from the
+models' JSON Schema, so that a new input needs no line here.
+"""
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, Literal
+
+import pyarrow as pa
+import pyarrow.types as kinds
+
+from hpn.application import Application
+from hpn.phase import Phase
+
+Kind = Literal["number", "integer", "string"]
+Json = dict[str, Any]
+
+AXIS = "axis"
+PAUSE = ("duty_cycle", "pause_s")
+
+
+@dataclass(frozen=True)
+class Column:
+    """A column: its name, its place in the application, and what its cells, or the items of their lists, may be."""
+
+    name: str
+    path: tuple[str, ...]
+    kind: Kind
+    is_list: bool
+    required: bool
+    default: Any
+    least: float
+    most: float
+    above: float
+    choices: tuple[str, ...] | None
+
+    @property
+    def type(self) -> pa.DataType:
+        """Arrow type that its cells are read as."""
+        item = pa.string() if self.kind == "string" else pa.float64()
+        return pa.list_(item) if self.is_list else item
+
+    def takes(self, given: pa.DataType, wanted: pa.DataType) -> bool:
+        """Whether a column of an Arrow type can be read as one of a wanted type."""
+        if kinds.is_null(given):
+            return not self.required
+        if is_list(wanted):
+            return is_list(given) and self._takes_item(given.value_type)
+        return self._takes_item(given)
+
+    def _takes_item(self, given: pa.DataType) -> bool:
+        if kinds.is_dictionary(given):
+            given = given.value_type
+        if kinds.is_null(given):
+            return True
+        if self.kind == "string":
+            return is_text(given)
+        return bool(kinds.is_integer(given) or kinds.is_floating(given) or kinds.is_decimal(given))
+
+
+def is_list(given: pa.DataType) -> bool:
+    """Whether an Arrow type is one of the kinds of lists."""
+    return bool(kinds.is_list(given) or kinds.is_large_list(given) or kinds.is_fixed_size_list(given))
+
+
+def is_text(given: pa.DataType) -> bool:
+    """Whether an Arrow type is text."""
+    return bool(kinds.is_string(given) or kinds.is_large_string(given) or kinds.is_string_view(given))
+
+
+MOTOR_LISTED = ("requirements", "motor", "designation")
+
+
+@dataclass(frozen=True)
+class Columns:
+    """Every column that a table of axes may have."""
+
+    phases: Mapping[str, Column]
+    others: Mapping[str, Column]
+
+    @cached_property
+    def at(self) -> Mapping[tuple[str, ...], Column]:
+        """Columns that hold no phases, by their place in the application."""
+        return {column.path: column for column in self.others.values()}
+
+    @cached_property
+    def all(self) -> Mapping[str, Column]:
+        """Columns by name."""
+        return {**self.phases, **self.others}
+
+    def application_of(self, row: Mapping[str, Any]) -> Json:
+        """The application that a row stands for, as JSON that the models validate; nulls are not given.
+
+        Whole numbers are integers where integers belong; phases go as far as the longest list.
+        """
+        application: Json = {"duty_cycle": {"phases": _phases(row, self.phases)}}
+        for name, column in self.others.items():
+            value = row.get(name)
+            if value is not None:
+                place = application
+                for part in column.path[:-1]:
+                    place = place.setdefault(part, {})
+                is_list = isinstance(value, list)
+                place[column.path[-1]] = [_plain(item, column) for item in value] if is_list else _plain(value, column)
+        return application
+
+    def column_at(self, location: tuple[str | int, ...]) -> tuple[str, str]:
+        """Column that a place in the application belongs to, and what is to be said of the place inside of it."""
+        if location[:2] == ("duty_cycle", "phases"):
+            number = f"phase {location[2] + 1}" if len(location) > 2 and isinstance(location[2], int) else ""
+            return (str(location[3]) if len(location) > 3 else "torque_Nm" if not number else "speed_rpm"), number
+        names = tuple(part for part in location if isinstance(part, str))
+        places = [f"item {part + 1}" for part in location if isinstance(part, int)]
+        name = next((c.name for c in self.others.values() if c.path == names), ".".join(names))
+        return name, ", ".join(places)
+
+
+def _phases(row: Mapping[str, Any], columns: Mapping[str, Column]) -> list[Json]:
+    lists = {name: row.get(name) or [] for name in columns}
+    count = max(map(len, lists.values()))
+    return [
+        {
+            name: _plain(values[index], columns[name])
+            for name, values in lists.items()
+            if index < len(values) and values[index] is not None
+        }
+        for index in range(count)
+    ]
+
+
+def _plain(value: Any, column: Column) -> Any:
+    """A cell as the models take it: any kind of number as a float, a whole one as an integer where one belongs."""
+    if column.kind == "string" or value is None:
+        return value
+    number = float(value)
+    return int(number) if column.kind == "integer" and number.is_integer() else number
+
+
+def _columns_below(schema: Json, definitions: Json, path: tuple[str, ...] = ()) -> Iterator[Column]:
+    required = schema.get("required", ())
+    for name, entry in schema["properties"].items():
+        place = (*path, name)
+        if place[0] == "duty_cycle" and len(place) > 1 and place != PAUSE:
+            continue  # phases have columns of their own
+        if place == MOTOR_LISTED:
+            continue  # a fleet gives the figures of its motors
+        shape = _resolved(entry, definitions)
+        if "properties" in shape:
+            yield from _columns_below(shape, definitions, place)
+        else:
+            yield _column(place, shape, entry.get("default"), name in required and not path)
+
+
+def _resolved(entry: Json, definitions: Json) -> Json:
+    """Schema of a field without its null and its reference."""
+    if "anyOf" in entry:
+        entry = next(option for option in entry["anyOf"] if option.get("type") != "null")
+    return dict(definitions[entry["$ref"].rsplit("/", 1)[1]]) if "$ref" in entry else entry
+
+
+def _column(path: tuple[str, ...], shape: Json, default: Any, required: bool) -> Column:
+    item = shape["items"] if shape["type"] == "array" else shape
+    return Column(
+        name="pause_s" if path == PAUSE else ".".join(path),
+        path=path,
+        kind=item["type"],
+        is_list=shape["type"] == "array",
+        required=required,
+        default=default,
+        least=item.get("minimum", -math.inf),
+        most=item.get("maximum", math.inf),
+        above=item.get("exclusiveMinimum", -math.inf),
+        choices=tuple(item["enum"]) if "enum" in item else None,
+    )
+
+
+def _of_models() -> Columns:
+    schema, phase = Application.model_json_schema(), Phase.model_json_schema()
+    phases = [
+        _column((name,), _resolved(entry, {}), None, name in phase["required"])
+        for name, entry in phase["properties"].items()
+    ]
+    others = _columns_below(schema, schema["$defs"])
+    return Columns(
+        {c.name: Column(**{**c.__dict__, "is_list": True}) for c in phases}, {column.name: column for column in others}
+    )
+
+
+COLUMNS = _of_models()
+"""Columns of the models."""

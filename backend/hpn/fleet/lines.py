@@ -1,0 +1,369 @@
+"""Tables of axes in lines of text: CSV and NDJSON."""
+
+import csv
+import io
+import os
+import re
+from abc import abstractmethod
+from collections.abc import Iterator, Sequence
+from functools import cached_property
+from itertools import pairwise
+from typing import Any
+
+import msgspec
+import numpy as np
+import pyarrow as pa
+import pyarrow.compute as pc
+import pyarrow.csv as pacsv
+
+from hpn.fleet.columns import AXIS, COLUMNS, Column, is_list
+from hpn.fleet.errors import FleetError
+from hpn.fleet.tables import BATCH_ROWS, Batch, CellFault, Table
+
+UNIT_BYTES = 8_000_000
+"""Length of a stretch of lines, which ends with a line."""
+
+MOST_LINE_BYTES = 64_000_000
+"""Longest line; an axis of 10,000 phases has about 1 MB."""
+
+BOM = b"\xef\xbb\xbf"
+NUMBER = r"^[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?$|^[+-]?(nan|inf|infinity)$"
+NO_NUMBER = "must be a number with a decimal point, such as 9.3"
+NO_NUMBERS = "must be a JSON list of numbers, such as [40, 32.5]"
+NO_TEXTS = 'must be a JSON list of texts, such as ["14A", "20A"]'
+NO_TEXT = "must be text"
+NOT_UTF8 = "must be UTF-8"
+REPLACED = "\ufffd"
+"""Stands for bytes that are no UTF-8, here and in every text that was read so before."""
+
+
+class LinesTable(Table):
+    """A table in lines; its units are stretches of lines."""
+
+    @cached_property
+    def cuts(self) -> Sequence[int]:
+        """Where stretches begin and end, in bytes from the start of the file."""
+        cuts = [self.first_byte]
+        with open(self.path, "rb") as file:
+            size = os.fstat(file.fileno()).st_size
+            while cuts[-1] < size:
+                cuts.append(self._next_cut(file, cuts[-1], size))
+        return cuts
+
+    def _next_cut(self, file: Any, start: int, size: int) -> int:
+        length = UNIT_BYTES
+        while start + length < size:
+            file.seek(start)
+            end = self.last_line_end(file.read(length))
+            if end:
+                return start + end
+            length *= 2
+            if length > MOST_LINE_BYTES:
+                raise FleetError(
+                    f"{self.path}: a line is longer than {MOST_LINE_BYTES} bytes, or a quote is never closed"
+                )
+        return size
+
+    @property
+    @abstractmethod
+    def first_byte(self) -> int:
+        """Where the rows begin."""
+
+    @abstractmethod
+    def last_line_end(self, content: bytes) -> int:
+        """Byte behind the last whole line, 0 where there is none."""
+
+    measured_in = "B"
+
+    @cached_property
+    def unit_sizes(self) -> Sequence[int]:
+        return [end - start for start, end in pairwise(self.cuts)]
+
+    def content(self, unit: int) -> bytes:
+        """The lines of a stretch."""
+        with open(self.path, "rb") as file:
+            file.seek(self.cuts[unit])
+            return file.read(self.cuts[unit + 1] - self.cuts[unit])
+
+    def start_of_file(self) -> bytes:
+        """The first lines."""
+        with open(self.path, "rb") as file:
+            return file.read(UNIT_BYTES)
+
+
+# --- CSV --------------------------------------------------------------------------------------------------------------
+
+
+class CsvTable(LinesTable):
+    """Comma-separated values with a header row; lists are JSON in their cells."""
+
+    @cached_property
+    def _header(self) -> tuple[list[str], int]:
+        """Names of the columns, and where the rows begin."""
+        content = self.start_of_file()
+        line, _, _ = content.removeprefix(BOM).partition(b"\n")
+        skipped = len(content) - len(content.removeprefix(BOM)) + len(line) + 1
+        try:
+            names = next(csv.reader([line.decode().rstrip("\r")]), [])
+        except (UnicodeDecodeError, csv.Error) as error:
+            raise self.unreadable(error) from None
+        if not names:
+            raise FleetError(f"{self.path}: has no header row with the names of its columns")
+        return names, min(skipped, len(content))
+
+    @property
+    def names(self) -> Sequence[str]:
+        return self._header[0]
+
+    @property
+    def first_byte(self) -> int:
+        return self._header[1]
+
+    @cached_property
+    def is_in_list_form(self) -> bool:
+        if "torque_Nm" not in self.names:
+            return False
+        first = next((batch.rows for batch in self._texts(0, ["torque_Nm"]) if batch.rows.num_rows), None)
+        if first is None:
+            return any(name in COLUMNS.others for name in self.names)
+        return (first[0][0].as_py() or "").lstrip().startswith("[")
+
+    @property
+    def axis_type(self) -> pa.DataType:
+        return pa.string()
+
+    def last_line_end(self, content: bytes) -> int:
+        if b'"' not in content:
+            return content.rfind(b"\n") + 1
+        given = np.frombuffer(content, np.uint8)
+        outside = np.cumsum(given == ord('"'), dtype=np.uint8) % 2 == 0
+        ends = np.flatnonzero((given == ord("\n")) & outside)
+        return int(ends[-1]) + 1 if len(ends) else 0
+
+    def read(self, unit: int, names: Sequence[str]) -> Iterator[Batch]:
+        for texts in self._texts(unit, names):
+            faults, broken = list(texts.faults), {fault.row for fault in texts.faults}
+            columns = []
+            for name in names:
+                column, wrong = _parsed(texts.rows[name].combine_chunks(), COLUMNS.all.get(name), self.type_of(name))
+                columns.append(column)
+                faults += (CellFault(row, name, reason) for row, reason in wrong if row not in broken)
+            yield Batch(pa.Table.from_arrays(columns, names=list(names)), faults)
+
+    def _texts(self, unit: int, names: Sequence[str]) -> Iterator[Batch]:
+        """Cells as text; a row with too few or too many has none but its axis."""
+        if unit + 1 >= len(self.cuts):
+            return
+        broken: list[pacsv.InvalidRow] = []
+
+        def skip(row: pacsv.InvalidRow) -> str:
+            broken.append(row)
+            return "skip"
+
+        try:
+            rows = pacsv.read_csv(
+                io.BytesIO(_as_utf8(self.content(unit))),
+                pacsv.ReadOptions(column_names=self.names, use_threads=False, block_size=MOST_LINE_BYTES),
+                pacsv.ParseOptions(newlines_in_values=True, invalid_row_handler=skip),
+                pacsv.ConvertOptions(
+                    column_types=dict.fromkeys(self.names, pa.string()),
+                    include_columns=list(names),
+                    null_values=[""],
+                    strings_can_be_null=True,
+                    quoted_strings_can_be_null=False,
+                ),
+            )
+        except pa.ArrowInvalid as error:
+            if "Empty CSV" not in str(error):
+                raise self.unreadable(error) from None
+            rows = pa.table({name: pa.array([], pa.string()) for name in names})
+        rows, faults = self._with_broken(rows, broken)
+        for start in range(0, rows.num_rows, BATCH_ROWS):
+            here = [f._replace(row=f.row - start) for f in faults if start <= f.row < start + BATCH_ROWS]
+            yield Batch(rows.slice(start, BATCH_ROWS), here)
+
+    def _with_broken(self, rows: pa.Table, broken: Sequence[pacsv.InvalidRow]) -> tuple[pa.Table, list[CellFault]]:
+        """Rows in their places that have too few or too many cells; the number of a row counts from 1."""
+        parts, done, faults = [], 0, []
+        for place, row in enumerate(broken):
+            whole = row.number - 1 - place
+            axis = self._axis_of(row.text, row.actual_columns)
+            nothing = {name: pa.array([axis if name == AXIS else None], pa.string()) for name in rows.column_names}
+            parts += [rows.slice(done, whole - done), pa.table(nothing)]
+            reason = f"the row has {row.actual_columns} cells where the header has {row.expected_columns}"
+            faults.append(CellFault(row.number - 1, AXIS, reason))
+            done = whole
+        return (pa.concat_tables([*parts, rows.slice(done)]), faults) if broken else (rows, faults)
+
+    def _axis_of(self, line: str, cells: int) -> str | None:
+        """Axis of a broken row, where its cell has an end."""
+        place = list(self.names).index(AXIS)
+        try:
+            found = next(csv.reader([line]), [])
+        except csv.Error:
+            return None
+        return (found[place] or None) if min(cells, len(found)) > place + 1 else None
+
+
+def _parsed(texts: pa.Array, column: Column | None, wanted: pa.DataType) -> tuple[pa.Array, list[tuple[int, str]]]:
+    """Values of cells of CSV, and the rows of those that are none, with what would be right."""
+    if column is None or (column.kind == "string" and not is_list(wanted)):
+        broken = pc.fill_null(pc.match_substring(texts, REPLACED), False)
+        return pc.if_else(broken, None, texts), [(int(row), NOT_UTF8) for row in np.flatnonzero(np.asarray(broken))]
+    if is_list(wanted):
+        kind = list[str | None] if column.kind == "string" else list[float | None]
+        return _one_by_one(texts, msgspec.json.Decoder(kind).decode, wanted, _no_list(column))
+    texts = pc.ascii_trim_whitespace(texts)
+    numbers = pc.match_substring_regex(texts, NUMBER, ignore_case=True)
+    wrong = np.flatnonzero(np.asarray(pc.fill_null(pc.invert(numbers), False)))
+    if len(wrong):
+        texts = pc.if_else(numbers, texts, None)
+    return texts.cast(wanted), [(int(row), NO_NUMBER) for row in wrong]
+
+
+def _as_utf8(content: bytes) -> bytes:
+    try:
+        content.decode()
+    except UnicodeDecodeError:
+        return content.decode(errors="replace").encode()
+    return content
+
+
+def _no_list(column: Column) -> str:
+    return NO_TEXTS if column.kind == "string" else NO_NUMBERS
+
+
+def _one_by_one(cells: pa.Array, read: Any, wanted: pa.DataType, reason: str) -> tuple[pa.Array, list[tuple[int, str]]]:
+    values, wrong = [], []
+    for row, cell in enumerate(cells.to_pylist()):
+        try:
+            values.append(None if cell is None else read(cell))
+        except (ValueError, RecursionError):
+            values.append(None)
+            wrong.append((row, reason))
+    return pa.array(values, wanted), wrong
+
+
+# --- NDJSON -----------------------------------------------------------------------------------------------------------
+
+AXIS_IN_LINE = re.compile(rb'"axis"\s*:\s*("(?:[^"\\]|\\.)*"|-?[0-9]+(?=[\s,}]))')
+MOST_INTEGER = 2**63
+
+
+class NdjsonTable(LinesTable):
+    """A JSON object in each line, with the names of the columns as keys."""
+
+    @cached_property
+    def _first(self) -> dict[str, Any]:
+        """The first row; empty where there is none."""
+        for line in self.start_of_file().removeprefix(BOM).split(b"\n"):
+            if line.strip():
+                try:
+                    return _object(line)
+                except (ValueError, RecursionError) as error:
+                    raise self.unreadable(error, "the first line ") from None
+        return {}
+
+    @property
+    def names(self) -> Sequence[str]:
+        """Every column that a row may have: they need not stand in the first one."""
+        phases = COLUMNS.phases if "torque_Nm" in self._first or not self._first else ()
+        others = COLUMNS.others if self.is_in_list_form or not phases else ()
+        return list(dict.fromkeys((AXIS, *phases, *others, *self._first)))
+
+    @property
+    def first_byte(self) -> int:
+        return len(BOM) if self.start_of_file().startswith(BOM) else 0
+
+    @cached_property
+    def is_in_list_form(self) -> bool:
+        return isinstance(self._first.get("torque_Nm"), list)
+
+    @property
+    def axis_type(self) -> pa.DataType:
+        return pa.int64() if isinstance(self._first.get(AXIS), int) else pa.string()
+
+    def last_line_end(self, content: bytes) -> int:
+        return content.rfind(b"\n") + 1
+
+    @cached_property
+    def _kinds(self) -> dict[str, Any]:
+        """What msgspec reads a cell of each column as."""
+        kinds: dict[str, Any] = {AXIS: int if pa.types.is_integer(self.axis_type) else str}
+        for name in self.names:
+            if name != AXIS:
+                item = str if COLUMNS.all[name].kind == "string" else float
+                kinds[name] = list[item | None] if is_list(self.type_of(name)) else item  # type: ignore[valid-type]
+        return kinds
+
+    def read(self, unit: int, names: Sequence[str]) -> Iterator[Batch]:
+        if unit + 1 >= len(self.cuts):
+            return
+        lines = [line for line in self.content(unit).split(b"\n") if line.strip()]
+        for start in range(0, len(lines), BATCH_ROWS):
+            yield self._batch(lines[start : start + BATCH_ROWS], names)
+
+    def _batch(self, lines: Sequence[bytes], names: Sequence[str]) -> Batch:
+        fields = [(f"c{place}", kind | None, None) for place, kind in enumerate(self._kinds.values())]
+        rename = {f"c{place}": name for place, name in enumerate(self._kinds)}
+        row_type = msgspec.defstruct("Row", fields, rename=rename.get, forbid_unknown_fields=True)
+        decoder = msgspec.json.Decoder(row_type)
+        rows, faults = [], []
+        for place, line in enumerate(lines):
+            try:
+                rows.append(decoder.decode(line))
+            except (ValueError, RecursionError) as error:
+                cells, wrong = self._one_by_one(line, error)
+                rows.append(msgspec.convert(cells, row_type))
+                faults += [CellFault(place, *fault) for fault in wrong]
+        field_of = {name: field for field, name in rename.items()}
+        columns = [pa.array([getattr(row, field_of[name]) for row in rows], self.type_of(name)) for name in names]
+        return Batch(pa.Table.from_arrays(columns, names=list(names)), faults)
+
+    def _one_by_one(self, line: bytes, error: Exception) -> tuple[dict[str, Any], list[tuple[str, str]]]:
+        """The cells of a line that can be read, and what is wrong with the others."""
+        try:
+            given = _object(line)
+        except (ValueError, RecursionError):
+            return _axis_alone(line, self._kinds[AXIS]), [(AXIS, f"the line is not a JSON object: {error}")]
+        cells, wrong = {}, []
+        for name, value in given.items():
+            if name not in self._kinds:
+                wrong.append((name, "is not a column"))
+            elif _is(value, self._kinds[name]):
+                cells[name] = value
+            else:
+                wrong.append((name, self._right(name)))
+        return cells, wrong
+
+    def _right(self, name: str) -> str:
+        if name == AXIS:
+            kind = "an integer" if pa.types.is_integer(self.axis_type) else "text"
+            return f"must be {kind}, as in the first row"
+        column = COLUMNS.all[name]
+        if is_list(self.type_of(name)):
+            return _no_list(column)
+        return NO_TEXT if column.kind == "string" else NO_NUMBER
+
+
+def _object(line: bytes) -> dict[str, Any]:
+    row: dict[str, Any] = msgspec.json.decode(line, type=dict[str, Any])
+    return row
+
+
+def _is(value: Any, kind: Any) -> bool:
+    try:
+        msgspec.convert(value, kind | None)
+    except msgspec.ValidationError:
+        return False
+    return not (kind is int and value is not None and abs(value) >= MOST_INTEGER)
+
+
+def _axis_alone(line: bytes, kind: Any) -> dict[str, Any]:
+    """Axis of a line that is cut or broken, where it can be read."""
+    found = AXIS_IN_LINE.search(line)
+    try:
+        axis = msgspec.json.decode(found[1]) if found else None
+    except ValueError:
+        axis = None
+    return {AXIS: axis} if _is(axis, kind) else {}

@@ -1,0 +1,155 @@
+"""The axes that are shown one by one, in a page or a report: their answers, and what they were asked with."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Literal, NamedTuple
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.compute as pc
+import pyarrow.csv as pacsv
+import pyarrow.dataset as datasets
+
+from hpn.application import Application
+from hpn.catalogue import Catalogue
+from hpn.evaluation import Evaluation, PlaceArray, evaluate
+from hpn.fleet.axes import Axes
+from hpn.fleet.columns import AXIS, COLUMNS
+from hpn.fleet.grouping import axes_of, parts_of, with_others
+from hpn.fleet.opened import format_of, open_axes, open_requirements
+from hpn.fleet.outcome import answer_fields
+from hpn.fleet.summary import Summary, summary_of
+
+MOST_LISTED = 10_000
+"""Axes that a page or a report shows one by one; more are in the files."""
+
+FORMATS = {
+    ".parquet": "parquet",
+    ".arrow": "ipc",
+    ".csv": datasets.CsvFileFormat(convert_options=pacsv.ConvertOptions(strings_can_be_null=True)),
+    ".ndjson": "json",
+}
+
+State = Literal["selected", "unsuitable", "rejected"]
+
+
+@dataclass(frozen=True)
+class Listing:
+    """What comes of all axes, and the first of them: `answers`, with the nearest miss where no gear suits, and `axes`
+    in list form with what was asked of those that were not rejected. Their names are text.
+    """
+
+    summary: Summary
+    answers: pa.Table
+    axes: pa.Table
+
+
+class AxisRow(NamedTuple):
+    """An axis with its gear, or with the nearest miss where none suits; `place` counts the axes of the input."""
+
+    place: int
+    axis: str
+    state: State
+    gear: str | None
+    governing_check: str | None
+    utilisation: float | None
+    life_L10_h: float | None
+    suitable: int | None
+    runner_up: str | None
+    average_torque_Nm: float | None
+    error: str | None
+
+
+NEAREST = pa.schema([("nearest", pa.string()), ("nearest_check", pa.string()), ("nearest_utilisation", pa.float64())])
+"""Columns beside those of the answers: the gear that comes nearest where none suits."""
+
+
+def listing_of(axes: Path, requirements: Path | None, answers: Path, catalogue: Catalogue) -> Listing:
+    """Listing of tables that were sized: of the axes as they were given, and of their answers."""
+    first = _first(read_answers(answers))
+    asked = _asked(axes, requirements, first.filter(pc.is_null(first["error"]))[AXIS])
+    lacking = asked.filter(pc.is_in(asked[AXIS], first.filter(pc.equal(first["suitable"], 0))[AXIS].combine_chunks()))
+    misses, places = nearest_misses(lacking, catalogue), pc.index_in(first[AXIS], lacking[AXIS].combine_chunks())
+    for field in NEAREST:
+        first = first.append_column(field, misses[field.name].take(places))
+    return Listing(summary_of(read_answers(answers)), first, asked)
+
+
+def read_answers(path: Path) -> Iterator[pa.RecordBatch]:
+    """Answers as a run has written them, with the names of the axes as text."""
+    schema = answer_fields(pa.string())
+    return iter(datasets.dataset(path, schema, FORMATS[format_of(path)]).to_batches())
+
+
+def _first(batches: Iterator[pa.RecordBatch]) -> pa.Table:
+    pieces, count = [answer_fields(pa.string()).empty_table()], 0
+    for batch in batches:
+        pieces.append(pa.Table.from_batches([batch.slice(0, MOST_LISTED - count)]))
+        count += pieces[-1].num_rows
+        if count == MOST_LISTED:
+            break
+    return pa.concat_tables(pieces)
+
+
+def _asked(axes: Path, requirements: Path | None, names: pa.ChunkedArray) -> pa.Table:
+    """Axes of these names in list form, their names as text."""
+    table = open_axes(axes)
+    others = None if requirements is None else open_requirements(requirements, table)
+    parts = parts_of(table) if others is None else with_others(table, parts_of(table), others)
+    pieces, count, wanted = list[pa.Table](), 0, names.combine_chunks()
+    for listed in (listed for part in parts for listed in axes_of(table, part, others)):
+        rows = listed.rows.set_column(listed.rows.column_names.index(AXIS), AXIS, listed.rows[AXIS].cast(pa.string()))
+        pieces.append(rows.filter(pc.is_in(rows[AXIS], wanted)))
+        count += pieces[-1].num_rows
+        if count == len(wanted):
+            break
+    return pa.concat_tables(pieces)
+
+
+def nearest_misses(axes: pa.Table, catalogue: Catalogue) -> pa.Table:
+    """The gear that `select` puts first for each of some sound axes that none suits, with what governs it."""
+    read, found = Axes(axes), dict[str, list[Any]]((name, [None] * axes.num_rows) for name in NEAREST.names)
+    for allowed, rows in read.gears(catalogue).chunks(read.phase_counts):
+        evaluation = evaluate(read.duty(rows), allowed, catalogue)
+        best = _foremost(evaluation)
+        used = np.take_along_axis(evaluation.utilisation, best, -1)[:, 0]
+        governing = evaluation.governing_of(best)[:, 0]
+        for index, row in enumerate(rows.tolist()):
+            found["nearest"][row] = evaluation.gears.rows[best[index, 0]].designation
+            if not np.isnan(used[index]):
+                found["nearest_check"][row] = evaluation.checked[governing[index]].check.code
+                found["nearest_utilisation"][row] = used.item(index) if np.isfinite(used[index]) else None
+    return pa.table(found, NEAREST)
+
+
+def _foremost(evaluation: Evaluation) -> PlaceArray:
+    """Place of the first gear out of those on which every check could be judged, of any if there is none, (N, 1)."""
+    judged = np.ones(evaluation.verdict.shape, np.bool_)
+    for one in evaluation.checked:
+        judged &= ~(one.asked & np.isnan(one.utilisation))
+    first = np.take_along_axis(judged, evaluation.order, -1).argmax(axis=-1)[:, None]
+    places: PlaceArray = np.take_along_axis(evaluation.order, first, -1)
+    return places
+
+
+def applications_of(axes: pa.Table) -> Iterator[tuple[str, Application]]:
+    """Axes of a listing by name, as the models have them."""
+    for cells in axes.to_pylist():
+        yield cells[AXIS], Application.model_validate(COLUMNS.application_of(cells))
+
+
+def rows_of(answers: pa.Table) -> list[AxisRow]:
+    """The answers of a listing, row by row."""
+    return [_row(place, **cells) for place, cells in enumerate(answers.to_pylist(), start=1)]
+
+
+def _row(place: int, **cells: Any) -> AxisRow:
+    nearest = [cells.pop(name) for name in NEAREST.names]
+    if cells["error"] is not None:
+        state: State = "rejected"
+    else:
+        state = "selected" if cells["selected"] else "unsuitable"
+    if state == "unsuitable":
+        cells |= dict(zip(("selected", "governing_check", "utilisation"), nearest, strict=True))
+    return AxisRow(place, cells.pop(AXIS) or "", state, cells.pop("selected"), **cells)

@@ -1,0 +1,250 @@
+"""From a table of axes in list form to their answers: a row for each axis, and a row for each fault."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import pyarrow as pa
+from numpy.typing import NDArray
+from pydantic import ValidationError
+
+from hpn.application import Application, InputError
+from hpn.catalogue import Catalogue
+from hpn.checks import CHECKS
+from hpn.equations import FloatArray
+from hpn.evaluation import SUITABLE, Evaluation, evaluate
+from hpn.faults import faults_of
+from hpn.fleet.axes import Allowed, Axes, BoolArray, IntArray, have_sound_lists
+from hpn.fleet.columns import AXIS, COLUMNS
+from hpn.selection import Candidate, Reserve, candidates_of, gears_for
+
+MOST_FAULTS = 20
+"""Faults of one axis that are told."""
+
+
+@dataclass(frozen=True, slots=True)
+class Fault:
+    """What is wrong with an axis: number `row` of its table."""
+
+    row: int
+    column: str
+    reason: str
+
+    def moved(self, rows: int) -> "Fault":
+        """The fault of a row that stands further down."""
+        return Fault(self.row + rows, self.column, self.reason)
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """Answers, a row for each axis of a table; faults; and candidates, where they are wanted."""
+
+    answers: pa.Table
+    rejected: pa.Table
+    candidates: pa.Table | None
+
+
+def answer_fields(axis: pa.DataType) -> pa.Schema:
+    """Columns of the answers, for axes of a type."""
+    return pa.schema(
+        [
+            (AXIS, axis),
+            ("selected", pa.string()),
+            ("governing_check", pa.string()),
+            ("utilisation", pa.float64()),
+            ("life_L10_h", pa.float64()),
+            ("suitable", pa.int64()),
+            ("runner_up", pa.string()),
+            ("average_torque_Nm", pa.float64()),
+            ("error", pa.string()),
+        ]
+    )
+
+
+def rejected_fields(axis: pa.DataType) -> pa.Schema:
+    """Columns of the faults."""
+    return pa.schema([(AXIS, axis), ("column", pa.string()), ("reason", pa.string())])
+
+
+def outcome(
+    table: pa.Table, catalogue: Catalogue, faults: Sequence[Fault] = (), *, with_candidates: bool = False
+) -> Outcome:
+    """Answers to the axes of a table; `faults` are those that its reader has found."""
+    mask = have_sound_lists(table)
+    mask[[fault.row for fault in faults]] = False
+    axes = Axes(table if mask.all() else table.filter(pa.array(mask)))
+    gears = axes.gears(catalogue)
+    sound = axes.are_sound & gears.are_there
+    if not sound.all():
+        axes, gears = Axes(axes.table.filter(pa.array(sound))), Allowed(gears.lists, gears.which[sound])
+        mask[mask] = sound
+    answers, candidates, places = _Answers(table.num_rows), _Candidates(), np.flatnonzero(mask)
+    for allowed, rows in gears.chunks(axes.phase_counts):
+        evaluation = evaluate(axes.duty(rows), allowed, catalogue)
+        answers.add(evaluation, places[rows])
+        if with_candidates:
+            candidates.add(evaluation, places[rows])
+    every = _all_faults(table, mask, faults, catalogue)
+    rejected = rejected_table(table[AXIS], every)
+    return Outcome(
+        answers.table(table[AXIS], every), rejected, candidates.table(table[AXIS]) if with_candidates else None
+    )
+
+
+# --- Answers ----------------------------------------------------------------------------------------------------------
+
+CODES = [check.code for check in CHECKS]
+
+
+class _Answers:
+    """Columns of the answers, filled chunk by chunk; what is not filled is null."""
+
+    def __init__(self, count: int) -> None:
+        self.selected, self.runner_up, self.governing = (np.full(count, -1, np.int32) for _ in range(3))
+        self.utilisation, self.life_L10_h, self.average_torque_Nm = (np.full(count, np.nan) for _ in range(3))
+        self.suitable = np.full(count, -1, np.int64)
+        self.designations: list[str] = []
+
+    def add(self, evaluation: Evaluation, places: IntArray) -> None:
+        """Take the answers of some axes."""
+        suits = evaluation.verdict == SUITABLE
+        count = suits.sum(axis=-1)
+        best, found = evaluation.foremost(suits), count > 0
+        names = np.array([self._number(gear.designation) for gear in evaluation.gears.rows], np.int32)
+        codes = np.array([CODES.index(one.check.code) for one in evaluation.checked], np.int32)
+        rows = np.arange(len(places))
+        self.suitable[places] = count
+        self.average_torque_Nm[places] = evaluation.case.duty.average_torque_Nm[:, 0]
+        self.selected[places] = np.where(found, names[best], -1)
+        self.governing[places] = np.where(found, codes[evaluation.governing_of(best[:, None])[:, 0]], -1)
+        self.utilisation[places] = np.where(found, evaluation.utilisation[rows, best], np.nan)
+        life = np.broadcast_to(evaluation.case.figures.life_L10_h, suits.shape)
+        self.life_L10_h[places] = np.where(found, life[rows, best], np.nan)
+        suits[rows, best] = False
+        self.runner_up[places] = np.where(count > 1, names[evaluation.foremost(suits)], -1)
+
+    def table(self, axis: pa.ChunkedArray, faults: Sequence[Fault]) -> pa.Table:
+        """The answers, with what was wrong."""
+        columns = [
+            axis,
+            _named(self.selected, self.designations),
+            _named(self.governing, CODES),
+            _finite(self.utilisation),
+            _finite(self.life_L10_h),
+            pa.array(self.suitable, mask=self.suitable < 0),
+            _named(self.runner_up, self.designations),
+            _finite(self.average_torque_Nm),
+            _errors(len(self.suitable), faults),
+        ]
+        return pa.Table.from_arrays(columns, schema=answer_fields(axis.type))
+
+    def _number(self, designation: str) -> int:
+        if designation not in self.designations:
+            self.designations.append(designation)
+        return self.designations.index(designation)
+
+
+def _named(places: NDArray[np.int32], names: Sequence[str]) -> pa.Array:
+    return pa.DictionaryArray.from_arrays(pa.array(places, mask=places < 0), pa.array(names, pa.string())).cast(
+        pa.string()
+    )
+
+
+def _finite(values: FloatArray) -> pa.Array:
+    return pa.array(values, mask=~np.isfinite(values))
+
+
+# --- Faults -----------------------------------------------------------------------------------------------------------
+
+
+def rejected_table(axis: pa.ChunkedArray, faults: Sequence[Fault]) -> pa.Table:
+    """A row for each fault."""
+    rows = pa.array([fault.row for fault in faults], pa.int64())
+    columns = [axis.take(rows), [fault.column for fault in faults], [fault.reason for fault in faults]]
+    return pa.Table.from_arrays([columns[0], *map(_texts, columns[1:])], schema=rejected_fields(axis.type))
+
+
+def _texts(values: Sequence[str | None]) -> pa.Array:
+    return pa.array(values, pa.string())
+
+
+def _errors(count: int, faults: Sequence[Fault]) -> pa.Array:
+    """What is wrong with each axis in one text; null where nothing is."""
+    texts: list[list[str]] = [[] for _ in range(count)] if faults else []
+    for fault in faults:
+        texts[fault.row].append(f"{fault.column}: {fault.reason}")
+    return _texts(["; ".join(lines) or None for lines in texts]) if faults else pa.nulls(count, pa.string())
+
+
+def _all_faults(table: pa.Table, mask: BoolArray, faults: Sequence[Fault], catalogue: Catalogue) -> list[Fault]:
+    """Every fault in the order of the rows, the first of each axis alone where there are too many."""
+    known: dict[int, list[Fault]] = {row: [] for row in np.flatnonzero(~mask).tolist()}
+    for fault in faults:
+        known[fault.row].append(fault)
+    return [fault for row, found in known.items() for fault in (found or _found(table, row, catalogue))[:MOST_FAULTS]]
+
+
+def _found(table: pa.Table, row: int, catalogue: Catalogue) -> list[Fault]:
+    """What the lists lack, or else what the models or the selection refuse."""
+    cells = {name: table[name][row].as_py() for name in table.column_names}
+    faults = [] if cells[AXIS] is not None else [Fault(row, AXIS, "is required")]
+    if found := faults + [Fault(row, *fault) for fault in _faults_of_lists(cells)]:
+        return found
+    try:
+        application = Application.model_validate(COLUMNS.application_of(cells))
+        gears_for(application, catalogue)
+    except (ValidationError, InputError) as error:
+        return [_located(row, tuple(location), text) for location, text in faults_of(error)]
+    raise RuntimeError(f"the columns refuse axis {cells[AXIS]!r}, which the models take")
+
+
+def _faults_of_lists(cells: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
+    count = len(cells["torque_Nm"] or ())
+    for name, column in COLUMNS.phases.items():
+        values = cells.get(name)
+        if values is None and column.required:
+            yield name, "is required"
+        elif values is not None and len(values) != count:
+            yield name, f"has {len(values)} phases where torque_Nm has {count}"
+
+
+def _located(row: int, location: tuple[str | int, ...], text: str) -> Fault:
+    column, place = COLUMNS.column_at(location)
+    return Fault(row, column, f"{place}: {text}" if place else text)
+
+
+# --- Candidates -------------------------------------------------------------------------------------------------------
+
+RESERVE = {f"reserve.{name}": name for name in Reserve.__struct_fields__}
+PLAIN = tuple(name for name in Candidate.__struct_fields__ if name not in ("reserve", "checks"))
+WHOLE, TEXTS = ("ratio", "stages", "rank"), ("designation", "size", "status", "governing_check", "reason")
+
+
+def candidate_fields(axis: pa.DataType) -> pa.Schema:
+    """Columns of the candidates: those of the reply, without their checks."""
+    kinds = {**dict.fromkeys(WHOLE, pa.int64()), **dict.fromkeys(TEXTS, pa.string())}
+    return pa.schema([(AXIS, axis), *((name, kinds.get(name, pa.float64())) for name in (*PLAIN, *RESERVE))])
+
+
+class _Candidates:
+    """Every candidate of every axis, best first."""
+
+    def __init__(self) -> None:
+        self.of_axis: dict[int, list[Candidate]] = {}
+
+    def add(self, evaluation: Evaluation, places: IntArray) -> None:
+        """Take the candidates of some axes."""
+        for index, place in enumerate(places.tolist()):
+            self.of_axis[place] = list(candidates_of(evaluation, index))
+
+    def table(self, axis: pa.ChunkedArray) -> pa.Table:
+        """A row for each candidate, in the order of the axes."""
+        places = sorted(self.of_axis)
+        rows = [candidate for place in places for candidate in self.of_axis[place]]
+        of = np.repeat(np.array(places, np.int64), [len(self.of_axis[place]) for place in places])
+        columns = [axis.take(pa.array(of)).combine_chunks()]
+        schema = candidate_fields(axis.type)
+        columns += [pa.array([getattr(row, name) for row in rows], schema.field(name).type) for name in PLAIN]
+        columns += [pa.array([getattr(row.reserve, name) for row in rows], pa.float64()) for name in RESERVE.values()]
+        return pa.Table.from_arrays(columns, schema=schema)

@@ -1,0 +1,201 @@
+"""Sizing a fleet: parts are worked on by processes of this machine or by a cluster; a stopped run can be resumed."""
+
+import fcntl
+import hashlib
+import os
+import shutil
+import signal
+import threading
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from concurrent.futures import Future, ProcessPoolExecutor, as_completed
+from contextlib import contextmanager
+from dataclasses import dataclass
+from multiprocessing import get_context, parent_process
+from pathlib import Path
+
+import msgspec
+
+from hpn import ENGINE_VERSION
+from hpn.catalogue import Catalogue
+from hpn.catalogue.copy import copy_of
+from hpn.fleet.assemble import assemble
+from hpn.fleet.errors import FleetError
+from hpn.fleet.grouping import Part, parts_of, with_others
+from hpn.fleet.job import Job, compute
+from hpn.fleet.opened import format_of
+from hpn.fleet.tables import Table
+
+Engine = Callable[[Job, Mapping[int, Part]], Iterator[int]]
+"""Computes parts of a job, and gives the number of each when it is done."""
+
+Watch = Callable[[int, int, str], None]
+"""Is told what is done and what there is, and what that counts, whenever a part is done."""
+
+
+@dataclass(frozen=True)
+class Order:
+    """What is wanted: the tables to read, and the files to write."""
+
+    axes: Path
+    answers: Path
+    requirements: Path | None = None
+    candidates: Path | None = None
+    rejected: Path | None = None
+    resume: bool = False
+
+    @property
+    def targets(self) -> dict[str, Path]:
+        """Files to write, by kind."""
+        named = {"answers": self.answers, "candidates": self.candidates, "rejected": self.rejected}
+        return {kind: path for kind, path in named.items() if path is not None}
+
+    @property
+    def folder(self) -> Path:
+        """Where the parts are kept until they are all done."""
+        return self.answers.with_name(f"{self.answers.name}.parts")
+
+
+class Plan(msgspec.Struct, frozen=True):
+    """What parts belong to: they can be gone on with where nothing of it has changed."""
+
+    engine_version: str
+    catalogue_version: str
+    fingerprints: tuple[str, ...]
+    with_candidates: bool
+    parts: tuple[Part, ...]
+
+
+def size_fleet(order: Order, catalogue: Catalogue, engine: Engine, watch: Watch) -> dict[str, int]:
+    """Size all axes; gives the numbers of rows of the files by kind.
+
+    Raises FleetError for input that can't be used, and for parts that belong to another one.
+    """
+    _require_distinct(order)
+    read = [path for path in (order.axes, order.requirements) if path is not None]
+    job = Job(
+        order.axes,
+        order.requirements,
+        order.folder,
+        copy_of(catalogue),
+        order.candidates is not None,
+        tuple(_fingerprint(path) for path in read if path.is_file()),
+    )
+    table, requirements = job.tables()
+    parts = parts_of(table)
+    if requirements is not None:
+        parts = with_others(table, parts, requirements)
+    plan = Plan(ENGINE_VERSION, catalogue.version, job.fingerprints, job.with_candidates, tuple(parts))
+    with _folder(order, plan):
+        _work(job, parts, table, engine, watch)
+        return assemble(job, len(parts), order.targets)
+
+
+def _work(job: Job, parts: Sequence[Part], table: Table, engine: Engine, watch: Watch) -> None:
+    sizes = [sum(table.unit_sizes[part.first : part.end]) for part in parts]
+    left = {number: part for number, part in enumerate(parts) if not job.is_done(number)}
+    done = sum(sizes) - sum(sizes[number] for number in left)
+    watch(done, sum(sizes), table.measured_in)
+    for number in engine(job, left):
+        done += sizes[number]
+        watch(done, sum(sizes), table.measured_in)
+
+
+def _require_distinct(order: Order) -> None:
+    """Raise FleetError where a file would be written over, or could not be written."""
+    read = [path for path in (order.axes, order.requirements) if path is not None]
+    written = list(order.targets.values())
+    for place, path in enumerate(written):
+        format_of(path)
+        if not path.parent.is_dir():
+            raise FleetError(f"{path}: there is no folder {path.parent}")
+        if path.is_dir():
+            raise FleetError(f"{path}: is a folder, where a file belongs")
+        if path.resolve() in [other.resolve() for other in (*read, *written[:place])]:
+            raise FleetError(f"{path}: is named twice")
+
+
+def _fingerprint(path: Path) -> str:
+    with path.open("rb") as file:
+        return hashlib.file_digest(file, "blake2b").hexdigest()
+
+
+@contextmanager
+def _folder(order: Order, plan: Plan) -> Iterator[None]:
+    """The folder of the parts, for this run alone; gone when all went well."""
+    folder, wanted = order.folder, msgspec.json.encode(plan)
+    folder.mkdir(exist_ok=True)
+    with (folder / "lock").open("w") as lock:
+        try:
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            raise FleetError(f"{order.answers}: another run is writing it") from None
+        known = folder / "plan.json"
+        if order.resume and known.exists() and known.read_bytes() != wanted:
+            raise FleetError(f"{folder}: its parts are {_difference(known.read_bytes(), plan)}; run without --resume")
+        if not (order.resume and known.exists()):
+            for file in folder.iterdir():
+                if file.name != "lock":
+                    file.unlink()
+            whole = folder / "plan"
+            whole.write_bytes(wanted)
+            whole.replace(known)
+        yield
+        shutil.rmtree(folder)
+
+
+def _difference(known: bytes, plan: Plan) -> str:
+    try:
+        before = msgspec.json.decode(known, type=Plan)
+    except msgspec.MsgspecError:
+        return "of another version"
+    if before.engine_version != plan.engine_version:
+        return f"of engine {before.engine_version}, this is {plan.engine_version}"
+    if before.catalogue_version != plan.catalogue_version:
+        return "of another catalogue"
+    if before.fingerprints != plan.fingerprints:
+        return "of another input: a table has changed"
+    return "of other options"
+
+
+# --- Processes of this machine ----------------------------------------------------------------------------------------
+
+MEMORY = {"MALLOC_TRIM_THRESHOLD_": "200000000", "MALLOC_MMAP_THRESHOLD_": "100000000"}
+"""Memory that arrays give back is kept for the next ones: asking the system anew takes half of the time of a chunk."""
+
+
+def processes(workers: int) -> Engine:
+    """Engine of so many processes of this machine."""
+
+    def run(job: Job, parts: Mapping[int, Part]) -> Iterator[int]:
+        if len(parts) == 1:  # a process takes longer to start than one part to compute
+            ((number, part),) = parts.items()
+            compute(job, number, part)
+            yield number
+            return
+        for name, value in MEMORY.items():
+            os.environ.setdefault(name, value)
+        with ProcessPoolExecutor(workers, get_context("spawn"), _end_with_parent) as pool:
+            futures: dict[Future[int], int] = {
+                pool.submit(compute, job, number, part): number for number, part in parts.items()
+            }
+            try:
+                for future in as_completed(futures):
+                    future.result()
+                    yield futures[future]
+            finally:
+                pool.shutdown(wait=True, cancel_futures=True)
+
+    return run
+
+
+def _end_with_parent() -> None:
+    """End this process when the one that started it is gone; an interrupt is for that one to answer."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    parent = parent_process()
+    assert parent is not None
+
+    def wait() -> None:
+        parent.join()
+        os._exit(1)
+
+    threading.Thread(target=wait, daemon=True).start()

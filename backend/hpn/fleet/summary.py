@@ -1,0 +1,63 @@
+"""What the answers of a fleet come to: gears by count, what governs, how much is used, and axes without a gear."""
+
+from collections import Counter
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.compute as pc
+from numpy.typing import NDArray
+
+BINS = 10
+"""Parts of the whole that utilisation is counted in."""
+
+Counts = tuple[tuple[str, int], ...]
+"""Names with how many axes each has, most first."""
+
+
+@dataclass(frozen=True)
+class Summary:
+    """Counts over all axes. `checks` are those that govern the selected gears; `utilisation` counts these by tenths."""
+
+    axes: int
+    rejected: int
+    unsuitable: int
+    gears: Counts
+    checks: Counts
+    utilisation: tuple[int, ...]
+
+    @property
+    def selected(self) -> int:
+        """Axes that have a gear."""
+        return self.axes - self.rejected - self.unsuitable
+
+
+def summary_of(answers: Iterable[pa.RecordBatch]) -> Summary:
+    """Count the axes of answers, batch by batch."""
+    axes, rejected, unsuitable = 0, 0, 0
+    gears, checks = Counter[str](), Counter[str]()
+    bins = np.zeros(BINS, np.int64)
+    for batch in answers:
+        axes += batch.num_rows
+        rejected += batch.num_rows - batch["error"].null_count
+        unsuitable += pc.sum(pc.equal(batch["suitable"], 0)).as_py() or 0
+        gears.update(_counted(batch["selected"]))
+        checks.update(_counted(batch["governing_check"]))
+        bins += _in_bins(batch["utilisation"])
+    return Summary(axes, rejected, unsuitable, _ordered(gears), _ordered(checks), tuple(bins.tolist()))
+
+
+def _counted(names: pa.Array) -> dict[str, int]:
+    return {entry["values"]: entry["counts"] for entry in pc.value_counts(names.drop_null()).to_pylist()}
+
+
+def _in_bins(utilisation: pa.Array) -> NDArray[np.int64]:
+    """Counts by tenths, each with its upper end; what rounding puts beyond the whole belongs to the last."""
+    used = utilisation.drop_null().to_numpy(zero_copy_only=False)
+    places = np.clip(np.ceil(used * BINS).astype(np.int64) - 1, 0, BINS - 1)
+    return np.bincount(places, minlength=BINS)
+
+
+def _ordered(counts: Counter[str]) -> Counts:
+    return tuple(sorted(counts.items(), key=lambda entry: (-entry[1], entry[0])))

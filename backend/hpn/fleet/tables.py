@@ -1,0 +1,200 @@
+"""Tables of axes in files: Parquet, Arrow IPC, CSV and NDJSON, read unit by unit.
+
+A unit can be read on its own: a row group, a record batch, a stretch of lines. What is read has the columns of
+`columns.py` in their types. A cell that is none is null and a fault; the file goes on.
+"""
+
+from abc import ABC, abstractmethod
+from collections.abc import Iterator, Sequence
+from functools import cached_property
+from pathlib import Path
+from typing import NamedTuple
+
+import pyarrow as pa
+import pyarrow.parquet as pq
+import pyarrow.types as kinds
+
+from hpn.fleet.columns import AXIS, COLUMNS, Column, is_list, is_text
+from hpn.fleet.errors import FleetError
+
+BATCH_ROWS = 16_384
+"""Rows that are read at once."""
+
+
+UNREADABLE = (pa.ArrowException, OSError, UnicodeDecodeError)
+"""What Arrow raises for a file that it can't read."""
+
+
+class CellFault(NamedTuple):
+    """A cell that can't be read: the row of its batch, its column, and what would be right."""
+
+    row: int
+    column: str
+    reason: str
+
+
+class Batch(NamedTuple):
+    """Some rows of a table, and what is wrong with their cells."""
+
+    rows: pa.Table
+    faults: Sequence[CellFault] = ()
+
+
+class Table(ABC):
+    """A table of axes in a file. Raises FleetError, which names the file, where it can't be read."""
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+
+    @property
+    @abstractmethod
+    def names(self) -> Sequence[str]:
+        """Names of the columns."""
+
+    @property
+    @abstractmethod
+    def is_in_list_form(self) -> bool:
+        """Whether a row is an axis, with lists of phases; else a row is a phase."""
+
+    @property
+    @abstractmethod
+    def axis_type(self) -> pa.DataType:
+        """Type of the axes: text or integers."""
+
+    @cached_property
+    @abstractmethod
+    def unit_sizes(self) -> Sequence[int]:
+        """Size of each unit, in rows or bytes."""
+
+    measured_in = "rows"
+    """What sizes count."""
+
+    @abstractmethod
+    def read(self, unit: int, names: Sequence[str]) -> Iterator[Batch]:
+        """Some columns of a unit."""
+
+    def type_of(self, name: str) -> pa.DataType:
+        """Type that a column is read as."""
+        if name == AXIS:
+            return self.axis_type
+        column = COLUMNS.all[name]
+        return column.type if self.is_in_list_form or name not in COLUMNS.phases else column.type.value_type
+
+    def unreadable(self, error: Exception, where: str = "") -> FleetError:
+        """What is said of a file that can't be read."""
+        what = str(error).strip().partition("\n")[0]
+        return FleetError(f"{self.path}: {where}can’t be read as {self.path.suffix[1:]}: {what}")
+
+
+class TypedTable(Table):
+    """A table whose columns have types: Parquet or Arrow IPC."""
+
+    @property
+    @abstractmethod
+    def given(self) -> pa.Schema:
+        """Columns with their types, as they stand."""
+
+    @property
+    def names(self) -> Sequence[str]:
+        try:
+            names: Sequence[str] = self.given.names
+        except UnicodeDecodeError as error:
+            raise self.unreadable(error) from None
+        return names
+
+    @property
+    def is_in_list_form(self) -> bool:
+        return "torque_Nm" in self.names and is_list(self.given.field("torque_Nm").type)
+
+    @property
+    def axis_type(self) -> pa.DataType:
+        given = self.given.field(AXIS).type
+        if kinds.is_dictionary(given):
+            given = given.value_type
+        return pa.string() if kinds.is_string_view(given) or kinds.is_null(given) else given
+
+    def wrong_types(self) -> Iterator[str]:
+        """Columns whose type can't hold what belongs into them, in words."""
+        for field in self.given:
+            if field.name == AXIS:
+                if not (is_text(self.axis_type) or kinds.is_integer(self.axis_type)):
+                    yield f"column axis is {field.type}, where text or integers belong"
+            elif not (column := COLUMNS.all[field.name]).takes(field.type, self.type_of(field.name)):
+                yield f"column {field.name} is {field.type}, where {_words(column, self.type_of(field.name))} belong"
+
+    def _batch(self, rows: pa.RecordBatch, names: Sequence[str]) -> Batch:
+        columns = [_cast(rows.column(name), self.type_of(name)) for name in names]
+        return Batch(pa.Table.from_arrays(columns, names=list(names)))
+
+
+def _words(column: Column, wanted: pa.DataType) -> str:
+    item = "texts" if column.kind == "string" else "numbers"
+    return f"lists of {item}" if is_list(wanted) else item
+
+
+def _cast(column: pa.Array, wanted: pa.DataType) -> pa.Array:
+    if kinds.is_dictionary(column.type):
+        column = column.dictionary_decode()
+    elif is_list(column.type) and kinds.is_dictionary(column.type.value_type):
+        column = column.cast(pa.list_(column.type.value_type.value_type))
+    return column if column.type.equals(wanted) else column.cast(wanted, safe=False)
+
+
+class ParquetTable(TypedTable):
+    """A Parquet file; its units are its row groups."""
+
+    @cached_property
+    def _file(self) -> pq.ParquetFile:
+        try:
+            return pq.ParquetFile(self.path, memory_map=True)
+        except UNREADABLE as error:
+            raise self.unreadable(error) from None
+
+    @property
+    def given(self) -> pa.Schema:
+        return self._file.schema_arrow
+
+    @cached_property
+    def unit_sizes(self) -> Sequence[int]:
+        metadata = self._file.metadata
+        return [metadata.row_group(unit).num_rows for unit in range(metadata.num_row_groups)]
+
+    def read(self, unit: int, names: Sequence[str]) -> Iterator[Batch]:
+        try:
+            for rows in self._file.iter_batches(BATCH_ROWS, [unit], list(names), use_threads=False):
+                rows.validate(full=True)  # texts are taken as they stand, UTF-8 or not
+                yield self._batch(rows, names)
+        except UNREADABLE as error:
+            raise self.unreadable(error, f"row group {unit + 1} ") from None
+
+
+class ArrowTable(TypedTable):
+    """An Arrow IPC file; its units are its record batches."""
+
+    @cached_property
+    def _file(self) -> pa.RecordBatchFileReader:
+        try:
+            return pa.ipc.open_file(pa.memory_map(str(self.path)))
+        except UNREADABLE as error:
+            raise self.unreadable(error) from None
+
+    @property
+    def given(self) -> pa.Schema:
+        return self._file.schema
+
+    @cached_property
+    def unit_sizes(self) -> Sequence[int]:
+        return [self._read(unit).num_rows for unit in range(self._file.num_record_batches)]
+
+    def read(self, unit: int, names: Sequence[str]) -> Iterator[Batch]:
+        rows = self._read(unit)
+        for start in range(0, rows.num_rows, BATCH_ROWS):
+            yield self._batch(rows.slice(start, BATCH_ROWS), names)
+
+    def _read(self, unit: int) -> pa.RecordBatch:
+        try:
+            batch = self._file.get_batch(unit)
+            batch.validate(full=True)
+        except UNREADABLE as error:
+            raise self.unreadable(error, f"record batch {unit + 1} ") from None
+        return batch

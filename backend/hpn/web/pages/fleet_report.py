@@ -1,0 +1,52 @@
+"""A fleet as one HTML file: what its page shows, with styles and a script inside."""
+
+import pyarrow as pa
+from jinja2 import Environment
+from markupsafe import Markup
+from starlette.datastructures import State
+
+from hpn import ENGINE_VERSION
+from hpn.catalogue import Catalogue
+from hpn.fleet.listing import Listing, applications_of, rows_of
+from hpn.web.form import read as links
+from hpn.web.form.write import to_link
+from hpn.web.pages.assets import Assets
+from hpn.web.pages.fleet_view import SHOWN, FleetView
+from hpn.web.pages.templates import STATIC, environment
+
+STYLES, SCRIPT = ("app.css", "tools.css", "fleet.css"), "fleet-report.js"
+
+
+def report_of(listing: Listing, name: str, catalogue: Catalogue, base: str = "") -> str:
+    """The file; `base` is the address of the service that its links lead to, blank where none is known."""
+    view = FleetView(listing.summary, rows_of(listing.answers), links_of(listing.axes, base))
+    return (
+        _environment()
+        .get_template("fleet_report.html")
+        .render(
+            view=view,
+            name=name,
+            base=base,
+            shown=SHOWN,
+            style=_inlined(*STYLES),
+            script=_inlined(SCRIPT),
+            engine_version=ENGINE_VERSION,
+            catalogue_version=catalogue.version,
+        )
+    )
+
+
+def links_of(axes: pa.Table, base: str = "") -> dict[str, str]:
+    """Canonical link of each axis; one that is too long for an address has none."""
+    found = ((axis, to_link(application)) for axis, application in applications_of(axes))
+    return {axis: base + link for axis, link in found if len(link) <= links.MAXIMUM_QUERY_BYTES}
+
+
+def _environment() -> Environment:
+    state = State()
+    state.assets = Assets(STATIC, {})  # what a page asks the service for stands in the file itself
+    return environment(state)
+
+
+def _inlined(*names: str) -> Markup:
+    return Markup("\n".join((STATIC / name).read_text() for name in names))

@@ -1,0 +1,178 @@
+"""Tables of axes for tests: rows of applications, faults in them, and every way to write them."""
+
+import csv
+import json
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import pyarrow as pa
+import pyarrow.csv as pacsv
+import pyarrow.parquet as pq
+
+from hpn.fleet.grouping import Part
+from hpn.fleet.job import Job, compute
+from tests.build import Json
+
+PHASE = (
+    *("torque_Nm", "speed_rpm", "duration_s", "radial_N", "axial_N"),
+    *("peak_torque_Nm", "peak_speed_rpm", "rms_torque_Nm"),
+)
+REQUIRED = PHASE[:3]
+LISTS = {"requirements.ratios": pa.list_(pa.int64()), "requirements.sizes": pa.list_(pa.string())}
+TEXTS = ("output_load.life_basis", "output_load.model", "rank_by", "application_area")
+
+Row = dict[str, Any]
+
+
+def row_of(axis: str | int, application: Json) -> Row:
+    """An application as a row in list form; phases whose loads nobody gives have no such list."""
+    row: Row = {"axis": axis, **_flat({name: part for name, part in application.items() if name != "duty_cycle"})}
+    cycle = application["duty_cycle"]
+    if "pause_s" in cycle:
+        row["pause_s"] = cycle["pause_s"]
+    for name in PHASE:
+        values = [entry.get(name) for entry in cycle["phases"]]
+        if name in REQUIRED or any(value is not None for value in values):
+            row[name] = values
+    return row
+
+
+def _flat(part: Json, path: str = "") -> Row:
+    row: Row = {}
+    for name, value in part.items():
+        if isinstance(value, dict):
+            row |= _flat(value, f"{path}{name}.")
+        else:
+            row[f"{path}{name}"] = value
+    return row
+
+
+def _unequal(row: Row) -> None:
+    row["speed_rpm"] = [*row["speed_rpm"], 1.0]
+
+
+FAULTS: dict[str, Callable[[Row], None]] = {
+    "torque_Nm: phase 1: must be less than or equal to 1000000": lambda row: row["torque_Nm"].__setitem__(0, 2e6),
+    "torque_Nm: phase 1: must be a finite number": lambda row: row["torque_Nm"].__setitem__(0, math.nan),
+    "duration_s: phase 1: is required": lambda row: row["duration_s"].__setitem__(0, None),
+    "duration_s: phase 1: must be greater than 0": lambda row: row["duration_s"].__setitem__(0, 0.0),
+    "speed_rpm: has": _unequal,
+    "no phase moves": lambda row: row.update(
+        speed_rpm=[0.0] * len(row["speed_rpm"]), peak_speed_rpm=[None] * len(row["speed_rpm"])
+    ),
+    "emergency_stop.torque_Nm: is required": lambda row: row.update(
+        {"emergency_stop.torque_Nm": None, "emergency_stop.count": 5}
+    ),
+    "requirements.utilisation: must be less than or equal to 1": lambda row: row.update(
+        {"requirements.utilisation": 1.5}
+    ),
+    "pause_s: must be greater than or equal to 0": lambda row: row.update(pause_s=-1.0),
+    "emergency_stop.count: must be a JSON integer, such as 5": lambda row: row.update(
+        {"emergency_stop.torque_Nm": 1.0, "emergency_stop.count": 1.5}
+    ),
+    "rank_by: must be": lambda row: row.update(rank_by="price"),
+    "requirements.ratios: item 1: the catalogue has no 6": lambda row: row.update({"requirements.ratios": [6]}),
+    "requirements.sizes: item 2: the catalogue has no 12A": lambda row: row.update(
+        {"requirements.sizes": ["11A", "12"]}
+    ),
+}
+"""What can be wrong with a row, by what is then said, and how it comes about."""
+
+
+def spoiled(row: Row, fault: str) -> Row:
+    """The row with a fault."""
+    copy = {name: list(value) if isinstance(value, list) else value for name, value in row.items()}
+    FAULTS[fault](copy)
+    return copy
+
+
+# --- Writing ----------------------------------------------------------------------------------------------------------
+
+
+def table_of(rows: Sequence[Row]) -> pa.Table:
+    """Rows in list form as an Arrow table."""
+    names = list(dict.fromkeys(name for row in rows for name in row))
+    return pa.table({name: pa.array([row.get(name) for row in rows], _type(name)) for name in names})
+
+
+def _type(name: str) -> pa.DataType | None:
+    if name == "axis":
+        return None
+    if name in PHASE:
+        return pa.list_(pa.float64())
+    return LISTS.get(name) or (pa.string() if name in TEXTS else pa.float64())
+
+
+def in_long_form(rows: Sequence[Row]) -> tuple[list[Row], list[Row]]:
+    """Rows of phases, and the rows beside them; a list that is shorter than another ends in nulls."""
+    phases, beside = [], []
+    for row in rows:
+        lists = {name: row[name] for name in PHASE if row.get(name) is not None}
+        for index in range(max(map(len, lists.values()))):
+            cells = {name: values[index] for name, values in lists.items() if index < len(values)}
+            phases.append({"axis": row["axis"], **cells})
+        beside.append({name: value for name, value in row.items() if name not in PHASE})
+    return phases, beside
+
+
+def write(path: Path, rows: Sequence[Row], *, unit_rows: int = 1000) -> Path:
+    """Rows in a file, in the format of its suffix; units are so many rows where the format has such."""
+    is_long = not any(isinstance(row.get("torque_Nm"), list) for row in rows)
+    if path.suffix in (".parquet", ".arrow"):
+        table = _long_table(rows) if is_long else table_of(rows)
+        if path.suffix == ".parquet":
+            pq.write_table(table, path, row_group_size=unit_rows)
+        else:
+            with pa.ipc.new_file(str(path), table.schema) as file:
+                file.write_table(table, max_chunksize=unit_rows)
+    elif path.suffix == ".csv":
+        names = list(dict.fromkeys(name for row in rows for name in row))
+        with path.open("w", newline="") as file:
+            writer = csv.writer(file, lineterminator="\n")
+            writer.writerow(names)
+            writer.writerows([_cell(row.get(name)) for name in names] for row in rows)
+    else:
+        path.write_text("".join(json.dumps(row) + "\n" for row in rows))
+    return path
+
+
+def _long_table(rows: Sequence[Row]) -> pa.Table:
+    names = list(dict.fromkeys(name for row in rows for name in row))
+    kinds = {name: pa.float64() for name in PHASE}
+    return pa.table({name: pa.array([row.get(name) for row in rows], kinds.get(name) or _type(name)) for name in names})
+
+
+def _cell(value: Any) -> Any:
+    return "" if value is None else json.dumps(value) if isinstance(value, list) else value
+
+
+# --- Sizing -----------------------------------------------------------------------------------------------------------
+
+
+def here(job: Job, parts: Mapping[int, Part]) -> Iterator[int]:
+    """Engine that works in this process: what is not about processes needs none."""
+    for number, part in parts.items():
+        compute(job, number, part)
+        yield number
+
+
+def quiet(done: int, total: int, counted: str) -> None:
+    """Shows no progress."""
+
+
+# --- Reading ----------------------------------------------------------------------------------------------------------
+
+
+def read(path: Path) -> list[Row]:
+    """Rows of a file that the fleet has written."""
+    if path.suffix == ".parquet":
+        rows: list[Row] = pq.read_table(path).to_pylist()
+    elif path.suffix == ".arrow":
+        rows = pa.ipc.open_file(str(path)).read_all().to_pylist()
+    elif path.suffix == ".csv":
+        rows = pacsv.read_csv(path, convert_options=pacsv.ConvertOptions(strings_can_be_null=True)).to_pylist()
+    else:
+        rows = [json.loads(line) for line in path.read_text().splitlines()]
+    return rows

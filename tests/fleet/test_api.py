@@ -1,0 +1,375 @@
+"""Fleets over REST: what the command gives, refusals in words, bounds, and a service that stays fast beside them."""
+
+import os
+import random
+import socket
+import time
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import ExitStack, suppress
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
+import pytest
+from starlette.testclient import TestClient
+
+from hpn.catalogue import Catalogue
+from hpn.fleet.grouping import Part
+from hpn.fleet.job import Job, compute
+from hpn.fleet.run import Order, size_fleet
+from hpn.web import fleets
+from hpn.web.app import create_app
+from hpn.web.door.pools import Pool
+from hpn.web.settings import Settings
+from tests.build import worked_example
+from tests.fleet.tables import Row, in_long_form, row_of, spoiled, table_of, write
+from tests.operations.service import Service, serving
+from tests.property.draw import at_random
+
+PATH = "/api/v1/fleet"
+TYPES = {
+    ".parquet": "application/vnd.apache.parquet",
+    ".arrow": "application/vnd.apache.arrow.file",
+    ".csv": "text/csv",
+    ".ndjson": "application/x-ndjson",
+}
+CSV = {"Content-Type": "text/csv"}
+HEADINGS = b"axis,torque_Nm,speed_rpm,duration_s\n"
+ONE_AXIS = HEADINGS + b'1,"[40]","[250]","[2]"\n'
+
+
+@pytest.fixture(scope="module")
+def service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Service]:
+    """A service that sets files aside in a folder of its own."""
+    folder = tmp_path_factory.mktemp("service")
+    (folder / "spool").mkdir()
+    with serving(folder, {"HPN_SPOOL_FOLDER": str(folder / "spool"), "HPN_FLEET_MEMORY_BYTES": "500000000"}) as running:
+        yield running
+
+
+@pytest.fixture(scope="module")
+def rows() -> list[Row]:
+    """Random axes, one of them with a fault."""
+    chance = random.Random(1717)
+    found = [row_of(f"axis {number}", at_random(chance, ("linear", "iso281"))) for number in range(60)]
+    return [*found[:7], spoiled(found[7], "pause_s: must be greater than or equal to 0"), *found[8:]]
+
+
+def here(job: Job, parts: Mapping[int, Part]) -> Iterator[int]:
+    """Engine of this process."""
+    for number, part in parts.items():
+        compute(job, number, part)
+        yield number
+
+
+def spool_of(service: Service) -> list[Path]:
+    """Folders of fleets that the service holds."""
+    return list((service.log.parent / "spool").iterdir())
+
+
+def fleet_processes(service: Service) -> list[int]:
+    """Processes that size fleets for the service, oldest first."""
+    children = Path(f"/proc/{service.process.pid}/task/{service.process.pid}/children").read_text().split()
+    return [int(pid) for pid in children if b"\0fleet\0" in Path(f"/proc/{pid}/cmdline").read_bytes()]
+
+
+def until(holds: Callable[[], Any]) -> Any:
+    """What a condition gives as soon as it holds; AssertionError after a minute."""
+    end = time.monotonic() + 60
+    while not (found := holds()):
+        assert time.monotonic() < end
+        time.sleep(0.02)
+    return found
+
+
+def is_gone(pid: int) -> bool:
+    """Whether a process has ended."""
+    with suppress(ProcessLookupError):
+        os.kill(pid, 0)
+        return False
+    return True
+
+
+# --- Answers ----------------------------------------------------------------------------------------------------------
+
+CASES: list[tuple[str, str, fleets.Kind]] = [
+    (".parquet", "long", "answers"),
+    (".arrow", "list", "candidates"),
+    (".csv", "long", "rejected"),
+    (".ndjson", "list", "answers"),
+]
+OTHER_FORM = {"long": "list", "list": "long"}
+
+
+@pytest.mark.parametrize(
+    ("suffix", "form", "give"),
+    [*CASES, *(pytest.param(s, OTHER_FORM[f], g, marks=pytest.mark.soak) for s, f, g in CASES)],
+)
+def test_an_answer_is_what_the_command_writes_to_the_byte(
+    suffix: str, form: str, give: fleets.Kind, rows: list[Row], service: Service, catalogue: Catalogue, tmp_path: Path
+) -> None:
+    files = {kind: tmp_path / f"{kind}{suffix}" for kind in ("answers", "rejected", "candidates")}
+    if form == "long":
+        phases, beside = in_long_form(rows)
+        table, axes = write(tmp_path / f"phases{suffix}", phases), write(tmp_path / f"beside{suffix}", beside)
+        sent: dict[str, Any] = {
+            "files": {"input": (table.name, table.read_bytes()), "axes": ("x", axes.read_bytes(), TYPES[suffix])}
+        }
+    else:
+        table, axes = write(tmp_path / f"axes{suffix}", rows), None
+        sent = {"content": table.read_bytes(), "headers": {"Content-Type": TYPES[suffix]}}
+    order = Order(table, files["answers"], axes, candidates=files["candidates"], rejected=files["rejected"])
+    size_fleet(order, catalogue, here, lambda *_: None)
+
+    answer = service.client.post(PATH, params={"give": give}, **sent)
+
+    assert answer.status_code == 200, answer.text
+    assert answer.headers["Content-Type"].partition(";")[0] == TYPES[suffix]
+    assert answer.headers["Content-Disposition"] == f'attachment; filename="{give}{suffix}"'
+    assert answer.content == files[give].read_bytes()
+    assert spool_of(service) == []
+
+
+@pytest.mark.soak
+def test_a_table_without_rows_has_an_answer_without_rows(service: Service) -> None:
+    answer = service.client.post(PATH, content=HEADINGS, headers=CSV)
+
+    assert answer.status_code == 200, answer.text
+    assert answer.text.count("\n") == 1 and '"axis"' in answer.text
+
+
+# --- Refusals ---------------------------------------------------------------------------------------------------------
+
+
+def parquet(**columns: Any) -> bytes:
+    """A Parquet file with these columns and those that are required."""
+    required = {"axis": ["a"], "torque_Nm": [[40.0]], "speed_rpm": [[250.0]], "duration_s": [[2.0]]}
+    sink = pa.BufferOutputStream()
+    pq.write_table(pa.table(required | columns), sink, compression="none")
+    return bytes(sink.getvalue())
+
+
+def spoiled_at(content: bytes, place: int) -> bytes:
+    """A file with other bytes in a place."""
+    return content[:place] + bytes(255 - byte for byte in content[place : place + 60]) + content[place + 60 :]
+
+
+def part(name: str, content: bytes, file: str = "axes.csv") -> bytes:
+    """A part of a form."""
+    return b'--b\r\nContent-Disposition: form-data; name="%s"; filename="%s"\r\n\r\n%s\r\n' % (
+        name.encode(),
+        file.encode(),
+        content,
+    )
+
+
+END = b"--b--\r\n"
+FORM = {"Content-Type": "multipart/form-data; boundary=b"}
+PARQUET, ARROW, NDJSON = ({"Content-Type": TYPES[suffix]} for suffix in (".parquet", ".arrow", ".ndjson"))
+REFUSED: list[tuple[str, bytes, dict[str, str], int, str]] = [
+    ("empty", b"", CSV, 422, "input: is empty"),
+    ("no table", b"\x00\xff" * 50, CSV, 422, "input: column axis is missing"),
+    ("truncated Parquet", parquet()[:-9], PARQUET, 422, "input: can’t be read as parquet"),
+    ("CSV as Arrow", ONE_AXIS, ARROW, 422, "input: can’t be read as arrow"),
+    ("no content type", ONE_AXIS, {}, 415, "or multipart/form-data"),
+    ("JSON", b"{}", {"Content-Type": "application/json"}, 415, "text/csv"),
+    ("form without a boundary", part("input", ONE_AXIS), {"Content-Type": "multipart/form-data"}, 400, "boundary"),
+    ("form without an end", part("input", ONE_AXIS), FORM, 400, "has no end"),
+    ("form without input", part("axes", ONE_AXIS) + END, FORM, 422, "needs a part input"),
+    ("form with another part", part("other", ONE_AXIS) + END, FORM, 422, "'other' is one more"),
+    ("form with two inputs", part("input", ONE_AXIS) * 2 + END, FORM, 422, "'input' is one more"),
+    ("form with a workbook", part("input", b"x", "axes.xlsx") + END, FORM, 415, "part input needs a file name"),
+    ("form whose axes are none", part("input", ONE_AXIS) + part("axes", b"x") + END, FORM, 422, "axes: column axis is"),
+    # What only the command can tell
+    (
+        "unknown column",
+        b"torqe_Nm," + ONE_AXIS,
+        CSV,
+        422,
+        "input: column 'torqe_Nm' is unknown; it looks like torque_Nm",
+    ),
+    ("wrong type", parquet(speed_rpm=["fast"]), PARQUET, 422, "input: column speed_rpm is string"),
+    ("spoiled Parquet", spoiled_at(parquet(), 20), PARQUET, 422, "input: "),
+    (
+        "list form with axes",
+        part("input", ONE_AXIS) + part("axes", b"axis\n1\n") + END,
+        FORM,
+        422,
+        "input: has its axes",
+    ),
+]
+
+
+IN_SOAK = ("wrong type", "list form with axes")
+"""Refusals of the command, each of which takes a second of start, beside two others of which the short form sees."""
+
+
+@pytest.mark.parametrize(
+    ("content", "headers", "status", "words"),
+    [pytest.param(*case, id=name, marks=[pytest.mark.soak] * (name in IN_SOAK)) for name, *case in REFUSED],
+)
+def test_what_is_no_table_of_axes_is_refused_in_words_without_a_path(
+    content: bytes, headers: dict[str, str], status: int, words: str, service: Service
+) -> None:
+    answer = service.client.post(PATH, content=content, headers=headers)
+
+    assert answer.status_code == status, answer.text
+    assert answer.headers["Content-Type"] == "application/problem+json"
+    assert words in answer.json()["detail"]
+    assert str(service.log.parent) not in answer.text
+    assert spool_of(service) == []
+
+
+def test_a_small_file_that_stands_for_more_than_memory_is_refused(service: Service, tmp_path: Path) -> None:
+    zeros = pa.array(np.zeros(30_000_000, np.int8))
+    table = table_of([row_of("a", worked_example())])
+    torques = pa.ListArray.from_arrays(pa.array([0, len(zeros)], pa.int32()), zeros)
+    table = table.set_column(table.column_names.index("torque_Nm"), "torque_Nm", torques)
+    pq.write_table(table, tmp_path / "bomb.parquet", compression="zstd", write_statistics=False)
+    content = (tmp_path / "bomb.parquet").read_bytes()
+
+    answer = service.client.post(PATH, content=content, headers=PARQUET)
+
+    assert len(content) < 20_000
+    assert answer.status_code in (413, 422), answer.text
+    assert service.client.post("/api/v1/select", json=worked_example()).status_code == 200
+
+
+# --- Bounds -----------------------------------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def bounded(tmp_path: Path) -> Iterator[Callable[..., TestClient]]:
+    """Makes clients of a service in this process with these settings, which sets files aside in a folder."""
+    opened: list[TestClient] = []
+
+    def make(**settings: Any) -> TestClient:
+        (tmp_path / "spool").mkdir(exist_ok=True)
+        address = f"sqlite:///{tmp_path}/store.sqlite3"
+        app = create_app(Settings(database_url=address, spool_folder=tmp_path / "spool", log_level="error", **settings))
+        opened.append(TestClient(app, raise_server_exceptions=False).__enter__())
+        return opened[-1]
+
+    yield make
+    for client in opened:
+        client.__exit__()
+
+
+@pytest.mark.parametrize("sent", ["whole", "in chunks"])
+def test_a_body_that_is_too_large_is_a_413(sent: str, bounded: Callable[..., TestClient], tmp_path: Path) -> None:
+    client = bounded(maximum_fleet_bytes=1000)
+    content = ONE_AXIS + b"x" * 1000
+
+    answer = client.post(
+        PATH, content=content if sent == "whole" else iter([content[:600], content[600:]]), headers=CSV
+    )
+
+    assert (answer.status_code, "1000 bytes" in answer.text) == (413, True)
+    assert list((tmp_path / "spool").iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    ("setting", "status", "words"),
+    [({"fleet_seconds": 0.2}, 503, "within 0.2 s"), ({"maximum_spool_bytes": 100}, 413, "more than 100 bytes")],
+    ids=["time", "disk"],
+)
+def test_what_takes_too_much_is_refused_and_leaves_nothing(
+    setting: dict[str, Any], status: int, words: str, bounded: Callable[..., TestClient], tmp_path: Path
+) -> None:
+    answer = bounded(**setting).post(PATH, content=ONE_AXIS, headers=CSV)
+
+    assert (answer.status_code, words in answer.text) == (status, True), answer.text
+    assert ("Retry-After" in answer.headers) == (status == 503)
+    assert list((tmp_path / "spool").iterdir()) == []
+
+
+def test_where_too_many_wait_the_next_is_a_503(bounded: Callable[..., TestClient]) -> None:
+    client = bounded()
+    pool: Pool = client.app.state.pools["fleets"]  # type: ignore[attr-defined]
+    with ExitStack() as stack:
+        for caller in ("one", "one", "two", "two"):
+            stack.enter_context(pool.place(caller))
+        refused = client.post(PATH, content=b"", headers=CSV)
+
+    assert (refused.status_code, "Retry-After" in refused.headers) == (503, True)
+    assert client.post(PATH, content=b"", headers=CSV).status_code == 422
+
+
+def test_the_memory_of_the_service_does_not_grow_with_the_body(service: Service) -> None:
+    """100 MB of lines, and of a form, that are refused when they have arrived."""
+
+    def peak() -> int:
+        status = Path(f"/proc/{service.process.pid}/status").read_text()
+        return int(status.partition("VmHWM:")[2].split()[0]) // 1024
+
+    lines = [b"x" * 999_999 + b"\n"] * 100
+    service.client.post(PATH, content=b"", headers=CSV)
+    before = peak()
+
+    table = service.client.post(PATH, content=iter(lines), headers=CSV)
+    form = service.client.post(PATH, content=iter([part("input", b"")[:-2], *lines, b"\r\n" + END]), headers=FORM)
+
+    assert (table.status_code, form.status_code) == (422, 422)
+    assert "column axis is missing" in form.text
+    assert peak() - before < 20
+
+
+# --- Beside others ----------------------------------------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def long_work(tmp_path_factory: pytest.TempPathFactory) -> bytes:
+    """A table that takes minutes with its candidates."""
+    count, phases = 100_000, 3
+    offsets = pa.array(np.arange(0, phases * count + 1, phases), pa.int32())
+    names = {"torque_Nm": 20.0, "speed_rpm": 100.0, "duration_s": 1.0}
+    lists = {
+        name: pa.ListArray.from_arrays(offsets, pa.array(np.linspace(value, 2 * value, phases * count)))
+        for name, value in names.items()
+    }
+    path = tmp_path_factory.mktemp("long") / "axes.parquet"
+    pq.write_table(pa.table({"axis": pa.array(np.arange(count)), **lists}), path, compression="none")
+    return path.read_bytes()
+
+
+def test_small_calculations_are_answered_beside_a_fleet_which_ends_when_its_client_leaves(
+    service: Service, long_work: bytes
+) -> None:
+    head = f"POST {PATH}?give=candidates HTTP/1.1\r\nHost: a\r\nContent-Type: {TYPES['.parquet']}\r\n"
+    with socket.create_connection(("127.0.0.1", service.port)) as connection:
+        connection.sendall(f"{head}Content-Length: {len(long_work)}\r\n\r\n".encode() + long_work)
+        (command,) = until(lambda: fleet_processes(service))
+        until(lambda: list((service.log.parent / "spool").glob("*/*.parts/plan.json")))
+
+        for _ in range(20):
+            assert service.client.post("/api/v1/select", json=worked_example()).status_code == 200
+
+        assert fleet_processes(service) == [command]  # it has run all the time
+        assert os.getpriority(os.PRIO_PROCESS, command) >= fleets.NICENESS
+        group = [int(pid) for pid in os.listdir("/proc") if pid.isdecimal() and _group_of(pid) == command]
+    assert group
+    until(lambda: all(is_gone(pid) for pid in group))
+    until(lambda: not spool_of(service))
+
+
+def _group_of(pid: str) -> int | None:
+    with suppress(ProcessLookupError):
+        return os.getpgid(int(pid))
+    return None
+
+
+def test_what_a_killed_service_left_is_removed_at_the_next_start_and_nothing_else(
+    bounded: Callable[..., TestClient], tmp_path: Path
+) -> None:
+    spool = tmp_path / "spool"
+    for name in ("left", "held", "new"):
+        (spool / f"{fleets.PREFIX}{name}").mkdir(parents=True)
+    for name in ("left", "held"):
+        (spool / f"{fleets.PREFIX}{name}" / "input.csv").touch()
+    (spool / "other").mkdir()
+    with fleets.locked(spool / f"{fleets.PREFIX}held"):
+        bounded()
+
+    assert {path.name.removeprefix(fleets.PREFIX) for path in spool.iterdir()} == {"held", "new", "other"}

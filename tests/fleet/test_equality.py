@@ -1,0 +1,105 @@
+"""A fleet gets what `select` gives each of its axes, bit for bit: every form, format and engine."""
+
+import random
+from dataclasses import replace
+from pathlib import Path
+from typing import NamedTuple
+
+import pytest
+
+from hpn.application import Application, InputError
+from hpn.catalogue import Catalogue, load_catalogue
+from hpn.fleet.run import Order, processes, size_fleet
+from hpn.selection import select
+from tests.build import Json
+from tests.fleet.tables import FAULTS, Row, here, in_long_form, quiet, read, row_of, spoiled, write
+from tests.property.draw import at_random
+
+SUPPLEMENT = {
+    "efficiency": "source,size,ratio,torque_Nm,efficiency\n"
+    + "".join(f"s,20A,{ratio},{T},{eta}\n" for ratio in (4, 5, 10) for T, eta in ((1, 0.7), (40, 0.9), (90, 0.95))),
+    "ratings": "size,ratio,repeated_peak_torque_Nm,rated_torque_Nm,momentary_peak_torque_Nm,source\n"
+    "40A,5,752,400,1250,s\n40A,10,370,370,1250,s\n40A,20,700,,1250,\n",
+    "bearing_envelopes": "size,load_coefficient,axial_N,radial_N,source\n"
+    "14A,1,0,900,s\n14A,1,300,880,s\n14A,1,950,0,s\n40A,1,0,8000,s\n40A,1,6000,0,s\n",
+}
+NOT_A_NUMBER = "torque_Nm: phase 1: must be a finite number"
+UNEQUAL = "speed_rpm: has"
+MODELS = ("linear", "iso281", "digitised")
+
+
+def expected(axis: object, application: Json, catalogue: Catalogue) -> Row:
+    """What `select` answers, as a row; where it refuses, the error alone."""
+    try:
+        selection = select(Application.model_validate(application), catalogue)
+    except InputError as error:
+        return {"axis": axis, "error": error.problems[0][1]}
+    best = selection.candidates[0] if selection.selected else None
+    second = selection.candidates[1] if best and len(selection.candidates) > 1 else None
+    return {
+        "axis": axis,
+        "selected": selection.selected,
+        "governing_check": best and best.governing_check,
+        "utilisation": best and best.utilisation,
+        "life_L10_h": best and best.life_L10_h,
+        "suitable": sum(candidate.status == "suitable" for candidate in selection.candidates),
+        "runner_up": second.designation if second and second.rank == 2 else None,
+        "average_torque_Nm": selection.duty.average_torque_Nm,
+        "error": None,
+    }
+
+
+class Fleet(NamedTuple):
+    """Rows of random axes, some of them spoiled, and what each has to get; an error by what it says."""
+
+    rows: list[Row]
+    wanted: dict[str, Row]
+    catalogue: Catalogue
+
+
+@pytest.fixture(scope="module")
+def fleet(soak: bool, tmp_path_factory: pytest.TempPathFactory) -> Fleet:
+    """Random axes under a supplement with curves."""
+    folder = tmp_path_factory.mktemp("supplement")
+    for stem, content in SUPPLEMENT.items():
+        (folder / f"{stem}.csv").write_text(content)
+    chance, fleet = random.Random(17), Fleet([], {}, load_catalogue(supplement=folder))
+    for number in range(10_000 if soak else 600):
+        axis, application = f"axis {number}", at_random(chance, MODELS)
+        row = row_of(axis, application)
+        if chance.random() < 0.1:
+            fault = chance.choice(list(FAULTS))
+            row, fleet.wanted[axis] = spoiled(row, fault), {"axis": axis, "error": fault}
+        else:
+            fleet.wanted[axis] = expected(axis, application, fleet.catalogue)
+        fleet.rows.append(row)
+    return fleet
+
+
+@pytest.mark.parametrize("form", ["list", "long"])
+@pytest.mark.parametrize("suffix", [".parquet", ".arrow", ".csv", ".ndjson"])
+def test_every_axis_gets_what_select_answers(suffix: str, form: str, fleet: Fleet, tmp_path: Path) -> None:
+    order = Order(tmp_path / f"in{suffix}", tmp_path / f"out{suffix}", rejected=tmp_path / "rejected.ndjson")
+    if form == "long":
+        phases, beside = in_long_form(fleet.rows)
+        write(order.axes, phases)
+        order = replace(order, requirements=write(tmp_path / f"beside{suffix}", beside))
+    else:
+        write(order.axes, fleet.rows)
+
+    size_fleet(order, fleet.catalogue, processes(2) if suffix == ".parquet" else here, quiet)
+
+    answers = read(order.answers)
+    assert [row["axis"] for row in answers] == [row["axis"] for row in fleet.rows]
+    for row in answers:
+        wanted = fleet.wanted[row["axis"]]
+        if wanted["error"]:
+            is_short = form == "long" and wanted["error"] == UNEQUAL  # a list that is too short ends in nulls there
+            text = "is required" if is_short else wanted["error"]
+            if not (wanted["error"] == NOT_A_NUMBER and suffix != ".parquet" and suffix != ".arrow"):  # no text has NaN
+                assert text in row["error"], row["axis"]
+            assert all(value is None for name, value in row.items() if name not in ("axis", "error")), row
+        else:
+            assert row == wanted
+    refused = {axis for axis, wanted in fleet.wanted.items() if wanted["error"]}
+    assert {row["axis"] for row in read(tmp_path / "rejected.ndjson")} == refused

@@ -1,0 +1,115 @@
+"""What a page and a report show of a fleet: counts over all axes, and of the first ones what `select` says of each."""
+
+import random
+from collections import Counter
+from contextlib import suppress
+from pathlib import Path
+
+import pytest
+
+from hpn.application import Application, InputError
+from hpn.catalogue import Catalogue, load_catalogue
+from hpn.fleet.listing import AxisRow, Listing, applications_of, listing_of, rows_of
+from hpn.fleet.run import Order, processes, size_fleet
+from hpn.selection import Selection, select
+from hpn.web.form.write import to_link
+from tests.build import Json
+from tests.fleet.tables import FAULTS, Row, in_long_form, row_of, spoiled, write
+from tests.property.draw import at_random
+
+AXES = 160
+
+
+@pytest.fixture(scope="module")
+def catalogue() -> Catalogue:
+    return load_catalogue()
+
+
+@pytest.fixture(scope="module")
+def fleet() -> tuple[list[Row], dict[str, Json]]:
+    """Rows of random axes, some of them spoiled or refused, and the applications of the rest."""
+    chance = random.Random(1717)
+    rows, applications = [], {}
+    for number in range(AXES):
+        axis, application = str(number + 1), at_random(chance, ("linear", "iso281"))
+        row = row_of(axis, application)
+        if number % 10 == 3:
+            row = spoiled(row, chance.choice(list(FAULTS)))
+        else:
+            applications[axis] = application
+        rows.append(row)
+    return rows, applications
+
+
+def sized(rows: list[Row], suffix: str, form: str, folder: Path, catalogue: Catalogue) -> Listing:
+    """Listing of rows that were written, sized in this process and read again."""
+    requirements = None
+    if form == "long":
+        rows, beside = in_long_form(rows)
+        requirements = write(folder / f"beside{suffix}", beside)
+    axes, answers = write(folder / f"axes{suffix}", rows, unit_rows=40), folder / f"answers{suffix}"
+    size_fleet(Order(axes, answers, requirements), catalogue, processes(1), lambda *told: None)
+    return listing_of(axes, requirements, answers, catalogue)
+
+
+@pytest.mark.parametrize(("suffix", "form"), [(".csv", "long"), (".parquet", "list"), (".ndjson", "long")])
+def test_rows_and_counts_say_what_select_says(
+    suffix: str, form: str, fleet: tuple[list[Row], dict[str, Json]], catalogue: Catalogue, tmp_path: Path
+) -> None:
+    rows, applications = fleet
+    replies: dict[str, Selection] = {}
+    for axis, application in applications.items():
+        with suppress(InputError):
+            replies[axis] = select(Application.model_validate(application), catalogue)
+
+    listing = sized(rows, suffix, form, tmp_path, catalogue)
+
+    shown = rows_of(listing.answers)
+    assert [row.axis for row in shown] == [row["axis"] for row in rows]
+    assert {row.axis for row in shown if row.state != "rejected"} == replies.keys()
+    for row in shown:
+        assert (row.error is not None) == (row.state == "rejected")
+        if row.state != "rejected":
+            assert_same(row, replies[row.axis])
+    best = [reply.candidates[0] for reply in replies.values() if reply.selected]
+    summary = listing.summary
+    assert (summary.axes, summary.rejected) == (AXES, AXES - len(replies))
+    assert (summary.selected, summary.unsuitable) == (len(best), len(replies) - len(best))
+    assert dict(summary.gears) == Counter(one.designation for one in best)
+    assert dict(summary.checks) == Counter(one.governing_check for one in best)
+    assert sum(summary.utilisation) == len(best)
+    assert summary.utilisation[-1] == sum((one.utilisation or 0) > 0.9 for one in best)
+
+
+def assert_same(row: AxisRow, reply: Selection) -> None:
+    """Shown is the selected gear, or the one that the page of the selection shows first where none suits."""
+    first = reply.foremost
+    assert (row.state == "selected") == (reply.selected is not None)
+    assert (row.gear, row.utilisation) == (first.designation, first.utilisation)
+    if first.status != "unrated":
+        assert row.governing_check == first.governing_check
+
+
+def test_listed_axes_are_the_applications_that_were_given(
+    fleet: tuple[list[Row], dict[str, Json]], catalogue: Catalogue, tmp_path: Path
+) -> None:
+    rows, applications = fleet
+
+    listing = sized(rows, ".arrow", "list", tmp_path, catalogue)
+
+    found = dict(applications_of(listing.axes))
+    assert len(found) == AXES - listing.summary.rejected
+    for axis, application in found.items():
+        assert to_link(application) == to_link(Application.model_validate(applications[axis]))
+
+
+def test_a_fleet_without_a_gear_for_any_axis_has_counts_too(catalogue: Catalogue, tmp_path: Path) -> None:
+    heavy = {"torque_Nm": [90_000.0], "speed_rpm": [10.0], "duration_s": [1.0]}
+    rows: list[Row] = [{"axis": "lift", **heavy}, {"axis": "belt", **heavy, "speed_rpm": [0.0]}]
+
+    listing = sized(rows, ".ndjson", "list", tmp_path, catalogue)
+
+    summary = listing.summary
+    assert (summary.axes, summary.unsuitable, summary.rejected) == (2, 1, 1)
+    assert summary.gears == () and sum(summary.utilisation) == 0
+    assert [row.state for row in rows_of(listing.answers)] == ["unsuitable", "rejected"]

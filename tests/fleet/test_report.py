@@ -1,0 +1,94 @@
+"""The report of a fleet: one HTML file that needs nothing else, says what the answers say, and links to each axis."""
+
+import re
+from collections.abc import Callable
+from html.parser import HTMLParser
+from pathlib import Path
+from urllib.parse import parse_qsl, urlsplit
+
+import pytest
+
+from hpn.application import Application
+from hpn.cli import main
+from hpn.web.form.read import parse
+from tests.fleet.tables import Row, read, row_of, write
+
+APPLICATION = {"duty_cycle": {"phases": [{"torque_Nm": 20.0, "speed_rpm": 200.0, "duration_s": 1.0}]}}
+HEAVY = {"duty_cycle": {"phases": [{"torque_Nm": 9000.0, "speed_rpm": 200.0, "duration_s": 1.0}]}}
+
+
+def rows() -> list[Row]:
+    """An axis with a gear, one that no gear suits, one that is rejected, and names that are no HTML."""
+    bad = row_of("bad", APPLICATION)
+    bad["speed_rpm"] = [-3e9]
+    return [row_of("<b>lift & belt</b>", APPLICATION), row_of("heavy", HEAVY), bad]
+
+
+class Elements(HTMLParser):
+    """Elements of a page with their attributes, and the text of each cell."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.found: list[tuple[str, dict[str, str | None]]] = []
+        self.feed(text)
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        """See HTMLParser."""
+        self.found.append((tag, dict(attrs)))
+
+
+Reporting = Callable[..., str]
+
+
+@pytest.fixture
+def reporting(tmp_path: Path) -> Reporting:
+    """Runs the command with a report, and gives its text."""
+
+    def run(*options: str) -> str:
+        axes = write(tmp_path / "axes.csv", rows())
+        report = tmp_path / "report.html"
+        answers = str(tmp_path / "answers.csv")
+        assert main(["fleet", str(axes), answers, "--workers", "1", "--report", str(report), *options]) == 0
+        return report.read_text()
+
+    return run
+
+
+def test_a_report_takes_nothing_from_outside(reporting: Reporting) -> None:
+    elements = Elements(reporting()).found
+
+    addresses = [value for _, given in elements for name, value in given.items() if name in ("src", "href", "action")]
+    assert addresses
+    assert [address for address in addresses if not (address or "").startswith("/?")] == []
+    assert not {tag for tag, _ in elements} & {"link", "img", "iframe", "object"}
+
+
+def test_a_report_says_what_the_answers_say(reporting: Reporting, tmp_path: Path) -> None:
+    text = reporting()
+
+    lift, heavy, bad = read(tmp_path / "answers.csv")
+    assert f"</span> {lift['selected']}</td>" in text
+    assert "&lt;b&gt;lift &amp; belt&lt;/b&gt;" in text and "<b>lift" not in text
+    assert heavy["suitable"] == 0 and "nearest: HPN-" in text
+    assert bad["error"].replace("'", "&#39;") in text
+    assert re.findall(r'<tr class="(\w+)">', text) == ["selected", "unsuitable", "rejected"]
+
+
+def test_every_axis_links_to_its_selection(reporting: Reporting) -> None:
+    text = reporting("--service", "https://gears.example/")
+
+    links = re.findall(r'href="(https://gears.example/\?[^"]*)"', text)
+    found = [parse(parse_qsl(urlsplit(link.replace("&amp;", "&")).query)).application for link in links]
+    assert found == [Application.model_validate(APPLICATION), Application.model_validate(HEAVY)]
+
+
+@pytest.mark.parametrize("name", ["report.pdf", "nowhere/report.html"])
+def test_a_report_that_could_not_be_written_is_refused_before_anything_is_computed(
+    name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    axes, answers = write(tmp_path / "axes.csv", rows()), tmp_path / "answers.csv"
+
+    code = main(["fleet", str(axes), str(answers), "--workers", "1", "--report", str(tmp_path / name)])
+
+    assert code == 2 and name in capsys.readouterr().err
+    assert not answers.exists()

@@ -1,0 +1,259 @@
+"""A run that is stopped, killed or resumed: its files appear whole or not at all, with the same bytes in any case."""
+
+import os
+import random
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from pathlib import Path
+
+import pytest
+
+from hpn.catalogue import Catalogue
+from hpn.fleet import grouping
+from hpn.fleet.errors import FleetError
+from hpn.fleet.grouping import Part
+from hpn.fleet.job import Job
+from hpn.fleet.run import Engine, Order, processes, size_fleet
+from tests.fleet.tables import here, quiet, row_of, write
+from tests.property.draw import at_random
+from tests.reliability.faults import full, small_disk
+
+
+@pytest.fixture(scope="module")
+def many(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A table of many parts."""
+    rows = [row_of(number, at_random(random.Random(number))) for number in range(400)]
+    return write(tmp_path_factory.mktemp("many") / "in.parquet", rows, unit_rows=10)
+
+
+@pytest.fixture
+def small_parts(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Parts of 10 axes."""
+    monkeypatch.setattr(grouping, "PART_AXES", 10)
+
+
+def files(folder: Path) -> list[str]:
+    """What lies in a folder."""
+    return sorted(path.name for path in folder.iterdir())
+
+
+class StoppedError(Exception):
+    """The run ends here."""
+
+
+def up_to(count: int) -> Engine:
+    """Engine that is stopped after so many parts."""
+
+    def run(job: Job, parts: Mapping[int, Part]) -> Iterator[int]:
+        yield from here(job, dict(list(parts.items())[:count]))
+        raise StoppedError
+
+    return run
+
+
+def test_the_same_input_gives_the_same_bytes_whatever_the_workers(
+    many: Path, small_parts: None, tmp_path: Path, catalogue: Catalogue
+) -> None:
+    for name, engine in (("one", processes(1)), ("two", processes(2)), ("here", here)):
+        size_fleet(
+            Order(many, tmp_path / f"{name}.parquet", rejected=tmp_path / f"{name}.csv"), catalogue, engine, quiet
+        )
+    for suffix in ("parquet", "csv"):
+        one, two, alone = ((tmp_path / f"{name}.{suffix}").read_bytes() for name in ("one", "two", "here"))
+        assert one == two == alone
+    assert len(files(tmp_path)) == 6
+
+
+def test_a_stopped_run_is_gone_on_with(many: Path, small_parts: None, tmp_path: Path, catalogue: Catalogue) -> None:
+    size_fleet(Order(many, tmp_path / "whole.parquet"), catalogue, here, quiet)
+    order = Order(many, tmp_path / "out.parquet", resume=True)
+    done: list[int] = []
+
+    def counted(job: Job, parts: Mapping[int, Part]) -> Iterator[int]:
+        for number in here(job, parts):
+            done.append(number)
+            yield number
+
+    for count in (3, 0, 10):
+        with pytest.raises(StoppedError):
+            size_fleet(order, catalogue, up_to(count), quiet)
+        assert not order.answers.exists()
+    size_fleet(order, catalogue, counted, quiet)
+
+    assert done == list(range(13, 40))
+    assert order.answers.read_bytes() == (tmp_path / "whole.parquet").read_bytes()
+    assert files(tmp_path) == ["out.parquet", "whole.parquet"]
+
+
+def test_parts_of_another_input_are_refused_and_dropped_without_resume(
+    many: Path, small_parts: None, tmp_path: Path, catalogue: Catalogue
+) -> None:
+    own = tmp_path / "in.parquet"
+    own.write_bytes(many.read_bytes())
+    order = Order(own, tmp_path / "out.parquet", resume=True)
+    with pytest.raises(StoppedError):
+        size_fleet(order, catalogue, up_to(3), quiet)
+    rows = [row_of(number, at_random(random.Random(number + 1))) for number in range(400)]
+    write(own, rows, unit_rows=10)
+
+    with pytest.raises(FleetError, match="a table has changed; run without --resume"):
+        size_fleet(order, catalogue, here, quiet)
+    size_fleet(Order(own, order.answers), catalogue, here, quiet)
+    size_fleet(Order(own, tmp_path / "whole.parquet"), catalogue, here, quiet)
+    assert order.answers.read_bytes() == (tmp_path / "whole.parquet").read_bytes()
+
+
+def test_parts_of_other_options_or_another_catalogue_are_refused(
+    many: Path, small_parts: None, tmp_path: Path, catalogue: Catalogue
+) -> None:
+    with pytest.raises(StoppedError):
+        size_fleet(Order(many, tmp_path / "out.parquet"), catalogue, up_to(1), quiet)
+    with pytest.raises(FleetError, match="of other options"):
+        wider = Order(many, tmp_path / "out.parquet", candidates=tmp_path / "all.csv", resume=True)
+        size_fleet(wider, catalogue, here, quiet)
+
+
+def test_two_runs_never_write_one_file(many: Path, small_parts: None, tmp_path: Path, catalogue: Catalogue) -> None:
+    order = Order(many, tmp_path / "out.parquet")
+
+    def meanwhile(job: Job, parts: Mapping[int, Part]) -> Iterator[int]:
+        with pytest.raises(FleetError, match="another run is writing it"):
+            size_fleet(order, catalogue, here, quiet)
+        yield from here(job, parts)
+
+    size_fleet(order, catalogue, meanwhile, quiet)
+    assert files(tmp_path) == ["out.parquet"]
+
+
+# --- The command ------------------------------------------------------------------------------------------------------
+
+
+SMALL = "from hpn.fleet import grouping; grouping.PART_AXES = 10; from hpn.cli import main; raise SystemExit(main())"
+COMMAND = [sys.executable, "-c", SMALL, "fleet"]
+"""The command, with parts of 10 axes."""
+
+
+def ended(*arguments: object) -> subprocess.CompletedProcess[str]:
+    """The command, when it has ended."""
+    return subprocess.run([*COMMAND, *map(str, arguments)], capture_output=True, text=True)
+
+
+@contextmanager
+def started(*arguments: object) -> Iterator[subprocess.Popen[str]]:
+    """The command while it runs, in a group of its own as on a terminal."""
+    command = [*COMMAND, *map(str, arguments)]
+    with subprocess.Popen(command, stderr=subprocess.PIPE, text=True, start_new_session=True) as run:
+        yield run
+
+
+def parts_done(folder: Path) -> int:
+    """How many parts of a run are whole."""
+    return len(list(folder.glob("*.answers")))
+
+
+def wait_for_parts(run: subprocess.Popen[str], folder: Path) -> None:
+    """Wait until the first part of a run is whole."""
+    while not parts_done(folder):
+        assert run.poll() is None, run.communicate()[1]
+        time.sleep(0.01)
+
+
+def test_the_command_sizes_a_table_and_is_quiet(many: Path, tmp_path: Path) -> None:
+    run = ended(many, tmp_path / "out.csv", "--workers", 2)
+    assert (run.stdout, run.stderr, run.returncode) == ("", "", 0)
+    assert len((tmp_path / "out.csv").read_text().splitlines()) == 401
+
+
+def test_an_unusable_input_ends_with_2_and_its_name(tmp_path: Path) -> None:
+    for arguments, said in (
+        ((tmp_path / "none.csv", tmp_path / "out.csv"), "none.csv: there is no such file"),
+        ((tmp_path / "none.txt", tmp_path / "out.csv"), "none.txt: the suffix must be one of .parquet, .arrow"),
+        ((tmp_path / "none.csv", tmp_path / "out.csv", "--workers", "0"), "must be from 1 to 1024"),
+    ):
+        run = ended(*arguments)
+        assert said in run.stderr
+        assert run.returncode == 2
+
+
+def test_an_interrupt_keeps_the_parts_and_ends_with_1(many: Path, tmp_path: Path) -> None:
+    folder = tmp_path / "out.parquet.parts"
+    with started(many, tmp_path / "out.parquet", "--workers", 1) as run:
+        wait_for_parts(run, folder)
+        os.killpg(run.pid, signal.SIGINT)
+        said = run.communicate()[1]
+
+    assert run.returncode == 1
+    assert said == f"stopped; hpn fleet … --resume goes on with the parts in {folder}\n"
+    assert parts_done(folder) > 0
+    assert files(tmp_path) == ["out.parquet.parts"]
+
+
+def test_a_run_killed_at_random_moments_is_resumed_to_the_same_bytes(many: Path, tmp_path: Path, soak: bool) -> None:
+    assert ended(many, tmp_path / "whole.parquet").returncode == 0
+    chance, kills = random.Random(17), 20 if soak else 2
+    options = ["--workers", 2, "--resume", "--rejected", tmp_path / "bad.csv"]
+    while kills:
+        with started(many, tmp_path / "out.parquet", *options) as run:
+            try:
+                assert run.wait(chance.uniform(0.8, 2.5)) == 0
+                (tmp_path / "out.parquet").unlink()  # it was done before: once more
+            except subprocess.TimeoutExpired:
+                os.kill(run.pid, signal.SIGKILL)  # its workers end with it
+                kills -= 1
+    assert ended(many, tmp_path / "out.parquet", *options).returncode == 0
+    assert (tmp_path / "out.parquet").read_bytes() == (tmp_path / "whole.parquet").read_bytes()
+    assert files(tmp_path) == ["bad.csv", "out.parquet", "whole.parquet"]
+
+
+def test_workers_end_with_the_command(many: Path, tmp_path: Path) -> None:
+    with started(many, tmp_path / "out.parquet", "--workers", 2) as run:
+        wait_for_parts(run, tmp_path / "out.parquet.parts")
+        os.kill(run.pid, signal.SIGKILL)
+        run.wait()
+        for _ in range(600):
+            if not members(run.pid):
+                return
+            time.sleep(0.1)
+    raise AssertionError(f"processes {members(run.pid)} still run")
+
+
+def members(group: int) -> list[int]:
+    """Processes of a group that run."""
+    found = []
+    for entry in Path("/proc").glob("[0-9]*/stat"):
+        try:
+            fields = entry.read_text().rpartition(")")[2].split()
+        except OSError:
+            continue
+        if int(fields[2]) == group and fields[0] != "Z":
+            found.append(int(entry.parent.name))
+    return found
+
+
+def test_a_worker_that_is_killed_stops_the_run_with_its_parts(many: Path, tmp_path: Path) -> None:
+    with started(many, tmp_path / "out.parquet", "--workers", 1) as run:
+        wait_for_parts(run, tmp_path / "out.parquet.parts")
+        worker = next(pid for pid in members(run.pid) if b"spawn_main" in Path(f"/proc/{pid}/cmdline").read_bytes())
+        os.kill(worker, signal.SIGKILL)
+        said = run.communicate()[1]
+    assert run.returncode == 1
+    assert "a worker has died" in said
+    assert ended(many, tmp_path / "out.parquet", "--resume").returncode == 0
+
+
+def test_a_full_disk_is_said_and_the_run_can_go_on(many: Path, tmp_path: Path) -> None:
+    disk = tmp_path / "disk"
+    disk.mkdir()
+    output = disk / "out.ndjson"
+    with small_disk(disk):
+        with full(disk):
+            run = ended(many, output, "--workers", 1, "--resume")
+            assert run.returncode == 1
+            assert "No space left on device" in run.stderr
+            assert not output.exists()
+        assert ended(many, output, "--resume").returncode == 0
+        assert len(output.read_text().splitlines()) == 400

@@ -1,0 +1,292 @@
+"""What tables may look like, and what is said of those that can't be used, as a whole or in a row."""
+
+from pathlib import Path
+from typing import Any
+
+import msgspec
+import pyarrow as pa
+import pyarrow.parquet as pq
+import pytest
+
+from hpn.application import Application
+from hpn.catalogue import Catalogue
+from hpn.fleet import grouping, job, lines
+from hpn.fleet.columns import COLUMNS
+from hpn.fleet.errors import FleetError
+from hpn.fleet.run import Order, size_fleet
+from hpn.selection import select
+from tests.fleet.conftest import Size
+from tests.fleet.tables import Row, here, in_long_form, quiet, read, write
+
+AXES = [
+    {"axis": f"a{number}", "torque_Nm": [40.0, 20.0 + number], "speed_rpm": [250.0, 100.0], "duration_s": [0.5, 3.0]}
+    for number in range(6)
+]
+HEAD = "axis,torque_Nm,speed_rpm,duration_s\n"
+
+
+def faults(folder: Path) -> list[tuple[Any, str, str]]:
+    """Rows of the rejected."""
+    return [(row["axis"], row["column"], row["reason"]) for row in read(folder / "rejected.ndjson")]
+
+
+def phases(*axes: str) -> str:
+    """CSV in long form, a line for each name."""
+    return HEAD + "".join(f"{axis},40,250,1\n" for axis in axes)
+
+
+# --- Rows that are rejected -------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("suffix", [".csv", ".parquet"])
+def test_an_axis_whose_rows_are_not_together_is_rejected_whole(suffix: str, size: Size, tmp_path: Path) -> None:
+    rows = [{"axis": axis, "torque_Nm": 40.0, "speed_rpm": 250.0, "duration_s": 1.0} for axis in "aabcca"]
+    answers = size(rows, suffix)
+    assert [(row["axis"], bool(row["error"])) for row in answers] == [("a", True), ("b", False), ("c", False)]
+    assert faults(tmp_path) == [("a", "axis", "must be unique, with its rows together")]
+    assert answers[0]["suitable"] is None
+
+
+def test_an_axis_torn_over_parts_has_one_row_where_it_comes_first(
+    size: Size, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(grouping, "PART_AXES", 2)
+    rows = [{**AXES[0], "axis": axis} for axis in (7, 1, 2, 7, 3, 4, 7)]
+    write(tmp_path / "in.parquet", rows, unit_rows=2)
+    answers = size(rows, ".parquet", candidates=tmp_path / "all.parquet")
+    assert [row["axis"] for row in answers] == [7, 1, 2, 3, 4]
+    assert [fault[0] for fault in faults(tmp_path)] == [7]
+    assert {row["axis"] for row in read(tmp_path / "all.parquet")} == {1, 2, 3, 4}
+
+
+def test_an_axis_that_one_of_two_tables_lacks_is_rejected_whole(size: Size, tmp_path: Path) -> None:
+    rows, beside = in_long_form(AXES)
+    answers = size(
+        [row for row in rows if row["axis"] != "a1"],
+        beside=[row | {"pause_s": 4.0} for row in beside if row["axis"] not in ("a3", "a5")],
+    )
+    assert [row["axis"] for row in answers] == ["a0", "a1", "a2", "a3", "a4", "a5"]
+    assert [fault[0] for fault in faults(tmp_path)] == ["a1", "a3", "a5"]
+    assert [row["suitable"] is None for row in answers] == [False, True, False, True, False, True]
+
+
+def test_an_axis_out_of_the_order_of_the_phases_is_rejected(size: Size, tmp_path: Path) -> None:
+    rows, beside = in_long_form(AXES[:4])
+    answers = size(rows, ".csv", beside=[beside[place] for place in (0, 2, 1, 3)])
+    assert [(row["axis"], bool(row["error"])) for row in answers] == [
+        ("a0", False), ("a1", False), ("a2", True), ("a3", False),
+    ]  # fmt: skip
+
+
+def test_axes_of_many_parts_find_their_rows_in_the_other_table(
+    size: Size, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(grouping, "PART_BYTES", 200)
+    monkeypatch.setattr(lines, "UNIT_BYTES", 100)
+    axes = [{**AXES[0], "axis": f"x{number}", "requirements.utilisation": 1 / (number + 1)} for number in range(40)]
+    rows, beside = in_long_form(axes)
+    del beside[17], rows[50:52]  # axis 25 has no phases, axis 17 nothing beside
+    in_parts = size(rows, ".csv", beside=beside)
+    monkeypatch.undo()
+    job.opened.cache_clear()  # the same files are cut into other parts
+    assert in_parts == size(rows, ".csv", beside=beside)
+    assert [row["axis"] for row in in_parts] == [f"x{number}" for number in range(40)]
+    assert {row["axis"] for row in in_parts if row["error"]} == {"x17", "x25"}
+
+
+def test_cells_that_are_no_numbers_are_told_by_axis_and_column(size: Size, tmp_path: Path) -> None:
+    size(HEAD + 'a,"40,5",250,1\nb,40,,1\nc,40,250,1\nc,40,2 50,x\nd,1e3,2.5e+2, 1 \n', ".csv")
+    number = "must be a number with a decimal point, such as 9.3"
+    assert faults(tmp_path) == [
+        ("a", "torque_Nm", f"phase 1: {number}"),
+        ("b", "speed_rpm", "phase 1: is required"),
+        ("c", "duration_s", f"phase 2: {number}"),
+        ("c", "speed_rpm", f"phase 2: {number}"),
+    ]
+
+
+@pytest.mark.parametrize(
+    ("content", "rejected"),
+    [
+        (HEAD + "a,40,250,1\nb,40,250,1\nb,40,2", ["b"]),
+        (HEAD + "a,40,250,1\nb,40,250,1\nb", ["b"]),  # whose row it is can't be known
+        (HEAD + "a,40,250,1\n,,\nb,40,250,1\nc,40,250,1\n", ["a", "b"]),
+        (HEAD + "a,40,250,1,9\nb,40,250,1\n", ["a"]),
+    ],
+)
+def test_a_row_that_is_cut_rejects_the_axis_that_it_may_belong_to(
+    content: str, rejected: list[str], size: Size, tmp_path: Path
+) -> None:
+    answers = size(content, ".csv")
+    assert [row["axis"] for row in answers if row["error"]] == rejected
+    assert sorted({fault[0] for fault in faults(tmp_path)}) == rejected
+
+
+@pytest.mark.parametrize(
+    ("last", "rejected"),
+    [('{"axis": "b", "torque_Nm": 4', ["b"]), ('{"axis": "b', ["b"]), ("[1]", ["b"]), ('{"axis": "c", "x": 1}', ["c"])],
+)
+def test_a_broken_line_rejects_the_axis_that_it_may_belong_to(last: str, rejected: list[str], size: Size) -> None:
+    row = '{{"axis": "{0}", "torque_Nm": 40, "speed_rpm": 250, "duration_s": 1}}\n'
+    answers = size("".join(map(row.format, "aab")) + last)
+    assert [row["axis"] for row in answers if row["error"]] == rejected
+
+
+def test_too_many_phases_are_an_error_of_their_axis(size: Size, tmp_path: Path) -> None:
+    answers = size(phases("a", *["b"] * 10_001, "c", *["d"] * 10_000), ".csv")
+    assert [bool(row["error"]) for row in answers] == [False, True, False, False]
+
+
+def test_an_axis_needs_a_name(size: Size, tmp_path: Path) -> None:
+    answers = size([{**AXES[0], "axis": axis} for axis in ("a", None, "b", None)], ".parquet")
+    assert [(row["axis"], bool(row["error"])) for row in answers] == [
+        ("a", False), (None, True), ("b", False), (None, True),
+    ]  # fmt: skip
+    assert faults(tmp_path) == [(None, "axis", "is required")] * 2
+
+
+# --- Types ------------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("kind", [pa.int8(), pa.uint64(), pa.int64(), pa.string(), pa.large_string()])
+def test_an_axis_comes_back_in_its_type(kind: pa.DataType, tmp_path: Path, catalogue: Catalogue) -> None:
+    rows = [{**AXES[0], "axis": number} for number in range(3)]
+    table = pa.table({name: [row[name] for row in rows] for name in rows[0]})
+    pq.write_table(table.set_column(0, "axis", table["axis"].cast(kind)), tmp_path / "in.parquet")
+    size_fleet(Order(tmp_path / "in.parquet", tmp_path / "out.arrow"), catalogue, here, quiet)
+    assert pa.ipc.open_file(str(tmp_path / "out.arrow")).schema.field("axis").type == kind
+
+
+def test_axes_of_csv_are_integers_if_every_one_is_written_as_one(tmp_path: Path, catalogue: Catalogue) -> None:
+    for names, kind in ((("7", "12"), pa.int64()), (("7", "012"), pa.string())):
+        (tmp_path / "in.csv").write_text(phases(*names))
+        size_fleet(Order(tmp_path / "in.csv", tmp_path / "out.parquet"), catalogue, here, quiet)
+        assert pq.read_schema(tmp_path / "out.parquet").field("axis").type == kind
+
+
+@pytest.mark.parametrize(
+    "kind", [pa.float32(), pa.int16(), pa.decimal128(9, 3), pa.dictionary(pa.int8(), pa.float64())]
+)
+def test_any_numeric_type_counts(kind: pa.DataType, size: Size, tmp_path: Path, catalogue: Catalogue) -> None:
+    wanted = size(AXES, ".parquet")
+    table = pq.read_table(tmp_path / "in.parquet")
+    for place, name in enumerate(table.column_names):
+        if name in ("torque_Nm", "speed_rpm"):
+            values = pa.concat_arrays([pa.array(item, pa.float64()) for item in table[name].to_pylist()])
+            values = values.dictionary_encode() if pa.types.is_dictionary(kind) else values.cast(kind)
+            lists = pa.ListArray.from_arrays(pa.array(range(0, len(values) + 1, 2), pa.int32()), values)
+            table = table.set_column(place, name, lists)
+    pq.write_table(table, tmp_path / "other.parquet")
+    size_fleet(Order(tmp_path / "other.parquet", tmp_path / "out.parquet"), catalogue, here, quiet)
+    assert read(tmp_path / "out.parquet") == wanted
+
+
+def test_whole_floats_count_as_integers_and_nulls_as_not_given(size: Size) -> None:
+    plain = {**AXES[0], "emergency_stop.torque_Nm": 90.0, "emergency_stop.count": 1000, "requirements.ratios": [5]}
+    as_floats = plain | {"emergency_stop.count": 1000.0, "requirements.ratios": [5.0], "pause_s": None, "rank_by": None}
+    assert size([plain]) == size([as_floats])
+
+
+# --- Tables that can't be used ----------------------------------------------------------------------------------------
+
+
+def refusal(order: Order, catalogue: Catalogue) -> str:
+    """What is said of a fleet that can't be sized."""
+    with pytest.raises(FleetError) as refused:
+        size_fleet(order, catalogue, here, quiet)
+    assert not order.answers.exists()
+    return str(refused.value)
+
+
+@pytest.mark.parametrize(
+    ("header", "said"),
+    [
+        ("axis,torque_Nm,speed_rpm", "column duration_s is missing"),
+        ("axis,torque_Nm,speed_rpm,duration_s,speed", "column 'speed' is unknown"),
+        ("axis,torque_Nm,speed_rpm,duration_s,radial_n", "it looks like radial_N"),
+        ("axis,torque_Nm,speed_rpm,duration_s,axis", "column axis is there twice"),
+        ("axis,torque_Nm,speed_rpm,duration_s,requirements.life_h", "belongs into the table of --axes"),
+    ],
+)
+def test_columns_that_are_missing_or_unknown_are_named(
+    header: str, said: str, tmp_path: Path, catalogue: Catalogue
+) -> None:
+    (tmp_path / "in.csv").write_text(f"{header}\na,1,2,3,4\n")
+    assert said in refusal(Order(tmp_path / "in.csv", tmp_path / "out.csv"), catalogue)
+
+
+@pytest.mark.parametrize("suffix", [".parquet", ".arrow", ".csv", ".ndjson"])
+@pytest.mark.parametrize("content", [b"", b"\x00\x01hello", b"PAR1PAR1", b"ARROW1\x00\x00"])
+def test_a_file_that_is_none_is_named(suffix: str, content: bytes, tmp_path: Path, catalogue: Catalogue) -> None:
+    (tmp_path / f"in{suffix}").write_bytes(content)
+    assert f"in{suffix}: " in refusal(Order(tmp_path / f"in{suffix}", tmp_path / "out.csv"), catalogue)
+
+
+def test_a_column_of_a_wrong_type_is_named(tmp_path: Path, catalogue: Catalogue) -> None:
+    texts = [{**row, "speed_rpm": ["1", "2"]} for row in AXES]
+    pq.write_table(pa.Table.from_pylist(texts), tmp_path / "in.parquet")
+    said = refusal(Order(tmp_path / "in.parquet", tmp_path / "out.csv"), catalogue)
+    assert "column speed_rpm is list<element: string>, where lists of numbers belong" in said
+    pq.write_table(pa.Table.from_pylist([{**row, "axis": 1.5} for row in AXES]), tmp_path / "in.parquet")
+    assert "column axis is double" in refusal(Order(tmp_path / "in.parquet", tmp_path / "out.csv"), catalogue)
+
+
+def test_a_row_group_that_is_corrupt_is_named(size: Size, tmp_path: Path, catalogue: Catalogue) -> None:
+    path = write(tmp_path / "in.parquet", AXES, unit_rows=2)
+    column = pq.ParquetFile(path).metadata.row_group(1).column(1)
+    content = bytearray(path.read_bytes())
+    for place in range(column.data_page_offset, column.data_page_offset + 20):
+        content[place] ^= 0xFF
+    path.write_bytes(content)
+    assert "row group 2 can’t be read" in refusal(Order(path, tmp_path / "out.csv"), catalogue)
+
+
+@pytest.mark.parametrize("suffix", [".parquet", ".arrow", ".csv", ".ndjson"])
+def test_no_rows_give_no_rows(suffix: str, tmp_path: Path, catalogue: Catalogue) -> None:
+    path = tmp_path / f"in{suffix}"
+    if suffix in (".parquet", ".arrow"):
+        write(path, AXES)
+        table = pq.read_table(path) if suffix == ".parquet" else pa.ipc.open_file(str(path)).read_all()
+        if suffix == ".parquet":
+            pq.write_table(table.slice(0, 0), path)
+        else:
+            path.unlink()
+            with pa.ipc.new_file(str(path), table.schema):
+                pass
+    else:
+        path.write_text(HEAD if suffix == ".csv" else "\n")
+    rows = size_fleet(Order(path, tmp_path / "out.arrow"), catalogue, here, quiet)
+    assert rows == {"answers": 0}
+    assert pa.ipc.open_file(str(tmp_path / "out.arrow")).read_all().num_rows == 0
+
+
+def test_a_file_is_never_written_over_what_is_read(tmp_path: Path, catalogue: Catalogue) -> None:
+    path = write(tmp_path / "in.csv", in_long_form(AXES)[0])
+    with pytest.raises(FleetError, match="is named twice"):
+        size_fleet(Order(path, path), catalogue, here, quiet)
+    assert "no folder" in refusal(Order(path, tmp_path / "none" / "out.csv"), catalogue)
+    assert "suffix" in refusal(Order(path, tmp_path / "out.txt"), catalogue)
+
+
+def test_candidates_are_those_of_the_reply(size: Size, tmp_path: Path, catalogue: Catalogue) -> None:
+    size(AXES, candidates=tmp_path / "all.ndjson")
+    rows = read(tmp_path / "all.ndjson")
+    assert len(rows) == 6 * len(catalogue.gears)
+    wanted: list[Row] = []
+    for row in AXES:
+        for candidate in select(Application.model_validate(COLUMNS.application_of(row)), catalogue).candidates:
+            fields = msgspec.json.decode(msgspec.json.encode(candidate))
+            reserve = {f"reserve.{name}": value for name, value in fields.pop("reserve").items()}
+            wanted.append({"axis": row["axis"], **fields, **reserve})
+            del wanted[-1]["checks"]
+    assert rows == wanted
+
+
+def test_a_name_that_is_no_utf8_rejects_the_axes_that_its_row_may_belong_to(size: Size, tmp_path: Path) -> None:
+    lines = phases("a", "b", "c", "d").replace("c,", "ä,").encode("latin-1")
+    assert [(row["axis"], bool(row["error"])) for row in size(lines, ".csv")] == [
+        ("a", False),
+        ("b", True),
+        ("d", True),
+    ]
+    assert ("b", "axis", "phase 2: must be UTF-8") in faults(tmp_path)
