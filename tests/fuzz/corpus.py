@@ -18,6 +18,7 @@ from hpn.reader import Reader
 from hpn.report.export import Export
 from hpn.report.workbook import workbook
 from hpn.selection import select
+from hpn.web.form.labels import LABELS
 from hpn.web.form.pasted import write_table
 from hpn.web.form.symbols import BY_NAME
 from hpn.web.form.write import to_link
@@ -58,14 +59,17 @@ BATCHES = tuple(
     json.dumps({"applications": [{"reference": f"axis {k}", **entry} for k, entry in enumerate(part)]}).encode()
     for part in (APPLICATIONS[:1], APPLICATIONS[:4], APPLICATIONS[2:6])
 )
-SAVES = tuple(
-    json.dumps({"application": entry, "title": "Axis 7", "reference": "plm-4711"}).encode() for entry in APPLICATIONS
-)
+NAMES = {"reference": "plm-4711", "author": "M. Muster", "revision": "B", "ordering_code": "HPN-20A-5-J6-BH-AF1"}
+SAVES = tuple(json.dumps({"application": entry, "title": "Axis 7", **NAMES}).encode() for entry in APPLICATIONS)
 LINES = tuple(
     b"\n".join(json.dumps({"reference": f"axis {k}", **entry}).encode() for k, entry in enumerate(part)) + b"\n"
     for part in (APPLICATIONS[:1], APPLICATIONS[:3], APPLICATIONS[2:6], APPLICATIONS)
 )
-LINKS = tuple(to_link(model).removeprefix("/?").encode() for model in _MODELS)
+NAMED = b"&title=Achse+7&ref=plm-4711&author=M.+Muster&rev=B&order_output=J6&order_motor=AF1&gear=HPN-20A-5"
+LINKS = (
+    *(to_link(model).removeprefix("/?").encode() for model in _MODELS),
+    *(to_link(model).removeprefix("/?").encode() + NAMED for model in _MODELS[1:3]),
+)
 FORMS = (
     *LINKS,
     *(link + b"&do=" + do for link in LINKS[1:4] for do in (b"add", b"remove:1", b"up:1", b"duplicate:0", b"example")),
@@ -148,7 +152,9 @@ SUPPLEMENTS = (
 )
 """A file of a supplement each: its name in the first line, its content below."""
 
-SYMBOLS = tuple(b"&%s=" % name.encode() for name in (*BY_NAME, "gear", "pin", "do", "phases", "written", "was"))
+SYMBOLS = tuple(
+    b"&%s=" % name.encode() for name in (*BY_NAME, *LABELS, "gear", "pin", "do", "phases", "written", "was")
+)
 FIELDS = tuple(
     b'"%s"' % name.encode()
     for name in (
