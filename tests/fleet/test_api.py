@@ -360,6 +360,24 @@ def _group_of(pid: str) -> int | None:
     return None
 
 
+@pytest.mark.soak
+def test_a_fleet_ends_when_its_service_is_killed_and_the_next_one_cleans_up(long_work: bytes, tmp_path: Path) -> None:
+    (tmp_path / "spool").mkdir()
+    settings = {"HPN_SPOOL_FOLDER": str(tmp_path / "spool")}
+    with ExitStack() as stack:
+        first = stack.enter_context(serving(tmp_path, settings))
+        connection = stack.enter_context(socket.create_connection(("127.0.0.1", first.port)))
+        head = f"POST {PATH}?give=candidates HTTP/1.1\r\nHost: a\r\nContent-Type: {TYPES['.parquet']}\r\n"
+        connection.sendall(f"{head}Content-Length: {len(long_work)}\r\n\r\n".encode() + long_work)
+        (command,) = until(lambda: fleet_processes(first))
+        until(lambda: list((tmp_path / "spool").glob("*/*.parts/plan.json")))
+        first.process.kill()
+        until(lambda: is_gone(command))
+
+        assert spool_of(first)
+        assert spool_of(stack.enter_context(serving(tmp_path, settings))) == []
+
+
 def test_what_a_killed_service_left_is_removed_at_the_next_start_and_nothing_else(
     bounded: Callable[..., TestClient], tmp_path: Path
 ) -> None:
