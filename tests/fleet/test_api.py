@@ -4,7 +4,7 @@ import os
 import random
 import socket
 import time
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from contextlib import ExitStack, suppress
 from pathlib import Path
 from typing import Any
@@ -16,15 +16,13 @@ import pytest
 from starlette.testclient import TestClient
 
 from hpn.catalogue import Catalogue
-from hpn.fleet.grouping import Part
-from hpn.fleet.job import Job, compute
 from hpn.fleet.run import Order, size_fleet
 from hpn.web import fleets
 from hpn.web.app import create_app
 from hpn.web.door.pools import Pool
 from hpn.web.settings import Settings
 from tests.build import worked_example
-from tests.fleet.tables import Row, in_long_form, row_of, spoiled, table_of, write
+from tests.fleet.tables import Row, here, in_long_form, quiet, row_of, spoiled, table_of, write
 from tests.operations.service import Service, serving
 from tests.property.draw import at_random
 
@@ -55,13 +53,6 @@ def rows() -> list[Row]:
     chance = random.Random(1717)
     found = [row_of(f"axis {number}", at_random(chance, ("linear", "iso281"))) for number in range(60)]
     return [*found[:7], spoiled(found[7], "pause_s: must be greater than or equal to 0"), *found[8:]]
-
-
-def here(job: Job, parts: Mapping[int, Part]) -> Iterator[int]:
-    """Engine of this process."""
-    for number, part in parts.items():
-        compute(job, number, part)
-        yield number
 
 
 def spool_of(service: Service) -> list[Path]:
@@ -121,7 +112,7 @@ def test_an_answer_is_what_the_command_writes_to_the_byte(
         table, axes = write(tmp_path / f"axes{suffix}", rows), None
         sent = {"content": table.read_bytes(), "headers": {"Content-Type": TYPES[suffix]}}
     order = Order(table, files["answers"], axes, candidates=files["candidates"], rejected=files["rejected"])
-    size_fleet(order, catalogue, here, lambda *_: None)
+    size_fleet(order, catalogue, here, quiet)
 
     answer = service.client.post(PATH, params={"give": give}, **sent)
 

@@ -1,6 +1,6 @@
 """The doors: what is sent through each, and what its answer must be like."""
 
-from collections.abc import AsyncIterator, Awaitable, Callable, Iterator, Mapping, Sequence
+from collections.abc import AsyncIterator, Awaitable, Callable, Sequence
 from contextlib import asynccontextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,13 +14,12 @@ from hpn.application import Application, InputError
 from hpn.catalogue import CatalogueError, load_catalogue
 from hpn.catalogue.tables import TABLES
 from hpn.fleet.errors import FleetError
-from hpn.fleet.grouping import Part
-from hpn.fleet.job import Job, compute
 from hpn.fleet.run import Order, size_fleet
 from hpn.selection import encode, select
 from hpn.web.app import create_app
 from hpn.web.door.protocol import HEAD_BYTES
 from hpn.web.settings import Settings
+from tests.fleet.tables import here, quiet
 from tests.fuzz import corpus
 from tests.fuzz.caller import Caller, Header, Reply
 
@@ -180,19 +179,13 @@ async def _fleet(world: World, random: Random, content: bytes) -> str:
     answers, rejected = world.fleet / "answers.ndjson", world.fleet / "rejected.ndjson"
     order = Order(files[0], answers, files[1] if files[1:] else None, rejected=rejected)
     try:
-        size_fleet(order, world.app.state.catalogue, _here, lambda *_: None)
+        size_fleet(order, world.app.state.catalogue, here, quiet)
     except FleetError as refusal:
         assert str(world.fleet) in str(refusal), f"names no file: {refusal}"
         return "refused"
     rows = [msgspec.json.decode(line) for line in order.answers.read_bytes().splitlines()]
     assert all((row["error"] is None) == (row["average_torque_Nm"] is not None) for row in rows)
     return "sized" if any(row["error"] is None for row in rows) else "rejected"
-
-
-def _here(job: Job, parts: Mapping[int, Part]) -> Iterator[int]:
-    for number, part in parts.items():
-        compute(job, number, part)
-        yield number
 
 
 DOORS = {

@@ -196,7 +196,9 @@ class CsvTable(LinesTable):
         return (pa.concat_tables([*parts, rows.slice(done)]), faults) if broken else (rows, faults)
 
     def _axis_of(self, line: str, cells: int) -> str | None:
-        """Axis of a broken row, where its cell has an end."""
+        """Axis of a broken row, where its cell has an end, and the header names it."""
+        if AXIS not in self.names:
+            return None
         place = list(self.names).index(AXIS)
         try:
             found = next(csv.reader([line]), [])
