@@ -305,6 +305,7 @@ def test_the_memory_of_the_service_does_not_grow_with_the_body(service: Service)
     assert (table.status_code, form.status_code) == (422, 422)
     assert "column axis is missing" in form.text
     assert peak() - before < 20
+    assert "libarrow" not in Path(f"/proc/{service.process.pid}/maps").read_text()
 
 
 # --- Beside others ----------------------------------------------------------------------------------------------------
