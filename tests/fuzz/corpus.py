@@ -89,6 +89,12 @@ TABLES_OF_PHASES = (
     b"Torque:\t40 Nm\t32 Nm\nSpeed:\t250 rpm\t500 rpm\nDuration:\t300 ms\t3 s\n",
 )
 
+TABLES_OF_AXES = (
+    b"Achse;Nr.;Moment [Nm];Drehzahl [1/min];Zeit [ms];Lebensdauer [h]\nHub;1;12,5;250;300;20000\n;2;8;500;2.000;\n",
+    b"axis\ttorque_Nm\tspeed_rpm\tduration_s\tratios\tsizes\nA\t1.234\t2\t1\t4/5\t14A\nA\t2\t3\t4\t\t\n",
+    b"Linie 4\nDrive,Torque (Nm),Speed (rpm),Duration (s),K_3,Load\nx,1,2,3,4,5\ny,1,2,3 ms,-,\n",
+)
+
 
 def _fleets() -> Iterator[bytes]:
     """The applications as tables of axes in both forms and text formats, a second table behind a mark."""

@@ -1,5 +1,6 @@
 """The doors: what is sent through each, and what its answer must be like."""
 
+import hashlib
 from collections.abc import AsyncIterator, Awaitable, Callable, Sequence
 from contextlib import asynccontextmanager, suppress
 from dataclasses import dataclass
@@ -109,6 +110,14 @@ async def _paste(world: World, random: Random, content: bytes) -> str:
     return judged(await world.call("POST", "/paste", headers=headers, body=urlencode(fields).encode()), api=False)
 
 
+async def _axes(world: World, random: Random, content: bytes) -> str:
+    chosen = {f"{mark}{place}": random.choice(_ROLES) for mark in "ru" for place in range(random.randrange(4))}
+    of = hashlib.sha256(content.decode(errors="replace").strip().encode()).hexdigest()[:16]
+    fields = {"text": content, "of": of, "decimal": random.choice((".", ",")), **chosen}
+    headers = [FORM, *random.choice(READERS)]
+    return judged(await world.call("POST", "/fleets", headers=headers, body=urlencode(fields).encode()), api=False)
+
+
 async def _upload(world: World, random: Random, content: bytes) -> str:
     parts = (
         b'name="link"\r\n\r\nT=1&n=1&t=1',
@@ -120,6 +129,7 @@ async def _upload(world: World, random: Random, content: bytes) -> str:
     return judged(reply, api=False)
 
 
+_ROLES = ("", "skip", "axis", "T", "n", "t", "FRi", "i", "size", "K3", "Nm", "ms", "nothing")
 _TAKES = ("", "", "", "", "", "", "append", "replace")
 
 
@@ -192,6 +202,7 @@ DOORS = {
     "link": Door(_link, corpus.LINKS, corpus.SYMBOLS),
     "form": Door(_form, corpus.FORMS, corpus.SYMBOLS),
     "paste": Door(_paste, corpus.TABLES_OF_PHASES, corpus.HEADINGS),
+    "axes": Door(_axes, corpus.TABLES_OF_AXES, corpus.HEADINGS),
     "csv": Door(_upload, corpus.TABLES_OF_PHASES, corpus.HEADINGS),
     "xlsx": Door(_upload, corpus.WORKBOOKS, corpus.HEADINGS),
     "ndjson": Door(_lines, corpus.LINES, corpus.MARKS),

@@ -99,3 +99,9 @@ def test_several_ratios_stand_in_a_cell_and_a_decimal_comma_parts_none() -> None
         "requirements.sizes": ["14A", "20A"],
     }
     assert read(head, "A;1,5;100;1;4,5;14A").axes[0]["requirements.ratios"] == [4.5]
+
+
+def test_a_number_that_is_too_large_is_no_number_that_is_left_out() -> None:
+    axis = read(HEAD + ";Lebensdauer [h]", "A;1;100;1;1e999").axes[0]
+
+    assert axis["requirements.life_h"] == "1e999"

@@ -9,6 +9,7 @@ from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import groupby, pairwise
+from math import isfinite
 from typing import Any
 
 from hpn import units
@@ -244,8 +245,10 @@ def _number(cell: str, column: AxisColumn, decimal: Decimal) -> float | str | No
     if found is None:
         return None if is_blank(cell) else str(cell)
     if not column.quantity or column.symbol is None:
-        return float(found.number)
-    return units.entered(column.symbol.unit, found.unit or column.unit).wire(found.number)
+        value = float(found.number)
+    else:
+        value = units.entered(column.symbol.unit, found.unit or column.unit).wire(found.number)
+    return value if isfinite(value) else str(cell)
 
 
 def _listed(cell: str, column: AxisColumn, decimal: Decimal) -> list[float | str]:
