@@ -2,6 +2,7 @@
 
 import io
 from collections.abc import Callable, Mapping
+from datetime import datetime
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -110,9 +111,10 @@ def _csv(table: pa.Table) -> bytes:
     return sink.getvalue()
 
 
-def _workbook(table: pa.Table) -> bytes:
+def _workbook(table: pa.Table, moment: datetime) -> bytes:
     sink = io.BytesIO()
     with xlsxwriter.Workbook(sink, {"in_memory": True, "strings_to_formulas": False, "strings_to_urls": False}) as book:
+        book.set_properties({"created": moment.replace(tzinfo=None)})  # the same bytes each time
         sheet = book.add_worksheet("axes")
         sheet.freeze_panes(1, 1)
         sheet.write_row(0, 0, table.column_names, book.add_format({"bold": True}))
@@ -127,9 +129,9 @@ def _workbook(table: pa.Table) -> bytes:
     return sink.getvalue()
 
 
-FILES: Mapping[str, tuple[str, Callable[[pa.Table], bytes]]] = {
-    "parquet": ("application/vnd.apache.parquet", _packed),
-    "csv": ("text/csv; charset=utf-8", _csv),
+FILES: Mapping[str, tuple[str, Callable[[pa.Table, datetime], bytes]]] = {
+    "parquet": ("application/vnd.apache.parquet", lambda table, moment: _packed(table)),
+    "csv": ("text/csv; charset=utf-8", lambda table, moment: _csv(table)),
     "xlsx": ("application/vnd.openxmlformats-officedocument.spreadsheetml.sheet", _workbook),
 }
 """Formats of the answers: their media types, and what writes them."""
@@ -137,4 +139,4 @@ FILES: Mapping[str, tuple[str, Callable[[pa.Table], bytes]]] = {
 
 def file_of(saved: SavedFleet, suffix: str) -> bytes:
     """The answers of a fleet as `hpn fleet` writes them, in the format of a suffix."""
-    return FILES[suffix][1](table_of(saved.answers).drop_columns(NEAREST.names))
+    return FILES[suffix][1](table_of(saved.answers).drop_columns(NEAREST.names), saved.created)
