@@ -100,6 +100,7 @@ def hostile(saved: str, *, whole: bool) -> Iterator[Hostile]:
     yield Hostile("GET", f"/selections/{saved}/delete")
     yield Hostile("POST", f"/selections/{saved}/rename", PAIRS, FORM)
     yield Hostile("POST", f"/selections/{'x' * 22}/delete", PAIRS, FORM)
+    yield Hostile("POST", "/api/v1/fleet", LONG_JSON, LINES)
     yield Hostile("GET", "/fleets")
     yield Hostile("GET", "/fleets/saved?cursor=" + "a" * 10_000)
     yield Hostile("POST", "/fleets", urlencode({"text": TABLE}).encode(), FORM)
