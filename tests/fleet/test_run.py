@@ -132,7 +132,16 @@ def test_two_runs_never_write_one_file(many: Path, small_parts: None, tmp_path: 
 # --- The command ------------------------------------------------------------------------------------------------------
 
 
-SMALL = "from hpn.fleet import grouping; grouping.PART_AXES = 10; from hpn.cli import main; raise SystemExit(main())"
+SMALL = """
+import signal
+from hpn.cli import main
+from hpn.fleet import grouping
+
+signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell in the background has it ignored
+grouping.PART_AXES = 10
+if __name__ == "__main__":
+    raise SystemExit(main())
+"""
 COMMAND = [sys.executable, "-c", SMALL, "fleet"]
 """The command, with parts of 10 axes."""
 
