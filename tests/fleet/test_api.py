@@ -25,6 +25,7 @@ from tests.build import worked_example
 from tests.fleet.tables import Row, here, in_long_form, quiet, row_of, spoiled, table_of, write
 from tests.operations.service import Service, serving
 from tests.property.draw import at_random
+from tests.state import state_of
 
 PATH = "/api/v1/fleet"
 TYPES = {
@@ -278,7 +279,7 @@ def test_what_takes_too_much_is_refused_and_leaves_nothing(
 
 def test_where_too_many_wait_the_next_is_a_503(bounded: Callable[..., TestClient]) -> None:
     client = bounded()
-    pool: Pool = client.app.state.pools["fleets"]  # type: ignore[attr-defined]
+    pool: Pool = state_of(client).pools["fleets"]
     with ExitStack() as stack:
         for caller in ("one", "one", "two", "two"):
             stack.enter_context(pool.place(caller))

@@ -26,6 +26,7 @@ from hpn.web.form.write import to_link
 from hpn.web.pages.fleet_upload import Upload, best_reading, uploaded
 from hpn.web.settings import Settings
 from tests.fleet.tables import in_long_form, row_of, write
+from tests.state import state_of
 
 GERMAN = """Maschine 7;;;;;
 Achse;Nr.;Drehmoment [Nm];Drehzahl [1/min];Dauer [ms];Lebensdauer [h]
@@ -230,7 +231,7 @@ def test_a_fleet_says_what_differs_today(client: TestClient, service: FastAPI, f
     url = service.state.settings.database_url
     with TestClient(create_app(Settings(database_url=url, catalogue_supplement=tmp_path))) as later:
         page = unescape(later.get(fleet).text)
-        now = select(Application.model_validate(HUB), later.app.state.catalogue).selected  # type: ignore[attr-defined]
+        now = select(Application.model_validate(HUB), state_of(later).catalogue).selected
 
     assert "1 axis gets another answer." in page
     changed = page[page.index("What differs today") : page.index('id="fleet-count"')]
