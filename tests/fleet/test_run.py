@@ -204,6 +204,18 @@ def test_an_interrupt_keeps_the_parts_and_ends_with_1(many: Path, tmp_path: Path
     assert files(tmp_path) == ["out.parquet.parts"]
 
 
+def test_an_interrupt_while_the_workers_start_says_the_same(many: Path, tmp_path: Path) -> None:
+    folder = tmp_path / "out.parquet.parts"
+    with started(many, tmp_path / "out.parquet", "--workers", 6) as run:
+        while not (folder / "plan.json").exists():
+            assert run.poll() is None, run.communicate()[1]
+            time.sleep(0.01)
+        time.sleep(0.3)
+        os.killpg(run.pid, signal.SIGINT)
+        assert run.communicate()[1] == f"stopped; hpn fleet … --resume goes on with the parts in {folder}\n"
+    assert run.returncode == 1
+
+
 def test_a_run_killed_at_random_moments_is_resumed_to_the_same_bytes(many: Path, tmp_path: Path, soak: bool) -> None:
     assert ended(many, tmp_path / "whole.parquet").returncode == 0
     chance, kills = random.Random(17), 20 if soak else 2

@@ -1,5 +1,6 @@
 """Sizing a fleet on a Dask cluster: the same function over the same parts; the extra `cluster` brings what it needs."""
 
+import logging
 from collections.abc import Iterator, Mapping
 from contextlib import ExitStack
 from importlib import import_module
@@ -8,7 +9,7 @@ from typing import Any
 from hpn.fleet.errors import FleetError
 from hpn.fleet.grouping import Part
 from hpn.fleet.job import Job, compute
-from hpn.fleet.run import MEMORY, Engine
+from hpn.fleet.run import MEMORY, Engine, interrupts_held
 
 CONNECT_SECONDS = 10
 
@@ -43,7 +44,11 @@ def dask(scheduler: str | None, workers: int) -> Engine:
 
 def _of_this_machine(distributed: Any, workers: int) -> Any:
     """A cluster of processes that keep memory as those of the local engine do."""
-    with import_module("dask").config.set({"distributed.nanny.pre-spawn-environ": MEMORY}):
+    with import_module("dask").config.set({"distributed.nanny.pre-spawn-environ": MEMORY}), interrupts_held():
         return distributed.LocalCluster(
-            n_workers=workers, threads_per_worker=1, host="127.0.0.1", dashboard_address="127.0.0.1:0"
+            n_workers=workers,
+            threads_per_worker=1,
+            host="127.0.0.1",
+            dashboard_address="127.0.0.1:0",
+            silence_logs=logging.ERROR,
         )

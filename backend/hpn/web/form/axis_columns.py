@@ -12,7 +12,7 @@ from hpn import units
 from hpn.quantities import Named
 from hpn.reader import LANGUAGES, Reader
 from hpn.web.form.cells import is_blank, is_number
-from hpn.web.form.columns import SKIP, Body, Choices
+from hpn.web.form.columns import SKIP, Body, Choices, Column
 from hpn.web.form.headings import INDEX, LONGEST, QUANTITIES, SUM, UNIT, heading_of, parts_of
 from hpn.web.form.symbols import PHASE_SYMBOLS, SYMBOLS, Symbol
 from hpn.wording import N_, Sentence
@@ -43,15 +43,8 @@ FURTHER = {
 
 
 @dataclass(frozen=True, slots=True)
-class AxisColumn:
-    """A column: its place, its heading as written, its role (blank: to be asked), its unit, and why it is skipped."""
-
-    place: int
-    heading: str
-    role: str = ""
-    unit: str = ""
-    lasting: bool = False
-    skipped: Sentence | None = None
+class AxisColumn(Column):
+    """A column of a table of axes: its role may be the axis and every other input."""
 
     @property
     def symbol(self) -> Symbol | None:
