@@ -42,7 +42,8 @@ def write(target: Path, content: bytes) -> None:
 
 
 def main() -> None:
-    shutil.rmtree(DIST, ignore_errors=True)
+    if DIST.exists():
+        shutil.rmtree(DIST)
     manifest: dict[str, str] = {}
     for name, path in sources().items():
         content = path.read_bytes()

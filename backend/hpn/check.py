@@ -8,6 +8,7 @@ from hpn.catalogue import GearColumns
 from hpn.duty import Asked, Duty
 from hpn.equations import FloatArray
 from hpn.figures import Figures
+from hpn.wording import N_
 
 Kind = Literal["maximum", "minimum", "range"]
 Group = Literal["load", "property"]
@@ -15,6 +16,10 @@ Driver = Literal["torque", "speed", "load"]
 
 DRIVERS: tuple[Driver, ...] = ("torque", "speed", "load")
 """What the checks go with: all torques of the duty cycle, all speeds, all loads on the output."""
+
+
+RATING_TABLES = N_("rating tables 10.1 to 12.2")
+"""Source of most limits."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,7 +4,7 @@ import os
 import random
 import socket
 import time
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from contextlib import ExitStack, suppress
 from pathlib import Path
 from typing import Any
@@ -16,17 +16,16 @@ import pytest
 from starlette.testclient import TestClient
 
 from hpn.catalogue import Catalogue
-from hpn.fleet.grouping import Part
-from hpn.fleet.job import Job, compute
 from hpn.fleet.run import Order, size_fleet
 from hpn.web import fleets
 from hpn.web.app import create_app
 from hpn.web.door.pools import Pool
 from hpn.web.settings import Settings
 from tests.build import worked_example
-from tests.fleet.tables import Row, in_long_form, row_of, spoiled, table_of, write
+from tests.fleet.tables import Row, here, in_long_form, quiet, row_of, spoiled, table_of, write
 from tests.operations.service import Service, serving
 from tests.property.draw import at_random
+from tests.state import state_of
 
 PATH = "/api/v1/fleet"
 TYPES = {
@@ -55,13 +54,6 @@ def rows() -> list[Row]:
     chance = random.Random(1717)
     found = [row_of(f"axis {number}", at_random(chance, ("linear", "iso281"))) for number in range(60)]
     return [*found[:7], spoiled(found[7], "pause_s: must be greater than or equal to 0"), *found[8:]]
-
-
-def here(job: Job, parts: Mapping[int, Part]) -> Iterator[int]:
-    """Engine of this process."""
-    for number, part in parts.items():
-        compute(job, number, part)
-        yield number
 
 
 def spool_of(service: Service) -> list[Path]:
@@ -121,7 +113,7 @@ def test_an_answer_is_what_the_command_writes_to_the_byte(
         table, axes = write(tmp_path / f"axes{suffix}", rows), None
         sent = {"content": table.read_bytes(), "headers": {"Content-Type": TYPES[suffix]}}
     order = Order(table, files["answers"], axes, candidates=files["candidates"], rejected=files["rejected"])
-    size_fleet(order, catalogue, here, lambda *_: None)
+    size_fleet(order, catalogue, here, quiet)
 
     answer = service.client.post(PATH, params={"give": give}, **sent)
 
@@ -287,7 +279,7 @@ def test_what_takes_too_much_is_refused_and_leaves_nothing(
 
 def test_where_too_many_wait_the_next_is_a_503(bounded: Callable[..., TestClient]) -> None:
     client = bounded()
-    pool: Pool = client.app.state.pools["fleets"]  # type: ignore[attr-defined]
+    pool: Pool = state_of(client).pools["fleets"]
     with ExitStack() as stack:
         for caller in ("one", "one", "two", "two"):
             stack.enter_context(pool.place(caller))
@@ -314,6 +306,7 @@ def test_the_memory_of_the_service_does_not_grow_with_the_body(service: Service)
     assert (table.status_code, form.status_code) == (422, 422)
     assert "column axis is missing" in form.text
     assert peak() - before < 20
+    assert "libarrow" not in Path(f"/proc/{service.process.pid}/maps").read_text()
 
 
 # --- Beside others ----------------------------------------------------------------------------------------------------
@@ -358,6 +351,24 @@ def _group_of(pid: str) -> int | None:
     with suppress(ProcessLookupError):
         return os.getpgid(int(pid))
     return None
+
+
+@pytest.mark.soak
+def test_a_fleet_ends_when_its_service_is_killed_and_the_next_one_cleans_up(long_work: bytes, tmp_path: Path) -> None:
+    (tmp_path / "spool").mkdir()
+    settings = {"HPN_SPOOL_FOLDER": str(tmp_path / "spool")}
+    with ExitStack() as stack:
+        first = stack.enter_context(serving(tmp_path, settings))
+        connection = stack.enter_context(socket.create_connection(("127.0.0.1", first.port)))
+        head = f"POST {PATH}?give=candidates HTTP/1.1\r\nHost: a\r\nContent-Type: {TYPES['.parquet']}\r\n"
+        connection.sendall(f"{head}Content-Length: {len(long_work)}\r\n\r\n".encode() + long_work)
+        (command,) = until(lambda: fleet_processes(first))
+        until(lambda: list((tmp_path / "spool").glob("*/*.parts/plan.json")))
+        first.process.kill()
+        until(lambda: is_gone(command))
+
+        assert spool_of(first)
+        assert spool_of(stack.enter_context(serving(tmp_path, settings))) == []
 
 
 def test_what_a_killed_service_left_is_removed_at_the_next_start_and_nothing_else(

@@ -10,11 +10,11 @@ import pytest
 from hpn.application import Application, InputError
 from hpn.catalogue import Catalogue, load_catalogue
 from hpn.fleet.listing import AxisRow, Listing, applications_of, listing_of, rows_of
-from hpn.fleet.run import Order, processes, size_fleet
+from hpn.fleet.run import Order, size_fleet
 from hpn.selection import Selection, select
 from hpn.web.form.write import to_link
 from tests.build import Json
-from tests.fleet.tables import FAULTS, Row, in_long_form, row_of, spoiled, write
+from tests.fleet.tables import FAULTS, Row, here, in_long_form, quiet, row_of, spoiled, write
 from tests.property.draw import at_random
 
 AXES = 160
@@ -48,7 +48,7 @@ def sized(rows: list[Row], suffix: str, form: str, folder: Path, catalogue: Cata
         rows, beside = in_long_form(rows)
         requirements = write(folder / f"beside{suffix}", beside)
     axes, answers = write(folder / f"axes{suffix}", rows, unit_rows=40), folder / f"answers{suffix}"
-    size_fleet(Order(axes, answers, requirements), catalogue, processes(1), lambda *told: None)
+    size_fleet(Order(axes, answers, requirements), catalogue, here, quiet)
     return listing_of(axes, requirements, answers, catalogue)
 
 

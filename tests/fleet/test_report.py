@@ -1,7 +1,6 @@
 """The report of a fleet: one HTML file that needs nothing else, says what the answers say, and links to each axis."""
 
 import re
-from collections.abc import Callable
 from html.parser import HTMLParser
 from pathlib import Path
 from urllib.parse import parse_qsl, urlsplit
@@ -37,36 +36,33 @@ class Elements(HTMLParser):
         self.found.append((tag, dict(attrs)))
 
 
-Reporting = Callable[..., str]
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Folder in which the command has written a report, `report.html`, and the answers, `answers.csv`."""
+    folder = tmp_path_factory.mktemp("report")
+    axes = write(folder / "axes.csv", rows())
+    report, service = ["--report", str(folder / "report.html")], ["--service", "https://gears.example/"]
+    assert main(["fleet", str(axes), str(folder / "answers.csv"), "--workers", "1", *report, *service]) == 0
+    return folder
 
 
-@pytest.fixture
-def reporting(tmp_path: Path) -> Reporting:
-    """Runs the command with a report, and gives its text."""
-
-    def run(*options: str) -> str:
-        axes = write(tmp_path / "axes.csv", rows())
-        report = tmp_path / "report.html"
-        answers = str(tmp_path / "answers.csv")
-        assert main(["fleet", str(axes), answers, "--workers", "1", "--report", str(report), *options]) == 0
-        return report.read_text()
-
-    return run
+@pytest.fixture(scope="module")
+def text(folder: Path) -> str:
+    """The report."""
+    return (folder / "report.html").read_text()
 
 
-def test_a_report_takes_nothing_from_outside(reporting: Reporting) -> None:
-    elements = Elements(reporting()).found
+def test_a_report_takes_nothing_from_outside(text: str) -> None:
+    elements = Elements(text).found
 
     addresses = [value for _, given in elements for name, value in given.items() if name in ("src", "href", "action")]
     assert addresses
-    assert [address for address in addresses if not (address or "").startswith("/?")] == []
+    assert [address for address in addresses if not (address or "").startswith("https://gears.example/?")] == []
     assert not {tag for tag, _ in elements} & {"link", "img", "iframe", "object"}
 
 
-def test_a_report_says_what_the_answers_say(reporting: Reporting, tmp_path: Path) -> None:
-    text = reporting()
-
-    lift, heavy, bad = read(tmp_path / "answers.csv")
+def test_a_report_says_what_the_answers_say(text: str, folder: Path) -> None:
+    lift, heavy, bad = read(folder / "answers.csv")
     assert f"</span> {lift['selected']}</td>" in text
     assert "&lt;b&gt;lift &amp; belt&lt;/b&gt;" in text and "<b>lift" not in text
     assert heavy["suitable"] == 0 and "nearest: HPN-" in text
@@ -74,9 +70,7 @@ def test_a_report_says_what_the_answers_say(reporting: Reporting, tmp_path: Path
     assert re.findall(r'<tr class="(\w+)">', text) == ["selected", "unsuitable", "rejected"]
 
 
-def test_every_axis_links_to_its_selection(reporting: Reporting) -> None:
-    text = reporting("--service", "https://gears.example/")
-
+def test_every_axis_links_to_its_selection(text: str) -> None:
     links = re.findall(r'href="(https://gears.example/\?[^"]*)"', text)
     found = [parse(parse_qsl(urlsplit(link.replace("&amp;", "&")).query)).application for link in links]
     assert found == [Application.model_validate(APPLICATION), Application.model_validate(HEAVY)]

@@ -132,9 +132,21 @@ def test_two_runs_never_write_one_file(many: Path, small_parts: None, tmp_path: 
 # --- The command ------------------------------------------------------------------------------------------------------
 
 
-SMALL = "from hpn.fleet import grouping; grouping.PART_AXES = 10; from hpn.cli import main; raise SystemExit(main())"
+SMALL = """
+import signal
+from hpn.cli import main
+from hpn.fleet import grouping
+
+signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell in the background has it ignored
+grouping.PART_AXES = 10
+if __name__ == "__main__":
+    raise SystemExit(main())
+"""
 COMMAND = [sys.executable, "-c", SMALL, "fleet"]
 """The command, with parts of 10 axes."""
+
+SLOWLY = ("--workers", 2, "--candidates")
+"""Options with which a run takes a while: every candidate of every axis is written."""
 
 
 def ended(*arguments: object) -> subprocess.CompletedProcess[str]:
@@ -181,7 +193,7 @@ def test_an_unusable_input_ends_with_2_and_its_name(tmp_path: Path) -> None:
 
 def test_an_interrupt_keeps_the_parts_and_ends_with_1(many: Path, tmp_path: Path) -> None:
     folder = tmp_path / "out.parquet.parts"
-    with started(many, tmp_path / "out.parquet", "--workers", 1) as run:
+    with started(many, tmp_path / "out.parquet", *SLOWLY, tmp_path / "all.csv") as run:
         wait_for_parts(run, folder)
         os.killpg(run.pid, signal.SIGINT)
         said = run.communicate()[1]
@@ -190,6 +202,18 @@ def test_an_interrupt_keeps_the_parts_and_ends_with_1(many: Path, tmp_path: Path
     assert said == f"stopped; hpn fleet … --resume goes on with the parts in {folder}\n"
     assert parts_done(folder) > 0
     assert files(tmp_path) == ["out.parquet.parts"]
+
+
+def test_an_interrupt_while_the_workers_start_says_the_same(many: Path, tmp_path: Path) -> None:
+    folder = tmp_path / "out.parquet.parts"
+    with started(many, tmp_path / "out.parquet", "--workers", 6) as run:
+        while not (folder / "plan.json").exists():
+            assert run.poll() is None, run.communicate()[1]
+            time.sleep(0.01)
+        time.sleep(0.3)
+        os.killpg(run.pid, signal.SIGINT)
+        assert run.communicate()[1] == f"stopped; hpn fleet … --resume goes on with the parts in {folder}\n"
+    assert run.returncode == 1
 
 
 def test_a_run_killed_at_random_moments_is_resumed_to_the_same_bytes(many: Path, tmp_path: Path, soak: bool) -> None:
@@ -210,7 +234,7 @@ def test_a_run_killed_at_random_moments_is_resumed_to_the_same_bytes(many: Path,
 
 
 def test_workers_end_with_the_command(many: Path, tmp_path: Path) -> None:
-    with started(many, tmp_path / "out.parquet", "--workers", 2) as run:
+    with started(many, tmp_path / "out.parquet", *SLOWLY, tmp_path / "all.csv") as run:
         wait_for_parts(run, tmp_path / "out.parquet.parts")
         os.kill(run.pid, signal.SIGKILL)
         run.wait()
@@ -235,14 +259,14 @@ def members(group: int) -> list[int]:
 
 
 def test_a_worker_that_is_killed_stops_the_run_with_its_parts(many: Path, tmp_path: Path) -> None:
-    with started(many, tmp_path / "out.parquet", "--workers", 1) as run:
+    with started(many, tmp_path / "out.parquet", *SLOWLY, tmp_path / "all.csv") as run:
         wait_for_parts(run, tmp_path / "out.parquet.parts")
         worker = next(pid for pid in members(run.pid) if b"spawn_main" in Path(f"/proc/{pid}/cmdline").read_bytes())
         os.kill(worker, signal.SIGKILL)
         said = run.communicate()[1]
     assert run.returncode == 1
     assert "a worker has died" in said
-    assert ended(many, tmp_path / "out.parquet", "--resume").returncode == 0
+    assert ended(many, tmp_path / "out.parquet", *SLOWLY, tmp_path / "all.csv", "--resume").returncode == 0
 
 
 def test_a_full_disk_is_said_and_the_run_can_go_on(many: Path, tmp_path: Path) -> None:

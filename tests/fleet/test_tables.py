@@ -202,6 +202,7 @@ def refusal(order: Order, catalogue: Catalogue) -> str:
     ("header", "said"),
     [
         ("axis,torque_Nm,speed_rpm", "column duration_s is missing"),
+        ("torque_Nm,speed_rpm", "column axis is missing"),
         ("axis,torque_Nm,speed_rpm,duration_s,speed", "column 'speed' is unknown"),
         ("axis,torque_Nm,speed_rpm,duration_s,radial_n", "it looks like radial_N"),
         ("axis,torque_Nm,speed_rpm,duration_s,axis", "column axis is there twice"),

@@ -19,6 +19,7 @@ from hpn.report.export import Export
 from hpn.report.workbook import workbook
 from hpn.selection import select
 from hpn.web.api.samples import LIFTING, TURNING
+from hpn.web.form.labels import LABELS
 from hpn.web.form.pasted import write_table
 from hpn.web.form.symbols import BY_NAME
 from hpn.web.form.write import to_link
@@ -65,14 +66,17 @@ BATCHES = tuple(
     json.dumps({"applications": [{"reference": f"axis {k}", **entry} for k, entry in enumerate(part)]}).encode()
     for part in (APPLICATIONS[:1], APPLICATIONS[:4], APPLICATIONS[2:6])
 )
-SAVES = tuple(
-    json.dumps({"application": entry, "title": "Axis 7", "reference": "plm-4711"}).encode() for entry in APPLICATIONS
-)
+NAMES = {"reference": "plm-4711", "author": "M. Muster", "revision": "B", "ordering_code": "HPN-20A-5-J6-BH-AF1"}
+SAVES = tuple(json.dumps({"application": entry, "title": "Axis 7", **NAMES}).encode() for entry in APPLICATIONS)
 LINES = tuple(
     b"\n".join(json.dumps({"reference": f"axis {k}", **entry}).encode() for k, entry in enumerate(part)) + b"\n"
     for part in (APPLICATIONS[:1], APPLICATIONS[:3], APPLICATIONS[2:6], APPLICATIONS)
 )
-LINKS = tuple(to_link(model).removeprefix("/?").encode() for model in _MODELS)
+NAMED = b"&title=Achse+7&ref=plm-4711&author=M.+Muster&rev=B&order_output=J6&order_motor=AF1&gear=HPN-20A-5"
+LINKS = (
+    *(to_link(model).removeprefix("/?").encode() for model in _MODELS),
+    *(to_link(model).removeprefix("/?").encode() + NAMED for model in _MODELS[1:3]),
+)
 FORMS = (
     *LINKS,
     *(link + b"&do=" + do for link in LINKS[1:4] for do in (b"add", b"remove:1", b"up:1", b"duplicate:0", b"example")),
@@ -90,6 +94,12 @@ TABLES_OF_PHASES = (
     b"1.234\t2\t3\n1,234\t2\t3\n",
     b"Zyklus 7\nNr.;T;n;Zeit\n-;kNm;rad/s;ms\n1;0,04;10;300\n2;0,03;20;400\nSumme;;;700\n",
     b"Torque:\t40 Nm\t32 Nm\nSpeed:\t250 rpm\t500 rpm\nDuration:\t300 ms\t3 s\n",
+)
+
+TABLES_OF_AXES = (
+    b"Achse;Nr.;Moment [Nm];Drehzahl [1/min];Zeit [ms];Lebensdauer [h]\nHub;1;12,5;250;300;20000\n;2;8;500;2.000;\n",
+    b"axis\ttorque_Nm\tspeed_rpm\tduration_s\tratios\tsizes\nA\t1.234\t2\t1\t4/5\t14A\nA\t2\t3\t4\t\t\n",
+    b"Linie 4\nDrive,Torque (Nm),Speed (rpm),Duration (s),K_3,Load\nx,1,2,3,4,5\ny,1,2,3 ms,-,\n",
 )
 
 
@@ -155,7 +165,9 @@ SUPPLEMENTS = (
 )
 """A file of a supplement each: its name in the first line, its content below."""
 
-SYMBOLS = tuple(b"&%s=" % name.encode() for name in (*BY_NAME, "gear", "pin", "do", "phases", "written", "was"))
+SYMBOLS = tuple(
+    b"&%s=" % name.encode() for name in (*BY_NAME, *LABELS, "gear", "pin", "do", "phases", "written", "was")
+)
 FIELDS = tuple(
     b'"%s"' % name.encode()
     for name in (

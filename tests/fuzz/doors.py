@@ -1,6 +1,7 @@
 """The doors: what is sent through each, and what its answer must be like."""
 
-from collections.abc import AsyncIterator, Awaitable, Callable, Iterator, Mapping, Sequence
+import hashlib
+from collections.abc import AsyncIterator, Awaitable, Callable, Sequence
 from contextlib import asynccontextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,13 +15,12 @@ from hpn.application import Application, InputError
 from hpn.catalogue import CatalogueError, load_catalogue
 from hpn.catalogue.tables import TABLES
 from hpn.fleet.errors import FleetError
-from hpn.fleet.grouping import Part
-from hpn.fleet.job import Job, compute
 from hpn.fleet.run import Order, size_fleet
 from hpn.selection import encode, select
 from hpn.web.app import create_app
 from hpn.web.door.protocol import HEAD_BYTES
 from hpn.web.settings import Settings
+from tests.fleet.tables import here, quiet
 from tests.fuzz import corpus
 from tests.fuzz.caller import Caller, Header, Reply
 
@@ -110,6 +110,14 @@ async def _paste(world: World, random: Random, content: bytes) -> str:
     return judged(await world.call("POST", "/paste", headers=headers, body=urlencode(fields).encode()), api=False)
 
 
+async def _axes(world: World, random: Random, content: bytes) -> str:
+    chosen = {f"{mark}{place}": random.choice(_ROLES) for mark in "ru" for place in range(random.randrange(4))}
+    of = hashlib.sha256(content.decode(errors="replace").strip().encode()).hexdigest()[:16]
+    fields = {"text": content, "of": of, "decimal": random.choice((".", ",")), **chosen}
+    headers = [FORM, *random.choice(READERS)]
+    return judged(await world.call("POST", "/fleets", headers=headers, body=urlencode(fields).encode()), api=False)
+
+
 async def _upload(world: World, random: Random, content: bytes) -> str:
     parts = (
         b'name="link"\r\n\r\nT=1&n=1&t=1',
@@ -121,6 +129,7 @@ async def _upload(world: World, random: Random, content: bytes) -> str:
     return judged(reply, api=False)
 
 
+_ROLES = ("", "skip", "axis", "T", "n", "t", "FRi", "i", "size", "K3", "Nm", "ms", "nothing")
 _TAKES = ("", "", "", "", "", "", "append", "replace")
 
 
@@ -180,7 +189,7 @@ async def _fleet(world: World, random: Random, content: bytes) -> str:
     answers, rejected = world.fleet / "answers.ndjson", world.fleet / "rejected.ndjson"
     order = Order(files[0], answers, files[1] if files[1:] else None, rejected=rejected)
     try:
-        size_fleet(order, world.app.state.catalogue, _here, lambda *_: None)
+        size_fleet(order, world.app.state.catalogue, here, quiet)
     except FleetError as refusal:
         assert str(world.fleet) in str(refusal), f"names no file: {refusal}"
         return "refused"
@@ -189,16 +198,11 @@ async def _fleet(world: World, random: Random, content: bytes) -> str:
     return "sized" if any(row["error"] is None for row in rows) else "rejected"
 
 
-def _here(job: Job, parts: Mapping[int, Part]) -> Iterator[int]:
-    for number, part in parts.items():
-        compute(job, number, part)
-        yield number
-
-
 DOORS = {
     "link": Door(_link, corpus.LINKS, corpus.SYMBOLS),
     "form": Door(_form, corpus.FORMS, corpus.SYMBOLS),
     "paste": Door(_paste, corpus.TABLES_OF_PHASES, corpus.HEADINGS),
+    "axes": Door(_axes, corpus.TABLES_OF_AXES, corpus.HEADINGS),
     "csv": Door(_upload, corpus.TABLES_OF_PHASES, corpus.HEADINGS),
     "xlsx": Door(_upload, corpus.WORKBOOKS, corpus.HEADINGS),
     "ndjson": Door(_lines, corpus.LINES, corpus.MARKS),

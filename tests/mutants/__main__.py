@@ -4,25 +4,27 @@ import argparse
 import os
 import sys
 from concurrent.futures import ThreadPoolExecutor
+from importlib import import_module
 from pathlib import Path
 
 from tests.mutants.changes import Mutant, mutants_of
 from tests.mutants.explained import EXPLAINED
-
-# What the modules need is imported once, so that a forked process has it; the modules and tests themselves are not.
-import babel.numbers  # noqa: F401  isort: skip
-import fastapi  # noqa: F401  isort: skip
-import jsonschema_rs  # noqa: F401  isort: skip
-import mpmath  # noqa: F401  isort: skip
-import msgspec  # noqa: F401  isort: skip
-import numpy  # noqa: F401  isort: skip
-import orjson  # noqa: F401  isort: skip
-import pint  # noqa: F401  isort: skip
-import pydantic  # noqa: F401  isort: skip
-import pydantic_settings  # noqa: F401  isort: skip
-import starlette.testclient  # noqa: F401  isort: skip
-
 from tests.mutants.trial import timed
+
+LIBRARIES = (
+    "babel.numbers",
+    "fastapi",
+    "jsonschema_rs",
+    "mpmath",
+    "msgspec",
+    "numpy",
+    "orjson",
+    "pint",
+    "pydantic",
+    "pydantic_settings",
+    "starlette.testclient",
+)
+"""What the modules need is imported once, so that a forked process has it; the modules and tests themselves are not."""
 
 PACKAGE = Path(__file__).parents[2] / "backend" / "hpn"
 MODULES = ("equations", "bearing", "checks", "selection")
@@ -56,6 +58,13 @@ FURTHER = (
 """What a mutant that passes those is tried with, by cost."""
 
 
+def mutants_in(module: str) -> list[Mutant]:
+    """Every mutant of a module, or of each file of a package."""
+    folder = PACKAGE / module
+    files = sorted(folder.glob("*.py")) if folder.is_dir() else [folder.with_suffix(".py")]
+    return [mutant for file in files for mutant in mutants_of(module, file)]
+
+
 def main() -> int:
     """Print each survivor that is not explained, and counts; 1 where there is one."""
     parser = argparse.ArgumentParser(prog="python -m tests.mutants", description=__doc__)
@@ -64,38 +73,39 @@ def main() -> int:
     parser.add_argument("--only", default="", help="only those whose name contains this")
     given = parser.parse_args()
     os.nice(19)
+    for library in LIBRARIES:
+        import_module(library)
     os.environ["PYTEST_DISABLE_PLUGIN_AUTOLOAD"] = "1"  # none of the tests needs one, and each takes its time
     found = 0
     for module in given.modules or MODULES:
-        path = PACKAGE / f"{module}.py"
-        mutants = [m for m in mutants_of(module, path.read_text(encoding="utf-8")) if given.only in m.name]
+        mutants = [mutant for mutant in mutants_in(module) if given.only in mutant.name]
         if given.list:
             print(*(mutant.name for mutant in mutants), sep="\n")
             continue
-        found += _report(module, path, mutants)
+        found += _report(module, mutants)
     return min(found, 1)
 
 
-def _report(module: str, path: Path, mutants: list[Mutant]) -> int:
+def _report(module: str, mutants: list[Mutant]) -> int:
     """Try the mutants, but not those again and again of which it is known that no test finds them."""
-    survivors = _survivors(path, mutants, NEAREST[module])
+    survivors = _survivors(mutants, NEAREST[module])
     explained = [mutant for mutant in survivors if mutant.name in EXPLAINED]
     survivors = [mutant for mutant in survivors if mutant not in explained]
     for tests in FURTHER:
-        survivors = _survivors(path, survivors, tests)
+        survivors = _survivors(survivors, tests)
     killed = len(mutants) - len(explained) - len(survivors)
     print(
         f"{module}: {len(mutants)} mutants, {killed} killed, {len(explained)} explained, {len(survivors)} survived",
-        *(f"  line {mutant.line}: {mutant.name}" for mutant in survivors),
+        *(f"  {mutant.path.name}, line {mutant.line}: {mutant.name}" for mutant in survivors),
         sep="\n",
         flush=True,
     )
     return len(survivors)
 
 
-def _survivors(path: Path, mutants: list[Mutant], tests: list[str]) -> list[Mutant]:
+def _survivors(mutants: list[Mutant], tests: list[str]) -> list[Mutant]:
     def passes(mutant: Mutant) -> bool:
-        passed, seconds = timed(path, mutant.source, tests)
+        passed, seconds = timed(mutant.path, mutant.source, tests)
         print("PASSED" if passed else "killed", f"{seconds:.1f} s {mutant.name}", file=sys.stderr, flush=True)
         return passed
 

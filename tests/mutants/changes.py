@@ -3,6 +3,7 @@
 import ast
 from collections.abc import Iterator
 from dataclasses import dataclass
+from pathlib import Path
 
 COMPARISONS: dict[type[ast.cmpop], tuple[str, ...]] = {
     ast.Lt: ("<=", ">"),
@@ -47,12 +48,14 @@ class Mutant:
     """A module's text with one change; `name` tells it from every other, whatever stands in other lines."""
 
     name: str
+    path: Path
     line: int
     source: str
 
 
-def mutants_of(module: str, source: str) -> Iterator[Mutant]:
-    """Every mutant of a module, in the order of its text."""
+def mutants_of(module: str, path: Path) -> Iterator[Mutant]:
+    """Every mutant of a file of a module, in the order of its text."""
+    source = path.read_text(encoding="utf-8")
     lines = source.splitlines(keepends=True)
     starts = [0]
     for line in lines:
@@ -70,7 +73,7 @@ def mutants_of(module: str, source: str) -> Iterator[Mutant]:
         name = f"{module} {scope}: {' '.join(old.split())} -> {' '.join(replacement.split()) or 'nothing'}"
         seen[name] = seen.get(name, 0) + 1
         numbered = f"{name} #{seen[name]}" if seen[name] > 1 else name
-        yield Mutant(numbered, node.lineno, (content[:begin] + replacement.encode() + content[end:]).decode())
+        yield Mutant(numbered, path, node.lineno, (content[:begin] + replacement.encode() + content[end:]).decode())
 
 
 DROP = "\0drop"

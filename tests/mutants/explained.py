@@ -16,5 +16,5 @@ EXPLAINED: dict[str, str] = {
     "emergency_stop_torque_Nm=c.duty.emergency_stop_torque_Nm, "
     "momentary_peak_torque_Nm=c.gears.momentary_peak_torque_Nm, ) "
     "-> nothing": "demand over limit is the same quotient; the equation stands there by its name",
-    **{f"selection _candidates: True -> False{number}": LENGTHS for number in ("", " #2", " #3", " #4", " #5")},
+    **{f"selection candidates_of: True -> False{number}": LENGTHS for number in ("", " #2", " #3", " #4", " #5")},
 }

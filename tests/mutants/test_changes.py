@@ -1,15 +1,15 @@
 """The mutants are changes that Python takes, and what is explained of them is there."""
 
 import ast
+from pathlib import Path
 
 import pytest
 
-from tests.mutants.__main__ import MODULES, PACKAGE
+from tests.mutants.__main__ import MODULES, mutants_in
 from tests.mutants.changes import Mutant, mutants_of
 from tests.mutants.explained import EXPLAINED
 
-SOURCES = {module: (PACKAGE / f"{module}.py").read_text(encoding="utf-8") for module in MODULES}
-MUTANTS = {module: list(mutants_of(module, source)) for module, source in SOURCES.items()}
+MUTANTS = {module: mutants_in(module) for module in MODULES}
 
 
 @pytest.mark.parametrize("module", MODULES)
@@ -18,7 +18,7 @@ def test_every_mutant_is_another_program_under_a_name_of_its_own(module: str) ->
 
     assert len(mutants) >= 90
     assert len({mutant.name for mutant in mutants}) == len(mutants)
-    assert [mutant.name for mutant in mutants if mutant.source == SOURCES[module]] == []
+    assert [mutant.name for mutant in mutants if mutant.source == mutant.path.read_text(encoding="utf-8")] == []
     for mutant in mutants[::20]:
         ast.parse(mutant.source)
 
@@ -41,7 +41,9 @@ def test_what_is_explained_is_a_mutant() -> None:
         ('"""Docstring."""', []),
     ],
 )
-def test_a_change_replaces_one_expression(source: str, changed: list[str]) -> None:
-    found: list[Mutant] = list(mutants_of("m", source))
+def test_a_change_replaces_one_expression(source: str, changed: list[str], tmp_path: Path) -> None:
+    path = tmp_path / "m.py"
+    path.write_text(source, encoding="utf-8")
+    found: list[Mutant] = list(mutants_of("m", path))
 
     assert [mutant.source for mutant in found] == changed

@@ -192,13 +192,13 @@ def test_every_route_belongs_to_the_group_that_its_method_and_address_suggest() 
             assert group is None, path
         elif path == "/metrics":
             assert group == "metrics"
-        elif path.endswith(("/select/batch", "/fleet")):
+        elif path.endswith(("/select/batch", "/fleet")) or (path, method) == ("/fleets", "POST"):
             assert group == "batch"
         elif path == "/oembed":
             assert group == "reading"  # it tells of a saved selection
-        elif path in ("/api/v1/selections", "/selections") and method == "GET":
+        elif path in ("/api/v1/selections", "/selections", "/fleets/saved") and method == "GET":
             assert group == "listing"
-        elif "/selections" in path:
+        elif "/selections" in path or "/fleets/" in path:
             expected = {"GET": "reading", "POST": "writing", "PATCH": "deleting", "DELETE": "deleting"}
             changes = path.endswith(("/rename", "/delete"))
             assert group == ("deleting" if changes else expected[method]), path

@@ -7,6 +7,7 @@ from starlette.testclient import TestClient
 from hpn.web.door.keys import new_key
 from tests.build import worked_example
 from tests.operations.conftest import MakeClient
+from tests.state import state_of
 
 SAVE = {"application": worked_example()}
 KEYS = {name: new_key(name) for name in ("plm", "erp", "admin")}
@@ -128,7 +129,7 @@ def test_no_address_is_kept_in_clear(make_client: MakeClient, tmp_path_factory: 
 
     place = client.post("/api/v1/selections", json=SAVE, headers=headers).headers["Location"]
 
-    url = client.app.state.settings.database_url.get_secret_value()  # type: ignore[attr-defined]
+    url = state_of(client).settings.database_url.get_secret_value()
     folder = tmp_path_factory.getbasetemp()  # the database lies below it
     files = [path for path in folder.rglob("store.sqlite3*") if str(path).startswith(url.removeprefix("sqlite:///"))]
     content = b"".join(path.read_bytes() for path in files)

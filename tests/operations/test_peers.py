@@ -4,7 +4,7 @@ import socket
 import statistics
 import subprocess
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -134,8 +134,7 @@ def ends(peer: Peer, front: Front, crowd: Crowd) -> float:
     """Seconds until front has let go of all of the crowd."""
     if front.proxy and peer.nginx_waits:
         return 0.0
-    held: Callable[[], bool] = lambda: crowd.left == 0 or front.connected() == 0  # noqa: E731
-    return until(held, GONE_S[front.name])
+    return until(lambda: crowd.left == 0 or front.connected() == 0, GONE_S[front.name])
 
 
 def row(peer: Peer, front: Front, waits: list[float], memory: tuple[float, float, float], gone: float) -> str:

@@ -27,6 +27,7 @@ from hpn.web.door.problems import Problem
 from hpn.web.settings import Settings
 from tests.build import worked_example
 from tests.operations.conftest import MakeClient
+from tests.state import state_of
 
 
 @contextmanager
@@ -116,7 +117,7 @@ def test_a_full_pool_is_a_503_that_says_when_to_try_again(
 ) -> None:
     (one, first), (two, second) = new_key("one"), new_key("two")
     client = make_client(api_keys=f"{first},{second}")
-    pool: Pool = client.app.state.pools[name]  # type: ignore[attr-defined]
+    pool: Pool = state_of(client).pools[name]
     with ExitStack() as stack:
         with pytest.raises(Problem):
             while True:
@@ -143,7 +144,7 @@ def test_no_route_computes_in_the_frameworks_threads(tmp_path: Path) -> None:
 
 def test_beyond_the_bytes_in_flight_bodies_and_then_all_requests_are_refused(make_client: MakeClient) -> None:
     client = make_client(maximum_bytes_in_flight=1000)
-    budget = client.app.state.budget  # type: ignore[attr-defined]
+    budget = state_of(client).budget
 
     large = client.post("/api/v1/select", content=b" " * 1001, headers={"Content-Type": "application/json"})
     assert (large.status_code, budget.held) == (503, 0)
@@ -158,7 +159,7 @@ def test_beyond_the_bytes_in_flight_bodies_and_then_all_requests_are_refused(mak
 
 def test_an_answer_counts_until_it_is_sent(make_client: MakeClient) -> None:
     client = make_client(maximum_bytes_in_flight=70_000)
-    budget = client.app.state.budget  # type: ignore[attr-defined]
+    budget = state_of(client).budget
 
     with client.stream("GET", "/api/v1/catalogue", headers={"Accept-Encoding": "identity"}) as reply:
         assert len(reply.read()) > 70_000

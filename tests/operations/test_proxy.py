@@ -14,7 +14,7 @@ from tests.build import worked_example
 from tests.operations.proxy import Proxy, proxied
 from tests.operations.service import Service, serving
 
-BATCH = "/api/v1/select/batch"
+BATCH, FLEET = "/api/v1/select/batch", "/api/v1/fleet"
 LINE = orjson.dumps({"reference": "axis", **worked_example(requirements={"ratios": [5]})}) + b"\n"
 
 
@@ -52,6 +52,18 @@ def test_http_leads_on_to_https_with_method_and_body(proxy: Proxy) -> None:
     answer = httpx.post(f"http://localhost:{proxy.http}/api/v1/select?a=b", trust_env=False)
 
     assert (answer.status_code, answer.headers["Location"]) == (308, "https://localhost/api/v1/select?a=b")
+
+
+def test_a_fleet_of_some_megabytes_comes_through_and_one_that_is_too_large_does_not(
+    client: httpx.Client, proxy: Proxy
+) -> None:
+    passed = client.post(FLEET, content=b"x" * 3_000_000, headers={"Content-Type": "text/csv"})
+    with proxy.connect() as connection:
+        connection.sendall(b"POST %s HTTP/1.1\r\nHost: a\r\nContent-Length: 200000001\r\n\r\n" % FLEET.encode())
+        refused = connection.recv(65536)
+
+    assert (passed.status_code, passed.json()["detail"]) == (422, "input: column axis is missing")
+    assert b" 413 " in refused.partition(b"\r\n")[0]
 
 
 def test_http_2_is_spoken(proxy: Proxy) -> None:

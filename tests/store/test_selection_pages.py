@@ -14,6 +14,7 @@ from hpn.web.form.write import to_link
 from hpn.web.settings import Settings
 from tests.build import Json, cycle, phase, worked_example
 from tests.conftest import Supplement
+from tests.state import state_of
 from tests.store.drafts import WEAKER
 
 LINK = to_link(Application.model_validate(worked_example(requirements={"ratios": [5]})))
@@ -169,7 +170,7 @@ def test_life_is_unlimited_only_where_the_gear_is_rated(client: TestClient, size
 def test_what_today_says_differently_stands_beside_what_was_saved(client: TestClient, supplemented: Supplement) -> None:
     address = sent(client)
     catalogue = supplemented(ratings=WEAKER)
-    client.app.state.catalogue = catalogue  # type: ignore[attr-defined]
+    state_of(client).catalogue = catalogue
 
     page = client.get(address)
 

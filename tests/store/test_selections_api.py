@@ -13,6 +13,7 @@ from hpn.web.app import create_app
 from hpn.web.settings import Settings
 from tests.build import Json, answer, worked_example
 from tests.conftest import Supplement
+from tests.state import state_of
 from tests.store.drafts import WEAKER, draft
 
 ADDRESS = "/api/v1/selections"
@@ -169,9 +170,7 @@ def test_todays_catalogue_is_compared_and_changes_the_tag_but_not_what_was_saved
     address = f"{ADDRESS}/{save(client, application=worked_example(requirements={'ratios': [5]}))}"
     before = client.get(address)
 
-    client.app.state.catalogue = supplemented(  # type: ignore[attr-defined]
-        ratings=WEAKER
-    )
+    state_of(client).catalogue = supplemented(ratings=WEAKER)
     after = client.get(address, headers={"If-None-Match": before.headers["etag"]})
 
     assert after.status_code == 200
@@ -199,7 +198,8 @@ def test_an_application_that_today_cannot_be_answered_is_still_shown(
     result = orjson.dumps(answer(worked_example(), catalogue))
     application = orjson.dumps(worked_example(requirements=requirements))
     old = draft(application=application, result=result, engine_version="0.1", selected="HPN-50A-5")
-    id = client.portal.call(client.app.state.store.save, old)  # type: ignore[union-attr, attr-defined]
+    assert client.portal
+    id = client.portal.call(state_of(client).store.save, old)
 
     saved = client.get(f"{ADDRESS}/{id}")
     page = client.get(f"/selections/{id}")

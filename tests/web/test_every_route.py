@@ -5,6 +5,7 @@ from typing import Any
 from urllib.parse import quote
 
 import pytest
+from fastapi import FastAPI
 from fastapi.routing import iter_route_contexts
 from starlette.testclient import TestClient
 
@@ -12,6 +13,8 @@ from hpn.web.app import create_app
 from hpn.web.door.access import MAXIMUM_QUERY_BYTES, group_of
 from hpn.web.pages.assets import Assets
 from tests.build import phase, worked_example
+from tests.fleet.sized import fleet_draft
+from tests.fleet.tables import row_of
 
 LINK = "T=40&n=250&t=0.3&T=32&n=500&t=3&tp=4&i=5"
 QUERIES = {
@@ -38,18 +41,28 @@ def saved(api: TestClient) -> str:
     return str(api.post("/api/v1/selections", json={"application": worked_example()}).json()["id"])
 
 
+@pytest.fixture(scope="module")
+def fleet(api: TestClient, service: FastAPI, tmp_path_factory: pytest.TempPathFactory) -> str:
+    """Id of a fleet that was sized."""
+    draft = fleet_draft([row_of("hub", worked_example())], tmp_path_factory.mktemp("fleet"), service.state.catalogue)
+    assert api.portal is not None
+    id: str = api.portal.call(service.state.store.keep_fleet, draft)
+    return id
+
+
 @pytest.fixture
-def address(saved: str) -> "Address":
+def address(saved: str, fleet: str) -> "Address":
     """Makes an address of the path of a route."""
-    return Address(saved)
+    return Address(saved, fleet)
 
 
 class Address:
     """Addresses that lead somewhere, one for each route."""
 
-    def __init__(self, saved: str) -> None:
+    def __init__(self, saved: str, fleet: str) -> None:
         self.values = {
             "{id}": saved,
+            "{fleet}": fleet,
             "{designation}": "HPN-20A-5",
             "{size}": "20A",
             "{code}": "average_torque",
@@ -66,9 +79,9 @@ class Address:
 
 
 @pytest.fixture(scope="module")
-def answers(api: TestClient, saved: str) -> dict[str, Any]:
+def answers(api: TestClient, saved: str, fleet: str) -> dict[str, Any]:
     """What each route answers, by its path."""
-    address = Address(saved)
+    address = Address(saved, fleet)
     return {path: api.get(address(path), headers=coding(path), follow_redirects=False) for path in PATHS}
 
 

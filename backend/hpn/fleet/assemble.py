@@ -28,7 +28,7 @@ class _NdjsonWriter:
     """A JSON object in each line."""
 
     def __init__(self, path: str, schema: pa.Schema) -> None:
-        self._file = Path(path).open("wb")  # noqa: SIM115 - close() ends it
+        self._file = pa.OSFile(path, "wb")
 
     def write_table(self, table: pa.Table) -> None:
         """Add rows."""

@@ -196,7 +196,9 @@ class CsvTable(LinesTable):
         return (pa.concat_tables([*parts, rows.slice(done)]), faults) if broken else (rows, faults)
 
     def _axis_of(self, line: str, cells: int) -> str | None:
-        """Axis of a broken row, where its cell has an end."""
+        """Axis of a broken row, where its cell has an end, and the header names it."""
+        if AXIS not in self.names:
+            return None
         place = list(self.names).index(AXIS)
         try:
             found = next(csv.reader([line]), [])
@@ -249,6 +251,14 @@ def _one_by_one(cells: pa.Array, read: Any, wanted: pa.DataType, reason: str) ->
 AXIS_IN_LINE = re.compile(rb'"axis"\s*:\s*("(?:[^"\\]|\\.)*"|-?[0-9]+(?=[\s,}]))')
 MOST_INTEGER = 2**63
 
+READ_AS: dict[tuple[bool, bool], Any] = {
+    (False, False): float,
+    (False, True): list[float | None],
+    (True, False): str,
+    (True, True): list[str | None],
+}
+"""What msgspec reads a cell as: whether the column holds texts, and whether lists of them."""
+
 
 class NdjsonTable(LinesTable):
     """A JSON object in each line, with the names of the columns as keys."""
@@ -292,8 +302,7 @@ class NdjsonTable(LinesTable):
         kinds: dict[str, Any] = {AXIS: int if pa.types.is_integer(self.axis_type) else str}
         for name in self.names:
             if name != AXIS:
-                item = str if COLUMNS.all[name].kind == "string" else float
-                kinds[name] = list[item | None] if is_list(self.type_of(name)) else item  # type: ignore[valid-type]
+                kinds[name] = READ_AS[COLUMNS.all[name].kind == "string", is_list(self.type_of(name))]
         return kinds
 
     def read(self, unit: int, names: Sequence[str]) -> Iterator[Batch]:

@@ -11,6 +11,7 @@ from concurrent.futures import Future, ProcessPoolExecutor, as_completed
 from contextlib import contextmanager
 from dataclasses import dataclass
 from multiprocessing import get_context, parent_process
+from multiprocessing.resource_tracker import ensure_running
 from pathlib import Path
 
 import msgspec
@@ -175,9 +176,10 @@ def processes(workers: int) -> Engine:
         for name, value in MEMORY.items():
             os.environ.setdefault(name, value)
         with ProcessPoolExecutor(workers, get_context("spawn"), _end_with_parent) as pool:
-            futures: dict[Future[int], int] = {
-                pool.submit(compute, job, number, part): number for number, part in parts.items()
-            }
+            with interrupts_held():  # the workers start with the first part submitted
+                futures: dict[Future[int], int] = {
+                    pool.submit(compute, job, number, part): number for number, part in parts.items()
+                }
             try:
                 for future in as_completed(futures):
                     future.result()
@@ -188,9 +190,19 @@ def processes(workers: int) -> Engine:
     return run
 
 
+@contextmanager
+def interrupts_held() -> Iterator[None]:
+    """Block interrupts: a process started here has them blocked from its first moment, this one gets them after."""
+    ensure_running()  # multiprocessing's own first process unblocks interrupts when it has started
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
 def _end_with_parent() -> None:
-    """End this process when the one that started it is gone; an interrupt is for that one to answer."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    """End this process when the one that started it is gone."""
     parent = parent_process()
     assert parent is not None
 

@@ -146,7 +146,7 @@ class ParquetTable(TypedTable):
     @cached_property
     def _file(self) -> pq.ParquetFile:
         try:
-            return pq.ParquetFile(self.path, memory_map=True)
+            return pq.ParquetFile(self.path)
         except UNREADABLE as error:
             raise self.unreadable(error) from None
 
@@ -174,7 +174,7 @@ class ArrowTable(TypedTable):
     @cached_property
     def _file(self) -> pa.RecordBatchFileReader:
         try:
-            return pa.ipc.open_file(pa.memory_map(str(self.path)))
+            return pa.ipc.open_file(pa.OSFile(str(self.path)))
         except UNREADABLE as error:
             raise self.unreadable(error) from None
 

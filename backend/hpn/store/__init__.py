@@ -1,15 +1,19 @@
 """Selections that last: saved once, never rewritten, in an SQLite file or a PostgreSQL database."""
 
 from hpn.store.errors import KeyReusedError, KeySpentError, NewerDatabaseError, StoreError, StoreUnavailableError
+from hpn.store.fleets import FleetDraft, FleetSummary, SavedFleet
 from hpn.store.saved import Draft, Page, SavedSelection, Summary
 from hpn.store.store import Store
 
 __all__ = [
     "Draft",
+    "FleetDraft",
+    "FleetSummary",
     "KeyReusedError",
     "KeySpentError",
     "NewerDatabaseError",
     "Page",
+    "SavedFleet",
     "SavedSelection",
     "Store",
     "StoreError",

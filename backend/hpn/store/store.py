@@ -20,6 +20,16 @@ from hpn.catalogue import Catalogue
 from hpn.catalogue.copy import UnreadableCopyError, read_copy
 from hpn.store.engine import WRITES, make_engine
 from hpn.store.errors import NewerDatabaseError, StoreUnavailableError
+from hpn.store.fleets import (
+    FleetDraft,
+    FleetSummary,
+    SavedFleet,
+    insert_fleet,
+    name_fleet,
+    read_fleet,
+    read_fleets,
+    remove_fleet,
+)
 from hpn.store.packing import unpacked
 from hpn.store.saved import Draft, Page, SavedSelection, Summary, search_text
 from hpn.store.tables import catalogues, selections
@@ -149,7 +159,7 @@ class Store:
         async with self._reading() as connection:
             found = [Summary(*row) for row in await connection.execute(query)]
         more = len(found) > limit
-        return Page(found[:limit], _cursor(found[limit - 1]) if more else None)
+        return Page(found[:limit], _cursor(found[limit - 1].created, found[limit - 1].id) if more else None)
 
     async def rename(self, id: str, names: Mapping[str, str | None]) -> bool:
         """Give a selection another `title` or `reference`, or both; False where there is none with this id."""
@@ -162,6 +172,39 @@ class Store:
         if not ID.fullmatch(id):
             return False
         return await self._write(lambda connection: remove(connection, id))
+
+    # --- Fleets -------------------------------------------------------------------------------------------------------
+
+    async def keep_fleet(self, draft: FleetDraft) -> str:
+        """Id of a calculated fleet, which is kept for a day, or until many more were calculated."""
+        return await self._write(lambda connection: insert_fleet(connection, draft))
+
+    async def save_fleet(self, id: str, names: Mapping[str, str | None], owner: str | None) -> bool:
+        """Keep a calculated fleet for good, with title, reference, author and revision; False where there is none."""
+        return bool(ID.fullmatch(id)) and await self._write(lambda connection: name_fleet(connection, id, names, owner))
+
+    async def find_fleet(self, id: str) -> SavedFleet | None:
+        """The fleet with this id, saved or calculated not long ago, or None."""
+        if not ID.fullmatch(id):
+            return None
+        async with self._reading() as connection:
+            return await read_fleet(connection, id)
+
+    async def fleets(self, cursor: str | None = None, limit: int = 50) -> tuple[list[FleetSummary], str | None]:
+        """Saved fleets, newest first, and a cursor to those that follow; ValueError for one that isn't."""
+        before = None if cursor is None else _position(cursor)
+        async with self._reading() as connection:
+            found = await read_fleets(connection, before, limit + 1)
+        if len(found) <= limit:
+            return found, None
+        last = found[limit - 1]
+        return found[:limit], _cursor(last.saved or last.created, last.id)
+
+    async def delete_fleet(self, id: str) -> bool:
+        """Delete a fleet; False where there is none with this id."""
+        return bool(ID.fullmatch(id)) and await self._write(lambda connection: remove_fleet(connection, id))
+
+    # --- Transactions -------------------------------------------------------------------------------------------------
 
     @asynccontextmanager
     async def _reachable(self) -> AsyncIterator[None]:
@@ -211,8 +254,8 @@ def _unavailable(error: Exception) -> StoreUnavailableError:
     return StoreUnavailableError(UNAVAILABLE)
 
 
-def _cursor(last: Summary) -> str:
-    return base64.urlsafe_b64encode(f"{last.created.isoformat()} {last.id}".encode()).decode()
+def _cursor(moment: datetime, id: str) -> str:
+    return base64.urlsafe_b64encode(f"{moment.isoformat()} {id}".encode()).decode()
 
 
 def _position(cursor: str) -> tuple[datetime, str]:

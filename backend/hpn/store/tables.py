@@ -2,7 +2,7 @@
 
 from datetime import UTC, datetime
 
-from sqlalchemy import Column, DateTime, Double, Index, LargeBinary, MetaData, String, Table, Text
+from sqlalchemy import Column, DateTime, Double, Index, Integer, LargeBinary, MetaData, String, Table, Text
 from sqlalchemy.engine import Dialect
 from sqlalchemy.types import TypeDecorator
 
@@ -66,4 +66,28 @@ catalogues = Table(
     Column("version", Text, primary_key=True),
     # The JSON of every figure is some 100 kB; packed it is a fiftieth of that.
     Column("content_brotli", LargeBinary, nullable=False),
+)
+
+fleets = Table(
+    "fleets",
+    metadata,
+    Column("id", String(32), primary_key=True),
+    Column("created", UtcTime, nullable=False),
+    Column("saved", UtcTime),  # null while nobody has saved it: it goes by itself
+    Column("title", Text),
+    Column("reference", Text),
+    Column("author", Text),
+    Column("revision", Text),
+    Column("owner", Text),
+    Column("axes", Integer, nullable=False),
+    Column("selected", Integer, nullable=False),
+    Column("unsuitable", Integer, nullable=False),
+    Column("rejected", Integer, nullable=False),
+    Column("engine_version", Text, nullable=False),
+    Column("catalogue_version", Text, nullable=False),
+    # Tables in a format that packs them itself; the store does not read them.
+    Column("asked", LargeBinary, nullable=False),
+    Column("answers", LargeBinary, nullable=False),
+    Index("fleets_saved", "saved", "id"),
+    Index("fleets_created", "created"),
 )

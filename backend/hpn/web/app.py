@@ -41,6 +41,7 @@ from hpn.web.pages import assets, compared, long_cycles, paste, refusals, saved_
 from hpn.web.pages import calculator as pages
 from hpn.web.pages import catalogue as catalogue_pages
 from hpn.web.pages import checks as check_pages
+from hpn.web.pages import fleets as fleet_pages
 from hpn.web.pages import saved as selection_pages
 from hpn.web.settings import Settings
 
@@ -99,6 +100,7 @@ ROUTERS: tuple[APIRouter, ...] = (
     check_pages.router,
     long_cycles.router,
     paste.router,
+    fleet_pages.router,
     transfer.router,
     compared.router,
     saved_list.router,

@@ -1,4 +1,5 @@
-"""Fleets of axes, sized by `hpn fleet` in processes of its own: what one takes, and where it fails, is its own.
+"""Fleets of axes, sized by `hpn fleet` in processes that end with the service: what one takes, and where it fails, is
+its own.
 
 Its files stand in a folder that is locked as long as the service holds it, so that what a killed one left can be told.
 """
@@ -12,7 +13,7 @@ import shutil
 import signal
 import sys
 import tempfile
-from asyncio.subprocess import DEVNULL, STDOUT, Process
+from asyncio.subprocess import PIPE, STDOUT, Process
 from collections.abc import AsyncIterator, Iterator, Mapping
 from contextlib import asynccontextmanager, contextmanager, suppress
 from dataclasses import dataclass
@@ -130,7 +131,7 @@ def _require_tables(tables: Tables) -> None:
 
 
 async def _sized(tables: Tables, files: Mapping[Kind, Path], settings: Settings, pool: Pool) -> None:
-    command = [sys.executable, "-m", "hpn.cli", "fleet", str(tables.input), str(files["answers"])]
+    command = [sys.executable, "-m", "hpn.cli.tethered", "fleet", str(tables.input), str(files["answers"])]
     command += ["--workers", str(settings.fleet_workers)]
     beside = {"axes": tables.axes, "rejected": files["rejected"], "candidates": files.get("candidates")}
     for option, path in beside.items():
@@ -146,7 +147,7 @@ async def _run(command: list[str], messages: Path, settings: Settings) -> int:
     """Exit code of the command, of which nothing is left when this ends, however it does."""
     with messages.open("wb") as output:
         process = await asyncio.create_subprocess_exec(
-            *command, stdin=DEVNULL, stdout=output, stderr=STDOUT, env=_environment(settings), start_new_session=True
+            *command, stdin=PIPE, stdout=output, stderr=STDOUT, env=_environment(settings), start_new_session=True
         )
     try:
         _restrain(process.pid, settings)

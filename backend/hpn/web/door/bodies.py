@@ -2,7 +2,7 @@
 
 import asyncio
 from collections.abc import Awaitable, Callable
-from typing import TypeVar
+from typing import AnyStr, TypeVar
 from urllib.parse import parse_qsl
 
 from pydantic import BaseModel
@@ -105,19 +105,19 @@ def _broken_off() -> Problem:
     return Problem(400, "the connection closed before the body was complete")
 
 
-def parsed(model: type[M], text: bytes | str) -> M:
+def parsed(model: type[M], text: AnyStr) -> M:
     """Value of a model in JSON; raises ValidationError, or Problem as `require_bounded` does."""
     require_bounded(text)
     return model.model_validate_json(text)
 
 
-def require_bounded(text: bytes | str) -> None:
+def require_bounded(text: AnyStr) -> None:
     """Raise Problem 422 for JSON with more in it than any application has, before it is parsed.
 
     Of a text within the limit of bytes, values can take a hundred times as much memory, and errors seconds.
     """
     marks = ("{", ":", "[") if isinstance(text, str) else (b"{", b":", b"[")
-    objects, names, lists = (text.count(mark) for mark in marks)  # type: ignore[arg-type]
+    objects, names, lists = map(text.count, marks)
     if objects > MOST_OBJECTS:  # phases are the only objects that an application has many of
         detail = f"must have at most {MAXIMUM_PHASES} phases"
         raise Problem(422, detail, [(("duty_cycle", "phases"), detail)])

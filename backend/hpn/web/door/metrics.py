@@ -13,7 +13,17 @@ from prometheus_client import CollectorRegistry, Counter, Histogram, ProcessColl
 from prometheus_client.multiprocess import MultiProcessCollector
 
 from hpn.catalogue import Catalogue
-from hpn.store import Draft, KeyReusedError, KeySpentError, Page, SavedSelection, Store
+from hpn.store import (
+    Draft,
+    FleetDraft,
+    FleetSummary,
+    KeyReusedError,
+    KeySpentError,
+    Page,
+    SavedFleet,
+    SavedSelection,
+    Store,
+)
 
 CONTENT_TYPE = "text/plain; version=0.0.4; charset=utf-8"
 FOLDER = "PROMETHEUS_MULTIPROC_DIR"
@@ -126,6 +136,31 @@ class CountedStore(Store):
         """See Store."""
         with self._counted("delete"):
             return await super().delete(id)
+
+    async def keep_fleet(self, draft: FleetDraft) -> str:
+        """See Store."""
+        with self._counted("keep_fleet"):
+            return await super().keep_fleet(draft)
+
+    async def save_fleet(self, id: str, names: Mapping[str, str | None], owner: str | None) -> bool:
+        """See Store."""
+        with self._counted("save_fleet"):
+            return await super().save_fleet(id, names, owner)
+
+    async def find_fleet(self, id: str) -> SavedFleet | None:
+        """See Store."""
+        with self._counted("find_fleet"):
+            return await super().find_fleet(id)
+
+    async def fleets(self, cursor: str | None = None, limit: int = 50) -> tuple[list[FleetSummary], str | None]:
+        """See Store."""
+        with self._counted("fleets"):
+            return await super().fleets(cursor, limit)
+
+    async def delete_fleet(self, id: str) -> bool:
+        """See Store."""
+        with self._counted("delete_fleet"):
+            return await super().delete_fleet(id)
 
     @contextmanager
     def _counted(self, operation: str) -> Iterator[None]:

@@ -38,13 +38,12 @@ async def read_fields(request: Request) -> dict[str, str]:
     return {name: decoded(content) for name, content in (await read_parts(request)).items()}
 
 
-async def read_parts(request: Request) -> dict[str, bytes]:
+async def read_parts(request: Request, maximum_bytes: int | None = None) -> dict[str, bytes]:
     """Fields and files of a posted form as they were sent, the last of a name. Raises Problem as `read_body` does."""
     settings: Settings = request.app.state.settings
     content_type = MULTIPART if content_type_of(request) == MULTIPART else FORM
-    body = await read_body(
-        request, content_type, maximum_bytes=settings.maximum_body_bytes, seconds=settings.body_seconds
-    )
+    most = maximum_bytes or settings.maximum_body_bytes
+    body = await read_body(request, content_type, maximum_bytes=most, seconds=settings.body_seconds)
     if content_type == FORM:
         return {name: text.encode(errors="replace") for name, text in await compute(request, "pages", pairs_of, body)}
     return dict(await compute(request, "pages", parts_of, request.headers["content-type"], body))
@@ -54,7 +53,7 @@ _BOUNDARY = re.compile(r"""boundary="?([A-Za-z0-9'()+_,./:=? -]{1,70})""", re.IG
 _NAME = re.compile(rb';\s*name="([^"\r\n]{1,100})"', re.IGNORECASE)
 _FILE_NAME = re.compile(rb';\s*filename="([^"\r\n]{1,300})"', re.IGNORECASE)
 _TYPE = re.compile(rb"^content-type:\s*([^;\s]{1,100})", re.IGNORECASE | re.MULTILINE)
-MOST_PARTS = 20
+MOST_PARTS = 200
 LONGEST_HEAD = 2000
 END_OF_HEAD = b"\r\n\r\n"
 

@@ -13,8 +13,10 @@ class Visit(NamedTuple):
     address: str = "/"
 
 
+NOBODY = Visit()
+
 # Per request, not per process: templates of every page find it without each route handing it on.
-VISIT: ContextVar[Visit] = ContextVar("visit", default=Visit())  # noqa: B039
+VISIT: ContextVar[Visit] = ContextVar("visit", default=NOBODY)
 
 
 def current() -> Reader:

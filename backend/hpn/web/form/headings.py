@@ -67,7 +67,7 @@ def heading_of(cell: str) -> Heading:
         return Heading("")
     if not _kind(text, "") and (unit := _unit_alone(text)):
         return Heading(UNIT, unit)
-    name, unit = _parts(text)
+    name, unit = parts_of(text)
     folded = _folded(name)
     if _SUMS.fullmatch(folded):
         return Heading(SUM, unit)
@@ -85,7 +85,7 @@ def _unit_alone(text: str) -> str:
     return inner if known else ""
 
 
-def _parts(text: str) -> tuple[str, str]:
+def parts_of(text: str) -> tuple[str, str]:
     """Name and unit of `Drehzahl [1/min]`, `Drehzahl in 1/min`, `Drehzahl_1/min`, `n / min-1`."""
     if _kind(text, ""):
         return text, ""

@@ -85,15 +85,15 @@ def grid_of(rows: Sequence[Sequence[str]], separator: str = "") -> Grid:
     return Grid(cells, tuple(k for k, _, _ in kept), separator, counts=tuple(count for _, _, count in kept))
 
 
-def grids_of(text: str) -> list[Grid]:
+def grids_of(text: str, most_rows: int = MAXIMUM_PHASES, most_characters: int = MAXIMUM_CHARACTERS) -> list[Grid]:
     """The text's cells by each separator that it may have; raises RefusedError where there are none."""
-    if len(text) > MAXIMUM_CHARACTERS:
-        raise RefusedError(N_("the text is too long: at most {most} characters"), most=MAXIMUM_CHARACTERS)
+    if len(text) > most_characters:
+        raise RefusedError(N_("the text is too long: at most {most} characters"), most=most_characters)
     text = text.removeprefix("\ufeff")
     if not tidy(text):
         raise RefusedError(N_("there is nothing in the text"))
-    if sum(bool(line.strip()) for line in text.splitlines()) > MAXIMUM_PHASES + MOST_HEAD_ROWS:
-        raise RefusedError(N_("there are more than {most} rows"), most=MAXIMUM_PHASES)
+    if sum(bool(line.strip()) for line in text.splitlines()) > most_rows + MOST_HEAD_ROWS:
+        raise RefusedError(N_("there are more than {most} rows"), most=most_rows)
     hint = _HINT.match(text)
     text = text[hint.end() :] if hint else text
     return [grid_of([[tidy(cell) for cell in row] for row in _rows(text, name)], name) for name in _separators(text)]

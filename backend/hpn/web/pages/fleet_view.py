@@ -1,8 +1,9 @@
 """What the templates show of a fleet, in a page or in the file of a report."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
+from urllib.parse import urlencode
 
 from hpn.wording import N_
 
@@ -17,6 +18,20 @@ SHOWN = {
     "rejected": N_("rejected"),
 }
 """Which axes are shown."""
+
+ROWS_ON_PAGE = 100
+
+ORDERS: Mapping[str, Callable[["AxisRow"], Any]] = {
+    "axis": lambda row: row.axis.casefold(),
+    "gear": lambda row: row.gear,
+    "utilisation": lambda row: row.utilisation,
+    "check": lambda row: row.governing_check,
+    "life": lambda row: row.life_L10_h,
+    "suitable": lambda row: row.suitable,
+    "runner_up": lambda row: row.runner_up,
+    "torque": lambda row: row.average_torque_Nm,
+}
+"""What axes are sorted by, by the names of an address."""
 
 
 @dataclass(frozen=True)
@@ -38,3 +53,81 @@ class FleetView:
     def order_of(self, key: str) -> str:
         """How the axes are ordered by a column; blank where they are not."""
         return ""
+
+
+@dataclass(frozen=True)
+class Chosen:
+    """Which axes a page shows, and in which order, as its address says it."""
+
+    show: str = ""
+    gear: str = ""
+    check: str = ""
+    search: str = ""
+    sort: str = ""
+    part: int = 1
+
+    @classmethod
+    def of(cls, query: Mapping[str, str]) -> "Chosen":
+        """What an address chooses; what it says wrongly counts as not said."""
+        given = {name: query.get(name, "")[:200] for name in ("show", "gear", "check", "search", "sort")}
+        given["show"] = given["show"] if given["show"] in SHOWN else ""
+        given["sort"] = given["sort"] if given["sort"].removeprefix("-") in ORDERS else ""
+        part = query.get("part", "")
+        number = int(part) if part.isascii() and part.isdigit() and len(part) < 6 else 1
+        return cls(**given, part=max(number, 1))
+
+    def out_of(self, rows: Sequence["AxisRow"]) -> list["AxisRow"]:
+        """Rows that are shown, in their order."""
+        search = self.search.strip().casefold()
+        found = [
+            row
+            for row in rows
+            if (not self.show or row.state == self.show)
+            and (not self.gear or (row.state == "selected" and row.gear == self.gear))
+            and (not self.check or (row.state == "selected" and row.governing_check == self.check))
+            and search in row.axis.casefold()
+        ]
+        if not self.sort:
+            return found
+        key = ORDERS[self.sort.removeprefix("-")]
+        valued = [row for row in found if row.state != "rejected" and key(row) is not None]
+        valued.sort(key=key, reverse=self.sort.startswith("-"))
+        return valued + [row for row in found if row.state == "rejected" or key(row) is None]
+
+    def address(self, path: str, **changes: str | int) -> str:
+        """Address of a page that shows the same but for some changes."""
+        pairs = {name: value for name, value in {**self.__dict__, **changes}.items() if value not in ("", 1)}
+        return f"{path}?{urlencode(pairs)}" if pairs else path
+
+
+@dataclass(frozen=True)
+class FleetPageView(FleetView):
+    """The same with addresses, for a page that shows some axes at a time."""
+
+    path: str = ""
+    chosen: Chosen = field(default_factory=Chosen)
+    count: int = 0
+
+    nothing_chosen = Chosen()
+
+    def choose(self, name: str, value: str) -> str:
+        """See FleetView."""
+        return Chosen().address(self.path, **{name: value}) + "#axes-heading"
+
+    def sorted_by(self, key: str) -> str:
+        """See FleetView."""
+        turned = f"-{key}" if self.chosen.sort == key else key
+        return self.chosen.address(self.path, sort=turned, part=1) + "#axes-heading"
+
+    def order_of(self, key: str) -> str:
+        """See FleetView."""
+        return {key: "ascending", f"-{key}": "descending"}.get(self.chosen.sort, "")
+
+    @property
+    def parts(self) -> int:
+        """How many parts the axes are shown in."""
+        return max(1, -(-self.count // ROWS_ON_PAGE))
+
+    def part(self, number: int) -> str:
+        """Address of one of them, blank where there is none."""
+        return self.chosen.address(self.path, part=number) + "#axes-heading" if 1 <= number <= self.parts else ""

@@ -126,7 +126,7 @@ def _answer(request: Request, parts: Mapping[str, bytes]) -> Response:
     if text.lstrip().startswith("{"):
         return _of_application(request, link, text, fields.get("take", ""))
     of = _digest(text.encode(errors="replace"))
-    table = read_text(text, _choices(fields, of), _assumed()) if text.strip() else None
+    table = read_text(text, choices_of(fields, of), _assumed()) if text.strip() else None
     return _taken_or_shown(request, fields, _draft(link, text, table, of=of))
 
 
@@ -141,7 +141,7 @@ def _of_workbook(request: Request, link: str, file: bytes, fields: Mapping[str, 
     of = _digest(book)
     chosen = fields.get("sheet", "") if fields.get("of") == of else ""
     sheet = chosen if chosen in sheets else next(iter(sheets)) if len(sheets) == 1 else ""
-    table = _of_sheet(sheets[sheet], _choices(fields, of)) if sheet else None
+    table = _of_sheet(sheets[sheet], choices_of(fields, of)) if sheet else None
     carried = "" if "hx-request" in request.headers else book.decode()
     draft = _draft(link, "", table, of=of, sheets=tuple(sheets), sheet=sheet, book=carried)
     return _taken_or_shown(request, fields, draft)
@@ -182,7 +182,7 @@ def _digest(content: bytes) -> str:
     return hashlib.sha256(content).hexdigest()[:16]
 
 
-def _choices(fields: Mapping[str, str], of: str) -> Choices:
+def choices_of(fields: Mapping[str, str], of: str) -> Choices:
     """What was chosen for this very text; for another one, nothing is."""
     if fields.get("of") != of:
         return Choices()

@@ -1,0 +1,106 @@
+"""What the store keeps of a fleet, and what a transaction does to it.
+
+A fleet is kept for a day when it is calculated, and for good when it is saved; after that it is only deleted.
+"""
+
+import secrets
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field
+from datetime import UTC, datetime, timedelta
+from typing import Any
+
+from sqlalchemy import delete, or_, select, tuple_, update
+from sqlalchemy.ext.asyncio import AsyncConnection
+
+from hpn.store.tables import fleets
+
+UNSAVED_LASTS = timedelta(days=1)
+MOST_UNSAVED = 100
+"""Fleets that are kept without being saved; the oldest make room."""
+
+
+@dataclass(frozen=True, slots=True)
+class FleetDraft:
+    """A fleet that was calculated: counts of its axes, and tables of what they were asked with and of their answers."""
+
+    axes: int
+    selected: int
+    unsuitable: int
+    rejected: int
+    engine_version: str
+    catalogue_version: str
+    asked: bytes = field(repr=False)
+    answers: bytes = field(repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class FleetSummary:
+    """One line of a list of fleets; `saved` is None while it is only calculated."""
+
+    id: str
+    created: datetime
+    saved: datetime | None
+    title: str | None
+    reference: str | None
+    author: str | None
+    revision: str | None
+    owner: str | None
+    axes: int
+    selected: int
+    unsuitable: int
+    rejected: int
+    engine_version: str
+    catalogue_version: str
+
+
+@dataclass(frozen=True, slots=True)
+class SavedFleet(FleetSummary):
+    """A fleet, whole."""
+
+    asked: bytes = field(repr=False)
+    answers: bytes = field(repr=False)
+
+
+SUMMARY = [fleets.c[name] for name in FleetSummary.__dataclass_fields__]
+WHOLE = [fleets.c[name] for name in SavedFleet.__dataclass_fields__]
+
+
+async def insert_fleet(connection: AsyncConnection, draft: FleetDraft) -> str:
+    """Id of the new fleet; those that nobody has saved for long make room."""
+    id, now, c = secrets.token_urlsafe(16), datetime.now(UTC), fleets.c
+    latest = select(c.id).where(c.saved.is_(None)).order_by(c.created.desc()).limit(MOST_UNSAVED - 1)
+    old = or_(c.created < now - UNSAVED_LASTS, c.id.not_in(latest))
+    await connection.execute(delete(fleets).where(c.saved.is_(None), old))
+    await connection.execute(fleets.insert().values(id=id, created=now, **asdict(draft)))
+    return id
+
+
+async def name_fleet(connection: AsyncConnection, id: str, names: Mapping[str, str | None], owner: str | None) -> bool:
+    """Save a calculated fleet under a title and the like; False where there is none that is not saved."""
+    values = {**names, "owner": owner, "saved": datetime.now(UTC)}
+    named = update(fleets).where(fleets.c.id == id, fleets.c.saved.is_(None)).values(values).returning(fleets.c.id)
+    return (await connection.execute(named)).one_or_none() is not None
+
+
+async def remove_fleet(connection: AsyncConnection, id: str) -> bool:
+    """Delete a fleet; False where there is none."""
+    gone = delete(fleets).where(fleets.c.id == id).returning(fleets.c.id)
+    return (await connection.execute(gone)).one_or_none() is not None
+
+
+async def read_fleet(connection: AsyncConnection, id: str) -> SavedFleet | None:
+    """The fleet with an id; None where there is none, or it has had its time."""
+    alive = or_(fleets.c.saved.is_not(None), fleets.c.created >= datetime.now(UTC) - UNSAVED_LASTS)
+    row = (await connection.execute(select(*WHOLE).where(fleets.c.id == id, alive))).one_or_none()
+    return None if row is None else SavedFleet(*row)
+
+
+async def read_fleets(
+    connection: AsyncConnection, before: tuple[datetime, str] | None, limit: int
+) -> list[FleetSummary]:
+    """Saved fleets, newest first."""
+    c = fleets.c
+    query: Any = select(*SUMMARY).where(c.saved.is_not(None)).order_by(c.saved.desc(), c.id.desc()).limit(limit)
+    if before is not None:
+        query = query.where(tuple_(c.saved, c.id) < tuple_(*before))
+    return [FleetSummary(*row) for row in await connection.execute(query)]

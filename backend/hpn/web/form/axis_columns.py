@@ -1,0 +1,149 @@
+"""Columns of a table of axes that somebody uploads: what each is read as, and in which unit.
+
+Beside the phases' columns there is one that names the axis, and one for every other input of an application. Headings
+are the names of the inputs in every language, their symbols, or the names that `hpn fleet` gives its columns.
+"""
+
+from collections.abc import Collection
+from dataclasses import dataclass, replace
+from functools import cache
+
+from hpn import units
+from hpn.quantities import Named
+from hpn.reader import LANGUAGES, Reader
+from hpn.web.form.cells import is_blank, is_number
+from hpn.web.form.columns import SKIP, Body, Choices, Column
+from hpn.web.form.headings import INDEX, LONGEST, QUANTITIES, SUM, UNIT, heading_of, parts_of
+from hpn.web.form.symbols import PHASE_SYMBOLS, SYMBOLS, Symbol
+from hpn.wording import N_, Sentence
+
+AXIS = "axis"
+AXIS_NAMED = Named(N_("Axis"))
+
+BY_ROLE: dict[str, Symbol] = {symbol.name: symbol for symbol in (*PHASE_SYMBOLS, *SYMBOLS)}
+"""Every role but that of the axis, by its link symbol."""
+
+PHASES = tuple(symbol.name for symbol in PHASE_SYMBOLS)
+
+FURTHER = {
+    AXIS: "axis name, achse, achsname, achsbezeichnung, achse nr, antrieb, drive, joint, gelenk, bezeichnung, name",
+    "tp": "pause, pausenzeit, dwell",
+    "Tk": "emergency stop, not-halt, nothalt, not-halt-moment, nothaltmoment, not-halt-drehmoment",
+    "Nk": "emergency stops, not-halt-vorgänge, anzahl not-halt",
+    "Lh": "life, gear life, lebensdauer, lebensdauer getriebe",
+    "Lb": "bearing life, lagerlebensdauer",
+    "i": "ratio, ratios, übersetzung, übersetzungen",
+    "size": "size, sizes, baugröße, baugrößen",
+    "ta": "ambient, umgebungstemperatur",
+    "u": "utilisation, utilization, auslastung",
+    "fw": "betriebsfaktor",
+    "nm": "motor speed, motordrehzahl",
+    "Tm": "motor torque, motormoment, motordrehmoment",
+}
+
+
+@dataclass(frozen=True, slots=True)
+class AxisColumn(Column):
+    """A column of a table of axes: its role may be the axis and every other input."""
+
+    @property
+    def symbol(self) -> Symbol | None:
+        """The input that it holds."""
+        return BY_ROLE.get(self.role)
+
+    @property
+    def quantity(self) -> str:
+        """What its unit measures, blank for a pure number or a text, and where there is one unit alone."""
+        return quantity_of(self.role)
+
+    @property
+    def is_number(self) -> bool:
+        """Whether its cells hold one number each."""
+        return self.symbol is not None and self.symbol.kind != "text" and not self.symbol.many
+
+
+def quantity_of(role: str) -> str:
+    """What the unit of a role measures."""
+    unit = BY_ROLE[role].unit if role in BY_ROLE else ""
+    quantity = "" if unit.endswith("_per_rad") else units.quantity_of(unit)
+    return quantity if quantity in units.READ else ""
+
+
+def columns_of(body: Body, choices: Choices, assumed: Collection[str]) -> tuple[AxisColumn, ...]:
+    """What each column that is not empty is; without a unit it is in that of the wire, where that may be assumed."""
+    filled = [place for place in range(body.grid.width) if any(not is_blank(row[place]) for row in body.rows)]
+    proposed = [_proposed(body, place) for place in filled]
+    roles = [column.role for column in proposed]
+    doubled = {role for role in roles if roles.count(role) > 1} - {SKIP, ""}
+    columns = [replace(column, role="") if column.role in doubled else column for column in proposed]
+    return tuple(_chosen(body, column, choices, assumed) for column in columns)
+
+
+def _proposed(body: Body, place: int) -> AxisColumn:
+    headings = body.headings[place]
+    heading = " ".join(" ".join(text.split()) for text in headings)[:LONGEST]
+    for text in headings:
+        if role := _role_of(text):
+            return AxisColumn(place, heading, role)
+    said = [heading_of(text) for text in headings]
+    kinds = {each.kind for each in said} - {UNIT, ""}
+    kind = kinds.pop() if len(kinds) == 1 else ""
+    if kind in (INDEX, SUM):
+        why = Sentence(N_("numbers the phases")) if kind == INDEX else Sentence(N_("a sum"))
+        return AxisColumn(place, heading, SKIP, skipped=why)
+    if kind in QUANTITIES:
+        return AxisColumn(place, heading, kind, lasting=any(each.lasting for each in said))
+    if not any(is_number(row[place]) for row in body.rows):
+        return AxisColumn(place, heading, SKIP, skipped=Sentence(N_("text")))
+    return AxisColumn(place, heading)
+
+
+def _role_of(heading: str) -> str:
+    """Role by one of the names of an input, with or without a unit behind it."""
+    if len(heading) > LONGEST:
+        return ""
+    return _names().get(_folded(heading)) or _names().get(_folded(parts_of(heading)[0]), "")
+
+
+@cache
+def _names() -> dict[str, str]:
+    names: dict[str, str] = {}
+    readers = [Reader(language) for language in LANGUAGES]
+    for symbol in SYMBOLS:
+        path = symbol.path[-1:] if symbol.path[0] == "duty_cycle" else symbol.path
+        names |= {
+            _folded(text): symbol.name for text in (".".join(path), *(r.text(symbol.named.name) for r in readers))
+        }
+        if len(symbol.named.symbol) > 2:
+            names[_folded(symbol.named.symbol)] = symbol.name
+    names |= {_folded(symbol.path[0]): symbol.name for symbol in PHASE_SYMBOLS} | {_folded(AXIS): AXIS}
+    return names | {_folded(word): role for role, words in FURTHER.items() for word in words.split(", ")}
+
+
+def _folded(text: str) -> str:
+    return " ".join(text.casefold().replace("_", " ").split()).strip(" :.")
+
+
+def _chosen(body: Body, column: AxisColumn, choices: Choices, assumed: Collection[str]) -> AxisColumn:
+    """A column with what somebody has said about it, and with its unit."""
+    role = choices.roles.get(column.place, "")
+    if role in (AXIS, SKIP, *BY_ROLE):
+        column = replace(column, role=role, skipped=column.skipped if role == SKIP else None)
+    if not column.quantity:
+        return replace(column, unit=column.symbol.unit if column.symbol else "")
+    unit = choices.units.get(column.place, "")
+    return replace(column, unit=unit if unit in units.READ[column.quantity] else _unit(body, column, assumed))
+
+
+def _unit(body: Body, column: AxisColumn, assumed: Collection[str]) -> str:
+    """Unit as the headings say it, else that of the wire if it may be assumed; else blank."""
+    wire = BY_ROLE[column.role].unit
+    headings = body.headings[column.place]
+    if any(_folded(text).endswith(_folded(f"_{wire}")) for text in headings):
+        return wire
+    written = {heading_of(text).unit or parts_of(text)[1] for text in headings} - {""}
+    if not written:
+        return wire if wire in assumed else ""
+    codes = {units.codes_for(unit, column.quantity) for unit in written}
+    only = codes.pop() if len(codes) == 1 else ()
+    return only[0] if len(only) == 1 else ""

@@ -1,0 +1,283 @@
+"""A table of axes that somebody uploads, in whichever way it is written: a row is a phase, those of an axis together.
+
+As with pasted duty cycles a number is never silently another number: what has two readings is asked. A cell that is no
+number spoils its axis alone, which is then rejected with its reason.
+"""
+
+import re
+from collections.abc import Collection, Iterator, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from itertools import groupby, pairwise
+from math import isfinite
+from typing import Any
+
+from hpn import units
+from hpn.web.form.axis_columns import AXIS, BY_ROLE, PHASES, AxisColumn, columns_of
+from hpn.web.form.cells import DECIMALS, Decimal, Entry, entry, is_blank
+from hpn.web.form.columns import NO_CHOICES, REQUIRED, SKIP, Body, Choices, body_of
+from hpn.web.form.pasted import TIMES
+from hpn.web.form.sheets import Grid, RefusedError
+from hpn.wording import N_, Sentence
+
+NEEDED = (AXIS, *REQUIRED)
+
+_APART = re.compile(r"[;/|\s]+")
+
+
+@dataclass(frozen=True, slots=True)
+class AxisTable:
+    """What a table is read as. It can be taken when there is no problem and no question.
+
+    `axes` are rows in list form by the names of `hpn fleet`; a cell that is no number stands there as it is written.
+    """
+
+    problem: Sentence | None = None
+    questions: tuple[Sentence, ...] = ()
+    notes: tuple[Sentence, ...] = ()
+    columns: tuple[AxisColumn, ...] = ()
+    body: Body | None = None
+    decimal: Decimal | None = None
+    marks: tuple[tuple[str, str], ...] = ()
+    times: str = ""
+    asks_times: bool = False
+    axes: tuple[dict[str, Any], ...] = ()
+
+    @property
+    def whole(self) -> bool:
+        """Whether it can be taken as it is."""
+        return bool(self.axes) and not self.questions
+
+
+def read_axes(grid: Grid, choices: Choices = NO_CHOICES, assumed: Collection[str] = ()) -> AxisTable:
+    """What a table of cells is read as; raises nothing, `problem` says why it can't be."""
+    try:
+        body = body_of(grid)
+        return _Reading(body, columns_of(body, choices, assumed), choices).table()
+    except RefusedError as refused:
+        return AxisTable(refused.sentence)
+
+
+class _Reading:
+    """One table on its way from cells to axes."""
+
+    def __init__(self, body: Body, columns: tuple[AxisColumn, ...], choices: Choices) -> None:
+        self.body, self.columns, self.choices = body, columns, choices
+        self.by_role = {column.role: column for column in columns}
+        self.questions: list[Sentence] = []
+        self.notes = list(body.notes)
+
+    def table(self) -> AxisTable:
+        """The table with what is to be asked, or with its axes."""
+        self._ask_columns()
+        decimal, marks = self._decimal()
+        groups = self._groups()
+        times, asks_times = self._times(groups, decimal or ".")
+        open_ = bool(self.questions)
+        return AxisTable(
+            questions=tuple(self.questions),
+            columns=self.columns,
+            body=self.body,
+            decimal=decimal,
+            marks=marks,
+            times=times,
+            asks_times=asks_times,
+            axes=() if open_ else tuple(self._axes(groups, decimal or ".", times)),
+            notes=tuple(self.notes),
+        )
+
+    # --- Questions ----------------------------------------------------------------------------------------------------
+
+    def _ask(self, template: str, **values: str) -> None:
+        self.questions.append(Sentence(template, dict(values)))
+
+    def _ask_columns(self) -> None:
+        roles = [column.role for column in self.columns]
+        for column in self.columns:
+            if not column.role:
+                self._ask(N_("What is column {name}?"), name=_name(column))
+            elif column.quantity and not column.unit:
+                self._ask(N_("Which unit is column {name} in?"), name=_name(column))
+        for role in NEEDED:
+            if role not in roles:
+                self._ask(MISSING[role])
+        for role in dict.fromkeys(roles):
+            if role not in ("", SKIP) and roles.count(role) > 1:
+                names = [_name(column) for column in self.columns if column.role == role]
+                self._ask(N_("Columns {one} and {other} are read as the same."), one=names[0], other=names[1])
+
+    def _decimal(self) -> tuple[Decimal | None, tuple[tuple[str, str], ...]]:
+        """Decimal mark by which most cells are numbers; None where two would give different ones."""
+        places = [column.place for column in self.columns if column.is_number]
+        cells = [cell for row in self.body.rows for place in places if not is_blank(cell := row[place])]
+        read = {mark: [entry(cell, mark) for cell in cells] for mark in DECIMALS}
+        counts = {mark: sum(cell is not None for cell in found) for mark, found in read.items()}
+        left = [mark for mark in DECIMALS if counts[mark] == max(counts.values())]
+        wrong = next((cell for cell, *found in zip(cells, *read.values(), strict=True) if not any(found)), None)
+        if wrong is not None:
+            count = len(cells) - sum(any(found) for found in zip(*read.values(), strict=True))
+            template = N_("Cells that are no numbers, such as {cell}: {count}. Their axes are rejected.")
+            self.notes.append(Sentence(template, {"count": count, "cell": wrong[:40]}))
+        if len(left) == 1:
+            return left[0], ()
+        pairs = zip(*read.values(), strict=True)
+        differing = next((pair for pair in pairs if pair[0] != pair[1] and all(pair)), None)
+        if differing is None:
+            return DECIMALS[0], ()
+        marks = tuple((mark, cell.number) for mark, cell in zip(DECIMALS, differing, strict=True) if cell)
+        if self.choices.decimal in left:
+            return next(mark for mark in left if mark == self.choices.decimal), marks
+        self._ask(N_("Which is the decimal mark?"))
+        return None, marks
+
+    def _times(self, groups: Sequence["Group"], decimal: Decimal) -> tuple[str, bool]:
+        """What the times are; asked where they go on in every axis: then they may be points in time."""
+        column = self.by_role.get("t")
+        if column is None or column.lasting or not column.unit:
+            return "durations", False
+        series = [[_seconds(row[column.place], column, decimal) for row in group.rows] for group in groups]
+        longer = [times for times in series if len(times) > 1]
+        going_on = all(None not in times and _goes_on(times) for times in longer)
+        if not longer or not going_on:
+            return "durations", False
+        if self.choices.times in TIMES:
+            return self.choices.times, True
+        self._ask(N_("Do the times say how long a phase lasts, or when it is?"))
+        return "", True
+
+    # --- Axes ---------------------------------------------------------------------------------------------------------
+
+    def _groups(self) -> list["Group"]:
+        """Rows of each axis; one without a name belongs to the axis above."""
+        column = self.by_role.get(AXIS)
+        if column is None:
+            return [Group("", self.body.rows, self.body.numbers)]
+        names, continued = list[str](), 0
+        for row in self.body.rows:
+            name = row[column.place]
+            continued += is_blank(name) and bool(names)
+            names.append(names[-1] if is_blank(name) and names else name)
+        if continued:
+            template = N_("Rows that name no axis and belong to the one above: {count}.")
+            self.notes.append(Sentence(template, {"count": continued}))
+        rows = zip(names, self.body.rows, self.body.numbers, strict=True)
+        groups = []
+        for name, members in groupby(rows, key=lambda row: row[0]):
+            found = list(members)
+            groups.append(Group(name, tuple(row for _, row, _ in found), tuple(number for _, _, number in found)))
+        return groups
+
+    def _axes(self, groups: Sequence["Group"], decimal: Decimal, times: str) -> Iterator[dict[str, Any]]:
+        for group in groups:
+            axis: dict[str, Any] = {AXIS: str(group.name)}
+            for column in self.columns:
+                symbol = column.symbol
+                if symbol is None:
+                    continue
+                cells = [row[column.place] for row in group.rows]
+                if column.role in PHASES:
+                    values = [_number(cell, column, decimal) for cell in cells]
+                    if column.role in REQUIRED or any(value is not None for value in values):
+                        axis[symbol.path[0]] = values
+                elif (value := self._one(cells, column, decimal, group)) is not None:
+                    axis[_column_name(column)] = value
+            yield _lasting(axis, times)
+
+    def _one(self, cells: Sequence[str], column: AxisColumn, decimal: Decimal, group: "Group") -> Any:
+        """What the rows of an axis say in common; raises RefusedError where they say two things."""
+        given = dict.fromkeys(cell for cell in cells if not is_blank(cell))
+        if len(given) > 1:
+            template = N_("row {row}: axis {axis} has {one} and {other} in column {name}; it may have one")
+            one, other = list(given)[:2]
+            row = group.numbers[[*cells].index(other)]
+            raise RefusedError(
+                template, row=row, axis=group.name[:40], one=one[:40], other=other[:40], name=_name(column)
+            )
+        if not given:
+            return None
+        cell = next(iter(given))
+        if column.symbol and column.symbol.many:
+            return _listed(cell, column, decimal)
+        return _number(cell, column, decimal) if column.is_number else str(cell)
+
+
+@dataclass(frozen=True, slots=True)
+class Group:
+    """The rows of an axis, with their numbers for the user."""
+
+    name: str
+    rows: tuple[tuple[str, ...], ...]
+    numbers: tuple[int, ...]
+
+
+def _lasting(axis: dict[str, Any], times: str) -> dict[str, Any]:
+    """An axis whose points in time became durations. Of starts the last one ends the cycle, and is no phase."""
+    at = axis.get("duration_s", [])
+    if times not in ("starts", "ends") or not all(isinstance(time, float) for time in at):
+        return axis
+    moments = [Fraction(repr(time)) for time in (at if times == "starts" else [0.0, *at])]
+    axis["duration_s"] = [float(end - start) for start, end in pairwise(moments)]
+    count = len(axis["duration_s"])
+    return {name: value[:count] if name in _PHASE_FIELDS else value for name, value in axis.items()}
+
+
+_PHASE_FIELDS = frozenset(BY_ROLE[role].path[0] for role in PHASES)
+
+
+def _column_name(column: AxisColumn) -> str:
+    assert column.symbol is not None
+    path = column.symbol.path
+    return path[-1] if path[0] == "duty_cycle" else ".".join(path)
+
+
+def _read(cell: str, column: AxisColumn, decimal: Decimal) -> Entry | None:
+    """A cell as a number in the unit of its column, or in one of its own that measures the same; None otherwise."""
+    found = None if is_blank(cell) else entry(cell, decimal)
+    if found is None or not found.unit:
+        return found
+    codes = units.codes_for(found.unit, column.quantity)
+    return Entry(found.number, codes[0]) if column.quantity and len(codes) == 1 else None
+
+
+def _number(cell: str, column: AxisColumn, decimal: Decimal) -> float | str | None:
+    """A number in the unit of the wire; the cell as it is written where it is none, None where it is blank."""
+    found = _read(cell, column, decimal)
+    if found is None:
+        return None if is_blank(cell) else str(cell)
+    if not column.quantity or column.symbol is None:
+        value = float(found.number)
+    else:
+        value = units.entered(column.symbol.unit, found.unit or column.unit).wire(found.number)
+    return value if isfinite(value) else str(cell)
+
+
+def _listed(cell: str, column: AxisColumn, decimal: Decimal) -> list[float | str]:
+    """Several ratios or sizes in a cell. A comma between digits is a decimal mark, and no ratio has one."""
+    texts = [text.strip() for text in _APART.split(cell.strip("[]")) if text.strip()]
+    if column.symbol and column.symbol.kind == "text":
+        return [part.strip() for text in texts for part in text.split(",") if part.strip()]
+    found = [entry(text, decimal) for text in texts]
+    return [text if read is None or read.unit else float(read.number) for text, read in zip(texts, found, strict=True)]
+
+
+def _seconds(cell: str, column: AxisColumn, decimal: Decimal) -> float | None:
+    value = _number(cell, column, decimal)
+    return value if isinstance(value, float) else None
+
+
+def _goes_on(times: Sequence[float | None]) -> bool:
+    known = [time for time in times if time is not None]
+    return known == sorted(known) and known[-1] > known[0]
+
+
+def _name(column: AxisColumn) -> str:
+    """What a question calls a column: its heading, else its number."""
+    return f"“{column.heading[:40]}”" if column.heading else str(column.place + 1)
+
+
+MISSING = {
+    AXIS: N_("Which column names the axis?"),
+    "T": N_("Which column is the torque?"),
+    "n": N_("Which column is the speed?"),
+    "t": N_("Which column is the duration?"),
+}

@@ -1,0 +1,382 @@
+"""Fleets on pages: a table of axes is uploaded, its columns are put right, all axes are sized, and the result is kept.
+
+`POST /fleets` answers with what each column is read as, or, once nothing is asked, leads to the page of the result.
+That is kept for a day, and for good once it is saved with its title block: the project of a machine. What imports
+Arrow is imported by the requests that need it.
+"""
+
+import base64
+import hashlib
+import zlib
+from collections.abc import Mapping
+from contextlib import suppress
+from dataclasses import dataclass, field
+from typing import Any
+
+from fastapi import APIRouter
+from starlette.requests import Request
+from starlette.responses import HTMLResponse, RedirectResponse, Response
+
+from hpn import ENGINE_VERSION
+from hpn.store import SavedFleet, StoreUnavailableError
+from hpn.web.archive import RETRY_SECONDS
+from hpn.web.door.access import admit
+from hpn.web.door.bodies import pairs_of, read_form
+from hpn.web.door.observation import note
+from hpn.web.door.pools import compute, worked
+from hpn.web.door.problems import Problem
+from hpn.web.door.requests import require_same_origin
+from hpn.web.door.uploads import read_parts
+from hpn.web.door.visit import current
+from hpn.web.fleets import Tables, size_fleet, workplace
+from hpn.web.form import cells
+from hpn.web.form.axis_columns import AXIS, AXIS_NAMED, BY_ROLE, AxisColumn
+from hpn.web.form.axis_tables import AxisTable
+from hpn.web.form.columns import SKIP
+from hpn.web.form.labels import TITLE_BLOCK, faults_of
+from hpn.web.form.pasted import TIMES
+from hpn.web.form.sheets import RefusedError
+from hpn.web.pages.fleet_view import ROWS_ON_PAGE, SHOWN, Chosen, FleetPageView
+from hpn.web.pages.paste import DECIMALS, choices_of
+from hpn.web.pages.templates import environment
+from hpn.wording import N_, Sentence
+
+ADDRESS = "/fleets"
+SUFFIXES = ("parquet", "csv", "xlsx")
+ROWS_IN_PREVIEW = 8
+MOST_CARRIED = 16_000_000
+CHANGES_ON_PAGE = 100
+WRITTEN = {"title": "title", "ref": "reference", "author": "author", "rev": "revision"}
+NOTHING = N_("choose a file, or put cells into the field")
+GONE = N_("There is no such fleet. What nobody saves is kept for a day.")
+
+
+@dataclass(frozen=True, slots=True)
+class Draft:
+    """State of the upload: what was given, what it is read as, and what is wrong.
+
+    `of` names what the choices belong to; `carried` is the table itself, for a form that can't send its file again.
+    """
+
+    text: str = ""
+    problems: tuple[Sentence, ...] = ()
+    table: AxisTable | None = None
+    of: str = ""
+    carried: str = ""
+    sheets: tuple[str, ...] = ()
+    sheet: str = ""
+    taken: tuple[bytes, str] | None = field(default=None, repr=False)
+
+    @property
+    def rows(self) -> list[tuple[int, list[tuple[str, bool, bool]]]]:
+        """The first rows: number, and of each cell its text, whether it is a number, and whether it is asked."""
+        body = self.table and self.table.body
+        if not body or not self.table:
+            return []
+        columns, decimal = self.table.columns, self.table.decimal
+        pairs = list(zip(body.numbers, body.rows, strict=True))[:ROWS_IN_PREVIEW]
+        return [(number, [_cell(row[column.place], column, decimal) for column in columns]) for number, row in pairs]
+
+
+def _cell(cell: str, column: AxisColumn, decimal: cells.Decimal | None) -> tuple[str, bool, bool]:
+    if not column.is_number or cells.is_blank(cell):
+        return cell, False, False
+    found = {read for mark in ((decimal,) if decimal else cells.DECIMALS) if (read := cells.entry(cell, mark))}
+    if len(found) != 1:
+        return cell, False, True
+    number, unit = found.pop()
+    return f"{number} {unit}".strip(), not unit, False
+
+
+# --- Uploading --------------------------------------------------------------------------------------------------------
+
+
+def start(request: Request) -> Response:
+    """The page with an empty form."""
+    return _render(request, "fleets.html", 200, draft=Draft(), problems=(), **_WORDS)
+
+
+async def upload(request: Request) -> Response:
+    """Says what each column is read as, or sizes the axes and leads to their page."""
+    draft = Draft()
+    try:
+        require_same_origin(request)
+        parts = await read_parts(request, request.app.state.settings.maximum_batch_body_bytes)
+        draft = await compute(request, "pages", _read, parts)
+        if draft.taken:
+            return RedirectResponse(f"{ADDRESS}/{await _sized(request, *draft.taken)}", 303)
+        status, problems = (422 if draft.problems else 200), draft.problems
+    except Problem as problem:
+        status, problems = problem.status_code, problem.sentences or (Sentence("{text}", {"text": problem.detail}),)
+    except StoreUnavailableError:
+        status, problems = 503, (Sentence(N_("Fleets can’t be kept at the moment: try again in a few seconds.")),)
+    shown = {"draft": draft, "problems": problems, **_WORDS}
+    return await compute(request, "pages", lambda: _render(request, "fleets.html", status, **shown))
+
+
+def _read(parts: Mapping[str, bytes]) -> Draft:
+    """What was uploaded, or carried along; `taken` once nothing is left to be asked."""
+    from hpn.web.pages import fleet_upload
+
+    fields = {
+        name: content.decode(errors="replace") for name, content in parts.items() if name not in ("file", "table")
+    }
+    text = fields.get("text", "")
+    content = parts.get("file") or text.strip().encode() or _unpacked(parts.get("table", b""))
+    if not content.strip():
+        return Draft(problems=(Sentence(NOTHING),))
+    of = hashlib.sha256(content).hexdigest()[:16]
+    carried = base64.b64encode(zlib.compress(content)).decode()
+    try:
+        found = fleet_upload.uploaded(content)
+        if found.sheets is None:
+            return Draft(taken=(content, found.suffix))
+        chosen = fields.get("sheet", "") if fields.get("of") == of else ""
+        sheet = chosen if chosen in found.sheets else next(iter(found.sheets))
+        table = fleet_upload.best_reading(found.sheets[sheet], choices_of(fields, of), _assumed())
+    except RefusedError as refused:
+        return Draft(text, (refused.sentence,))
+    taken = (fleet_upload.lines_of(table), ".ndjson") if table.whole and "size" in fields else None
+    problems = (table.problem,) if table.problem else ()
+    return Draft(text, problems, table, of, carried, tuple(found.sheets), sheet, taken)
+
+
+def _unpacked(carried: bytes) -> bytes:
+    """A table as a form carries it; nothing where it is none."""
+    with suppress(ValueError, zlib.error):
+        unpacking = zlib.decompressobj()
+        content = unpacking.decompress(base64.b64decode(carried, validate=True), MOST_CARRIED)
+        return content if unpacking.eof else b""
+    return b""
+
+
+def _assumed() -> tuple[str, ...]:
+    """Units that a column without one is taken to be in: those of the wire that the reader sees as well."""
+    reader = current()
+    return tuple(unit for unit in {symbol.unit for symbol in BY_ROLE.values()} if unit and reader.measure(unit).same)
+
+
+async def _sized(request: Request, content: bytes, suffix: str) -> str:
+    """Id of the fleet that comes of a table; raises Problem, or StoreUnavailableError."""
+    state = request.app.state
+    async with workplace(request) as folder:
+        axes = folder / f"axes{suffix}"
+        await compute(request, "pages", axes.write_bytes, content)
+        files = await size_fleet(request, Tables(axes, input_name="The table"), suffix=".parquet")
+        draft = await compute(request, "exports", _kept, axes, files["answers"], state.catalogue)
+    id: str = await state.store.keep_fleet(draft)
+    note(request, fleet=id)
+    return id
+
+
+def _kept(*arguments: Any) -> Any:
+    from hpn.web.pages import fleet_result
+
+    return fleet_result.draft_of(*arguments)
+
+
+# --- The page of a result ---------------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class TitleBlock:
+    """The title block of a form that saves, as it was filled in."""
+
+    labels: Mapping[str, str]
+
+    def messages(self, name: str, index: int | None = None) -> list[Sentence]:
+        """What is wrong with a field."""
+        return list(faults_of(self.labels[name]))
+
+    @property
+    def is_sound(self) -> bool:
+        """Whether nothing is."""
+        return not any(self.messages(name) for name in self.labels)
+
+
+EMPTY = TitleBlock(dict.fromkeys(TITLE_BLOCK, ""))
+
+
+async def show(request: Request) -> Response:
+    """What came of a fleet: counts, and its axes as the address chooses and sorts them."""
+    try:
+        saved = await _found(request)
+        return await _shown(request, saved, 200, EMPTY)
+    except (Problem, StoreUnavailableError) as error:
+        return await compute(request, "pages", _refused, request, error)
+
+
+async def _shown(request: Request, saved: SavedFleet, status: int, form: TitleBlock) -> Response:
+    today, problem = await _today(request, saved)
+    return await compute(request, "pages", _page, request, saved, status, form, today, problem)
+
+
+def _page(
+    request: Request, saved: SavedFleet, status: int, form: TitleBlock, today: list[Any] | None, problem: str
+) -> Response:
+    from hpn.web.pages import fleet_report, fleet_result
+
+    summary, rows = fleet_result.kept_of(saved)
+    chosen = Chosen.of(request.query_params)
+    found = chosen.out_of(rows)
+    part = found[(chosen.part - 1) * ROWS_ON_PAGE : chosen.part * ROWS_ON_PAGE]
+    links = fleet_report.links_of(fleet_result.asked_of(saved, [row.axis for row in part if row.state != "rejected"]))
+    view = FleetPageView(summary, part, links, f"{ADDRESS}/{saved.id}", chosen, len(found))
+    return _render(
+        request,
+        "fleet.html",
+        status,
+        saved=saved,
+        view=view,
+        form=form,
+        shown=SHOWN,
+        today=today,
+        problem=problem,
+        engine_version=ENGINE_VERSION,
+        catalogue_version=request.app.state.catalogue.version,
+        most_changes=CHANGES_ON_PAGE,
+        suffixes=SUFFIXES,
+    )
+
+
+async def _today(request: Request, saved: SavedFleet) -> tuple[list[Any] | None, str]:
+    """Axes that today's engine and catalogue answer otherwise, None where these are the same; or why nobody knows."""
+    catalogue = request.app.state.catalogue
+    if (saved.engine_version, saved.catalogue_version) == (ENGINE_VERSION, catalogue.version):
+        return None, ""
+    if saved.axes == saved.rejected:
+        return [], ""
+    try:
+        async with workplace(request) as folder:
+            axes = folder / "axes.parquet"
+            await compute(request, "pages", axes.write_bytes, saved.asked)
+            files = await size_fleet(request, Tables(axes))
+            return await compute(request, "exports", _changes, saved, files["answers"]), ""
+    except Problem as error:
+        return None, error.detail
+
+
+def _changes(*arguments: Any) -> Any:
+    from hpn.web.pages import fleet_result
+
+    return fleet_result.changes(*arguments)
+
+
+async def _found(request: Request) -> SavedFleet:
+    saved: SavedFleet | None = await request.app.state.store.find_fleet(request.path_params["fleet"])
+    if saved is None:
+        raise Problem(404, GONE)
+    return saved
+
+
+async def download(request: Request) -> Response:
+    """The answers as a file."""
+    suffix = request.scope["path"].rpartition(".")[2]
+    saved = await _found(request)
+    media_type, content = await compute(request, "exports", _file, saved, suffix)
+    headers = {"Content-Disposition": f'attachment; filename="axes.{suffix}"'}
+    return Response(content, 200, headers, media_type)
+
+
+def _file(saved: SavedFleet, suffix: str) -> tuple[str, bytes]:
+    from hpn.web.pages import fleet_result
+
+    return fleet_result.FILES[suffix][0], fleet_result.file_of(saved, suffix)
+
+
+# --- Saving, listing, deleting ----------------------------------------------------------------------------------------
+
+
+async def save(request: Request) -> Response:
+    """Saves a fleet that was calculated, with its title block, and leads back to its page."""
+    try:
+        require_same_origin(request)
+        fields = dict(pairs_of(await read_form(request)))
+        form = TitleBlock({name: fields.get(name, "").strip() for name in TITLE_BLOCK})
+        saved = await _found(request)
+        if not form.is_sound:
+            return await _shown(request, saved, 422, form)
+        names = {WRITTEN[name]: text or None for name, text in form.labels.items()}
+        await request.app.state.store.save_fleet(saved.id, names, request.state.api_key)
+    except (Problem, StoreUnavailableError) as error:
+        return await compute(request, "pages", _refused, request, error)
+    note(request, fleet=saved.id)
+    return RedirectResponse(f"{ADDRESS}/{saved.id}", 303)
+
+
+async def show_saved(request: Request) -> Response:
+    """Saved fleets, newest first."""
+    cursor = request.query_params.get("cursor") or None
+    try:
+        lines, following = await request.app.state.store.fleets(cursor)
+    except ValueError:
+        return RedirectResponse(f"{ADDRESS}/saved", 303)
+    except StoreUnavailableError as error:
+        return await compute(request, "pages", _refused, request, error)
+    shown = {"lines": lines, "following": following, "later": bool(cursor)}
+    return await compute(request, "pages", lambda: _render(request, "fleets_saved.html", 200, **shown))
+
+
+async def ask_to_delete(request: Request) -> Response:
+    """The question whether a fleet is to go for good."""
+    try:
+        saved = await _own(request)
+    except (Problem, StoreUnavailableError) as error:
+        return await compute(request, "pages", _refused, request, error)
+    return await compute(request, "pages", lambda: _render(request, "fleet_delete.html", 200, saved=saved))
+
+
+async def delete(request: Request) -> Response:
+    """Deletes a fleet for good, and leads to the list."""
+    try:
+        require_same_origin(request)
+        saved = await _own(request)
+        await request.app.state.store.delete_fleet(saved.id)
+    except (Problem, StoreUnavailableError) as error:
+        return await compute(request, "pages", _refused, request, error)
+    note(request, fleet=saved.id)
+    return RedirectResponse(f"{ADDRESS}/saved", 303)
+
+
+async def _own(request: Request) -> SavedFleet:
+    saved = await _found(request)
+    gate = request.app.state.gate
+    if gate.has_keys:
+        gate.require_owner(request, saved.owner)
+    return saved
+
+
+# --- Rendering --------------------------------------------------------------------------------------------------------
+
+
+def _refused(request: Request, error: Problem | StoreUnavailableError) -> Response:
+    """Page that says why there is nothing to show."""
+    if isinstance(error, StoreUnavailableError):
+        error = Problem(503, str(error), headers={"Retry-After": str(RETRY_SECONDS)})
+    response = _render(request, "fleet_refused.html", error.status_code, problem=error)
+    response.headers.update(error.headers or {})
+    return response
+
+
+def _render(request: Request, template: str, status: int, **shown: Any) -> Response:
+    content = environment(request.app.state).get_template(template).render(status=status, **shown)
+    return HTMLResponse(content, status, {"Cache-Control": "no-cache"})
+
+
+_WORDS: dict[str, Any] = {
+    "roles": {AXIS: AXIS_NAMED, **{name: symbol.named for name, symbol in BY_ROLE.items()}},
+    "skip": SKIP,
+    "decimals": DECIMALS,
+    "times": TIMES,
+}
+
+router = APIRouter(include_in_schema=False)
+router.add_api_route(ADDRESS, worked(start), dependencies=[admit("calculator")])
+router.add_api_route(ADDRESS, upload, methods=["POST"], dependencies=[admit("batch")])
+router.add_api_route(f"{ADDRESS}/saved", show_saved, dependencies=[admit("listing")])
+router.add_api_route(f"{ADDRESS}/{{fleet}}", show, dependencies=[admit("reading")])
+router.add_api_route(f"{ADDRESS}/{{fleet}}", save, methods=["POST"], dependencies=[admit("writing")])
+for suffix in SUFFIXES:
+    router.add_api_route(f"{ADDRESS}/{{fleet}}/axes.{suffix}", download, dependencies=[admit("reading")])
+router.add_api_route(f"{ADDRESS}/{{fleet}}/delete", ask_to_delete, dependencies=[admit("deleting")])
+router.add_api_route(f"{ADDRESS}/{{fleet}}/delete", delete, methods=["POST"], dependencies=[admit("deleting")])

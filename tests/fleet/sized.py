@@ -1,0 +1,17 @@
+"""Fleets that are sized in the process of a test."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from hpn.catalogue import Catalogue
+from hpn.fleet.run import Order, size_fleet
+from hpn.store import FleetDraft
+from hpn.web.pages.fleet_result import draft_of
+from tests.fleet.tables import Row, here, quiet, write
+
+
+def fleet_draft(rows: Sequence[Row], folder: Path, catalogue: Catalogue) -> FleetDraft:
+    """What is kept of a fleet of rows."""
+    axes, answers = write(folder / "axes.ndjson", rows), folder / "answers.parquet"
+    size_fleet(Order(axes, answers), catalogue, here, quiet)
+    return draft_of(axes, answers, catalogue)

@@ -1,0 +1,259 @@
+"""The page of fleets without a browser: a table goes up, its columns are put right, and the result is kept."""
+
+import csv
+import hashlib
+import io
+import json
+import re
+from collections.abc import Iterator
+from html import unescape
+from pathlib import Path
+from typing import Any
+
+import openpyxl
+import pyarrow as pa
+import pyarrow.parquet as pq
+import pytest
+from fastapi import FastAPI
+from starlette.testclient import TestClient
+
+from hpn.application import Application
+from hpn.selection import select
+from hpn.store import FleetDraft
+from hpn.web.app import create_app
+from hpn.web.form.columns import NO_CHOICES
+from hpn.web.form.write import to_link
+from hpn.web.pages.fleet_upload import Upload, best_reading, uploaded
+from hpn.web.settings import Settings
+from tests.fleet.tables import in_long_form, row_of, write
+from tests.state import state_of
+
+GERMAN = """Maschine 7;;;;;
+Achse;Nr.;Drehmoment [Nm];Drehzahl [1/min];Dauer [ms];Lebensdauer [h]
+Hub Ä;1;12,5;250;300;20000
+;2;8;500;2000,5;
+Band;1;9000;100;500;
+Greifer;1;abc;100;500;
+"""
+HUB = {
+    "duty_cycle": {
+        "phases": [
+            {"torque_Nm": 12.5, "speed_rpm": 250, "duration_s": 0.3},
+            {"torque_Nm": 8, "speed_rpm": 500, "duration_s": 2.0005},
+        ]
+    },
+    "requirements": {"life_h": 20000},
+}
+HEAVY = {"duty_cycle": {"phases": [{"torque_Nm": 9000, "speed_rpm": 100, "duration_s": 0.5}]}}
+
+
+@pytest.fixture(scope="module")
+def service(tmp_path_factory: pytest.TempPathFactory) -> FastAPI:
+    return create_app(Settings(database_url=f"sqlite:///{tmp_path_factory.mktemp('fleets') / 'fleets.sqlite3'}"))
+
+
+@pytest.fixture(scope="module")
+def client(service: FastAPI) -> Iterator[TestClient]:
+    with TestClient(service, follow_redirects=False) as client:
+        yield client
+
+
+def post(client: TestClient, content: bytes = b"", fields: dict[str, str] | None = None) -> Any:
+    """What the form answers."""
+    files = {"file": ("axes", content)} if content else {"file": ("", b"")}
+    return client.post("/fleets", data=fields or {}, files=files)
+
+
+def fields_of(page: str) -> dict[str, str]:
+    """What a form would send as it stands: hidden fields, and choices that are made."""
+    fields = dict(re.findall(r'<input type="hidden" name="(\w+)" value="([^"]*)"', page))
+    for name, options in re.findall(r'<select name="(\w+)"[^>]*>(.*?)</select>', page, re.DOTALL):
+        chosen = re.search(r'value="([^"]*)" selected', options)
+        fields[name] = chosen[1] if chosen else ""
+    return fields
+
+
+@pytest.fixture(scope="module")
+def fleet(client: TestClient) -> str:
+    """Address of the fleet of the German table."""
+    read = post(client, GERMAN.encode("cp1252"))
+    assert read.status_code == 200, read.text
+    sized = post(client, fields={**fields_of(read.text), "size": "1"})
+    assert sized.status_code == 303, sized.text
+    return str(sized.headers["location"])
+
+
+def test_german_headings_are_read_and_can_be_put_right(client: TestClient) -> None:
+    first = post(client, GERMAN.replace("Drehzahl [1/min]", "Wert").encode())
+    assert "What is column “Wert”?" in unescape(first.text)
+
+    second = post(client, fields={**fields_of(first.text), "r3": "n", "u3": "rev_per_s"})
+
+    assert "3 axes" in unescape(second.text) and 'name="size"' in second.text
+    assert fields_of(second.text)["u3"] == "rev_per_s"
+
+
+def test_a_fleet_shows_each_axis_with_its_link(client: TestClient, fleet: str, service: FastAPI) -> None:
+    page = unescape(client.get(fleet).text)
+
+    applications = [Application.model_validate(HUB), Application.model_validate(HEAVY)]
+    for name, application in zip(("Hub Ä", "Band"), applications, strict=True):
+        assert f'<a href="{to_link(application)}">{name}</a>' in page
+    assert f"</span> {select(applications[0], service.state.catalogue).selected}</td>" in page
+    assert "nearest: " in page
+    assert re.search(r'Greifer</th>.*?class="reason"[^>]*>torque_Nm: ', page, re.DOTALL)
+
+
+@pytest.mark.parametrize(
+    ("query", "axes"),
+    [
+        ("", ["Hub Ä", "Band", "Greifer"]),
+        ("?sort=axis", ["Band", "Hub Ä", "Greifer"]),
+        ("?sort=-utilisation", ["Band", "Hub Ä", "Greifer"]),
+        ("?show=unsuitable", ["Band"]),
+        ("?show=rejected", ["Greifer"]),
+        ("?search=HUB", ["Hub Ä"]),
+        ("?gear=HPN-11A-3", []),
+        ("?sort=nothing&show=all&part=x", ["Hub Ä", "Band", "Greifer"]),
+        ("?part=99", []),
+    ],
+)
+def test_axes_are_sorted_and_chosen_by_the_address(client: TestClient, fleet: str, query: str, axes: list[str]) -> None:
+    page = unescape(client.get(fleet + query).text)
+
+    rows = re.findall(r'<tr class="(?:selected|unsuitable|rejected)">\s*<th scope="row">(?:<a [^>]*>)?([^<]*)', page)
+    assert rows == axes
+
+
+def test_files_hold_the_answers(client: TestClient, fleet: str) -> None:
+    parquet = pq.read_table(io.BytesIO(client.get(f"{fleet}/axes.parquet").content)).to_pylist()
+    text = list(csv.DictReader(io.StringIO(client.get(f"{fleet}/axes.csv").content.decode())))
+    sheet = openpyxl.load_workbook(io.BytesIO(client.get(f"{fleet}/axes.xlsx").content)).active
+
+    assert [row["axis"] for row in parquet] == [row["axis"] for row in text] == ["Hub Ä", "Band", "Greifer"]
+    assert sheet is not None
+    header, *rows = sheet.iter_rows(values_only=True)
+    assert [dict(zip(header, row, strict=True)) for row in rows] == parquet
+    assert list(parquet[0])[-1] == "error" and parquet[0]["selected"] and parquet[1]["suitable"] == 0
+
+
+@pytest.mark.parametrize("form", ["list", "long"])
+@pytest.mark.parametrize("suffix", [".csv", ".ndjson", ".parquet", ".arrow"])
+def test_tables_of_hpn_fleet_are_taken_as_they_are(tmp_path: Path, suffix: str, form: str) -> None:
+    rows = [row_of("one", HUB), row_of("two", HEAVY)]
+    file = write(tmp_path / f"axes{suffix}", rows if form == "list" else in_long_form(rows)[0])
+
+    assert uploaded(file.read_bytes()) == Upload(suffix)
+
+
+def test_a_table_of_hpn_fleet_is_sized_at_once(client: TestClient, tmp_path: Path) -> None:
+    file = write(tmp_path / "axes.csv", [row_of("one", HUB), row_of("two", HEAVY)])
+
+    sized = post(client, file.read_bytes())
+
+    assert sized.status_code == 303, sized.text
+    assert to_link(Application.model_validate(HUB)) in unescape(client.get(sized.headers["location"]).text)
+
+
+@pytest.mark.parametrize("suffix", [".parquet", ".ndjson"])
+def test_typed_tables_with_other_headings_are_read_with_every_digit(tmp_path: Path, suffix: str) -> None:
+    exact = 0.1 + 0.2
+    row = {"Antrieb": "A", "Moment Nm": exact, "Drehzahl rpm": 1234.567, "Zeitdauer s": 1e-3}
+    file = tmp_path / f"axes{suffix}"
+    if suffix == ".parquet":
+        pq.write_table(pa.Table.from_pylist([row]), file)
+    else:
+        file.write_text(json.dumps(row))
+
+    sheets = uploaded(file.read_bytes()).sheets
+
+    assert sheets is not None
+    axes = best_reading(sheets[""], NO_CHOICES, ()).axes
+    assert axes == ({"axis": "A", "torque_Nm": [exact], "speed_rpm": [1234.567], "duration_s": [1e-3]},)
+
+
+@pytest.mark.parametrize(
+    ("content", "status", "said"),
+    [
+        (b"", 422, "choose a file"),
+        (b"PAR1 but not really", 422, "can’t be read as Parquet"),
+        (b"\xd0\xcf\x11\xe0 old", 422, "old format"),
+        (b'{"axis": 1, "torque_Nm": [1], "speed_rpm": [2], "duration_s": [3], "price": 4}\n', 422, "price"),
+        (b"hello", 422, ""),
+        (
+            GERMAN.replace("20000", "1").replace(";2;8;500;2000,5;", ";2;8;500;2000,5;2").encode(),
+            422,
+            "it may have one",
+        ),
+    ],
+)
+def test_what_can_not_be_read_is_said(client: TestClient, content: bytes, status: int, said: str) -> None:
+    answer = post(client, content)
+
+    assert answer.status_code == status
+    assert said in unescape(answer.text) and 'role="alert"' in answer.text
+
+
+@pytest.fixture(scope="module")
+def kept(client: TestClient, service: FastAPI, fleet: str) -> FleetDraft:
+    """What was kept of the fleet of the German table."""
+    assert client.portal is not None
+    found = client.portal.call(service.state.store.find_fleet, fleet.rpartition("/")[2])
+    return FleetDraft(**{name: getattr(found, name) for name in FleetDraft.__dataclass_fields__})
+
+
+def keep(client: TestClient, service: FastAPI, draft: FleetDraft) -> str:
+    """Address of a fleet that is kept as if it had just been sized."""
+    assert client.portal is not None
+    return f"/fleets/{client.portal.call(service.state.store.keep_fleet, draft)}"
+
+
+def test_a_fleet_is_saved_listed_and_never_changed(client: TestClient, service: FastAPI, kept: FleetDraft) -> None:
+    address = keep(client, service, kept)
+    assert "Save as a project" in client.get(address).text
+
+    wrong = client.post(address, data={"title": "x" * 300, "ref": "P-7"})
+    assert wrong.status_code == 422 and 'value="P-7"' in wrong.text and "at most 200" in unescape(wrong.text)
+    assert client.post(address, data={"title": "Line <4>", "ref": "P-7", "author": "", "rev": "B"}).status_code == 303
+    client.post(address, data={"title": "another"})
+
+    page = client.get(address).text
+    assert "Line &lt;4&gt;" in page and "Save as a project" not in page and "What differs today" not in page
+    assert f'<a href="{address}">Line &lt;4&gt;</a>' in client.get("/fleets/saved").text
+    assert client.post(f"{address}/delete").status_code == 303
+    assert client.get(address).status_code == 404
+
+
+def test_a_fleet_says_what_differs_today(client: TestClient, service: FastAPI, fleet: str, tmp_path: Path) -> None:
+    then = select(Application.model_validate(HUB), service.state.catalogue).candidates[0]
+    columns = "size,ratio,repeated_peak_torque_Nm,rated_torque_Nm,momentary_peak_torque_Nm,source\n"
+    (tmp_path / "ratings.csv").write_text(f"{columns}{then.size},{then.ratio},0.4,0.3,0.5,weaker\n")
+    url = service.state.settings.database_url
+    with TestClient(create_app(Settings(database_url=url, catalogue_supplement=tmp_path))) as later:
+        page = unescape(later.get(fleet).text)
+        now = select(Application.model_validate(HUB), state_of(later).catalogue).selected
+
+    assert "1 axis gets another answer." in page
+    changed = page[page.index("What differs today") : page.index('id="fleet-count"')]
+    assert changed.index(then.designation) < changed.index(str(now))
+    assert "What differs today" not in client.get(fleet).text
+
+
+def test_only_the_owner_s_key_deletes_a_fleet(kept: FleetDraft, tmp_path: Path) -> None:
+    keys = {name: f"key of {name}" for name in ("anna", "bert")}
+    pairs = [f"{name}:{hashlib.sha256(key.encode()).hexdigest()}" for name, key in keys.items()]
+    settings = Settings.model_validate({"database_url": f"sqlite:///{tmp_path / 'db'}", "api_keys": " ".join(pairs)})
+    anna, bert = ({"X-API-Key": key} for key in keys.values())
+    service = create_app(settings)
+    with TestClient(service, follow_redirects=False) as client:
+        address = keep(client, service, kept)
+        for guarded in ("/fleets", address, f"{address}/delete"):
+            assert client.post(guarded, data={"text": "x"}).status_code == 401
+        client.headers |= anna
+        client.post(address, data={"title": "Line 4"})
+
+        assert client.post(f"{address}/delete", headers=bert).status_code == 403
+        assert client.post(f"{address}/delete", headers={"X-API-Key": ""}).status_code == 401
+        assert client.get(address).status_code == 200
+        assert client.post(f"{address}/delete").status_code == 303
+        assert client.get(address).status_code == 404

@@ -1,0 +1,105 @@
+"""A fleet is kept for a day when it is calculated, for good when it is saved, and never changed after that."""
+
+from datetime import UTC, datetime, timedelta
+from typing import Any
+
+import pytest
+from sqlalchemy import update
+
+from hpn.store import FleetDraft, Store
+from hpn.store.engine import WRITES
+from hpn.store.fleets import MOST_UNSAVED
+from hpn.store.tables import fleets
+
+pytestmark = pytest.mark.anyio
+
+NAMES: dict[str, str | None] = {"title": "Line 4", "reference": "P-77", "author": None, "revision": "B"}
+
+
+def draft(**changes: Any) -> FleetDraft:
+    """A fleet of five axes."""
+    given = {"axes": 5, "selected": 3, "unsuitable": 1, "rejected": 1, "engine_version": "1", "catalogue_version": "c"}
+    return FleetDraft(**{**given, "asked": b"PAR1\x00asked", "answers": b"PAR1\xffanswers", **changes})
+
+
+async def age(store: Store, id: str, by: timedelta) -> None:
+    """Have a fleet be as if it was calculated long ago."""
+    async with store._engine.execution_options(**WRITES).begin() as connection:
+        await connection.execute(update(fleets).where(fleets.c.id == id).values(created=datetime.now(UTC) - by))
+
+
+async def test_a_calculated_fleet_is_found_and_listed_once_it_is_saved(store: Store) -> None:
+    given = draft()
+    id = await store.keep_fleet(given)
+
+    found = await store.find_fleet(id)
+    assert found is not None and found.saved is None
+    assert (found.asked, found.answers, found.axes) == (given.asked, given.answers, 5)
+    assert await store.fleets() == ([], None)
+
+    assert await store.save_fleet(id, NAMES, "anna")
+    saved = await store.find_fleet(id)
+    assert saved is not None and saved.saved is not None
+    assert (saved.title, saved.reference, saved.author, saved.revision, saved.owner) == (*NAMES.values(), "anna")
+    assert [line.id for line in (await store.fleets())[0]] == [id]
+
+
+async def test_a_saved_fleet_is_not_saved_again_under_another_name(store: Store) -> None:
+    id = await store.keep_fleet(draft())
+    assert await store.save_fleet(id, NAMES, "anna")
+
+    assert not await store.save_fleet(id, {**NAMES, "title": "another"}, "bert")
+
+    found = await store.find_fleet(id)
+    assert found is not None and (found.title, found.owner) == ("Line 4", "anna")
+
+
+async def test_what_nobody_saves_goes_after_a_day(store: Store) -> None:
+    kept, left = await store.keep_fleet(draft()), await store.keep_fleet(draft())
+    await store.save_fleet(kept, NAMES, None)
+    for id in (kept, left):
+        await age(store, id, timedelta(hours=25))
+
+    assert await store.find_fleet(left) is None
+    assert await store.find_fleet(kept) is not None
+    await store.keep_fleet(draft())
+    assert not await store.delete_fleet(left)
+
+
+async def test_what_nobody_saves_is_bounded(store: Store) -> None:
+    first = await store.keep_fleet(draft())
+    await age(store, first, timedelta(hours=1))
+    second = await store.keep_fleet(draft())
+
+    for _ in range(MOST_UNSAVED - 1):
+        await store.keep_fleet(draft())
+
+    assert await store.find_fleet(first) is None
+    assert await store.find_fleet(second) is not None
+
+
+async def test_fleets_are_listed_newest_first_in_parts(store: Store) -> None:
+    ids = [await store.keep_fleet(draft()) for _ in range(3)]
+    for id in ids:
+        await store.save_fleet(id, NAMES, None)
+
+    first, cursor = await store.fleets(limit=2)
+    rest, end = await store.fleets(cursor, limit=2)
+
+    assert [line.id for line in (*first, *rest)] == ids[::-1]
+    assert end is None
+    with pytest.raises(ValueError, match="cursor"):
+        await store.fleets("nonsense")
+
+
+async def test_a_deleted_fleet_is_gone(store: Store) -> None:
+    id = await store.keep_fleet(draft())
+
+    assert await store.delete_fleet(id)
+
+    assert await store.find_fleet(id) is None
+    assert (
+        not await store.delete_fleet(id)
+        and not await store.delete_fleet("no id")
+        and not await store.save_fleet(id, NAMES, None)
+    )

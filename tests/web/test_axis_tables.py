@@ -1,0 +1,107 @@
+"""Tables of axes as spreadsheets write them: no number is silently another one, and what has two readings is asked."""
+
+from collections.abc import Mapping
+
+import pytest
+
+from hpn.web.form.axis_columns import BY_ROLE
+from hpn.web.form.axis_tables import AxisTable, read_axes
+from hpn.web.form.columns import Choices
+from hpn.web.form.sheets import grids_of
+
+WIRE = tuple({symbol.unit for symbol in BY_ROLE.values()} - {""})
+HEAD = "Achse;Moment [Nm];Drehzahl [1/min];Dauer [s]"
+
+
+def read(*lines: str, assumed: tuple[str, ...] = WIRE, **said: str | Mapping[int, str]) -> AxisTable:
+    """What a table is read as."""
+    return read_axes(grids_of("\n".join(lines))[0], Choices(**said), assumed)  # type: ignore[arg-type]
+
+
+def asked(table: AxisTable) -> list[str]:
+    """Questions that are open."""
+    return [question.text for question in table.questions]
+
+
+def test_a_number_with_two_readings_is_asked() -> None:
+    open_ = read(HEAD, "A;1.234;100;1", "B;2.500;100;1")
+
+    assert asked(open_) == ["Which is the decimal mark?"] and not open_.axes
+    assert dict(open_.marks) == {".": "1.234", ",": "1234"}
+    for mark, torque in ((".", 1.234), (",", 1234.0)):
+        assert read(HEAD, "A;1.234;100;1", "B;2.500;100;1", decimal=mark).axes[0]["torque_Nm"] == [torque]
+
+
+def test_times_that_go_on_in_every_axis_may_be_points_in_time() -> None:
+    head, *rows = "Achse;Moment [Nm];Drehzahl [1/min];Zeit [s]", "A;1;10;1", "A;2;20;3", "B;1;10;2", "B;2;20;5"
+
+    assert asked(read(head, *rows)) == ["Do the times say how long a phase lasts, or when it is?"]
+    said = {times: read(head, *rows, times=times).axes for times in ("durations", "ends", "starts")}
+    assert [axis["duration_s"] for axis in said["durations"]] == [[1, 3], [2, 5]]
+    assert [axis["duration_s"] for axis in said["ends"]] == [[1, 2], [2, 3]]
+    assert [(axis["duration_s"], axis["torque_Nm"]) for axis in said["starts"]] == [([2], [1]), ([3], [1])]
+    assert asked(read(head, "A;1;10;3", "A;2;20;1", "B;1;10;2")) == []
+
+
+def test_units_are_those_of_headings_and_cells() -> None:
+    head = "Axis;Torque [lbf·in];Speed [rad/s];Duration;Required gear life [h];Weight"
+    table = read(head, "A;10;1;500 ms;20000;")
+
+    axis = table.axes[0]
+    assert axis["torque_Nm"] == [pytest.approx(1.12984829, rel=1e-8)]
+    assert axis["speed_rpm"] == [pytest.approx(9.54929659, rel=1e-8)]
+    assert (axis["duration_s"], axis["requirements.life_h"]) == ([0.5], 20000)
+
+
+def test_a_unit_that_nobody_says_is_asked_where_the_reader_sees_another() -> None:
+    table = read("Achse;Moment;Drehzahl [1/min];Dauer [s]", "A;1;10;1", assumed=())
+
+    assert asked(table) == ["Which unit is column “Moment” in?"]
+
+
+@pytest.mark.parametrize(
+    ("head", "said"),
+    [
+        ("Wert;Moment [Nm];Drehzahl [1/min];Dauer [s]", "Which column names the axis?"),
+        ("Achse;Moment [Nm];Drehzahl [1/min];Wert", "What is column “Wert”?"),
+        ("Achse;Moment [Nm];Drehzahl [1/min];Drehzahl motor;Dauer [s]", "What is column “Drehzahl motor”?"),
+    ],
+)
+def test_a_column_that_nobody_knows_is_asked(head: str, said: str) -> None:
+    cells = ["A", *"1234"][: head.count(";") + 1]
+
+    assert said in asked(read(head, ";".join(cells)))
+
+
+def test_every_input_of_an_axis_is_known_by_the_name_of_its_column() -> None:
+    names = {".".join(s.path) if s.path[0] != "duty_cycle" else s.path[-1]: s.name for s in BY_ROLE.values()}
+    table = read(";".join(["axis", *names]), ";".join(["A", *("1" for _ in names)]))
+
+    assert {column.heading: column.role for column in table.columns} == {"axis": "axis", **names}
+
+
+def test_a_cell_that_is_no_number_stays_as_it_is_written_and_spoils_its_axis_alone() -> None:
+    table = read(HEAD, "A;n. b.;100;1", "B;2,5;100;1")
+
+    assert [axis["torque_Nm"] for axis in table.axes] == [["n. b."], [2.5]]
+    assert any("n. b." in note.text for note in table.notes)
+
+
+def test_several_ratios_stand_in_a_cell_and_a_decimal_comma_parts_none() -> None:
+    head = HEAD + ";Übersetzung;Baugröße"
+
+    assert read(head, "A;1,5;100;1;4/5;14A, 20A").axes[0] | {"axis": ""} == {
+        "axis": "",
+        "torque_Nm": [1.5],
+        "speed_rpm": [100],
+        "duration_s": [1],
+        "requirements.ratios": [4, 5],
+        "requirements.sizes": ["14A", "20A"],
+    }
+    assert read(head, "A;1,5;100;1;4,5;14A").axes[0]["requirements.ratios"] == [4.5]
+
+
+def test_a_number_that_is_too_large_is_no_number_that_is_left_out() -> None:
+    axis = read(HEAD + ";Lebensdauer [h]", "A;1;100;1;1e999").axes[0]
+
+    assert axis["requirements.life_h"] == "1e999"
