@@ -69,6 +69,35 @@ INPUTS: Mapping[str, Named] = {
 }
 """Inputs, in the order in which a file lists them."""
 
+MOTION: Mapping[str, Named] = {
+    "mechanism.type": Named(N_("Mechanism")),
+    "mechanism.inertia_kgm2": Named(N_("Moment of inertia"), "J"),
+    "mechanism.gravity_mass_kg": Named(N_("Mass off the shaft"), "m"),
+    "mechanism.gravity_radius_mm": Named(N_("Its distance from the shaft"), "r"),
+    "mechanism.friction_torque_Nm": Named(N_("Friction torque"), "T_f"),
+    "mechanism.viscous_friction_Nm_per_rpm": Named(N_("Viscous friction"), "b"),
+    "mechanism.efficiency": Named(N_("Efficiency of the mechanism"), "η_m"),
+    "mechanism.ratio": Named(N_("Ratio of a stage between"), "i_m"),
+    "start_deg": Named(N_("Angle at the start"), "θ_0"),
+    "mechanism.diameter_mm": Named(N_("Pitch diameter"), "d"),
+    "mechanism.lead_mm": Named(N_("Lead"), "h"),
+    "mechanism.mass_kg": Named(N_("Moved mass"), "m"),
+    "mechanism.incline_deg": Named(N_("Incline"), "β"),
+    "mechanism.friction_coefficient": Named(N_("Coefficient of friction"), "μ"),
+    "move.profile": Named(N_("Profile")),
+    "move.angle_deg": Named(N_("Angle"), "φ"),
+    "move.distance_mm": Named(N_("Distance"), "s"),
+    "move.time_s": Named(N_("Time"), "t"),
+    "move.speed_rpm": Named(N_("Largest speed"), "n"),
+    "move.speed_mm_per_s": Named(N_("Largest speed"), "v"),
+    "move.acceleration_deg_per_s2": Named(N_("Acceleration"), "α"),
+    "move.acceleration_mm_per_s2": Named(N_("Acceleration"), "a"),
+    "move.jerk_share": Named(N_("Share of jerk in a ramp")),
+    "move.external_torque_Nm": Named(N_("External torque"), "T_ext"),
+    "move.external_force_N": Named(N_("External force"), "F_ext"),
+}
+"""Inputs of a motion: of its mechanism, and of each move."""
+
 DUTY: Mapping[str, Named] = {
     "average_torque_Nm": Named(N_("Average torque"), "T_av", "Average output torque T_av.", "17.2"),
     "average_output_speed_rpm": Named(
@@ -258,6 +287,7 @@ VERDICTS: Mapping[str, str] = {
 
 QUANTITIES: Mapping[str, Named] = {
     **INPUTS,
+    **{f"motion.{place}": named for place, named in MOTION.items()},
     **{
         f"{place}.{name}": named
         for place, table in (

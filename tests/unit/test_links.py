@@ -24,8 +24,26 @@ def some(**fields: st.SearchStrategy[Any]) -> st.SearchStrategy[dict[str, Any]]:
 
 amounts = st.floats(1e-6, 1e6)
 signed = st.floats(-1e6, 1e6)
+shares = st.floats(0, 1)
+
+
+def varying(phase: dict[str, Any], torque: float | None, speed: float | None, rms: float | None) -> dict[str, Any]:
+    """A phase with peaks as many times larger than its own magnitudes, and an RMS of a share of the peak."""
+    peak = abs(phase["torque_Nm"]) if torque is None else min(abs(phase["torque_Nm"]) * (1 + torque), 1e6)
+    figures = {
+        "peak_torque_Nm": None if torque is None else peak,
+        "peak_speed_rpm": None if speed is None else min(phase["speed_rpm"] * (1 + speed), 1e6),
+        "rms_torque_Nm": None if rms is None else rms * peak,
+    }
+    return phase | {name: value for name, value in figures.items() if value is not None}
+
+
 phases = st.tuples(
-    st.fixed_dictionaries({"torque_Nm": signed, "speed_rpm": amounts, "duration_s": amounts}),
+    st.builds(
+        varying,
+        st.fixed_dictionaries({"torque_Nm": signed, "speed_rpm": amounts, "duration_s": amounts}),
+        *(st.none() | shares for _ in range(3)),
+    ),
     some(radial_N=signed, axial_N=signed),
 ).map(lambda parts: parts[0] | parts[1])
 requirements = some(
@@ -39,7 +57,14 @@ requirements = some(
     ambient_temperature_degC=st.floats(-273, 1000),
     utilisation=st.floats(1e-12, 1),
     efficiency=st.floats(1e-12, 1),
-    motor=some(peak_torque_Nm=amounts, rated_torque_Nm=amounts, maximum_speed_rpm=amounts).filter(bool),
+    motor=some(
+        peak_torque_Nm=amounts,
+        rated_torque_Nm=amounts,
+        maximum_speed_rpm=amounts,
+        rated_speed_rpm=amounts,
+        inertia_kgm2=amounts,
+    ).filter(bool)
+    | st.fixed_dictionaries({"designation": st.sampled_from(["M 40", "A&B =ß+%", "x" * 100])}),
 )
 conditions = some(
     load_coefficient=st.floats(1, 3),
@@ -92,7 +117,14 @@ def test_every_application_survives_its_link(document: dict[str, Any]) -> None:
 
 
 @given(
-    st.lists(st.tuples(st.sampled_from([*"TntLmui", "tp", "Nk", "size", "gear", "do", "FRi", "rank", "x"]), st.text()))
+    st.lists(
+        st.tuples(
+            st.sampled_from(
+                [*"TntLmuiJbdh", "mech", "mv", "ms", "Tpk", "md", "tp", "Nk", "size", "gear", "do", "FRi", "rank", "x"]
+            ),
+            st.text(),
+        )
+    )
 )
 def test_no_query_breaks_the_reader_and_all_of_it_comes_back(pairs: list[tuple[str, str]]) -> None:
     form = links.parse(pairs)
@@ -233,21 +265,12 @@ def test_last_row_removed_leaves_a_blank_one() -> None:
     assert [dict(row) for row in read("T=1&n=1&t=1&do=remove:1").rows] == [{"T": "", "n": "", "t": ""}]
 
 
-WITHOUT_SYMBOL = {
-    *(("duty_cycle", "phases", name) for name in ("peak_torque_Nm", "peak_speed_rpm", "rms_torque_Nm")),
-    ("duty_cycle", "motion"),
-    *(("requirements", "motor", name) for name in ("designation", "inertia_kgm2", "inertia_ratio", "rated_speed_rpm")),
-    ("requirements", "load_inertia_kgm2"),
-}
-"""Fields that only JSON speaks so far (issue 18)."""
-
-
 def test_every_field_of_the_application_has_a_symbol() -> None:
     def leaves(model: type[BaseModel], path: tuple[str, ...] = ()) -> set[tuple[str, ...]]:
         found: set[tuple[str, ...]] = set()
         for name, info in model.model_fields.items():
-            parts = [] if name == "motion" else models(info.annotation)
-            found |= leaves(parts[0], (*path, name)) if parts else {(*path, name)}
+            parts = models(info.annotation)
+            found |= {leaf for part in parts for leaf in leaves(part, (*path, name))} if parts else {(*path, name)}
         return found
 
     def models(annotation: Any) -> list[type[BaseModel]]:
@@ -255,7 +278,10 @@ def test_every_field_of_the_application_has_a_symbol() -> None:
         return [annotation, *parts] if hasattr(annotation, "model_fields") else parts
 
     phases = {("duty_cycle", "phases", *symbol.path) for symbol in symbols.PHASE_SYMBOLS}
-    assert leaves(Application) - WITHOUT_SYMBOL == phases | {symbol.path for symbol in symbols.SYMBOLS}
+    moves = {
+        (*symbols.MOTION_PATH, "moves", symbol.path[-1]) for symbol in (*symbols.TURN_SYMBOLS, *symbols.STROKE_SYMBOLS)
+    }
+    assert leaves(Application) == phases | moves | set(symbols.BY_PATH)
 
 
 def test_a_canonical_number_is_as_short_as_it_can_be() -> None:
@@ -272,5 +298,6 @@ def test_a_canonical_number_is_as_short_as_it_can_be() -> None:
 
 def test_every_input_stands_in_one_group_of_the_form_by_its_name() -> None:
     grouped = [name for group in symbols.GROUPS for name in group.names]
-    assert sorted(["tp", *grouped]) == sorted(symbols.BY_NAME)
-    assert all(symbol.named.name for symbol in (*symbols.PHASE_SYMBOLS, *symbols.SYMBOLS))
+    assert sorted(["tp", *grouped]) == sorted(symbol.name for symbol in symbols.SYMBOLS)
+    every = (*symbols.PHASE_SYMBOLS, *symbols.BY_PATH.values(), *symbols.TURN_SYMBOLS, *symbols.STROKE_SYMBOLS)
+    assert all(symbol.named.name for symbol in every)

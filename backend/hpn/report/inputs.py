@@ -69,6 +69,6 @@ def _written(value: Value, path: str, reader: Reader) -> str:
     if isinstance(value, tuple):
         return ", ".join(map(str, value))
     if isinstance(value, str):
-        return reader.text(WORDS[value])
+        return reader.text(WORDS.get(value, value))
     unit = suffix_of(path) or ""
     return reader.with_unit(reader.exact(value, unit), unit)

@@ -20,8 +20,12 @@ from hpn.wording import N_, Sentence
 AXIS = "axis"
 AXIS_NAMED = Named(N_("Axis"))
 
-BY_ROLE: dict[str, Symbol] = {symbol.name: symbol for symbol in (*PHASE_SYMBOLS, *SYMBOLS)}
-"""Every role but that of the axis, by its link symbol."""
+_NOT_OF_FLEETS = ("md",)
+
+BY_ROLE: dict[str, Symbol] = {
+    symbol.name: symbol for symbol in (*PHASE_SYMBOLS, *SYMBOLS) if symbol.name not in _NOT_OF_FLEETS
+}
+"""Every role but that of the axis, by its link symbol; a fleet gives the figures of its motors."""
 
 PHASES = tuple(symbol.name for symbol in PHASE_SYMBOLS)
 
@@ -109,7 +113,9 @@ def _role_of(heading: str) -> str:
 def _names() -> dict[str, str]:
     names: dict[str, str] = {}
     readers = [Reader(language) for language in LANGUAGES]
-    for symbol in SYMBOLS:
+    for symbol in BY_ROLE.values():
+        if symbol in PHASE_SYMBOLS:
+            continue
         path = symbol.path[-1:] if symbol.path[0] == "duty_cycle" else symbol.path
         names |= {
             _folded(text): symbol.name for text in (".".join(path), *(r.text(symbol.named.name) for r in readers))

@@ -25,8 +25,9 @@ DIGITS = 5
 """Digits that a number from elsewhere is shown with in another unit."""
 
 _GROUPED = re.compile(r"[+-]?[1-9][0-9]{0,2}(\.[0-9]{3})+")
+LONGEST_TEXT = 100
 _LONGEST = 60
-"""Characters of a text or a number."""
+"""Characters of a text, such as the designation of a motor, and of a number."""
 
 _WITH_UNIT = re.compile(
     r"(?P<number>.*?[0-9][.,]?(?:[eE][+-]?[0-9]{1,3})?)"
@@ -221,7 +222,7 @@ def read_value(text: str, kind: Kind) -> float | int | str | Sentence:
         return text.refusal
     text = text.strip()
     if kind == "text":
-        return text if len(text) <= _LONGEST else Sentence(N_("is too long"))
+        return text if len(text) <= LONGEST_TEXT else Sentence(N_("is too long"))
     plain = text.replace("\N{MINUS SIGN}", "-")
     if len(plain) > _LONGEST or not _ANY_NUMBER.fullmatch(plain):
         return _not_a_number(plain)

@@ -1,15 +1,17 @@
-"""The one table of inputs: symbol in links, place in the application, and how the form shows each.
+"""The tables of inputs: symbol in links, place in the application, and how the form shows each.
 
 Form, link writer and link reader are loops over it. What an input is called and its sign stand in `hpn.quantities`.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Literal
 
 from hpn.catalogue import Catalogue
+from hpn.motion.mechanisms import CLASSES
 from hpn.notices import AREAS
-from hpn.quantities import CANDIDATE, INPUTS, Named
+from hpn.phase import Phase
+from hpn.quantities import CANDIDATE, INPUTS, QUANTITIES, Named
 from hpn.units import suffix_of
 from hpn.web.form import labels
 from hpn.wording import N_
@@ -39,6 +41,8 @@ class Symbol:
     @property
     def place(self) -> str:
         """Its place as `hpn.quantities` names it."""
+        if self.path[:2] == MOTION_PATH:
+            return ".".join(self.path[1:])
         return ".".join(self.path if len(self.path) > 1 or self.path[0] in INPUTS else ("phase", *self.path))
 
     def is_offered(self, choice: str, catalogue: Catalogue) -> bool:
@@ -48,7 +52,7 @@ class Symbol:
     @property
     def named(self) -> Named:
         """Its name and its sign."""
-        return INPUTS[self.place]
+        return QUANTITIES[self.place]
 
     @property
     def unit(self) -> str:
@@ -82,8 +86,14 @@ PHASE_SYMBOLS = (
     Symbol("t", ("duration_s",)),
     Symbol("FRi", ("radial_N",)),
     Symbol("FAi", ("axial_N",)),
+    Symbol("Tpk", ("peak_torque_Nm",)),
+    Symbol("npk", ("peak_speed_rpm",)),
+    Symbol("Trms", ("rms_torque_Nm",)),
 )
 """Repeated once per phase, all of equal length."""
+
+LOADS, VARYING = ("FRi", "FAi"), ("Tpk", "npk", "Trms")
+"""Columns of the duty table that appear where they are used."""
 
 SYMBOLS = (
     Symbol("tp", ("duty_cycle", "pause_s")),
@@ -144,6 +154,7 @@ SYMBOLS = (
         placeholder="1",
         hint=N_("Your assumption, between 0 and 1. Without one the motor side is loss-free, a lower bound."),
     ),
+    Symbol("JL", ("requirements", "load_inertia_kgm2")),
     Symbol(
         "aa",
         ("application_area",),
@@ -167,8 +178,63 @@ SYMBOLS = (
     Symbol("nm", ("requirements", "motor", "maximum_speed_rpm")),
     Symbol("Tm", ("requirements", "motor", "peak_torque_Nm")),
     Symbol("Tmn", ("requirements", "motor", "rated_torque_Nm")),
+    Symbol("nmr", ("requirements", "motor", "rated_speed_rpm")),
+    Symbol("Jm", ("requirements", "motor", "inertia_kgm2")),
+    Symbol("Jr", ("requirements", "motor", "inertia_ratio")),
+    Symbol("md", ("requirements", "motor", "designation"), "text"),
 )
-"""Everything but the phases, in the order of a canonical link: one part of an application at a time."""
+"""Everything but phases and motion, in the order of a canonical link: one part of an application at a time."""
+
+MOTION_PATH = ("duty_cycle", "motion")
+
+
+def _of_mechanism(name: str, field: str, kind: Kind = "number") -> Symbol:
+    return Symbol(name, (*MOTION_PATH, *field.split(".")), kind)
+
+
+MECHANISM_SYMBOLS = (
+    _of_mechanism("mech", "mechanism.type", "text"),
+    _of_mechanism("J", "mechanism.inertia_kgm2"),
+    _of_mechanism("mg", "mechanism.gravity_mass_kg"),
+    _of_mechanism("rg", "mechanism.gravity_radius_mm"),
+    _of_mechanism("Tf", "mechanism.friction_torque_Nm"),
+    _of_mechanism("b", "mechanism.viscous_friction_Nm_per_rpm"),
+    _of_mechanism("etam", "mechanism.efficiency"),
+    _of_mechanism("im", "mechanism.ratio"),
+    _of_mechanism("th0", "start_deg"),
+    _of_mechanism("d", "mechanism.diameter_mm"),
+    _of_mechanism("h", "mechanism.lead_mm"),
+    _of_mechanism("ml", "mechanism.mass_kg"),
+    _of_mechanism("inc", "mechanism.incline_deg"),
+    _of_mechanism("mu", "mechanism.friction_coefficient"),
+)
+"""A mechanism and where its motion starts, in the order of a canonical link."""
+
+
+def _of_moves(way: str, speed: str, acceleration: str, external: str) -> tuple[Symbol, ...]:
+    fields = ("profile", way, "time_s", speed, acceleration, "jerk_share", external)
+    return tuple(
+        Symbol(name, ("motion", "move", field), "text" if name == "mv" else "number")
+        for name, field in zip(("mv", "ms", "mt", "mn", "ma", "mj", "mx"), fields, strict=True)
+    ) + tuple(symbol for symbol in PHASE_SYMBOLS if symbol.name in LOADS)
+
+
+TURN_SYMBOLS = _of_moves("angle_deg", "speed_rpm", "acceleration_deg_per_s2", "external_torque_Nm")
+STROKE_SYMBOLS = _of_moves("distance_mm", "speed_mm_per_s", "acceleration_mm_per_s2", "external_force_N")
+"""Repeated once per move, all of equal length; a move carries loads by the names of a phase's."""
+
+
+def columns_used(phases: Sequence[Phase]) -> tuple[Symbol, ...]:
+    """Columns of a table of phases: torque, speed and duration, and of loads and what varies the groups in use."""
+    used = {s.name for s in PHASE_SYMBOLS if any(getattr(phase, s.path[0]) is not None for phase in phases)}
+    groups = (names for names in (("T", "n", "t"), LOADS, VARYING) if not used.isdisjoint(names))
+    return tuple(PHASE_BY_NAME[name] for names in groups for name in names)
+
+
+def move_symbols(mechanism: str) -> tuple[Symbol, ...]:
+    """Symbols of the moves of a mechanism: an unknown one turns."""
+    return STROKE_SYMBOLS if mechanism in CLASSES else TURN_SYMBOLS
+
 
 GROUPS = (
     FormGroup("stop", N_("Emergency stop"), ("Tk", "Nk"), folded=False),
@@ -189,7 +255,7 @@ GROUPS = (
         ),
         short=N_("Loads"),
     ),
-    FormGroup("motor", N_("Motor"), ("nm", "Tm", "Tmn", "eta"), short=N_("Motor")),
+    FormGroup("motor", N_("Motor"), ("nm", "Tm", "Tmn", "eta", "nmr", "Jm", "Jr", "JL", "md"), short=N_("Motor")),
     FormGroup(
         "limits",
         N_("Requirements and environment"),
@@ -201,12 +267,22 @@ GROUPS = (
 
 PHASE_BY_NAME = {symbol.name: symbol for symbol in PHASE_SYMBOLS}
 PHASE_BY_LEAF = {symbol.path[0]: symbol for symbol in PHASE_SYMBOLS}
-BY_NAME = {symbol.name: symbol for symbol in SYMBOLS}
-BY_PATH = {symbol.path: symbol for symbol in SYMBOLS}
-UNITS = {symbol.name: symbol.unit for symbol in (*PHASE_SYMBOLS, *SYMBOLS) if symbol.kind != "text" and not symbol.many}
+MOVE_BY_NAME = {symbol.name: symbol for symbol in TURN_SYMBOLS}
+MOVE_BY_LEAF = {symbol.path[-1]: symbol for symbol in (*TURN_SYMBOLS, *STROKE_SYMBOLS)}
+BY_NAME = {symbol.name: symbol for symbol in (*SYMBOLS, *MECHANISM_SYMBOLS)}
+BY_PATH = {symbol.path: symbol for symbol in (*SYMBOLS, *MECHANISM_SYMBOLS)}
+_SINGLE = (*PHASE_SYMBOLS, *SYMBOLS, *MECHANISM_SYMBOLS)
 LABELS = {
-    **{symbol.name: symbol.named.name for symbol in (*PHASE_SYMBOLS, *SYMBOLS)},
+    **{symbol.name: symbol.named.name for symbol in (*TURN_SYMBOLS, *_SINGLE)},
+    "ms": N_("Angle or distance"),
+    "mx": N_("External torque or force"),
     "gear": CANDIDATE["designation"].name,
     **labels.LABELS,
 }
 """What a list of errors calls the fields of the form."""
+
+
+def units_of(mechanism: str) -> Mapping[str, str]:
+    """Names that take a number, and the suffix of its unit, which of a move depends on the mechanism."""
+    symbols = (*move_symbols(mechanism), *_SINGLE)
+    return {symbol.name: symbol.unit for symbol in symbols if symbol.kind != "text" and not symbol.many}

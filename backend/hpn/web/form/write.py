@@ -1,14 +1,19 @@
 """The canonical link of an application; `links.parse` reads it, and what people write by hand."""
 
+from collections.abc import Iterator
 from itertools import groupby
 from urllib.parse import quote
 
 from pydantic import BaseModel
 
 from hpn.application import Application, DutyCycle, EmergencyStop, Motor, OutputLoad, Requirements
-from hpn.web.form.symbols import SYMBOLS
+from hpn.motion import Motion
+from hpn.web.form.symbols import MECHANISM_SYMBOLS, PHASE_SYMBOLS, SYMBOLS, move_symbols
 
 _EMPTY_LOAD = OutputLoad()
+
+_WHERE_USED = PHASE_SYMBOLS[3:]
+"""Columns of phases that a link has where one of them is given."""
 
 _MODELS: tuple[type[BaseModel], ...] = (DutyCycle, EmergencyStop, OutputLoad, Requirements, Application, Motor)
 _FIELDS = [
@@ -23,7 +28,7 @@ def to_link(application: Application) -> str:
 
     `parse` gives the same application back; a motor of which nothing is known counts as no motor.
     """
-    link = "/?" + _phases(application)
+    link = "/?" + _cycle(application)
     for part, fields in zip(_parts(application), _FIELDS, strict=True):
         if part is None:
             continue
@@ -38,16 +43,40 @@ def to_link(application: Application) -> str:
     return link + "&fw=1" if load is not None and load == _EMPTY_LOAD else link
 
 
-def _phases(application: Application) -> str:
+def _cycle(application: Application) -> str:
+    motion = application.duty_cycle.motion
+    if motion is not None:
+        return _shortened("&".join((*_mechanism(motion), *_moves(motion))))
     phases = application.duty_cycle.load_phases
     pairs = [f"T={phase.torque_Nm!r}&n={phase.speed_rpm!r}&t={phase.duration_s!r}" for phase in phases]
-    if application.loads is not None:
-        loads = {"FRi": [phase.radial_N for phase in phases], "FAi": [phase.axial_N for phase in phases]}
-        for name, values in loads.items():
-            if any(value is not None for value in values):
-                written = ["" if value is None else repr(value) for value in values]
-                pairs = [f"{pair}&{name}={value}" for pair, value in zip(pairs, written, strict=True)]
+    for symbol in _WHERE_USED:
+        values: list[float | None] = [getattr(phase, symbol.path[0]) for phase in phases]
+        if any(value is not None for value in values):
+            written = ["" if value is None else repr(value) for value in values]
+            pairs = [f"{pair}&{symbol.name}={value}" for pair, value in zip(pairs, written, strict=True)]
     return _shortened("&".join(pairs))
+
+
+def _mechanism(motion: Motion) -> Iterator[str]:
+    """What is not as it is by default of a mechanism, and where its motion starts."""
+    for symbol in MECHANISM_SYMBOLS:
+        part = motion.mechanism if "mechanism" in symbol.path else motion
+        field, fields = symbol.path[-1], type(part).model_fields
+        if field in fields and (value := getattr(part, field)) != fields[field].default:
+            yield f"{symbol.name}={value}"
+
+
+def _moves(motion: Motion) -> Iterator[str]:
+    """Moves, each with every figure that one of them has."""
+    fields = type(motion.moves[0]).model_fields
+    columns = []
+    for symbol in move_symbols(motion.mechanism.type):
+        field = symbol.path[-1]
+        values = [None if (v := getattr(move, field)) == fields[field].default else v for move in motion.moves]
+        if any(value is not None for value in values):
+            columns.append([f"{symbol.name}={'' if value is None else value}" for value in values])
+    for move in zip(*columns, strict=True):
+        yield from move
 
 
 def _parts(application: Application) -> tuple[BaseModel | None, ...]:

@@ -17,10 +17,11 @@ from hpn.web.door.bodies import pairs_of
 from hpn.web.door.pools import worked
 from hpn.web.door.visit import current
 from hpn.web.form import read as links
+from hpn.web.form.given import FieldProblem
 from hpn.web.form.labels import query_of
 from hpn.web.form.numbers import WRITTEN
 from hpn.web.form.ordering import OrderingCode, ordering_code
-from hpn.web.form.read import FieldProblem, Form
+from hpn.web.form.read import Form
 from hpn.web.form.write import to_link
 from hpn.web.pages.insight import Insight, checked_pins, tail_of
 from hpn.web.pages.result import Result

@@ -40,7 +40,7 @@ def respond(request: Request, pairs: Pairs) -> Response:
 
 
 def expanded(pairs: Pairs) -> list[tuple[str, str]]:
-    """Pairs of a link: the text of the phases becomes repeated T, n, t, and where used, FRi and FAi."""
+    """Pairs of a link: the text of the phases becomes repeated T, n, t, and where used, the others."""
     plain = [pair for pair in pairs if pair[0] != TEXT]
     for name, text in pairs:
         if name == TEXT:
@@ -52,13 +52,13 @@ def expanded(pairs: Pairs) -> list[tuple[str, str]]:
 def _cells(line: str) -> list[str]:
     """Cells of a line, apart by tabs, semicolons or blanks; the last takes what is too much, and is refused."""
     cells = re.split(r" *[;\t] *| +", line.strip(" "))
-    return cells[:4] + ([" ".join(cells[4:])] if len(cells) > 4 else [])
+    return cells[:7] + ([" ".join(cells[7:])] if len(cells) > 7 else [])
 
 
 def phase_pairs(rows: list[list[str]]) -> list[tuple[str, str]]:
-    """Pairs of rows in the order T, n, t, FRi, FAi; what a short row lacks is blank."""
-    width = min(max([3, *map(len, rows)]), 5)
-    names = [symbol.name for symbol in PHASE_SYMBOLS[: 5 if width > 3 else 3]]
+    """Pairs of rows in the order T, n, t, FRi, FAi, Tpk, npk, Trms; what a short row lacks is blank."""
+    width = max([3, *map(len, rows)])
+    names = [symbol.name for symbol in PHASE_SYMBOLS[: 3 if width <= 3 else 5 if width <= 5 else 8]]
     return [(name, row[k].strip() if k < len(row) else "") for row in rows for k, name in enumerate(names)]
 
 

@@ -1,0 +1,220 @@
+"""The pairs of a query sorted by what they belong to: rows of phases, moves, single values, lists, and the page."""
+
+import difflib
+import re
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+
+from hpn.application import MOST_WISHES
+from hpn.motion.motion import MAXIMUM_MOVES
+from hpn.phase import MAXIMUM_PHASES
+from hpn.web.form.labels import LABELS, faults_of
+from hpn.web.form.numbers import WAS, WRITTEN
+from hpn.web.form.symbols import (
+    BY_NAME,
+    LOADS,
+    MECHANISM_SYMBOLS,
+    MOVE_BY_LEAF,
+    MOVE_BY_NAME,
+    PHASE_BY_NAME,
+    PHASE_SYMBOLS,
+    SYMBOLS,
+    VARYING,
+)
+from hpn.wording import N_, Sentence
+
+PAGE_NAMES = ("gear", "pin", "unpin", "do", WRITTEN, WAS)
+"""Parameters of the page alone: the candidate looked at, those pinned beside it (repeated), one to take away, and
+the buttons that edit the rows, one after the other."""
+
+REQUIRED = ("T", "n", "t")
+
+
+@dataclass(frozen=True)
+class FieldProblem:
+    """What is wrong with one input: the query name and, for a repeated one, which of its values."""
+
+    name: str
+    index: int | None
+    message: Sentence
+
+    @property
+    def of_phase(self) -> bool:
+        """Whether the input stands in the duty table."""
+        return self.name in PHASE_BY_NAME
+
+    @property
+    def of_move(self) -> bool:
+        """Whether the input is one of a move."""
+        return self.name in MOVE_BY_NAME and not self.of_phase
+
+    @property
+    def place(self) -> str:
+        """Element of the page that takes this input."""
+        return f"{self.name}-{self.index or 0}" if self.of_phase or self.of_move else f"f-{self.name}"
+
+
+_Placed = tuple[int | None, dict[str, str]]
+"""A row of the duty table, and where it stood before the buttons that edit it."""
+
+
+class Given:
+    """A query sorted into phases, scalars, lists and what belongs to the page."""
+
+    def __init__(self) -> None:
+        self.columns: dict[str, list[str]] = {}
+        self.scalars: dict[str, list[str]] = {}
+        self.lists: dict[str, list[str]] = {}
+        self.labels: dict[str, list[str]] = {}
+        self.page: dict[str, str] = {}
+        self.presses: list[str] = []
+        self.pins: list[str] = []
+        self.unknown: list[str] = []
+        self.with_loads = False
+        self.varies = False
+        self.origins: tuple[int | None, ...] = (None,)
+
+    def add(self, name: str, text: str) -> None:
+        """Take one pair of the query."""
+        if name in PHASE_BY_NAME or name in MOVE_BY_NAME:
+            self.columns.setdefault(name, []).append(text)
+        elif name == "do":
+            self.presses.append(text)
+        elif name == "pin":
+            self.pins += [text.strip()] if text.strip() else []
+        elif name in PAGE_NAMES:
+            self.page[name] = text
+        elif name in LABELS:
+            self.labels.setdefault(name, []).append(text)
+        elif name not in BY_NAME:
+            self.unknown.append(name)
+        elif text.strip():  # the plain form submits blank fields too: they count as absent
+            texts = (self.lists if BY_NAME[name].many else self.scalars).setdefault(name, [])
+            if len(texts) <= MOST_WISHES:  # one more than there may be is enough to refuse them
+                texts.append(text)
+
+    @property
+    def has_motion(self) -> bool:
+        """Whether anything of a motion is given, so that loads of rows are those of its moves."""
+        of_moves = (self.columns[name] for name in MOVE_BY_NAME if name in self.columns and name not in LOADS)
+        return any(symbol.name in self.scalars for symbol in MECHANISM_SYMBOLS) or any(
+            text.strip() for texts in of_moves for text in texts
+        )
+
+    def moves(self) -> list[dict[str, str]]:
+        """What is given of each move, by its symbols."""
+        if not self.has_motion:
+            return []
+        columns = {name: self.columns[name] for name in MOVE_BY_NAME if name in self.columns}
+        length = max(map(len, columns.values()), default=0)
+        return [
+            {name: texts[k] if k < len(texts) else "" for name, texts in columns.items()}
+            for k in range(min(length, MAXIMUM_MOVES + 1))
+        ]
+
+    def edited(self) -> tuple[list[dict[str, str]], str | None]:
+        """Rows of the duty table after the buttons that were pressed, and the element to go on from."""
+        columns = self._of_phases()
+        self.with_loads, self.varies = (any(name in columns for name in names) for names in (LOADS, VARYING))
+        length = max(map(len, columns.values()), default=0)
+        shown = self._shown()
+        placed: list[_Placed] = [
+            (k, {name: texts[k] if k < len(texts := columns.get(name, [])) else "" for name in shown})
+            for k in range(min(length, MAXIMUM_PHASES + 1))
+        ]
+        focus = None
+        for press in self.presses[:50]:
+            focus = self._press(press, placed)
+        placed = placed or [(None, dict.fromkeys(self._shown(), ""))]
+        self.origins = tuple(origin for origin, _ in placed)
+        return [row for _, row in placed], focus
+
+    def _of_phases(self) -> Mapping[str, list[str]]:
+        """Columns of the duty table."""
+        apart = LOADS if self.has_motion else ()
+        return {name: texts for name, texts in self.columns.items() if name in PHASE_BY_NAME and name not in apart}
+
+    def _shown(self) -> list[str]:
+        return shown_columns(with_loads=self.with_loads, varies=self.varies)
+
+    def _press(self, press: str, placed: list[_Placed]) -> str | None:
+        """Edit the rows as one button does; the element to go on from, if it does anything."""
+        do, _, number = press.partition(":")
+        k = int(number) - 1 if re.fullmatch(r"[0-9]{1,5}", number) else -1
+        if do == "add":
+            placed.append((None, dict.fromkeys(self._shown(), "")))
+            return f"T-{len(placed) - 1}"
+        if do in ("loads", "varying"):
+            if do == "loads":
+                self.with_loads = not self.with_loads
+            else:
+                self.varies = not self.varies
+            placed[:] = [(origin, {name: row.get(name, "") for name in self._shown()}) for origin, row in placed]
+            return do
+        if not 0 <= k < len(placed):
+            return None
+        if do == "remove":
+            del placed[k]
+            return f"T-{min(k, max(len(placed) - 1, 0))}"
+        if do in ("up", "down"):
+            to = min(max(k + (1 if do == "down" else -1), 0), len(placed) - 1)
+            placed.insert(to, placed.pop(k))
+            # At either end the way on is back.
+            onward = do if 0 < to < len(placed) - 1 else "down" if to == 0 else "up"
+            return f"{onward}-{to}"
+        return None
+
+    def pinned(self) -> tuple[str, ...]:
+        """Pinned gears, without the one whose button takes it away."""
+        return tuple(pin for pin in self.pins if pin != self.page.get("unpin"))
+
+    def problems(self) -> Iterable[FieldProblem]:
+        """Names that are unknown, repeated, or repeated unequally often."""
+        for name in self.unknown[:20]:
+            yield FieldProblem(name[:60], None, unknown_name(name))
+        for name, texts in (*self.scalars.items(), *self.labels.items()):
+            if len(texts) > 1:
+                listed = ", ".join(text.strip()[:20] for text in texts[:5])
+                yield FieldProblem(name, None, Sentence(N_("takes one value, given were {texts}"), {"texts": listed}))
+        for name, texts in self.labels.items():
+            yield from (FieldProblem(name, None, fault) for fault in faults_of(texts[0]))
+        if (columns := self._of_phases()) and not self.presses:
+            yield from _unequal(columns, REQUIRED, MAXIMUM_PHASES)
+        if self.has_motion:
+            of_moves = {name: texts for name, texts in self.columns.items() if name in MOVE_BY_NAME}
+            yield from _unequal(of_moves, ("mv",), MAXIMUM_MOVES)
+            yield from _beside_motion(columns)
+
+
+def _unequal(columns: Mapping[str, list[str]], required: Sequence[str], most: int) -> Iterable[FieldProblem]:
+    counts = {name: len(columns.get(name, [])) for name in (*required, *columns)}
+    longest = max(counts, key=lambda name: counts[name])
+    for name, count in counts.items():
+        if count < counts[longest]:
+            values = {"count": str(count), "name": name, "most": str(counts[longest]), "longest": longest}
+            template = N_("missing: the link gives {count} × {name}, but {most} × {longest}")
+            yield FieldProblem(name, min(count, most), Sentence(template, values))
+
+
+def _beside_motion(columns: Mapping[str, list[str]]) -> Iterable[FieldProblem]:
+    """Phases where a motion is given: blank ones, as a form submits them, count as absent."""
+    for name, texts in columns.items():
+        if filled := [k for k, text in enumerate(texts) if text.strip()]:
+            yield FieldProblem(name, filled[0], Sentence(N_("stands beside a motion: give either phases or a motion")))
+            return
+
+
+def shown_columns(*, with_loads: bool, varies: bool) -> list[str]:
+    """Columns of the duty table, with those that appear where they are used."""
+    shown = {*REQUIRED, *(LOADS if with_loads else ()), *(VARYING if varies else ())}
+    return [name for name in PHASE_BY_NAME if name in shown]
+
+
+def unknown_name(name: str) -> Sentence:
+    leaves = {s.path[-1].lower(): s.name for s in (*MOVE_BY_LEAF.values(), *SYMBOLS, *PHASE_SYMBOLS)}
+    names = {known.lower(): known for known in (*PHASE_BY_NAME, *BY_NAME, *MOVE_BY_NAME, *PAGE_NAMES, *LABELS)}
+    near = difflib.get_close_matches(name[:60].lower(), leaves | names, n=1, cutoff=0.4)
+    if not near:
+        return Sentence(N_("{name} is not a parameter of this page"), {"name": name[:60]})
+    values = {"name": name[:60], "near": (leaves | names)[near[0]]}
+    return Sentence(N_("{name} is not a parameter of this page; did you mean {near}?"), values)
