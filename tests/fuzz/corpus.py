@@ -21,7 +21,7 @@ from hpn.selection import select
 from hpn.web.api.samples import LIFTING, TURNING
 from hpn.web.form.labels import LABELS
 from hpn.web.form.pasted import write_table
-from hpn.web.form.symbols import BY_NAME
+from hpn.web.form.symbols import BY_NAME, MOVE_BY_NAME, PHASE_BY_NAME
 from hpn.web.form.write import to_link
 from tests.build import cycle, phase, worked_example
 from tests.fleet.tables import in_long_form, row_of, write
@@ -64,7 +64,7 @@ _MODELS = [Application.model_validate(entry) for entry in APPLICATIONS]
 JSON = tuple(json.dumps(entry).encode() for entry in APPLICATIONS)
 BATCHES = tuple(
     json.dumps({"applications": [{"reference": f"axis {k}", **entry} for k, entry in enumerate(part)]}).encode()
-    for part in (APPLICATIONS[:1], APPLICATIONS[:4], APPLICATIONS[2:6])
+    for part in (APPLICATIONS[:1], APPLICATIONS[:4], APPLICATIONS[2:6], APPLICATIONS[7:])
 )
 NAMES = {"reference": "plm-4711", "author": "M. Muster", "revision": "B", "ordering_code": "HPN-20A-5-J6-BH-AF1"}
 SAVES = tuple(json.dumps({"application": entry, "title": "Axis 7", **NAMES}).encode() for entry in APPLICATIONS)
@@ -82,6 +82,8 @@ FORMS = (
     *(link + b"&do=" + do for link in LINKS[1:4] for do in (b"add", b"remove:1", b"up:1", b"duplicate:0", b"example")),
     b"phases=40+250+0.3%0A32+500+3%0A20%09250%090.4&tp=4&Tk=200&i=5",
     b"phases=1%3B2%3B3%3B4%3B5&written=de.lb_in.lbf&was=Nm%3A40+N%3A1.5&Tk=200%2C5&gear=HPN-20A-5&pin=HPN-14A-5",
+    LINKS[7] + b"&do=varying",
+    LINKS[8] + b"&written=de.lb_in&do=add",
     b"T=354%2C03&n=250&t=0%2C3&written=de.lb_in&was=Nm%3A40&FR=1.234%2C5&gear=HPN-14A-5&pin=HPN-20A-5&unpin=HPN-20A-5",
 )
 TABLES_OF_PHASES = (
@@ -93,6 +95,7 @@ TABLES_OF_PHASES = (
     "40\t250\t0.3\n32\t500\t3\n".encode("utf-16"),
     b"1.234\t2\t3\n1,234\t2\t3\n",
     b"Zyklus 7\nNr.;T;n;Zeit\n-;kNm;rad/s;ms\n1;0,04;10;300\n2;0,03;20;400\nSumme;;;700\n",
+    b"T;n;t;T_max;Spitzendrehzahl;Effektivmoment [kNm]\n40;250;0,3;55;500;0,042\n",
     b"Torque:\t40 Nm\t32 Nm\nSpeed:\t250 rpm\t500 rpm\nDuration:\t300 ms\t3 s\n",
 )
 
@@ -166,7 +169,8 @@ SUPPLEMENTS = (
 """A file of a supplement each: its name in the first line, its content below."""
 
 SYMBOLS = tuple(
-    b"&%s=" % name.encode() for name in (*BY_NAME, *LABELS, "gear", "pin", "do", "phases", "written", "was")
+    b"&%s=" % name.encode()
+    for name in (*PHASE_BY_NAME, *MOVE_BY_NAME, *BY_NAME, *LABELS, "gear", "pin", "do", "phases", "written", "was")
 )
 FIELDS = tuple(
     b'"%s"' % name.encode()
@@ -174,6 +178,15 @@ FIELDS = tuple(
         *("duty_cycle", "phases", "pause_s", "torque_Nm", "speed_rpm", "duration_s", "radial_N", "axial_N"),
         *("emergency_stop", "count", "output_load", "load_coefficient", "life_h", "life_basis", "model", "linear"),
         *("requirements", *REQUIREMENTS, "application_area", "vacuum", "rank_by", "reference", "title", "application"),
+        *(
+            "motion",
+            *TURNING,
+            *TURNING["mechanism"],
+            *TURNING["moves"][0],
+            "peak_torque_Nm",
+            "s_curve",
+            "rms_torque_Nm",
+        ),
         *("applications", "digitised", "L10", "", "x" * 300, "\\ud800", "\\u0000", "\u202e"),
     )
 )

@@ -18,16 +18,20 @@ from hpn.web.form.columns import Choices
 from hpn.web.form.pasted import Table, read_text, write_table
 
 NUMBERS = st.floats(-1e6, 1e6, allow_subnormal=False).map(lambda value: round(value, 4))
+PEAKS = st.none() | st.floats(1e5, 1e6).map(lambda value: round(value, 4))
 PHASES = st.builds(
     Phase,
-    torque_Nm=NUMBERS,
+    torque_Nm=st.floats(-1e5, 1e5, allow_subnormal=False).map(lambda value: round(value, 4)),
     speed_rpm=st.floats(1, 1e4).map(lambda value: round(value, 3)),
     duration_s=st.floats(0.001, 1e4).map(lambda value: round(value, 3)),
     radial_N=st.none() | NUMBERS,
     axial_N=st.none() | NUMBERS,
+    peak_torque_Nm=PEAKS,
+    peak_speed_rpm=PEAKS,
+    rms_torque_Nm=st.none() | st.just(0.0),
 )
 CYCLES = st.lists(PHASES, min_size=1, max_size=8).map(lambda phases: DutyCycle(phases=tuple(phases)))
-FIELDS = ("torque_Nm", "speed_rpm", "duration_s", "radial_N", "axial_N")
+FIELDS = tuple(Phase.model_fields)
 
 
 @given(CYCLES, st.sampled_from(DECIMALS))

@@ -17,7 +17,7 @@ Case = dict[str, Any]
 FILE = Path(__file__).parent / "pasted/tables.toml"
 GROUPS: dict[str, dict[str, Case]] = tomllib.loads(FILE.read_text("utf-8"))
 CASES = [pytest.param(case, id=f"{group}: {name}") for group, cases in GROUPS.items() for name, case in cases.items()]
-SYMBOLS = ("T", "n", "t", "FRi", "FAi")
+SYMBOLS = ("T", "n", "t", "FRi", "FAi", "Tpk", "npk", "Trms")
 
 
 @pytest.fixture(scope="module")

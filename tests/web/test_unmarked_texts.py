@@ -23,6 +23,9 @@ PAGES = (
     "/?T=40&n=250&t=0.3&T=9,3&tp=x&i=99&strange=1&Nk=-1&fw=4&FR=",
     "/?T=1&n=1&t=1&i=99",
     "/?T=&n=&t=",
+    "/?mech=rotary&J=0.8&mg=12&mv=trapezoidal&ms=90&mt=0.8&mv=dwell&ms=1&mt=0.4",
+    "/?mech=rotary&J=0.8&mv=trapezoidal&ms=90&mt=0.8&Jm=0.0002&Jr=5&nmr=3000",
+    "/?T=40&n=250&t=0.3&Tpk=55&npk=500&Trms=42",
     "/paste",
     "/catalogue",
     "/catalogue/HPN-20A-5",
@@ -37,7 +40,7 @@ UNTRANSLATED = re.compile(
     r"\b[0-9a-f]{16}\b|"
     r"PYRONOC UNIVERSAL 00|"
     r"HPN Select|HPN(-\w+)*|Deutsch|English|\b\d+A\b|\bSI\b|\bUS\b|ISO 281|\bJ\d\b|[\w.-]+\.csv|HPN_\w+|\bM\d+\b"
-    r"|strange|rank|^\s*(av|in|out)(,(av|max))?(\(max\))?\s*$|JSON|CSV|PDF|PNG|SVG|Ctrl|Alt|Enter|Esc|Strg|Shift|Tab|xx\.xx|AAS|BH-AF1|\bLb\d+\b|L10|L50|\bL\d+\b"
+    r"|strange|\bm[sj]\b|\brg\b|\bdwell\b|^\s*(av|in|out)(,(av|max))?(\(max\))?\s*$|JSON|CSV|PDF|PNG|SVG|Ctrl|Alt|Enter|Esc|Strg|Shift|Tab|xx\.xx|AAS|BH-AF1|\bLb\d+\b|L10|L50|\bL\d+\b"
 )
 """Versions of the catalogue; names of products, files, formats, keys and parameters; indices of symbols."""
 

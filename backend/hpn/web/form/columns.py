@@ -13,7 +13,7 @@ from hpn.web.form.headings import INDEX, LONGEST, QUANTITIES, SUM, UNIT, Heading
 from hpn.web.form.sheets import Grid, RefusedError, require_even
 from hpn.wording import N_, Sentence
 
-WIRE = {"T": "Nm", "n": "rpm", "t": "s", "FRi": "N", "FAi": "N"}
+WIRE = {"T": "Nm", "n": "rpm", "t": "s", "FRi": "N", "FAi": "N", "Tpk": "Nm", "npk": "rpm", "Trms": "Nm"}
 """Link symbols of the columns of the duty table -> units of the wire."""
 
 REQUIRED = ("T", "n", "t")

@@ -7,7 +7,11 @@ from functools import lru_cache
 from hpn import units
 from hpn.web.form.cells import is_blank, tidy
 
-QUANTITIES = {"T": "torque", "n": "speed", "t": "time", "FRi": "force", "FAi": "force"}
+QUANTITIES = {
+    **{"T": "torque", "n": "speed", "t": "time"},
+    **{"FRi": "force", "FAi": "force"},
+    **{"Tpk": "torque", "npk": "speed", "Trms": "torque"},
+}
 """Link symbols of the columns of the duty table -> what they measure."""
 
 INDEX, SUM, UNIT = "index", "sum", "unit"
@@ -27,6 +31,13 @@ _WORDS = {
     "carico radiale; carga radial; fuerza radial; radiallast",
     "FAi": "axial; axial load; axial force; axialkraft; axiallast; fa; fai; f a; charge axiale; force axiale; "
     "carico assiale; carga axial; fuerza axial",
+    "Tpk": "peak torque; maximum torque; max torque; torque peak; torque max; tpk; t pk; t max; tmax; m max; mmax; "
+    "spitzenmoment; spitzendrehmoment; maximalmoment; maximaldrehmoment; maximales moment; maximales drehmoment; "
+    "größtes moment; größtes drehmoment; max drehmoment; max moment",
+    "npk": "peak speed; maximum speed; max speed; speed peak; speed max; npk; n pk; n max; nmax; "
+    "spitzendrehzahl; maximaldrehzahl; maximale drehzahl; größte drehzahl; höchste drehzahl; max drehzahl",
+    "Trms": "rms torque; torque rms; effective torque; trms; t rms; t eff; teff; m eff; meff; "
+    "effektivmoment; effektivdrehmoment; effektives moment; effektives drehmoment",
     INDEX: "nr; no; #; №; n°; nº; pos; index; idx; id; lfd nr; lfd-nr; lfdnr; nummer; number; num; phase; phase nr; "
     "phase no; phasen-nr; phasennr; phasennummer; step; schritt; segment; abschnitt; row; zeile; étape; fase; steg; "
     "i; k; line; item; point; punkt",

@@ -18,6 +18,7 @@ from hpn.web.form.cells import DECIMALS, Decimal, Entry, entry, is_blank
 from hpn.web.form.columns import DIVIDED, NO_CHOICES, REQUIRED, SKIP, WIRE, Body, Choices, Column, body_of, columns_of
 from hpn.web.form.headings import QUANTITIES, heading_of
 from hpn.web.form.sheets import Grid, RefusedError, grids_of
+from hpn.web.form.symbols import columns_used
 from hpn.wording import N_, Sentence
 
 COLUMNS = tuple(QUANTITIES)
@@ -300,6 +301,9 @@ TWICE = {
     "t": N_("Two columns are the duration."),
     "FRi": N_("Two columns are the radial load."),
     "FAi": N_("Two columns are the axial load."),
+    "Tpk": N_("Two columns are the peak torque."),
+    "npk": N_("Two columns are the peak speed."),
+    "Trms": N_("Two columns are the RMS torque."),
 }
 BLANK = {
     "T": N_("row {row}: the torque is blank"),
@@ -318,11 +322,9 @@ def _text(value: float) -> str:
 
 
 def write_table(cycle: DutyCycle, decimal: Decimal = ".") -> str:
-    """Phases as CSV that `read_text` and a spreadsheet of that language read back exactly, with loads if any."""
+    """Phases as CSV that `read_text` and a spreadsheet of that language read back exactly; also those of a motion."""
     separator = ";" if decimal == "," else ","
-    fields = ["torque_Nm", "speed_rpm", "duration_s", "radial_N", "axial_N"]
-    if all(phase.radial_N is None and phase.axial_N is None for phase in cycle.load_phases):
-        fields = fields[:3]
+    fields = [symbol.path[0] for symbol in columns_used(cycle.load_phases)]
     lines = [separator.join(fields)]
     for phase in cycle.load_phases:
         values = [getattr(phase, name) for name in fields]

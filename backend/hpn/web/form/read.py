@@ -24,11 +24,14 @@ from hpn.web.form.numbers import read_value
 from hpn.web.form.symbols import (
     BY_NAME,
     BY_PATH,
+    MECHANISM_SYMBOLS,
     MOTION_PATH,
     MOVE_BY_LEAF,
     PHASE_BY_LEAF,
     PHASE_BY_NAME,
     PHASE_SYMBOLS,
+    STROKE_SYMBOLS,
+    TURN_SYMBOLS,
     Symbol,
     move_symbols,
     units_of,
@@ -294,12 +297,19 @@ def place_of(location: Sequence[int | str], rows: Sequence[int] = ()) -> tuple[s
     return _PARTS.get(path, ".".join(path)), None
 
 
+_OF_MOTION = {symbol.path[-1]: symbol.name for symbol in (*MECHANISM_SYMBOLS, *TURN_SYMBOLS, *STROKE_SYMBOLS)}
+
 _BOUNDS = {
     "greater_than": (N_("must be above {bound}"), "gt"),
     "greater_than_equal": (N_("must be at least {bound}"), "ge"),
     "less_than": (N_("must be below {bound}"), "lt"),
     "less_than_equal": (N_("must be at most {bound}"), "le"),
 }
+
+
+def _in_symbols(fields: str) -> str:
+    """Names of fields in a refusal of a motion, which a link has others for."""
+    return ", ".join(_OF_MOTION.get(field, field) for field in fields.split(", "))
 
 
 def _refusal(error: Any) -> Sentence:
@@ -309,7 +319,7 @@ def _refusal(error: Any) -> Sentence:
         template, key = _BOUNDS[error["type"]]
         return Sentence(template, {"bound": Quantity(context[key], suffix_of(str(error["loc"][-1])) or "", 12)})
     if error["type"] in REFUSALS:
-        return Sentence(REFUSALS[error["type"]], context)
+        return Sentence(REFUSALS[error["type"]], {name: _in_symbols(str(text)) for name, text in context.items()})
     if error["type"] == "extra_forbidden":
         return Sentence(N_("is nothing that this mechanism has: leave it out"))
     if error["type"] == "no_load":

@@ -30,11 +30,12 @@ from hpn.web.form import cells
 from hpn.web.form import read as links
 from hpn.web.form.cells import Decimal, Figure
 from hpn.web.form.columns import CELLS, SKIP, WIRE, Choices, Column
+from hpn.web.form.given import shown_columns
 from hpn.web.form.headings import QUANTITIES
 from hpn.web.form.pasted import COLUMNS, LAST, TIMES, Table, read_grid, read_text
 from hpn.web.form.read import Pairs
 from hpn.web.form.sheets import SEPARATORS, RefusedError, grid_of
-from hpn.web.form.symbols import PHASE_SYMBOLS
+from hpn.web.form.symbols import LOADS, MECHANISM_SYMBOLS, PHASE_SYMBOLS, TURN_SYMBOLS, VARYING
 from hpn.web.form.workbooks import MAGIC, OLD_MAGIC, Sheets, sheets_of
 from hpn.web.form.write import to_link
 from hpn.web.pages import long_cycles
@@ -47,7 +48,9 @@ FIRST_ROWS, LAST_ROWS = 6, 2
 DECIMALS = {".": N_("a point"), ",": N_("a comma")}
 OLD_WORKBOOK = N_("a workbook of this old format can’t be read: save it as XLSX or CSV")
 
-_PHASE_NAMES = {symbol.name for symbol in PHASE_SYMBOLS}
+_CYCLE_NAMES = {symbol.name for symbol in (*PHASE_SYMBOLS, *TURN_SYMBOLS, *MECHANISM_SYMBOLS)}
+"""Names of a link that make its duty cycle, as phases or as a motion."""
+
 _PLACE = re.compile(r"([ru])([0-9]{1,6})")
 
 
@@ -246,7 +249,7 @@ def _draft(link: str, text: str = "", table: Table | None = None, **more: Any) -
         text,
         preview=_preview(table) if table and not table.problem else None,
         problems=(table.problem,) if table and table.problem else (),
-        has_phases=any(name in {*_PHASE_NAMES, "phases"} and value for name, value in pairs_of(link)),
+        has_phases=any(name in {*_CYCLE_NAMES, "phases"} and value for name, value in pairs_of(link)),
         example=table is not None and is_example(link),
         **more,
     )
@@ -298,7 +301,7 @@ def taken(draft: PasteDraft, *, append: bool) -> list[tuple[str, str]]:
     """
     assert draft.preview is not None
     pairs, _ = links.in_wire_units(long_cycles.expanded(pairs_of(draft.link)))
-    dropped = {*_PHASE_NAMES, "do", "phases"}
+    dropped = {*_CYCLE_NAMES, "do", "phases"}
     if draft.example and not append:
         dropped |= {name for name, _ in pairs_of(to_link(Application.worked_example()).removeprefix("/?"))}
     rest = [(name, value) for name, value in pairs if value.strip() and name not in dropped]
@@ -306,7 +309,8 @@ def taken(draft: PasteDraft, *, append: bool) -> list[tuple[str, str]]:
     if append:
         given = links.parse(pairs).rows
         rows = [dict(row) for row in given if any(text.strip() for text in row.values())] + rows
-    names = COLUMNS if any(row.get("FRi") or row.get("FAi") for row in rows) else COLUMNS[:3]
+    with_loads, varies = (any(row.get(name) for row in rows for name in group) for group in (LOADS, VARYING))
+    names = shown_columns(with_loads=with_loads, varies=varies)
     return [(name, row.get(name, "")) for row in rows for name in names] + rest
 
 
