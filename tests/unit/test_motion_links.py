@@ -145,3 +145,12 @@ def test_blank_fields_of_a_motion_beside_phases_count_as_absent() -> None:
     form = read(f"{PHASE}&FRi=5&mech=&J=&mv=&ms=&mt=")
     assert form.problems == ()
     assert form.application == read(f"{PHASE}&FRi=5").application
+
+
+def test_a_button_opens_and_closes_the_columns_of_what_varies_without_script() -> None:
+    opened = read(f"{PHASE}&do=varying")
+    assert [dict(row) for row in opened.rows] == [{"T": "40", "n": "250", "t": "0.3", "Tpk": "", "npk": "", "Trms": ""}]
+    assert (opened.focus, opened.application) == ("varying", read(PHASE).application)
+    closed = read(f"{PHASE}&Tpk=55&npk=&Trms=&do=varying")
+    assert (closed.varies, closed.application) == (False, read(PHASE).application)
+    assert read(f"{PHASE}&Tpk=&npk=&Trms=").varies
