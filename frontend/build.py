@@ -7,6 +7,7 @@ A name changes exactly when its content does, so the service may let browsers ke
 import gzip
 import hashlib
 import json
+import re
 import shutil
 from pathlib import Path
 
@@ -28,6 +29,20 @@ def sources() -> dict[str, Path]:
     return static | PACKAGES
 
 
+COMMENTS = {
+    ".css": re.compile(rb"/\*.*?\*/\s*", re.DOTALL),
+    ".js": re.compile(rb"^ *//.*\n", re.MULTILINE),
+}
+"""Comments of our own files by suffix: in scripts those on lines of their own."""
+
+
+def sent(path: Path) -> bytes:
+    """Content of a file without the comments that only its authors read; packages keep theirs, with their licences."""
+    content = path.read_bytes()
+    comment = COMMENTS.get(path.suffix) if path.is_relative_to(STATIC) else None
+    return comment.sub(b"", content) if comment else content
+
+
 def hashed_name(name: str, content: bytes) -> str:
     stem, dot, suffix = name.rpartition(".")
     return f"{stem}.{hashlib.sha256(content).hexdigest()[:8]}{dot}{suffix}"
@@ -46,7 +61,7 @@ def main() -> None:
         shutil.rmtree(DIST)
     manifest: dict[str, str] = {}
     for name, path in sources().items():
-        content = path.read_bytes()
+        content = sent(path)
         manifest[name] = hashed_name(name, content)
         write(DIST / manifest[name], content)
     # Last, so that make sees an interrupted build as not done.

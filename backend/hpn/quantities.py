@@ -98,6 +98,46 @@ MOTION: Mapping[str, Named] = {
 }
 """Inputs of a motion: of its mechanism, and of each move."""
 
+MECHANISMS: Mapping[str, str] = {
+    "rotary": N_("Rotary"),
+    "rack_and_pinion": N_("Rack and pinion"),
+    "belt": N_("Belt"),
+    "ball_screw": N_("Ball screw"),
+}
+"""Kinds of mechanisms."""
+
+PROFILES: Mapping[str, str] = {
+    "trapezoidal": N_("Trapezoidal"),
+    "triangular": N_("Triangular"),
+    "s_curve": N_("S-curve"),
+    "modified_sine": N_("Modified sine"),
+    "dwell": N_("Dwell"),
+}
+"""Profiles of a move."""
+
+BODY: Mapping[str, Named] = {
+    "shape": Named(N_("Shape")),
+    "count": Named(N_("Number")),
+    "mass_kg": Named(N_("Mass")),
+    "density_g_per_cm3": Named(N_("or density")),
+    "diameter_mm": Named(N_("Diameter")),
+    "inner_diameter_mm": Named(N_("Inner diameter")),
+    "length_mm": Named(N_("Length")),
+    "width_mm": Named(N_("Width")),
+    "height_mm": Named(N_("Height")),
+    "distance_mm": Named(N_("Off the axis")),
+}
+"""Inputs of a body whose moment of inertia is worked out; none is part of an application."""
+
+SHAPES: Mapping[str, str] = {
+    "disc": N_("Disc"),
+    "ring": N_("Ring"),
+    "bar": N_("Bar"),
+    "block": N_("Block"),
+    "point_mass": N_("Point mass"),
+}
+"""Shapes of bodies."""
+
 DUTY: Mapping[str, Named] = {
     "average_torque_Nm": Named(N_("Average torque"), "T_av", "Average output torque T_av.", "17.2"),
     "average_output_speed_rpm": Named(
@@ -288,6 +328,7 @@ VERDICTS: Mapping[str, str] = {
 QUANTITIES: Mapping[str, Named] = {
     **INPUTS,
     **{f"motion.{place}": named for place, named in MOTION.items()},
+    **{f"body.{place}": named for place, named in BODY.items()},
     **{
         f"{place}.{name}": named
         for place, table in (

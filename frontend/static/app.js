@@ -21,7 +21,7 @@ document.addEventListener("htmx:config:request", (event) => {
   const press = submitter?.name === "do" ? submitter : null;
   if (underWay && !restoring) {
     event.preventDefault();
-    if (press) pending.push({ id: press.id.split("-")[0], row: rowOf(press) });
+    if (press) pending.push({ id: rowOf(press) === null ? press.id : press.id.split("-")[0], row: rowOf(press) });
     else typedMeanwhile = true;
     return;
   }
@@ -71,7 +71,7 @@ document.addEventListener("htmx:before:swap", (event) => {
       .filter((each) => ctx.before?.has(each.id) && ctx.before.get(each.id) !== valueOf(each))
       .map((each) => ({ id: each.id, row: rowOf(each), value: valueOf(each) })),
     // A button and a new row have their focus from the server.
-    focus: field?.matches("#duty tbody input") && ctx.request.submitter?.value !== "add" && !ctx.restores
+    focus: field?.matches("#duty tbody :is(input, select)") && ctx.request.submitter?.value !== "add" && !ctx.restores
       ? { id: field.id, row: rowOf(field), range: [field.selectionStart, field.selectionEnd] }
       : null,
   };
@@ -100,12 +100,12 @@ function keepPlace({ id, row, range }) {
   const place = document.getElementById(moved(id, row));
   if (place) {
     place.focus();
-    return place.setSelectionRange(...range);
+    return place.setSelectionRange?.(...range);
   }
   const last = document.querySelectorAll("#duty tbody tr").length - 1;
   const other = document.getElementById(`${id.split("-")[0]}-${Math.min(row, last)}`);
   other?.focus();
-  other?.select();
+  other?.select?.();
 }
 
 // --- Back is undo: one entry of the history per edit, which holds what the form said ----------------------------------
@@ -149,7 +149,7 @@ addEventListener("popstate", (event) => {
   noted = -1;
   pending.length = 0;
   restoring = { content: event.state.content, before: fieldsOf(form) };
-  form.setAttribute("hx-method", new URLSearchParams(restoring.content).has("phases") ? "post" : "get");
+  form.setAttribute("hx-method", restoring.content.length > 8000 || new URLSearchParams(restoring.content).has("phases") ? "post" : "get");
   form.requestSubmit();
   showSteps();
 });
@@ -240,11 +240,12 @@ function describe(field, keep, added) {
 // of a duration of 0.3.
 const unfinishedNumber = (field) => field.inputMode === "decimal" && (field.name === "t" ? /(^0|[-+*/(.,eE=])$/ : /[-+*/(.,eE=]$/).test(field.value.trim());
 
-// Neither is a phase with a torque and no speed yet.
+// Neither is a phase with a torque and no speed yet, nor a move without its time.
 function unfinishedRow() {
   const row = document.activeElement?.closest("#duty tbody tr");
   if (!row || row.querySelector('[aria-invalid="true"]')) return null;
-  const filled = ["T", "n", "t"].map((name) => row.querySelector(`[name="${name}"]`).value.trim() !== "");
+  const given = (name) => row.querySelector(`[name="${name}"]`)?.value.trim();
+  const filled = (row.querySelector("select") ? [["mv"], ["mt", "ma"]] : [["T"], ["n"], ["t"]]).map((names) => names.some(given));
   return filled.includes(true) && filled.includes(false) ? row : null;
 }
 

@@ -199,7 +199,7 @@ def test_first_view_stays_light(client: TestClient) -> None:
     for address in addresses:
         with client.stream("GET", address, headers={"Accept-Encoding": "br"}) as packed:
             total += len(b"".join(packed.iter_raw()))
-    assert total < 60_000
+    assert total < 60_000, total
 
 
 def figure(html: str, name: str) -> str:

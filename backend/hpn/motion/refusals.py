@@ -1,4 +1,4 @@
-"""Why a motion is refused: texts by code, with the bound that would do."""
+"""Why a motion or a body is refused: texts by code, with the bound that would do."""
 
 from collections.abc import Mapping
 
@@ -21,6 +21,10 @@ REFUSALS: Mapping[str, str] = {
     "motion_speed": N_("the speed of the gear reaches {found} in this move; it may be {bound} at most"),
     "motion_time": N_("this move takes {found}; a phase may take {bound} at most"),
     "motion_phases": N_("the moves come to {found} phases; a cycle may have {bound} at most"),
+    "body_needs": N_("this shape needs {field}"),
+    "body_has_no": N_("this shape has no {field}: leave it out"),
+    "body_mass": N_("give either the mass or the density"),
+    "body_bore": N_("must be below the outer diameter"),
     "motion_turns": N_("with gravity the angles of all moves may add up to {bound} at most; they add up to {found}"),
 }
 """English msgids; the values are texts."""

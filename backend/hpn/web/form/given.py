@@ -1,4 +1,4 @@
-"""The pairs of a query sorted by what they belong to: rows of phases, moves, single values, lists, and the page."""
+"""The pairs of a query sorted by what they belong to: rows of phases, moves, bodies, single values, lists, the page."""
 
 import difflib
 import re
@@ -6,11 +6,14 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 from hpn.application import MOST_WISHES
+from hpn.motion.bodies import MOST_BODIES
 from hpn.motion.motion import MAXIMUM_MOVES
 from hpn.phase import MAXIMUM_PHASES
 from hpn.web.form.labels import LABELS, faults_of
 from hpn.web.form.numbers import WAS, WRITTEN
+from hpn.web.form.rows import Rows
 from hpn.web.form.symbols import (
+    BODY_BY_NAME,
     BY_NAME,
     LOADS,
     MECHANISM_SYMBOLS,
@@ -21,11 +24,12 @@ from hpn.web.form.symbols import (
     SYMBOLS,
     VARYING,
 )
+from hpn.web.form.ways import ASIDE
 from hpn.wording import N_, Sentence
 
-PAGE_NAMES = ("gear", "pin", "unpin", "do", WRITTEN, WAS)
-"""Parameters of the page alone: the candidate looked at, those pinned beside it (repeated), one to take away, and
-the buttons that edit the rows, one after the other."""
+PAGE_NAMES = ("gear", "pin", "unpin", "do", ASIDE, WRITTEN, WAS)
+"""Parameters of the page alone: the candidate looked at, those pinned beside it (repeated), one to take away, the
+buttons that edit the rows, one after the other, and what was typed another way (repeated)."""
 
 REQUIRED = ("T", "n", "t")
 
@@ -49,13 +53,14 @@ class FieldProblem:
         return self.name in MOVE_BY_NAME and not self.of_phase
 
     @property
+    def of_row(self) -> bool:
+        """Whether the input stands in a row of the duty table, be it of phases or of moves."""
+        return self.of_phase or self.of_move
+
+    @property
     def place(self) -> str:
         """Element of the page that takes this input."""
-        return f"{self.name}-{self.index or 0}" if self.of_phase or self.of_move else f"f-{self.name}"
-
-
-_Placed = tuple[int | None, dict[str, str]]
-"""A row of the duty table, and where it stood before the buttons that edit it."""
+        return f"{self.name}-{self.index or 0}" if self.of_row or self.name in BODY_BY_NAME else f"f-{self.name}"
 
 
 class Given:
@@ -70,18 +75,20 @@ class Given:
         self.presses: list[str] = []
         self.pins: list[str] = []
         self.unknown: list[str] = []
+        self.asides: list[str] = []
         self.with_loads = False
         self.varies = False
-        self.origins: tuple[int | None, ...] = (None,)
 
     def add(self, name: str, text: str) -> None:
         """Take one pair of the query."""
-        if name in PHASE_BY_NAME or name in MOVE_BY_NAME:
+        if name in PHASE_BY_NAME or name in MOVE_BY_NAME or name in BODY_BY_NAME:
             self.columns.setdefault(name, []).append(text)
         elif name == "do":
             self.presses.append(text)
         elif name == "pin":
             self.pins += [text.strip()] if text.strip() else []
+        elif name == ASIDE:
+            self.asides.append(text)
         elif name in PAGE_NAMES:
             self.page[name] = text
         elif name in LABELS:
@@ -101,68 +108,42 @@ class Given:
             text.strip() for texts in of_moves for text in texts
         )
 
-    def moves(self) -> list[dict[str, str]]:
-        """What is given of each move, by its symbols."""
-        if not self.has_motion:
-            return []
-        columns = {name: self.columns[name] for name in MOVE_BY_NAME if name in self.columns}
-        length = max(map(len, columns.values()), default=0)
-        return [
-            {name: texts[k] if k < len(texts) else "" for name, texts in columns.items()}
-            for k in range(min(length, MAXIMUM_MOVES + 1))
-        ]
-
-    def edited(self) -> tuple[list[dict[str, str]], str | None]:
-        """Rows of the duty table after the buttons that were pressed, and the element to go on from."""
-        columns = self._of_phases()
-        self.with_loads, self.varies = (any(name in columns for name in names) for names in (LOADS, VARYING))
-        length = max(map(len, columns.values()), default=0)
-        shown = self._shown()
-        placed: list[_Placed] = [
-            (k, {name: texts[k] if k < len(texts := columns.get(name, [])) else "" for name in shown})
-            for k in range(min(length, MAXIMUM_PHASES + 1))
-        ]
+    def tables(self) -> tuple[Rows, Rows, Rows, str | None]:
+        """Phases, moves and bodies after the buttons that were pressed, and the element to go on from."""
+        self.with_loads, self.varies = (any(name in self.columns for name in names) for names in (LOADS, VARYING))
+        moving = self.has_motion
+        phases = Rows(self._of_phases(), self._phase_columns(), MAXIMUM_PHASES)
+        moves = Rows(self.columns if moving else {}, self._move_columns(), MAXIMUM_MOVES)
+        bodies = Rows(self.columns, tuple(BODY_BY_NAME), MOST_BODIES)
         focus = None
         for press in self.presses[:50]:
-            focus = self._press(press, placed)
-        placed = placed or [(None, dict.fromkeys(self._shown(), ""))]
-        self.origins = tuple(origin for origin, _ in placed)
-        return [row for _, row in placed], focus
+            do, _, number = press.partition(":")
+            k = int(number) - 1 if re.fullmatch(r"[0-9]{1,5}", number) else -1
+            if do in ("loads", "varying"):
+                self.with_loads, self.varies = self.with_loads != (do == "loads"), self.varies != (do == "varying")
+                phases.show(self._phase_columns())
+                moves.show(self._move_columns())
+                focus = do
+            elif do == "way":
+                focus = f"way-{number}"
+            elif do in ("inertia", "gravity"):
+                focus = do
+            elif do.endswith("_body"):
+                focus = bodies.press(do.removesuffix("_body"), k)
+            else:
+                focus = (moves if moving else phases).press(do, k)
+        return phases, moves, bodies, focus
 
     def _of_phases(self) -> Mapping[str, list[str]]:
-        """Columns of the duty table."""
+        """Columns of the table of phases."""
         apart = LOADS if self.has_motion else ()
         return {name: texts for name, texts in self.columns.items() if name in PHASE_BY_NAME and name not in apart}
 
-    def _shown(self) -> list[str]:
-        return shown_columns(with_loads=self.with_loads, varies=self.varies)
+    def _phase_columns(self) -> list[str]:
+        return shown_columns(with_loads=self.with_loads and not self.has_motion, varies=self.varies)
 
-    def _press(self, press: str, placed: list[_Placed]) -> str | None:
-        """Edit the rows as one button does; the element to go on from, if it does anything."""
-        do, _, number = press.partition(":")
-        k = int(number) - 1 if re.fullmatch(r"[0-9]{1,5}", number) else -1
-        if do == "add":
-            placed.append((None, dict.fromkeys(self._shown(), "")))
-            return f"T-{len(placed) - 1}"
-        if do in ("loads", "varying"):
-            if do == "loads":
-                self.with_loads = not self.with_loads
-            else:
-                self.varies = not self.varies
-            placed[:] = [(origin, {name: row.get(name, "") for name in self._shown()}) for origin, row in placed]
-            return do
-        if not 0 <= k < len(placed):
-            return None
-        if do == "remove":
-            del placed[k]
-            return f"T-{min(k, max(len(placed) - 1, 0))}"
-        if do in ("up", "down"):
-            to = min(max(k + (1 if do == "down" else -1), 0), len(placed) - 1)
-            placed.insert(to, placed.pop(k))
-            # At either end the way on is back.
-            onward = do if 0 < to < len(placed) - 1 else "down" if to == 0 else "up"
-            return f"{onward}-{to}"
-        return None
+    def _move_columns(self) -> list[str]:
+        return [name for name in MOVE_BY_NAME if self.with_loads or name not in LOADS]
 
     def pinned(self) -> tuple[str, ...]:
         """Pinned gears, without the one whose button takes it away."""

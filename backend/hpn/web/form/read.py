@@ -13,35 +13,41 @@ from urllib.parse import urlencode
 from pydantic import ValidationError
 
 from hpn.application import Application
-from hpn.motion.refusals import REFUSALS
+from hpn.motion.mechanisms import TYPES
 from hpn.reader import Reader
-from hpn.units import suffix_of
 from hpn.web.door.access import MAXIMUM_QUERY_BYTES as MAXIMUM_QUERY_BYTES
 from hpn.web.form import numbers
+from hpn.web.form.bodies import BodyTable, body_table, with_inertia
 from hpn.web.form.given import REQUIRED, FieldProblem, Given, shown_columns
 from hpn.web.form.labels import LABELS, query_of
 from hpn.web.form.numbers import read_value
+from hpn.web.form.refusals import refusal_of
 from hpn.web.form.symbols import (
     BY_NAME,
     BY_PATH,
+    FIRST_OF_MECHANISM,
+    LOADS,
     MECHANISM_SYMBOLS,
     MOTION_PATH,
     MOVE_BY_LEAF,
     PHASE_BY_LEAF,
     PHASE_BY_NAME,
     PHASE_SYMBOLS,
-    STROKE_SYMBOLS,
-    TURN_SYMBOLS,
     Symbol,
+    mechanism_symbols,
     move_symbols,
     units_of,
 )
-from hpn.wording import N_, Quantity, Sentence
+from hpn.web.form.ways import START, switched, taken_over
+from hpn.wording import Sentence
 
 Pairs = Sequence[tuple[str, str]]
 
 ROWS_IN_TABLE = 100
 """A longer duty cycle is edited as text: a field for each of its figures would weigh megabytes."""
+
+LONGEST_ASIDE = 8_000
+"""Characters of what was typed another way that still fit an address."""
 
 _UNSEEN = re.compile("[\u00ad\u200b-\u200d\u2060\ufeff]")
 """Characters without width, which come with links copied from documents that break their lines with them."""
@@ -62,7 +68,8 @@ class Form:
     """A query as given, and the application it describes, or why it describes none.
 
     `origins` are the places at which the rows of the duty table stood before the buttons that edit it. Of a motion the
-    mechanism stands in `texts`, and `moves` has a row per move.
+    mechanism stands in `texts`, and `moves` has a row per move; `bodies` are what its moment of inertia may be worked
+    out from. `asides` are the inputs of other ways to give the cycle.
     """
 
     rows: tuple[Mapping[str, str], ...]
@@ -71,6 +78,8 @@ class Form:
     lists: Mapping[str, tuple[str, ...]]
     moves: tuple[Mapping[str, str], ...] = ()
     has_motion: bool = False
+    bodies: BodyTable = field(default_factory=BodyTable)
+    asides: tuple[str, ...] = ()
     with_loads: bool = False
     varies: bool = False
     gear: str = ""
@@ -91,17 +100,41 @@ class Form:
     @property
     def long(self) -> bool:
         """Whether the form is posted, since it may be too long for an address."""
-        return self.as_text or len(self.moves) > ROWS_IN_TABLE
+        return self.as_text or self.moves_are_hidden or sum(map(len, self.asides)) > LONGEST_ASIDE
 
     @property
-    def has_table(self) -> bool:
-        """Whether the duty table is shown: a motion stands in its place, but not over what is in it."""
-        return not self.has_motion or any(map(_filled, self.rows))
+    def moves_are_hidden(self) -> bool:
+        """Whether there are more moves than the page has fields for."""
+        return len(self.moves) > ROWS_IN_TABLE
+
+    @property
+    def has_both(self) -> bool:
+        """Whether phases are given beside a motion, which is refused."""
+        return self.has_motion and any(map(_filled, self.rows))
+
+    @property
+    def mechanism(self) -> str:
+        """Kind of mechanism that moves."""
+        given = self.texts.get("mech", "").strip()
+        return given if given in TYPES else TYPES[0]
+
+    @property
+    def mechanism_symbols(self) -> tuple[Symbol, ...]:
+        """Inputs of the mechanism: its own, and any other that is given, which is refused where it stands."""
+        have = mechanism_symbols(self.mechanism)[1:]
+        names = {"mech", *(symbol.name for symbol in have)}
+        own = sorted(have, key=lambda s: FIRST_OF_MECHANISM.index(s.name) if s.name in FIRST_OF_MECHANISM else 99)
+        return (*own, *(symbol for symbol in MECHANISM_SYMBOLS if symbol.name in self.texts.keys() - names))
 
     @property
     def columns(self) -> list[Symbol]:
-        """Columns of the duty table."""
+        """Columns of the table of phases."""
         return [PHASE_BY_NAME[name] for name in shown_columns(with_loads=self.with_loads, varies=self.varies)]
+
+    @property
+    def move_columns(self) -> list[Symbol]:
+        """Columns of the table of moves."""
+        return [s for s in move_symbols(self.mechanism) if self.with_loads or s.name not in LOADS]
 
     @property
     def text(self) -> str:
@@ -123,31 +156,44 @@ class Form:
 def address_of_empty(form: Form) -> str:
     """Address of a form without a phase, with all else that it says."""
     lists = [(name, text) for name, texts in form.lists.items() for text in texts]
-    given = [(name, text) for name, text in (*form.texts.items(), *lists) if text.strip()]
-    return "/?" + urlencode([("T", ""), ("n", ""), ("t", ""), *given]) + query_of(form.labels)
+    given = [(name, text) for name, text in (*form.texts.items(), *lists) if text.strip() and name != "mech"]
+    start = START[form.mechanism if form.has_motion else "phases"]
+    return "&".join(filter(None, (f"/?{start}", urlencode(given)))) + query_of(form.labels)
 
 
 def parse(pairs: Pairs) -> Form:
     """Read a query. Whatever it says, the form comes back with it and with a message beside each wrong field."""
     pairs, written = in_wire_units(pairs)
+    pairs = with_inertia(switched(pairs))
+    form = _parsed(pairs, written)
+    if ("do", "take") in pairs and form.has_motion and form.application is not None:
+        return _parsed(taken_over(pairs, form.application), written)
+    return form
+
+
+def _parsed(pairs: Pairs, written: str) -> Form:
+    """Form of pairs in the wire's units."""
     given = Given()
     for name, text in pairs:
         given.add(name, text)
-    rows, focus = given.edited()
+    phases, moved, bodies, focus = given.tables()
+    rows, moves = phases.texts, moved.texts if given.has_motion else []
     problems = [*given.problems(), *_list_problems(given)]
-    application, moves = None, given.moves()
-    if not _untouched(given, rows):
+    application = None
+    if not _untouched(given, rows, moves):
         document, found = _document(rows, moves, given)
         problems += found
         application, refused = _validated(document, moves or rows, problems)
         problems += refused
     return Form(
         rows=tuple(rows),
-        origins=given.origins,
+        origins=(moved if given.has_motion else phases).origins,
         texts={name: texts[0] for name, texts in given.scalars.items()},
         lists={name: tuple(texts) for name, texts in given.lists.items()},
         moves=tuple(moves),
         has_motion=given.has_motion,
+        bodies=body_table(bodies.texts) if given.has_motion else BodyTable(),
+        asides=tuple(given.asides),
         with_loads=given.with_loads,
         varies=given.varies,
         gear=given.page.get("gear", "").strip(),
@@ -170,18 +216,19 @@ def in_wire_units(pairs: Pairs) -> tuple[Pairs, str]:
 def for_reader(form: Form, reader: Reader) -> Form:
     """The same form with what the reader's fields show: their units and decimal mark."""
     units = units_of(form.texts.get("mech", "").strip())
-    tables = (*form.rows, *form.moves, form.texts)
+    tables = (*form.rows, *form.moves, *form.bodies.rows, form.texts)
     cells = [(text, units[name]) for table in tables for name, text in table.items() if name in units]
     shown = numbers.to_fields(cells, reader, form.written)
     texts = iter(shown.texts)
-    rows, moves, (named,) = (
+    rows, moves, bodies, (named,) = (
         tuple({name: next(texts) if name in units else text for name, text in table.items()} for table in part)
-        for part in (form.rows, form.moves, (form.texts,))
+        for part in (form.rows, form.moves, form.bodies.rows, (form.texts,))
     )
     return replace(
         form,
         rows=rows,
         moves=moves,
+        bodies=replace(form.bodies, rows=bodies),
         texts=named,
         written=reader.marker,
         was=shown.was,
@@ -195,9 +242,13 @@ def _list_problems(given: Given) -> Iterable[FieldProblem]:
                 yield FieldProblem(name, k, message)
 
 
-def _untouched(given: Given, rows: list[dict[str, str]]) -> bool:
+def _untouched(given: Given, rows: list[dict[str, str]], moves: list[dict[str, str]]) -> bool:
     """The form was sent with its duty table still blank."""
-    return not given.has_motion and all(name in given.columns for name in REQUIRED) and not any(map(_filled, rows))
+    if any(map(_filled, (*rows, *moves))):
+        return False
+    if given.has_motion:
+        return "mv" in given.columns and given.scalars.get("mech", [""])[0].strip() in TYPES
+    return all(name in given.columns for name in REQUIRED)
 
 
 def _filled(row: Mapping[str, str]) -> bool:
@@ -276,7 +327,7 @@ def _validated(
         consequence = known and error["type"] in ("no_motion", "no_load")
         refused_phases = error["type"] == "too_short" and any(map(_filled, rows))
         if (name, index) not in places and not consequence and not refused_phases:
-            problems.append(FieldProblem(name, index, _refusal(error)))
+            problems.append(FieldProblem(name, index, refusal_of(error)))
     return None, problems
 
 
@@ -295,39 +346,3 @@ def place_of(location: Sequence[int | str], rows: Sequence[int] = ()) -> tuple[s
     if path in BY_PATH:
         return BY_PATH[path].name, index
     return _PARTS.get(path, ".".join(path)), None
-
-
-_OF_MOTION = {symbol.path[-1]: symbol.name for symbol in (*MECHANISM_SYMBOLS, *TURN_SYMBOLS, *STROKE_SYMBOLS)}
-
-_BOUNDS = {
-    "greater_than": (N_("must be above {bound}"), "gt"),
-    "greater_than_equal": (N_("must be at least {bound}"), "ge"),
-    "less_than": (N_("must be below {bound}"), "lt"),
-    "less_than_equal": (N_("must be at most {bound}"), "le"),
-}
-
-
-def _in_symbols(fields: str) -> str:
-    """Names of fields in a refusal of a motion, which a link has others for."""
-    return ", ".join(_OF_MOTION.get(field, field) for field in fields.split(", "))
-
-
-def _refusal(error: Any) -> Sentence:
-    """Text for one error of the model."""
-    context = error.get("ctx", {})
-    if error["type"] in _BOUNDS:
-        template, key = _BOUNDS[error["type"]]
-        return Sentence(template, {"bound": Quantity(context[key], suffix_of(str(error["loc"][-1])) or "", 12)})
-    if error["type"] in REFUSALS:
-        return Sentence(REFUSALS[error["type"]], {name: _in_symbols(str(text)) for name, text in context.items()})
-    if error["type"] == "extra_forbidden":
-        return Sentence(N_("is nothing that this mechanism has: leave it out"))
-    if error["type"] == "no_load":
-        return Sentence(N_("give a radial or an axial load, here or in a phase"))
-    if error["type"] in ("missing", "too_short"):
-        return Sentence(N_("is missing"))
-    if error["type"] == "too_long":
-        return Sentence(N_("takes at most {bound} values"), {"bound": str(context["max_length"])})
-    if error["type"] == "literal_error":
-        return Sentence(N_("must be one of {expected}"), {"expected": context["expected"].replace("'", "")})
-    return Sentence("{text}", {"text": error["msg"]}, ("text",))

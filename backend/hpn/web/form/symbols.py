@@ -4,11 +4,13 @@ Form, link writer and link reader are loops over it. What an input is called and
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from functools import cache
 from typing import Literal
 
 from hpn.catalogue import Catalogue
-from hpn.motion.mechanisms import CLASSES
+from hpn.motion.mechanisms import CLASSES, Rotary
+from hpn.motion.moves import DEFAULT_JERK_SHARE
 from hpn.notices import AREAS
 from hpn.phase import Phase
 from hpn.quantities import CANDIDATE, INPUTS, QUANTITIES, Named
@@ -43,6 +45,8 @@ class Symbol:
         """Its place as `hpn.quantities` names it."""
         if self.path[:2] == MOTION_PATH:
             return ".".join(self.path[1:])
+        if self.path[0] == "body":
+            return ".".join(self.path)
         return ".".join(self.path if len(self.path) > 1 or self.path[0] in INPUTS else ("phase", *self.path))
 
     def is_offered(self, choice: str, catalogue: Catalogue) -> bool:
@@ -188,8 +192,8 @@ SYMBOLS = (
 MOTION_PATH = ("duty_cycle", "motion")
 
 
-def _of_mechanism(name: str, field: str, kind: Kind = "number") -> Symbol:
-    return Symbol(name, (*MOTION_PATH, *field.split(".")), kind)
+def _of_mechanism(name: str, field: str, kind: Kind = "number", hint: str = "") -> Symbol:
+    return Symbol(name, (*MOTION_PATH, *field.split(".")), kind, hint=hint)
 
 
 MECHANISM_SYMBOLS = (
@@ -200,21 +204,48 @@ MECHANISM_SYMBOLS = (
     _of_mechanism("Tf", "mechanism.friction_torque_Nm"),
     _of_mechanism("b", "mechanism.viscous_friction_Nm_per_rpm"),
     _of_mechanism("etam", "mechanism.efficiency"),
-    _of_mechanism("im", "mechanism.ratio"),
-    _of_mechanism("th0", "start_deg"),
+    _of_mechanism("im", "mechanism.ratio", hint=N_("Turns of the gear per turn of the mechanism.")),
+    _of_mechanism("th0", "start_deg", hint=N_("Of the mass off the shaft, from the horizontal.")),
     _of_mechanism("d", "mechanism.diameter_mm"),
     _of_mechanism("h", "mechanism.lead_mm"),
     _of_mechanism("ml", "mechanism.mass_kg"),
-    _of_mechanism("inc", "mechanism.incline_deg"),
+    _of_mechanism("inc", "mechanism.incline_deg", hint=N_("Positive motion raises the mass where it is positive.")),
     _of_mechanism("mu", "mechanism.friction_coefficient"),
 )
 """A mechanism and where its motion starts, in the order of a canonical link."""
+
+FIRST_OF_MECHANISM = ("d", "h", "ml", "J")
+"""Inputs of a mechanism that nearly every one needs, as the form shows them; the others are folded."""
+
+_INERTIA_OF_TURNING = N_("Of everything that turns with pinion, pulley or screw.")
+_INERTIA_OF_ROTARY = N_("Of everything that turns about the axis, a mass off the shaft included.")
+
+
+@cache
+def mechanism_symbols(mechanism: str) -> tuple[Symbol, ...]:
+    """Symbols that a mechanism has, each with its default as placeholder; an unknown one turns."""
+    model = CLASSES.get(mechanism, Rotary)
+    inertia = _INERTIA_OF_ROTARY if model is Rotary else _INERTIA_OF_TURNING
+    found = []
+    for symbol in MECHANISM_SYMBOLS:
+        field = model.model_fields.get(symbol.path[-1])
+        if field is not None or (model is Rotary and symbol.name == "th0"):
+            default = 0.0 if field is None else field.default
+            shown = f"{default:g}" if isinstance(default, float) else ""
+            found.append(replace(symbol, placeholder=shown, hint=inertia if symbol.name == "J" else symbol.hint))
+    return tuple(found)
+
+
+_OF_A_MOVE = {"mj": f"{DEFAULT_JERK_SHARE:g}", "mx": "0"}
+"""What counts in a move where nothing is given."""
 
 
 def _of_moves(way: str, speed: str, acceleration: str, external: str) -> tuple[Symbol, ...]:
     fields = ("profile", way, "time_s", speed, acceleration, "jerk_share", external)
     return tuple(
-        Symbol(name, ("motion", "move", field), "text" if name == "mv" else "number")
+        Symbol(
+            name, ("motion", "move", field), "text" if name == "mv" else "number", placeholder=_OF_A_MOVE.get(name, "")
+        )
         for name, field in zip(("mv", "ms", "mt", "mn", "ma", "mj", "mx"), fields, strict=True)
     ) + tuple(symbol for symbol in PHASE_SYMBOLS if symbol.name in LOADS)
 
@@ -222,6 +253,41 @@ def _of_moves(way: str, speed: str, acceleration: str, external: str) -> tuple[S
 TURN_SYMBOLS = _of_moves("angle_deg", "speed_rpm", "acceleration_deg_per_s2", "external_torque_Nm")
 STROKE_SYMBOLS = _of_moves("distance_mm", "speed_mm_per_s", "acceleration_mm_per_s2", "external_force_N")
 """Repeated once per move, all of equal length; a move carries loads by the names of a phase's."""
+
+_TIMED = ("ms", "mt", "mn", "ma")
+_EVERY_MOVE = ("mx", *LOADS)
+MOVE_COLUMNS: Mapping[str, tuple[str, ...]] = {
+    "trapezoidal": (*_TIMED, *_EVERY_MOVE),
+    "triangular": (*_TIMED, *_EVERY_MOVE),
+    "s_curve": (*_TIMED, "mj", *_EVERY_MOVE),
+    "modified_sine": ("ms", "mt", *_EVERY_MOVE),
+    "dwell": ("mt", *_EVERY_MOVE),
+}
+"""Columns that a move of a profile has."""
+
+BODY_SYMBOLS = (
+    Symbol("qs", ("body", "shape"), "text"),
+    Symbol("qm", ("body", "mass_kg")),
+    Symbol("qr", ("body", "density_g_per_cm3")),
+    Symbol("qd", ("body", "diameter_mm")),
+    Symbol("qi", ("body", "inner_diameter_mm")),
+    Symbol("ql", ("body", "length_mm")),
+    Symbol("qw", ("body", "width_mm")),
+    Symbol("qh", ("body", "height_mm")),
+    Symbol("qe", ("body", "distance_mm"), placeholder="0"),
+    Symbol("qn", ("body", "count"), "whole", placeholder="1"),
+)
+"""Bodies of the form whose moment of inertia is worked out, repeated once per body; no link has them."""
+
+_EVERY_BODY = ("qm", "qe", "qn")
+BODY_COLUMNS: Mapping[str, tuple[str, ...]] = {
+    "disc": (*_EVERY_BODY, "qr", "qd", "qh"),
+    "ring": (*_EVERY_BODY, "qr", "qd", "qi", "qh"),
+    "bar": (*_EVERY_BODY, "qr", "qd", "ql"),
+    "block": (*_EVERY_BODY, "qr", "ql", "qw", "qh"),
+    "point_mass": _EVERY_BODY,
+}
+"""Columns that a body of a shape has."""
 
 
 def columns_used(phases: Sequence[Phase]) -> tuple[Symbol, ...]:
@@ -267,13 +333,15 @@ GROUPS = (
 
 PHASE_BY_NAME = {symbol.name: symbol for symbol in PHASE_SYMBOLS}
 PHASE_BY_LEAF = {symbol.path[0]: symbol for symbol in PHASE_SYMBOLS}
+BODY_BY_NAME = {symbol.name: symbol for symbol in BODY_SYMBOLS}
+BODY_BY_LEAF = {symbol.path[-1]: symbol for symbol in BODY_SYMBOLS}
 MOVE_BY_NAME = {symbol.name: symbol for symbol in TURN_SYMBOLS}
 MOVE_BY_LEAF = {symbol.path[-1]: symbol for symbol in (*TURN_SYMBOLS, *STROKE_SYMBOLS)}
 BY_NAME = {symbol.name: symbol for symbol in (*SYMBOLS, *MECHANISM_SYMBOLS)}
 BY_PATH = {symbol.path: symbol for symbol in (*SYMBOLS, *MECHANISM_SYMBOLS)}
 _SINGLE = (*PHASE_SYMBOLS, *SYMBOLS, *MECHANISM_SYMBOLS)
 LABELS = {
-    **{symbol.name: symbol.named.name for symbol in (*TURN_SYMBOLS, *_SINGLE)},
+    **{symbol.name: symbol.named.name for symbol in (*TURN_SYMBOLS, *_SINGLE, *BODY_SYMBOLS)},
     "ms": N_("Angle or distance"),
     "mx": N_("External torque or force"),
     "gear": CANDIDATE["designation"].name,
@@ -284,5 +352,5 @@ LABELS = {
 
 def units_of(mechanism: str) -> Mapping[str, str]:
     """Names that take a number, and the suffix of its unit, which of a move depends on the mechanism."""
-    symbols = (*move_symbols(mechanism), *_SINGLE)
+    symbols = (*move_symbols(mechanism), *_SINGLE, *BODY_SYMBOLS)
     return {symbol.name: symbol.unit for symbol in symbols if symbol.kind != "text" and not symbol.many}

@@ -35,7 +35,8 @@ from hpn.web.form.headings import QUANTITIES
 from hpn.web.form.pasted import COLUMNS, LAST, TIMES, Table, read_grid, read_text
 from hpn.web.form.read import Pairs
 from hpn.web.form.sheets import SEPARATORS, RefusedError, grid_of
-from hpn.web.form.symbols import LOADS, MECHANISM_SYMBOLS, PHASE_SYMBOLS, TURN_SYMBOLS, VARYING
+from hpn.web.form.symbols import LOADS, VARYING
+from hpn.web.form.ways import CYCLE_NAMES
 from hpn.web.form.workbooks import MAGIC, OLD_MAGIC, Sheets, sheets_of
 from hpn.web.form.write import to_link
 from hpn.web.pages import long_cycles
@@ -47,9 +48,6 @@ FIRST_ROWS, LAST_ROWS = 6, 2
 
 DECIMALS = {".": N_("a point"), ",": N_("a comma")}
 OLD_WORKBOOK = N_("a workbook of this old format can’t be read: save it as XLSX or CSV")
-
-_CYCLE_NAMES = {symbol.name for symbol in (*PHASE_SYMBOLS, *TURN_SYMBOLS, *MECHANISM_SYMBOLS)}
-"""Names of a link that make its duty cycle, as phases or as a motion."""
 
 _PLACE = re.compile(r"([ru])([0-9]{1,6})")
 
@@ -249,7 +247,7 @@ def _draft(link: str, text: str = "", table: Table | None = None, **more: Any) -
         text,
         preview=_preview(table) if table and not table.problem else None,
         problems=(table.problem,) if table and table.problem else (),
-        has_phases=any(name in {*_CYCLE_NAMES, "phases"} and value for name, value in pairs_of(link)),
+        has_phases=any(name in {*CYCLE_NAMES, "phases"} and value for name, value in pairs_of(link)),
         example=table is not None and is_example(link),
         **more,
     )
@@ -301,7 +299,7 @@ def taken(draft: PasteDraft, *, append: bool) -> list[tuple[str, str]]:
     """
     assert draft.preview is not None
     pairs, _ = links.in_wire_units(long_cycles.expanded(pairs_of(draft.link)))
-    dropped = {*_CYCLE_NAMES, "do", "phases"}
+    dropped = {*CYCLE_NAMES, "do", "phases"}
     if draft.example and not append:
         dropped |= {name for name, _ in pairs_of(to_link(Application.worked_example()).removeprefix("/?"))}
     rest = [(name, value) for name, value in pairs if value.strip() and name not in dropped]

@@ -17,12 +17,12 @@ from hpn.calculation import calculation_of
 from hpn.checks import BY_CODE
 from hpn.drawings.picture import beyond_limit
 from hpn.drawings.words import STANDING, STANDING_SUPPLIED
-from hpn.quantities import GEAR, LISTED, QUANTITIES, VERDICTS, unit_of
+from hpn.quantities import GEAR, LISTED, MECHANISMS, PROFILES, QUANTITIES, SHAPES, VERDICTS, unit_of
 from hpn.reader import GROUP, LANGUAGE_NAMES, Reader
 from hpn.remedy import DRIVER_NAMES
 from hpn.selection import Candidate, reason_of
 from hpn.web.door.visit import address, current
-from hpn.web.form import symbols
+from hpn.web.form import symbols, ways
 from hpn.web.form.ordering import MOTOR_CODE, ordering_code
 from hpn.web.pages import assets, mathml, pictures
 from hpn.web.pages.carried import carried_pairs, onward
@@ -168,16 +168,20 @@ GLOBALS: dict[str, Any] = {
     "LISTED": LISTED,
     "unit_of": unit_of,
     "units": units,
+    "MECHANISMS": MECHANISMS,
     "motor_pattern": MOTOR_CODE,
     "carried_pairs": carried_pairs,
     "onward": onward,
     "once": _once,
     "ordering_code": ordering_code,
     "preview_of": preview_of,
+    "PROFILES": PROFILES,
     "QUANTITIES": QUANTITIES,
     "reader": current,
     "STANDING": STANDING,
     "STANDING_SUPPLIED": STANDING_SUPPLIED,
+    "SHAPES": SHAPES,
     "symbols": symbols,
+    "ways": ways,
     "VERDICTS": VERDICTS,
 }

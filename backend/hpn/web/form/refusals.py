@@ -1,0 +1,58 @@
+"""Texts for the errors of the application model, beside the fields of a form and in answers to links."""
+
+from collections.abc import Mapping
+from typing import Any
+
+from hpn.motion.refusals import REFUSALS
+from hpn.quantities import PROFILES
+from hpn.units import suffix_of
+from hpn.web.form.symbols import BODY_BY_LEAF, MECHANISM_SYMBOLS, STROKE_SYMBOLS, TURN_SYMBOLS, Symbol
+from hpn.wording import N_, Quantity, Sentence, listed
+
+_BOUNDS = {
+    "greater_than": (N_("must be above {bound}"), "gt"),
+    "greater_than_equal": (N_("must be at least {bound}"), "ge"),
+    "less_than": (N_("must be below {bound}"), "lt"),
+    "less_than_equal": (N_("must be at most {bound}"), "le"),
+}
+
+_OF_BODY: Mapping[str, Symbol] = BODY_BY_LEAF
+_OF_MOTION: Mapping[str, Symbol] = {s.path[-1]: s for s in (*MECHANISM_SYMBOLS, *TURN_SYMBOLS, *STROKE_SYMBOLS)}
+_NAMES_FIELDS = ("field", "fields", "given")
+
+
+def refusal_of(error: Any) -> Sentence:
+    """Text for one error of a model."""
+    context = error.get("ctx", {})
+    if error["type"] in _BOUNDS:
+        template, key = _BOUNDS[error["type"]]
+        return Sentence(template, {"bound": Quantity(context[key], suffix_of(str(error["loc"][-1])) or "", 12)})
+    if error["type"] in REFUSALS:
+        symbols = _OF_BODY if error["type"].startswith("body_") else _OF_MOTION
+        values = {name: _told(name, str(text), symbols) for name, text in context.items()}
+        return Sentence(REFUSALS[error["type"]], values)
+    if error["type"] == "extra_forbidden":
+        return Sentence(N_("is nothing that this mechanism has: leave it out"))
+    if error["type"] == "no_load":
+        return Sentence(N_("give a radial or an axial load, here or in a phase"))
+    if error["type"] in ("missing", "too_short"):
+        return Sentence(N_("is missing"))
+    if error["type"] == "too_long":
+        return Sentence(N_("takes at most {bound} values"), {"bound": str(context["max_length"])})
+    if error["type"] == "literal_error":
+        return Sentence(N_("must be one of {expected}"), {"expected": context["expected"].replace("'", "")})
+    return Sentence("{text}", {"text": error["msg"]}, ("text",))
+
+
+def _told(name: str, text: str, symbols: Mapping[str, Symbol]) -> Sentence | str:
+    """A value of a refusal: fields by their names, with what a link calls them, and profiles by theirs."""
+    if name == "profile":
+        return Sentence("{text}", {"text": PROFILES.get(text, text)}, ("text",))
+    return listed([_field(field, symbols) for field in text.split(", ")]) if name in _NAMES_FIELDS else text
+
+
+def _field(name: str, symbols: Mapping[str, Symbol]) -> Sentence:
+    if name not in symbols:
+        return Sentence("{text}", {"text": name}, ("text",))
+    template = "{name}" if symbols is _OF_BODY else "{name} ({symbol})"
+    return Sentence(template, {"name": symbols[name].named.name, "symbol": symbols[name].name}, ("name",))

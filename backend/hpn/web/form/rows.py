@@ -1,0 +1,52 @@
+"""Rows of the tables of a form, and the buttons that edit them: phases, moves, bodies."""
+
+from collections.abc import Mapping, Sequence
+
+
+class Rows:
+    """Rows of a table, each with the place at which it stood before the buttons that edit it.
+
+    The first of the columns takes the focus where a row is new.
+    """
+
+    def __init__(self, columns: Mapping[str, list[str]], names: Sequence[str], most: int) -> None:
+        self.names = list(names)
+        length = max((len(texts) for name, texts in columns.items() if name in self.names), default=0)
+        self.placed: list[tuple[int | None, dict[str, str]]] = [
+            (k, {name: texts[k] if k < len(texts := columns.get(name, [])) else "" for name in self.names})
+            for k in range(min(length, most + 1))
+        ]
+
+    @property
+    def texts(self) -> list[dict[str, str]]:
+        """The rows, at least a blank one."""
+        return [row for _, row in self.placed] or [dict.fromkeys(self.names, "")]
+
+    @property
+    def origins(self) -> tuple[int | None, ...]:
+        """Where each row stood."""
+        return tuple(origin for origin, _ in self.placed) or (None,)
+
+    def show(self, names: Sequence[str]) -> None:
+        """Have these columns alone."""
+        self.names = list(names)
+        self.placed = [(origin, {name: row.get(name, "") for name in self.names}) for origin, row in self.placed]
+
+    def press(self, do: str, k: int) -> str | None:
+        """Edit the rows as one button does; the element to go on from, if it does anything."""
+        first = self.names[0]
+        if do == "add":
+            self.placed.append((None, dict.fromkeys(self.names, "")))
+            return f"{first}-{len(self.placed) - 1}"
+        if not 0 <= k < len(self.placed):
+            return None
+        if do == "remove":
+            del self.placed[k]
+            return f"{first}-{min(k, max(len(self.placed) - 1, 0))}"
+        if do in ("up", "down"):
+            to = min(max(k + (1 if do == "down" else -1), 0), len(self.placed) - 1)
+            self.placed.insert(to, self.placed.pop(k))
+            # At either end the way on is back.
+            onward = do if 0 < to < len(self.placed) - 1 else "down" if to == 0 else "up"
+            return f"{onward}-{to}"
+        return None

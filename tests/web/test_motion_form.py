@@ -1,0 +1,241 @@
+"""The form of a motion without a browser: switching, rows, bodies, errors, and phases that are taken over."""
+
+import re
+from typing import Any
+from urllib.parse import parse_qsl, urlencode
+
+import pytest
+from starlette.testclient import TestClient
+
+from hpn.motion.moves import Stroke, Turn
+from hpn.web.form import symbols
+from hpn.web.form.read import Form, parse
+from hpn.web.form.symbols import MOVE_COLUMNS
+from hpn.web.form.ways import EXAMPLES, START
+from hpn.web.form.write import to_link
+from tests.web.test_carried import Fields
+
+PHASES = "T=40&n=250&t=0.3&T=-20&n=100&t=2&FRi=5&FRi=&FAi=&FAi="
+TURN = "mech=rotary&J=0.8&Tf=1.5&mv=trapezoidal&ms=90&mt=0.8&mv=dwell&ms=&mt=0.4"
+STROKE = "mech=ball_screw&h=10&ml=80&inc=30&mv=s_curve&ms=500&mt=2"
+BODIES = "qs=disc&qm=60&qd=500&qs=point_mass&qm=5&qe=180&qn=4"
+
+
+def read(query: str) -> Form:
+    return parse(parse_qsl(query, keep_blank_values=True))
+
+
+def fields_of(page: str) -> list[tuple[str, str]]:
+    """What the form of a page submits."""
+    fields = Fields()
+    fields.feed(page)
+    return fields.pairs
+
+
+def pressed(api: TestClient, query: str, *presses: str, cookies: str = "") -> str:
+    """Page after one button after the other, as without script; each sends all that the form has."""
+    page = api.get(f"/?{query}", headers={"Cookie": cookies})
+    for press in presses:
+        page = api.get(f"/?{urlencode([*fields_of(page.text), ('do', press)])}", headers={"Cookie": cookies})
+    return page.text
+
+
+def given(page: str, *names: str) -> list[tuple[str, str]]:
+    return [(name, text) for name, text in fields_of(page) if name in names and text]
+
+
+def bodies(*rows: dict[str, Any]) -> str:
+    names = [symbol.name for symbol in symbols.BODY_SYMBOLS]
+    return urlencode([(name, row.get(name, "")) for row in rows for name in names])
+
+
+TABLE = bodies({"qs": "disc", "qm": 60, "qd": 500}, {"qs": "point_mass", "qm": 5, "qe": 180, "qn": 4})
+
+
+@pytest.mark.parametrize("cookies", ["", "hpn_language=de; hpn_units=lb_in.lbf.lb.in.deg_per_s"])
+def test_switching_there_and_back_loses_nothing(api: TestClient, cookies: str) -> None:
+    ways = ("way:motion", "way:ball_screw", "way:phases", "way:motion", "way:rotary", "way:phases")
+    for query in (PHASES, TURN, STROKE):
+        page = pressed(api, f"{query}&tp=3&Tk=200", *ways, cookies=cookies)
+        here = {"r": "way:rotary", "b": "way:ball_screw"}.get(query[5], "way:phases")
+        again = fields_of(pressed(api, urlencode(fields_of(page)), here, cookies=cookies))
+        assert parse(again).application == read(f"{query}&tp=3&Tk=200").application
+
+
+def test_a_text_that_is_no_number_comes_back_as_typed(api: TestClient) -> None:
+    page = pressed(api, "T=4o&n=250&t=0.3", "way:motion", "way:phases")
+    assert given(page, "T") == [("T", "4o")]
+
+
+def test_a_form_without_moves_asks_for_them_and_reports_nothing(api: TestClient) -> None:
+    page = api.get(f"/?{START['rotary']}&tp=3")
+    assert page.status_code == 200
+    assert "A mechanism and one move are enough" in page.text
+    part = api.get(f"/?{urlencode(fields_of(page.text))}", headers={"HX-Request": "true"})
+    assert part.headers["HX-Push-Url"] == f"/?{START['rotary']}&tp=3"
+
+
+def test_another_linear_mechanism_keeps_what_it_has_too(api: TestClient) -> None:
+    page = pressed(api, STROKE, "way:belt")
+    assert given(page, "mech", "h", "d", "ml", "inc", "ms") == [
+        ("mech", "belt"), ("ml", "80"), ("inc", "30"), ("ms", "500")
+    ]  # fmt: skip
+    back = pressed(api, urlencode(fields_of(page)), "way:ball_screw")
+    assert ("h", "10") in given(back, "h")
+
+
+def test_what_is_given_of_another_geometry_is_never_taken_for_this_one(api: TestClient) -> None:
+    page = pressed(api, TURN, "way:ball_screw")
+    assert given(page, "J", "ms", "mt", "mv", "Tf") == []
+
+
+def test_phases_beside_a_motion_are_parted_by_the_switch(api: TestClient) -> None:
+    both = f"{TURN}&T=40&n=250&t=0.3"
+    page = api.get(f"/?{both}")
+    assert page.status_code == 422
+    assert "give either phases or a motion" in page.text
+    for way, query in (("way:motion", TURN), ("way:phases", "T=40&n=250&t=0.3")):
+        assert parse(fields_of(pressed(api, both, way))).application == read(query).application
+
+
+def test_row_buttons_edit_moves_as_they_edit_phases() -> None:
+    def moves(press: str) -> list[str]:
+        return [f"{row['mv']} {row['mt']}".strip() for row in read(f"{TURN}&{urlencode({'do': press})}").moves]
+
+    assert moves("down:1") == moves("up:2") == ["dwell 0.4", "trapezoidal 0.8"]
+    assert moves("remove:1") == ["dwell 0.4"]
+    assert moves("add") == ["trapezoidal 0.8", "dwell 0.4", ""]
+    added = read(f"{TURN}&do=add")
+    assert (added.focus, added.origins) == ("mv-2", (0, 1, None))
+    assert added.application == read(TURN).application
+    assert read(f"{TURN}&do=down:1").origins == (1, 0)
+    assert [symbol.name for symbol in read(f"{TURN}&do=loads").move_columns][-2:] == ["FRi", "FAi"]
+
+
+def test_the_columns_of_a_profile_are_those_that_the_model_lets_it_have() -> None:
+    for table, model, way in ((symbols.TURN_SYMBOLS, Turn, 90.0), (symbols.STROKE_SYMBOLS, Stroke, 500.0)):
+        for profile, columns in MOVE_COLUMNS.items():
+            for symbol in table[1:]:
+                start = {"profile": profile, "time_s": 2.0} | ({} if profile == "dwell" else {model.WAY: way})
+                added = start | {symbol.path[-1]: {"mj": 0.5, "ms": way}.get(symbol.name, 1e4)}
+                try:
+                    model.model_validate(added)
+                    refused = set()
+                except ValueError as error:
+                    refused = {found["type"] for found in error.errors()}  # type: ignore[attr-defined]
+                assert ("move_has_no" in refused) == (symbol.name not in columns), (profile, symbol.name)
+
+
+@pytest.mark.parametrize(
+    ("query", "place", "said"),
+    [
+        (f"{TURN}&mj=&mj=0.5", "mj-1", "has no Share of jerk in a ramp (mj): leave it out"),
+        (TURN.replace("mt=0.8", "mt=x"), "mt-0", "is not a number"),
+        (TURN.replace("mv=dwell", "mv="), "mv-1", "is missing"),
+        (f"{TURN}&FRi=&FRi=x", "FRi-1", "is not a number"),
+    ],
+)
+def test_an_error_of_a_move_stands_below_the_table_and_is_tied_to_its_cell(
+    api: TestClient, query: str, place: str, said: str
+) -> None:
+    page = api.get(f"/?{query}").text
+    below = page[page.index('id="duty-errors"') :]
+    assert re.search(rf'<a href="#{place}">[^<]*, move 2</a>|<a href="#{place}">[^<]*, move 1</a>', below)
+    assert re.search(rf'id="e-{place}">[^<]*{re.escape(said)}', below)
+    assert re.search(rf'id="{place}"[^>]*aria-invalid="true" aria-describedby="e-{place}"', page)
+
+
+def test_an_error_of_a_mechanism_stands_beside_its_field(api: TestClient) -> None:
+    page = api.get(f"/?{TURN}&mg=12").text
+    assert re.search(r'id="e-mg">gravity needs Its distance from the shaft \(rg\) as well', page)
+    assert re.search(r'id="e-h">is nothing that this mechanism has', api.get(f"/?{TURN}&h=5").text)
+    german = api.get(f"/?{TURN}&mg=12", headers={"Cookie": "hpn_language=de"}).text
+    assert re.search(r'id="e-mg">[^<]*Ihr Abstand von der Welle \(rg\)', german)
+
+
+def test_only_what_the_mechanism_has_can_be_typed(api: TestClient) -> None:
+    for kind, query in (("rotary", TURN), ("ball_screw", STROKE)):
+        names = {name for name, _ in fields_of(api.get(f"/?{query}").text)} & {
+            symbol.name for symbol in symbols.MECHANISM_SYMBOLS
+        }
+        assert names == {symbol.name for symbol in symbols.mechanism_symbols(kind)}
+
+
+def test_the_sum_of_bodies_becomes_the_inertia_and_the_link_has_the_sum(api: TestClient) -> None:
+    query = f"{TURN.replace('J=0.8', 'J=')}&{TABLE}"
+    page = pressed(api, query, "inertia")
+    assert given(page, "J", "mg", "rg") == [("J", "2.523")]
+    form = parse(fields_of(page))
+    assert form.application is not None
+    assert to_link(form.application) == f"/?{TURN.replace('0.8', '2.523', 1)}"
+    assert given(page, "qs", "qd") == [("qs", "disc"), ("qd", "500"), ("qs", "point_mass")]
+
+
+def test_gravity_of_bodies_comes_only_where_it_is_asked_for(api: TestClient) -> None:
+    page = pressed(api, f"{TURN}&{TABLE}", "gravity")
+    assert given(page, "J", "mg", "rg") == [("J", "2.523"), ("mg", "20"), ("rg", "180")]
+    linear = pressed(api, f"{STROKE}&{TABLE}", "gravity")
+    assert given(linear, "J", "mg", "rg") == [("J", "2.523")]
+
+
+def test_bodies_are_read_in_the_units_of_the_reader(api: TestClient) -> None:
+    table = bodies({"qs": "disc", "qm": "10", "qd": "20"})
+    cookies = "hpn_units=lb_in.lbf.lb.in.degF"
+    page = pressed(api, f"{TURN}&{table}&written=en.lb_in.lbf.lb.in.degF", "inertia", cookies=cookies)
+    assert float(dict(given(page, "J"))["J"]) == pytest.approx(10 * 0.45359237 * 0.508**2 / 8, rel=1e-5)
+
+
+def test_what_a_body_lacks_is_said_and_the_selection_goes_on(api: TestClient) -> None:
+    page = api.get(f"/?{TURN}&{bodies({'qs': 'ring', 'qm': 5, 'qd': 'x'}, {'qs': 'disc', 'qm': 3})}")
+    assert page.status_code == 200
+    assert re.search(r'<a href="#qd-0">Diameter, body 1</a>: <span>is not a number', page.text)
+    assert re.search(r'<a href="#qd-1">Diameter, body 2</a>: <span>this shape needs Diameter', page.text)
+    assert 'value="inertia"' not in page.text
+
+
+def test_phases_that_come_out_are_taken_over_with_peaks_and_rms_and_give_the_same_answer(api: TestClient) -> None:
+    query = f"{TURN}&mg=12&rg=250&FRi=300&FRi="
+    before = read(query).application
+    assert before is not None
+    page = pressed(api, query, "take")
+    after = parse(fields_of(page)).application
+    assert after is not None
+    assert after.duty_cycle.motion is None
+    for typed, found in zip(after.duty_cycle.load_phases, before.duty_cycle.load_phases, strict=True):
+        for name, value in found:
+            assert getattr(typed, name) == (value if value is None else pytest.approx(value, rel=1e-5))
+    assert parse(fields_of(pressed(api, urlencode(fields_of(page)), "way:motion"))).application == before
+
+
+def test_a_motion_of_hundreds_of_moves_is_taken_over_as_text(api: TestClient) -> None:
+    query = "mech=rotary&J=0.8" + "&mv=trapezoidal&ms=90&mt=0.8" * 150
+    form = [*fields_of(api.get(f"/?{query}").text), ("do", "take")]
+    encoded = {"Content-Type": "application/x-www-form-urlencoded"}
+    page = api.post("/", content=urlencode(form), headers=encoded)
+    assert 'name="phases"' in page.text
+    fields = fields_of(page.text)
+    back = api.post("/", content=urlencode([*fields, ("do", "way:motion")]), headers=encoded)
+    assert [name for name, _ in fields_of(back.text)].count("mv") == 150
+
+
+def test_notices_of_a_motion_stand_beside_its_moves(api: TestClient) -> None:
+    page = api.get("/?mech=rotary&J=0.8&mg=12&rg=250&mv=trapezoidal&ms=90&mn=500&ma=900").text
+    form = page[: page.index('id="result"')]
+    assert "Moves 1 leave no time to run" in form
+    assert "ends at another angle than it starts" in form
+
+
+@pytest.mark.parametrize("link", EXAMPLES)
+def test_examples_are_canonical_links_with_a_suitable_gear(api: TestClient, link: str) -> None:
+    form = read(link.removeprefix("/?"))
+    assert form.application is not None
+    assert to_link(form.application) == link
+    assert "suitable</span></h2>" in api.get(link).text
+    assert link.replace("&", "&amp;") in api.get(f"/?{TURN}").text
+
+
+def test_hostile_asides_are_left_alone(api: TestClient) -> None:
+    for aside in ("%00", "mech=rotary&" * 30_000, "a=b&do=take", "mech=lever&T=1", "&;&;%zz"):
+        for press in ("way:motion", "way:phases", "way:nothing", "take", "inertia"):
+            page = api.post("/", data={"T": "1", "n": "1", "t": "1", "aside": aside, "do": press})
+            assert page.status_code in (200, 413, 422)
