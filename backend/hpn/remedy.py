@@ -9,12 +9,15 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-from hpn.application import Application, EmergencyStop
+from hpn.application import LISTED_FIGURES, Application, DutyCycle, EmergencyStop
+from hpn.catalogue import Catalogue
 from hpn.check import Driver
 from hpn.checks import BY_CODE
 from hpn.equations import ROUNDING
+from hpn.motion import Motion
+from hpn.phase import Phase
 from hpn.reserve import MOVES
-from hpn.selection import Candidate, CheckResult
+from hpn.selection import Candidate, CheckResult, with_listed_motor
 from hpn.units import suffix_of
 from hpn.wording import N_, Quantity, Sentence, listed, rounded
 
@@ -75,6 +78,11 @@ def _follows_curve(candidate: Candidate) -> bool:
     return candidate.reserve.torque_factor is None and any(candidate.check(code) for code in MOTOR_TORQUES)
 
 
+def _has_own_inertia(candidate: Candidate) -> bool:
+    """Whether motor torques have a part of the motor's own inertia, which goes by the motion and no driver alone."""
+    return _follows_curve(candidate) and candidate.reserve.speed_factor is None
+
+
 def _excess(relative: float) -> float:
     """How far a utilisation lies above its bound, as a factor; 1 where it does not."""
     return relative if relative > 1 + ROUNDING else 1.0
@@ -113,12 +121,15 @@ def alternatives_of(candidate: Candidate, reserve_utilisation: float = 1.0) -> t
     """Alternatives that each make a rejected gear suitable.
 
     None for one that is not rejected, where not every check can be judged, and where torques have to drop though the
-    motor's torque goes by a curve: what the motor has to give then is a matter of the curve.
+    motor's torque goes by a curve: what the motor has to give then is a matter of the curve. Nor are there any where
+    torques or speeds have to drop though the motor turns its own inertia: that is a matter of the motion.
     """
     if candidate.status != "unsuitable" or not candidate.is_judged:
         return ()
     ways, changed = ways_of(candidate, reserve_utilisation), tuple(_requirements(candidate, reserve_utilisation))
     if _follows_curve(candidate) and any(way.torque < 1 for way in ways):
+        return ()
+    if _has_own_inertia(candidate) and any(way.speed < 1 for way in ways):
         return ()
     return tuple(Alternative(one, changed) for way in ways or (Way(),) for one in _by_stop(way))
 
@@ -151,25 +162,65 @@ def _requirements(candidate: Candidate, u: float) -> Iterable[Requirement]:
             yield Requirement(known.asked, shown, known.accepted)
 
 
-def tried(application: Application, alternative: Alternative) -> Application:
-    """The application changed by an alternative, with its figures as the words print them."""
+def tried(application: Application, alternative: Alternative, catalogue: Catalogue) -> Application:
+    """The application changed by an alternative, with its figures as the words print them.
+
+    Where a figure of a listed motor changes, its figures stand in place of its name.
+    """
     changed = followed(application, alternative.way)
+    figures = {f"requirements.motor.{name}" for name in LISTED_FIGURES}
+    if any(requirement.path in figures for requirement in alternative.requirements):
+        changed = with_listed_motor(changed, catalogue)
+        changed = _with(changed, ("requirements", "motor", "designation"), None)
     for requirement in alternative.requirements:
         value = requirement.value
         changed = _with(changed, requirement.path.split("."), float(rounded(value.value, value.digits, value.rounding)))
     return changed
 
 
-def _with(model: Any, path: Sequence[str], value: float) -> Any:
+def _with(model: Any, path: Sequence[str], value: float | None) -> Any:
     name, *below = path
     return model.model_copy(update={name: _with(getattr(model, name), below, value) if below else value})
 
 
 def followed(application: Application, way: Way) -> Application:
-    """The application changed by a way, with its figures as the words print them."""
+    """The application changed by a way, with its figures as the words print them.
+
+    Of a motion the phases that come out of it take its place where their torques or speeds change.
+    """
     torque, speed, load = (_printed(factor, 3) for factor in (way.torque, way.speed, way.load))
-    cycle = application.duty_cycle
-    phases = tuple(
+    cycle, parts = application.duty_cycle, dict[str, Any]()
+    if cycle.motion is not None and (torque, speed) == (1, 1):
+        parts["duty_cycle"] = cycle.model_copy(update={"motion": _loaded(cycle.motion, load)})
+    else:
+        parts["duty_cycle"] = cycle.model_copy(update={"phases": _driven(cycle, torque, speed, load), "motion": None})
+        if cycle.motion is not None:
+            inertia = {"load_inertia_kgm2": cycle.motion.load_inertia_kgm2}
+            parts["requirements"] = application.requirements.model_copy(update=inertia)
+    if (given := application.output_load) is not None:
+        loads = {name: _scaled(getattr(given, name), load) for name in LOADS}
+        parts["output_load"] = given.model_copy(update={k: v for k, v in loads.items() if v is not None})
+    if (stop := application.emergency_stop) is not None:
+        parts["emergency_stop"] = _stopped(stop, way)
+    return application.model_copy(update=parts)
+
+
+LOADS = ("radial_N", "axial_N")
+
+
+def _loaded(motion: Motion, load: float) -> Motion:
+    """The motion with the loads of its moves by a factor."""
+    if load == 1:
+        return motion
+    given = motion.model_dump(exclude_unset=True)  # validated again, since a copy would keep the phases of before
+    for move in given["moves"]:
+        move |= {name: _scaled(move[name], load) for name in LOADS if move.get(name) is not None}
+    return type(motion).model_validate(given)
+
+
+def _driven(cycle: DutyCycle, torque: float, speed: float, load: float) -> tuple[Phase, ...]:
+    """Phases of a cycle with their torques, speeds and loads by factors; a mean, its peak and its RMS go together."""
+    return tuple(
         phase.model_copy(
             update={
                 "torque_Nm": _scaled(phase.torque_Nm, torque),
@@ -177,24 +228,11 @@ def followed(application: Application, way: Way) -> Application:
                 "rms_torque_Nm": _scaled(phase.rms_torque_Nm, torque),
                 "speed_rpm": _scaled(phase.speed_rpm, speed),
                 "peak_speed_rpm": _scaled(phase.peak_speed_rpm, speed),
-                "radial_N": _scaled(phase.radial_N, load),
-                "axial_N": _scaled(phase.axial_N, load),
+                **{name: _scaled(getattr(phase, name), load) for name in LOADS},
             }
         )
         for phase in cycle.load_phases
     )
-    parts: dict[str, Any] = {}
-    if cycle.motion is None or (torque, speed, load) != (1, 1, 1):
-        parts["duty_cycle"] = cycle.model_copy(update={"phases": phases, "motion": None})
-    if cycle.motion is not None and "duty_cycle" in parts:
-        inertia = {"load_inertia_kgm2": cycle.motion.load_inertia_kgm2}
-        parts["requirements"] = application.requirements.model_copy(update=inertia)
-    if (given := application.output_load) is not None:
-        loads = {name: _scaled(getattr(given, name), load) for name in ("radial_N", "axial_N")}
-        parts["output_load"] = given.model_copy(update={k: v for k, v in loads.items() if v is not None})
-    if (stop := application.emergency_stop) is not None:
-        parts["emergency_stop"] = _stopped(stop, way)
-    return application.model_copy(update=parts)
 
 
 def _stopped(stop: EmergencyStop, way: Way) -> EmergencyStop:
@@ -300,8 +338,9 @@ def rooms_of(candidate: Candidate, reserve_utilisation: float = 1.0) -> tuple[Ro
     if not candidate.is_judged:
         return ()
     used = {check.code: check.utilisation for check in candidate.checks}
+    turns = _has_own_inertia(candidate)
     rooms = [
-        _room(driver, getattr(candidate.reserve, f"{driver}_factor"), used, reserve_utilisation)
+        _room(driver, getattr(candidate.reserve, f"{driver}_factor"), used, reserve_utilisation, turns=turns)
         for driver, powers in MOVES.items()
         if powers.keys() & used.keys()
     ]
@@ -313,11 +352,15 @@ def rooms_of(candidate: Candidate, reserve_utilisation: float = 1.0) -> tuple[Ro
     return tuple(rooms)
 
 
-def _room(driver: Driver, factor: float | None, used: Mapping[str, float | None], u: float) -> Room:
+BY_CURVE = N_("not in closed form: the efficiency follows your curve")
+BY_INERTIA = N_("not in closed form: the motor’s own inertia follows the motion")
+
+
+def _room(driver: Driver, factor: float | None, used: Mapping[str, float | None], u: float, *, turns: bool) -> Room:
     full = {code: (used[code] or 0.0) / u for code in MOVES[driver] if code in used}
     if factor is None:
         if any(full.values()):
-            return Room(driver, None, Sentence(N_("not in closed form: the efficiency follows your curve")), None)
+            return Room(driver, None, Sentence(BY_INERTIA if turns else BY_CURVE), None)
         return Room(driver, None, Sentence(N_("without limit")), None)
     first = max(full, key=lambda code: full[code] ** (1 / MOVES[driver][code]))
     return Room(driver, factor, _up_to(factor), first)

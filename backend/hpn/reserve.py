@@ -26,9 +26,10 @@ def reserves(evaluation: Evaluation, index: int) -> dict[str, FloatArray]:
     """Reserve of application `index` on every gear, shape (G,) each: infinite without a limit, NaN where not rated.
 
     Factors on all torques of the duty cycle (not the emergency stop), on all speeds and on all loads, and the largest
-    permissible emergency-stop torque in Nm. NaN also where the application moves no such check, and for the torque
-    factor where a motor torque follows the gear's efficiency curve or has a part of its own inertia, which no closed
-    form follows.
+    permissible emergency-stop torque in Nm. A torque's mean, peak and RMS go together, and so do a speed's mean and
+    peak. NaN also where the application moves no such check, and where no closed form follows a motor torque: for the
+    torque factor where it goes by the gear's efficiency curve, for those of torque and speed where the motor's own
+    inertia has a part in it, which goes by the motion's acceleration.
     """
     asked = evaluation.case.asked
     u = asked["requirements.utilisation"].item(index)
@@ -44,8 +45,9 @@ def reserves(evaluation: Evaluation, index: int) -> dict[str, FloatArray]:
         stated = not np.isnan(asked["requirements.efficiency"].item(index))
         own_inertia = not np.isnan(asked["requirements.motor.inertia_kgm2"].item(index))
         turns = own_inertia and evaluation.case.duty.courses.get(index) is not None
-        unknown = (follows_curve & ~np.bool_(stated)) | np.bool_(turns)
-        factors["torque_factor"] = np.where(unknown, np.nan, factors["torque_factor"])
+        by_curve = follows_curve & ~np.bool_(stated)
+        factors["torque_factor"] = np.where(by_curve | np.bool_(turns), np.nan, factors["torque_factor"])
+        factors["speed_factor"] = np.where(np.bool_(turns), np.nan, factors["speed_factor"])
     return {**factors, "emergency_stop_torque_Nm": _emergency_stop_torque(evaluation, index, u)}
 
 

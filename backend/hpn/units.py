@@ -32,6 +32,7 @@ SYMBOLS = {
     "percent": "%",
     "deg": "°",
     "deg_per_s2": "°/s²",
+    "rad_per_s2": "rad/s²",
     "mm_per_s": "mm/s",
     "mm_per_s2": "mm/s²",
     "kgm2": "kg·m²",

@@ -43,15 +43,15 @@ def test_each_alternative_of_each_rejected_gear_alone_makes_it_pass(catalogue: C
         several += len(alternatives) > 1
         properties += bool(PROPERTIES & {check.code for check in candidate.failing})
         for alternative in alternatives:
-            followed = read_back(application, alternative)
+            followed = read_back(application, alternative, catalogue)
             assert verdict(followed, candidate.designation, catalogue) == "suitable", (alternative, application)
     assert several > 10  # the draw has gears with a choice,
     assert properties > 10  # and some that fail a limit which no driver moves
 
 
-def read_back(application: Application, alternative: Alternative) -> Application:
+def read_back(application: Application, alternative: Alternative, catalogue: Catalogue) -> Application:
     """What a reader gets who opens the link."""
-    query = to_link(tried(application, alternative)).partition("?")[2]
+    query = to_link(tried(application, alternative, catalogue)).partition("?")[2]
     form = parse(parse_qsl(query, keep_blank_values=True))
     assert form.application is not None, form.problems
     return form.application

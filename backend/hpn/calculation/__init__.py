@@ -10,7 +10,7 @@ from hpn.calculation.output_bearing import bearing_steps
 from hpn.calculation.sheet import Comparison, Line, Sheet, Step
 from hpn.catalogue import Catalogue
 from hpn.gear import Gear
-from hpn.selection import Candidate
+from hpn.selection import Candidate, with_listed_motor
 
 __all__ = ["Comparison", "Line", "Step", "calculation_of"]
 
@@ -23,5 +23,5 @@ def calculation_of(
     `candidate` is what the gear comes to under the application. What a figure that is not published keeps from being
     worked out is left out.
     """
-    sheet = Sheet(candidate, gear, application, catalogue)
+    sheet = Sheet(candidate, gear, with_listed_motor(application, catalogue), catalogue)
     return (*handbook_steps(sheet), *motor_steps(sheet), *bearing_steps(sheet))

@@ -22,6 +22,12 @@ from hpn.equations import ROUNDING
 from hpn.quantities import DUTY
 from hpn.wording import N_, Quantity, Sentence
 
+VARYING = N_(
+    "Where torque and speed vary in a phase, T is the mean that this equation weighs, |n| to the first power and |T| "
+    "to the power 10/3, and n the mean speed."
+)
+PEAKS = N_("Where torque and speed vary in a phase, its peak counts here.")
+
 LARGEST_WORTH_ROUNDING = 1e6
 """Beyond it nobody rounds to whole numbers by hand."""
 
@@ -54,6 +60,8 @@ def _average_torque(sheet: Sheet) -> Step:
     ]
     if any(phase.torque_Nm < 0 or phase.speed_rpm < 0 for phase in sheet.application.duty_cycle.load_phases):
         notes.append(Sentence(N_("Torques and speeds enter by magnitude, whatever their sign.")))
+    if sheet.varies:
+        notes.append(Sentence(VARYING))
     line = Line(sheet.T_av, Root(Quotient(above, sheet.travel), TEN_THIRDS))
     return step_of_check("average_torque", (line,), sheet.compared("average_torque", sheet.T_av), tuple(notes))
 
@@ -69,8 +77,9 @@ def _average_output_speed(sheet: Sheet) -> Step:
 
 def _average_input_speed(sheet: Sheet) -> Step:
     line = _average_input_speed_line(sheet)
-    limit = sheet.compared("average_input_speed", line.result)
-    return step_of_check("average_input_speed", (line,), limit, _hand_input_speed(sheet, line), trivial=True)
+    codes = ("average_input_speed", "motor_rated_speed")
+    limits = tuple(limit for code in codes for limit in sheet.compared(code, line.result))
+    return step_of_check("average_input_speed", (line,), limits, _hand_input_speed(sheet, line), trivial=True)
 
 
 def _average_input_speed_line(sheet: Sheet) -> Line:
@@ -90,7 +99,7 @@ def _maximum_input_speed(sheet: Sheet) -> Step:
     line = Line(sheet.n_in_max, Product((sheet.n_out_max, sheet.i)))
     codes = ("maximum_input_speed", "motor_speed")
     limits = tuple(limit for code in codes for limit in sheet.compared(code, sheet.n_in_max))
-    return step_of_check("maximum_input_speed", (line,), limits, trivial=True)
+    return step_of_check("maximum_input_speed", (line,), limits, _on_peaks(sheet), trivial=True)
 
 
 # --- Peaks ------------------------------------------------------------------------------------------------------------
@@ -100,7 +109,12 @@ def _peaks(sheet: Sheet) -> Iterable[Step]:
     tested = {"repeated_peak_torque": sheet.T_max, "momentary_peak_torque": sheet.T_k}
     for code, torque in tested.items():
         if torque is not None and (limit := sheet.compared(code, torque)):
-            yield step_of_check(code, (), limit, trivial=True)
+            notes = _on_peaks(sheet) if torque is sheet.T_max else ()
+            yield step_of_check(code, (), limit, notes, trivial=True)
+
+
+def _on_peaks(sheet: Sheet) -> tuple[Sentence, ...]:
+    return (Sentence(PEAKS),) if sheet.varies else ()
 
 
 def _stops(sheet: Sheet) -> Iterable[Step]:

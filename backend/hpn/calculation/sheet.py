@@ -127,10 +127,25 @@ class Sheet:
         self.n_in_av = known(self.figure("average_input_speed_rpm"))
         self.n_in_max = known(self.figure("maximum_input_speed_rpm"))
         self.T_k = self.given("emergency_stop.torque_Nm")
+        self.load_inertia = self._load_inertia()
 
     def _of_phases(self, name: str) -> PhaseValues:
         values: FloatArray = getattr(self.duty.phases, name)[0, 0]
         return PhaseValues(Variable.of(INPUTS[f"phase.{name}"].symbol), values, suffix_of(name) or "")
+
+    def _load_inertia(self) -> Term | None:
+        """Inertia of the load: the motion's own, else as it is given; None without one."""
+        value, place = self.duty.load_inertia_kgm2.item(), "requirements.load_inertia_kgm2"
+        return None if math.isnan(value) else _term(INPUTS[place], place, value)
+
+    @property
+    def varies(self) -> bool:
+        """Whether torque or speed vary in some phase."""
+        return self.peak_torque is not self.torque or self.rms_torque is not self.torque or self._outruns
+
+    @cached_property
+    def _outruns(self) -> bool:
+        return bool((self.duty.phases.peak_speed_rpm != self.duty.phases.speed_rpm).any())
 
     def _varying(self, name: str, steady: PhaseValues) -> PhaseValues:
         """A figure of phases that vary; what it is of a steady phase where none does."""

@@ -2,6 +2,17 @@
 
 from hpn.motion.course import Course
 from hpn.motion.motion import MAXIMUM_MOVES, LinearMotion, Motion, RotaryMotion
-from hpn.motion.motor import peak_torque, rms_torque
+from hpn.motion.motor import Instant, peak_instant, peak_torque, rms_torque, square_torque
 
-__all__ = ["MAXIMUM_MOVES", "Course", "LinearMotion", "Motion", "RotaryMotion", "peak_torque", "rms_torque"]
+__all__ = [
+    "MAXIMUM_MOVES",
+    "Course",
+    "Instant",
+    "LinearMotion",
+    "Motion",
+    "RotaryMotion",
+    "peak_instant",
+    "peak_torque",
+    "rms_torque",
+    "square_torque",
+]

@@ -1,6 +1,6 @@
 """Torque at the motor along a motion, its own inertia included: T / (i η) or T η / i, plus J_m i α."""
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -19,10 +19,20 @@ def rms_torque(
 
     `efficiency` broadcasts to (gears, phases). In a phase the motor's torque is a T + b α with an a and b of its own.
     """
-    a, b = _share(course, ratio, efficiency), (motor_inertia_kgm2 * ratio)[:, None]
-    squares = a**2 * course.square_torque + 2 * a * b * course.torque_acceleration + b**2 * course.square_acceleration
+    squares = square_torque(course, ratio=ratio, efficiency=efficiency, motor_inertia_kgm2=motor_inertia_kgm2)
     rms: FloatArray = np.sqrt(np.maximum(squares.sum(axis=1), 0.0) / (course.duration_s.sum() + pause_s))
     return rms
+
+
+def square_torque(
+    course: Course, *, ratio: FloatArray, efficiency: FloatArray, motor_inertia_kgm2: float
+) -> FloatArray:
+    """Integral of the square of the motor's torque over each phase in Nm² s, shape (gears, phases)."""
+    a, b = _share(course, ratio, efficiency), (motor_inertia_kgm2 * ratio)[:, None]
+    squares: FloatArray = (
+        a**2 * course.square_torque + 2 * a * b * course.torque_acceleration + b**2 * course.square_acceleration
+    )
+    return squares
 
 
 def peak_torque(course: Course, *, ratio: FloatArray, efficiency: FloatArray, motor_inertia_kgm2: float) -> FloatArray:
@@ -51,6 +61,34 @@ def peak_torque(course: Course, *, ratio: FloatArray, efficiency: FloatArray, mo
         for t in (some.start_s, some.end_s):
             np.maximum.at(peak, row[some.move], np.abs(torque.at(some, t)) * own[some.move])
     return peak
+
+
+@dataclass(frozen=True, slots=True)
+class Instant:
+    """Signed torque in Nm and acceleration in rad/s² at the gear's output, in a phase by its place, in its sense.
+
+    `is_driven` says that the motor drives the load, which costs T / (i η), and not the load the motor, T η / i.
+    """
+
+    phase: int
+    torque_Nm: float
+    acceleration_rad_per_s2: float
+    is_driven: bool
+
+
+def peak_instant(course: Course, *, ratio: float, efficiency: FloatArray, motor_inertia_kgm2: float) -> Instant:
+    """The instant at which the motor of one gear has its largest torque; `efficiency` has shape (phases,)."""
+    p, load = course.pieces, course.load
+    a = (_share(course, np.array([ratio]), efficiency[None])[0, course.phase]) * course.factor
+    b = motor_inertia_kgm2 * ratio * load.ratio
+    torque = Torque(load.viscous_Nms, load.gravity_Nm)
+    cut = monotone(torque, replace(p, inertia_kgm2=p.inertia_kgm2 + b / a, move=np.arange(len(p))))
+    ends = np.stack((cut.start_s, cut.end_s))
+    end, place = np.unravel_index(np.argmax(np.abs(a[cut.move] * torque.at(cut, ends))), ends.shape)
+    own, t = int(cut.move[place]), ends[end, place]
+    some, phase = p.at(np.array([own])), int(course.phase[own])
+    T, alpha = torque.at(some, t).item() * course.factor.item(own), some.acceleration_at(t).item() * load.ratio
+    return Instant(phase, T, alpha, bool(course.torque_Nm[phase] * course.speed_rpm[phase] >= 0))
 
 
 def _share(course: Course, ratio: FloatArray, efficiency: FloatArray) -> FloatArray:

@@ -35,7 +35,7 @@ class Insight:
     def try_out(self) -> str | None:
         """Link that follows the first alternative of the chosen gear's remedy; None where it has none."""
         alternatives = alternatives_of(self.chosen, self.application.requirements.utilisation)
-        return to_link(tried(self.application, alternatives[0])) if alternatives else None
+        return to_link(tried(self.application, alternatives[0], self.catalogue)) if alternatives else None
 
     @cached_property
     def columns(self) -> tuple[Column, ...]:
