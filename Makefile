@@ -37,9 +37,9 @@ assets: $(ASSETS) $(COMPILED)
 
 # Lighthouse measures, so that beside it runs only what waits for clocks; the rest takes two cores, a file at a time but
 # for the browsers.
-WAITING := tests/operations/test_protocol.py
-MEASURED := tests/browser/test_lighthouse.py $(WAITING) --numprocesses 2 --dist loadfile
-TOGETHER := --ignore tests/browser --ignore $(WAITING) --numprocesses 2 --dist loadfile --no-loadscope-reorder
+WAITING := tests/operations/test_protocol.py tests/reliability/test_outage.py
+MEASURED := tests/browser/test_lighthouse.py $(WAITING) --numprocesses 3 --dist loadfile
+TOGETHER := --ignore tests/browser $(WAITING:%=--ignore %) --numprocesses 2 --dist loadfile --no-loadscope-reorder
 BROWSERS := tests/browser --ignore tests/browser/test_lighthouse.py --numprocesses 2 --dist load
 test: install browser office curl nginx
 ifdef PYTEST_ARGS
