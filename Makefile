@@ -10,6 +10,7 @@ BIN := $(VENV)/bin
 UV := $(VENV)/uv/bin/uv
 MODULES := frontend/node_modules
 ASSETS := frontend/dist/manifest.json
+COMPILED := frontend/dist/templates/.all
 # What is installed: enough to run, or all of it. Once a tree has the tools, `make run` must not take them away again.
 FOR := $(if $(filter check test soak mutants bench screenshots browser messages licences sbom audit,$(MAKECMDGOALS))$(wildcard $(VENV)/.dev),dev,run)
 PAGE_FOR := $(if $(filter test soak,$(MAKECMDGOALS))$(wildcard $(MODULES)/.dev),dev,run)
@@ -31,14 +32,14 @@ run: install
 	@echo "HPN Select is at http://$(HOST):$(PORT) until Ctrl+C"
 	@exec $(BIN)/hpn serve --host "$(HOST)" --port "$(PORT)"
 
-install: $(ENVIRONMENT) $(ASSETS)
-assets: $(ASSETS)
+install: $(ENVIRONMENT) $(ASSETS) $(COMPILED)
+assets: $(ASSETS) $(COMPILED)
 
 # Lighthouse measures, so that beside it runs only what waits for clocks; the rest takes two cores, a file at a time but
 # for the browsers.
-WAITING := tests/operations/test_protocol.py
-MEASURED := tests/browser/test_lighthouse.py $(WAITING) --numprocesses 2 --dist loadfile
-TOGETHER := --ignore tests/browser --ignore $(WAITING) --numprocesses 2 --dist loadfile --no-loadscope-reorder
+WAITING := tests/operations/test_protocol.py tests/reliability/test_outage.py
+MEASURED := tests/browser/test_lighthouse.py $(WAITING) --numprocesses 3 --dist loadfile
+TOGETHER := --ignore tests/browser $(WAITING:%=--ignore %) --numprocesses 2 --dist loadfile --no-loadscope-reorder
 BROWSERS := tests/browser --ignore tests/browser/test_lighthouse.py --numprocesses 2 --dist load
 test: install browser office curl nginx
 ifdef PYTEST_ARGS
@@ -103,6 +104,11 @@ $(MODULES)/.run $(MODULES)/.dev: frontend/package.json frontend/package-lock.jso
 
 $(ASSETS): $(shell find frontend/static 2>/dev/null) frontend/build.py $(PACKAGES) | $(ENVIRONMENT)
 	$(BIN)/python frontend/build.py
+
+# Bytecode of the templates; a checksum tells the service which of them has changed since.
+$(COMPILED): $(wildcard frontend/templates/* backend/hpn/web/pages/templates.py) $(ASSETS) | $(ENVIRONMENT)
+	$(BIN)/python -c "from hpn.web.pages.templates import compile_all; compile_all()"
+	@touch $@
 
 # Debian's Chromium and its headless shell, which has the same engine at half the processor time; else an installed Chromium,
 # else Playwright's own build. The last line of whichever fails says why.

@@ -24,7 +24,7 @@ class PostgreSQL:
 
     def __init__(self, folder: Path) -> None:
         self._folder = folder
-        self._server: PostgresServer = get_server(folder, cleanup_mode="stop")
+        self._server: PostgresServer = get_server(folder, cleanup_mode=None)
         self._numbers = itertools.count(1)
         # No test outlives the machine: a loss of power is the one thing that this is for.
         with psycopg.connect(self._address("postgres"), autocommit=True) as connection:
@@ -49,7 +49,6 @@ class PostgreSQL:
     def remove(self) -> None:
         """Stop for good; nothing needs to be kept, so nothing is written out first."""
         self._control("stop", "-m", "immediate")
-        self._server.cleanup()
 
     def _address(self, database: str) -> str:
         return self._server.get_uri(database=database).replace("postgres:@", "postgres@")

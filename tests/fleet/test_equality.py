@@ -20,9 +20,14 @@ SUPPLEMENT = {
     + "".join(f"s,20A,{ratio},{T},{eta}\n" for ratio in (4, 5, 10) for T, eta in ((1, 0.7), (40, 0.9), (90, 0.95))),
     "ratings": "size,ratio,repeated_peak_torque_Nm,rated_torque_Nm,momentary_peak_torque_Nm,source\n"
     "40A,5,752,400,1250,s\n40A,10,370,370,1250,s\n40A,20,700,,1250,\n",
+    "sizes": "size,maximum_input_speed_rpm,average_input_speed_rpm,ambient_temperature_minimum_degC,"
+    "ambient_temperature_maximum_degC,dynamic_radial_load_N,dynamic_axial_load_N,note,source\n"
+    "40A,4000,3000,,,,,,s\n",
     "bearing_envelopes": "size,load_coefficient,axial_N,radial_N,source\n"
     "14A,1,0,900,s\n14A,1,300,880,s\n14A,1,950,0,s\n40A,1,0,8000,s\n40A,1,6000,0,s\n",
 }
+"""Curves, and ratings of 40A, which suits some axes though its weight is not published."""
+
 NOT_A_NUMBER = "torque_Nm: phase 1: must be a finite number"
 UNEQUAL = "speed_rpm: has"
 MODELS = ("linear", "iso281", "digitised")

@@ -4,13 +4,17 @@ import random
 from collections import Counter
 from contextlib import suppress
 from pathlib import Path
+from typing import Any
 
+import pyarrow as pa
 import pytest
 
 from hpn.application import Application, InputError
 from hpn.catalogue import Catalogue, load_catalogue
 from hpn.fleet.listing import AxisRow, Listing, applications_of, listing_of, rows_of
+from hpn.fleet.outcome import answer_fields
 from hpn.fleet.run import Order, size_fleet
+from hpn.fleet.summary import summary_of
 from hpn.selection import Selection, select
 from hpn.web.form.write import to_link
 from tests.build import Json
@@ -77,8 +81,11 @@ def test_rows_and_counts_say_what_select_says(
     assert (summary.selected, summary.unsuitable) == (len(best), len(replies) - len(best))
     assert dict(summary.gears) == Counter(one.designation for one in best)
     assert dict(summary.checks) == Counter(one.governing_check for one in best)
-    assert sum(summary.utilisation) == len(best)
-    assert summary.utilisation[-1] == sum((one.utilisation or 0) > 0.9 for one in best)
+    used = [one.utilisation or 0 for one in best]
+    assert list(summary.utilisation) == [
+        sum((tenth == 0 and share == 0) or tenth / 10 < share <= (tenth + 1) / 10 for share in used)
+        for tenth in range(10)
+    ]
 
 
 def assert_same(row: AxisRow, reply: Selection) -> None:
@@ -113,3 +120,10 @@ def test_a_fleet_without_a_gear_for_any_axis_has_counts_too(catalogue: Catalogue
     assert (summary.axes, summary.unsuitable, summary.rejected) == (2, 1, 1)
     assert summary.gears == () and sum(summary.utilisation) == 0
     assert [row.state for row in rows_of(listing.answers)] == ["unsuitable", "rejected"]
+
+
+def test_a_share_that_is_a_whole_tenth_counts_in_the_tenth_that_ends_there() -> None:
+    columns: dict[str, Any] = {field.name: pa.nulls(12, field.type) for field in answer_fields(pa.string())}
+    columns["utilisation"] = pa.array([0.0, *(tenth / 10 for tenth in range(1, 11)), None])
+
+    assert summary_of(pa.table(columns).to_batches()).utilisation == (2, 1, 1, 1, 1, 1, 1, 1, 1, 1)

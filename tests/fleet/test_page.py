@@ -29,7 +29,7 @@ from tests.fleet.tables import in_long_form, row_of, write
 from tests.state import state_of
 
 GERMAN = """Maschine 7;;;;;
-Achse;Nr.;Drehmoment [Nm];Drehzahl [1/min];Dauer [ms];Lebensdauer [h]
+Achse;Nr.;Drehmoment [Nm];Drehzahl [1/min];Dauer [ms];Lebensdauer Getriebe [h]
 Hub Ä;1;12,5;250;300;20000
 ;2;8;500;2000,5;
 Band;1;9000;100;500;

@@ -13,6 +13,7 @@ from pathlib import Path
 import pytest
 
 from hpn.catalogue import Catalogue
+from hpn.cli import main
 from hpn.fleet import grouping
 from hpn.fleet.errors import FleetError
 from hpn.fleet.grouping import Part
@@ -180,15 +181,23 @@ def test_the_command_sizes_a_table_and_is_quiet(many: Path, tmp_path: Path) -> N
     assert len((tmp_path / "out.csv").read_text().splitlines()) == 401
 
 
-def test_an_unusable_input_ends_with_2_and_its_name(tmp_path: Path) -> None:
-    for arguments, said in (
-        ((tmp_path / "none.csv", tmp_path / "out.csv"), "none.csv: there is no such file"),
-        ((tmp_path / "none.txt", tmp_path / "out.csv"), "none.txt: the suffix must be one of .parquet, .arrow"),
-        ((tmp_path / "none.csv", tmp_path / "out.csv", "--workers", "0"), "must be from 1 to 1024"),
-    ):
-        run = ended(*arguments)
-        assert said in run.stderr
-        assert run.returncode == 2
+@pytest.mark.parametrize(
+    ("source", "workers", "said"),
+    [
+        ("none.csv", "2", "none.csv: there is no such file"),
+        ("none.txt", "2", "none.txt: the suffix must be one of .parquet, .arrow"),
+        ("none.csv", "0", "must be from 1 to 1024"),
+    ],
+)
+def test_an_unusable_input_ends_with_2_and_its_name(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], source: str, workers: str, said: str
+) -> None:
+    try:
+        ended_with = main(["fleet", str(tmp_path / source), str(tmp_path / "out.csv"), "--workers", workers])
+    except SystemExit as end:  # of argparse
+        ended_with = int(end.code or 0)
+    assert ended_with == 2
+    assert said in capsys.readouterr().err
 
 
 def test_an_interrupt_keeps_the_parts_and_ends_with_1(many: Path, tmp_path: Path) -> None:

@@ -27,12 +27,13 @@ LIBRARIES = (
 """What the modules need is imported once, so that a forked process has it; the modules and tests themselves are not."""
 
 PACKAGE = Path(__file__).parents[2] / "backend" / "hpn"
-MODULES = ("equations", "bearing", "checks", "selection")
+MODULES = ("equations", "bearing", "checks", "evaluation", "selection")
 
 NEAREST = {
     "equations": ["tests/reference/test_edges.py", "tests/reference/test_equations.py"],
     "bearing": ["tests/reference/test_edges.py", "tests/reference/test_bearing.py"],
     "checks": ["tests/unit/test_check_texts.py", "tests/unit/test_checks.py"],
+    "evaluation": ["tests/property/test_order.py", "tests/unit/test_selection.py", "tests/unit/test_checks.py"],
     "selection": ["tests/unit/test_selection.py", "tests/unit/test_checks.py", "tests/unit/test_comparison.py"],
 }
 """Tests of each module itself, which find most."""

@@ -10,10 +10,7 @@ from starlette.testclient import TestClient
 
 from hpn.web.app import create_app
 from hpn.web.settings import Settings
-from tests.compiled import compiled_templates
 from tests.operations.service import Service, serving
-
-__all__ = ["compiled_templates"]
 
 MakeClient = Callable[..., TestClient]
 

@@ -41,7 +41,7 @@ UNKNOWN = ("{" + ",".join(f'"k{k}":1' for k in range(150_000)) + "}").encode()
 ODD = ("{" + ",".join(f'"k{k}":1' for k in range(50_000)) + "}").encode()
 NESTED = b'{"a":' + b"[" * 100 + b",".join([b"[]"] * 600_000) + b"]" * 100 + b"}"
 WRONG = json.dumps({"duty_cycle": {"phases": [{"a": 1, "b": 2, "c": 3}] * 10_000}}).encode()
-PAIRS = urlencode([(f"k{k}", "1") for k in range(150_000)]).encode()
+PAIRS = "&".join(f"k{k}=1" for k in range(150_000)).encode()
 TABLE = "\n".join(f"{40 + k % 7}\t250\t0.3" for k in range(10_000))
 PHASES = urlencode({"phases": TABLE}).encode()
 COOKIE = {"Cookie": 'a="' + r"\"" * 3900 + '"'}

@@ -9,10 +9,6 @@ import openpyxl
 import pytest
 from openpyxl.workbook import Workbook
 
-from tests.compiled import compiled_templates
-
-__all__ = ["compiled_templates"]
-
 Recalculate = Callable[[Mapping[str, Workbook]], dict[str, Workbook]]
 Print = Callable[[Mapping[str, Workbook]], dict[str, bytes]]
 Convert = Callable[[Mapping[str, Workbook], str], dict[str, Path]]

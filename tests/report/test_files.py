@@ -8,7 +8,7 @@ from io import BytesIO
 from pathlib import Path
 from zipfile import ZipFile
 
-import jsonschema  # type: ignore[import-untyped]
+import jsonschema_rs
 import openpyxl
 import pytest
 from pypdf import PdfReader
@@ -189,10 +189,10 @@ def test_controls_that_an_older_version_saved_make_every_file(catalogue: Catalog
 def test_schema_of_the_application_accepts_what_the_service_accepts(client: TestClient) -> None:
     schema = client.get("/api/v1/application.schema.json").json()
     assert schema["$id"] == "application.schema.json"
-    jsonschema.Draft202012Validator.check_schema(schema)
-    jsonschema.validate(WORKED_EXAMPLE, schema)
-    with pytest.raises(jsonschema.ValidationError):
-        jsonschema.validate({**WORKED_EXAMPLE, "colour": "red"}, schema)
+    jsonschema_rs.meta.validate(schema)
+    jsonschema_rs.validate(schema, WORKED_EXAMPLE)
+    with pytest.raises(jsonschema_rs.ValidationError):
+        jsonschema_rs.validate(schema, {**WORKED_EXAMPLE, "colour": "red"})
     assert schema["$defs"]["Phase"]["properties"]["torque_Nm"]["x-unit"] == "Nm"
 
 

@@ -7,12 +7,10 @@ from multiprocessing.context import ForkServerContext
 import pytest
 
 from hpn.store import Store
-from tests.compiled import compiled_templates
 from tests.databases import PostgreSQL, database, kind, migrated_database, migrated_file, postgresql, ready_database
 
 __all__ = [
     "PostgreSQL",
-    "compiled_templates",
     "database",
     "kind",
     "migrated_database",

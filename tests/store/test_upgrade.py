@@ -4,6 +4,7 @@ import asyncio
 import os
 import subprocess
 import sys
+from concurrent.futures import ThreadPoolExecutor
 from multiprocessing.context import ForkServerContext
 from multiprocessing.synchronize import Barrier
 from pathlib import Path
@@ -22,6 +23,7 @@ from hpn.application import Application
 from hpn.catalogue import load_catalogue
 from hpn.selection import encode, select
 from hpn.store import NewerDatabaseError, Store, upgrade
+from hpn.store.engine import make_engine
 from hpn.store.tables import metadata
 from tests.build import cycle, phase
 from tests.store.drafts import change, draft
@@ -107,6 +109,18 @@ async def test_a_migration_that_breaks_off_leaves_nothing_behind(
 
     assert await store.find(await store.save(draft())) is not None
     await store.close()
+
+
+def test_a_new_file_is_in_write_ahead_mode_before_anyone_connects(tmp_path: Path) -> None:
+    """SQLite refuses at once all but one of those who change the mode together."""
+    file = tmp_path / "store.sqlite3"
+    with ThreadPoolExecutor(8) as pool:
+        made = [pool.submit(make_engine, f"sqlite:///{file}", seconds=1) for _ in range(8)]
+    for each in made:
+        asyncio.run(each.result().dispose())
+
+    assert file.read_bytes()[18:20] == b"\x02\x02"  # versions of SQLite's file format: 1 for a rollback journal
+    assert [path.name for path in tmp_path.iterdir()] == [file.name]
 
 
 def _open_and_save(database: str, barrier: Barrier) -> None:

@@ -9,9 +9,6 @@ from starlette.testclient import TestClient
 
 from hpn.web.app import create_app
 from hpn.web.settings import Settings
-from tests.compiled import compiled_templates
-
-__all__ = ["compiled_templates"]
 
 
 @pytest.fixture(scope="session")

@@ -65,6 +65,10 @@ def test_a_unit_that_nobody_says_is_asked_where_the_reader_sees_another() -> Non
         ("Wert;Moment [Nm];Drehzahl [1/min];Dauer [s]", "Which column names the axis?"),
         ("Achse;Moment [Nm];Drehzahl [1/min];Wert", "What is column “Wert”?"),
         ("Achse;Moment [Nm];Drehzahl [1/min];Drehzahl motor;Dauer [s]", "What is column “Drehzahl motor”?"),
+        ("Achse;Moment [Nm];Drehzahl [1/min];Motormoment [Nm];Dauer [s]", "What is column “Motormoment [Nm]”?"),
+        ("Achse;Moment [Nm];Drehzahl [1/min];Lebensdauer [h];Dauer [s]", "What is column “Lebensdauer [h]”?"),
+        ("Axis;Torque [Nm];Speed [rpm];Emergency stop;Duration [s]", "What is column “Emergency stop”?"),
+        ("Axis;Torque [Nm];Speed [rpm];Duration [s];utilisation", "What is column “utilisation”?"),
     ],
 )
 def test_a_column_that_nobody_knows_is_asked(head: str, said: str) -> None:
@@ -102,6 +106,6 @@ def test_several_ratios_stand_in_a_cell_and_a_decimal_comma_parts_none() -> None
 
 
 def test_a_number_that_is_too_large_is_no_number_that_is_left_out() -> None:
-    axis = read(HEAD + ";Lebensdauer [h]", "A;1;100;1;1e999").axes[0]
+    axis = read(HEAD + ";Lebensdauer Getriebe [h]", "A;1;100;1;1e999").axes[0]
 
     assert axis["requirements.life_h"] == "1e999"

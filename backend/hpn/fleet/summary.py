@@ -55,8 +55,7 @@ def _counted(names: pa.Array) -> dict[str, int]:
 def _in_bins(utilisation: pa.Array) -> NDArray[np.int64]:
     """Counts by tenths, each with its upper end; what rounding puts beyond the whole belongs to the last."""
     used = utilisation.drop_null().to_numpy(zero_copy_only=False)
-    places = np.clip(np.ceil(used * BINS).astype(np.int64) - 1, 0, BINS - 1)
-    return np.bincount(places, minlength=BINS)
+    return np.bincount(np.searchsorted(np.arange(1, BINS) / BINS, used), minlength=BINS)
 
 
 def _ordered(counts: Counter[str]) -> Counts:

@@ -1,6 +1,10 @@
 """From an address to an engine: SQLite in write-ahead mode, or PostgreSQL."""
 
+import os
+import sqlite3
+from contextlib import closing, suppress
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 from sqlalchemy import URL, Connection, event, make_url
@@ -50,7 +54,7 @@ def _postgresql(url: URL, seconds: float) -> AsyncEngine:
 
 def _sqlite(url: URL, seconds: float) -> AsyncEngine:
     assert url.database is not None
-    Path(url.database).absolute().parent.mkdir(parents=True, exist_ok=True)
+    _create(Path(url.database).absolute())
     engine = create_async_engine(
         url.set(drivername="sqlite+aiosqlite"),
         hide_parameters=True,  # errors are logged, and what was asked is not
@@ -60,6 +64,23 @@ def _sqlite(url: URL, seconds: float) -> AsyncEngine:
     event.listen(engine.sync_engine, "connect", _prepare)
     event.listen(engine.sync_engine, "begin", _begin)
     return engine
+
+
+def _create(file: Path) -> None:
+    """Make an empty database in write-ahead mode, whole under its name, where there is none.
+
+    Of connections that change the mode at once, SQLite fails all but one without waiting.
+    """
+    file.parent.mkdir(parents=True, exist_ok=True)
+    if file.exists() or not os.access(file.parent, os.W_OK):  # where it can't be written, connecting says so
+        return
+    with TemporaryDirectory(dir=file.parent, prefix=f".{file.name}-") as folder:
+        new = Path(folder, file.name)
+        with closing(sqlite3.connect(new)) as connection:
+            connection.execute("PRAGMA journal_mode=WAL")
+            connection.execute("PRAGMA user_version=0")  # writes the first page, which keeps the mode
+        with suppress(FileExistsError):  # another process was first
+            os.link(new, file)
 
 
 def _prepare(connection: Any, record: object) -> None:

@@ -20,8 +20,8 @@ MOST_UNSAVED = 100
 
 
 @dataclass(frozen=True, slots=True)
-class FleetDraft:
-    """A fleet that was calculated: counts of its axes, and tables of what they were asked with and of their answers."""
+class FleetCounts:
+    """What came out of a fleet, in numbers of axes, and with which engine and catalogue."""
 
     axes: int
     selected: int
@@ -29,12 +29,18 @@ class FleetDraft:
     rejected: int
     engine_version: str
     catalogue_version: str
+
+
+@dataclass(frozen=True, slots=True)
+class FleetDraft(FleetCounts):
+    """A fleet that was calculated: counts of its axes, and tables of what they were asked with and of their answers."""
+
     asked: bytes = field(repr=False)
     answers: bytes = field(repr=False)
 
 
 @dataclass(frozen=True, slots=True)
-class FleetSummary:
+class FleetSummary(FleetCounts):
     """One line of a list of fleets; `saved` is None while it is only calculated."""
 
     id: str
@@ -45,12 +51,6 @@ class FleetSummary:
     author: str | None
     revision: str | None
     owner: str | None
-    axes: int
-    selected: int
-    unsuitable: int
-    rejected: int
-    engine_version: str
-    catalogue_version: str
 
 
 @dataclass(frozen=True, slots=True)

@@ -36,7 +36,7 @@ def served_app() -> FastAPI:
     settings = Settings()
     logs.configure(settings.log_level)
     app = create_app(settings)
-    templates.prepare(app.state)
+    templates.prepare(templates.environment(app.state))
     gc.collect()
     gc.freeze()  # catalogue, templates and modules are never garbage; to search them takes 90 ms each time
     return app

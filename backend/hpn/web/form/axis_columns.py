@@ -32,18 +32,16 @@ PHASES = tuple(symbol.name for symbol in PHASE_SYMBOLS)
 FURTHER = {
     AXIS: "axis name, achse, achsname, achsbezeichnung, achse nr, antrieb, drive, joint, gelenk, bezeichnung, name",
     "tp": "pause, pausenzeit, dwell",
-    "Tk": "emergency stop, not-halt, nothalt, not-halt-moment, nothaltmoment, not-halt-drehmoment",
+    "Tk": "not-halt-moment, nothaltmoment, not-halt-drehmoment",
     "Nk": "emergency stops, not-halt-vorgänge, anzahl not-halt",
-    "Lh": "life, gear life, lebensdauer, lebensdauer getriebe",
+    "Lh": "gear life, lebensdauer getriebe",
     "Lb": "bearing life, lagerlebensdauer",
     "i": "ratio, ratios, übersetzung, übersetzungen",
     "size": "size, sizes, baugröße, baugrößen",
     "ta": "ambient, umgebungstemperatur",
-    "u": "utilisation, utilization, auslastung",
     "fw": "betriebsfaktor",
-    "nm": "motor speed, motordrehzahl",
-    "Tm": "motor torque, motormoment, motordrehmoment",
 }
+"""Further names by role. One that fits two inputs, such as “life” or “motor torque”, is in none: it is asked for."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,0 +1,78 @@
+"""The order of candidates against Python's own sorting, with many ties and figures that are not published."""
+
+import math
+from types import SimpleNamespace
+from typing import Any, cast
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from hpn.evaluation import RANKED_BY, SUITABLE, UNRATED, UNSUITABLE, Evaluation
+
+AXES, GEARS = 300, 7
+RATIO = np.array([3.0, 4, 5, 3, 4, 5, 5])
+
+
+def drawn(chance: np.random.Generator, *shape: int) -> NDArray[np.float64]:
+    """Few different figures, some of them not published."""
+    return np.where(chance.random(shape) < 0.2, np.nan, chance.integers(1, 4, shape) / 4)
+
+
+def evaluation_of(chance: np.random.Generator, rank_by: NDArray[Any]) -> Evaluation:
+    """Gears of drawn figures under applications with drawn verdicts."""
+    verdict = chance.choice([SUITABLE, UNSUITABLE, UNRATED], (AXES, GEARS), p=[0.7, 0.2, 0.1]).astype(np.int8)
+    utilisation = np.where(verdict == UNRATED, np.nan, chance.integers(1, 4, (AXES, GEARS)) / 4)
+    gears = SimpleNamespace(
+        ratio=RATIO,
+        weight_kg=drawn(chance, GEARS),
+        length_max_mm=drawn(chance, GEARS),
+        torsional_stiffness_Nm_per_rad=drawn(chance, GEARS),
+    )
+    figures = SimpleNamespace(life_L10_h=drawn(chance, AXES, GEARS), motor_peak_torque_Nm=drawn(chance, AXES, GEARS))
+    case = SimpleNamespace(gears=gears, figures=figures, asked=SimpleNamespace(rank_by=rank_by))
+    return Evaluation(cast(Any, case), cast(Any, None), cast(Any, None), (), verdict, utilisation)
+
+
+def last_if_missing(value: float) -> tuple[bool, float]:
+    """Key that sorts what is not published behind every number."""
+    return (True, 0.0) if math.isnan(value) else (False, value)
+
+
+def sorted_by_hand(evaluation: Evaluation, axis: int, rank_by: str) -> list[int]:
+    """Places of the gears of an axis, by the words of the contract."""
+    gears, figures = evaluation.case.gears, evaluation.case.figures
+    wishes = {
+        "weight": gears.weight_kg,
+        "utilisation": evaluation.utilisation[axis],
+        "length": gears.length_max_mm,
+        "motor_torque": figures.motor_peak_torque_Nm[axis],
+        "life": -figures.life_L10_h[axis],
+        "stiffness": -gears.torsional_stiffness_Nm_per_rad,
+    }
+
+    def key(place: int) -> tuple[object, ...]:
+        verdict, used = evaluation.verdict[axis, place], evaluation.utilisation[axis, place]
+        ties = [gears.weight_kg[place], used, -figures.life_L10_h[axis, place], gears.ratio[place]]
+        first = {SUITABLE: wishes[rank_by][place], UNSUITABLE: used, UNRATED: place}[verdict]
+        return (verdict, *map(last_if_missing, (first, *ties)), place)
+
+    return sorted(range(GEARS), key=key)
+
+
+@pytest.mark.parametrize("seed", range(10))
+@pytest.mark.parametrize("wishes", [*RANKED_BY, "mixed"])
+def test_gears_stand_as_sorted_by_hand_and_the_foremost_is_the_first(wishes: str, seed: int) -> None:
+    chance = np.random.default_rng(seed)
+    rank_by = np.array(chance.choice([*RANKED_BY], (AXES, 1)) if wishes == "mixed" else [[wishes]] * AXES)
+    evaluation = evaluation_of(chance, rank_by)
+
+    by_hand = [sorted_by_hand(evaluation, axis, str(rank_by[axis, 0])) for axis in range(AXES)]
+    suits = evaluation.verdict == SUITABLE
+    some = suits & (chance.random(suits.shape) < 0.6)
+
+    assert evaluation.order.tolist() == by_hand
+    for among in (suits, some):
+        first = [next((place for place in places if among[axis, place]), None) for axis, places in enumerate(by_hand)]
+        found = [place if any_ else None for place, any_ in zip(evaluation.foremost(among), among.any(-1), strict=True)]
+        assert found == first
