@@ -221,6 +221,20 @@ def efficiency_along(catalogue: Catalogue, gear: Gear, torque_Nm: FloatArray) ->
     return np.interp(torque_Nm, *catalogue.efficiency[gear.designation])
 
 
+def efficiencies(duty: Duty, gear: Gear, catalogue: Catalogue) -> tuple[FloatArray, FloatArray]:
+    """Efficiency of a gear in each phase of one application, at the phase's peak and at its RMS; 1 where none is known.
+
+    As the torques at the motor have it: stated, else by a supplied curve.
+    """
+    phases, stated = duty.phases, duty.asked["requirements.efficiency"].item()
+    torques = phases.peak_torque_Nm[0, 0], phases.rms_torque_Nm[0, 0]
+    if np.isnan(stated) and gear.designation in catalogue.efficiency:
+        at_peak, at_rms = (efficiency_along(catalogue, gear, torque) for torque in torques)
+        return at_peak, at_rms
+    eta = np.full(len(torques[0]), 1.0 if np.isnan(stated) else stated)
+    return eta, eta
+
+
 def leaves_curve(catalogue: Catalogue, gear: Gear, duty: Duty, index: int) -> bool:
     """Whether a torque of application `index` lies beyond the ends of a gear's efficiency curve; one of 0 does not."""
     known, _ = catalogue.efficiency[gear.designation]

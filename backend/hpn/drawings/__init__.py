@@ -9,7 +9,9 @@ from hpn.drawings.cycle import CyclePicture, cycle_picture
 from hpn.drawings.envelope import GearEnvelope, envelope_drawing, gear_envelope, sizes_drawing
 from hpn.drawings.governing import governing_phases
 from hpn.drawings.layout import Figure
+from hpn.drawings.motion import motion_drawing, motion_words
 from hpn.drawings.picture import BearingPicture, NamedCurve, bearing_picture
+from hpn.drawings.plane import Plane, gear_plane, motor_plane
 from hpn.drawings.sizes import SizeUse, size_uses
 from hpn.drawings.stops import emergency_stop_figure, emergency_stop_words
 from hpn.drawings.subject import Subject
@@ -21,6 +23,7 @@ __all__ = [
     "Figure",
     "GearEnvelope",
     "NamedCurve",
+    "Plane",
     "SizeUse",
     "Subject",
     "bearing_figure",
@@ -33,7 +36,11 @@ __all__ = [
     "emergency_stop_words",
     "envelope_drawing",
     "gear_envelope",
+    "gear_plane",
     "governing_phases",
+    "motion_drawing",
+    "motion_words",
+    "motor_plane",
     "size_uses",
     "sizes_drawing",
     "sizes_figure",

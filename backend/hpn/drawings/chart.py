@@ -1,4 +1,4 @@
-"""The drawing of loads in their envelopes: radial load to the right, axial load upwards, and how far limits are used.
+"""The drawing of points within limits: loads in their envelopes, torques at their speeds, bars of how far they go.
 
 One description for every page and for the report: `chart` makes it, a style sheet gives it its colours.
 """
@@ -6,6 +6,7 @@ One description for every page and for the report: `chart` makes it, a style she
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
+from math import isfinite
 from xml.etree.ElementTree import Element, SubElement
 
 from hpn.drawings.axis import round_numbers
@@ -40,10 +41,24 @@ ENDS = (0.12, 0.88, 0.16, 0.84, 0.2, 0.8, 0.08, 0.92, *ALONG)
 
 
 @dataclass(frozen=True, slots=True)
-class Line:
-    """An envelope by its corners (radial, axial) in N, from the axial to the radial axis.
+class Axes:
+    """What is to the right and what upwards: name (an English msgid) and unit of each."""
 
-    A strong one has its label on it, others at their end; `kind` is what the style sheet calls it.
+    across: str
+    across_unit: str
+    up: str
+    up_unit: str
+
+
+LOADS = Axes(N_("radial load"), "N", N_("axial load"), "N")
+
+
+@dataclass(frozen=True, slots=True)
+class Line:
+    """A limit by its corners (across, up), from one axis to the other, or a curve.
+
+    A strong one has its label on it and an area below it, others their label at their end; `kind` is what the style
+    sheet calls it.
     """
 
     kind: str
@@ -54,7 +69,7 @@ class Line:
 
 @dataclass(frozen=True, slots=True)
 class Mark:
-    """A load in N: a dot at its exact place, and where it has a label, a disc with it there or beside it.
+    """A load or another point: a dot at its exact place, and where it has a label, a disc with it there or beside it.
 
     `phases` are the places of the phases marked together with it, `told` is what it is in words, `used` its share of
     its limit.
@@ -62,7 +77,7 @@ class Mark:
 
     kind: str
     label: str
-    load: Point
+    place: Point
     told: str
     used: float = 0.0
     outside: bool = False
@@ -82,11 +97,12 @@ class Bar:
 
 @dataclass(frozen=True, slots=True)
 class Frame:
-    """Where loads stand in the drawing."""
+    """Where points stand in the drawing, whose axes end at `across` and `up`."""
 
+    axes: Axes
     left: float
-    radial: float
-    axial: float
+    across: float
+    up: float
 
     @property
     def box(self) -> Box:
@@ -99,19 +115,29 @@ class Frame:
         box = self.box
         return Box(box.left - MARGIN, box.top, box.right + MARGIN, box.bottom + MARGIN)
 
-    def at(self, load: Point) -> Point:
-        """Place of a load."""
+    def at(self, point: Point) -> Point:
+        """Where a point stands."""
         box = self.box
-        x = box.left + load[0] / self.radial * (box.right - box.left)
-        return x, box.bottom - load[1] / self.axial * (box.bottom - box.top)
+        x = box.left + min(point[0] / self.across, 1.0) * (box.right - box.left)
+        return x, box.bottom - min(point[1] / self.up, 1.0) * (box.bottom - box.top)
 
 
 def chart(
-    lines: Sequence[Line], marks: Sequence[Mark], bars: Sequence[Bar], reader: Reader, ray: Point | None = None
+    lines: Sequence[Line],
+    marks: Sequence[Mark],
+    bars: Sequence[Bar],
+    reader: Reader,
+    ray: Point | None = None,
+    axes: Axes = LOADS,
+    beyond: Sequence[str] = (),
 ) -> Element:
-    """Envelopes, loads and bars. `ray` is a load whose direction from the origin is drawn."""
-    frame = _frame([*(corner for line in lines for corner in line.corners), *(mark.load for mark in marks)], reader)
-    drawing = canvas(WIDTH, HEIGHT + ROW * len(bars))
+    """Limits, points and bars. `ray` is a point whose direction from the origin is drawn.
+
+    `beyond` are rows that name limits outside of what is drawn; a corner at infinity is at the end of its axis.
+    """
+    points = [*(corner for line in lines for corner in line.corners), *(mark.place for mark in marks)]
+    frame = _frame(points, axes, reader)
+    drawing = canvas(WIDTH, HEIGHT + ROW * (len(bars) + len(beyond)))
     still = add(drawing, "g", "still", aria_hidden="true")
     _axes(still, frame, reader)
     places = Places(frame.room)
@@ -127,59 +153,62 @@ def chart(
     _marks(drawing, frame, marks, places)
     _labels(drawing, frame, lines, places)
     _bars(drawing, bars)
+    for row, names in enumerate(beyond, len(bars)):
+        text(still, "beyond", (WIDTH - RIGHT, HEIGHT + ROW * row + 14), names, "end")
     return drawing
 
 
 # --- Axes -------------------------------------------------------------------------------------------------------------
 
 
-def _frame(loads: Sequence[Point], reader: Reader) -> Frame:
-    radial, axial = (ROOM * max(values) or 1.0 for values in zip(*loads, strict=True))
-    numbers = _numbers(axial, MOST_SPACES - 1, reader)
-    return Frame(LETTER + 12 + max(width_of(label) for _, label in numbers), radial, axial)
+def _frame(points: Sequence[Point], axes: Axes, reader: Reader) -> Frame:
+    across, up = (ROOM * max(filter(isfinite, values)) or 1.0 for values in zip(*points, strict=True))
+    numbers = _numbers(up, axes.up_unit, MOST_SPACES - 1, reader)
+    return Frame(axes, LETTER + 12 + max(width_of(label) for _, label in numbers), across, up)
 
 
-def _numbers(largest: float, spaces: int, reader: Reader) -> list[tuple[float, str]]:
-    """Round numbers of the reader's unit along an axis: each in N, and as it is written."""
-    end = reader.measure("N").shown(largest)
+def _numbers(largest: float, unit: str, spaces: int, reader: Reader) -> list[tuple[float, str]]:
+    """Round numbers of the reader's unit along an axis: each in the unit of the wire, and as it is written."""
+    end = reader.measure(unit).shown(largest)
     return [(largest * number / end, reader.tick(number)) for number in round_numbers(0.0, end, spaces)] or [(0.0, "0")]
 
 
 def _axes(drawing: Element, frame: Frame, reader: Reader) -> None:
     box = frame.box
-    for load, label in _numbers(frame.axial, MOST_SPACES - 1, reader):
-        _, y = frame.at((0.0, load))
+    axes = frame.axes
+    for value, label in _numbers(frame.up, axes.up_unit, MOST_SPACES - 1, reader):
+        _, y = frame.at((0.0, value))
         add(drawing, "path", "grid", d=path([(box.left, y), (box.right, y)]))
         text(drawing, "tick", (box.left - 5, y + 4.5), label, "end")
-    for load, label in _spread(frame, reader):
-        x, _ = frame.at((load, 0.0))
+    for value, label in _spread(frame, reader):
+        x, _ = frame.at((value, 0.0))
         add(drawing, "path", "grid", d=path([(x, box.top), (x, box.bottom)]))
         text(drawing, "tick", (min(x, WIDTH - width_of(label) / 2), box.bottom + 16), label, "middle")
     add(drawing, "path", "axis", d=path([(box.left, box.top), (box.left, box.bottom), (box.right, box.bottom)]))
     middle = (box.left + box.right) / 2, HEIGHT - 7
-    text(drawing, "title", middle, axis_title(N_("radial load"), "N", reader), "middle")
-    title = text(drawing, "title", (0, 0), axis_title(N_("axial load"), "N", reader), "middle")
+    text(drawing, "title", middle, axis_title(axes.across, axes.across_unit, reader), "middle")
+    title = text(drawing, "title", (0, 0), axis_title(axes.up, axes.up_unit, reader), "middle")
     title.set("transform", f"translate({LETTER - 1:g} {(box.top + box.bottom) / 2:g}) rotate(-90)")
 
 
 def _spread(frame: Frame, reader: Reader) -> list[tuple[float, str]]:
-    """Numbers of the radial axis, as many as have room beside each other."""
+    """Numbers of the axis to the right, as many as have room beside each other."""
     for spaces in range(MOST_SPACES, 1, -1):
-        numbers = _numbers(frame.radial, spaces, reader)
+        numbers = _numbers(frame.across, frame.axes.across_unit, spaces, reader)
         widest = max(width_of(label) for _, label in numbers)
-        steps = [frame.at((load, 0.0))[0] for load, _ in numbers]
+        steps = [frame.at((value, 0.0))[0] for value, _ in numbers]
         if all(after - before >= widest + GAP for before, after in pairwise(steps)):
             return numbers
     return numbers[:1]
 
 
-# --- Loads ------------------------------------------------------------------------------------------------------------
+# --- Points -----------------------------------------------------------------------------------------------------------
 
 
 def _marks(drawing: Element, frame: Frame, marks: Sequence[Mark], places: Places) -> None:
     """Dots first, so that no disc hides one that is not its own; then the discs, the most used load first, P_m last."""
     named = sorted((place for place, mark in enumerate(marks) if mark.label), key=lambda place: -marks[place].used)
-    dots = [Box.around(frame.at(mark.load), 2 * DOT, 2 * DOT) for mark in marks]
+    dots = [Box.around(frame.at(mark.place), 2 * DOT, 2 * DOT) for mark in marks]
     leaders = add(drawing, "g", "still", aria_hidden="true")
     groups = [_group(drawing, mark, dot.centre) for mark, dot in zip(marks, dots, strict=True)]
     for place in named:
@@ -236,7 +265,7 @@ def _disc(group: Element, leaders: Element, mark: Mark, dot: Point, spot: Box) -
 def _labels(drawing: Element, frame: Frame, lines: Sequence[Line], places: Places) -> None:
     """Each line has its name on it, where the fewest lines cross it: a strong one in its middle, others at an end."""
     group = add(drawing, "g", "still", aria_hidden="true")
-    for line in sorted(lines, key=lambda line: not line.strong):
+    for line in sorted((line for line in lines if line.label), key=lambda line: not line.strong):
         corners = [frame.at(corner) for corner in line.corners]
         size = width_of(line.label) + 4, LETTER + 2
         shares = ALONG if line.strong else ENDS

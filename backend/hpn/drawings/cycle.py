@@ -98,7 +98,7 @@ class CyclePicture:
 
 
 @dataclass(frozen=True, slots=True)
-class _Level:
+class Level:
     """A level to compare the steps with."""
 
     symbol: str
@@ -107,7 +107,7 @@ class _Level:
 
 
 @dataclass(frozen=True)
-class _Diagram:
+class Diagram:
     """What a panel shows: the phases' values and levels, and its place in the drawing."""
 
     quantity: str
@@ -115,7 +115,7 @@ class _Diagram:
     top: float
     height: float
     values: list[float]
-    levels: list[_Level]
+    levels: list[Level]
 
     @cached_property
     def range(self) -> tuple[float, float]:
@@ -137,8 +137,8 @@ def cycle_picture(subject: Subject, reader: Reader = DEFAULT) -> CyclePicture:
     edges, to_scale, broken = _edges(cycle)
     torques, speeds = ([getattr(phase, name) for phase in cycle.load_phases] for name in ("torque_Nm", "speed_rpm"))
     top = TORQUE_TOP + TORQUE_HEIGHT + BETWEEN
-    torque = _Diagram(N_("Torque"), "Nm", TORQUE_TOP, TORQUE_HEIGHT, torques, _torque_levels(subject))
-    speed = _Diagram(N_("Speed"), "rpm", top, SPEED_HEIGHT, speeds, _speed_levels(subject))
+    torque = Diagram(N_("Torque"), "Nm", TORQUE_TOP, TORQUE_HEIGHT, torques, torque_levels(subject))
+    speed = Diagram(N_("Speed"), "rpm", top, SPEED_HEIGHT, speeds, speed_levels(subject))
     count = len(cycle.load_phases)
     return CyclePicture(
         height=top + SPEED_HEIGHT + 6,
@@ -218,12 +218,12 @@ def _names(edges: list[float], count: int, y: float) -> list[Mark]:
 # --- One diagram ------------------------------------------------------------------------------------------------------
 
 
-def _panel(diagram: _Diagram, edges: Sequence[float], reader: Reader) -> Panel:
+def _panel(diagram: Diagram, edges: Sequence[float], reader: Reader) -> Panel:
     bottom = diagram.top + diagram.height
     outline, area = _steps(edges, diagram.values, diagram.y)
-    marks, beyond = _placed(diagram, reader)
+    marks, beyond = placed(diagram, reader)
     title = axis_title(diagram.quantity, diagram.unit, reader)
-    return Panel(title, diagram.top, bottom, diagram.y(0.0), outline, area, _ticks(diagram, reader), marks, beyond)
+    return Panel(title, diagram.top, bottom, diagram.y(0.0), outline, area, ticks(diagram, reader), marks, beyond)
 
 
 def _steps(edges: Sequence[float], values: Sequence[float], y: Callable[[float], float]) -> tuple[str, str]:
@@ -245,16 +245,16 @@ def _ranges(edges: Sequence[float], values: Sequence[float], y: Callable[[float]
     return outline, area or f"M{edges[0]} {y(0.0)}"
 
 
-def _ticks(diagram: _Diagram, reader: Reader) -> list[Mark]:
-    """Marks at round numbers of the reader's unit."""
+def ticks(diagram: Diagram, reader: Reader, left: float = LEFT, spaces: int = 3) -> list[Mark]:
+    """Marks at round numbers of the reader's unit, beside an axis that is so far from the left edge."""
     low, high = diagram.range
     start, end = (reader.measure(diagram.unit).shown(value) for value in (low, high))
     scale = (end - start) / (high - low)
-    places = ((diagram.y(number / scale), number) for number in round_numbers(start, end, 3))
-    return [Mark(LEFT - 5, y + 4.0, reader.tick(number), line=y) for y, number in places]
+    places = ((diagram.y(number / scale), number) for number in round_numbers(start, end, spaces))
+    return [Mark(left - 5, y + 4.0, reader.tick(number), line=y) for y, number in places]
 
 
-def _placed(diagram: _Diagram, reader: Reader) -> tuple[list[Mark], list[Mark]]:
+def placed(diagram: Diagram, reader: Reader) -> tuple[list[Mark], list[Mark]]:
     """Levels with their names at the right, none over another; and those beyond the scale, which only have a name."""
     marks: list[Mark] = []
     beyond: list[Mark] = []
@@ -275,7 +275,8 @@ def _placed(diagram: _Diagram, reader: Reader) -> tuple[list[Mark], list[Mark]]:
 # --- What is compared -------------------------------------------------------------------------------------------------
 
 
-def _torque_levels(subject: Subject) -> list[_Level]:
+def torque_levels(subject: Subject) -> list[Level]:
+    """Average, gear's limits and emergency stop."""
     gear = subject.gear
     return _known(
         (DUTY["average_torque_Nm"].symbol, subject.duty.average_torque_Nm.item(), "average"),
@@ -285,7 +286,7 @@ def _torque_levels(subject: Subject) -> list[_Level]:
     )
 
 
-def _speed_levels(subject: Subject) -> list[_Level]:
+def speed_levels(subject: Subject) -> list[Level]:
     """At the output: the limits of the input over the ratio."""
     limits = {name: getattr(subject.gear, name) for name in ("average_input_speed_rpm", "maximum_input_speed_rpm")}
     return _known(
@@ -297,9 +298,9 @@ def _speed_levels(subject: Subject) -> list[_Level]:
     )
 
 
-def _known(*levels: tuple[str, float | None, str]) -> list[_Level]:
+def _known(*levels: tuple[str, float | None, str]) -> list[Level]:
     """Levels whose value is there."""
-    return [_Level(symbol, value, kind) for symbol, value, kind in levels if value is not None]
+    return [Level(symbol, value, kind) for symbol, value, kind in levels if value is not None]
 
 
 def _in_words(torques: Sequence[float], speeds: Sequence[float], pause_s: float) -> list[Sentence]:

@@ -12,7 +12,7 @@ LETTER = 14.0
 WIDE = 0.64
 """Width of a character in letter sizes: that of a digit in DejaVu Sans, the widest of the usual fonts."""
 
-_SYMBOL = re.compile(r"\b([A-Za-z])_([A-Za-z]+(?:\([a-z]+\))?)")
+_SYMBOL = re.compile(r"\b([A-Za-z])_([A-Za-z]+(?:,[A-Za-z]+)*(?:\([a-z]+\))?)")
 
 
 def canvas(width: float, height: float) -> Element:

@@ -3,6 +3,7 @@
 from hpn.motion.course import Course
 from hpn.motion.motion import MAXIMUM_MOVES, LinearMotion, Motion, RotaryMotion
 from hpn.motion.motor import Instant, peak_instant, peak_torque, rms_torque, square_torque
+from hpn.motion.trace import Trace, motor_trace, trace_of
 
 __all__ = [
     "MAXIMUM_MOVES",
@@ -11,8 +12,11 @@ __all__ = [
     "LinearMotion",
     "Motion",
     "RotaryMotion",
+    "Trace",
+    "motor_trace",
     "peak_instant",
     "peak_torque",
     "rms_torque",
     "square_torque",
+    "trace_of",
 ]

@@ -13,11 +13,12 @@ LOOKED_AT_ONCE = 10_000
 
 
 def rms_torque(
-    course: Course, *, ratio: FloatArray, efficiency: FloatArray, motor_inertia_kgm2: float, pause_s: float
+    course: Course, *, ratio: FloatArray, efficiency: FloatArray, motor_inertia_kgm2: float | FloatArray, pause_s: float
 ) -> FloatArray:
     """RMS torque in Nm of the motor over the cycle, its pause included, on gears, shape (gears,).
 
-    `efficiency` broadcasts to (gears, phases). In a phase the motor's torque is a T + b α with an a and b of its own.
+    `efficiency` broadcasts to (gears, phases), `motor_inertia_kgm2` to (gears,). In a phase the motor's torque is
+    a T + b α with an a and b of its own.
     """
     squares = square_torque(course, ratio=ratio, efficiency=efficiency, motor_inertia_kgm2=motor_inertia_kgm2)
     rms: FloatArray = np.sqrt(np.maximum(squares.sum(axis=1), 0.0) / (course.duration_s.sum() + pause_s))
@@ -25,24 +26,28 @@ def rms_torque(
 
 
 def square_torque(
-    course: Course, *, ratio: FloatArray, efficiency: FloatArray, motor_inertia_kgm2: float
+    course: Course, *, ratio: FloatArray, efficiency: FloatArray, motor_inertia_kgm2: float | FloatArray
 ) -> FloatArray:
     """Integral of the square of the motor's torque over each phase in Nm² s, shape (gears, phases)."""
-    a, b = _share(course, ratio, efficiency), (motor_inertia_kgm2 * ratio)[:, None]
+    a, b = share_of_torque(course, ratio, efficiency), (motor_inertia_kgm2 * ratio)[:, None]
     squares: FloatArray = (
         a**2 * course.square_torque + 2 * a * b * course.torque_acceleration + b**2 * course.square_acceleration
     )
     return squares
 
 
-def peak_torque(course: Course, *, ratio: FloatArray, efficiency: FloatArray, motor_inertia_kgm2: float) -> FloatArray:
-    """Largest torque in Nm of the motor on gears, shape (gears,); `efficiency` broadcasts to (gears, phases).
+def peak_torque(
+    course: Course, *, ratio: FloatArray, efficiency: FloatArray, motor_inertia_kgm2: float | FloatArray
+) -> FloatArray:
+    """Largest torque in Nm of the motor on gears, shape (gears,).
+
+    `efficiency` broadcasts to (gears, phases), `motor_inertia_kgm2` to (gears,).
 
     The ends of the pieces give it, unless it is larger in between: by no more than h² / 8 times the largest second
     derivative. The pieces where that matters are cut at the extremes of the motor's own torque.
     """
     p, load = course.pieces, course.load
-    a = _share(course, ratio, efficiency)[:, course.phase] * course.factor
+    a = share_of_torque(course, ratio, efficiency)[:, course.phase] * course.factor
     b = (motor_inertia_kgm2 * ratio * load.ratio)[:, None]
     torque = Torque(load.viscous_Nms, load.gravity_Nm)
     larger = np.maximum(*(np.abs(a * torque.at(p, t) + b * p.acceleration_at(t)) for t in (p.start_s, p.end_s)))
@@ -79,7 +84,7 @@ class Instant:
 def peak_instant(course: Course, *, ratio: float, efficiency: FloatArray, motor_inertia_kgm2: float) -> Instant:
     """The instant at which the motor of one gear has its largest torque; `efficiency` has shape (phases,)."""
     p, load = course.pieces, course.load
-    a = (_share(course, np.array([ratio]), efficiency[None])[0, course.phase]) * course.factor
+    a = (share_of_torque(course, np.array([ratio]), efficiency[None])[0, course.phase]) * course.factor
     b = motor_inertia_kgm2 * ratio * load.ratio
     torque = Torque(load.viscous_Nms, load.gravity_Nm)
     cut = monotone(torque, replace(p, inertia_kgm2=p.inertia_kgm2 + b / a, move=np.arange(len(p))))
@@ -91,7 +96,7 @@ def peak_instant(course: Course, *, ratio: float, efficiency: FloatArray, motor_
     return Instant(phase, T, alpha, bool(course.torque_Nm[phase] * course.speed_rpm[phase] >= 0))
 
 
-def _share(course: Course, ratio: FloatArray, efficiency: FloatArray) -> FloatArray:
+def share_of_torque(course: Course, ratio: FloatArray, efficiency: FloatArray) -> FloatArray:
     """Motor's torque over the gear's output torque, shape (gears, phases): the gear loses in the sense of the power."""
     drives = course.torque_Nm * course.speed_rpm >= 0
     share: FloatArray = np.where(drives, 1 / efficiency, efficiency) / ratio[:, None]

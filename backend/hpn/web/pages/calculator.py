@@ -28,7 +28,7 @@ from hpn.web.pages.result import Result
 from hpn.web.pages.templates import environment
 from hpn.wording import N_, Sentence
 
-SECTIONS = ("overview", "bearing", "candidates", "compare", "calculation", "notes")
+SECTIONS = ("overview", "bearing", "drive", "candidates", "compare", "calculation", "notes")
 """The result by sections, in their order."""
 
 FIGURES = frozenset(("bearing_figure", "sizes_figure", "stops_figure"))

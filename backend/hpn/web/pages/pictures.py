@@ -10,7 +10,7 @@ from markupsafe import Markup
 from hpn import drawings
 from hpn.application import Application
 from hpn.catalogue import Catalogue
-from hpn.drawings import BearingPicture, CyclePicture, Figure, SizeUse, Subject
+from hpn.drawings import BearingPicture, CyclePicture, Figure, Plane, SizeUse, Subject
 from hpn.drawings.svg import markup
 from hpn.gear import Gear
 from hpn.reader import Reader
@@ -92,6 +92,26 @@ class Pictures:
         """What the verdict goes by."""
         assert self.bearing is not None
         return drawings.bearing_words(self.bearing)
+
+    @cached_property
+    def motion(self) -> Element | None:
+        """Drawing of a motion over time, or None where phases were typed."""
+        return drawings.motion_drawing(self.subject, self.reader, self.governing)
+
+    @property
+    def motion_words(self) -> list[Sentence]:
+        """The motion in words."""
+        return drawings.motion_words(self.subject)
+
+    @cached_property
+    def gear_plane(self) -> Plane:
+        """Output torque against output speed, with the gear's limits."""
+        return drawings.gear_plane(self.subject, self.reader, self.governing)
+
+    @cached_property
+    def motor_plane(self) -> Plane:
+        """Motor torque against motor speed, with the motor's limits."""
+        return drawings.motor_plane(self.subject, self.reader, self.governing)
 
     @cached_property
     def stop_figure(self) -> Figure | None:

@@ -13,6 +13,7 @@ from hpn.gear import Gear
 from hpn.readings import Reading, readings_of
 from hpn.remedy import Growth, growths_of, remedy_of
 from hpn.selection import Candidate, Selection
+from hpn.web.pages.drive import Drive
 from hpn.web.pages.pictures import Pictures, pictures_of
 from hpn.wording import N_, Sentence
 
@@ -119,6 +120,13 @@ class Result:
         if self.application is None or self.gear is None or self.catalogue is None:
             return None
         return pictures_of(self.application, self.gear, self.chosen, self.catalogue)
+
+    @cached_property
+    def drive(self) -> Drive | None:
+        """Motor of the chosen candidate, or None where what it needs is not kept."""
+        if self.application is None or self.gear is None or self.catalogue is None:
+            return None
+        return Drive(self.application, self.gear, self.catalogue, self.selection)
 
     @property
     def utilisation(self) -> float:

@@ -1,0 +1,96 @@
+"""The motor behind the gear that the page looks at: what its torques leave out, and which motors and gears fit."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+from hpn.application import Application, Motor
+from hpn.catalogue import Catalogue
+from hpn.gear import Gear
+from hpn.motors import MotorUse, SizeWithMotor, motors_on, ratios_with_motor, with_motor
+from hpn.selection import Selection, with_listed_motor
+from hpn.web.form.write import to_link
+from hpn.wording import N_, Sentence
+
+LISTED_AT_ONCE = 25
+"""Motors that fit of which the page shows the use."""
+
+INERTIA = {
+    "counted": N_("The motor’s own inertia counts. Left out, as not published: the gear’s inertia and no-load losses."),
+    "unknown": N_(
+        "Left out: the motor’s own inertia, which is not given, and the gear’s inertia and no-load losses, which are "
+        "not published."
+    ),
+    "phases": N_(
+        "Left out: the motor’s own inertia, which only a motion lets count, and the gear’s inertia and no-load losses, "
+        "which are not published."
+    ),
+}
+"""What torques at the motor leave out."""
+
+
+@dataclass(frozen=True)
+class Drive:
+    """A gear under an application with a motor, or without one as long as none is chosen."""
+
+    application: Application
+    gear: Gear
+    catalogue: Catalogue
+    selection: Selection
+    most: int = LISTED_AT_ONCE
+
+    @cached_property
+    def motor(self) -> Motor | None:
+        """The motor that is asked for, its figures those of the list where it is named."""
+        return with_listed_motor(self.application, self.catalogue).requirements.motor
+
+    @property
+    def is_told(self) -> bool:
+        """Whether there is a motor to draw torques for: one that is asked for, a motion, or a list to choose from."""
+        return bool(self.motor or self.application.duty_cycle.motion or self.catalogue.motors)
+
+    @cached_property
+    def uses(self) -> Sequence[MotorUse]:
+        """The user's motors on the gear, best first."""
+        return motors_on(self.application, self.gear, self.catalogue)
+
+    @property
+    def fitting(self) -> list[MotorUse]:
+        """Those that fit."""
+        return [use for use in self.uses if use.fits]
+
+    @property
+    def nearest(self) -> MotorUse | None:
+        """The nearest miss."""
+        return next((use for use in self.uses if not use.fits), None)
+
+    def is_chosen(self, use: MotorUse) -> bool:
+        """Whether a motor is the one that is asked for."""
+        return self.motor is not None and self.motor.designation == use.motor.designation
+
+    def link(self, use: MotorUse) -> str:
+        """Link of the application with a motor of the list."""
+        return to_link(with_motor(self.application, use.motor))
+
+    @property
+    def sizes(self) -> list[SizeWithMotor]:
+        """Gears that fit with the motor, by size."""
+        return ratios_with_motor(self.selection)
+
+    @property
+    def left_out(self) -> list[Sentence]:
+        """What torques at the motor go by, and what they leave out."""
+        if self.application.duty_cycle.motion is None:
+            return [Sentence(self._efficiency), Sentence(INERTIA["phases"])]
+        known = self.motor is not None and self.motor.inertia_kgm2 is not None
+        return [Sentence(self._efficiency), Sentence(INERTIA["counted" if known else "unknown"])]
+
+    @property
+    def _efficiency(self) -> str:
+        if self.application.requirements.efficiency is not None:
+            return N_("η as you state it.")
+        if self.gear.designation in self.catalogue.efficiency:
+            return N_(
+                "η of every phase from the efficiency curve that you supplied; beyond its ends that of the nearer end."
+            )
+        return N_("η = 1, since no efficiency is known: loss-free, a lower bound.")
