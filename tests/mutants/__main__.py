@@ -33,7 +33,12 @@ NEAREST = {
     "equations": ["tests/reference/test_edges.py", "tests/reference/test_equations.py"],
     "bearing": ["tests/reference/test_edges.py", "tests/reference/test_bearing.py"],
     "checks": ["tests/unit/test_check_texts.py", "tests/unit/test_checks.py"],
-    "evaluation": ["tests/property/test_order.py", "tests/unit/test_selection.py", "tests/unit/test_checks.py"],
+    "evaluation": [
+        "tests/property/test_order.py",
+        "tests/fleet/test_equality.py",
+        "tests/unit/test_selection.py",
+        "tests/unit/test_checks.py",
+    ],
     "selection": ["tests/unit/test_selection.py", "tests/unit/test_checks.py", "tests/unit/test_comparison.py"],
 }
 """Tests of each module itself, which find most."""

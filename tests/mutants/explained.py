@@ -2,6 +2,11 @@
 
 ZERO = "0 divided by whatever stands for a largest of 0 is 0"
 LENGTHS = "the lengths are equal by construction, and strict says so to the reader"
+LAST_OF_TWO = "an array of applications and gears has two axes, of which 1 is the last"
+LAST = "the last axis is what NumPy takes anyway"
+ON_THE_BOUND = "no utilisation lies on a bound to its last bit"
+SOONER = "the loop ends sooner or later with the same answer"
+FIRST_TWO = "the first two checks are both of the load, on the same gears"
 
 EXPLAINED: dict[str, str] = {
     "equations module: \"P\" -> 'PX'": "the name of a type parameter",
@@ -17,4 +22,19 @@ EXPLAINED: dict[str, str] = {
     "momentary_peak_torque_Nm=c.gears.momentary_peak_torque_Nm, ) "
     "-> nothing": "demand over limit is the same quotient; the equation stands there by its name",
     **{f"selection candidates_of: True -> False{number}": LENGTHS for number in ("", " #2", " #3", " #4", " #5")},
+    "evaluation Checked.status: self.utilisation <= self.bound -> (self.utilisation) < (self.bound)": ON_THE_BOUND,
+    "evaluation Evaluation.governing_of: -1 -> (1)": LAST_OF_TWO,
+    "evaluation Evaluation.governing_of: -1 -> (1) #2": LAST_OF_TWO,
+    "evaluation Evaluation.order: dtype=np.float64 -> nothing": "numpy.where makes them float64 beside utilisation",
+    "evaluation Evaluation.order: axis=-1 -> nothing": LAST,
+    "evaluation Evaluation.order: -1 -> (1) #2": LAST_OF_TWO,
+    "evaluation Evaluation.foremost: among.any -> among.all": SOONER,
+    "evaluation Evaluation.foremost: axis=-1 -> nothing": SOONER,
+    "evaluation Evaluation.foremost: -1 -> (1)": LAST_OF_TWO,
+    "evaluation Evaluation.foremost: -1 -> (1) #2": LAST_OF_TWO,
+    "evaluation Evaluation.foremost: -1 -> (1) #3": LAST_OF_TWO,
+    "evaluation _verdicts: 0 -> 1": FIRST_TWO,
+    "evaluation _verdicts: largest > checked[0].bound -> (largest) >= (checked[0].bound)": ON_THE_BOUND,
+    "evaluation _verdicts: 0 -> 1 #2": FIRST_TWO,
+    "evaluation _counted: one.utilisation > one.bound -> (one.utilisation) >= (one.bound)": ON_THE_BOUND,
 }
