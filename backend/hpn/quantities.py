@@ -88,11 +88,11 @@ MOTION: Mapping[str, Named] = {
     "move.angle_deg": Named(N_("Angle"), "φ"),
     "move.distance_mm": Named(N_("Distance"), "s"),
     "move.time_s": Named(N_("Time"), "t"),
-    "move.speed_rpm": Named(N_("Largest speed"), "n"),
+    "move.speed_rpm": Named(N_("Peak speed"), "n"),
     "move.speed_mm_per_s": Named(N_("Largest speed"), "v"),
     "move.acceleration_deg_per_s2": Named(N_("Acceleration"), "α"),
     "move.acceleration_mm_per_s2": Named(N_("Acceleration"), "a"),
-    "move.jerk_share": Named(N_("Share of jerk in a ramp")),
+    "move.jerk_share": Named(N_("Jerk share")),
     "move.external_torque_Nm": Named(N_("External torque"), "T_ext"),
     "move.external_force_N": Named(N_("External force"), "F_ext"),
 }

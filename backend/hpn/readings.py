@@ -6,7 +6,7 @@ the same comparisons, since P grows in proportion with a load along its directio
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -44,6 +44,12 @@ class Reading:
         return "≥" if self.kind == "minimum" else "≤"
 
 
+AT_MOTOR = {"motor_peak_torque_Nm": "T_in,max", "motor_rated_torque_Nm": "T_in,rms"}
+"""Symbols of torques at the motor to which its own inertia adds, so that they are no quotient of the load's torque."""
+
+_RELATIONS = {"motor_peak_torque": "T_in,max ≤ T_mot", "motor_rated_torque": "T_in,rms ≤ T_mot,N"}
+
+
 def readings_of(
     candidate: Candidate,
     definitions: Mapping[str, CheckDefinition],
@@ -54,6 +60,7 @@ def readings_of(
     load = application.loads if application else None
     gear = catalogue.by_designation.get(candidate.designation) if catalogue else None
     u = application.requirements.utilisation if application else 1.0
+    turns_motor = _turns_motor(application, catalogue)
     readings: dict[str, Reading] = {}
     for check in candidate.checks:
         reading = None
@@ -61,8 +68,20 @@ def readings_of(
             reading = _bearing_life(candidate, check, load, u)
         if check.code == "output_bearing_load" and application and load and catalogue and gear:
             reading = _bearing_load(check, application, load, catalogue, gear, u)
-        readings[check.code] = reading or _as_computed(check, definitions[check.code], u)
+        reading = reading or _as_computed(check, definitions[check.code], u)
+        if turns_motor and check.code in _RELATIONS:
+            reading = replace(reading, relation=_RELATIONS[check.code])
+        readings[check.code] = reading
     return readings
+
+
+def _turns_motor(application: Application | None, catalogue: Catalogue | None) -> bool:
+    """Whether the motor's own inertia counts in its torques: along a motion, where it is stated or listed."""
+    motor = application.requirements.motor if application and application.duty_cycle.motion else None
+    if motor is None or motor.inertia_kgm2 is not None:
+        return motor is not None
+    listed = catalogue.motor_by_designation.get(motor.designation or "") if catalogue else None
+    return listed is not None and listed.inertia_kgm2 is not None
 
 
 def _as_computed(check: CheckResult, definition: CheckDefinition, u: float) -> Reading:

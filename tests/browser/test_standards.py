@@ -53,6 +53,8 @@ def unfolded(visitor: Visitor, path: str, width: int, *, dark: bool = False, tou
     """A page with everything open that can be."""
     page = visitor.open(path, width, dark=dark, touch=touch)
     page.evaluate("document.querySelectorAll('details').forEach(part => { part.open = true })")
+    # The bar at the foot covers whatever is scrolled under it, by chance a field in part.
+    page.evaluate("document.querySelectorAll('.jump').forEach(bar => { bar.style.position = 'static' })")
     page.wait_for_load_state("networkidle")
     for watch in visitor.watches:  # the browser says of a page that is refused or not found that it is
         watch.console = [text for text in watch.console if "responded with a status of 4" not in text]

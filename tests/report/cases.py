@@ -14,6 +14,7 @@ from hpn.reader import Reader
 from hpn.report import export
 from hpn.report import workbook as sheets
 from hpn.selection import Selection, encode, select
+from hpn.web.api.samples import LIFTING, TURNING
 from hpn.web.form.write import to_link
 from tests.build import Json, cycle, phase, worked_example
 from tests.wire import candidate_of
@@ -128,3 +129,37 @@ def language(code: str) -> Reader:
 def workbook(given: Export, reader: Reader) -> bytes:
     """The workbook on an export."""
     return sheets.workbook(given.typed(), reader)
+
+
+# --- Motions and phases that vary -------------------------------------------------------------------------------------
+
+MOTOR = {
+    "maximum_speed_rpm": 6000,
+    "peak_torque_Nm": 12,
+    "rated_torque_Nm": 4,
+    "rated_speed_rpm": 3000,
+    "inertia_kgm2": 0.00015,
+    "inertia_ratio": 80,
+}
+
+MOVING: dict[str, Json] = {
+    "phases that vary": cycle(
+        phase(40, 250, 0.3, peak_torque_Nm=55, peak_speed_rpm=400, rms_torque_Nm=42, radial_N=500),
+        phase(-32, 500, 3.0, peak_torque_Nm=36),
+        phase(20, 250, 0.4),
+        pause_s=4.0,
+        requirements={"load_inertia_kgm2": 0.2, "efficiency": 0.95, "motor": MOTOR},
+    ),
+    "rotary table": {
+        "duty_cycle": {"motion": TURNING, "pause_s": 0.5},
+        "emergency_stop": {"torque_Nm": 150},
+        "requirements": {"ratios": [5, 10, 20], "motor": MOTOR},
+    },
+    "ball screw": {
+        "duty_cycle": {"motion": LIFTING | {"moves": [move | {"axial_N": 90} for move in LIFTING["moves"]]}},
+        "requirements": {"sizes": ["11A", "14A"], "efficiency": 0.9},
+        "rank_by": "motor_torque",
+    },
+    "many moves": {"duty_cycle": {"motion": LIFTING | {"moves": LIFTING["moves"] * 60}}},
+}
+"""Cycles whose torque and speed vary, typed or from a motion."""

@@ -116,7 +116,7 @@ def test_every_motion_survives_its_link(motion: dict[str, Any], document: dict[s
         (f"{STROKE}&etam=1.5", ("etam", None), "must be at most 1"),
         (f"{STROKE}&inc=100", ("inc", None), "must be at most 90"),
         (f"{TURN}&mn=5", ("mn", 0), "must be above 18.75"),
-        (f"{TURN}&mj=0.5", ("mj", 0), "has no Share of jerk in a ramp (mj): leave it out"),
+        (f"{TURN}&mj=0.5", ("mj", 0), "has no Jerk share (mj): leave it out"),
         (f"{TURN}&mv=dwell", ("ms", 1), "missing"),
         (f"{TURN}&mv=dwell&ms=&mt=x", ("mt", 1), "is not a number"),
         (f"{TURN}&FRi=1&mv=dwell&ms=&mt=1", ("FRi", 1), "missing"),

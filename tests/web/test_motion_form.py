@@ -129,7 +129,7 @@ def test_the_columns_of_a_profile_are_those_that_the_model_lets_it_have() -> Non
 @pytest.mark.parametrize(
     ("query", "place", "said"),
     [
-        (f"{TURN}&mj=&mj=0.5", "mj-1", "has no Share of jerk in a ramp (mj): leave it out"),
+        (f"{TURN}&mj=&mj=0.5", "mj-1", "has no Jerk share (mj): leave it out"),
         (TURN.replace("mt=0.8", "mt=x"), "mt-0", "is not a number"),
         (TURN.replace("mv=dwell", "mv="), "mv-1", "is missing"),
         (f"{TURN}&FRi=&FRi=x", "FRi-1", "is not a number"),
@@ -158,7 +158,7 @@ def test_only_what_the_mechanism_has_can_be_typed(api: TestClient) -> None:
         names = {name for name, _ in fields_of(api.get(f"/?{query}").text)} & {
             symbol.name for symbol in symbols.MECHANISM_SYMBOLS
         }
-        assert names == {symbol.name for symbol in symbols.mechanism_symbols(kind)}
+        assert names == {"mech", *(symbol.name for symbol in symbols.mechanism_symbols(kind))}
 
 
 def test_the_sum_of_bodies_becomes_the_inertia_and_the_link_has_the_sum(api: TestClient) -> None:

@@ -10,7 +10,8 @@ from hpn.reader import NOTHING, Reader
 from hpn.report import plots, tables
 from hpn.report.export import Export
 from hpn.report.inputs import LOADS, REQUIREMENTS
-from hpn.report.listing import listing
+from hpn.report.listing import listing, moves
+from hpn.report.motion import MOTION_TITLE, MOVES_TITLE, PHASES_TITLE
 from hpn.report.steps import steps
 from hpn.report.symbols import sentence
 from hpn.report.verdict import alternatives, checks, verdict
@@ -33,6 +34,9 @@ LABELS = {
     "loads": N_("Pause, emergency stop and loads"),
     "requirements": N_("Requirements"),
     "phases": N_("Duty cycle"),
+    "phases_of_motion": PHASES_TITLE,
+    "motion": MOTION_TITLE,
+    "moves": MOVES_TITLE,
     "derived": N_("What the cycle and the gear come to"),
     "cycle": N_("Torque and speed over one cycle"),
     "bearing": N_("Load on the output bearing"),
@@ -65,6 +69,7 @@ LABELS = {
         "between."
     ),
     "each_phase": N_("Each phase of the duty cycle"),
+    "each_move": N_("Each move of the motion"),
 }
 
 CAVEATS = (
@@ -73,9 +78,17 @@ CAVEATS = (
         "L10: 90 % survive; L50: 50 % survive. Equation 17.10 calls its result L10, while the "
         "glossary describes the rated torque on a basis of 50 % failures; the handbook does not settle which holds."
     ),
-    N_("Motor torques leave out the inertia of motor and gear, and losses where no efficiency is known."),
 )
 """What is to be known of the figures of cycle and gear, where they stand."""
+
+ON_MOTOR = (
+    N_("Motor torques leave out the inertia of motor and gear, and losses where no efficiency is known."),
+    N_(
+        "Motor torques count the motor’s own inertia; they leave out that of the gear, and losses where no efficiency "
+        "is known."
+    ),
+)
+"""The same of the motor's torques, without its own inertia and with it."""
 
 
 def content(export: Export, reader: Reader) -> dict[str, Any]:
@@ -96,10 +109,12 @@ def content(export: Export, reader: Reader) -> dict[str, Any]:
         "verdict": verdict(export, reader),
         "loads": tables.given(export, LOADS, reader),
         "requirements": tables.given(export, REQUIREMENTS, reader),
+        "motion": tables.motion(export, reader),
         "phases": tables.phases(export, reader),
+        "move_listing": moves(export, reader),
         "listing": listing(export, reader),
         "derived": tables.derived(export, reader),
-        "caveats": [sentence(text(caveat)) for caveat in CAVEATS],
+        "caveats": [sentence(text(caveat)) for caveat in (*CAVEATS, ON_MOTOR[export.turns_motor])],
         "cycle": {"panels": plots.cycle(export, reader), "alt": text(N_("Torque and speed of the cycle over time"))},
         "bearing": plots.envelope(export, reader),
         "bearing_alt": text(N_("Loads of the phases within the envelopes of the output bearing")),

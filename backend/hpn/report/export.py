@@ -13,7 +13,7 @@ from hpn.catalogue import Catalogue
 from hpn.checks import BY_CODE
 from hpn.duty import Duty
 from hpn.gear import Gear
-from hpn.selection import Candidate, Selection
+from hpn.selection import Candidate, Selection, with_listed_motor
 from hpn.wording import N_
 
 DIGITS = 4
@@ -71,6 +71,16 @@ class Export:
         return self.selection.candidate(self.chosen) or self.selection.foremost
 
     @cached_property
+    def equipped(self) -> Application:
+        """The application with the figures of the motor that it names, as far as the catalogue is at hand."""
+        return with_listed_motor(self.application, self.figures) if self.figures else self.application
+
+    @property
+    def turns_motor(self) -> bool:
+        """Whether the motor's own inertia counts in its torques, which a notice of the selection says."""
+        return any(notice.code == "motor_inertia_included" for notice in self.selection.notices)
+
+    @cached_property
     def duty(self) -> Duty:
         """Duty of the application, as arrays for one."""
         return Duty.of([self.application])
@@ -101,6 +111,8 @@ class Export:
             return False
         if self.figures is not None:
             return candidate.designation in self.figures.efficiency
+        if self.turns_motor:
+            return any(notice.code == "efficiency_supplied" for notice in self.selection.notices)
         shown = np.array([candidate.motor_peak_torque_Nm, candidate.motor_rated_torque_Nm], dtype=np.float64)
         output = np.array([self.duty.maximum_torque_Nm.item(), self.duty.rms_torque_Nm.item()])
         loss_free = equations.motor_torque(output_torque_Nm=output, ratio=candidate.ratio, efficiency=1.0)

@@ -77,18 +77,30 @@ def _result(field: str, formula: str) -> CellTerm:
 _WORK = "SUMPRODUCT(ABS(speed_rpm)*duration_s)"
 _CYCLE_TIME = "(SUM(duration_s)+pause_s)"
 
+
+def _varying(name: str, steady: str) -> str:
+    """A figure of the phases that vary; where a cell is empty, that of a steady phase."""
+    return f'(ABS({steady})*({name}="")+{name})'
+
+
+_PEAKS, _FASTEST = _varying("peak_torque_Nm", "torque_Nm"), _varying("peak_speed_rpm", "speed_rpm")
+_RMS = _varying("rms_torque_Nm", "torque_Nm")
+_LARGEST = "SUMPRODUCT(MAX(ABS(torque_Nm)))"
+"""Largest mean torque, by which powers are scaled."""
+
 CYCLE_TERMS = (
-    _duty("maximum_torque_Nm", "SUMPRODUCT(MAX(ABS(torque_Nm)))"),
+    _duty("maximum_torque_Nm", f"SUMPRODUCT(MAX({_PEAKS}))"),
     _duty(
         "average_torque_Nm",
-        f"IF(T_max=0,0,T_max*(SUMPRODUCT(ABS(speed_rpm)*duration_s*(ABS(torque_Nm)/T_max)^(10/3))/{_WORK})^0.3)",
+        f"IF({_LARGEST}=0,0,{_LARGEST}*"
+        f"(SUMPRODUCT(ABS(speed_rpm)*duration_s*(ABS(torque_Nm)/{_LARGEST})^(10/3))/{_WORK})^0.3)",
     ),
     CellTerm(
         Named(N_("RMS torque"), "T_rms"),
         "Nm",
-        f"IF(T_max=0,0,T_max*SQRT(SUMPRODUCT((torque_Nm/T_max)^2*duration_s)/{_CYCLE_TIME}))",
+        f"IF(T_max=0,0,T_max*SQRT(SUMPRODUCT(({_RMS}/T_max)^2*duration_s)/{_CYCLE_TIME}))",
     ),
-    _duty("maximum_output_speed_rpm", "SUMPRODUCT(MAX(ABS(speed_rpm)))"),
+    _duty("maximum_output_speed_rpm", f"SUMPRODUCT(MAX({_FASTEST}))"),
     _duty("average_output_speed_rpm", f"{_WORK}/{_CYCLE_TIME}"),
     CellTerm(
         Named(N_("Load factor of bearing life and speed"), "k"),

@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from hpn.checks.motor import MOTOR
 from hpn.quantities import CANDIDATE
 from hpn.report.export import Export
 from hpn.report.formulas import CHECK_FORMULAS, GEAR_TERMS, MOTOR_TORQUES, NONE, RATINGS, cell_name, terms_of
@@ -50,7 +51,16 @@ class Known:
             fixed |= _DEMANDS.keys()
         if self.export.follows_efficiency_curve(self.candidate):
             fixed |= set(MOTOR_TORQUES)
+        if self.export.turns_motor:
+            fixed |= set(MOTOR_TORQUES)
+        if self.export.figures is None and self._has_listed_motor:
+            fixed |= {check.code for check in MOTOR}
         return fixed
+
+    @property
+    def _has_listed_motor(self) -> bool:
+        motor = self.export.application.requirements.motor
+        return motor is not None and motor.designation is not None
 
     def terms(self) -> dict[str, float | str]:
         """Values of GEAR_TERMS as saved; words where there is no number."""

@@ -8,7 +8,8 @@ from typing import Any
 from hpn.quantities import INPUTS
 from hpn.reader import Reader
 from hpn.report.export import Export
-from hpn.report.tables import MOST_PHASES, columns
+from hpn.report.motion import MOVES, moves_of, written
+from hpn.report.tables import MOST_PHASES, columns, number_of
 from hpn.units import suffix_of
 from hpn.wording import N_
 
@@ -21,14 +22,33 @@ PAGE, GAP = 136, 6
 
 def listing(export: Export, reader: Reader) -> dict[str, Any] | None:
     """Each phase of a cycle that the first page only summarises; None where that page has them all."""
-    phases = export.application.duty_cycle.load_phases
+    cycle = export.application.duty_cycle
+    phases, number = cycle.load_phases, number_of(cycle, reader)
     if len(phases) <= MOST_PHASES:
         return None
     table = [[reader.text(N_("Phase")), *(str(number) for number in range(1, len(phases) + 1))]]
     for name, values in columns(phases).items():
         unit = suffix_of(name) or ""
         head = f"{INPUTS[f'phase.{name}'].symbol} [{reader.unit(unit)}]"
-        table.append([head, *("" if value is None else reader.exact(value, unit) for value in values)])
+        table.append([head, *("" if value is None else number(value, unit) for value in values)])
+    return _laid_out(table)
+
+
+def moves(export: Export, reader: Reader) -> dict[str, Any] | None:
+    """Each move of a motion that the first page only counts; None where that page has them all."""
+    motion = export.application.duty_cycle.motion
+    if motion is None or len(motion.moves) <= MOST_PHASES:
+        return None
+    table = [[reader.text(N_("Move")), *(str(number) for number in range(1, len(motion.moves) + 1))]]
+    for name, values in moves_of(motion).items():
+        unit = reader.unit(suffix_of(name) or "")
+        symbol = MOVES[name].symbol or reader.text(MOVES[name].name)
+        table.append([f"{symbol} [{unit}]" if unit else symbol, *(written(value, name, reader) for value in values)])
+    return _laid_out(table)
+
+
+def _laid_out(table: list[list[str]]) -> dict[str, Any]:
+    """Columns of texts as lines of one width, as many beside each other as a page holds."""
     widths = [max(map(len, column)) for column in table]
     head, *lines = (
         "  ".join(cell.rjust(w) for cell, w in zip(row, widths, strict=True)) for row in zip(*table, strict=True)

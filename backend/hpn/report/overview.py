@@ -21,7 +21,10 @@ from hpn.selection import CheckResult
 from hpn.units import suffix_of
 from hpn.wording import N_
 
-LOAD_PATH = "output_load."
+LOAD_PATH, LOAD_INERTIA = "output_load.", "requirements.load_inertia_kgm2"
+
+ALONG_THE_MOTION = N_("as saved: along the motion, with the motor’s own inertia")
+OF_THE_MOTION = N_("of the motion")
 
 REFERENCES = (
     ("rated_speed", N_("Rated input speed"), "rpm", 3000.0),
@@ -163,7 +166,10 @@ class Overview:
         """That a motor torque is a lower bound, for as long as the reader states no efficiency."""
         saved = self.text(LOSS_FREE) if self.book.export.is_lower_bound(self.known.candidate) else ""
         if fixed:
-            self.sheet.write_string(self.row, 4, saved, self.book.style("quiet"))
+            along = self.text(ALONG_THE_MOTION) if self.book.export.turns_motor else ""
+            said = "; ".join(filter(None, (along, saved)))
+            room = 4 if self.book.shown.measure("Nm").same else 7  # clear of the value in another unit
+            self.sheet.write_string(self.row, room, said, self.book.style("quiet"))
         else:
             formula = f'=IF(eta="","{self.text(LOSS_FREE)}","")'
             self.sheet.write_formula(self.row, 4, formula, self.book.style("quiet"), saved)
@@ -238,7 +244,9 @@ class Overview:
     def _inputs(self) -> None:
         self._section(N_("Inputs"))
         for path in (*LOADS, *REQUIREMENTS):
-            self._line(INPUTS[path].name, INPUTS[path].symbol, suffix_of(path) or "")
+            own = path == LOAD_INERTIA and self.book.export.selection.duty.load_inertia_kgm2 is not None
+            source = self.text(OF_THE_MOTION) if own else ""
+            self._line(INPUTS[path].name, INPUTS[path].symbol, suffix_of(path) or "", source)
             live = tuple(path.split(".")) in NUMBERS or path.startswith(LOAD_PATH)
             value = self._input(path)
             shown = ", ".join(map(str, value)) if isinstance(value, tuple) else value
@@ -252,7 +260,9 @@ class Overview:
 
     def _input(self, path: str) -> Value | None:
         """What the application says, and of a load also what it has by default, should the reader add one."""
-        value = value_of(self.book.export.application, path)
+        value = value_of(self.book.export.equipped, path)
+        if path == LOAD_INERTIA and value is None:
+            return self.book.export.selection.duty.load_inertia_kgm2
         if value is None and path.startswith(LOAD_PATH):
             default: Value | None = getattr(OutputLoad(), path.removeprefix(LOAD_PATH))
             return default

@@ -1,5 +1,6 @@
 """Plots as data: lines and labels in a unit square, ticks at round numbers. The template only draws."""
 
+import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from itertools import accumulate, pairwise
@@ -9,6 +10,7 @@ from hpn.application import Application
 from hpn.drawings import Subject, bearing_picture, envelope_drawing, governing_phases
 from hpn.drawings.axis import round_numbers, slices
 from hpn.drawings.svg import markup
+from hpn.phase import Phase
 from hpn.quantities import INPUTS
 from hpn.reader import Reader
 from hpn.report.export import Export
@@ -163,11 +165,13 @@ def _over_time(application: Application, name: str, average: float, symbol: str,
     values = [*(shown(getattr(phase, name)) for phase in cycle.load_phases), 0.0]
     edges = [*accumulate((phase.duration_s for phase in cycle.load_phases), initial=0.0)]
     edges.append(end := edges[-1] + cycle.pause_s)
+    peaks = [*(shown(_peak(phase, name)) for phase in cycle.load_phases), 0.0]
     label = Sentence(N_("{quantity} in {unit}"), {"quantity": named.name, "unit": reader.unit(unit)}, ("quantity",))
-    plot = Plot((0.0, end), _span(values), y_label=reader.told(label))
+    plot = Plot((0.0, end), _span([*values, *peaks]), y_label=reader.told(label))
     if len(cycle.load_phases) <= MOST_STEPS:
-        ends = [(edges[k + place], value) for k, value in enumerate(values) for place in (0, 1)]
-        plot.line(name, [(0.0, 0.0), *ends])
+        if peaks != values:
+            plot.line(f"range_{name}", _steps(edges, peaks))
+        plot.line(name, _steps(edges, values))
     else:
         width = end / MOST_STEPS
         ranges = slices([edge / width for edge in edges], values)
@@ -175,6 +179,17 @@ def _over_time(application: Application, name: str, average: float, symbol: str,
     mean = shown(average)
     plot.line("average", [(0.0, mean), (end, mean)], symbol, (end, mean))
     return plot
+
+
+def _steps(edges: Sequence[float], values: Sequence[float]) -> list[Point]:
+    return [(0.0, 0.0), *((edges[k + place], value) for k, value in enumerate(values) for place in (0, 1))]
+
+
+def _peak(phase: Phase, name: str) -> float:
+    """Largest torque or speed of a phase, with the sign of its mean."""
+    own: float = getattr(phase, name)
+    peak: float | None = getattr(phase, f"peak_{name}")
+    return own if peak is None else math.copysign(peak, own)
 
 
 def _name_phases(application: Application, plot: Plot, reader: Reader) -> None:
@@ -185,7 +200,7 @@ def _name_phases(application: Application, plot: Plot, reader: Reader) -> None:
         if phase.duration_s > 0.025 * end:
             plot.mark(
                 "phase",
-                (time + phase.duration_s / 2, reader.measure("Nm").shown(max(phase.torque_Nm, 0.0))),
+                (time + phase.duration_s / 2, reader.measure("Nm").shown(max(_peak(phase, "torque_Nm"), 0.0))),
                 f"t_{number}",
             )
         time += phase.duration_s

@@ -58,6 +58,10 @@ LONGEST_FOOTER_LINK = 100
 SPARE_PHASES = 20
 
 PHASE = tuple(path.removeprefix("phase.") for path in INPUTS if path.startswith("phase."))
+VARYING = ("peak_torque_Nm", "peak_speed_rpm", "rms_torque_Nm")
+"""Columns that are folded away unless a phase has one of them."""
+
+FOLDED = {"level": 1, "hidden": True}
 USED = {"radial_used": "radial_N", "axial_used": "axial_N"}
 """Columns of a phase: what is given, and the loads that it has after all, by name and field."""
 
@@ -165,8 +169,24 @@ class CycleSheet:
             self.book.name(name, self.sheet, xl_range_abs(1, column, self.last, column))
         for row in range(1, self.last + 1):
             self._phase(row)
+        if not self.varies:
+            self._fold(len(heads))
         self.sheet.repeat_rows(0)
-        self.book.page(self.sheet, landscape=False)
+        self.book.page(self.sheet, landscape=self.varies)
+
+    @property
+    def varies(self) -> bool:
+        """Whether a phase has a peak or an RMS of its own."""
+        return any(getattr(phase, name) is not None for phase in self.phases for name in VARYING)
+
+    def _fold(self, start: int) -> None:
+        """Fold the columns of phases that vary; a reader opens them by the mark above the column behind."""
+        first, last = (1 + PHASE.index(VARYING[k]) for k in (0, -1))
+        self.sheet.set_column(first, last, 15, None, FOLDED)
+        self.sheet.set_column(last + 1, last + 1, 15, None, {"collapsed": True})
+        for column, name in enumerate(self.converted, start):
+            if name in VARYING:
+                self.sheet.set_column(column, column, 15, None, {"hidden": True})
 
     def _heads_converted(self, start: int) -> None:
         """Heads of the columns in other units, behind all others."""

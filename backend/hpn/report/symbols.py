@@ -5,9 +5,9 @@ import re
 Part = str | list[str]
 """A plain text, or a symbol: its letter and its index, which may be empty."""
 
-_INDEXED = r"\b[A-Za-z]_[A-Za-z0-9,_()]*[A-Za-z0-9)]"
+_INDEXED = r"\b[A-Za-zηθ]_[A-Za-z0-9,_()]*[A-Za-z0-9)]"
 _SENTENCE = re.compile(rf"({_INDEXED})")
-_FORMULA = re.compile(rf"({_INDEXED}|\b[A-Za-zη]\b)")
+_FORMULA = re.compile(rf"({_INDEXED}|\b[A-Za-zαβηθμφ]\b)")
 
 
 def formula(text: str) -> list[Part]:

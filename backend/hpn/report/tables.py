@@ -1,13 +1,16 @@
 """Tables of the report: duty cycle, what it and the gear come to, and the gear's published figures."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
+from hpn.application import DutyCycle
 from hpn.phase import Phase
 from hpn.quantities import CANDIDATE, DUTY, GEAR, INPUTS
 from hpn.reader import Reader
+from hpn.readings import AT_MOTOR
 from hpn.report import inputs
 from hpn.report.export import Export
+from hpn.report.motion import MOVES, lines, moves_of, written
 from hpn.report.symbols import formula
 from hpn.report.words import equation, measured
 from hpn.selection import FIGURES
@@ -17,25 +20,26 @@ from hpn.wording import N_, Sentence
 MOST_PHASES = 20
 """Phases up to which each is listed; beyond, their range and sum."""
 
-_ALWAYS, _WHERE_GIVEN = ("torque_Nm", "speed_rpm", "duration_s"), ("radial_N", "axial_N")
+_ALWAYS = ("torque_Nm", "speed_rpm", "duration_s")
+_WHERE_GIVEN = ("peak_torque_Nm", "peak_speed_rpm", "rms_torque_Nm", "radial_N", "axial_N")
 
 Column = Sequence[float | None]
 
 
 def given(export: Export, paths: Sequence[str], reader: Reader) -> list[dict[str, Any]]:
     """Inputs that are given."""
-    rows = inputs.given(export.application, paths, reader)
+    rows = inputs.given(export.equipped, paths, reader)
     return [{"label": row.label, "symbol": formula(row.symbol), "text": row.text} for row in rows]
 
 
 def phases(export: Export, reader: Reader) -> dict[str, Any]:
     """The duty cycle: each phase, or of a long cycle least, largest and sum."""
-    listed = export.application.duty_cycle.load_phases
+    cycle = export.application.duty_cycle
+    listed, number = cycle.load_phases, number_of(cycle, reader)
     given = columns(listed)
     if len(listed) <= MOST_PHASES:
         cells = [
-            ["" if value is None else reader.exact(value, _unit(name)) for value in column]
-            for name, column in given.items()
+            ["" if value is None else number(value, _unit(name)) for value in column] for name, column in given.items()
         ]
         rows, note = [[str(k), *row] for k, row in enumerate(zip(*cells, strict=True), 1)], ""
     else:
@@ -46,10 +50,38 @@ def phases(export: Export, reader: Reader) -> dict[str, Any]:
     return {"header": [[[], ""], *heads], "rows": rows, "note": note}
 
 
+def number_of(cycle: DutyCycle, reader: Reader) -> Callable[[float, str], str]:
+    """How the figures of phases are written: as they were given, or rounded where they come out of a motion."""
+    return reader.exact if cycle.motion is None else reader.figure
+
+
 def columns(phases: Sequence[Phase]) -> dict[str, Column]:
     """Columns of the duty cycle by field: what each phase says, and None where it says nothing."""
     optional = (name for name in _WHERE_GIVEN if any(getattr(phase, name) is not None for phase in phases))
     return {name: [getattr(phase, name) for phase in phases] for name in (*_ALWAYS, *optional)}
+
+
+def motion(export: Export, reader: Reader) -> dict[str, Any] | None:
+    """Mechanism and moves as they were given; of many moves their number alone. None where phases were given."""
+    given = export.application.duty_cycle.motion
+    if given is None:
+        return None
+    mechanism = [
+        {"label": line.label, "symbol": formula(line.symbol), "text": line.text} for line in lines(given, reader)
+    ]
+    columns = moves_of(given)
+    heads = [
+        [formula(MOVES[name].symbol), reader.unit(_unit(name)) if MOVES[name].symbol else reader.text(MOVES[name].name)]
+        for name in columns
+    ]
+    rows, note = [], ""
+    if len(given.moves) <= MOST_PHASES:
+        cells = [[written(value, name, reader) for value in column] for name, column in columns.items()]
+        rows = [[str(k), *row] for k, row in enumerate(zip(*cells, strict=True), 1)]
+    else:
+        text = N_("{count} moves; each stands on the last pages.")
+        note = reader.told(Sentence(text, {"count": reader.exact(len(given.moves))}))
+    return {"mechanism": mechanism, "moves": {"header": [[[], ""], *heads], "rows": rows, "note": note}}
 
 
 def _summary(given: Mapping[str, Column], reader: Reader) -> list[list[str]]:
@@ -70,9 +102,12 @@ def derived(export: Export, reader: Reader) -> list[dict[str, Any]]:
     """Figures of the cycle and of the reported gear."""
     duty, candidate = export.selection.duty, export.candidate
     figures = [(name, DUTY[name], getattr(duty, name)) for name in DUTY]
+    if duty.load_inertia_kgm2 is not None:
+        figures.append(("load_inertia_kgm2", INPUTS["requirements.load_inertia_kgm2"], duty.load_inertia_kgm2))
     figures += [(name, CANDIDATE[name], getattr(candidate, name)) for name in FIGURES]
     lower_bound = export.is_lower_bound(candidate)
     loss_free = lower_bound and not export.follows_efficiency_curve(candidate)
+    symbols = AT_MOTOR if export.turns_motor else {}
     rows = []
     for name, named, value in figures:
         if value is not None:
@@ -81,7 +116,7 @@ def derived(export: Export, reader: Reader) -> list[dict[str, Any]]:
             rows.append(
                 {
                     "label": reader.text(named.name) + bound,
-                    "symbol": formula(named.symbol),
+                    "symbol": formula(symbols.get(name, named.symbol)),
                     "text": measured(value, suffix_of(name) or "", reader),
                     "where": "η = 1" if loss_free and at_motor else equation(named.equation, reader),
                 }

@@ -12,6 +12,8 @@ from hpn.reader import Reader
 from hpn.report.candidates import CandidatesSheet
 from hpn.report.export import Export
 from hpn.report.formulas import NOT_RATED, UNLIMITED
+from hpn.report.motion import MOTION_TITLE
+from hpn.report.motion_sheet import write_motion
 from hpn.report.overview import Overview
 from hpn.report.sheets import Book, CycleSheet
 from hpn.report.words import catalogue_version
@@ -47,13 +49,19 @@ def words(reader: Reader) -> Mapping[str, str]:
 
 
 def _fill(book: Book) -> None:
-    names = [book.reader.text(name) for name in (N_("Selection"), N_("Duty cycle"), N_("Candidates"), N_("Notes"))]
-    overview, cycle, candidates, notes = (book.file.add_worksheet(name) for name in names)
+    overview, cycle = (_sheet(book, name) for name in (N_("Selection"), N_("Duty cycle")))
     CycleSheet(book, cycle).write()
+    if (motion := book.export.application.duty_cycle.motion) is not None:
+        write_motion(book, _sheet(book, MOTION_TITLE), motion)
+    candidates, notes = (_sheet(book, name) for name in (N_("Candidates"), N_("Notes")))
     rows = CandidatesSheet(book, candidates).write()
     Overview(book, overview, rows).write()
     _notes(book, notes)
     overview.activate()
+
+
+def _sheet(book: Book, name: str) -> Any:
+    return book.file.add_worksheet(book.reader.text(name))
 
 
 def _notes(book: Book, sheet: Any) -> None:

@@ -25,7 +25,6 @@ from hpn.web.form.refusals import refusal_of
 from hpn.web.form.symbols import (
     BY_NAME,
     BY_PATH,
-    FIRST_OF_MECHANISM,
     LOADS,
     MECHANISM_SYMBOLS,
     MOTION_PATH,
@@ -121,9 +120,8 @@ class Form:
     @property
     def mechanism_symbols(self) -> tuple[Symbol, ...]:
         """Inputs of the mechanism: its own, and any other that is given, which is refused where it stands."""
-        have = mechanism_symbols(self.mechanism)[1:]
-        names = {"mech", *(symbol.name for symbol in have)}
-        own = sorted(have, key=lambda s: FIRST_OF_MECHANISM.index(s.name) if s.name in FIRST_OF_MECHANISM else 99)
+        own = mechanism_symbols(self.mechanism)
+        names = {"mech", *(symbol.name for symbol in own)}
         return (*own, *(symbol for symbol in MECHANISM_SYMBOLS if symbol.name in self.texts.keys() - names))
 
     @property

@@ -217,17 +217,22 @@ MECHANISM_SYMBOLS = (
 FIRST_OF_MECHANISM = ("d", "h", "ml", "J")
 """Inputs of a mechanism that nearly every one needs, as the form shows them; the others are folded."""
 
+_IN_FORM = (*FIRST_OF_MECHANISM, "mg", "rg", "th0", "inc", "Tf", "b", "mu", "etam", "im")
+
 _INERTIA_OF_TURNING = N_("Of everything that turns with pinion, pulley or screw.")
 _INERTIA_OF_ROTARY = N_("Of everything that turns about the axis, a mass off the shaft included.")
 
 
 @cache
 def mechanism_symbols(mechanism: str) -> tuple[Symbol, ...]:
-    """Symbols that a mechanism has, each with its default as placeholder; an unknown one turns."""
+    """Symbols that a mechanism has beside its kind, in the order of the form, each with its default as placeholder.
+
+    An unknown mechanism turns.
+    """
     model = CLASSES.get(mechanism, Rotary)
     inertia = _INERTIA_OF_ROTARY if model is Rotary else _INERTIA_OF_TURNING
     found = []
-    for symbol in MECHANISM_SYMBOLS:
+    for symbol in (BY_NAME[name] for name in _IN_FORM):
         field = model.model_fields.get(symbol.path[-1])
         if field is not None or (model is Rotary and symbol.name == "th0"):
             default = 0.0 if field is None else field.default

@@ -1,0 +1,193 @@
+"""Journeys of people who have dimensions and moves, and neither inertias nor phases."""
+
+import json
+import re
+from typing import Any
+
+import pytest
+from playwright.sync_api import Locator, Page, expect
+
+from tests.browser.conftest import Visitor, violations
+
+SAVED = re.compile("/selections/[A-Za-z0-9_-]{22}$")
+WIDTHS = pytest.mark.parametrize("width", [1440, 390])
+START = "/?mech=rotary&mv=&ms=&mt="
+
+
+def result(page: Page) -> Locator:
+    return page.get_by_role("region", name="Result")
+
+
+def box(page: Page, name: str, *, exact: bool = False) -> Locator:
+    return page.get_by_role("textbox", name=name, exact=exact)
+
+
+def add_body(page: Page, k: int, shape: str, **figures: str) -> None:
+    """Fill body k, which is added where there is none yet."""
+    if k > 1:
+        page.get_by_role("button", name="Add body").click()
+    choice = page.get_by_role("combobox", name=f"Shape, body {k}")
+    expect(choice).to_be_visible()
+    choice.select_option(shape)
+    for name, value in figures.items():
+        box(page, f"{name.replace('_', ' ')}, body {k}").fill(value)
+
+
+def add_move(page: Page, k: int, profile: str, **figures: str) -> None:
+    """Fill move k, which is added where there is none yet."""
+    if k > 1:
+        page.get_by_role("button", name="Add move").click()
+        expect(page.get_by_role("combobox", name=f"Profile, move {k}")).to_be_focused()
+    page.get_by_role("combobox", name=f"Profile, move {k}").select_option(profile)
+    for name, value in figures.items():
+        box(page, f"{name}, move {k}").fill(value)
+
+
+def use_the_sum(page: Page, figure: str) -> None:
+    expect(page.locator("#bodies-sum")).to_contain_text(figure)
+    page.get_by_role("button", name="Use this inertia").click()
+
+
+def saved(page: Page, base: str) -> tuple[dict[str, Any], str]:
+    """Application and link of what the page saves."""
+    page.get_by_role("button", name="Save", exact=True).click()
+    page.wait_for_url(SAVED)
+    reply = page.request.get(page.url.replace("/selections/", "/api/v1/selections/")).text()
+    kept = json.loads(reply)
+    return kept["application"], base + kept["result"]["link"]
+
+
+def has_no_sideways_scroll(page: Page) -> bool:
+    return bool(page.evaluate("document.documentElement.scrollWidth <= innerWidth"))
+
+
+@WIDTHS
+def test_a_rotary_table_known_by_its_dimensions_becomes_a_saved_selection(visitor: Visitor, width: int) -> None:
+    page = visitor.open("/?T=&n=&t=", width)
+    page.get_by_role("button", name="Motion", exact=True).click()
+    expect(page.get_by_role("button", name="Rotary", exact=True)).to_have_attribute("aria-pressed", "true")
+    expect(result(page)).to_contain_text("A mechanism and one move are enough")
+    page.get_by_text("Inertia from dimensions").click()
+    add_body(page, 1, "Disc", Mass="60", Diameter="500")
+    add_body(page, 2, "Point mass", Mass="5", Off_the_axis="180", Number="4")
+    use_the_sum(page, "2.523")
+    expect(box(page, "Moment of inertia")).to_have_value("2.523")
+    add_move(page, 1, "Trapezoidal", Angle="90", Time="0.6")
+    add_move(page, 2, "Dwell", Time="1.2")
+    expect(page).to_have_url(re.compile("mv=dwell&ms=&mt=1.2$"))
+    expect(result(page)).to_contain_text("HPN-20A-4")
+    assert has_no_sideways_scroll(page)
+    typed = page.url
+
+    application, link = saved(page, visitor.server)
+
+    assert application["duty_cycle"]["motion"]["mechanism"]["inertia_kgm2"] == 2.523
+    assert link == typed
+    page.goto(link)
+    expect(box(page, "Moment of inertia")).to_have_value("2.523")
+    expect(page.get_by_role("combobox", name="Profile, move 2")).to_have_value("dwell")
+    expect(result(page)).to_contain_text("HPN-20A-4")
+
+
+@WIDTHS
+def test_a_ball_screw_known_by_its_dimensions_becomes_a_saved_selection(visitor: Visitor, width: int) -> None:
+    page = visitor.open(START, width)
+    page.get_by_role("button", name="Ball screw", exact=True).click()
+    expect(box(page, "Lead")).to_be_visible()
+    expect(box(page, "Mass off the shaft")).to_have_count(0)
+    box(page, "Lead").fill("20")
+    box(page, "Moved mass").fill("120")
+    page.get_by_text("Inertia from dimensions").click()
+    add_body(page, 1, "Disc", or_density="7.85", Diameter="40", Height="1000")
+    use_the_sum(page, "0.00197")
+    page.get_by_text("Incline, friction, efficiency, stage").click()
+    box(page, "Incline").fill("90")
+    add_move(page, 1, "S-curve", Distance="400", Time="1.5")
+    add_move(page, 2, "S-curve", Distance="-400", Time="1.5")
+    expect(result(page)).to_contain_text("suitable")
+    expect(page).to_have_url(re.compile(r"mech=ball_screw&J=0\.00197\d*&h=20&ml=120&inc=90&.*&ms=-400&mt=1\.5$"))
+    assert has_no_sideways_scroll(page)
+    typed, gear = page.url, result(page).get_by_role("heading", level=2).inner_text()
+
+    application, link = saved(page, visitor.server)
+
+    assert application["duty_cycle"]["motion"]["mechanism"]["lead_mm"] == 20
+    assert link == typed
+    page.goto(link)
+    assert result(page).get_by_role("heading", level=2).inner_text() == gear
+    expect(box(page, "Distance, move 2")).to_have_value("-400")
+
+
+def test_switching_taking_over_and_going_back(visitor: Visitor) -> None:
+    page = visitor.open("/")
+    page.get_by_role("button", name="Motion", exact=True).click()
+    box(page, "Moment of inertia").fill("2.5")
+    add_move(page, 1, "Trapezoidal", Angle="90", Time="0.6")
+    expect(page).to_have_url(re.compile("mech=rotary&J=2.5&mv=trapezoidal&ms=90&mt=0.6"))
+    motion = page.url
+    page.get_by_text("Phases that come out").first.click()
+    expect(page.locator(".out tbody tr")).to_have_count(3)
+    box(page, "Time, move 1").fill("0.9")
+    expect(page.locator(".out tbody tr").first).to_contain_text("0.3")
+    box(page, "Time, move 1").fill("0.6")
+    expect(page).to_have_url(motion)
+
+    page.get_by_role("button", name="Take over into the table").click()
+    expect(box(page, "Torque, phase 3, in Nm", exact=True)).to_be_visible()
+    expect(page).to_have_url(re.compile("Tpk="))
+    page.go_back()
+    expect(box(page, "Angle, move 1")).to_have_value("90")
+    expect(page).to_have_url(motion)
+    page.get_by_role("button", name="Phases", exact=True).click()
+    expect(box(page, "Torque, phase 1, in Nm", exact=True)).to_have_value("40")
+    expect(page).to_have_url(re.compile("T=40&n=250&t=0.3"))
+
+
+def test_a_cell_is_shown_where_the_profile_has_it_or_something_stands_in_it(visitor: Visitor) -> None:
+    page = visitor.open(START)
+    box(page, "Moment of inertia").fill("2.5")
+    profile = page.get_by_role("combobox", name="Profile, move 1")
+    expect(box(page, "Angle, move 1")).to_be_hidden()
+    profile.focus()
+    profile.select_option("S-curve")
+    expect(box(page, "Jerk share, move 1")).to_be_visible()
+    box(page, "Angle, move 1").fill("90")
+    box(page, "Peak speed, move 1").fill("25")
+    expect(page.locator("#duty-errors p")).to_have_count(0)  # the move is waited for
+    box(page, "Acceleration, move 1").fill("900")
+    expect(page).to_have_url(re.compile("mv=s_curve&ms=90&mn=25&ma=900"))
+    profile.select_option("Dwell")
+    box(page, "Time, move 1").fill("1")
+    expect(box(page, "Jerk share, move 1")).to_be_hidden()
+    expect(box(page, "Angle, move 1")).to_be_visible()
+    expect(page.locator("#duty-errors")).to_contain_text("has no Angle (ms): leave it out")
+
+
+def test_moves_are_edited_by_the_keys_of_phases(visitor: Visitor) -> None:
+    page = visitor.open("/?mech=rotary&J=2.5&mv=trapezoidal&ms=90&mt=0.6&mv=dwell&ms=&mt=1.2")
+    box(page, "Time, move 1").focus()
+    page.keyboard.press("Alt+ArrowDown")
+    expect(page.get_by_role("combobox", name="Profile, move 2")).to_have_value("trapezoidal")
+    expect(box(page, "Time, move 2")).to_be_focused()
+    page.get_by_role("combobox", name="Profile, move 2").focus()
+    page.keyboard.press("Alt+Enter")
+    expect(page.get_by_role("combobox", name="Profile, move 3")).to_be_focused()
+    page.keyboard.press("Alt+Delete")
+    expect(page.get_by_role("combobox", name="Profile, move 3")).to_have_count(0)
+    assert violations(page) == []
+
+
+def test_a_motion_is_given_without_script(visitor: Visitor) -> None:
+    page = visitor.open("/?T=&n=&t=", script=False)
+    page.get_by_role("button", name="Motion", exact=True).click()
+    page.get_by_text("Inertia from dimensions").click()
+    add_body(page, 1, "Ring", Mass="20", Inner_diameter="300")
+    box(page, "Diameter, body 1").first.fill("400")
+    page.get_by_role("button", name="Calculate").click()
+    use_the_sum(page, "0.625")
+    page.get_by_role("combobox", name="Profile, move 1").select_option("Modified sine")
+    expect(box(page, "Peak speed, move 1")).to_be_hidden()
+    box(page, "Angle, move 1").fill("180")
+    box(page, "Time, move 1").fill("0.5")
+    page.get_by_role("button", name="Calculate").click()
+    expect(result(page)).to_contain_text("suitable")

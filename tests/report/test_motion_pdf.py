@@ -1,0 +1,83 @@
+"""The PDF report of motions and of phases that vary."""
+
+import re
+from dataclasses import replace
+from io import BytesIO
+
+import pypdfium2
+import pytest
+from pypdf import PdfReader
+
+from hpn.catalogue import Catalogue
+from hpn.reader import Reader
+from hpn.report.content import content
+from hpn.report.pdf import pdf
+from tests.conftest import Supplement
+from tests.property.test_varying_remedy import MOTORS
+from tests.report.cases import CASES, MOVING, language, typed_export_of
+
+ENGLISH, GERMAN = language("en"), language("de")
+US = Reader("de", units=("lb_in", "in", "lb"), digits=4)
+
+
+def pages(document: bytes) -> list[str]:
+    opened = pypdfium2.PdfDocument(document)
+    return [page.get_textpage().get_text_range().replace("\r\n", "\n") for page in opened]
+
+
+def columns(case: str, catalogue: Catalogue) -> list[str]:
+    """Symbols and units of the table of phases."""
+    header = content(typed_export_of((CASES | MOVING)[case], catalogue), ENGLISH)["phases"]["header"]
+    return ["".join("_".join(part) for part in symbol) + f" {unit}" for symbol, unit in header[1:]]
+
+
+def test_peaks_and_RMS_have_columns_where_a_phase_has_them(catalogue: Catalogue) -> None:
+    assert columns("example", catalogue) == ["T_ Nm", "n_ rpm", "t_ s"]
+    assert columns("phases that vary", catalogue)[3:] == ["T_pk Nm", "n_pk rpm", "T_rms Nm", "F_R N"]
+
+
+def test_a_motion_is_printed_as_given_with_the_phases_that_come_out(catalogue: Catalogue) -> None:
+    first = pages(pdf(typed_export_of(MOVING["rotary table"], catalogue), GERMAN))[0]
+    for line in ("Mechanismus Drehachse", "0,8 kg·m²", "250 mm", "1 Trapez 90 0,8 900", "3 S-Kurve −90 1 25 0,5"):
+        assert line in re.sub(r"[\u2009\u202f\xa0]", " ", first), line
+    assert "Lastphasen der Bewegung" in first
+    rows = re.findall(r"^(\d) (\S+) (\S+) (\S+) (\S+) (\S+) (\S+)$", first, re.M)
+    assert len(rows) == 8
+    assert rows[0][1:3] == ("48,12", "11,63")
+
+
+def test_its_figures_are_in_the_units_of_the_reader(catalogue: Catalogue) -> None:
+    shown = content(typed_export_of(MOVING["rotary table"], catalogue), US)
+    texts = {line["label"]: line["text"] for line in shown["motion"]["mechanism"]}
+    assert texts["Reibmoment"].startswith("13,2761")
+    assert shown["motion"]["moves"]["header"][-1][1] == "lb·in" or "lb" in shown["motion"]["moves"]["header"][-1][1]
+    assert shown["phases"]["header"][1][1].startswith("lb")
+
+
+def test_the_motor_that_turns_its_own_inertia_is_named_so(catalogue: Catalogue) -> None:
+    text = "\n".join(pages(pdf(typed_export_of(MOVING["rotary table"], catalogue), ENGLISH)))
+    assert "count the motor’s own inertia" in text
+    assert "Tin,max" in text and "Tmax / (i" not in text.split("Basis")[0]
+    steady = "\n".join(pages(pdf(typed_export_of(MOVING["phases that vary"], catalogue), ENGLISH)))
+    assert "leave out the inertia of motor and gear" in steady
+
+
+def test_a_listed_motor_stands_with_its_figures(supplemented: Supplement) -> None:
+    supplied = supplemented(motors=MOTORS)
+    asked = MOVING["rotary table"] | {"requirements": {"motor": {"designation": "M 8"}}}
+    export = typed_export_of(asked, supplied)
+    wishes = {line["label"]: line["text"] for line in content(export, ENGLISH)["requirements"]}
+    assert wishes["Motor of your list"] == "M 8"
+    assert wishes["Inertia of the motor"].startswith("0.0005")
+    assert pdf(replace(export, catalogue=None), ENGLISH)
+
+
+@pytest.mark.parametrize("reader", [ENGLISH, US], ids=["en", "de"])
+def test_every_move_of_many_is_printed_under_heads(reader: Reader, catalogue: Catalogue) -> None:
+    document = pdf(typed_export_of(MOVING["many moves"], catalogue), reader)
+    title = reader.text("Each move of the motion")
+    found = pages(document)
+    first = next(k for k, page in enumerate(found) if title in page)
+    numbers = re.findall(r"^ *(\d+) +(?:Modifi|Triang|Dreieck)", "\n".join(found[first:]), re.M)
+    assert {int(number) for number in numbers} >= set(range(1, 121))
+    assert len(PdfReader(BytesIO(document)).pages) <= 10

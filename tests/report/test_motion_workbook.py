@@ -1,0 +1,137 @@
+"""The workbook of motions and of phases that vary, recalculated by LibreOffice."""
+
+from dataclasses import replace
+from io import BytesIO
+from typing import Any
+
+import openpyxl
+import pytest
+from openpyxl.workbook import Workbook
+
+from hpn.catalogue import Catalogue
+from hpn.report import workbook as sheets
+from hpn.report.export import LOSS_FREE
+from hpn.report.formulas import MOTOR_TORQUES
+from hpn.web.api.samples import TURNING
+from tests.build import Json, answer, cycle, phase
+from tests.conftest import Supplement
+from tests.property.test_varying_remedy import MOTORS
+from tests.report.cases import CASES, MOTOR, MOVING, language, typed_export_of
+from tests.report.conftest import Recalculate
+from tests.report.test_workbook import assert_agrees, beside, candidates, got, opened, put, same
+
+GERMAN = language("de")
+
+
+def filled(book: Workbook) -> dict[str, Any]:
+    """Values of all cells by sheet and place."""
+    return {
+        f"{sheet.title}!{cell.coordinate}": cell.value for sheet in book for row in sheet.iter_rows() for cell in row
+    }
+
+
+LISTED: Json = cycle(
+    phase(5, 100, 1, peak_torque_Nm=9),
+    requirements={
+        "sizes": ["11A", "20A"],
+        "motor": {"designation": "M 8", "inertia_ratio": 5},
+        "load_inertia_kgm2": 0.1,
+    },
+)
+
+
+def test_recalculated_as_saved_no_cell_changes(
+    catalogue: Catalogue, supplemented: Supplement, recalculate: Recalculate
+) -> None:
+    cases = {name: (case, catalogue) for name, case in MOVING.items()} | {
+        "listed": (LISTED, supplemented(motors=MOTORS))
+    }
+    fresh = recalculate({name: opened(*case) for name, case in cases.items()})
+    for name, case in cases.items():
+        calculated = filled(fresh[name])
+        for place, value in filled(opened(*case, values=True)).items():
+            assert same(value, calculated[place]), (name, place, value, calculated[place])
+        assert_agrees(fresh[name], answer(*case))
+
+
+VARYING = MOVING["phases that vary"]
+CHANGED = VARYING | {
+    "duty_cycle": cycle(
+        phase(40, 250, 0.3, peak_torque_Nm=75, peak_speed_rpm=400, rms_torque_Nm=50, radial_N=500),
+        phase(-32, 500, 3.0, peak_speed_rpm=620),
+        phase(20, 250, 0.4),
+        phase(0, 0, 1, peak_torque_Nm=60, rms_torque_Nm=35),
+        pause_s=4.0,
+    )["duty_cycle"]
+}
+
+
+def test_changed_peaks_and_RMS_recalculate_to_what_the_service_says(
+    catalogue: Catalogue, recalculate: Recalculate
+) -> None:
+    book = opened(VARYING, catalogue)
+    for name, value, row in (
+        *(("peak_torque_Nm", 75, 0), ("rms_torque_Nm", 50, 0), ("peak_torque_Nm", None, 1), ("peak_speed_rpm", 620, 1)),
+        *(("torque_Nm", 0, 3), ("speed_rpm", 0, 3), ("duration_s", 1, 3)),
+        *(("peak_torque_Nm", 60, 3), ("rms_torque_Nm", 35, 3)),
+    ):
+        put(book, name, value, row)
+    fresh = recalculate({"changed": book})["changed"]
+    reply = answer(CHANGED, catalogue)
+    assert_agrees(fresh, reply)
+    for cell, field in {
+        "T_max": "maximum_torque_Nm",
+        "T_av": "average_torque_Nm",
+        "n_out_max": "maximum_output_speed_rpm",
+    }.items():
+        assert same(got(fresh, cell), reply["duty"][field]), cell
+
+
+def test_a_motion_has_a_sheet_of_its_own_in_every_language_and_unit(catalogue: Catalogue) -> None:
+    export = typed_export_of(MOVING["rotary table"], catalogue)
+    book = openpyxl.load_workbook(BytesIO(sheets.workbook(export, GERMAN)))
+    rows = [[cell for cell in row if cell is not None] for row in book["Bewegung"].iter_rows(values_only=True)]
+    assert ["Mechanismus", "Drehachse"] in [[cell for cell in row if cell][:2] for row in rows]
+    assert ["Trägheitsmoment", "J", 0.8, "kg·m²"] in rows
+    assert [1, "Trapez", 90, 0.8, 900] in rows
+
+
+def test_columns_of_phases_that_vary_are_folded_unless_used(catalogue: Catalogue) -> None:
+    plain, varying = (
+        opened(case, catalogue)["Duty cycle"].column_dimensions
+        for case in (CASES["example"], MOVING["phases that vary"])
+    )
+    assert plain["G"].hidden
+    assert not varying["G"].hidden
+
+
+def test_motor_torques_along_a_motion_stand_as_saved_and_say_so(catalogue: Catalogue, recalculate: Recalculate) -> None:
+    book = opened(MOVING["rotary table"], catalogue)
+    for name in MOTOR_TORQUES:
+        assert isinstance(got(book, name), float)
+        assert beside(book, name) == f"as saved: along the motion, with the motor’s own inertia; {LOSS_FREE}"
+    assert (got(book, "J_L"), beside(book, "J_L")) == (TURNING["mechanism"]["inertia_kgm2"], "of the motion")
+    free = MOVING["rotary table"] | {"requirements": {"motor": {k: v for k, v in MOTOR.items() if "inertia" not in k}}}
+    loose = opened(free, catalogue)
+    assert str(got(loose, "T_mot_peak")).startswith("=")
+    assert_agrees(recalculate({"loose": loose})["loose"], answer(free, catalogue))
+
+
+@pytest.mark.parametrize("name", ["rotary table", "phases that vary"])
+def test_without_its_catalogue_a_workbook_says_what_was_saved(
+    name: str, catalogue: Catalogue, supplemented: Supplement, recalculate: Recalculate
+) -> None:
+    export = replace(typed_export_of(MOVING[name], catalogue), catalogue=None)
+    book = openpyxl.load_workbook(BytesIO(sheets.workbook(export, language("en"))))
+    fresh = recalculate({"aged": book})["aged"]
+    assert_agrees(fresh, answer(MOVING[name], catalogue))
+    assert candidates(fresh)
+
+
+def test_limits_of_a_listed_motor_stay_as_saved_without_the_catalogue(
+    supplemented: Supplement, recalculate: Recalculate
+) -> None:
+    supplied = supplemented(motors=MOTORS)
+    export = replace(typed_export_of(LISTED, supplied), catalogue=None)
+    book = openpyxl.load_workbook(BytesIO(sheets.workbook(export, language("en"))))
+    assert_agrees(recalculate({"aged": book})["aged"], answer(LISTED, supplied))
