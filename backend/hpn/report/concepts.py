@@ -9,7 +9,7 @@ from uuid import NAMESPACE_URL, uuid5
 from basyx.aas import model
 from basyx.aas.model.concept import ConceptDescription
 
-from hpn.quantities import CANDIDATE, CHECK, DUTY, GEAR, Named
+from hpn.quantities import CANDIDATE, CHECK, DUTY, GEAR, INPUTS, Named
 from hpn.reader import LANGUAGES, Reader
 from hpn.report.export import DIGITS
 from hpn.units import symbol_of
@@ -32,7 +32,13 @@ def published(field: str) -> str:
 
 CONCEPTS: Mapping[str, Named] = {
     name: named
-    for table in ({published(field): named for field, named in GEAR.items()}, DUTY, CANDIDATE, CHECK)
+    for table in (
+        {"load_inertia_kgm2": INPUTS["requirements.load_inertia_kgm2"]},
+        {published(field): named for field, named in GEAR.items()},
+        DUTY,
+        CANDIDATE,
+        CHECK,
+    )
     for name, named in table.items()
     if name not in _TEXTS_AND_PARTS
 }

@@ -19,13 +19,16 @@ from basyx.aas import model
 from basyx.aas.adapter import aasx
 from pyecma376_2.core_properties import OPCCoreProperties
 
-from hpn.quantities import DUTY, GEAR
+from hpn.quantities import DUTY, GEAR, INPUTS, MOTION
 from hpn.report.concepts import CONCEPTS, concept, concept_id, published, reference, texts, told, urn
 from hpn.report.export import LOSS_FREE, Export
 from hpn.report.formulas import RATINGS
 from hpn.report.known import Known
+from hpn.report.motion import mechanism_of, moves_of
+from hpn.report.sheets import VARYING
 from hpn.selection import FIGURES, Candidate, CheckResult, DutyFigures, encode
 from hpn.source import source_sentence
+from hpn.units import symbol_of
 from hpn.wording import Sentence
 
 Value = str | int | float | None
@@ -192,7 +195,8 @@ def _selection_result(export: Export) -> model.Submodel:
         *_texts(export),
         model.File("Application", "application/json", APPLICATION_PART),
         model.File("Result", "application/json", RESULT_PART),
-        model.SubmodelElementCollection("Duty", _properties_of(_fields(export.selection.duty, DUTY))),
+        model.SubmodelElementCollection("Duty", _duty(export)),
+        *_cycle(export),
         model.SubmodelElementCollection("Figures", _calculated(export)),
         model.SubmodelElementCollection("Checks", [_check(export, check) for check in export.candidate.checks]),
         model.SubmodelElementCollection("Notices", _notices(export)),
@@ -226,6 +230,60 @@ def _texts(export: Export) -> Iterable[model.Property]:
         "CatalogueVersion": selection.catalogue_version,
     }
     return [model.Property(name, str, value) for name, value in values.items() if value is not None]
+
+
+MOST_ITEMS = 100
+"""Moves or phases of which each stands in the submodel; of more the files have them all."""
+
+
+def _duty(export: Export) -> list[model.Property]:
+    """Figures of the cycle; of a motion also the inertia of its load."""
+    return _properties_of(_fields(export.selection.duty, (*DUTY, "load_inertia_kgm2")))
+
+
+def _cycle(export: Export) -> Iterable[model.SubmodelElementCollection]:
+    """A motion as it was given, and the phases where torque or speed vary in them."""
+    cycle = export.application.duty_cycle
+    if cycle.motion is not None:
+        mechanism = {name: value for name, _, value in mechanism_of(cycle.motion)}
+        columns = moves_of(cycle.motion)
+        moves = ({name: values[k] for name, values in columns.items()} for k in range(len(cycle.motion.moves)))
+        parts: list[model.SubmodelElement] = [
+            model.SubmodelElementCollection("Mechanism", _said(mechanism)),
+            *_numbered("Move", moves, len(cycle.motion.moves)),
+        ]
+        yield model.SubmodelElementCollection("Motion", parts)
+    elif not any(getattr(phase, name) is not None for phase in cycle.load_phases for name in VARYING):
+        return
+    phases = (phase.model_dump(exclude_none=True) for phase in cycle.load_phases)
+    yield model.SubmodelElementCollection("Phases", [*_numbered("Phase", phases, len(cycle.load_phases))])
+
+
+def _numbered(name: str, items: Iterable[Mapping[str, Value]], count: int) -> Iterable[model.SubmodelElement]:
+    """How many there are, and each of them unless they are very many."""
+    yield model.Property("Count", int, count)
+    if count <= MOST_ITEMS:
+        for number, item in enumerate(items, 1):
+            yield model.SubmodelElementCollection(f"{name}_{number}", _said(item))
+
+
+def _said(values: Mapping[str, Value]) -> list[model.Property]:
+    """What is said of a mechanism, a move or a phase, each with its name and unit in words."""
+    return [
+        model.Property(name, type(value), value, display_name=model.MultiLanguageNameType(_name_of(name)))
+        for name, value in values.items()
+        if value is not None
+    ]
+
+
+def _name_of(name: str) -> dict[str, str]:
+    """Name of an input of a motion or a phase in every language, with its unit."""
+    named = next(table[f"{part}{name}"] for part, table in _TABLES if f"{part}{name}" in table)
+    unit = symbol_of(name)
+    return {code: f"{text} [{unit}]" if unit else text for code, text in texts(named.name).items()}
+
+
+_TABLES = (("mechanism.", MOTION), ("move.", MOTION), ("", MOTION), ("phase.", INPUTS))
 
 
 def _calculated(export: Export) -> list[model.Property]:

@@ -29,6 +29,9 @@ def preview_of(selection: Selection, path: str, title: str | None = None) -> Pre
         f"largest torque {english.figure(duty.maximum_torque_Nm)} Nm",
         f"average speed {english.figure(duty.average_output_speed_rpm)} rpm",
     ]
+    if duty.load_inertia_kgm2 is not None:
+        inertia = english.figure(duty.load_inertia_kgm2)
+        parts.append(f"motion of {len(duty.phases)} load phases, load inertia {inertia} kg·m²")
     parts.append(f"{best.designation}: {best.reason.removesuffix('.')}")
     address = "/oembed?" + urlencode({"url": path, "format": "json"}) if len(path) <= LONGEST_PATH else ""
     return Preview(f"{title}: {verdict}" if title else f"HPN Select: {verdict}", ", ".join(parts) + ".", address)

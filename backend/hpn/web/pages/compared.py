@@ -16,9 +16,10 @@ from hpn.catalogue import Catalogue
 from hpn.check import Check
 from hpn.checks import BY_CODE
 from hpn.phase import Phase
-from hpn.quantities import CANDIDATE, DUTY, Named, unit_of
+from hpn.quantities import CANDIDATE, DUTY, INPUTS, Named, unit_of
 from hpn.readings import Reading
 from hpn.report.inputs import LOADS, REQUIREMENTS, InputLine, given
+from hpn.report.motion import lines, move_line
 from hpn.selection import FIGURES, Candidate, CheckResult, decode
 from hpn.store import SavedSelection, StoreUnavailableError
 from hpn.web.archive import with_catalogue
@@ -141,10 +142,25 @@ def _compared(a: Side, b: Side) -> dict[str, Any]:
 def _inputs(a: Side, b: Side) -> Iterator[Row]:
     """Inputs beside the phases that differ."""
     for path in (*LOADS, *REQUIREMENTS):
-        lines = [_line(side.result.application, path) for side in (a, b)]
-        line = lines[0] or lines[1]
-        if line is not None and lines[0] != lines[1]:
-            yield Row(Named(line.label, line.symbol), _pair(line and line.text for line in lines))
+        found = [_line(side.result.application, path) for side in (a, b)]
+        line = found[0] or found[1]
+        if line is not None and found[0] != found[1]:
+            yield Row(Named(line.label, line.symbol), _pair(line and line.text for line in found))
+    yield from _motions(a, b)
+
+
+def _motions(a: Side, b: Side) -> Iterator[Row]:
+    """What differs of mechanism and moves."""
+    given = [side.result.application.duty_cycle.motion if side.result.application else None for side in (a, b)]
+    said = [{(line.label, line.symbol): line.text for line in lines(one, current())} if one else {} for one in given]
+    for label, symbol in said[0] | said[1]:
+        texts = _pair(one.get((label, symbol)) for one in said)
+        if texts[0] != texts[1]:
+            yield Row(Named(label, symbol), texts)
+    moves = ([move_line(one, k, current()) for k in range(len(one.moves))] if one else [] for one in given)
+    different = ((number, pair) for number, pair in enumerate(zip_longest(*moves), 1) if pair[0] != pair[1])
+    for number, pair in islice(different, PHASES_SHOWN):
+        yield Row(Named(f"{current().text(N_('Move'))} {number}"), _pair(pair))
 
 
 def _line(application: Application | None, path: str) -> InputLine | None:
@@ -180,6 +196,9 @@ def _figures(a: Side, b: Side) -> Iterator[Row]:
     """Figures of the cycle and of the gear under it."""
     for name, named in DUTY.items():
         yield Row(named, _pair(getattr(side.result.selection.duty, name) for side in (a, b)), unit_of(name))
+    inertias = _pair(side.result.selection.duty.load_inertia_kgm2 for side in (a, b))
+    if inertias != (None, None):
+        yield Row(INPUTS["requirements.load_inertia_kgm2"], inertias, unit_of("load_inertia_kgm2"))
     for name in FIGURES:
         row = Row(CANDIDATE[name], _pair(_figure(side.chosen, name) for side in (a, b)), unit_of(name))
         if row.values != (None, None):

@@ -14,7 +14,7 @@ from hpn import ENGINE_VERSION
 from hpn.application import Application
 from hpn.catalogue import Catalogue
 from hpn.differences import Difference
-from hpn.quantities import CANDIDATE, CHECK, DUTY, RESERVE, VERDICTS
+from hpn.quantities import CANDIDATE, CHECK, DUTY, PHASE, RESERVE, VERDICTS
 from hpn.report.inputs import LOADS, REQUIREMENTS, given
 from hpn.selection import Selection, reason_of
 from hpn.store import SavedSelection, StoreUnavailableError
@@ -36,7 +36,8 @@ DIFFERENCES_ON_PAGE = 100
 NAMES: Mapping[str, str] = {
     "selected": N_("Selected gear"),
     "text": N_("Notice"),
-    **{field: named.name for table in (DUTY, RESERVE, CHECK, CANDIDATE) for field, named in table.items()},
+    "load_inertia_kgm2": N_("Inertia of the load"),
+    **{field: named.name for table in (PHASE, DUTY, RESERVE, CHECK, CANDIDATE) for field, named in table.items()},
 }
 """Fields of a reply in words; any other stands with its own name."""
 
@@ -83,6 +84,7 @@ class ChangedField:
 
     candidate: str | None
     check: str | None
+    phase: int | None
     field: str
     unit: str
     verdict: bool
@@ -157,12 +159,19 @@ def _line(difference: Difference, reopened: Reopened) -> ChangedField:
     return ChangedField(
         candidate=difference.candidate,
         check=titles.get(difference.check or "", difference.check or ""),
+        phase=phase_of(difference.pointer),
         field=NAMES.get(difference.field, difference.field),
         unit=unit,
         verdict=difference.kind == "verdict",
         saved=saved,
         today=today,
     )
+
+
+def phase_of(pointer: str) -> int | None:
+    """Number of the load phase that a JSON pointer leads to; None for any other place."""
+    parts = pointer.split("/")
+    return int(parts[3]) + 1 if parts[1:3] == ["duty", "phases"] else None
 
 
 def _text(value: Any, difference: Difference, selection: Selection | None, reopened: Reopened, unit: str) -> str:
