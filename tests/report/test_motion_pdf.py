@@ -81,3 +81,12 @@ def test_every_move_of_many_is_printed_under_heads(reader: Reader, catalogue: Ca
     numbers = re.findall(r"^ *(\d+) +(?:Modifi|Triang|Dreieck)", "\n".join(found[first:]), re.M)
     assert {int(number) for number in numbers} >= set(range(1, 121))
     assert len(PdfReader(BytesIO(document)).pages) <= 10
+
+
+def test_a_motion_is_drawn_over_time_and_phases_as_steps(catalogue: Catalogue) -> None:
+    drawn = {
+        name: content(typed_export_of((CASES | MOVING)[name], catalogue), ENGLISH)["course"]
+        for name in ("ball screw", "example")
+    }
+    assert "<svg" in drawn["ball screw"]
+    assert drawn["example"] == ""

@@ -7,7 +7,7 @@ from itertools import accumulate, pairwise
 from typing import Any
 
 from hpn.application import Application
-from hpn.drawings import Subject, bearing_picture, envelope_drawing, governing_phases
+from hpn.drawings import Subject, bearing_picture, envelope_drawing, governing_phases, motion_drawing
 from hpn.drawings.axis import round_numbers, slices
 from hpn.drawings.svg import markup
 from hpn.phase import Phase
@@ -56,6 +56,14 @@ text { font-size: 13px; font-family: "Libertinus Serif"; fill: #5b6875 }
 .used { fill: #1b7f3b }
 .outside .used, .outside .told { fill: #b3261e }
 .allowed { stroke: #16202b; stroke-width: 1.5 }
+.steps, .zero, .boundary, .level { fill: none }
+.steps { stroke: #0b5394; stroke-width: 1.75 }
+.zero { stroke: #16202b }
+.boundary { stroke: #d5dbe1; stroke-dasharray: 2 2 }
+.level { stroke: #16202b; stroke-dasharray: 2 2 }
+.level.average { stroke: #1b7f3b; stroke-dasharray: 6 3 }
+.phase-step { fill: none }
+.pause { fill: #f3f6f9 }
 """
 """Style sheet of a drawing in the report."""
 
@@ -206,6 +214,15 @@ def _name_phases(application: Application, plot: Plot, reader: Reader) -> None:
         time += phase.duration_s
     if application.duty_cycle.pause_s > 0.05 * end:
         plot.mark("phase", ((time + end) / 2, 0.0), "t_p")
+
+
+def motion(export: Export, reader: Reader) -> str:
+    """The page's drawing of a motion over time; blank where phases were given, and without the gear's limits."""
+    gear = export.gear(export.candidate)
+    if gear is None or export.figures is None:
+        return ""
+    drawing = motion_drawing(Subject(export.application, gear, export.figures), reader)
+    return "" if drawing is None else markup(drawing, ON_PAPER)
 
 
 # --- The output bearing -----------------------------------------------------------------------------------------------
