@@ -17,6 +17,7 @@ FULL = (
 PAGES = (
     "/",
     FULL,
+    "/?mech=rotary&J=0.8&mv=trapezoidal&ms=90&mt=0.8&Jm=0.0002&Tm=8&i=5&i=15#drive",
     "/?T=9,3&n=&t=1",
     "/?T=&n=&t=",
     "/?T=" + "1" * 61_000,

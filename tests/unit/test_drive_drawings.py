@@ -144,6 +144,15 @@ def test_no_disc_lies_over_another_or_outside_the_axes(document: Json) -> None:
             assert x1 + w1 <= x2 or x2 + w2 <= x1 or y1 + h1 <= y2 or y2 + h2 <= y1
 
 
+def test_a_limit_next_to_the_edge_keeps_its_name() -> None:
+    gear = CATALOGUE.by_designation["HPN-20A-4"]
+    assert gear.maximum_input_speed_rpm
+    fast = cycle(phase(40, 0.9 * gear.maximum_input_speed_rpm / 4)) | {"requirements": {"utilisation": 0.9}}
+    shown = Shown(drawings.gear_plane(subject_of(fast, gear.designation)).drawing)
+
+    assert "u·nin(max)/i" in {Shown.said(text) for text in shown.of("text", "name")}
+
+
 def test_planes_say_in_words_what_they_show() -> None:
     document = TYPED | {"requirements": {"motor": {"peak_torque_Nm": 14.0}, "efficiency": 0.8}}
     german = Reader(language="de")

@@ -269,9 +269,17 @@ def _labels(drawing: Element, frame: Frame, lines: Sequence[Line], places: Place
         corners = [frame.at(corner) for corner in line.corners]
         size = width_of(line.label) + 4, LETTER + 2
         shares = ALONG if line.strong else ENDS
-        spot = places.clearest(Box.around(_along(corners, share), *size) for share in shares)
+        boxes = [Box.around(_along(corners, share), *size) for share in shares]
+        spot = places.clearest(boxes) or places.clearest(_shifted(box, places.frame) for box in boxes)
         if spot:
             _name(group, line, spot)
+
+
+def _shifted(box: Box, room: Box) -> Box:
+    """A box that stands beside its line, at the edge of the room, where it has none on the line."""
+    width = box.right - box.left
+    left = max(min(box.left, room.right - width), room.left)
+    return Box(left, box.top, left + width, box.bottom)
 
 
 def _name(group: Element, line: Line, spot: Box) -> None:
