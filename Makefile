@@ -39,7 +39,7 @@ assets: $(ASSETS) $(COMPILED)
 # for the browsers.
 WAITING := tests/operations/test_protocol.py tests/reliability/test_outage.py
 MEASURED := tests/browser/test_lighthouse.py $(WAITING) --numprocesses 3 --dist loadfile
-TOGETHER := --ignore tests/browser $(WAITING:%=--ignore %) --numprocesses 2 --dist loadfile --no-loadscope-reorder
+TOGETHER := --ignore tests/browser $(WAITING:%=--ignore %) --numprocesses 3 --dist loadfile --no-loadscope-reorder
 BROWSERS := tests/browser --ignore tests/browser/test_lighthouse.py --numprocesses 2 --dist load
 test: install browser office curl nginx
 ifdef PYTEST_ARGS
