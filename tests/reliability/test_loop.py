@@ -91,6 +91,7 @@ def hostile(saved: str, *, whole: bool) -> Iterator[Hostile]:
         "/openapi.json",
         "/api/v1/catalogue",
         "/api/v1/catalogue/HPN-20A-5",
+        "/api/v1/motors",
         "/api/v1/application.schema.json",
     ):
         yield Hostile("GET", path)

@@ -163,7 +163,7 @@ def test_no_page_of_the_longest_cycle_has_3_MB(api: TestClient) -> None:
 
     assert [page.status_code for page in pages + files] == [200] * 6
     assert max(len(page.content) for page in pages) < 3_000_000
-    assert len(api.get(saved).content) < 400_000  # three drawings and the table of 200 loads included
+    assert len(api.get(saved).content) < 450_000  # four drawings and the table of 200 loads included
     assert _link(copied.text) == _link(posted.text)
     assert files[0].json()["duty_cycle"]["phases"] == application["duty_cycle"]["phases"]
     kept = api.post("/selections", data={"link": _link(posted.text), "once": ""}, follow_redirects=False)

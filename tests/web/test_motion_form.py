@@ -7,6 +7,7 @@ from urllib.parse import parse_qsl, urlencode
 import pytest
 from starlette.testclient import TestClient
 
+from hpn.application import Application
 from hpn.motion.moves import Stroke, Turn
 from hpn.web.form import symbols
 from hpn.web.form.read import Form, parse
@@ -60,6 +61,14 @@ def test_switching_there_and_back_loses_nothing(api: TestClient, cookies: str) -
         here = {"r": "way:rotary", "b": "way:ball_screw"}.get(query[5], "way:phases")
         again = fields_of(pressed(api, urlencode(fields_of(page)), here, cookies=cookies))
         assert parse(again).application == read(f"{query}&tp=3&Tk=200").application
+
+
+def test_another_way_begins_without_the_worked_example(api: TestClient) -> None:
+    example = to_link(Application.worked_example()).removeprefix("/?")
+    page = pressed(api, example, "way:motion")
+    assert given(page, "T", "tp", "Tk", "i", "aside") == [] and parse(fields_of(page)).empty
+    changed = pressed(api, example.replace("T=40", "T=41"), "way:motion")
+    assert given(changed, "tp", "Tk") == [("tp", "4"), ("Tk", "200")]
 
 
 def test_a_text_that_is_no_number_comes_back_as_typed(api: TestClient) -> None:

@@ -162,11 +162,19 @@ def address_of_empty(form: Form) -> str:
 def parse(pairs: Pairs) -> Form:
     """Read a query. Whatever it says, the form comes back with it and with a message beside each wrong field."""
     pairs, written = in_wire_units(pairs)
-    pairs = with_inertia(switched(pairs))
+    pairs = with_inertia(switched(_own(pairs)))
     form = _parsed(pairs, written)
     if ("do", "take") in pairs and form.has_motion and form.application is not None:
         return _parsed(taken_over(pairs, form.application), written)
     return form
+
+
+def _own(pairs: Pairs) -> Pairs:
+    """Pairs before another way is chosen: nothing of the worked example, which nobody has given."""
+    buttons = [(name, text) for name, text in pairs if name == "do" and text.startswith("way:")]
+    if buttons and _parsed([pair for pair in pairs if pair[0] != "do"], "").application == Application.worked_example():
+        return [*((name, text) for name, text in pairs if name in LABELS), *buttons]
+    return pairs
 
 
 def _parsed(pairs: Pairs, written: str) -> Form:
