@@ -66,7 +66,12 @@ def test_switching_there_and_back_loses_nothing(api: TestClient, cookies: str) -
 def test_another_way_begins_without_the_worked_example(api: TestClient) -> None:
     example = to_link(Application.worked_example()).removeprefix("/?")
     page = pressed(api, example, "way:motion")
-    assert given(page, "T", "tp", "Tk", "i", "aside") == [] and parse(fields_of(page)).empty
+    assert given(page, "T", "tp", "Tk", "i") == [] and parse(fields_of(page)).empty
+    assert given(pressed(api, urlencode(fields_of(page)), "way:phases"), "T", "tp") == [
+        ("T", "40"),
+        ("T", "32"),
+        ("T", "20"),
+    ]
     changed = pressed(api, example.replace("T=40", "T=41"), "way:motion")
     assert given(changed, "tp", "Tk") == [("tp", "4"), ("Tk", "200")]
 

@@ -37,7 +37,7 @@ from hpn.web.form.symbols import (
     move_symbols,
     units_of,
 )
-from hpn.web.form.ways import START, switched, taken_over
+from hpn.web.form.ways import CYCLE_NAMES, START, switched, taken_over
 from hpn.wording import Sentence
 
 Pairs = Sequence[tuple[str, str]]
@@ -170,10 +170,10 @@ def parse(pairs: Pairs) -> Form:
 
 
 def _own(pairs: Pairs) -> Pairs:
-    """Pairs before another way is chosen: nothing of the worked example, which nobody has given."""
+    """Pairs before another way is chosen: of the worked example its phases alone, since nobody has given the rest."""
     buttons = [(name, text) for name, text in pairs if name == "do" and text.startswith("way:")]
     if buttons and _parsed([pair for pair in pairs if pair[0] != "do"], "").application == Application.worked_example():
-        return [*((name, text) for name, text in pairs if name in LABELS), *buttons]
+        return [*((name, text) for name, text in pairs if name in LABELS or name in CYCLE_NAMES), *buttons]
     return pairs
 
 
