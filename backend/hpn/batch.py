@@ -3,12 +3,13 @@
 from collections import defaultdict
 from collections.abc import Sequence
 
+from hpn.allowed import gears_for, with_listed_motor
 from hpn.application import Application, InputError
 from hpn.catalogue import Catalogue, GearList
 from hpn.chunks import chunks_of
 from hpn.duty import Duty
 from hpn.evaluation import evaluate
-from hpn.selection import Judged, gears_for, with_listed_motor
+from hpn.selection import Judged
 
 
 def judge_batch(applications: Sequence[Application], catalogue: Catalogue) -> list[Judged | InputError]:

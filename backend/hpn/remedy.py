@@ -9,6 +9,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
+from hpn.allowed import with_listed_motor
 from hpn.application import LISTED_FIGURES, Application, DutyCycle, EmergencyStop
 from hpn.catalogue import Catalogue
 from hpn.check import Driver
@@ -17,7 +18,7 @@ from hpn.equations import ROUNDING
 from hpn.motion import Motion
 from hpn.phase import Phase
 from hpn.reserve import MOVES
-from hpn.selection import Candidate, CheckResult, with_listed_motor
+from hpn.selection import Candidate, CheckResult
 from hpn.units import suffix_of
 from hpn.wording import N_, Quantity, Sentence, listed, rounded
 

@@ -29,6 +29,9 @@ LIBRARIES = (
 PACKAGE = Path(__file__).parents[2] / "backend" / "hpn"
 MODULES = ("equations", "bearing", "checks", "evaluation", "selection")
 
+BESIDE = {"selection": ("allowed",)}
+"""Modules too small to be tried alone."""
+
 NEAREST = {
     "equations": ["tests/reference/test_edges.py", "tests/reference/test_equations.py"],
     "bearing": ["tests/reference/test_edges.py", "tests/reference/test_bearing.py"],
@@ -65,9 +68,11 @@ FURTHER = (
 
 
 def mutants_in(module: str) -> list[Mutant]:
-    """Every mutant of a module, or of each file of a package."""
+    """Every mutant of a module with those beside it, or of each file of a package."""
     folder = PACKAGE / module
-    files = sorted(folder.glob("*.py")) if folder.is_dir() else [folder.with_suffix(".py")]
+    files = [PACKAGE / f"{name}.py" for name in (module, *BESIDE.get(module, ()))]
+    if folder.is_dir():
+        files = sorted(folder.glob("*.py"))
     return [mutant for file in files for mutant in mutants_of(module, file)]
 
 

@@ -3,6 +3,7 @@
 Only shows what the selection has worked out: a test holds every formula against the figure of the candidate.
 """
 
+from hpn.allowed import with_listed_motor
 from hpn.application import Application
 from hpn.calculation.handbook import handbook_steps
 from hpn.calculation.motor import motor_steps
@@ -10,7 +11,7 @@ from hpn.calculation.output_bearing import bearing_steps
 from hpn.calculation.sheet import Comparison, Line, Sheet, Step
 from hpn.catalogue import Catalogue
 from hpn.gear import Gear
-from hpn.selection import Candidate, with_listed_motor
+from hpn.selection import Candidate
 
 __all__ = ["Comparison", "Line", "Step", "calculation_of"]
 

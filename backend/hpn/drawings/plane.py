@@ -8,6 +8,7 @@ from xml.etree.ElementTree import Element
 import numpy as np
 
 from hpn import figures as of_gear
+from hpn.allowed import with_listed_motor
 from hpn.application import Motor
 from hpn.catalogue import GearList
 from hpn.drawings.chart import Axes, Line, Mark, chart
@@ -21,7 +22,6 @@ from hpn.figures import Figures
 from hpn.motion import Trace, motor_trace, trace_of
 from hpn.quantities import DUTY, GEAR, INPUTS
 from hpn.reader import DEFAULT, Reader
-from hpn.selection import with_listed_motor
 from hpn.wording import N_, Quantity, Sentence, Value
 
 OUTPUT = Axes(N_("output speed"), "rpm", N_("output torque"), "Nm")

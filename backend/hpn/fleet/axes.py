@@ -14,6 +14,7 @@ import pyarrow as pa
 import pyarrow.compute as pc
 from numpy.typing import NDArray
 
+from hpn.allowed import gears_allowed
 from hpn.application import LEAST_MOTION, MOST_WISHES, NUMBERS, InputError
 from hpn.catalogue import Catalogue, GearList
 from hpn.chunks import chunks_of
@@ -22,7 +23,6 @@ from hpn.equations import FloatArray
 from hpn.fleet.columns import AXIS, COLUMNS, Column
 from hpn.gear import canonical_size
 from hpn.phase import MAXIMUM_PHASES, ROOM
-from hpn.selection import gears_allowed
 
 BoolArray = NDArray[np.bool_]
 IntArray = NDArray[np.intp]

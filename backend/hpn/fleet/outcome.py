@@ -9,6 +9,7 @@ import pyarrow as pa
 from numpy.typing import NDArray
 from pydantic import ValidationError
 
+from hpn.allowed import gears_for
 from hpn.application import Application, InputError
 from hpn.catalogue import Catalogue
 from hpn.checks import CHECKS
@@ -17,7 +18,7 @@ from hpn.evaluation import SUITABLE, Evaluation, evaluate
 from hpn.faults import faults_of
 from hpn.fleet.axes import Allowed, Axes, BoolArray, IntArray, have_sound_lists
 from hpn.fleet.columns import AXIS, COLUMNS
-from hpn.selection import Candidate, Reserve, candidates_of, gears_for
+from hpn.selection import Candidate, Reserve, candidates_of
 
 MOST_FAULTS = 20
 """Faults of one axis that are told."""

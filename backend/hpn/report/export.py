@@ -8,12 +8,13 @@ from functools import cached_property
 import numpy as np
 
 from hpn import equations
+from hpn.allowed import with_listed_motor
 from hpn.application import Application
 from hpn.catalogue import Catalogue
 from hpn.checks import BY_CODE
 from hpn.duty import Duty
 from hpn.gear import Gear
-from hpn.selection import Candidate, Selection, with_listed_motor
+from hpn.selection import Candidate, Selection
 from hpn.wording import N_
 
 DIGITS = 4

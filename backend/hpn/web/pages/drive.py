@@ -4,11 +4,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
+from hpn.allowed import with_listed_motor
 from hpn.application import Application, Motor
 from hpn.catalogue import Catalogue
 from hpn.gear import Gear
 from hpn.motors import MotorUse, SizeWithMotor, motors_on, ratios_with_motor, with_motor
-from hpn.selection import Selection, with_listed_motor
+from hpn.selection import Selection
 from hpn.web.form.write import to_link
 from hpn.wording import N_, Sentence
 
