@@ -158,7 +158,8 @@ def _requirements(candidate: Candidate, u: float) -> Iterable[Requirement]:
         elif known.accepted and (not known.moves or _follows_curve(candidate)):
             least, allowed = known.kind == "minimum", known.allowed(u)
             needed = check.demand * (allowed if least else 1 / allowed)
-            digits = 4 if known.moves else 6  # a computed figure, or a published one in full
+            computed = bool(known.moves) or known.group == "load"
+            digits = 4 if computed else 6  # a published figure is told in full
             shown = Quantity(needed, suffix_of(known.asked) or "", digits, "down" if least else "up")
             yield Requirement(known.asked, shown, known.accepted)
 
