@@ -11,6 +11,7 @@ from hpn.application import Application, InputError
 from hpn.calculation import Step
 from hpn.catalogue import Catalogue
 from hpn.checks import BY_CODE
+from hpn.equations import ROUNDING
 from hpn.gear import Gear
 
 Json = dict[str, Any]
@@ -70,9 +71,33 @@ def ways_of(entry: Json, reserve_utilisation: float = 1.0) -> tuple[remedy.Way, 
     return remedy.ways_of(candidate_of(entry), reserve_utilisation)
 
 
-def rooms_of(entry: Json, reserve_utilisation: float = 1.0) -> tuple[remedy.Room, ...]:
-    """Reserve of a candidate of a reply."""
-    return remedy.rooms_of(candidate_of(entry), reserve_utilisation)
+@dataclass(frozen=True)
+class Room:
+    """How far one driver may go by the reserve of a reply, and the check that is full first; None without a limit."""
+
+    driver: str
+    value: float | None
+    check: str | None
+
+
+def rooms_of(entry: Json, reserve_utilisation: float = 1.0) -> tuple[Room, ...]:
+    """Reserve of a candidate of a reply; empty where not every check can be judged."""
+    candidate, u = candidate_of(entry), reserve_utilisation
+    if not candidate.is_judged:
+        return ()
+    full = {check.code: (check.utilisation or 0.0) / u for check in candidate.checks}
+    rooms = []
+    for driver, powers in MOVES.items():
+        moved = {code: full[code] ** (1 / power) for code, power in powers.items() if code in full}
+        value = getattr(candidate.reserve, f"{driver}_factor")
+        if moved:
+            rooms.append(Room(driver, value, None if value is None else max(moved, key=moved.__getitem__)))
+    stop = candidate.reserve.emergency_stop_torque_Nm
+    if stop is not None:
+        check = candidate.check("momentary_peak_torque")
+        is_full = check is not None and check.limit is not None and stop >= u * check.limit * (1 - ROUNDING)
+        rooms.append(Room("emergency_stop", stop, "momentary_peak_torque" if is_full else "momentary_peak_count"))
+    return tuple(rooms)
 
 
 def calculation_of(entry: Json, gear: Gear, application: Application, catalogue: Catalogue) -> tuple[Step, ...]:

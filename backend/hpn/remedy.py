@@ -320,76 +320,27 @@ DRIVER_NAMES = {
 }
 
 
-@dataclass(frozen=True, slots=True)
-class Room:
-    """How far one driver may go: in words, and the check that limits it then. `value` is None without a limit."""
-
-    driver: str
-    value: float | None
-    bound: Sentence
-    check: str | None
-
-    @property
-    def exceeded(self) -> bool:
-        """Whether the driver is beyond what it may be."""
-        return self.driver != "emergency_stop" and self.value is not None and self.value < 1 - ROUNDING
-
-
-def rooms_of(candidate: Candidate, reserve_utilisation: float = 1.0) -> tuple[Room, ...]:
-    """Reserve of every driver, each with the check that limits it; empty where not every check can be judged."""
-    if not candidate.is_judged:
-        return ()
-    used = {check.code: check.utilisation for check in candidate.checks}
-    turns = _has_own_inertia(candidate)
-    rooms = [
-        _room(driver, getattr(candidate.reserve, f"{driver}_factor"), used, reserve_utilisation, turns=turns)
-        for driver, powers in MOVES.items()
-        if powers.keys() & used.keys()
-    ]
-    stop = candidate.reserve.emergency_stop_torque_Nm
-    if stop is not None:
-        limit = _limit_of_stop(candidate, stop, reserve_utilisation)
-        bound = Sentence(N_("up to {limit}"), {"limit": _bound(stop, "Nm", 4)})
-        rooms.append(Room("emergency_stop", stop, bound, limit))
-    return tuple(rooms)
-
-
 BY_CURVE = N_("not in closed form: the efficiency follows your curve")
 BY_INERTIA = N_("not in closed form: the motor’s own inertia follows the motion")
 
 
-def _room(driver: Driver, factor: float | None, used: Mapping[str, float | None], u: float, *, turns: bool) -> Room:
-    full = {code: (used[code] or 0.0) / u for code in MOVES[driver] if code in used}
-    if factor is None:
-        if any(full.values()):
-            return Room(driver, None, Sentence(BY_INERTIA if turns else BY_CURVE), None)
-        return Room(driver, None, Sentence(N_("without limit")), None)
-    first = max(full, key=lambda code: full[code] ** (1 / MOVES[driver][code]))
-    return Room(driver, factor, _up_to(factor), first)
-
-
-def _up_to(factor: float) -> Sentence:
-    return Sentence(N_("up to {limit}"), {"limit": _bound(100 * factor, "percent")})
-
-
-def _limit_of_stop(candidate: Candidate, largest: float, u: float) -> str:
-    """Which of the two checks holds the emergency-stop torque at its largest."""
-    check = candidate.check("momentary_peak_torque")
-    full = check is not None and check.limit is not None and largest >= u * check.limit * (1 - ROUNDING)
-    return "momentary_peak_torque" if full else "momentary_peak_count"
-
-
 @dataclass(frozen=True, slots=True)
 class Growth:
-    """How far one driver may grow until one check is at its limit, the rest unchanged; None without a limit."""
+    """How far one driver may grow until one check is at its limit, the rest unchanged.
+
+    The factor is None without a limit, and where no closed form gives it: `untold` then says why.
+    """
 
     driver: str
     factor: float | None
+    untold: str = ""
 
     @property
     def bound(self) -> Sentence:
         """In words: `up to 249 %`, rounded down."""
-        return Sentence(N_("without limit")) if self.factor is None else _up_to(self.factor)
+        if self.factor is None:
+            return Sentence(self.untold or N_("without limit"))
+        return Sentence(N_("up to {limit}"), {"limit": _bound(100 * self.factor, "percent")})
 
     @property
     def share(self) -> Quantity | None:
@@ -400,17 +351,17 @@ class Growth:
 def growths_of(candidate: Candidate, reserve_utilisation: float = 1.0) -> dict[str, tuple[Growth, ...]]:
     """For each check of a candidate, how far every driver of it may grow until that very check is at its limit.
 
-    Below 1 where the check fails. Empty for a check that no driver moves, for one that is not rated, and for motor
-    torques that go by an efficiency curve, which no closed form follows.
+    Below 1 where the check fails. Empty for a check that no driver moves and for one that is not rated. Not told for
+    motor torques that go by an efficiency curve or by the motor's own inertia, which no closed form follows.
     """
-    curve = _follows_curve(candidate)
+    untold = BY_INERTIA if _has_own_inertia(candidate) else BY_CURVE if _follows_curve(candidate) else ""
     return {
-        check.code: () if curve and check.code in MOTOR_TORQUES else tuple(_growths(check, reserve_utilisation))
+        check.code: tuple(_growths(check, reserve_utilisation, untold if check.code in MOTOR_TORQUES else ""))
         for check in candidate.checks
     }
 
 
-def _growths(check: CheckResult, u: float) -> Iterable[Growth]:
+def _growths(check: CheckResult, u: float, untold: str) -> Iterable[Growth]:
     if check.utilisation is None:
         return
     if check.code == "momentary_peak_torque":
@@ -419,7 +370,7 @@ def _growths(check: CheckResult, u: float) -> Iterable[Growth]:
         most = None if check.limit is None else math.floor(u * check.limit * (1 + ROUNDING))
         yield Growth("emergency_stop_count", None if most is None else most / check.demand)
     for driver, power in BY_CODE[check.code].moves.items():
-        yield _growth(driver, check.utilisation / u, power)
+        yield Growth(driver, None, untold) if untold else _growth(driver, check.utilisation / u, power)
 
 
 def _growth(driver: str, full: float, power: float) -> Growth:

@@ -16,7 +16,7 @@ from hpn.calculation import calculation_of
 from hpn.calculation.formula import leaves_out, value_of
 from hpn.catalogue import Catalogue, load_catalogue
 from hpn.checks import BY_CODE
-from hpn.remedy import alternatives_of, remedy_of, rooms_of, tried
+from hpn.remedy import alternatives_of, growths_of, remedy_of, tried
 from hpn.selection import Candidate, select
 from hpn.web.form.read import parse
 from hpn.web.form.write import to_link
@@ -155,8 +155,9 @@ def test_a_motor_that_turns_its_own_inertia_leaves_no_closed_form_and_says_why()
     motor = {"inertia_kgm2": 0.0005, "peak_torque_Nm": 50}
     asked = {"duty_cycle": {"motion": TURNING}, "requirements": {"motor": motor}}
     selection = select(Application.model_validate(asked), equipped())
-    rooms = {room.driver: room.bound.text for room in rooms_of(selection.foremost)}
-    assert rooms["torque"] == rooms["speed"] == "not in closed form: the motor’s own inertia follows the motion"
+    assert selection.foremost.reserve.torque_factor is selection.foremost.reserve.speed_factor is None
+    told = {growth.bound.text for growth in growths_of(selection.foremost)["motor_peak_torque"]}
+    assert told == {"not in closed form: the motor’s own inertia follows the motion"}
 
 
 def test_a_load_that_has_to_drop_drops_in_the_moves() -> None:

@@ -5,7 +5,7 @@ from msgspec import structs
 
 from hpn.application import Application
 from hpn.catalogue import Catalogue
-from hpn.remedy import followed, growths_of, remedy_of, rooms_of, ways_of
+from hpn.remedy import followed, growths_of, remedy_of, ways_of
 from hpn.selection import Candidate, Selection, select
 from hpn.wording import rounded
 from tests.build import Json, cycle, phase, worked_example
@@ -50,7 +50,6 @@ def test_a_gear_that_fails_what_is_known_of_it_gets_no_promise_about_what_is_not
     assert (first.designation, first.status) == ("HPN-40A-7", "unsuitable")
     assert words(asked, "HPN-40A-7", catalogue) is None
     assert ways_of(first) == ()
-    assert rooms_of(first) == ()
     assert selection.foremost.size == "32A"
 
 
@@ -98,20 +97,15 @@ def test_following_the_remedy_makes_the_gear_of_the_worked_example_suitable(cata
     assert chosen(select(changed, catalogue), "HPN-14A-5").status == "suitable"
 
 
-def test_reserve_of_the_worked_example_says_which_check_limits_each_driver(catalogue: Catalogue) -> None:
-    rooms = rooms_of(chosen(selected(worked_example(), catalogue), "HPN-20A-5"))
-    assert [(room.driver, room.bound.text, room.check) for room in rooms] == [
-        ("torque", "up to 249 %", "average_torque"),
-        ("speed", "up to 240 %", "maximum_input_speed"),
-        ("emergency_stop", "up to 256 Nm", "momentary_peak_torque"),
-    ]
-
-
-def test_torque_reserve_that_follows_an_efficiency_curve_says_why_it_is_missing(catalogue: Catalogue) -> None:
-    gear = chosen(selected(worked_example(), catalogue), "HPN-20A-5")
-    unknown = structs.replace(gear.reserve, torque_factor=None)  # as with a supplied curve and a motor
-    gear = structs.replace(gear, reserve=unknown)
-    assert "efficiency follows your curve" in rooms_of(gear)[0].bound.text
+def test_a_motor_torque_that_follows_an_efficiency_curve_says_why_its_growth_is_missing(catalogue: Catalogue) -> None:
+    asked = worked_example(requirements={"motor": {"peak_torque_Nm": 50}})
+    gear = chosen(selected(asked, catalogue), "HPN-20A-5")
+    [torque, *_] = growths_of(gear)["motor_peak_torque"]
+    assert torque.factor is not None
+    unknown = structs.replace(gear.reserve, torque_factor=None)  # as with a supplied curve
+    [torque, *_] = growths_of(structs.replace(gear, reserve=unknown))["motor_peak_torque"]
+    assert (torque.factor, torque.share) == (None, None)
+    assert "efficiency follows your curve" in torque.bound.text
 
 
 @pytest.mark.parametrize(
