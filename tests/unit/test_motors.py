@@ -11,7 +11,7 @@ from hpn.catalogue import Catalogue, CatalogueError
 from hpn.catalogue.copy import copy_of, read_copy
 from hpn.web.app import create_app
 from hpn.web.settings import Settings
-from tests.build import Json, answer, cycle, phase
+from tests.build import Json, answer, cycle, phase, worked_example
 from tests.conftest import Supplement
 from tests.unit.test_application import refused
 from tests.wire import select_fleet
@@ -141,3 +141,37 @@ def test_the_motors_are_told_with_their_source(tmp_path: Path) -> None:
                 first, second = reply.json()["motors"]
                 assert first == FIGURES | {"designation": "M 40", "source": "supplied by the user: data sheet"}
                 assert second["inertia_kgm2"] is None
+
+
+def test_the_use_of_each_motor_on_a_gear_is_that_of_a_selection_with_it(tmp_path: Path) -> None:
+    (tmp_path / "motors.csv").write_text(MOTORS)
+    asked = worked_example(requirements={"sizes": ["20A"], "ratios": [5]})
+    with TestClient(create_app(Settings(catalogue_supplement=tmp_path))) as client:
+        reply = client.post("/api/v1/motors/hpn-20a-05", json=asked).json()
+        assert reply["designation"] == "HPN-20A-5"
+        assert [use["motor"]["designation"] for use in reply["motors"]]
+        for use in reply["motors"]:
+            asked["requirements"]["motor"] = {"designation": use["motor"]["designation"]}
+            [gear] = client.post("/api/v1/select", json=asked).json()["candidates"]
+            checks = {check["code"]: check for check in gear["checks"] if check["code"] in use["utilisations"]}
+            assert {code: check["utilisation"] for code, check in checks.items()} == use["utilisations"]
+            assert use["fits"] == all(check["status"] == "pass" for check in checks.values())
+            assert use["utilisations"][use["governing_check"]] == max(use["utilisations"].values())
+
+
+@pytest.mark.parametrize(
+    ("path", "body", "status", "said"),
+    [
+        ("HPN-99A-5", "{}", 404, "no gear 'HPN-99A-5'"),
+        ("HPN-20A-5", "{", 400, "JSON"),
+        ("HPN-20A-5", "{}", 422, "duty_cycle"),
+    ],
+)
+def test_a_question_that_cannot_be_answered_says_why(path: str, body: str, status: int, said: str) -> None:
+    with TestClient(create_app(Settings())) as client:
+        kind = {"Content-Type": "application/json"}
+        reply = client.post(f"/api/v1/motors/{path}", content=body, headers=kind)
+        assert (reply.status_code, reply.headers["Content-Type"]) == (status, "application/problem+json")
+        assert said in reply.text
+        fine = client.post("/api/v1/motors/HPN-20A-5", json=worked_example())
+        assert (fine.status_code, fine.json()["motors"]) == (200, [])

@@ -23,6 +23,7 @@ Path = tuple[str | int, ...]
 
 OPERATIONS = {
     "deleteSelection": "DELETE /api/v1/selections/{id}",
+    "fitMotors": "POST /api/v1/motors/{designation}",
     "getApplicationSchema": "GET /api/v1/application.schema.json",
     "getBearingEnvelopes": "GET /api/v1/bearing-envelopes/{size}",
     "getCatalogue": "GET /api/v1/catalogue",

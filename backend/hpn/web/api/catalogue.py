@@ -9,9 +9,10 @@ from starlette.responses import Response
 
 from hpn.catalogue import Catalogue
 from hpn.envelopes import EnvelopeQuery, life_envelopes
+from hpn.gear import Gear
 from hpn.source import supplied_source
 from hpn.web.api import schemas
-from hpn.web.api.replies import CatalogueReply, EnvelopeReply, JSONBytes, MotorsReply, encode
+from hpn.web.api.replies import CatalogueReply, EnvelopeReply, JSONBytes, encode
 from hpn.web.door.access import admit
 from hpn.web.door.bodies import few_parameters
 from hpn.web.door.conditions import conditional
@@ -48,24 +49,9 @@ async def catalogue(request: Request) -> Response:
 async def gear(request: Request, designation: str) -> Response:
     """One gear, by its designation in any of the printed spellings: by itself, and as the list has it."""
     book: Catalogue = request.app.state.catalogue
-    found = book.find(designation)
-    if found is None:
-        raise Problem(404, f"the catalogue has no gear {designation[:60]!r}; a designation is written like HPN-20A-5")
+    found = gear_named(designation, book)
     fields = {field.name: getattr(found, field.name) for field in dataclasses.fields(found)}
     return conditional(request, encode({"catalogue_version": book.version, **fields, "gears": [found]}))
-
-
-@router.get(
-    "/motors",
-    operation_id="getMotors",
-    summary="The user’s own motors",
-    openapi_extra=schemas.IF_NONE_MATCH,
-    responses=schemas.answers("MotorsReply", 406, headers=schemas.headers("ETag")) | schemas.HAS_IT_ALREADY,
-)
-async def motors(request: Request) -> Response:
-    """Motors of a supplement’s motors.csv; none where there is no such file, null where a figure is blank."""
-    book: Catalogue = request.app.state.catalogue
-    return conditional(request, encode(MotorsReply(book.version, book.motors)))
 
 
 @router.get(
@@ -89,3 +75,11 @@ async def bearing_envelopes(request: Request, size: str, query: Annotated[Envelo
         else {name: gear.sources[name] for name in ("dynamic_radial_load_N", "dynamic_axial_load_N")}
     )
     return conditional(request, encode(EnvelopeReply(gear.size, query.model, curves, sources)))
+
+
+def gear_named(designation: str, catalogue: Catalogue) -> Gear:
+    """Gear of a designation in any of the printed spellings; Problem 404 where the catalogue has none."""
+    found = catalogue.find(designation)
+    if found is None:
+        raise Problem(404, f"the catalogue has no gear {designation[:60]!r}; a designation is written like HPN-20A-5")
+    return found

@@ -33,6 +33,7 @@ FRAMEWORK = ("HTTPValidationError", "ValidationError")
 TAGS = [
     {"name": "Selection", "description": "Which gear fits an application, for one or for many."},
     {"name": "Catalogue", "description": "Published figures of the gears, each with its source."},
+    {"name": "Motors", "description": "The user’s own motors, and how far each is used on a gear."},
     {"name": "Saved selections", "description": "Selections that last: save, list, read with what differs, delete."},
     {"name": "Files", "description": "Report, workbook and Asset Administration Shell of a selection."},
     {"name": "Service", "description": "State of the service, and what a pasted link unfolds into."},

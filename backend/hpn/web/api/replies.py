@@ -92,6 +92,32 @@ class MotorsReply(Struct):
     motors: Annotated[tuple[ListedMotor, ...], Meta(description="Every motor of motors.csv, in its order.")]
 
 
+class MotorUseReply(Struct):
+    """One of the user’s own motors on a gear."""
+
+    motor: Annotated[ListedMotor, Meta(description="The motor.")]
+    fits: Annotated[bool, Meta(description="Whether it passes every check of the motor whose figures are known.")]
+    governing_check: Annotated[str, Meta(description="Check of the motor that is closest to its limit.")]
+    utilisations: Annotated[
+        Mapping[str, float],
+        Meta(description="Demand over limit by check of the motor, as `POST /api/v1/select` has it with this motor."),
+    ]
+    inertia_ratio: Annotated[
+        float | None,
+        Meta(description="Inertia of the load over i² times that of the motor; null where one is not known."),
+    ]
+
+
+class MotorsOnGearReply(Struct):
+    """The user’s own motors on a gear: those that fit first, the smallest rated torque first, then the nearest miss."""
+
+    catalogue_version: Version
+    designation: Annotated[str, Meta(description="The gear.")]
+    motors: Annotated[
+        list[MotorUseReply], Meta(description="Every motor of motors.csv that has a figure which is checked.")
+    ]
+
+
 class EnvelopeReply(Struct):
     """Life envelopes of one size."""
 

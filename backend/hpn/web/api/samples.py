@@ -1,6 +1,7 @@
 """Examples for every field of the OpenAPI document: what this very service makes of one full application."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 from itertools import islice
 from typing import Any
 
@@ -8,11 +9,12 @@ import msgspec
 
 from hpn import ENGINE_VERSION
 from hpn.application import WORKED_EXAMPLE, Application, InputError
-from hpn.catalogue import Catalogue
+from hpn.catalogue import Catalogue, ListedMotor
 from hpn.differences import FigureDifference, differences
 from hpn.envelopes import EnvelopeQuery, life_envelopes
 from hpn.selection import Selection, select
 from hpn.web.api.batch import batch_lines
+from hpn.web.api.motors import motors_on_gear
 from hpn.web.api.replies import encode
 from hpn.web.door.problems import Problem
 from hpn.web.form.write import to_link
@@ -96,6 +98,7 @@ def _samples(catalogue: Catalogue) -> Json:
     selection = select(application, catalogue, link)
     reply, best = plain(selection), selection.foremost.designation
     gear = plain(catalogue.by_designation[best])
+    listed = replace(catalogue, motors=(ListedMotor(**MOTOR),))
     versions = {"engine_version": ENGINE_VERSION, "catalogue_version": catalogue.version}
     where = {"id": "q83vASNFZ4mrze8BI0Vniw", "url": "/selections/q83vASNFZ4mrze8BI0Vniw"}
     shown = {name: reply["candidates"][0][name] for name in ("designation", "status", "utilisation")}
@@ -119,6 +122,7 @@ def _samples(catalogue: Catalogue) -> Json:
         },
         "OneGearReply": one_gear(catalogue, gear),
         "MotorsReply": {"catalogue_version": catalogue.version, "motors": [MOTOR]},
+        "MotorsOnGearReply": plain(motors_on_gear(application, catalogue.by_designation[best], listed)),
         "EnvelopeReply": envelopes(catalogue, gear["size"]),
         "SelectionListReply": {"selections": [summary], "next_cursor": None},
         "SavedReply": where,

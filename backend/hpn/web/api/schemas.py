@@ -40,6 +40,7 @@ REPLIES: tuple[type, ...] = (
     replies.CatalogueReply,
     replies.EnvelopeReply,
     replies.MotorsReply,
+    replies.MotorsOnGearReply,
     replies.SavedReply,
     replies.SavedSelectionReply,
     replies.SelectionListReply,

@@ -1,0 +1,66 @@
+"""The user's own motors over REST: all of them, and how far each is used on a gear."""
+
+from fastapi import APIRouter
+from starlette.datastructures import State
+from starlette.requests import Request
+from starlette.responses import Response
+
+from hpn.application import Application
+from hpn.catalogue import Catalogue
+from hpn.gear import Gear
+from hpn.motors import motors_on
+from hpn.web.api import schemas
+from hpn.web.api.catalogue import gear_named
+from hpn.web.api.replies import JSONBytes, MotorsOnGearReply, MotorsReply, MotorUseReply, encode
+from hpn.web.door.access import admit
+from hpn.web.door.bodies import parsed, read_body
+from hpn.web.door.conditions import conditional
+from hpn.web.door.pools import compute
+from hpn.web.settings import Settings
+
+router = APIRouter(
+    prefix="/api/v1",
+    tags=["Motors"],
+    dependencies=[admit("calculator")],
+    default_response_class=JSONBytes,
+)
+
+
+@router.get(
+    "/motors",
+    operation_id="getMotors",
+    summary="The user’s own motors",
+    openapi_extra=schemas.IF_NONE_MATCH,
+    responses=schemas.answers("MotorsReply", 406, headers=schemas.headers("ETag")) | schemas.HAS_IT_ALREADY,
+)
+async def motors(request: Request) -> Response:
+    """Motors of a supplement’s motors.csv; none where there is no such file, null where a figure is blank."""
+    book: Catalogue = request.app.state.catalogue
+    return conditional(request, encode(MotorsReply(book.version, book.motors)))
+
+
+@router.post(
+    "/motors/{designation}",
+    operation_id="fitMotors",
+    summary="The user’s own motors on a gear",
+    openapi_extra=schemas.request_body(Application),
+    responses=schemas.answers("MotorsOnGearReply", 400, 404, 408, 413, 415, 422),
+)
+async def motors_of_gear(request: Request, designation: str) -> Response:
+    """How far each motor of motors.csv is used on a gear under an application, in place of the application’s own."""
+    state: State = request.app.state
+    settings: Settings = state.settings
+    gear = gear_named(designation, state.catalogue)
+    body = await read_body(request, maximum_bytes=settings.maximum_body_bytes, seconds=settings.body_seconds)
+    return JSONBytes(await compute(request, "pages", _reply, body, gear, state.catalogue))
+
+
+def motors_on_gear(application: Application, gear: Gear, catalogue: Catalogue) -> MotorsOnGearReply:
+    """How far each motor of the catalogue’s list is used on a gear, best first."""
+    uses = motors_on(application, gear, catalogue)
+    found = [MotorUseReply(use.motor, use.fits, use.governing, use.used, use.inertia_ratio) for use in uses]
+    return MotorsOnGearReply(catalogue.version, gear.designation, found)
+
+
+def _reply(body: bytes, gear: Gear, catalogue: Catalogue) -> bytes:
+    return encode(motors_on_gear(parsed(Application, body), gear, catalogue))
