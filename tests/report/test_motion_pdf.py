@@ -1,5 +1,6 @@
 """The PDF report of motions and of phases that vary."""
 
+import math
 import re
 from dataclasses import replace
 from io import BytesIO
@@ -12,6 +13,7 @@ from hpn.catalogue import Catalogue
 from hpn.reader import Reader
 from hpn.report.content import content
 from hpn.report.pdf import pdf
+from hpn.report.symbols import formula
 from tests.conftest import Supplement
 from tests.property.test_varying_remedy import MOTORS
 from tests.report.cases import CASES, MOVING, language, typed_export_of
@@ -44,6 +46,11 @@ def test_a_motion_is_printed_as_given_with_the_phases_that_come_out(catalogue: C
     rows = re.findall(r"^(\d) (\S+) (\S+) (\S+) (\S+) (\S+) (\S+)$", first, re.M)
     assert len(rows) == 8
     assert rows[0][1:3] == ("48,12", "11,63")
+
+
+def test_a_bracket_behind_a_symbol_is_no_part_of_its_index() -> None:
+    assert formula("J_L / (i² · J_m) ≤ r_J")[-3:] == [["J", "m"], ") ≤ ", ["r", "J"]]
+    assert formula("n_in(max)/i") == [["n", "in(max)"], "/", ["i", ""]]
 
 
 def test_its_figures_are_in_the_units_of_the_reader(catalogue: Catalogue) -> None:
@@ -90,3 +97,20 @@ def test_a_motion_is_drawn_over_time_and_phases_as_steps(catalogue: Catalogue) -
     }
     assert "<svg" in drawn["ball screw"]
     assert drawn["example"] == ""
+
+
+def test_torque_is_drawn_against_speed_where_a_motion_or_a_motor_is_given(catalogue: Catalogue) -> None:
+    def planes(case: str) -> list[dict[str, str]]:
+        found: list[dict[str, str]] = content(typed_export_of((CASES | MOVING)[case], catalogue), ENGLISH)["planes"]
+        return found
+
+    assert planes("example") == []
+    gear, motor = planes("rotary table")
+    assert (gear["title"], motor["title"]) == ("Torque and speed at the gear’s output", "Torque and speed at the motor")
+    selection = typed_export_of(MOVING["rotary table"], catalogue).selection
+    for plane, torque in ((gear, selection.duty.maximum_torque_Nm), (motor, selection.foremost.motor_peak_torque_Nm)):
+        found = re.search(r"Largest torque ([\d.]+)\u202fNm of", plane["alt"])
+        assert found is not None and torque is not None
+        assert math.isclose(float(found[1]), torque, rel_tol=5e-3), plane["alt"]  # three digits
+    printed = "\n".join(pages(pdf(typed_export_of(MOVING["rotary table"], catalogue), ENGLISH)))
+    assert "Torque and speed at the motor" in printed

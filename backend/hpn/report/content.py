@@ -117,6 +117,7 @@ def content(export: Export, reader: Reader) -> dict[str, Any]:
         "caveats": [sentence(text(caveat)) for caveat in (*CAVEATS, ON_MOTOR[export.turns_motor])],
         "cycle": {"panels": plots.cycle(export, reader), "alt": text(N_("Torque and speed of the cycle over time"))},
         "course": plots.motion(export, reader),
+        "planes": plots.planes(export, reader),
         "bearing": plots.envelope(export, reader),
         "bearing_alt": text(N_("Loads of the phases within the envelopes of the output bearing")),
         "checks": checks(export, reader),

@@ -7,7 +7,16 @@ from itertools import accumulate, pairwise
 from typing import Any
 
 from hpn.application import Application
-from hpn.drawings import Subject, bearing_picture, envelope_drawing, governing_phases, motion_drawing
+from hpn.drawings import (
+    Plane,
+    Subject,
+    bearing_picture,
+    envelope_drawing,
+    gear_plane,
+    governing_phases,
+    motion_drawing,
+    motor_plane,
+)
 from hpn.drawings.axis import round_numbers, slices
 from hpn.drawings.svg import markup
 from hpn.phase import Phase
@@ -38,10 +47,15 @@ text { font-size: 13px; font-family: "Libertinus Serif"; fill: #5b6875 }
 .line { stroke: #5b6875 }
 .line.limit { stroke: #0b5394; stroke-width: 2.6 }
 .line.single { stroke: #16202b; stroke-dasharray: 6 4 }
+.line.mean { stroke: #1b7f3b; stroke-dasharray: 6 3 }
+.line.span { stroke-dasharray: 2 3 }
+.line.region { stroke: none }
+.line.curve { stroke: #b35900; stroke-width: 1.5; stroke-linejoin: round }
 .ray, .leader { stroke: #7d8894; stroke-width: .8 }
 .ray { stroke-dasharray: 2 3 }
 .back { fill: #fff; fill-opacity: .85 }
 .name.limit { fill: #0b5394; font-weight: bold }
+.name.mean { fill: #1b7f3b }
 .letter, .index { font-style: italic }
 .disc { fill: #fff; stroke: #16202b }
 .dot, .number, .told { fill: #16202b }
@@ -223,6 +237,33 @@ def motion(export: Export, reader: Reader) -> str:
         return ""
     drawing = motion_drawing(Subject(export.application, gear, export.figures), reader)
     return "" if drawing is None else markup(drawing, ON_PAPER)
+
+
+# --- Torque against speed ---------------------------------------------------------------------------------------------
+
+
+def planes(export: Export, reader: Reader) -> list[dict[str, Any]]:
+    """The page's planes of gear and motor, where a motion or a motor is given and the gear's limits are at hand."""
+    gear, application = export.gear(export.candidate), export.application
+    if gear is None or export.figures is None:
+        return []
+    if application.requirements.motor is None and application.duty_cycle.motion is None:
+        return []
+    subject = Subject(application, gear, export.figures)
+    governing = governing_phases(subject, export.candidate.governing_check, None)
+    output = _plane(N_("Torque and speed at the gear’s output"), gear_plane(subject, reader, governing), reader)
+    motor = _plane(N_("Torque and speed at the motor"), motor_plane(subject, reader, governing), reader)
+    return [output, motor]
+
+
+def _plane(title: str, plane: Plane, reader: Reader) -> dict[str, Any]:
+    words = " ".join(reader.told(one) for one in plane.words)
+    return {
+        "title": reader.text(title),
+        "drawing": markup(plane.drawing, ON_PAPER),
+        "words": sentence(words),
+        "alt": words,
+    }
 
 
 # --- The output bearing -----------------------------------------------------------------------------------------------

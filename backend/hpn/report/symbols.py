@@ -5,7 +5,7 @@ import re
 Part = str | list[str]
 """A plain text, or a symbol: its letter and its index, which may be empty."""
 
-_INDEXED = r"\b[A-Za-zηθ]_[A-Za-z0-9,_()]*[A-Za-z0-9)]"
+_INDEXED = r"\b[A-Za-zηθ]_[A-Za-z0-9]+(?:[,_][A-Za-z0-9]+)*(?:\([A-Za-z0-9]+\))?"
 _SENTENCE = re.compile(rf"({_INDEXED})")
 _FORMULA = re.compile(rf"({_INDEXED}|\b[A-Za-zαβηθμφ]\b)")
 
