@@ -80,18 +80,25 @@ class Drive:
 
     @property
     def left_out(self) -> list[Sentence]:
-        """What torques at the motor go by, and what they leave out."""
-        if self.application.duty_cycle.motion is None:
-            return [Sentence(self._efficiency), Sentence(INERTIA["phases"])]
-        known = self.motor is not None and self.motor.inertia_kgm2 is not None
-        return [Sentence(self._efficiency), Sentence(INERTIA["counted" if known else "unknown"])]
+        """What torques at the motor on the gear go by, and what they leave out."""
+        curve = N_(
+            "η of every phase from the efficiency curve that you supplied; beyond its ends that of the nearer end."
+        )
+        return [self._efficiency(curve, known=self.gear.designation in self.catalogue.efficiency), self._inertia]
 
     @property
-    def _efficiency(self) -> str:
+    def left_out_of_all(self) -> list[Sentence]:
+        """The same of every gear."""
+        curves = N_("η from your efficiency curves; 1 for a gear that has none, a lower bound.")
+        return [self._efficiency(curves, known=bool(self.catalogue.efficiency)), self._inertia]
+
+    def _efficiency(self, curve: str, *, known: bool) -> Sentence:
         if self.application.requirements.efficiency is not None:
-            return N_("η as you state it.")
-        if self.gear.designation in self.catalogue.efficiency:
-            return N_(
-                "η of every phase from the efficiency curve that you supplied; beyond its ends that of the nearer end."
-            )
-        return N_("η = 1, since no efficiency is known: loss-free, a lower bound.")
+            return Sentence(N_("η as you state it."))
+        return Sentence(curve if known else N_("η = 1, since no efficiency is known: loss-free, a lower bound."))
+
+    @property
+    def _inertia(self) -> Sentence:
+        if self.application.duty_cycle.motion is None:
+            return Sentence(INERTIA["phases"])
+        return Sentence(INERTIA["counted" if self.motor and self.motor.inertia_kgm2 is not None else "unknown"])
