@@ -2,8 +2,8 @@
 
 from hpn.motion.course import Course
 from hpn.motion.motion import MAXIMUM_MOVES, LinearMotion, Motion, RotaryMotion
-from hpn.motion.motor import Instant, peak_instant, peak_torque, rms_torque, square_torque
-from hpn.motion.trace import Trace, motor_trace, trace_of
+from hpn.motion.motor import peak_torque, rms_torque, square_torque
+from hpn.motion.trace import Instant, Trace, motor_trace, peak_instant, trace_of
 
 __all__ = [
     "MAXIMUM_MOVES",

@@ -1,6 +1,6 @@
 """Torque at the motor along a motion, its own inertia included: T / (i η) or T η / i, plus J_m i α."""
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -66,34 +66,6 @@ def peak_torque(
         for t in (some.start_s, some.end_s):
             np.maximum.at(peak, row[some.move], np.abs(torque.at(some, t)) * own[some.move])
     return peak
-
-
-@dataclass(frozen=True, slots=True)
-class Instant:
-    """Signed torque in Nm and acceleration in rad/s² at the gear's output, in a phase by its place, in its sense.
-
-    `is_driven` says that the motor drives the load, which costs T / (i η), and not the load the motor, T η / i.
-    """
-
-    phase: int
-    torque_Nm: float
-    acceleration_rad_per_s2: float
-    is_driven: bool
-
-
-def peak_instant(course: Course, *, ratio: float, efficiency: FloatArray, motor_inertia_kgm2: float) -> Instant:
-    """The instant at which the motor of one gear has its largest torque; `efficiency` has shape (phases,)."""
-    p, load = course.pieces, course.load
-    a = (share_of_torque(course, np.array([ratio]), efficiency[None])[0, course.phase]) * course.factor
-    b = motor_inertia_kgm2 * ratio * load.ratio
-    torque = Torque(load.viscous_Nms, load.gravity_Nm)
-    cut = monotone(torque, replace(p, inertia_kgm2=p.inertia_kgm2 + b / a, move=np.arange(len(p))))
-    ends = np.stack((cut.start_s, cut.end_s))
-    end, place = np.unravel_index(np.argmax(np.abs(a[cut.move] * torque.at(cut, ends))), ends.shape)
-    own, t = int(cut.move[place]), ends[end, place]
-    some, phase = p.at(np.array([own])), int(course.phase[own])
-    T, alpha = torque.at(some, t).item() * course.factor.item(own), some.acceleration_at(t).item() * load.ratio
-    return Instant(phase, T, alpha, bool(course.torque_Nm[phase] * course.speed_rpm[phase] >= 0))
 
 
 def share_of_torque(course: Course, ratio: FloatArray, efficiency: FloatArray) -> FloatArray:

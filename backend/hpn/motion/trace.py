@@ -53,6 +53,28 @@ def motor_trace(
     return trace, share[trace.phase][:, None] * trace.torque_Nm + inertia * trace.acceleration_rad_per_s2
 
 
+@dataclass(frozen=True, slots=True)
+class Instant:
+    """Signed torque in Nm and acceleration in rad/s² at the gear's output, in a phase by its place, in its sense.
+
+    `is_driven` says that the motor drives the load, which costs T / (i η), and not the load the motor, T η / i.
+    """
+
+    phase: int
+    torque_Nm: float
+    acceleration_rad_per_s2: float
+    is_driven: bool
+
+
+def peak_instant(course: Course, *, ratio: float, efficiency: FloatArray, motor_inertia_kgm2: float) -> Instant:
+    """The instant at which the motor of one gear has its largest torque; `efficiency` has shape (phases,)."""
+    trace, torque = motor_trace(course, ratio=ratio, efficiency=efficiency, motor_inertia_kgm2=motor_inertia_kgm2)
+    place = np.unravel_index(np.argmax(np.abs(torque)), torque.shape)
+    phase = trace.phase.item(place[0])
+    is_driven = bool(course.torque_Nm[phase] * course.speed_rpm[phase] >= 0)
+    return Instant(phase, trace.torque_Nm.item(place), trace.acceleration_rad_per_s2.item(place), is_driven)
+
+
 def _along(course: Course, pieces: Pieces, phase: PlaceArray, factor: FloatArray) -> Trace:
     load, rows = course.load, pieces.transposed
     count = max(2, min(MOST_INSTANTS, MOST_POINTS // len(pieces)))
