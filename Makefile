@@ -40,7 +40,7 @@ assets: $(ASSETS) $(COMPILED)
 WAITING := tests/operations/test_protocol.py tests/reliability/test_outage.py
 MEASURED := tests/browser/test_lighthouse.py $(WAITING) --numprocesses 3 --dist loadfile
 TOGETHER := --ignore tests/browser $(WAITING:%=--ignore %) --numprocesses 3 --dist loadfile --no-loadscope-reorder
-BROWSERS := tests/browser --ignore tests/browser/test_lighthouse.py --numprocesses 2 --dist load
+BROWSERS := tests/browser --ignore tests/browser/test_lighthouse.py --numprocesses 3 --dist load
 test: install browser office curl nginx
 ifdef PYTEST_ARGS
 	$(BIN)/pytest $(PYTEST_ARGS)

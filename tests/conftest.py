@@ -12,7 +12,7 @@ from hpn.catalogue import HANDBOOK_FOLDER, Catalogue, load_catalogue
 # Two shared cores: no deadline per example, and as many examples as fit a test run of every commit. The long form draws
 # more and others each time, so that it finds what no run before has met.
 settings.register_profile(
-    "hpn", deadline=None, max_examples=60, derandomize=True, suppress_health_check=[HealthCheck.too_slow]
+    "hpn", deadline=None, max_examples=40, derandomize=True, suppress_health_check=[HealthCheck.too_slow]
 )
 settings.register_profile("soak", parent=settings.get_profile("hpn"), max_examples=600, derandomize=False)
 
@@ -21,7 +21,11 @@ Supplement = Callable[..., Catalogue]
 BULK = ("test_fuzz.py",)
 """Files of which `make test` draws a part (`tests/web/conftest.py`) and `make soak` everything."""
 
-LONGEST_FIRST = ("test_fuzz.py", "test_kill.py", "test_tools.py", "test_reader.py", "test_page.py", "test_plots.py")
+LONGEST_FIRST = (
+    *("workbook", "api", "run", "contract", "pdf", "image", "serving", "fuzz", "invariances", "workers", "examples"),
+    *("remedy", "loop", "selections_api", "load", "year_later"),
+    *("tools", "reader", "page", "plots"),
+)
 """Files that take longest, so that none of them is left alone at the end."""
 
 
@@ -67,7 +71,8 @@ def _needs_browser(item: pytest.Item) -> bool:
 
 
 def _place(item: pytest.Item) -> int:
-    return LONGEST_FIRST.index(item.path.name) if item.path.name in LONGEST_FIRST else len(LONGEST_FIRST)
+    name = item.path.stem.removeprefix("test_")
+    return LONGEST_FIRST.index(name) if name in LONGEST_FIRST else len(LONGEST_FIRST)
 
 
 @pytest.fixture(scope="session")
