@@ -6,6 +6,7 @@ import os
 import shutil
 import tempfile
 from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import psycopg
@@ -37,6 +38,19 @@ class PostgreSQL:
         with psycopg.connect(self._address("postgres"), autocommit=True) as connection:
             connection.execute(f"CREATE DATABASE {name}".encode())
         return self._address(name)
+
+    @contextmanager
+    def database_in(self, folder: Path) -> Iterator[str]:
+        """Address of a new, empty database with its files in a folder, until the block ends."""
+        name = f"hpn_{next(self._numbers)}"
+        if self._server.system_user is not None:
+            shutil.chown(folder, self._server.system_user)
+        with psycopg.connect(self._address("postgres"), autocommit=True) as connection:
+            connection.execute(f"CREATE TABLESPACE {name} LOCATION '{folder}'".encode())
+            connection.execute(f"CREATE DATABASE {name} TABLESPACE {name}".encode())
+            yield self._address(name)
+            connection.execute(f"DROP DATABASE {name} WITH (FORCE)".encode())
+            connection.execute(f"DROP TABLESPACE {name}".encode())
 
     def stop(self) -> None:
         """Stop at once, connections or not; in order, so that no recovery delays the next start."""

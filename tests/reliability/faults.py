@@ -3,6 +3,7 @@
 import os
 import sqlite3
 import subprocess
+import tempfile
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager, suppress
 from pathlib import Path
@@ -88,14 +89,31 @@ def postgresql_read_only(address: str) -> Iterator[None]:
 
 @contextmanager
 def small_disk(folder: Path) -> Iterator[None]:
-    """A file system of 2 MB in a folder; skips the test where nothing may be mounted."""
-    mount = ["mount", "-t", "tmpfs", "-o", "size=2m", "hpn-test", str(folder)]
+    """A file system of 16 MB in a folder; skips the test where nothing may be mounted.
+
+    An empty database of PostgreSQL takes 8 MB, the write-ahead log of SQLite 4 MB between two checkpoints.
+    """
+    mount = ["mount", "-t", "tmpfs", "-o", "size=16m", "hpn-test", str(folder)]
     if os.geteuid() != 0 or subprocess.run(mount, capture_output=True).returncode != 0:
         pytest.skip("needs the right to mount a file system")
     try:
         yield
     finally:
         subprocess.run(["umount", "--lazy", str(folder)], check=True)
+
+
+@contextmanager
+def database_on_small_disk(server: PostgreSQL) -> Iterator[tuple[str, Path]]:
+    """Address of a database of PostgreSQL whose files have a small file system, and its folder.
+
+    The write-ahead log has its own, as in any server that is to come back: PostgreSQL ends where that is full.
+    """
+    with (
+        tempfile.TemporaryDirectory(prefix="hpn-disk-", dir="/tmp") as name,
+        small_disk(Path(name)),
+        server.database_in(Path(name)) as address,
+    ):
+        yield address, Path(name)
 
 
 @contextmanager

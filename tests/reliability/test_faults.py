@@ -18,7 +18,8 @@ from tests.reliability.faults import SAVE, SLACK_S, WAIT_S, Outage, assert_unava
 
 COME_BACK_S = 30.0
 NOBODY = 65534
-SHORT, LONG = ("sqlite full", "sqlite locked", "postgresql read-only"), ("postgresql locked", "postgresql stopped")
+SHORT = ("sqlite full", "sqlite locked", "postgresql full", "postgresql read-only")
+LONG = ("postgresql locked", "postgresql stopped")
 MOST_SAVES = 2000
 """More than fit on a small disk."""
 
@@ -35,6 +36,10 @@ def fault(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[tuple[str,
             yield f"sqlite:///{path}", lambda: faults.full(tmp_path) if kind == "full" else faults.sqlite_locked(path)
             return
         server: PostgreSQL = request.getfixturevalue("postgresql")
+        if kind == "full":
+            address, folder = stack.enter_context(faults.database_on_small_disk(server))
+            yield address, lambda: faults.full(folder)
+            return
         address = server.new_database()
         outages: dict[str, Outage] = {
             "locked": lambda: faults.postgresql_locked(address),

@@ -20,8 +20,13 @@ from hpn.store.packing import packed
 from hpn.store.saved import Draft, search_text
 from hpn.store.tables import catalogues, selections, spent_keys
 
-NOTHING = Draft(application=b"", result=b"", engine_version="", catalogue_version="", selected=None)
-"""What a rehearsal saves; nobody ever sees it."""
+REHEARSED_BYTES = 16 * 1024
+"""More than most selections take: a small row still finds a place in a file of a full disk."""
+
+REHEARSED = Draft(
+    application=b"", result=secrets.token_bytes(REHEARSED_BYTES), engine_version="", catalogue_version="", selected=None
+)
+"""What a rehearsal saves; nobody ever sees it. It can't be packed."""
 
 
 async def insert(connection: AsyncConnection, draft: Draft) -> str:
@@ -102,7 +107,7 @@ async def rehearse(connection: AsyncConnection) -> None:
     """Do to the tables what saving does, and take it back in the same transaction: fails where saving would fail."""
     for table in (catalogues, spent_keys):
         await connection.execute(select(literal(1)).select_from(table).limit(1))
-    row = _row_of(NOTHING)
+    row = _row_of(REHEARSED)
     await _insert_new(connection, selections, row)
     await connection.execute(delete(selections).where(selections.c.id == row["id"]))
 
