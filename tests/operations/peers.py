@@ -37,6 +37,19 @@ def chunk(piece: bytes) -> bytes:
     return b"%x\r\n%b\r\n" % (len(piece), piece)
 
 
+def frame(kind: int, flags: int, stream: int, payload: bytes) -> bytes:
+    """A frame of HTTP/2 (RFC 9113, section 4.1)."""
+    return struct.pack(">I", len(payload))[1:] + struct.pack(">BBI", kind, flags, stream) + payload
+
+
+def resets(count: int) -> bytes:
+    """Requests of HTTP/2 that are each taken back at once (CVE-2023-44487)."""
+    asked = b"\x82\x87\x84" + b"\x41\x09localhost"  # GET, https, / and the authority, as HPACK has them
+    cancelled = struct.pack(">I", 8)
+    streams = (frame(1, 5, k, asked) + frame(3, 0, k, cancelled) for k in range(1, 2 * count, 2))
+    return b"PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n" + frame(4, 0, 0, b"") + b"".join(streams)
+
+
 @dataclass(frozen=True)
 class Peer:
     """How a peer behaves: what it sends at once, what again and again, whether it reads, and how it ends."""
@@ -49,6 +62,7 @@ class Peer:
     many: int = 20
     tls: bool = True
     nginx_waits: bool = False  # nginx has no bound for the whole time of a body: it is gone once it stops
+    protocol: str = ""  # h2, which nginx alone speaks
 
 
 SELECT, BATCH, NOWHERE = b"/api/v1/select", b"/api/v1/select/batch", b"/nowhere"
@@ -71,6 +85,7 @@ PEERS = (
     Peer("many headers", head(b"GET", b"/", *[b"X-%d: b" % n for n in range(20_000)])),
     Peer("half-closed", head(b"GET", LINK), end="half", tls=False),
     Peer("keep-alive idle", head(b"GET", b"/healthz")),
+    Peer("HTTP/2 rapid reset", resets(20_000), protocol="h2"),
     Peer("reset in the middle", post(SELECT, JSON, 100_000) + b"{" * 1000, end="reset"),
 )
 

@@ -45,7 +45,7 @@ class Example:
 
 @pytest.fixture(
     scope="module",
-    params=[(PAIR, KEY), ("", None), pytest.param(("", ""), marks=pytest.mark.soak)],
+    params=[(PAIR, KEY), *(pytest.param(keys, marks=pytest.mark.soak) for keys in (("", None), ("", "")))],
     ids=["guarded", "open", "empty key"],
 )
 def example(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Example]:
