@@ -12,7 +12,7 @@ from hpn.catalogue import HANDBOOK_FOLDER, Catalogue, load_catalogue
 # Two shared cores: no deadline per example, and as many examples as fit a test run of every commit. The long form draws
 # more and others each time, so that it finds what no run before has met.
 settings.register_profile(
-    "hpn", deadline=None, max_examples=40, derandomize=True, suppress_health_check=[HealthCheck.too_slow]
+    "hpn", deadline=None, max_examples=30, derandomize=True, suppress_health_check=[HealthCheck.too_slow]
 )
 settings.register_profile("soak", parent=settings.get_profile("hpn"), max_examples=600, derandomize=False)
 

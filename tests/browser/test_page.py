@@ -261,7 +261,12 @@ def test_every_figure_is_read_in_full_with_a_load_per_phase(visitor: Visitor, wi
 
 
 @pytest.mark.parametrize(
-    ("path", "width"), [("/?T=500000&n=250&t=0.3", 1440), ("/?T=500&n=100&t=1", 1440), (EXAMPLE, 1024)]
+    ("path", "width"),
+    [
+        ("/?T=500000&n=250&t=0.3", 1440),
+        pytest.param("/?T=500&n=100&t=1", 1440, marks=pytest.mark.soak),
+        pytest.param(EXAMPLE, 1024, marks=pytest.mark.soak),
+    ],
 )
 def test_no_figure_of_limits_and_map_runs_into_its_neighbour(visitor: Visitor, path: str, width: int) -> None:
     page = visitor.open(path, width=width)

@@ -131,7 +131,7 @@ def test_accessibility_check_finds_nothing_in_german_with_the_units_open(visitor
     assert violations(page) == []
 
 
-@pytest.mark.parametrize("width", [390, 768, 1024, 1440])
+@pytest.mark.parametrize("width", [390, 1440, *(pytest.param(width, marks=pytest.mark.soak) for width in (768, 1024))])
 def test_nothing_makes_the_german_page_scroll_sideways(visitor: Visitor, width: int) -> None:
     page = visitor.open(EXAMPLE.replace("&i=5", "&FR=500&FRi=&FRi=&FRi=700"), width=width)
     page.get_by_role("button", name="Deutsch").click()

@@ -88,7 +88,17 @@ def words(document: bytes) -> str:
     return found.replace("\u00a0", " ").replace("\u200b", "").replace("\u202f", "")
 
 
-@pytest.mark.parametrize("change", [by_supplement, pytest.param(by_csv, marks=pytest.mark.soak)])
+@pytest.mark.parametrize(
+    ("kind", "change"),
+    [
+        ("sqlite", by_supplement),
+        *(
+            pytest.param(*case, marks=pytest.mark.soak)
+            for case in (("sqlite", by_csv), ("postgresql", by_supplement), ("postgresql", by_csv))
+        ),
+    ],
+    indirect=["kind"],
+)
 def test_after_a_change_of_the_catalogue_every_file_is_the_same_byte_for_byte(
     database: str, change: Change, folder: Path, tmp_path: Path, recalculate: Recalculate
 ) -> None:

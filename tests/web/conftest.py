@@ -31,7 +31,7 @@ def document(service: FastAPI) -> dict[str, Any]:
     return service.openapi()
 
 
-PART = 6
+PART = 8
 """`make test` tries every operation of the API with one in so many of the fuzz's examples; `make soak` with all."""
 
 
