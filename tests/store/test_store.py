@@ -308,10 +308,12 @@ async def test_a_saver_who_gives_up_at_any_moment_leaves_all_or_nothing(store: S
         assert saving.result() == id
 
 
-async def test_hundreds_of_savers_at_once_are_all_saved(store: Store) -> None:
+async def test_hundreds_of_savers_at_once_are_all_saved(ready_database: str) -> None:
+    store = Store(ready_database, seconds=60)  # the last of them waits for all others
     ids = await asyncio.gather(*(store.save(draft()) for _ in range(500)))
 
     assert len(set(ids)) == await count(store) == 500
+    await store.close()
 
 
 async def test_closing_finishes_what_sqlite_is_writing(tmp_path: Path) -> None:
