@@ -139,7 +139,9 @@ def test_a_calculation_of_a_motion_gives_the_figures_of_the_reply(motion: Json, 
         assert math.isclose(value, line.result.value, rel_tol=1e-9, abs_tol=1e-12), code
         for reader in READERS if not leaves_out(line.formula) else ():
             found, printed = shown(line, reader)
-            assert abs(found - printed) <= NINE_DIGITS * max(abs(printed), 1e-6), (code, found, printed)
+            # The exponent of equation 17.9 is 8.5 less something, of which few digits may be left.
+            least = 8.5 if code == "momentary_peak_count" else 1e-6
+            assert abs(found - printed) <= NINE_DIGITS * max(abs(printed), least), (code, found, printed)
     assert {"motor_peak_torque", "motor_rated_torque"} <= {code for code, _ in lines}
     load_checks = {c.code for c in candidate.checks if BY_CODE[c.code].group == "load" and c.limit is not None}
     assert {comparison.code for step in steps for comparison in step.comparisons} == load_checks
