@@ -83,7 +83,9 @@ class _Load:
 
     async def run(self) -> Outcome:
         # Opened before: a server accepts few connections in a turn, and requests behind these are not yet its own.
-        streams = [await self._open() for _ in range(CONNECTIONS if self._rate else AT_ONCE)]
+        # Each asks every two seconds, before it is closed as idle.
+        connections = min(CONNECTIONS, max(AT_ONCE, round(2 * self._rate)))
+        streams = [await self._open() for _ in range(connections)]
         self._start = time.perf_counter() + 0.2
         await asyncio.gather(*map(self._connection, streams))
         latencies = sorted(self._latencies) or [math.nan]
