@@ -75,13 +75,19 @@ def _needed(used: Mapping[str, float], u: float, driver: Driver, curve: bool) ->
 
 
 def _follows_curve(candidate: Candidate) -> bool:
-    """Whether motor torques go by the gear's efficiency curve, so that no closed form follows them."""
-    return candidate.reserve.torque_factor is None and any(candidate.check(code) for code in MOTOR_TORQUES)
+    """Whether no closed form follows the motor torques of a judged gear: by a curve, or by the motor's own inertia."""
+    return any(candidate.check(code) for code in MOTOR_TORQUES) and _is_untold(candidate, "torque")
 
 
 def _has_own_inertia(candidate: Candidate) -> bool:
     """Whether motor torques have a part of the motor's own inertia, which goes by the motion and no driver alone."""
-    return _follows_curve(candidate) and candidate.reserve.speed_factor is None
+    return _follows_curve(candidate) and _is_untold(candidate, "speed")
+
+
+def _is_untold(candidate: Candidate, driver: Driver) -> bool:
+    """Whether the reserve has no factor of a driver though a check that it moves is used, so that there is a limit."""
+    used = (check.utilisation or 0.0 for check in candidate.checks if check.code in MOVES[driver])
+    return getattr(candidate.reserve, f"{driver}_factor") is None and any(share > _LEAST for share in used)
 
 
 def _excess(relative: float) -> float:
@@ -352,11 +358,14 @@ def growths_of(candidate: Candidate, reserve_utilisation: float = 1.0) -> dict[s
     """For each check of a candidate, how far every driver of it may grow until that very check is at its limit.
 
     Below 1 where the check fails. Empty for a check that no driver moves and for one that is not rated. Not told for
-    motor torques that go by an efficiency curve or by the motor's own inertia, which no closed form follows.
+    motor torques that go by an efficiency curve or by the motor's own inertia, which no closed form follows; empty for
+    motor torques of a gear that is not judged, whose reserve can't tell either.
     """
     untold = BY_INERTIA if _has_own_inertia(candidate) else BY_CURVE if _follows_curve(candidate) else ""
     return {
-        check.code: tuple(_growths(check, reserve_utilisation, untold if check.code in MOTOR_TORQUES else ""))
+        check.code: ()
+        if untold and check.code in MOTOR_TORQUES and not candidate.is_judged
+        else tuple(_growths(check, reserve_utilisation, untold if check.code in MOTOR_TORQUES else ""))
         for check in candidate.checks
     }
 

@@ -108,6 +108,17 @@ def test_a_motor_torque_that_follows_an_efficiency_curve_says_why_its_growth_is_
     assert "efficiency follows your curve" in torque.bound.text
 
 
+def test_nothing_is_said_to_follow_a_curve_that_nobody_gave(catalogue: Catalogue) -> None:
+    """A reserve is empty for other reasons too: nothing is asked of the gear, or its limits are not published."""
+    motor = {"peak_torque_Nm": 50, "rated_torque_Nm": 20}
+    idle = chosen(selected(cycle(phase(0, 100), requirements={"motor": motor}), catalogue), "HPN-20A-5")
+    assert idle.reserve.torque_factor is None
+    assert {growth.bound.text for growth in growths_of(idle)["motor_peak_torque"]} == {"without limit"}
+    unrated = chosen(selected(worked_example(requirements={"motor": motor}), catalogue), "HPN-40A-5")
+    assert unrated.check("motor_peak_torque") is not None
+    assert growths_of(unrated)["motor_peak_torque"] == ()
+
+
 @pytest.mark.parametrize(
     ("value", "digits", "down", "up"),
     [
