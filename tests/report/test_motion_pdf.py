@@ -114,3 +114,4 @@ def test_torque_is_drawn_against_speed_where_a_motion_or_a_motor_is_given(catalo
         assert math.isclose(float(found[1]), torque, rel_tol=5e-3), plane["alt"]  # three digits
     printed = "\n".join(pages(pdf(typed_export_of(MOVING["rotary table"], catalogue), ENGLISH)))
     assert "Torque and speed at the motor" in printed
+    assert "count the motor’s own inertia; they leave out that of the gear" in "".join(map(str, motor["words"]))

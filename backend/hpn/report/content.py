@@ -95,7 +95,7 @@ def content(export: Export, reader: Reader) -> dict[str, Any]:
     """Everything that the template sets, as JSON-ready data."""
     text, selection = reader.text, export.selection
     labels = {key: text(label) for key, label in LABELS.items()}
-    named = ("checks", "ratings", "calculation")
+    named, on_motor = ("checks", "ratings", "calculation"), text(ON_MOTOR[export.turns_motor])
     labels |= {key: labels[key].format(gear=export.candidate.designation) for key in named}
     return {
         "lang": reader.language,
@@ -114,10 +114,10 @@ def content(export: Export, reader: Reader) -> dict[str, Any]:
         "move_listing": moves(export, reader),
         "listing": listing(export, reader),
         "derived": tables.derived(export, reader),
-        "caveats": [sentence(text(caveat)) for caveat in (*CAVEATS, ON_MOTOR[export.turns_motor])],
+        "caveats": [*(sentence(text(caveat)) for caveat in CAVEATS), sentence(on_motor)],
         "cycle": {"panels": plots.cycle(export, reader), "alt": text(N_("Torque and speed of the cycle over time"))},
         "course": plots.motion(export, reader),
-        "planes": plots.planes(export, reader),
+        "planes": plots.planes(export, reader, on_motor),
         "bearing": plots.envelope(export, reader),
         "bearing_alt": text(N_("Loads of the phases within the envelopes of the output bearing")),
         "checks": checks(export, reader),

@@ -242,8 +242,11 @@ def motion(export: Export, reader: Reader) -> str:
 # --- Torque against speed ---------------------------------------------------------------------------------------------
 
 
-def planes(export: Export, reader: Reader) -> list[dict[str, Any]]:
-    """The page's planes of gear and motor, where a motion or a motor is given and the gear's limits are at hand."""
+def planes(export: Export, reader: Reader, left_out: str) -> list[dict[str, Any]]:
+    """The page's planes of gear and motor, where a motion or a motor is given and the gear's limits are at hand.
+
+    `left_out` is what torques at the motor leave out.
+    """
     gear, application = export.gear(export.candidate), export.application
     if gear is None or export.figures is None:
         return []
@@ -253,7 +256,7 @@ def planes(export: Export, reader: Reader) -> list[dict[str, Any]]:
     governing = governing_phases(subject, export.candidate.governing_check, None)
     output = _plane(N_("Torque and speed at the gear’s output"), gear_plane(subject, reader, governing), reader)
     motor = _plane(N_("Torque and speed at the motor"), motor_plane(subject, reader, governing), reader)
-    return [output, motor]
+    return [output, motor | {"words": [*motor["words"], " " + left_out]}]
 
 
 def _plane(title: str, plane: Plane, reader: Reader) -> dict[str, Any]:
