@@ -97,9 +97,19 @@ class Visitor:
         self.watches: list[Watch] = []
 
     def open(
-        self, path: str = "/", width: int = 1440, *, script: bool = True, dark: bool = False, touch: bool = False
+        self,
+        path: str = "/",
+        width: int = 1440,
+        *,
+        script: bool = True,
+        dark: bool = False,
+        touch: bool = False,
+        routed: bool = False,
     ) -> Page:
-        """Page at a path, in a viewport of a width."""
+        """Page at a path, in a viewport of a width; where routed, a test can hold back what it asks for.
+
+        Chromium intercepts requests only some time after it is told to, so that it is told before there is a page.
+        """
         context = self.browser.new_context(
             viewport={"width": width, "height": 844 if width < 600 else 900},
             java_script_enabled=script,
@@ -109,6 +119,8 @@ class Visitor:
         )
         context.set_default_timeout(1000 * PATIENCE_S)
         self.contexts.append(context)
+        if routed:
+            context.route("**/?*", lambda route: route.continue_())
         page = context.new_page()
         self.watches.append(Watch(page, self.server))
         page.goto(self.server + path)
@@ -151,7 +163,8 @@ def violations(page: Page) -> list[tuple[str, list[str]]]:
 
 @contextmanager
 def answer_held_back(page: Page, after: Callable[[], None]) -> Iterator[None]:
-    """What the page asks the server for in consequence is under way and not answered before the block ends."""
+    """What a routed page asks the server for in consequence is under way and not answered before the block ends."""
+    expect(page.locator(".htmx-request")).to_have_count(0)  # what was asked before is not held back
     held: list[Route] = []
     page.route("**/?*", lambda route: held.append(route))
     with page.expect_request("**/?*"):

@@ -26,7 +26,7 @@ def average_torque(first: float) -> str:
 
 
 def test_calculation_that_is_opened_meanwhile_is_that_of_the_answer(visitor: Visitor) -> None:
-    page = visitor.open(EXAMPLE)
+    page = visitor.open(EXAMPLE, routed=True)
     shown = page.locator("#calculation")
     for first in (80, 96):  # once without a calculation so far, once with that of before
         with answer_held_back(page, partial(torque(page, 1).fill, str(first))):
@@ -37,7 +37,7 @@ def test_calculation_that_is_opened_meanwhile_is_that_of_the_answer(visitor: Vis
 
 
 def test_going_back_meanwhile_takes_back_the_edit_that_is_under_way(visitor: Visitor) -> None:
-    page = visitor.open(EXAMPLE)
+    page = visitor.open(EXAMPLE, routed=True)
     pause(page).fill("5")
     expect(page).to_have_url(re.compile("tp=5"))
     held: list[Route] = []
@@ -72,6 +72,7 @@ def test_what_is_saved_is_what_the_form_says(visitor: Visitor) -> None:
 def test_what_is_saved_is_what_the_form_says_in_german_and_inches(visitor: Visitor) -> None:
     page = visitor.open(EXAMPLE)
     page.get_by_role("button", name="Deutsch").click()
+    expect(page.get_by_role("button", name="Speichern", exact=True)).to_be_visible()
     page.locator("#T-0").fill("90,5")
     page.locator("form.save").evaluate("form => form.requestSubmit()")
     expect(page).to_have_url(re.compile("/selections/"))
@@ -88,7 +89,7 @@ def test_what_is_wrong_is_not_saved(visitor: Visitor) -> None:
 
 
 def test_undo_takes_back_the_row_edit_that_is_under_way_and_no_more(visitor: Visitor) -> None:
-    page = visitor.open(EXAMPLE)
+    page = visitor.open(EXAMPLE, routed=True)
     torque(page, 1).fill("50")
     expect(page).to_have_url(re.compile("T=50&"))
     with answer_held_back(page, page.get_by_role("button", name="Remove phase 2").click):
@@ -102,11 +103,12 @@ def test_undo_takes_back_the_row_edit_that_is_under_way_and_no_more(visitor: Vis
 
 
 def test_undo_takes_back_the_gear_that_was_chosen_just_now_and_no_more(visitor: Visitor) -> None:
-    page = visitor.open(EXAMPLE)
+    page = visitor.open(EXAMPLE, routed=True)
     torque(page, 1).fill("50")
     expect(page).to_have_url(re.compile("T=50&"))
     open_section(page, "Candidates")
     row = page.get_by_role("table", name="Suitable").get_by_role("link", name="HPN-32A-5", exact=True)
+    expect(row).to_be_visible()
     with answer_held_back(page, row.click):
         page.get_by_role("button", name="Undo").click()
     expect(page.get_by_role("button", name="Redo")).to_have_attribute("aria-disabled", "false")
@@ -116,7 +118,7 @@ def test_undo_takes_back_the_gear_that_was_chosen_just_now_and_no_more(visitor: 
 
 
 def test_gears_pinned_in_quick_succession_are_all_compared(visitor: Visitor) -> None:
-    page = visitor.open(EXAMPLE)
+    page = visitor.open(EXAMPLE, routed=True)
     open_section(page, "Candidates")
     page.get_by_text("14A: one gear").click()
     pins = page.get_by_role("region", name="Candidates")

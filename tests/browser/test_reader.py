@@ -125,7 +125,8 @@ def test_units_are_chosen_by_keyboard_one_by_one(visitor: Visitor) -> None:
 )
 def test_accessibility_check_finds_nothing_in_german_with_the_units_open(visitor: Visitor, path: str) -> None:
     page = visitor.open(path)
-    page.get_by_role("button", name="Deutsch").click()
+    with page.expect_navigation():
+        page.get_by_role("button", name="Deutsch").click()
     set_units(page, "US-Einheiten")
     page.get_by_role("button", name=re.compile("^Einheiten")).click()
     assert violations(page) == []

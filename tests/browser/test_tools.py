@@ -273,7 +273,7 @@ def test_row_edited_by_key_in_a_changed_cell_takes_the_figures_along(
 
 
 def test_row_moved_by_key_twice_in_quick_succession_goes_two_places(visitor: Visitor) -> None:
-    page = visitor.open(EXAMPLE)
+    page = visitor.open(EXAMPLE, routed=True)
     torque(page, 1).fill("36")
     with answer_held_back(page, lambda: page.keyboard.press("Alt+ArrowDown")):
         page.keyboard.press("Alt+ArrowDown")
@@ -284,7 +284,7 @@ def test_row_moved_by_key_twice_in_quick_succession_goes_two_places(visitor: Vis
 
 
 def test_typing_while_a_row_edit_is_under_way_keeps_both_and_the_place(visitor: Visitor) -> None:
-    page = visitor.open(EXAMPLE)
+    page = visitor.open(EXAMPLE, routed=True)
     with answer_held_back(page, button(page, "Remove phase 1").click):
         torque(page, 3).fill("205")
     expect(torque(page, 3)).to_have_count(0)
@@ -294,14 +294,14 @@ def test_typing_while_a_row_edit_is_under_way_keeps_both_and_the_place(visitor: 
 
 
 def test_rows_added_in_quick_succession_all_come(visitor: Visitor) -> None:
-    page = visitor.open(EXAMPLE)
+    page = visitor.open(EXAMPLE, routed=True)
     with answer_held_back(page, button(page, "+ Add phase").click):
         button(page, "+ Add phase").click()
     expect(torque(page, 5)).to_be_visible()
 
 
 def test_long_wait_is_shown_and_a_short_one_is_not(visitor: Visitor) -> None:
-    page = visitor.open(EXAMPLE)
+    page = visitor.open(EXAMPLE, routed=True)
     page.clock.install()
     result = page.get_by_role("region", name="Result")
     before = page.get_by_role("table", name="Load limits").bounding_box()
@@ -320,7 +320,7 @@ class TestWithoutServer:
 
     @pytest.fixture
     def page(self, visitor: Visitor) -> Page:
-        page = visitor.open(EXAMPLE)
+        page = visitor.open(EXAMPLE, routed=True)
         visitor.watches.clear()
         return page
 
