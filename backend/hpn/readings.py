@@ -5,7 +5,6 @@ beside the published maximum in its own direction, and the life beside the requi
 the same comparisons, since P grows in proportion with a load along its direction and the life with its power -3.
 """
 
-from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -17,7 +16,7 @@ from hpn.checks import BY_CODE
 from hpn.duty import Duty
 from hpn.figures import phase_loads
 from hpn.gear import Gear
-from hpn.selection import Candidate, CheckDefinition, CheckResult
+from hpn.selection import Candidate, CheckDefinition, CheckResult, Selection
 from hpn.wording import N_
 
 
@@ -52,7 +51,7 @@ _RELATIONS = {"motor_peak_torque": "T_in,max ≤ T_mot", "motor_rated_torque": "
 
 def readings_of(
     candidate: Candidate,
-    definitions: Mapping[str, CheckDefinition],
+    selection: Selection,
     application: Application | None,
     catalogue: Catalogue | None,
 ) -> dict[str, Reading]:
@@ -60,7 +59,6 @@ def readings_of(
     load = application.loads if application else None
     gear = catalogue.by_designation.get(candidate.designation) if catalogue else None
     u = application.requirements.utilisation if application else 1.0
-    turns_motor = _turns_motor(application, catalogue)
     readings: dict[str, Reading] = {}
     for check in candidate.checks:
         reading = None
@@ -68,20 +66,11 @@ def readings_of(
             reading = _bearing_life(candidate, check, load, u)
         if check.code == "output_bearing_load" and application and load and catalogue and gear:
             reading = _bearing_load(check, application, load, catalogue, gear, u)
-        reading = reading or _as_computed(check, definitions[check.code], u)
-        if turns_motor and check.code in _RELATIONS:
+        reading = reading or _as_computed(check, selection.check_definitions[check.code], u)
+        if selection.turns_motor and check.code in _RELATIONS:
             reading = replace(reading, relation=_RELATIONS[check.code])
         readings[check.code] = reading
     return readings
-
-
-def _turns_motor(application: Application | None, catalogue: Catalogue | None) -> bool:
-    """Whether the motor's own inertia counts in its torques: along a motion, where it is stated or listed."""
-    motor = application.requirements.motor if application and application.duty_cycle.motion else None
-    if motor is None or motor.inertia_kgm2 is not None:
-        return motor is not None
-    listed = catalogue.motor_by_designation.get(motor.designation or "") if catalogue else None
-    return listed is not None and listed.inertia_kgm2 is not None
 
 
 def _as_computed(check: CheckResult, definition: CheckDefinition, u: float) -> Reading:

@@ -54,7 +54,7 @@ def ways_of(candidate: Candidate, reserve_utilisation: float = 1.0) -> tuple[Way
         return ()
     u = reserve_utilisation
     used = {check.code: check.utilisation for check in candidate.checks if check.utilisation is not None}
-    torque, speed, load = (_needed(used, u, driver, _follows_curve(candidate)) for driver in MOVES)
+    torque, speed, load = (_needed(used, u, driver, _is_untold(candidate, "torque")) for driver in MOVES)
     life = _excess(used.get("life", 0.0) * torque ** (10 / 3) * speed / u)
     bearing = _excess(used.get("output_bearing_life", 0.0) * load * speed ** (1 / 3) / u)
     stop = _stop(candidate, u)
@@ -63,29 +63,23 @@ def ways_of(candidate: Candidate, reserve_utilisation: float = 1.0) -> tuple[Way
     return () if gentler == Way() else (gentler,) if gentler == slower else (gentler, slower)
 
 
-def _needed(used: Mapping[str, float], u: float, driver: Driver, curve: bool) -> float:
+def _needed(used: Mapping[str, float], u: float, driver: Driver, untold: bool) -> float:
     """Factor on a driver that the checks ask for which no other driver moves."""
     rooms = [
         u / used[code]
         for code in MOVES[driver]
-        if code in used and code not in LIVES and not (curve and code in MOTOR_TORQUES)
+        if code in used and code not in LIVES and not (untold and code in MOTOR_TORQUES)
         if _excess(used[code] / u) > 1
     ]
     return min(rooms, default=1.0)
 
 
-def _follows_curve(candidate: Candidate) -> bool:
-    """Whether no closed form follows the motor torques of a judged gear: by a curve, or by the motor's own inertia."""
-    return any(candidate.check(code) for code in MOTOR_TORQUES) and _is_untold(candidate, "torque")
-
-
-def _has_own_inertia(candidate: Candidate) -> bool:
-    """Whether motor torques have a part of the motor's own inertia, which goes by the motion and no driver alone."""
-    return _follows_curve(candidate) and _is_untold(candidate, "speed")
-
-
 def _is_untold(candidate: Candidate, driver: Driver) -> bool:
-    """Whether the reserve has no factor of a driver though a check that it moves is used, so that there is a limit."""
+    """Whether no closed form follows a driver of a judged gear: its reserve has no factor, yet a check of it is used.
+
+    That is the torque where the motor's torques go by an efficiency curve, and torque and speed where they have a part
+    of the motor's own inertia, which goes by the motion.
+    """
     used = (check.utilisation or 0.0 for check in candidate.checks if check.code in MOVES[driver])
     return getattr(candidate.reserve, f"{driver}_factor") is None and any(share > _LEAST for share in used)
 
@@ -127,16 +121,13 @@ class Alternative:
 def alternatives_of(candidate: Candidate, reserve_utilisation: float = 1.0) -> tuple[Alternative, ...]:
     """Alternatives that each make a rejected gear suitable.
 
-    None for one that is not rejected, where not every check can be judged, and where torques have to drop though the
-    motor's torque goes by a curve: what the motor has to give then is a matter of the curve. Nor are there any where
-    torques or speeds have to drop though the motor turns its own inertia: that is a matter of the motion.
+    None for one that is not rejected, where not every check can be judged, and where a driver has to change that no
+    closed form follows: what the motor has to give then is a matter of its curve, or of the motion.
     """
     if candidate.status != "unsuitable" or not candidate.is_judged:
         return ()
     ways, changed = ways_of(candidate, reserve_utilisation), tuple(_requirements(candidate, reserve_utilisation))
-    if _follows_curve(candidate) and any(way.torque < 1 for way in ways):
-        return ()
-    if _has_own_inertia(candidate) and any(way.speed < 1 for way in ways):
+    if any(getattr(way, driver) < 1 for way in ways for driver in MOVES if _is_untold(candidate, driver)):
         return ()
     return tuple(Alternative(one, changed) for way in ways or (Way(),) for one in _by_stop(way))
 
@@ -161,7 +152,7 @@ def _requirements(candidate: Candidate, u: float) -> Iterable[Requirement]:
             rises = check.demand < check.limit
             value = Quantity(check.limit, "degC", 6, "up" if rises else "down")
             yield Requirement(known.asked, value, _AMBIENT[rises])
-        elif known.accepted and (not known.moves or _follows_curve(candidate)):
+        elif known.accepted and (not known.moves or _is_untold(candidate, "torque")):
             least, allowed = known.kind == "minimum", known.allowed(u)
             needed = check.demand * (allowed if least else 1 / allowed)
             computed = bool(known.moves) or known.group == "load"
@@ -361,7 +352,8 @@ def growths_of(candidate: Candidate, reserve_utilisation: float = 1.0) -> dict[s
     motor torques that go by an efficiency curve or by the motor's own inertia, which no closed form follows; empty for
     motor torques of a gear that is not judged, whose reserve can't tell either.
     """
-    untold = BY_INERTIA if _has_own_inertia(candidate) else BY_CURVE if _follows_curve(candidate) else ""
+    by_curve = BY_CURVE if _is_untold(candidate, "torque") else ""
+    untold = BY_INERTIA if _is_untold(candidate, "speed") else by_curve
     return {
         check.code: ()
         if untold and check.code in MOTOR_TORQUES and not candidate.is_judged

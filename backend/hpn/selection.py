@@ -177,6 +177,11 @@ class Selection(msgspec.Struct, frozen=True):
         """The selected gear, else the nearest miss among those that could be judged, if any could."""
         return next((candidate for candidate in self.candidates if candidate.is_judged), self.candidates[0])
 
+    @property
+    def turns_motor(self) -> bool:
+        """Whether the motor's own inertia counts in its torques, which a notice says."""
+        return any(notice.code == "motor_inertia_included" for notice in self.notices)
+
     def candidate(self, designation: str) -> Candidate | None:
         """The candidate of a designation, or None."""
         return next((entry for entry in self.candidates if entry.designation == designation), None)

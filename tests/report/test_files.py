@@ -107,7 +107,8 @@ def test_the_title_block_is_of_the_link_or_as_it_was_saved(client: TestClient) -
         for text in (*labels.values(), code, "Checks of HPN-32A-5"):
             assert text in found, (address, text)
         assert ("Not saved" in found) == ("report.pdf?" in address)
-    note = page["/Annots"][0].get_object()  # type: ignore[index]
+    assert page.annotations is not None
+    note = page.annotations[0].get_object()
     opened = client.get(str(note["/A"]["/URI"])).text
     assert "Axis 7" in opened and code in opened
 

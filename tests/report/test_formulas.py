@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import pytest
 
+from hpn.check import Kind
 from hpn.checks import BY_CODE
 from hpn.quantities import INPUTS
 from hpn.report.formulas import CHECK_FORMULAS, CYCLE_TERMS, GEAR_TERMS, RATINGS, cell_name, formulas_of
@@ -31,9 +32,9 @@ def test_the_workbook_calculates_every_check_of_today() -> None:
     ],
 )
 def test_a_new_plain_check_has_its_formulas_from_its_relation(
-    relation: str, kind: str, asked: str, demand: str, limit: str, share: str
+    relation: str, kind: Kind, asked: str, demand: str, limit: str, share: str
 ) -> None:
-    formulas = formulas_of(replace(BY_CODE["length"], code="new", relation=relation, kind=kind))  # type: ignore[arg-type]
+    formulas = formulas_of(replace(BY_CODE["length"], code="new", relation=relation, kind=kind))
     assert formulas is not None
     assert (formulas.asked, formulas.demand, formulas.limit, formulas.utilisation) == (asked, demand, limit, share)
 

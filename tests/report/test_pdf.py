@@ -103,8 +103,7 @@ def test_every_check_stands_in_the_report_with_its_figures(
     table = page[page.index(heading) : page.index(reader.text("Published figures of {gear}").partition(" {")[0])]
     titles = [reader.text(export.selection.check_definitions[check.code].title) for check in export.candidate.checks]
     starts = [_position(table, title) for title in titles]
-    definitions = export.selection.check_definitions
-    readings = readings_of(export.candidate, definitions, export.application, catalogue)
+    readings = readings_of(export.candidate, export.selection, export.application, catalogue)
     for check, start, end in zip(export.candidate.checks, starts, [*starts[1:], len(table)], strict=True):
         row = table[start:end]
         shown = numbers(row, decimal)

@@ -19,7 +19,7 @@ def readings(application: Json, designation: str, catalogue: Catalogue) -> dict[
     selection = select(asked, catalogue)
     candidate = selection.candidate(designation)
     assert candidate is not None
-    return readings_of(candidate, selection.check_definitions, asked, catalogue)
+    return readings_of(candidate, selection, asked, catalogue)
 
 
 def test_the_load_of_the_worst_phase_stands_beside_the_published_maximum_in_its_direction(catalogue: Catalogue) -> None:
@@ -77,7 +77,7 @@ def test_what_is_read_compares_as_the_check_does(catalogue: Catalogue) -> None:
         application = Application.model_validate(at_random(chance))
         selection = select(application, catalogue)
         candidate = chance.choice(selection.candidates)
-        for code, read in readings_of(candidate, selection.check_definitions, application, catalogue).items():
+        for code, read in readings_of(candidate, selection, application, catalogue).items():
             check = candidate.check(code)
             if check is None or not read.demand or not read.limit or read.kind == "range":
                 continue
@@ -92,7 +92,7 @@ def test_what_is_read_compares_as_the_check_does(catalogue: Catalogue) -> None:
 def test_without_application_or_catalogue_the_pure_numbers_stand(catalogue: Catalogue) -> None:
     asked = Application.model_validate(cycle(phase(1.0, 100.0), output_load={"radial_N": 900.0}))
     selection = select(asked, catalogue)
-    read = readings_of(selection.candidates[0], selection.check_definitions, None, None)
+    read = readings_of(selection.candidates[0], selection, None, None)
     check = selection.candidates[0].check("output_bearing_load")
     assert check is not None
     assert (read["output_bearing_load"].demand, read["output_bearing_load"].unit) == (check.demand, "")

@@ -95,7 +95,7 @@ def content(export: Export, reader: Reader) -> dict[str, Any]:
     """Everything that the template sets, as JSON-ready data."""
     text, selection = reader.text, export.selection
     labels = {key: text(label) for key, label in LABELS.items()}
-    named, on_motor = ("checks", "ratings", "calculation"), text(ON_MOTOR[export.turns_motor])
+    named, on_motor = ("checks", "ratings", "calculation"), text(ON_MOTOR[export.selection.turns_motor])
     labels |= {key: labels[key].format(gear=export.candidate.designation) for key in named}
     return {
         "lang": reader.language,

@@ -76,11 +76,6 @@ class Export:
         """The application with the figures of the motor that it names, as far as the catalogue is at hand."""
         return with_listed_motor(self.application, self.figures) if self.figures else self.application
 
-    @property
-    def turns_motor(self) -> bool:
-        """Whether the motor's own inertia counts in its torques, which a notice of the selection says."""
-        return any(notice.code == "motor_inertia_included" for notice in self.selection.notices)
-
     @cached_property
     def duty(self) -> Duty:
         """Duty of the application, as arrays for one."""
@@ -112,7 +107,7 @@ class Export:
             return False
         if self.figures is not None:
             return candidate.designation in self.figures.efficiency
-        if self.turns_motor:
+        if self.selection.turns_motor:
             return any(notice.code == "efficiency_supplied" for notice in self.selection.notices)
         shown = np.array([candidate.motor_peak_torque_Nm, candidate.motor_rated_torque_Nm], dtype=np.float64)
         output = np.array([self.duty.maximum_torque_Nm.item(), self.duty.rms_torque_Nm.item()])

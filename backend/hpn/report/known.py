@@ -51,7 +51,7 @@ class Known:
             fixed |= _DEMANDS.keys()
         if self.export.follows_efficiency_curve(self.candidate):
             fixed |= set(MOTOR_TORQUES)
-        if self.export.turns_motor:
+        if self.export.selection.turns_motor:
             fixed |= set(MOTOR_TORQUES)
         if self.export.figures is None and self._has_listed_motor:
             fixed |= {check.code for check in MOTOR}

@@ -166,7 +166,7 @@ class Overview:
         """That a motor torque is a lower bound, for as long as the reader states no efficiency."""
         saved = self.text(LOSS_FREE) if self.book.export.is_lower_bound(self.known.candidate) else ""
         if fixed:
-            along = self.text(ALONG_THE_MOTION) if self.book.export.turns_motor else ""
+            along = self.text(ALONG_THE_MOTION) if self.book.export.selection.turns_motor else ""
             said = "; ".join(filter(None, (along, saved)))
             room = 4 if self.book.shown.measure("Nm").same else 7  # clear of the value in another unit
             self.sheet.write_string(self.row, room, said, self.book.style("quiet"))

@@ -107,7 +107,7 @@ def derived(export: Export, reader: Reader) -> list[dict[str, Any]]:
     figures += [(name, CANDIDATE[name], getattr(candidate, name)) for name in FIGURES]
     lower_bound = export.is_lower_bound(candidate)
     loss_free = lower_bound and not export.follows_efficiency_curve(candidate)
-    symbols = AT_MOTOR if export.turns_motor else {}
+    symbols = AT_MOTOR if export.selection.turns_motor else {}
     rows = []
     for name, named, value in figures:
         if value is not None:

@@ -111,7 +111,7 @@ def checks(export: Export, reader: Reader) -> list[dict[str, Any]]:
 
 
 def _readings(export: Export, candidate: Candidate) -> dict[str, Reading]:
-    return readings_of(candidate, export.selection.check_definitions, export.application, export.figures)
+    return readings_of(candidate, export.selection, export.application, export.figures)
 
 
 def _check(export: Export, check: CheckResult, read: Reading, reader: Reader) -> dict[str, Any]:

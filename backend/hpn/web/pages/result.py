@@ -107,7 +107,7 @@ class Result:
     @property
     def readings(self) -> Mapping[str, Reading]:
         """Demand and limit of the chosen candidate's checks as an engineer reads them, by code."""
-        return readings_of(self.chosen, self.selection.check_definitions, self.application, self.catalogue)
+        return readings_of(self.chosen, self.selection, self.application, self.catalogue)
 
     @property
     def gear(self) -> Gear | None:
