@@ -3,6 +3,7 @@
 import csv
 import json
 import math
+import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -58,6 +59,9 @@ FAULTS: dict[str, Callable[[Row], None]] = {
     "torque_Nm: phase 1: must be a finite number": lambda row: row["torque_Nm"].__setitem__(0, math.nan),
     "duration_s: phase 1: is required": lambda row: row["duration_s"].__setitem__(0, None),
     "duration_s: phase 1: must be greater than 0": lambda row: row["duration_s"].__setitem__(0, 0.0),
+    "peak_torque_Nm: phase 1: must be less than or equal to 1000000": lambda row: row.update(
+        peak_torque_Nm=[sys.float_info.max] + [None] * (len(row["torque_Nm"]) - 1)
+    ),
     "speed_rpm: has": _unequal,
     "no phase moves": lambda row: row.update(
         speed_rpm=[0.0] * len(row["speed_rpm"]), peak_speed_rpm=[None] * len(row["speed_rpm"])

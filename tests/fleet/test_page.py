@@ -86,6 +86,8 @@ def fleet(client: TestClient) -> str:
 def test_german_headings_are_read_and_can_be_put_right(client: TestClient) -> None:
     first = post(client, GERMAN.replace("Drehzahl [1/min]", "Wert").encode())
     assert "What is column “Wert”?" in unescape(first.text)
+    german = client.post("/fleets", data=fields_of(first.text), headers={"Accept-Language": "de"})
+    assert "Was ist Spalte „Wert“?" in unescape(german.text)
 
     second = post(client, fields={**fields_of(first.text), "r3": "n", "u3": "rev_per_s"})
 

@@ -207,6 +207,7 @@ def refusal(order: Order, catalogue: Catalogue) -> str:
         ("axis,torque_Nm,speed_rpm,duration_s,radial_n", "it looks like radial_N"),
         ("axis,torque_Nm,speed_rpm,duration_s,axis", "column axis is there twice"),
         ("axis,torque_Nm,speed_rpm,duration_s,requirements.life_h", "belongs into the table of --axes"),
+        ("axis,torque_Nm,speed_rpm" + "".join(f",c{k}" for k in range(3000)), "column 'c19' is unknown; 2981 more"),
     ],
 )
 def test_columns_that_are_missing_or_unknown_are_named(

@@ -138,6 +138,22 @@ def test_what_can_not_be_taken_is_422_and_says_why(client: TestClient, text: str
     assert quote("T=40")[0] in page.text and 'value="T=40' in page.text
 
 
+@pytest.mark.parametrize(("columns", "refused"), [(200, False), (201, True), (45_000, True)])
+def test_more_columns_than_any_table_has_are_refused(client: TestClient, columns: int, refused: bool) -> None:
+    """A table of 45,000 columns took five seconds: each of its numbers was looked at as a heading."""
+    row = ";".join(["40.5"] * columns)
+    page = client.post("/paste", data={"link": LINK, "text": f"{row}\n{row}"}, headers=HTMX)
+    assert (page.status_code == 422) == refused
+    assert ("there are more than 200 columns" in page.text) == refused
+
+
+def test_a_table_with_a_column_for_each_phase_may_be_as_wide_as_a_cycle_is_long(client: TestClient) -> None:
+    rows = ("Torque [Nm]", "Speed [rpm]", "Duration [s]")
+    text = "\n".join(";".join([name, *map(str, range(1, 301))]) for name in rows)
+    taken = client.post("/paste", data={"text": text, "take": "replace"})
+    assert query_of(taken.headers["location"])["T"] == [str(k) for k in range(1, 301)]
+
+
 def test_error_in_a_json_file_names_the_field(client: TestClient) -> None:
     body = {"duty_cycle": {"phases": [{"torque_Nm": 1, "speed_rpm": 1, "duration_s": -1}]}}
     page = client.post("/paste", files={"file": ("a.json", json.dumps(body))})

@@ -135,7 +135,7 @@ def test_text_with_two_readings_is_asked_in_a_workbook_too(client: TestClient) -
 
 def test_merged_cells_leave_their_row_without_a_torque(client: TestClient) -> None:
     made = book(HEADER, [40, 250, 0.3], [None, 500, 0.2])
-    made.active.merge_cells("A2:A3")  # type: ignore[union-attr]
+    made.worksheets[0].merge_cells("A2:A3")
     reply = answer(client, content(made))
     assert reply.status_code == 422
     assert "row 3: the torque is blank" in said(reply)
@@ -149,7 +149,7 @@ def test_merged_title_and_heading_are_read(client: TestClient) -> None:
         [40, 250, 0.3],
     )
     for cells in ("A1:C1", "A2:B2"):
-        made.active.merge_cells(cells)  # type: ignore[union-attr]
+        made.worksheets[0].merge_cells(cells)
     assert taken(answer(client, content(made))) == [("40", "250", "0.3")]
 
 

@@ -118,12 +118,12 @@ class Axes:
                 mask &= ~self._in_any_phase(~_in_bounds(column, self.cells(name)))
             elif column.kind != "string" and not column.is_list:
                 mask &= _in_bounds(column, self.cells(name))
-        return mask & self._in_any_phase(self._moving) & self._keep_rules
+        with np.errstate(all="ignore"):  # what is out of its bounds is refused for that
+            return mask & self._in_any_phase(self._moving) & self._keep_rules
 
     @property
     def _moving(self) -> BoolArray:
-        with np.errstate(all="ignore"):  # what is out of its bounds is refused for that
-            moving: BoolArray = np.abs(self.cells("speed_rpm")) * self.cells("duration_s") > LEAST_MOTION
+        moving: BoolArray = np.abs(self.cells("speed_rpm")) * self.cells("duration_s") > LEAST_MOTION
         return moving
 
     @property

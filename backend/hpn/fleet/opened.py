@@ -1,7 +1,6 @@
 """Opening the tables of a fleet: their formats by suffix, and the columns that must and may be there."""
 
 from collections import Counter
-from collections.abc import Iterator
 from difflib import get_close_matches
 from pathlib import Path
 
@@ -16,6 +15,9 @@ FORMATS: dict[str, type[Table]] = {
     ".csv": CsvTable,
     ".ndjson": NdjsonTable,
 }
+
+MOST_PROBLEMS = 20
+"""Columns that are told to be wrong."""
 
 
 def format_of(path: Path) -> str:
@@ -53,21 +55,21 @@ def _opened(path: Path) -> Table:
 
 
 def _require(table: Table, allowed: list[str], required: list[str]) -> None:
-    problems = list(_unknown(table, allowed))
-    problems += [f"column {name} is missing" for name in required if name not in table.names]
-    problems += [f"column {name} is there twice" for name, count in Counter(table.names).items() if count > 1]
-    if not problems and isinstance(table, TypedTable):
-        problems += table.wrong_types()
-    if problems:
-        raise FleetError(f"{table.path}: {'; '.join(problems)}")
+    unknown = [name for name in table.names if name not in allowed]
+    others = [f"column {name} is missing" for name in required if name not in table.names]
+    others += [f"column {name:.80} is there twice" for name, count in Counter(table.names).items() if count > 1]
+    if not unknown and not others and isinstance(table, TypedTable):
+        others += table.wrong_types()
+    if found := len(unknown) + len(others):
+        problems = [*(_unknown(name, allowed) for name in unknown[:MOST_PROBLEMS]), *others][:MOST_PROBLEMS]
+        more = [f"{found - MOST_PROBLEMS} more"] if found > MOST_PROBLEMS else []
+        raise FleetError(f"{table.path}: {'; '.join([*problems, *more])}")
 
 
-def _unknown(table: Table, allowed: list[str]) -> Iterator[str]:
-    for name in table.names:
-        if name in COLUMNS.others and name not in allowed:
-            yield f"column {name} belongs into the table of --axes, since a row is a phase"
-        elif name in COLUMNS.phases and name not in allowed:
-            yield f"column {name} belongs to the phases"
-        elif name not in allowed:
-            close = get_close_matches(name, allowed, 1)
-            yield f"column {name!r:.80} is unknown" + (f"; it looks like {close[0]}" if close else "")
+def _unknown(name: str, allowed: list[str]) -> str:
+    if name in COLUMNS.others:
+        return f"column {name} belongs into the table of --axes, since a row is a phase"
+    if name in COLUMNS.phases:
+        return f"column {name} belongs to the phases"
+    close = get_close_matches(name[:80], allowed, 1)
+    return f"column {name!r:.80} is unknown" + (f"; it looks like {close[0]}" if close else "")

@@ -118,9 +118,10 @@ class TypedTable(Table):
         for field in self.given:
             if field.name == AXIS:
                 if not (is_text(self.axis_type) or kinds.is_integer(self.axis_type)):
-                    yield f"column axis is {field.type}, where text or integers belong"
+                    yield f"column axis is {field.type!s:.80}, where text or integers belong"
             elif not (column := COLUMNS.all[field.name]).takes(field.type, self.type_of(field.name)):
-                yield f"column {field.name} is {field.type}, where {_words(column, self.type_of(field.name))} belong"
+                wanted = _words(column, self.type_of(field.name))
+                yield f"column {field.name} is {field.type!s:.80}, where {wanted} belong"
 
     def _batch(self, rows: pa.RecordBatch, names: Sequence[str]) -> Batch:
         columns = [_cast(rows.column(name), self.type_of(name)) for name in names]

@@ -18,7 +18,7 @@ from hpn.web.form.cells import DECIMALS, Decimal, Entry, entry, is_blank
 from hpn.web.form.columns import NO_CHOICES, REQUIRED, SKIP, Body, Choices, body_of
 from hpn.web.form.pasted import TIMES
 from hpn.web.form.sheets import Grid, RefusedError
-from hpn.wording import N_, Sentence
+from hpn.wording import N_, Sentence, Value
 
 NEEDED = (AXIS, *REQUIRED)
 
@@ -88,22 +88,22 @@ class _Reading:
 
     # --- Questions ----------------------------------------------------------------------------------------------------
 
-    def _ask(self, template: str, **values: str) -> None:
+    def _ask(self, template: str, **values: Value) -> None:
         self.questions.append(Sentence(template, dict(values)))
 
     def _ask_columns(self) -> None:
         roles = [column.role for column in self.columns]
         for column in self.columns:
             if not column.role:
-                self._ask(N_("What is column {name}?"), name=_name(column))
+                self._ask(N_("What is column {name}?"), name=column.called)
             elif column.quantity and not column.unit:
-                self._ask(N_("Which unit is column {name} in?"), name=_name(column))
+                self._ask(N_("Which unit is column {name} in?"), name=column.called)
         for role in NEEDED:
             if role not in roles:
                 self._ask(MISSING[role])
         for role in dict.fromkeys(roles):
             if role not in ("", SKIP) and roles.count(role) > 1:
-                names = [_name(column) for column in self.columns if column.role == role]
+                names = [column.called for column in self.columns if column.role == role]
                 self._ask(N_("Columns {one} and {other} are read as the same."), one=names[0], other=names[1])
 
     def _decimal(self) -> tuple[Decimal | None, tuple[tuple[str, str], ...]]:
@@ -191,7 +191,7 @@ class _Reading:
             one, other = list(given)[:2]
             row = group.numbers[[*cells].index(other)]
             raise RefusedError(
-                template, row=row, axis=group.name[:40], one=one[:40], other=other[:40], name=_name(column)
+                template, row=row, axis=group.name[:40], one=one[:40], other=other[:40], name=column.called
             )
         if not given:
             return None
@@ -268,11 +268,6 @@ def _seconds(cell: str, column: AxisColumn, decimal: Decimal) -> float | None:
 def _goes_on(times: Sequence[float | None]) -> bool:
     known = [time for time in times if time is not None]
     return known == sorted(known) and known[-1] > known[0]
-
-
-def _name(column: AxisColumn) -> str:
-    """What a question calls a column: its heading, else its number."""
-    return f"“{column.heading[:40]}”" if column.heading else str(column.place + 1)
 
 
 MISSING = {

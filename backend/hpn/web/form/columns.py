@@ -11,7 +11,7 @@ from hpn import units
 from hpn.web.form.cells import DECIMALS, entry, is_blank, is_number
 from hpn.web.form.headings import INDEX, LONGEST, QUANTITIES, SUM, UNIT, Heading, heading_of, is_total
 from hpn.web.form.sheets import Grid, RefusedError, require_even
-from hpn.wording import N_, Sentence
+from hpn.wording import N_, Sentence, Value
 
 WIRE = {"T": "Nm", "n": "rpm", "t": "s", "FRi": "N", "FAi": "N", "Tpk": "Nm", "npk": "rpm", "Trms": "Nm"}
 """Link symbols of the columns of the duty table -> units of the wire."""
@@ -25,6 +25,9 @@ _DIVIDED = re.compile("[0-9] [0-9]")
 
 HEAD_ROWS = 20
 """Rows among which the header is looked for."""
+
+MOST_COLUMNS = 200
+"""Columns that a table of phases or axes may have, once it has a row for each phase."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,6 +58,11 @@ class Column:
     text: bool = False
 
     @property
+    def called(self) -> Value:
+        """What a sentence calls it: its heading, else its number."""
+        return Sentence(N_("“{heading}”"), {"heading": self.heading[:40]}) if self.heading else self.place + 1
+
+    @property
     def quantity(self) -> str:
         """What its unit measures."""
         return QUANTITIES.get(self.role, "")
@@ -79,6 +87,8 @@ class Body:
 def body_of(grid: Grid) -> Body:
     """Rows of a table, the right way round; raises RefusedError where they make no table."""
     grid = _upright(grid)
+    if grid.width > MOST_COLUMNS:
+        raise RefusedError(N_("there are more than {most} columns"), most=MOST_COLUMNS)
     head, first, notes = _head(grid)
     if first == len(grid.rows):
         raise RefusedError(N_("there is a header, but no row of numbers below it"))
@@ -131,12 +141,13 @@ def _upright(grid: Grid) -> Grid:
 def _named(row: Sequence[str]) -> int:
     """How many quantities a row names, by name or by unit."""
     found = set()
-    for cell in row:
+    for cell in row[:MOST_COLUMNS]:
         heading = heading_of(cell)
         if heading.kind in QUANTITIES:
             found.add(heading.kind)
         elif heading.kind == UNIT:
-            found |= {role for role in REQUIRED if QUANTITIES[role] in _quantities(heading.unit)}
+            quantities = _quantities(heading.unit)
+            found |= {role for role in REQUIRED if QUANTITIES[role] in quantities}
     return len(found)
 
 

@@ -19,7 +19,7 @@ from hpn.web.form.columns import DIVIDED, NO_CHOICES, REQUIRED, SKIP, WIRE, Body
 from hpn.web.form.headings import QUANTITIES, heading_of
 from hpn.web.form.sheets import Grid, RefusedError, grids_of
 from hpn.web.form.symbols import columns_used
-from hpn.wording import N_, Sentence
+from hpn.wording import N_, Sentence, Value
 
 COLUMNS = tuple(QUANTITIES)
 """Columns of the duty table by their link symbols."""
@@ -146,16 +146,16 @@ class _Reading:
         roles = [column.role for column in self.columns]
         for column in self.columns:
             if not column.role:
-                self._ask(N_("What is column {name}?"), name=_name(column))
+                self._ask(N_("What is column {name}?"), name=column.called)
             elif column.role != SKIP and not column.unit:
-                self._ask(N_("Which unit is column {name} in?"), name=_name(column))
+                self._ask(N_("Which unit is column {name} in?"), name=column.called)
         for role in QUANTITIES:
             if role in REQUIRED and role not in roles and "" not in roles:
                 self._ask(MISSING[role])
             if roles.count(role) > 1:
                 self._ask(TWICE[role])
 
-    def _ask(self, template: str, **values: str) -> None:
+    def _ask(self, template: str, **values: Value) -> None:
         self.questions.append(Sentence(template, dict(values)))
 
     # --- Numbers ------------------------------------------------------------------------------------------------------
@@ -266,7 +266,7 @@ class _Reading:
         headed = any(heading_of(text).unit for text in self.body.headings[column.place])
         if len(codes) != 1 or (headed and codes[0] != column.unit):
             template = N_("{cell}: this unit does not belong to column {name}")
-            raise RefusedError(template, cell=f"{cell.number[:30]} {cell.unit[:30]}", name=_name(column))
+            raise RefusedError(template, cell=f"{cell.number[:30]} {cell.unit[:30]}", name=column.called)
         return codes[0]
 
     def _phases(self, rows: Sequence[Row], times: str) -> tuple[tuple[str, ...], ...]:
@@ -310,11 +310,6 @@ BLANK = {
     "n": N_("row {row}: the speed is blank"),
     "t": N_("row {row}: the duration is blank"),
 }
-
-
-def _name(column: Column) -> str:
-    """What a question calls a column: its heading, else its number."""
-    return f"“{column.heading[:40]}”" if column.heading else str(column.place + 1)
 
 
 def _text(value: float) -> str:

@@ -10,7 +10,7 @@ from itertools import zip_longest
 
 from hpn.phase import MAXIMUM_PHASES
 from hpn.web.form.cells import tidy
-from hpn.wording import N_, Sentence
+from hpn.wording import N_, Sentence, Value
 
 MAXIMUM_CHARACTERS = 1_000_000
 MOST_HEAD_ROWS = 50
@@ -33,7 +33,7 @@ _HINT = re.compile(r"sep=(.)\r?\n", re.IGNORECASE)
 class RefusedError(ValueError):
     """A table that can't be read, and why."""
 
-    def __init__(self, template: str, **values: str | int) -> None:
+    def __init__(self, template: str, **values: Value) -> None:
         super().__init__(template)
         self.sentence = Sentence(template, dict(values))
 
