@@ -302,6 +302,11 @@ document.addEventListener("submit", async (event) => {
 history.replaceState({ at, content: contentOf(formOf()) }, "");
 showSteps();
 
-// What somebody has typed before this script had come is answered now.
-const isTyped = (field) => (field.type === "checkbox" ? field.checked !== field.defaultChecked : "defaultValue" in field && field.value !== field.defaultValue);
-document.addEventListener("DOMContentLoaded", () => [...formOf().elements].some(isTyped) && formOf().requestSubmit());
+// What somebody has typed or chosen before htmx had taken the form is answered now.
+const isTyped = (field) =>
+  field.options ? [...field.options].some((option) => option.selected !== option.defaultSelected)
+  : /checkbox|radio/.test(field.type) ? field.checked !== field.defaultChecked
+  : "defaultValue" in field && field.value !== field.defaultValue;
+const answerTyped = () => [...formOf().elements].some(isTyped) && formOf().requestSubmit();
+if (formOf().matches("[data-htmx-powered]")) answerTyped();
+else document.addEventListener("htmx:after:process", answerTyped, { once: true });

@@ -4,6 +4,7 @@ import re
 from functools import partial
 from typing import Any
 
+import pytest
 from playwright.sync_api import Page, Route, expect
 
 from tests.browser.conftest import Visitor, answer_held_back, open_section
@@ -168,3 +169,39 @@ def test_what_an_undo_brings_back_is_not_folded_away(visitor: Visitor) -> None:
     page.get_by_role("button", name="Redo").click()
     expect(page).to_have_url(re.compile("FR=900"))
     expect(page.locator("#f-FR")).to_be_visible()
+
+
+@pytest.mark.parametrize("late", ["htmx", "app"])
+def test_what_is_given_before_the_scripts_are_ready_is_answered(visitor: Visitor, late: str) -> None:
+    """Given before htmx takes the form, which it does in a timer: after the page's own script has run, or before."""
+    page = visitor.open("/catalogue")
+    if late == "htmx":
+        page.add_init_script(
+            "{ const start = setTimeout; setTimeout = (call, ms, ...rest) => start(call, (ms ?? 0) + 1000, ...rest) }"
+        )
+    else:
+        held: list[Route] = []
+        page.route(re.compile(r"/(htmx|app)\..*\.js$"), lambda route: held.append(route))
+    for give, asked in (
+        (lambda: torque(page, 1).fill("77"), "T=77&"),
+        (lambda: page.locator("#f-rank").select_option(index=1), "rank="),
+    ):
+        with page.expect_request(re.compile(r"/app\..*\.js$")):
+            page.goto(visitor.server + EXAMPLE, wait_until="domcontentloaded" if late == "htmx" else "commit")
+        give()
+        if late == "app":
+            htmx, app = sorted(held, key=lambda route: "/app." in route.request.url)
+            held.clear()
+            htmx.continue_()
+            expect(page.locator("#application[data-htmx-powered]")).to_be_attached()
+            app.continue_()
+        expect(page).to_have_url(re.compile(asked))
+
+
+def test_page_that_nobody_has_touched_asks_for_nothing(visitor: Visitor) -> None:
+    page = visitor.open("/catalogue")
+    asked: list[str] = []
+    page.on("request", lambda request: asked.append(request.url) if "HX-Request".lower() in request.headers else None)
+    page.goto(visitor.server + EXAMPLE + "&Lreq=20000&c=iso&curve=std")
+    page.wait_for_load_state("networkidle")
+    assert asked == []

@@ -2,7 +2,7 @@
 
 import io
 import re
-from typing import Any
+from typing import Any, Literal
 
 import pytest
 from playwright.sync_api import Page, expect
@@ -22,9 +22,9 @@ def torque(page: Page, phase: int) -> Any:
     return page.get_by_label(f"Torque, phase {phase}")
 
 
-def tab_to(page: Page, role: str, name: str) -> None:
+def tab_to(page: Page, role: Literal["textbox", "button", "checkbox"], name: str) -> None:
     """Press Tab until the control of this role and name has the focus."""
-    wanted = page.get_by_role(role, name=name, exact=True)  # type: ignore[arg-type]
+    wanted = page.get_by_role(role, name=name, exact=True)
     for _ in range(60):
         if wanted.evaluate("element => element === document.activeElement"):
             return
@@ -213,6 +213,20 @@ def test_without_script_the_form_calculates_and_edits_rows(visitor: Visitor) -> 
     torque(page, 1).press("Enter")
     expect(torque(page, 1)).to_have_accessible_description("write 9.3")
     expect(torque(page, 1)).to_have_value("9,3")
+
+
+def test_without_script_what_is_typed_is_saved_although_it_was_not_calculated(visitor: Visitor) -> None:
+    page = visitor.open(EXAMPLE, script=False)
+    torque(page, 1).fill("41.5")
+    page.get_by_text("Title block").click()
+    page.get_by_label("Title", exact=True).fill("Axis 7")
+    page.get_by_role("button", name="Save", exact=True).click()
+
+    expect(page).to_have_url(re.compile("/selections/[A-Za-z0-9_-]{22}$"))
+    expect(page).to_have_title(re.compile("Axis 7"))
+    page.get_by_role("link", name="Edit a copy").click()
+    expect(torque(page, 1)).to_have_value("41.5")
+    expect(torque(page, 2)).to_have_value("32")
 
 
 def test_explanation_of_a_check_opens_and_closes_by_keyboard(visitor: Visitor) -> None:

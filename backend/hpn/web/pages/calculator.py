@@ -1,5 +1,6 @@
 """The page: one address that takes the whole application, and answers with the whole page or with what has changed."""
 
+import secrets
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any
@@ -77,6 +78,11 @@ class Answer(Result):
         return len(self.address) > links.MAXIMUM_QUERY_BYTES
 
 
+def once_key() -> str:
+    """A key that nobody can guess: what a page says is saved once, however often it is sent."""
+    return secrets.token_urlsafe(16)
+
+
 def show(request: Request) -> Response:
     """The page of `/`, or only the part that changes with the input where htmx asks for it."""
     return respond(request, read_query(request.scope["query_string"]))
@@ -100,7 +106,8 @@ def respond(request: Request, form: Form) -> Response:
         request.app.state.metrics.selections(["none" if answer.selection.selected is None else "selected"])
     template = "_changes.html" if changes else "page.html"
     status = 422 if form.problems else 200
-    return _render(request, template, status, form=form, answer=answer, parts=parts, catalogue=catalogue)
+    shown = {"form": form, "answer": answer, "parts": parts, "catalogue": catalogue, "once": once_key()}
+    return _render(request, template, status, **shown)
 
 
 def read_query(query: bytes) -> Form:

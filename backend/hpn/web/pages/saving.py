@@ -2,7 +2,6 @@
 
 import hashlib
 import re
-import secrets
 from dataclasses import dataclass
 from typing import Any
 from urllib.parse import urlencode
@@ -118,7 +117,7 @@ def refused(request: Request, error: Problem | StoreUnavailableError, posted: Po
         "problem": error,
         "posted": posted,
         "form": posted and posted.form,
-        "once_more": secrets.token_urlsafe(16) if spent or posted is None else posted.once,
+        "once_more": calculator.once_key() if spent or posted is None else posted.once,
     }
     content = environment(request.app.state).get_template("selection_refused.html").render(shown)
     headers = {"Cache-Control": "no-cache", **(error.headers or {})}

@@ -1,7 +1,6 @@
 """The templates, and what they all use: texts, numbers and sentences in the language and units of the reader."""
 
 import re
-import secrets
 from collections.abc import Callable
 from functools import lru_cache
 from pathlib import Path
@@ -155,11 +154,6 @@ def _set(symbol: re.Match[str]) -> str:
     return f'<var class="symbol">{symbol[1]}<sub>{symbol[2].replace("_", " ")}</sub></var>'
 
 
-def _once() -> str:
-    """A key that nobody can guess, for a form that is to count once however often it is sent."""
-    return secrets.token_urlsafe(16)
-
-
 FILTERS: dict[str, Callable[..., Any]] = {
     "as_read": _as_read,
     "as_typed": _as_typed,
@@ -191,7 +185,6 @@ GLOBALS: dict[str, Any] = {
     "motor_pattern": MOTOR_CODE,
     "carried_pairs": carried_pairs,
     "onward": onward,
-    "once": _once,
     "ordering_code": ordering_code,
     "preview_of": preview_of,
     "PROFILES": PROFILES,
