@@ -67,7 +67,8 @@ class Shown:
 
     def load(self, place: Point) -> Point:
         """Load that a place stands for."""
-        return tuple(offset + step * at for at, (offset, step) in zip(place, (self.across, self.down), strict=True))  # type: ignore[return-value]
+        (x, y), (left, step), (top, rise) = place, self.across, self.down
+        return left + step * x, top + rise * y
 
     def line(self, kind: str) -> list[list[Point]]:
         """Corners of the lines of a kind, as loads."""
@@ -214,6 +215,15 @@ def boxes(drawn: Shown) -> list[tuple[str, float, float, float, float]]:
     return found
 
 
+def _is_over(dot: Element | None, disc: Element | None) -> bool:
+    """Whether a dot that is drawn later lies on a disc, and so on its number."""
+    if dot is None or disc is None:
+        return False
+    left, top, width, height = (float(disc.get(name, "")) for name in ("x", "y", "width", "height"))
+    x, y = (float(dot.get(name, "")) for name in ("cx", "cy"))
+    return left < x < left + width and top < y < top + height
+
+
 loads = st.floats(0, 5000)
 rows = st.tuples(st.floats(1, 2000), st.floats(0.1, 10), loads, loads)
 close = st.tuples(st.floats(1, 2000), st.just(1.0), st.floats(900, 960), st.floats(290, 320))
@@ -248,6 +258,8 @@ def test_no_text_lies_over_another_and_each_stays_inside(
     _, _, width, height = map(float, drawing.get("viewBox", "").split())
     assert [said for said, left, top, right, bottom in texts if left < -1 or right > width + 1 or top < 0] == []
     assert all(bottom <= height for *_, bottom in texts)
+    groups = [(group.find(f"{SVG}rect[@class='disc']"), group.find(SVG + "circle")) for group in drawn.of("g", "mark")]
+    assert [dot for (disc, _), (_, dot) in combinations(groups, 2) if _is_over(dot, disc)] == []
     assert markup(drawing) == markup(drawings.envelope_drawing(picture, reader))
 
 

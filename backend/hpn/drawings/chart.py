@@ -209,28 +209,40 @@ def _marks(drawing: Element, frame: Frame, marks: Sequence[Mark], places: Places
     """Dots first, so that no disc hides one that is not its own; then the discs, the most used load first, P_m last."""
     named = sorted((place for place, mark in enumerate(marks) if mark.label), key=lambda place: -marks[place].used)
     dots = [Box.around(frame.at(mark.place), 2 * DOT, 2 * DOT) for mark in marks]
+    centred: list[Box] = []
     leaders = add(drawing, "g", "still", aria_hidden="true")
-    groups = [_group(drawing, mark, dot.centre) for mark, dot in zip(marks, dots, strict=True)]
+    groups = [_group(drawing, mark) for mark in marks]
+    circles = [
+        add(group, "circle", "dot", cx=dot.centre[0], cy=dot.centre[1], r=DOT)
+        for group, dot in zip(groups, dots, strict=True)
+    ]
     for place in named:
         mark, dot = marks[place], dots[place]
-        others = [other for other in dots if SAME < max(abs(other.left - dot.left), abs(other.top - dot.top)) < REACH]
+        others = [other for other in dots if SAME < _apart(other, dot) < REACH]
         taken = places.taken
         places.taken = [*taken, *others]
         size = _size(mark)
         spot = places.first(around(dot.centre, *size))
         places.taken = [*taken, *([spot] if spot else [])]
+        if spot and spot.centre == dot.centre:
+            centred.append(dot)
+        elif spot and any(_apart(other, dot) <= SAME for other in centred):
+            groups[place].remove(circles[place])  # it would lie on the number of that disc
         if spot:
             _disc(groups[place], leaders, mark, dot.centre, spot)
     places.taken += dots
 
 
-def _group(drawing: Element, mark: Mark, dot: Point) -> Element:
+def _apart(one: Box, other: Box) -> float:
+    return max(abs(one.left - other.left), abs(one.top - other.top))
+
+
+def _group(drawing: Element, mark: Mark) -> Element:
     state = " outside" if mark.outside else ""
     group = add(drawing, "g", f"mark {mark.kind}{state}", data_phase=" ".join(map(str, mark.phases)))
     if mark.told:
         group.set("role", "img")
         SubElement(group, "title").text = mark.told
-    add(group, "circle", "dot", cx=dot[0], cy=dot[1], r=DOT)
     return group
 
 

@@ -26,6 +26,9 @@ NAMED_PHASES = 24
 APART = 18.0
 """Least distance of two numbers beside each other."""
 
+INDEX_DEPTH = 3.0
+"""How far an index reaches below its line."""
+
 LEAST_WIDTH, MOST_PAUSE = 0.08, 0.35
 MOST_STEPS = 300
 HEADROOM = 1.08
@@ -264,7 +267,7 @@ def placed(diagram: Diagram, reader: Reader) -> tuple[list[Mark], list[Mark]]:
         text = reader.figure(level.value, diagram.unit)
         if level.value > high * (1 + 1e-9):
             beyond.append(Mark(WIDTH, top - 5, level.symbol, text, level.kind))
-            y = top - 5
+            y = top - 5 + INDEX_DEPTH
             continue
         line = diagram.y(level.value)
         y = max(y + LETTER, line + 4.0)
