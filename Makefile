@@ -35,11 +35,9 @@ run: install
 install: $(ENVIRONMENT) $(ASSETS) $(COMPILED)
 assets: $(ASSETS) $(COMPILED)
 
-# Lighthouse measures, so that beside it runs only what waits for clocks; the rest takes two cores, a file at a time but
-# for the browsers.
-WAITING := tests/operations/test_protocol.py tests/reliability/test_outage.py
-MEASURED := tests/browser/test_lighthouse.py $(WAITING) --numprocesses 3 --dist loadfile
-TOGETHER := --ignore tests/browser $(WAITING:%=--ignore %) --numprocesses 3 --dist loadfile --no-loadscope-reorder
+# Lighthouse measures, so that nothing runs beside it; the rest takes two cores, a file at a time but for the browsers.
+MEASURED := tests/browser/test_lighthouse.py
+TOGETHER := --ignore tests/browser --numprocesses 3 --dist loadfile --no-loadscope-reorder
 BROWSERS := tests/browser --ignore tests/browser/test_lighthouse.py --numprocesses 3 --dist load
 test: install browser office curl nginx
 ifdef PYTEST_ARGS

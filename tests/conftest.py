@@ -23,7 +23,7 @@ BULK = ("test_fuzz.py",)
 
 LONGEST_FIRST = (
     *("workbook", "api", "run", "contract", "pdf", "image", "serving", "fuzz", "invariances", "workers", "examples"),
-    *("remedy", "loop", "selections_api", "load", "year_later"),
+    *("remedy", "loop", "selections_api", "load", "year_later", "protocol", "outage"),
     *("tools", "reader", "page", "plots"),
 )
 """Files that take longest, so that none of them is left alone at the end."""

@@ -10,7 +10,8 @@ from playwright.sync_api import Locator, Page, expect
 from tests.browser.conftest import Visitor, violations
 
 SAVED = re.compile("/selections/[A-Za-z0-9_-]{22}$")
-WIDTHS = pytest.mark.parametrize("width", [1440, 390])
+ON_DESK = pytest.mark.parametrize("width", [1440, pytest.param(390, marks=pytest.mark.soak)])
+ON_PHONE = pytest.mark.parametrize("width", [390, pytest.param(1440, marks=pytest.mark.soak)])
 START = "/?mech=rotary&mv=&ms=&mt="
 
 
@@ -61,7 +62,7 @@ def has_no_sideways_scroll(page: Page) -> bool:
     return bool(page.evaluate("document.documentElement.scrollWidth <= innerWidth"))
 
 
-@WIDTHS
+@ON_DESK
 def test_a_rotary_table_known_by_its_dimensions_becomes_a_saved_selection(visitor: Visitor, width: int) -> None:
     page = visitor.open("/?T=&n=&t=", width)
     page.get_by_role("button", name="Motion", exact=True).click()
@@ -89,7 +90,7 @@ def test_a_rotary_table_known_by_its_dimensions_becomes_a_saved_selection(visito
     expect(result(page)).to_contain_text("HPN-20A-4")
 
 
-@WIDTHS
+@ON_PHONE
 def test_a_ball_screw_known_by_its_dimensions_becomes_a_saved_selection(visitor: Visitor, width: int) -> None:
     page = visitor.open(START, width)
     page.get_by_role("button", name="Ball screw", exact=True).click()

@@ -2,7 +2,6 @@
 
 import asyncio
 import json
-import sys
 from collections.abc import Awaitable, Callable, Iterable
 from functools import partial
 from typing import Any
@@ -130,7 +129,6 @@ def test_the_spool_gives_back_what_it_got_in_order(steps: list[int]) -> None:
     assert got == expected
 
 
-@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="memory is read from /proc")
 def test_twenty_times_the_lines_take_no_more_memory_on_either_side(service: Service) -> None:
     peaks_MB(service.process.pid, service.port, 1_000)
     few, many = (peaks_MB(service.process.pid, service.port, count) for count in (1_000, 20_000))

@@ -4,7 +4,6 @@ Long forms in `make soak`; how long the one below capacity lasts is `HPN_TEST_EN
 """
 
 import os
-import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
@@ -27,8 +26,6 @@ NOISE = 20
 
 SPELLS = 12
 """How often capacity is measured; the slowest spell counts, since a shared machine keeps up no more than that."""
-
-pytestmark = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="memory is read from /proc")
 
 
 @pytest.fixture

@@ -3,7 +3,6 @@
 import json
 import os
 import socket
-import sys
 import threading
 import time
 from collections.abc import Iterator
@@ -12,7 +11,6 @@ from pathlib import Path
 from typing import Any
 
 import httpx
-import pytest
 
 from tests.build import cycle, phase
 from tests.operations.service import HPN, Service, serving
@@ -22,8 +20,6 @@ GROUPS = Path("/sys/fs/cgroup")
 JSON = {"Content-Type": "application/json"}
 LONG = cycle(*[phase(40 + k % 7 / 3, 250 + k % 11 / 3, 1 / 3) for k in range(10_000)])
 ITEM = json.dumps(cycle(*[phase(40 + k % 7 / 3, 250, 0.3) for k in range(40)]))
-
-pytestmark = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="memory is read from /proc")
 
 
 @contextmanager

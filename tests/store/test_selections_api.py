@@ -329,7 +329,7 @@ def test_the_next_part_of_a_search_is_of_the_same_search(client: TestClient) -> 
         save(client, title=title)
 
     first = client.get(ADDRESS, params={"search": "one", "limit": 1})
-    second = client.get(re.fullmatch(r"<(.+)>; .*", first.headers["link"])[1])  # type: ignore[index]
+    second = client.get(first.links["next"]["url"])
 
     assert [entry["title"] for entry in second.json()["selections"]] == ["one"]
     assert second.json()["next_cursor"] is None

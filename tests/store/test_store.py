@@ -5,6 +5,7 @@ import hashlib
 import time
 from datetime import UTC, datetime, timedelta, tzinfo
 from pathlib import Path
+from typing import Self
 
 import brotli
 import pytest
@@ -123,8 +124,8 @@ class OneMoment(datetime):
     """A clock that stands."""
 
     @classmethod
-    def now(cls, tz: tzinfo | None = None) -> datetime:  # type: ignore[override]
-        return datetime(2026, 11, 21, 12, 0, 0, 108, tz)
+    def now(cls, tz: tzinfo | None = None) -> Self:
+        return cls(2026, 11, 21, 12, 0, 0, 108, tz)
 
 
 async def test_selections_saved_in_one_moment_are_listed_once_each(

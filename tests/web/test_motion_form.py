@@ -5,6 +5,7 @@ from typing import Any
 from urllib.parse import parse_qsl, urlencode
 
 import pytest
+from pydantic import ValidationError
 from starlette.testclient import TestClient
 
 from hpn.application import Application
@@ -135,8 +136,8 @@ def test_the_columns_of_a_profile_are_those_that_the_model_lets_it_have() -> Non
                 try:
                     model.model_validate(added)
                     refused = set()
-                except ValueError as error:
-                    refused = {found["type"] for found in error.errors()}  # type: ignore[attr-defined]
+                except ValidationError as error:
+                    refused = {found["type"] for found in error.errors()}
                 assert ("move_has_no" in refused) == (symbol.name not in columns), (profile, symbol.name)
 
 
