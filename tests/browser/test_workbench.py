@@ -53,6 +53,12 @@ SMALL = """() => [...document.querySelectorAll("main *, header *")].filter(eleme
   && parseFloat(getComputedStyle(element).fontSize) < 11).map(element => element.textContent.trim())"""
 
 
+def read_german(page: Page) -> None:
+    """Turn a page into German."""
+    page.get_by_role("button", name="Deutsch").click()
+    expect(page.locator("html")).to_have_attribute("lang", "de")
+
+
 def in_sight(page: Page, *locators: Any) -> list[bool]:
     """Whether each lies in the window from its first to its last line."""
     height = page.viewport_size["height"] if page.viewport_size else 0
@@ -60,12 +66,23 @@ def in_sight(page: Page, *locators: Any) -> list[bool]:
     return [bool(box) and box["y"] >= 0 and box["y"] + box["height"] <= height for box in boxes]
 
 
-@pytest.mark.parametrize("path", [EXAMPLE, SEVEN], ids=["example", "seven phases with loads"])
-def test_verdict_checks_envelope_and_map_need_no_scrolling_at_1440_by_900(visitor: Visitor, path: str) -> None:
-    page = visitor.open(path)
-    checks, map_ = (page.get_by_role("table", name=name) for name in ("Load limits", "Size × ratio"))
+@pytest.mark.parametrize(
+    ("state", "language"),
+    [
+        *(("example", "en"), ("none fits", "de")),
+        *(pytest.param(state, "en", marks=pytest.mark.soak) for state in ("seven", "none fits", "all gears")),
+        *(pytest.param(state, "de", marks=pytest.mark.soak) for state in ("example", "seven", "all gears")),
+    ],
+)
+def test_verdict_checks_envelope_and_map_need_no_scrolling_at_1440_by_900(
+    visitor: Visitor, state: str, language: str
+) -> None:
+    page = visitor.open(STATES[state])
+    if language == "de":
+        read_german(page)
+    parts = [page.locator(part) for part in (".verdict", "#limits", "#envelope", ".landscape table")]
 
-    assert in_sight(page, selected(page), checks, page.locator("#envelope"), map_) == [True] * 4
+    assert in_sight(page, *parts) == [True] * 4
     assert page.evaluate("document.documentElement.scrollWidth") == 1440
 
 
@@ -81,8 +98,7 @@ def test_verdict_checks_envelope_and_map_need_no_scrolling_at_1440_by_900(visito
 def test_no_text_lies_over_another_or_beyond_the_page(visitor: Visitor, state: str, width: int, language: str) -> None:
     page = visitor.open(STATES[state], width)
     if language == "de":
-        page.get_by_role("button", name="Deutsch").click()
-        expect(page.locator("html")).to_have_attribute("lang", "de")
+        read_german(page)
 
     assert page.evaluate(CLASHES) == []
     assert page.evaluate(SMALL) == []

@@ -271,7 +271,8 @@ def placed(diagram: Diagram, reader: Reader) -> tuple[list[Mark], list[Mark]]:
             continue
         line = diagram.y(level.value)
         y = max(y + LETTER, line + 4.0)
-        marks.append(Mark(RIGHT + 4, y, level.symbol, text if diagram.unit == "Nm" else "", level.kind, line))
+        fits = diagram.unit == "Nm" or level.kind == "average"  # the limits of speed have long names
+        marks.append(Mark(RIGHT + 4, y, level.symbol, text if fits else "", level.kind, line))
     return marks, beyond[::-1]
 
 
