@@ -45,7 +45,7 @@ def test_reply_and_page_say_it_alike_in_both_languages(api: TestClient, torque: 
 def test_only_part_of_a_limit_is_allowed_where_the_user_says_so(api: TestClient) -> None:
     text = words(api, "/?T=64.01&n=50&t=1&Lh=1000&i=5&size=20A&u=0.8", "en")
 
-    assert "Fails on: average torque (80.01\u202f%; at most 80\u202f%)" in text
+    assert "Fails on: average torque (80.01\u202f%). u allows 80\u202f%." in text
     assert "≤ 80\u202fNm ×\xa080\u202f%" in text
     assert "≥ 1\u202f000\u202fh ÷\xa080\u202f%" in text
 

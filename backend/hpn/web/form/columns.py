@@ -6,6 +6,7 @@ What has two readings is left blank here, and asked by `pasted`.
 import re
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from itertools import chain
 
 from hpn import units
 from hpn.web.form.cells import DECIMALS, entry, is_blank, is_number
@@ -35,6 +36,7 @@ class Choices:
     """What somebody has said about a table: blank where nothing is."""
 
     separator: str = ""
+    phase: str = ""
     decimal: str = ""
     times: str = ""
     last: str = ""
@@ -244,6 +246,14 @@ def _by_place(body: Body, columns: Sequence[Column]) -> dict[int, str]:
     if len(numeric) != 3 or labelled or _counts(body, numeric[0]):
         return {}
     return dict(zip(numeric, REQUIRED, strict=True))
+
+
+def has_two_ways(body: Body) -> bool:
+    """Whether a phase can be a row or a column: three rows of as many plain numbers or more, and nothing else."""
+    places = range(body.grid.width)
+    if body.headed or len(body.rows) != len(REQUIRED) or len(places) < len(REQUIRED) or _counts(body, 0):
+        return False
+    return all(map(is_number, chain.from_iterable(body.rows))) and all(_units_in(body, k) == {""} for k in places)
 
 
 def _counts(body: Body, place: int) -> bool:

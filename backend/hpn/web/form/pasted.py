@@ -15,7 +15,19 @@ from hpn import units
 from hpn.application import DutyCycle
 from hpn.phase import MAXIMUM_PHASES
 from hpn.web.form.cells import DECIMALS, Decimal, Entry, entry, is_blank
-from hpn.web.form.columns import DIVIDED, NO_CHOICES, REQUIRED, SKIP, WIRE, Body, Choices, Column, body_of, columns_of
+from hpn.web.form.columns import (
+    DIVIDED,
+    NO_CHOICES,
+    REQUIRED,
+    SKIP,
+    WIRE,
+    Body,
+    Choices,
+    Column,
+    body_of,
+    columns_of,
+    has_two_ways,
+)
 from hpn.web.form.headings import QUANTITIES, heading_of
 from hpn.web.form.sheets import Grid, RefusedError, grids_of
 from hpn.web.form.symbols import columns_used
@@ -30,7 +42,8 @@ TIMES = {
     "starts": N_("when each phase starts; the last row ends the cycle"),
 }
 LAST = {"phase": N_("a phase"), "sum": N_("a sum: skip it")}
-"""What the times of a table, and its last row, can be."""
+PHASE = {"row": N_("a row"), "column": N_("a column")}
+"""What the times of a table, its last row, and a phase can be."""
 
 Row = tuple[Entry | None, ...]
 
@@ -48,6 +61,8 @@ class Table:
     separator: str = ""
     separators: tuple[str, ...] = ()
     turned: bool = False
+    phase: str = ""
+    asks_phase: bool = False
     decimal: Decimal | None = None
     marks: tuple[tuple[str, str], ...] = ()
     times: str = ""
@@ -90,9 +105,7 @@ def read_text(text: str, choices: Choices = NO_CHOICES, assumed: Collection[str]
 
 def _said(table: Table) -> tuple[object, ...]:
     """What tells two readings of one text apart."""
-    if table.whole:
-        return table.phases
-    return (table.separator,)
+    return table.phases if table.whole or not table.body else table.body.rows
 
 
 def read_grid(grid: Grid, choices: Choices = NO_CHOICES, assumed: Collection[str] = tuple(WIRE.values())) -> Table:
@@ -101,8 +114,15 @@ def read_grid(grid: Grid, choices: Choices = NO_CHOICES, assumed: Collection[str
         body = body_of(grid)
         if len(body.rows) > MAXIMUM_PHASES:
             raise RefusedError(N_("there are more than {most} rows"), most=MAXIMUM_PHASES)
+        asks = has_two_ways(body)
+        if asks and choices.phase == "column":
+            body = body_of(grid.transposed())
         columns = columns_of(body, choices, assumed)
-        return _Reading(body, columns, choices).table()
+        if asks and choices.phase not in PHASE:
+            question = Sentence(N_("Is a phase a row or a column?"))
+            return Table(questions=(question,), separator=grid.separator, asks_phase=True, columns=columns, body=body)
+        table = _Reading(body, columns, choices).table()
+        return replace(table, phase=choices.phase, asks_phase=True) if asks else table
     except RefusedError as refused:
         return Table(refused.sentence, separator=grid.separator)
 

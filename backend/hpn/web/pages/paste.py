@@ -32,7 +32,7 @@ from hpn.web.form.cells import Decimal, Figure
 from hpn.web.form.columns import CELLS, SKIP, WIRE, Choices, Column
 from hpn.web.form.given import shown_columns
 from hpn.web.form.headings import QUANTITIES
-from hpn.web.form.pasted import COLUMNS, LAST, TIMES, Table, read_grid, read_text
+from hpn.web.form.pasted import COLUMNS, LAST, PHASE, TIMES, Table, read_grid, read_text
 from hpn.web.form.read import Pairs
 from hpn.web.form.sheets import SEPARATORS, RefusedError, grid_of
 from hpn.web.form.symbols import LOADS, VARYING
@@ -191,7 +191,7 @@ def choices_of(fields: Mapping[str, str], of: str) -> Choices:
     for name, value in fields.items():
         if place := _PLACE.fullmatch(name):
             said[place[1]][int(place[2])] = value
-    named = {name: fields.get(name, "") for name in ("separator", "decimal", "times", "last")}
+    named = {name: fields.get(name, "") for name in ("separator", "phase", "decimal", "times", "last")}
     return Choices(**named, roles=said["r"], units=said["u"])
 
 
@@ -337,6 +337,7 @@ _WORDS = {
     "cells": CELLS,
     "separators": SEPARATORS,
     "decimals": DECIMALS,
+    "phase": PHASE,
     "times": TIMES,
     "last": LAST,
     "quantities": QUANTITIES,
