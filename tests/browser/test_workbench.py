@@ -19,7 +19,12 @@ STATES = {
     "none fits": "/?T=5000&n=250&t=0.3&T=32&n=500&t=3&tp=4&Tk=9000&FR=9000&u=0.8",
     "all gears": EXAMPLE.replace("&i=5", "&FR=500&FA=200"),
 }
-SHORT = {("seven", 1440, "de"), ("none fits", 1024, "de"), ("all gears", 390, "de"), ("seven", 1920, "en")}
+ZOOMED = 720
+"""A window of 1440 at 200 %."""
+SHORT = {
+    *(("seven", 1440, "de"), ("seven", 1920, "en"), ("none fits", 1024, "de")),
+    *(("example", ZOOMED, "de"), ("all gears", 390, "de")),
+}
 
 CLASHES = """() => {
   const texts = [];
@@ -91,7 +96,7 @@ def test_verdict_checks_envelope_and_map_need_no_scrolling_at_1440_by_900(
     [
         pytest.param(state, width, language, marks=() if (state, width, language) in SHORT else pytest.mark.soak)
         for state in STATES
-        for width in (390, 1024, 1440, 1920)
+        for width in (390, ZOOMED, 1024, 1440, 1920)
         for language in ("en", "de")
     ],
 )

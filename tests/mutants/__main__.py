@@ -39,10 +39,14 @@ NEAREST = {
     "evaluation": [
         "tests/property/test_order.py",
         "tests/fleet/test_equality.py",
+        "tests/fleet/test_listing.py",
         "tests/unit/test_selection.py",
         "tests/unit/test_checks.py",
     ],
-    "selection": ["tests/unit/test_selection.py", "tests/unit/test_checks.py", "tests/unit/test_comparison.py"],
+    "selection": [
+        *("tests/unit/test_selection.py", "tests/unit/test_checks.py", "tests/unit/test_comparison.py"),
+        *("tests/unit/test_motors.py", "tests/unit/test_readings.py"),
+    ],
 }
 """Tests of each module itself, which find most."""
 

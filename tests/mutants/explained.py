@@ -21,6 +21,7 @@ EXPLAINED: dict[str, str] = {
     "emergency_stop_torque_Nm=c.duty.emergency_stop_torque_Nm, "
     "momentary_peak_torque_Nm=c.gears.momentary_peak_torque_Nm, ) "
     "-> nothing": "demand over limit is the same quotient; the equation stands there by its name",
+    "selection gears_for: \"\" -> 'X'": "any text that names no model says that no curve is asked for",
     **{f"selection candidates_of: True -> False{number}": LENGTHS for number in ("", " #2", " #3", " #4", " #5")},
     "evaluation Checked.status: self.utilisation <= self.bound -> (self.utilisation) < (self.bound)": ON_THE_BOUND,
     "evaluation Evaluation.governing_of: -1 -> (1)": LAST_OF_TWO,

@@ -11,6 +11,7 @@ from hpn.readings import Reading, readings_of
 from hpn.selection import select
 from tests.build import Json, cycle, phase, worked_example
 from tests.property.draw import at_random
+from tests.reference.test_motion import CONTRACT
 
 
 def readings(application: Json, designation: str, catalogue: Catalogue) -> dict[str, Reading]:
@@ -67,6 +68,18 @@ def test_other_checks_read_as_they_were_computed(catalogue: Catalogue) -> None:
     assert torque.demand == pytest.approx(32.0210136)
     assert (torque.limit, torque.unit, torque.sign) == (80.0, "Nm", "≤")
     assert (torque.part, torque.limit_name, torque.relation) == (0.8, "T_A = T_N", "T_av ≤ T_A = T_N")
+
+
+def test_a_motor_that_is_turned_along_has_torques_of_its_own(catalogue: Catalogue) -> None:
+    """Its inertia counts along a motion alone, and nothing else that a notice says makes it count."""
+    motor = {"peak_torque_Nm": 50, "rated_torque_Nm": 20}
+    turned = {"duty_cycle": {"motion": CONTRACT}, "requirements": {"motor": motor | {"inertia_kgm2": 1e-4}}}
+    plain = worked_example(requirements={"motor": motor})
+
+    for application, peak, rated in ((turned, "T_in,max", "T_in,rms"), (plain, "T_max / (i · η)", "T_rms / (i · η)")):
+        read = readings(application, "HPN-20A-5", catalogue)
+        assert read["motor_peak_torque"].relation == f"{peak} ≤ T_mot"
+        assert read["motor_rated_torque"].relation == f"{rated} ≤ T_mot,N"
 
 
 def test_what_is_read_compares_as_the_check_does(catalogue: Catalogue) -> None:
