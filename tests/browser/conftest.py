@@ -13,7 +13,7 @@ from urllib.parse import urlsplit
 from urllib.request import urlopen
 
 import pytest
-from playwright.sync_api import Browser, BrowserContext, Page, Playwright, Route, expect, sync_playwright
+from playwright.sync_api import Browser, BrowserContext, Page, Playwright, expect, sync_playwright
 
 AXE = Path(__file__).parents[2] / "frontend/node_modules/axe-core/axe.min.js"
 BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
@@ -97,19 +97,9 @@ class Visitor:
         self.watches: list[Watch] = []
 
     def open(
-        self,
-        path: str = "/",
-        width: int = 1440,
-        *,
-        script: bool = True,
-        dark: bool = False,
-        touch: bool = False,
-        routed: bool = False,
+        self, path: str = "/", width: int = 1440, *, script: bool = True, dark: bool = False, touch: bool = False
     ) -> Page:
-        """Page at a path, in a viewport of a width; where routed, a test can hold back what it asks for.
-
-        Chromium intercepts requests only some time after it is told to, so that it is told before there is a page.
-        """
+        """Page at a path, in a viewport of a width."""
         context = self.browser.new_context(
             viewport={"width": width, "height": 844 if width < 600 else 900},
             java_script_enabled=script,
@@ -119,8 +109,6 @@ class Visitor:
         )
         context.set_default_timeout(1000 * PATIENCE_S)
         self.contexts.append(context)
-        if routed:
-            context.route("**/?*", lambda route: route.continue_())
         page = context.new_page()
         self.watches.append(Watch(page, self.server))
         page.goto(self.server + path)
@@ -161,15 +149,21 @@ def violations(page: Page) -> list[tuple[str, list[str]]]:
     return [(entry["id"], [node["html"] for node in entry["nodes"]]) for entry in found]
 
 
+# Chromium intercepts requests only some time after it is told to, so that a test holds them back in the page.
+HOLD = """() => {
+  const send = window.fetch;
+  const released = new Promise((release) => {
+    window.release = () => { window.fetch = send; release(); };
+  });
+  window.fetch = (...asked) => Promise.all([send(...asked), released]).then(([answer]) => answer);
+}"""
+
+
 @contextmanager
 def answer_held_back(page: Page, after: Callable[[], None]) -> Iterator[None]:
-    """What a routed page asks the server for in consequence is under way and not answered before the block ends."""
-    expect(page.locator(".htmx-request")).to_have_count(0)  # what was asked before is not held back
-    held: list[Route] = []
-    page.route("**/?*", lambda route: held.append(route))
+    """What a page asks the server for in consequence is under way and not answered before the block ends."""
+    page.evaluate(HOLD)
     with page.expect_request("**/?*"):
         after()
     yield
-    for route in held:
-        route.continue_()
-    page.unroute("**/?*")
+    page.evaluate("release()")

@@ -27,7 +27,7 @@ def average_torque(first: float) -> str:
 
 
 def test_calculation_that_is_opened_meanwhile_is_that_of_the_answer(visitor: Visitor) -> None:
-    page = visitor.open(EXAMPLE, routed=True)
+    page = visitor.open(EXAMPLE)
     shown = page.locator("#calculation")
     for first in (80, 96):  # once without a calculation so far, once with that of before
         with answer_held_back(page, partial(torque(page, 1).fill, str(first))):
@@ -38,19 +38,11 @@ def test_calculation_that_is_opened_meanwhile_is_that_of_the_answer(visitor: Vis
 
 
 def test_going_back_meanwhile_takes_back_the_edit_that_is_under_way(visitor: Visitor) -> None:
-    page = visitor.open(EXAMPLE, routed=True)
+    page = visitor.open(EXAMPLE)
     pause(page).fill("5")
     expect(page).to_have_url(re.compile("tp=5"))
-    held: list[Route] = []
-    page.route("**/?*", lambda route: held.append(route))
-    with page.expect_request("**/?*"):
-        torque(page, 1).fill("77")
-    with page.expect_request("**/?*"):
+    with answer_held_back(page, partial(torque(page, 1).fill, "77")), page.expect_request("**/?*"):
         page.evaluate("history.back()")
-    held[0].continue_()  # the answer, if anybody still wants it, comes before the page that is gone back to
-    page.wait_for_timeout(500)
-    held[1].continue_()
-    page.unroute("**/?*")
     expect(torque(page, 1)).to_have_value("40")
     expect(pause(page)).to_have_value("5")
     page.wait_for_load_state("networkidle")
@@ -90,7 +82,7 @@ def test_what_is_wrong_is_not_saved(visitor: Visitor) -> None:
 
 
 def test_undo_takes_back_the_row_edit_that_is_under_way_and_no_more(visitor: Visitor) -> None:
-    page = visitor.open(EXAMPLE, routed=True)
+    page = visitor.open(EXAMPLE)
     torque(page, 1).fill("50")
     expect(page).to_have_url(re.compile("T=50&"))
     with answer_held_back(page, page.get_by_role("button", name="Remove phase 2").click):
@@ -104,7 +96,7 @@ def test_undo_takes_back_the_row_edit_that_is_under_way_and_no_more(visitor: Vis
 
 
 def test_undo_takes_back_the_gear_that_was_chosen_just_now_and_no_more(visitor: Visitor) -> None:
-    page = visitor.open(EXAMPLE, routed=True)
+    page = visitor.open(EXAMPLE)
     torque(page, 1).fill("50")
     expect(page).to_have_url(re.compile("T=50&"))
     open_section(page, "Candidates")
@@ -119,7 +111,7 @@ def test_undo_takes_back_the_gear_that_was_chosen_just_now_and_no_more(visitor: 
 
 
 def test_gears_pinned_in_quick_succession_are_all_compared(visitor: Visitor) -> None:
-    page = visitor.open(EXAMPLE, routed=True)
+    page = visitor.open(EXAMPLE)
     open_section(page, "Candidates")
     page.get_by_text("14A: one gear").click()
     pins = page.get_by_role("region", name="Candidates")

@@ -95,7 +95,7 @@ def test_typing_recalculates_and_keeps_focus_caret_and_scroll(visitor: Visitor) 
 
 
 def test_answer_that_arrives_late_never_overwrites_what_is_typed_meanwhile(visitor: Visitor) -> None:
-    page = visitor.open(EXAMPLE, routed=True)
+    page = visitor.open(EXAMPLE)
     with answer_held_back(page, lambda: torque(page, 1).fill("41")):
         torque(page, 1).fill("42")
         torque(page, 2).fill("33")

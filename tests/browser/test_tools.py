@@ -273,7 +273,7 @@ def test_row_edited_by_key_in_a_changed_cell_takes_the_figures_along(
 
 
 def test_row_moved_by_key_twice_in_quick_succession_goes_two_places(visitor: Visitor) -> None:
-    page = visitor.open(EXAMPLE, routed=True)
+    page = visitor.open(EXAMPLE)
     torque(page, 1).fill("36")
     with answer_held_back(page, lambda: page.keyboard.press("Alt+ArrowDown")):
         page.keyboard.press("Alt+ArrowDown")
@@ -284,7 +284,7 @@ def test_row_moved_by_key_twice_in_quick_succession_goes_two_places(visitor: Vis
 
 
 def test_typing_while_a_row_edit_is_under_way_keeps_both_and_the_place(visitor: Visitor) -> None:
-    page = visitor.open(EXAMPLE, routed=True)
+    page = visitor.open(EXAMPLE)
     with answer_held_back(page, button(page, "Remove phase 1").click):
         torque(page, 3).fill("205")
     expect(torque(page, 3)).to_have_count(0)
@@ -294,14 +294,14 @@ def test_typing_while_a_row_edit_is_under_way_keeps_both_and_the_place(visitor: 
 
 
 def test_rows_added_in_quick_succession_all_come(visitor: Visitor) -> None:
-    page = visitor.open(EXAMPLE, routed=True)
+    page = visitor.open(EXAMPLE)
     with answer_held_back(page, button(page, "+ Add phase").click):
         button(page, "+ Add phase").click()
     expect(torque(page, 5)).to_be_visible()
 
 
 def test_long_wait_is_shown_and_a_short_one_is_not(visitor: Visitor) -> None:
-    page = visitor.open(EXAMPLE, routed=True)
+    page = visitor.open(EXAMPLE)
     page.clock.install()
     result = page.get_by_role("region", name="Result")
     before = page.get_by_role("table", name="Load limits").bounding_box()
@@ -315,33 +315,40 @@ def test_long_wait_is_shown_and_a_short_one_is_not(visitor: Visitor) -> None:
     expect(result).not_to_have_attribute("aria-busy", "true")
 
 
+OVERLOADED = """() => {
+  const send = window.fetch;
+  window.release = () => { window.fetch = send; };
+  const headers = { "content-type": "application/problem+json" };
+  window.fetch = () => Promise.resolve(new Response('{"detail": "too many at once"}', { status: 503, headers }));
+}"""
+
+
 class TestWithoutServer:
     """The browser complains in its console about what can't be loaded; these tests look after themselves."""
 
     @pytest.fixture
     def page(self, visitor: Visitor) -> Page:
-        page = visitor.open(EXAMPLE, routed=True)
+        page = visitor.open(EXAMPLE)
         visitor.watches.clear()
         return page
 
     def test_lost_server_is_said_and_tried_again_and_nothing_typed_is_lost(self, page: Page) -> None:
-        page.route("**/?*", lambda route: route.abort())
+        page.context.set_offline(True)
         pause(page).fill("7")
         message = page.get_by_text("The server can’t be reached.")
         expect(message).to_be_visible()
         expect(pause(page)).to_have_value("7")
         expect(page.get_by_role("region", name="Result")).to_have_attribute("data-stale", "")
-        page.unroute("**/?*")
+        page.context.set_offline(False)
         expect(page).to_have_url(re.compile("tp=7"))
         expect(message).to_be_hidden()
 
     def test_reply_that_is_no_page_never_takes_the_forms_place(self, page: Page) -> None:
-        problem = {"status": 503, "content_type": "application/problem+json", "body": '{"detail": "too many at once"}'}
-        page.route("**/?*", lambda route: route.fulfill(**problem))
+        page.evaluate(OVERLOADED)
         pause(page).fill("8")
         expect(page.get_by_text("too many at once")).to_be_visible()
         expect(pause(page)).to_have_value("8")
-        page.unroute("**/?*")
+        page.evaluate("release()")
         button(page, "Try now").click()
         expect(page).to_have_url(re.compile("tp=8"))
 
