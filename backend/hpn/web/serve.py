@@ -21,7 +21,7 @@ from uvicorn.supervisors import Multiprocess
 from hpn.catalogue import CatalogueError
 from hpn.store import StoreError
 from hpn.web.app import create_app
-from hpn.web.door import logs, metrics
+from hpn.web.door import heap, logs, metrics
 from hpn.web.door.protocol import BoundedProtocol
 from hpn.web.pages import templates
 from hpn.web.settings import Settings
@@ -33,6 +33,7 @@ RETRY_SECONDS = 2
 
 def served_app() -> FastAPI:
     """The application in a process of its own, whose logs are all the service's."""
+    heap.give_back()
     settings = Settings()
     logs.configure(settings.log_level)
     app = create_app(settings)
