@@ -2,7 +2,9 @@
 
 import asyncio
 import json
+import os
 import threading
+import time
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
 from inspect import iscoroutinefunction
@@ -102,6 +104,65 @@ async def test_work_in_slices_ends_when_its_client_leaves() -> None:
 @pytest.mark.anyio
 async def test_who_stays_gets_the_result() -> None:
     assert await while_present(request_of(), Pool(Places(1, 0)).run(sum, [1, 2])) == 3
+
+
+# --- Work in a process of its own -------------------------------------------------------------------------------------
+
+
+def beat(file: Path) -> None:
+    """Write more and more, and never end."""
+    while True:
+        with file.open("a") as written:
+            written.write(f"{os.getpid()}\n")
+        time.sleep(0.01)
+
+
+def fail_there() -> None:
+    """Go wrong with an error that no pickle can carry."""
+    raise OSError(threading.Lock())
+
+
+@pytest.mark.anyio
+async def test_work_apart_is_killed_when_its_client_leaves_and_the_next_is_done(tmp_path: Path) -> None:
+    pool, file, leaves = Pool(Places(1, 3)), tmp_path / "beats", asyncio.Event()
+
+    async def receive() -> dict[str, Any]:
+        await leaves.wait()
+        return {"type": "http.disconnect"}
+
+    request = Request({"type": "http"}, receive)
+    work = asyncio.create_task(while_present(request, pool.run_apart(beat, file)))
+    while not file.exists():
+        await asyncio.sleep(0.01)
+    leaves.set()
+    with pytest.raises(Problem) as left:
+        await work
+    size = file.stat().st_size
+    await asyncio.sleep(0.2)
+
+    assert left.value.status_code == GONE
+    assert size == file.stat().st_size > 0
+    with pytest.raises(ProcessLookupError):
+        os.kill(int(file.read_text().split()[0]), 0)
+    assert await pool.run_apart(sum, [1, 2]) == 3
+
+
+@pytest.mark.anyio
+async def test_what_goes_wrong_apart_brings_its_traceback_and_what_ends_early_is_a_503() -> None:
+    pool = Pool(Places(1, 3))
+    first = await pool.run_apart(os.getpid)
+
+    with pytest.raises(RuntimeError, match="in fail_there"):
+        await pool.run_apart(fail_there)
+    assert await pool.run_apart(os.getpid) == first
+    with pytest.raises(Problem) as ended:
+        await pool.run_apart(os._exit, 9)
+    assert ended.value.status_code == 503
+    assert int((ended.value.headers or {})["Retry-After"]) > 0
+    assert await pool.run_apart(os.getpid) != first
+
+
+# --- The pools of a service -------------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize(

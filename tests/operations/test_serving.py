@@ -2,10 +2,12 @@
 
 import http.client
 import json
+import os
 import signal
 import socket
 import time
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack, closing, contextmanager
 from pathlib import Path
 
@@ -13,10 +15,11 @@ import httpx
 import orjson
 import pytest
 
-from tests.build import worked_example
+from tests.build import cycle, phase, worked_example
 from tests.operations.service import Service, serving
 
 SELECT = "/api/v1/select"
+REPORT = "/api/v1/report.pdf"
 NDJSON = {"Content-Type": "application/x-ndjson"}
 LINE = orjson.dumps({"reference": "axis", **worked_example(requirements={"ratios": [5]})}) + b"\n"
 CHUNK = b"%x\r\n%b\r\n" % (len(LINE), LINE)
@@ -139,6 +142,55 @@ def test_the_end_does_not_wait_for_ever(tmp_path: Path) -> None:
         service.terminate()
 
         assert service.process.wait(timeout=20) in ENDED
+
+
+def test_a_report_under_way_is_finished_when_a_terminal_interrupts_all_its_processes(tmp_path: Path) -> None:
+    long = cycle(*[phase(20 + k % 7, 500 + k % 11) for k in range(10_000)])
+    with serving(tmp_path) as service, ThreadPoolExecutor() as pool:
+        service.client.post(REPORT, json=worked_example()).raise_for_status()
+        (apart,) = children_of(service)
+        report = pool.submit(httpx.post, service.url + REPORT, json=long, timeout=60, trust_env=False)
+        idle = ticks(apart)
+        while ticks(apart) < idle + 10:
+            time.sleep(0.01)
+        for process in (service.process.pid, apart):
+            os.kill(process, signal.SIGINT)
+
+        assert report.result().content.startswith(b"%PDF")
+        assert service.process.wait(timeout=30) in (*ENDED, -signal.SIGINT)
+        while Path(f"/proc/{apart}").exists():  # it ends as it reads no more
+            time.sleep(0.01)
+        assert not [event for event in service.events() if event["level"] == "error"]
+
+
+def test_a_report_whose_reader_leaves_is_given_up(service: Service) -> None:
+    long = cycle(*[phase(20 + k % 7, 500 + k % 11) for k in range(10_000)])
+    service.client.post(REPORT, json=worked_example()).raise_for_status()
+    (apart,) = children_of(service)
+    idle = ticks(apart)
+    with socket.create_connection(("127.0.0.1", service.port), 20) as connection:
+        body = orjson.dumps(long)
+        head = f"POST {REPORT} HTTP/1.1\r\nHost: x\r\nContent-Type: application/json\r\nContent-Length: {len(body)}\r\n"
+        connection.sendall(head.encode() + b"\r\n" + body)
+        while ticks(apart) < idle + 10:
+            time.sleep(0.01)
+    while Path(f"/proc/{apart}").exists():
+        time.sleep(0.01)
+
+    service.client.post(REPORT, json=worked_example()).raise_for_status()
+    assert apart not in children_of(service)
+
+
+def children_of(service: Service) -> list[int]:
+    """Processes that a service has started."""
+    return [
+        int(pid) for pid in Path(f"/proc/{service.process.pid}/task/{service.process.pid}/children").read_text().split()
+    ]
+
+
+def ticks(process: int) -> int:
+    """Processor time that a process has taken, in hundredths of a second."""
+    return sum(map(int, Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[11:13]))
 
 
 def test_several_workers_serve_count_together_and_end(tmp_path: Path) -> None:

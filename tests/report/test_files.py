@@ -183,7 +183,7 @@ def test_a_title_of_any_characters_is_refused_or_makes_every_file(client: TestCl
 def test_controls_that_an_older_version_saved_make_every_file(catalogue: Catalogue) -> None:
     export = typed_export_of(dict(WORKED_EXAMPLE), catalogue, title=ANY_TITLE, reference="a\ud800b")
     for file in FORMATS:
-        assert file.build(export, language("en")).startswith(FILES[file.name][1])
+        assert file.content(export, language("en"), {})().startswith(FILES[file.name][1])
         assert file.named(export).isascii()
 
 

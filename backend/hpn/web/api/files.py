@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from dataclasses import dataclass, fields, replace
 from datetime import UTC, datetime
-from functools import cache
+from functools import cache, partial
 from typing import Annotated, Any, Literal
 
 import msgspec
@@ -27,7 +27,7 @@ from hpn.web.archive import url_of, with_catalogue
 from hpn.web.door.access import admit
 from hpn.web.door.bodies import parsed, read_body
 from hpn.web.door.conditions import etag_of, has_already
-from hpn.web.door.pools import compute
+from hpn.web.door.pools import pool_of, while_present
 from hpn.web.door.problems import Problem
 from hpn.web.form.labels import query_of as query_of_labels
 from hpn.web.form.linked import linked, query_of
@@ -68,10 +68,15 @@ class File:
     build: Callable[..., bytes]
     disposition: str = "attachment"
     options: Callable[..., Options] = _nothing
+    is_translated: bool = True
 
     def named(self, export: Export) -> str:
         """File name for a download; ASCII, whatever the selection is called."""
         return f"{export.candidate.designation}.{self.name.rpartition('.')[2]}"
+
+    def content(self, export: Export, reader: Reader, chosen: Options) -> "partial[bytes]":
+        """The call that makes the file: one that a process can take which knows the reports and nothing of the web."""
+        return partial(self.build, export, *([reader] if self.is_translated else []), **chosen)
 
 
 FILES = (
@@ -88,8 +93,9 @@ FILES = (
         "Submodel",
         "application/asset-administration-shell-package",
         "Asset Administration Shell: technical data and selection",
-        lambda export, _, **options: package(export, **options),
+        package,
         options=_metamodel,
+        is_translated=False,
     ),
 )
 
@@ -241,13 +247,16 @@ def absolute(request: Request, path: str) -> str:
 async def _answer(request: Request, file: File, lang: str | None, chosen: Options, make: Make) -> Response:
     reader = spoken(request, lang)
 
-    def work() -> tuple[bytes, str, str]:
-        export = make()
-        content = file.build(export, reader, **chosen)
-        return content, file.named(export), etag_of(content)
+    pool = pool_of(request, "exports")
 
-    content, name, etag = await compute(request, "exports", work)
-    headers = {"ETag": etag, "Cache-Control": "no-cache", "Vary": "Accept-Language, Cookie"}
+    async def work() -> tuple[bytes, str]:
+        async with pool.turn:
+            export = await pool.run(make)
+            return await pool.run_apart(file.content(export, reader, chosen)), file.named(export)
+
+    with pool.place(request.state.caller):
+        content, name = await while_present(request, work())
+    headers = {"ETag": etag_of(content), "Cache-Control": "no-cache", "Vary": "Accept-Language, Cookie"}
     if request.method == "GET" and has_already(request, headers["ETag"]):
         return Response(status_code=304, headers=headers)
     headers |= {"Content-Language": reader.language, "Content-Disposition": f'{file.disposition}; filename="{name}"'}

@@ -5,16 +5,20 @@ A worker that computes shares the interpreter's lock with the loop, so more of t
 
 import asyncio
 import contextvars
+import logging
+import pickle
 from collections import Counter
 from collections.abc import Awaitable, Callable, Coroutine, Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from functools import partial
-from typing import Any, Literal, NamedTuple, ParamSpec, TypeVar
+from typing import Any, Literal, NamedTuple, ParamSpec, TypeVar, cast
 
+from anyio import BrokenWorkerProcess, to_process
 from starlette.requests import Request
 from starlette.responses import Response
 
+from hpn.web.door import apart
 from hpn.web.door.observation import GONE
 from hpn.web.door.problems import Problem
 
@@ -32,7 +36,7 @@ class Places(NamedTuple):
 
 PLACES: Mapping[PoolName, Places] = {
     "pages": Places(2, 30),
-    "exports": Places(1, 15),  # the longest report takes 300 MB
+    "exports": Places(1, 15),  # the longest report takes 300 MB, in a process beside the service
     "batches": Places(1, 15),
     "metrics": Places(1, 3),
     "fleets": Places(1, 3),
@@ -47,6 +51,8 @@ SMALL_BYTES = 16 * 1024
 RETRY_SECONDS = 2
 PATIENCE_SECONDS = 0.1
 """Time after which somebody looks whether a client still waits."""
+
+logger = logging.getLogger(__name__)
 
 
 class Pool:
@@ -81,6 +87,20 @@ class Pool:
         """Result of work on a worker. Who is cancelled while it waits gives up its place in the queue."""
         context = contextvars.copy_context()
         return await asyncio.wrap_future(self._executor.submit(context.run, partial(work, *args, **kwargs)))
+
+    async def run_apart(self, work: Callable[P, T], *args: P.args, **kwargs: P.kwargs) -> T:
+        """Result of work in a process that is kept for the next, and killed where the caller is cancelled meanwhile.
+
+        For what no thread can leave before its end, and for whoever has the pool's turn. Raises Problem 503 where the
+        process ends first.
+        """
+        call = await self.run(pickle.dumps, partial(work, *args, **kwargs))
+        try:
+            return cast(T, await to_process.run_sync(apart.called, call, cancellable=True))
+        except BrokenWorkerProcess:
+            logger.exception("a process ended before it was done with %s", work)
+            text = "this can’t be made at the moment: the process that made it has ended"
+            raise Problem(503, text, headers={"Retry-After": str(RETRY_SECONDS)}) from None
 
 
 class Pools:
