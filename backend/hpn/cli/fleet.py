@@ -88,7 +88,8 @@ def _write_report(options: argparse.Namespace, catalogue: Catalogue) -> None:
     listing = listing_of(options.input, options.axes, options.output, catalogue)
     written = options.report.with_name(f".{options.report.name}.{os.getpid()}")
     try:
-        written.write_text(report_of(listing, options.input.name, catalogue, options.service.rstrip("/")))
+        service: str = options.service.rstrip("/")
+        written.write_text(report_of(listing, options.input.name, catalogue, service, options.lang))
         os.replace(written, options.report)
     finally:
         written.unlink(missing_ok=True)

@@ -1,5 +1,8 @@
 """A fleet as one HTML file: what its page shows, with styles and a script inside."""
 
+from contextvars import copy_context
+from typing import Any
+
 import pyarrow as pa
 from jinja2 import Environment
 from markupsafe import Markup
@@ -8,6 +11,8 @@ from starlette.datastructures import State
 from hpn import ENGINE_VERSION
 from hpn.catalogue import Catalogue
 from hpn.fleet.listing import Listing, applications_of, rows_of
+from hpn.reader import Reader
+from hpn.web.door.visit import VISIT, Visit
 from hpn.web.form import read as links
 from hpn.web.form.write import to_link
 from hpn.web.pages.assets import Assets
@@ -17,22 +22,23 @@ from hpn.web.pages.templates import STATIC, environment
 STYLES, SCRIPT = ("app.css", "tools.css", "fleet.css"), "fleet-report.js"
 
 
-def report_of(listing: Listing, name: str, catalogue: Catalogue, base: str = "") -> str:
-    """The file; `base` is the address of the service that its links lead to, blank where none is known."""
+def report_of(listing: Listing, name: str, catalogue: Catalogue, base: str = "", language: str = "en") -> str:
+    """The file, in a language but for the reasons of rejected axes, which stand as in the answers.
+
+    `base` is the address of the service that its links lead to, blank where none is known.
+    """
     view = FleetView(listing.summary, rows_of(listing.answers), links_of(listing.axes, base))
+    return copy_context().run(
+        _told, Reader(language), view=view, name=name, base=base, catalogue_version=catalogue.version
+    )
+
+
+def _told(reader: Reader, **values: Any) -> str:
+    VISIT.set(Visit(reader, values["base"]))
     return (
         _environment()
         .get_template("fleet_report.html")
-        .render(
-            view=view,
-            name=name,
-            base=base,
-            shown=SHOWN,
-            style=_inlined(*STYLES),
-            script=_inlined(SCRIPT),
-            engine_version=ENGINE_VERSION,
-            catalogue_version=catalogue.version,
-        )
+        .render(values, shown=SHOWN, style=_inlined(*STYLES), script=_inlined(SCRIPT), engine_version=ENGINE_VERSION)
     )
 
 
