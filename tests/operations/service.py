@@ -52,6 +52,13 @@ class Service:
         self.process.send_signal(signal.SIGTERM)
 
 
+def children_of(process: int) -> list[int]:
+    """Processes that any thread of a process has started and that are still there."""
+    return [
+        int(child) for task in Path(f"/proc/{process}/task").glob("*/children") for child in task.read_text().split()
+    ]
+
+
 def free_port() -> int:
     """A port that nobody listens on."""
     with socket.socket() as probe:

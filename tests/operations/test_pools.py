@@ -3,10 +3,13 @@
 import asyncio
 import json
 import os
+import signal
+import sys
 import threading
 import time
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
+from functools import partial
 from inspect import iscoroutinefunction
 from pathlib import Path
 from typing import Any
@@ -29,6 +32,7 @@ from hpn.web.door.problems import Problem
 from hpn.web.settings import Settings
 from tests.build import worked_example
 from tests.operations.conftest import MakeClient
+from tests.operations.service import children_of
 from tests.state import state_of
 
 
@@ -109,6 +113,14 @@ async def test_who_stays_gets_the_result() -> None:
 # --- Work in a process of its own -------------------------------------------------------------------------------------
 
 
+@pytest.fixture
+def pool() -> Iterator[Pool]:
+    """A pool whose process ends with the test."""
+    pool = Pool(Places(1, 3))
+    yield pool
+    pool.apart.close()
+
+
 def beat(file: Path) -> None:
     """Write more and more, and never end."""
     while True:
@@ -118,48 +130,82 @@ def beat(file: Path) -> None:
 
 
 def fail_there() -> None:
-    """Go wrong with an error that no pickle can carry."""
-    raise OSError(threading.Lock())
+    """Go wrong with what no pickle can carry, and is no mere Exception, as typst's panics are."""
+    raise BaseException(threading.Lock())
 
 
 @pytest.mark.anyio
-async def test_work_apart_is_killed_when_its_client_leaves_and_the_next_is_done(tmp_path: Path) -> None:
-    pool, file, leaves = Pool(Places(1, 3)), tmp_path / "beats", asyncio.Event()
+async def test_work_apart_is_killed_when_its_client_leaves_and_the_next_is_done(pool: Pool, tmp_path: Path) -> None:
+    file, leaves = tmp_path / "beats", asyncio.Event()
 
     async def receive() -> dict[str, Any]:
         await leaves.wait()
         return {"type": "http.disconnect"}
 
     request = Request({"type": "http"}, receive)
-    work = asyncio.create_task(while_present(request, pool.run_apart(beat, file)))
+    work = asyncio.create_task(while_present(request, pool.run_apart(partial(beat, file))))
     while not file.exists():
         await asyncio.sleep(0.01)
     leaves.set()
     with pytest.raises(Problem) as left:
         await work
-    size = file.stat().st_size
-    await asyncio.sleep(0.2)
 
     assert left.value.status_code == GONE
-    assert size == file.stat().st_size > 0
+    assert await pool.run_apart(partial(sum, [1, 2])) == 3
     with pytest.raises(ProcessLookupError):
         os.kill(int(file.read_text().split()[0]), 0)
-    assert await pool.run_apart(sum, [1, 2]) == 3
 
 
 @pytest.mark.anyio
-async def test_what_goes_wrong_apart_brings_its_traceback_and_what_ends_early_is_a_503() -> None:
-    pool = Pool(Places(1, 3))
+@pytest.mark.parametrize("seconds", [0.0, 0.01, 0.05, 0.1, 0.2])
+async def test_who_leaves_at_any_moment_of_the_start_leaves_no_process(pool: Pool, seconds: float) -> None:
+    for _ in range(3):
+        work = asyncio.create_task(pool.run_apart(partial(time.sleep, 60)))
+        await asyncio.sleep(seconds)
+        work.cancel()
+        with pytest.raises(asyncio.CancelledError):
+            await work
+    own = await pool.run_apart(os.getpid)
+
+    started = [child for child in children_of(os.getpid()) if b"apart" in Path(f"/proc/{child}/cmdline").read_bytes()]
+    assert started == [own]
+
+
+@pytest.mark.anyio
+async def test_what_goes_wrong_apart_brings_its_traceback_and_what_ends_early_is_a_503(
+    pool: Pool, caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch
+) -> None:
     first = await pool.run_apart(os.getpid)
 
     with pytest.raises(RuntimeError, match="in fail_there"):
         await pool.run_apart(fail_there)
     assert await pool.run_apart(os.getpid) == first
     with pytest.raises(Problem) as ended:
-        await pool.run_apart(os._exit, 9)
+        await pool.run_apart(partial(os._exit, 9))
     assert ended.value.status_code == 503
     assert int((ended.value.headers or {})["Retry-After"]) > 0
-    assert await pool.run_apart(os.getpid) != first
+    assert caplog.messages[-1].endswith("exit code 9")  # and nothing of the work
+    os.kill(second := await pool.run_apart(os.getpid), signal.SIGKILL)
+    while Path(f"/proc/{second}/stat").read_text().split()[2] != "Z":
+        await asyncio.sleep(0.01)
+    assert await pool.run_apart(os.getpid) not in (first, second)
+
+    pool.apart.close()
+    monkeypatch.setattr(sys, "executable", "/nowhere/python")
+    with pytest.raises(Problem) as unable:
+        await pool.run_apart(os.getpid)
+    assert unable.value.status_code == 503
+
+
+@pytest.mark.anyio
+async def test_work_apart_knows_no_secrets_and_what_it_prints_is_no_answer(
+    pool: Pool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("HPN_DATABASE_PASSWORD", "secret")
+
+    assert await pool.run_apart(partial(os.getenv, "HPN_DATABASE_PASSWORD")) is None
+    await pool.run_apart(partial(print, "something"))
+    assert await pool.run_apart(partial(os.system, "echo something")) == 0
 
 
 # --- The pools of a service -------------------------------------------------------------------------------------------

@@ -16,7 +16,7 @@ import orjson
 import pytest
 
 from tests.build import cycle, phase, worked_example
-from tests.operations.service import Service, serving
+from tests.operations.service import Service, children_of, serving
 
 SELECT = "/api/v1/select"
 REPORT = "/api/v1/report.pdf"
@@ -148,13 +148,16 @@ def test_a_report_under_way_is_finished_when_a_terminal_interrupts_all_its_proce
     long = cycle(*[phase(20 + k % 7, 500 + k % 11) for k in range(10_000)])
     with serving(tmp_path) as service, ThreadPoolExecutor() as pool:
         service.client.post(REPORT, json=worked_example()).raise_for_status()
-        (apart,) = children_of(service)
+        (apart,), group = children_of(service.process.pid), os.getpgid(service.process.pid)
         report = pool.submit(httpx.post, service.url + REPORT, json=long, timeout=60, trust_env=False)
         idle = ticks(apart)
         while ticks(apart) < idle + 10:
             time.sleep(0.01)
-        for process in (service.process.pid, apart):
-            os.kill(process, signal.SIGINT)
+        for process in (
+            service.process.pid,
+            *(child for child in children_of(service.process.pid) if os.getpgid(child) == group),
+        ):
+            os.kill(process, signal.SIGINT)  # as a terminal does to all that it has started
 
         assert report.result().content.startswith(b"%PDF")
         assert service.process.wait(timeout=30) in (*ENDED, -signal.SIGINT)
@@ -166,7 +169,7 @@ def test_a_report_under_way_is_finished_when_a_terminal_interrupts_all_its_proce
 def test_a_report_whose_reader_leaves_is_given_up(service: Service) -> None:
     long = cycle(*[phase(20 + k % 7, 500 + k % 11) for k in range(10_000)])
     service.client.post(REPORT, json=worked_example()).raise_for_status()
-    (apart,) = children_of(service)
+    (apart,) = children_of(service.process.pid)
     idle = ticks(apart)
     with socket.create_connection(("127.0.0.1", service.port), 20) as connection:
         body = orjson.dumps(long)
@@ -178,14 +181,7 @@ def test_a_report_whose_reader_leaves_is_given_up(service: Service) -> None:
         time.sleep(0.01)
 
     service.client.post(REPORT, json=worked_example()).raise_for_status()
-    assert apart not in children_of(service)
-
-
-def children_of(service: Service) -> list[int]:
-    """Processes that a service has started."""
-    return [
-        int(pid) for pid in Path(f"/proc/{service.process.pid}/task/{service.process.pid}/children").read_text().split()
-    ]
+    assert apart not in children_of(service.process.pid)
 
 
 def ticks(process: int) -> int:

@@ -47,4 +47,4 @@ def test_the_bill_says_what_the_service_itself_asks_for(text: str) -> None:
     direct = {name.partition("@")[0] for name in graph["hpn-select"]}
 
     assert {"pkg:pypi/fastapi", "pkg:pypi/psycopg", "pkg:npm/htmx.org"} <= direct
-    assert "pkg:pypi/mako" not in direct  # alembic asks for it
+    assert "pkg:pypi/anyio" not in direct

@@ -1,7 +1,7 @@
 """The catalogue as it is asked: every gear of the series, what holds for all of them, and columns of figures."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from functools import cached_property
 
 import numpy as np
@@ -106,6 +106,10 @@ class Catalogue:
     averaging_s: float = AVERAGING_S
     facts: tuple[Fact, ...] = ()
     motors: tuple[ListedMotor, ...] = ()
+
+    def __getstate__(self) -> dict[str, object]:
+        """Its fields, without what is computed of them on demand, which other threads may be adding meanwhile."""
+        return {field.name: getattr(self, field.name) for field in fields(self)}
 
     @cached_property
     def by_designation(self) -> dict[str, Gear]:

@@ -4,4 +4,5 @@ import sys
 
 from hpn.cli import main
 
-sys.exit(main())
+if __name__ == "__main__":  # processes that are started from here read this file, too
+    sys.exit(main())

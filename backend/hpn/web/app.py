@@ -174,4 +174,5 @@ async def _with_store(app: FastAPI) -> AsyncIterator[None]:
     with suppress(StoreUnavailableError):  # it is in the log, and the store opens as soon as it can
         await store.open()
     yield
+    app.state.pools.close()
     await store.close()

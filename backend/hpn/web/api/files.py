@@ -75,7 +75,7 @@ class File:
         return f"{export.candidate.designation}.{self.name.rpartition('.')[2]}"
 
     def content(self, export: Export, reader: Reader, chosen: Options) -> "partial[bytes]":
-        """The call that makes the file: one that a process can take which knows the reports and nothing of the web."""
+        """The call that makes the file: one that a process can take which knows nothing of the web."""
         return partial(self.build, export, *([reader] if self.is_translated else []), **chosen)
 
 

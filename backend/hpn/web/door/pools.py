@@ -6,19 +6,18 @@ A worker that computes shares the interpreter's lock with the loop, so more of t
 import asyncio
 import contextvars
 import logging
-import pickle
+import threading
 from collections import Counter
 from collections.abc import Awaitable, Callable, Coroutine, Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from functools import partial
-from typing import Any, Literal, NamedTuple, ParamSpec, TypeVar, cast
+from typing import Any, Literal, NamedTuple, ParamSpec, TypeVar
 
-from anyio import BrokenWorkerProcess, to_process
 from starlette.requests import Request
 from starlette.responses import Response
 
-from hpn.web.door import apart
+from hpn.web.door.apart import Apart, EndedError
 from hpn.web.door.observation import GONE
 from hpn.web.door.problems import Problem
 
@@ -60,6 +59,7 @@ class Pool:
 
     def __init__(self, places: Places) -> None:
         self._executor = ThreadPoolExecutor(places.workers)
+        self.apart = Apart()
         self.turn = asyncio.Semaphore(places.workers)  # of work that is done elsewhere: as many have one at once
         self._most = places.workers + places.waiting
         self._taken: Counter[str] = Counter()
@@ -88,18 +88,22 @@ class Pool:
         context = contextvars.copy_context()
         return await asyncio.wrap_future(self._executor.submit(context.run, partial(work, *args, **kwargs)))
 
-    async def run_apart(self, work: Callable[P, T], *args: P.args, **kwargs: P.kwargs) -> T:
-        """Result of work in a process that is kept for the next, and killed where the caller is cancelled meanwhile.
+    async def run_apart(self, work: Callable[[], T]) -> T:
+        """Result of work in a process beside this one, which is killed where the caller is cancelled meanwhile.
 
         For what no thread can leave before its end, and for whoever has the pool's turn. Raises Problem 503 where the
         process ends first.
         """
-        call = await self.run(pickle.dumps, partial(work, *args, **kwargs))
+        given_up = threading.Event()
         try:
-            return cast(T, await to_process.run_sync(apart.called, call, cancellable=True))
-        except BrokenWorkerProcess:
-            logger.exception("a process ended before it was done with %s", work)
-            text = "this can’t be made at the moment: the process that made it has ended"
+            return await self.run(self.apart.call, work, given_up)
+        except asyncio.CancelledError:
+            given_up.set()
+            self.apart.end()
+            raise
+        except EndedError as error:
+            logger.error("the process that makes files ended before its work was done: %s", error)
+            text = f"this can’t be made at the moment; try again in {RETRY_SECONDS} s"
             raise Problem(503, text, headers={"Retry-After": str(RETRY_SECONDS)}) from None
 
 
@@ -112,6 +116,11 @@ class Pools:
 
     def __getitem__(self, name: PoolName) -> Pool:
         return self._pools[name]
+
+    def close(self) -> None:
+        """End the processes of the pools."""
+        for pool in self._pools.values():
+            pool.apart.close()
 
 
 def pool_of(request: Request, name: PoolName) -> Pool:
