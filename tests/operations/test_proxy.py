@@ -109,6 +109,20 @@ def test_bodies_are_as_large_as_the_settings_say(path: str, size: int, status: i
     assert answer.headers["Content-Type"] == "application/problem+json"
 
 
+def test_a_table_on_the_page_may_be_as_large_as_the_service_takes_it(client: httpx.Client) -> None:
+    rows = b"axis;T;n;t\n" + b"x;40;250;1\n" * 250_000
+    answers = [
+        client.post(
+            "/fleets", files={"file": ("axes.csv", content, "text/csv")}, headers={"Origin": str(client.base_url)}
+        )
+        for content in (rows, rows * 13)
+    ]
+
+    assert [answer.status_code for answer in answers] == [422, 413]
+    assert "text/html" in answers[0].headers["Content-Type"]
+    assert answers[1].headers["Content-Type"] == "application/problem+json"
+
+
 @pytest.mark.parametrize(
     ("path", "status"),
     [("/?T=" + "1" * 59_000, 422), ("/?T=" + "1" * 61_000, 414)],
