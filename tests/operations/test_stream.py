@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 from starlette.types import Message
 
 from hpn.catalogue import Catalogue
+from hpn.web.api import batch
 from hpn.web.api.batch import batch_lines, line_evaluator
 from hpn.web.api.replies import encode
 from hpn.web.api.streaming import MEMORY_BYTES, Line, LineSplitter, LineStream, Spool
@@ -182,11 +183,16 @@ class Peer:
         return self.outgoing[-1].get("more_body") is False
 
 
+def whole(evaluate: Callable[[Any], bytes]) -> Callable[[Any], tuple[bytes, int]]:
+    """An evaluator that answers every line that it gets."""
+    return lambda lines: (evaluate(lines), len(lines))
+
+
 def stream(evaluate: Callable[[Any], bytes] = echo, *, spool: int = 10_000_000, seconds: float = 20) -> LineStream:
     """A stream with small limits."""
     pool = Pool(Places(1, 3))
     return LineStream(
-        evaluate, pool=pool, subject="", maximum_line_bytes=100_000, maximum_spool_bytes=spool, seconds=seconds
+        whole(evaluate), pool=pool, subject="", maximum_line_bytes=100_000, maximum_spool_bytes=spool, seconds=seconds
     )
 
 
@@ -316,6 +322,21 @@ async def test_a_mistake_of_ours_is_raised_and_leaves_the_answer_without_its_end
 
 
 def test_the_evaluator_gives_the_lines_of_the_json_form(catalogue: Catalogue) -> None:
-    answers = line_evaluator(catalogue, Metrics(), 100)([orjson.dumps(item) for item in ITEMS])
+    answers, count = line_evaluator(catalogue, Metrics(), 100)([orjson.dumps(item) for item in ITEMS])
 
+    assert count == len(ITEMS)
     assert lines_of(answers) == json.loads(encode(batch_lines(ITEMS, catalogue)))
+
+
+def test_a_slice_ends_when_its_time_is_up(catalogue: Catalogue, monkeypatch: pytest.MonkeyPatch) -> None:
+    whole, _ = line_evaluator(catalogue, Metrics(), 100)(lines := [orjson.dumps(item) for item in ITEMS])
+    monkeypatch.setattr(batch, "SLICE_SECONDS", 0)
+    answers, counts = [], []
+    while lines:
+        answer, count = line_evaluator(catalogue, Metrics(), 100)(lines)
+        answers.append(answer)
+        counts.append(count)
+        lines = lines[count:]
+
+    assert b"".join(answers) == whole
+    assert counts == [1] * len(ITEMS)

@@ -45,6 +45,11 @@ PAIRS = "&".join(f"k{k}=1" for k in range(150_000)).encode()
 TABLE = "\n".join(f"{40 + k % 7}\t250\t0.3" for k in range(10_000))
 PHASES = urlencode({"phases": TABLE}).encode()
 COOKIE = {"Cookie": 'a="' + r"\"" * 3900 + '"'}
+TURNS = {"profile": "trapezoidal", "angle_deg": 720_000, "time_s": 2000}
+SWINGING = {"type": "rotary", "inertia_kgm2": 1, "gravity_mass_kg": 9, "gravity_radius_mm": 200}
+MOTION = json.dumps({"duty_cycle": {"motion": {"mechanism": SWINGING, "moves": [TURNS]}}}).encode()
+"""Two thousand turns under gravity: half a second of work in 200 bytes."""
+
 BODIES = (LONG_JSON, UNKNOWN, ODD, NESTED, WRONG)
 
 
@@ -61,6 +66,10 @@ def hostile(saved: str, *, whole: bool) -> Iterator[Hostile]:
         yield Hostile("POST", "/api/v1/select/batch", b'{"applications": [' + body + b"]}", JSON)
         yield Hostile("POST", "/api/v1/select/batch", body + b"\n" + body, LINES)
         yield Hostile("POST", "/api/v1/selections", b'{"application": ' + body + b"}", JSON)
+    for body in (MOTION, MOTION.replace(b"motion", rb"mot\u0069on")):
+        yield Hostile("POST", "/api/v1/select", body, JSON)
+        yield Hostile("POST", "/api/v1/selections", b'{"application": ' + body + b"}", JSON)
+    yield Hostile("POST", "/api/v1/select/batch", b'{"applications": [' + MOTION + b"," + MOTION + b"]}", JSON)
     items = b",".join([json.dumps(cycle(*[phase(40, 250)] * 20)).encode()] * 3000)
     yield Hostile("POST", "/api/v1/select/batch", b'{"applications": [' + items + b"]}", JSON)
     yield Hostile("POST", "/api/v1/select/batch", b'{"applications": [' + b"[]," * 10_000_000 + b"1]}", JSON)

@@ -6,6 +6,7 @@ import orjson
 import pytest
 from starlette.testclient import TestClient
 
+from hpn.web.api import batch
 from hpn.web.app import create_app
 from hpn.web.settings import Settings
 from tests.build import Json, cycle, phase, suitable, worked_example
@@ -159,6 +160,14 @@ def test_a_lower_count_can_be_set_and_a_higher_one_cannot() -> None:
     assert client.post(PATH, json={"applications": [GOOD] * 3}).status_code == 413
     with pytest.raises(ValueError, match="maximum_batch_count"):
         Settings(maximum_batch_count=10_001)
+
+
+def test_a_batch_whose_slices_end_early_answers_the_same(api: TestClient, monkeypatch: pytest.MonkeyPatch) -> None:
+    body = {"applications": [worked_example(requirements={"ratios": [ratio]}) for ratio in (5, 6, 7, 10)]}
+    whole = api.post(PATH, json=body).content
+    monkeypatch.setattr(batch, "SLICE_SECONDS", 0)
+
+    assert api.post(PATH, json=body).content == whole
 
 
 def test_a_batch_that_takes_too_long_is_a_503_that_says_what_to_do() -> None:

@@ -1,7 +1,7 @@
 """`POST /api/v1/select/batch`: one result line per application, as one JSON object or as a stream of lines."""
 
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from typing import Any
 
 import msgspec
@@ -28,8 +28,8 @@ from hpn.web.door.problems import Problem
 from hpn.web.form.write import to_link
 from hpn.web.settings import Settings
 
-SLICE_ITEMS, SLICE_BYTES = 256, 1_000_000
-"""Items that are evaluated in one go, and the bytes of their JSON."""
+SLICE_ITEMS, SLICE_BYTES, SLICE_SECONDS = 256, 1_000_000, 0.25
+"""Items that are evaluated in one go, their bytes, and the time for reading them: a motion may take half a second."""
 
 RESULTS_PER_BYTE = 2
 """Memory that a batch takes beside its body, in the worst case: for its results, and what one slice is parsed to."""
@@ -70,11 +70,14 @@ async def _answered(body: bytes, state: State, pool: Pool) -> bytes:
     deadline = time.monotonic() + settings.batch_seconds
     spans = await pool.run(_cut, body, settings)
     lines: list[bytes] = []
-    for part in _slices(spans):
+    done = 0
+    while done < len(spans):
         if time.monotonic() > deadline:
             text = f"the batch took longer than {settings.batch_seconds:g} s; send fewer items at once"
             raise Problem(503, text, headers={"Retry-After": str(RETRY_SECONDS)})
-        lines.append(await pool.run(_evaluated, body, part, state))
+        answers, count = await pool.run(_evaluated, body, _slice(spans, done), state)
+        lines.append(answers)
+        done += count
     return b"".join(lines)
 
 
@@ -85,24 +88,18 @@ def _cut(body: bytes, settings: Settings) -> list[Span]:
         raise _no_json("body", error) from None
 
 
-def _slices(spans: Sequence[Span]) -> Iterator[list[Span]]:
+def _slice(spans: Sequence[Span], first: int) -> Sequence[Span]:
     """Items that are evaluated together: so many, and so many bytes."""
-    part: list[Span] = []
-    for span in spans:
-        if part and (len(part) == SLICE_ITEMS or span.end - part[0].start > SLICE_BYTES):
-            yield part
-            part = []
-        part.append(span)
-    if part:
-        yield part
+    most = spans[first].start + SLICE_BYTES
+    part = spans[first : first + SLICE_ITEMS]
+    return part[: max(sum(span.end <= most for span in part), 1)]
 
 
-def _evaluated(body: bytes, spans: Sequence[Span], state: State) -> bytes:
+def _evaluated(body: bytes, spans: Sequence[Span], state: State) -> tuple[bytes, int]:
     try:
-        items = [_item(body[span.start : span.end]) for span in spans]
+        return _encoded((_item(body[span.start : span.end]) for span in spans), state.catalogue, state.metrics)
     except ValueError as error:
         raise _no_json("body", error) from None
-    return _encoded(items, state.catalogue, state.metrics)
 
 
 def _item(text: bytes) -> Any:
@@ -121,23 +118,30 @@ def _no_json(what: str, error: ValueError) -> Problem:
     return Problem(400, f"the {what} is not JSON: {error}")
 
 
-def _encoded(items: Sequence[Any], catalogue: Catalogue, metrics: Metrics) -> bytes:
-    results = batch_lines(items, catalogue)
+def _encoded(items: Iterable[Any], catalogue: Catalogue, metrics: Metrics) -> tuple[bytes, int]:
+    """Result lines of the items that could be read in time, and how many these are: one at least."""
+    results = batch_lines(_in_time(items), catalogue)
     metrics.selections(result.verdict for result in results)
-    return b"".join([encode(result) + b"\n" for result in results])
+    return b"".join([encode(result) + b"\n" for result in results]), len(results)
 
 
-def batch_lines(items: Sequence[Any], catalogue: Catalogue) -> list[BatchLine]:
-    """Result lines of batch items, in their order; each item is validated on its own.
+def _in_time(items: Iterable[Any]) -> Iterator[Any]:
+    """Items as long as whoever takes them one by one has time for another."""
+    end = time.monotonic() + SLICE_SECONDS
+    for item in items:
+        yield item
+        if time.monotonic() > end:
+            return
+
+
+def batch_lines(items: Iterable[Any], catalogue: Catalogue) -> list[BatchLine]:
+    """Result lines of batch items, in their order; each item is validated on its own, before the next one is taken.
 
     An item that is a Problem already becomes its line.
     """
-    read = [_validated(item) for item in items]
-    judged = iter(judge_batch([item for item in read if isinstance(item, BatchItem)], catalogue))
-    return [
-        _line(item, next(judged) if isinstance(outcome, BatchItem) else outcome)
-        for item, outcome in zip(items, read, strict=True)
-    ]
+    read = [(item, _validated(item)) for item in items]
+    judged = iter(judge_batch([outcome for _, outcome in read if isinstance(outcome, BatchItem)], catalogue))
+    return [_line(item, next(judged) if isinstance(outcome, BatchItem) else outcome) for item, outcome in read]
 
 
 def _validated(item: Any) -> BatchItem | Problem:
@@ -176,9 +180,7 @@ def _stream(request: Request) -> Response:
     )
 
 
-def line_evaluator(
-    catalogue: Catalogue, metrics: Metrics, maximum_line_bytes: int
-) -> Callable[[Sequence[Line]], bytes]:
+def line_evaluator(catalogue: Catalogue, metrics: Metrics, maximum_line_bytes: int) -> streaming.Evaluate:
     """Evaluator of lines of JSON for `LineStream`: the same result lines as `batch_lines` gives."""
 
     def read(line: Line) -> Any:
@@ -189,7 +191,7 @@ def line_evaluator(
         except ValueError as error:
             return _no_json("line", error)
 
-    def evaluate(lines: Sequence[Line]) -> bytes:
-        return _encoded([read(line) for line in lines], catalogue, metrics)
+    def evaluate(lines: Sequence[Line]) -> tuple[bytes, int]:
+        return _encoded(map(read, lines), catalogue, metrics)
 
     return evaluate

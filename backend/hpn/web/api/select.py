@@ -31,7 +31,7 @@ async def select_one(request: Request) -> Response:
     state: State = request.app.state
     settings: Settings = state.settings
     body = await read_body(request, maximum_bytes=settings.maximum_body_bytes, seconds=settings.body_seconds)
-    selected, reply = await calculate(request, len(body), _reply, body, state)
+    selected, reply = await calculate(request, body, _reply, body, state)
     state.metrics.selections(["none" if selected is None else "selected"])
     return JSONBytes(reply)
 

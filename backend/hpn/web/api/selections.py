@@ -84,7 +84,7 @@ async def save_selection(request: Request) -> Response:
     key = idempotency_key(request)
     body = await read_body(request, maximum_bytes=settings.maximum_body_bytes, seconds=settings.body_seconds)
     owner, catalogue = request.state.api_key, request.app.state.catalogue
-    id = await keep(request, await calculate(request, len(body), _draft, body, catalogue, key, owner))
+    id = await keep(request, await calculate(request, body, _draft, body, catalogue, key, owner))
     headers = {"Location": f"/api/v1/selections/{id}"}
     preferred = preferred_return(request)
     if preferred:

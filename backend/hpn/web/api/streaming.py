@@ -24,6 +24,9 @@ BYTE_ORDER_MARK = b"\xef\xbb\xbf"
 Line = bytes | None
 """A line without its end, or None for one that is too long."""
 
+Evaluate = Callable[[Sequence[Line]], tuple[bytes, int]]
+"""Answers to the first of some lines, each with its line end, and how many of them these answer: one at least."""
+
 
 class LineSplitter:
     """Cuts chunks into lines. Blank ones are skipped, and of one that is too long nothing is kept."""
@@ -113,7 +116,7 @@ class Spool:
 class LineStream(Response):
     """Answers each line of the request's body with one line, while the body still arrives if its length is unknown.
 
-    `evaluate` gets some lines and returns their answers, each with its line end. A client that neither sends a
+    A client that neither sends a
     line nor reads for `seconds` is told so in a last line, and the stream ends.
     """
 
@@ -121,7 +124,7 @@ class LineStream(Response):
 
     def __init__(
         self,
-        evaluate: Callable[[Sequence[Line]], bytes],
+        evaluate: Evaluate,
         *,
         pool: Pool,
         subject: str,
@@ -193,8 +196,10 @@ class LineStream(Response):
         self._filled.set()
 
     async def _answer(self, lines: Sequence[Line]) -> None:
-        for start in range(0, len(lines), LINES_AT_ONCE):
-            answers = await self._pool.run(self._evaluate, lines[start : start + LINES_AT_ONCE])
+        done = 0
+        while done < len(lines):
+            answers, count = await self._pool.run(self._evaluate, lines[done : done + LINES_AT_ONCE])
+            done += count
             self._progress()
             while len(self._spool) > self._maximum_spool:
                 self._whole.set()

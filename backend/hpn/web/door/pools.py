@@ -45,7 +45,10 @@ are sized in processes of their own, and whose number at once is a setting.
 """
 
 SMALL_BYTES = 16 * 1024
-"""Input up to this size is computed at once: that takes a few milliseconds, about what a change of threads may take."""
+"""Phases up to this size are computed at once: a few milliseconds, about what a change of threads may take."""
+
+LONG_WORDS = (b"motion", b"\\")
+"""What the JSON of a motion has in it, however it is written: two thousand turns under gravity take half a second."""
 
 RETRY_SECONDS = 2
 PATIENCE_SECONDS = 0.1
@@ -136,9 +139,9 @@ async def compute(request: Request, name: PoolName, work: Callable[P, T], *args:
         return await while_present(request, pool.run(work, *args, **kwargs))
 
 
-async def calculate(request: Request, size: int, work: Callable[P, T], *args: P.args, **kwargs: P.kwargs) -> T:
-    """Result of work on input of `size` bytes: of a small one here and now, of a long one on a worker of the pages."""
-    if size <= SMALL_BYTES:
+async def calculate(request: Request, body: bytes, work: Callable[P, T], *args: P.args, **kwargs: P.kwargs) -> T:
+    """Result of work on the JSON of a body: of a few phases here and now, of what may take longer on a worker."""
+    if len(body) <= SMALL_BYTES and not any(word in body for word in LONG_WORDS):
         return work(*args, **kwargs)
     return await compute(request, "pages", work, *args, **kwargs)
 
