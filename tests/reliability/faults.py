@@ -43,7 +43,7 @@ def assert_unavailable(response: Any) -> None:
     assert response.status_code == 503
     assert response.headers["content-type"] == "application/problem+json"
     assert int(response.headers["retry-after"]) > 0
-    assert response.json()["title"] == "Not available at the moment"
+    assert response.json()["title"] == "Temporarily unavailable"
 
 
 @contextmanager

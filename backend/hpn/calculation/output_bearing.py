@@ -25,6 +25,9 @@ from hpn.wording import N_, Sentence
 
 SHOWN_LOADS = 6
 STANDING = Sentence(N_("Interpolated between the two published limits; printed curve not available."))
+ISO281 = Sentence(
+    N_("Equivalent load of ISO 281 with a constant Y, set by the published axial limit; printed curve not available.")
+)
 SUPPLIED = Sentence(
     N_("P is the factor by which the load exceeds the curve that you supplied, along the load’s own direction.")
 )
@@ -56,7 +59,7 @@ def _largest(sheet: Sheet, load: OutputLoad, loads: PhaseValues, f_w: Term) -> S
     phases = list(first.values())
     worst = max(phases, key=loads.values.item)
     index = {place: "" if len(phases) == 1 else str(place + 1) for place in phases}
-    notes = [SUPPLIED] if load.model == "digitised" else [STANDING]
+    notes = [{"digitised": SUPPLIED, "iso281": ISO281}.get(load.model, STANDING)]
     lines: list[Line] = []
     if load.model != "digitised":
         shown = sorted({*phases[: SHOWN_LOADS - 1], worst})

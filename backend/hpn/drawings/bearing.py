@@ -8,7 +8,7 @@ from hpn.drawings.axis import widened
 from hpn.drawings.layout import Figure, layout, points
 from hpn.drawings.picture import BearingPicture, NamedCurve, PhaseLoad
 from hpn.drawings.sizes import SizeUse
-from hpn.drawings.words import STANDING, STANDING_SUPPLIED, axis_title, said, share, shown
+from hpn.drawings.words import axis_title, said, share, shown, standing
 from hpn.envelopes import EnvelopeCurve
 from hpn.gear import Gear
 from hpn.reader import DEFAULT, Reader
@@ -208,7 +208,7 @@ def _layout(
         axis_title(N_("radial load"), "N", reader),
         axis_title(N_("axial load"), "N", reader),
         title=said(heading, reader),
-        note=reader.text(STANDING_SUPPLIED if load.model == "digitised" else STANDING),
+        note=reader.text(standing(load.model)),
         revision=f"{gear and gear.size} {radial:g} {axial:g}",
     )
     measure = reader.measure("N")

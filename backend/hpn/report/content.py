@@ -48,7 +48,7 @@ LABELS = {
     "versions": N_("Versions"),
     "check": N_("Check"),
     "relation": N_("Relation"),
-    "demand": N_("Value"),
+    "demand": N_("Demand"),
     "limit": N_("Limit"),
     "utilisation": N_("Utilisation"),
     "verdict": N_("Verdict"),

@@ -103,7 +103,7 @@ CYCLE_TERMS = (
     _duty("maximum_output_speed_rpm", f"SUMPRODUCT(MAX({_FASTEST}))"),
     _duty("average_output_speed_rpm", f"{_WORK}/{_CYCLE_TIME}"),
     CellTerm(
-        Named(N_("Load factor of bearing life and speed"), "k"),
+        Named(N_("Life factor"), "k"),
         "",
         '(bearing_speed*bearing_life/(n_out_av*L_b*IF(life_basis="L10",5,1)))^(1/3)',
     ),

@@ -193,8 +193,8 @@ class Overview:
         }
 
     def _checks(self) -> None:
-        heads = (N_("Check"), N_("Relation"), N_("Value"), N_("Limit"), N_("Utilisation"), N_("Verdict"))
-        own = (N_("Value"), N_("Limit"), N_("Your unit")) if self.book.shown.units else ()
+        heads = (N_("Check"), N_("Relation"), N_("Demand"), N_("Limit"), N_("Utilisation"), N_("Verdict"))
+        own = (N_("Demand"), N_("Limit"), N_("Your unit")) if self.book.shown.units else ()
         self._section(N_("Checks"), *heads, N_("As saved"), N_("Source"), *own)
         self.book.colour(self.sheet, self.row, 5, self.row + len(CHECKS) - 1, 5)
         for check in CHECKS:

@@ -37,8 +37,8 @@ CHOSEN: Mapping[str, str] = {
         "suitable."
     ),
     "unrated": N_(
-        "{gear} was chosen, but can’t be judged: figures that the checks need are not published. {selected} would be "
-        "suitable."
+        "{gear} was chosen, but can’t be judged: figures that the checks need are not in this catalogue’s source. "
+        "{selected} would be suitable."
     ),
 }
 """What is said of a gear that does not pass and was chosen instead of a suitable one."""

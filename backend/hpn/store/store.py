@@ -40,7 +40,7 @@ logger = logging.getLogger(__name__)
 T = TypeVar("T")
 
 TRIAL_SECONDS = 1.0
-UNAVAILABLE = "saved selections are not available at the moment"
+UNAVAILABLE = "saved selections are temporarily unavailable"
 
 ID = re.compile(r"[A-Za-z0-9_-]{22}")
 """An id: 128 random bits."""

@@ -44,7 +44,7 @@ TITLES = {
     429: "Too many requests",
     431: "The head of the request is too large",
     500: "Internal error",
-    503: "Not available at the moment",
+    503: "Temporarily unavailable",
 }
 
 

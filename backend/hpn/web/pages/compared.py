@@ -4,7 +4,6 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from itertools import islice, zip_longest
 from typing import Any
-from urllib.parse import urlencode
 
 from fastapi import APIRouter
 from pydantic import ValidationError
@@ -28,6 +27,7 @@ from hpn.web.door.pools import compute
 from hpn.web.door.problems import Problem
 from hpn.web.door.visit import current
 from hpn.web.form.symbols import PHASE_SYMBOLS
+from hpn.web.pages.carried import onward
 from hpn.web.pages.gear_figures import Figure, figures_of
 from hpn.web.pages.result import Result
 from hpn.web.pages.saved import result_of
@@ -99,7 +99,7 @@ async def compare_selections(request: Request) -> Response:
     query = request.query_params
     marked = query.getlist("id")
     if len(marked) == 2:
-        return RedirectResponse(f"/selections/compare?{urlencode({'a': marked[0], 'b': marked[1]})}", 303)
+        return RedirectResponse(onward("/selections/compare", a=marked[0], b=marked[1]), 303)
     ids = [query.get("a", ""), query.get("b", "")]
     if marked or not all(ids):
         return await _rendered(request, 422, {"missing": [], "sides": [], "marked": len(marked)})

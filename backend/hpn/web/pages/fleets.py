@@ -109,7 +109,7 @@ async def upload(request: Request) -> Response:
     except Problem as problem:
         status, problems = problem.status_code, problem.sentences or (Sentence("{text}", {"text": problem.detail}),)
     except StoreUnavailableError:
-        status, problems = 503, (Sentence(N_("Fleets can’t be kept at the moment: try again in a few seconds.")),)
+        status, problems = 503, (Sentence(N_("Fleets are temporarily unavailable: try again in a few seconds.")),)
     shown = {"draft": draft, "problems": problems, **_WORDS}
     return await compute(request, "pages", lambda: _render(request, "fleets.html", status, **shown))
 

@@ -1,7 +1,6 @@
 """The list of saved selections: newest first, in parts, searched; what stands in it is renamed and deleted there."""
 
 from typing import Any
-from urllib.parse import urlencode
 
 from fastapi import APIRouter
 from pydantic import ValidationError
@@ -17,6 +16,7 @@ from hpn.web.door.pools import compute
 from hpn.web.door.problems import Problem
 from hpn.web.door.requests import require_same_origin
 from hpn.web.form.labels import faults_of
+from hpn.web.pages.carried import onward
 from hpn.web.pages.saving import refused
 from hpn.web.pages.templates import environment
 from hpn.wording import N_
@@ -42,7 +42,7 @@ async def show_selections(request: Request) -> Response:
         "errors": {},
         "problem": "",
         "older": "",
-        "newest": _address(given),
+        "newest": onward(ADDRESS, **given),
         "later": bool(cursor),
     }
     store: Store = request.app.state.store
@@ -56,14 +56,9 @@ async def show_selections(request: Request) -> Response:
         return await _rendered(request, "selections.html", 422, shown | {"problem": NO_SUCH_PART})
     except StoreUnavailableError as error:
         return refused(request, error)
-    shown["older"] = page.next_cursor and _address(given | {"cursor": page.next_cursor})
+    shown["older"] = page.next_cursor and onward(ADDRESS, **given, cursor=page.next_cursor)
     shown["lines"] = page.selections
     return await _rendered(request, "selections.html", 200, shown)
-
-
-def _address(given: dict[str, str]) -> str:
-    query = urlencode({name: text for name, text in given.items() if text})
-    return f"{ADDRESS}?{query}" if query else ADDRESS
 
 
 async def rename_selection(request: Request) -> Response:

@@ -16,7 +16,7 @@ from hpn import units
 from hpn.calculation import calculation_of
 from hpn.checks import BY_CODE
 from hpn.drawings.picture import beyond_limit
-from hpn.drawings.words import STANDING, STANDING_SUPPLIED
+from hpn.drawings.words import standing
 from hpn.quantities import GEAR, LISTED, MECHANISMS, PROFILES, QUANTITIES, SHAPES, VERDICTS, unit_of
 from hpn.reader import GROUP, LANGUAGE_NAMES, Reader
 from hpn.remedy import DRIVER_NAMES
@@ -190,8 +190,7 @@ GLOBALS: dict[str, Any] = {
     "PROFILES": PROFILES,
     "QUANTITIES": QUANTITIES,
     "reader": current,
-    "STANDING": STANDING,
-    "STANDING_SUPPLIED": STANDING_SUPPLIED,
+    "standing": standing,
     "SHAPES": SHAPES,
     "symbols": symbols,
     "ways": ways,

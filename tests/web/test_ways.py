@@ -1,0 +1,89 @@
+"""Every way through the site keeps the selection that a reader comes from."""
+
+from collections.abc import Iterator
+from html.parser import HTMLParser
+from pathlib import Path
+from typing import Any
+from urllib.parse import parse_qsl, urlsplit
+
+import pytest
+from pydantic import SecretStr
+from starlette.testclient import TestClient
+
+from hpn.web.app import create_app
+from hpn.web.settings import Settings
+from tests.build import worked_example
+
+LINK = "T=41&n=250&t=0.3&i=5"
+PAGES = (
+    "/catalogue",
+    "/catalogue?only_size=20A",
+    "/catalogue?only_size=nothing",
+    "/catalogue/HPN-20A-5",
+    "/catalogue/HPN-20A-99",
+    "/selections",
+    "/selections?search=nothing",
+    "/selections/compare",
+    "/selections/compare?a=none&b=none",
+    "/checks/average_torque",
+    "/fleets",
+    "/paste",
+    "/nowhere",
+)
+
+
+@pytest.fixture
+def client(tmp_path: Path) -> Iterator[TestClient]:
+    """A service with two saved selections."""
+    with TestClient(create_app(Settings(database_url=SecretStr(f"sqlite:///{tmp_path}/store.sqlite3")))) as client:
+        for _ in range(2):
+            client.post("/api/v1/selections", json={"application": worked_example()})
+        yield client
+
+
+class Ways(HTMLParser):
+    """Links of a page, and its forms that ask for another one, each with the names that it sends."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.found: list[tuple[str, list[str]]] = []
+        self._form: list[str] | None = None
+        self.feed(text)
+
+    def handle_starttag(self, tag: str, attributes: list[tuple[str, Any]]) -> None:
+        """Note a way, or a field of one."""
+        given = dict(attributes)
+        if tag == "a" and "href" in given:
+            parts = urlsplit(given["href"])
+            self.found.append((parts.path, [name for name, _ in parse_qsl(parts.query, True)]))
+        if tag == "form":
+            self._form = [] if given.get("method") == "get" else None
+            if self._form is not None:
+                self.found.append((given["action"], self._form))
+        if tag == "input" and self._form is not None:
+            self._form.append(given.get("name", ""))
+
+
+@pytest.mark.parametrize("address", PAGES)
+def test_every_way_keeps_the_selection(client: TestClient, address: str) -> None:
+    answer = client.get(f"{address}{'&' if '?' in address else '?'}{LINK}", headers={"Accept": "text/html"})
+    ways = Ways(answer.text).found
+
+    led = [(path, names) for path, names in ways if path in ("/", "/selections", "/fleets") or "/catalogue" in path]
+    assert len(led) >= 4, answer.text
+    assert [path for path, names in led if "T" not in names] == []
+
+
+def test_marking_two_selections_keeps_the_one_that_is_worked_on(client: TestClient) -> None:
+    answer = client.get(f"/selections/compare?id=one&id=two&{LINK}", follow_redirects=False)
+
+    pairs = parse_qsl(urlsplit(answer.headers["location"]).query)
+    assert sorted(pairs) == sorted([*parse_qsl(LINK), ("a", "one"), ("b", "two")])
+
+
+def test_the_name_of_the_site_leads_back_to_the_form_and_on_the_form_nowhere(client: TestClient) -> None:
+    elsewhere, form = client.get(f"/catalogue?{LINK}").text, client.get(f"/?{LINK}").text
+
+    assert 'class="brand" href="/?T=41' in elsewhere
+    assert 'class="brand" aria-current="page"' in form
+    assert f'href="/checks/average_torque?{LINK}"'.replace("&", "&amp;") in form
