@@ -179,10 +179,27 @@ def test_one_address_has_a_hundred_requests_at_once(proxy: Proxy) -> None:
         assert status_from(proxy, "127.0.0.2") == 200
 
 
-def status_from(proxy: Proxy, address: str) -> int:
+@pytest.mark.parametrize(("kind", "most"), [("application/json", 8), ("application/x-ndjson", 1)])
+def test_what_one_address_has_of_long_bodies_leaves_room_for_others(proxy: Proxy, kind: str, most: int) -> None:
+    head = f"POST {BATCH} HTTP/1.1\r\nHost: localhost\r\nContent-Type: {kind}\r\nContent-Length: ".encode()
+    with ExitStack() as held:
+        for _ in range(most):
+            held.enter_context(proxy.connect()).sendall(head + b"30000000\r\n\r\n")
+        for _ in range(50):  # until nginx has read all heads
+            if (status := status_from(proxy, "127.0.0.1", head + b"2\r\n\r\n{}")) == 429:
+                break
+        assert status == 429
+        assert status_from(proxy, "127.0.0.2", head + b"2\r\n\r\n{}") in (200, 422)
+        assert status_from(proxy, "127.0.0.1") == 200
+
+
+HEALTH = b"GET /healthz HTTP/1.1\r\nHost: localhost\r\n\r\n"
+
+
+def status_from(proxy: Proxy, address: str, request: bytes = HEALTH) -> int:
     """Status that a caller from an address of loopback gets."""
     with proxy.connect(source=address) as connection:
-        connection.sendall(b"GET /healthz HTTP/1.1\r\nHost: localhost\r\n\r\n")
+        connection.sendall(request)
         return int(connection.recv(500)[9:12])
 
 

@@ -76,7 +76,7 @@ def half_sent(port: int, size: int, count: int) -> list[socket.socket]:
 
 
 def test_a_worker_in_768_MB_outlives_everything_at_once(tmp_path: Path, soak: bool, record_property: Any) -> None:
-    batch = ('{"applications": [' + ",".join([ITEM] * (5_000 if soak else 1_000)) + "]}").encode()
+    batch = ('{"applications": [' + ",".join([ITEM] * (9_900 if soak else 1_000)) + "]}").encode()
     nested = b'{"applications": [' + b"[]," * 9_000_000 + b"1]}"
     long = json.dumps(LONG).encode()
     statuses: list[int] = []

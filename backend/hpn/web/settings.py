@@ -119,7 +119,7 @@ class Settings(BaseSettings):
     maximum_batch_body_bytes: int = Field(32_000_000, gt=0, description="Largest body of a batch request.")
     maximum_batch_count: int = Field(10_000, gt=0, le=10_000, description="Most applications in one batch request.")
     maximum_bytes_in_flight: int = Field(
-        100_000_000,
+        120_000_000,
         gt=0,
         description="Most bytes of bodies and answers that one process holds at once; more get a 503. A batch "
         "counts as three times its body.",
