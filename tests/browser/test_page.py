@@ -307,9 +307,14 @@ def test_page_does_not_move_while_typing(visitor: Visitor) -> None:
     assert torque(page, 1).bounding_box() == box
 
 
-def test_answer_prints_on_one_page(visitor: Visitor) -> None:
+@pytest.mark.parametrize(("units", "size"), [("Metric (SI)", (595, 842)), ("US customary", (612, 792))])
+def test_answer_prints_on_one_page_of_the_readers_paper(visitor: Visitor, units: str, size: tuple[int, int]) -> None:
     page = visitor.open(EXAMPLE)
-    assert len(PdfReader(io.BytesIO(page.pdf(prefer_css_page_size=True))).pages) == 1
+    page.get_by_role("button", name=re.compile("^Units")).click()
+    with page.expect_navigation():
+        page.get_by_role("button", name=units).click()
+    (printed,) = PdfReader(io.BytesIO(page.pdf(prefer_css_page_size=True))).pages
+    assert (round(printed.mediabox.width), round(printed.mediabox.height)) == size
 
 
 def test_saved_selection_prints_its_candidates(visitor: Visitor) -> None:
