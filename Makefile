@@ -49,13 +49,12 @@ else
 endif
 
 # What is long by nature, in its long form: hundreds of kills, examples by the thousand, Lighthouse over all pages.
-# Nothing runs beside what measures how long others wait.
+# Nothing runs beside what measures how long others wait. What fails keeps nothing else from running.
 UNDER_LOAD := tests/reliability/test_load.py tests/operations/test_peers.py
 soak: install browser office curl nginx pdfua
-	$(BIN)/pytest --soak $(MEASURED)
-	$(BIN)/pytest --soak $(UNDER_LOAD)
-	$(BIN)/pytest --soak $(TOGETHER) $(addprefix --ignore ,$(UNDER_LOAD))
-	$(BIN)/pytest --soak $(BROWSERS)
+	@failed=0; for part in "$(MEASURED)" "$(UNDER_LOAD)" "$(TOGETHER) $(addprefix --ignore ,$(UNDER_LOAD))" "$(BROWSERS)"; do \
+	    echo "$(BIN)/pytest --soak $$part"; $(BIN)/pytest --soak $$part || failed=1; \
+	done; exit $$failed
 
 # Each small change of the modules that decide has to make a test fail; what no test finds is explained or listed.
 mutants: install

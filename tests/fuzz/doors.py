@@ -146,6 +146,11 @@ async def _lines(world: World, random: Random, content: bytes) -> str:
     return "ok" if any(answer["status"] == "ok" for answer in answers) else "error"
 
 
+def _slices(content: bytes) -> int:
+    """Slices in which lines are answered; blank ones are none."""
+    return sum(map(bool, map(bytes.strip, content.split(b"\n")))) // LINES_AT_ONCE + 1
+
+
 async def _json(world: World, random: Random, content: bytes) -> str:
     path = "/api/v1/select"
     if b'"applications"' in content:
@@ -208,8 +213,8 @@ DOORS = {
     "axes": Door(_axes, corpus.TABLES_OF_AXES, corpus.HEADINGS),
     "csv": Door(_upload, corpus.TABLES_OF_PHASES, corpus.HEADINGS),
     "xlsx": Door(_upload, corpus.WORKBOOKS, corpus.HEADINGS),
-    "ndjson": Door(_lines, corpus.LINES, corpus.MARKS, lambda content: content.count(b"\n") // LINES_AT_ONCE + 1),
+    "ndjson": Door(_lines, corpus.LINES, corpus.MARKS, _slices),
     "supplement": Door(_supplement, corpus.SUPPLEMENTS, corpus.COLUMNS),
-    "fleet": Door(_fleet, corpus.FLEETS, corpus.FLEET_COLUMNS),
+    "fleet": Door(_fleet, corpus.FLEETS, corpus.FLEET_COLUMNS, _slices),
     "json": Door(_json, (*corpus.JSON, *corpus.JSON, *corpus.BATCHES, *corpus.SAVES), corpus.MARKS),
 }

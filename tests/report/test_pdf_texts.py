@@ -135,7 +135,9 @@ import re, sys, time
 from pathlib import Path
 from hpn.catalogue import load_catalogue
 from hpn.report.pdf import pdf
+from hpn.web.door import heap
 from tests.report.cases import language, long_cycle, typed_export_of
+heap.give_back()
 phases, turns = map(int, sys.argv[1:])
 export = typed_export_of(long_cycle(phases), load_catalogue())
 for turn in range(turns):

@@ -1,5 +1,6 @@
 """Links in both directions: what they mean, that nothing is lost, and that nothing breaks the reader."""
 
+import re
 from typing import Any
 from urllib.parse import parse_qsl
 
@@ -15,6 +16,8 @@ from hpn.web.form.write import to_link
 
 EXAMPLE = "/?T=40&n=250&t=0.3&T=32&n=500&t=3&T=20&n=250&t=0.4&tp=4&Tk=200&i=5"
 PHASE = "T=40&n=250&t=0.3"
+UNSEEN = re.compile("[\u00ad\u200b-\u200d\u2060\ufeff]")
+"""Characters that a copied link may have got and nobody sees; a link is read without them."""
 
 
 def some(**fields: st.SearchStrategy[Any]) -> st.SearchStrategy[dict[str, Any]]:
@@ -130,7 +133,7 @@ def test_no_query_breaks_the_reader_and_all_of_it_comes_back(pairs: list[tuple[s
     form = links.parse(pairs)
     assert form.application is None or not form.problems
     assert all(problem.message.text for problem in form.problems)
-    given_rows = [text for name, text in pairs if name == "T"]
+    given_rows = [UNSEEN.sub("", text) for name, text in pairs if name == "T"]
     if not form.with_loads and not any(name == "do" for name, _ in pairs):
         assert [row["T"] for row in form.rows][: len(given_rows)] == given_rows
 

@@ -20,7 +20,7 @@ from hpn.store.packing import packed
 from hpn.store.saved import Draft, search_text
 from hpn.store.tables import catalogues, selections, spent_keys
 
-REHEARSED_BYTES = 16 * 1024
+REHEARSED_BYTES = 64 * 1024
 """More than most selections take: a small row still finds a place in a file of a full disk."""
 
 REHEARSED = Draft(

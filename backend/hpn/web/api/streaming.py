@@ -83,6 +83,8 @@ class Spool:
 
     def write(self, piece: bytes) -> None:
         """Add at the end."""
+        if not piece:  # what is read as nothing ends the reading
+            return
         if self._begin == self._end and self._in_memory + len(piece) <= MEMORY_BYTES:
             self._pieces.append(piece)
             self._in_memory += len(piece)
