@@ -101,7 +101,7 @@ async def test_a_migration_that_breaks_off_leaves_nothing_behind(
     real = upgrade._migrate
     monkeypatch.setattr(upgrade, "_migrate", migrate_and_fail)
     store = Store(database)
-    with pytest.raises(Exception, match="not available"):
+    with pytest.raises(Exception, match="temporarily unavailable"):
         await store.open()
     monkeypatch.undo()
 
