@@ -3,7 +3,6 @@
 import os
 import random
 import socket
-import time
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, suppress
 from pathlib import Path
@@ -23,7 +22,7 @@ from hpn.web.door.pools import Pool
 from hpn.web.settings import Settings
 from tests.build import worked_example
 from tests.fleet.tables import Row, here, in_long_form, quiet, row_of, spoiled, table_of, write
-from tests.operations.service import Service, serving
+from tests.operations.service import Service, children_of, is_gone, serving, until
 from tests.property.draw import at_random
 from tests.state import state_of
 
@@ -63,25 +62,8 @@ def spool_of(service: Service) -> list[Path]:
 
 def fleet_processes(service: Service) -> list[int]:
     """Processes that size fleets for the service, oldest first."""
-    children = Path(f"/proc/{service.process.pid}/task/{service.process.pid}/children").read_text().split()
-    return [int(pid) for pid in children if b"\0fleet\0" in Path(f"/proc/{pid}/cmdline").read_bytes()]
-
-
-def until(holds: Callable[[], Any]) -> Any:
-    """What a condition gives as soon as it holds; AssertionError after a minute."""
-    end = time.monotonic() + 60
-    while not (found := holds()):
-        assert time.monotonic() < end
-        time.sleep(0.02)
-    return found
-
-
-def is_gone(pid: int) -> bool:
-    """Whether a process has ended."""
-    with suppress(ProcessLookupError):
-        os.kill(pid, 0)
-        return False
-    return True
+    children = children_of(service.process.pid)
+    return [pid for pid in children if b"\0fleet\0" in Path(f"/proc/{pid}/cmdline").read_bytes()]
 
 
 # --- Answers ----------------------------------------------------------------------------------------------------------

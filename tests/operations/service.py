@@ -6,8 +6,8 @@ import socket
 import subprocess
 import sys
 import time
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -57,6 +57,23 @@ def children_of(process: int) -> list[int]:
     return [
         int(child) for task in Path(f"/proc/{process}/task").glob("*/children") for child in task.read_text().split()
     ]
+
+
+def until(holds: Callable[[], Any]) -> Any:
+    """What a condition gives as soon as it holds; AssertionError after a minute."""
+    end = time.monotonic() + 60
+    while not (found := holds()):
+        assert time.monotonic() < end
+        time.sleep(0.02)
+    return found
+
+
+def is_gone(pid: int) -> bool:
+    """Whether a process has ended."""
+    with suppress(ProcessLookupError):
+        os.kill(pid, 0)
+        return False
+    return True
 
 
 def free_port() -> int:

@@ -32,7 +32,7 @@ from hpn.web.door.problems import Problem
 from hpn.web.settings import Settings
 from tests.build import worked_example
 from tests.operations.conftest import MakeClient
-from tests.operations.service import children_of
+from tests.operations.service import children_of, is_gone
 from tests.state import state_of
 
 
@@ -152,8 +152,7 @@ async def test_work_apart_is_killed_when_its_client_leaves_and_the_next_is_done(
 
     assert left.value.status_code == GONE
     assert await pool.run_apart(partial(sum, [1, 2])) == 3
-    with pytest.raises(ProcessLookupError):
-        os.kill(int(file.read_text().split()[0]), 0)
+    assert is_gone(int(file.read_text().split()[0]))
 
 
 @pytest.mark.anyio
@@ -195,6 +194,19 @@ async def test_what_goes_wrong_apart_brings_its_traceback_and_what_ends_early_is
     with pytest.raises(Problem) as unable:
         await pool.run_apart(os.getpid)
     assert unable.value.status_code == 503
+
+
+@pytest.mark.anyio
+async def test_a_service_that_ends_ends_work_apart(pool: Pool, tmp_path: Path) -> None:
+    file = tmp_path / "beats"
+    work = asyncio.create_task(pool.run_apart(partial(beat, file)))
+    while not file.exists():
+        await asyncio.sleep(0.01)
+    pool.apart.close()
+
+    with pytest.raises(Problem):
+        await work
+    assert is_gone(int(file.read_text().split()[0]))
 
 
 @pytest.mark.anyio

@@ -16,7 +16,7 @@ import orjson
 import pytest
 
 from tests.build import cycle, phase, worked_example
-from tests.operations.service import Service, children_of, serving
+from tests.operations.service import Service, children_of, is_gone, serving, until
 
 SELECT = "/api/v1/select"
 REPORT = "/api/v1/report.pdf"
@@ -151,8 +151,7 @@ def test_a_report_under_way_is_finished_when_a_terminal_interrupts_all_its_proce
         (apart,), group = children_of(service.process.pid), os.getpgid(service.process.pid)
         report = pool.submit(httpx.post, service.url + REPORT, json=long, timeout=60, trust_env=False)
         idle = ticks(apart)
-        while ticks(apart) < idle + 10:
-            time.sleep(0.01)
+        until(lambda: ticks(apart) >= idle + 10)
         for process in (
             service.process.pid,
             *(child for child in children_of(service.process.pid) if os.getpgid(child) == group),
@@ -161,8 +160,7 @@ def test_a_report_under_way_is_finished_when_a_terminal_interrupts_all_its_proce
 
         assert report.result().content.startswith(b"%PDF")
         assert service.process.wait(timeout=30) in (*ENDED, -signal.SIGINT)
-        while Path(f"/proc/{apart}").exists():  # it ends as it reads no more
-            time.sleep(0.01)
+        until(lambda: is_gone(apart))
         assert not [event for event in service.events() if event["level"] == "error"]
 
 
@@ -175,10 +173,8 @@ def test_a_report_whose_reader_leaves_is_given_up(service: Service) -> None:
         body = orjson.dumps(long)
         head = f"POST {REPORT} HTTP/1.1\r\nHost: x\r\nContent-Type: application/json\r\nContent-Length: {len(body)}\r\n"
         connection.sendall(head.encode() + b"\r\n" + body)
-        while ticks(apart) < idle + 10:
-            time.sleep(0.01)
-    while Path(f"/proc/{apart}").exists():
-        time.sleep(0.01)
+        until(lambda: ticks(apart) >= idle + 10)
+    until(lambda: is_gone(apart))
 
     service.client.post(REPORT, json=worked_example()).raise_for_status()
     assert apart not in children_of(service.process.pid)

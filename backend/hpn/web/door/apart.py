@@ -42,8 +42,7 @@ class Apart:
             cast(Any, process.stdin).flush()
             done, result = pickle.load(cast(Any, process.stdout))
         except (OSError, EOFError, pickle.UnpicklingError):
-            process.kill()
-            process.communicate()  # closes its pipes
+            self._reap(process)
             raise EndedError(f"exit code {process.returncode}") from None
         if not done:
             raise RuntimeError(result)
@@ -56,10 +55,14 @@ class Apart:
                 self._process.kill()
 
     def close(self) -> None:
-        """Kill the process and wait until it has gone."""
-        self.end()
+        """Kill the process and wait until it has gone, whoever calls at the moment."""
         if self._process is not None:
-            self._process.communicate()
+            self._reap(self._process)
+
+    def _reap(self, process: "subprocess.Popen[bytes]") -> None:
+        with self._lock:
+            process.kill()
+            process.communicate()  # closes its pipes
 
     def _running(self) -> "subprocess.Popen[bytes]":
         if self._process is not None:
