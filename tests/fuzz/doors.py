@@ -17,7 +17,6 @@ from hpn.catalogue.tables import TABLES
 from hpn.fleet.errors import FleetError
 from hpn.fleet.run import Order, size_fleet
 from hpn.selection import encode, select
-from hpn.web.api.streaming import LINES_AT_ONCE
 from hpn.web.app import create_app
 from hpn.web.door.protocol import HEAD_BYTES
 from hpn.web.settings import Settings
@@ -75,8 +74,6 @@ class Door:
     send: Send
     corpus: Sequence[bytes]
     words: Sequence[bytes]
-    pieces: Callable[[bytes], int] = lambda _: 1
-    """In how many pieces an input is answered: a stream is read, computed and sent slice by slice."""
 
 
 def judged(reply: Reply, *, api: bool) -> str:
@@ -146,11 +143,6 @@ async def _lines(world: World, random: Random, content: bytes) -> str:
     return "ok" if any(answer["status"] == "ok" for answer in answers) else "error"
 
 
-def _slices(content: bytes) -> int:
-    """Slices in which lines are answered; blank ones are none."""
-    return sum(map(bool, map(bytes.strip, content.split(b"\n")))) // LINES_AT_ONCE + 1
-
-
 async def _json(world: World, random: Random, content: bytes) -> str:
     path = "/api/v1/select"
     if b'"applications"' in content:
@@ -213,8 +205,8 @@ DOORS = {
     "axes": Door(_axes, corpus.TABLES_OF_AXES, corpus.HEADINGS),
     "csv": Door(_upload, corpus.TABLES_OF_PHASES, corpus.HEADINGS),
     "xlsx": Door(_upload, corpus.WORKBOOKS, corpus.HEADINGS),
-    "ndjson": Door(_lines, corpus.LINES, corpus.MARKS, _slices),
+    "ndjson": Door(_lines, corpus.LINES, corpus.MARKS),
     "supplement": Door(_supplement, corpus.SUPPLEMENTS, corpus.COLUMNS),
-    "fleet": Door(_fleet, corpus.FLEETS, corpus.FLEET_COLUMNS, _slices),
+    "fleet": Door(_fleet, corpus.FLEETS, corpus.FLEET_COLUMNS),
     "json": Door(_json, (*corpus.JSON, *corpus.JSON, *corpus.BATCHES, *corpus.SAVES), corpus.MARKS),
 }

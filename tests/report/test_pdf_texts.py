@@ -1,5 +1,6 @@
 """Texts of the PDF report: every script, links that copy as they are, and each phase of a long cycle."""
 
+import json
 import re
 import subprocess
 import sys
@@ -14,6 +15,7 @@ from pypdf import PdfReader
 
 from hpn.application import Application
 from hpn.catalogue import Catalogue
+from hpn.report.content import content
 from hpn.report.pdf import pdf
 from hpn.web.form.read import parse
 from hpn.web.form.write import to_link
@@ -128,6 +130,16 @@ def test_the_document_is_sound_and_its_phases_are_tagged(catalogue: Catalogue) -
         assert opened.check_pdf_syntax() == []
         kinds = [str(item.get("/S")) for item in opened.objects if isinstance(item, pikepdf.Dictionary)]
     assert kinds.count("/TD") > 30 and "/TH" in kinds and "/Figure" in kinds
+
+
+@pytest.mark.parametrize(
+    ("code", "said"), [("en", "not in this catalogue’s source"), ("de", "fehlen in der Quelle dieses Katalogs")]
+)
+def test_a_chosen_gear_without_figures_lacks_them_in_this_catalogue(catalogue: Catalogue, code: str, said: str) -> None:
+    export = replace(typed_export_of(worked_example(), catalogue), chosen="HPN-40A-5")
+    text = json.dumps(content(export, language(code)), ensure_ascii=False)
+
+    assert f"{said}. HPN-20A-4" in text
 
 
 MEASURE = """

@@ -47,6 +47,22 @@ def test_the_overview_has_the_drawing_at_once_without_a_load_and_leads_to_its_fi
     assert 'class="mark' not in figure
 
 
+@pytest.mark.parametrize(
+    ("model", "basis", "other"),
+    [
+        ("linear", "interpolated between the two", "constant Y"),
+        ("iso281", "constant Y", "interpolated between the two"),
+    ],
+)
+def test_each_envelope_says_what_it_stands_on(client: TestClient, model: str, basis: str, other: str) -> None:
+    page = client.get(f"{LOADED}&bm={model}").text
+
+    stated = re.findall(r'<p class="basis">(.*?)</p>', page)
+    assert stated and all(basis in text and other not in text for text in stated)
+    assert basis in section(page, "calculation").replace("Interpolated", "interpolated")
+    assert "L10 = L50 / 5" in unescape(section(page, "bearing"))
+
+
 def test_phase_row_step_and_load_carry_the_same_number(client: TestClient) -> None:
     page = client.get(LOADED).text
 
