@@ -184,16 +184,23 @@ class CsvTable(LinesTable):
 
     def _with_broken(self, rows: pa.Table, broken: Sequence[pacsv.InvalidRow]) -> tuple[pa.Table, list[CellFault]]:
         """Rows in their places that have too few or too many cells; the number of a row counts from 1."""
-        parts, done, faults = [], 0, []
-        for place, row in enumerate(broken):
-            whole = row.number - 1 - place
-            axis = self._axis_of(row.text, row.actual_columns)
-            nothing = {name: pa.array([axis if name == AXIS else None], pa.string()) for name in rows.column_names}
-            parts += [rows.slice(done, whole - done), pa.table(nothing)]
-            reason = f"the row has {row.actual_columns} cells where the header has {row.expected_columns}"
-            faults.append(CellFault(row.number - 1, AXIS, reason))
-            done = whole
-        return (pa.concat_tables([*parts, rows.slice(done)]), faults) if broken else (rows, faults)
+        if not broken:
+            return rows, []
+        is_broken = np.zeros(rows.num_rows + len(broken), bool)
+        is_broken[[row.number - 1 for row in broken]] = True
+        placed = rows.take(pa.array(np.cumsum(~is_broken) - 1, mask=is_broken))
+        if AXIS in rows.column_names:
+            axes = pa.array([self._axis_of(row.text, row.actual_columns) for row in broken], pa.string())
+            filled = pc.replace_with_mask(placed[AXIS].combine_chunks(), pa.array(is_broken), axes)
+            placed = placed.set_column(placed.column_names.index(AXIS), AXIS, filled)
+        return placed, [
+            CellFault(
+                row.number - 1,
+                AXIS,
+                f"the row has {row.actual_columns} cells where the header has {row.expected_columns}",
+            )
+            for row in broken
+        ]
 
     def _axis_of(self, line: str, cells: int) -> str | None:
         """Axis of a broken row, where its cell has an end, and the header names it."""
