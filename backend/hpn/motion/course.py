@@ -9,7 +9,7 @@ from hpn.equations import power_ten_thirds
 from hpn.motion.mechanisms import RPM, ShaftLoad
 from hpn.motion.moves import Move
 from hpn.motion.pieces import FloatArray, Pieces, PlaceArray, pieces_of
-from hpn.motion.torque import Torque, cut_at_zeros, halved_integral, integral, monotone
+from hpn.motion.torque import Torque, cut_at_zeros, halved_integral, instants_of, integral, monotone, summed
 
 LARGEST_TURN = np.pi / 4
 """Angle in rad that a piece may turn under gravity, so that one rule integrates it and no extreme hides in it."""
@@ -75,12 +75,13 @@ def course_along(pieces: Pieces, load: ShaftLoad) -> Course:
     moving = pieces.sign != 0
     peak, least = np.maximum.reduceat(ends.max(axis=0), starts), np.minimum.reduceat(ends.min(axis=0), starts)
     duration = np.add.reduceat(pieces.end_s - pieces.start_s, starts)
+    rows, t = pieces.transposed, instants_of(pieces)
+    values, speed, acceleration = torque.at(rows, t), rows.speed_at(t), rows.acceleration_at(t)
     # Not the difference of two angles, which leaves a short piece of a long move few digits.
-    angle = np.add.reduceat(integral(Pieces.speed_at, pieces), starts) * moving[starts]
-
-    squares = integral(lambda p, t: torque.at(p, t) ** 2, pieces) * factor**2
-    crossed = integral(lambda p, t: torque.at(p, t) * p.acceleration_at(t), pieces) * factor * load.ratio
-    accelerations = integral(lambda p, t: p.acceleration_at(t) ** 2, pieces) * load.ratio**2
+    angle = np.add.reduceat(summed(pieces, speed), starts) * moving[starts]
+    squares = summed(pieces, values**2) * factor**2
+    crossed = summed(pieces, values * acceleration) * factor * load.ratio
+    accelerations = summed(pieces, acceleration**2) * load.ratio**2
     square_torque = np.add.reduceat(squares, starts)
     steady = peak == least
     mean = peak * _weighed(torque, pieces, starts, phase, factor, ends, peak, angle)
@@ -133,9 +134,11 @@ def _weighed(
     def damage(p: Pieces, t: FloatArray) -> FloatArray:
         return p.speed_at(t) * p.sign * power_ten_thirds(np.abs(torque.at(p, t)) / largest)
 
-    whole = np.add.reduceat(integral(damage, pieces), starts)
+    damages = integral(damage, pieces)
+    whole = np.add.reduceat(damages, starts)[phase]
     coarse = np.flatnonzero((ends.min(axis=0) < GRADED * ends.max(axis=0)) & (pieces.sign != 0))
-    damages = halved_integral(damage, pieces, whole[phase], coarse) * power_ten_thirds(factor)
+    damages[coarse] = halved_integral(damage, pieces.at(coarse), damages[coarse], whole[coarse])
+    damages *= power_ten_thirds(factor)
     with np.errstate(all="ignore"):
         mean: FloatArray = (np.add.reduceat(damages, starts) / np.abs(angle)) ** 0.3 * largest / peak
     return np.nan_to_num(mean)

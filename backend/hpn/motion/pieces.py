@@ -7,7 +7,8 @@ is left of a speed at rest but 0. What belongs to a piece has shape (pieces,); f
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
+from operator import attrgetter
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,9 +29,11 @@ class Pieces:
 
     x = x_0 + ω_0 t + α_0 t²/2 + j t³/6 - S/w² sin(w t + φ) is the angle from `base`, of which cosine and sine are kept;
     `sign` is the direction of the move, 0 of a dwell. `held_Nm` is what neither moves nor turns with the shaft:
-    friction, weight and the external load. `inertia_kgm2` is what the torque accelerates.
+    friction, weight and the external load. `inertia_kgm2` is what the torque accelerates. `swings` says whether any
+    piece goes by a sine.
     """
 
+    swings: bool
     move: PlaceArray
     part: PlaceArray
     start_s: FloatArray
@@ -53,26 +56,27 @@ class Pieces:
 
     def at(self, places: PlaceArray | NDArray[np.bool_]) -> "Pieces":
         """Some of the pieces."""
-        return Pieces(*(getattr(self, field.name)[places] for field in fields(self)))
+        return Pieces(self.swings, *[column[places] for column in _columns_of(self)])
 
     def windows(self, start_s: FloatArray, end_s: FloatArray) -> "Pieces":
         """The same pieces from one instant of each to another."""
-        return replace(self, start_s=start_s, end_s=end_s)
+        move, part, _, _, *others = _columns_of(self)
+        return Pieces(self.swings, move, part, start_s, end_s, *others)
 
     def angle_at(self, t: FloatArray) -> FloatArray:
         """Angle from the base in rad."""
         polynomial = self.angle + t * (self.speed + t * (self.acceleration / 2 + t * (self.jerk / 6)))
-        return polynomial - self.swing / self.frequency**2 * np.sin(self._turn(t)) if self._swings else polynomial
+        return polynomial - self.swing / self.frequency**2 * np.sin(self._turn(t)) if self.swings else polynomial
 
     def speed_at(self, t: FloatArray) -> FloatArray:
         """Speed in rad/s."""
         polynomial = self.speed + t * (self.acceleration + t * (self.jerk / 2))
-        return polynomial - self.swing / self.frequency * np.cos(self._turn(t)) if self._swings else polynomial
+        return polynomial - self.swing / self.frequency * np.cos(self._turn(t)) if self.swings else polynomial
 
     def acceleration_at(self, t: FloatArray) -> FloatArray:
         """Acceleration in rad/s²."""
         polynomial = self.acceleration + t * self.jerk
-        return polynomial + self.swing * np.sin(self._turn(t)) if self._swings else polynomial
+        return polynomial + self.swing * np.sin(self._turn(t)) if self.swings else polynomial
 
     def jerk_at(self, t: FloatArray) -> FloatArray:
         """Derivative of the acceleration in rad/s³."""
@@ -81,10 +85,6 @@ class Pieces:
     def snap_at(self, t: FloatArray) -> FloatArray:
         """Derivative of the jerk in rad/s⁴."""
         return -self.swing * self.frequency**2 * np.sin(self._turn(t))
-
-    @property
-    def _swings(self) -> bool:
-        return bool(self.swing.any())
 
     def _turn(self, t: FloatArray) -> FloatArray:
         return self.frequency * t + self.shift
@@ -102,7 +102,10 @@ class Pieces:
     @property
     def transposed(self) -> "Pieces":
         """Pieces in rows, for instants of shape (pieces, n)."""
-        return Pieces(*(getattr(self, field.name)[:, None] for field in fields(self)))
+        return Pieces(self.swings, *[column[:, None] for column in _columns_of(self)])
+
+
+_columns_of = attrgetter(*[name for name in Pieces.__annotations__ if name != "swings"])
 
 
 # --- From moves to pieces ---------------------------------------------------------------------------------------------
@@ -128,7 +131,7 @@ def pieces_of(moves: Sequence[Move], start_deg: float, load: ShaftLoad) -> Piece
     rows = list(_rows(moves, start_deg, load))
     columns = np.array(rows, dtype=np.float64).T
     move, part = columns[:2].astype(np.intp)
-    return Pieces(move, part, *columns[2:])
+    return Pieces(any(one.profile == "modified_sine" for one in moves), move, part, *columns[2:])
 
 
 def _rows(moves: Sequence[Move], start_deg: float, load: ShaftLoad) -> Iterator[tuple[float, ...]]:

@@ -1,7 +1,7 @@
 """Torque over the pieces of a motion: its zeros, its extremes, its means."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -70,7 +70,7 @@ def cut(pieces: Pieces, places: PlaceArray, instants: FloatArray) -> Pieces:
     firsts = (np.cumsum(twice) - twice)[places]
     start_s, end_s = result.start_s.copy(), result.end_s.copy()
     end_s[firsts] = start_s[firsts + 1] = instants
-    return replace(result, start_s=start_s, end_s=end_s)
+    return result.windows(start_s, end_s)
 
 
 def _zeros(function: Callable[[FloatArray], FloatArray], a: FloatArray, b: FloatArray) -> FloatArray:
@@ -112,38 +112,42 @@ ERROR = 1e-13
 """Share of a whole that halving a piece may still change of its integral."""
 
 
-def integral(function: Function, pieces: Pieces) -> FloatArray:
-    """Integral of a function over each piece, shape (pieces,), by one Gauss-Legendre rule.
+def instants_of(pieces: Pieces) -> FloatArray:
+    """Instants of the rule in each piece, shape (pieces, points)."""
+    middle, length = (pieces.start_s + pieces.end_s) / 2, pieces.end_s - pieces.start_s
+    return middle[:, None] + length[:, None] * NODES
+
+
+def summed(pieces: Pieces, values: FloatArray) -> FloatArray:
+    """Integral over each piece, shape (pieces,), of what has these values at the instants of the rule.
 
     For functions without kinks: on pieces of an eighth of a turn the rule of 16 points errs by rounding alone.
     """
-    length = pieces.end_s - pieces.start_s
-    middle = (pieces.start_s + pieces.end_s) / 2
-    values = function(pieces.transposed, middle[:, None] + length[:, None] * NODES)
-    result: FloatArray = (np.broadcast_to(values, (len(pieces), len(NODES))) @ WEIGHTS) * length
+    result: FloatArray = (values @ WEIGHTS) * (pieces.end_s - pieces.start_s)
     return result
 
 
-def halved_integral(function: Function, pieces: Pieces, whole: FloatArray, coarse: PlaceArray) -> FloatArray:
-    """Integral of a function that is not smooth at the ends of some pieces, `coarse`.
+def integral(function: Function, pieces: Pieces) -> FloatArray:
+    """Integral of a function over each piece, shape (pieces,), by one Gauss-Legendre rule."""
+    return summed(pieces, function(pieces.transposed, instants_of(pieces)))
 
-    Those are halved until nothing changes by more than ERROR of `whole`, the sum that an integral is part of. A zero at
+
+def halved_integral(function: Function, pieces: Pieces, once: FloatArray, whole: FloatArray) -> FloatArray:
+    """Integral of a function that is not smooth at the ends of pieces, shape (pieces,); `once` is that of one rule.
+
+    They are halved until nothing changes by more than ERROR of `whole`, the sum that an integral is part of. A zero at
     an end leaves one half of two at each step; where more are left the torque is nothing but rounding errors.
     """
-    result = integral(function, pieces)
-    owner, part = coarse, pieces.at(coarse)
-    before = result[coarse]
-    while 0 < owner.size <= 4 * coarse.size:
+    result, before, part = once.copy(), once, pieces
+    owner = np.arange(len(pieces))
+    while 0 < owner.size <= 4 * len(pieces):
         middle = (part.start_s + part.end_s) / 2
-        halves = [part.windows(part.start_s, middle), part.windows(middle, part.end_s)]
-        after = [integral(function, half) for half in halves]
-        change = after[0] + after[1] - before
-        np.add.at(result, owner, change)
-        left = np.flatnonzero(np.abs(change) > ERROR * whole[owner])
-        both = np.concatenate((left, left))
-        owner, before = owner[both], np.concatenate((after[0][left], after[1][left]))
-        part = part.at(both).windows(
-            np.concatenate([half.start_s[left] for half in halves]),
-            np.concatenate([half.end_s[left] for half in halves]),
+        halves = part.at(np.tile(np.arange(owner.size), 2)).windows(
+            np.concatenate((part.start_s, middle)), np.concatenate((middle, part.end_s))
         )
+        after = integral(function, halves)
+        change = after.reshape(2, -1).sum(axis=0) - before
+        np.add.at(result, owner, change)
+        left = np.tile(np.abs(change) > ERROR * whole[owner], 2)
+        owner, before, part = np.tile(owner, 2)[left], after[left], halves.at(left)
     return result
