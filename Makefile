@@ -50,7 +50,7 @@ endif
 
 # What is long by nature, in its long form: hundreds of kills, examples by the thousand, Lighthouse over all pages.
 # Nothing runs beside what measures how long others wait. What fails keeps nothing else from running.
-UNDER_LOAD := tests/reliability/test_load.py tests/operations/test_peers.py
+UNDER_LOAD := tests/reliability/test_load.py tests/reliability/test_loop.py tests/operations/test_peers.py
 soak: install browser office curl nginx pdfua
 	@failed=0; for part in "$(MEASURED)" "$(UNDER_LOAD)" "$(TOGETHER) $(addprefix --ignore ,$(UNDER_LOAD))" "$(BROWSERS)"; do \
 	    echo "$(BIN)/pytest --soak $$part"; $(BIN)/pytest --soak $$part || failed=1; \

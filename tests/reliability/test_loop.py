@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 from urllib.parse import quote, urlencode
 
+import httpx
 import pytest
 from fastapi.routing import iter_route_contexts
 
@@ -16,8 +17,8 @@ from hpn.web.settings import Settings
 from tests.build import cycle, phase
 from tests.operations.service import Service, serving
 
-HELD_S = 0.25
-"""Five times what the service is built for, since other tests take their part of the machine."""
+HELD_S, BESIDE_OTHERS_S = 0.05, 0.25
+"""What the service is built for, and five times that where other tests take their part of the machine."""
 
 JSON = {"Content-Type": "application/json"}
 FORM = {"Content-Type": "application/x-www-form-urlencoded"}
@@ -132,13 +133,20 @@ def beating(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Service]:
         yield running
 
 
+def held_by(service: Service, asked: Hostile) -> tuple[httpx.Response, float]:
+    """Answer to a request, and for how long in s it held the loop."""
+    service.client.get("/held")
+    reply = service.client.request(asked.method, asked.path, content=asked.body, headers=asked.headers)
+    return reply, float(service.client.get("/held").json())
+
+
 def test_no_request_holds_the_event_loop(beating: Service, soak: bool, record_property: Any) -> None:
     saved = beating.client.post("/api/v1/selections", json={"application": LONG}).json()["id"]
     longest: dict[str, float] = {}
     for asked in hostile(saved, whole=soak):
-        beating.client.get("/held")
-        reply = beating.client.request(asked.method, asked.path, content=asked.body, headers=asked.headers)
-        held = beating.client.get("/held").json()
+        reply, held = held_by(beating, asked)
+        if soak and held > HELD_S:  # what it costs each time, and not what the machine did meanwhile
+            held = min(held, *[held_by(beating, asked)[1] for _ in range(3)])
         name = f"{asked.method} {asked.path[:60]} {len(asked.body)} bytes: {reply.status_code}"
         longest[name] = max(held, longest.get(name, 0.0))
         assert reply.status_code < 500, name
@@ -147,7 +155,7 @@ def test_no_request_holds_the_event_loop(beating: Service, soak: bool, record_pr
         record_property(name, round(held, 4))
     print("\n".join(f"{1000 * held:6.1f} ms  {name}" for name, held in worst))
 
-    assert worst[0][1] < HELD_S, worst
+    assert worst[0][1] < (HELD_S if soak else BESIDE_OTHERS_S), worst
 
 
 def test_the_table_of_hostile_requests_has_every_route(tmp_path: Path) -> None:

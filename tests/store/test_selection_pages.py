@@ -186,3 +186,13 @@ def test_a_page_that_is_not_there_says_so_in_words(client: TestClient) -> None:
     assert response.status_code == 404
     assert response.headers["content-type"].startswith("text/html")
     assert "There is no saved selection at this address" in response.text
+
+
+def test_an_address_that_a_document_broke_with_unseen_characters_leads_to_the_selection(client: TestClient) -> None:
+    address = sent(client)
+    broken = f"{address[:20]}%E2%80%8B{address[20:]}%EF%BB%BF"
+
+    reply = client.get(broken)
+
+    assert reply.status_code == 308
+    assert reply.headers["location"] == address

@@ -128,6 +128,8 @@ def tries(schema: Json, there: Any = None) -> Iterator[tuple[Any, bool]]:
         if name in schema:
             yield there[:1] * schema[name], True
             yield there[:1] * (schema[name] + step), False
+    if schema.get("type") == "array" and "minItems" not in schema:
+        yield [], True
 
 
 def with_value(body: Json, path: Path, value: Any) -> Json:
@@ -225,6 +227,21 @@ def test_each_bound_of_a_query_is_the_one_that_is_applied(api: TestClient, docum
                 assert (found == []) is allowed, (path, parameter["name"], value, found)
                 tried += 1
     assert tried >= 16
+
+
+MAY_BE_EMPTY = {("Batch", ("applications",))}
+
+
+def test_no_list_of_a_request_is_empty_but_a_batch(document: Json) -> None:
+    lists = {
+        (name, path): part
+        for name in (*BODIES, "RotaryMotion", "LinearMotion")
+        for path, part in leaves(document, document["components"]["schemas"][name])
+        if part.get("type") == "array"
+    }
+
+    assert {place for place, part in lists.items() if not part.get("minItems")} == MAY_BE_EMPTY
+    assert len(lists) >= 7
 
 
 def test_no_list_is_bounded_as_a_text(document: Json) -> None:

@@ -212,10 +212,15 @@ def _parsed(pairs: Pairs, written: str) -> Form:
     )
 
 
+def visible(text: str) -> str:
+    """A part of a link without characters that have no width."""
+    return _UNSEEN.sub("", text)
+
+
 def in_wire_units(pairs: Pairs) -> tuple[Pairs, str]:
     """Pairs of a form as a link has them, and the marker of what they were written in: see `numbers`."""
     # In the texts of people such characters join emoji and letters.
-    seen = [(_UNSEEN.sub("", name), text if name in LABELS else _UNSEEN.sub("", text)) for name, text in pairs]
+    seen = [(visible(name), text if name in LABELS else visible(text)) for name, text in pairs]
     return numbers.to_wire(seen, units_of(dict(seen).get("mech", "").strip()))
 
 

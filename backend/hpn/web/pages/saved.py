@@ -5,10 +5,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import partial
 from typing import Any
+from urllib.parse import quote
 
 from fastapi import APIRouter
 from starlette.requests import Request
-from starlette.responses import HTMLResponse, Response
+from starlette.responses import HTMLResponse, RedirectResponse, Response
 
 from hpn import ENGINE_VERSION
 from hpn.application import Application
@@ -50,8 +51,11 @@ EXPORTS = (
 
 async def show_selection(request: Request) -> Response:
     """The selection as it was saved, and beside it what today's engine and catalogue say differently."""
+    id = request.path_params["id"]
+    if (seen := links.visible(id)) != id:
+        return RedirectResponse(f"/selections/{quote(seen)}", 308)
     try:
-        return await found(request, request.path_params["id"], partial(_shown, request))
+        return await found(request, id, partial(_shown, request))
     except (Problem, StoreUnavailableError) as error:
         return refused(request, error)
 
