@@ -110,6 +110,28 @@ def test_undo_takes_back_the_gear_that_was_chosen_just_now_and_no_more(visitor: 
     expect(page).to_have_url(re.compile("T=50&.*gear=HPN-32A-5"))
 
 
+AT_ONCE = """() => {
+  window.here = true;
+  const form = document.getElementById("application");
+  new MutationObserver((_, observer) => {
+    if (document.getElementById("application") === form) return;
+    observer.disconnect();
+    document.getElementById("application").requestSubmit();
+  }).observe(document.body, { childList: true, subtree: true });
+}"""
+"""Sends the next form as soon as it is in the page: Back pressed twice did, and the page was loaded anew."""
+
+
+def test_a_form_that_has_just_been_put_in_place_is_answered_in_the_page(visitor: Visitor) -> None:
+    page = visitor.open(EXAMPLE)
+    page.evaluate(AT_ONCE)
+    page.get_by_role("button", name="Remove phase 2").click()
+    expect(torque(page, 3)).to_have_count(0)
+    page.wait_for_load_state("networkidle")
+    assert page.evaluate("window.here") is True
+    expect(page).to_have_url(re.compile(r"T=40&n=250&t=0\.3&T=20&n=250&t=0\.4"))
+
+
 def test_gears_pinned_in_quick_succession_are_all_compared(visitor: Visitor) -> None:
     page = visitor.open(EXAMPLE)
     open_section(page, "Candidates")
