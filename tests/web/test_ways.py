@@ -1,5 +1,6 @@
 """Every way through the site keeps the selection that a reader comes from."""
 
+import html
 from collections.abc import Iterator
 from html.parser import HTMLParser
 from pathlib import Path
@@ -87,3 +88,28 @@ def test_the_name_of_the_site_leads_back_to_the_form_and_on_the_form_nowhere(cli
     assert 'class="brand" href="/?T=41' in elsewhere
     assert 'class="brand" aria-current="page"' in form
     assert f'href="/checks/average_torque?{LINK}"'.replace("&", "&amp;") in form
+
+
+STILL = "are still the worked example’s"
+EXAMPLE = "T=40&n=250&t=0.3&T=32&n=500&t=3&T=20&n=250&t=0.4&tp=4&Tk=200&i=5"
+
+
+@pytest.mark.parametrize(
+    ("query", "own"),
+    [
+        (EXAMPLE, None),
+        ("", None),
+        (EXAMPLE.replace("T=40", "T=45"), "T=45&n=250&t=0.3&T=32&n=500&t=3&T=20&n=250&t=0.4"),
+        ("T=7&n=90&t=2&tp=4&Tk=200&i=5&title=Axis", "T=7&n=90&t=2&title=Axis"),
+        ("T=7&n=90&t=2&tp=4&Tk=200&i=5&FR=10", None),
+        ("T=7&n=90&t=2&tp=3&Tk=200&i=5", None),
+        ("T=7&n=90&t=2", None),
+    ],
+)
+def test_a_cycle_over_the_worked_example_can_start_without_the_rest_of_it(
+    client: TestClient, query: str, own: str | None
+) -> None:
+    page = html.unescape(client.get(f"/?{query}").text)
+
+    assert (STILL in page) is (own is not None)
+    assert own is None or f'<a href="/?{own}">Start without them</a>' in page

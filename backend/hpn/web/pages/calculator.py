@@ -23,6 +23,7 @@ from hpn.web.form.labels import query_of
 from hpn.web.form.numbers import WRITTEN
 from hpn.web.form.ordering import OrderingCode, ordering_code
 from hpn.web.form.read import Form
+from hpn.web.form.ways import CYCLE_NAMES
 from hpn.web.form.write import to_link
 from hpn.web.pages.insight import Insight, checked_pins, tail_of
 from hpn.web.pages.result import Result
@@ -60,6 +61,7 @@ class Answer(Result):
     """The result of the live page, with the gears beside the chosen one.
 
     `link` is the application alone, `address` all that the form says; `label_tail` is its end that gives labels.
+    `own_cycle` is the address without what the worked example has left beside another cycle, else empty.
     """
 
     application: Application
@@ -70,6 +72,7 @@ class Answer(Result):
     order: OrderingCode
     map: tuple[tuple[int, tuple[MapCell | None, ...]], ...]
     insight: Insight
+    own_cycle: str
     live: bool = True
 
     @property
@@ -148,6 +151,7 @@ def _answer(application: Application, form: Form, catalogue: Catalogue) -> Answe
         catalogue=catalogue,
         link=link,
         example=application == Application.worked_example(),
+        own_cycle=_own_cycle(link, labels),
         choosing=f"{link}&gear=",
         tail=tail,
         address=link + (f"&gear={gear.designation}" if form.gear else "") + tail,
@@ -156,6 +160,20 @@ def _answer(application: Application, form: Form, catalogue: Catalogue) -> Answe
         map=_map(selection, everything, catalogue),
         insight=Insight(application, selection, everything, everything[gear.designation], form.pins, catalogue),
     )
+
+
+def _own_cycle(link: str, labels: str) -> str:
+    """Address of a cycle alone where all that stands beside it is still the worked example's, else empty."""
+    (own, beside), (example, left) = (_parted(each) for each in (link, to_link(Application.worked_example())))
+    return f"/?{'&'.join(own)}{labels}" if beside == left and own != example else ""
+
+
+def _parted(link: str) -> tuple[list[str], list[str]]:
+    """Parameters of a link that make its cycle, and the others."""
+    own, beside = list[str](), list[str]()
+    for pair in link.removeprefix("/?").split("&"):
+        (own if pair.partition("=")[0] in CYCLE_NAMES else beside).append(pair)
+    return own, beside
 
 
 def _unrestricted(application: Application, selection: Selection, catalogue: Catalogue) -> dict[str, Candidate]:
