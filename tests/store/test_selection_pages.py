@@ -196,3 +196,12 @@ def test_an_address_that_a_document_broke_with_unseen_characters_leads_to_the_se
 
     assert reply.status_code == 308
     assert reply.headers["location"] == address
+
+
+def test_the_explanations_of_a_saved_selection_have_the_facts_that_bear_on_each_check(client: TestClient) -> None:
+    page = client.get(sent(client)).text
+    check = client.get("/checks/maximum_input_speed").text
+
+    facts = re.findall("<dt>Handbook</dt><dd>(.*?)<span", check)
+    assert facts
+    assert all(fact in page.partition('id="about-maximum_input_speed"')[2] for fact in facts)
