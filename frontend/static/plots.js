@@ -153,8 +153,18 @@ async function save(plot, format) {
 
 // --- One phase: its row, its step and its load are marked together ---------------------------------------------------
 
-const PHASE = '[data-phase], tr[id^="phase-"]';
-const placesOf = (part) => (part.dataset.phase ?? part.id.slice("phase-".length)).split(" ").filter(Boolean);
+const ROW = 'tr[id^="phase-"], tr[id^="move-"]';
+const PHASE = `[data-phase], ${ROW}`;
+const listOf = (text) => (text ?? "").split(" ").filter(Boolean);
+
+// The row of a move stands for the phases that the chart says are its own.
+function placesOf(part) {
+  if ("phase" in part.dataset) return listOf(part.dataset.phase);
+  const [kind, row] = part.id.split("-");
+  if (kind === "phase") return [row];
+  return listOf(document.querySelector("[data-moves]")?.dataset.moves).flatMap((move, place) => (move === row ? [String(place)] : []));
+}
+
 let marked = [];
 
 function markPhases(part) {
@@ -170,8 +180,8 @@ document.addEventListener("focusout", (event) => markPhases(phaseAt(event.relate
 
 // The rows stand in the form, which an answer leaves as it is: the phase that governs is told by the drawings.
 function markGoverning() {
-  const governing = new Set((document.querySelector("[data-governing]")?.dataset.governing ?? "").split(" "));
-  for (const row of document.querySelectorAll('tr[id^="phase-"]')) row.classList.toggle("governing", governing.has(placesOf(row)[0]));
+  const governing = listOf(document.querySelector("[data-governing]")?.dataset.governing);
+  for (const row of document.querySelectorAll(ROW)) row.classList.toggle("governing", placesOf(row).some((place) => governing.includes(place)));
   markPhases(phaseAt(document.activeElement));
 }
 document.addEventListener("htmx:after:swap", markGoverning);

@@ -279,7 +279,7 @@ def test_accessibility_check_of_drawings_and_plots_finds_nothing(visitor: Visito
 
 def marked(page: Page) -> dict[str, list[str]]:
     """Phases that are marked in the table, the chart of the cycle and the drawing."""
-    places = "each => each.dataset.phase ?? each.id.slice(6)"
+    places = "each => each.dataset.phase ?? each.id.split('-')[1]"
     kinds = {"row": "#duty tr.marked", "step": "#cycle .phase-step.marked", "load": "#envelope .mark.marked"}
     return {kind: page.locator(path).evaluate_all(f"all => all.map({places})") for kind, path in kinds.items()}
 
@@ -304,6 +304,22 @@ def test_row_step_and_load_of_a_phase_are_marked_together_by_pointer_and_by_focu
     page.locator('#envelope [data-phase="2"]').focus()
     assert marked(page) == {"row": ["2"], "step": ["2"], "load": ["2"]}
     assert page.locator('#envelope [data-phase="2"]').evaluate("each => each.matches(':focus-visible')")
+
+
+def test_a_move_is_marked_together_with_all_its_phases(visitor: Visitor) -> None:
+    page = visitor.open(
+        "/?mech=rotary&J=0.8&mv=trapezoidal&ms=90&mt=0.8&mv=dwell&ms=&mt=0.4&mv=triangular&ms=-90&mt=1&i=5"
+    )
+    page.get_by_label("Time, move 3").focus()
+    assert marked(page) == {"row": ["2"], "step": ["4", "5"], "load": []}
+    page.locator('#cycle [data-phase="3"] .number').hover()
+    assert marked(page) == {"row": ["1"], "step": ["3"], "load": []}
+
+
+def test_each_phase_of_a_long_table_has_its_step(visitor: Visitor) -> None:
+    page = visitor.open("/?" + "&".join(f"T={20 + k % 7}&n=100&t=0.3" for k in range(60)) + "&i=5")
+    page.get_by_label("Torque, phase 41").focus()
+    assert marked(page) == {"row": ["40"], "step": ["40"], "load": []}
 
 
 @pytest.mark.parametrize(("width", "room"), [(1440, (440, 320)), (1920, (640, 480))])

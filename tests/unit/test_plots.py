@@ -98,10 +98,13 @@ def test_phases_with_one_load_are_one_point(catalogue: Catalogue) -> None:
     phases = [phase(10, 100, 1.0, radial_N=300)] * 3 + [phase(10, 100, 1.0, radial_N=100)]
     subject = shown_on(cycle(*phases), catalogue)
 
-    points = traces(plots.bearing_figure(picture(subject)), "phases")[0]
+    figure = plots.bearing_figure(picture(subject), governing=(1,))
+    points = traces(figure, "phases")[0]
 
     assert points["text"] == ["phase 1–3", "phase 4"]
     assert points["x"] == [300, 100]
+    assert points["marker"]["color"] == ["var(--governing)", "var(--plot-load)"]
+    go.Figure(figure)
 
 
 def test_of_very_many_loads_the_worst_are_shown_and_the_rest_counted(catalogue: Catalogue) -> None:

@@ -5,7 +5,7 @@ from math import hypot
 
 from hpn.application import OutputLoad
 from hpn.drawings.axis import widened
-from hpn.drawings.layout import Figure, layout, points
+from hpn.drawings.layout import LOAD_COLOUR, Figure, layout, points
 from hpn.drawings.picture import BearingPicture, NamedCurve, PhaseLoad
 from hpn.drawings.sizes import SizeUse
 from hpn.drawings.words import axis_title, said, share, shown, standing
@@ -45,15 +45,15 @@ SIZE_STYLES = (
 )
 
 
-def bearing_figure(picture: BearingPicture, reader: Reader = DEFAULT) -> Figure:
-    """Envelopes and loads of one candidate."""
+def bearing_figure(picture: BearingPicture, reader: Reader = DEFAULT, governing: Sequence[int] = ()) -> Figure:
+    """Envelopes and loads of one candidate; those of the phases that govern have a colour of their own."""
     curves = sorted(
         picture.named_curves, key=lambda named: ("life", "own", "published", "equivalent").index(named.kind)
     )
     data = [_named(named, reader) for named in curves]
     if picture.loads and picture.worst.published > 0:
         data.append(_distance(picture.worst, reader))
-    data.append(_points(picture.loads, reader))
+    data.append(_points(picture.loads, reader, governing))
     heading = Sentence(
         "Output bearing of {gear}: {condition}, model {model}",
         {"gear": picture.gear.name, "condition": picture.condition, "model": picture.load.model},
@@ -61,14 +61,16 @@ def bearing_figure(picture: BearingPicture, reader: Reader = DEFAULT) -> Figure:
     return {"data": data, "layout": _layout(picture.gear, picture.loads, heading, picture.load, reader)}
 
 
-def sizes_figure(uses: Sequence[SizeUse], picture: BearingPicture, reader: Reader = DEFAULT) -> Figure:
+def sizes_figure(
+    uses: Sequence[SizeUse], picture: BearingPicture, reader: Reader = DEFAULT, governing: Sequence[int] = ()
+) -> Figure:
     """What a constant load may be on each size, with the loads of the phases."""
     drawn = [(use, use.curve) for use in uses if use.curve is not None]
     data = [
         _size(curve, use.gear, SIZE_STYLES[place % len(SIZE_STYLES)], reader)
         for place, (use, curve) in enumerate(drawn)
     ]
-    data.append(_points(picture.loads[:LABELLED_LOADS], reader, with_use=False))
+    data.append(_points(picture.loads[:LABELLED_LOADS], reader, governing, with_use=False))
     heading = Sentence(
         "Permissible constant load of each size: {condition}, f_w = {f_w}",
         {"condition": picture.condition, "f_w": Quantity(picture.load.load_coefficient, "")},
@@ -141,10 +143,12 @@ def _distance(worst: PhaseLoad, reader: Reader) -> Figure:
 # --- Loads ------------------------------------------------------------------------------------------------------------
 
 
-def _points(loads: Sequence[PhaseLoad], reader: Reader, *, with_use: bool = True) -> Figure:
+def _points(loads: Sequence[PhaseLoad], reader: Reader, governing: Sequence[int], *, with_use: bool = True) -> Figure:
+    own = set(governing)
+    colours = [LOAD_COLOUR if own.isdisjoint(load.places) else "var(--governing)" for load in loads]
     is_named = len(loads) <= LABELLED_LOADS
     template = N_("phase {phases}") if len(loads) <= SPELT_OUT else "{phases}"
-    return points("phases", size=10) | {
+    return points("phases", size=10, colour=colours) | {
         "mode": "markers+text" if is_named else "markers",
         "name": said(Sentence("Loads of the phases"), reader),
         "x": shown((load.radial_N for load in loads), "N", reader),

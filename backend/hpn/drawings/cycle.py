@@ -9,6 +9,7 @@ from functools import cached_property
 
 from hpn.application import DutyCycle
 from hpn.drawings.axis import round_numbers, slices
+from hpn.drawings.picture import MOST_MARKED
 from hpn.drawings.subject import Subject
 from hpn.drawings.words import axis_title
 from hpn.quantities import DUTY, GEAR, INPUTS
@@ -149,7 +150,7 @@ def cycle_picture(subject: Subject, reader: Reader = DEFAULT) -> CyclePicture:
         speed=_panel(speed, edges, reader),
         left=LEFT,
         right=RIGHT,
-        steps=[Step(k, edges[k], edges[k + 1]) for k in range(count if count <= NAMED_PHASES else 0)],
+        steps=[Step(k, edges[k], edges[k + 1]) for k in range(count if count <= MOST_MARKED else 0)],
         discs=_discs(edges, count, TORQUE_TOP + TORQUE_HEIGHT + 12),
         names=_names(edges, count, TORQUE_TOP + TORQUE_HEIGHT + 16),
         boundaries=edges[1 : count + 1] if count <= NAMED_PHASES else [],

@@ -55,7 +55,7 @@ class Pictures:
     def bearing_figure(self) -> Figure:
         """Plotly figure of `bearing`, which must be there."""
         assert self.bearing is not None
-        return drawings.bearing_figure(self.bearing, self.reader)
+        return drawings.bearing_figure(self.bearing, self.reader, self.governing)
 
     @cached_property
     def sizes(self) -> list[SizeUse]:
@@ -73,7 +73,7 @@ class Pictures:
     def sizes_figure(self) -> Figure:
         """Plotly figure of all sizes."""
         assert self.bearing is not None
-        return drawings.sizes_figure(self.sizes, self.bearing, self.reader)
+        return drawings.sizes_figure(self.sizes, self.bearing, self.reader, self.governing)
 
     @property
     def carries(self) -> bool:
