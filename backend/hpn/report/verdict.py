@@ -165,7 +165,7 @@ def alternatives(export: Export, reader: Reader) -> dict[str, Any]:
     for candidate in export.selection.candidates:
         counts[candidate.status] += 1
     overview = Sentence(
-        N_("{total} gears considered: {suitable} suitable, {unsuitable} unsuitable, {unrated} not rated."),
+        N_("{total} gears considered: {suitable} suitable, {unsuitable} not suitable, {unrated} not rated."),
         {"total": len(export.selection.candidates), **counts},
     )
     return {
