@@ -98,3 +98,7 @@ def test_a_report_that_could_not_be_written_is_refused_before_anything_is_comput
 
     assert code == 2 and name in capsys.readouterr().err
     assert not answers.exists()
+
+
+def test_the_basis_of_the_lives_stands_below_them(text: str) -> None:
+    assert "Gear life: L10 as eq. 17.10 prints it" in text

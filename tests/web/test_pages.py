@@ -218,3 +218,12 @@ def test_a_gear_whose_rating_lacks_has_no_unlimited_life(client: TestClient) -> 
     assert (figure(unrated, "Gear life"), figure(unrated, "Permitted emergency stops")) == ("–", "–")
     assert (figure(free, "Gear life"), figure(free, "Permitted emergency stops")) == ("unlimited", "unlimited")
     assert (figure(unasked, "Gear life"), figure(unasked, "Permitted emergency stops")) == ("unlimited", "–")
+
+
+@pytest.mark.parametrize("section", ["candidates", "compare", "bearing"])
+def test_where_a_life_stands_its_basis_stands_too(client: TestClient, section: str) -> None:
+    asked = client.get(EXAMPLE + "&FR=500", headers={"HX-Request": "true", "HX-Target": f"section#{section}"}).text
+
+    caveats = re.findall(r'<p class="hint caveat">(.*?)</p>', asked, re.S)
+    basis = "L50" if section == "bearing" else "17.10"
+    assert any("L10" in text and basis in text for text in caveats)
