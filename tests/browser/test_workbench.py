@@ -54,7 +54,7 @@ CLASHES = """() => {
 
 SMALL = """() => [...document.querySelectorAll("main *, header *")].filter(element =>
   [...element.childNodes].some(node => node.nodeType === 3 && node.textContent.trim())
-  && element.checkVisibility() && !element.closest("sub, .visually-hidden, option, math, svg")
+  && element.checkVisibility() && !element.closest(".visually-hidden, option, math, svg")
   && parseFloat(getComputedStyle(element).fontSize) < 11).map(element => element.textContent.trim())"""
 
 
