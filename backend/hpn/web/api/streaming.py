@@ -118,8 +118,7 @@ class Spool:
 class LineStream(Response):
     """Answers each line of the request's body with one line, while the body still arrives if its length is unknown.
 
-    A client that neither sends a
-    line nor reads for `seconds` is told so in a last line, and the stream ends.
+    A client that neither sends a line nor reads for `seconds` is told so in a last line, and the stream ends.
     """
 
     media_type = MEDIA_TYPES[0]
