@@ -144,7 +144,10 @@ def test_the_end_does_not_wait_for_ever(tmp_path: Path) -> None:
         assert service.process.wait(timeout=20) in ENDED
 
 
-def test_a_report_under_way_is_finished_when_a_terminal_interrupts_all_its_processes(tmp_path: Path) -> None:
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_report_under_way_is_finished_when_all_processes_are_told_to_end(
+    tmp_path: Path, number: signal.Signals
+) -> None:
     long = cycle(*[phase(20 + k % 7, 500 + k % 11) for k in range(10_000)])
     with serving(tmp_path) as service, ThreadPoolExecutor() as pool:
         service.client.post(REPORT, json=worked_example()).raise_for_status()
@@ -152,14 +155,14 @@ def test_a_report_under_way_is_finished_when_a_terminal_interrupts_all_its_proce
         report = pool.submit(httpx.post, service.url + REPORT, json=long, timeout=60, trust_env=False)
         idle = ticks(apart)
         until(lambda: ticks(apart) >= idle + 10)
-        for process in (
-            service.process.pid,
-            *(child for child in children_of(service.process.pid) if os.getpgid(child) == group),
-        ):
-            os.kill(process, signal.SIGINT)  # as a terminal does to all that it has started
+        processes = (service.process.pid, *children_of(service.process.pid))
+        if number == signal.SIGINT:  # of a terminal, which knows a group; a supervisor finds them all
+            processes = tuple(process for process in processes if os.getpgid(process) == group)
+        for process in processes:
+            os.kill(process, number)
 
         assert report.result().content.startswith(b"%PDF")
-        assert service.process.wait(timeout=30) in (*ENDED, -signal.SIGINT)
+        assert service.process.wait(timeout=30) in (*ENDED, -number)
         until(lambda: is_gone(apart))
         assert not [event for event in service.events() if event["level"] == "error"]
 

@@ -5,6 +5,7 @@ It imports what its calls name and nothing else of the web, so that it starts so
 
 import os
 import pickle
+import signal
 import subprocess
 import sys
 import threading
@@ -85,6 +86,7 @@ class Apart:
 def main() -> None:
     """Answer calls until there are no more; what they print goes where errors go."""
     heap.give_back()
+    signal.signal(signal.SIGTERM, signal.SIG_IGN)  # of supervisors that send it to all: the service ends this one last
     with suppress(OSError):  # where memory runs out, the system ends this one before the service
         Path("/proc/self/oom_score_adj").write_text("1000")
     calls, answers = os.fdopen(0, "rb"), os.fdopen(os.dup(1), "wb")
