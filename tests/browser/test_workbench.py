@@ -23,7 +23,7 @@ ZOOMED = 720
 """A window of 1440 at 200 %."""
 SHORT = {
     *(("seven", 1440, "de"), ("seven", 1920, "en"), ("none fits", 1024, "de")),
-    *(("example", ZOOMED, "de"), ("all gears", 390, "de")),
+    *(("example", ZOOMED, "de"), ("all gears", 390, "de"), ("none fits", 1280, "de")),
 }
 
 CLASHES = """() => {
@@ -96,7 +96,7 @@ def test_verdict_checks_envelope_and_map_need_no_scrolling_at_1440_by_900(
     [
         pytest.param(state, width, language, marks=() if (state, width, language) in SHORT else pytest.mark.soak)
         for state in STATES
-        for width in (390, ZOOMED, 1024, 1440, 1920)
+        for width in (390, ZOOMED, 1024, 1280, 1366, 1440, 1920)
         for language in ("en", "de")
     ],
 )

@@ -146,7 +146,8 @@ def test_no_request_holds_the_event_loop(beating: Service, soak: bool, record_pr
     for asked in hostile(saved, whole=soak):
         reply, held = held_by(beating, asked)
         if soak and held > HELD_S:  # what it costs each time, and not what the machine did meanwhile
-            held = min(held, *[held_by(beating, asked)[1] for _ in range(3)])
+            again = [held_by(beating, asked) for _ in range(3)]
+            held = min(held, *[cost for other, cost in again if other.status_code == reply.status_code])
         name = f"{asked.method} {asked.path[:60]} {len(asked.body)} bytes: {reply.status_code}"
         longest[name] = max(held, longest.get(name, 0.0))
         assert reply.status_code < 500, name

@@ -192,10 +192,13 @@ def test_an_address_that_a_document_broke_with_unseen_characters_leads_to_the_se
     address = sent(client)
     broken = f"{address[:20]}%E2%80%8B{address[20:]}%EF%BB%BF"
 
-    reply = client.get(broken)
+    reply = client.get(f"{broken}?gear=HPN-32A-5")
 
     assert reply.status_code == 308
-    assert reply.headers["location"] == address
+    assert reply.headers["location"] == f"{address}?gear=HPN-32A-5"
+    assert client.get(broken).headers["location"] == address
+    for nothing in ("%E2%80%8B", "%E2%80%8B..", "compare%E2%80%8B"):
+        assert client.get(f"/selections/{nothing}").status_code == 404
 
 
 def test_the_explanations_of_a_saved_selection_have_the_facts_that_bear_on_each_check(client: TestClient) -> None:

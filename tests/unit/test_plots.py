@@ -103,7 +103,9 @@ def test_phases_with_one_load_are_one_point(catalogue: Catalogue) -> None:
 
     assert points["text"] == ["phase 1–3", "phase 4"]
     assert points["x"] == [300, 100]
-    assert points["marker"]["color"] == ["var(--governing)", "var(--plot-load)"]
+    (ring,) = traces(figure, "governing")
+    assert (ring["x"], ring["y"]) == ([300], [0])
+    assert not traces(plots.bearing_figure(picture(subject)), "governing")
     go.Figure(figure)
 
 

@@ -10,6 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from starlette.testclient import TestClient
 
+from hpn.quantities import QUANTITIES
 from hpn.web.app import create_app
 from hpn.web.form.read import MAXIMUM_QUERY_BYTES
 from hpn.web.form.symbols import PHASE_SYMBOLS, SYMBOLS
@@ -220,10 +221,17 @@ def test_a_gear_whose_rating_lacks_has_no_unlimited_life(client: TestClient) -> 
     assert (figure(unasked, "Gear life"), figure(unasked, "Permitted emergency stops")) == ("unlimited", "–")
 
 
-@pytest.mark.parametrize("section", ["candidates", "compare", "bearing"])
-def test_where_a_life_stands_its_basis_stands_too(client: TestClient, section: str) -> None:
+@pytest.mark.parametrize(
+    ("section", "names"),
+    [
+        ("candidates", ["life_L10_h"]),
+        ("compare", ["life_L10_h", "bearing_life_L10_h"]),
+        ("bearing", ["bearing_life_L10_h"]),
+    ],
+)
+def test_where_a_life_stands_its_basis_stands_too(client: TestClient, section: str, names: list[str]) -> None:
     asked = client.get(EXAMPLE + "&FR=500", headers={"HX-Request": "true", "HX-Target": f"section#{section}"}).text
 
-    caveats = re.findall(r'<p class="hint caveat">(.*?)</p>', asked, re.S)
-    basis = "L50" if section == "bearing" else "17.10"
-    assert any("L10" in text and basis in text for text in caveats)
+    caveats = " ".join(re.findall(r'<p class="hint caveat">(.*?)</p>', asked, re.S))
+    for named in names:
+        assert QUANTITIES[f"candidate.{named}"].caveat in caveats

@@ -101,6 +101,7 @@ EXAMPLE = "T=40&n=250&t=0.3&T=32&n=500&t=3&T=20&n=250&t=0.4&tp=4&Tk=200&i=5"
         ("", None),
         (EXAMPLE.replace("T=40", "T=45"), "T=45&n=250&t=0.3&T=32&n=500&t=3&T=20&n=250&t=0.4"),
         ("T=7&n=90&t=2&tp=4&Tk=200&i=5&title=Axis", "T=7&n=90&t=2&title=Axis"),
+        ("T=7&n=90&t=2&tp=4&Tk=200&i=5&gear=HPN-32A-5&pin=HPN-20A-5", "T=7&n=90&t=2&gear=HPN-32A-5&pin=HPN-20A-5"),
         ("T=7&n=90&t=2&tp=4&Tk=200&i=5&FR=10", None),
         ("T=7&n=90&t=2&tp=3&Tk=200&i=5", None),
         ("T=7&n=90&t=2", None),

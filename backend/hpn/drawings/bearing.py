@@ -5,7 +5,7 @@ from math import hypot
 
 from hpn.application import OutputLoad
 from hpn.drawings.axis import widened
-from hpn.drawings.layout import LOAD_COLOUR, Figure, layout, points
+from hpn.drawings.layout import Figure, layout, points
 from hpn.drawings.picture import BearingPicture, NamedCurve, PhaseLoad
 from hpn.drawings.sizes import SizeUse
 from hpn.drawings.words import axis_title, said, share, shown, standing
@@ -46,14 +46,14 @@ SIZE_STYLES = (
 
 
 def bearing_figure(picture: BearingPicture, reader: Reader = DEFAULT, governing: Sequence[int] = ()) -> Figure:
-    """Envelopes and loads of one candidate; those of the phases that govern have a colour of their own."""
+    """Envelopes and loads of one candidate; those of the phases that govern have a ring."""
     curves = sorted(
         picture.named_curves, key=lambda named: ("life", "own", "published", "equivalent").index(named.kind)
     )
     data = [_named(named, reader) for named in curves]
     if picture.loads and picture.worst.published > 0:
         data.append(_distance(picture.worst, reader))
-    data.append(_points(picture.loads, reader, governing))
+    data += [_points(picture.loads, reader), *_rings(picture.loads, governing, reader)]
     heading = Sentence(
         "Output bearing of {gear}: {condition}, model {model}",
         {"gear": picture.gear.name, "condition": picture.condition, "model": picture.load.model},
@@ -70,7 +70,8 @@ def sizes_figure(
         _size(curve, use.gear, SIZE_STYLES[place % len(SIZE_STYLES)], reader)
         for place, (use, curve) in enumerate(drawn)
     ]
-    data.append(_points(picture.loads[:LABELLED_LOADS], reader, governing, with_use=False))
+    loads = picture.loads[:LABELLED_LOADS]
+    data += [_points(loads, reader, with_use=False), *_rings(loads, governing, reader)]
     heading = Sentence(
         "Permissible constant load of each size: {condition}, f_w = {f_w}",
         {"condition": picture.condition, "f_w": Quantity(picture.load.load_coefficient, "")},
@@ -143,12 +144,10 @@ def _distance(worst: PhaseLoad, reader: Reader) -> Figure:
 # --- Loads ------------------------------------------------------------------------------------------------------------
 
 
-def _points(loads: Sequence[PhaseLoad], reader: Reader, governing: Sequence[int], *, with_use: bool = True) -> Figure:
-    own = set(governing)
-    colours = [LOAD_COLOUR if own.isdisjoint(load.places) else "var(--governing)" for load in loads]
+def _points(loads: Sequence[PhaseLoad], reader: Reader, *, with_use: bool = True) -> Figure:
     is_named = len(loads) <= LABELLED_LOADS
     template = N_("phase {phases}") if len(loads) <= SPELT_OUT else "{phases}"
-    return points("phases", size=10, colour=colours) | {
+    return points("phases", size=10) | {
         "mode": "markers+text" if is_named else "markers",
         "name": said(Sentence("Loads of the phases"), reader),
         "x": shown((load.radial_N for load in loads), "N", reader),
@@ -158,6 +157,21 @@ def _points(loads: Sequence[PhaseLoad], reader: Reader, governing: Sequence[int]
         "textfont": {"color": "var(--ink)", "size": 12, "shadow": HALO},
         "hovertext": [_hover(load, reader, with_use=with_use) for load in loads],
     }
+
+
+def _rings(loads: Sequence[PhaseLoad], governing: Sequence[int], reader: Reader) -> list[Figure]:
+    """Trace of rings around the loads of the phases that govern, none where there is no such load."""
+    places = set(governing)
+    ringed = [load for load in loads if not places.isdisjoint(load.places)]
+    ring = points("governing", size=18) | {
+        "mode": "markers",
+        "name": said(Sentence("Governing phase"), reader),
+        "marker": {"size": 18, "symbol": "diamond-open", "color": "var(--governing)", "line": {"width": 2}},
+        "x": shown((load.radial_N for load in ringed), "N", reader),
+        "y": shown((load.axial_N for load in ringed), "N", reader),
+        "hoverinfo": "skip",
+    }
+    return [ring] if ringed else []
 
 
 def _hover(load: PhaseLoad, reader: Reader, *, with_use: bool) -> str:

@@ -38,11 +38,8 @@ def layout(reader: Reader, x: str, y: str, *, title: str, note: str = "", revisi
     }
 
 
-LOAD_COLOUR = "var(--plot-load)"
-
-
-def points(kind: str, *, size: int, colour: str | list[str] = LOAD_COLOUR) -> Figure:
-    """Trace of points as diamonds, to which their places and texts are added; one colour, or one for each."""
+def points(kind: str, *, size: int, colour: str = "var(--plot-load)") -> Figure:
+    """Trace of points as diamonds, to which their places and texts are added."""
     return {
         "type": "scatter",
         "cliponaxis": False,

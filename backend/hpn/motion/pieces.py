@@ -29,8 +29,8 @@ class Pieces:
 
     x = x_0 + ω_0 t + α_0 t²/2 + j t³/6 - S/w² sin(w t + φ) is the angle from `base`, of which cosine and sine are kept;
     `sign` is the direction of the move, 0 of a dwell. `held_Nm` is what neither moves nor turns with the shaft:
-    friction, weight and the external load. `inertia_kgm2` is what the torque accelerates. `swings` says whether any
-    piece goes by a sine.
+    friction, weight and the external load. `inertia_kgm2` is what the torque accelerates. `swings` is
+    False where no piece of the motion goes by a sine.
     """
 
     swings: bool

@@ -3,9 +3,10 @@
 from hpn.store.errors import KeyReusedError, KeySpentError, NewerDatabaseError, StoreError, StoreUnavailableError
 from hpn.store.fleets import FleetDraft, FleetSummary, SavedFleet
 from hpn.store.saved import Draft, Page, SavedSelection, Summary
-from hpn.store.store import Store
+from hpn.store.store import ID, Store
 
 __all__ = [
+    "ID",
     "Draft",
     "FleetDraft",
     "FleetSummary",

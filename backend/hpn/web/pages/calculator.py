@@ -143,6 +143,7 @@ def _answer(application: Application, form: Form, catalogue: Catalogue) -> Answe
     order = ordering_code(catalogue, gear, form.labels["order_output"], form.labels["order_motor"])
     labels = query_of({**form.labels, **order.labels})
     tail = tail_of(form.pins) + labels
+    chosen = f"&gear={gear.designation}" if form.gear else ""
     return Answer(
         selection=selection,
         application=application,
@@ -151,10 +152,10 @@ def _answer(application: Application, form: Form, catalogue: Catalogue) -> Answe
         catalogue=catalogue,
         link=link,
         example=application == Application.worked_example(),
-        own_cycle=_own_cycle(link, labels),
+        own_cycle=own + chosen + tail if (own := _own_cycle(link)) else "",
         choosing=f"{link}&gear=",
         tail=tail,
-        address=link + (f"&gear={gear.designation}" if form.gear else "") + tail,
+        address=link + chosen + tail,
         label_tail=labels,
         order=order,
         map=_map(selection, everything, catalogue),
@@ -162,10 +163,10 @@ def _answer(application: Application, form: Form, catalogue: Catalogue) -> Answe
     )
 
 
-def _own_cycle(link: str, labels: str) -> str:
-    """Address of a cycle alone where all that stands beside it is still the worked example's, else empty."""
+def _own_cycle(link: str) -> str:
+    """Link of a cycle alone where all that stands beside it is still the worked example's, else empty."""
     (own, beside), (example, left) = (_parted(each) for each in (link, to_link(Application.worked_example())))
-    return f"/?{'&'.join(own)}{labels}" if beside == left and own != example else ""
+    return f"/?{'&'.join(own)}" if beside == left and own != example else ""
 
 
 def _parted(link: str) -> tuple[list[str], list[str]]:

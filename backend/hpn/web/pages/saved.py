@@ -5,7 +5,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import partial
 from typing import Any
-from urllib.parse import quote
 
 from fastapi import APIRouter
 from starlette.requests import Request
@@ -18,7 +17,7 @@ from hpn.differences import Difference
 from hpn.quantities import CANDIDATE, CHECK, DUTY, PHASE, RESERVE, VERDICTS
 from hpn.report.inputs import LOADS, REQUIREMENTS, given
 from hpn.selection import Selection, reason_of
-from hpn.store import SavedSelection, StoreUnavailableError
+from hpn.store import ID, SavedSelection, StoreUnavailableError
 from hpn.units import symbol_of
 from hpn.web.archive import Reopened, found, url_of
 from hpn.web.door.access import admit
@@ -52,8 +51,8 @@ EXPORTS = (
 async def show_selection(request: Request) -> Response:
     """The selection as it was saved, and beside it what today's engine and catalogue say differently."""
     id = request.path_params["id"]
-    if (seen := links.visible(id)) != id:
-        return RedirectResponse(f"/selections/{quote(seen)}", 308)
+    if (seen := links.visible(id)) != id and ID.fullmatch(seen):
+        return RedirectResponse(f"/selections/{seen}?{request.url.query}".removesuffix("?"), 308)
     try:
         return await found(request, id, partial(_shown, request))
     except (Problem, StoreUnavailableError) as error:
