@@ -6,7 +6,7 @@ What has two readings is left blank here, and asked by `pasted`.
 import re
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from itertools import chain
+from itertools import chain, pairwise
 
 from hpn import units
 from hpn.web.form.cells import DECIMALS, entry, is_blank, is_number
@@ -23,6 +23,7 @@ SKIP, CELLS = "skip", "cells"
 
 DIVIDED = N_("row {row}: {cell} can be one number or two")
 _DIVIDED = re.compile("[0-9] [0-9]")
+_LEADS, _FOLLOWS = re.compile("[-+]?[1-9][0-9]{0,2}"), re.compile("[0-9]{3}([.,][0-9]+)?")
 
 HEAD_ROWS = 20
 """Rows among which the header is looked for."""
@@ -89,6 +90,8 @@ class Body:
 def body_of(grid: Grid) -> Body:
     """Rows of a table, the right way round; raises RefusedError where they make no table."""
     grid = _upright(grid)
+    if grid.turned and grid.separator == "blank":
+        _require_ungrouped(grid)
     if grid.width > MOST_COLUMNS:
         raise RefusedError(N_("there are more than {most} columns"), most=MOST_COLUMNS)
     head, first, notes = _head(grid)
@@ -120,6 +123,17 @@ def _require_undivided(grid: Grid, number: int, cells: Sequence[str]) -> None:
     for cell in cells if grid.separator == "comma" else ():
         if _DIVIDED.search(cell) and is_number(cell):
             raise RefusedError(DIVIDED, row=number, cell=cell[:40])
+
+
+def _require_ungrouped(grid: Grid) -> None:
+    """Raise RefusedError where every line of a turned table may have thousands in it that a blank parts: `1 1 000`."""
+    lines = [line for line in grid.transposed().rows if _numbers_in(line)]
+    pairs = [
+        next((f"{a} {b}" for a, b in pairwise(line) if _LEADS.fullmatch(a) and _FOLLOWS.fullmatch(b)), None)
+        for line in lines
+    ]
+    if pairs and None not in pairs:
+        raise RefusedError(DIVIDED, row=1, cell=str(pairs[0]))
 
 
 def _note(template: str, number: int, text: str) -> Sentence:
