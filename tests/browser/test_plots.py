@@ -236,7 +236,8 @@ def test_a_size_without_published_limits_says_why_it_has_no_envelope(visitor: Vi
 
 def test_a_candidate_outside_the_wishes_has_its_pictures_too(visitor: Visitor) -> None:
     page = visitor.open(PHASES + "&gear=HPN-32A-10#bearing")
-    assert drawn(page)["data"][-1]["text"] == ["phase 1", "phase 2", "phase 3"]
+    (loads,) = [trace for trace in drawn(page)["data"] if trace["meta"]["kind"] == "phases"]
+    assert loads["text"] == ["phase 1", "phase 2", "phase 3"]
 
 
 def test_without_loads_the_drawing_leads_to_the_field(visitor: Visitor) -> None:
