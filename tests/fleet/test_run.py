@@ -5,6 +5,7 @@ import random
 import signal
 import subprocess
 import sys
+import threading
 import time
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
@@ -18,7 +19,7 @@ from hpn.fleet import grouping
 from hpn.fleet.errors import FleetError
 from hpn.fleet.grouping import Part
 from hpn.fleet.job import Job
-from hpn.fleet.run import Engine, Order, processes, size_fleet
+from hpn.fleet.run import Engine, Order, interrupts_held, processes, size_fleet
 from tests.fleet.tables import here, quiet, row_of, write
 from tests.property.draw import at_random
 from tests.reliability.faults import full, small_disk
@@ -223,6 +224,21 @@ def test_an_interrupt_while_the_workers_start_says_the_same(many: Path, tmp_path
         os.killpg(run.pid, signal.SIGINT)
         assert run.communicate()[1] == f"stopped; hpn fleet … --resume goes on with the parts in {folder}\n"
     assert run.returncode == 1
+
+
+def test_an_interrupt_that_another_thread_takes_waits_until_the_workers_have_started() -> None:
+    over, reached = threading.Event(), False
+    other = threading.Thread(target=over.wait)
+    other.start()
+    try:
+        with pytest.raises(KeyboardInterrupt), interrupts_held():
+            signal.pthread_kill(other.ident or 0, signal.SIGINT)
+            time.sleep(0.1)
+            reached = True
+    finally:
+        over.set()
+        other.join()
+    assert reached
 
 
 def test_a_run_killed_at_random_moments_is_resumed_to_the_same_bytes(many: Path, tmp_path: Path, soak: bool) -> None:

@@ -192,13 +192,21 @@ def processes(workers: int) -> Engine:
 
 @contextmanager
 def interrupts_held() -> Iterator[None]:
-    """Block interrupts: a process started here has them blocked from its first moment, this one gets them after."""
+    """Block interrupts: a process started here has them blocked from its first moment, this one gets them after.
+
+    The mask is that of the main thread; one that another thread takes is noted until then.
+    """
     ensure_running()  # multiprocessing's own first process unblocks interrupts when it has started
+    noted: list[int] = []
+    handler = signal.signal(signal.SIGINT, lambda number, _: noted.append(number))
     before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     try:
         yield
     finally:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
+        signal.signal(signal.SIGINT, handler)
+        if noted:
+            signal.raise_signal(signal.SIGINT)
 
 
 def _end_with_parent() -> None:
