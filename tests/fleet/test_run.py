@@ -230,12 +230,14 @@ def test_an_interrupt_that_another_thread_takes_waits_until_the_workers_have_sta
     over, reached = threading.Event(), False
     other = threading.Thread(target=over.wait)
     other.start()
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell's background has it ignored
     try:
         with pytest.raises(KeyboardInterrupt), interrupts_held():
             signal.pthread_kill(other.ident or 0, signal.SIGINT)
             time.sleep(0.1)
             reached = True
     finally:
+        signal.signal(signal.SIGINT, before)
         over.set()
         other.join()
     assert reached
