@@ -3,6 +3,7 @@
 import asyncio
 import json
 import os
+import pickle
 import signal
 import sys
 import threading
@@ -122,10 +123,10 @@ def pool() -> Iterator[Pool]:
 
 
 def beat(file: Path) -> None:
-    """Write more and more, and never end."""
+    """Tell the number of the process in a file that is there as a whole, and never end."""
+    (new := file.with_suffix(".new")).write_text(str(os.getpid()))
+    new.rename(file)
     while True:
-        with file.open("a") as written:
-            written.write(f"{os.getpid()}\n")
         time.sleep(0.01)
 
 
@@ -152,7 +153,7 @@ async def test_work_apart_is_killed_when_its_client_leaves_and_the_next_is_done(
 
     assert left.value.status_code == GONE
     assert await pool.run_apart(partial(sum, [1, 2])) == 3
-    assert is_gone(int(file.read_text().split()[0]))
+    assert is_gone(int(file.read_text()))
 
 
 @pytest.mark.anyio
@@ -197,8 +198,20 @@ async def test_what_goes_wrong_apart_brings_its_traceback_and_what_ends_early_is
 
 
 @pytest.mark.anyio
-async def test_a_service_that_ends_ends_work_apart(pool: Pool, tmp_path: Path) -> None:
-    file = tmp_path / "beats"
+async def test_a_service_that_ends_ends_work_apart_and_closes_nothing_that_is_read(
+    pool: Pool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The answer is read late, so that a pipe closed at once would be found closed."""
+    file, load = tmp_path / "beats", pickle.load
+
+    def load_late(pipe: Any) -> Any:
+        while not file.exists():
+            time.sleep(0.01)
+        os.waitid(os.P_PID, int(file.read_text()), os.WEXITED | os.WNOWAIT)
+        time.sleep(0.1)
+        return load(pipe)
+
+    monkeypatch.setattr(pickle, "load", load_late)
     work = asyncio.create_task(pool.run_apart(partial(beat, file)))
     while not file.exists():
         await asyncio.sleep(0.01)
@@ -206,7 +219,7 @@ async def test_a_service_that_ends_ends_work_apart(pool: Pool, tmp_path: Path) -
 
     with pytest.raises(Problem):
         await work
-    assert is_gone(int(file.read_text().split()[0]))
+    assert is_gone(int(file.read_text()))
 
 
 @pytest.mark.anyio

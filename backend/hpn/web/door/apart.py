@@ -28,23 +28,25 @@ class Apart:
     """At most one such process, for one caller at a time."""
 
     def __init__(self) -> None:
-        self._lock = threading.Lock()
+        self._calling = threading.Lock()  # whoever has it may use the pipes
+        self._lock = threading.Lock()  # whoever has it may start and end the process
         self._process: subprocess.Popen[bytes] | None = None
 
     def call(self, work: Callable[[], T], given_up: threading.Event) -> T:
         """Result of work; EndedError, or RuntimeError with the traceback of what goes wrong there."""
         call = pickle.dumps(work)
-        with self._lock:
-            if given_up.is_set():
-                raise EndedError("given up")
-            process = self._running()
-        try:
-            cast(Any, process.stdin).write(call)
-            cast(Any, process.stdin).flush()
-            done, result = pickle.load(cast(Any, process.stdout))
-        except (OSError, EOFError, pickle.UnpicklingError):
-            self._reap(process)
-            raise EndedError(f"exit code {process.returncode}") from None
+        with self._calling:
+            with self._lock:
+                if given_up.is_set():
+                    raise EndedError("given up")
+                process = self._running()
+            try:
+                cast(Any, process.stdin).write(call)
+                cast(Any, process.stdin).flush()
+                done, result = pickle.load(cast(Any, process.stdout))
+            except (OSError, EOFError, pickle.UnpicklingError):
+                self._reap(process)
+                raise EndedError(f"exit code {process.returncode}") from None
         if not done:
             raise RuntimeError(result)
         return cast(T, result)
@@ -56,9 +58,11 @@ class Apart:
                 self._process.kill()
 
     def close(self) -> None:
-        """Kill the process and wait until it has gone, whoever calls at the moment."""
-        if self._process is not None:
-            self._reap(self._process)
+        """Kill the process and wait until it has gone; whoever calls at the moment gets an EndedError first."""
+        self.end()
+        with self._calling:
+            if self._process is not None:
+                self._reap(self._process)
 
     def _reap(self, process: "subprocess.Popen[bytes]") -> None:
         with self._lock:
