@@ -16,8 +16,8 @@ from hpn.quantities import DUTY, GEAR, INPUTS
 from hpn.reader import DEFAULT, Reader
 from hpn.wording import N_, Quantity, Sentence, Value
 
-WIDTH, LEFT, RIGHT = 344.0, 42.0, 268.0
-TORQUE_TOP, TORQUE_HEIGHT, SPEED_HEIGHT, BETWEEN = 16.0, 90.0, 62.0, 44.0
+WIDTH, LEFT, RIGHT = 344.0, 42.0, 252.0
+TORQUE_TOP, TORQUE_HEIGHT, SPEED_HEIGHT, BETWEEN = 28.0, 90.0, 62.0, 53.0
 LETTER = 13.0
 """Least distance of two texts below each other."""
 
@@ -26,6 +26,9 @@ NAMED_PHASES = 24
 
 APART = 18.0
 """Least distance of two numbers beside each other."""
+
+MOST_LETTERS = 13
+"""Letters of a symbol and its value that have room at the right of a diagram."""
 
 INDEX_DEPTH = 3.0
 """How far an index reaches below its line."""
@@ -53,7 +56,7 @@ class Mark:
 class Panel:
     """One step diagram: its axis, its steps and its lines; `beyond` are those beyond the scale, from the right edge."""
 
-    title: str
+    title: Mark
     top: float
     bottom: float
     zero: float
@@ -226,7 +229,7 @@ def _panel(diagram: Diagram, edges: Sequence[float], reader: Reader) -> Panel:
     bottom = diagram.top + diagram.height
     outline, area = _steps(edges, diagram.values, diagram.y)
     marks, beyond = placed(diagram, reader)
-    title = axis_title(diagram.quantity, diagram.unit, reader)
+    title = Mark(LEFT, diagram.top - 5 - LETTER, axis_title(diagram.quantity, diagram.unit, reader))
     return Panel(title, diagram.top, bottom, diagram.y(0.0), outline, area, ticks(diagram, reader), marks, beyond)
 
 
@@ -272,7 +275,7 @@ def placed(diagram: Diagram, reader: Reader) -> tuple[list[Mark], list[Mark]]:
             continue
         line = diagram.y(level.value)
         y = max(y + LETTER, line + 4.0)
-        fits = diagram.unit == "Nm" or level.kind == "average"  # the limits of speed have long names
+        fits = len(level.symbol) + len(text) <= MOST_LETTERS
         marks.append(Mark(RIGHT + 4, y, level.symbol, text if fits else "", level.kind, line))
     return marks, beyond[::-1]
 
