@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from contextlib import ExitStack
 from pathlib import Path
 
+import psycopg
 import pytest
 from starlette.testclient import TestClient
 
@@ -111,6 +112,25 @@ def test_what_is_acknowledged_around_a_fault_is_found_and_readiness_tells_of_it(
     assert acknowledged <= set(ids)
     assert len(ids) == len(set(ids))
     assert len(ids) <= len(acknowledged) + refused  # one that was refused may have been saved, but never twice
+
+
+def test_room_that_trials_left_in_one_file_of_a_full_database_is_no_readiness(postgresql: PostgreSQL) -> None:
+    """PostgreSQL keeps long results in a file of their own: VACUUM frees only what trials took there."""
+    acknowledged: set[str] = set()
+    with faults.database_on_small_disk(postgresql) as (address, folder), client_of(address) as client:
+        for _ in range(5):
+            await_ready(client)
+            assert save(client, acknowledged)
+            time.sleep(1.1)  # after which readiness is tried anew
+        with psycopg.connect(address, autocommit=True) as connection:
+            connection.execute("VACUUM selections")
+        with faults.full(folder):
+            while save(client, acknowledged):
+                assert len(acknowledged) < MOST_SAVES
+            time.sleep(1.1)
+            assert_unavailable(client.get("/readyz"))
+            assert not save(client, acknowledged)
+        await_ready(client)
 
 
 @pytest.fixture

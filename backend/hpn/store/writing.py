@@ -20,13 +20,18 @@ from hpn.store.packing import packed
 from hpn.store.saved import Draft, search_text
 from hpn.store.tables import catalogues, selections, spent_keys
 
-REHEARSED_BYTES = 64 * 1024
-"""More than most selections take: a small row still finds a place in a file of a full disk."""
 
-REHEARSED = Draft(
-    application=b"", result=secrets.token_bytes(REHEARSED_BYTES), engine_version="", catalogue_version="", selected=None
-)
-"""What a rehearsal saves; nobody ever sees it. It can't be packed."""
+def _rehearsed(size: int) -> Draft:
+    """Content of so many bytes that can't be packed."""
+    return Draft(
+        application=b"", result=secrets.token_bytes(size), engine_version="", catalogue_version="", selected=None
+    )
+
+
+REHEARSED = (_rehearsed(64 * 1024), *[_rehearsed(1500)] * 12)
+"""What a rehearsal saves; nobody ever sees it. More than most selections take, as a small row still finds a place in a
+file of a full disk; in PostgreSQL of both files, as long results stand in one of their own, and rows in pages of 8 kB.
+"""
 
 
 async def insert(connection: AsyncConnection, draft: Draft) -> str:
@@ -73,10 +78,10 @@ def _search_text(named: Any) -> str:
     return search_text(named.title, named.reference, named.author, named.ordering_code, named.designation)
 
 
-async def _insert_new(connection: AsyncConnection, table: Table, row: dict[str, Any]) -> None:
-    """Insert a row unless one with the same unique key is there; SQLAlchemy has this for each database apart."""
+async def _insert_new(connection: AsyncConnection, table: Table, *rows: dict[str, Any]) -> None:
+    """Insert rows unless those with the same unique key are there; SQLAlchemy has this for each database apart."""
     dialect = sqlite if connection.dialect.name == "sqlite" else postgresql
-    await connection.execute(dialect.insert(table).values(row).on_conflict_do_nothing())
+    await connection.execute(dialect.insert(table).values(rows).on_conflict_do_nothing())
 
 
 async def _keep_catalogue(connection: AsyncConnection, version: str, catalogue: Catalogue) -> None:
@@ -107,9 +112,9 @@ async def rehearse(connection: AsyncConnection) -> None:
     """Do to the tables what saving does, and take it back in the same transaction: fails where saving would fail."""
     for table in (catalogues, spent_keys):
         await connection.execute(select(literal(1)).select_from(table).limit(1))
-    row = _row_of(REHEARSED)
-    await _insert_new(connection, selections, row)
-    await connection.execute(delete(selections).where(selections.c.id == row["id"]))
+    rows = [_row_of(draft) for draft in REHEARSED]
+    await _insert_new(connection, selections, *rows)
+    await connection.execute(delete(selections).where(selections.c.id.in_([row["id"] for row in rows])))
 
 
 async def rename(connection: AsyncConnection, id: str, names: Mapping[str, str | None]) -> bool:
