@@ -118,15 +118,15 @@ class Evaluation:
         """Place of the first gear by that order out of some of the suitable ones (N, G); any where there is none.
 
         A minimum over one key after the other, where what is not published is greater than every number: sorting takes
-        ten times as long.
+        ten times as long. NumPy finds the place of a minimum in a fifth of the time of its value.
         """
         left, decided = among, np.count_nonzero(among.any(axis=-1))
         for key in {id(key): key for key in (self._wish, *self._ties)}.values():
             if np.count_nonzero(left) == decided:
                 break
-            values = np.where(left, key, np.nan)
-            least = np.fmin.reduce(values, axis=-1, keepdims=True)
-            left = left & ((values == least) | np.isnan(least))
+            values = np.where(left & ~np.isnan(key), key, np.inf)
+            least = np.take_along_axis(values, values.argmin(axis=-1, keepdims=True), -1)
+            left = left & (values == least)
         places: PlaceArray = left.argmax(axis=-1)  # of a tie in all of them the first in the catalogue
         return places
 

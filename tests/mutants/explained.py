@@ -34,6 +34,7 @@ EXPLAINED: dict[str, str] = {
     "evaluation Evaluation.foremost: -1 -> (1)": LAST_OF_TWO,
     "evaluation Evaluation.foremost: -1 -> (1) #2": LAST_OF_TWO,
     "evaluation Evaluation.foremost: -1 -> (1) #3": LAST_OF_TWO,
+    "evaluation Evaluation.foremost: -1 -> (1) #4": LAST_OF_TWO,
     "evaluation _verdicts: 0 -> 1": FIRST_TWO,
     "evaluation _verdicts: largest > checked[0].bound -> (largest) >= (checked[0].bound)": ON_THE_BOUND,
     "evaluation _verdicts: 0 -> 1 #2": FIRST_TWO,
