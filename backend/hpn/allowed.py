@@ -8,6 +8,7 @@ from hpn.catalogue import Catalogue, GearList
 from hpn.wording import N_, Sentence, Value
 
 NOT_THERE = N_("the catalogue has no {value}; there are {listed}")
+NOT_TOGETHER = N_("no gear has such a size and ratio together; there are {offered}")
 
 MOTORS_NAMED = 20
 """Motors that an error names."""
@@ -51,7 +52,7 @@ def _restricted(catalogue: Catalogue, sizes: tuple[str, ...] | None, ratios: tup
         raise InputError(
             (
                 ("requirements", "ratios"),
-                Sentence("no gear has such a size and ratio together; there are {offered}", {"offered": offered}),
+                Sentence(NOT_TOGETHER, {"offered": offered}),
             )
         )
     return gears

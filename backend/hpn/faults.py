@@ -5,8 +5,12 @@ from collections.abc import Iterable, Sequence
 from pydantic import ValidationError
 
 from hpn.application import InputError
+from hpn.wording import N_
 
 Location = Sequence[str | int]
+
+REQUIRED = N_("is required")
+NOT_A_NUMBER = N_("must be a number, such as 9.3")
 
 
 def faults_of(error: ValidationError | InputError) -> list[tuple[Location, str]]:
@@ -32,12 +36,12 @@ def plain_faults(found: Iterable[tuple[Location, str, str]]) -> list[tuple[Locat
 def plain_message(kind: str, message: str) -> str:
     """Pydantic's message in words that say what would be right."""
     return {
-        "extra_forbidden": "is not a field of this object",
-        "missing": "is required",
-        "float_parsing": "must be a number, such as 9.3",
-        "finite_number": "must be a finite number",
-        "float_type": "must be a JSON number, such as 9.3",
-        "int_type": "must be a JSON integer, such as 5",
-        "tuple_type": "must be a list",
-        "model_type": "must be an object",
+        "extra_forbidden": N_("is not a field of this object"),
+        "missing": REQUIRED,
+        "float_parsing": NOT_A_NUMBER,
+        "finite_number": N_("must be a finite number"),
+        "float_type": N_("must be a JSON number, such as 9.3"),
+        "int_type": N_("must be a JSON integer, such as 5"),
+        "tuple_type": N_("must be a list"),
+        "model_type": N_("must be an object"),
     }.get(kind) or message.removeprefix("Value error, ").replace("Input should", "must").replace("Tuple should", "must")

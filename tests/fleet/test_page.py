@@ -104,6 +104,8 @@ def test_a_fleet_shows_each_axis_with_its_link(client: TestClient, fleet: str, s
     assert f"</span> {select(applications[0], service.state.catalogue).selected}</td>" in page
     assert "nearest: " in page
     assert re.search(r'Greifer</th>.*?class="reason"[^>]*>torque_Nm: ', page, re.DOTALL)
+    german = unescape(client.get(fleet, headers={"Accept-Language": "de"}).text)
+    assert re.search(r'class="reason"[^>]*>torque_Nm: Phase 1: muss eine Zahl sein, z. B. 9.3<', german)
 
 
 @pytest.mark.parametrize(

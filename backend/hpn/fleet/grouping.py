@@ -13,6 +13,7 @@ from hpn.fleet.columns import AXIS, COLUMNS
 from hpn.fleet.outcome import Fault
 from hpn.fleet.tables import Batch, CellFault, Table
 from hpn.phase import MAXIMUM_PHASES
+from hpn.wording import N_
 
 PART_PHASES, PART_AXES, PART_BYTES = 600_000, 60_000, 8_000_000
 """Size of a part, in rows of long and of list form and in bytes of lines: some tenths of a second of work."""
@@ -20,7 +21,7 @@ PART_PHASES, PART_AXES, PART_BYTES = 600_000, 60_000, 8_000_000
 WINDOW = 100_000
 """Axes up to which one that is missing from a table is looked for further on."""
 
-BROKEN_BEFORE = "the line before can’t be read, and may belong to this axis"
+BROKEN_BEFORE = N_("the line before can’t be read, and may belong to this axis")
 
 
 class Part(NamedTuple):
@@ -274,8 +275,8 @@ def _rows_of(table: Table, unit: int, row: int, count: int) -> Listed:
     return Listed(pa.concat_tables(pieces) if pieces else schema.empty_table(), faults)
 
 
-NOT_BESIDE = "is missing from the table of --axes, or not in the order of the phases"
-NO_PHASES = "has no phases in INPUT"
+NOT_BESIDE = N_("is missing from the table of --axes, or not in the order of the phases")
+NO_PHASES = N_("has no phases in INPUT")
 
 
 def _joined(listed: Listed, others: Listed) -> Listed:

@@ -16,9 +16,11 @@ import pyarrow as pa
 import pyarrow.compute as pc
 import pyarrow.csv as pacsv
 
+from hpn.faults import NOT_A_NUMBER
 from hpn.fleet.columns import AXIS, COLUMNS, Column, is_list
 from hpn.fleet.errors import FleetError
 from hpn.fleet.tables import BATCH_ROWS, Batch, CellFault, Table
+from hpn.wording import N_
 
 UNIT_BYTES = 8_000_000
 """Length of a stretch of lines, which ends with a line."""
@@ -28,11 +30,11 @@ MOST_LINE_BYTES = 64_000_000
 
 BOM = b"\xef\xbb\xbf"
 NUMBER = r"^[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?$|^[+-]?(nan|inf|infinity)$"
-NO_NUMBER = "must be a number with a decimal point, such as 9.3"
-NO_NUMBERS = "must be a JSON list of numbers, such as [40, 32.5]"
-NO_TEXTS = 'must be a JSON list of texts, such as ["14A", "20A"]'
-NO_TEXT = "must be text"
-NOT_UTF8 = "must be UTF-8"
+NO_NUMBER = N_("must be a number with a decimal point, such as 9.3")
+NO_NUMBERS = N_("must be a JSON list of numbers, such as [40, 32.5]")
+NO_TEXTS = N_('must be a JSON list of texts, such as ["14A", "20A"]')
+NO_TEXT = N_("must be text")
+NOT_UTF8 = N_("must be UTF-8")
 REPLACED = "\ufffd"
 """Stands for bytes that are no UTF-8, here and in every text that was read so before."""
 
@@ -345,21 +347,28 @@ class NdjsonTable(LinesTable):
         cells, wrong = {}, []
         for name, value in given.items():
             if name not in self._kinds:
-                wrong.append((name, "is not a column"))
+                wrong.append((name, N_("is not a column")))
             elif _is(value, self._kinds[name]):
                 cells[name] = value
             else:
-                wrong.append((name, self._right(name)))
+                wrong.append((name, self._right(name, value)))
         return cells, wrong
 
-    def _right(self, name: str) -> str:
+    def _right(self, name: str, value: Any) -> str:
+        """What would be right in place of a value."""
         if name == AXIS:
-            kind = "an integer" if pa.types.is_integer(self.axis_type) else "text"
-            return f"must be {kind}, as in the first row"
+            is_integer = pa.types.is_integer(self.axis_type)
+            return (
+                N_("must be an integer, as in the first row") if is_integer else N_("must be text, as in the first row")
+            )
         column = COLUMNS.all[name]
-        if is_list(self.type_of(name)):
+        right, kind = (NO_TEXT, str) if column.kind == "string" else (NOT_A_NUMBER, float)
+        if not is_list(self.type_of(name)):
+            return right
+        if not isinstance(value, list):
             return _no_list(column)
-        return NO_TEXT if column.kind == "string" else NO_NUMBER
+        place = next(place for place, item in enumerate(value, start=1) if not _is(item, kind))
+        return f"{'phase' if name in COLUMNS.phases else 'item'} {place}: {right}"
 
 
 def _object(line: bytes) -> dict[str, Any]:

@@ -15,7 +15,7 @@ from hpn.catalogue import Catalogue
 from hpn.checks import CHECKS
 from hpn.equations import FloatArray
 from hpn.evaluation import SUITABLE, Evaluation, evaluate
-from hpn.faults import faults_of
+from hpn.faults import REQUIRED, faults_of
 from hpn.fleet.axes import Allowed, Axes, BoolArray, IntArray, have_sound_lists
 from hpn.fleet.columns import AXIS, COLUMNS
 from hpn.selection import Candidate, Reserve, candidates_of
@@ -189,7 +189,7 @@ def _all_faults(table: pa.Table, mask: BoolArray, faults: Sequence[Fault], catal
 def _found(table: pa.Table, row: int, catalogue: Catalogue) -> list[Fault]:
     """What the lists lack, or else what the models or the selection refuse."""
     cells = {name: table[name][row].as_py() for name in table.column_names}
-    faults = [] if cells[AXIS] is not None else [Fault(row, AXIS, "is required")]
+    faults = [] if cells[AXIS] is not None else [Fault(row, AXIS, REQUIRED)]
     if found := faults + [Fault(row, *fault) for fault in _faults_of_lists(cells)]:
         return found
     try:
@@ -205,7 +205,7 @@ def _faults_of_lists(cells: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
     for name, column in COLUMNS.phases.items():
         values = cells.get(name)
         if values is None and column.required:
-            yield name, "is required"
+            yield name, REQUIRED
         elif values is not None and len(values) != count:
             yield name, f"has {len(values)} phases where torque_Nm has {count}"
 

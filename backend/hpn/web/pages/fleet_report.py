@@ -23,7 +23,7 @@ STYLES, SCRIPT = ("app.css", "tools.css", "fleet.css"), "fleet-report.js"
 
 
 def report_of(listing: Listing, name: str, catalogue: Catalogue, base: str = "", language: str = "en") -> str:
-    """The file, in a language but for the reasons of rejected axes, which stand as in the answers.
+    """The file in a language.
 
     `base` is the address of the service that its links lead to, blank where none is known.
     """

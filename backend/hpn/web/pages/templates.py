@@ -26,6 +26,7 @@ from hpn.web.form import symbols, ways
 from hpn.web.form.ordering import MOTOR_CODE, ordering_code
 from hpn.web.pages import assets, mathml, pictures
 from hpn.web.pages.carried import carried_pairs, onward
+from hpn.web.pages.fleet_reasons import reasons_of
 from hpn.web.pages.result import BEST
 from hpn.web.preview import preview_of
 from hpn.wording import Sentence
@@ -160,6 +161,7 @@ FILTERS: dict[str, Callable[..., Any]] = {
     "capital": lambda text: text[:1].upper() + text[1:],
     "figure": _figure,
     "reason": _reason,
+    "reasons": reasons_of,
     "say": _say,
     "symbols": with_symbols,
     "t": _for_reader("text"),

@@ -1,0 +1,51 @@
+"""Reasons of rejected axes, which the answers of a fleet have in English, as sentences for a reader.
+
+Fixed texts are translated as they are; of those with values the template is found again.
+"""
+
+import re
+
+from hpn.allowed import NOT_THERE, NOT_TOGETHER
+from hpn.wording import N_, Sentence
+
+TEMPLATES = (
+    N_("phase {number}: {reason}"),
+    N_("item {number}: {reason}"),
+    N_("the row has {found} cells where the header has {expected}"),
+    N_("the line is not a JSON object: {error}"),
+    N_("has {found} phases where torque_Nm has {count}"),
+    N_("must have at most {most} items after validation, not {found}"),
+    N_("must be greater than or equal to {bound}"),
+    N_("must be greater than {bound}"),
+    N_("must be less than or equal to {bound}"),
+    N_("must be less than {bound}"),
+    N_("must be '{expected}'"),
+    NOT_THERE,
+    NOT_TOGETHER,
+)
+"""Reasons with values, the narrower before the wider."""
+
+_FAULTS = re.compile(r"; (?=[a-z][A-Za-z0-9_.]*: )")
+
+
+def _pattern(template: str) -> re.Pattern[str]:
+    return re.compile(re.sub(r"\\\{(\w+)\\\}", r"(?P<\1>.+)", re.escape(template)), re.DOTALL)
+
+
+PATTERNS = {template: _pattern(template) for template in TEMPLATES}
+
+
+def reasons_of(error: str) -> list[tuple[str, Sentence]]:
+    """Column and reason of each fault of an axis, from the text of all that the answers have."""
+    parts = (fault.partition(": ") for fault in _FAULTS.split(error))
+    return [(column, _sentence(reason)) for column, _, reason in parts]
+
+
+def _sentence(reason: str) -> Sentence:
+    for template, pattern in PATTERNS.items():
+        if found := pattern.fullmatch(reason):
+            texts = found.groupdict()
+            return Sentence(
+                template, {name: _sentence(text) if name == "reason" else text for name, text in texts.items()}
+            )
+    return Sentence("{text}", {"text": reason}, ("text",))
