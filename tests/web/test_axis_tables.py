@@ -1,10 +1,13 @@
 """Tables of axes as spreadsheets write them: no number is silently another one, and what has two readings is asked."""
 
+from itertools import product
 from typing import Any
 
 import pytest
 
-from hpn.web.form.axis_columns import BY_ROLE
+from hpn import units
+from hpn.reader import LANGUAGES, Reader
+from hpn.web.form.axis_columns import BY_ROLE, quantity_of
 from hpn.web.form.axis_tables import AxisTable, read_axes
 from hpn.web.form.columns import Choices
 from hpn.web.form.sheets import grids_of
@@ -57,6 +60,22 @@ def test_a_unit_that_nobody_says_is_asked_where_the_reader_sees_another() -> Non
     table = read("Achse;Moment;Drehzahl [1/min];Dauer [s]", "A;1;10;1", assumed=())
 
     assert asked(table) == ["Which unit is column “Moment” in?"]
+
+
+@pytest.mark.parametrize("form", ["{} {}", "{} [{}]"])
+def test_a_unit_behind_a_name_is_never_taken_for_another(form: str) -> None:
+    wrong = []
+    for role, symbol in BY_ROLE.items():
+        quantity = quantity_of(role)
+        names = {Reader(language).text(symbol.named.name) for language in LANGUAGES} if quantity else ()
+        for name, spelling in product(names, units.SPELLINGS):
+            codes = units.codes_for(spelling, quantity)
+            _, column, *_ = read(f"Achse;{form.format(name, spelling)};Nr.;Pos.", "A;1;1;1").columns
+            if len(codes) == 1 and column.role == role and column.unit not in ("", codes[0]):
+                wrong.append(form.format(name, spelling))
+    assert wrong == []
+    columns = read("Achse;Moment kNm;Drehzahl;Dauer ms;Pause", ";;rad/s;;min", "A;1;1;1;1").columns
+    assert [column.unit for column in columns] == ["", "kNm", "rad_per_s", "ms", "min"]
 
 
 @pytest.mark.parametrize(

@@ -143,7 +143,7 @@ def _unit(body: Body, column: AxisColumn, assumed: Collection[str]) -> str:
     """Unit as the headings say it, else that of the wire if it may be assumed; else blank."""
     wire = BY_ROLE[column.role].unit
     headings = body.headings[column.place]
-    if any(_folded(text).endswith(_folded(f"_{wire}")) for text in headings):
+    if any(text.strip().casefold().endswith(f"_{wire}".casefold()) for text in headings):
         return wire
     written = {heading_of(text).unit or parts_of(text)[1] for text in headings} - {""}
     if not written:
