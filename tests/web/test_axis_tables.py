@@ -128,3 +128,68 @@ def test_a_number_that_is_too_large_is_no_number_that_is_left_out() -> None:
     axis = read(HEAD + ";Lebensdauer Getriebe [h]", "A;1;100;1;1e999").axes[0]
 
     assert axis["requirements.life_h"] == "1e999"
+
+
+NUMBERED = "Phase;Achse;Moment [Nm];Drehzahl [1/min];Dauer [s]"
+GOING_ON = ("A;1;10;1", "A;2;20;3", "B;1;10;2", "B;2;20;5", "C;1;10;2", "C;2;20;5", "D;1;10;2", "D;2;20;5")
+
+
+@pytest.mark.parametrize("other", ["E;1;10;k.A.\nE;2;20;2", "E;1;10;2\nE;2;20;1", "E;1;10;2"])
+def test_one_axis_does_not_decide_what_the_times_of_the_others_are(other: str) -> None:
+    head = "Achse;Moment [Nm];Drehzahl [1/min];Zeit [s]"
+
+    assert asked(read(head, *GOING_ON, other)) == ["Do the times say how long a phase lasts, or when it is?"]
+    said = read(head, *GOING_ON, other, times="ends")
+    assert [axis["duration_s"] for axis in said.axes[:2]] == [[1, 2], [2, 3]]
+    falling = read(head, "A;1;10;3", "A;2;20;1", "B;1;10;2")
+    assert (falling.times, falling.asks_times) == ("durations", True)
+
+
+def test_two_decimal_marks_in_a_table_are_asked_and_what_no_longer_is_a_number_is_told() -> None:
+    rows = "A;12,5;100;1,5", "B;13,5;100;1.125", "C;2;100;0.5"
+
+    assert asked(read(HEAD, *rows)) == ["Both decimal marks are written, as in 0.5 and 12,5: which one counts?"]
+    comma = read(HEAD, *rows, decimal=",")
+    assert [axis["duration_s"] for axis in comma.axes] == [[1.5], [1125.0], ["0.5"]]
+    assert [note.text for note in comma.notes][-1] == (
+        "Cells that are no numbers, such as 0.5: 1. Their axes are rejected."
+    )
+    sure = read(HEAD, "A;12,5;100;1,5", "C;2;100;0.5")
+    assert asked(sure) == [] and sure.axes[1]["duration_s"] == ["0.5"]
+
+
+def test_a_row_with_neither_axis_nor_number_is_asked_where_others_have_one() -> None:
+    rows = "1;A;12,5;100;1", "2;;8;100;2", "1;B;9;100;3"
+
+    assert asked(read(NUMBERED, *rows)) == []
+    assert asked(read(NUMBERED, *rows, ";;29,5;300;6")) == [
+        "Row 5 has neither an axis nor a number, which other rows have: leave it out if it is a sum, or write its axis "
+        "into it."
+    ]
+    merged = "Lfd. Nr.;Achse;Moment [Nm];Drehzahl [1/min];Dauer [s]"
+    assert asked(read(merged, "1;A;12,5;100;1", ";;8;100;2", "2;B;9;100;3")) == []
+
+
+def test_what_an_axis_says_twice_is_compared_as_numbers_and_spoils_that_axis_alone() -> None:
+    table = read(f"{HEAD};Pause [s];Übersetzung", "A;1;9;1;2;5", "A;1;9;2;2,0;5", "B;1;9;1;2;5", "B;1;9;2;3;10")
+
+    assert [axis["pause_s"] for axis in table.axes] == [2.0, "2 / 3"]
+    assert [axis["requirements.ratios"] for axis in table.axes] == [[5.0], ["5 / 10"]]
+
+
+@pytest.mark.parametrize(
+    ("heading", "cell", "column", "value"),
+    [
+        ("Übersetzung", "5, 10", "requirements.ratios", [5, 10]),
+        ("Übersetzung", "i = 5", "requirements.ratios", [5]),
+        ("Übersetzung", "5:1 / 10:1", "requirements.ratios", [5, 10]),
+        ("Auslastung u", "80 %", "requirements.utilisation", 0.8),
+        ("Umgebungstemperatur [°C]", "25 °C", "requirements.ambient_temperature_degC", 25),
+        ("Umgebungstemperatur [°C]", "25 %", "requirements.ambient_temperature_degC", "25 %"),
+        ("Maximale Länge", "20 cm", "requirements.length_mm", 200),
+    ],
+)
+def test_cells_are_read_as_people_write_them(heading: str, cell: str, column: str, value: Any) -> None:
+    roles = {4: "u"} if heading.startswith("Auslastung") else {}
+
+    assert read(f"{HEAD};{heading}", f"A;1;9;1;{cell}", roles=roles).axes[0][column] == value

@@ -259,6 +259,7 @@ def _one_by_one(cells: pa.Array, read: Any, wanted: pa.DataType, reason: str) ->
 
 AXIS_IN_LINE = re.compile(rb'"axis"\s*:\s*("(?:[^"\\]|\\.)*"|-?[0-9]+(?=[\s,}]))')
 MOST_INTEGER = 2**63
+MOST_SHOWN = 60
 
 READ_AS: dict[tuple[bool, bool], Any] = {
     (False, False): float,
@@ -364,16 +365,22 @@ class NdjsonTable(LinesTable):
         column = COLUMNS.all[name]
         right, kind = (NO_TEXT, str) if column.kind == "string" else (NOT_A_NUMBER, float)
         if not is_list(self.type_of(name)):
-            return right
+            return f"{right}, not {_shown(value)}"
         if not isinstance(value, list):
             return _no_list(column)
-        place = next(place for place, item in enumerate(value, start=1) if not _is(item, kind))
-        return f"{'phase' if name in COLUMNS.phases else 'item'} {place}: {right}"
+        place, item = next((place, item) for place, item in enumerate(value, start=1) if not _is(item, kind))
+        return f"{'phase' if name in COLUMNS.phases else 'item'} {place}: {right}, not {_shown(item)}"
 
 
 def _object(line: bytes) -> dict[str, Any]:
     row: dict[str, Any] = msgspec.json.decode(line, type=dict[str, Any])
     return row
+
+
+def _shown(value: Any) -> str:
+    """A value as it stands in JSON, in as many characters as have room in a reason."""
+    text = msgspec.json.encode(value).decode(errors="replace")
+    return text if len(text) <= MOST_SHOWN else f"{text[:MOST_SHOWN]}…"
 
 
 def _is(value: Any, kind: Any) -> bool:

@@ -12,7 +12,7 @@ from hpn import units
 from hpn.quantities import Named
 from hpn.reader import LANGUAGES, Reader
 from hpn.web.form.cells import is_blank, is_number
-from hpn.web.form.columns import SKIP, Body, Choices, Column
+from hpn.web.form.columns import NUMBERS, SKIP, Body, Choices, Column
 from hpn.web.form.headings import INDEX, LONGEST, QUANTITIES, SUM, UNIT, heading_of, parts_of
 from hpn.web.form.symbols import PHASE_SYMBOLS, SYMBOLS, Symbol
 from hpn.wording import N_, Sentence
@@ -59,6 +59,11 @@ class AxisColumn(Column):
         return quantity_of(self.role)
 
     @property
+    def numbers_phases(self) -> bool:
+        """Whether it is left out because its cells number the rows."""
+        return self.skipped is not None and self.skipped.template == NUMBERS
+
+    @property
     def is_number(self) -> bool:
         """Whether its cells hold one number each."""
         return self.symbol is not None and self.symbol.kind != "text" and not self.symbol.many
@@ -91,7 +96,7 @@ def _proposed(body: Body, place: int) -> AxisColumn:
     kinds = {each.kind for each in said} - {UNIT, ""}
     kind = kinds.pop() if len(kinds) == 1 else ""
     if kind in (INDEX, SUM):
-        why = Sentence(N_("numbers the phases")) if kind == INDEX else Sentence(N_("a sum"))
+        why = Sentence(NUMBERS) if kind == INDEX else Sentence(N_("a sum"))
         return AxisColumn(place, heading, SKIP, skipped=why)
     if kind in QUANTITIES:
         return AxisColumn(place, heading, kind, lasting=any(each.lasting for each in said))

@@ -5,7 +5,7 @@ number spoils its axis alone, which is then rejected with its reason.
 """
 
 import re
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import groupby, pairwise
@@ -14,15 +14,21 @@ from typing import Any
 
 from hpn import units
 from hpn.web.form.axis_columns import AXIS, BY_ROLE, PHASES, AxisColumn, columns_of
-from hpn.web.form.cells import DECIMALS, Decimal, Entry, entry, is_blank
+from hpn.web.form.cells import DECIMALS, Decimal, Entry, entry, is_blank, plain
 from hpn.web.form.columns import NO_CHOICES, REQUIRED, SKIP, Body, Choices, body_of
+from hpn.web.form.numbers import split_unit
 from hpn.web.form.pasted import TIMES
 from hpn.web.form.sheets import Grid, RefusedError
 from hpn.wording import N_, Sentence, Value
 
 NEEDED = (AXIS, *REQUIRED)
 
+MOSTLY = 0.75
+"""Share of the axes from which on all times count as going on: a bad cell in one changes nothing for the others."""
+
 _APART = re.compile(r"[;/|\s]+")
+_OF_RATIO = re.compile(r"\bi\s*=\s*|\s*:\s*1\b")
+"""What is written beside the number of a ratio: `i = 5`, `5:1`."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -107,41 +113,54 @@ class _Reading:
                 self._ask(N_("Columns {one} and {other} are read as the same."), one=names[0], other=names[1])
 
     def _decimal(self) -> tuple[Decimal | None, tuple[tuple[str, str], ...]]:
-        """Decimal mark by which most cells are numbers; None where two would give different ones."""
+        """Decimal mark of the numbers, None where it is asked for, and what one with two readings is under each."""
         places = [column.place for column in self.columns if column.is_number]
         cells = [cell for row in self.body.rows for place in places if not is_blank(cell := row[place])]
-        read = {mark: [entry(cell, mark) for cell in cells] for mark in DECIMALS}
+        read = {mark: [_entry(cell, mark) for cell in cells] for mark in DECIMALS}
+        mark, marks = self._mark(cells, read)
+        found = read[mark] if mark else [one or other for one, other in zip(*read.values(), strict=True)]
+        wrong = [cell for cell, number in zip(cells, found, strict=True) if number is None]
+        if wrong:
+            template = N_("Cells that are no numbers, such as {cell}: {count}. Their axes are rejected.")
+            self.notes.append(Sentence(template, {"count": len(wrong), "cell": wrong[0][:40]}))
+        return mark, marks
+
+    def _mark(
+        self, cells: Sequence[str], read: Mapping[Decimal, Sequence[Entry | None]]
+    ) -> tuple[Decimal | None, tuple[tuple[str, str], ...]]:
+        """The mark by which most cells are numbers; asked where two would give different ones, or both are written."""
         counts = {mark: sum(cell is not None for cell in found) for mark, found in read.items()}
         left = [mark for mark in DECIMALS if counts[mark] == max(counts.values())]
-        wrong = next((cell for cell, *found in zip(cells, *read.values(), strict=True) if not any(found)), None)
-        if wrong is not None:
-            count = len(cells) - sum(any(found) for found in zip(*read.values(), strict=True))
-            template = N_("Cells that are no numbers, such as {cell}: {count}. Their axes are rejected.")
-            self.notes.append(Sentence(template, {"count": count, "cell": wrong[:40]}))
-        if len(left) == 1:
-            return left[0], ()
-        pairs = zip(*read.values(), strict=True)
+        pairs = list(zip(*read.values(), strict=True))
+        alone = [
+            next((c for c, pair in zip(cells, pairs, strict=True) if pair[k] and not pair[1 - k]), "") for k in (0, 1)
+        ]
         differing = next((pair for pair in pairs if pair[0] != pair[1] and all(pair)), None)
-        if differing is None:
-            return DECIMALS[0], ()
+        if differing is None or (len(left) == 1 and not all(alone)):
+            return left[0], ()
         marks = tuple((mark, cell.number) for mark, cell in zip(DECIMALS, differing, strict=True) if cell)
-        if self.choices.decimal in left:
-            return next(mark for mark in left if mark == self.choices.decimal), marks
-        self._ask(N_("Which is the decimal mark?"))
+        if self.choices.decimal in DECIMALS:
+            return next(mark for mark in DECIMALS if mark == self.choices.decimal), marks
+        if all(alone):
+            template = N_("Both decimal marks are written, as in {one} and {other}: which one counts?")
+            self._ask(template, one=alone[0][:40], other=alone[1][:40])
+        else:
+            self._ask(N_("Which is the decimal mark?"))
         return None, marks
 
     def _times(self, groups: Sequence["Group"], decimal: Decimal) -> tuple[str, bool]:
-        """What the times are; asked where they go on in every axis: then they may be points in time."""
+        """What the times are; asked where they go on in most axes: then they may be points in time."""
         column = self.by_role.get("t")
         if column is None or column.lasting or not column.unit:
             return "durations", False
         series = [[_seconds(row[column.place], column, decimal) for row in group.rows] for group in groups]
-        longer = [times for times in series if len(times) > 1]
-        going_on = all(None not in times and _goes_on(times) for times in longer)
-        if not longer or not going_on:
+        going_on = [_goes_on(times) for times in series if len(times) > 1 and None not in times]
+        if not going_on:
             return "durations", False
         if self.choices.times in TIMES:
             return self.choices.times, True
+        if sum(going_on) < MOSTLY * len(going_on):
+            return "durations", True
         self._ask(N_("Do the times say how long a phase lasts, or when it is?"))
         return "", True
 
@@ -157,6 +176,7 @@ class _Reading:
             name = row[column.place]
             continued += is_blank(name) and bool(names)
             names.append(names[-1] if is_blank(name) and names else name)
+        self._ask_sums(column)
         if continued:
             template = N_("Rows that name no axis and belong to the one above: {count}.")
             self.notes.append(Sentence(template, {"count": continued}))
@@ -166,6 +186,22 @@ class _Reading:
             found = list(members)
             groups.append(Group(name, tuple(row for _, row, _ in found), tuple(number for _, _, number in found)))
         return groups
+
+    def _ask_sums(self, axis: AxisColumn) -> None:
+        """Ask for a row without axis and number where other rows without an axis have one: most likely it is a sum."""
+        indices = [column.place for column in self.columns if column.numbers_phases]
+        unnamed = [
+            (number, all(is_blank(row[place]) for place in indices))
+            for row, number in zip(self.body.rows, self.body.numbers, strict=True)
+            if is_blank(row[axis.place])
+        ]
+        if indices and not all(is_sum for _, is_sum in unnamed):
+            for number in [number for number, is_sum in unnamed if is_sum][:1]:
+                template = N_(
+                    "Row {row} has neither an axis nor a number, which other rows have: leave it out if it is a sum, "
+                    "or write its axis into it."
+                )
+                self._ask(template, row=number)
 
     def _axes(self, groups: Sequence["Group"], decimal: Decimal, times: str) -> Iterator[dict[str, Any]]:
         for group in groups:
@@ -179,26 +215,26 @@ class _Reading:
                     values = [_number(cell, column, decimal) for cell in cells]
                     if column.role in REQUIRED or any(value is not None for value in values):
                         axis[symbol.path[0]] = values
-                elif (value := self._one(cells, column, decimal, group)) is not None:
+                elif (value := self._one(cells, column, decimal)) is not None:
                     axis[_column_name(column)] = value
             yield _lasting(axis, times)
 
-    def _one(self, cells: Sequence[str], column: AxisColumn, decimal: Decimal, group: "Group") -> Any:
-        """What the rows of an axis say in common; raises RefusedError where they say two things."""
-        given = dict.fromkeys(cell for cell in cells if not is_blank(cell))
-        if len(given) > 1:
-            template = N_("row {row}: axis {axis} has {one} and {other} in column {name}; it may have one")
-            one, other = list(given)[:2]
-            row = group.numbers[[*cells].index(other)]
-            raise RefusedError(
-                template, row=row, axis=group.name[:40], one=one[:40], other=other[:40], name=column.called
-            )
+    def _one(self, cells: Sequence[str], column: AxisColumn, decimal: Decimal) -> Any:
+        """What the rows of an axis say in common; where that are two things both, as they are written: no input."""
+        given = list(dict.fromkeys(cell for cell in cells if not is_blank(cell)))
         if not given:
             return None
-        cell = next(iter(given))
-        if column.symbol and column.symbol.many:
-            return _listed(cell, column, decimal)
-        return _number(cell, column, decimal) if column.is_number else str(cell)
+        values = [_value(cell, column, decimal) for cell in given]
+        if all(value == values[0] for value in values):
+            return values[0]
+        written = " / ".join(given[:3])
+        return [written] if column.symbol and column.symbol.many else written
+
+
+def _value(cell: str, column: AxisColumn, decimal: Decimal) -> Any:
+    if column.symbol and column.symbol.many:
+        return _listed(cell, column, decimal)
+    return _number(cell, column, decimal) if column.is_number else str(cell)
 
 
 @dataclass(frozen=True, slots=True)
@@ -230,11 +266,22 @@ def _column_name(column: AxisColumn) -> str:
     return path[-1] if path[0] == "duty_cycle" else ".".join(path)
 
 
+def _entry(cell: str, decimal: Decimal) -> Entry | None:
+    """A cell as a number, with whichever unit: not only phases have columns here."""
+    if found := entry(cell, decimal):
+        return found
+    written, unit = (cell[:-1].rstrip(), "%") if cell.endswith("%") else split_unit(cell)
+    number = plain(written, decimal) if unit == "%" or units.codes_for(unit) else None
+    return Entry(number, unit) if number else None
+
+
 def _read(cell: str, column: AxisColumn, decimal: Decimal) -> Entry | None:
     """A cell as a number in the unit of its column, or in one of its own that measures the same; None otherwise."""
-    found = None if is_blank(cell) else entry(cell, decimal)
+    found = None if is_blank(cell) else _entry(cell, decimal)
     if found is None or not found.unit:
         return found
+    if found.unit == "%":
+        return None if column.quantity else Entry(f"{found.number}e-2", "")
     codes = units.codes_for(found.unit, column.quantity)
     return Entry(found.number, codes[0]) if column.quantity and len(codes) == 1 else None
 
@@ -253,7 +300,7 @@ def _number(cell: str, column: AxisColumn, decimal: Decimal) -> float | str | No
 
 def _listed(cell: str, column: AxisColumn, decimal: Decimal) -> list[float | str]:
     """Several ratios or sizes in a cell. A comma between digits is a decimal mark, and no ratio has one."""
-    texts = [text.strip() for text in _APART.split(cell.strip("[]")) if text.strip()]
+    texts = [text for part in _APART.split(_OF_RATIO.sub("", cell).strip("[]")) if (text := part.strip(","))]
     if column.symbol and column.symbol.kind == "text":
         return [part.strip() for text in texts for part in text.split(",") if part.strip()]
     found = [entry(text, decimal) for text in texts]

@@ -21,6 +21,8 @@ REQUIRED = ("T", "n", "t")
 SKIP, CELLS = "skip", "cells"
 """Of a column: not read; each cell says its own unit."""
 
+NUMBERS = N_("numbers the phases")
+
 DIVIDED = N_("row {row}: {cell} can be one number or two")
 _DIVIDED = re.compile("[0-9] [0-9]")
 _LEADS, _FOLLOWS = re.compile("[-+]?[1-9][0-9]{0,2}"), re.compile("[0-9]{3}([.,][0-9]+)?")
@@ -232,7 +234,7 @@ def _column(body: Body, place: int) -> Column:
     if kind not in QUANTITIES and (count == 0 or (count < len(cells) and body.headed)):
         return Column(place, heading, SKIP, skipped=Sentence(N_("text")), text=True)
     if kind in (INDEX, SUM):
-        why = Sentence(N_("numbers the phases")) if kind == INDEX else Sentence(N_("a sum"))
+        why = Sentence(NUMBERS) if kind == INDEX else Sentence(N_("a sum"))
         return Column(place, heading, SKIP, skipped=why)
     return Column(place, heading, kind, lasting=any(each.lasting for each in said))
 

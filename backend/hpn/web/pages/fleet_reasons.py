@@ -19,6 +19,8 @@ TEMPLATES = (
     N_("must be greater than {bound}"),
     N_("must be less than or equal to {bound}"),
     N_("must be less than {bound}"),
+    N_("must be a number, such as 9.3, not {found}"),
+    N_("must be text, not {found}"),
     N_("must be '{expected}'"),
     NOT_THERE,
     NOT_TOGETHER,
