@@ -256,3 +256,18 @@ def test_only_the_owner_s_key_deletes_a_fleet(kept: FleetDraft, tmp_path: Path) 
         assert client.get(address).status_code == 200
         assert client.post(f"{address}/delete").status_code == 303
         assert client.get(address).status_code == 404
+
+
+def test_a_reader_who_changes_language_over_a_table_comes_back_to_the_page_of_tables(client: TestClient) -> None:
+    page = post(client, GERMAN.encode()).text
+
+    assert re.search(r'name="back" value="([^"]*)"', page)[1] == "/fleets"  # type: ignore[index]
+
+
+def test_a_table_that_is_too_large_for_the_page_is_told_where_there_is_room(client: TestClient) -> None:
+    rows = "".join(f"A{number};1;{number % 100};1\n" for number in range(37_600))
+
+    answer = post(client, f"Achse;Moment [Nm];Drehzahl [1/min];Dauer [s]\n{rows}".encode())
+
+    assert answer.status_code == 422
+    assert "leave out the columns" in answer.text and "POST /api/v1/fleet, which have no such limit" in answer.text

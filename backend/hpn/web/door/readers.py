@@ -22,6 +22,9 @@ from hpn.web.door.visit import VISIT, Visit, current
 LANGUAGE, UNITS = "hpn_language", "hpn_units"
 """Cookies; what they hold is no secret and names nobody."""
 
+POSTED_TO_ITSELF = ("/fleets", "/paste")
+"""Pages whose form is posted to their own address."""
+
 YEAR_S = 365 * 24 * 3600
 MAXIMUM_BYTES = 70_000
 """A form of settings carries the address that it leads back to."""
@@ -91,7 +94,7 @@ def _cookies(header: str) -> dict[str, str]:
 
 def _address(scope: Scope) -> str:
     if scope["method"] not in ("GET", "HEAD"):
-        return "/"
+        return scope["path"] if scope["path"] in POSTED_TO_ITSELF else "/"
     query: bytes = scope["query_string"]
     return quote(scope["path"]) + (f"?{query.decode('latin-1')}" if query else "")
 

@@ -76,7 +76,7 @@ def grid_of(rows: Sequence[Sequence[str]], separator: str = "") -> Grid:
         raise RefusedError(N_("there is nothing in the text"))
     if len(kept) * max(len(row) for _, row, _ in kept) > MOST_CELLS:
         raise RefusedError(
-            N_("there are more than {most} cells: paste the columns of the duty cycle alone"), most=MOST_CELLS
+            N_("there are more than {most} cells: leave out the columns that are not needed"), most=MOST_CELLS
         )
     columns = list(zip_longest(*(row for _, row, _ in kept), fillvalue=""))
     while not any(columns[-1]):

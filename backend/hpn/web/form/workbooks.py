@@ -77,7 +77,7 @@ def _rows(sheet: Any) -> list[list[str]]:
         cells += len(said)
         if cells > MOST_CELLS:
             raise RefusedError(
-                N_("there are more than {most} cells: paste the columns of the duty cycle alone"), most=MOST_CELLS
+                N_("there are more than {most} cells: leave out the columns that are not needed"), most=MOST_CELLS
             )
     while rows and not any(rows[-1]):
         rows.pop()

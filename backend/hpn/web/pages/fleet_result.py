@@ -19,12 +19,12 @@ from hpn.fleet.listing import MOST_LISTED, NEAREST, AxisRow, listing_of, read_an
 from hpn.fleet.summary import Summary, summary_of
 from hpn.store import FleetDraft, SavedFleet
 from hpn.web.door.problems import Problem
-from hpn.wording import N_, Sentence
+from hpn.wording import N_, Quantity, Sentence
 
 COMPARED = ("selected", "governing_check", "utilisation", "suitable")
 TOO_MANY = N_(
-    "The table has {axes} axes, and a page takes {most} at most: size it with `hpn fleet` or POST /api/v1/fleet, which "
-    "have no such limit."
+    "The table has {axes} axes, and a page takes {most} at most: size it with the command hpn fleet or POST "
+    "/api/v1/fleet, which have no such limit."
 )
 
 
@@ -33,7 +33,7 @@ def draft_of(axes: Path, answers: Path, catalogue: Catalogue) -> FleetDraft:
     listing = listing_of(axes, None, answers, catalogue)
     summary = listing.summary
     if summary.axes > MOST_LISTED:
-        sentence = Sentence(TOO_MANY, {"axes": summary.axes, "most": MOST_LISTED})
+        sentence = Sentence(TOO_MANY, {"axes": Quantity(summary.axes, "", 12), "most": Quantity(MOST_LISTED, "", 12)})
         problem = Problem(413, sentence.text)
         problem.sentences = (sentence,)
         raise problem

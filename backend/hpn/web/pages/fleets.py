@@ -48,6 +48,7 @@ MOST_CARRIED = 16_000_000
 CHANGES_ON_PAGE = 100
 WRITTEN = {"title": "title", "ref": "reference", "author": "author", "rev": "revision"}
 NOTHING = N_("choose a file, or put cells into the field")
+LARGER = N_("Larger tables take the command hpn fleet and POST /api/v1/fleet, which have no such limit.")
 GONE = N_("There is no such fleet. What nobody saves is kept for a day.")
 
 
@@ -135,7 +136,8 @@ def _read(parts: Mapping[str, bytes]) -> Draft:
         sheet = chosen if chosen in found.sheets else next(iter(found.sheets))
         table = fleet_upload.best_reading(found.sheets[sheet], choices_of(fields, of), _assumed())
     except RefusedError as refused:
-        return Draft(text, (refused.sentence,))
+        larger = (Sentence(LARGER),) if "most" in refused.sentence.values else ()
+        return Draft(text, (refused.sentence, *larger))
     taken = (fleet_upload.lines_of(table), ".ndjson") if table.whole and "size" in fields else None
     problems = (table.problem,) if table.problem else ()
     return Draft(text, problems, table, of, carried, tuple(found.sheets), sheet, taken)
