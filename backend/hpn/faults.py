@@ -1,5 +1,6 @@
 """What is wrong with an input, as (location, text) pairs in words that say what would be right."""
 
+import re
 from collections.abc import Iterable, Sequence
 
 from pydantic import ValidationError
@@ -10,6 +11,7 @@ from hpn.wording import N_
 Location = Sequence[str | int]
 
 REQUIRED = N_("is required")
+SHOULD = re.compile("(?:Input|Tuple|String) should")
 NOT_A_NUMBER = N_("must be a number, such as 9.3")
 
 
@@ -44,4 +46,4 @@ def plain_message(kind: str, message: str) -> str:
         "int_type": N_("must be a JSON integer, such as 5"),
         "tuple_type": N_("must be a list"),
         "model_type": N_("must be an object"),
-    }.get(kind) or message.removeprefix("Value error, ").replace("Input should", "must").replace("Tuple should", "must")
+    }.get(kind) or SHOULD.sub("must", message.removeprefix("Value error, "))

@@ -25,12 +25,15 @@ SUPPLEMENT = {
     "40A,4000,3000,,,,,,s\n",
     "bearing_envelopes": "size,load_coefficient,axial_N,radial_N,source\n"
     "14A,1,0,900,s\n14A,1,300,880,s\n14A,1,950,0,s\n40A,1,0,8000,s\n40A,1,6000,0,s\n",
+    "motors": "designation,maximum_speed_rpm,rated_speed_rpm,rated_torque_Nm,peak_torque_Nm,inertia_kgm2,source\n"
+    "M 40,6000,3000,2.4,7.2,0.00015,s\nM 60,4500,,4,12,,s\n?,3000,1500,0.1,,0.1,s\n",
 }
-"""Curves, and ratings of 40A, which suits some axes though its weight is not published."""
+"""Curves, motors, and ratings of 40A, which suits some axes though its weight is not published."""
 
 NOT_A_NUMBER = "torque_Nm: phase 1: must be a finite number"
 UNEQUAL = "speed_rpm: has"
 MODELS = ("linear", "iso281", "digitised")
+MOTORS = ("M 40", "M 60", "?", "M 41")
 
 
 def expected(axis: object, application: Json, catalogue: Catalogue) -> Row:
@@ -71,6 +74,11 @@ def fleet(soak: bool, tmp_path_factory: pytest.TempPathFactory) -> Fleet:
     chance, fleet = random.Random(17), Fleet([], {}, load_catalogue(supplement=folder))
     for number in range(10_000 if soak else 600):
         axis, application = f"axis {number}", at_random(chance, MODELS)
+        if number % 4 == 0:
+            wishes = application.setdefault("requirements", {})
+            wishes["motor"] = {"designation": chance.choice(MOTORS)}
+            if chance.random() < 0.5:
+                wishes["motor"]["inertia_ratio"], wishes["load_inertia_kgm2"] = chance.uniform(1, 10), 0.01
         row = row_of(axis, application)
         if chance.random() < 0.1:
             fault = chance.choice(list(FAULTS))
@@ -108,3 +116,29 @@ def test_every_axis_gets_what_select_answers(suffix: str, form: str, fleet: Flee
             assert row == wanted
     refused = {axis for axis, wanted in fleet.wanted.items() if wanted["error"]}
     assert {row["axis"] for row in read(tmp_path / "rejected.ndjson")} == refused
+
+
+@pytest.mark.parametrize(
+    ("wrong", "said"),
+    [
+        ({"requirements.motor.peak_torque_Nm": 5.0}, "either it or the figures"),
+        ({"requirements.motor.designation": ""}, "must have at least 1 character"),
+        ({"requirements.motor.designation": "M 41"}, "the catalogue has no M 41; there are M 40, M 60, ?"),
+        (
+            {"requirements.motor.designation": "M 60", "requirements.motor.inertia_ratio": 5.0},
+            "gives no inertia of this motor",
+        ),
+        ({"requirements.load_inertia_kgm2": None, "requirements.motor.inertia_ratio": 5.0}, "needs a motion"),
+    ],
+)
+def test_a_motor_by_name_is_refused_as_select_refuses_it(wrong: Row, said: str, fleet: Fleet, tmp_path: Path) -> None:
+    row = row_of("a", at_random(random.Random(3))) | {"requirements.load_inertia_kgm2": 0.01}
+    row = {name: value for name, value in row.items() if not name.startswith("requirements.motor.")}
+    named = row | {"requirements.motor.designation": "M 40"}
+    order = Order(write(tmp_path / "in.ndjson", [named, named | wrong | {"axis": "b"}]), tmp_path / "out.ndjson")
+
+    size_fleet(order, fleet.catalogue, here, quiet)
+
+    sound, refused = read(order.answers)
+    assert sound["error"] is None
+    assert said in refused["error"]

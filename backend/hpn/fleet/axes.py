@@ -4,7 +4,7 @@ No object is made for an axis. The bounds are those of the models, and the rules
 arrays; an axis that breaks one is told why by the models themselves (`faults.py`), so that its reasons read the same.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -15,8 +15,8 @@ import pyarrow.compute as pc
 from numpy.typing import NDArray
 
 from hpn.allowed import gears_allowed
-from hpn.application import LEAST_MOTION, MOST_WISHES, NUMBERS, InputError
-from hpn.catalogue import Catalogue, GearList
+from hpn.application import LEAST_MOTION, LISTED_FIGURES, MOST_WISHES, NUMBERS, InputError
+from hpn.catalogue import Catalogue, GearList, ListedMotor
 from hpn.chunks import chunks_of
 from hpn.duty import Asked, Duty, Phases, TextArray
 from hpn.equations import FloatArray
@@ -30,6 +30,8 @@ IntArray = NDArray[np.intp]
 LOADS = ("radial_N", "axial_N")
 LOAD_CONDITIONS = tuple(name for name in COLUMNS.others if name.startswith("output_load."))
 SIZES, RATIOS, MODEL, BASIS = "requirements.sizes", "requirements.ratios", "output_load.model", "output_load.life_basis"
+MOTOR, INERTIA_RATIO = "requirements.motor.designation", "requirements.motor.inertia_ratio"
+LISTED = {name: f"requirements.motor.{name}" for name in LISTED_FIGURES}
 
 
 def have_sound_lists(table: pa.Table) -> BoolArray:
@@ -131,9 +133,16 @@ class Axes:
         """Whether a load is there where its conditions are given, and a torque where stops are counted."""
         conditions = np.logical_or.reduce([self.is_given(name) for name in LOAD_CONDITIONS])
         counted, stops = self.is_given("emergency_stop.count"), self.is_given("emergency_stop.torque_Nm")
-        ratios, motors = (self.is_given(f"requirements.motor.{name}") for name in ("inertia_ratio", "inertia_kgm2"))
-        inertias = ~ratios | (motors & self.is_given("requirements.load_inertia_kgm2"))
-        result: BoolArray = (self.are_loaded | ~conditions) & (stops | ~counted) & inertias & self._vary_within_peaks
+        loads_and_stops = (self.are_loaded | ~conditions) & (stops | ~counted)
+        result: BoolArray = loads_and_stops & self._know_their_motors & self._vary_within_peaks
+        return result
+
+    @property
+    def _know_their_motors(self) -> BoolArray:
+        """Whether a motor has either a name or figures, and an inertia ratio both inertias."""
+        named, figures = self.is_given(MOTOR), np.logical_or.reduce([self.is_given(path) for path in LISTED.values()])
+        inertias = (named | self.is_given(LISTED["inertia_kgm2"])) & self.is_given("requirements.load_inertia_kgm2")
+        result: BoolArray = ~(named & figures) & (inertias | ~self.is_given(INERTIA_RATIO))
         return result
 
     @property
@@ -171,6 +180,31 @@ class Axes:
         which = np.array([numbers.setdefault(key, len(numbers)) for key in wishes], np.intp)
         lists = [_allowed(sizes, ratios, model, catalogue) for sizes, ratios, model in numbers]
         return Allowed(lists, which)
+
+    def have_motors(self, catalogue: Catalogue) -> BoolArray:
+        """Which axes have the motor that they name, with the inertia that an inertia ratio needs, shape (N,)."""
+        named, ratios = self.is_given(MOTOR), self.is_given(INERTIA_RATIO)
+        listed = self._name_one_of(catalogue.motors)
+        turning = self._name_one_of(motor for motor in catalogue.motors if motor.inertia_kgm2 is not None)
+        return ~named | (listed & (turning | ~ratios))
+
+    def _name_one_of(self, motors: Iterable[ListedMotor]) -> BoolArray:
+        if not self.has(MOTOR):
+            return np.zeros(self.count, np.bool_)
+        return np.asarray(pc.is_in(self.table[MOTOR], _names(motors)))
+
+    def equipped(self, catalogue: Catalogue) -> "Axes":
+        """The axes with the figures of the motors that they name."""
+        if not self.has(MOTOR):
+            return self
+        table, places = self.table, pc.index_in(self.table[MOTOR].combine_chunks(), _names(catalogue.motors))
+        for name, path in LISTED.items():
+            figures = pa.array([getattr(motor, name) for motor in catalogue.motors], pa.float64()).take(places)
+            if path in table.column_names:
+                figures = pc.coalesce(table[path], figures)
+                table = table.drop_columns(path)
+            table = table.append_column(path, figures)
+        return Axes(table)
 
     def duty(self, rows: IntArray) -> Duty:
         """Duty of some sound axes."""
@@ -258,6 +292,10 @@ def _in_bounds(column: Column, values: FloatArray) -> BoolArray:
     if column.kind == "integer":
         inside &= values == np.floor(values)
     return inside if column.required else inside | np.isnan(values)
+
+
+def _names(motors: Iterable[ListedMotor]) -> pa.Array:
+    return pa.array([motor.designation for motor in motors], pa.string())
 
 
 def _key(wishes: list[Any] | None) -> tuple[Any, ...] | None:

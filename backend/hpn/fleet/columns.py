@@ -73,9 +73,6 @@ def is_text(given: pa.DataType) -> bool:
     return bool(kinds.is_string(given) or kinds.is_large_string(given) or kinds.is_string_view(given))
 
 
-MOTOR_LISTED = ("requirements", "motor", "designation")
-
-
 @dataclass(frozen=True)
 class Columns:
     """Every column that a table of axes may have."""
@@ -147,8 +144,6 @@ def _columns_below(schema: Json, definitions: Json, path: tuple[str, ...] = ()) 
         place = (*path, name)
         if place[0] == "duty_cycle" and len(place) > 1 and place != PAUSE:
             continue  # phases have columns of their own
-        if place == MOTOR_LISTED:
-            continue  # a fleet gives the figures of its motors
         shape = _resolved(entry, definitions)
         if "properties" in shape:
             yield from _columns_below(shape, definitions, place)

@@ -109,7 +109,8 @@ def _asked(axes: Path, requirements: Path | None, names: pa.ChunkedArray) -> pa.
 
 def nearest_misses(axes: pa.Table, catalogue: Catalogue) -> pa.Table:
     """The gear that `select` puts first for each of some sound axes that none suits, with what governs it."""
-    read, found = Axes(axes), dict[str, list[Any]]((name, [None] * axes.num_rows) for name in NEAREST.names)
+    read = Axes(axes).equipped(catalogue)
+    found = dict[str, list[Any]]((name, [None] * axes.num_rows) for name in NEAREST.names)
     for allowed, rows in read.gears(catalogue).chunks(read.phase_counts):
         evaluation = evaluate(read.duty(rows), allowed, catalogue)
         best = _foremost(evaluation)

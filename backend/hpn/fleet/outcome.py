@@ -9,7 +9,7 @@ import pyarrow as pa
 from numpy.typing import NDArray
 from pydantic import ValidationError
 
-from hpn.allowed import gears_for
+from hpn.allowed import gears_for, with_listed_motor
 from hpn.application import Application, InputError
 from hpn.catalogue import Catalogue
 from hpn.checks import CHECKS
@@ -76,10 +76,11 @@ def outcome(
     mask[[fault.row for fault in faults]] = False
     axes = Axes(table if mask.all() else table.filter(pa.array(mask)))
     gears = axes.gears(catalogue)
-    sound = axes.are_sound & gears.are_there
+    sound = axes.are_sound & gears.are_there & axes.have_motors(catalogue)
     if not sound.all():
         axes, gears = Axes(axes.table.filter(pa.array(sound))), Allowed(gears.lists, gears.which[sound])
         mask[mask] = sound
+    axes = axes.equipped(catalogue)
     answers, candidates, places = _Answers(table.num_rows), _Candidates(), np.flatnonzero(mask)
     for allowed, rows in gears.chunks(axes.phase_counts):
         evaluation = evaluate(axes.duty(rows), allowed, catalogue)
@@ -195,6 +196,7 @@ def _found(table: pa.Table, row: int, catalogue: Catalogue) -> list[Fault]:
     try:
         application = Application.model_validate(COLUMNS.application_of(cells))
         gears_for(application, catalogue)
+        with_listed_motor(application, catalogue)
     except (ValidationError, InputError) as error:
         return [_located(row, tuple(location), text) for location, text in faults_of(error)]
     raise RuntimeError(f"the columns refuse axis {cells[AXIS]!r}, which the models take")

@@ -20,12 +20,8 @@ from hpn.wording import N_, Sentence
 AXIS = "axis"
 AXIS_NAMED = Named(N_("Axis"))
 
-_NOT_OF_FLEETS = ("md",)
-
-BY_ROLE: dict[str, Symbol] = {
-    symbol.name: symbol for symbol in (*PHASE_SYMBOLS, *SYMBOLS) if symbol.name not in _NOT_OF_FLEETS
-}
-"""Every role but that of the axis, by its link symbol; a fleet gives the figures of its motors."""
+BY_ROLE: dict[str, Symbol] = {symbol.name: symbol for symbol in (*PHASE_SYMBOLS, *SYMBOLS)}
+"""Every role but that of the axis, by its link symbol."""
 
 PHASES = tuple(symbol.name for symbol in PHASE_SYMBOLS)
 

@@ -15,6 +15,8 @@ TEMPLATES = (
     N_("the line is not a JSON object: {error}"),
     N_("has {found} phases where torque_Nm has {count}"),
     N_("must have at most {most} items after validation, not {found}"),
+    N_("must have at least 1 character"),
+    N_("must have at most {most} characters"),
     N_("must be greater than or equal to {bound}"),
     N_("must be greater than {bound}"),
     N_("must be less than or equal to {bound}"),
