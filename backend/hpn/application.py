@@ -20,6 +20,7 @@ from pydantic import (
 from pydantic_core import PydanticCustomError
 
 from hpn.fields import (
+    WHOLE,
     Hours,
     Load,
     Model,
@@ -118,7 +119,7 @@ class EmergencyStop(Model):
     """Momentary peak torque T_k, and how often it is expected over the life."""
 
     torque_Nm: Torque = Field(description="Emergency-stop torque T_k.", examples=[200.0])
-    count: Annotated[int, Field(strict=True, ge=0, le=10**15)] | None = Field(
+    count: Annotated[int, Field(strict=True, ge=0, le=10**15), WHOLE] | None = Field(
         None, description="Expected number of emergency stops over the life.", examples=[1000]
     )
 

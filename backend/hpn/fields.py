@@ -53,6 +53,14 @@ def in_parts(value: Any, validate: Callable[[Any], tuple[Any, ...]]) -> tuple[An
     return done
 
 
+def _whole(value: object) -> object:
+    """Whole floats as the integers that JSON Schema counts them as; anything else unchanged."""
+    return int(value) if isinstance(value, float) and value.is_integer() else value
+
+
+WHOLE = BeforeValidator(_whole)
+"""Stands behind the bounds of an integer, which JSON Schema then tells."""
+
 Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
 Torque = Annotated[Number, Field(ge=-1e6, le=1e6)]
 TorqueMagnitude = Annotated[Number, Field(ge=0, le=1e6)]
@@ -65,7 +73,7 @@ Hours = Annotated[Number, Field(le=1e9), AfterValidator(_above_zero), SAYS_LEAST
 MoveTime = Annotated[Number, Field(le=1e9), AfterValidator(_above_zero), SAYS_LEAST]
 Positive = Annotated[Number, Field(le=1e12), AfterValidator(_above_zero), SAYS_LEAST]
 Share = Annotated[Number, Field(le=1), AfterValidator(_above_zero), SAYS_LEAST]
-Ratio = Annotated[int, Field(strict=True, ge=1, le=10_000)]
+Ratio = Annotated[int, Field(strict=True, ge=1, le=10_000), WHOLE]
 
 
 def name_units(schema: dict[str, Any]) -> None:

@@ -178,6 +178,18 @@ def test_a_size_or_ratio_that_is_not_there_is_an_input_error_that_names_what_the
     assert named in str(refusal.value)
 
 
+def test_whole_floats_count_as_integers_and_are_kept_as_such() -> None:
+    given = Application.model_validate_json(
+        b'{"duty_cycle": {"phases": [{"torque_Nm": 1, "speed_rpm": 1, "duration_s": 1}]},'
+        b' "requirements": {"ratios": [5.0, 1e1]}, "emergency_stop": {"torque_Nm": 2, "count": 10.0}}'
+    )
+
+    dumped = given.model_dump_json()
+
+    assert '"ratios":[5,10]' in dumped
+    assert '"count":10}' in dumped
+
+
 def test_sizes_and_ratios_restrict_the_list_and_nothing_else(catalogue: Catalogue) -> None:
     reply = answer(cycle(phase(1, 1), requirements={"sizes": ["32A", "11A"], "ratios": [50, 3]}), catalogue)
 

@@ -93,7 +93,7 @@ class Columns:
     def application_of(self, row: Mapping[str, Any]) -> Json:
         """The application that a row stands for, as JSON that the models validate; nulls are not given.
 
-        Whole numbers are integers where integers belong; phases go as far as the longest list.
+        Phases go as far as the longest list.
         """
         application: Json = {"duty_cycle": {"phases": _phases(row, self.phases)}}
         for name, column in self.others.items():
@@ -131,11 +131,8 @@ def _phases(row: Mapping[str, Any], columns: Mapping[str, Column]) -> list[Json]
 
 
 def _plain(value: Any, column: Column) -> Any:
-    """A cell as the models take it: any kind of number as a float, a whole one as an integer where one belongs."""
-    if column.kind == "string" or value is None:
-        return value
-    number = float(value)
-    return int(number) if column.kind == "integer" and number.is_integer() else number
+    """A cell as the models take it: any kind of number as a float."""
+    return value if column.kind == "string" or value is None else float(value)
 
 
 def _columns_below(schema: Json, definitions: Json, path: tuple[str, ...] = ()) -> Iterator[Column]:

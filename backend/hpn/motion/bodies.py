@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field, model_validator
 
-from hpn.fields import Model, Number, Positive, refused
+from hpn.fields import WHOLE, Model, Number, Positive, refused
 from hpn.motion.refusals import refusal
 
 Shape = Literal["disc", "ring", "bar", "block", "point_mass"]
@@ -74,7 +74,7 @@ class Body(Model):
     """Equal bodies about one axis: their shape, the mass or density of each, and how far from the axis they lie."""
 
     shape: Shape = Field(description="Shape; the axis runs along disc, ring and height of a block, and across a bar.")
-    count: Annotated[int, Field(strict=True, ge=1, le=10_000)] = Field(1, description="How many there are.")
+    count: Annotated[int, Field(strict=True, ge=1, le=10_000), WHOLE] = Field(1, description="How many there are.")
     mass_kg: Positive | None = Field(None, description="Mass of one.")
     density_g_per_cm3: Positive | None = Field(None, description="Density, in place of the mass.")
     diameter_mm: Positive | None = Field(None, description="Outer diameter.")
