@@ -232,6 +232,23 @@ def test_each_bound_of_a_query_is_the_one_that_is_applied(api: TestClient, docum
 MAY_BE_EMPTY = {("Batch", ("applications",))}
 
 
+def test_an_operation_of_the_api_takes_the_parameters_that_it_declares_and_each_once(
+    api: TestClient, document: Json
+) -> None:
+    for method, path, entry in operations(document):
+        if not path.startswith("/api/"):
+            continue
+        known = [parameter["name"] for parameter in entry.get("parameters", ()) if parameter["in"] == "query"]
+        address = path.replace("{size}", "20A").replace("{designation}", "HPN-20A-5").replace("{id}", "a" * 22)
+
+        reply = api.request(method, f"{address}?refrence=1" + "".join(f"&{name}=1&{name}=" for name in known))
+
+        assert reply.status_code == 422, path
+        assert [problem["pointer"] for problem in reply.json()["errors"]] == ["/refrence", *(f"/{n}" for n in known)]
+        assert (", ".join(known) or "it takes none") in reply.json()["errors"][0]["detail"]
+        assert "422" in entry["responses"], path
+
+
 def test_no_list_of_a_request_is_empty_but_a_batch(document: Json) -> None:
     lists = {
         (name, path): part

@@ -3,7 +3,7 @@
 import dataclasses
 from typing import Annotated
 
-from fastapi import APIRouter, Depends, Query
+from fastapi import APIRouter, Query
 from starlette.requests import Request
 from starlette.responses import Response
 
@@ -14,7 +14,6 @@ from hpn.source import supplied_source
 from hpn.web.api import schemas
 from hpn.web.api.replies import CatalogueReply, EnvelopeReply, JSONBytes, encode
 from hpn.web.door.access import admit
-from hpn.web.door.bodies import few_parameters
 from hpn.web.door.conditions import conditional
 from hpn.web.door.problems import Problem
 
@@ -58,9 +57,8 @@ async def gear(request: Request, designation: str) -> Response:
     "/bearing-envelopes/{size}",
     operation_id="getBearingEnvelopes",
     summary="Life envelopes of a size’s output bearing",
-    dependencies=[Depends(few_parameters)],
     openapi_extra=schemas.IF_NONE_MATCH,
-    responses=schemas.answers("EnvelopeReply", 404, 414, 422, headers=schemas.headers("ETag")) | schemas.HAS_IT_ALREADY,
+    responses=schemas.answers("EnvelopeReply", 404, 422, headers=schemas.headers("ETag")) | schemas.HAS_IT_ALREADY,
 )
 async def bearing_envelopes(request: Request, size: str, query: Annotated[EnvelopeQuery, Query()]) -> Response:
     """What a constant load may be at this speed and life: one curve per load coefficient, from axial to radial axis."""

@@ -17,7 +17,7 @@ from hpn.units import suffix_of, symbol_of
 from hpn.web.api import samples, schemas
 from hpn.web.api.exchanges import SUMMARIES, Exchange, exchanges
 from hpn.web.api.replies import encode
-from hpn.web.door.access import admit, group_of
+from hpn.web.door.access import API, admit, group_of
 from hpn.web.door.conditions import conditional
 from hpn.web.door.pools import compute
 from hpn.web.settings import RouteGroup, Settings
@@ -98,7 +98,7 @@ def complete(
     named.update(definitions["$defs"] | schemas.components())
     shown = exchanges(catalogue)
     for method, path, operation in _operations(document):
-        _say_problems(operation)
+        _say_problems(operation, path)
         _give_examples(operation, shown.get(operation["operationId"], ()))
         _say_keys(operation, groups[method, path], settings)
         _say_headers(operation)
@@ -155,11 +155,11 @@ def _example(name: str, value: Any) -> dict[str, Any]:
     return {name: {"summary": SUMMARIES[name], "value": value}}
 
 
-def _say_problems(operation: dict[str, Any]) -> None:
-    """FastAPI announces its own form of a 422; the service answers problems alone."""
+def _say_problems(operation: dict[str, Any], path: str) -> None:
+    """FastAPI announces its own form of a 422; the service answers problems alone, and to unknown parameters, too."""
     response = operation["responses"].get("422", {})
     schema = response.get("content", {}).get("application/json", {}).get("schema", {})
-    if schema.get("$ref", "").endswith("/HTTPValidationError"):
+    if path.startswith(API) or schema.get("$ref", "").endswith("/HTTPValidationError"):
         operation["responses"] |= {str(status): entry for status, entry in schemas.problems(422).items()}
 
 

@@ -12,6 +12,7 @@ from starlette.requests import Request
 
 from hpn.web.door.keys import holder, presented_key
 from hpn.web.door.observation import add_headers
+from hpn.web.door.parameters import require_declared
 from hpn.web.door.problems import Problem
 from hpn.web.door.rates import Limiter, subject_of
 from hpn.web.settings import RouteGroup, Settings
@@ -32,6 +33,9 @@ MAXIMUM_QUERY_BYTES = 60_000
 
 SAVED: frozenset[RouteGroup] = frozenset({"reading", "listing", "writing", "deleting"})
 """Groups whose answers tell of saved selections."""
+
+API = "/api/"
+"""Where the paths of REST begin."""
 
 ADMIN = "admin"
 """Name of the key that renames and deletes what any key, or none, has saved."""
@@ -79,7 +83,7 @@ class Gate:
         On a page, where no key was sent, raise 401: the browser then asks for one.
         """
         name, path = request.state.api_key, request.scope["path"]
-        if name is None and not path.startswith("/api/"):
+        if name is None and not path.startswith(API):
             raise key_needed(path)
         if name is None or name not in (ADMIN, owner):
             text = f"only the key that saved this selection, or the one named {ADMIN}, may rename or delete it"
@@ -97,9 +101,11 @@ class _Admission:
         self.group = group
 
     async def __call__(self, request: Request) -> None:
-        """Pass the request, or raise Problem."""
+        """Pass the request, or raise Problem; a route of the API takes the parameters that it declares alone."""
         gate: Gate = request.app.state.gate
         gate.admit(request, self.group)
+        if request.scope["path"].startswith(API):
+            require_declared(request)
 
 
 async def _pass(request: Request) -> None:
@@ -138,6 +144,6 @@ def too_many(rate: object, wait_seconds: int) -> Problem:
 
 def key_needed(path: str) -> Problem:
     """401; on a page the browser asks for the key itself, as a password with any user name."""
-    scheme = "Bearer" if path.startswith("/api/") else "Basic"
+    scheme = "Bearer" if path.startswith(API) else "Basic"
     text = "send a valid key as `Authorization: Bearer …` or `X-API-Key: …`"
     return Problem(401, text, headers={"WWW-Authenticate": f'{scheme} realm="HPN Select"'})

@@ -20,9 +20,6 @@ MOST_OBJECTS, MOST_NAMES, MOST_LISTS = MAXIMUM_PHASES + 100, 8 * MAXIMUM_PHASES 
 PIECE_BYTES = 1_000_000
 """Size of the pieces that a long body is handed on in."""
 
-MOST_PARAMETERS = 100
-"""Parameters of an address that is no link of an application."""
-
 MOST_PAIRS = MOST_NAMES
 """Parameters of the longest form."""
 
@@ -134,12 +131,6 @@ def pairs_of(text: str | bytes) -> list[tuple[str, str]]:
         )
     except ValueError:
         raise Problem(422, f"a form may have {MOST_PAIRS} fields at most") from None
-
-
-async def few_parameters(request: Request) -> None:
-    """Raise Problem 414 for a query with so many parameters that to name each as unknown takes long."""
-    if request.scope["query_string"].count(b"&") > MOST_PARAMETERS:
-        raise Problem(414, f"the address may have {MOST_PARAMETERS} parameters at most")
 
 
 def late(seconds: float) -> Problem:

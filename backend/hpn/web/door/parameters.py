@@ -1,0 +1,32 @@
+"""The query of a route of the API: parameters that the route declares, each once."""
+
+from collections import Counter
+
+from fastapi.dependencies.utils import get_flat_params
+from starlette.requests import Request
+
+from hpn.web.door.problems import Problem
+
+MOST_PARAMETERS = 100
+
+
+def require_declared(request: Request) -> None:
+    """Raise Problem 422 for a parameter that the matched route does not declare, or that is there twice.
+
+    Raises Problem 414 for so many that to name each as unknown takes long.
+    """
+    query: bytes = request.scope["query_string"]
+    if query.count(b"&") > MOST_PARAMETERS:
+        raise Problem(414, f"the address may have {MOST_PARAMETERS} parameters at most")
+    if not query:
+        return
+    declared = (field.alias for field in get_flat_params(request.scope["route"].dependant))
+    known = [name for name in declared if name not in request.path_params]
+    right = f"there are {', '.join(known)}" if known else "it takes none"
+    counts = Counter(name for name, _ in request.query_params.multi_items())
+    unknown = [
+        ((name,), "unknown", f"is no parameter of this address; {right}") for name in counts if name not in known
+    ]
+    twice = [((name,), "repeated", "must be given once") for name in known if counts[name] > 1]
+    if unknown or twice:
+        raise Problem.at(unknown + twice)
