@@ -187,6 +187,8 @@ def test_repeated_scalar_is_reported_and_kept() -> None:
     form = read(PHASE + "&Tk=200&Tk=300")
     assert form.texts["Tk"] == "200"
     assert found(PHASE + "&Tk=200&Tk=300") == {("Tk", None): "takes one value, given were 200, 300"}
+    assert found(PHASE + "&tp=4&tp=") == {("tp", None): 'takes one value, given were 4, ""'}
+    assert found(PHASE + "&tp=&tp= ") == {("tp", None): 'takes one value, given were "", ""'}
 
 
 @pytest.mark.parametrize(

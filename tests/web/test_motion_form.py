@@ -11,6 +11,7 @@ from starlette.testclient import TestClient
 from hpn.application import Application
 from hpn.motion.moves import Stroke, Turn
 from hpn.web.form import symbols
+from hpn.web.form.labels import LABELS
 from hpn.web.form.read import Form, parse
 from hpn.web.form.symbols import MOVE_COLUMNS
 from hpn.web.form.ways import EXAMPLES, START
@@ -52,6 +53,16 @@ def bodies(*rows: dict[str, Any]) -> str:
 
 
 TABLE = bodies({"qs": "disc", "qm": 60, "qd": 500}, {"qs": "point_mass", "qm": 5, "qe": 180, "qn": 4})
+
+
+@pytest.mark.parametrize("query", [PHASES, TURN, STROKE, f"{TURN}&{BODIES}&d=5&ml=4", f"{PHASES}&tp=4&title=x&md=M"])
+def test_the_form_sends_each_single_value_once(api: TestClient, query: str) -> None:
+    page = api.get(f"/?{query}").text
+    single = [symbol.name for symbol in (*symbols.SYMBOLS, *symbols.MECHANISM_SYMBOLS) if not symbol.many]
+    names = [name for name, _ in fields_of(page)]
+
+    assert {name for name in (*single, *LABELS) if names.count(name) > 1} == set()
+    assert "tp" in names
 
 
 @pytest.mark.parametrize("cookies", ["", "hpn_language=de; hpn_units=lb_in.lbf.lb.in.deg_per_s"])

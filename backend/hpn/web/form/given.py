@@ -68,7 +68,8 @@ class Given:
 
     def __init__(self) -> None:
         self.columns: dict[str, list[str]] = {}
-        self.scalars: dict[str, list[str]] = {}
+        self.scalars: dict[str, str] = {}
+        self.single: dict[str, list[str]] = {}
         self.lists: dict[str, list[str]] = {}
         self.labels: dict[str, list[str]] = {}
         self.page: dict[str, str] = {}
@@ -95,8 +96,12 @@ class Given:
             self.labels.setdefault(name, []).append(text)
         elif name not in BY_NAME:
             self.unknown.append(name)
-        elif text.strip():  # the plain form submits blank fields too: they count as absent
-            texts = (self.lists if BY_NAME[name].many else self.scalars).setdefault(name, [])
+        elif not BY_NAME[name].many:
+            self.single.setdefault(name, []).append(text)
+            if text.strip():  # the plain form submits blank fields too: they count as absent
+                self.scalars.setdefault(name, text)
+        elif text.strip():
+            texts = self.lists.setdefault(name, [])
             if len(texts) <= MOST_WISHES:  # one more than there may be is enough to refuse them
                 texts.append(text)
 
@@ -153,9 +158,9 @@ class Given:
         """Names that are unknown, repeated, or repeated unequally often."""
         for name in self.unknown[:20]:
             yield FieldProblem(name[:60], None, unknown_name(name))
-        for name, texts in (*self.scalars.items(), *self.labels.items()):
+        for name, texts in (*self.single.items(), *self.labels.items()):
             if len(texts) > 1:
-                listed = ", ".join(text.strip()[:20] for text in texts[:5])
+                listed = ", ".join(text.strip()[:20] or '""' for text in texts[:5])
                 yield FieldProblem(name, None, Sentence(N_("takes one value, given were {texts}"), {"texts": listed}))
         for name, texts in self.labels.items():
             yield from (FieldProblem(name, None, fault) for fault in faults_of(texts[0]))

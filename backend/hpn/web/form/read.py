@@ -194,7 +194,7 @@ def _parsed(pairs: Pairs, written: str) -> Form:
     return Form(
         rows=tuple(rows),
         origins=(moved if given.has_motion else phases).origins,
-        texts={name: texts[0] for name, texts in given.scalars.items()},
+        texts=given.scalars,
         lists={name: tuple(texts) for name, texts in given.lists.items()},
         moves=tuple(moves),
         has_motion=given.has_motion,
@@ -258,7 +258,7 @@ def _untouched(given: Given, rows: list[dict[str, str]], moves: list[dict[str, s
     if any(map(_filled, (*rows, *moves))):
         return False
     if given.has_motion:
-        return "mv" in given.columns and given.scalars.get("mech", [""])[0].strip() in TYPES
+        return "mv" in given.columns and given.scalars.get("mech", "").strip() in TYPES
     return all(name in given.columns for name in REQUIRED)
 
 
@@ -273,14 +273,14 @@ def _document(
     problems: list[FieldProblem] = []
     cycle: dict[str, Any] = {}
     if given.has_motion:
-        symbols = {symbol.name: symbol for symbol in move_symbols(given.scalars.get("mech", [""])[0].strip())}
+        symbols = {symbol.name: symbol for symbol in move_symbols(given.scalars.get("mech", "").strip())}
         cycle["motion"] = {"mechanism": {}, "moves": _table(moves, symbols, problems)}
     else:
         cycle["phases"] = _table(rows, PHASE_BY_NAME, problems)
     document: dict[str, Any] = {"duty_cycle": cycle}
-    for name, texts in given.scalars.items():
+    for name, text in given.scalars.items():
         symbol = BY_NAME[name]
-        _put(document, symbol.path, symbol, texts[0], FieldProblem(name, None, Sentence("")), problems)
+        _put(document, symbol.path, symbol, text, FieldProblem(name, None, Sentence("")), problems)
     for name, texts in given.lists.items():
         values = [value for text in texts if not isinstance(value := read_value(text, BY_NAME[name].kind), Sentence)]
         document.setdefault(BY_NAME[name].path[0], {})[BY_NAME[name].path[1]] = values or None
