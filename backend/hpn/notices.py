@@ -84,6 +84,9 @@ NOTICES: Mapping[str, str] = {
         "Motor torques include the motor’s own inertia; they leave out that of the gear and losses without load, which "
         "are not published."
     ),
+    "load_inertia_unused": N_(
+        "The inertia of the load enters no check: it counts where the motor’s largest inertia ratio is given."
+    ),
     "size_unrated": N_("{name} is not rated. {note}"),
     "gears_unrated": N_("{names} are not rated. {note}"),
     "catalogue_supplement": N_("Some catalogue figures are supplied by the user; their sources say so."),
@@ -246,6 +249,8 @@ def _on_the_motor(application: Application, evaluation: Evaluation, index: int) 
         included = not np.isnan(evaluation.case.asked["requirements.motor.inertia_kgm2"].item(index))
         moving = application.duty_cycle.motion is not None
         yield notice("motor_inertia_included" if moving and included else "motor_torque_partial")
+    if asked.load_inertia_kgm2 is not None and (asked.motor is None or asked.motor.inertia_ratio is None):
+        yield notice("load_inertia_unused")
 
 
 @lru_cache(maxsize=256)

@@ -175,3 +175,12 @@ def test_models_and_motor_torques_say_what_they_leave_out(catalogue: Catalogue) 
     assert "bearing_iso281" not in codes(PLAIN | load, catalogue)
     assert "motor_torque_partial" in codes(PLAIN | {"rank_by": "motor_torque"}, catalogue)
     assert "motor_torque_partial" not in codes(PLAIN, catalogue)
+
+
+def test_an_inertia_of_the_load_that_nothing_asks_for_is_told(catalogue: Catalogue) -> None:
+    def with_motor(**motor: float) -> Json:
+        return PLAIN | {"requirements": {"load_inertia_kgm2": 0.8} | ({"motor": motor} if motor else {})}
+
+    assert "load_inertia_unused" in codes(with_motor(), catalogue)
+    assert "load_inertia_unused" in codes(with_motor(peak_torque_Nm=5.0, inertia_kgm2=1e-4), catalogue)
+    assert "load_inertia_unused" not in codes(with_motor(inertia_ratio=5.0, inertia_kgm2=1e-4), catalogue)
