@@ -43,7 +43,7 @@ def test_every_service_is_confined(name: str) -> None:
 
 def test_only_the_proxy_is_published_and_only_it_reaches_the_service() -> None:
     assert [name for name, service in SERVICES.items() if "ports" in service] == ["proxy"]
-    assert SERVICES["proxy"]["ports"] == ["${HPN_PUBLISH_HTTP:-80}:8080", "${HPN_PUBLISH:-443}:8443"]
+    assert SERVICES["proxy"]["ports"] == ["${PUBLISH_HTTP:-80}:8080", "${PUBLISH:-443}:8443"]
     assert COMPOSE["networks"] == {"front": None, "middle": {"internal": True}, "back": {"internal": True}}
     assert [name for name, service in SERVICES.items() if "middle" in service["networks"]] == ["proxy", "web"]
     assert SERVICES["web"]["networks"] == ["middle", "back"]

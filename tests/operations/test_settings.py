@@ -10,7 +10,7 @@ from hpn.cli import main
 from hpn.web.settings import Settings
 
 ROOT = Path(__file__).parents[2]
-OF_COMPOSE_ALONE = {"POSTGRES_PASSWORD", "HPN_PUBLISH", "HPN_PUBLISH_HTTP"}
+OF_COMPOSE_ALONE = {"POSTGRES_PASSWORD", "PUBLISH", "PUBLISH_HTTP"}
 NAMES = {f"HPN_{name.upper()}" for name in Settings.model_fields}
 
 
@@ -34,6 +34,12 @@ def test_the_example_file_shows_the_defaults(monkeypatch: pytest.MonkeyPatch) ->
     for name in set(Settings.model_fields) - {"catalogue_folder"}:
         assert getattr(shown, name) == getattr(default, name), name
     assert shown.catalogue_folder.resolve() == default.catalogue_folder
+
+
+def test_the_compose_file_names_no_variable_of_the_service_that_is_no_setting() -> None:
+    named = set(re.findall(r"\bHPN_[A-Z_]+", (ROOT / "docker-compose.yml").read_text()))
+
+    assert named <= NAMES
 
 
 def test_the_readme_lists_every_setting() -> None:
@@ -113,7 +119,7 @@ def test_a_misspelt_variable_keeps_the_service_from_starting(
 
 
 def test_variables_of_others_are_left_alone(monkeypatch: pytest.MonkeyPatch) -> None:
-    for name in ("HPN_KEY", "HPN_PUBLISH", "HPN_CUSTOMER", "hpn_port"):
+    for name in ("HPN_KEY", "HPN_CUSTOMER", "hpn_port"):
         monkeypatch.setenv(name, "1")
 
     assert Settings().port == 1
