@@ -204,6 +204,11 @@ def refusal(order: Order, catalogue: Catalogue) -> str:
         ("axis,torque_Nm,speed_rpm", "column duration_s is missing"),
         ("torque_Nm,speed_rpm", "column axis is missing"),
         ("axis,torque_Nm,speed_rpm,duration_s,speed", "column 'speed' is unknown"),
+        (
+            "Nr.;Achse;Moment [Nm]",
+            "separated by semicolons, where commas belong, with a point as decimal mark; the page",
+        ),
+        ("axis\ttorque_Nm\tspeed_rpm\tduration_s", "separated by tabs, where commas belong"),
         ("axis,torque_Nm,speed_rpm,duration_s,radial_n", "it looks like radial_N"),
         ("axis,torque_Nm,speed_rpm,duration_s,axis", "column axis is there twice"),
         ("axis,torque_Nm,speed_rpm,duration_s,requirements.life_h", "belongs into the table of --axes"),

@@ -28,6 +28,7 @@ UNIT_BYTES = 8_000_000
 MOST_LINE_BYTES = 64_000_000
 """Longest line; an axis of 10,000 phases has about 1 MB."""
 
+OTHER_SEPARATORS = {";": "semicolons", "\t": "tabs"}
 BOM = b"\xef\xbb\xbf"
 NUMBER = r"^[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?$|^[+-]?(nan|inf|infinity)$"
 NO_NUMBER = N_("must be a number with a decimal point, such as 9.3")
@@ -111,6 +112,11 @@ class CsvTable(LinesTable):
             raise self.unreadable(error) from None
         if not names:
             raise FleetError(f"{self.path}: has no header row with the names of its columns")
+        if len(names) == 1 and (used := next((mark for mark in OTHER_SEPARATORS if mark in names[0]), None)):
+            raise FleetError(
+                f"{self.path}: its columns are separated by {OTHER_SEPARATORS[used]}, where commas belong, with a "
+                "point as decimal mark; the page /fleets reads such files as they are"
+            )
         return names, min(skipped, len(content))
 
     @property
