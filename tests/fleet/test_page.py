@@ -9,6 +9,7 @@ from collections.abc import Iterator
 from html import unescape
 from pathlib import Path
 from typing import Any
+from urllib.parse import urlencode
 
 import openpyxl
 import pyarrow as pa
@@ -100,7 +101,7 @@ def test_a_fleet_shows_each_axis_with_its_link(client: TestClient, fleet: str, s
 
     applications = [Application.model_validate(HUB), Application.model_validate(HEAVY)]
     for name, application in zip(("Hub Ä", "Band"), applications, strict=True):
-        assert f'<a href="{to_link(application)}">{name}</a>' in page
+        assert f'<a href="{to_link(application)}&{urlencode({"title": name})}">{name}</a>' in page
     assert f"</span> {select(applications[0], service.state.catalogue).selected}</td>" in page
     assert "nearest: " in page
     assert re.search(r'Greifer</th>.*?class="reason"[^>]*>torque_Nm: ', page, re.DOTALL)
