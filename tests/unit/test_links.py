@@ -192,6 +192,22 @@ def test_repeated_scalar_is_reported_and_kept() -> None:
 
 
 @pytest.mark.parametrize(
+    ("query", "name", "said"),
+    [
+        ("i=5,7", "i", "give each value for itself: i=5&i=7"),
+        ("i=4 5;7", "i", "give each value for itself: i=4&i=5&i=7"),
+        ("i=x", "i", "is not a number; write one such as 9.3"),
+        ("Tk=200&Nk=5,7", "Nk", "must be a whole number"),
+        ("Tk=200&Nk=1,000", "Nk", "write 1.000 or 1000"),
+    ],
+)
+def test_what_is_to_be_written_in_place_of_several_or_broken_whole_numbers_is_taken(
+    query: str, name: str, said: str
+) -> None:
+    assert found(f"{PHASE}&{query}") == {(name, 0 if name == "i" else None): said}
+
+
+@pytest.mark.parametrize(
     ("name", "near"), [("ratio", "i"), ("torque_Nm", "T"), ("Tkk", "Tk"), ("rnak", "rank"), ("life_h", "Lh")]
 )
 def test_unknown_name_is_answered_with_the_nearest(name: str, near: str) -> None:

@@ -212,6 +212,7 @@ def _plain(value: float) -> str:
 
 # --- Values -----------------------------------------------------------------------------------------------------------
 
+NOT_WHOLE = N_("must be a whole number")
 _ANY_NUMBER = re.compile(r"[+-]?([0-9]+(\.[0-9]*)?|\.[0-9]+)([eE][+-]?[0-9]+)?")
 _COMMAS = re.compile(r"[+-]?[0-9]{1,3}(,[0-9]{3})+(?![0-9,])")
 
@@ -225,21 +226,24 @@ def read_value(text: str, kind: Kind) -> float | int | str | Sentence:
         return text if len(text) <= LONGEST_TEXT else Sentence(N_("is too long"))
     plain = text.replace("\N{MINUS SIGN}", "-")
     if len(plain) > _LONGEST or not _ANY_NUMBER.fullmatch(plain):
-        return _not_a_number(plain)
+        return _not_a_number(plain, kind)
     value = float(plain)
     if value in (float("inf"), float("-inf")):
         return Sentence(N_("is too large"))
     if kind == "number":
         return value
-    return int(value) if value.is_integer() else Sentence(N_("must be a whole number"))
+    return int(value) if value.is_integer() else Sentence(NOT_WHOLE)
 
 
-def _not_a_number(text: str) -> Sentence:
+def _not_a_number(text: str, kind: Kind) -> Sentence:
     """What to write instead, where it can be told."""
     tight = re.sub(r"[\s'’]", "", text)
     if len(tight) > _LONGEST:
         return Sentence(N_("is too long for a number"))
-    readings = [reading for reading in _readings(tight) if _ANY_NUMBER.fullmatch(reading)]
+    numbers = [reading for reading in _readings(tight) if _ANY_NUMBER.fullmatch(reading)]
+    readings = [number for number in numbers if kind != "whole" or float(number).is_integer()]
+    if numbers and not readings:
+        return Sentence(NOT_WHOLE)
     if len(readings) > 1:
         return Sentence(N_("write {first} or {second}"), {"first": readings[0], "second": readings[1]})
     if readings:

@@ -38,7 +38,7 @@ from hpn.web.form.symbols import (
     units_of,
 )
 from hpn.web.form.ways import CYCLE_NAMES, START, switched, taken_over
-from hpn.wording import Sentence
+from hpn.wording import N_, Sentence
 
 Pairs = Sequence[tuple[str, str]]
 
@@ -50,6 +50,9 @@ LONGEST_ASIDE = 8_000
 
 _UNSEEN = re.compile("[\u00ad\u200b-\u200d\u2060\ufeff]")
 """Characters without width, which come with links copied from documents that break their lines with them."""
+
+_SEVERAL = re.compile(r"[0-9]{1,5}([\s,;/]+[0-9]{1,5}){1,10}")
+"""Several whole numbers in one text."""
 
 # Where an error of a whole part of the model is shown.
 _PARTS = {
@@ -250,6 +253,9 @@ def _list_problems(given: Given) -> Iterable[FieldProblem]:
     for name, texts in given.lists.items():
         for k, text in enumerate(texts):
             if BY_NAME[name].kind != "text" and isinstance(message := read_value(text, "whole"), Sentence):
+                if _SEVERAL.fullmatch(text.strip()):
+                    example = "&".join(f"{name}={value}" for value in re.findall("[0-9]+", text)[:3])
+                    message = Sentence(N_("give each value for itself: {example}"), {"example": example})
                 yield FieldProblem(name, k, message)
 
 
