@@ -157,6 +157,35 @@ def test_an_axis_comes_back_in_its_type(kind: pa.DataType, tmp_path: Path, catal
     assert pa.ipc.open_file(str(tmp_path / "out.arrow")).schema.field("axis").type == kind
 
 
+@pytest.mark.parametrize("suffix", [".parquet", ".arrow"])
+@pytest.mark.parametrize(
+    "kind", [pa.float16(), pa.float32(), pa.float64(), pa.decimal128(9, 0), pa.dictionary(pa.int8(), pa.float64())]
+)
+def test_axes_that_are_whole_floats_are_integers(
+    kind: pa.DataType, suffix: str, tmp_path: Path, catalogue: Catalogue
+) -> None:
+    table = pa.Table.from_pylist([{**AXES[0], "axis": axis} for axis in (7.0, None, 12.0)])
+    values = table["axis"].combine_chunks()
+    values = values.dictionary_encode() if pa.types.is_dictionary(kind) else values.cast(kind)
+    table = table.set_column(0, "axis", values)
+    if suffix == ".parquet":
+        pq.write_table(table, tmp_path / "in.parquet")
+    else:
+        with pa.ipc.new_file(str(tmp_path / "in.arrow"), table.schema) as file:
+            file.write_table(table)
+    size_fleet(Order(tmp_path / f"in{suffix}", tmp_path / "out.parquet"), catalogue, here, quiet)
+    answers = pq.read_table(tmp_path / "out.parquet")
+    assert answers["axis"].type == pa.int64()
+    assert answers["axis"].to_pylist() == [7, None, 12]
+    assert answers["error"].to_pylist() == [None, "axis: is required", None]
+
+
+def test_an_axis_that_is_no_whole_number_is_rejected_alone(size: Size, tmp_path: Path) -> None:
+    answers = size([{**AXES[0], "axis": axis} for axis in (7.0, 7.5, float("nan"), 1e300, 12.0)], ".parquet")
+    assert [row["axis"] for row in answers if not row["error"]] == [7, 12]
+    assert faults(tmp_path) == [(None, "axis", "must be text or a whole number")] * 3
+
+
 def test_axes_of_csv_are_integers_if_every_one_is_written_as_one(tmp_path: Path, catalogue: Catalogue) -> None:
     for names, kind in ((("7", "12"), pa.int64()), (("7", "012"), pa.string())):
         (tmp_path / "in.csv").write_text(phases(*names))
@@ -234,8 +263,8 @@ def test_a_column_of_a_wrong_type_is_named(tmp_path: Path, catalogue: Catalogue)
     pq.write_table(pa.Table.from_pylist(texts), tmp_path / "in.parquet")
     said = refusal(Order(tmp_path / "in.parquet", tmp_path / "out.csv"), catalogue)
     assert "column speed_rpm is list<element: string>, where lists of numbers belong" in said
-    pq.write_table(pa.Table.from_pylist([{**row, "axis": 1.5} for row in AXES]), tmp_path / "in.parquet")
-    assert "column axis is double" in refusal(Order(tmp_path / "in.parquet", tmp_path / "out.csv"), catalogue)
+    pq.write_table(pa.Table.from_pylist([{**row, "axis": True} for row in AXES]), tmp_path / "in.parquet")
+    assert "column axis is bool" in refusal(Order(tmp_path / "in.parquet", tmp_path / "out.csv"), catalogue)
 
 
 def test_a_row_group_that_is_corrupt_is_named(size: Size, tmp_path: Path, catalogue: Catalogue) -> None:

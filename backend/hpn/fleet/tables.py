@@ -10,17 +10,22 @@ from functools import cached_property
 from pathlib import Path
 from typing import NamedTuple
 
+import numpy as np
 import pyarrow as pa
+import pyarrow.compute as pc
 import pyarrow.parquet as pq
 import pyarrow.types as kinds
+from numpy.typing import NDArray
 
 from hpn.fleet.columns import AXIS, COLUMNS, Column, is_list, is_text
 from hpn.fleet.errors import FleetError
+from hpn.wording import N_
 
 BATCH_ROWS = 16_384
 """Rows that are read at once."""
 
 
+NOT_WHOLE = N_("must be text or a whole number")
 UNREADABLE = (pa.ArrowException, OSError, UnicodeDecodeError)
 """What Arrow raises for a file that it can't read."""
 
@@ -111,6 +116,8 @@ class TypedTable(Table):
         given = self.given.field(AXIS).type
         if kinds.is_dictionary(given):
             given = given.value_type
+        if _may_be_whole(given):
+            return pa.int64()
         return pa.string() if kinds.is_string_view(given) or kinds.is_null(given) else given
 
     def wrong_types(self) -> Iterator[str]:
@@ -124,8 +131,15 @@ class TypedTable(Table):
                 yield f"column {field.name} is {field.type!s:.80}, where {wanted} belong"
 
     def _batch(self, rows: pa.RecordBatch, names: Sequence[str]) -> Batch:
-        columns = [_cast(rows.column(name), self.type_of(name)) for name in names]
-        return Batch(pa.Table.from_arrays(columns, names=list(names)))
+        columns, faults = [], list[CellFault]()
+        for name in names:
+            column = _plain(rows.column(name))
+            if name == AXIS and _may_be_whole(column.type):
+                column, wrong = _whole(column)
+                faults += (CellFault(int(row), AXIS, NOT_WHOLE) for row in np.flatnonzero(wrong))
+            wanted = self.type_of(name)
+            columns.append(column if column.type.equals(wanted) else column.cast(wanted, safe=False))
+        return Batch(pa.Table.from_arrays(columns, names=list(names)), faults)
 
 
 def _words(column: Column, wanted: pa.DataType) -> str:
@@ -133,12 +147,24 @@ def _words(column: Column, wanted: pa.DataType) -> str:
     return f"lists of {item}" if is_list(wanted) else item
 
 
-def _cast(column: pa.Array, wanted: pa.DataType) -> pa.Array:
+def _plain(column: pa.Array) -> pa.Array:
     if kinds.is_dictionary(column.type):
-        column = column.dictionary_decode()
-    elif is_list(column.type) and kinds.is_dictionary(column.type.value_type):
-        column = column.cast(pa.list_(column.type.value_type.value_type))
-    return column if column.type.equals(wanted) else column.cast(wanted, safe=False)
+        return column.dictionary_decode()
+    if is_list(column.type) and kinds.is_dictionary(column.type.value_type):
+        return column.cast(pa.list_(column.type.value_type.value_type))
+    return column
+
+
+def _may_be_whole(given: pa.DataType) -> bool:
+    """Whether axes of a type can be integers though it is none: floats, as pandas makes of integers with a gap."""
+    return bool(kinds.is_floating(given) or (kinds.is_decimal(given) and given.scale == 0))
+
+
+def _whole(column: pa.Array) -> tuple[pa.Array, NDArray[np.bool_]]:
+    """The column with null where a number is not whole, and which are not."""
+    values = column.cast(pa.float64(), safe=False).to_numpy(zero_copy_only=False)
+    wrong = np.asarray(column.is_valid()) & ~((values == np.floor(values)) & (np.abs(values) < 2.0**63))
+    return pc.if_else(pa.array(wrong), None, column), wrong
 
 
 class ParquetTable(TypedTable):
