@@ -350,7 +350,8 @@ class NdjsonTable(LinesTable):
         try:
             given = _object(line)
         except (ValueError, RecursionError):
-            return _axis_alone(line, self._kinds[AXIS]), [(AXIS, f"the line is not a JSON object: {error}")]
+            cells = _axis_alone(line, self._kinds[AXIS])
+            return cells, [(AXIS, f"the line is not a JSON object: {error}, in {_cut(line.decode(errors='replace'))}")]
         cells, wrong = {}, []
         for name, value in given.items():
             if name not in self._kinds:
@@ -364,10 +365,8 @@ class NdjsonTable(LinesTable):
     def _right(self, name: str, value: Any) -> str:
         """What would be right in place of a value."""
         if name == AXIS:
-            is_integer = pa.types.is_integer(self.axis_type)
-            return (
-                N_("must be an integer, as in the first row") if is_integer else N_("must be text, as in the first row")
-            )
+            expected = "an integer" if pa.types.is_integer(self.axis_type) else "text"
+            return f"must be {expected}, as in the first row, not {_shown(value)}"
         column = COLUMNS.all[name]
         right, kind = (NO_TEXT, str) if column.kind == "string" else (NOT_A_NUMBER, float)
         if not is_list(self.type_of(name)):
@@ -385,7 +384,10 @@ def _object(line: bytes) -> dict[str, Any]:
 
 def _shown(value: Any) -> str:
     """A value as it stands in JSON, in as many characters as have room in a reason."""
-    text = msgspec.json.encode(value).decode(errors="replace")
+    return _cut(msgspec.json.encode(value).decode(errors="replace"))
+
+
+def _cut(text: str) -> str:
     return text if len(text) <= MOST_SHOWN else f"{text[:MOST_SHOWN]}…"
 
 
