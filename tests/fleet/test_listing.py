@@ -17,7 +17,8 @@ from hpn.fleet.run import Order, size_fleet
 from hpn.fleet.summary import summary_of
 from hpn.selection import Selection, select
 from hpn.web.form.write import to_link
-from tests.build import Json
+from tests.build import Json, cycle, phase
+from tests.conftest import Supplement
 from tests.fleet.tables import FAULTS, Row, here, in_long_form, quiet, row_of, spoiled, write
 from tests.property.draw import at_random
 
@@ -127,3 +128,17 @@ def test_a_share_that_is_a_whole_tenth_counts_in_the_tenth_that_ends_there() -> 
     columns["utilisation"] = pa.array([0.0, *(tenth / 10 for tenth in range(1, 11)), None])
 
     assert summary_of(pa.table(columns).to_batches()).utilisation == (2, 1, 1, 1, 1, 1, 1, 1, 1, 1)
+
+
+def test_the_nearest_gear_is_that_with_the_motor_that_an_axis_names(supplemented: Supplement, tmp_path: Path) -> None:
+    catalogue = supplemented(
+        motors="designation,maximum_speed_rpm,rated_speed_rpm,rated_torque_Nm,peak_torque_Nm,inertia_kgm2,source\n"
+        "small,100,,0.1,0.1,,s\n"
+    )
+    application = cycle(phase(40, 250, 1), requirements={"motor": {"designation": "small"}})
+
+    listing = sized([row_of("a", application)], ".ndjson", "list", tmp_path, catalogue)
+
+    (row,) = rows_of(listing.answers)
+    assert row.governing_check == "motor_speed"
+    assert_same(row, select(Application.model_validate(application), catalogue))
