@@ -180,6 +180,13 @@ def test_axes_that_are_whole_floats_are_integers(
     assert answers["error"].to_pylist() == [None, "axis: is required", None]
 
 
+def test_axes_of_ndjson_may_be_whole_floats_too(size: Size, tmp_path: Path) -> None:
+    answers = size([{**AXES[0], "axis": axis} for axis in (7.0, 8, 1e3, 7.5)])
+    assert [row["axis"] for row in answers] == [7, 8, 1000, None]
+    assert all(isinstance(row["axis"], int) for row in answers[:3])
+    assert faults(tmp_path) == [(None, "axis", "line 4: must be an integer, as in the first row")]
+
+
 def test_an_axis_that_is_no_whole_number_is_rejected_alone(size: Size, tmp_path: Path) -> None:
     answers = size([{**AXES[0], "axis": axis} for axis in (7.0, 7.5, float("nan"), 1e300, 12.0)], ".parquet")
     assert [row["axis"] for row in answers if not row["error"]] == [7, 12]

@@ -378,7 +378,10 @@ class NdjsonTable(LinesTable):
 
 
 def _object(line: bytes) -> dict[str, Any]:
+    """A line as a row; an axis that is a whole float is an integer."""
     row: dict[str, Any] = msgspec.json.decode(line, type=dict[str, Any])
+    if isinstance(axis := row.get(AXIS), float) and axis.is_integer():
+        row[AXIS] = int(axis)
     return row
 
 
