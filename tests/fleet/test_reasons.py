@@ -3,6 +3,8 @@
 import json
 from typing import Any
 
+import pytest
+
 from hpn.reader import Reader
 from hpn.web.pages.fleet_reasons import reasons_of
 from tests.fleet.conftest import Size
@@ -52,3 +54,23 @@ def test_every_reason_has_a_german_text(size: Size) -> None:
         assert "; ".join(f"{column}: {reason.text}" for column, reason in reasons) == error
         for _, reason in reasons:
             assert Reader("de").told(reason) != reason.text
+
+
+def test_what_a_reason_quotes_is_no_reason_of_its_own() -> None:
+    (first, second) = reasons_of('n: phase 2: must be a number, such as 9.3, not "a: b"; duration_s: is required')
+
+    assert [first[0], second[0]] == ["n", "duration_s"]
+    assert Reader("de").told(first[1]) == 'Phase 2: muss eine Zahl sein, z. B. 9.3, nicht "a: b"'
+
+
+def test_a_quoted_separator_is_written_closer(size: Size) -> None:
+    (answer,) = size(json.dumps({"axis": "a", **SOUND, "speed_rpm": [250.0, "x; n: 5"]}))
+
+    assert [column for column, _ in reasons_of(answer["error"])] == ["speed_rpm"]
+
+
+@pytest.mark.parametrize("bad", [2**63, 10**300, -(2**63) - 1, 2.5, True, None])
+def test_one_bad_axis_decides_nothing_for_the_others(bad: Any, size: Size) -> None:
+    answers = size("\n".join(json.dumps({"axis": axis, **SOUND}) for axis in (bad, 1, 2, bad)))
+
+    assert [row["axis"] for row in answers if not row["error"]] == [1, 2]

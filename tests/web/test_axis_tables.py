@@ -1,16 +1,19 @@
 """Tables of axes as spreadsheets write them: no number is silently another one, and what has two readings is asked."""
 
+import io
 from itertools import product
 from typing import Any
 
 import pytest
+from openpyxl import Workbook
 
 from hpn import units
 from hpn.reader import LANGUAGES, Reader
 from hpn.web.form.axis_columns import BY_ROLE, quantity_of
 from hpn.web.form.axis_tables import AxisTable, read_axes
 from hpn.web.form.columns import Choices
-from hpn.web.form.sheets import grids_of
+from hpn.web.form.sheets import grid_of, grids_of
+from hpn.web.form.workbooks import sheets_of
 
 WIRE = tuple({symbol.unit for symbol in BY_ROLE.values()} - {""})
 HEAD = "Achse;Moment [Nm];Drehzahl [1/min];Dauer [s]"
@@ -158,16 +161,23 @@ def test_two_decimal_marks_in_a_table_are_asked_and_what_no_longer_is_a_number_i
     assert asked(sure) == [] and sure.axes[1]["duration_s"] == ["0.5"]
 
 
-def test_a_row_with_neither_axis_nor_number_is_asked_where_others_have_one() -> None:
-    rows = "1;A;12,5;100;1", "2;;8;100;2", "1;B;9;100;3"
+SUM = "has no axis, which other rows have: leave it out if it is a sum, or write its axis into it."
 
-    assert asked(read(NUMBERED, *rows)) == []
-    assert asked(read(NUMBERED, *rows, ";;29,5;300;6")) == [
-        "Row 5 has neither an axis nor a number, which other rows have: leave it out if it is a sum, or write its axis "
-        "into it."
-    ]
-    merged = "Lfd. Nr.;Achse;Moment [Nm];Drehzahl [1/min];Dauer [s]"
-    assert asked(read(merged, "1;A;12,5;100;1", ";;8;100;2", "2;B;9;100;3")) == []
+
+@pytest.mark.parametrize(
+    ("head", "rows", "said"),
+    [
+        (NUMBERED, "1;A;12,5;100;1|2;;8;100;2|1;B;9;100;3", ""),
+        (NUMBERED, "1;A;12,5;100;1|2;;8;100;2|1;B;9;100;3|;;29,5;300;6", f"Row 5 {SUM}"),
+        (NUMBERED, "1;A;12,5;100;1|2;A;8;100;2|;;20,5;200;3", f"Row 4 {SUM}"),
+        (HEAD, "A;12,5;100;1|A;8;100;2|;20,5;200;3", f"Row 4 {SUM}"),
+        (HEAD, "A;12,5;100;1|;8;100;2|B;20,5;200;3", ""),
+        (HEAD, ";12,5;100;1|A;8;100;2", "Row 2 names no axis, and none stands above it."),
+        ("Lfd. Nr.;Achse;Moment [Nm];Drehzahl [1/min];Dauer [s]", "1;A;12,5;100;1|;;8;100;2|2;B;9;100;3", ""),
+    ],
+)
+def test_a_row_without_an_axis_that_may_be_a_sum_is_asked(head: str, rows: str, said: str) -> None:
+    assert asked(read(head, *rows.split("|"))) == ([said] if said else [])
 
 
 def test_what_an_axis_says_twice_is_compared_as_numbers_and_spoils_that_axis_alone() -> None:
@@ -187,9 +197,61 @@ def test_what_an_axis_says_twice_is_compared_as_numbers_and_spoils_that_axis_alo
         ("Umgebungstemperatur [°C]", "25 °C", "requirements.ambient_temperature_degC", 25),
         ("Umgebungstemperatur [°C]", "25 %", "requirements.ambient_temperature_degC", "25 %"),
         ("Maximale Länge", "20 cm", "requirements.length_mm", 200),
+        ("Auslastung u", "9.5e1 %", "requirements.utilisation", 0.95),
+        ("Maximales Gewicht", "9" * 5000 + " kg", "requirements.weight_kg", "9" * 5000 + " kg"),
+        ("Torsionssteifigkeit K3", "14 %", "requirements.torsional_stiffness_Nm_per_rad", "14 %"),
+        ("Übersetzung", "5:1.5", "requirements.ratios", ["5:1.5"]),
     ],
 )
 def test_cells_are_read_as_people_write_them(heading: str, cell: str, column: str, value: Any) -> None:
-    roles = {4: "u"} if heading.startswith("Auslastung") else {}
+    roles = {4: {"Auslastung u": "u", "Torsionssteifigkeit K3": "K3", "Maximales Gewicht": "m"}.get(heading, "")}
 
     assert read(f"{HEAD};{heading}", f"A;1;9;1;{cell}", roles=roles).axes[0][column] == value
+
+
+@pytest.mark.parametrize(
+    ("heading", "foreign"),
+    [
+        ("Minimum torsional stiffness [Nm/arcmin]", "Nm/arcmin"),
+        ("Minimum torsional stiffness [Nm/rad]", ""),
+        ("requirements.torsional_stiffness_Nm_per_rad", ""),
+        ("Inertia of the load [kg cm²]", "kg cm²"),
+        ("Inertia of the load [kg·m²]", ""),
+        ("Inertia of the load [kgm2]", ""),
+        ("Maximum utilisation [%]", "%"),
+        ("Expected emergency stops [1000]", "1000"),
+        ("Expected emergency stops [-]", ""),
+        ("Ratio (i)", ""),
+    ],
+)
+def test_a_unit_that_a_column_is_not_read_in_is_told(heading: str, foreign: str) -> None:
+    table = read(f"{HEAD};{heading}", "A;1;9;1;14")
+
+    assert table.columns[4].role
+    assert [foreign for question in asked(table) if f": {foreign} is not read there" in question] == [foreign] * bool(
+        foreign
+    )
+
+
+def test_a_unit_row_below_the_names_of_columns_is_asked_where_it_says_otherwise() -> None:
+    rows = "axis;torque_Nm;speed_rpm;duration_s", ";kNm;rpm;ms", "A;40;250;300"
+
+    assert asked(read(*rows)) == [
+        "Which unit is column “torque_Nm kNm” in?",
+        "Which unit is column “duration_s ms” in?",
+    ]
+
+
+def test_a_percentage_of_a_workbook_is_the_number_that_it_holds() -> None:
+    book = Workbook()
+    sheet: Any = book.active
+    for row in ([*HEAD.split(";"), "eta"], ["A", 1, 9, 1, 0.95], ["B", 1, 9, 1, 1e-5]):
+        sheet.append(row)
+    for place in (2, 3):
+        sheet.cell(place, 5).number_format = "0%"
+    book.save(file := io.BytesIO())
+    ((_, rows),) = sheets_of(file.getvalue()).items()
+
+    axes = read_axes(grid_of(rows), Choices(roles={4: "eta"}), WIRE).axes
+
+    assert [axis["requirements.efficiency"] for axis in axes] == [0.95, 1e-5]

@@ -6,9 +6,10 @@ import os
 import re
 from abc import abstractmethod
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from functools import cached_property
 from itertools import pairwise
-from typing import Any
+from typing import Annotated, Any
 
 import msgspec
 import numpy as np
@@ -264,7 +265,9 @@ def _one_by_one(cells: pa.Array, read: Any, wanted: pa.DataType, reason: str) ->
 # --- NDJSON -----------------------------------------------------------------------------------------------------------
 
 AXIS_IN_LINE = re.compile(rb'"axis"\s*:\s*("(?:[^"\\]|\\.)*"|-?[0-9]+(?=[\s,}]))')
-MOST_INTEGER = 2**63
+Integer = Annotated[int, msgspec.Meta(ge=-(2**63), le=2**63 - 1)]
+"""What Arrow holds in 64 bits."""
+
 MOST_SHOWN = 60
 
 READ_AS: dict[tuple[bool, bool], Any] = {
@@ -307,7 +310,17 @@ class NdjsonTable(LinesTable):
 
     @property
     def axis_type(self) -> pa.DataType:
-        return pa.int64() if isinstance(self._first.get(AXIS), int) else pa.string()
+        return pa.int64() if isinstance(self._first_axis, int) else pa.string()
+
+    @cached_property
+    def _first_axis(self) -> str | int:
+        """The first axis that may be one: a bad one decides nothing for the others."""
+        for line in self.start_of_file().removeprefix(BOM).split(b"\n"):
+            with suppress(ValueError, RecursionError):
+                axis = _object(line).get(AXIS) if line.strip() else None
+                if isinstance(axis, str | int) and not isinstance(axis, bool):
+                    return axis
+        return ""
 
     def last_line_end(self, content: bytes) -> int:
         return content.rfind(b"\n") + 1
@@ -315,7 +328,7 @@ class NdjsonTable(LinesTable):
     @cached_property
     def _kinds(self) -> dict[str, Any]:
         """What msgspec reads a cell of each column as."""
-        kinds: dict[str, Any] = {AXIS: int if pa.types.is_integer(self.axis_type) else str}
+        kinds: dict[str, Any] = {AXIS: Integer if pa.types.is_integer(self.axis_type) else str}
         for name in self.names:
             if name != AXIS:
                 kinds[name] = READ_AS[COLUMNS.all[name].kind == "string", is_list(self.type_of(name))]
@@ -391,6 +404,8 @@ def _shown(value: Any) -> str:
 
 
 def _cut(text: str) -> str:
+    """A text to be quoted in a reason; `; ` stands between reasons alone."""
+    text = text.replace("; ", ";")
     return text if len(text) <= MOST_SHOWN else f"{text[:MOST_SHOWN]}…"
 
 
@@ -399,7 +414,7 @@ def _is(value: Any, kind: Any) -> bool:
         msgspec.convert(value, kind | None)
     except msgspec.ValidationError:
         return False
-    return not (kind is int and value is not None and abs(value) >= MOST_INTEGER)
+    return True
 
 
 def _axis_alone(line: bytes, kind: Any) -> dict[str, Any]:

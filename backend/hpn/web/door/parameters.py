@@ -8,6 +8,8 @@ from starlette.requests import Request
 from hpn.web.door.problems import Problem
 
 MOST_PARAMETERS = 100
+MOST_NAMED = 60
+"""Characters of an unknown name that a refusal repeats."""
 
 
 def require_declared(request: Request) -> None:
@@ -25,7 +27,9 @@ def require_declared(request: Request) -> None:
     right = f"there are {', '.join(known)}" if known else "it takes none"
     counts = Counter(name for name, _ in request.query_params.multi_items())
     unknown = [
-        ((name,), "unknown", f"is no parameter of this address; {right}") for name in counts if name not in known
+        ((name[:MOST_NAMED],), "unknown", f"is no parameter of this address; {right}")
+        for name in counts
+        if name not in known
     ]
     twice = [((name,), "repeated", "must be given once") for name in known if counts[name] > 1]
     if unknown or twice:

@@ -4,6 +4,7 @@ Beside the phases' columns there is one that names the axis, and one for every o
 are the names of the inputs in every language, their symbols, or the names that `hpn fleet` gives its columns.
 """
 
+import re
 from collections.abc import Collection
 from dataclasses import dataclass, replace
 from functools import cache
@@ -144,11 +145,38 @@ def _unit(body: Body, column: AxisColumn, assumed: Collection[str]) -> str:
     """Unit as the headings say it, else that of the wire if it may be assumed; else blank."""
     wire = BY_ROLE[column.role].unit
     headings = body.headings[column.place]
-    if any(text.strip().casefold().endswith(f"_{wire}".casefold()) for text in headings):
-        return wire
-    written = {heading_of(text).unit or parts_of(text)[1] for text in headings} - {""}
+    written = {_written_unit(text, wire) for text in headings} - {""}
     if not written:
         return wire if wire in assumed else ""
-    codes = {units.codes_for(unit, column.quantity) for unit in written}
+    codes = {(wire,) if unit == wire else units.codes_for(unit, column.quantity) for unit in written}
     only = codes.pop() if len(codes) == 1 else ()
     return only[0] if len(only) == 1 else ""
+
+
+def _written_unit(text: str, wire: str) -> str:
+    """Unit that a heading has, blank for none: `Dauer ms`, `duration_s`."""
+    if text.strip().casefold().endswith(f"_{wire}".casefold()):
+        return wire
+    return heading_of(text).unit or parts_of(text)[1]
+
+
+_UNIT = re.compile(r"[%‰/²³^·*]|[0-9]{2}|[A-Za-z][0-9]")
+"""What an unknown unit has in it, and no word."""
+
+
+def foreign_unit(body: Body, column: AxisColumn) -> str:
+    """Unit in the headings of a column that is read in one alone, where it is another; blank for none."""
+    if column.quantity or column.symbol is None or column.symbol.kind == "text":
+        return ""
+    wire = column.symbol.unit
+    own = {wire, _plain(units.SYMBOLS.get(wire, ""))} - {""}
+    found = {_written_unit(text, wire or "1") for text in body.headings[column.place]} - {"1"}
+    strange = [unit for unit in sorted(found) if unit not in own and _plain(unit) not in own]
+    return next((unit for unit in strange if _UNIT.search(unit) or units.codes_for(unit)), "")
+
+
+def _plain(unit: str) -> str:
+    return unit.casefold().translate(_AS_PLAIN)
+
+
+_AS_PLAIN = str.maketrans({"²": "2", "³": "3", **dict.fromkeys(" ·*^.⋅", "")})

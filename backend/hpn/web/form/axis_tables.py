@@ -13,8 +13,8 @@ from math import isfinite
 from typing import Any
 
 from hpn import units
-from hpn.web.form.axis_columns import AXIS, BY_ROLE, PHASES, AxisColumn, columns_of
-from hpn.web.form.cells import DECIMALS, Decimal, Entry, entry, is_blank, plain
+from hpn.web.form.axis_columns import AXIS, BY_ROLE, PHASES, AxisColumn, columns_of, foreign_unit
+from hpn.web.form.cells import DECIMALS, LONGEST_CELL, Decimal, Entry, entry, is_blank, plain
 from hpn.web.form.columns import NO_CHOICES, REQUIRED, SKIP, Body, Choices, body_of
 from hpn.web.form.numbers import split_unit
 from hpn.web.form.pasted import TIMES
@@ -22,12 +22,14 @@ from hpn.web.form.sheets import Grid, RefusedError
 from hpn.wording import N_, Sentence, Value
 
 NEEDED = (AXIS, *REQUIRED)
+SHARES = ("u", "eta", "fw")
+"""Inputs that may be written as percentages."""
 
 MOSTLY = 0.75
 """Share of the axes from which on all times count as going on: a bad cell in one changes nothing for the others."""
 
 _APART = re.compile(r"[;/|\s]+")
-_OF_RATIO = re.compile(r"\bi\s*=\s*|\s*:\s*1\b")
+_OF_RATIO = re.compile(r"\bi\s*=\s*|\s*:\s*1(?![0-9.,])")
 """What is written beside the number of a ratio: `i = 5`, `5:1`."""
 
 
@@ -104,6 +106,10 @@ class _Reading:
                 self._ask(N_("What is column {name}?"), name=column.called)
             elif column.quantity and not column.unit:
                 self._ask(N_("Which unit is column {name} in?"), name=column.called)
+            elif column.role != SKIP and (unit := foreign_unit(self.body, column)):
+                template = N_("Column {name}: {unit} is not read there. Convert it to {wire}, or let it be not read.")
+                wire = units.SYMBOLS.get(column.unit, "1")
+                self._ask(template, name=column.called, unit=unit, wire=wire)
         for role in NEEDED:
             if role not in roles:
                 self._ask(MISSING[role])
@@ -116,7 +122,7 @@ class _Reading:
         """Decimal mark of the numbers, None where it is asked for, and what one with two readings is under each."""
         places = [column.place for column in self.columns if column.is_number]
         cells = [cell for row in self.body.rows for place in places if not is_blank(cell := row[place])]
-        read = {mark: [_entry(cell, mark) for cell in cells] for mark in DECIMALS}
+        read = {mark: [number_in(cell, mark) for cell in cells] for mark in DECIMALS}
         mark, marks = self._mark(cells, read)
         found = read[mark] if mark else [one or other for one, other in zip(*read.values(), strict=True)]
         wrong = [cell for cell, number in zip(cells, found, strict=True) if number is None]
@@ -176,7 +182,7 @@ class _Reading:
             name = row[column.place]
             continued += is_blank(name) and bool(names)
             names.append(names[-1] if is_blank(name) and names else name)
-        self._ask_sums(column)
+        self._ask_unnamed(column)
         if continued:
             template = N_("Rows that name no axis and belong to the one above: {count}.")
             self.notes.append(Sentence(template, {"count": continued}))
@@ -187,21 +193,26 @@ class _Reading:
             groups.append(Group(name, tuple(row for _, row, _ in found), tuple(number for _, _, number in found)))
         return groups
 
-    def _ask_sums(self, axis: AxisColumn) -> None:
-        """Ask for a row without axis and number where other rows without an axis have one: most likely it is a sum."""
+    def _ask_unnamed(self, axis: AxisColumn) -> None:
+        """Ask for a row without an axis that most likely is none of the axis above it.
+
+        That is one with no axis above it; and one without a number, most likely a sum, where other rows without an axis
+        have one, or where rows repeat the name of their axis.
+        """
         indices = [column.place for column in self.columns if column.numbers_phases]
-        unnamed = [
-            (number, all(is_blank(row[place]) for place in indices))
-            for row, number in zip(self.body.rows, self.body.numbers, strict=True)
-            if is_blank(row[axis.place])
-        ]
-        if indices and not all(is_sum for _, is_sum in unnamed):
-            for number in [number for number, is_sum in unnamed if is_sum][:1]:
+        names = [row[axis.place] for row in self.body.rows]
+        counted = [any(not is_blank(row[place]) for place in indices) for row in self.body.rows]
+        unnamed = [place for place, name in enumerate(names) if is_blank(name)]
+        repeated = any(one == other and not is_blank(one) for one, other in pairwise(names))
+        if unnamed[:1] == [0]:
+            self._ask(N_("Row {row} names no axis, and none stands above it."), row=self.body.numbers[0])
+        elif repeated or any(counted[place] for place in unnamed):
+            for place in [place for place in unnamed if not counted[place]][:1]:
                 template = N_(
-                    "Row {row} has neither an axis nor a number, which other rows have: leave it out if it is a sum, "
-                    "or write its axis into it."
+                    "Row {row} has no axis, which other rows have: leave it out if it is a sum, or write its axis into "
+                    "it."
                 )
-                self._ask(template, row=number)
+                self._ask(template, row=self.body.numbers[place])
 
     def _axes(self, groups: Sequence["Group"], decimal: Decimal, times: str) -> Iterator[dict[str, Any]]:
         for group in groups:
@@ -266,9 +277,9 @@ def _column_name(column: AxisColumn) -> str:
     return path[-1] if path[0] == "duty_cycle" else ".".join(path)
 
 
-def _entry(cell: str, decimal: Decimal) -> Entry | None:
+def number_in(cell: str, decimal: Decimal) -> Entry | None:
     """A cell as a number, with whichever unit: not only phases have columns here."""
-    if found := entry(cell, decimal):
+    if (found := entry(cell, decimal)) or len(cell) > LONGEST_CELL:
         return found
     written, unit = (cell[:-1].rstrip(), "%") if cell.endswith("%") else split_unit(cell)
     number = plain(written, decimal) if unit == "%" or units.codes_for(unit) else None
@@ -277,11 +288,11 @@ def _entry(cell: str, decimal: Decimal) -> Entry | None:
 
 def _read(cell: str, column: AxisColumn, decimal: Decimal) -> Entry | None:
     """A cell as a number in the unit of its column, or in one of its own that measures the same; None otherwise."""
-    found = None if is_blank(cell) else _entry(cell, decimal)
+    found = None if is_blank(cell) else number_in(cell, decimal)
     if found is None or not found.unit:
         return found
     if found.unit == "%":
-        return None if column.quantity else Entry(f"{found.number}e-2", "")
+        return Entry(repr(float(Fraction(found.number) / 100)), "") if column.role in SHARES else None
     codes = units.codes_for(found.unit, column.quantity)
     return Entry(found.number, codes[0]) if column.quantity and len(codes) == 1 else None
 

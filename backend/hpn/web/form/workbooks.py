@@ -6,6 +6,7 @@ A workbook is a zip archive of XML: how much it unpacks to is bounded before any
 import re
 import zipfile
 from contextlib import suppress
+from decimal import Decimal
 from fractions import Fraction
 from io import BytesIO
 from typing import Any
@@ -95,7 +96,7 @@ def _text(cell: Any) -> str:
     unit = "".join(a or b for a, b in _LITERAL.findall(section)).strip()
     bare = re.sub(r"\[[^\]]*\]", "", _LITERAL.sub("", section))
     if "%" in bare:
-        return f"{value} %"
+        return Figure(f"{Decimal(repr(value)).scaleb(2):f} %")
     scaled = _SCALED.search(bare)
     number = float(Fraction(value) / 1000 ** len(scaled[1])) if scaled else float(value)
     return Figure(f"{repr(number).removesuffix('.0')} {unit}".strip())

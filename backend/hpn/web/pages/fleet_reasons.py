@@ -35,7 +35,8 @@ _FAULTS = re.compile(r"; (?=[a-z][A-Za-z0-9_.]*: )")
 
 
 def _pattern(template: str) -> re.Pattern[str]:
-    return re.compile(re.sub(r"\\\{(\w+)\\\}", r"(?P<\1>.+)", re.escape(template)), re.DOTALL)
+    text = re.escape(template).replace(r"\{number\}", "(?P<number>[0-9]+)")
+    return re.compile(re.sub(r"\\\{(\w+)\\\}", r"(?P<\1>.+)", text), re.DOTALL)
 
 
 PATTERNS = {template: _pattern(template) for template in TEMPLATES}

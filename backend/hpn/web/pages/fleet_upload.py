@@ -7,7 +7,6 @@ import csv
 import io
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from math import isfinite
 from typing import Any
 
 import msgspec
@@ -24,6 +23,9 @@ from hpn.web.form.workbooks import MAGIC, OLD_MAGIC, sheets_of
 from hpn.wording import N_
 
 PARQUET, ARROW = b"PAR1", b"ARROW1"
+LARGEST = 1e300
+"""Numbers beyond it stand as text, and are none."""
+
 MOST_CHARACTERS, MOST_ROWS = 4_000_000, 50_000
 """Longest text and most rows of a table whose columns are not named as `hpn fleet` names them."""
 
@@ -104,7 +106,7 @@ def _of_cells(names: Sequence[str], rows: Any) -> Upload:
 def _cell(value: Any) -> str:
     if value is None:
         return ""
-    if isinstance(value, int | float) and not isinstance(value, bool) and isfinite(value):
+    if isinstance(value, int | float) and not isinstance(value, bool) and abs(value) < LARGEST:
         return Figure(repr(value).removesuffix(".0"))
     return str(value)
 

@@ -31,7 +31,7 @@ from hpn.web.door.visit import current
 from hpn.web.fleets import Tables, size_fleet, workplace
 from hpn.web.form import cells
 from hpn.web.form.axis_columns import AXIS, AXIS_NAMED, BY_ROLE, AxisColumn
-from hpn.web.form.axis_tables import AxisTable
+from hpn.web.form.axis_tables import AxisTable, number_in
 from hpn.web.form.columns import SKIP
 from hpn.web.form.labels import TITLE_BLOCK, faults_of
 from hpn.web.form.pasted import TIMES
@@ -82,7 +82,7 @@ class Draft:
 def _cell(cell: str, column: AxisColumn, decimal: cells.Decimal | None) -> tuple[str, bool, bool]:
     if not column.is_number or cells.is_blank(cell):
         return cell, False, False
-    found = {read for mark in ((decimal,) if decimal else cells.DECIMALS) if (read := cells.entry(cell, mark))}
+    found = {read for mark in ((decimal,) if decimal else cells.DECIMALS) if (read := number_in(cell, mark))}
     if len(found) != 1:
         return cell, False, True
     number, unit = found.pop()
