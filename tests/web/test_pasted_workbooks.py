@@ -94,7 +94,7 @@ def test_workbook_becomes_what_its_cells_show(client: TestClient, rows: Any, pha
 @pytest.mark.parametrize(
     ("cells", "words"),
     [
-        ([(0.4, "0%"), 250, 3], "0.4 % is not a number"),
+        ([(0.4, "0%"), 250, 3], "40 % is not a number"),
         ([(40, "0 [$€-407]"), 250, "x"], "x is not a number"),
         ([40, 250, clock(0, 0, 3)], "00:00:03 is not a number"),
         ([40, 250, timedelta(seconds=3)], "0:00:03 is not a number"),

@@ -14,7 +14,7 @@ from typing import Any
 
 from hpn import units
 from hpn.web.form.axis_columns import AXIS, BY_ROLE, PHASES, AxisColumn, columns_of, foreign_unit
-from hpn.web.form.cells import DECIMALS, LONGEST_CELL, Decimal, Entry, entry, is_blank, plain
+from hpn.web.form.cells import DECIMALS, LONGEST_CELL, Decimal, Entry, Figure, entry, is_blank, plain
 from hpn.web.form.columns import NO_CHOICES, REQUIRED, SKIP, Body, Choices, body_of
 from hpn.web.form.numbers import split_unit
 from hpn.web.form.pasted import TIMES
@@ -282,6 +282,8 @@ def number_in(cell: str, decimal: Decimal) -> Entry | None:
     if (found := entry(cell, decimal)) or len(cell) > LONGEST_CELL:
         return found
     written, unit = (cell[:-1].rstrip(), "%") if cell.endswith("%") else split_unit(cell)
+    if isinstance(cell, Figure):
+        return Entry(written, unit)
     number = plain(written, decimal) if unit == "%" or units.codes_for(unit) else None
     return Entry(number, unit) if number else None
 

@@ -61,10 +61,10 @@ def is_blank(cell: str) -> bool:
 
 
 def entry(cell: str, decimal: Decimal) -> Entry | None:
-    """A cell as a number under a decimal mark; None where it is none."""
+    """A cell as a number under a decimal mark; None where it is none, as a percentage is none of a phase."""
     if isinstance(cell, Figure):
         number, _, unit = cell.partition(" ")
-        return Entry(number, unit)
+        return None if unit == "%" else Entry(number, unit)
     return _entry(cell, decimal)
 
 
