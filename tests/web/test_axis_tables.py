@@ -1,6 +1,7 @@
 """Tables of axes as spreadsheets write them: no number is silently another one, and what has two readings is asked."""
 
 import io
+import zipfile
 from itertools import product
 from typing import Any
 
@@ -198,6 +199,8 @@ def test_what_an_axis_says_twice_is_compared_as_numbers_and_spoils_that_axis_alo
         ("Umgebungstemperatur [°C]", "25 %", "requirements.ambient_temperature_degC", "25 %"),
         ("Maximale Länge", "20 cm", "requirements.length_mm", 200),
         ("Auslastung u", "9.5e1 %", "requirements.utilisation", 0.95),
+        ("Auslastung u", "0.1 %", "requirements.utilisation", 0.001),
+        ("Auslastung u", "1e999 %", "requirements.utilisation", "1e999 %"),
         ("Maximales Gewicht", "9" * 5000 + " kg", "requirements.weight_kg", "9" * 5000 + " kg"),
         ("Torsionssteifigkeit K3", "14 %", "requirements.torsional_stiffness_Nm_per_rad", "14 %"),
         ("Übersetzung", "5:1.5", "requirements.ratios", ["5:1.5"]),
@@ -242,16 +245,36 @@ def test_a_unit_row_below_the_names_of_columns_is_asked_where_it_says_otherwise(
     ]
 
 
-def test_a_percentage_of_a_workbook_is_the_number_that_it_holds() -> None:
+def sheet_of(format_: str, *values: str) -> AxisTable:
+    """A table whose last column holds these numbers of a workbook in a format, read as weight and efficiency."""
     book = Workbook()
     sheet: Any = book.active
-    for row in ([*HEAD.split(";"), "eta"], ["A", 1, 9, 1, 0.95], ["B", 1, 9, 1, 1e-5]):
-        sheet.append(row)
-    for place in (2, 3):
-        sheet.cell(place, 5).number_format = "0%"
+    sheet.append([*HEAD.split(";"), "m", "eta"])
+    for place in range(len(values)):
+        sheet.append(["ABC"[place], 1, 9, 1, 1000 + place, 1000 + place])
+        sheet.cell(place + 2, 5).number_format = "0.0"
+        sheet.cell(place + 2, 6).number_format = format_
     book.save(file := io.BytesIO())
-    ((_, rows),) = sheets_of(file.getvalue()).items()
+    written = io.BytesIO()
+    with zipfile.ZipFile(file) as before, zipfile.ZipFile(written, "w") as after:
+        for name in before.namelist():
+            text = before.read(name)
+            for place, value in enumerate(values):
+                text = text.replace(b"<v>%d</v>" % (1000 + place), b"<v>%b</v>" % value.encode())
+            after.writestr(name, text)
+    ((_, rows),) = sheets_of(written.getvalue()).items()
+    return read_axes(grid_of(rows), Choices(roles={4: "m", 5: "eta"}, units={4: "kg"}), WIRE)
 
-    axes = read_axes(grid_of(rows), Choices(roles={4: "eta"}), WIRE).axes
+
+def test_a_percentage_of_a_workbook_is_the_number_that_it_holds() -> None:
+    axes = sheet_of("0%", "0.95", "1E-05").axes
 
     assert [axis["requirements.efficiency"] for axis in axes] == [0.95, 1e-5]
+
+
+@pytest.mark.parametrize("format_", ["0%", "0.0"])
+def test_an_infinite_number_of_a_workbook_spoils_its_axis_alone(format_: str) -> None:
+    axes = sheet_of(format_, "1E+999", "-1E+999", "0.5").axes
+
+    read_as = [(axis["requirements.weight_kg"], axis["requirements.efficiency"]) for axis in axes]
+    assert read_as == [("inf", "inf"), ("-inf", "-inf"), (0.5, 0.5)]

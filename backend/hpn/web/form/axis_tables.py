@@ -4,6 +4,7 @@ As with pasted duty cycles a number is never silently another number: what has t
 number spoils its axis alone, which is then rejected with its reason.
 """
 
+import decimal as decimals
 import re
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -294,7 +295,7 @@ def _read(cell: str, column: AxisColumn, decimal: Decimal) -> Entry | None:
     if found is None or not found.unit:
         return found
     if found.unit == "%":
-        return Entry(repr(float(Fraction(found.number) / 100)), "") if column.role in SHARES else None
+        return Entry(str(decimals.Decimal(found.number).scaleb(-2)), "") if column.role in SHARES else None
     codes = units.codes_for(found.unit, column.quantity)
     return Entry(found.number, codes[0]) if column.quantity and len(codes) == 1 else None
 

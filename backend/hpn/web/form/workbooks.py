@@ -9,6 +9,7 @@ from contextlib import suppress
 from decimal import Decimal
 from fractions import Fraction
 from io import BytesIO
+from math import inf
 from typing import Any
 
 from hpn.web.form.cells import Figure, tidy
@@ -90,8 +91,8 @@ def _text(cell: Any) -> str:
     value = cell.value
     if value is None:
         return ""
-    if isinstance(value, bool) or not isinstance(value, int | float):
-        return tidy(str(value))
+    if isinstance(value, bool) or not isinstance(value, int | float) or abs(value) == inf:
+        return tidy(str(value))  # an infinite one, such as 1e999, is no number
     section = str(cell.number_format).split(";")[0]
     unit = "".join(a or b for a, b in _LITERAL.findall(section)).strip()
     bare = re.sub(r"\[[^\]]*\]", "", _LITERAL.sub("", section))
