@@ -102,6 +102,8 @@ TABLES_OF_PHASES = (
 TABLES_OF_AXES = (
     b"Achse;Nr.;Moment [Nm];Drehzahl [1/min];Zeit [ms];Lebensdauer [h]\nHub;1;12,5;250;300;20000\n;2;8;500;2.000;\n",
     b"axis\ttorque_Nm\tspeed_rpm\tduration_s\tratios\tsizes\nA\t1.234\t2\t1\t4/5\t14A\nA\t2\t3\t4\t\t\n",
+    "Achse;Moment kNm;Drehzahl;Dauer ms;Maximale Auslastung u;Umgebungstemperatur [°C];Untersetzung;K_3 [Nm/rad]\n"
+    "A;0,04;250;300;80 %;25 °C;5:1, 10;5e3\n;8;500;2.5;9.5e1 %;25;i = 5;14 %\n".encode(),
     b"Linie 4\nDrive,Torque (Nm),Speed (rpm),Duration (s),K_3,Load\nx,1,2,3,4,5\ny,1,2,3 ms,-,\n",
 )
 

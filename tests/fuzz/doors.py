@@ -111,7 +111,7 @@ async def _paste(world: World, random: Random, content: bytes) -> str:
 
 
 async def _axes(world: World, random: Random, content: bytes) -> str:
-    chosen = {f"{mark}{place}": random.choice(_ROLES) for mark in "ru" for place in range(random.randrange(4))}
+    chosen = {f"{mark}{place}": random.choice(_ROLES) for mark in "ru" for place in range(random.randrange(9))}
     of = hashlib.sha256(content.decode(errors="replace").strip().encode()).hexdigest()[:16]
     fields = {"text": content, "of": of, "decimal": random.choice((".", ",")), **chosen}
     headers = [FORM, *random.choice(READERS)]
@@ -129,7 +129,7 @@ async def _upload(world: World, random: Random, content: bytes) -> str:
     return judged(reply, api=False)
 
 
-_ROLES = ("", "skip", "axis", "T", "n", "t", "FRi", "i", "size", "K3", "Nm", "ms", "nothing")
+_ROLES = ("", "skip", "axis", "T", "n", "t", "FRi", "i", "size", "K3", "Nm", "ms", "u", "eta", "m", "kg", "nothing")
 _TAKES = ("", "", "", "", "", "", "append", "replace")
 
 
