@@ -32,10 +32,11 @@ def section(page: Page) -> Any:
 
 
 def plot(page: Page, name: str = "Loads in the envelope") -> Any:
-    """A plot, unfolded and drawn."""
+    """A plot, unfolded and drawn. One that still waits for its answer would be folded by a second click."""
     found = page.get_by_role("img", name=re.compile(name))
-    if not found.is_visible():
-        page.locator("summary", has_text="Zoom and export").locator("visible=true").click()
+    zoom = page.locator("details.zoom").locator("visible=true")
+    if zoom.get_attribute("open") is None:
+        zoom.locator("summary").click()
     found.scroll_into_view_if_needed()
     expect(found.locator(".main-svg").first).to_be_visible()
     return found
