@@ -45,7 +45,7 @@ def motors_on(application: Application, gear: Gear, catalogue: Catalogue) -> lis
     """The user's motors on a gear: those that fit first, by ascending rated torque, then the nearest miss first.
 
     Utilisations are those of `select` with that motor. A motor of which nothing is known that a check needs is left
-    out.
+    out, and where an inertia ratio is asked for, each of which the inertia is not known: `select` refuses it.
     """
     motors = catalogue.motors
     if not motors:
@@ -57,10 +57,16 @@ def motors_on(application: Application, gear: Gear, catalogue: Catalogue) -> lis
     for place, motor in enumerate(motors):
         shares = {code: values.item(place) for code, values in used.items() if not np.isnan(values[place])}
         ratio = inertia_ratio.item(place)
-        if shares:
+        if shares and not (asks_inertia_ratio(application) and motor.inertia_kgm2 is None):
             fits = all(share <= u for share in shares.values())
             uses.append(MotorUse(motor, shares, None if np.isnan(ratio) else ratio, fits))
     return sorted(uses, key=_order)
+
+
+def asks_inertia_ratio(application: Application) -> bool:
+    """Whether the motor's inertia has to be known, as the load's is limited to a multiple of it."""
+    asked = application.requirements.motor
+    return asked is not None and asked.inertia_ratio is not None
 
 
 def _known(value: float | None) -> float:
@@ -120,10 +126,9 @@ def _without_motor(application: Application) -> Application:
 
 
 def with_motor(application: Application, motor: ListedMotor) -> Application:
-    """The application with a motor of the list in place of its own; the permitted inertia ratio stays where it can."""
+    """The application with a motor of the list in place of its own; the permitted inertia ratio stays."""
     asked = application.requirements.motor
-    ratio = asked.inertia_ratio if asked and motor.inertia_kgm2 is not None else None
-    named = Motor(designation=motor.designation, inertia_ratio=ratio)
+    named = Motor(designation=motor.designation, inertia_ratio=asked.inertia_ratio if asked else None)
     return application.model_copy(update={"requirements": application.requirements.model_copy(update={"motor": named})})
 
 

@@ -90,6 +90,18 @@ def test_motors_that_fit_are_listed_each_with_a_link_that_chooses_it(supplied: T
     assert "Nearest that does not fit: M 3" in words(part)
 
 
+def test_a_required_inertia_ratio_leaves_out_motors_without_an_inertia_and_stays_in_every_link(
+    supplied: TestClient,
+) -> None:
+    part = drive(supplied.get(TURNING + "&md=M+2&Jr=50&gear=HPN-20A-15").text)
+    links = re.findall(r'<a href="([^"]+)" aria-label="Choose', part)
+
+    assert links
+    assert all("&amp;Jr=50&amp;" in link for link in links)
+    assert "motors without an inertia in your list (1)" in words(part)
+    assert "M 3" not in words(part)
+
+
 def test_a_list_of_which_none_fits_says_so(supplied: TestClient) -> None:
     part = drive(supplied.get("/?T=4000&n=1&t=1&gear=HPN-11A-4").text)
 

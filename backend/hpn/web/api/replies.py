@@ -114,7 +114,11 @@ class MotorsOnGearReply(Struct):
     catalogue_version: Version
     designation: Annotated[str, Meta(description="The gear.")]
     motors: Annotated[
-        list[MotorUseReply], Meta(description="Every motor of motors.csv that has a figure which is checked.")
+        list[MotorUseReply],
+        Meta(
+            description="Every motor of motors.csv that has a figure which is checked; where an inertia ratio is "
+            "required, every one of which the inertia is listed."
+        ),
     ]
 
 

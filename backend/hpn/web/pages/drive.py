@@ -8,7 +8,7 @@ from hpn.allowed import with_listed_motor
 from hpn.application import Application, Motor
 from hpn.catalogue import Catalogue
 from hpn.gear import Gear
-from hpn.motors import MotorUse, SizeWithMotor, motors_on, ratios_with_motor, with_motor
+from hpn.motors import MotorUse, SizeWithMotor, asks_inertia_ratio, motors_on, ratios_with_motor, with_motor
 from hpn.selection import Selection
 from hpn.web.form.write import to_link
 from hpn.wording import N_, Sentence
@@ -64,6 +64,13 @@ class Drive:
     def nearest(self) -> MotorUse | None:
         """The nearest miss."""
         return next((use for use in self.uses if not use.fits), None)
+
+    @property
+    def without_inertia(self) -> int:
+        """Number of motors that an inertia ratio leaves out, as their inertia is not known."""
+        if not asks_inertia_ratio(self.application):
+            return 0
+        return sum(motor.inertia_kgm2 is None for motor in self.catalogue.motors)
 
     def is_chosen(self, use: MotorUse) -> bool:
         """Whether a motor is the one that is asked for."""
