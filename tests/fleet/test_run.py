@@ -8,7 +8,7 @@ import sys
 import threading
 import time
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 import pytest
@@ -244,20 +244,29 @@ def test_an_interrupt_that_another_thread_takes_waits_until_the_workers_have_sta
 
 
 def test_a_run_killed_at_random_moments_is_resumed_to_the_same_bytes(many: Path, tmp_path: Path, soak: bool) -> None:
-    assert ended(many, tmp_path / "whole.parquet").returncode == 0
+    assert ended(many, tmp_path / "whole.parquet", *SLOWLY, tmp_path / "whole.csv").returncode == 0
+    out, parts = tmp_path / "out.parquet", tmp_path / "out.parquet.parts"
+    options = [*SLOWLY, tmp_path / "all.csv", "--resume", "--rejected", tmp_path / "bad.csv"]
     chance, kills = random.Random(17), 20 if soak else 2
-    options = ["--workers", 2, "--resume", "--rejected", tmp_path / "bad.csv"]
-    while kills:
-        with started(many, tmp_path / "out.parquet", *options) as run:
-            try:
-                assert run.wait(chance.uniform(0.8, 2.5)) == 0
-                (tmp_path / "out.parquet").unlink()  # it was done before: once more
-            except subprocess.TimeoutExpired:
-                os.kill(run.pid, signal.SIGKILL)  # its workers end with it
-                kills -= 1
-    assert ended(many, tmp_path / "out.parquet", *options).returncode == 0
-    assert (tmp_path / "out.parquet").read_bytes() == (tmp_path / "whole.parquet").read_bytes()
-    assert files(tmp_path) == ["bad.csv", "out.parquet", "whole.parquet"]
+    for _ in range(10 * kills):
+        before = parts_done(parts)
+        with started(many, out, *options) as run:
+            while parts_done(parts) == before and run.poll() is None:
+                time.sleep(0.01)
+            with suppress(subprocess.TimeoutExpired):
+                run.wait(chance.uniform(0, 0.3))
+            run.kill()  # its workers end with it
+        kills -= run.returncode == -signal.SIGKILL
+        if not kills:
+            break
+        if run.returncode == 0:
+            out.unlink()  # it was done before: once more
+    assert not kills, f"{kills} more were to be killed, but were done before"
+
+    assert ended(many, out, *options).returncode == 0
+    assert out.read_bytes() == (tmp_path / "whole.parquet").read_bytes()
+    assert (tmp_path / "all.csv").read_bytes() == (tmp_path / "whole.csv").read_bytes()
+    assert files(tmp_path) == ["all.csv", "bad.csv", "out.parquet", "whole.csv", "whole.parquet"]
 
 
 def test_workers_end_with_the_command(many: Path, tmp_path: Path) -> None:
