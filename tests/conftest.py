@@ -1,5 +1,6 @@
 """What the tests share: the catalogue as shipped, copies of it to spoil, and supplements over it."""
 
+import os
 import shutil
 from collections.abc import Callable
 from pathlib import Path
@@ -37,6 +38,14 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 def pytest_configure(config: pytest.Config) -> None:
     """Draw as many examples as the form of the run asks for; before any test module is imported."""
     settings.load_profile("soak" if config.getoption("--soak") else "hpn")
+    _forget_the_settings_of_the_machine()
+
+
+def _forget_the_settings_of_the_machine() -> None:
+    """For this process and whatever it starts; `HPN_TEST_…` are settings of the tests themselves."""
+    for name in list(os.environ):
+        if name.upper().startswith("HPN_") and not name.startswith("HPN_TEST_"):
+            del os.environ[name]
 
 
 def pytest_report_header(config: pytest.Config) -> str:

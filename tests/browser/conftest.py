@@ -26,19 +26,29 @@ PATIENCE_S = int(os.environ.get("HPN_TEST_PATIENCE_S", "60"))
 expect.set_options(timeout=1000 * PATIENCE_S)
 
 
+SERVE = """import socket, sys, uvicorn
+uvicorn.Server(uvicorn.Config("hpn.web.app:create_app", factory=True)).run([socket.socket(fileno=int(sys.argv[1]))])"""
+
+
 @pytest.fixture(scope="session")
 def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
     """Address of a running service."""
-    with socket.socket() as listener:
-        listener.bind(("127.0.0.1", 0))
-        port = listener.getsockname()[1]
     folder = tmp_path_factory.mktemp("server")
-    log, database = folder / "log", f"sqlite:///{folder}/selections.sqlite3"
-    command = [sys.executable, "-m", "uvicorn", "--factory", "hpn.web.app:create_app", "--port", str(port)]
-    with log.open("w") as output:
-        origins = f"http://localhost:{port}"  # another origin than 127.0.0.1
-        environment = {**os.environ, "HPN_DATABASE_URL": database, "HPN_CORS_ORIGINS": origins}
-        process = subprocess.Popen(command, stdout=output, stderr=subprocess.STDOUT, env=environment)
+    log = folder / "log"
+    with socket.create_server(("127.0.0.1", 0)) as listener, log.open("w") as output:
+        port, descriptor = listener.getsockname()[1], listener.fileno()
+        environment = {
+            "HPN_DATABASE_URL": f"sqlite:///{folder}/selections.sqlite3",
+            "HPN_CORS_ORIGINS": f"http://localhost:{port}",  # another origin than 127.0.0.1
+        }
+        process = subprocess.Popen(
+            # uvicorn's own --fd has each answer wait 40 ms: it takes a TCP socket for a Unix one
+            [sys.executable, "-c", SERVE, str(descriptor)],
+            pass_fds=[descriptor],
+            stdout=output,
+            stderr=subprocess.STDOUT,
+            env=os.environ | environment,
+        )
     try:
         _wait_for(f"http://127.0.0.1:{port}/healthz", process, log)
         yield f"http://127.0.0.1:{port}"

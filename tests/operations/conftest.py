@@ -21,12 +21,6 @@ def anyio_backend() -> str:
     return "asyncio"
 
 
-@pytest.fixture(autouse=True)
-def _no_settings_of_the_machine(monkeypatch: pytest.MonkeyPatch) -> None:
-    for name in Settings.model_fields:
-        monkeypatch.delenv(f"HPN_{name.upper()}", raising=False)
-
-
 @pytest.fixture
 def make_client(tmp_path: Path) -> Iterator[MakeClient]:
     """Client of an application with the given settings and a database of its own."""

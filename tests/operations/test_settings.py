@@ -1,6 +1,9 @@
 """The settings, as the example file and the README list them."""
 
+import os
 import re
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -123,3 +126,13 @@ def test_variables_of_others_are_left_alone(monkeypatch: pytest.MonkeyPatch) -> 
         monkeypatch.setenv(name, "1")
 
     assert Settings().port == 1
+
+
+def test_no_setting_of_the_machine_reaches_the_tests() -> None:
+    settings = {"HPN_CATALOGUE_SUPPLEMENT": "/there/is/none", "hpn_api_keys": "erp"}
+    tests = "-p no:cacheprovider tests/web/test_every_route.py -k healthz"
+    command = [sys.executable, "-m", "pytest", *tests.split()]
+
+    run = subprocess.run(command, cwd=ROOT, env=os.environ | settings, capture_output=True, text=True, timeout=120)
+
+    assert run.returncode == 0, run.stdout
