@@ -139,4 +139,4 @@ def test_a_store_out_of_reach_says_so(tmp_path_factory: pytest.TempPathFactory) 
         page = client.get(f"/selections/compare?a={'A' * 22}&b={'B' * 22}")
 
     assert page.status_code == 503
-    assert "out of reach" in page.text or "temporarily unavailable" in page.text
+    assert "temporarily unavailable" in page.text

@@ -231,7 +231,7 @@ def test_a_unit_is_read_from_the_end_of_a_name_and_from_nowhere_else() -> None:
         assert suffix_of(name) is None
         assert symbol_of(name) == ""
     assert symbol_of("temperature_degC") == "°C"
-    assert all(symbol for symbol in SYMBOLS.values())
+    assert {suffix: symbol_of(f"a_{suffix}") for suffix in SYMBOLS} == SYMBOLS
 
 
 def test_the_worked_example_of_the_product_is_the_printed_one() -> None:
