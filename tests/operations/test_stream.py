@@ -201,6 +201,11 @@ def ends_with(peer: Peer, end: bytes) -> bool:
     return peer.received.endswith(end)
 
 
+def has_read(peer: Peer, lines: int, asked: int) -> bool:
+    """Whether this client has so many lines, and was asked so often for more."""
+    return peer.received.count(b"\n") == lines and peer.asked >= asked
+
+
 async def until(condition: Callable[[], bool]) -> None:
     """Wait for something that others do."""
     async with asyncio.timeout(20):
@@ -253,10 +258,13 @@ async def test_beyond_the_spool_nothing_more_is_read_until_the_client_reads() ->
     peer.reading.clear()
     for _ in range(100):
         peer.send_body(line)
-    await asyncio.sleep(0.3)
-    taken = peer.asked
-    await asyncio.sleep(0.2)
-    assert peer.asked == taken < 20
+    taken = 7  # one has been read, one is being sent, four fill the spool, and one waits for its place there
+    await until(lambda: peer.asked >= taken)
+    for read in range(1, 21):
+        peer.reading.set()
+        peer.reading.clear()  # the client reads one line, and one more is taken in its place
+        await until(partial(has_read, peer, 1 + read, taken + read))
+        assert peer.asked == taken + read
 
     peer.reading.set()
     peer.send_body(b"", more=False)
