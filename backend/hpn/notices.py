@@ -199,7 +199,8 @@ def _on_stop_and_life(evaluation: Evaluation, index: int) -> Iterable[Notice]:
 def _on_speed(evaluation: Evaluation, index: int) -> Iterable[Notice]:
     """Suitable gears whose input runs above the permissible average speed for longer than is taken to average out."""
     bound, gears, phases = evaluation.catalogue.averaging_s, evaluation.gears.columns, evaluation.case.duty.phases
-    n, t = phases.speed_rpm[index, 0], phases.duration_s[index, 0]
+    lasting = phases.duration_s[index, 0] > 0  # what a shorter cycle is filled up with lasts no time
+    n, t = phases.speed_rpm[index, 0][lasting], phases.duration_s[index, 0][lasting]
     if t.sum() <= bound:
         return
     circular = not evaluation.case.asked["duty_cycle.pause_s"].item(index)

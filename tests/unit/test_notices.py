@@ -4,9 +4,11 @@ from typing import get_args
 
 import pytest
 
-from hpn.application import ApplicationArea
+from hpn.application import Application, ApplicationArea
+from hpn.batch import judge_batch
 from hpn.catalogue import Catalogue, load_catalogue
 from hpn.notices import AREAS
+from hpn.selection import Judged, select
 from tests.build import Json, answer, candidate, check, cycle, notices, phase
 from tests.conftest import Supplement
 
@@ -166,6 +168,18 @@ def test_splitting_a_long_phase_changes_nothing_about_it() -> None:
         phase(1, 350, 200), phase(1, 350, 200), phase(1, 50, 400), requirements={"sizes": ["20A"], "ratios": [10]}
     )
     assert "for 400 s on end" in notices(answer(asked, load_catalogue()))["speed_above_average"]
+
+
+def test_a_cycle_beside_longer_ones_has_the_same_notice_on_long_runs() -> None:
+    asked = {"sizes": ["20A"], "ratios": [10]}
+    phases = [phase(1, 350, 200), phase(1, 50, 600), phase(1, 350, 200)]
+    short, long = (Application.model_validate(cycle(*one, requirements=asked)) for one in (phases, [*phases, *phases]))
+    catalogue = load_catalogue()
+    judged = judge_batch([short, long], catalogue)[0]
+
+    assert isinstance(judged, Judged)
+    assert judged.selection().notices == select(short, catalogue).notices
+    assert "speed_above_average" in [one.code for one in judged.selection().notices]
 
 
 def test_models_and_motor_torques_say_what_they_leave_out(catalogue: Catalogue) -> None:
