@@ -24,3 +24,8 @@ def test_the_readme_leads_to_the_papers() -> None:
     readme = (ROOT / "README.md").read_text()
 
     assert [paper.name for paper in PAPERS if paper.name not in readme] == []
+
+
+@pytest.mark.parametrize("paper", [*ROOT.glob("*.md"), *(ROOT / "docs").rglob("*.md")], ids=lambda path: path.name)
+def test_no_paper_holds_two_versions_of_a_merge(paper: Path) -> None:
+    assert not re.search(r"^(<{7}|={7}|>{7})( |$)", paper.read_text(), re.M)

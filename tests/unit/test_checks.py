@@ -4,8 +4,9 @@ from collections.abc import Callable
 
 import pytest
 
+from hpn.application import NUMBERS
 from hpn.catalogue import Catalogue
-from hpn.checks import allowed
+from hpn.checks import CHECKS, allowed
 from tests.build import Json, answer, candidate, check, cycle, phase
 from tests.conftest import Supplement
 from tests.unit.test_supplements import SIZES
@@ -90,6 +91,14 @@ def test_the_expected_number_of_stops_may_be_the_allowed_number_and_no_more(cata
         )
         assert (found["limit"], found["status"]) == (10**4, expected)
         assert found["utilisation"] == (count + extra) / 10**4
+
+
+def test_every_requirement_is_checked_or_enters_what_is_checked() -> None:
+    asked = {check.asked for check in CHECKS}
+    entering = {"utilisation", "efficiency", "load_inertia_kgm2", "motor.inertia_kgm2"}
+    wanted = {".".join(path) for path in NUMBERS if path[0] == "requirements"}
+
+    assert wanted - asked == {f"requirements.{name}" for name in entering}
 
 
 def test_where_not_one_stop_is_allowed_even_none_expected_fails_without_a_utilisation(catalogue: Catalogue) -> None:

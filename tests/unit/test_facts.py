@@ -1,12 +1,13 @@
 """What the handbook says in words: each sentence has its page, and stands where it bears on something."""
 
+import csv
 import re
 from html import unescape
 
 import pytest
 from starlette.testclient import TestClient
 
-from hpn.catalogue import Catalogue
+from hpn.catalogue import HANDBOOK_FOLDER, Catalogue
 from hpn.checks import BY_CODE
 from hpn.web.app import create_app
 
@@ -16,6 +17,19 @@ def test_every_fact_has_a_page_and_names_a_check_that_there_is(catalogue: Catalo
     for fact in catalogue.facts:
         assert ", page " in fact.source, fact
         assert fact.check is None or fact.check in BY_CODE, fact
+
+
+def test_a_table_or_equation_is_on_the_page_that_its_number_begins_with() -> None:
+    with (HANDBOOK_FOLDER / "sources.csv").open(newline="", encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    numbered = [
+        (row["page"], page)
+        for row in rows
+        for page in re.findall(r"(?:table|equation) (\d+)\.\d+", f"{row['source']} {row['title']}")
+    ]
+
+    assert len(numbered) > 10
+    assert [pair for pair in numbered if pair[0] != pair[1]] == []
 
 
 @pytest.mark.parametrize(

@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 from hpn.application import Application, InputError
-from hpn.catalogue import HANDBOOK_FOLDER, Catalogue, load_catalogue
+from hpn.catalogue import HANDBOOK_FOLDER, Catalogue, CatalogueError, load_catalogue
 from hpn.envelopes import EnvelopeQuery, life_envelopes
 from hpn.selection import select
 from tests.build import answer, candidate, check, cycle, notices, phase, suitable, worked_example
@@ -123,6 +123,11 @@ def test_a_sixth_size_may_come_from_a_supplement(supplemented: Supplement) -> No
     assert entry["status"] == "unrated"  # its speeds are still missing
     assert check(reply, "HPN-50A-5", "average_torque")["status"] == "pass"
     assert grown.by_designation["HPN-50A-5"].sources["ratio"] == "supplied by the user: mine"
+
+
+def test_stages_that_contradict_the_catalogue_are_the_supplements_fault(supplemented: Supplement) -> None:
+    with pytest.raises(CatalogueError, match=r"gears\.csv, line 2, column stages: ratio 10 with 2 stages contradicts"):
+        supplemented(gears="size,ratio,stages,source\n99A,10,2,mine\n")
 
 
 def test_curve_points_of_a_supplement_make_the_digitised_model(supplemented: Supplement) -> None:

@@ -185,7 +185,7 @@ def _check_stages(book: _Book) -> None:
             if (gear.ratio <= other.ratio and gear.stages > other.stages) or (
                 gear.ratio == other.ratio and gear.stages != other.stages
             ):
-                later = max(gear, other, key=lambda row: row.cells["stages"].line)
+                later = max(gear, other, key=lambda row: (row.cells["stages"].supplied, row.cells["stages"].line))
                 raise later.error(
                     "stages",
                     f"ratio {gear.ratio} with {gear.stages} stages contradicts {other.ratio} with {other.stages}",
