@@ -13,7 +13,7 @@ from hpn.catalogue import Catalogue
 from hpn.reader import Reader
 from hpn.report.content import content
 from hpn.report.pdf import pdf
-from hpn.report.symbols import formula
+from hpn.symbols import formula
 from tests.conftest import Supplement
 from tests.property.test_varying_remedy import MOTORS
 from tests.report.cases import CASES, MOVING, language, typed_export_of
@@ -49,8 +49,8 @@ def test_a_motion_is_printed_as_given_with_the_phases_that_come_out(catalogue: C
 
 
 def test_a_bracket_behind_a_symbol_is_no_part_of_its_index() -> None:
-    assert formula("J_L / (i² · J_m) ≤ r_J")[-3:] == [["J", "m"], ") ≤ ", ["r", "J"]]
-    assert formula("n_in(max)/i") == [["n", "in(max)"], "/", ["i", ""]]
+    assert formula("J_L / (i² · J_m) ≤ r_J")[-3:] == [("J", "m"), ") ≤ ", ("r", "J")]
+    assert formula("n_in(max)/i") == [("n", "in(max)"), "/", ("i", "")]
 
 
 def test_its_figures_are_in_the_units_of_the_reader(catalogue: Catalogue) -> None:

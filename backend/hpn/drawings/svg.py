@@ -1,8 +1,9 @@
 """Elements of an SVG drawing, with the handbook's symbols set as such; a style sheet gives colours and letter sizes."""
 
-import re
 from collections.abc import Iterable
 from xml.etree.ElementTree import Element, SubElement, tostring
+
+from hpn.symbols import sentence
 
 Point = tuple[float, float]
 
@@ -11,8 +12,6 @@ LETTER = 14.0
 
 WIDE = 0.64
 """Width of a character in letter sizes: that of a digit in DejaVu Sans, the widest of the usual fonts."""
-
-_SYMBOL = re.compile(r"\b([A-Za-z])_([A-Za-z]+(?:,[A-Za-z]+)*(?:\([a-z]+\))?)")
 
 
 def canvas(width: float, height: float) -> Element:
@@ -31,15 +30,14 @@ def text(parent: Element, kind: str, at: Point, content: str, anchor: str = "sta
     """Add a text, its symbols in italics with their index below."""
     element = add(parent, "text", kind, x=at[0], y=at[1], text_anchor=anchor)
     lowered = False
-    for place, part in enumerate(_SYMBOL.split(content)):
-        if place % 3 == 0 and part:
-            _run(element, "", part, -3 if lowered else 0)
-            lowered = False
-        elif place % 3 == 1:
-            _run(element, "letter", part, -3 if lowered else 0)
-        elif place % 3 == 2:
-            _run(element, "index", part, 3)
-            lowered = True
+    for part in sentence(content):
+        back = -3 if lowered else 0
+        lowered = not isinstance(part, str)
+        if isinstance(part, str):
+            _run(element, "", part, back)
+        else:
+            _run(element, "letter", part[0], back)
+            _run(element, "index", part[1], 3)
     return element
 
 

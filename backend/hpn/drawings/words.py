@@ -1,9 +1,9 @@
 """What pictures say: titles of axes, symbols with their index below, shares, and the numbers of phases."""
 
-import re
 from collections.abc import Iterable, Sequence
 
 from hpn.reader import Reader
+from hpn.symbols import sentence as parts_of
 from hpn.wording import N_, Quantity, Sentence, telling_decimals
 
 STANDING = N_("Basis: interpolated between the two published limits; printed curve not available.")
@@ -19,12 +19,10 @@ def standing(model: str) -> str:
     return {"digitised": STANDING_SUPPLIED, "iso281": STANDING_ISO281}.get(model, STANDING)
 
 
-_SYMBOL = re.compile(r"\b([A-Za-z])_([A-Za-z]+(?:\([a-z]+\))?)")
-
-
 def said(sentence: Sentence, reader: Reader) -> str:
     """A sentence as Plotly sets it: the handbook's symbols with their index below."""
-    return _SYMBOL.sub(r"\1<sub>\2</sub>", reader.told(sentence))
+    parts = parts_of(reader.told(sentence))
+    return "".join(part if isinstance(part, str) else f"{part[0]}<sub>{part[1]}</sub>" for part in parts)
 
 
 def axis_title(quantity: str, unit: str, reader: Reader) -> str:

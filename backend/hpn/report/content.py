@@ -13,9 +13,9 @@ from hpn.report.inputs import LOADS, REQUIREMENTS
 from hpn.report.listing import listing, moves
 from hpn.report.motion import MOTION_TITLE, MOVES_TITLE, PHASES_TITLE
 from hpn.report.steps import steps
-from hpn.report.symbols import sentence
 from hpn.report.verdict import alternatives, checks, verdict
 from hpn.report.words import catalogue_version, paper
+from hpn.symbols import sentence
 from hpn.wording import N_
 
 LONGEST_TITLE = 160

@@ -23,7 +23,7 @@ from hpn.phase import Phase
 from hpn.quantities import INPUTS
 from hpn.reader import Reader
 from hpn.report.export import Export
-from hpn.report.symbols import formula, sentence
+from hpn.symbols import formula, sentence
 from hpn.units import suffix_of
 from hpn.wording import N_, Sentence
 

@@ -7,9 +7,9 @@ from hpn.calculation import Step, calculation_of
 from hpn.calculation.mathml import compared, in_symbols, mathml, result
 from hpn.reader import Reader
 from hpn.report.export import Export
-from hpn.report.symbols import sentence
 from hpn.report.verdict import STATUS
 from hpn.report.words import used
+from hpn.symbols import sentence
 from hpn.wording import N_, Sentence
 
 

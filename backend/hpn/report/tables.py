@@ -11,9 +11,9 @@ from hpn.readings import AT_MOTOR
 from hpn.report import inputs
 from hpn.report.export import Export
 from hpn.report.motion import MOVES, lines, moves_of, written
-from hpn.report.symbols import formula
 from hpn.report.words import equation, measured
 from hpn.selection import FIGURES
+from hpn.symbols import formula
 from hpn.units import suffix_of
 from hpn.wording import N_, Sentence
 

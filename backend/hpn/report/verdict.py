@@ -7,9 +7,9 @@ from hpn.reader import Reader
 from hpn.readings import Reading, readings_of
 from hpn.remedy import remedy_of
 from hpn.report.export import Export
-from hpn.report.symbols import formula, sentence
 from hpn.report.words import bound_of, exact_percent, measured, origin, rounded, title_of, used
 from hpn.selection import Candidate, CheckResult
+from hpn.symbols import formula, sentence
 from hpn.wording import N_, Sentence
 
 WORD: Mapping[str, str] = {

@@ -1,6 +1,5 @@
 """The templates, and what they all use: texts, numbers and sentences in the language and units of the reader."""
 
-import re
 from collections.abc import Callable
 from functools import lru_cache
 from pathlib import Path
@@ -21,6 +20,7 @@ from hpn.quantities import GEAR, LISTED, MECHANISMS, PROFILES, QUANTITIES, SHAPE
 from hpn.reader import GROUP, LANGUAGE_NAMES, Reader
 from hpn.remedy import DRIVER_NAMES
 from hpn.selection import Candidate, reason_of
+from hpn.symbols import Part, formula, sentence
 from hpn.web.door.visit import address, current
 from hpn.web.form import symbols, ways
 from hpn.web.form.ordering import MOTOR_CODE, ordering_code
@@ -143,16 +143,22 @@ def _as_typed(_: Context, value: float, unit: str) -> str:
     return (f"{value:.12g}" if measure.same else measure.written(value, 6)).replace(".", reader.decimal)
 
 
-_SYMBOL = re.compile(r"\b([A-Za-z])_([A-Za-z0-9]+(?:[_,][a-z0-9]+)*(?:\([a-z]+\))?)")
-
-
 def with_symbols(text: str) -> Markup:
-    """Text with the handbook's symbols set as such: `T_R` with R as an index, `n_out_av` with two words as one."""
-    return Markup(_SYMBOL.sub(_set, str(escape(text))))
+    """A sentence with the handbook's symbols set as such: `T_R` with R as an index."""
+    return Markup().join(map(_set, sentence(text)))
 
 
-def _set(symbol: re.Match[str]) -> str:
-    return f'<var class="symbol">{symbol[1]}<sub>{symbol[2].replace("_", " ")}</sub></var>'
+def as_formula(text: str) -> Markup:
+    """A symbol or formula as the tables write it, in which single letters are set, too."""
+    return Markup().join(map(_set, formula(text)))
+
+
+def _set(part: Part) -> Markup:
+    if isinstance(part, str):
+        return escape(part)
+    letter, index = part
+    below = Markup("<sub>{}</sub>").format(index) if index else ""
+    return Markup('<var class="symbol">{}{}</var>').format(letter, below)
 
 
 FILTERS: dict[str, Callable[..., Any]] = {
@@ -160,6 +166,7 @@ FILTERS: dict[str, Callable[..., Any]] = {
     "as_typed": _as_typed,
     "capital": lambda text: text[:1].upper() + text[1:],
     "figure": _figure,
+    "formula": as_formula,
     "reason": _reason,
     "reasons": reasons_of,
     "say": _say,

@@ -1,13 +1,16 @@
-"""Handbook symbols in a text, taken apart for setting: `T_av` is T with the index av."""
+"""Handbook symbols in a text, taken apart for whoever sets them: `T_av` is T with the index av."""
 
 import re
 
-Part = str | list[str]
-"""A plain text, or a symbol: its letter and its index, which may be empty."""
+Symbol = tuple[str, str]
+"""A letter and its index, which may be empty."""
 
-_INDEXED = r"\b[A-Za-zηθ]_[A-Za-z0-9]+(?:[,_][A-Za-z0-9]+)*(?:\([A-Za-z0-9]+\))?"
+Part = str | Symbol
+
+_LETTER = "[A-Za-zαβηθμφ]"
+_INDEXED = rf"\b{_LETTER}_[A-Za-z0-9]+(?:[,_][A-Za-z0-9]+)*(?:\([A-Za-z0-9]+\))?"
 _SENTENCE = re.compile(rf"({_INDEXED})")
-_FORMULA = re.compile(rf"({_INDEXED}|\b[A-Za-zαβηθμφ]\b)")
+_FORMULA = re.compile(rf"({_INDEXED}|\b{_LETTER}\b)")
 
 
 def formula(text: str) -> list[Part]:
@@ -25,6 +28,6 @@ def _parts(pattern: re.Pattern[str], text: str) -> list[Part]:
     return [_symbol(piece) if k % 2 else piece for k, piece in enumerate(pieces) if piece]
 
 
-def _symbol(text: str) -> list[str]:
+def _symbol(text: str) -> Symbol:
     letter, _, index = text.partition("_")
-    return [letter, index.replace("_", ",")]
+    return letter, index.replace("_", ",")
