@@ -16,7 +16,7 @@ from hpn.fleet.outcome import answer_fields
 from hpn.fleet.run import Order, size_fleet
 from hpn.fleet.summary import summary_of
 from hpn.selection import Selection, select
-from hpn.web.form.write import to_link
+from hpn.web.form.link_writer import to_link
 from tests.build import Json, cycle, phase
 from tests.conftest import Supplement
 from tests.fleet.tables import FAULTS, Row, here, in_long_form, quiet, row_of, spoiled, write

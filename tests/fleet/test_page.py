@@ -23,7 +23,7 @@ from hpn.selection import select
 from hpn.store import FleetDraft
 from hpn.web.app import create_app
 from hpn.web.form.columns import NO_CHOICES
-from hpn.web.form.write import to_link
+from hpn.web.form.link_writer import to_link
 from hpn.web.pages.fleet_upload import Upload, best_reading, uploaded
 from hpn.web.settings import Settings
 from tests.fleet.tables import in_long_form, row_of, write

@@ -9,7 +9,7 @@ import pytest
 
 from hpn.application import Application
 from hpn.cli import main
-from hpn.web.form.read import parse
+from hpn.web.form.link_reader import parse
 from tests.fleet.tables import Row, read, row_of, write
 
 APPLICATION = {"duty_cycle": {"phases": [{"torque_Nm": 20.0, "speed_rpm": 200.0, "duration_s": 1.0}]}}

@@ -9,8 +9,8 @@ from hpn.application import Application
 from hpn.catalogue import Catalogue
 from hpn.remedy import Alternative, alternatives_of, growths_of, tried
 from hpn.selection import Candidate, select
-from hpn.web.form.read import parse
-from hpn.web.form.write import to_link
+from hpn.web.form.link_reader import parse
+from hpn.web.form.link_writer import to_link
 from tests.build import Json
 from tests.property.draw import at_random
 

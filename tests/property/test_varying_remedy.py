@@ -18,8 +18,8 @@ from hpn.catalogue import Catalogue, load_catalogue
 from hpn.checks import BY_CODE
 from hpn.remedy import alternatives_of, growths_of, remedy_of, tried
 from hpn.selection import Candidate, select
-from hpn.web.form.read import parse
-from hpn.web.form.write import to_link
+from hpn.web.form.link_reader import parse
+from hpn.web.form.link_writer import to_link
 from tests.build import Json
 from tests.property.draw import at_random, motions
 from tests.property.test_calculation import NINE_DIGITS, READERS, shown

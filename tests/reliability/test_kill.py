@@ -20,7 +20,7 @@ from hpn.application import Application
 from hpn.catalogue import Catalogue
 from hpn.selection import encode, select
 from hpn.store import Store
-from hpn.web.form.write import to_link
+from hpn.web.form.link_writer import to_link
 from tests.build import Json, cycle, phase
 
 KILLS, SOAK_KILLS = 40, 400

@@ -15,7 +15,7 @@ from hpn.report import export
 from hpn.report import workbook as sheets
 from hpn.selection import Selection, encode, select
 from hpn.web.api.samples import LIFTING, TURNING
-from hpn.web.form.write import to_link
+from hpn.web.form.link_writer import to_link
 from tests.build import Json, cycle, phase, worked_example
 from tests.wire import candidate_of
 

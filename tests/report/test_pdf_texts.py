@@ -17,8 +17,8 @@ from hpn.application import Application
 from hpn.catalogue import Catalogue
 from hpn.report.content import content
 from hpn.report.pdf import pdf
-from hpn.web.form.read import parse
-from hpn.web.form.write import to_link
+from hpn.web.form.link_reader import parse
+from hpn.web.form.link_writer import to_link
 from tests.build import cycle, phase, worked_example
 from tests.conftest import Supplement
 from tests.report.cases import CASES, language, long_cycle, typed_export_of

@@ -12,7 +12,7 @@ from hpn.selection import encode, select
 from hpn.web.app import create_app
 from hpn.web.archive import Labels, draft_of
 from hpn.web.door.pools import SMALL_BYTES
-from hpn.web.form.write import to_link
+from hpn.web.form.link_writer import to_link
 from hpn.web.settings import Settings
 from tests.build import Json, cycle, phase
 from tests.conftest import Supplement

@@ -10,7 +10,7 @@ from starlette.testclient import TestClient
 
 from hpn.application import Application
 from hpn.web.app import create_app
-from hpn.web.form.write import to_link
+from hpn.web.form.link_writer import to_link
 from hpn.web.settings import Settings
 from tests.build import Json, cycle, phase, worked_example
 from tests.conftest import Supplement

@@ -10,9 +10,8 @@ from hypothesis import strategies as st
 from pydantic import BaseModel
 
 from hpn.application import Application
-from hpn.web.form import read as links
-from hpn.web.form import symbols
-from hpn.web.form.write import to_link
+from hpn.web.form import link_reader, symbols
+from hpn.web.form.link_writer import to_link
 
 EXAMPLE = "/?T=40&n=250&t=0.3&T=32&n=500&t=3&T=20&n=250&t=0.4&tp=4&Tk=200&i=5"
 PHASE = "T=40&n=250&t=0.3"
@@ -97,8 +96,8 @@ def loaded(document: dict[str, Any]) -> bool:
     return "output_load" not in document or any("radial_N" in c or "axial_N" in c for c in carriers)
 
 
-def read(query: str) -> links.Form:
-    return links.parse(parse_qsl(query, keep_blank_values=True))
+def read(query: str) -> link_reader.Form:
+    return link_reader.parse(parse_qsl(query, keep_blank_values=True))
 
 
 def found(query: str) -> dict[tuple[str, int | None], str]:
@@ -130,7 +129,7 @@ def test_every_application_survives_its_link(document: dict[str, Any]) -> None:
     )
 )
 def test_no_query_breaks_the_reader_and_all_of_it_comes_back(pairs: list[tuple[str, str]]) -> None:
-    form = links.parse(pairs)
+    form = link_reader.parse(pairs)
     assert form.application is None or not form.problems
     assert all(problem.message.text for problem in form.problems)
     given_rows = [UNSEEN.sub("", text) for name, text in pairs if name == "T"]
@@ -160,20 +159,20 @@ def test_no_query_breaks_the_reader_and_all_of_it_comes_back(pairs: list[tuple[s
     ],
 )
 def test_text_that_is_no_number_is_answered_with_what_to_write(text: str, message: str) -> None:
-    form = links.parse([("T", text), ("n", "250"), ("t", "0.3")])
+    form = link_reader.parse([("T", text), ("n", "250"), ("t", "0.3")])
     assert [(p.name, p.index, p.message.text) for p in form.problems] == [("T", 0, message)]
     assert form.rows[0]["T"] == text
 
 
 @pytest.mark.parametrize("text", ["40", "40.", "+40", " 40 ", "4e1", "040", "40.00"])
 def test_number_may_be_written_in_any_plain_way(text: str) -> None:
-    form = links.parse([("T", text), ("n", "250"), ("t", "0.3")])
+    form = link_reader.parse([("T", text), ("n", "250"), ("t", "0.3")])
     assert form.application is not None
     assert form.application.duty_cycle.load_phases[0].torque_Nm == 40
 
 
 def test_minus_sign_of_a_word_processor_is_a_minus() -> None:
-    application = links.parse([("T", "−40"), ("n", "250"), ("t", "1")]).application
+    application = link_reader.parse([("T", "−40"), ("n", "250"), ("t", "1")]).application
     assert application is not None
     assert application.duty_cycle.load_phases[0].torque_Nm == -40
 

@@ -5,13 +5,13 @@ import pytest
 from hpn import units
 from hpn.application import Application
 from hpn.reader import Reader
-from hpn.web.form import read as links
-from hpn.web.form.write import to_link
+from hpn.web.form import link_reader
+from hpn.web.form.link_writer import to_link
 
 
 def typed(name: str, text: str, written: str = "") -> Application | str:
     given = {"T": "40", "n": "250", "t": "0.3"} | {name: text, "written": written}
-    form = links.parse([*given.items(), ("Tk", given.get("Tk", "50"))] if name != "Tk" else list(given.items()))
+    form = link_reader.parse([*given.items(), ("Tk", given.get("Tk", "50"))] if name != "Tk" else list(given.items()))
     return form.application or form.problems[0].message.text
 
 
@@ -96,6 +96,6 @@ def test_what_is_no_known_unit_is_none(spelling: str) -> None:
 
 
 def test_sum_stands_in_its_field_as_it_was_typed() -> None:
-    form = links.parse([("T", "=40*2"), ("n", "250"), ("t", "300 ms")])
-    shown = links.for_reader(form, Reader())
+    form = link_reader.parse([("T", "=40*2"), ("n", "250"), ("t", "300 ms")])
+    shown = link_reader.for_reader(form, Reader())
     assert dict(shown.rows[0]) == {"T": "=40*2", "n": "250", "t": "300 ms"}

@@ -4,7 +4,7 @@ import pytest
 
 from hpn.catalogue import Catalogue
 from hpn.web.door.bodies import pairs_of
-from hpn.web.form.read import parse
+from hpn.web.form.link_reader import parse
 from hpn.web.pages.calculator import Answer, answered
 
 EXAMPLE = "T=40&n=250&t=0.3&T=32&n=500&t=3&T=20&n=250&t=0.4&tp=4&Tk=200"

@@ -12,10 +12,10 @@ from hpn.application import Application
 from hpn.motion.moves import Stroke, Turn
 from hpn.web.form import symbols
 from hpn.web.form.labels import LABELS
-from hpn.web.form.read import Form, parse
+from hpn.web.form.link_reader import Form, parse
+from hpn.web.form.link_writer import to_link
 from hpn.web.form.symbols import MOVE_COLUMNS
 from hpn.web.form.ways import EXAMPLES, START
-from hpn.web.form.write import to_link
 from tests.web.test_carried import Fields
 
 PHASES = "T=40&n=250&t=0.3&T=-20&n=100&t=2&FRi=5&FRi=&FAi=&FAi="

@@ -12,7 +12,7 @@ from starlette.testclient import TestClient
 
 from hpn.quantities import QUANTITIES
 from hpn.web.app import create_app
-from hpn.web.form.read import MAXIMUM_QUERY_BYTES
+from hpn.web.form.link_reader import MAXIMUM_QUERY_BYTES
 from hpn.web.form.symbols import PHASE_SYMBOLS, SYMBOLS
 
 EXAMPLE = "/?T=40&n=250&t=0.3&T=32&n=500&t=3&T=20&n=250&t=0.4&tp=4&Tk=200&i=5"

@@ -8,7 +8,7 @@ import pytest
 from starlette.testclient import TestClient
 
 from hpn.web.app import create_app
-from hpn.web.form.read import MAXIMUM_QUERY_BYTES, ROWS_IN_TABLE
+from hpn.web.form.link_reader import MAXIMUM_QUERY_BYTES, ROWS_IN_TABLE
 
 LINK = "T=40&n=250&t=0.3&T=32&n=500&t=3&tp=4&Tk=200&i=5"
 GERMAN = "Drehmoment [Nm]\tDrehzahl [1/min]\tDauer [s]\r\n9,3\t1.250\t0,3\r\n-12,5\t500\t1,25\r\n"

@@ -9,7 +9,7 @@ from hpn.application import Application
 from hpn.catalogue import load_catalogue
 from hpn.checks import allowed
 from hpn.selection import Candidate, Selection, encode, select
-from hpn.web.form.write import to_link
+from hpn.web.form.link_writer import to_link
 from hpn.web.settings import Settings
 from hpn.wording import telling_decimals
 

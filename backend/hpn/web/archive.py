@@ -21,8 +21,8 @@ from hpn.web.door.observation import note
 from hpn.web.door.pools import compute
 from hpn.web.door.problems import Problem
 from hpn.web.form.labels import CONTROLS, LONGEST_LABEL, NO_CONTROLS, query_of
+from hpn.web.form.link_writer import to_link
 from hpn.web.form.ordering import OrderingCode, read_ordering_code
-from hpn.web.form.write import to_link
 from hpn.wording import N_, Sentence
 
 T = TypeVar("T")

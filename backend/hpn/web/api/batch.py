@@ -25,7 +25,7 @@ from hpn.web.door.bodies import content_type_of, read_body, require_bounded
 from hpn.web.door.metrics import Metrics
 from hpn.web.door.pools import Pool, pool_of, while_present
 from hpn.web.door.problems import Problem
-from hpn.web.form.write import to_link
+from hpn.web.form.link_writer import to_link
 from hpn.web.settings import Settings
 
 SLICE_ITEMS, SLICE_BYTES, SLICE_SECONDS = 256, 1_000_000, 0.25

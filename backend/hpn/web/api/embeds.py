@@ -14,8 +14,8 @@ from hpn.web.api.files import absolute
 from hpn.web.door.access import admit
 from hpn.web.door.pools import compute
 from hpn.web.door.problems import Problem
+from hpn.web.form.link_writer import to_link
 from hpn.web.form.linked import linked
-from hpn.web.form.write import to_link
 from hpn.web.preview import Preview, preview_of
 
 SAVED = "/selections/"

@@ -11,7 +11,7 @@ from hpn.web.api.replies import BatchReply, encode
 from hpn.web.api.samples import WHOLE, Json, envelopes, one_gear, plain, refusal
 from hpn.web.api.schemas import LINES
 from hpn.web.door.problems import MEDIA_TYPE
-from hpn.web.form.write import to_link
+from hpn.web.form.link_writer import to_link
 
 SUMMARIES = {
     "worked_example": "The handbook’s worked example",

@@ -30,9 +30,9 @@ from hpn.web.door.conditions import etag_of, has_already
 from hpn.web.door.pools import pool_of, while_present
 from hpn.web.door.problems import Problem
 from hpn.web.form.labels import query_of as query_of_labels
+from hpn.web.form.link_writer import to_link
 from hpn.web.form.linked import linked, query_of
 from hpn.web.form.ordering import ordering_code
-from hpn.web.form.write import to_link
 from hpn.web.settings import Settings
 
 SCHEMA_TYPE = "application/schema+json"

@@ -17,7 +17,7 @@ from hpn.web.api.batch import batch_lines
 from hpn.web.api.motors import motors_on_gear
 from hpn.web.api.replies import encode
 from hpn.web.door.problems import Problem
-from hpn.web.form.write import to_link
+from hpn.web.form.link_writer import to_link
 from hpn.web.preview import preview_of
 
 Json = dict[str, Any]

@@ -12,7 +12,7 @@ from hpn.web.api.replies import JSONBytes
 from hpn.web.door.access import admit
 from hpn.web.door.bodies import parsed, read_body
 from hpn.web.door.pools import calculate
-from hpn.web.form.write import to_link
+from hpn.web.form.link_writer import to_link
 from hpn.web.settings import Settings
 
 router = APIRouter(prefix="/api/v1", tags=["Selection"], dependencies=[admit("calculator")])

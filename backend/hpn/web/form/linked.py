@@ -9,7 +9,7 @@ from hpn.application import Application
 from hpn.web.door.bodies import pairs_of
 from hpn.web.door.problems import Problem
 from hpn.web.door.uploads import read_fields
-from hpn.web.form import read
+from hpn.web.form import link_reader
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,13 +38,13 @@ async def query_of(request: Request, *options: str) -> str:
 def linked(query: str, *options: str) -> Link:
     """What the query of a link says; Problem 422 names each parameter that can't be read."""
     pairs = pairs_of(query)
-    form = read.parse([pair for pair in pairs if pair[0] not in options])
+    form = link_reader.parse([pair for pair in pairs if pair[0] not in options])
     if form.application is None:
         raise _unreadable(form)
     return Link(form.application, form.gear, form.labels, {name: value for name, value in pairs if name in options})
 
 
-def _unreadable(form: read.Form) -> Problem:
+def _unreadable(form: link_reader.Form) -> Problem:
     errors = [
         ((problem.name, *(() if problem.index is None else (problem.index,))), problem.message.text)
         for problem in form.problems

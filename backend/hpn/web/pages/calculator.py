@@ -17,14 +17,14 @@ from hpn.web.door.access import admit
 from hpn.web.door.bodies import pairs_of
 from hpn.web.door.pools import worked
 from hpn.web.door.visit import current
-from hpn.web.form import read as links
+from hpn.web.form import link_reader
 from hpn.web.form.given import FieldProblem
 from hpn.web.form.labels import query_of
+from hpn.web.form.link_reader import Form
+from hpn.web.form.link_writer import to_link
 from hpn.web.form.numbers import WRITTEN
 from hpn.web.form.ordering import OrderingCode, ordering_code
-from hpn.web.form.read import Form
 from hpn.web.form.ways import CYCLE_NAMES
-from hpn.web.form.write import to_link
 from hpn.web.pages.insight import Insight, checked_pins, tail_of
 from hpn.web.pages.result import Result
 from hpn.web.pages.templates import environment
@@ -78,7 +78,7 @@ class Answer(Result):
     @property
     def too_long(self) -> bool:
         """Whether the address is more than servers and proxies let through."""
-        return len(self.address) > links.MAXIMUM_QUERY_BYTES
+        return len(self.address) > link_reader.MAXIMUM_QUERY_BYTES
 
 
 def once_key() -> str:
@@ -93,7 +93,7 @@ def show(request: Request) -> Response:
 
 def too_long(request: Request) -> Response:
     """The page of an address that is too long for any page."""
-    return _render(request, "too_long.html", 414, limit=links.MAXIMUM_QUERY_BYTES)
+    return _render(request, "too_long.html", 414, limit=link_reader.MAXIMUM_QUERY_BYTES)
 
 
 def respond(request: Request, form: Form) -> Response:
@@ -116,7 +116,7 @@ def respond(request: Request, form: Form) -> Response:
 def read_query(query: bytes) -> Form:
     """Form of a query; without one, the handbook's worked example."""
     text = query.decode("latin-1") or to_link(Application.worked_example()).removeprefix("/?")
-    return links.parse(pairs_of(text))
+    return link_reader.parse(pairs_of(text))
 
 
 def answered(form: Form, catalogue: Catalogue) -> tuple[Form, Answer | None]:
@@ -130,7 +130,7 @@ def answered(form: Form, catalogue: Catalogue) -> tuple[Form, Answer | None]:
     try:
         return form, _answer(form.application, form, catalogue)
     except InputError as refusal:
-        refused = [FieldProblem(*links.place_of(location), sentence) for location, sentence in refusal.sentences]
+        refused = [FieldProblem(*link_reader.place_of(location), sentence) for location, sentence in refusal.sentences]
         return replace(form, application=None, problems=tuple(refused)), None
 
 
@@ -216,7 +216,7 @@ def _parts(request: Request, form: Form) -> frozenset[str]:
 def _render(request: Request, template: str, status: int, **context: Any) -> Response:
     address = _address(context.get("answer"), context.get("form"))
     if "form" in context:
-        context["form"] = links.for_reader(context["form"], current())
+        context["form"] = link_reader.for_reader(context["form"], current())
     content = environment(request.app.state).get_template(template).render(**context)
     response = HTMLResponse(content, status)
     response.headers["Vary"] = "HX-Request, HX-Target, HPN-Parts"
@@ -231,7 +231,7 @@ def _render(request: Request, template: str, status: int, **context: Any) -> Res
 def _address(answer: Answer | None, form: Form | None) -> str | None:
     """What is to stand in the address bar; None where there is something to correct."""
     if answer is None:
-        return links.address_of_empty(form) if form and form.empty else None
+        return link_reader.address_of_empty(form) if form and form.empty else None
     # What is too long for an address must not stand under somebody else's: reloading leads to where it came from.
     return "/paste" if answer.too_long else answer.address
 

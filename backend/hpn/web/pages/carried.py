@@ -4,7 +4,7 @@ from urllib.parse import urlencode
 
 from hpn.web.door.bodies import pairs_of
 from hpn.web.door.visit import address
-from hpn.web.form.read import Pairs
+from hpn.web.form.link_reader import Pairs
 
 OWN_NAMES = frozenset(
     ("output", "motor", "find", "only_size", "only_i", "search", "reference", "cursor", "id", "a", "b", "back")

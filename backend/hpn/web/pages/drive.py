@@ -10,7 +10,7 @@ from hpn.catalogue import Catalogue
 from hpn.gear import Gear
 from hpn.motors import MotorUse, SizeWithMotor, asks_inertia_ratio, motors_on, ratios_with_motor, with_motor
 from hpn.selection import Selection
-from hpn.web.form.write import to_link
+from hpn.web.form.link_writer import to_link
 from hpn.wording import N_, Sentence
 
 LISTED_AT_ONCE = 25

@@ -13,9 +13,9 @@ from hpn.catalogue import Catalogue
 from hpn.fleet.listing import Listing, applications_of, rows_of
 from hpn.reader import Reader
 from hpn.web.door.visit import VISIT, Visit
-from hpn.web.form import read as links
+from hpn.web.form import link_reader
 from hpn.web.form.labels import faults_of, query_of
-from hpn.web.form.write import to_link
+from hpn.web.form.link_writer import to_link
 from hpn.web.pages.assets import Assets
 from hpn.web.pages.fleet_view import SHOWN, FleetView
 from hpn.web.pages.templates import STATIC, environment
@@ -46,7 +46,7 @@ def _told(reader: Reader, **values: Any) -> str:
 def links_of(axes: pa.Table, base: str = "") -> dict[str, str]:
     """Link of each axis with its name as title, where that can be one; one that is too long for an address has none."""
     found = ((axis, to_link(application) + _titled(axis)) for axis, application in applications_of(axes))
-    return {axis: base + link for axis, link in found if len(link) <= links.MAXIMUM_QUERY_BYTES}
+    return {axis: base + link for axis, link in found if len(link) <= link_reader.MAXIMUM_QUERY_BYTES}
 
 
 def _titled(axis: str) -> str:

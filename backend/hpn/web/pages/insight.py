@@ -11,8 +11,8 @@ from hpn.comparison import MOST_PINS, Column, RowGroup, groups_of, undominated
 from hpn.remedy import alternatives_of, tried
 from hpn.selection import Candidate, Selection
 from hpn.web.form.given import FieldProblem
-from hpn.web.form.read import Form
-from hpn.web.form.write import to_link
+from hpn.web.form.link_reader import Form
+from hpn.web.form.link_writer import to_link
 from hpn.web.pages.result import lighter_miss
 from hpn.wording import N_, Sentence
 

@@ -11,8 +11,8 @@ from hpn.phase import MAXIMUM_PHASES
 from hpn.web.door.access import admit
 from hpn.web.door.bodies import pairs_of, read_form
 from hpn.web.door.pools import compute
-from hpn.web.form import read as links
-from hpn.web.form.read import Pairs
+from hpn.web.form import link_reader
+from hpn.web.form.link_reader import Pairs
 from hpn.web.form.symbols import PHASE_SYMBOLS
 from hpn.web.pages import calculator as pages
 
@@ -33,7 +33,7 @@ def _answer(request: Request, body: bytes) -> Response:
 def respond(request: Request, pairs: Pairs) -> Response:
     """The page of posted pairs."""
     typed = dict(pairs).get(TEXT)
-    form = links.parse(expanded(pairs))
+    form = link_reader.parse(expanded(pairs))
     if typed is not None:
         form = replace(form, typed=typed.replace("\r\n", "\n"))
     return pages.respond(request, form)

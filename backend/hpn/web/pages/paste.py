@@ -26,19 +26,18 @@ from hpn.web.door.pools import compute, worked
 from hpn.web.door.problems import Problem, pointer
 from hpn.web.door.uploads import decoded, read_parts
 from hpn.web.door.visit import current
-from hpn.web.form import cells
-from hpn.web.form import read as links
+from hpn.web.form import cells, link_reader
 from hpn.web.form.cells import Decimal, Figure
 from hpn.web.form.columns import CELLS, SKIP, WIRE, Choices, Column
 from hpn.web.form.given import shown_columns
 from hpn.web.form.headings import QUANTITIES
+from hpn.web.form.link_reader import Pairs
+from hpn.web.form.link_writer import to_link
 from hpn.web.form.pasted import COLUMNS, LAST, PHASE, TIMES, Table, read_grid, read_text
-from hpn.web.form.read import Pairs
 from hpn.web.form.sheets import SEPARATORS, RefusedError, grid_of
 from hpn.web.form.symbols import LOADS, VARYING
 from hpn.web.form.ways import CYCLE_NAMES
 from hpn.web.form.workbooks import MAGIC, OLD_MAGIC, Sheets, sheets_of
-from hpn.web.form.write import to_link
 from hpn.web.pages import long_cycles
 from hpn.web.pages.templates import environment
 from hpn.wording import N_, Sentence
@@ -255,7 +254,7 @@ def _draft(link: str, text: str = "", table: Table | None = None, **more: Any) -
 
 def is_example(link: str) -> bool:
     """Whether a form says what the handbook's worked example says, and nothing else."""
-    application = links.parse(long_cycles.expanded(pairs_of(link))).application if link else None
+    application = link_reader.parse(long_cycles.expanded(pairs_of(link))).application if link else None
     return application is not None and to_link(application) == to_link(Application.worked_example())
 
 
@@ -298,14 +297,14 @@ def taken(draft: PasteDraft, *, append: bool) -> list[tuple[str, str]]:
     In place of the worked example they begin without its pause, emergency stop and ratio.
     """
     assert draft.preview is not None
-    pairs, _ = links.in_wire_units(long_cycles.expanded(pairs_of(draft.link)))
+    pairs, _ = link_reader.in_wire_units(long_cycles.expanded(pairs_of(draft.link)))
     dropped = {*CYCLE_NAMES, "do", "phases"}
     if draft.example and not append:
         dropped |= {name for name, _ in pairs_of(to_link(Application.worked_example()).removeprefix("/?"))}
     rest = [(name, value) for name, value in pairs if value.strip() and name not in dropped]
     rows = [dict(zip(COLUMNS, phase, strict=True)) for phase in draft.preview.table.phases]
     if append:
-        given = links.parse(pairs).rows
+        given = link_reader.parse(pairs).rows
         rows = [dict(row) for row in given if any(text.strip() for text in row.values())] + rows
     with_loads, varies = (any(row.get(name) for row in rows for name in group) for group in (LOADS, VARYING))
     names = shown_columns(with_loads=with_loads, varies=varies)
@@ -315,7 +314,7 @@ def taken(draft: PasteDraft, *, append: bool) -> list[tuple[str, str]]:
 def _proceed(request: Request, pairs: Pairs) -> Response:
     """On to the page: by its address, and where that would be too long, right here."""
     query = urlencode(pairs)
-    if len(query) > links.MAXIMUM_QUERY_BYTES:
+    if len(query) > link_reader.MAXIMUM_QUERY_BYTES:
         return long_cycles.respond(request, pairs)
     return RedirectResponse(f"/?{query}", 303)
 

@@ -23,7 +23,7 @@ from hpn.web.archive import Reopened, found, url_of
 from hpn.web.door.access import admit
 from hpn.web.door.problems import Problem
 from hpn.web.door.visit import current
-from hpn.web.form import read as links
+from hpn.web.form import link_reader
 from hpn.web.pages import calculator
 from hpn.web.pages.gear_figures import Figure, figures_of
 from hpn.web.pages.result import Result
@@ -51,7 +51,7 @@ EXPORTS = (
 async def show_selection(request: Request) -> Response:
     """The selection as it was saved, and beside it what today's engine and catalogue say differently."""
     id = request.path_params["id"]
-    if (seen := links.visible(id)) != id and ID.fullmatch(seen):
+    if (seen := link_reader.visible(id)) != id and ID.fullmatch(seen):
         return RedirectResponse(f"/selections/{seen}?{request.url.query}".removesuffix("?"), 308)
     try:
         return await found(request, id, partial(_shown, request))
@@ -109,7 +109,7 @@ def _page(reopened: Reopened, designation: str, catalogue: Catalogue) -> dict[st
         "document": reopened.saved.application.decode(),
         "inputs": list(given(application, (*LOADS, *REQUIREMENTS), current())) if application else [],
         "exports": EXPORTS,
-        "longest_link": links.MAXIMUM_QUERY_BYTES,
+        "longest_link": link_reader.MAXIMUM_QUERY_BYTES,
     }
 
 

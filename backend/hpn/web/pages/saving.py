@@ -20,9 +20,9 @@ from hpn.web.door.bodies import pairs_of, read_form
 from hpn.web.door.pools import compute
 from hpn.web.door.problems import Problem
 from hpn.web.door.requests import require_same_origin
-from hpn.web.form import read as links
+from hpn.web.form import link_reader
 from hpn.web.form.labels import TITLE_BLOCK, query_of
-from hpn.web.form.read import Form, Pairs
+from hpn.web.form.link_reader import Form, Pairs
 from hpn.web.pages import calculator
 from hpn.web.pages.calculator import Answer
 from hpn.web.pages.long_cycles import expanded
@@ -59,7 +59,7 @@ class Posted:
     def address(self) -> str:
         """Address of the live page with all that it says; its start page where that is too long for one."""
         whole = self.link + query_of({name: self.form.labels[name] for name in TITLE_BLOCK})
-        return whole if len(whole) <= links.MAXIMUM_QUERY_BYTES else "/"
+        return whole if len(whole) <= link_reader.MAXIMUM_QUERY_BYTES else "/"
 
 
 async def save_from_page(request: Request) -> Response:
@@ -86,7 +86,7 @@ def _posted(body: bytes) -> Posted:
     given = {name for name, _ in own}
     linked = pairs_of(named.get("link", "").removeprefix("/").removeprefix("?"))
     pairs = [*own, *(pair for pair in linked if pair[0] not in given)]
-    return Posted(pairs, named.get("once", ""), links.parse(expanded(pairs)))
+    return Posted(pairs, named.get("once", ""), link_reader.parse(expanded(pairs)))
 
 
 def _draft(posted: Posted, catalogue: Catalogue, owner: str | None) -> Draft:

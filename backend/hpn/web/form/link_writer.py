@@ -1,4 +1,4 @@
-"""The canonical link of an application; `links.parse` reads it, and what people write by hand."""
+"""The canonical link of an application; `link_reader.parse` reads it, and what people write by hand."""
 
 from collections.abc import Iterator
 from itertools import groupby

@@ -1,7 +1,7 @@
 """Links and the form: from the symbols of a query to the application model.
 
-The form, the address bar and every link that somebody writes by hand go through `parse`; `write.to_link` is the way
-back. Names are the handbook's symbols, values are in the units of the API.
+The form, the address bar and every link that somebody writes by hand go through `parse`; `link_writer.to_link` is the
+way back. Names are the handbook's symbols, values are in the units of the API.
 """
 
 import re
