@@ -129,6 +129,26 @@ BODY: Mapping[str, Named] = {
 }
 """Inputs of a body whose moment of inertia is worked out; none is part of an application."""
 
+BEARING_MODELS: Mapping[str, str] = {
+    "linear": N_("straight line (safe)"),
+    "iso281": N_("ISO 281"),
+    "digitised": N_("digitised graph"),
+}
+"""Models of the bearing envelope."""
+
+ENVELOPE_BASIS: Mapping[str, str] = {
+    "linear": N_("Basis: interpolated between the two published limits; printed curve not available."),
+    "iso281": N_(
+        "Basis: equivalent load of ISO 281 with a constant Y, set by the published axial limit; printed curve not "
+        "available."
+    ),
+    "digitised": N_("Basis: curve points that you supplied; printed curve not available."),
+}
+"""Where the envelope of a model comes from."""
+
+LIFE_BASES: Mapping[str, str] = {"L50": N_("L50 (50 % survive)"), "L10": N_("L10 (90 % survive)")}
+"""Bases of a bearing life."""
+
 SHAPES: Mapping[str, str] = {
     "disc": N_("Disc"),
     "ring": N_("Ring"),

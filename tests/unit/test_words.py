@@ -8,7 +8,15 @@ from pathlib import Path
 import pytest
 from babel.messages.catalog import Catalog
 
-from hpn.reader import catalogue
+from hpn.application import Application
+from hpn.calculation import calculation_of
+from hpn.catalogue import Catalogue as Gears
+from hpn.drawings import Subject, bearing_figure, bearing_picture
+from hpn.reader import Reader, catalogue
+from hpn.report.inputs import WORDS
+from hpn.selection import select
+from hpn.web.form.symbols import BY_NAME
+from tests.build import cycle, phase
 from tests.messages import BACKEND, TEMPLATES, texts
 
 ENGLISH = (
@@ -79,3 +87,25 @@ def test_there_is_one_apostrophe() -> None:
     pages = [re.sub(r"\{#.*?#\}", "", path.read_text(), flags=re.DOTALL) for path in sorted(TEMPLATES.glob("*.html"))]
     german = strings(catalogue("de"), translated=True)
     assert [found[0] for text in (*code, *pages, *german) if (found := STRAIGHT.search(text))] == []
+
+
+@pytest.mark.parametrize("name", ["bm", "Lbb"])
+def test_the_form_and_the_report_have_one_word_for_a_choice(name: str) -> None:
+    choices = BY_NAME[name].choices
+    assert choices and {code: WORDS[code] for code in choices} == choices
+
+
+@pytest.mark.parametrize("model", ["linear", "iso281"])
+def test_the_plot_and_the_calculation_state_one_basis(model: str, catalogue: Gears) -> None:
+    document = cycle(phase(40, 250), output_load={"radial_N": 500.0, "model": model})
+    application = Application.model_validate(document)
+    candidate = select(application, catalogue).candidate("HPN-20A-5")
+    assert candidate is not None
+    gear = catalogue.by_designation[candidate.designation]
+    picture = bearing_picture(Subject(application, gear, catalogue), candidate.check("output_bearing_life"))
+    assert picture is not None
+
+    drawn = str(bearing_figure(picture, reader=Reader()))
+    notes = [note.text for step in calculation_of(candidate, gear, application, catalogue) for note in step.notes]
+
+    assert sum(note in drawn for note in notes) == 1

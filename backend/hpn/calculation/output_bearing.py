@@ -20,14 +20,10 @@ from hpn.calculation.formula import (
 )
 from hpn.calculation.sheet import Line, Sheet, Step, known, step_of_check
 from hpn.figures import phase_loads
-from hpn.quantities import CANDIDATE
+from hpn.quantities import CANDIDATE, ENVELOPE_BASIS
 from hpn.wording import N_, Sentence
 
 SHOWN_LOADS = 6
-STANDING = Sentence(N_("Interpolated between the two published limits; printed curve not available."))
-ISO281 = Sentence(
-    N_("Equivalent load of ISO 281 with a constant Y, set by the published axial limit; printed curve not available.")
-)
 SUPPLIED = Sentence(
     N_("P is the factor by which the load exceeds the curve that you supplied, along the load’s own direction.")
 )
@@ -59,7 +55,7 @@ def _largest(sheet: Sheet, load: OutputLoad, loads: PhaseValues, f_w: Term) -> S
     phases = list(first.values())
     worst = max(phases, key=loads.values.item)
     index = {place: "" if len(phases) == 1 else str(place + 1) for place in phases}
-    notes = [{"digitised": SUPPLIED, "iso281": ISO281}.get(load.model, STANDING)]
+    notes = [SUPPLIED if load.model == "digitised" else Sentence(ENVELOPE_BASIS[load.model])]
     lines: list[Line] = []
     if load.model != "digitised":
         shown = sorted({*phases[: SHOWN_LOADS - 1], worst})

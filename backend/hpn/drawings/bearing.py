@@ -8,9 +8,10 @@ from hpn.drawings.axis import widened
 from hpn.drawings.layout import Figure, layout, points
 from hpn.drawings.picture import BearingPicture, NamedCurve, PhaseLoad
 from hpn.drawings.sizes import SizeUse
-from hpn.drawings.words import axis_title, said, share, shown, standing
+from hpn.drawings.words import axis_title, said, share, shown
 from hpn.envelopes import EnvelopeCurve
 from hpn.gear import Gear
+from hpn.quantities import ENVELOPE_BASIS
 from hpn.reader import DEFAULT, Reader
 from hpn.wording import N_, Quantity, Sentence, Value
 
@@ -226,7 +227,7 @@ def _layout(
         axis_title(N_("radial load"), "N", reader),
         axis_title(N_("axial load"), "N", reader),
         title=said(heading, reader),
-        note=reader.text(standing(load.model)),
+        note=reader.text(ENVELOPE_BASIS[load.model]),
         revision=f"{gear and gear.size} {radial:g} {axial:g}",
     )
     measure = reader.measure("N")

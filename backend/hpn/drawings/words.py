@@ -6,18 +6,6 @@ from hpn.reader import Reader
 from hpn.symbols import sentence as parts_of
 from hpn.wording import N_, Quantity, Sentence, telling_decimals
 
-STANDING = N_("Basis: interpolated between the two published limits; printed curve not available.")
-STANDING_SUPPLIED = N_("Basis: curve points that you supplied; printed curve not available.")
-STANDING_ISO281 = N_(
-    "Basis: equivalent load of ISO 281 with a constant Y, set by the published axial limit; printed curve not "
-    "available."
-)
-
-
-def standing(model: str) -> str:
-    """Where the envelope of a model comes from (an English msgid)."""
-    return {"digitised": STANDING_SUPPLIED, "iso281": STANDING_ISO281}.get(model, STANDING)
-
 
 def said(sentence: Sentence, reader: Reader) -> str:
     """A sentence as Plotly sets it: the handbook's symbols with their index below."""

@@ -6,7 +6,7 @@ from typing import Any
 
 from hpn.application import Application
 from hpn.notices import AREAS
-from hpn.quantities import INPUTS
+from hpn.quantities import BEARING_MODELS, INPUTS, LIFE_BASES
 from hpn.reader import Reader
 from hpn.units import suffix_of
 from hpn.wording import N_
@@ -22,11 +22,8 @@ REQUIREMENTS = tuple(path for path in INPUTS if not path.startswith((*_LOADING, 
 """What is asked of the gear, likewise."""
 
 WORDS: Mapping[str, str] = {
-    "linear": N_("straight line"),
-    "iso281": N_("ISO 281"),
-    "digitised": N_("points of the printed curve"),
-    "L50": N_("L50 (50 % survive)"),
-    "L10": N_("L10 (90 % survive)"),
+    **BEARING_MODELS,
+    **LIFE_BASES,
     "weight": N_("weight"),
     "utilisation": N_("utilisation"),
     "length": N_("length"),

@@ -13,7 +13,7 @@ from hpn.motion.mechanisms import CLASSES, Rotary
 from hpn.motion.moves import DEFAULT_JERK_SHARE
 from hpn.notices import AREAS
 from hpn.phase import Phase
-from hpn.quantities import CANDIDATE, INPUTS, QUANTITIES, Named
+from hpn.quantities import BEARING_MODELS, CANDIDATE, INPUTS, LIFE_BASES, QUANTITIES, Named
 from hpn.units import suffix_of
 from hpn.web.form import labels
 from hpn.wording import N_
@@ -120,17 +120,13 @@ SYMBOLS = (
         "Lbb",
         ("output_load", "life_basis"),
         "text",
-        choices={"L50": N_("L50 (50 % survive)"), "L10": N_("L10 (90 % survive)")},
+        choices=LIFE_BASES,
     ),
     Symbol(
         "bm",
         ("output_load", "model"),
         "text",
-        choices={
-            "linear": N_("straight line (safe)"),
-            "iso281": N_("ISO 281"),
-            "digitised": N_("digitised graph"),
-        },
+        choices=BEARING_MODELS,
         hint=N_(
             "Straight line: between the two published limits, and inside every curve that the bearing theory allows. "
             "ISO 281: the bearing standard’s factors, with more room where both loads act."

@@ -6,6 +6,7 @@ from functools import cached_property
 
 from hpn.allowed import with_listed_motor
 from hpn.application import Application, Motor
+from hpn.calculation.motor import BY_CURVE, LOSS_FREE, STATED
 from hpn.catalogue import Catalogue
 from hpn.gear import Gear
 from hpn.motors import MotorUse, SizeWithMotor, asks_inertia_ratio, motors_on, ratios_with_motor, with_motor
@@ -88,10 +89,7 @@ class Drive:
     @property
     def left_out(self) -> list[Sentence]:
         """What torques at the motor on the gear go by, and what they leave out."""
-        curve = N_(
-            "η of every phase from the efficiency curve that you supplied; beyond its ends that of the nearer end."
-        )
-        return [self._efficiency(curve, known=self.gear.designation in self.catalogue.efficiency), self._inertia]
+        return [self._efficiency(BY_CURVE, known=self.gear.designation in self.catalogue.efficiency), self._inertia]
 
     @property
     def left_out_of_all(self) -> list[Sentence]:
@@ -101,8 +99,8 @@ class Drive:
 
     def _efficiency(self, curve: str, *, known: bool) -> Sentence:
         if self.application.requirements.efficiency is not None:
-            return Sentence(N_("η as you state it."))
-        return Sentence(curve if known else N_("η = 1, since no efficiency is known: loss-free, a lower bound."))
+            return Sentence(STATED)
+        return Sentence(curve if known else LOSS_FREE)
 
     @property
     def _inertia(self) -> Sentence:

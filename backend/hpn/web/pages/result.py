@@ -19,7 +19,7 @@ from hpn.wording import N_, Sentence
 
 BEST: Mapping[RankBy, str] = {
     "weight": N_("The lightest gear that passes every check."),
-    "utilisation": N_("The gear that stays furthest below its closest limit."),
+    "utilisation": N_("The gear with the largest reserve among those that pass every check."),
     "length": N_("The shortest gear that passes every check."),
     "motor_torque": N_("The gear that needs the least motor torque among those that pass every check."),
     "life": N_("The gear with the longest life among those that pass every check."),

@@ -15,8 +15,18 @@ from hpn import units
 from hpn.calculation import calculation_of
 from hpn.checks import BY_CODE
 from hpn.drawings.picture import beyond_limit
-from hpn.drawings.words import standing
-from hpn.quantities import GEAR, LISTED, MECHANISMS, PROFILES, QUANTITIES, SHAPES, VERDICTS, unit_of
+from hpn.quantities import (
+    BEARING_MODELS,
+    ENVELOPE_BASIS,
+    GEAR,
+    LISTED,
+    MECHANISMS,
+    PROFILES,
+    QUANTITIES,
+    SHAPES,
+    VERDICTS,
+    unit_of,
+)
 from hpn.reader import GROUP, LANGUAGE_NAMES, Reader
 from hpn.remedy import DRIVER_NAMES
 from hpn.selection import Candidate, reason_of
@@ -180,10 +190,12 @@ FILTERS: dict[str, Callable[..., Any]] = {
 """`{{ 40 | figure("Nm") }}`, `{{ "Nm" | unit }}`, `{{ sentence | told }}`: for whoever reads the page."""
 
 GLOBALS: dict[str, Any] = {
+    "BEARING_MODELS": BEARING_MODELS,
     "BEST": BEST,
     "calculation_of": calculation_of,
     "CHECKS": BY_CODE,
     "DRIVER_NAMES": DRIVER_NAMES,
+    "ENVELOPE_BASIS": ENVELOPE_BASIS,
     "GEAR": GEAR,
     "here": address,
     "LANGUAGE_NAMES": LANGUAGE_NAMES,
@@ -199,7 +211,6 @@ GLOBALS: dict[str, Any] = {
     "PROFILES": PROFILES,
     "QUANTITIES": QUANTITIES,
     "reader": current,
-    "standing": standing,
     "SHAPES": SHAPES,
     "symbols": symbols,
     "ways": ways,
