@@ -10,7 +10,7 @@ from hpn.catalogue import Catalogue, GearList
 from hpn.duty import Duty
 from hpn.equations import FloatArray
 from hpn.gear import Gear
-from hpn.motion import Course, peak_torque, rms_torque
+from hpn.motion import Course, motor_torques
 
 
 @dataclass(frozen=True, eq=False)
@@ -181,10 +181,6 @@ def _motor_torques(duty: Duty, gears: GearList, catalogue: Catalogue) -> tuple[F
     return peak, rated
 
 
-PIECES_AT_ONCE = 200_000
-"""Pieces times gears that are looked at together."""
-
-
 def _with_own_inertia(
     duty: Duty, index: int, course: Course, inertia_kgm2: float, gears: GearList, catalogue: Catalogue
 ) -> tuple[FloatArray, FloatArray]:
@@ -201,16 +197,16 @@ def _with_own_inertia(
         if curved[place]:
             for at, T in enumerate((course.peak_torque_Nm, course.rms_torque_Nm)):
                 eta[at, row] = efficiency_along(catalogue, gears.rows[place], T)
-    ratio = gears.columns.ratio[list(first.values())]
-    step = max(1, PIECES_AT_ONCE // len(course.pieces))
-    peaks = [
-        peak_torque(course, ratio=ratio[k : k + step], efficiency=eta[0, k : k + step], motor_inertia_kgm2=inertia_kgm2)
-        for k in range(0, len(first), step)
-    ]
-    pause_s = duty.asked["duty_cycle.pause_s"].item(index)
-    rms = rms_torque(course, ratio=ratio, efficiency=eta[1], motor_inertia_kgm2=inertia_kgm2, pause_s=pause_s)
+    peak, rms = motor_torques(
+        course,
+        ratio=gears.columns.ratio[list(first.values())],
+        efficiency_at_peak=eta[0],
+        efficiency_at_rms=eta[1],
+        motor_inertia_kgm2=inertia_kgm2,
+        pause_s=duty.asked["duty_cycle.pause_s"].item(index),
+    )
     rows = [list(first).index(kind) for kind in kinds]
-    return np.concatenate(peaks)[rows], rms[rows]
+    return peak[rows], rms[rows]
 
 
 def efficiency_along(catalogue: Catalogue, gear: Gear, torque_Nm: FloatArray) -> FloatArray:

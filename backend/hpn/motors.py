@@ -13,14 +13,11 @@ from hpn.duty import Duty
 from hpn.equations import ROUNDING, FloatArray
 from hpn.figures import Figures, efficiencies
 from hpn.gear import Gear
-from hpn.motion import Course, peak_torque, rms_torque
+from hpn.motion import Course, motor_torques
 from hpn.selection import Candidate, CheckResult, Selection
 
 MOTOR_CHECKS = tuple(check.code for check in MOTOR)
 """Codes of the checks of the motor."""
-
-PIECES_AT_ONCE = 200_000
-"""Pieces of a motion times motors that are looked at together."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -111,13 +108,15 @@ def _along(
     course: Course, duty: Duty, gear: Gear, catalogue: Catalogue, inertia_kgm2: FloatArray, pause_s: float
 ) -> tuple[FloatArray, FloatArray]:
     """Peak and RMS torque of motors along a motion, their own inertia included."""
-    at_peak, at_rms = (eta[None] for eta in efficiencies(duty, gear, catalogue))
-    peaks, squares = [], []
-    for J in np.array_split(inertia_kgm2, 1 + len(inertia_kgm2) * len(course.pieces) // PIECES_AT_ONCE):
-        i = np.full(len(J), float(gear.ratio))
-        peaks.append(peak_torque(course, ratio=i, efficiency=at_peak, motor_inertia_kgm2=J))
-        squares.append(rms_torque(course, ratio=i, efficiency=at_rms, motor_inertia_kgm2=J, pause_s=pause_s))
-    return np.concatenate(peaks), np.concatenate(squares)
+    at_peak, at_rms = efficiencies(duty, gear, catalogue)
+    return motor_torques(
+        course,
+        ratio=np.array([gear.ratio], float),
+        efficiency_at_peak=at_peak,
+        efficiency_at_rms=at_rms,
+        motor_inertia_kgm2=inertia_kgm2,
+        pause_s=pause_s,
+    )
 
 
 def _without_motor(application: Application) -> Application:

@@ -25,7 +25,7 @@ from hpn.wording import N_, Quantity, Sentence, listed, rounded
 LIVES = ("life", "output_bearing_life")
 """Checks that two drivers move: slower running mends them as well as a smaller torque or load."""
 
-MOTOR_TORQUES = ("motor_peak_torque", "motor_rated_torque")
+MOTOR_TORQUE_CHECKS = ("motor_peak_torque", "motor_rated_torque")
 """Checks that no closed form follows where the torque at the motor goes by an efficiency curve."""
 
 
@@ -68,7 +68,7 @@ def _needed(used: Mapping[str, float], u: float, driver: Driver, untold: bool) -
     rooms = [
         u / used[code]
         for code in MOVES[driver]
-        if code in used and code not in LIVES and not (untold and code in MOTOR_TORQUES)
+        if code in used and code not in LIVES and not (untold and code in MOTOR_TORQUE_CHECKS)
         if _excess(used[code] / u) > 1
     ]
     return min(rooms, default=1.0)
@@ -356,8 +356,8 @@ def growths_of(candidate: Candidate, reserve_utilisation: float = 1.0) -> dict[s
     untold = BY_INERTIA if _is_untold(candidate, "speed") else by_curve
     return {
         check.code: ()
-        if untold and check.code in MOTOR_TORQUES and not candidate.is_judged
-        else tuple(_growths(check, reserve_utilisation, untold if check.code in MOTOR_TORQUES else ""))
+        if untold and check.code in MOTOR_TORQUE_CHECKS and not candidate.is_judged
+        else tuple(_growths(check, reserve_utilisation, untold if check.code in MOTOR_TORQUE_CHECKS else ""))
         for check in candidate.checks
     }
 

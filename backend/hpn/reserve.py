@@ -19,7 +19,7 @@ MOVES: Mapping[Driver, Mapping[str, float]] = {
 }
 """Driver -> check -> power with which the driver moves the utilisation of the check (eq. 17.2 to 17.10, ISO 281)."""
 
-MOTOR_TORQUES = ("requirements.motor.peak_torque_Nm", "requirements.motor.rated_torque_Nm")
+MOTOR_TORQUE_INPUTS = ("requirements.motor.peak_torque_Nm", "requirements.motor.rated_torque_Nm")
 
 
 def reserves(evaluation: Evaluation, index: int) -> dict[str, FloatArray]:
@@ -38,7 +38,7 @@ def reserves(evaluation: Evaluation, index: int) -> dict[str, FloatArray]:
             f"{driver}_factor": _factor((one for one in evaluation.checked if one.asked.item(index)), index, driver, u)
             for driver in DRIVERS
         }
-    if any(not np.isnan(asked[path].item(index)) for path in MOTOR_TORQUES):
+    if any(not np.isnan(asked[path].item(index)) for path in MOTOR_TORQUE_INPUTS):
         follows_curve = np.array(
             [gear.designation in evaluation.catalogue.efficiency for gear in evaluation.gears.rows]
         )

@@ -4,7 +4,7 @@ import pytest
 
 from hpn.catalogue import Catalogue
 from hpn.checks import BY_CODE, CHECKS
-from hpn.remedy import MOTOR_TORQUES
+from hpn.remedy import MOTOR_TORQUE_CHECKS
 from hpn.units import suffix_of
 from tests.build import answer, cycle, phase
 
@@ -59,7 +59,7 @@ def test_every_check_has_all_its_texts(code: str) -> None:
 def test_a_remedy_has_words_for_every_check() -> None:
     """One without would go unsaid, and "fits if …" would be wrong on a gear that fails it besides another."""
     of_its_own = {"momentary_peak_torque", "momentary_peak_count", "ambient_temperature"}
-    not_in_closed_form = set(MOTOR_TORQUES)
+    not_in_closed_form = set(MOTOR_TORQUE_CHECKS)
 
     for check in CHECKS:
         told = [bool(check.moves), "{value}" in check.accepted, check.code in of_its_own].count(True)

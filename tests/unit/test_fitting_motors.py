@@ -7,6 +7,8 @@ import pytest
 
 from hpn.application import Application
 from hpn.catalogue import Catalogue
+from hpn.equations import FloatArray
+from hpn.motion import Course, motor
 from hpn.motors import MOTOR_CHECKS, motors_on, ratios_with_motor, with_motor
 from hpn.selection import select
 from tests.build import Json, cycle, phase
@@ -120,3 +122,28 @@ def test_gears_for_a_motor_are_those_that_are_suitable_and_those_that_it_alone_r
     for size in sizes:
         for row in (size.fit, size.ruled_out):
             assert [one.ratio for one in row] == sorted(one.ratio for one in row)
+
+
+@pytest.mark.parametrize("load", ["turning", "screw"])
+def test_how_many_pieces_are_looked_at_together_changes_no_torque(
+    supplemented: Supplement, monkeypatch: pytest.MonkeyPatch, load: str
+) -> None:
+    catalogue = supplemented(motors=MOTORS, efficiency=CURVE)
+    application = application_of(LOADS[load], {"motor": {"peak_torque_Nm": 3, "inertia_kgm2": 0.001}})
+    gear = catalogue.by_designation["HPN-20A-5"]
+
+    def found() -> object:
+        return select(application, catalogue).candidates, motors_on(application, gear, catalogue)
+
+    at_once = found()
+    looked_at: list[int] = []
+    peak_torque = motor.peak_torque
+
+    def counted(course: Course, *, ratio: FloatArray, **more: Any) -> FloatArray:
+        looked_at.append(len(ratio))
+        return peak_torque(course, ratio=ratio, **more)
+
+    monkeypatch.setattr(motor, "peak_torque", counted)
+    monkeypatch.setattr(motor, "PIECES_AT_ONCE", 1)
+    assert found() == at_once
+    assert set(looked_at) == {1}

@@ -2,7 +2,7 @@
 
 from hpn.motion.course import Course
 from hpn.motion.motion import MAXIMUM_MOVES, LinearMotion, Motion, RotaryMotion
-from hpn.motion.motor import peak_torque, rms_torque, square_torque
+from hpn.motion.motor import motor_torques, square_torque
 from hpn.motion.trace import Instant, Trace, motor_trace, peak_instant, trace_of
 
 __all__ = [
@@ -13,10 +13,9 @@ __all__ = [
     "Motion",
     "RotaryMotion",
     "Trace",
+    "motor_torques",
     "motor_trace",
     "peak_instant",
-    "peak_torque",
-    "rms_torque",
     "square_torque",
     "trace_of",
 ]

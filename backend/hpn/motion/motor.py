@@ -11,6 +11,32 @@ from hpn.motion.torque import Torque, monotone
 LOOKED_AT_ONCE = 10_000
 """Pieces that are cut together, those with the largest torque first."""
 
+PIECES_AT_ONCE = 200_000
+"""Pieces times gears, or motors, that are looked at together."""
+
+
+def motor_torques(
+    course: Course,
+    *,
+    ratio: FloatArray,
+    efficiency_at_peak: FloatArray,
+    efficiency_at_rms: FloatArray,
+    motor_inertia_kgm2: float | FloatArray,
+    pause_s: float,
+) -> tuple[FloatArray, FloatArray]:
+    """Peak and RMS torque in Nm of the motor over the cycle, on gears or of motors, shape (gears,) each.
+
+    `ratio` and `motor_inertia_kgm2` broadcast to (gears,), the efficiencies to (gears, phases). At least one gear.
+    """
+    i, J = np.broadcast_arrays(ratio, motor_inertia_kgm2)
+    shape = len(i), len(course.move)
+    at_peak, at_rms = (np.broadcast_to(eta, shape) for eta in (efficiency_at_peak, efficiency_at_rms))
+    step = max(1, PIECES_AT_ONCE // len(course.pieces))
+    some = [slice(k, k + step) for k in range(0, len(i), step)]
+    peaks = [peak_torque(course, ratio=i[s], efficiency=at_peak[s], motor_inertia_kgm2=J[s]) for s in some]
+    rms = [rms_torque(course, ratio=i[s], efficiency=at_rms[s], motor_inertia_kgm2=J[s], pause_s=pause_s) for s in some]
+    return np.concatenate(peaks), np.concatenate(rms)
+
 
 def rms_torque(
     course: Course, *, ratio: FloatArray, efficiency: FloatArray, motor_inertia_kgm2: float | FloatArray, pause_s: float
