@@ -73,7 +73,7 @@ class Check:
     accepted: str = ""
 
     def utilisation(self, case: Case) -> FloatArray:
-        """Share of the limit that is used, broadcasting to (N, G); infinite where a check fails without a number."""
+        """Share of the limit that is used, [-]; broadcasts to (N, G), infinite where a check fails without a number."""
         if self.share is not None:
             return self.share(case)
         demand, limit = self.demand(case), self.limit(case)

@@ -111,6 +111,9 @@ def _numbers(application: Application) -> list[float | None]:
 class Duty:
     """What N duty cycles come to, each figure of shape (N, 1), beside their phases and what is asked for.
 
+    T_av (equation 17.2), T_max, RMS and T_k in Nm, n_out_av (17.4, pause included) and n_out_max in rpm, the bearing
+    life asked for as L50 in hours, J_L in kg m². NaN: not asked for.
+
     `courses` are those of the motions, by the place of their application.
     """
 

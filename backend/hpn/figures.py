@@ -26,21 +26,21 @@ class Figures:
 
     @cached_property
     def average_input_speed_rpm(self) -> FloatArray:
-        """n_in_av, equation 17.5."""
+        """Average input speed n_in_av in rpm, equation 17.5; shape (N, G)."""
         return equations.average_input_speed(
             ratio=self.gears.columns.ratio, average_output_speed_rpm=self.duty.average_output_speed_rpm
         )
 
     @cached_property
     def maximum_input_speed_rpm(self) -> FloatArray:
-        """n_in_max, equation 17.6."""
+        """Maximum input speed n_in_max in rpm, equation 17.6; shape (N, G)."""
         return equations.maximum_input_speed(
             ratio=self.gears.columns.ratio, maximum_output_speed_rpm=self.duty.maximum_output_speed_rpm
         )
 
     @cached_property
     def life_L10_h(self) -> FloatArray:
-        """L10 of the gear, equation 17.10."""
+        """Life L10 of the gear in hours, equation 17.10; shape (N, G)."""
         return equations.life(
             average_torque_Nm=self.duty.average_torque_Nm,
             average_input_speed_rpm=self.average_input_speed_rpm,
@@ -51,7 +51,7 @@ class Figures:
 
     @cached_property
     def momentary_peak_count(self) -> FloatArray:
-        """N_k max, equation 17.9."""
+        """Permitted number N_k,max of emergency stops, equation 17.9; shape (N, G). [-]"""
         return equations.allowed_momentary_peaks(
             emergency_stop_torque_Nm=self.duty.emergency_stop_torque_Nm,
             repeated_peak_torque_Nm=self.gears.columns.repeated_peak_torque_Nm,
@@ -59,17 +59,17 @@ class Figures:
 
     @cached_property
     def bearing_load(self) -> FloatArray:
-        """Largest f_w P of a phase on the output bearing."""
+        """Largest f_w P of a phase on the output bearing, shape (N, G). [-]"""
         return self._bearing_loads[0]
 
     @cached_property
     def bearing_mean_load(self) -> FloatArray:
-        """f_w P_m of the cycle on the output bearing."""
+        """Equivalent load f_w P_m of the cycle on the output bearing, shape (N, G). [-]"""
         return self._bearing_loads[1]
 
     @cached_property
     def bearing_life_factor(self) -> FloatArray:
-        """Load factor k that speed and required life allow on the output bearing."""
+        """Load factor k that speed and required life allow on the output bearing, shape (N, 1). [-]"""
         reference_speed_rpm, reference_life_h = self.catalogue.bearing_reference
         return bearing.life_factor(
             average_output_speed_rpm=self.duty.average_output_speed_rpm,
@@ -80,7 +80,7 @@ class Figures:
 
     @cached_property
     def bearing_life_L50_h(self) -> FloatArray:
-        """L50 of the output bearing."""
+        """Life L50 of the output bearing in hours, shape (N, G)."""
         reference_speed_rpm, reference_life_h = self.catalogue.bearing_reference
         return bearing.life_L50(
             equivalent_load=self.bearing_mean_load,
@@ -91,17 +91,17 @@ class Figures:
 
     @cached_property
     def bearing_life_L10_h(self) -> FloatArray:
-        """L10 of the output bearing."""
+        """Life L10 of the output bearing in hours, shape (N, G)."""
         return self.bearing_life_L50_h / bearing.L50_PER_L10
 
     @cached_property
     def motor_peak_torque_Nm(self) -> FloatArray:
-        """Largest torque of the cycle at the motor."""
+        """Largest torque of the cycle at the motor in Nm, shape (N, G)."""
         return self._motor_torques[0]
 
     @cached_property
     def motor_rated_torque_Nm(self) -> FloatArray:
-        """RMS torque of the cycle at the motor."""
+        """RMS torque of the cycle at the motor in Nm, shape (N, G)."""
         return self._motor_torques[1]
 
     @cached_property

@@ -90,12 +90,12 @@ class Pieces:
         return self.frequency * t + self.shift
 
     def cosine_at(self, t: FloatArray) -> FloatArray:
-        """Cosine of the angle from the horizontal."""
+        """Cosine of the angle from the horizontal, [-]; shape of `t`."""
         x = self.angle_at(t)
         return self.base_cosine * np.cos(x) - self.base_sine * np.sin(x)
 
     def sine_at(self, t: FloatArray) -> FloatArray:
-        """Sine of the angle from the horizontal."""
+        """Sine of the angle from the horizontal, [-]; shape of `t`."""
         x = self.angle_at(t)
         return self.base_sine * np.cos(x) + self.base_cosine * np.sin(x)
 
