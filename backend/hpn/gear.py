@@ -6,11 +6,9 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hpn.equations import FloatArray
 from hpn.source import is_supplied
-
-FloatArray = NDArray[np.float64]
 
 _DESIGNATION = re.compile(r"(?:HPN-?)?(\d{1,3})A?-0*(\d{1,3})(?:-.*)?", re.IGNORECASE)
 _SIZE = re.compile(r"(?:HPN-?)?(\d{1,3})A?", re.IGNORECASE)

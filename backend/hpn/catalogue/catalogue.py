@@ -5,12 +5,10 @@ from dataclasses import dataclass, fields
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from hpn.bearing import Curve
+from hpn.equations import FloatArray
 from hpn.gear import Gear, GearColumns, canonical_designation, canonical_size
-
-FloatArray = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)
@@ -148,11 +146,6 @@ class Catalogue:
             float(self.series["bearing_reference_speed"].value),
             float(self.series["bearing_reference_life_L50"].value),
         )
-
-    @cached_property
-    def references(self) -> tuple[float, float, float, float]:
-        """Rated input speed and life at rated torque, then speed and life of the published bearing loads."""
-        return self.rated_input_speed_rpm, self.life_at_rated_torque_h, *self.bearing_reference
 
     def restricted(self, sizes: tuple[str, ...] | None, ratios: tuple[int, ...] | None) -> GearList:
         """Gears of the given sizes and ratios (None: of all), in catalogue order; maybe none."""

@@ -5,10 +5,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from hpn.equations import power_ten_thirds
+from hpn.equations import FloatArray, power_ten_thirds
 from hpn.motion.mechanisms import RPM, ShaftLoad
 from hpn.motion.moves import Move
-from hpn.motion.pieces import FloatArray, Pieces, PlaceArray, pieces_of
+from hpn.motion.pieces import Pieces, PlaceArray, pieces_of
 from hpn.motion.torque import Torque, cut_at_zeros, halved_integral, instants_of, integral, monotone, summed
 
 LARGEST_TURN = np.pi / 4

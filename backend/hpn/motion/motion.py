@@ -9,11 +9,12 @@ import numpy as np
 from pydantic import BeforeValidator, Field, WrapValidator, model_validator
 from pydantic_core import InitErrorDetails, PydanticKnownError, ValidationError
 
+from hpn.equations import FloatArray
 from hpn.fields import Model, Number, at_most, in_parts, refused
 from hpn.motion.course import Course, course_of
 from hpn.motion.mechanisms import CLASSES, RPM, TYPES, LinearMechanism, Mechanism, Rotary
 from hpn.motion.moves import Move, Stroke, Turn
-from hpn.motion.pieces import FloatArray, PlaceArray
+from hpn.motion.pieces import PlaceArray
 from hpn.motion.refusals import refusal
 from hpn.phase import MAXIMUM_PHASES, Phase
 from hpn.wording import Quantity

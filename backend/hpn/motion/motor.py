@@ -4,8 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 
+from hpn.equations import FloatArray
 from hpn.motion.course import Course
-from hpn.motion.pieces import FloatArray
 from hpn.motion.torque import Torque, monotone
 
 LOOKED_AT_ONCE = 10_000

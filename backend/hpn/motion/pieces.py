@@ -13,10 +13,10 @@ from operator import attrgetter
 import numpy as np
 from numpy.typing import NDArray
 
+from hpn.equations import FloatArray
 from hpn.motion.mechanisms import ShaftLoad, cosine, sine
 from hpn.motion.moves import Move
 
-FloatArray = NDArray[np.float64]
 PlaceArray = NDArray[np.intp]
 
 RAMP, RUN, BRAKE = range(3)

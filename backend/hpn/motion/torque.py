@@ -5,7 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from hpn.motion.pieces import FloatArray, Pieces, PlaceArray
+from hpn.equations import FloatArray
+from hpn.motion.pieces import Pieces, PlaceArray
 
 Function = Callable[[Pieces, FloatArray], FloatArray]
 

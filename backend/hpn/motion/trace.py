@@ -4,10 +4,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from hpn.equations import FloatArray
 from hpn.motion.course import Course
 from hpn.motion.mechanisms import RPM
 from hpn.motion.motor import share_of_torque
-from hpn.motion.pieces import FloatArray, Pieces, PlaceArray
+from hpn.motion.pieces import Pieces, PlaceArray
 from hpn.motion.torque import Torque, monotone
 
 MOST_INSTANTS, MOST_POINTS = 13, 4000
