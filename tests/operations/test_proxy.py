@@ -2,6 +2,7 @@
 
 import http.client
 import json
+import socket
 import subprocess
 from collections.abc import Iterator
 from contextlib import ExitStack, closing
@@ -15,6 +16,7 @@ from tests.operations.proxy import Proxy, proxied
 from tests.operations.service import Service, serving
 
 BATCH, FLEET = "/api/v1/select/batch", "/api/v1/fleet"
+LINES = {"Content-Type": "application/x-ndjson"}
 LINE = orjson.dumps({"reference": "axis", **worked_example(requirements={"ratios": [5]})}) + b"\n"
 
 
@@ -193,6 +195,18 @@ def test_what_one_address_has_of_long_bodies_leaves_room_for_others(proxy: Proxy
         assert status_from(proxy, "127.0.0.1") == 200
 
 
+def test_a_batch_of_lines_too_many_is_told_so(client: httpx.Client, proxy: Proxy) -> None:
+    head = f"POST {BATCH} HTTP/1.1\r\nHost: localhost\r\nContent-Type: {LINES['Content-Type']}\r\nContent-Length: "
+    with proxy.connect() as connection:
+        connection.sendall(f"{head}30000000\r\n\r\n".encode())
+        for _ in range(50):  # until nginx has read that head
+            if (answer := client.post(BATCH, content=LINE, headers=LINES)).status_code == 429:
+                break
+
+    assert answer.headers["Content-Type"] == "application/problem+json"
+    assert answer.json()["status"] == 429
+
+
 HEALTH = b"GET /healthz HTTP/1.1\r\nHost: localhost\r\n\r\n"
 
 
@@ -209,8 +223,34 @@ def test_what_is_asked_is_in_no_line_of_the_log(client: httpx.Client, proxy: Pro
     assert "987654" not in (proxy.folder / "log").read_text()
 
 
-def test_without_the_service_the_answer_says_to_come_again() -> None:
-    with proxied(9) as alone:  # nobody listens on the port to discard
-        answer = httpx.get(f"{alone.url}/", verify=alone.trust(), trust_env=False)
+@pytest.fixture(scope="module")
+def alone() -> Iterator[Proxy]:
+    """nginx before a service that is down."""
+    with proxied(9) as running:  # nobody listens on the port to discard
+        yield running
+
+
+def test_without_the_service_the_answer_says_to_come_again(alone: Proxy) -> None:
+    answer = httpx.get(f"{alone.url}/", verify=alone.trust(), trust_env=False)
+
+    assert answer.status_code == answer.json()["status"] == 503
+
+
+@pytest.mark.parametrize("content", [LINE, [LINE]], ids=["of known length", "in chunks"])
+def test_without_the_service_a_batch_of_lines_is_told_the_same(content: bytes | list[bytes], alone: Proxy) -> None:
+    address = f"{alone.url}{BATCH}"
+    answer = httpx.post(address, content=content, headers=LINES, verify=alone.trust(), trust_env=False)
+
+    assert answer.status_code == answer.json()["status"] == 503
+    assert answer.headers["Content-Type"] == "application/problem+json"
+
+
+def test_a_batch_of_lines_that_the_service_does_not_take_in_time_is_told_the_same() -> None:
+    with ExitStack() as stack:
+        busy = stack.enter_context(socket.create_server(("127.0.0.1", 0), backlog=0))
+        stack.enter_context(socket.create_connection(busy.getsockname()))  # all that it lets wait
+        proxy = stack.enter_context(proxied(busy.getsockname()[1]))
+        address = f"{proxy.url}{BATCH}"
+        answer = httpx.post(address, content=LINE, headers=LINES, verify=proxy.trust(), timeout=30, trust_env=False)
 
     assert answer.status_code == answer.json()["status"] == 503
