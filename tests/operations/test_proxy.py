@@ -69,10 +69,13 @@ def test_a_fleet_of_some_megabytes_comes_through_and_one_that_is_too_large_does_
 
 
 def test_http_2_is_spoken(proxy: Proxy) -> None:
-    command = ["curl", "--silent", "--http2", "--noproxy", "*", "--cacert", f"{proxy.folder}/fullchain.pem"]
-    answer = subprocess.run([*command, "--include", f"{proxy.url}/healthz"], check=True, capture_output=True).stdout
+    assert curl(proxy, "/healthz", "--http2").startswith(b"HTTP/2 200")
 
-    assert answer.startswith(b"HTTP/2 200")
+
+def curl(proxy: Proxy, path: str, *options: str, body: bytes = b"") -> bytes:
+    """Head and body of an answer."""
+    command = ["curl", "--silent", "--include", "--noproxy", "*", "--cacert", f"{proxy.folder}/fullchain.pem"]
+    return subprocess.run([*command, *options, f"{proxy.url}{path}"], input=body, capture_output=True).stdout
 
 
 def test_the_service_learns_the_callers_address_host_and_id(proxy: Proxy, service: Service) -> None:
@@ -109,6 +112,18 @@ def test_bodies_are_as_large_as_the_settings_say(path: str, size: int, status: i
 
     assert answer.status_code == answer.json()["status"] == status
     assert answer.headers["Content-Type"] == "application/problem+json"
+
+
+@pytest.mark.parametrize("protocol", ["--http1.1", "--http2"])
+@pytest.mark.parametrize("size", [2_000_001, 40_000_000])
+def test_a_body_of_unknown_length_that_is_too_large_is_refused_as_a_problem(
+    protocol: str, size: int, proxy: Proxy
+) -> None:
+    headers = ["--header", "Content-Type: application/json", "--header", "Expect:"]
+    answer = curl(proxy, "/api/v1/select", protocol, "--request", "POST", *headers, "-T", "-", body=b" " * size)
+
+    assert b" 413" in answer.splitlines()[0]
+    assert b"content-type: application/problem+json" in answer.lower()
 
 
 def test_a_table_on_the_page_may_be_as_large_as_the_service_takes_it(client: httpx.Client) -> None:
@@ -234,6 +249,16 @@ def test_without_the_service_the_answer_says_to_come_again(alone: Proxy) -> None
     answer = httpx.get(f"{alone.url}/", verify=alone.trust(), trust_env=False)
 
     assert answer.status_code == answer.json()["status"] == 503
+
+
+@pytest.mark.parametrize("protocol", ["--http1.1", "--http2"])
+@pytest.mark.parametrize("path", ["/api/v1/select", BATCH, FLEET])
+def test_without_the_service_a_long_body_is_told_the_same(protocol: str, path: str, alone: Proxy) -> None:
+    headers = ["--header", "Content-Type: application/json", "--header", "Expect:"]
+    answer = curl(alone, path, protocol, *headers, "--data-binary", "@-", body=b" " * 1_900_000)
+
+    assert b" 503" in answer.splitlines()[0]
+    assert b"content-type: application/problem+json" in answer.lower()
 
 
 @pytest.mark.parametrize("content", [LINE, [LINE]], ids=["of known length", "in chunks"])
