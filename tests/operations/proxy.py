@@ -64,7 +64,7 @@ def proxied(service: int) -> Iterator[Proxy]:
             "PROXY_SERVICE": f"127.0.0.1:{service}",
         }
         command = [word.replace("$$", "$") for word in SERVICE["command"]]
-        with (folder / "log").open("wb") as log:
+        with (folder / "log").open("ab") as log:  # its two logs would write over each other
             process = subprocess.Popen(command, cwd=folder, env=os.environ | own, stdout=log, stderr=log)
         try:
             await_port(https, process, folder / "log")

@@ -6,6 +6,7 @@ import socket
 import subprocess
 from collections.abc import Iterator
 from contextlib import ExitStack, closing
+from typing import Any
 
 import httpx
 import orjson
@@ -94,8 +95,13 @@ def test_a_request_without_an_id_gets_one_for_both_logs(client: httpx.Client, pr
     id = client.get("/api/v1/catalogue").headers["X-Request-ID"]
 
     service.event(request_id=id)
-    logged = [orjson.loads(line) for line in (proxy.folder / "log").read_bytes().splitlines() if b"proxied" in line]
-    assert [line["status"] for line in logged if line["request_id"] == id] == [200]
+    assert [line["status"] for line in logged(proxy, id)] == [200]
+
+
+def logged(proxy: Proxy, id: str) -> list[dict[str, Any]]:
+    """Lines of the log about a request."""
+    lines = [orjson.loads(line) for line in (proxy.folder / "log").read_bytes().splitlines() if b"proxied" in line]
+    return [line for line in lines if line["request_id"] == id]
 
 
 @pytest.mark.parametrize(
@@ -155,6 +161,8 @@ def test_a_head_that_is_too_large_is_refused_as_a_problem(client: httpx.Client) 
 
     assert answer.status_code == answer.json()["status"] == 431
     assert answer.json()["title"] == "The head of the request is too large"
+    assert answer.json()["detail"] == "send fewer or shorter headers"
+    assert "Retry-After" not in answer.headers
 
 
 def test_a_stream_of_lines_has_no_bound_and_is_answered_line_by_line(proxy: Proxy) -> None:
@@ -220,6 +228,8 @@ def test_a_batch_of_lines_too_many_is_told_so(client: httpx.Client, proxy: Proxy
 
     assert answer.headers["Content-Type"] == "application/problem+json"
     assert answer.json()["status"] == 429
+    assert answer.json()["detail"] == "this address has too many requests at once; try again in 1 s"
+    assert answer.headers["Retry-After"] == "1"
 
 
 HEALTH = b"GET /healthz HTTP/1.1\r\nHost: localhost\r\n\r\n"
@@ -249,6 +259,17 @@ def test_without_the_service_the_answer_says_to_come_again(alone: Proxy) -> None
     answer = httpx.get(f"{alone.url}/", verify=alone.trust(), trust_env=False)
 
     assert answer.status_code == answer.json()["status"] == 503
+    assert answer.json()["detail"] == "the service does not answer; try again in 5 s"
+    assert answer.headers["Retry-After"] == "5"
+    assert answer.headers["Strict-Transport-Security"] == "max-age=31536000"
+
+
+def test_the_log_has_the_method_of_what_is_refused(alone: Proxy) -> None:
+    with httpx.Client(base_url=alone.url, verify=alone.trust(), trust_env=False) as client:
+        client.put("/", headers={"X-Request-ID": "refused"})
+        client.get("/")  # over the same connection: the line is written before it is read
+
+    assert [line["method"] for line in logged(alone, "refused")] == ["PUT"]
 
 
 @pytest.mark.parametrize("protocol", ["--http1.1", "--http2"])
