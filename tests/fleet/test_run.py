@@ -131,6 +131,27 @@ def test_two_runs_never_write_one_file(many: Path, small_parts: None, tmp_path: 
     assert files(tmp_path) == ["out.parquet"]
 
 
+@pytest.mark.parametrize("other", ["mine.txt", "sub/mine.txt", "0.answers"])
+@pytest.mark.parametrize("resume", [False, True])
+def test_a_folder_that_is_not_its_own_is_left_alone(
+    resume: bool, other: str, many: Path, tmp_path: Path, catalogue: Catalogue
+) -> None:
+    order = Order(many, tmp_path / "out.parquet", resume=resume)
+    mine = order.folder / other
+    mine.parent.mkdir(parents=True)
+    mine.write_text("mine", encoding="utf-8")
+
+    with pytest.raises(FleetError, match=str(order.folder / other.split("/")[0])):
+        size_fleet(order, catalogue, here, quiet)
+    assert files(order.folder) == [other.split("/")[0]]
+    assert mine.read_text(encoding="utf-8") == "mine"
+    mine.unlink()
+    if mine.parent != order.folder:
+        mine.parent.rmdir()
+    size_fleet(order, catalogue, here, quiet)
+    assert files(tmp_path) == ["out.parquet"]
+
+
 # --- The command ------------------------------------------------------------------------------------------------------
 
 

@@ -7,6 +7,7 @@ worked on it and however often. On a cluster the folder has to be one that every
 """
 
 import os
+import re
 from contextlib import ExitStack
 from dataclasses import dataclass
 from functools import lru_cache
@@ -33,6 +34,14 @@ SLICE_WITH_CANDIDATES = 1_024
 WHOLE = "^(0|-?[1-9][0-9]{0,17})$"
 
 HashArray = NDArray[np.uint64]
+
+
+OWN = re.compile(r"lock|plan(\.json)?|[0-9]{8,}\.(answers|rejected|candidates|hashes|text)(\.[0-9]+)?")
+
+
+def is_own(name: str) -> bool:
+    """Whether a run gives a file in the folder of its parts that name."""
+    return bool(OWN.fullmatch(name))
 
 
 @dataclass(frozen=True)

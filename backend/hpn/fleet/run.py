@@ -22,7 +22,7 @@ from hpn.catalogue.copy import copy_of
 from hpn.fleet.assemble import assemble
 from hpn.fleet.errors import FleetError
 from hpn.fleet.grouping import Part, parts_of, with_others
-from hpn.fleet.job import Job, compute
+from hpn.fleet.job import Job, compute, is_own
 from hpn.fleet.opened import format_of
 from hpn.fleet.tables import Table
 
@@ -125,6 +125,7 @@ def _folder(order: Order, plan: Plan) -> Iterator[None]:
     """The folder of the parts, for this run alone; gone when all went well."""
     folder, wanted = order.folder, msgspec.json.encode(plan)
     folder.mkdir(exist_ok=True)
+    _require_own(folder)
     with (folder / "lock").open("w") as lock:
         try:
             fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
@@ -142,6 +143,16 @@ def _folder(order: Order, plan: Plan) -> Iterator[None]:
             whole.replace(known)
         yield
         shutil.rmtree(folder)
+
+
+def _require_own(folder: Path) -> None:
+    """Raise FleetError where a folder holds what no run has left there: it is emptied before a run, and gone after."""
+    with os.scandir(folder) as entries:
+        for entry in entries:
+            if not is_own(entry.name) or not entry.is_file(follow_symlinks=False):
+                raise FleetError(
+                    f"{entry.path}: is not of hpn fleet, which keeps its parts in that folder; move it away"
+                )
 
 
 def _difference(known: bytes, plan: Plan) -> str:
