@@ -65,7 +65,7 @@ def main() -> None:
         manifest[name] = hashed_name(name, content)
         write(DIST / manifest[name], content)
     # Last, so that make sees an interrupted build as not done.
-    (DIST / "manifest.json").write_text(json.dumps(manifest, indent=2, sort_keys=True) + "\n")
+    (DIST / "manifest.json").write_text(json.dumps(manifest, indent=2, sort_keys=True) + "\n", encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -1,6 +1,9 @@
 """The report of a fleet: one HTML file that needs nothing else, says what the answers say, and links to each axis."""
 
+import os
 import re
+import subprocess
+import sys
 from html.parser import HTMLParser
 from pathlib import Path
 from urllib.parse import parse_qsl, urlsplit
@@ -97,6 +100,19 @@ def test_a_report_that_could_not_be_written_is_refused_before_anything_is_comput
 
     assert code == 2 and name in capsys.readouterr().err
     assert not answers.exists()
+
+
+def test_a_report_is_the_same_in_every_locale(tmp_path: Path) -> None:
+    axes = write(tmp_path / "Achsen für Halle 7.csv", rows())
+    order = ["fleet", str(axes), str(tmp_path / "answers.csv"), "--workers", "1", "--report"]
+    command = "from hpn.cli import main; raise SystemExit(main())"
+    plain = os.environ | {"PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0", "LC_ALL": "C"}
+
+    assert main([*order, str(tmp_path / "here.html")]) == 0
+    subprocess.run([sys.executable, "-c", command, *order, str(tmp_path / "plain.html")], check=True, env=plain)
+
+    assert (tmp_path / "plain.html").read_bytes() == (tmp_path / "here.html").read_bytes()
+    assert "Achsen für Halle 7.csv" in (tmp_path / "here.html").read_text(encoding="utf-8")
 
 
 def test_the_basis_of_the_lives_stands_below_them(text: str) -> None:

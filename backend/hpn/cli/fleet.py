@@ -89,7 +89,9 @@ def _write_report(options: argparse.Namespace, catalogue: Catalogue) -> None:
     written = options.report.with_name(f".{options.report.name}.{os.getpid()}")
     try:
         service: str = options.service.rstrip("/")
-        written.write_text(report_of(listing, options.input.name, catalogue, service, options.lang))
+        name = os.fsencode(options.input.name).decode("utf-8", "replace")  # whatever the locale makes of its bytes
+        text = report_of(listing, name, catalogue, service, options.lang)
+        written.write_text(text, encoding="utf-8")
         os.replace(written, options.report)
     finally:
         written.unlink(missing_ok=True)

@@ -126,7 +126,7 @@ def _folder(order: Order, plan: Plan) -> Iterator[None]:
     folder, wanted = order.folder, msgspec.json.encode(plan)
     folder.mkdir(exist_ok=True)
     _require_own(folder)
-    with (folder / "lock").open("w") as lock:
+    with (folder / "lock").open("wb") as lock:
         try:
             fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:

@@ -177,7 +177,7 @@ def _restrain(pid: int, settings: Settings) -> None:
             most = settings.fleet_memory_bytes
             resource.prlimit(pid, resource.RLIMIT_DATA, (most if hard < 0 else min(most, hard), hard))
     with suppress(OSError):  # where memory runs out, the system ends these first
-        Path(f"/proc/{pid}/oom_score_adj").write_text("1000")
+        Path(f"/proc/{pid}/oom_score_adj").write_text("1000", encoding="utf-8")
 
 
 async def _ended(process: Process, folder: Path, settings: Settings) -> int:

@@ -92,7 +92,7 @@ def main() -> None:
     heap.give_back()
     signal.signal(signal.SIGTERM, signal.SIG_IGN)  # of supervisors that send it to all: the service ends this one last
     with suppress(OSError):  # where memory runs out, the system ends this one before the service
-        Path("/proc/self/oom_score_adj").write_text("1000")
+        Path("/proc/self/oom_score_adj").write_text("1000", encoding="utf-8")
     calls, answers = os.fdopen(0, "rb"), os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)
     while calls.peek(1):

@@ -36,7 +36,7 @@ class Assets:
         path = folder / "manifest.json"
         if not path.exists():
             raise FileNotFoundError(f"{path} is missing: build the assets with `make assets`")
-        return cls(folder, json.loads(path.read_text()))
+        return cls(folder, json.loads(path.read_text(encoding="utf-8")))
 
     def url(self, name: str) -> str:
         """Address of a file, such as `/static/app.3f2a9c1b.css` for `app.css`; KeyError for an unknown name."""

@@ -60,4 +60,4 @@ def _environment() -> Environment:
 
 
 def _inlined(*names: str) -> Markup:
-    return Markup("\n".join((STATIC / name).read_text() for name in names))
+    return Markup("\n".join((STATIC / name).read_text(encoding="utf-8") for name in names))
