@@ -7,9 +7,10 @@ from xlsxwriter.utility import xl_range, xl_range_abs, xl_rowcol_to_cell
 from hpn.checks import CHECKS
 from hpn.quantities import GEAR
 from hpn.report.export import LOWER_BOUND
-from hpn.report.formulas import CHECK_FORMULAS, GEAR_TERMS, NONE, RATINGS, written
+from hpn.report.formulas import CHECK_FORMULAS, GEAR_TERMS, NONE, RATINGS, CellTerm, written
 from hpn.report.known import Known
 from hpn.report.sheets import Book
+from hpn.report.unchanged import UNCHANGED
 from hpn.selection import Candidate
 from hpn.units import symbol_of
 from hpn.wording import N_
@@ -20,6 +21,13 @@ FIGURES = len(IDENTITY)
 TERMS = FIGURES + len(RATINGS)
 USED = TERMS + len(GEAR_TERMS)
 
+COLUMNS = (
+    {name: FIGURES + k for k, name in enumerate(RATINGS)}
+    | {term.name: TERMS + k for k, term in enumerate(GEAR_TERMS)}
+    | {check.code: USED + k for k, check in enumerate(CHECKS)}
+)
+"""Column by the name of a figure or the code of a check."""
+
 LOAD = [check.code for check in CHECKS if check.group == "load"]
 """Load checks stand first; the property checks count only where they fail."""
 
@@ -29,8 +37,6 @@ class CandidatesSheet:
 
     def __init__(self, book: Book, sheet: Any) -> None:
         self.book, self.sheet = book, sheet
-        self.columns = {name: FIGURES + k for k, name in enumerate(RATINGS)}
-        self.columns |= {term.name: TERMS + k for k, term in enumerate(GEAR_TERMS)}
         self.symbols = {name: GEAR[field].symbol for name, field in RATINGS.items()}
         self.symbols |= {term.name: term.named.symbol for term in GEAR_TERMS}
         units = {name: symbol_of(field) for name, field in RATINGS.items()}
@@ -43,7 +49,7 @@ class CandidatesSheet:
         self._heads()
         for row, candidate in zip(rows, self.book.export.selection.candidates, strict=True):
             self._row(row, candidate)
-        blocks = {"candidates": 0, **{f"{name}_all": self.columns[name] for name in RATINGS}}
+        blocks = {"candidates": 0, **{f"{name}_all": COLUMNS[name] for name in RATINGS}}
         for name, column in blocks.items():
             self.book.name(name, self.sheet, xl_range_abs(rows[0], column, rows[-1], column))
         self._colours(rows)
@@ -77,31 +83,32 @@ class CandidatesSheet:
 
     def _row(self, row: int, candidate: Candidate) -> None:
         known = Known(self.book.export, candidate, self.book.words)
-        names = {name: xl_rowcol_to_cell(row, column, col_abs=True) for name, column in self.columns.items()}
+        names = {name: xl_rowcol_to_cell(row, column, col_abs=True) for name, column in COLUMNS.items()}
         self.sheet.write_string(row, 0, candidate.designation, self.book.style("verdict"))
         if candidate.rank is not None:
             self.sheet.write_number(row, 3, candidate.rank)
         for name, value in known.ratings().items():
             if value is not None:
-                self.sheet.write_number(row, self.columns[name], value, self.book.style("figure"))
+                self.sheet.write_number(row, COLUMNS[name], value, self.book.style("figure"))
         fixed, terms = known.fixed(), known.terms()
         for term in GEAR_TERMS:
-            formula = None if term.name in fixed else written(term.formula, names, self.book.words)
-            self._cell(row, self.columns[term.name], formula, terms[term.name], "result", "fixed")
+            saved, is_fixed = terms[term.name], term.name in fixed
+            formula = _as_saved(term, saved) if is_fixed else written(known.formula(term), names, self.book.words)
+            self._cell(row, COLUMNS[term.name], formula, saved, "fixed" if is_fixed else "result")
         for column, check in enumerate(CHECKS, USED):
             formulas = None if check.code in fixed else CHECK_FORMULAS.get(check.code)
             formula = written(formulas.ratio, names, self.book.words) if formulas else None
-            self._cell(row, column, formula, known.utilisation(check.code), "share", "share")
+            self._cell(row, column, formula, known.utilisation(check.code), "share")
         self._verdict(row, known)
         figures = known.ratings() | terms
         for column, (name, unit) in enumerate(self.converted.items(), USED + len(CHECKS)):
-            source = xl_rowcol_to_cell(row, self.columns[name])
+            source = xl_rowcol_to_cell(row, COLUMNS[name])
             self.book.converted(self.sheet, row, column, source, unit, figures[name])
 
-    def _cell(self, row: int, column: int, formula: str | None, value: float | str, style: str, as_saved: str) -> None:
+    def _cell(self, row: int, column: int, formula: str | None, value: float | str, style: str) -> None:
         """A formula with its value, or the value alone as it was saved."""
         if formula is None:
-            self.sheet.write(row, column, value, self.book.style(as_saved))
+            self.sheet.write(row, column, value, self.book.style(style))
         else:
             self.sheet.write_formula(row, column, formula, self.book.style(style), value)
 
@@ -121,3 +128,8 @@ class CandidatesSheet:
             f"MAX({load},IF({over.format(rest, 1)}>0,MAX({rest}),0))))"
         )
         self.sheet.write_formula(row, 2, used, self.book.style("share"), known.overall())
+
+
+def _as_saved(term: CellTerm, value: float | str) -> str | None:
+    """A torque at the motor while its inputs are those that were saved; None for what stands without a condition."""
+    return f'=IF({UNCHANGED},{value!r},"")' if term.by_efficiency and isinstance(value, float) else None

@@ -6,7 +6,16 @@ from dataclasses import dataclass
 from hpn.checks.motor import MOTOR
 from hpn.quantities import CANDIDATE
 from hpn.report.export import Export
-from hpn.report.formulas import CHECK_FORMULAS, GEAR_TERMS, MOTOR_TORQUES, NONE, RATINGS, cell_name, terms_of
+from hpn.report.formulas import (
+    CHECK_FORMULAS,
+    GEAR_TERMS,
+    MOTOR_TORQUES,
+    NONE,
+    RATINGS,
+    CellTerm,
+    cell_name,
+    terms_of,
+)
 from hpn.selection import FIGURES, Candidate, CheckResult
 
 _LIMITS = {
@@ -56,6 +65,11 @@ class Known:
         if self.export.figures is None and self._has_listed_motor:
             fixed |= {check.code for check in MOTOR}
         return fixed
+
+    def formula(self, term: CellTerm) -> str:
+        """The formula of a term that is not fixed. Along a motion a motor's inertia adds what no formula gives."""
+        moves = self.export.application.duty_cycle.motion is not None
+        return f'IF(J_m="",{term.formula},"")' if moves and term.by_efficiency else term.formula
 
     @property
     def _has_listed_motor(self) -> bool:

@@ -1,5 +1,6 @@
 """The first sheet: what was asked as inputs, the chosen gear, and every check of it as a formula."""
 
+import json
 from typing import Any
 
 from xlsxwriter.utility import xl_range_abs, xl_rowcol_to_cell
@@ -9,12 +10,13 @@ from hpn.application import NUMBERS, OutputLoad
 from hpn.check import Check
 from hpn.checks import CHECKS
 from hpn.quantities import GEAR, INPUTS
-from hpn.report.candidates import LOAD
+from hpn.report.candidates import COLUMNS, LOAD
 from hpn.report.export import LOSS_FREE
 from hpn.report.formulas import CHECK_FORMULAS, CYCLE_TERMS, GEAR_TERMS, NONE, RATINGS, CellTerm, cell_name, written
 from hpn.report.inputs import LOADS, REQUIREMENTS, Value, value_of
 from hpn.report.known import Known, demand_of, limit_of
 from hpn.report.sheets import Book
+from hpn.report.unchanged import UNCHANGED
 from hpn.report.verdict import STATUS
 from hpn.report.words import equation, origin
 from hpn.selection import CheckResult
@@ -22,8 +24,10 @@ from hpn.units import suffix_of
 from hpn.wording import N_
 
 LOAD_PATH, LOAD_INERTIA = "output_load.", "requirements.load_inertia_kgm2"
+EFFICIENCY = "requirements.efficiency"
 
 ALONG_THE_MOTION = N_("as saved: along the motion, with the motor’s own inertia")
+OUTDATED = N_("not known here: inputs behind it were changed")
 OF_THE_MOTION = N_("of the motion")
 
 REFERENCES = (
@@ -41,6 +45,9 @@ class Overview:
     def __init__(self, book: Book, sheet: Any, candidates: range) -> None:
         self.book, self.sheet, self.candidates = book, sheet, candidates
         self.known = Known(book.export, book.export.candidate, book.words)
+        every = (Known(book.export, candidate, book.words) for candidate in book.export.selection.candidates)
+        self.fixed = set().union(*(known.fixed() for known in every))
+        """What no formula gives of one of the gears."""
         self.text = book.reader.text
         self.row = 0
 
@@ -122,10 +129,18 @@ class Overview:
     def _looked_up(self, label: str, column: int, style: str, saved: float | str) -> None:
         """A column of the list of candidates, for the chosen gear."""
         self._line(label, "", "")
-        block = xl_range_abs(self.candidates[0], column, self.candidates[-1], column)
-        formula = f"=INDEX('{self.text(N_('Candidates'))}'!{block},MATCH(gear,candidates,0))"
-        self.sheet.write_formula(self.row, 2, formula, self.book.style(style), saved)
+        self.sheet.write_formula(self.row, 2, f"={self._of_candidate(column)}", self.book.style(style), saved)
         self.row += 1
+
+    def _of_candidate(self, column: int) -> str:
+        """What the list of candidates says of the chosen gear."""
+        block = xl_range_abs(self.candidates[0], column, self.candidates[-1], column)
+        return f"INDEX('{self.text(N_('Candidates'))}'!{block},MATCH(gear,candidates,0))"
+
+    def _from_list(self, name: str) -> str:
+        """A figure or utilisation that no formula of this sheet gives, as a formula: blank where the list has none."""
+        listed = self._of_candidate(COLUMNS[name])
+        return f'=IF({listed}="","",{listed})'
 
     def _rating(self, name: str, value: float | None) -> None:
         field = RATINGS[name]
@@ -146,17 +161,15 @@ class Overview:
 
     def _terms(self, title: str, terms: tuple[CellTerm, ...], values: dict[str, float | str]) -> None:
         self._section(title)
-        fixed = self.known.fixed()
         for term in terms:
             named = term.named
             self._line(named.name, named.symbol, term.unit, equation(named.equation, self.book.reader))
-            if term.name in fixed:
-                self.sheet.write(self.row, 2, values[term.name], self.book.style("fixed"))
-            else:
-                formula = written(term.formula, self._names(), self.book.words)
-                self.sheet.write_formula(self.row, 2, formula, self.book.style("result"), values[term.name])
+            formula, look = self._written(self.known.formula(term)), "result"
+            if term.name in self.fixed:
+                formula, look = self._from_list(term.name), "fixed"
+            self.sheet.write_formula(self.row, 2, formula, self.book.style(look), values[term.name])
             if term.by_efficiency:
-                self._bound(term.name in fixed)
+                self._bound(term.name in self.fixed)
             self.book.name_cell(term.name, self.sheet, self.row, 2)
             self._converted(term.unit, values[term.name])
             self.row += 1
@@ -168,8 +181,9 @@ class Overview:
         if fixed:
             along = self.text(ALONG_THE_MOTION) if self.book.export.selection.turns_motor else ""
             said = "; ".join(filter(None, (along, saved)))
+            formula = f'=IF({UNCHANGED},"{said}","{self.text(OUTDATED)}")'
             room = 4 if self.book.shown.measure("Nm").same else 7  # clear of the value in another unit
-            self.sheet.write_string(self.row, room, said, self.book.style("quiet"))
+            self.sheet.write_formula(self.row, room, formula, self.book.style("quiet"), said)
         else:
             formula = f'=IF(eta="","{self.text(LOSS_FREE)}","")'
             self.sheet.write_formula(self.row, 4, formula, self.book.style("quiet"), saved)
@@ -206,14 +220,9 @@ class Overview:
         self.sheet.write_string(self.row, 0, self.book.head(self.text(check.title), check.unit), style("label"))
         self.sheet.write_string(self.row, 1, check.relation, style("quiet"))
         values = (demand_of(saved), limit_of(saved), used)
-        own = None if check.code in self.known.fixed() else CHECK_FORMULAS.get(check.code)
-        formulas = (own.shown_demand, own.shown_limit, own.ratio) if own else (None, None, None)
-        for column, (formula, value) in enumerate(zip(formulas, values, strict=True), 2):
+        for column, (formula, value) in enumerate(zip(self._formulas(check), values, strict=True), 2):
             look = style("share" if column == 4 else "result")
-            if formula is None:
-                self.sheet.write(self.row, column, value, look)
-            else:
-                self.sheet.write_formula(self.row, column, self._written(formula), look, value)
+            self.sheet.write_formula(self.row, column, formula, look, value)
         self._status(check, saved)
         self.sheet.write(self.row, 6, used, style("share"))
         source = origin(self.book.export, check.code, self.book.reader) if saved else ""
@@ -225,6 +234,16 @@ class Overview:
             if shown:
                 self.sheet.write_string(self.row, 10, self.book.shown.unit(check.unit), style("unit"))
         self.row += 1
+
+    def _formulas(self, check: Check) -> tuple[str, str, str]:
+        """Demand, limit and utilisation of a check; of one that no formula gives, the first two for the saved gear."""
+        own = CHECK_FORMULAS.get(check.code)
+        if own and check.code not in self.fixed:
+            return self._written(own.shown_demand), self._written(own.shown_limit), self._written(own.ratio)
+        saved, designation = self.known.candidate.check(check.code), self.known.candidate.designation
+        values = (json.dumps(value) for value in (demand_of(saved), limit_of(saved)))
+        demand, limit = (f'=IF(gear="{designation}",{value},"")' for value in values)
+        return demand, limit, self._from_list(check.code)
 
     def _written(self, formula: str) -> str:
         return written(formula, self._names(), self.book.words)
@@ -250,7 +269,8 @@ class Overview:
             live = tuple(path.split(".")) in NUMBERS or path.startswith(LOAD_PATH)
             value = self._input(path)
             shown = ", ".join(map(str, value)) if isinstance(value, tuple) else value
-            self.sheet.write(self.row, 2, shown, self.book.style("input" if live else "label"))
+            still = own or (path == EFFICIENCY and self.book.export.selection.turns_motor)
+            self.sheet.write(self.row, 2, shown, self.book.style("fixed" if still else "input" if live else "label"))
             self._converted(suffix_of(path) or "", value if isinstance(value, float) else None)
             if live:
                 name = cell_name(INPUTS[path].symbol) or path.removeprefix(LOAD_PATH)

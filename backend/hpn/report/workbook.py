@@ -16,6 +16,7 @@ from hpn.report.motion import MOTION_TITLE
 from hpn.report.motion_sheet import write_motion
 from hpn.report.overview import Overview
 from hpn.report.sheets import Book, CycleSheet
+from hpn.report.unchanged import write_unchanged
 from hpn.report.words import catalogue_version
 from hpn.wording import N_
 
@@ -56,6 +57,8 @@ def _fill(book: Book) -> None:
     candidates, notes = (_sheet(book, name) for name in (N_("Candidates"), N_("Notes")))
     rows = CandidatesSheet(book, candidates).write()
     Overview(book, overview, rows).write()
+    if book.export.has_fixed_motor_torques:
+        write_unchanged(book, _sheet(book, N_("As saved")))
     _notes(book, notes)
     overview.activate()
 
