@@ -229,14 +229,14 @@ CANDIDATE: Mapping[str, Named] = {
     "motor_peak_torque_Nm": Named(
         N_("Peak motor torque needed"),
         "T_max/(i·η)",
-        "Largest torque at the motor, T/(i·η), without the emergency stop. Where no efficiency is known η is 1, and "
-        "the torque a lower bound.",
+        "Largest torque at the motor, T/(i·η), without the emergency stop; along a motion with the motor’s own "
+        "inertia, where that is given. Where no efficiency is known η is 1, and the torque a lower bound.",
     ),
     "motor_rated_torque_Nm": Named(
         N_("RMS motor torque needed"),
         "T_rms/(i·η)",
-        "RMS torque at the motor, T/(i·η), over the cycle with pause. Where no efficiency is known η is 1, and the "
-        "torque a lower bound.",
+        "RMS torque at the motor, T/(i·η), over the cycle with pause; along a motion with the motor’s own inertia, "
+        "where that is given. Where no efficiency is known η is 1, and the torque a lower bound.",
     ),
     "reserve": Named(N_("Reserve"), "", "Reserve per driver, the other inputs as given."),
     "checks": Named(N_("Checks"), "", "Every check that was asked for, in a fixed order."),

@@ -5,7 +5,7 @@ beside the published maximum in its own direction, and the life beside the requi
 the same comparisons, since P grows in proportion with a load along its direction and the life with its power -3.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -16,7 +16,8 @@ from hpn.checks import BY_CODE
 from hpn.duty import Duty
 from hpn.figures import phase_loads
 from hpn.gear import Gear
-from hpn.selection import Candidate, CheckDefinition, CheckResult, Selection
+from hpn.quantities import CANDIDATE
+from hpn.selection import Candidate, CheckResult, Selection
 from hpn.wording import N_
 
 
@@ -43,10 +44,23 @@ class Reading:
         return "≥" if self.kind == "minimum" else "≤"
 
 
-AT_MOTOR = {"motor_peak_torque_Nm": "T_in,max", "motor_rated_torque_Nm": "T_in,rms"}
+_AT_MOTOR = {"motor_peak_torque_Nm": "T_in,max", "motor_rated_torque_Nm": "T_in,rms"}
 """Symbols of torques at the motor to which its own inertia adds, so that they are no quotient of the load's torque."""
 
 _RELATIONS = {"motor_peak_torque": "T_in,max ≤ T_mot", "motor_rated_torque": "T_in,rms ≤ T_mot,N"}
+
+
+def figure_symbol(name: str, *, turns_motor: bool) -> str:
+    """Symbol of a candidate's figure; `turns_motor` says whether the motor's own inertia counts in its torques."""
+    own = _AT_MOTOR.get(name) if turns_motor else None
+    return own or CANDIDATE[name].symbol
+
+
+def relation_of(code: str, *, turns_motor: bool) -> str:
+    """What a check compares, in symbols; blank for one that this version does not know."""
+    if turns_motor and code in _RELATIONS:
+        return _RELATIONS[code]
+    return BY_CODE[code].relation if code in BY_CODE else ""
 
 
 def readings_of(
@@ -66,18 +80,15 @@ def readings_of(
             reading = _bearing_life(candidate, check, load, u)
         if check.code == "output_bearing_load" and application and load and catalogue and gear:
             reading = _bearing_load(check, application, load, catalogue, gear, u)
-        reading = reading or _as_computed(check, selection.check_definitions[check.code], u)
-        if selection.turns_motor and check.code in _RELATIONS:
-            reading = replace(reading, relation=_RELATIONS[check.code])
-        readings[check.code] = reading
+        readings[check.code] = reading or _as_computed(check, selection, u)
     return readings
 
 
-def _as_computed(check: CheckResult, definition: CheckDefinition, u: float) -> Reading:
-    known, name = BY_CODE.get(check.code), definition.limit_name
+def _as_computed(check: CheckResult, selection: Selection, u: float) -> Reading:
+    known, definition = BY_CODE.get(check.code), selection.check_definitions[check.code]
     part = known.allowed(u) if known else 1.0
-    relation = known.relation if known else ""
-    return Reading(check.demand, check.limit, definition.unit, definition.kind, name, relation, part)
+    relation = relation_of(check.code, turns_motor=selection.turns_motor)
+    return Reading(check.demand, check.limit, definition.unit, definition.kind, definition.limit_name, relation, part)
 
 
 _REQUIRED = {"L50": N_("L50 required"), "L10": N_("L10 required")}

@@ -163,6 +163,18 @@ def test_another_gear_has_its_own_motor_torques_along_a_motion(catalogue: Catalo
     assert found == {"passes", "fails"}
 
 
+def test_motor_torques_with_the_motors_own_inertia_have_the_symbols_of_the_report(catalogue: Catalogue) -> None:
+    texts = {
+        str(cell.value)
+        for sheet in opened(LIFTED, catalogue)
+        for row in sheet.iter_rows()
+        for cell in row
+        if cell.value
+    }
+    assert {"T_in,max", "T_in,rms", "T_in,max ≤ T_mot", "T_in,rms ≤ T_mot,N"} <= texts
+    assert not [text for text in texts if "/(i·η)" in text or ("/ (i · η)" in text and "≤" in text)]
+
+
 def test_motor_torques_are_unknown_once_an_input_behind_them_is_changed(
     catalogue: Catalogue, recalculate: Recalculate
 ) -> None:

@@ -7,8 +7,8 @@ from hpn.web.pages.saved import NAMES, phase_of
 from tests.build import Json
 
 
-def saved(api: TestClient, motion: Json) -> str:
-    reply = api.post("/api/v1/selections", json={"application": {"duty_cycle": {"motion": motion}}})
+def saved(api: TestClient, motion: Json, **parts: Json) -> str:
+    reply = api.post("/api/v1/selections", json={"application": {"duty_cycle": {"motion": motion}, **parts}})
     return str(reply.json()["id"])
 
 
@@ -21,6 +21,21 @@ def test_mechanism_and_moves_that_differ_stand_side_by_side(api: TestClient) -> 
     assert "Move 1" in page
     assert "Move 2" not in page
     assert "Inertia of the load" in page
+
+
+def test_motor_torques_with_the_motors_own_inertia_are_no_quotient_of_the_loads(api: TestClient) -> None:
+    turned = {"motor": {"inertia_kgm2": 1e-4, "peak_torque_Nm": 10, "rated_torque_Nm": 5}}
+    a, b, plain = (
+        saved(api, TURNING, requirements=turned),
+        saved(api, TURNING, requirements=turned),
+        saved(api, TURNING),
+    )
+    with_inertia, without = (
+        api.get(f"/selections/compare?a={one}&b={other}", headers={"Accept-Language": "en"}).text
+        for one, other in ((a, b), (plain, plain))
+    )
+    assert "T<sub>in,max</sub>" in with_inertia and "T<sub>in,rms</sub>" in with_inertia
+    assert "/(i·η)" not in with_inertia and "/(i·η)" in without
 
 
 def test_a_link_to_a_motion_says_so(api: TestClient) -> None:

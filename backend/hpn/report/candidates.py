@@ -38,7 +38,8 @@ class CandidatesSheet:
     def __init__(self, book: Book, sheet: Any) -> None:
         self.book, self.sheet = book, sheet
         self.symbols = {name: GEAR[field].symbol for name, field in RATINGS.items()}
-        self.symbols |= {term.name: term.named.symbol for term in GEAR_TERMS}
+        known = Known(book.export, book.export.candidate, book.words)
+        self.symbols |= {term.name: known.symbol(term) for term in GEAR_TERMS}
         units = {name: symbol_of(field) for name, field in RATINGS.items()}
         units |= {term.name: term.unit for term in GEAR_TERMS}
         self.converted = {name: unit for name, unit in units.items() if not book.shown.measure(unit).same}
@@ -70,7 +71,7 @@ class CandidatesSheet:
         heads = [text(title) for title in (N_("Gear"), N_("Verdict"), N_("Utilisation"), N_("Rank as saved"))]
         heads += [head(GEAR[field].symbol, symbol_of(field)) for field in RATINGS.values()]
         bound = f", {text(LOWER_BOUND)}"
-        heads += [head(term.named.symbol, term.unit) + bound * term.by_efficiency for term in GEAR_TERMS]
+        heads += [head(self.symbols[term.name], term.unit) + bound * term.by_efficiency for term in GEAR_TERMS]
         heads += [text(check.title) for check in CHECKS]
         unit_of = self.book.shown.unit
         heads += [f"{self.symbols[name]} [{unit_of(unit)}]" for name, unit in self.converted.items()]

@@ -47,11 +47,12 @@ MOTOR_TORQUES = ("T_mot_peak", "T_mot_rms")
 
 @dataclass(frozen=True, slots=True)
 class CellTerm:
-    """A calculated quantity: what it is, the suffix of its unit, and how it is calculated."""
+    """A calculated quantity: what it is, the suffix of its unit, how it is calculated, and its field of a candidate."""
 
     named: Named
     unit: str
     formula: str
+    field: str = ""
 
     @property
     def name(self) -> str:
@@ -69,7 +70,7 @@ def _duty(field: str, formula: str) -> CellTerm:
 
 
 def _result(field: str, formula: str) -> CellTerm:
-    return CellTerm(CANDIDATE[field], suffix_of(field) or "", formula)
+    return CellTerm(CANDIDATE[field], suffix_of(field) or "", formula, field)
 
 
 # --- The cycle --------------------------------------------------------------------------------------------------------

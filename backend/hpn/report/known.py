@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 from hpn.checks.motor import MOTOR
 from hpn.quantities import CANDIDATE
+from hpn.readings import figure_symbol
 from hpn.report.export import Export
 from hpn.report.formulas import (
     CHECK_FORMULAS,
@@ -70,6 +71,11 @@ class Known:
         """The formula of a term that is not fixed. Along a motion a motor's inertia adds what no formula gives."""
         moves = self.export.application.duty_cycle.motion is not None
         return f'IF(J_m="",{term.formula},"")' if moves and term.by_efficiency else term.formula
+
+    def symbol(self, term: CellTerm) -> str:
+        """Symbol of a term, as the report has it."""
+        turns = self.export.selection.turns_motor
+        return figure_symbol(term.field, turns_motor=turns) if term.field else term.named.symbol
 
     @property
     def _has_listed_motor(self) -> bool:

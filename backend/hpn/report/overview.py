@@ -10,6 +10,7 @@ from hpn.application import NUMBERS, OutputLoad
 from hpn.check import Check
 from hpn.checks import CHECKS
 from hpn.quantities import GEAR, INPUTS
+from hpn.readings import relation_of
 from hpn.report.candidates import COLUMNS, LOAD
 from hpn.report.export import LOSS_FREE
 from hpn.report.formulas import CHECK_FORMULAS, CYCLE_TERMS, GEAR_TERMS, NONE, RATINGS, CellTerm, cell_name, written
@@ -163,7 +164,7 @@ class Overview:
         self._section(title)
         for term in terms:
             named = term.named
-            self._line(named.name, named.symbol, term.unit, equation(named.equation, self.book.reader))
+            self._line(named.name, self.known.symbol(term), term.unit, equation(named.equation, self.book.reader))
             formula, look = self._written(self.known.formula(term)), "result"
             if term.name in self.fixed:
                 formula, look = self._from_list(term.name), "fixed"
@@ -218,7 +219,8 @@ class Overview:
     def _check(self, check: Check) -> None:
         style, saved, used = self.book.style, self.known.candidate.check(check.code), self.known.utilisation(check.code)
         self.sheet.write_string(self.row, 0, self.book.head(self.text(check.title), check.unit), style("label"))
-        self.sheet.write_string(self.row, 1, check.relation, style("quiet"))
+        relation = relation_of(check.code, turns_motor=self.book.export.selection.turns_motor)
+        self.sheet.write_string(self.row, 1, relation, style("quiet"))
         values = (demand_of(saved), limit_of(saved), used)
         for column, (formula, value) in enumerate(zip(self._formulas(check), values, strict=True), 2):
             look = style("share" if column == 4 else "result")

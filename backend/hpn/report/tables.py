@@ -7,7 +7,7 @@ from hpn.application import DutyCycle
 from hpn.phase import Phase
 from hpn.quantities import CANDIDATE, DUTY, GEAR, INPUTS
 from hpn.reader import Reader
-from hpn.readings import AT_MOTOR
+from hpn.readings import figure_symbol
 from hpn.report import inputs
 from hpn.report.export import Export
 from hpn.report.motion import MOVES, lines, moves_of, written
@@ -107,7 +107,7 @@ def derived(export: Export, reader: Reader) -> list[dict[str, Any]]:
     figures += [(name, CANDIDATE[name], getattr(candidate, name)) for name in FIGURES]
     lower_bound = export.is_lower_bound(candidate)
     loss_free = lower_bound and not export.follows_efficiency_curve(candidate)
-    symbols = AT_MOTOR if export.selection.turns_motor else {}
+    turns = export.selection.turns_motor
     rows = []
     for name, named, value in figures:
         if value is not None:
@@ -116,7 +116,7 @@ def derived(export: Export, reader: Reader) -> list[dict[str, Any]]:
             rows.append(
                 {
                     "label": reader.text(named.name) + bound,
-                    "symbol": formula(symbols.get(name, named.symbol)),
+                    "symbol": formula(figure_symbol(name, turns_motor=turns) if name in CANDIDATE else named.symbol),
                     "text": measured(value, suffix_of(name) or "", reader),
                     "where": "η = 1" if loss_free and at_motor else equation(named.equation, reader),
                 }

@@ -16,7 +16,7 @@ from hpn.check import Check
 from hpn.checks import BY_CODE
 from hpn.phase import Phase
 from hpn.quantities import CANDIDATE, DUTY, INPUTS, Named, unit_of
-from hpn.readings import Reading
+from hpn.readings import Reading, figure_symbol
 from hpn.report.inputs import LOADS, REQUIREMENTS, InputLine, given
 from hpn.report.motion import lines, move_line
 from hpn.selection import FIGURES, Candidate, CheckResult, decode
@@ -199,8 +199,10 @@ def _figures(a: Side, b: Side) -> Iterator[Row]:
     inertias = _pair(side.result.selection.duty.load_inertia_kgm2 for side in (a, b))
     if inertias != (None, None):
         yield Row(INPUTS["requirements.load_inertia_kgm2"], inertias, unit_of("load_inertia_kgm2"))
+    turns = any(side.result.selection.turns_motor for side in (a, b))
     for name in FIGURES:
-        row = Row(CANDIDATE[name], _pair(_figure(side.chosen, name) for side in (a, b)), unit_of(name))
+        named = Named(CANDIDATE[name].name, figure_symbol(name, turns_motor=turns))
+        row = Row(named, _pair(_figure(side.chosen, name) for side in (a, b)), unit_of(name))
         if row.values != (None, None):
             yield row
 
