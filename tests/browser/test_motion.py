@@ -13,6 +13,7 @@ SAVED = re.compile("/selections/[A-Za-z0-9_-]{22}$")
 ON_DESK = pytest.mark.parametrize("width", [1440, pytest.param(390, marks=pytest.mark.soak)])
 ON_PHONE = pytest.mark.parametrize("width", [390, pytest.param(1440, marks=pytest.mark.soak)])
 START = "/?mech=rotary&mv=&ms=&mt="
+LIFTED = "/?mech=ball_screw&h=20&ml=120&inc=90&mv=s_curve&ms=-400&mt=1.5&mv=modified_sine&ms=400&mt=2"
 
 
 def result(page: Page) -> Locator:
@@ -192,3 +193,14 @@ def test_a_motion_is_given_without_script(visitor: Visitor) -> None:
     box(page, "Time, move 1").fill("0.5")
     page.get_by_role("button", name="Calculate").click()
     expect(result(page)).to_contain_text("suitable")
+
+
+def test_the_phases_of_a_saved_motion_stay_within_its_input(visitor: Visitor) -> None:
+    page = visitor.open(LIFTED)
+    page.get_by_role("button", name="Save", exact=True).click()
+    page.wait_for_url(SAVED)
+    table = page.get_by_role("region", name="Load phases of the motion")
+    cell, beside = table.bounding_box(), page.get_by_role("region", name="Result").bounding_box()
+    assert cell and beside and cell["x"] + cell["width"] <= beside["x"]
+    table.focus()
+    assert table.evaluate("node => getComputedStyle(node).overflowX") == "auto"

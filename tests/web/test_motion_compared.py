@@ -1,10 +1,13 @@
 """Two saved motions side by side, and what a link to one unfolds into."""
 
+import re
+
 from starlette.testclient import TestClient
 
+from hpn.report.export import DIGITS
 from hpn.web.api.samples import TURNING
 from hpn.web.pages.saved import NAMES, phase_of
-from tests.build import Json
+from tests.build import Json, cycle, phase
 
 
 def saved(api: TestClient, motion: Json, **parts: Json) -> str:
@@ -49,3 +52,21 @@ def test_a_difference_in_a_phase_of_a_motion_says_which_and_what() -> None:
     assert phase_of("/candidates/0/life_L10_h") is None
     assert NAMES["peak_torque_Nm"] == "Peak torque"
     assert NAMES["load_inertia_kgm2"] == "Inertia of the load"
+
+
+def test_a_saved_motion_is_shown_as_it_was_given_and_its_phases_with_the_digits_of_the_report(api: TestClient) -> None:
+    page = api.get(f"/selections/{saved(api, TURNING)}", headers={"Accept-Language": "en"}).text
+    given = page[page.index("Input as saved") : page.index('id="cycle"')]
+    assert re.search(r"<dt>Mechanism\s*</dt><dd>Rotary</dd>", given)
+    assert "0.8\N{NARROW NO-BREAK SPACE}kg·m²" in given
+    assert given.count("<li>") == len(TURNING["moves"])
+    assert "Load phases of the motion" in given
+    numbers = re.findall(r"<td>−?([\d.\N{NARROW NO-BREAK SPACE}]+)</td>", given)
+    assert numbers and max(len(re.sub(r"^[0.]+|\D", "", number)) for number in numbers) == DIGITS
+
+
+def test_typed_phases_stay_as_typed_on_the_page_of_a_saved_selection(api: TestClient) -> None:
+    reply = api.post("/api/v1/selections", json={"application": cycle(phase(40.123456, 250, 1))})
+    page = api.get(f"/selections/{reply.json()['id']}", headers={"Accept-Language": "en"}).text
+    assert "<td>40.123456</td>" in page
+    assert "Load phases of the motion" not in page

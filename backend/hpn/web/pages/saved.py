@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
 
@@ -15,7 +15,10 @@ from hpn.application import Application
 from hpn.catalogue import Catalogue
 from hpn.differences import Difference
 from hpn.quantities import CANDIDATE, CHECK, DUTY, PHASE, RESERVE, VERDICTS
+from hpn.report.export import DIGITS
 from hpn.report.inputs import LOADS, REQUIREMENTS, given
+from hpn.report.motion import lines, move_line
+from hpn.report.tables import number_of
 from hpn.selection import Selection, reason_of
 from hpn.store import ID, SavedSelection, StoreUnavailableError
 from hpn.units import symbol_of
@@ -108,9 +111,20 @@ def _page(reopened: Reopened, designation: str, catalogue: Catalogue) -> dict[st
         "engine_version": ENGINE_VERSION,
         "document": reopened.saved.application.decode(),
         "inputs": list(given(application, (*LOADS, *REQUIREMENTS), current())) if application else [],
+        **_motion(application),
+        "number": number_of(application.duty_cycle, replace(current(), digits=DIGITS)) if application else None,
         "exports": EXPORTS,
         "longest_link": link_reader.MAXIMUM_QUERY_BYTES,
     }
+
+
+def _motion(application: Application | None) -> dict[str, Any]:
+    """Mechanism and moves of a motion as they were given, line by line; none where phases were given."""
+    motion = application.duty_cycle.motion if application else None
+    if motion is None:
+        return {"motion": [], "moves": []}
+    moves = [move_line(motion, place, current()) for place in range(len(motion.moves))]
+    return {"motion": list(lines(motion, current())), "moves": moves}
 
 
 def result_of(
