@@ -13,7 +13,7 @@ from hpn.reader import LANGUAGES, Reader
 from hpn.web.form.axis_columns import BY_ROLE, quantity_of
 from hpn.web.form.axis_tables import AxisTable, read_axes
 from hpn.web.form.columns import Choices
-from hpn.web.form.sheets import grid_of, grids_of
+from hpn.web.form.sheets import grids_of
 from hpn.web.form.workbooks import sheets_of
 
 WIRE = tuple({symbol.unit for symbol in BY_ROLE.values()} - {""})
@@ -262,8 +262,44 @@ def sheet_of(format_: str, *values: str) -> AxisTable:
             for place, value in enumerate(values):
                 text = text.replace(b"<v>%d</v>" % (1000 + place), b"<v>%b</v>" % value.encode())
             after.writestr(name, text)
-    ((_, rows),) = sheets_of(written.getvalue()).items()
-    return read_axes(grid_of(rows), Choices(roles={4: "m", 5: "eta"}, units={4: "kg"}), WIRE)
+    (read_,) = sheets_of(written.getvalue()).values()
+    return read_axes(read_.grid(), Choices(roles={4: "m", 5: "eta"}, units={4: "kg"}), WIRE)
+
+
+HEADED = (*HEAD.split(";"), "Lebensdauer [h]")
+
+
+def merged(*rows: tuple[object, ...], cells: str) -> AxisTable:
+    """A table of a workbook, some of whose cells are merged."""
+    book = Workbook()
+    sheet: Any = book.active
+    for row in (HEADED, *rows):
+        sheet.append(row)
+    sheet.merge_cells(cells)
+    book.save(file := io.BytesIO())
+    (read_,) = sheets_of(file.getvalue()).values()
+    return read_axes(read_.grid(), Choices(roles={4: "Lh"}), WIRE)
+
+
+def test_merged_names_and_inputs_of_an_axis_count_for_its_rows() -> None:
+    named = merged((7, 40, 250, 1, 20_000), (None, 32, 500, 3, None), (8, 1, 1, 1, 5), cells="A2:A3")
+    lasting = merged((7, 40, 250, 1, 20_000), (7, 32, 500, 3, None), (8, 1, 1, 1, 5), cells="E2:E3")
+
+    assert named.axes == lasting.axes
+    assert [axis["requirements.life_h"] for axis in named.axes] == [20_000, 5]
+
+
+@pytest.mark.parametrize(("cells", "field"), [("B2:B3", "torque_Nm"), ("E3:E4", "requirements.life_h")])
+def test_a_number_that_is_merged_over_phases_or_axes_is_none_of_theirs(cells: str, field: str) -> None:
+    axes = merged((7, 40, 250, 1, None), (7, None, 500, 3, 20_000), (8, 1, 1, 1, None), cells=cells).axes
+
+    assert cells in str([axis.get(field) for axis in axes])
+
+
+def test_a_formula_without_a_value_spoils_its_axis() -> None:
+    axes = merged((7, "=20*2", 250, 1, None), (8, 1, 1, 1, None), cells="G1:G2").axes
+
+    assert [axis["torque_Nm"] for axis in axes] == [["=20*2"], [1]]
 
 
 def test_a_percentage_of_a_workbook_is_the_number_that_it_holds() -> None:

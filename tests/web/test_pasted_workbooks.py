@@ -73,6 +73,13 @@ def said(reply: Any) -> str:
         ),
         ([["T", "n", "t"], [(0.04, '0.00" kNm"'), (360, '0"°/s"'), (300, '0\\ "ms"')]], [("40", "60", "0.3")]),
         ([["T", "n", "Dauer"], [(40_000, '0.0," kNm"'), 250, 0.3]], [("40000", "250", "0.3")]),
+        ([["T", "n", "t"], [(0.04, "0.000 [$kNm]"), (360, "0°/[$s]"), (3, "0 [$min-407]")]], [("40", "60", "180")]),
+        ([["T", "n", "t"], [(-0.04, "_-* 0.00 [$kNm]_-;\\(0.00 [$kNm]\\)"), 250, 3]], [("-40", "250", "3")]),
+        ([["T", "n", "t"], [40, 250, (90, '[<60]0" s";0" min"')]], [("40", "250", "5400")]),
+        ([["T", "n", "t"], [40, 250, (9, '[<60]0" s";0" min"')]], [("40", "250", "9")]),
+        ([["T", "n", "t"], [(-0.04, '0" Nm";-0.00" kNm"'), (0, '0" 1/min";;"-"??'), 3]], [("-40", "0", "3")]),
+        ([["T", "n", "Dauer"], [40, 250, clock(0, 0, 3)]], [("40", "250", "3")]),
+        ([HEADER, [40, 250, timedelta(hours=30, seconds=0.5)]], [("40", "250", "108000.5")]),
         ([["T", "n", "Dauer"], ["40,5", "250", "0,3"]], [("40.5", "250", "0.3")]),
         ([["T", "n", "Dauer"], ["40,5 Nm", 250, 0.3]], [("40.5", "250", "0.3")]),
         (
@@ -96,12 +103,12 @@ def test_workbook_becomes_what_its_cells_show(client: TestClient, rows: Any, pha
     [
         ([(0.4, "0%"), 250, 3], "40 % is not a number"),
         ([(40, "0 [$€-407]"), 250, "x"], "x is not a number"),
-        ([40, 250, clock(0, 0, 3)], "00:00:03 is not a number"),
-        ([40, 250, timedelta(seconds=3)], "0:00:03 is not a number"),
+        ([40, 250, (clock(0, 3), "h:mm")], "00:03:00 is not a number"),  # may be meant as minutes and seconds
         ([40, 250, date(2026, 3, 1)], "is not a number"),
         ([True, 250, 3], "True is not a number"),
         ([40, "#DIV/0!", 3], "#DIV/0! is not a number"),
-        (["=A1*2", 250, 3], "the torque is blank"),  # a formula that no program has worked out
+        (["=A1*2", 250, 3], "row 2: =A1*2 has no calculated value"),
+        (["=A1*2", "=B1", "=C1"], "row 2: =A1*2 has no calculated value"),
         (["1,5", "2.5", 3], "different ways"),
     ],
 )
@@ -115,6 +122,71 @@ def test_unit_of_a_format_that_is_none_of_its_column_is_refused(client: TestClie
     reply = answer(client, content(book(["T", "n", "Dauer"], [(40, '0" €"'), 250, 3])))
     assert reply.status_code == 422
     assert "40 €: this unit does not belong" in said(reply)
+
+
+@pytest.mark.parametrize(
+    ("cell", "shown"),
+    [
+        ((40, '0.0 "Nm" "max"'), "40 Nm max"),
+        ((40, '[<60]0" Nm";0" kNm";0" mNm"'), '40 [<60]0" Nm";0" kNm";0" mNm"'),
+        ((1500, "[<1000]0;0.0,"), "1500 [<1000]0;0.0,"),
+        ((40, "0 [$€-407]"), "40 €"),
+        (clock(0, 0, 3), "3 s"),
+    ],
+)
+def test_what_a_format_may_mean_otherwise_is_refused(client: TestClient, cell: Cell, shown: str) -> None:
+    reply = answer(client, content(book(["T", "n", "Dauer"], [cell, 250, 3])))
+    assert reply.status_code == 422
+    assert f"{shown}: this unit does not belong" in said(reply)
+
+
+def test_time_of_a_cell_is_refused_under_another_unit(client: TestClient) -> None:
+    reply = answer(client, content(book(["T", "n", "Dauer [min]"], [40, 250, clock(0, 3)])))
+    assert reply.status_code == 422
+    assert "180 s: this unit does not belong to column “Dauer [min]”" in said(reply)
+
+
+def test_load_of_a_formula_without_a_value_is_refused_and_a_result_without_characters_is_blank(
+    client: TestClient,
+) -> None:
+    made = content(book([*HEADER, "FR [N]"], [40, 250, 0.3, "=500*2"]))
+    assert "row 2: =500*2 has no calculated value; open and save" in said(answer(client, made))
+    blank = parts(made, lambda name, old: old.replace(b'<c r="D2">', b'<c r="D2" t="str">') if name == SHEET else old)
+    assert taken(answer(client, blank)) == [("40", "250", "0.3")]
+
+
+@pytest.mark.parametrize(("cells", "row"), [("D2:D3", 3), ("D2:E2", 2), ("C3:D3", 3)])
+@pytest.mark.parametrize("script", [True, False])
+def test_number_that_is_merged_over_others_is_refused(client: TestClient, cells: str, row: int, script: bool) -> None:
+    made = book([*HEADER, "FR [N]", "FA [N]"], [40, 250, 0.3, 1500, 1], [20, 250, 0.2, None, 1])
+    made.worksheets[0].merge_cells(cells)
+    book([*HEADER], [40, 250, 0.3], name="other", into=made)
+    sheet = {"sheet": "Tabelle1", "take": "replace"}
+    headers = {"HX-Request": "true"} if script else {}
+    shown = client.post("/paste", files={"file": ("a.xlsx", content(made))}, headers=headers)
+    hidden = {name: unescape(value) for name, value in re.findall(r'name="(of|book)" value="([^"]*)"', shown.text)}
+    again = {"file": ("a.xlsx", content(made) if script else b"")}
+    reply = client.post("/paste", data={**hidden, **sheet}, files=again, headers=headers)
+    assert reply.status_code == 422
+    assert f"row {row}: the cells {cells} are merged; write a number into each of them" in said(reply)
+
+
+def test_row_of_a_table_may_be_several_rows_high(client: TestClient) -> None:
+    made = book(HEADER, [40, 250, 0.3], [None, None, None], [20, 250, 0.2])
+    for column in "ABC":
+        made.worksheets[0].merge_cells(f"{column}2:{column}3")
+    assert taken(answer(client, content(made))) == [("40", "250", "0.3"), ("20", "250", "0.2")]
+
+
+def test_hidden_rows_and_columns_are_named(client: TestClient) -> None:
+    made = book([*HEADER, "FR [N]"], *([40, 250, 3 - k / 10, 1500] for k in range(9)))
+    for row in (3, 4, 7):
+        made.worksheets[0].row_dimensions[row].hidden = True
+    for column in ("D", "H"):
+        made.worksheets[0].column_dimensions[column].hidden = True
+    shown = answer(client, content(made), take="").text
+    assert "Rows that are hidden in the workbook are read, too: 3–4, 7." in shown
+    assert "Columns that are hidden in the workbook are read, too: D." in shown
 
 
 def test_row_far_below_is_no_less_read(client: TestClient) -> None:
@@ -133,12 +205,12 @@ def test_text_with_two_readings_is_asked_in_a_workbook_too(client: TestClient) -
     assert taken(answer(client, file, of=of[1], decimal=".")) == [("1234", "250", "0.5")]
 
 
-def test_merged_cells_leave_their_row_without_a_torque(client: TestClient) -> None:
+def test_torque_merged_over_two_phases_is_refused(client: TestClient) -> None:
     made = book(HEADER, [40, 250, 0.3], [None, 500, 0.2])
     made.worksheets[0].merge_cells("A2:A3")
     reply = answer(client, content(made))
     assert reply.status_code == 422
-    assert "row 3: the torque is blank" in said(reply)
+    assert "row 3: the cells A2:A3 are merged; write a number into each of them" in said(reply)
 
 
 def test_merged_title_and_heading_are_read(client: TestClient) -> None:
@@ -211,6 +283,15 @@ HOSTILE = {
     "cells without end": parts(
         VALID, lambda name, old: old.replace(b"</row>", b"<c/>" * 1_500_000 + b"</row>") if name == SHEET else old
     ),
+    "merged without end": parts(
+        VALID,
+        lambda name, old: (
+            old.replace(b"</sheetData>", b"</sheetData><mergeCells>" + b'<mergeCell ref="A2:XFD9999"/>' * 90_000)
+            if name == SHEET
+            else old
+        ),
+    ),
+    "a row without end": parts(VALID, lambda name, old: old.replace(b'r="2"', b'r="999999999"')),
     "only the first bytes": VALID[:200],
     "a zip of something else": parts(VALID, lambda name, old: b"x"),
     "before XLSX": b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1" + b"\0" * 500,
@@ -236,5 +317,5 @@ def test_carried_cells_that_are_none_are_refused(client: TestClient, carried: st
 
 def test_size_that_a_workbook_states_of_itself_is_not_believed() -> None:
     file = parts(VALID, lambda name, old: old.replace(b'ref="A1:C2"', b'ref="A1:A1"') if name == SHEET else old)
-    assert sheets_of(file) == {"Tabelle1": [[*map(str, HEADER)], ["40", "250", "0.3"]]}
+    assert sheets_of(file)["Tabelle1"].rows == [[*map(str, HEADER)], ["40", "250", "0.3"]]
     assert openpyxl.load_workbook(io.BytesIO(file), read_only=True).active is not None

@@ -7,7 +7,7 @@ number spoils its axis alone, which is then rejected with its reason.
 import decimal as decimals
 import re
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import groupby, pairwise
 from math import isfinite
@@ -15,7 +15,7 @@ from typing import Any
 
 from hpn import units
 from hpn.web.form.axis_columns import AXIS, BY_ROLE, PHASES, AxisColumn, columns_of, foreign_unit
-from hpn.web.form.cells import DECIMALS, LONGEST_CELL, Decimal, Entry, Figure, entry, is_blank, plain
+from hpn.web.form.cells import DECIMALS, LONGEST_CELL, Decimal, Entry, Figure, Merged, entry, is_blank, plain
 from hpn.web.form.columns import NO_CHOICES, REQUIRED, SKIP, Body, Choices, body_of
 from hpn.web.form.numbers import split_unit
 from hpn.web.form.pasted import TIMES
@@ -62,9 +62,29 @@ def read_axes(grid: Grid, choices: Choices = NO_CHOICES, assumed: Collection[str
     """What a table of cells is read as; raises nothing, `problem` says why it can't be."""
     try:
         body = body_of(grid)
-        return _Reading(body, columns_of(body, choices, assumed), choices).table()
+        columns = columns_of(body, choices, assumed)
+        return _Reading(_unmerged(body, columns), columns, choices).table()
     except RefusedError as refused:
         return AxisTable(refused.sentence)
+
+
+def _unmerged(body: Body, columns: Sequence[AxisColumn]) -> Body:
+    """A table in which an axis has its name, and each input that is merged, in its first row alone."""
+    axis = next((column.place for column in columns if column.role == AXIS), None)
+    once = {column.place for column in columns if column.role not in PHASES}
+    rows: list[tuple[str, ...]] = []
+    known = ""
+    for row in body.rows:
+        name = "" if axis is None or isinstance(row[axis], Merged) else row[axis]
+        goes_on = bool(rows) and (is_blank(name) or name == known)
+        known = known if goes_on else name
+        rows.append(
+            tuple(
+                "" if isinstance(cell, Merged) and (place == axis or (goes_on and place in once)) else cell
+                for place, cell in enumerate(row)
+            )
+        )
+    return replace(body, rows=tuple(rows))
 
 
 class _Reading:
@@ -92,7 +112,7 @@ class _Reading:
             times=times,
             asks_times=asks_times,
             axes=() if open_ else tuple(self._axes(groups, decimal or ".", times)),
-            notes=tuple(self.notes),
+            notes=(*self.notes, *self.body.grid.notes),
         )
 
     # --- Questions ----------------------------------------------------------------------------------------------------

@@ -43,6 +43,12 @@ class Figure(str):
     __slots__ = ()
 
 
+class Merged(str):
+    """A cell that a merged one with a number covers, by the name of both, `D2:D4`: whose the number is, is not said."""
+
+    __slots__ = ()
+
+
 class Entry(NamedTuple):
     """A number in plain notation, and the unit written behind it."""
 
@@ -90,6 +96,11 @@ def plain(text: str, decimal: Decimal) -> str | None:
     if match["mark"]:
         text = text.replace(match["mark"], "")
     return text.replace(decimal, ".").removesuffix(".")
+
+
+def is_meant_as_number(cell: str) -> bool:
+    """Whether a cell is a number, or stands where one does: a formula, or a part of merged cells with a number."""
+    return cell.startswith("=") or isinstance(cell, Merged) or is_number(cell)
 
 
 def is_number(cell: str) -> bool:

@@ -9,9 +9,9 @@ from dataclasses import dataclass, field, replace
 from itertools import chain, pairwise
 
 from hpn import units
-from hpn.web.form.cells import DECIMALS, entry, is_blank, is_number
+from hpn.web.form.cells import DECIMALS, entry, is_blank, is_meant_as_number, is_number
 from hpn.web.form.headings import INDEX, LONGEST, QUANTITIES, SUM, UNIT, Heading, heading_of, is_total
-from hpn.web.form.sheets import Grid, RefusedError, require_even
+from hpn.web.form.sheets import Grid, RefusedError, no_number, require_even
 from hpn.wording import N_, Sentence, Value
 
 WIRE = {"T": "Nm", "n": "rpm", "t": "s", "FRi": "N", "FAi": "N", "Tpk": "Nm", "npk": "rpm", "Trms": "Nm"}
@@ -170,7 +170,7 @@ def _named(row: Sequence[str]) -> int:
 
 
 def _numbers_in(row: Sequence[str]) -> int:
-    return sum(is_number(cell) for cell in row)
+    return sum(is_meant_as_number(cell) for cell in row)
 
 
 def _head(grid: Grid) -> tuple[list[tuple[str, ...]], int, list[Sentence]]:
@@ -217,7 +217,7 @@ def _too_few(body: Body, columns: Sequence[Column]) -> RefusedError:
     for number, row in zip(body.numbers, body.rows, strict=True):
         wrong = next((cell for cell in row if not is_blank(cell) and not is_number(cell)), None)
         if wrong and len(columns) >= 3:
-            return RefusedError(N_("row {row}: {cell} is not a number"), row=number, cell=wrong[:40])
+            return no_number(number, wrong)
     cells = sum(not is_blank(cell) for cell in body.rows[0])
     template = N_("row {row} has {cells} cells; a phase has torque, speed and duration at least")
     return RefusedError(template, row=body.numbers[0], cells=cells)

@@ -29,7 +29,7 @@ from hpn.web.form.columns import (
     has_two_ways,
 )
 from hpn.web.form.headings import QUANTITIES, heading_of
-from hpn.web.form.sheets import Grid, RefusedError, grids_of
+from hpn.web.form.sheets import Grid, RefusedError, grids_of, no_number
 from hpn.web.form.symbols import columns_used
 from hpn.wording import N_, Sentence, Value
 
@@ -146,7 +146,7 @@ class _Reading:
         open_ = bool(self.questions)
         return Table(
             questions=tuple(self.questions),
-            notes=self.body.notes,
+            notes=(*self.body.grid.notes, *self.body.notes),
             separator=self.body.grid.separator,
             turned=self.body.grid.turned,
             decimal=decimal,
@@ -200,7 +200,7 @@ class _Reading:
             for column in self.used:
                 cell = row[column.place]
                 if not is_blank(cell) and not any(entry(cell, decimal) for decimal in DECIMALS):
-                    return RefusedError(N_("row {row}: {cell} is not a number"), row=number, cell=cell[:40])
+                    return no_number(number, cell)
         return RefusedError(N_("the rows write their decimals in different ways: use a point or a comma throughout"))
 
     def _decimal(self, readings: dict[Decimal, list[Row]]) -> tuple[Decimal | None, tuple[tuple[str, str], ...]]:

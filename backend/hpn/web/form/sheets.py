@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from itertools import zip_longest
 
 from hpn.phase import MAXIMUM_PHASES
-from hpn.web.form.cells import tidy
+from hpn.web.form.cells import Merged, tidy
 from hpn.wording import N_, Sentence, Value
 
 MAXIMUM_CHARACTERS = 1_000_000
@@ -38,11 +38,22 @@ class RefusedError(ValueError):
         self.sentence = Sentence(template, dict(values))
 
 
+def no_number(row: int, cell: str) -> RefusedError:
+    """Why a cell of a row is no number, and what would be right where that can be told."""
+    template = N_("row {row}: {cell} is not a number")
+    if cell.startswith("="):
+        template = N_("row {row}: {cell} has no calculated value; open and save the table in the spreadsheet program")
+    elif isinstance(cell, Merged):
+        template = N_("row {row}: the cells {cell} are merged; write a number into each of them")
+    return RefusedError(template, row=row, cell=cell[:40])
+
+
 @dataclass(frozen=True, slots=True)
 class Grid:
     """Rows of cells, all of one width, with the number that each row has for the user.
 
     `even` tells whether the rows had to have equally many cells: where a separator is a mark of numbers as well.
+    `notes` say what a reader of the file might not expect.
     """
 
     rows: tuple[tuple[str, ...], ...]
@@ -50,6 +61,7 @@ class Grid:
     separator: str = ""
     turned: bool = False
     counts: tuple[int, ...] = ()
+    notes: tuple[Sentence, ...] = ()
 
     @property
     def width(self) -> int:
@@ -63,7 +75,8 @@ class Grid:
 
     def transposed(self) -> "Grid":
         """Columns as rows."""
-        return Grid(tuple(zip(*self.rows, strict=True)), tuple(range(1, self.width + 1)), self.separator, True)
+        columns = tuple(zip(*self.rows, strict=True))
+        return Grid(columns, tuple(range(1, self.width + 1)), self.separator, True, notes=self.notes)
 
 
 def grid_of(rows: Sequence[Sequence[str]], separator: str = "") -> Grid:

@@ -3,18 +3,24 @@
 A workbook is a zip archive of XML: how much it unpacks to is bounded before anything is read.
 """
 
-import re
 import zipfile
+from collections.abc import Callable, Iterable
 from contextlib import suppress
+from dataclasses import dataclass, replace
+from datetime import time, timedelta
 from decimal import Decimal
 from fractions import Fraction
 from io import BytesIO
 from math import inf
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from hpn.web.form.cells import Figure, tidy
-from hpn.web.form.sheets import MOST_CELLS, RefusedError
-from hpn.wording import N_
+from hpn.web.form.cells import Figure, Merged, is_number, tidy
+from hpn.web.form.number_formats import section_of
+from hpn.web.form.sheets import MOST_CELLS, Grid, RefusedError, grid_of
+from hpn.wording import N_, Sentence
+
+if TYPE_CHECKING:
+    from hpn.web.form.worksheets import Span, Worksheet
 
 MAGIC = b"PK\x03\x04"
 OLD_MAGIC = b"\xd0\xcf\x11\xe0"
@@ -25,10 +31,33 @@ MAXIMUM_BYTES = 8_000_000
 
 MOST_PARTS = 300
 MOST_SHEETS = 20
+MOST_ROWS = 1_048_576
+"""Of a sheet, by the format."""
 
-Sheets = dict[str, list[list[str]]]
-_LITERAL = re.compile(r'"([^"]*)"|\\(.)')
-_SCALED = re.compile(r"[0#?](,+)(?![0#?,])")
+
+@dataclass(frozen=True, slots=True)
+class Sheet:
+    """Rows of a sheet, and which of its rows and columns are hidden in the workbook: they are read as well."""
+
+    rows: list[list[str]]
+    hidden_rows: str = ""
+    hidden_columns: str = ""
+
+    def grid(self) -> Grid:
+        """Its cells as a table; raises RefusedError where there are none."""
+        notes = [
+            Sentence(template, {"hidden": hidden})
+            for template, hidden in ((HIDDEN_ROWS, self.hidden_rows), (HIDDEN_COLUMNS, self.hidden_columns))
+            if hidden
+        ]
+        return replace(grid_of(self.rows), notes=tuple(notes))
+
+
+Sheets = dict[str, Sheet]
+HIDDEN_ROWS = N_("Rows that are hidden in the workbook are read, too: {hidden}.")
+HIDDEN_COLUMNS = N_("Columns that are hidden in the workbook are read, too: {hidden}.")
+MOST_NAMED = 5
+"""Stretches of hidden rows or columns that are named."""
 
 
 def sheets_of(content: bytes) -> Sheets:
@@ -58,46 +87,111 @@ def _require_bounded(content: bytes) -> None:
 def _read(content: bytes) -> Sheets:
     import openpyxl  # takes a tenth of a second, which only workbooks need
 
+    from hpn.web.form.worksheets import Worksheet
+
     book = openpyxl.load_workbook(BytesIO(content), read_only=True, data_only=True, keep_links=False)
     sheets: Sheets = {}
     with suppress(AttributeError):  # sheets of charts have no cells
         for sheet in book.worksheets[:MOST_SHEETS]:
-            if sheet.sheet_state == "visible" and (rows := _rows(sheet)):
-                sheets[sheet.title] = rows
+            if sheet.sheet_state == "visible" and (read := _sheet(Worksheet(sheet))).rows:
+                sheets[sheet.title] = read
     return sheets
 
 
-def _rows(sheet: Any) -> list[list[str]]:
-    sheet.reset_dimensions()  # what the file says of its size need not be so
+def _sheet(sheet: "Worksheet") -> Sheet:
     rows: list[list[str]] = []
     cells = 0
-    for row in sheet.iter_rows():
-        said = [_text(cell) for cell in row]
-        while said and not said[-1]:
-            said.pop()
-        rows.append(said)
+    for number, row in sheet.rows():
+        said = _placed(row)
         cells += len(said)
-        if cells > MOST_CELLS:
-            raise RefusedError(
-                N_("there are more than {most} cells: leave out the columns that are not needed"), most=MOST_CELLS
-            )
+        if cells > MOST_CELLS or number > MOST_ROWS:
+            raise _too_many()
+        rows += [[] for _ in range(number - 1 - len(rows))]
+        rows.append(said)
     while rows and not any(rows[-1]):
         rows.pop()
-    return rows
+    _mark_merged(rows, sheet.merged)
+    filled = {place for row in rows for place, cell in enumerate(row, start=1) if cell}
+    return Sheet(
+        rows,
+        _stretches((k for k, row in enumerate(rows, start=1) if k in sheet.hidden_rows and any(row)), str),
+        _stretches(sheet.hidden_columns(filled), sheet.letters),
+    )
+
+
+def _too_many() -> RefusedError:
+    template = N_("there are more than {most} cells: leave out the columns that are not needed")
+    return RefusedError(template, most=MOST_CELLS)
+
+
+def _placed(row: list[Any]) -> list[str]:
+    """What the cells of a row say, each in its column, up to the last that says something."""
+    said = {cell.column: text for cell in row if (text := _text(cell))}
+    return [said.get(place, "") for place in range(1, max(said, default=0) + 1)]
+
+
+def _mark_merged(rows: list[list[str]], spans: Iterable["Span"]) -> None:
+    """Let cells that a merged one with a number covers say so: it may be the number of each of them, or of all.
+
+    A row that is covered altogether says nothing: there a row of the table is several rows high.
+    """
+    widest = max(map(len, rows), default=0)
+    cells = 0
+    for span in spans:
+        if span.top > len(rows) or span.first > len(rows[span.top - 1]):
+            continue
+        number = rows[span.top - 1][span.first - 1]
+        if not is_number(number):
+            continue
+        last, bottom = min(span.last, widest), min(span.bottom, len(rows))
+        cells += (last - span.first + 1) * (bottom - span.top + 1)
+        if cells > MOST_CELLS:
+            raise _too_many()
+        for row in rows[span.top - 1 : bottom]:
+            row += [""] * (last - len(row))
+            row[span.first - 1 : last] = [Merged(span.name)] * (last - span.first + 1)
+        rows[span.top - 1][span.first - 1] = number
+    for row in rows if cells else ():
+        if all(isinstance(cell, Merged) for cell in row if cell):
+            row.clear()
+
+
+def _stretches(places: Iterable[int], named: Callable[[int], str]) -> str:
+    """Names of rows or columns, those that follow one another as one: `3–5, 9`."""
+    found: list[list[int]] = []
+    for place in places:
+        if found and place == found[-1][1] + 1:
+            found[-1][1] = place
+        else:
+            found.append([place, place])
+    texts = [named(a) if a == b else f"{named(a)}–{named(b)}" for a, b in found[:MOST_NAMED]]
+    return ", ".join([*texts, *(["…"] if len(found) > MOST_NAMED else [])])
 
 
 def _text(cell: Any) -> str:
-    """What a cell says. A number keeps all its digits, and the unit that its format shows behind it."""
+    """What a cell says. A number keeps all its digits, and the unit that its format shows with it."""
     value = cell.value
     if value is None:
         return ""
+    if isinstance(value, time | timedelta) and "s" in str(cell.number_format).lower():
+        return Figure(f"{_seconds(value)} s")
     if isinstance(value, bool) or not isinstance(value, int | float) or abs(value) == inf:
         return tidy(str(value))  # an infinite one, such as 1e999, is no number
-    section = str(cell.number_format).split(";")[0]
-    unit = "".join(a or b for a, b in _LITERAL.findall(section)).strip()
-    bare = re.sub(r"\[[^\]]*\]", "", _LITERAL.sub("", section))
-    if "%" in bare:
+    written = str(cell.number_format)
+    section = section_of(written, value)
+    if section is None:
+        return Figure(f"{_plain(value)} {written}")
+    if section.percent:
         return Figure(f"{Decimal(repr(value)).scaleb(2):f} %")
-    scaled = _SCALED.search(bare)
-    number = float(Fraction(value) / 1000 ** len(scaled[1])) if scaled else float(value)
-    return Figure(f"{repr(number).removesuffix('.0')} {unit}".strip())
+    scaled = float(Fraction(value) / 1000**section.thousands) if section.thousands else value
+    return Figure(f"{_plain(scaled)} {section.unit}".strip())
+
+
+def _seconds(value: time | timedelta) -> str:
+    if isinstance(value, time):
+        value = timedelta(hours=value.hour, minutes=value.minute, seconds=value.second, microseconds=value.microsecond)
+    return _plain(value.total_seconds())
+
+
+def _plain(number: float) -> str:
+    return repr(float(number)).removesuffix(".0")

@@ -46,7 +46,7 @@ def uploaded(content: bytes) -> Upload:
     if content.startswith(OLD_MAGIC):
         raise RefusedError(OLD)
     if content.startswith(MAGIC):
-        return Upload(sheets={name: [grid_of(rows)] for name, rows in sheets_of(content).items()})
+        return Upload(sheets={name: [sheet.grid()] for name, sheet in sheets_of(content).items()})
     for magic, suffix, read in ((PARQUET, ".parquet", pq.ParquetFile), (ARROW, ".arrow", pa.ipc.open_file)):
         if content.startswith(magic):
             return _typed(content, suffix, read)

@@ -6,7 +6,7 @@ comes along as the field `link`, so that nothing typed is lost on the way.
 
 import hashlib
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from math import isfinite
 from typing import Any
@@ -27,17 +27,17 @@ from hpn.web.door.problems import Problem, pointer
 from hpn.web.door.uploads import decoded, read_parts
 from hpn.web.door.visit import current
 from hpn.web.form import cells, link_reader
-from hpn.web.form.cells import Decimal, Figure
+from hpn.web.form.cells import Decimal, Figure, Merged
 from hpn.web.form.columns import CELLS, SKIP, WIRE, Choices, Column
 from hpn.web.form.given import shown_columns
 from hpn.web.form.headings import QUANTITIES
 from hpn.web.form.link_reader import Pairs
 from hpn.web.form.link_writer import to_link
 from hpn.web.form.pasted import COLUMNS, LAST, PHASE, TIMES, Table, read_grid, read_text
-from hpn.web.form.sheets import SEPARATORS, RefusedError, grid_of
+from hpn.web.form.sheets import SEPARATORS, RefusedError
 from hpn.web.form.symbols import LOADS, VARYING
 from hpn.web.form.ways import CYCLE_NAMES
-from hpn.web.form.workbooks import MAGIC, OLD_MAGIC, Sheets, sheets_of
+from hpn.web.form.workbooks import MAGIC, OLD_MAGIC, Sheet, Sheets, sheets_of
 from hpn.web.pages import long_cycles
 from hpn.web.pages.templates import environment
 from hpn.wording import N_, Sentence
@@ -48,6 +48,7 @@ FIRST_ROWS, LAST_ROWS = 6, 2
 DECIMALS = {".": N_("a point"), ",": N_("a comma")}
 OLD_WORKBOOK = N_("a workbook of this old format can’t be read: save it as XLSX or CSV")
 
+_CLASSES: dict[str, type[str]] = {kind.__name__: kind for kind in (Figure, Merged)}
 _PLACE = re.compile(r"([ru])([0-9]{1,6})")
 
 
@@ -147,19 +148,25 @@ def _of_workbook(request: Request, link: str, file: bytes, fields: Mapping[str, 
     return _taken_or_shown(request, fields, draft)
 
 
-def _of_sheet(rows: Sequence[Sequence[str]], choices: Choices) -> Table:
+def _of_sheet(sheet: Sheet, choices: Choices) -> Table:
     try:
-        return read_grid(grid_of(rows), choices, _assumed())
+        return read_grid(sheet.grid(), choices, _assumed())
     except RefusedError as refused:
         return Table(refused.sentence)
 
 
 def _packed(sheets: Sheets) -> bytes:
-    """Cells of a workbook as JSON: a number stands in a list of its own, so that it stays one."""
+    """Cells of a workbook as JSON: one that is more than a text is a list of its class and its text."""
     return orjson.dumps(
         {
-            name: [[[str(c)] if isinstance(c, Figure) else c for c in row] for row in rows]
-            for name, rows in sheets.items()
+            name: [
+                [
+                    [[type(c).__name__, str(c)] if type(c).__name__ in _CLASSES else c for c in row]
+                    for row in sheet.rows
+                ],
+                [sheet.hidden_rows, sheet.hidden_columns],
+            ]
+            for name, sheet in sheets.items()
         }
     )
 
@@ -168,8 +175,10 @@ def _unpacked(book: str) -> Sheets:
     """Cells as `_packed` wrote them; raises RefusedError for anything else."""
     try:
         sheets = {
-            str(name): [[c if isinstance(c, str) else Figure(c[0]) for c in row] for row in rows]
-            for name, rows in orjson.loads(book).items()
+            str(name): Sheet(
+                [[c if isinstance(c, str) else _CLASSES[c[0]](c[1]) for c in row] for row in rows], *map(str, hidden)
+            )
+            for name, (rows, hidden) in orjson.loads(book).items()
         }
     except (ValueError, TypeError, KeyError, IndexError, AttributeError):
         sheets = {}

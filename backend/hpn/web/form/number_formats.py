@@ -1,0 +1,90 @@
+"""Number formats of workbooks: what one shows around a number, by which the number has its unit."""
+
+import operator
+import re
+from dataclasses import dataclass
+
+_TOKEN = re.compile(
+    r'"(?P<quoted>[^"]*)"|\\(?P<escaped>.)'
+    r"|\[\$(?P<marked>[^\]]*?)(?:-(?:[0-9A-Fa-f]{2,8}|[a-z]{2}-[A-Z]{2}|x-\w+))?\]|\[(?P<said>[^\]]*)\]"
+    r"|(?P<gap>[_*].|\s)|(?P<number>General|[0#?.,]+|E[+-]0+)|(?P<end>;)|(?P<other>.)",
+    re.DOTALL,
+)
+_CONDITION = re.compile(r"(<=|>=|<>|<|>|=)(-?[0-9.]+)")
+_HOLDS = {
+    **{"<": operator.lt, "<=": operator.le, "=": operator.eq},
+    **{">": operator.gt, ">=": operator.ge, "<>": operator.ne},
+}
+_UNSHOWN = "+-()@%"
+"""Of what stands without quotes: signs, brackets of negative numbers, text, and the sign of a percentage."""
+
+
+@dataclass(slots=True)
+class Section:
+    """A section of a number format: what it shows before and behind a number, and what the number is multiplied by."""
+
+    before: str = ""
+    behind: str = ""
+    condition: str = ""
+    number: str = ""
+    percent: bool = False
+
+    @property
+    def unit(self) -> str:
+        """Everything that is shown beside the number, but for its sign."""
+        before, behind = self.before.strip(), self.behind.strip()
+        if before.startswith("(") and behind.endswith(")"):
+            before, behind = before[1:], behind[:-1]
+        return " ".join(f"{before.lstrip('+-')} {behind}".split())
+
+    @property
+    def thousands(self) -> int:
+        """How many times a number is shown divided by a thousand."""
+        whole = self.number.rstrip(",")
+        return len(self.number) - len(whole) if whole else 0
+
+    def holds(self, value: float) -> bool:
+        """Whether its condition is met, if it has one."""
+        found = _CONDITION.fullmatch(self.condition)
+        return found is None or bool(_HOLDS[found[1]](value, float(found[2])))
+
+
+def section_of(number_format: str, value: float) -> Section | None:
+    """Section that shows a number, None where that can't be told, or some are shown in thousands and nothing says so.
+
+    A zero may be shown as a dash.
+    """
+    sections = _sections(number_format)[:3]
+    numbers = [section for section in sections if section.number]
+    if len({section.thousands for section in numbers}) > len({section.unit for section in numbers}):
+        return None
+    if not any(section.condition for section in sections):
+        shown = [sections[0]] if value >= 0 or len(sections) == 1 else [sections[1]]
+    elif all(section.condition for section in sections[:-1]):
+        shown = [section for section in sections if section.holds(value)]
+    else:
+        shown = []
+    if not value:
+        shown = [section for section in shown if section.number] or numbers
+    return shown[0] if shown else None
+
+
+def _sections(number_format: str) -> list[Section]:
+    sections = [Section()]
+    for token in _TOKEN.finditer(number_format):
+        section = sections[-1]
+        if token["end"]:
+            sections.append(Section())
+        elif token["number"]:
+            section.number += token["number"]
+            section.behind += " " if section.behind else ""
+        elif token["said"] is not None:
+            section.condition = token["said"] if _CONDITION.fullmatch(token["said"]) else section.condition
+        else:
+            section.percent |= token["other"] == "%"
+            shown = token["quoted"] or token["escaped"] or token["marked"] or token["other"] or ""
+            text = " " if token["gap"] else "" if shown == token["other"] and shown in _UNSHOWN else shown
+            section.before, section.behind = (
+                (section.before, section.behind + text) if section.number else (section.before + text, section.behind)
+            )
+    return sections
