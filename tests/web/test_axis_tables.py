@@ -181,6 +181,30 @@ def test_a_row_without_an_axis_that_may_be_a_sum_is_asked(head: str, rows: str, 
     assert asked(read(head, *rows.split("|"))) == ([said] if said else [])
 
 
+@pytest.mark.parametrize("name", ["Min-feeder", "Total stacker", "Max", "Summe"])
+def test_an_axis_named_like_a_sum_is_an_axis(name: str) -> None:
+    table = read(HEAD + ";Bemerkung", f"{name};12,5;100;1;", "B;8;100;2;max. load unknown", "C;9;100;3;")
+
+    assert [axis["axis"] for axis in table.axes] == [name, "B", "C"]
+    (without,) = [axis for axis in read(HEAD, "A;12,5;100;1", f"{name};;;6").axes if axis["axis"] == name]
+    assert without["torque_Nm"] == [None]
+
+
+def test_a_row_that_names_an_axis_alone_is_an_axis_without_numbers() -> None:
+    table = read(HEAD, "A;12,5;100;1", "B;;;", ";8;100;2")
+
+    assert [(axis["axis"], axis["torque_Nm"]) for axis in table.axes] == [("A", [12.5]), ("B", [None, 8])]
+
+
+def test_a_sum_below_the_phases_of_an_axis_is_skipped_where_it_has_a_time_alone_and_asked_otherwise() -> None:
+    head, rows = "Achse;Phase;Moment [Nm];Drehzahl [1/min];Dauer [s]", ["A;1;12,5;100;1", ";2;8;100;2"]
+
+    skipped = read(head, *rows, ";Summe;;;3", "B;1;9;100;3")
+    assert [axis["duration_s"] for axis in skipped.axes] == [[1, 2], [3]]
+    assert "Row 4 is skipped: Summe" in [note.text for note in skipped.notes]
+    assert asked(read(head, *rows, ";Summe;20,5;200;3", "B;1;9;100;3")) == [f"Row 4 {SUM}"]
+
+
 def test_what_an_axis_says_twice_is_compared_as_numbers_and_spoils_that_axis_alone() -> None:
     table = read(f"{HEAD};Pause [s];Übersetzung", "A;1;9;1;2;5", "A;1;9;2;2,0;5", "B;1;9;1;2;5", "B;1;9;2;3;10")
 

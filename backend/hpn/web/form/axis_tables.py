@@ -15,8 +15,8 @@ from typing import Any
 
 from hpn import units
 from hpn.web.form.axis_columns import AXIS, BY_ROLE, PHASES, AxisColumn, columns_of, foreign_unit
-from hpn.web.form.cells import DECIMALS, LONGEST_CELL, Decimal, Entry, Figure, Merged, entry, is_blank, plain
-from hpn.web.form.columns import NO_CHOICES, REQUIRED, SKIP, Body, Choices, body_of
+from hpn.web.form.cells import DECIMALS, LONGEST_CELL, Decimal, Entry, Figure, Merged, entry, is_blank, is_number, plain
+from hpn.web.form.columns import NO_CHOICES, REQUIRED, SKIP, Body, Choices, body_of, skipped
 from hpn.web.form.numbers import split_unit
 from hpn.web.form.pasted import TIMES
 from hpn.web.form.sheets import Grid, RefusedError
@@ -62,6 +62,7 @@ def read_axes(grid: Grid, choices: Choices = NO_CHOICES, assumed: Collection[str
     """What a table of cells is read as; raises nothing, `problem` says why it can't be."""
     try:
         body = body_of(grid)
+        body = _with_axes(body, columns_of(body, choices, assumed))
         columns = columns_of(body, choices, assumed)
         return _Reading(_unmerged(body, columns), columns, choices).table()
     except RefusedError as refused:
@@ -85,6 +86,18 @@ def _unmerged(body: Body, columns: Sequence[AxisColumn]) -> Body:
             )
         )
     return replace(body, rows=tuple(rows))
+
+
+def _with_axes(body: Body, columns: Sequence[AxisColumn]) -> Body:
+    """A table with those of its totals and titles among the rows that name an axis or have numbers of a phase."""
+    places = {column.role: column.place for column in columns}
+    named = [row for row in (*body.totals, *body.titles) if AXIS in places and not is_blank(row.cells[places[AXIS]])]
+    moving = [places[role] for role in ("T", "n") if role in places]
+    numbered = [row for row in body.totals if any(is_number(row.cells[place]) for place in moving)]
+    kept = {row.number for row in (*named, *numbered)}
+    notes = tuple(note for note in body.notes if note.values.get("row") not in kept)
+    left = [row for row in body.totals if row.number not in kept and row.number not in body.numbers]
+    return replace(body.including([*named, *numbered]), notes=(*notes, *(skipped(*row[::2]) for row in left)))
 
 
 class _Reading:
@@ -227,8 +240,13 @@ class _Reading:
         repeated = any(one == other and not is_blank(one) for one, other in pairwise(names))
         if unnamed[:1] == [0]:
             self._ask(N_("Row {row} names no axis, and none stands above it."), row=self.body.numbers[0])
-        elif repeated or any(counted[place] for place in unnamed):
-            for place in [place for place in unnamed if not counted[place]][:1]:
+        else:
+            strange = repeated or any(counted[place] for place in unnamed)
+            totals = {total.number for total in self.body.totals}
+            sums = [
+                place for place in unnamed if (strange and not counted[place]) or self.body.numbers[place] in totals
+            ]
+            for place in sums[:1]:
                 template = N_(
                     "Row {row} has no axis, which other rows have: leave it out if it is a sum, or write its axis into "
                     "it."

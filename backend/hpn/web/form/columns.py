@@ -4,9 +4,10 @@ What has two readings is left blank here, and asked by `pasted`.
 """
 
 import re
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import chain, pairwise
+from typing import NamedTuple
 
 from hpn import units
 from hpn.web.form.cells import DECIMALS, entry, is_blank, is_meant_as_number, is_number
@@ -43,6 +44,8 @@ class Choices:
     decimal: str = ""
     times: str = ""
     last: str = ""
+    totals: str = ""
+    parts: str = ""
     roles: Mapping[int, str] = field(default_factory=dict)
     units: Mapping[int, str] = field(default_factory=dict)
 
@@ -73,20 +76,50 @@ class Column:
         return QUANTITIES.get(self.role, "")
 
 
+class Labelled(NamedTuple):
+    """A row that its text sets apart from the phases: its number for the user, its cells, and the text."""
+
+    number: int
+    cells: tuple[str, ...]
+    text: str
+
+
 @dataclass(frozen=True, slots=True)
 class Body:
-    """Rows of numbers with their numbers for the user, the headings above each column, and what was left out."""
+    """Rows of numbers with their numbers for the user, the headings above each column, and what was left out.
+
+    `totals` are rows of numbers by whose names they may be sums, means or extremes of the others, and `titles` rows of
+    one text. Where every row may be a total, they are among the rows as well.
+    """
 
     rows: tuple[tuple[str, ...], ...]
     numbers: tuple[int, ...]
     headings: tuple[tuple[str, ...], ...]
     notes: tuple[Sentence, ...]
     grid: Grid
+    totals: tuple[Labelled, ...] = ()
+    titles: tuple[Labelled, ...] = ()
 
     @property
     def headed(self) -> bool:
         """Whether anything stands above the numbers."""
         return any(self.headings)
+
+    @property
+    def parting(self) -> tuple[Labelled, ...]:
+        """Titles with rows of numbers above and below."""
+        return tuple(title for title in self.titles if self.numbers[0] < title.number < self.numbers[-1])
+
+    def including(self, more: Iterable[Labelled]) -> "Body":
+        """With further rows among the others, in their places."""
+        rows = dict(zip(self.numbers, self.rows, strict=True)) | {each.number: each.cells for each in more}
+        return replace(self, numbers=tuple(sorted(rows)), rows=tuple(rows[number] for number in sorted(rows)))
+
+    def above(self, number: int) -> "Body":
+        """What stands above a row."""
+        count = sum(each < number for each in self.numbers)
+        totals = tuple(total for total in self.totals if total.number < number)
+        return replace(self, numbers=self.numbers[:count], rows=self.rows[:count], totals=totals)
 
 
 def body_of(grid: Grid) -> Body:
@@ -100,24 +133,22 @@ def body_of(grid: Grid) -> Body:
     if first == len(grid.rows):
         raise RefusedError(N_("there is a header, but no row of numbers below it"))
     require_even(grid, first, len(head))
-    rows, numbers = [], []
+    rows, totals, titles = list[Labelled](), list[Labelled](), list[Labelled]()
     for number, row in zip(grid.numbers[first:], grid.rows[first:], strict=True):
-        filled = [cell for cell in row if not is_blank(cell)]
-        label = next(
-            (cell for cell in filled if is_total(cell) and not is_number(cell) and not units.codes_for(cell)), None
-        )
-        if label is not None:
-            notes.append(_note(N_("Row {row} is skipped: {text}"), number, label))
-        elif len(filled) == 1 and not is_number(filled[0]):
-            notes.append(_note(N_("Row {row} is skipped: {text}"), number, filled[0]))
-        elif filled:
+        written, filled = [cell for cell in row if cell], [cell for cell in row if not is_blank(cell)]
+        text = next((cell for cell in filled if not is_number(cell)), "")
+        if not filled or written == [text]:
+            titles += [Labelled(number, row, text)] if text else []
+            notes += [skipped(number, " ".join(written))] if written else []
+        else:
             _require_undivided(grid, number, filled)
-            rows.append(row)
-            numbers.append(number)
-    if not rows:
+            (totals if is_total(text) else rows).append(Labelled(number, row, text))
+    found = rows or totals
+    if not found:
         raise RefusedError(N_("there is a header, but no row of numbers below it"))
     headings = tuple(tuple(row[k] for row in head if row[k]) for k in range(grid.width))
-    return Body(tuple(rows), tuple(numbers), headings, tuple(notes), grid)
+    body = Body((), (), headings, tuple(notes), grid, tuple(totals), tuple(titles))
+    return body.including(found)
 
 
 def _require_undivided(grid: Grid, number: int, cells: Sequence[str]) -> None:
@@ -138,8 +169,9 @@ def _require_ungrouped(grid: Grid) -> None:
         raise RefusedError(DIVIDED, row=1, cell=str(pairs[0]))
 
 
-def _note(template: str, number: int, text: str) -> Sentence:
-    return Sentence(template, {"row": number, "text": text[:60]})
+def skipped(number: int, text: str) -> Sentence:
+    """What is said of a row that is left out."""
+    return Sentence(N_("Row {row} is skipped: {text}"), {"row": number, "text": text[:60]})
 
 
 def _upright(grid: Grid) -> Grid:
@@ -182,13 +214,13 @@ def _head(grid: Grid) -> tuple[list[tuple[str, ...]], int, list[Sentence]]:
         if _numbers_in(row) >= 3:
             raise RefusedError(N_("row {row} has numbers above the header"), row=number)
         if sum(_named([cell]) > 0 or heading_of(cell).kind == UNIT for cell in row if cell) < 2:
-            notes.append(_note(N_("Row {row} is skipped: {text}"), number, " ".join(filter(None, row))))
+            notes.append(skipped(number, " ".join(filter(None, row))))
     head = [row for row in grid.rows[:first] if sum(heading_of(cell).kind == UNIT for cell in row if cell) >= 2]
     end = first
     while end < len(grid.rows) and _numbers_in(grid.rows[end]) < min(2, grid.width):
         row = grid.rows[end]
         if sum(map(bool, row)) < 2 and grid.width > 2:
-            notes.append(_note(N_("Row {row} is skipped: {text}"), grid.numbers[end], " ".join(filter(None, row))))
+            notes.append(skipped(grid.numbers[end], " ".join(filter(None, row))))
         else:
             head.append(row)
         end += 1

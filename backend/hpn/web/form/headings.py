@@ -53,7 +53,9 @@ _SUMS = re.compile(
     r"|[σ∑].*"
 )
 _TOTALS = re.compile(
-    r"(?:mittel\w*|average|mean|avg|durchschnitt\w*|moyenne|media|medelvärde|maximum|max|minimum|min|rms|effektiv\w*)\b.*|ø.*"
+    r"[σ∑ø].*|.*\b(?:subtotal|zwischensumme|gesamtzeit|zykluszeit|cycle time|overall|ergebnis|"
+    r"mittel|mittelwert\w*|mittlere\w*|average|mean|avg|durchschnitt\w*|moyenne|media|medelvärde|"
+    r"max|maximum|maximal\w*|(?<![0-9] )min|minimum|minimal\w*|rms|effektivwert\w*|std|standardabweichung)\b.*"
 )
 _BRACKETS = re.compile(r"(.*?)\s*[\[(<{]\s*(.*?)\s*[\])>}]")
 _BETWEEN = re.compile(r"\s+in\s+|\s*/\s*|\s*,\s*|[\s_]+")
@@ -123,7 +125,7 @@ def _folded(name: str) -> str:
 
 
 def is_total(cell: str) -> bool:
-    """Whether a cell labels its row as a sum or another figure of the whole table."""
+    """Whether a cell may label its row as a sum or another figure of the whole table."""
     if len(cell) > LONGEST:
         return False
     folded = _folded(cell.rstrip(":"))

@@ -9,12 +9,12 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import chain, pairwise
-from math import isfinite
+from math import isclose, isfinite, nan
 
 from hpn import units
 from hpn.application import DutyCycle
 from hpn.phase import MAXIMUM_PHASES
-from hpn.web.form.cells import DECIMALS, Decimal, Entry, entry, is_blank
+from hpn.web.form.cells import DECIMALS, Decimal, Entry, entry, is_blank, is_number
 from hpn.web.form.columns import (
     DIVIDED,
     NO_CHOICES,
@@ -24,9 +24,11 @@ from hpn.web.form.columns import (
     Body,
     Choices,
     Column,
+    Labelled,
     body_of,
     columns_of,
     has_two_ways,
+    skipped,
 )
 from hpn.web.form.headings import QUANTITIES, heading_of
 from hpn.web.form.sheets import Grid, RefusedError, grids_of, no_number
@@ -42,8 +44,16 @@ TIMES = {
     "starts": N_("when each phase starts; the last row ends the cycle"),
 }
 LAST = {"phase": N_("a phase"), "sum": N_("a sum: skip it")}
+TOTALS = {"phase": N_("phases"), "sum": N_("sums or other figures of the table: skip them")}
+PARTS = {"one": N_("one cycle"), "first": N_("several: take the first alone")}
 PHASE = {"row": N_("a row"), "column": N_("a column")}
-"""What the times of a table, its last row, and a phase can be."""
+"""What the times of a table, its last row, rows named like sums, rows apart by a title, and a phase can be."""
+
+MOST_TOTALS, MOST_NAMED = 20, 5
+"""Rows named like totals that are compared with the others, and that a question names."""
+
+THREE_DIGITS = 0.005
+"""Relative error of a number rounded to three digits."""
 
 Row = tuple[Entry | None, ...]
 
@@ -69,6 +79,11 @@ class Table:
     asks_times: bool = False
     last: str = ""
     asks_last: bool = False
+    totals: str = ""
+    asks_totals: bool = False
+    named: tuple[Labelled, ...] = ()
+    parts: str = ""
+    asks_parts: bool = False
     columns: tuple[Column, ...] = ()
     body: Body | None = None
     phases: tuple[tuple[str, ...], ...] = ()
@@ -112,17 +127,32 @@ def read_grid(grid: Grid, choices: Choices = NO_CHOICES, assumed: Collection[str
     """What a table of cells is read as; raises nothing, `problem` says why it can't be."""
     try:
         body = body_of(grid)
-        if len(body.rows) > MAXIMUM_PHASES:
-            raise RefusedError(N_("there are more than {most} rows"), most=MAXIMUM_PHASES)
         asks = has_two_ways(body)
         if asks and choices.phase == "column":
             body = body_of(grid.transposed())
+        parting = body.parting
+        if parting and choices.parts == "first":
+            body = body.above(parting[0].number)
+        if len(body.rows) > MAXIMUM_PHASES:
+            raise RefusedError(N_("there are more than {most} rows"), most=MAXIMUM_PHASES)
         columns = columns_of(body, choices, assumed)
         if asks and choices.phase not in PHASE:
             question = Sentence(N_("Is a phase a row or a column?"))
             return Table(questions=(question,), separator=grid.separator, asks_phase=True, columns=columns, body=body)
         table = _Reading(body, columns, choices).table()
-        return replace(table, phase=choices.phase, asks_phase=True) if asks else table
+        named = table.named
+        if named and choices.totals == "phase":
+            body = replace(body.including(named), totals=(), notes=table.notes)
+            table = _Reading(body, columns_of(body, choices, assumed), choices).table()
+        return replace(
+            table,
+            phase=choices.phase,
+            asks_phase=asks,
+            totals=choices.totals,
+            asks_totals=bool(named),
+            parts=choices.parts,
+            asks_parts=bool(parting),
+        )
     except RefusedError as refused:
         return Table(refused.sentence, separator=grid.separator)
 
@@ -134,19 +164,23 @@ class _Reading:
         self.body, self.columns, self.choices = body, columns, choices
         self.used = [column for column in columns if column.role in QUANTITIES]
         self.questions: list[Sentence] = []
+        self.notes = list(body.notes)
 
     def table(self) -> Table:
         """The table with what is to be asked, or with its phases; raises RefusedError."""
         self._ask_columns()
         readings = self._readings()
         decimal, marks = self._decimal(readings)
-        rows = readings[decimal] if decimal else next(iter(readings.values()))
+        mark = decimal if decimal else next(iter(readings))
+        rows = readings[mark]
+        self._ask_parts()
+        named = self._totals(mark)
         times, asks_times = self._times(rows)
         rows, last, asks_last = self._last(rows, times)
         open_ = bool(self.questions)
         return Table(
             questions=tuple(self.questions),
-            notes=(*self.body.grid.notes, *self.body.notes),
+            notes=(*self.body.grid.notes, *self.notes),
             separator=self.body.grid.separator,
             turned=self.body.grid.turned,
             decimal=decimal,
@@ -155,6 +189,7 @@ class _Reading:
             asks_times=asks_times,
             last=last,
             asks_last=asks_last,
+            named=named,
             columns=self.columns,
             body=self.body,
             phases=() if open_ else self._phases(rows, times),
@@ -217,6 +252,51 @@ class _Reading:
         self._ask(N_("Which is the decimal mark?"))
         return None, marks
 
+    # --- Rows that may be no phases -----------------------------------------------------------------------------------
+
+    def _ask_parts(self) -> None:
+        """Ask whether rows below a title belong to the cycle of those above."""
+        if (parting := self.body.parting) and self.choices.parts not in PARTS:
+            template = N_("Row {row}, “{text}”, stands between the phases. Are they one cycle?")
+            self._ask(template, row=parting[0].number, text=parting[0].text[:40])
+
+    def _totals(self, mark: Decimal) -> tuple[Labelled, ...]:
+        """Rows that are named like totals without being any, and asked for; those that are totals are skipped."""
+        totals, named = self.body.totals, {total.number for total in self.body.totals}
+        phases = [row for number, row in zip(self.body.numbers, self.body.rows, strict=True) if number not in named]
+        sure = []
+        for total in totals if phases and len(totals) <= MOST_TOTALS else ():
+            others = [other.cells for other in totals if other is not total]
+            if self._sums_up(total, phases, mark) or self._sums_up(total, [*phases, *others], mark):
+                sure.append(total)
+        open_ = tuple(total for total in totals if total not in sure)
+        if open_ and self.choices.totals not in TOTALS:
+            listed = ", ".join(f"{total.number} ({total.text[:40]})" for total in open_[:MOST_NAMED])
+            self._ask(N_("Rows that may be phases, sums or other figures of the table: {rows}."), rows=listed)
+        if self.choices.totals == "sum" and not phases:
+            raise RefusedError(N_("there is a header, but no row of numbers below it"))
+        self.notes += [skipped(*each[::2]) for each in (totals if self.choices.totals == "sum" else sure)]
+        return open_
+
+    def _sums_up(self, total: Labelled, rows: Sequence[Sequence[str]], mark: Decimal) -> bool:
+        """Whether all numbers of a row are the sums, the means, the largest or the smallest of other rows."""
+        columns = []
+        for column in self.used:
+            cells = [row[column.place] for row in (total.cells, *rows) if not is_blank(row[column.place])]
+            if cells and cells[0] is total.cells[column.place] and cells[0] != total.text:
+                columns.append([entry(cell, mark) for cell in cells])
+        read = [[float(cell.number) if cell else nan for cell in column] for column in columns]
+        of_one_unit = all(len({cell and cell.unit for cell in column}) == 1 for column in columns)
+        figures = (sum, _mean, max, min)
+        return (
+            len(rows) > 1
+            and of_one_unit
+            and any(
+                all(isclose(own, figure(others or [nan]), rel_tol=THREE_DIGITS) for own, *others in read)
+                for figure in figures
+            )
+        )
+
     # --- Times and sums -----------------------------------------------------------------------------------------------
 
     def _seconds(self, row: Row) -> Fraction | None:
@@ -241,28 +321,31 @@ class _Reading:
 
     def _last(self, rows: list[Row], times: str) -> tuple[list[Row], str, bool]:
         """Rows of phases; what the last one is, and whether that is asked: it may be the sum of the others."""
-        partial = len(rows) > 1 and self._time_alone(rows[-1])
         if times == "starts":
             self._require_filled(rows[:-1])
             return rows, "", False
-        self._require_filled(
-            rows[:-1] if partial and not times else rows[: -1 if partial and self._sums(rows) else None]
-        )
-        if times != "durations" or not self._sums(rows):
-            return rows, "", False
-        if partial:
+        bare = len(rows) > 1 and self._time_alone(rows[-1])
+        sums = times == "durations" and self._sums(rows)
+        self._require_filled(rows[:-1] if sums or (bare and not times) else rows)
+        if bare and sums:
+            self.notes.append(skipped(self.body.numbers[-1], " ".join(filter(None, self.body.rows[-1]))))
             return rows[:-1], "sum", False
+        if not sums:
+            return rows, "", False
         if len(rows) == 2 and rows[0] != rows[1]:  # two phases that take equally long are no sign of a sum
+            self._require_filled(rows)
             return rows, "", False
         if self.choices.last in LAST:
-            return (rows[:-1] if self.choices.last == "sum" else rows), self.choices.last, True
+            rows = rows[:-1] if self.choices.last == "sum" else rows
+            self._require_filled(rows)
+            return rows, self.choices.last, True
         self._ask(N_("The last row takes as long as all others together. What is it?"))
         return rows, "", True
 
     def _time_alone(self, row: Row) -> bool:
-        """Whether a row has a time and nothing else of a phase."""
+        """Whether the last row has a time and nothing else."""
         given = {column.role for column, cell in zip(self.used, row, strict=True) if cell is not None}
-        return "t" in given and not {"T", "n"} <= given
+        return given == {"t"} and all(is_blank(cell) or is_number(cell) for cell in self.body.rows[-1])
 
     def _sums(self, rows: Sequence[Row]) -> bool:
         """Whether the last row takes as long as all others together, to three digits."""
@@ -330,6 +413,10 @@ BLANK = {
     "n": N_("row {row}: the speed is blank"),
     "t": N_("row {row}: the duration is blank"),
 }
+
+
+def _mean(values: Sequence[float]) -> float:
+    return sum(values) / len(values)
 
 
 def _text(value: float) -> str:

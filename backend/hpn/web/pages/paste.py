@@ -33,7 +33,7 @@ from hpn.web.form.given import shown_columns
 from hpn.web.form.headings import QUANTITIES
 from hpn.web.form.link_reader import Pairs
 from hpn.web.form.link_writer import to_link
-from hpn.web.form.pasted import COLUMNS, LAST, PHASE, TIMES, Table, read_grid, read_text
+from hpn.web.form.pasted import COLUMNS, LAST, PARTS, PHASE, TIMES, TOTALS, Table, read_grid, read_text
 from hpn.web.form.sheets import SEPARATORS, RefusedError
 from hpn.web.form.symbols import LOADS, VARYING
 from hpn.web.form.ways import CYCLE_NAMES
@@ -199,7 +199,9 @@ def choices_of(fields: Mapping[str, str], of: str) -> Choices:
     for name, value in fields.items():
         if place := _PLACE.fullmatch(name):
             said[place[1]][int(place[2])] = value
-    named = {name: fields.get(name, "") for name in ("separator", "phase", "decimal", "times", "last")}
+    named = {
+        name: fields.get(name, "") for name in ("separator", "phase", "decimal", "times", "last", "totals", "parts")
+    }
     return Choices(**named, roles=said["r"], units=said["u"])
 
 
@@ -348,6 +350,8 @@ _WORDS = {
     "phase": PHASE,
     "times": TIMES,
     "last": LAST,
+    "totals": TOTALS,
+    "parts": PARTS,
     "quantities": QUANTITIES,
 }
 
