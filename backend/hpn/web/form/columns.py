@@ -131,7 +131,7 @@ def body_of(grid: Grid) -> Body:
         raise RefusedError(N_("there are more than {most} columns"), most=MOST_COLUMNS)
     head, first, notes = _head(grid)
     if first == len(grid.rows):
-        raise RefusedError(N_("there is a header, but no row of numbers below it"))
+        raise _no_numbers(grid)
     require_even(grid, first, len(head))
     rows, totals, titles = list[Labelled](), list[Labelled](), list[Labelled]()
     for number, row in zip(grid.numbers[first:], grid.rows[first:], strict=True):
@@ -149,6 +149,15 @@ def body_of(grid: Grid) -> Body:
     headings = tuple(tuple(row[k] for row in head if row[k]) for k in range(grid.width))
     body = Body((), (), headings, tuple(notes), grid, tuple(totals), tuple(titles))
     return body.including(found)
+
+
+def _no_numbers(grid: Grid) -> RefusedError:
+    """Why there is no row of numbers: by a cell that may be meant as one, where a row has several."""
+    for number, row in zip(grid.numbers, grid.rows, strict=True):
+        meant = [cell for cell in row if any(map(str.isdigit, cell)) and not heading_of(cell).kind]
+        if len(meant) >= 2:
+            return RefusedError(N_("row {row}: {cell} is not a number"), row=number, cell=meant[0][:40])
+    return RefusedError(N_("there is a header, but no row of numbers below it"))
 
 
 def _require_undivided(grid: Grid, number: int, cells: Sequence[str]) -> None:
@@ -217,14 +226,27 @@ def _head(grid: Grid) -> tuple[list[tuple[str, ...]], int, list[Sentence]]:
             notes.append(skipped(number, " ".join(filter(None, row))))
     head = [row for row in grid.rows[:first] if sum(heading_of(cell).kind == UNIT for cell in row if cell) >= 2]
     end = first
-    while end < len(grid.rows) and _numbers_in(grid.rows[end]) < min(2, grid.width):
-        row = grid.rows[end]
+    if max(named) >= 2:
+        head.append(grid.rows[first])
+        end += 1
+        while end < len(grid.rows) and _continues(grid.rows[end]):
+            head.append(grid.rows[end])
+            end += 1
+        return head, end, notes
+    while end < len(grid.rows) and _numbers_in(row := grid.rows[end]) < min(2, sum(map(bool, row))):
         if sum(map(bool, row)) < 2 and grid.width > 2:
             notes.append(skipped(grid.numbers[end], " ".join(filter(None, row))))
         else:
             head.append(row)
         end += 1
     return head, end, notes
+
+
+def _continues(row: Sequence[str]) -> bool:
+    """Whether a row below the names of the quantities has units or further names in it, beside which a dash is none."""
+    filled = [cell for cell in row if not is_blank(cell)]
+    said = sum(heading_of(cell).kind in (*QUANTITIES, UNIT) for cell in filled)
+    return bool(filled) and said >= min(2, len(filled))
 
 
 # --- Columns ----------------------------------------------------------------------------------------------------------
