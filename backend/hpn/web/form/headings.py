@@ -49,8 +49,8 @@ DURATIONS = {"duration", "dauer", "zeitdauer", "phasendauer", "durée", "durata"
 """Names that mean how long something lasts, and never a point in time."""
 
 _SUMS = re.compile(
-    r"(?:summe|sum|total|gesamt|insgesamt|kumuliert\w*|kumulativ\w*|kum|cumul\w*|cum|somme|somma|suma|totale|summa)\b.*"
-    r"|[σ∑].*"
+    r"(?:(?:summe|sum|total|gesamt|insgesamt|kumuliert\w*|kumulativ\w*|kum|cumul\w*|cum|somme|somma|suma|totale|summa)\b"
+    r"|[σ∑]) *(?P<rest>.*)"
 )
 _TOTALS = re.compile(
     r"[σ∑ø].*|.*\b(?:subtotal|zwischensumme|gesamtzeit|zykluszeit|cycle time|overall|ergebnis|"
@@ -82,8 +82,9 @@ def heading_of(cell: str) -> Heading:
         return Heading(UNIT, unit)
     name, unit = parts_of(text)
     folded = _folded(name)
-    if _SUMS.fullmatch(folded):
-        return Heading(SUM, unit)
+    if summed := _SUMS.fullmatch(folded):
+        of = _kind(summed["rest"], "")
+        return Heading(SUM if of == "t" or (not of and units.codes_for(unit, "time")) else "", unit)
     kind = _kind(name, unit)
     codes = units.codes_for(unit)
     if kind in QUANTITIES and codes and QUANTITIES[kind] not in {units.QUANTITY_OF[code] for code in codes}:
