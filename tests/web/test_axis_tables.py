@@ -66,6 +66,11 @@ def test_a_unit_that_nobody_says_is_asked_where_the_reader_sees_another() -> Non
     assert asked(table) == ["Which unit is column “Moment” in?"]
 
 
+def test_the_unit_of_an_angular_velocity_is_asked_where_nothing_says_it() -> None:
+    assert asked(read("Achse;Moment;ω;Dauer", "A;1;10;1")) == ["Which unit is column “ω” in?"]
+    assert asked(read("Achse;Moment;ω [1/min];Dauer", "A;1;10;1")) == []
+
+
 @pytest.mark.parametrize("form", ["{} {}", "{} [{}]"])
 def test_a_unit_behind_a_name_is_never_taken_for_another(form: str) -> None:
     wrong = []

@@ -13,7 +13,7 @@ from hpn import units
 from hpn.quantities import Named
 from hpn.reader import LANGUAGES, Reader
 from hpn.web.form.cells import is_blank, is_number
-from hpn.web.form.columns import NUMBERS, SKIP, Body, Choices, Column
+from hpn.web.form.columns import NUMBERS, SKIP, Body, Choices, Column, is_angular
 from hpn.web.form.headings import INDEX, LONGEST, QUANTITIES, SUM, UNIT, heading_of, parts_of
 from hpn.web.form.symbols import PHASE_SYMBOLS, SYMBOLS, Symbol
 from hpn.wording import N_, Sentence
@@ -147,7 +147,7 @@ def _unit(body: Body, column: AxisColumn, assumed: Collection[str]) -> str:
     headings = body.headings[column.place]
     written = {_written_unit(text, wire) for text in headings} - {""}
     if not written:
-        return wire if wire in assumed else ""
+        return wire if wire in assumed and not is_angular(body, column) else ""
     codes = {(wire,) if unit == wire else units.codes_for(unit, column.quantity) for unit in written}
     only = codes.pop() if len(codes) == 1 else ()
     return only[0] if len(only) == 1 else ""

@@ -356,6 +356,11 @@ def _chosen(body: Body, column: Column, choices: Choices, assumed: Collection[st
     return replace(column, unit=unit if known else _unit(body, column, assumed))
 
 
+def is_angular(body: Body, column: Column) -> bool:
+    """Whether a column of speeds has a name that leaves open what they are in."""
+    return column.quantity == "speed" and any(heading_of(text).angular for text in body.headings[column.place])
+
+
 def _unit(body: Body, column: Column, assumed: Collection[str]) -> str:
     """Unit of a column as its heading or its cells say it, else that of the wire if it may be assumed; else blank."""
     written = {heading_of(text).unit for text in body.headings[column.place]} - {""}
@@ -365,5 +370,5 @@ def _unit(body: Body, column: Column, assumed: Collection[str]) -> str:
         return only[0] if len(only) == 1 else ""
     inside = _units_in(body, column.place)
     if inside == {""}:
-        return WIRE[column.role] if WIRE[column.role] in assumed else ""
+        return WIRE[column.role] if WIRE[column.role] in assumed and not is_angular(body, column) else ""
     return "" if "" in inside else CELLS

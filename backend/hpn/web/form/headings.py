@@ -48,6 +48,9 @@ DURATIONS = {"duration", "dauer", "zeitdauer", "phasendauer", "durée", "durata"
 }
 """Names that mean how long something lasts, and never a point in time."""
 
+ANGULAR = {"ω", "omega", "winkelgeschwindigkeit", "angular velocity", "angular speed"}
+"""Names of a speed that is as likely in rad/s as in rpm."""
+
 _SUMS = re.compile(
     r"(?:(?:summe|sum|total|gesamt|insgesamt|kumuliert\w*|kumulativ\w*|kum|cumul\w*|cum|somme|somma|suma|totale|summa)\b"
     r"|[σ∑]) *(?P<rest>.*)"
@@ -68,6 +71,7 @@ class Heading:
     kind: str
     unit: str = ""
     lasting: bool = False
+    angular: bool = False
 
 
 @lru_cache(maxsize=2000)
@@ -89,7 +93,7 @@ def heading_of(cell: str) -> Heading:
     codes = units.codes_for(unit)
     if kind in QUANTITIES and codes and QUANTITIES[kind] not in {units.QUANTITY_OF[code] for code in codes}:
         return Heading("", unit)
-    return Heading(kind, unit, folded in DURATIONS or name == "Δt")
+    return Heading(kind, unit, folded in DURATIONS or name == "Δt", folded in ANGULAR)
 
 
 def _unit_alone(text: str) -> str:
