@@ -285,7 +285,9 @@ def _column(body: Body, place: int) -> Column:
     said = [heading_of(text) for text in body.headings[place]]
     names = {each.kind for each in said if each.kind != UNIT}
     kind = names.pop() if len(names) == 1 else "" if names else _by_unit(said)
-    if kind not in QUANTITIES and (count == 0 or (count < len(cells) and body.headed)):
+    mostly = count == len(cells) if kind == INDEX else 2 * count > len(cells)
+    measured = any(units.codes_for(each.unit) for each in said)
+    if kind not in QUANTITIES and not measured and (count == 0 or (body.headed and not mostly)):
         return Column(place, heading, SKIP, skipped=Sentence(N_("text")), text=True)
     if kind in (INDEX, SUM):
         why = Sentence(NUMBERS) if kind == INDEX else Sentence(N_("a sum"))
