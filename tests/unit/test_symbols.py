@@ -12,7 +12,6 @@ from hpn.drawings import svg
 from hpn.drawings.words import said
 from hpn.quantities import QUANTITIES
 from hpn.reader import Reader
-from hpn.readings import AT_MOTOR
 from hpn.web.pages.templates import as_formula, with_symbols
 from hpn.wording import Sentence
 
@@ -21,7 +20,7 @@ Set = list[tuple[str, str]]
 PAGE = re.compile(r'<var class="symbol">([^<]*)(?:<sub>([^<]*)</sub>)?</var>')
 PLOT = re.compile(r"(\w)<sub>([^<]*)</sub>")
 
-SYMBOLS = sorted({named.symbol for named in QUANTITIES.values() if "_" in named.symbol} | set(AT_MOTOR.values()))
+SYMBOLS = sorted({named.symbol for named in QUANTITIES.values() if "_" in named.symbol} | {"T_in,max", "T_in,rms"})
 RELATIONS = sorted({check.relation for check in CHECKS if "_" in check.relation})
 
 
