@@ -11,6 +11,7 @@ from hpn.catalogue import Catalogue
 from hpn.drawings import Subject
 from hpn.reader import Reader
 from hpn.selection import CheckResult, select
+from hpn.web.api.samples import TURNING
 from tests.build import Json, cycle, phase
 from tests.conftest import Supplement
 
@@ -252,6 +253,16 @@ def test_a_negative_torque_lies_below_zero(catalogue: Catalogue) -> None:
     shown = plots.cycle_picture(shown_on(document, catalogue))
     heights = [float(part.split("H")[0]) for part in shown.torque.outline.split("V")[1:]]
     assert heights[0] < shown.torque.zero < heights[1]
+
+
+def test_the_cycle_in_words_reaches_from_peak_to_peak(catalogue: Catalogue) -> None:
+    typed = cycle(phase(30.123, 100, peak_torque_Nm=45), phase(-20, -80, peak_torque_Nm=33, peak_speed_rpm=120))
+    words = [sentence.text for sentence in plots.cycle_picture(shown_on(typed, catalogue)).words]
+    assert words[1:] == ["Torque from -33 Nm to 45 Nm.", "Speed from -120 rpm to 100 rpm."]
+    turned = plots.cycle_picture(shown_on({"duty_cycle": {"motion": TURNING}}, catalogue)).words[1]
+    course = Application.model_validate({"duty_cycle": {"motion": TURNING}}).duty_cycle.load_phases
+    highest = max(phase.peak_torque_Nm or 0 for phase in course if phase.torque_Nm > 0)
+    assert f"to {highest:.3g} Nm." in turned.text
 
 
 def test_limits_far_above_the_cycle_are_named_beyond_the_scale(catalogue: Catalogue) -> None:

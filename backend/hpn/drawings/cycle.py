@@ -3,6 +3,7 @@
 Coordinates are those of a drawing WIDTH wide, y downwards; the template only writes them down as SVG.
 """
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -12,6 +13,7 @@ from hpn.drawings.axis import round_numbers, slices
 from hpn.drawings.picture import MOST_MARKED
 from hpn.drawings.subject import Subject
 from hpn.drawings.words import axis_title
+from hpn.phase import Phase
 from hpn.quantities import DUTY, GEAR, INPUTS
 from hpn.reader import DEFAULT, Reader
 from hpn.wording import N_, Quantity, Sentence, Value
@@ -160,7 +162,7 @@ def cycle_picture(subject: Subject, reader: Reader = DEFAULT) -> CyclePicture:
         pause=(edges[count], edges[-1]) if cycle.pause_s > 0 else None,
         pause_broken=broken,
         to_scale=to_scale,
-        words=_in_words(torques, speeds, cycle.pause_s),
+        words=_in_words(cycle),
     )
 
 
@@ -311,16 +313,26 @@ def _known(*levels: tuple[str, float | None, str]) -> list[Level]:
     return [Level(symbol, value, kind) for symbol, value, kind in levels if value is not None]
 
 
-def _in_words(torques: Sequence[float], speeds: Sequence[float], pause_s: float) -> list[Sentence]:
-    count = len(torques)
+def _in_words(cycle: DutyCycle) -> list[Sentence]:
+    """The cycle from end to end, with the peaks of its phases; what comes out of a motion with the digits of a page."""
+    phases, pause_s = cycle.load_phases, cycle.pause_s
+    count, digits = len(phases), 6 if cycle.motion is None else DEFAULT.digits
+    torques, speeds = (_reached(phases, name) for name in ("torque_Nm", "speed_rpm"))
     sentences = [
         Sentence("One phase.") if count == 1 else Sentence("{count} phases.", {"count": count}),
-        Sentence("Torque from {low} to {high}.", _extremes(torques, "Nm")),
-        Sentence("Speed from {low} to {high}.", _extremes(speeds, "rpm")),
+        Sentence("Torque from {low} to {high}.", _extremes(torques, "Nm", digits)),
+        Sentence("Speed from {low} to {high}.", _extremes(speeds, "rpm", digits)),
     ]
     pause = Sentence("Pause {pause}.", {"pause": Quantity(pause_s, "s", 6)})
     return [*sentences, pause] if pause_s > 0 else sentences
 
 
-def _extremes(values: Sequence[float], unit: str) -> dict[str, Value]:
-    return {"low": Quantity(min(values), unit, 6), "high": Quantity(max(values), unit, 6)}
+def _reached(phases: Sequence[Phase], name: str) -> list[float]:
+    """The peaks of phases, each with the sign of its mean; the mean itself where a phase is steady."""
+    means = [getattr(phase, name) for phase in phases]
+    peaks = [getattr(phase, f"peak_{name}") for phase in phases]
+    return [mean if peak is None else math.copysign(peak, mean) for mean, peak in zip(means, peaks, strict=True)]
+
+
+def _extremes(values: Sequence[float], unit: str, digits: int) -> dict[str, Value]:
+    return {"low": Quantity(min(values), unit, digits), "high": Quantity(max(values), unit, digits)}
