@@ -87,6 +87,13 @@ def test_texts_of_a_supplement_are_shown_or_replaced(supplemented: Supplement) -
     assert "测试 бланк □□" in found
 
 
+def test_a_near_miss_by_the_users_own_utilisation_says_so(catalogue: Catalogue) -> None:
+    asked = worked_example(requirements={"utilisation": 0.5})
+    misses = content(typed_export_of(asked, catalogue), ENGLISH)["alternatives"]["misses"]
+    assert misses
+    assert "× 50\N{NARROW NO-BREAK SPACE}%" in misses[0][1][0]
+
+
 @pytest.mark.parametrize("phases", [1, 8])
 def test_the_printed_link_copies_as_it_is(phases: int, catalogue: Catalogue) -> None:
     """Lines may end inside the link, but nothing stands in it that was not in the link."""

@@ -116,12 +116,11 @@ def _readings(export: Export, candidate: Candidate) -> dict[str, Reading]:
 
 def _check(export: Export, check: CheckResult, read: Reading, reader: Reader) -> dict[str, Any]:
     definition, bound = export.selection.check_definitions[check.code], bound_of(export, check.code)
-    part = f" {'÷' if read.kind == 'minimum' else '×'} {exact_percent(read.part, reader)}" if read.part < 1 else ""
     return {
         "title": title_of(export, check.code, reader),
         "relation": formula(read.relation),
         "demand": _demand(read, reader),
-        "limit": measured(read.limit, read.unit, reader) + part,
+        "limit": _limit(read, reader),
         "utilisation": reader.percent(check.utilisation, bound),
         "share": _share(check),
         "bound": bound,
@@ -130,6 +129,12 @@ def _check(export: Export, check: CheckResult, read: Reading, reader: Reader) ->
         "where": origin(export, check.code, reader),
         "basis": sentence(reader.text(definition.basis)),
     }
+
+
+def _limit(read: Reading, reader: Reader) -> str:
+    """Limit of a check, and the share of it that the user's own u leaves."""
+    part = f" {'÷' if read.kind == 'minimum' else '×'} {exact_percent(read.part, reader)}" if read.part < 1 else ""
+    return measured(read.limit, read.unit, reader) + part
 
 
 def _demand(read: Reading, reader: Reader) -> str:
@@ -214,7 +219,7 @@ def _failure(export: Export, check: CheckResult, read: Reading, reader: Reader) 
     values = {
         "check": title_of(export, check.code, reader),
         "demand": _demand(read, reader),
-        "limit": measured(read.limit, read.unit, reader),
+        "limit": _limit(read, reader),
         "percent": reader.percent(check.utilisation, bound_of(export, check.code)),
     }
     return reader.told(Sentence(N_("{check} {demand} against {limit} ({percent})"), values))
