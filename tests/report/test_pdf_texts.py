@@ -87,6 +87,26 @@ def test_texts_of_a_supplement_are_shown_or_replaced(supplemented: Supplement) -
     assert "测试 бланк □□" in found
 
 
+@pytest.mark.parametrize(
+    ("letters", "said"),
+    [
+        (100, "Not saved: the link carries every input."),
+        (400, "Not saved: the link is shortened in print; the code carries every input."),
+        (900, "Not saved: the link is shortened in print, only a click opens it. Saving gives a short address."),
+        (3000, "Not saved. Saving gives a short address."),
+    ],
+)
+def test_a_report_that_is_not_saved_says_what_carries_its_inputs_on_paper(
+    letters: int, said: str, catalogue: Catalogue
+) -> None:
+    link = "http://hpn.example/?T=" + "4" * letters
+    document = pdf(replace(typed_export_of(CASES["example"], catalogue), link=link, created=None), ENGLISH)
+    assert said in by_pdfium(document, 0).replace("\r\n", " ")
+    with pikepdf.open(BytesIO(document)) as opened:
+        targets = {str(note["/A"]["/URI"]) for note in opened.pages[0].get("/Annots", pikepdf.Array()).as_list()}
+    assert targets == ({link} if letters < 2000 else set())
+
+
 def test_a_near_miss_by_the_users_own_utilisation_says_so(catalogue: Catalogue) -> None:
     asked = worked_example(requirements={"utilisation": 0.5})
     misses = content(typed_export_of(asked, catalogue), ENGLISH)["alternatives"]["misses"]

@@ -60,7 +60,6 @@ LABELS = {
         "Made by an independent tool from the maker’s engineering data. Check the selection with the maker before you "
         "order."
     ),
-    "unsaved": N_("Not saved: the link carries every input."),
     "too_long_link": N_("The link is too long to print; it carries every phase."),
     "unprintable": N_("□ stands for characters that the report’s fonts lack: {codes}."),
     "calculation": N_("Calculation of {gear}"),
@@ -71,6 +70,14 @@ LABELS = {
     "each_phase": N_("Each phase of the duty cycle"),
     "each_move": N_("Each move of the motion"),
 }
+
+UNSAVED = {
+    "whole": N_("Not saved: the link carries every input."),
+    "code": N_("Not saved: the link is shortened in print; the code carries every input."),
+    "shortened": N_("Not saved: the link is shortened in print, only a click opens it. Saving gives a short address."),
+    "none": N_("Not saved. Saving gives a short address."),
+}
+"""What carries the inputs of a selection that is not saved, by what of its link is on paper."""
 
 CAVEATS = (
     N_("Lives are hours of operation of the whole cycle, its pause included."),
@@ -97,6 +104,7 @@ def content(export: Export, reader: Reader) -> dict[str, Any]:
     labels = {key: text(label) for key, label in LABELS.items()}
     named, on_motor = ("checks", "ratings", "calculation"), text(ON_MOTOR[export.selection.turns_motor])
     labels |= {key: labels[key].format(gear=export.candidate.designation) for key in named}
+    labels["unsaved"] = text(UNSAVED[_carrier(export.link)])
     return {
         "lang": reader.language,
         "paper": paper(reader),
@@ -161,6 +169,15 @@ def _link(link: str) -> dict[str, Any]:
         "link_text": shown if target else "",
         "qr": _qr(link) if len(link) <= LONGEST_QR_LINK else "",
     }
+
+
+def _carrier(link: str) -> str:
+    """What carries the inputs on paper, as a key of UNSAVED."""
+    if len(link) <= LONGEST_PRINTED_LINK:
+        return "whole"
+    if len(link) <= LONGEST_QR_LINK:
+        return "code"
+    return "shortened" if len(link) <= LONGEST_LINK else "none"
 
 
 def _qr(link: str) -> str:
