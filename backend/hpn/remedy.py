@@ -255,6 +255,11 @@ def _scaled(value: float | None, factor: float) -> float | None:
 
 # --- In words ---------------------------------------------------------------------------------------------------------
 
+BY_CURVE = N_("not in closed form: the efficiency follows your curve")
+BY_INERTIA = N_("not in closed form: the motor’s own inertia follows the motion")
+UNTOLD = N_("What would make it fit is {reason}.")
+"""Why something is not told."""
+
 _DRIVERS = {
     "torque": (N_("torques drop to {value}"), N_("torques to {value}")),
     "speed": (N_("speeds drop to {value}"), N_("speeds to {value}")),
@@ -266,10 +271,14 @@ _STOP_COUNT = (N_("N_k drops to {value}"), N_("N_k to {value}"))
 
 
 def remedy_of(candidate: Candidate, reserve_utilisation: float = 1.0) -> Sentence | None:
-    """What makes a rejected gear fit, all alternatives in one sentence; None where there is none."""
+    """What makes a rejected gear fit, all alternatives in one sentence, or why no closed form tells it.
+
+    None for a gear that is not rejected, and where not every check can be judged.
+    """
     conditions = [condition_of(alternative) for alternative in alternatives_of(candidate, reserve_utilisation)]
     if not conditions:
-        return None
+        reason = _untold(candidate) if candidate.status == "unsuitable" and candidate.is_judged else ""
+        return Sentence(UNTOLD, {"reason": reason}, ("reason",)) if reason else None
     if len(conditions) == 1:
         return Sentence(N_("Fits if {conditions}."), {"conditions": conditions[0]})
     numbered = [
@@ -279,6 +288,12 @@ def remedy_of(candidate: Candidate, reserve_utilisation: float = 1.0) -> Sentenc
     return Sentence(
         N_("Fits if one of these holds: {conditions}."), {"conditions": listed(numbered, "{first}; {rest}")}
     )
+
+
+def _untold(candidate: Candidate) -> str:
+    """Why no closed form follows the torque, a msgid; blank where one does."""
+    by_curve = BY_CURVE if _is_untold(candidate, "torque") else ""
+    return BY_INERTIA if _is_untold(candidate, "speed") else by_curve
 
 
 def condition_of(alternative: Alternative) -> Sentence:
@@ -317,10 +332,6 @@ DRIVER_NAMES = {
 }
 
 
-BY_CURVE = N_("not in closed form: the efficiency follows your curve")
-BY_INERTIA = N_("not in closed form: the motor’s own inertia follows the motion")
-
-
 @dataclass(frozen=True, slots=True)
 class Growth:
     """How far one driver may grow until one check is at its limit, the rest unchanged.
@@ -352,8 +363,7 @@ def growths_of(candidate: Candidate, reserve_utilisation: float = 1.0) -> dict[s
     motor torques that go by an efficiency curve or by the motor's own inertia, which no closed form follows; empty for
     motor torques of a gear that is not judged, whose reserve can't tell either.
     """
-    by_curve = BY_CURVE if _is_untold(candidate, "torque") else ""
-    untold = BY_INERTIA if _is_untold(candidate, "speed") else by_curve
+    untold = _untold(candidate)
     return {
         check.code: ()
         if untold and check.code in MOTOR_TORQUE_CHECKS and not candidate.is_judged

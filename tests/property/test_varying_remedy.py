@@ -193,6 +193,8 @@ def test_a_speed_that_has_to_drop_promises_nothing_where_the_motor_turns_its_own
         [candidate] = select(application, equipped()).candidates
         assert {check.code for check in candidate.failing} <= {"average_input_speed", "maximum_input_speed"}
         assert candidate.failing and candidate.is_judged
-        ways[inertia] = alternatives_of(candidate)
+        ways[inertia], remedy = alternatives_of(candidate), remedy_of(candidate)
+        assert remedy is not None
+        assert ("What would make it fit is not in closed form: the motor’s own inertia" in remedy.text) == bool(inertia)
     assert ways[1e-6] == ()
     assert [(alternative.way.torque, alternative.way.speed < 1) for alternative in ways[None]] == [(1.0, True)]
