@@ -289,6 +289,10 @@ def _column(body: Body, place: int) -> Column:
     measured = any(units.codes_for(each.unit) for each in said)
     if kind not in QUANTITIES and not measured and (count == 0 or (body.headed and not mostly)):
         return Column(place, heading, SKIP, skipped=Sentence(N_("text")), text=True)
+    if body.headed and not heading and _counts(body, place):
+        kind = INDEX
+    if kind == INDEX and not _in_steps(cells):
+        kind = ""
     if kind in (INDEX, SUM):
         why = Sentence(NUMBERS) if kind == INDEX else Sentence(N_("a sum"))
         return Column(place, heading, SKIP, skipped=why)
@@ -332,6 +336,17 @@ def _counts(body: Body, place: int) -> bool:
     """Whether a column of several rows goes 1, 2, 3 or 0, 1, 2."""
     cells = [row[place].removesuffix(".") for row in body.rows]
     return len(cells) > 1 and any(cells == [str(k + start) for k in range(len(cells))] for start in (0, 1))
+
+
+def _in_steps(cells: Sequence[str]) -> bool:
+    """Whether numbers can number rows: 1, 2, 3 from wherever, or 10, 20, 30 from 0 or 10."""
+    texts = [cell.removesuffix(".") for cell in cells]
+    if not all(re.fullmatch("[0-9]{1,9}", text) for text in texts):
+        return False
+    numbers = [int(text) for text in texts]
+    first, step = numbers[0], numbers[1] - numbers[0] if len(numbers) > 1 else 1
+    even = all(after - before == step for before, after in pairwise(numbers))
+    return even and (first in (0, step) or (step == 1 and len(numbers) > 1)) and step > 0
 
 
 def _units_in(body: Body, place: int) -> set[str]:
