@@ -18,6 +18,12 @@ INDEX, SUM, UNIT = "index", "sum", "unit"
 LONGEST = 80
 
 _EXACT = {"T": "T", "n": "n", "t": "t", "ω": "n", "Md": "T", "Δt": "t", "dt": "t", "FR": "FRi", "FA": "FAi"}
+_MEASURED = {"M": "T", "M2": "T", "T2": "T", "τ": "T", "n2": "n", "Velocity": "n", "velocity": "n"}
+"""Names that mean a quantity only together with a unit of it."""
+
+_SYMBOLS = {**_EXACT, **_MEASURED, "Fr": "FRi", "Fa": "FAi", "t2": "t", "ω2": "n"}
+"""Symbols that may stand behind a name, as in `Drehmoment T2 [Nm]`; those of the motor’s side are none."""
+
 _WORDS = {
     "T": "torque; drehmoment; moment; lastmoment; abtriebsmoment; abtriebsdrehmoment; output torque; load torque; "
     "t out; torque out; couple; coppia; momento; momento torcente; par; vridmoment; koppel",
@@ -93,7 +99,8 @@ def heading_of(cell: str) -> Heading:
     codes = units.codes_for(unit)
     if kind in QUANTITIES and codes and QUANTITIES[kind] not in {units.QUANTITY_OF[code] for code in codes}:
         return Heading("", unit)
-    return Heading(kind, unit, folded in DURATIONS or name == "Δt", folded in ANGULAR)
+    words = {folded, *map(_folded, name.rpartition(" "))}
+    return Heading(kind, unit, not words.isdisjoint(DURATIONS), not words.isdisjoint(ANGULAR))
 
 
 def _unit_alone(text: str) -> str:
@@ -117,12 +124,16 @@ def parts_of(text: str) -> tuple[str, str]:
 
 
 def _kind(name: str, unit: str) -> str:
-    if name == "M":
-        return "T" if units.codes_for(unit, "torque") else ""
+    if name in _MEASURED:
+        return _MEASURED[name] if units.codes_for(unit, QUANTITIES[_MEASURED[name]]) else ""
     if name in _EXACT:
         return _EXACT[name]
     folded = _folded(name)
-    return "" if len(folded) == 1 and folded in "tnm" else _NAMES.get(folded, "")
+    if len(folded) == 1 and folded in "tnm":
+        return ""
+    word, _, symbol = name.strip().rpartition(" ")
+    meant = _NAMES.get(_folded(word), "")
+    return _NAMES.get(folded) or (meant if meant and _SYMBOLS.get(symbol) == meant else "")
 
 
 def _folded(name: str) -> str:
