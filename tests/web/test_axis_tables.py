@@ -50,6 +50,13 @@ def test_times_that_go_on_in_every_axis_may_be_points_in_time() -> None:
     assert asked(read(head, "A;1;10;3", "A;2;20;1", "B;1;10;2")) == []
 
 
+def test_times_that_are_named_as_points_in_time_are_asked_even_where_they_go_back() -> None:
+    head = "Achse;Moment [Nm];Drehzahl [1/min];Endzeit [s]"
+
+    assert asked(read(head, "A;1;10;3", "B;2;20;1")) == ["Do the times say how long a phase lasts, or when it is?"]
+    assert [axis["duration_s"] for axis in read(head, "A;1;10;3", "B;2;20;1", times="ends").axes] == [[3], [1]]
+
+
 def test_units_are_those_of_headings_and_cells() -> None:
     head = "Axis;Torque [lbf·in];Speed [rad/s];Duration;Required gear life [h];Weight"
     table = read(head, "A;10;1;500 ms;20000;")

@@ -70,7 +70,8 @@ def test_pasted_table_becomes_what_it_says_or_is_asked_about_or_refused(client: 
     judge(outcome(client, case, {}), wanted)
     if "chosen" in case:
         then = outcome(client, case, {**case["chosen"], "of": of_table(client, case)})
-        judge(then, {"becomes": case["then"]} if "then" in case else {"asks": case["asks_then"]})
+        after = {"then": "becomes", "asks_then": "asks", "refused_then": "refused"}
+        judge(then, {kind: case[name] for name, kind in after.items() if name in case})
 
 
 def test_choices_about_one_table_say_nothing_about_another(client: TestClient) -> None:

@@ -96,7 +96,8 @@ def _proposed(body: Body, place: int) -> AxisColumn:
         why = Sentence(NUMBERS) if kind == INDEX else Sentence(N_("a sum"))
         return AxisColumn(place, heading, SKIP, skipped=why)
     if kind in QUANTITIES:
-        return AxisColumn(place, heading, kind, lasting=any(each.lasting for each in said))
+        lasting, instant = any(each.lasting for each in said), any(each.instant for each in said)
+        return AxisColumn(place, heading, kind, lasting=lasting, instant=instant)
     if not any(is_number(row[place]) for row in body.rows):
         return AxisColumn(place, heading, SKIP, skipped=Sentence(N_("text")))
     return AxisColumn(place, heading)

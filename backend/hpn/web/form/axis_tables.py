@@ -189,17 +189,17 @@ class _Reading:
         return None, marks
 
     def _times(self, groups: Sequence["Group"], decimal: Decimal) -> tuple[str, bool]:
-        """What the times are; asked where they go on in most axes: then they may be points in time."""
+        """What the times are; asked where they go on in most axes, or are named as points in time."""
         column = self.by_role.get("t")
         if column is None or column.lasting or not column.unit:
             return "durations", False
         series = [[_seconds(row[column.place], column, decimal) for row in group.rows] for group in groups]
         going_on = [_goes_on(times) for times in series if len(times) > 1 and None not in times]
-        if not going_on:
+        if not going_on and not column.instant:
             return "durations", False
         if self.choices.times in TIMES:
             return self.choices.times, True
-        if sum(going_on) < MOSTLY * len(going_on):
+        if not column.instant and sum(going_on) < MOSTLY * len(going_on):
             return "durations", True
         self._ask(N_("Do the times say how long a phase lasts, or when it is?"))
         return "", True

@@ -62,6 +62,7 @@ class Column:
     role: str = ""
     unit: str = ""
     lasting: bool = False
+    instant: bool = False
     skipped: Sentence | None = None
     text: bool = False
 
@@ -296,7 +297,8 @@ def _column(body: Body, place: int) -> Column:
     if kind in (INDEX, SUM):
         why = Sentence(NUMBERS) if kind == INDEX else Sentence(N_("a sum"))
         return Column(place, heading, SKIP, skipped=why)
-    return Column(place, heading, kind, lasting=any(each.lasting for each in said))
+    lasting, instant = any(each.lasting for each in said), any(each.instant for each in said)
+    return Column(place, heading, kind, lasting=lasting, instant=instant)
 
 
 def _by_unit(said: Sequence[Heading]) -> str:

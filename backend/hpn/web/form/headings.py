@@ -53,6 +53,19 @@ DURATIONS = {"duration", "dauer", "zeitdauer", "phasendauer", "durée", "durata"
     *("delta t", "δt", "dt")
 }
 """Names that mean how long something lasts, and never a point in time."""
+INSTANTS = {
+    "zeitpunkt",
+    "instant",
+    "timestamp",
+    "endzeit",
+    "startzeit",
+    "end time",
+    "start time",
+    "ende",
+    "end",
+    "start",
+} | {*("beginn", "bis", "von", "until", "from")}
+"""Names that mean a point in time, and never how long something lasts."""
 
 ANGULAR = {"ω", "omega", "winkelgeschwindigkeit", "angular velocity", "angular speed"}
 """Names of a speed that is as likely in rad/s as in rpm."""
@@ -78,6 +91,7 @@ class Heading:
     unit: str = ""
     lasting: bool = False
     angular: bool = False
+    instant: bool = False
 
 
 @lru_cache(maxsize=2000)
@@ -100,7 +114,8 @@ def heading_of(cell: str) -> Heading:
     if kind in QUANTITIES and codes and QUANTITIES[kind] not in {units.QUANTITY_OF[code] for code in codes}:
         return Heading("", unit)
     words = {folded, *map(_folded, name.rpartition(" "))}
-    return Heading(kind, unit, not words.isdisjoint(DURATIONS), not words.isdisjoint(ANGULAR))
+    lasting, angular, instant = (not words.isdisjoint(names) for names in (DURATIONS, ANGULAR, INSTANTS))
+    return Heading(kind, unit, lasting, angular, instant)
 
 
 def _unit_alone(text: str) -> str:

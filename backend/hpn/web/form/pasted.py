@@ -307,12 +307,13 @@ class _Reading:
         return None
 
     def _times(self, rows: Sequence[Row]) -> tuple[str, bool]:
-        """What the times are, and whether that is asked: they may be points in time where they never go back."""
+        """What the times are, and whether that is asked: instants, by their name or as they never go back."""
         seconds = [self._seconds(row) for row in rows]
         known = [each for each in seconds if each is not None]
         lasting = any(column.lasting for column in self.used if column.role == "t")
         rising = len(known) == len(rows) > 1 and known == sorted(known) and known[-1] > known[0]
-        if lasting or not rising:
+        instant = any(column.instant for column in self.used if column.role == "t")
+        if lasting or not (rising or instant):
             return "durations", False
         if self.choices.times in TIMES:
             return self.choices.times, True
@@ -381,6 +382,12 @@ class _Reading:
         if times in ("starts", "ends"):
             at = [self._seconds(row) or Fraction(0) for row in rows]
             at = at if times == "starts" else [Fraction(0), *at]
+            if len(at) < 2:
+                raise RefusedError(N_("the last row ends the cycle, and there is no other"))
+            numbers = self.body.numbers[times == "starts" :]
+            for number, (before, after) in zip(numbers, pairwise(at), strict=False):
+                if after < before:
+                    raise RefusedError(N_("row {row}: the time goes back"), row=number)
             lasting = [_text(float(end - start)) for start, end in pairwise(at)]
             phases = [{**phase, "t": t} for phase, t in zip(phases, lasting, strict=False)]
         return tuple(tuple(phase.get(role, "") for role in COLUMNS) for phase in phases)
