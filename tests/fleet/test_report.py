@@ -1,11 +1,13 @@
 """The report of a fleet: one HTML file that needs nothing else, says what the answers say, and links to each axis."""
 
+import errno
 import os
 import re
 import subprocess
 import sys
 from html.parser import HTMLParser
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from urllib.parse import parse_qsl, urlsplit
 
 import pytest
@@ -14,6 +16,7 @@ from hpn.application import Application
 from hpn.cli import main
 from hpn.web.form.link_reader import parse
 from tests.fleet.tables import Row, read, row_of, write
+from tests.reliability.faults import as_user
 
 APPLICATION = {"duty_cycle": {"phases": [{"torque_Nm": 20.0, "speed_rpm": 200.0, "duration_s": 1.0}]}}
 HEAVY = {"duty_cycle": {"phases": [{"torque_Nm": 9000.0, "speed_rpm": 200.0, "duration_s": 1.0}]}}
@@ -100,6 +103,42 @@ def test_a_report_that_could_not_be_written_is_refused_before_anything_is_comput
 
     assert code == 2 and name in capsys.readouterr().err
     assert not answers.exists()
+
+
+def test_without_its_report_no_file_gets_its_name(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    axes, answers = write(tmp_path / "axes.csv", rows()), tmp_path / "answers.csv"
+    order = ["fleet", str(axes), str(answers), "--workers", "1", "--report", str(tmp_path / "report.html")]
+
+    def full(path: Path, *_: object, **__: object) -> None:
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    with monkeypatch.context() as patched:
+        patched.setattr(Path, "write_text", full)
+        assert main(order) == 1
+    assert "No space left on device; hpn fleet … --resume goes on" in capsys.readouterr().err
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["answers.csv.parts", "axes.csv"]
+
+    assert main([*order, "--resume"]) == 0
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["answers.csv", "axes.csv", "report.html"]
+
+
+def test_a_report_where_nothing_may_be_written_is_refused_before_anything_is_computed(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    with TemporaryDirectory() as name:
+        folder = Path(name)
+        axes = write(folder / "axes.csv", rows())
+        (folder / "open").mkdir(mode=0o777)
+        (folder / "closed").mkdir(mode=0o755)
+        for path, mode in ((folder, 0o755), (folder / "open", 0o777), (folder / "closed", 0o555)):
+            path.chmod(mode)
+        order = ["fleet", str(axes), str(folder / "open/answers.csv"), "--report", str(folder / "closed/report.html")]
+        with as_user(65534):
+            assert main(order) == 2
+        assert "closed/report.html: this user may not write into" in capsys.readouterr().err
+        assert not list((folder / "open").iterdir())
 
 
 def test_a_report_is_the_same_in_every_locale(tmp_path: Path) -> None:

@@ -5,14 +5,16 @@ import os
 import signal
 import sys
 from concurrent.futures import BrokenExecutor
+from functools import partial
 from pathlib import Path
 
 from tqdm import tqdm
 
 from hpn.catalogue import Catalogue, load_catalogue
+from hpn.fleet.assemble import Use
 from hpn.fleet.errors import FleetError
 from hpn.fleet.listing import listing_of
-from hpn.fleet.run import Engine, Order, processes, size_fleet
+from hpn.fleet.run import Engine, Order, processes, require_writable, size_fleet
 from hpn.web.settings import Settings
 
 STOPPED = 1
@@ -34,18 +36,16 @@ def run(options: argparse.Namespace) -> int:
         _require_report(options.report)
     signal.signal(signal.SIGTERM, signal.default_int_handler)
     try:
-        rows = _sized(order, catalogue, _engine(options))
+        rows = _sized(order, catalogue, _engine(options), partial(_write_report, options, catalogue))
     except (KeyboardInterrupt, BrokenExecutor, OSError) as error:
         print(f"{_reason(error)}; hpn fleet … --resume goes on with the parts in {order.folder}", file=sys.stderr)
         return STOPPED
-    if options.report:
-        _write_report(options, catalogue)
     if sys.stderr.isatty():
         print(f"{rows['answers']:,} axes are in {options.output}", file=sys.stderr)
     return 0
 
 
-def _sized(order: Order, catalogue: Catalogue, engine: Engine) -> dict[str, int]:
+def _sized(order: Order, catalogue: Catalogue, engine: Engine, use: Use) -> dict[str, int]:
     """Rows of the files by kind; a bar shows the progress on a terminal."""
     with tqdm(unit_scale=True, disable=None, file=sys.stderr) as bar:
 
@@ -53,7 +53,7 @@ def _sized(order: Order, catalogue: Catalogue, engine: Engine) -> dict[str, int]
             bar.total, bar.unit = total, counted
             bar.update(done - bar.n)
 
-        return size_fleet(order, catalogue, engine, watch)
+        return size_fleet(order, catalogue, engine, watch, use)
 
 
 def _reason(error: BaseException) -> str:
@@ -75,17 +75,16 @@ def _require_report(report: Path) -> None:
     """Raise FleetError where a report could not be written."""
     if report.suffix != ".html":
         raise FleetError(f"{report}: the suffix of a report must be .html")
-    if not report.parent.is_dir():
-        raise FleetError(f"{report}: there is no folder {report.parent}")
-    if report.is_dir():
-        raise FleetError(f"{report}: is a folder, where a file belongs")
+    require_writable(report)
 
 
-def _write_report(options: argparse.Namespace, catalogue: Catalogue) -> None:
-    """Write the report, whole under its name or not at all."""
+def _write_report(options: argparse.Namespace, catalogue: Catalogue, answers: Path) -> None:
+    """Write the report, where one is wanted, whole under its name or not at all."""
+    if options.report is None:
+        return
     from hpn.web.pages.fleet_report import report_of  # a second of imports, which no fleet without a report waits for
 
-    listing = listing_of(options.input, options.axes, options.output, catalogue)
+    listing = listing_of(options.input, options.axes, answers, catalogue)
     written = options.report.with_name(f".{options.report.name}.{os.getpid()}")
     try:
         service: str = options.service.rstrip("/")

@@ -49,15 +49,20 @@ WRITERS: dict[str, Callable[[str, pa.Schema], Any]] = {
 }
 
 
-def assemble(job: Job, parts: int, targets: dict[str, Path]) -> dict[str, int]:
+Use = Callable[[Path], None]
+"""Is given the answers when they are whole; what it raises keeps every file from its name."""
+
+
+def assemble(job: Job, parts: int, targets: dict[str, Path], use: Use = lambda _: None) -> dict[str, int]:
     """Write the files of a job by kind; gives their numbers of rows. All are whole before the first gets its name."""
     torn, axis_type = _torn(job, parts), _axis_type(job, parts)
     schemas = job.schemas(axis_type)
     written, rows = {}, {}
     try:
         for kind, target in targets.items():
-            written[kind] = target.with_name(f".{target.name}.unfinished")  # what a kill leaves is written over
+            written[kind] = target.with_name(f".unfinished.{target.name}")  # what a kill leaves is written over
             rows[kind] = _write(written[kind], format_of(target), schemas[kind], _tables(job, parts, kind, torn))
+        use(written["answers"])
         for kind in sorted(targets, key="answers".__eq__):  # the answers last
             os.replace(written[kind], targets[kind])
     finally:

@@ -19,7 +19,7 @@ import msgspec
 from hpn import ENGINE_VERSION
 from hpn.catalogue import Catalogue
 from hpn.catalogue.copy import copy_of
-from hpn.fleet.assemble import assemble
+from hpn.fleet.assemble import Use, assemble
 from hpn.fleet.errors import FleetError
 from hpn.fleet.grouping import Part, parts_of, with_others
 from hpn.fleet.job import Job, compute, is_own
@@ -66,9 +66,12 @@ class Plan(msgspec.Struct, frozen=True):
     parts: tuple[Part, ...]
 
 
-def size_fleet(order: Order, catalogue: Catalogue, engine: Engine, watch: Watch) -> dict[str, int]:
+def size_fleet(
+    order: Order, catalogue: Catalogue, engine: Engine, watch: Watch, use: Use = lambda _: None
+) -> dict[str, int]:
     """Size all axes; gives the numbers of rows of the files by kind.
 
+    `use` is given the answers before they have their name, for what has to be written along with them.
     Raises FleetError for input that can't be used, and for parts that belong to another one.
     """
     _require_distinct(order)
@@ -88,7 +91,7 @@ def size_fleet(order: Order, catalogue: Catalogue, engine: Engine, watch: Watch)
     plan = Plan(ENGINE_VERSION, catalogue.version, job.fingerprints, job.with_candidates, tuple(parts))
     with _folder(order, plan):
         _work(job, parts, table, engine, watch)
-        return assemble(job, len(parts), order.targets)
+        return assemble(job, len(parts), order.targets, use)
 
 
 def _work(job: Job, parts: Sequence[Part], table: Table, engine: Engine, watch: Watch) -> None:
@@ -107,12 +110,19 @@ def _require_distinct(order: Order) -> None:
     written = list(order.targets.values())
     for place, path in enumerate(written):
         format_of(path)
-        if not path.parent.is_dir():
-            raise FleetError(f"{path}: there is no folder {path.parent}")
-        if path.is_dir():
-            raise FleetError(f"{path}: is a folder, where a file belongs")
+        require_writable(path)
         if path.resolve() in [other.resolve() for other in (*read, *written[:place])]:
             raise FleetError(f"{path}: is named twice")
+
+
+def require_writable(path: Path) -> None:
+    """Raise FleetError where no file can be written."""
+    if not path.parent.is_dir():
+        raise FleetError(f"{path}: there is no folder {path.parent}")
+    if path.is_dir():
+        raise FleetError(f"{path}: is a folder, where a file belongs")
+    if not os.access(path.parent, os.W_OK | os.X_OK, effective_ids=True):
+        raise FleetError(f"{path}: this user may not write into {path.parent}")
 
 
 def _fingerprint(path: Path) -> str:
