@@ -78,3 +78,4 @@ def test_a_scheduler_that_is_not_there_is_said(address: str, tmp_path: Path, cat
     path = write(tmp_path / "in.csv", [row_of("a", at_random(random.Random(1)))])
     with pytest.raises(FleetError, match=f"--scheduler {address}: "):
         size_fleet(Order(path, tmp_path / "out.csv"), catalogue, dask(address, 1), quiet)
+    assert list(tmp_path.iterdir()) == [path]

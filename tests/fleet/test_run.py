@@ -10,6 +10,7 @@ import time
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import pytest
 
@@ -22,7 +23,7 @@ from hpn.fleet.job import Job
 from hpn.fleet.run import Engine, Order, interrupts_held, processes, size_fleet
 from tests.fleet.tables import here, quiet, row_of, write
 from tests.property.draw import at_random
-from tests.reliability.faults import full, small_disk
+from tests.reliability.faults import as_user, full, small_disk
 
 
 @pytest.fixture(scope="module")
@@ -220,6 +221,44 @@ def test_an_unusable_input_ends_with_2_and_its_name(
         ended_with = int(end.code or 0)
     assert ended_with == 2
     assert said in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("source", "output", "said"),
+    [
+        ("secret.csv", "open/out.csv", "secret.csv: this user may not read it"),
+        ("closed/in.csv", "open/out.csv", "closed/in.csv: this user may not read it"),
+        ("in.csv", "out.csv", "out.csv: this user may not write into "),
+    ],
+)
+def test_what_permissions_forbid_ends_with_2_and_its_name(
+    capsys: pytest.CaptureFixture[str], source: str, output: str, said: str
+) -> None:
+    with TemporaryDirectory() as name:
+        folder = Path(name)
+        (folder / "closed").mkdir()
+        (folder / "open").mkdir()
+        for path in ("in.csv", "secret.csv", "closed/in.csv"):
+            write(folder / path, [row_of("a", at_random(random.Random(1)))])
+        for path, mode in (("", 0o755), ("secret.csv", 0o000), ("closed", 0o000), ("open", 0o777)):
+            (folder / path).chmod(mode)
+        with as_user(65534):
+            assert main(["fleet", str(folder / source), str(folder / output)]) == 2
+        (folder / "closed").chmod(0o755)
+        assert not list((folder / "open").iterdir())
+
+    assert said in (error := capsys.readouterr().err)
+    assert "--resume" not in error
+
+
+def test_what_is_stopped_before_it_has_begun_is_not_to_be_resumed(
+    many: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "out.csv.parts").write_bytes(b"")  # a file where the folder belongs
+
+    assert main(["fleet", str(many), str(tmp_path / "out.csv")]) == 1
+    said = capsys.readouterr().err
+    assert said.startswith("stopped: ") and "--resume" not in said
 
 
 def test_an_interrupt_keeps_the_parts_and_ends_with_1(many: Path, tmp_path: Path) -> None:

@@ -38,7 +38,8 @@ def run(options: argparse.Namespace) -> int:
     try:
         rows = _sized(order, catalogue, _engine(options), partial(_write_report, options, catalogue))
     except (KeyboardInterrupt, BrokenExecutor, OSError) as error:
-        print(f"{_reason(error)}; hpn fleet … --resume goes on with the parts in {order.folder}", file=sys.stderr)
+        more = f"; hpn fleet … --resume goes on with the parts in {order.folder}" if order.is_begun else ""
+        print(f"{_reason(error)}{more}", file=sys.stderr)
         return STOPPED
     if sys.stderr.isatty():
         print(f"{rows['answers']:,} axes are in {options.output}", file=sys.stderr)

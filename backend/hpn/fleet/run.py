@@ -55,6 +55,14 @@ class Order:
         """Where the parts are kept until they are all done."""
         return self.answers.with_name(f"{self.answers.name}.parts")
 
+    @property
+    def is_begun(self) -> bool:
+        """Whether there is something to resume."""
+        return (self.folder / PLAN).exists()
+
+
+PLAN = "plan.json"
+
 
 class Plan(msgspec.Struct, frozen=True):
     """What parts belong to: they can be gone on with where nothing of it has changed."""
@@ -74,7 +82,7 @@ def size_fleet(
     `use` is given the answers before they have their name, for what has to be written along with them.
     Raises FleetError for input that can't be used, and for parts that belong to another one.
     """
-    _require_distinct(order)
+    _require_usable(order)
     read = [path for path in (order.axes, order.requirements) if path is not None]
     job = Job(
         order.axes,
@@ -104,15 +112,26 @@ def _work(job: Job, parts: Sequence[Part], table: Table, engine: Engine, watch: 
         watch(done, sum(sizes), table.measured_in)
 
 
-def _require_distinct(order: Order) -> None:
-    """Raise FleetError where a file would be written over, or could not be written."""
+def _require_usable(order: Order) -> None:
+    """Raise FleetError where a file would be written over, or could not be read or written."""
     read = [path for path in (order.axes, order.requirements) if path is not None]
+    for path in read:
+        if not _is_readable(path):
+            raise FleetError(f"{path}: this user may not read it; see its permissions")
     written = list(order.targets.values())
     for place, path in enumerate(written):
         format_of(path)
         require_writable(path)
         if path.resolve() in [other.resolve() for other in (*read, *written[:place])]:
             raise FleetError(f"{path}: is named twice")
+
+
+def _is_readable(path: Path) -> bool:
+    """Whether this user may read a file; so too of none, which is told apart."""
+    try:
+        return not path.exists() or os.access(path, os.R_OK, effective_ids=True)
+    except PermissionError:  # of a folder above it
+        return False
 
 
 def require_writable(path: Path) -> None:
@@ -141,7 +160,7 @@ def _folder(order: Order, plan: Plan) -> Iterator[None]:
             fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
             raise FleetError(f"{order.answers}: another run is writing it") from None
-        known = folder / "plan.json"
+        known = folder / PLAN
         if order.resume and known.exists() and known.read_bytes() != wanted:
             raise FleetError(f"{folder}: its parts are {_difference(known.read_bytes(), plan)}; run without --resume")
         if not (order.resume and known.exists()):
@@ -151,7 +170,12 @@ def _folder(order: Order, plan: Plan) -> Iterator[None]:
             whole = folder / "plan"
             whole.write_bytes(wanted)
             whole.replace(known)
-        yield
+        try:
+            yield
+        except FleetError:
+            if not any(folder.glob("*.answers")):  # nothing to go on with
+                shutil.rmtree(folder, ignore_errors=True)
+            raise
         shutil.rmtree(folder)
 
 
