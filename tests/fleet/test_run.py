@@ -224,6 +224,23 @@ def test_an_unusable_input_ends_with_2_and_its_name(
 
 
 @pytest.mark.parametrize(
+    ("option", "given", "said"),
+    [
+        ("--scheduler", "tcp://here:8786", "--scheduler: belongs to --engine dask"),
+        ("--lang", "de", "--lang: belongs to --report"),
+        ("--lang", "en", "--lang: belongs to --report"),
+        ("--service", "https://gears.example", "--service: belongs to --report"),
+    ],
+)
+def test_an_option_that_says_nothing_without_another_is_refused(
+    many: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], option: str, given: str, said: str
+) -> None:
+    assert main(["fleet", str(many), str(tmp_path / "out.csv"), option, given]) == 2
+    assert said in capsys.readouterr().err
+    assert not files(tmp_path)
+
+
+@pytest.mark.parametrize(
     ("source", "output", "said"),
     [
         ("secret.csv", "open/out.csv", "secret.csv: this user may not read it"),

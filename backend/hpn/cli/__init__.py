@@ -108,8 +108,8 @@ def _add_fleet(fleet: argparse.ArgumentParser) -> None:
         "--rejected", type=Path, metavar="FILE", help="write what is wrong with axes that have no answer"
     )
     fleet.add_argument("--report", type=Path, metavar="FILE", help="write counts and the first 10,000 axes as HTML")
-    fleet.add_argument("--lang", choices=("en", "de"), default="en", help="language of the report")
-    fleet.add_argument("--service", default="", metavar="URL", help="address of the service that its links lead to")
+    fleet.add_argument("--lang", choices=("en", "de"), help="language of the report")
+    fleet.add_argument("--service", metavar="URL", help="address of the service that its links lead to")
     fleet.add_argument(
         "--engine", choices=("local", "dask"), default="local", help="processes of this machine, or Dask"
     )

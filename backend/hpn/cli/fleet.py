@@ -32,6 +32,7 @@ def run(options: argparse.Namespace) -> int:
         rejected=options.rejected,
         resume=options.resume,
     )
+    _require_used(options)
     if options.report:
         _require_report(options.report)
     signal.signal(signal.SIGTERM, signal.default_int_handler)
@@ -72,6 +73,15 @@ def _engine(options: argparse.Namespace) -> Engine:
     return dask(options.scheduler, workers)
 
 
+def _require_used(options: argparse.Namespace) -> None:
+    """Raise FleetError for an option that says nothing without another one."""
+    if options.scheduler is not None and options.engine != "dask":
+        raise FleetError("--scheduler: belongs to --engine dask")
+    for name in ("lang", "service"):
+        if getattr(options, name) is not None and options.report is None:
+            raise FleetError(f"--{name}: belongs to --report")
+
+
 def _require_report(report: Path) -> None:
     """Raise FleetError where a report could not be written."""
     if report.suffix != ".html":
@@ -88,9 +98,9 @@ def _write_report(options: argparse.Namespace, catalogue: Catalogue, answers: Pa
     listing = listing_of(options.input, options.axes, answers, catalogue)
     written = options.report.with_name(f".{options.report.name}.{os.getpid()}")
     try:
-        service: str = options.service.rstrip("/")
+        service: str = (options.service or "").rstrip("/")
         name = os.fsencode(options.input.name).decode("utf-8", "replace")  # whatever the locale makes of its bytes
-        text = report_of(listing, name, catalogue, service, options.lang)
+        text = report_of(listing, name, catalogue, service, options.lang or "en")
         written.write_text(text, encoding="utf-8")
         os.replace(written, options.report)
     finally:

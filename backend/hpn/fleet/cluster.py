@@ -22,7 +22,7 @@ def dask(scheduler: str | None, workers: int) -> Engine:
     try:
         distributed: Any = import_module("distributed")  # it has no types
     except ImportError:
-        raise FleetError("--engine dask needs the extra: pip install hpn-select[cluster]") from None
+        raise FleetError("--engine dask needs the extra: pip install '.[cluster]' in a checkout") from None
 
     def run(job: Job, parts: Mapping[int, Part]) -> Iterator[int]:
         with ExitStack() as stack:
