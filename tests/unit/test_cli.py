@@ -1,5 +1,6 @@
 """The command line: exit codes, what goes where, and that a mistake is a sentence and not a trace."""
 
+import errno
 import io
 import json
 import os
@@ -162,8 +163,21 @@ def test_a_port_that_is_taken_or_no_address_of_this_machine_is_a_sentence(
     assert capsys.readouterr().err == (
         f"127.0.0.1 port {port} (HPN_HOST, HPN_PORT): another program listens there; choose another port\n"
     )
+    assert not list(tmp_path.iterdir())  # the other's database, maybe
     assert main(["serve", "--host", "192.0.2.1", "--port", "0"]) == 2
     assert "192.0.2.1 port 0 (HPN_HOST, HPN_PORT): can’t be listened on: Cannot assign" in capsys.readouterr().err
+
+
+def test_a_port_that_permissions_forbid_is_a_sentence(monkeypatch: pytest.MonkeyPatch, capsys: Output) -> None:
+    def refuse(*_: object) -> None:
+        raise PermissionError(errno.EACCES, os.strerror(errno.EACCES))
+
+    monkeypatch.setattr(socket.socket, "bind", refuse)
+
+    assert main(["serve", "--port", "80"]) == 2
+    assert capsys.readouterr().err == (
+        "127.0.0.1 port 80 (HPN_HOST, HPN_PORT): can’t be listened on: Permission denied\n"
+    )
 
 
 def test_a_mistake_of_the_program_is_exit_code_1_in_words_and_a_trace_for_who_asks_for_it(

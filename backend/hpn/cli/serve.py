@@ -17,8 +17,8 @@ def run(options: argparse.Namespace) -> int:
     given = {name: getattr(options, name) for name in ("host", "port", "workers")}
     settings = Settings(**{name: value for name, value in given.items() if value is not None})
     load_catalogue(settings.catalogue_folder, settings.catalogue_supplement)
+    _require_free(settings.host, settings.port)  # first: beside a service that runs, its database stays as it is
     asyncio.run(_migrate(Store(**settings.database())))
-    _require_free(settings.host, settings.port)
     return serve.run(settings)
 
 

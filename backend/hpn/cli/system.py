@@ -2,18 +2,21 @@
 
 import argparse
 import errno
+import os
 
 CALLERS, OTHERS = 2, 1
 MEANING = {
     errno.ENOENT: "there is no such file",
     errno.EISDIR: "is a folder, where a file belongs",
-    errno.EACCES: "must not be read by this user; see its permissions",
+    errno.EACCES: "this user has no permission for it",
 }
 
 
 def words_of(error: OSError, options: argparse.Namespace) -> tuple[int, list[str]]:
     """Exit code and line: the caller's mistake where the error names a file, or what else was given."""
-    text = MEANING.get(error.errno or 0) or error.strerror or str(error)
+    number, text = error.errno or 0, error.strerror or str(error)
+    if text == os.strerror(number):  # what a command says itself is more than that
+        text = MEANING.get(number, text)
     if error.filename is None:
         return OTHERS, [f"hpn can’t go on: {text}"]
     return CALLERS, [f"{error.filename}: {text}"]
