@@ -147,6 +147,10 @@ def test_no_query_breaks_the_reader_and_all_of_it_comes_back(pairs: list[tuple[s
         ("1,234", "write 1.234 or 1234"),
         ("1 000", "write 1000"),
         ("1e999", "is too large"),
+        ("1e-400", "is too small"),
+        ("-0.0001e-999", "is too small"),
+        ("0.3,3", "is not a number; write one such as 9.3"),
+        ("1.5,2", "is not a number; write one such as 9.3"),
         ("4,,5", "is not a number; write one such as 9.3"),
         ("1,2345.6", "is not a number; write one such as 9.3"),
         ("nan", "is not a number; write one such as 9.3"),
@@ -169,6 +173,39 @@ def test_number_may_be_written_in_any_plain_way(text: str) -> None:
     form = link_reader.parse([("T", text), ("n", "250"), ("t", "0.3")])
     assert form.application is not None
     assert form.application.duty_cycle.load_phases[0].torque_Nm == 40
+
+
+@pytest.mark.parametrize("dash", ["–", "\u2011"])
+def test_dashes_of_documents_are_a_minus(dash: str) -> None:
+    form = links.parse([("T", f"{dash}40"), ("T", f"{dash}40 Nm"), *[("n", "250"), ("t", "0.3")] * 2])
+    assert form.application is not None
+    assert [phase.torque_Nm for phase in form.application.duty_cycle.load_phases] == [-40, -40]
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "message"),
+    [
+        ("Nk", "1.000", "write 1 or 1000"),
+        ("Lb", "20.000", "write 20 or 20000"),
+        ("Lh", "20.000 h", "write 20 or 20000"),
+        ("Lh", "20 000 h", "write 20000 h"),
+        ("Lh", "2.500", "write 2.5 or 2500"),
+        ("Nk", "2.500", "write 2500"),
+        ("u", "90 %", "write 0.9"),
+        ("i", "5,0", "write 5.0"),
+    ],
+)
+def test_whole_number_that_may_have_thousands_in_it_is_asked(name: str, text: str, message: str) -> None:
+    assert found(f"{PHASE}&{name}={text}&FR=5&Tk=9")[name, 0 if name == "i" else None] == message
+
+
+@pytest.mark.parametrize("name", ["T", "t", "n", "N"])
+@pytest.mark.parametrize("form", ["%20{}", "{} ", "{}[]"])
+def test_name_that_is_only_written_otherwise_is_proposed_itself(name: str, form: str) -> None:
+    written = form.format(name)
+    meant = "n" if name == "N" else name
+    said = [p.message.text for p in read(f"{PHASE}&{written}=1").problems]
+    assert any(text.endswith(f"did you mean {meant}?") for text in said)
 
 
 def test_minus_sign_of_a_word_processor_is_a_minus() -> None:

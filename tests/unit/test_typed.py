@@ -63,7 +63,12 @@ def test_unit_of_its_own_counts_before_the_readers_and_a_sum_is_in_the_readers(t
         ("n", "5 1/s", "1/s can be rev/s or rad/s"),
         ("fw", "1 Nm", "takes a number without a unit"),
         ("K3", "5 Nm", "Nm is not a unit of this quantity; it takes Nm/rad"),
-        ("T", "=40,5*2", "can’t be worked out"),
+        ("T", "=40,5*2", "write 40.5"),
+        ("T", "=40,500*2", "write 40.500 or 40500"),
+        ("T", "=1e-400", "is too small"),
+        ("T", "1e-400 kNm", "is too small"),
+        ("T", "1,5 Nm", "write 1.5 Nm"),
+        ("T", "1,234 Nm", "write 1.234 Nm or 1234 Nm"),
         ("T", "=", "can’t be worked out"),
         ("T", "=2**3", "can’t be worked out"),
         ("T", "=(2", "can’t be worked out"),
@@ -82,6 +87,7 @@ def test_what_is_wrong_with_a_unit_or_a_sum_is_said(name: str, text: str, proble
 
 def test_ambiguous_number_with_a_unit_is_asked_about() -> None:
     assert typed("T", "1.234 Nm", "de") == "write 1,234 or 1234"
+    assert typed("T", "=1.234*2", "de") == "write 1,234 or 1234"
 
 
 def test_every_unit_is_read_by_its_own_symbol() -> None:

@@ -13,12 +13,16 @@ LONGEST = 60
 """Characters; each number in them is below 1e1000, so that no result is large enough to take long."""
 
 _TOKEN = re.compile(r"\s*(?:([0-9.,]+(?:[eE][+-]?[0-9]{1,3})?)|([-+*/()]))", re.ASCII)
-_MARKS = str.maketrans({"\N{MINUS SIGN}": "-", "×": "*", "·": "*", "÷": "/"})
+_MARKS = str.maketrans({"\N{MINUS SIGN}": "-", "\N{EN DASH}": "-", "×": "*", "·": "*", "÷": "/"})
 _WRONG = N_("can’t be worked out; write a sum such as =40*2")
 
 
 class _WrongError(ValueError):
-    """The text is no sum."""
+    """The text is no sum; `told` says what is wrong with a number in it."""
+
+    def __init__(self, told: Sentence | None = None) -> None:
+        super().__init__()
+        self.told = told
 
 
 def worked_out(text: str, read: Callable[[str], str | Sentence | None]) -> str | Sentence:
@@ -26,17 +30,17 @@ def worked_out(text: str, read: Callable[[str], str | Sentence | None]) -> str |
     if len(text) > LONGEST:
         return Sentence(_WRONG)
     try:
-        return _plain(_Sum(text.removeprefix("=").translate(_MARKS), read).value())
+        value = _Sum(text.removeprefix("=").translate(_MARKS), read).value()
+        number = float(value)
     except ZeroDivisionError:
         return Sentence(N_("divides by zero"))
     except OverflowError:
         return Sentence(N_("is too large"))
-    except _WrongError:
-        return Sentence(_WRONG)
-
-
-def _plain(value: Fraction) -> str:
-    return repr(float(value)).removesuffix(".0")
+    except _WrongError as wrong:
+        return wrong.told or Sentence(_WRONG)
+    if value and not number:
+        return Sentence(N_("is too small"))
+    return repr(number).removesuffix(".0")
 
 
 class _Sum:
@@ -93,7 +97,7 @@ class _Sum:
         else:
             plain = self.read(self.number) if self.number else None
             if not isinstance(plain, str):
-                raise _WrongError
+                raise _WrongError(plain)
             value = Fraction(plain)
         self._step()
         return value

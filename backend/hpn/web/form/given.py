@@ -198,9 +198,14 @@ def shown_columns(*, with_loads: bool, varies: bool) -> list[str]:
 
 def unknown_name(name: str) -> Sentence:
     leaves = {s.path[-1].lower(): s.name for s in (*MOVE_BY_LEAF.values(), *SYMBOLS, *PHASE_SYMBOLS)}
-    names = {known.lower(): known for known in (*PHASE_BY_NAME, *BY_NAME, *MOVE_BY_NAME, *PAGE_NAMES, *LABELS)}
-    near = difflib.get_close_matches(name[:60].lower(), leaves | names, n=1, cutoff=0.4)
+    known = (*PHASE_BY_NAME, *BY_NAME, *MOVE_BY_NAME, *PAGE_NAMES, *LABELS)
+    names = {each.lower(): each for each in known}
+    bare = name[:60].strip().removesuffix("[]").strip()
+    exact = [bare] if bare in known else []
+    near = exact or [
+        (leaves | names)[key] for key in difflib.get_close_matches(bare.lower(), leaves | names, n=1, cutoff=0.4)
+    ]
     if not near:
         return Sentence(N_("{name} is not a parameter of this page"), {"name": name[:60]})
-    values = {"name": name[:60], "near": (leaves | names)[near[0]]}
+    values = {"name": name[:60], "near": near[0]}
     return Sentence(N_("{name} is not a parameter of this page; did you mean {near}?"), values)

@@ -51,8 +51,8 @@ LONGEST_ASIDE = 8_000
 _UNSEEN = re.compile("[\u00ad\u200b-\u200d\u2060\ufeff]")
 """Characters without width, which come with links copied from documents that break their lines with them."""
 
-_SEVERAL = re.compile(r"[0-9]{1,5}([\s,;/]+[0-9]{1,5}){1,10}")
-"""Several whole numbers in one text."""
+_SEVERAL = re.compile(r"(?![0-9]+,0+$)[0-9]{1,5}([\s,;/]+[0-9]{1,5}){1,10}")
+"""Several whole numbers in one text; `5,0` is one."""
 
 # Where an error of a whole part of the model is shown.
 _PARTS = {
@@ -317,7 +317,7 @@ def _put(
 ) -> None:
     if not text.strip():
         return
-    value = read_value(text, symbol.kind)
+    value = read_value(text, symbol.kind, mostly_whole=symbol.unit == "h")
     if isinstance(value, Sentence):
         problems.append(FieldProblem(place.name, place.index, value))
         return

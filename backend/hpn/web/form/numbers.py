@@ -8,6 +8,7 @@ A number may carry a unit of its own, `40 Nm`, or be a sum, `=40*2`: the wire ha
 import re
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
+from decimal import Decimal
 from math import isfinite
 from typing import NamedTuple
 
@@ -25,6 +26,9 @@ DIGITS = 5
 """Digits that a number from elsewhere is shown with in another unit."""
 
 _GROUPED = re.compile(r"[+-]?[1-9][0-9]{0,2}(\.[0-9]{3})+")
+DASHES = str.maketrans(dict.fromkeys("\N{MINUS SIGN}\N{EN DASH}\N{NON-BREAKING HYPHEN}", "-"))
+"""What stands for a minus in documents."""
+
 LONGEST_TEXT = 100
 _LONGEST = 60
 """Characters of a text, such as the designation of a motor, and of a number."""
@@ -98,22 +102,31 @@ class _Known:
             return Entry(plain, text) if self.reader.marker or plain != text.strip() else text
         own = measure is self.reader.measure(unit)
         value = self.was.get((unit, plain), measure.wire(plain)) if own else measure.wire(plain)
-        return Entry(_plain(value) if isfinite(value) else plain, text)
+        return Entry(_plain(value) if isfinite(value) and not _is_too_small(plain, value) else plain, text)
 
     def _number(self, text: str, unit: str) -> tuple[str | Sentence | None, measures.Measure]:
         """Number in plain notation and the unit that it is in; None where it is none, a message for what is wrong."""
         own, decimal = self.reader.measure(unit), self.reader.decimal
         if text.lstrip().startswith("="):
-            return worked_out(text.strip(), lambda number: read_decimal(number, decimal)), own
+            return worked_out(text.strip(), lambda number: read_decimal(number, decimal) or _advice(number)), own
         plain = read_decimal(text, decimal)
         if plain is not None or len(text) > _LONGEST:
             return plain, own
+        if not unit and text.rstrip().endswith("%"):
+            return _without_percent(read_decimal(text.rstrip()[:-1], decimal)), own
         number, spelled = split_unit(text.strip())
-        plain = read_decimal(number, decimal)
-        if not spelled or plain is None or isinstance(plain, Sentence):
-            return plain if spelled else None, own
+        plain = (read_decimal(number, decimal) or _advice(number, spelled)) if spelled else None
+        if not isinstance(plain, str):
+            return plain, own
         code = unit_code(spelled, unit)
         return (code, own) if isinstance(code, Sentence) else (plain, measures.entered(unit, code))
+
+
+def _without_percent(number: str | Sentence | None) -> Sentence | None:
+    """What to write in place of a percentage."""
+    if not isinstance(number, str):
+        return None
+    return Sentence(N_("write {number}"), {"number": f"{Decimal(number).scaleb(-2).normalize():f}"})
 
 
 def unit_code(spelled: str, unit: str) -> str | Sentence:
@@ -136,7 +149,7 @@ def unit_code(spelled: str, unit: str) -> str | Sentence:
 
 def read_decimal(text: str, decimal: str) -> str | Sentence | None:
     """A number in plain notation; None where it is none, a message where it could be two."""
-    plain = text.strip().replace("\N{MINUS SIGN}", "-")
+    plain = text.strip().translate(DASHES)
     if len(plain) > _LONGEST:
         return None
     if decimal == ",":
@@ -176,7 +189,7 @@ class _Field:
 
     def __init__(self, wire: str, unit: str, reader: Reader, *, own: bool) -> None:
         self.unit, self.reader, self.measure = unit, reader, reader.measure(unit)
-        plain = wire.strip().replace("\N{MINUS SIGN}", "-")
+        plain = wire.strip().translate(DASHES)
         number = bool(NUMBER.fullmatch(plain))
         self.value = float(plain) if number and not self.measure.same and isfinite(float(plain)) else None
         self.short = "" if self.value is None else self.measure.written(self.value, DIGITS), unit
@@ -217,25 +230,49 @@ _ANY_NUMBER = re.compile(r"[+-]?([0-9]+(\.[0-9]*)?|\.[0-9]+)([eE][+-]?[0-9]+)?")
 _COMMAS = re.compile(r"[+-]?[0-9]{1,3}(,[0-9]{3})+(?![0-9,])")
 
 
-def read_value(text: str, kind: Kind) -> float | int | str | Sentence:
-    """Value that a text stands for, or what to write instead."""
+_IN_GROUPS = re.compile(r"[+-]?[1-9][0-9]{0,2}\.[0-9]{2}0")
+"""A number as nobody writes a whole one, unless the point is meant to stand between thousands."""
+
+
+def read_value(text: str, kind: Kind, *, mostly_whole: bool = False) -> float | int | str | Sentence:
+    """Value that a text stands for, or what to write instead; `mostly_whole` where hardly anyone means decimals."""
     if isinstance(text, Entry) and text.refusal:
         return text.refusal
-    text = text.strip()
+    given, text = text, text.strip()
     if kind == "text":
         return text if len(text) <= LONGEST_TEXT else Sentence(N_("is too long"))
-    plain = text.replace("\N{MINUS SIGN}", "-")
+    plain = text.translate(DASHES)
     if len(plain) > _LONGEST or not _ANY_NUMBER.fullmatch(plain):
         return _not_a_number(plain, kind)
     value = float(plain)
     if value in (float("inf"), float("-inf")):
         return Sentence(N_("is too large"))
+    if _is_too_small(plain, value):
+        return Sentence(N_("is too small"))
+    with_comma = isinstance(given, Entry) and "," in given.shown
+    if (mostly_whole or kind == "whole") and not with_comma and _IN_GROUPS.fullmatch(plain):
+        decimal = plain.rstrip("0").rstrip(".")
+        return _to_write([decimal, plain.replace(".", "")][kind == "whole" and "." in decimal :])
     if kind == "number":
         return value
     return int(value) if value.is_integer() else Sentence(NOT_WHOLE)
 
 
-def _not_a_number(text: str, kind: Kind) -> Sentence:
+def _is_too_small(plain: str, value: float) -> bool:
+    """Whether a number in plain notation is another one than the zero that became of it."""
+    return value == 0 and bool(re.search("[1-9]", re.split("[eE]", plain)[0]))
+
+
+_SUCH_AS = N_("is not a number; write one such as 9.3")
+
+
+def _advice(text: str, unit: str = "") -> Sentence | None:
+    """What to write instead of a number with this unit, None where it can't be told."""
+    told = _not_a_number(text.strip().translate(DASHES), "number", unit)
+    return None if told.template == _SUCH_AS else told
+
+
+def _not_a_number(text: str, kind: Kind, unit: str = "") -> Sentence:
     """What to write instead, where it can be told."""
     tight = re.sub(r"[\s'’]", "", text)
     if len(tight) > _LONGEST:
@@ -244,17 +281,22 @@ def _not_a_number(text: str, kind: Kind) -> Sentence:
     readings = [number for number in numbers if kind != "whole" or float(number).is_integer()]
     if numbers and not readings:
         return Sentence(NOT_WHOLE)
+    return _to_write([f"{reading} {unit}".strip() for reading in readings]) if readings else Sentence(_SUCH_AS)
+
+
+def _to_write(readings: Sequence[str]) -> Sentence:
     if len(readings) > 1:
         return Sentence(N_("write {first} or {second}"), {"first": readings[0], "second": readings[1]})
-    if readings:
-        return Sentence(N_("write {number}"), {"number": readings[0]})
-    return Sentence(N_("is not a number; write one such as 9.3"))
+    return Sentence(N_("write {number}"), {"number": readings[0]})
 
 
 def _readings(text: str) -> list[str]:
     """Numbers that a text with commas may stand for; `1,234` is either of two."""
     if text.rfind(".") > text.rfind(",") or text.count(",") > 1:
         return [text.replace(",", "")] if _COMMAS.match(text) else []
+    whole = text.partition(",")[0]
+    if "." in whole and not _GROUPED.fullmatch(whole):
+        return []
     decimal = text.replace(".", "").replace(",", ".")
     if re.fullmatch(r"[+-]?[1-9][0-9]{0,2},[0-9]{3}", text):
         return [decimal, text.replace(",", "")]
