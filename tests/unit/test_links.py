@@ -177,7 +177,7 @@ def test_number_may_be_written_in_any_plain_way(text: str) -> None:
 
 @pytest.mark.parametrize("dash", ["–", "\u2011"])
 def test_dashes_of_documents_are_a_minus(dash: str) -> None:
-    form = links.parse([("T", f"{dash}40"), ("T", f"{dash}40 Nm"), *[("n", "250"), ("t", "0.3")] * 2])
+    form = link_reader.parse([("T", f"{dash}40"), ("T", f"{dash}40 Nm"), *[("n", "250"), ("t", "0.3")] * 2])
     assert form.application is not None
     assert [phase.torque_Nm for phase in form.application.duty_cycle.load_phases] == [-40, -40]
 

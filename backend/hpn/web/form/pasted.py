@@ -30,7 +30,7 @@ from hpn.web.form.columns import (
     has_two_ways,
     skipped,
 )
-from hpn.web.form.headings import QUANTITIES, heading_of
+from hpn.web.form.headings import QUANTITIES, heading_of, is_sum
 from hpn.web.form.sheets import Grid, RefusedError, grids_of, no_number
 from hpn.web.form.symbols import columns_used
 from hpn.wording import N_, Sentence, Value
@@ -267,7 +267,11 @@ class _Reading:
         sure = []
         for total in totals if phases and len(totals) <= MOST_TOTALS else ():
             others = [other.cells for other in totals if other is not total]
-            if self._sums_up(total, phases, mark) or self._sums_up(total, [*phases, *others], mark):
+            if (
+                self._is_bare_sum(total)
+                or self._sums_up(total, phases, mark)
+                or self._sums_up(total, [*phases, *others], mark)
+            ):
                 sure.append(total)
         open_ = tuple(total for total in totals if total not in sure)
         if open_ and self.choices.totals not in TOTALS:
@@ -277,6 +281,11 @@ class _Reading:
             raise RefusedError(N_("there is a header, but no row of numbers below it"))
         self.notes += [skipped(*each[::2]) for each in (totals if self.choices.totals == "sum" else sure)]
         return open_
+
+    def _is_bare_sum(self, total: Labelled) -> bool:
+        """Whether a row is called a sum and has neither torque nor speed, whatever notation its time is in."""
+        moving = [column.place for column in self.used if column.role in ("T", "n")]
+        return is_sum(total.text) and all(is_blank(total.cells[place]) for place in moving)
 
     def _sums_up(self, total: Labelled, rows: Sequence[Sequence[str]], mark: Decimal) -> bool:
         """Whether all numbers of a row are the sums, the means, the largest or the smallest of other rows."""
