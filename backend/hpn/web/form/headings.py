@@ -155,12 +155,6 @@ def _folded(name: str) -> str:
     return " ".join(name.replace("_", " ").replace(".", ". ").casefold().split()).replace(".", "").strip()
 
 
-def is_sum(cell: str) -> bool:
-    """Whether a cell calls its row a sum and nothing else."""
-    summed = _SUMS.fullmatch(_folded(cell.rstrip(":"))) if len(cell) <= LONGEST else None
-    return summed is not None and not summed["rest"]
-
-
 def is_total(cell: str) -> bool:
     """Whether a cell may label its row as a sum or another figure of the whole table."""
     if len(cell) > LONGEST:

@@ -9,7 +9,7 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import chain, pairwise
-from math import isclose, isfinite, nan
+from math import isfinite
 
 from hpn import units
 from hpn.application import DutyCycle
@@ -30,9 +30,10 @@ from hpn.web.form.columns import (
     has_two_ways,
     skipped,
 )
-from hpn.web.form.headings import QUANTITIES, heading_of, is_sum
+from hpn.web.form.headings import QUANTITIES, heading_of
 from hpn.web.form.sheets import Grid, RefusedError, grids_of, no_number
 from hpn.web.form.symbols import columns_used
+from hpn.web.form.totals import totals_of
 from hpn.wording import N_, Sentence, Value
 
 COLUMNS = tuple(QUANTITIES)
@@ -49,11 +50,8 @@ PARTS = {"one": N_("one cycle"), "first": N_("several: take the first alone")}
 PHASE = {"row": N_("a row"), "column": N_("a column")}
 """What the times of a table, its last row, rows named like sums, rows apart by a title, and a phase can be."""
 
-MOST_TOTALS, MOST_NAMED = 20, 5
-"""Rows named like totals that are compared with the others, and that a question names."""
-
-THREE_DIGITS = 0.005
-"""Relative error of a number rounded to three digits."""
+MOST_NAMED = 5
+"""Rows named like totals that a question names."""
 
 Row = tuple[Entry | None, ...]
 
@@ -262,49 +260,15 @@ class _Reading:
 
     def _totals(self, mark: Decimal) -> tuple[Labelled, ...]:
         """Rows that are named like totals without being any, and asked for; those that are totals are skipped."""
-        totals, named = self.body.totals, {total.number for total in self.body.totals}
-        phases = [row for number, row in zip(self.body.numbers, self.body.rows, strict=True) if number not in named]
-        sure = []
-        for total in totals if phases and len(totals) <= MOST_TOTALS else ():
-            others = [other.cells for other in totals if other is not total]
-            if (
-                self._is_bare_sum(total)
-                or self._sums_up(total, phases, mark)
-                or self._sums_up(total, [*phases, *others], mark)
-            ):
-                sure.append(total)
+        totals, sure = self.body.totals, totals_of(self.body, self.used, mark)
         open_ = tuple(total for total in totals if total not in sure)
         if open_ and self.choices.totals not in TOTALS:
             listed = ", ".join(f"{total.number} ({total.text[:40]})" for total in open_[:MOST_NAMED])
             self._ask(N_("Rows that may be phases, sums or other figures of the table: {rows}."), rows=listed)
-        if self.choices.totals == "sum" and not phases:
+        if self.choices.totals == "sum" and {total.number for total in totals}.issuperset(self.body.numbers):
             raise RefusedError(N_("there is a header, but no row of numbers below it"))
         self.notes += [skipped(*each[::2]) for each in (totals if self.choices.totals == "sum" else sure)]
         return open_
-
-    def _is_bare_sum(self, total: Labelled) -> bool:
-        """Whether a row is called a sum and has neither torque nor speed, whatever notation its time is in."""
-        moving = [column.place for column in self.used if column.role in ("T", "n")]
-        return is_sum(total.text) and all(is_blank(total.cells[place]) for place in moving)
-
-    def _sums_up(self, total: Labelled, rows: Sequence[Sequence[str]], mark: Decimal) -> bool:
-        """Whether all numbers of a row are the sums, the means, the largest or the smallest of other rows."""
-        columns = []
-        for column in self.used:
-            cells = [row[column.place] for row in (total.cells, *rows) if not is_blank(row[column.place])]
-            if cells and cells[0] is total.cells[column.place] and cells[0] != total.text:
-                columns.append([entry(cell, mark) for cell in cells])
-        read = [[float(cell.number) if cell else nan for cell in column] for column in columns]
-        of_one_unit = all(len({cell and cell.unit for cell in column}) == 1 for column in columns)
-        figures = (sum, _mean, max, min)
-        return (
-            len(rows) > 1
-            and of_one_unit
-            and any(
-                all(isclose(own, figure(others or [nan]), rel_tol=THREE_DIGITS) for own, *others in read)
-                for figure in figures
-            )
-        )
 
     # --- Times and sums -----------------------------------------------------------------------------------------------
 
@@ -429,10 +393,6 @@ BLANK = {
     "n": N_("row {row}: the speed is blank"),
     "t": N_("row {row}: the duration is blank"),
 }
-
-
-def _mean(values: Sequence[float]) -> float:
-    return sum(values) / len(values)
 
 
 def _text(value: float) -> str:
