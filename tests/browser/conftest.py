@@ -13,7 +13,7 @@ from urllib.parse import urlsplit
 from urllib.request import urlopen
 
 import pytest
-from playwright.sync_api import Browser, BrowserContext, Page, Playwright, expect, sync_playwright
+from playwright.sync_api import Browser, BrowserContext, Locator, Page, Playwright, expect, sync_playwright
 
 AXE = Path(__file__).parents[2] / "frontend/node_modules/axe-core/axe.min.js"
 BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
@@ -148,6 +148,21 @@ def visitor(chromium: Browser, server: str) -> Iterator[Visitor]:
 def open_section(page: Page, name: str) -> None:
     """Show a section of the result."""
     page.get_by_role("navigation", name="Sections of the result").get_by_role("link", name=name).click()
+
+
+def torque(page: Page, phase: int) -> Locator:
+    """Field of the torque of a phase, counted from 1."""
+    return page.get_by_label(f"Torque, phase {phase}")
+
+
+def pause(page: Page) -> Locator:
+    """Field of the pause."""
+    return page.get_by_role("textbox", name="Pause")
+
+
+def button(page: Page, name: str) -> Locator:
+    """Button of exactly this name."""
+    return page.get_by_role("button", name=name, exact=True)
 
 
 ASKED_FOR = {rule: {"enabled": True} for rule in ("target-size", "label-content-name-mismatch")}

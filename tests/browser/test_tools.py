@@ -1,14 +1,12 @@
-"""Journeys with the tools around the form: paste, files, undo, keys, a lost server, and the catalogue."""
+"""Journeys with the tools around the form: paste, files, a lost server, and the catalogue."""
 
 import re
 from pathlib import Path
-from typing import Any
-from urllib.parse import parse_qs, urlsplit
 
 import pytest
 from playwright.sync_api import Page, expect
 
-from tests.browser.conftest import Visitor, answer_held_back, open_section, violations
+from tests.browser.conftest import Visitor, answer_held_back, button, open_section, pause, torque, violations
 
 EXAMPLE = "/?T=40&n=250&t=0.3&T=32&n=500&t=3&T=20&n=250&t=0.4&tp=4&Tk=200&i=5"
 GERMAN = "Drehmoment [Nm]\tDrehzahl [1/min]\tDauer [s]\r\n9,3\t1.250\t0,3\r\n12,5\t500\t1,25\r\n"
@@ -24,18 +22,6 @@ PASTE = """([id, text]) => {
 def paste(page: Page, text: str, into: str = "T-0") -> bool:
     page.locator(f"#{into}").focus()
     return bool(page.evaluate(PASTE, [into, text]))
-
-
-def torque(page: Page, phase: int) -> Any:
-    return page.get_by_label(f"Torque, phase {phase}")
-
-
-def pause(page: Page) -> Any:
-    return page.get_by_role("textbox", name="Pause")
-
-
-def button(page: Page, name: str) -> Any:
-    return page.get_by_role("button", name=name, exact=True)
 
 
 def test_german_table_is_shown_and_taken_and_undone(visitor: Visitor) -> None:
@@ -155,162 +141,6 @@ def test_table_and_file_are_taken_without_script(visitor: Visitor, tmp_path: Pat
     button(page, "Show what is read").click()
     button(page, "Append").click()
     expect(torque(page, 3)).to_have_value("9.3")
-
-
-def test_every_edit_can_be_undone_and_done_again(visitor: Visitor) -> None:
-    page = visitor.open(EXAMPLE)
-    undo, redo = button(page, "Undo"), button(page, "Redo")
-    expect(undo).to_have_attribute("aria-disabled", "true")
-    torque(page, 1).press_sequentially("5")
-    expect(page).to_have_url(re.compile("T=540&"))
-    button(page, "Remove phase 2").click()
-    expect(torque(page, 3)).to_have_count(0)
-    page.get_by_role("checkbox", name="7", exact=True).check(force=True)
-    expect(page).to_have_url(re.compile("i=7"))
-    page.keyboard.press("Control+z")
-    expect(page.get_by_role("checkbox", name="7", exact=True)).not_to_be_checked()
-    undo.click()
-    expect(torque(page, 2)).to_have_value("32")
-    undo.click()
-    expect(torque(page, 1)).to_have_value("40")
-    expect(undo).to_have_attribute("aria-disabled", "true")
-    expect(undo).to_be_focused()
-    redo.click()
-    expect(torque(page, 1)).to_have_value("540")
-    expect(torque(page, 3)).to_have_value("20")
-    redo.click()
-    expect(torque(page, 3)).to_have_count(0)
-    expect(page.get_by_role("checkbox", name="7", exact=True)).not_to_be_checked()
-    redo.click()
-    expect(page.get_by_role("checkbox", name="7", exact=True)).to_be_checked()
-    expect(torque(page, 1)).to_have_value("540")
-    expect(torque(page, 3)).to_have_count(0)
-    expect(redo).to_have_attribute("aria-disabled", "true")
-
-
-def test_undo_key_in_a_text_field_stays_the_browsers(visitor: Visitor) -> None:
-    page = visitor.open(EXAMPLE)
-    button(page, "Remove phase 3").click()
-    expect(torque(page, 3)).to_have_count(0)
-    torque(page, 1).focus()
-    page.keyboard.press("Control+z")
-    pause(page).fill("5")  # a later edit has its answer; what the key had asked for would be in it
-    expect(page).to_have_url(re.compile(r"/\?T=40&n=250&t=0\.3&T=32&n=500&t=3&tp=5&"))
-    expect(torque(page, 3)).to_have_count(0)
-
-
-def test_keys_edit_rows_and_are_listed(visitor: Visitor) -> None:
-    page = visitor.open(EXAMPLE)
-    torque(page, 1).focus()
-    page.keyboard.press("Alt+ArrowDown")
-    expect(torque(page, 2)).to_have_value("40")
-    torque(page, 3).focus()
-    page.keyboard.press("Alt+Delete")
-    expect(torque(page, 3)).to_have_count(0)
-    expect(torque(page, 2)).to_be_focused()  # the row that takes the place of the removed one
-    page.keyboard.press("Alt+Enter")
-    expect(torque(page, 3)).to_be_focused()
-    page.keyboard.type("?")
-    expect(torque(page, 3)).to_have_value("?")
-    expect(page.get_by_role("dialog")).to_have_count(0)
-    torque(page, 3).fill("")
-    page.keyboard.press("Control+Enter")
-    expect(page.get_by_role("region", name="Result")).to_be_focused()
-    page.keyboard.press("?")
-    expect(page.get_by_role("dialog", name="Shortcuts")).to_contain_text("Alt+Enter")
-    page.keyboard.press("Escape")
-    expect(page.get_by_role("region", name="Result")).to_be_focused()
-    page.keyboard.press("Escape")
-    expect(torque(page, 3)).to_be_focused()
-
-
-def shown(page: Page) -> list[list[str]]:
-    """What the duty table's fields say, row by row."""
-    rows = page.get_by_role("table", name="Load phases").get_by_role("row")
-    return [
-        [field.input_value() for field in fields] for row in rows.all() if (fields := row.get_by_role("textbox").all())
-    ]
-
-
-def addressed(page: Page) -> list[list[str]]:
-    """Rows of the duty cycle in the address."""
-    query = parse_qs(urlsplit(page.url).query)
-    return [list(row) for row in zip(query["T"], query["n"], query["t"], strict=True)]
-
-
-def in_rows(rows: list[list[str]]) -> re.Pattern[str]:
-    """Address of a duty cycle."""
-    return re.compile(re.escape("/?" + "&".join(f"T={T}&n={n}&t={t}" for T, n, t in rows) + "&tp="))
-
-
-ROWS = [["40", "250", "0.3"], ["32", "500", "3"], ["20", "250", "0.4"]]
-
-
-@pytest.mark.parametrize(
-    ("key", "phase", "column", "order", "lands", "at_once"),
-    [
-        pytest.param("Alt+ArrowDown", 1, "T", [1, 0, 2], 2, False, marks=pytest.mark.soak),
-        ("Alt+ArrowDown", 1, "n", [1, 0, 2], 2, True),
-        pytest.param("Alt+ArrowUp", 2, "T", [1, 0, 2], 1, True, marks=pytest.mark.soak),
-        ("Alt+ArrowUp", 1, "t", [0, 1, 2], 1, False),
-        pytest.param("Alt+Delete", 1, "n", [1, 2], 1, False, marks=pytest.mark.soak),
-        ("Alt+Delete", 3, "t", [0, 1], 2, True),
-    ],
-)
-def test_row_edited_by_key_in_a_changed_cell_takes_the_figures_along(
-    visitor: Visitor, key: str, phase: int, column: str, order: list[int], lands: int, *, at_once: bool
-) -> None:
-    page = visitor.open(EXAMPLE)
-    name, typed = {"T": ("Torque", "36"), "n": ("Speed", "245"), "t": ("Duration", "0.7")}[column]
-    given = [list(row) for row in ROWS]
-    given[phase - 1]["Tnt".index(column)] = typed
-    cell = page.get_by_label(f"{name}, phase {phase},")
-    cell.select_text()
-    page.keyboard.type(typed)
-    if not at_once:
-        expect(page).to_have_url(re.compile(f"{column}={typed}&"))
-    wanted = [given[row] for row in order]
-
-    with page.expect_response(re.compile(r"&do=")):
-        page.keyboard.press(key)
-
-    expect(page.get_by_label(f"{name}, phase {lands},")).to_be_focused()
-    expect(page).to_have_url(in_rows(wanted))
-    assert shown(page) == addressed(page) == wanted
-    expect(page.get_by_label(f"{name}, phase {lands},")).to_be_focused()
-    with page.expect_response("**/?*"):
-        page.get_by_label("Pause").fill("5")
-    expect(page).to_have_url(re.compile("tp=5"))
-    assert shown(page) == addressed(page) == wanted
-
-
-def test_row_moved_by_key_twice_in_quick_succession_goes_two_places(visitor: Visitor) -> None:
-    page = visitor.open(EXAMPLE)
-    torque(page, 1).fill("36")
-    with answer_held_back(page, lambda: page.keyboard.press("Alt+ArrowDown")):
-        page.keyboard.press("Alt+ArrowDown")
-    expect(torque(page, 3)).to_be_focused()
-    expect(torque(page, 3)).to_have_value("36")
-    wanted = [ROWS[1], ROWS[2], ["36", "250", "0.3"]]
-    expect(page).to_have_url(in_rows(wanted))
-    assert shown(page) == addressed(page) == wanted
-
-
-def test_typing_while_a_row_edit_is_under_way_keeps_both_and_the_place(visitor: Visitor) -> None:
-    page = visitor.open(EXAMPLE)
-    with answer_held_back(page, button(page, "Remove phase 1").click):
-        torque(page, 3).fill("205")
-    expect(torque(page, 3)).to_have_count(0)
-    expect(torque(page, 2)).to_have_value("205")
-    expect(torque(page, 2)).to_be_focused()
-    expect(page).to_have_url(re.compile(r"\?T=32&n=500&t=3&T=205&"))
-
-
-def test_rows_added_in_quick_succession_all_come(visitor: Visitor) -> None:
-    page = visitor.open(EXAMPLE)
-    with answer_held_back(page, button(page, "+ Add phase").click):
-        button(page, "+ Add phase").click()
-    expect(torque(page, 5)).to_be_visible()
 
 
 def test_long_wait_is_shown_and_a_short_one_is_not(visitor: Visitor) -> None:
