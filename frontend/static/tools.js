@@ -48,6 +48,12 @@ document.addEventListener("htmx:config:request", (event) => {
   ctx.request.body.set("link", contentOf(form));
 });
 
+// These forms ask some moments after a choice: the answer to the choice before would put that one back into the form.
+document.addEventListener("input", (event) => {
+  const { form } = event.target;
+  if (form?.matches("#paste-form, #ordering-form")) form.dispatchEvent(new Event("htmx:abort"));
+});
+
 // The preview is exchanged whole, so that each select shows what the server read; who answers keeps the place.
 let answered = null;
 

@@ -191,10 +191,10 @@ HOLD = """() => {
 
 
 @contextmanager
-def answer_held_back(page: Page, after: Callable[[], None]) -> Iterator[None]:
+def answer_held_back(page: Page, after: Callable[[], None], address: str = "**/?*") -> Iterator[None]:
     """What a page asks the server for in consequence is under way and not answered before the block ends."""
     page.evaluate(HOLD)
-    with page.expect_request("**/?*"):
+    with page.expect_request(address):
         after()
     yield
     page.evaluate("release()")

@@ -1,6 +1,7 @@
 """Journeys with the tools around the form: paste, files, a lost server, and the catalogue."""
 
 import re
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -60,6 +61,18 @@ def test_ambiguous_table_is_asked_about_by_keyboard(visitor: Visitor) -> None:
         page.keyboard.press("Tab")
     page.keyboard.press("Enter")
     expect(torque(page, 1)).to_have_value("1234")
+
+
+def test_choice_made_while_the_answer_to_the_one_before_is_under_way_counts(visitor: Visitor) -> None:
+    """The table is asked for 150 ms after a choice: an answer that came in between showed the choice before it."""
+    page = visitor.open(EXAMPLE)
+    paste(page, "1.234\t250\t3")
+    mark = page.get_by_label("The decimal mark is")
+    expect(mark).to_be_focused()
+    with answer_held_back(page, partial(page.keyboard.press, "ArrowDown"), "**/paste"):
+        page.keyboard.press("ArrowDown")
+    expect(page.get_by_role("cell", name="1\u202f234", exact=True)).to_be_visible()
+    expect(mark).to_have_value(",")
 
 
 def test_column_is_corrected_and_taken(visitor: Visitor) -> None:
