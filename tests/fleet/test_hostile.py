@@ -3,12 +3,14 @@
 import random
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from hpn.catalogue import Catalogue
+from hpn.fleet import outcome
 from hpn.fleet.errors import FleetError
 from hpn.fleet.run import Order, size_fleet
-from tests.fleet.tables import here, in_long_form, quiet, row_of, write
+from tests.fleet.tables import here, in_long_form, quiet, read, row_of, write
 from tests.fuzz.mutation import mutated
 from tests.property.draw import at_random
 
@@ -33,3 +35,14 @@ def test_a_broken_table_is_sized_or_refused(
             assert path.name in str(error), seed
             outcomes.add("refused")
     assert outcomes == {"sized", "refused"} or suffix in (".parquet", ".arrow")
+
+
+def test_axis_that_only_the_rules_for_columns_refuse_is_rejected_and_ends_no_fleet(
+    tmp_path: Path, catalogue: Catalogue, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(outcome, "have_sound_lists", lambda table: np.arange(table.num_rows) > 0)
+    path = write(tmp_path / "in.ndjson", [row_of(f"a{seed}", at_random(random.Random(seed))) for seed in range(2)])
+    size_fleet(Order(path, tmp_path / "out.ndjson"), catalogue, here, quiet)
+    refused, sized = read(tmp_path / "out.ndjson")
+    assert refused["error"] == f"axis: {outcome.DISAGREED}"
+    assert sized["error"] is None

@@ -19,9 +19,13 @@ from hpn.faults import REQUIRED, faults_of
 from hpn.fleet.axes import Allowed, Axes, BoolArray, IntArray, have_sound_lists
 from hpn.fleet.columns import AXIS, COLUMNS
 from hpn.selection import Candidate, Reserve, candidates_of
+from hpn.wording import N_
 
 MOST_FAULTS = 20
 """Faults of one axis that are told."""
+
+DISAGREED = N_("is refused by the rules for columns and taken by those for one axis; please report it with this axis")
+"""Reason of a row on which both disagree, a fault of the service that ends no fleet."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -199,7 +203,7 @@ def _found(table: pa.Table, row: int, catalogue: Catalogue) -> list[Fault]:
         with_listed_motor(application, catalogue)
     except (ValidationError, InputError) as error:
         return [_located(row, tuple(location), text) for location, text in faults_of(error)]
-    raise RuntimeError(f"the columns refuse axis {cells[AXIS]!r}, which the models take")
+    return [Fault(row, AXIS, DISAGREED)]
 
 
 def _faults_of_lists(cells: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
