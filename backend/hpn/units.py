@@ -102,11 +102,15 @@ _PINT = {
     "degC": "degC",
     "degF": "degF",
     "kNm": "kilonewton * meter",
+    "daNm": "decanewton * meter",
     "Nmm": "newton * millimeter",
     "Ncm": "newton * centimeter",
     "mNm": "millinewton * meter",
     "oz_in": "force_ounce * inch",
+    "kgf_m": "kilogram_force * meter",
+    "kgf_cm": "kilogram_force * centimeter",
     "rev_per_s": "revolution / second",
+    "deg_per_min": "degree / minute",
     "kN": "kilonewton",
     "daN": "decanewton",
     "g": "gram",
@@ -121,8 +125,11 @@ _PINT = {
     "h": "hour",
 }
 FURTHER = {
-    "torque": {"kNm": "kNm", "Ncm": "Ncm", "Nmm": "Nmm", "mNm": "mNm", "oz_in": "oz·in"},
-    "speed": {"rev_per_s": N_("rev/s")},
+    "torque": {
+        **{"kNm": "kNm", "daNm": "daNm", "Ncm": "Ncm", "Nmm": "Nmm", "mNm": "mNm"},
+        **{"oz_in": "oz·in", "kgf_m": "kgf·m", "kgf_cm": "kgf·cm"},
+    },
+    "speed": {"rev_per_s": N_("rev/s"), "deg_per_min": "°/min"},
     "force": {"kN": "kN", "daN": "daN"},
     "weight": {"g": "g"},
     "length": {"cm": "cm", "m": "m"},
@@ -234,10 +241,13 @@ READ = {name: {**CHOICES.get(name, {}), **FURTHER.get(name, {})} for name in (*C
 """What is measured -> codes of the units that it may be given in, with their symbols."""
 
 _SPELLED = {
-    "rpm": "rpm 1/min /min U/min Umdr/min Umdr./min r/min rev/min Upm tr/min giri/min varv/min min-1 omw/min ot/min",
-    "rev_per_s": "rev/s rev/sec U/s r/s rps tr/s giri/s varv/s 1/s /s s-1 Hz",
+    "rpm": "rpm r.p.m. 1/min /min U/min Umdr/min r/min rev/min revs/min Upm tr/min giri/min varv/min omw/min ot/min "
+    "min-1 U·min-1 r·min-1 rev·min-1 tr·min-1",
+    "rev_per_s": "rev/s rev/sec revs/s revs/sec U/s r/s rps tr/s giri/s varv/s 1/s /s s-1 Hz "
+    "U·s-1 r·s-1 rev·s-1 tr·s-1",
     "rad_per_s": "rad/s rad/sec rads-1 1/s /s s-1",
-    "deg_per_s": "°/s deg/s deg/sec degree/s degrees/s Grad/s degs-1 °s-1",
+    "deg_per_s": "°/s °/sec deg/s deg/sec degree/s degrees/s Grad/s degs-1 °s-1",
+    "deg_per_min": "°/min deg/min degree/min degrees/min Grad/min",
     "N": "N Newton newtons",
     "kN": "kN",
     "daN": "daN",
@@ -262,28 +272,36 @@ _SPELLED = {
     "h": "h hr hrs hour hours Std Std. Stunde Stunden heures",
 }
 _ARMS = {
-    "Nm": ("N", "m"),
-    "kNm": ("kN", "m"),
-    "Ncm": ("N", "cm"),
-    "Nmm": ("N", "mm"),
-    "mNm": ("mN", "m"),
-    "oz_in": ("ozf oz", "in"),
-    "lb_in": ("lbf lb lbs", "in"),
-    "lb_ft": ("lbf lb lbs", "ft"),
+    "Nm": "N·m kN·mm",
+    "kNm": "kN·m",
+    "daNm": "daN·m",
+    "Ncm": "N·cm cN·m",
+    "Nmm": "N·mm",
+    "mNm": "mN·m",
+    "oz_in": "ozf·in oz·in",
+    "lb_in": "lbf·in lb·in lbs·in",
+    "lb_ft": "lbf·ft lb·ft lbs·ft",
+    "kgf_m": "kgf·m kp·m",
+    "kgf_cm": "kgf·cm kp·cm",
 }
 """Units of torque as force and arm; inch and foot may stand first."""
 
-_PRODUCT = re.compile(r"(?<=[A-Za-z])[ .·⋅∙•*×_-]+(?=[A-Za-z])")
+_SIGNS = " .·⋅∙•‧・*×"
+"""What stands for a product, beside a hyphen."""
+
+_PRODUCT = re.compile(rf"(?<=[A-Za-z])[{_SIGNS}_-]+(?=[A-Za-z])")
+_AS_TYPED = str.maketrans({**dict.fromkeys("\N{MINUS SIGN}\N{EN DASH}\N{HYPHEN}", "-"), "μ": "µ"})
 _SUPERSCRIPT = re.compile(r"\^?\(?-1\)?$")
 
 
 def _spelling(text: str) -> str:
     """A unit with one sign for a product and one way of writing `per`: `N.m`, `N-m` and `N·m` are `N·m`."""
-    tight = unicodedata.normalize("NFKC", text).strip().replace("\N{MINUS SIGN}", "-").replace("μ", "µ")
+    tight = unicodedata.normalize("NFKC", text).strip().translate(_AS_TYPED)
     inverse = _SUPERSCRIPT.sub("-1", tight)
     if inverse != tight or inverse.endswith("-1"):
-        return re.sub(r"[ .·⋅∙•*×^()]", "", inverse)
-    return re.sub(r" *([/]) *", r"\1", _PRODUCT.sub("·", tight))
+        return re.sub(rf"[{_SIGNS}^()]", "", inverse)
+    product = _PRODUCT.sub("·", tight)
+    return re.sub(r"\.? */ *", "/", product.removesuffix(".") if "·" in product else product)
 
 
 def _spellings() -> dict[str, tuple[str, ...]]:
@@ -291,8 +309,9 @@ def _spellings() -> dict[str, tuple[str, ...]]:
     for code, words in _SPELLED.items():
         for word in words.split():
             found.setdefault(_spelling(word), []).append(code)
-    for code, (forces, arm) in _ARMS.items():
-        for force in forces.split():
+    for code, products in _ARMS.items():
+        for product in products.split():
+            force, arm = product.split("·")
             for first, second in ((force, arm), (arm, force))[: 2 if arm in ("in", "ft") else 1]:
                 found[f"{first}·{second}"] = found[f"{first}{second}"] = [code]
                 found[f"{first}·{second}s"] = [code]

@@ -1,5 +1,7 @@
 """A number typed with a unit of its own, or as a sum; the link carries the plain number."""
 
+from fractions import Fraction
+
 import pytest
 
 from hpn import units
@@ -94,6 +96,44 @@ def test_every_unit_is_read_by_its_own_symbol() -> None:
     for quantity, codes in units.READ.items():
         for code, symbol in codes.items():
             assert units.codes_for(symbol, quantity) == (code,), symbol
+
+
+STANDARD_GRAVITY = Fraction("9.80665")
+"""In m/s², ISO 80000-4 and the third CGPM: a kilogram-force, or kilopond, is so many newtons."""
+
+
+@pytest.mark.parametrize(
+    ("spellings", "code", "wire", "in_wire"),
+    [
+        ("kgf·m kgf.m kgfm kp·m kpm", "kgf_m", "Nm", STANDARD_GRAVITY),
+        ("kgf·cm kgf-cm kgfcm kp·cm", "kgf_cm", "Nm", STANDARD_GRAVITY / 100),
+        ("daNm daN·m", "daNm", "Nm", Fraction(10)),
+        ("cNm cN·m", "Ncm", "Nm", Fraction(1, 100)),
+        ("kN·mm kNmm N・m N‧m N･m N–m", "Nm", "Nm", Fraction(1)),
+        ("in.-lb. in.lb. lb.-in. in-lb", "lb_in", "Nm", Fraction("0.45359237") * STANDARD_GRAVITY * Fraction("0.0254")),
+        ("ft.-lb. ft.-lbs.", "lb_ft", "Nm", Fraction("0.45359237") * STANDARD_GRAVITY * Fraction("0.3048")),
+        ("°/sec", "deg_per_s", "rpm", Fraction(60, 360)),
+        ("°/min deg/min Grad/min", "deg_per_min", "rpm", Fraction(1, 360)),
+        ("r.p.m. R.P.M. revs/min rev./min ot./min Umdr./min", "rpm", "rpm", Fraction(1)),
+        ("tr.min-1 tr·min⁻¹ U·min-1 min–1 min−1 min^–1", "rpm", "rpm", Fraction(1)),
+        ("revs/sec", "rev_per_s", "rpm", Fraction(60)),
+        ("U·s-1 rev·s⁻¹ r·s-1", "rev_per_s", "rpm", Fraction(60)),
+    ],
+)
+def test_unit_in_another_spelling_is_the_same_to_the_last_digit(
+    spellings: str, code: str, wire: str, in_wire: Fraction
+) -> None:
+    assert {spelling: units.codes_for(spelling) for spelling in spellings.split()} == dict.fromkeys(
+        spellings.split(), (code,)
+    )
+    assert 1 / units.entered(wire, code).factor == in_wire
+
+
+@pytest.mark.parametrize(("text", "link"), [("4 kgf·m", "T=39.2266&"), ("4 kp m", "T=39.2266&"), ("5 daNm", "T=50&")])
+def test_kilogram_force_in_a_field_is_converted(text: str, link: str) -> None:
+    application = typed("T", text)
+    assert isinstance(application, Application), application
+    assert link in to_link(application)
 
 
 @pytest.mark.parametrize("spelling", ["mN", "MN", "MNm", "nN", "", "-1", "Pa", "x" * 300])

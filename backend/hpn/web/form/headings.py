@@ -120,9 +120,14 @@ def heading_of(cell: str) -> Heading:
 
 def _unit_alone(text: str) -> str:
     """The unit that a cell is nothing but, or blank."""
-    inner = text.removeprefix("in ").strip("[]()<>{} ")
+    inner = _without_in(_without_in(text).strip("[]()<>{} "))
     known = inner in units.SPELLINGS if len(inner) == 1 else bool(units.codes_for(inner))
     return inner if known else ""
+
+
+def _without_in(unit: str) -> str:
+    """A unit without the word “in” before it, which in `in lb` is the inch."""
+    return unit if units.codes_for(unit) else unit.removeprefix("in ")
 
 
 def parts_of(text: str) -> tuple[str, str]:
@@ -130,7 +135,7 @@ def parts_of(text: str) -> tuple[str, str]:
     if _kind(text, ""):
         return text, ""
     if match := _BRACKETS.fullmatch(text):
-        return match[1].strip(" ,/"), match[2]
+        return match[1].strip(" ,/"), _without_in(match[2])
     for between in _BETWEEN.finditer(text):
         name, unit = text[: between.start()], text[between.end() :]
         if name and units.codes_for(unit):

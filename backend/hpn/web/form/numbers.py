@@ -35,7 +35,7 @@ _LONGEST = 60
 
 _WITH_UNIT = re.compile(
     r"(?P<number>.*?[0-9][.,]?(?:[eE][+-]?[0-9]{1,3})?)"
-    r"(?:\s+(?P<per>1\s?/[^0-9]+)|\s*(?P<unit>(?![eE][+-]?[0-9])(?:[^\W\d_]|[°'/])[^0-9]*(?:\^?\(?-1\)?)?))"
+    r"(?:\s+(?P<per>1\s?/[^0-9]+)|\s*(?P<unit>(?![eE][+-]?[0-9])(?:[^\W\d_]|[°'/])[^0-9]*(?:\^?\(?[-−–]1\)?)?))"
 )
 """A number and its unit: letters, or one divided by something."""
 
