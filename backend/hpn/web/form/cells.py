@@ -9,7 +9,7 @@ from functools import lru_cache
 from typing import Literal, NamedTuple
 
 from hpn.units import QUANTITY_OF, codes_for
-from hpn.web.form.numbers import split_unit
+from hpn.web.form.numbers import DASHES, split_unit
 
 Decimal = Literal[".", ","]
 DECIMALS: tuple[Decimal, ...] = (".", ",")
@@ -32,9 +32,12 @@ _NUMBER = {
     )
     for decimal, group, trailing in ((".", ",", r"\.?"), (",", ".", ""))
 }
-_DASHES = str.maketrans({"\N{MINUS SIGN}": "-", "\N{EN DASH}": "-"})
 _OF_PHASES = ("torque", "speed", "time", "force")
-_NOTHING = ("", "-", "–", "—")
+_NOTHING = ("", "-", "–", "—", "\N{MINUS SIGN}", "\N{NON-BREAKING HYPHEN}")
+_HELD_AS_TEXT = re.compile(r"=\"(?P<formula>[^\"]*)\"|'(?P<text>[-+\N{MINUS SIGN}]?(?!0[0-9])[0-9].*)")
+"""How spreadsheet programs write a number that they hold as a text: `="40"`, and `'40` but no `'040`."""
+
+_FULL_WIDTH = str.maketrans({chr(ord(sign) + 0xFEE0): sign for sign in "0123456789.,+-"})
 
 
 class Figure(str):
@@ -57,8 +60,12 @@ class Entry(NamedTuple):
 
 
 def tidy(cell: str) -> str:
-    """A cell without what can't be seen at its ends."""
-    return cell.strip().strip(UNSEEN).strip()
+    """A cell without what can't be seen at its ends; a number that is held as a text, or in full width, as a number."""
+    cell = cell.strip().strip(UNSEEN).strip()
+    if match := _HELD_AS_TEXT.fullmatch(cell):
+        cell = (match["formula"] or match["text"] or "").strip()
+    plain = cell if cell.isascii() else cell.translate(_FULL_WIDTH)
+    return plain if plain != cell and is_number(plain) else cell
 
 
 def is_blank(cell: str) -> bool:
@@ -89,7 +96,7 @@ def _entry(cell: str, decimal: Decimal) -> Entry | None:
 
 def plain(text: str, decimal: Decimal) -> str | None:
     """A number with a point as decimal mark and nothing between thousands; None where it is no number."""
-    text = text.translate(_DASHES)
+    text = text.translate(DASHES)
     match = _NUMBER[decimal].fullmatch(text)
     if match is None:
         return None
