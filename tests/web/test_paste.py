@@ -346,6 +346,14 @@ def test_row_edits_are_applied_in_the_order_they_were_pressed(client: TestClient
     assert re.findall(r'name="T" type="text" inputmode="decimal" value="([^"]*)"', page.text) == ["", "32"]
 
 
+@pytest.mark.parametrize(("head", "cell"), [("n [1/s]", "10"), ("n", "10 1/s")])
+def test_a_speed_per_second_is_said_to_have_two_readings_in_the_readers_words(
+    client: TestClient, head: str, cell: str
+) -> None:
+    reply = client.post("/paste", data={"text": f"T\t{head}\tt\n40\t{cell}\t3"}, headers={"Accept-Language": "de"})
+    assert "kann U/s oder rad/s sein" in reply.text
+
+
 def test_a_file_that_is_no_text_is_refused_in_the_readers_language(client: TestClient) -> None:
     reply = client.post("/paste", files={"file": ("a.bin", b"\x7fELF\0\0")}, headers={"Accept-Language": "de"})
 

@@ -16,7 +16,7 @@ from typing import Any
 from hpn import units
 from hpn.web.form.axis_columns import AXIS, BY_ROLE, PHASES, AxisColumn, columns_of, foreign_unit
 from hpn.web.form.cells import DECIMALS, LONGEST_CELL, Decimal, Entry, Figure, Merged, entry, is_blank, is_number, plain
-from hpn.web.form.columns import NO_CHOICES, REQUIRED, SKIP, Body, Choices, body_of, skipped
+from hpn.web.form.columns import NO_CHOICES, REQUIRED, SKIP, Body, Choices, body_of, skipped, unit_question
 from hpn.web.form.numbers import split_unit
 from hpn.web.form.pasted import TIMES
 from hpn.web.form.sheets import Grid, RefusedError
@@ -139,7 +139,7 @@ class _Reading:
             if not column.role:
                 self._ask(N_("What is column {name}?"), name=column.called)
             elif column.quantity and not column.unit:
-                self._ask(N_("Which unit is column {name} in?"), name=column.called)
+                self.questions.append(unit_question(self.body, column))
             elif column.role != SKIP and (unit := foreign_unit(self.body, column)):
                 template = N_("Column {name}: {unit} is not read there. Convert it to {wire}, or let it be not read.")
                 wire = units.SYMBOLS.get(column.unit, "1")

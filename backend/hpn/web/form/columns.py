@@ -12,6 +12,7 @@ from typing import NamedTuple
 from hpn import units
 from hpn.web.form.cells import DECIMALS, entry, is_blank, is_meant_as_number, is_number
 from hpn.web.form.headings import INDEX, LONGEST, QUANTITIES, SUM, UNIT, Heading, heading_of, is_total
+from hpn.web.form.numbers import either
 from hpn.web.form.sheets import Grid, RefusedError, no_number, require_even
 from hpn.wording import N_, Sentence, Value
 
@@ -373,6 +374,16 @@ def _chosen(body: Body, column: Column, choices: Choices, assumed: Collection[st
     unit = choices.units.get(column.place, "")
     known = unit in units.READ[column.quantity] or (unit == CELLS and "" not in _units_in(body, column.place))
     return replace(column, unit=unit if known else _unit(body, column, assumed))
+
+
+def unit_question(body: Body, column: Column) -> Sentence:
+    """What to ask where the unit of a column is open: any, or which of those that its heading may mean."""
+    codes = {units.codes_for(heading_of(text).unit, column.quantity) for text in body.headings[column.place]} - {()}
+    meant = codes.pop() if len(codes) == 1 else ()
+    if len(meant) < 2:
+        return Sentence(N_("Which unit is column {name} in?"), {"name": column.called})
+    template = N_("Which unit is column {name} in? It can be {first} or {second}.")
+    return Sentence(template, {"name": column.called, **either(meant)})
 
 
 def is_angular(body: Body, column: Column) -> bool:

@@ -137,14 +137,20 @@ def unit_code(spelled: str, unit: str) -> str | Sentence:
     if len(codes) == 1 and spelled.endswith("/rad") >= per_rad:
         return codes[0]
     if len(codes) > 1:
-        first, second = (measures.symbol_of_code(code) for code in codes[:2])
-        return Sentence(N_("{unit} can be {first} or {second}"), {"unit": spelled, "first": first, "second": second})
+        template = N_("{unit} can be {first} or {second}; write one of them")
+        return Sentence(template, {"unit": spelled, **either(codes)})
     if not quantity:
         return Sentence(N_("takes a number without a unit"))
     listed = ", ".join(f"{symbol}{'/rad' if per_rad else ''}" for symbol in measures.READ[quantity].values())
     return Sentence(
         N_("{unit} is not a unit of this quantity; it takes {units}"), {"unit": spelled[:20], "units": listed}
     )
+
+
+def either(codes: Sequence[str]) -> dict[str, Sentence]:
+    """Symbols of the two units that a spelling may mean, as values of a sentence."""
+    first, second = (Sentence(measures.symbol_of_code(code)) for code in codes[:2])
+    return {"first": first, "second": second}
 
 
 def read_decimal(text: str, decimal: str) -> str | Sentence | None:

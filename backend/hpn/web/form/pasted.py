@@ -29,8 +29,10 @@ from hpn.web.form.columns import (
     columns_of,
     has_two_ways,
     skipped,
+    unit_question,
 )
 from hpn.web.form.headings import QUANTITIES, heading_of
+from hpn.web.form.numbers import either
 from hpn.web.form.sheets import Grid, RefusedError, grids_of, no_number
 from hpn.web.form.symbols import columns_used
 from hpn.web.form.totals import totals_of
@@ -201,7 +203,7 @@ class _Reading:
             if not column.role:
                 self._ask(N_("What is column {name}?"), name=column.called)
             elif column.role != SKIP and not column.unit:
-                self._ask(N_("Which unit is column {name} in?"), name=column.called)
+                self.questions.append(unit_question(self.body, column))
         for role in QUANTITIES:
             if role in REQUIRED and role not in roles and "" not in roles:
                 self._ask(MISSING[role])
@@ -340,10 +342,14 @@ class _Reading:
         if not cell.unit:
             return column.unit
         codes = units.codes_for(cell.unit, column.quantity)
+        written = f"{cell.number[:30]} {cell.unit[:30]}"
         headed = any(heading_of(text).unit for text in self.body.headings[column.place])
+        if len(codes) > 1 and not headed:
+            template = N_("{cell} in column {name} can be {first} or {second}; write one of them")
+            raise RefusedError(template, cell=written, name=column.called, **either(codes))
         if len(codes) != 1 or (headed and codes[0] != column.unit):
             template = N_("{cell}: this unit does not belong to column {name}")
-            raise RefusedError(template, cell=f"{cell.number[:30]} {cell.unit[:30]}", name=column.called)
+            raise RefusedError(template, cell=written, name=column.called)
         return codes[0]
 
     def _phases(self, rows: Sequence[Row], times: str) -> tuple[tuple[str, ...], ...]:
