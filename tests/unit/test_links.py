@@ -199,6 +199,17 @@ def test_whole_number_that_may_have_thousands_in_it_is_asked(name: str, text: st
     assert found(f"{PHASE}&{name}={text}&FR=5&Tk=9")[name, 0 if name == "i" else None] == message
 
 
+@pytest.mark.parametrize("name", ["Nk", "Lh", "Lb", "T", "tp"])
+@pytest.mark.parametrize("text", ["1,000", "2,500", "20,000", "1.000", "1,234.0", "20,000 h", "2.500 h"])
+def test_what_is_advised_in_place_of_a_number_is_taken(name: str, text: str) -> None:
+    if text.endswith("h") and not name.startswith("L"):
+        text = text.removesuffix(" h")
+    link = f"n=250&t=0.3&FR=5&Tk=9&{'' if name == 'T' else 'T=40&'}"
+    for message in found(f"{link}{name}={text}").values():
+        for advised in message.removeprefix("write ").split(" or "):
+            assert found(f"{link}{name}={advised}") == {}
+
+
 @pytest.mark.parametrize("name", ["T", "t", "n", "N"])
 @pytest.mark.parametrize("form", ["%20{}", "{} ", "{}[]"])
 def test_name_that_is_only_written_otherwise_is_proposed_itself(name: str, form: str) -> None:
@@ -234,7 +245,7 @@ def test_repeated_scalar_is_reported_and_kept() -> None:
         ("i=4 5;7", "i", "give each value for itself: i=4&i=5&i=7"),
         ("i=x", "i", "is not a number; write one such as 9.3"),
         ("Tk=200&Nk=5,7", "Nk", "must be a whole number"),
-        ("Tk=200&Nk=1,000", "Nk", "write 1.000 or 1000"),
+        ("Tk=200&Nk=1,000", "Nk", "write 1 or 1000"),
     ],
 )
 def test_what_is_to_be_written_in_place_of_several_or_broken_whole_numbers_is_taken(

@@ -115,7 +115,9 @@ class _Known:
         if not unit and text.rstrip().endswith("%"):
             return _without_percent(read_decimal(text.rstrip()[:-1], decimal)), own
         number, spelled = split_unit(text.strip())
-        plain = (read_decimal(number, decimal) or _advice(number, spelled)) if spelled else None
+        plain = (
+            (read_decimal(number, decimal) or _advice(number, spelled, mostly_whole=unit == "h")) if spelled else None
+        )
         if not isinstance(plain, str):
             return plain, own
         code = unit_code(spelled, unit)
@@ -249,7 +251,7 @@ def read_value(text: str, kind: Kind, *, mostly_whole: bool = False) -> float | 
         return text if len(text) <= LONGEST_TEXT else Sentence(N_("is too long"))
     plain = text.translate(DASHES)
     if len(plain) > _LONGEST or not _ANY_NUMBER.fullmatch(plain):
-        return _not_a_number(plain, kind)
+        return _not_a_number(plain, kind, mostly_whole=mostly_whole)
     value = float(plain)
     if value in (float("inf"), float("-inf")):
         return Sentence(N_("is too large"))
@@ -257,11 +259,16 @@ def read_value(text: str, kind: Kind, *, mostly_whole: bool = False) -> float | 
         return Sentence(N_("is too small"))
     with_comma = isinstance(given, Entry) and "," in given.shown
     if (mostly_whole or kind == "whole") and not with_comma and _IN_GROUPS.fullmatch(plain):
-        decimal = plain.rstrip("0").rstrip(".")
+        decimal = _without_zeros(plain)
         return _to_write([decimal, plain.replace(".", "")][kind == "whole" and "." in decimal :])
     if kind == "number":
         return value
     return int(value) if value.is_integer() else Sentence(NOT_WHOLE)
+
+
+def _without_zeros(number: str) -> str:
+    """A number whose decimals can't be taken for a group of thousands."""
+    return number.rstrip("0").rstrip(".") if _IN_GROUPS.fullmatch(number) else number
 
 
 def _is_too_small(plain: str, value: float) -> bool:
@@ -272,13 +279,13 @@ def _is_too_small(plain: str, value: float) -> bool:
 _SUCH_AS = N_("is not a number; write one such as 9.3")
 
 
-def _advice(text: str, unit: str = "") -> Sentence | None:
+def _advice(text: str, unit: str = "", *, mostly_whole: bool = False) -> Sentence | None:
     """What to write instead of a number with this unit, None where it can't be told."""
-    told = _not_a_number(text.strip().translate(DASHES), "number", unit)
+    told = _not_a_number(text.strip().translate(DASHES), "number", unit, mostly_whole=mostly_whole)
     return None if told.template == _SUCH_AS else told
 
 
-def _not_a_number(text: str, kind: Kind, unit: str = "") -> Sentence:
+def _not_a_number(text: str, kind: Kind, unit: str = "", *, mostly_whole: bool = False) -> Sentence:
     """What to write instead, where it can be told."""
     tight = re.sub(r"[\s'’]", "", text)
     if len(tight) > _LONGEST:
@@ -287,6 +294,8 @@ def _not_a_number(text: str, kind: Kind, unit: str = "") -> Sentence:
     readings = [number for number in numbers if kind != "whole" or float(number).is_integer()]
     if numbers and not readings:
         return Sentence(NOT_WHOLE)
+    if mostly_whole or kind == "whole":
+        readings = [_without_zeros(reading) for reading in readings]
     return _to_write([f"{reading} {unit}".strip() for reading in readings]) if readings else Sentence(_SUCH_AS)
 
 
