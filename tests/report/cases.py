@@ -56,7 +56,9 @@ CASES: dict[str, Json] = {
     "everything": EVERYTHING,
     "twenty phases": EVERYTHING | {"duty_cycle": long_cycle(20)["duty_cycle"]},
     "ten thousand phases": long_cycle(10_000, output_load={"radial_N": 300}),
-    "nothing suitable": cycle(phase(900, 900), emergency_stop={"torque_Nm": 5000, "count": 5}),
+    "nothing suitable": cycle(
+        phase(900, 900), emergency_stop={"torque_Nm": 5000, "count": 5}, requirements={"sizes": ["11A", "14A", "20A"]}
+    ),
     "not rated": cycle(phase(400, 90), requirements={"sizes": ["40A"]}),
     "iso281": worked_example(output_load={"radial_N": 700, "axial_N": 90, "model": "iso281", "life_basis": "L10"}),
     "extremes": cycle(phase(0, 1e-5, 1e-9), phase(1e-300, 1e6, 1e9), output_load={"radial_N": 1e9, "axial_N": 0}),

@@ -21,14 +21,16 @@ SHEETS = {"Selection": (1, "A2"), "Duty cycle": (1, "A2"), "Candidates": (3, "B2
 GREEN, RED = (0xE6, 0xF4, 0xEA), (0xFC, 0xE8, 0xE6)
 
 STOP = {"torque_Nm": 900, "count": 1000}
-SAVED = worked_example(requirements={"ratios": [5]})
+SIZES = {"sizes": ["11A", "14A", "20A", "32A", "40A"]}
+ASKED = SIZES | {"ratios": [5]}
+SAVED = worked_example(requirements=ASKED)
 MEANT = cycle(
     phase(40, 250, 0.3),
     phase(500, 500, 3),
     phase(20, 250, 0.4),
     pause_s=4,
     emergency_stop=STOP,
-    requirements={"ratios": [5]},
+    requirements=ASKED,
 )
 """What is saved, and what `changed` makes of it: no gear is left that passes."""
 
@@ -57,7 +59,7 @@ def printed(catalogue: Catalogue, print_out: Print) -> Iterator[dict[str, bytes]
         "changed": changed(catalogue),
         "everything": opened(EVERYTHING, catalogue, code="de"),
         "hostile": openpyxl.load_workbook(
-            BytesIO(workbook(export_of(worked_example(), catalogue, title=hostile), language("en")))
+            BytesIO(workbook(export_of(worked_example(requirements=SIZES), catalogue, title=hostile), language("en")))
         ),
     }
     yield print_out(books)

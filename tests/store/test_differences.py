@@ -96,11 +96,11 @@ def test_a_candidate_that_is_gone_is_one_difference(reply: Json) -> None:
 
 def test_a_candidate_that_is_new_is_one_difference(reply: Json) -> None:
     today = changed(reply)
-    today["candidates"].append(changed(today["candidates"][5]) | {"designation": "HPN-50A-5"})
+    today["candidates"].append(changed(today["candidates"][5]) | {"designation": "HPN-99A-5"})
 
     (difference,) = differences(reply, today)
 
-    assert (difference.change, difference.candidate) == ("added", "HPN-50A-5")
+    assert (difference.change, difference.candidate) == ("added", "HPN-99A-5")
     assert at(today, difference.pointer) == difference.today
 
 

@@ -190,14 +190,14 @@ def test_todays_catalogue_is_compared_and_changes_the_tag_but_not_what_was_saved
 
 
 @pytest.mark.parametrize(
-    ("requirements", "detail"), [({"sizes": ["50A"]}, "no 50A"), ({"colour": "red"}, "not a field of this object")]
+    ("requirements", "detail"), [({"sizes": ["99A"]}, "no 99A"), ({"colour": "red"}, "not a field of this object")]
 )
 def test_an_application_that_today_cannot_be_answered_is_still_shown(
     client: TestClient, catalogue: Catalogue, requirements: Json, detail: str
 ) -> None:
     result = orjson.dumps(answer(worked_example(), catalogue))
     application = orjson.dumps(worked_example(requirements=requirements))
-    old = draft(application=application, result=result, engine_version="0.1", selected="HPN-50A-5")
+    old = draft(application=application, result=result, engine_version="0.1", selected="HPN-99A-5")
     assert client.portal
     id = client.portal.call(state_of(client).store.save, old)
 
@@ -205,7 +205,7 @@ def test_an_application_that_today_cannot_be_answered_is_still_shown(
     page = client.get(f"/selections/{id}")
 
     assert saved.status_code == page.status_code == 200
-    assert (saved.json()["selected"], saved.json()["engine_version"]) == ("HPN-50A-5", "0.1")
+    assert (saved.json()["selected"], saved.json()["engine_version"]) == ("HPN-99A-5", "0.1")
     assert detail in saved.json()["today"]["problem"]["detail"]
     assert "Today there is no answer" in page.text
 

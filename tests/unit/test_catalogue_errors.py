@@ -209,13 +209,24 @@ def test_a_missing_series_figure_is_named_with_its_file(folder: Path) -> None:
         load_catalogue(folder)
 
 
-@pytest.mark.parametrize("name", ["weights.csv", "ratings.csv", "sizes.csv"])
-def test_a_missing_row_of_a_rated_size_is_named(folder: Path, name: str) -> None:
+@pytest.mark.parametrize(
+    ("name", "key"),
+    [
+        ("ratings.csv", "size 11A, ratio 4"),
+        ("sizes.csv", "size 11A"),
+        ("weights.csv", "size 11A, stages 1"),
+        ("lengths.csv", "size 11A, stages 1"),
+        ("accuracy.csv", "size 11A, stages 1"),
+        ("stiffness.csv", "size 11A, stages 1"),
+    ],
+)
+def test_a_missing_row_of_a_rated_size_is_named(folder: Path, name: str, key: str) -> None:
     path = folder / name
     lines = path.read_text(encoding="utf-8").splitlines(keepends=True)
     path.write_text("".join(line for n, line in enumerate(lines) if n != 1), encoding="utf-8")  # the first of 11A
 
-    with pytest.raises(CatalogueError, match=rf"ratings\.csv, line 2, .*{name} has no row for 11A"):
+    said = rf"ratings\.csv, line 2, column size: {name} has no row of {key}, but 11A is rated$"
+    with pytest.raises(CatalogueError, match=said):
         load_catalogue(folder)
 
 

@@ -42,8 +42,9 @@ def test_a_suitable_and_an_unrated_gear_need_no_remedy(catalogue: Catalogue) -> 
 
 
 def test_a_gear_that_fails_what_is_known_of_it_gets_no_promise_about_what_is_not(catalogue: Catalogue) -> None:
-    """Twice what any gear of the series may carry, on a motor a twentieth too slow for HPN-40A-7."""
-    asked = cycle(phase(2000, 600), requirements={"motor": {"maximum_speed_rpm": 4000}})
+    """Five times what HPN-32A may carry, on a motor a twentieth too slow for HPN-40A-7."""
+    wishes = {"sizes": ["32A", "40A"], "motor": {"maximum_speed_rpm": 4000}}
+    asked = cycle(phase(2000, 600), requirements=wishes)
     selection = selected(asked, catalogue)
     first = selection.candidates[0]
 

@@ -5,7 +5,7 @@ from typing import Any
 import pytest
 from starlette.testclient import TestClient
 
-from hpn.catalogue import load_catalogue
+from hpn.catalogue import Catalogue
 from tests.reference import handbook
 
 FIELDS = {
@@ -17,11 +17,11 @@ FIELDS = {
 }
 
 
-def test_the_catalogue_lists_64_gears_with_every_field_of_the_contract(api: TestClient) -> None:
+def test_the_catalogue_lists_every_gear_with_every_field_of_the_contract(api: TestClient, catalogue: Catalogue) -> None:
     body = api.get("/api/v1/catalogue").json()
 
-    assert body["catalogue_version"] == load_catalogue().version
-    assert len(body["gears"]) == 64
+    assert body["catalogue_version"] == catalogue.version
+    assert [gear["designation"] for gear in body["gears"]] == [gear.designation for gear in catalogue.gears]
     for gear in body["gears"]:
         assert set(gear) >= FIELDS
         for name in FIELDS - {"designation", "size", "sources"}:
@@ -151,12 +151,12 @@ def test_a_constant_load_read_off_the_curves_of_the_api_is_full_by_the_api(api: 
     assert used["output_bearing_life"] == pytest.approx(1, rel=1e-14)
 
 
-def test_health_says_that_it_lives_and_is_ready(api: TestClient) -> None:
+def test_health_says_that_it_lives_and_is_ready(api: TestClient, catalogue: Catalogue) -> None:
     assert api.get("/healthz").json() == {"status": "ok"}
     ready = api.get("/readyz")
     assert ready.status_code == 200
-    assert (ready.json()["status"], ready.json()["gears"]) == ("ok", 64)
-    assert ready.json()["catalogue_version"] == load_catalogue().version
+    assert (ready.json()["status"], ready.json()["gears"]) == ("ok", len(catalogue.gears))
+    assert ready.json()["catalogue_version"] == catalogue.version
 
 
 def test_reading_endpoints_refuse_other_methods(api: TestClient) -> None:

@@ -219,7 +219,8 @@ def _check_complete(book: _Book) -> None:
         }
         for table, row in rows.items():
             if row is None:
-                detail = f"{table.file} has no row for {gear.size} ratio {gear.ratio}, but {gear.size} is rated"
+                key = ", ".join(f"{name} {getattr(gear, name)}" for name in table.key)
+                detail = f"{table.file} has no row of {key}, but {gear.size} is rated"
                 raise rated[gear.size].error("size", detail)
             for column in table.columns():
                 if column not in ("source", "note") and getattr(row, column) is None:
