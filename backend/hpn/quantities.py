@@ -7,9 +7,33 @@ Asset Administration Shell, comparison, differences and the OpenAPI document all
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Literal
 
 from hpn.units import symbol_of
 from hpn.wording import N_
+
+CheckCode = Literal[
+    "average_torque",
+    "repeated_peak_torque",
+    "momentary_peak_torque",
+    "momentary_peak_count",
+    "average_input_speed",
+    "maximum_input_speed",
+    "life",
+    "output_bearing_load",
+    "output_bearing_life",
+    "motor_speed",
+    "motor_peak_torque",
+    "motor_rated_torque",
+    "motor_rated_speed",
+    "inertia_ratio",
+    "ambient_temperature",
+    "backlash",
+    "torsional_stiffness",
+    "weight",
+    "length",
+]
+"""Codes of the checks, in the order of the contract."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -57,6 +57,15 @@ WRONG: dict[str, tuple[str, Change, str | None, str | None, str]] = {
     "an empty file": ("weights.csv", lambda text: "", None, "size", "header"),
     "a text for a number": ("weights.csv", replace("11A,1,0.44", "11A,1,light"), "11A,1", "weight_kg", "light"),
     "not a number": ("weights.csv", replace("0.44", "nan"), "11A,1", "weight_kg", "nan"),
+    "a misspelt check": (
+        "facts.csv",
+        replace(
+            'not occur in the normal operating cycle.",momentary', 'not occur in the normal operating cycle.",momentry'
+        ),
+        "momentary_peak_torque,",
+        "check",
+        "must be 'average_torque', 'repeated_peak_torque',",
+    ),
     "infinity": ("weights.csv", replace("0.44", "inf"), "11A,1", "weight_kg", "inf"),
     "an underscore in a number": (
         "ratings.csv",

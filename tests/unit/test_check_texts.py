@@ -1,9 +1,12 @@
 """Every check explains itself, and the codes and their order are those of the contract."""
 
+from typing import get_args
+
 import pytest
 
 from hpn.catalogue import Catalogue
 from hpn.checks import BY_CODE, CHECKS
+from hpn.quantities import CheckCode
 from hpn.remedy import MOTOR_TORQUE_CHECKS
 from hpn.units import suffix_of
 from tests.build import answer, cycle, phase
@@ -39,7 +42,7 @@ EVERYTHING = cycle(
 
 
 def test_the_checks_stand_in_the_order_of_the_contract() -> None:
-    assert [check.code for check in CHECKS] == IN_ORDER
+    assert [check.code for check in CHECKS] == IN_ORDER == list(get_args(CheckCode))
     assert [check.code for check in CHECKS if check.group == "load"] == LOAD_CHECKS
 
 

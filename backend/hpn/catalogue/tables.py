@@ -16,6 +16,7 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationEr
 
 from hpn.catalogue.files import CatalogueError
 from hpn.gear import Gear, canonical_size
+from hpn.quantities import CheckCode
 from hpn.units import SYMBOLS
 
 LONGEST_CELL = 1000
@@ -175,7 +176,7 @@ class FactTable(Table):
     name: str
     topic: str | None = None
     text: str
-    check: str | None = None
+    check: CheckCode | None = None
 
 
 class SeriesTable(Table):
