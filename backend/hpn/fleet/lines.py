@@ -379,7 +379,7 @@ class NdjsonTable(LinesTable):
         """What would be right in place of a value."""
         if name == AXIS:
             expected = "an integer" if pa.types.is_integer(self.axis_type) else "text"
-            return f"must be {expected}, as in the first row, not {_shown(value)}"
+            return f"must be {expected}, as the first valid axis is, not {_shown(value)}"
         column = COLUMNS.all[name]
         right, kind = (NO_TEXT, str) if column.kind == "string" else (NOT_A_NUMBER, float)
         if not is_list(self.type_of(name)):
