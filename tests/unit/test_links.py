@@ -225,6 +225,21 @@ def test_minus_sign_of_a_word_processor_is_a_minus() -> None:
     assert application.duty_cycle.load_phases[0].torque_Nm == -40
 
 
+@pytest.mark.parametrize(
+    ("link", "said"),
+    [
+        ("T=40,32&n=250&t=0.3", "write 40.32; if 40 and 32 are meant, give two phases"),
+        ("T=40&n=250,500&t=3", "write 250.500 or 250500; if 250 and 500 are meant, give two phases"),
+        ("T=9,3&n=250&t=0.3", "write 9.3"),
+        ("T=40,05&n=250&t=0.3", "write 40.05"),
+        ("T=40,32&n=250&t=0.3&T=20&n=250&t=1", "write 40.32"),
+        ("T=40&n=250&t=0.3&tp=10,25", "write 10.25"),
+    ],
+)
+def test_a_comma_in_the_only_phase_may_stand_between_two_values(link: str, said: str) -> None:
+    assert list(found(link).values()) == [said]
+
+
 def test_unequal_lists_are_reported_where_the_value_is_missing() -> None:
     problems = found("T=40&n=250&t=0.3&T=3&n=2")
     assert problems == {("t", 1): "missing: the link gives 1 × t, but 2 × T"}

@@ -51,6 +51,9 @@ LONGEST_ASIDE = 8_000
 _UNSEEN = re.compile("[\u00ad\u200b-\u200d\u2060\ufeff]")
 """Characters without width, which come with links copied from documents that break their lines with them."""
 
+_OF_TWO_PHASES = re.compile(r"([1-9][0-9]{1,4}),([1-9][0-9]{1,4})")
+"""Two values as likely as a number with decimals: `40,32`, which `9,3` is not."""
+
 _SEVERAL = re.compile(r"(?![0-9]+,0+$)[0-9]{1,5}([\s,;/]+[0-9]{1,5}){1,10}")
 """Several whole numbers in one text; `5,0` is one."""
 
@@ -283,6 +286,8 @@ def _document(
         cycle["motion"] = {"mechanism": {}, "moves": _table(moves, symbols, problems)}
     else:
         cycle["phases"] = _table(rows, PHASE_BY_NAME, problems)
+        if len(cycle["phases"]) == 1:
+            problems = [_with_two_phases(problem, given.columns[problem.name]) for problem in problems]
     document: dict[str, Any] = {"duty_cycle": cycle}
     for name, text in given.scalars.items():
         symbol = BY_NAME[name]
@@ -291,6 +296,16 @@ def _document(
         values = [value for text in texts if not isinstance(value := read_value(text, BY_NAME[name].kind), Sentence)]
         document.setdefault(BY_NAME[name].path[0], {})[BY_NAME[name].path[1]] = values or None
     return document, problems
+
+
+def _with_two_phases(problem: FieldProblem, texts: Sequence[str]) -> FieldProblem:
+    """What is said of a number in the only phase, and what to do where it may be two."""
+    match = next(filter(None, (_OF_TWO_PHASES.fullmatch(text.strip()) for text in texts)), None)
+    if match is None:
+        return problem
+    values = {"advice": problem.message, "first": match[1], "second": match[2]}
+    template = N_("{advice}; if {first} and {second} are meant, give two phases")
+    return replace(problem, message=Sentence(template, values))
 
 
 def _table(
