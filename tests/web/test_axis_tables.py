@@ -112,6 +112,32 @@ def test_a_column_that_nobody_knows_is_asked(head: str, said: str) -> None:
     assert said in asked(read(head, ";".join(cells)))
 
 
+@pytest.mark.parametrize(
+    ("heading", "cells", "counts"),
+    [
+        ("No.", "5 5 200", True),
+        ("Nr.", "1 2 1 4 3 2", True),
+        ("Nr.", "1,1 1,2 2,1", True),
+        ("Nr.", "1 2 3", False),
+        ("Nr.", "1. 1. 2. 3.", False),
+        ("Pos.", "0 1 0 1 2", False),
+        ("Step", "10 20 10 20 30", False),
+        ("Phase", "accel run accel", False),
+    ],
+)
+def test_a_column_under_a_name_of_an_index_is_one_where_its_numbers_go_on(
+    heading: str, cells: str, counts: bool
+) -> None:
+    rows = [f"A{k};12,5;100;1;{cell}" for k, cell in enumerate(cells.split())]
+    table = read(f"{HEAD};{heading}", *rows)
+
+    assert asked(table) == ([f"What is column “{heading}”?"] if counts else [])
+    assert read(f"{HEAD};{heading}", *rows, roles={4: "skip"}).whole
+    if cells == "5 5 200":
+        taken = read(f"{HEAD};{heading};Tk", *(f"{row};300" for row in rows), roles={4: "Nk", 5: "Tk"})
+        assert [axis["emergency_stop.count"] for axis in taken.axes] == [5, 5, 200]
+
+
 def test_every_input_of_an_axis_is_known_by_the_name_of_its_column() -> None:
     names = {".".join(s.path) if s.path[0] != "duty_cycle" else s.path[-1]: s.name for s in BY_ROLE.values()}
     table = read(";".join(["axis", *names]), ";".join(["A", *("1" for _ in names)]))

@@ -5,15 +5,16 @@ are the names of the inputs in every language, their symbols, or the names that 
 """
 
 import re
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
+from itertools import groupby, pairwise
 
 from hpn import units
 from hpn.quantities import Named
 from hpn.reader import LANGUAGES, Reader
 from hpn.web.form.cells import is_blank, is_number
-from hpn.web.form.columns import NUMBERS, SKIP, Body, Choices, Column, is_angular
+from hpn.web.form.columns import NUMBERS, SKIP, Body, Choices, Column, in_steps, is_angular
 from hpn.web.form.headings import INDEX, LONGEST, QUANTITIES, SUM, UNIT, heading_of, parts_of
 from hpn.web.form.symbols import PHASE_SYMBOLS, SYMBOLS, Symbol
 from hpn.wording import N_, Sentence
@@ -58,7 +59,7 @@ class AxisColumn(Column):
     @property
     def numbers_phases(self) -> bool:
         """Whether it is left out because its cells number the rows."""
-        return self.skipped is not None and self.skipped.template == NUMBERS
+        return self.role == SKIP and self.skipped is not None and self.skipped.template == NUMBERS
 
     @property
     def is_number(self) -> bool:
@@ -94,13 +95,25 @@ def _proposed(body: Body, place: int) -> AxisColumn:
     kind = kinds.pop() if len(kinds) == 1 else ""
     if kind in (INDEX, SUM):
         why = Sentence(NUMBERS) if kind == INDEX else Sentence(N_("a sum"))
-        return AxisColumn(place, heading, SKIP, skipped=why)
+        counts = kind == INDEX and not _numbers_rows([row[place] for row in body.rows if not is_blank(row[place])])
+        return AxisColumn(place, heading, "" if counts else SKIP, skipped=why)
     if kind in QUANTITIES:
         lasting, instant = any(each.lasting for each in said), any(each.instant for each in said)
         return AxisColumn(place, heading, kind, lasting=lasting, instant=instant)
     if not any(is_number(row[place]) for row in body.rows):
         return AxisColumn(place, heading, SKIP, skipped=Sentence(N_("text")))
     return AxisColumn(place, heading)
+
+
+def _numbers_rows(cells: Sequence[str]) -> bool:
+    """Whether cells can number axes, all rows, or those of each axis anew: texts, or numbers that go on in steps."""
+    texts = [cell.removesuffix(".") for cell, _ in groupby(cells)]
+    if not all(map(is_number, cells)):
+        return True
+    if not all(re.fullmatch("[0-9]{1,9}", text) for text in texts):
+        return False
+    back = [k for k, (before, after) in enumerate(pairwise(map(int, texts)), start=1) if after < before]
+    return all(in_steps(texts[start:end]) for start, end in pairwise([0, *back, len(texts)]))
 
 
 def _role_of(heading: str) -> str:

@@ -293,7 +293,7 @@ def _column(body: Body, place: int) -> Column:
         return Column(place, heading, SKIP, skipped=Sentence(N_("text")), text=True)
     if body.headed and not heading and _counts(body, place):
         kind = INDEX
-    if kind == INDEX and not _in_steps(cells):
+    if kind == INDEX and not in_steps(cells):
         kind = ""
     if kind in (INDEX, SUM):
         why = Sentence(NUMBERS) if kind == INDEX else Sentence(N_("a sum"))
@@ -341,7 +341,7 @@ def _counts(body: Body, place: int) -> bool:
     return len(cells) > 1 and any(cells == [str(k + start) for k in range(len(cells))] for start in (0, 1))
 
 
-def _in_steps(cells: Sequence[str]) -> bool:
+def in_steps(cells: Sequence[str]) -> bool:
     """Whether numbers can number rows: 1, 2, 3 from wherever, or 10, 20, 30 from 0 or 10."""
     texts = [cell.removesuffix(".") for cell in cells]
     if not all(re.fullmatch("[0-9]{1,9}", text) for text in texts):
