@@ -132,6 +132,15 @@ def test_a_broken_line_rejects_the_axis_that_it_may_belong_to(last: str, rejecte
     assert [row["axis"] for row in answers if row["error"]] == rejected
 
 
+def test_a_row_with_too_few_or_too_many_cells_is_quoted_since_it_may_have_no_axis(size: Size, tmp_path: Path) -> None:
+    size(HEAD + 'a,"[40]","[250]","[1]"\n,"[40]",5\nb,"[40]",5,1,9; 9\n', ".csv")
+    said = "the row has {} cells where the header has 4, in {}"
+    assert faults(tmp_path) == [
+        (None, "axis", said.format(3, ',"[40]",5')),
+        ("b", "axis", said.format(5, 'b,"[40]",5,1,9;9')),
+    ]
+
+
 def test_too_many_phases_are_an_error_of_their_axis(size: Size, tmp_path: Path) -> None:
     answers = size(phases("a", *["b"] * 10_001, "c", *["d"] * 10_000), ".csv")
     assert [bool(row["error"]) for row in answers] == [False, True, False, False]

@@ -202,12 +202,9 @@ class CsvTable(LinesTable):
             axes = pa.array([self._axis_of(row.text, row.actual_columns) for row in broken], pa.string())
             filled = pc.replace_with_mask(placed[AXIS].combine_chunks(), pa.array(is_broken), axes)
             placed = placed.set_column(placed.column_names.index(AXIS), AXIS, filled)
+        said = "the row has {} cells where the header has {}, in {}"
         return placed, [
-            CellFault(
-                row.number - 1,
-                AXIS,
-                f"the row has {row.actual_columns} cells where the header has {row.expected_columns}",
-            )
+            CellFault(row.number - 1, AXIS, said.format(row.actual_columns, row.expected_columns, _cut(row.text)))
             for row in broken
         ]
 

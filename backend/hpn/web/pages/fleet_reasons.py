@@ -11,7 +11,7 @@ from hpn.wording import N_, Sentence
 TEMPLATES = (
     N_("phase {number}: {reason}"),
     N_("item {number}: {reason}"),
-    N_("the row has {found} cells where the header has {expected}"),
+    N_("the row has {found} cells where the header has {expected}, in {row}"),
     N_("the line is not a JSON object: {error}, in {found}"),
     N_("must be an integer, as the first valid axis is, not {found}"),
     N_("must be text, as the first valid axis is, not {found}"),
