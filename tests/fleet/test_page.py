@@ -142,6 +142,27 @@ def test_files_hold_the_answers(client: TestClient, fleet: str) -> None:
     assert list(parquet[0])[-1] == "error" and parquet[0]["selected"] and parquet[1]["suitable"] == 0
 
 
+def test_reasons_of_a_file_for_people_are_in_the_readers_language(client: TestClient, fleet: str) -> None:
+    def errors(language: str) -> dict[str, list[str | None]]:
+        files = {
+            suffix: client.get(f"{fleet}/axes.{suffix}", headers={"Accept-Language": language})
+            for suffix in ("csv", "xlsx", "parquet")
+        }
+        assert {file.headers["Vary"] for file in files.values()} >= {"Accept-Language, Cookie"}
+        sheet = openpyxl.load_workbook(io.BytesIO(files["xlsx"].content)).active
+        assert sheet is not None
+        return {
+            "csv": [row["error"] or None for row in csv.DictReader(io.StringIO(files["csv"].content.decode()))],
+            "xlsx": [cell.value for cell in list(sheet.columns)[-1][1:]],
+            "parquet": pq.read_table(io.BytesIO(files["parquet"].content))["error"].to_pylist(),
+        }
+
+    english = [None, None, 'torque_Nm: phase 1: must be a number, such as 9.3, not "abc"']
+    german = [None, None, 'torque_Nm: Phase 1: muss eine Zahl sein, z. B. 9.3, nicht "abc"']
+    assert errors("en") == {"csv": english, "xlsx": english, "parquet": english}
+    assert errors("de") == {"csv": german, "xlsx": german, "parquet": english}
+
+
 @pytest.mark.parametrize("form", ["list", "long"])
 @pytest.mark.parametrize("suffix", [".csv", ".ndjson", ".parquet", ".arrow"])
 def test_tables_of_hpn_fleet_are_taken_as_they_are(tmp_path: Path, suffix: str, form: str) -> None:

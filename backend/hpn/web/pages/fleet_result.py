@@ -17,8 +17,10 @@ from hpn.catalogue import Catalogue
 from hpn.fleet.columns import AXIS
 from hpn.fleet.listing import MOST_LISTED, NEAREST, AxisRow, listing_of, read_answers, rows_of
 from hpn.fleet.summary import Summary, summary_of
+from hpn.reader import Reader
 from hpn.store import FleetDraft, SavedFleet
 from hpn.web.door.problems import Problem
+from hpn.web.pages.fleet_reasons import reasons_of
 from hpn.wording import N_, Quantity, Sentence
 
 COMPARED = ("selected", "governing_check", "utilisation", "suitable")
@@ -137,6 +139,20 @@ FILES: Mapping[str, tuple[str, Callable[[pa.Table, datetime], bytes]]] = {
 """Formats of the answers: their media types, and what writes them."""
 
 
-def file_of(saved: SavedFleet, suffix: str) -> bytes:
-    """The answers of a fleet as `hpn fleet` writes them, in the format of a suffix."""
-    return FILES[suffix][1](table_of(saved.answers).drop_columns(NEAREST.names), saved.created)
+FOR_PEOPLE = ("csv", "xlsx")
+"""Formats whose reasons are in the reader's language."""
+
+
+def file_of(saved: SavedFleet, suffix: str, reader: Reader) -> bytes:
+    """The answers of a fleet in the format of a suffix, with the columns that `hpn fleet` gives them."""
+    table = table_of(saved.answers).drop_columns(NEAREST.names)
+    return FILES[suffix][1](_told(table, reader) if suffix in FOR_PEOPLE else table, saved.created)
+
+
+def _told(table: pa.Table, reader: Reader) -> pa.Table:
+    errors = [error and _reasons_in(error, reader) for error in table["error"].to_pylist()]
+    return table.set_column(table.column_names.index("error"), "error", pa.array(errors, pa.string()))
+
+
+def _reasons_in(error: str, reader: Reader) -> str:
+    return "; ".join(f"{column}: {reader.told(reason)}" for column, reason in reasons_of(error))

@@ -18,6 +18,7 @@ from starlette.requests import Request
 from starlette.responses import HTMLResponse, RedirectResponse, Response
 
 from hpn import ENGINE_VERSION
+from hpn.reader import Reader
 from hpn.store import SavedFleet, StoreUnavailableError
 from hpn.web.archive import RETRY_SECONDS
 from hpn.web.door.access import admit
@@ -275,15 +276,15 @@ async def download(request: Request) -> Response:
     """The answers as a file."""
     suffix = request.scope["path"].rpartition(".")[2]
     saved = await _found(request)
-    media_type, content = await compute(request, "exports", _file, saved, suffix)
-    headers = {"Content-Disposition": f'attachment; filename="axes.{suffix}"'}
+    media_type, content = await compute(request, "exports", _file, saved, suffix, request.state.reader)
+    headers = {"Content-Disposition": f'attachment; filename="axes.{suffix}"', "Vary": "Accept-Language, Cookie"}
     return Response(content, 200, headers, media_type)
 
 
-def _file(saved: SavedFleet, suffix: str) -> tuple[str, bytes]:
+def _file(saved: SavedFleet, suffix: str, reader: Reader) -> tuple[str, bytes]:
     from hpn.web.pages import fleet_result
 
-    return fleet_result.FILES[suffix][0], fleet_result.file_of(saved, suffix)
+    return fleet_result.FILES[suffix][0], fleet_result.file_of(saved, suffix, reader)
 
 
 # --- Saving, listing, deleting ----------------------------------------------------------------------------------------
