@@ -160,12 +160,18 @@ class CheckDefinition(msgspec.Struct, frozen=True):
     remedy: Annotated[str, Meta(description="What to change.")] = ""
 
 
+LINK = (
+    "Address of the page that shows this application. The page opens up to 60,000 bytes: save a longer application and "
+    "share the address of the saved selection."
+)
+
+
 class Selection(msgspec.Struct, frozen=True):
     """The answer to one application. `link` is the address of the page that shows the application."""
 
     engine_version: Annotated[str, Meta(description="Version of the calculation.")]
     catalogue_version: Annotated[str, Meta(description="Hash of the catalogue’s content, supplement included.")]
-    link: Annotated[str, Meta(description="Address of the page that shows this application.")]
+    link: Annotated[str, Meta(description=LINK)]
     duty: Annotated[DutyFigures, Meta(description="The duty cycle’s own figures.")]
     selected: Annotated[str | None, Meta(description="Designation of the first suitable candidate, or null.")]
     candidates: Annotated[tuple[Candidate, ...], Meta(description="Every gear considered, best first.")]

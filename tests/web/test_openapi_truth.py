@@ -12,6 +12,7 @@ from starlette.testclient import TestClient
 from hpn.web.api.samples import LIFTING, TURNING
 from hpn.web.api.schemas import HEADERS
 from hpn.web.app import create_app
+from hpn.web.door.access import MAXIMUM_QUERY_BYTES
 from hpn.web.door.keys import new_key
 from hpn.web.door.observation import SECURITY_HEADERS
 from hpn.web.settings import Settings
@@ -360,3 +361,10 @@ def test_every_header_in_the_document_is_used_by_some_answer(document: Json) -> 
     }
 
     assert used == set(HEADERS) == set(document["components"]["headers"])
+
+
+def test_the_link_of_a_reply_says_how_long_a_link_the_page_opens(document: Json) -> None:
+    schemas = document["components"]["schemas"]
+
+    for name in ("Selection", "BatchLine"):
+        assert f"{MAXIMUM_QUERY_BYTES:,} bytes" in schemas[name]["properties"]["link"]["description"]

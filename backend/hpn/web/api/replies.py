@@ -12,7 +12,7 @@ from hpn.catalogue import ListedMotor, SeriesFigure
 from hpn.differences import Difference, FigureDifference
 from hpn.envelopes import EnvelopeCurve
 from hpn.gear import Gear
-from hpn.selection import Selection
+from hpn.selection import LINK, Selection
 
 encode = msgspec.json.Encoder().encode
 
@@ -62,7 +62,7 @@ class BatchLine(Struct):
     ] = UNSET
     utilisation: Annotated[float | UnsetType | None, Meta(description="Utilisation of that check.")] = UNSET
     suitable: Annotated[int | UnsetType, Meta(description="Number of suitable gears.")] = UNSET
-    link: Annotated[str | UnsetType, Meta(description="Address of the page that shows this application.")] = UNSET
+    link: Annotated[str | UnsetType, Meta(description=LINK)] = UNSET
     problem: Annotated[ProblemReply | UnsetType, Meta(description="Why the item could not be evaluated.")] = UNSET
 
     @property
