@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import Any, cast
 
 import numpy as np
-from numpy.typing import NDArray
 
 from hpn.bearing import Curve, CurveError, curve_through
 from hpn.catalogue import tables
@@ -34,10 +33,10 @@ from hpn.catalogue.tables import (
     VersionTable,
     WeightTable,
 )
+from hpn.equations import FloatArray
 from hpn.gear import ClampBolt, Gear, HousingBolts
 from hpn.source import printed_source, supplied_source
 
-FloatArray = NDArray[np.float64]
 FILES = tuple(table.file for table in tables.TABLES)
 HANDBOOK_FOLDER = Path(__file__).parents[3] / "catalogue"
 

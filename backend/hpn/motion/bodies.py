@@ -8,15 +8,14 @@ from dataclasses import dataclass
 from math import fsum, pi
 from typing import Annotated, Literal, Self, TypeVar
 
-import numpy as np
-from numpy.typing import NDArray
 from pydantic import Field, model_validator
 
+from hpn.equations import FloatArray
 from hpn.fields import WHOLE, Model, Number, Positive, refused
 from hpn.motion.refusals import refusal
 
 Shape = Literal["disc", "ring", "bar", "block", "point_mass"]
-Value = TypeVar("Value", float, NDArray[np.float64])
+Value = TypeVar("Value", float, FloatArray)
 
 MOST_BODIES = 50
 
