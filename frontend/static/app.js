@@ -9,6 +9,8 @@ const valueOf = (field) => (field.type === "checkbox" ? field.checked : field.va
 
 // --- Requests of the form ---------------------------------------------------------------------------------------------
 
+let asked = null; // the request for an answer that is under way
+let wanted = null; // the link or file of the answer that was pressed meanwhile
 let underWay = null; // the request whose answer brings another form
 const pending = []; // what was pressed meanwhile: row buttons, each with its row, and undo
 let typedMeanwhile = false;
@@ -34,6 +36,7 @@ document.addEventListener("htmx:config:request", (event) => {
   ctx.before = restoring?.before ?? fieldsOf(form);
   ctx.restores = restoring;
   ctx.asked = contentOf(form);
+  asked = ctx;
   if (press || restoring) underWay = ctx;
 });
 
@@ -270,6 +273,32 @@ document.addEventListener("input", (event) => {
   const { form } = event.target;
   if (form?.id === "application" && !form.contains(event.target)) form.dispatchEvent(new Event("input"));
 });
+
+// --- Links, files and comparisons of the answer -----------------------------------------------------------------------
+
+const isAnswered = () => !document.querySelector("#problems > *, [data-waiting], [data-stale]");
+
+document.addEventListener("htmx:finally:request", (event) => {
+  if (event.detail.ctx !== asked) return;
+  asked = null;
+  wanted?.click();
+  wanted = null;
+});
+
+// They are of what the form says or are refused: the answer that is shown may be that of before.
+document.addEventListener(
+  "click",
+  (event) => {
+    const button = event.target.closest("[data-copies-address], #files :is(a, [formaction]), .pin");
+    const waits = asked && !button?.matches(".pin");
+    if (!button || (!waits && isAnswered())) return;
+    event.preventDefault();
+    event.stopPropagation();
+    if (waits) wanted = button;
+    else document.querySelector(`#connection [data-state="${button.matches(".pin") ? "uncompared" : "unanswered"}"]`).hidden = false;
+  },
+  true,
+);
 
 // --- Saving, and another language or other units ----------------------------------------------------------------------
 

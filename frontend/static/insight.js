@@ -2,18 +2,6 @@
 
 const plain = (event) => !event.button && !event.ctrlKey && !event.metaKey && !event.shiftKey && !event.altKey;
 
-// Without an answer there is nothing to compare: say so, instead of waiting in silence for the correction.
-document.addEventListener(
-  "click",
-  (event) => {
-    if (!event.target.closest(".pin") || !plain(event) || !document.querySelector("#problems > *")) return;
-    event.preventDefault();
-    event.stopPropagation();
-    document.querySelector('#connection [data-state="uncompared"]').hidden = false;
-  },
-  true,
-);
-
 let toggle = null; // the gear whose toggle was pressed and keeps the focus, wherever the answer puts it
 
 document.addEventListener("click", (event) => {

@@ -5,9 +5,9 @@ from functools import partial
 from typing import Any
 
 import pytest
-from playwright.sync_api import Page, Route, expect
+from playwright.sync_api import Download, Page, Route, expect
 
-from tests.browser.conftest import Visitor, answer_held_back, open_section
+from tests.browser.conftest import Visitor, answer_held_back, button, open_section
 
 EXAMPLE = "/?T=40&n=250&t=0.3&T=32&n=500&t=3&T=20&n=250&t=0.4&tp=4&Tk=200&i=5"
 
@@ -78,6 +78,75 @@ def test_what_is_wrong_is_not_saved(visitor: Visitor) -> None:
     page.get_by_role("button", name="Save", exact=True).click()
     expect(page.get_by_text("Not saved: first correct the marked inputs.")).to_be_visible()
     expect(torque(page, 1)).to_have_value("abc")
+
+
+def test_verdict_says_that_it_is_not_of_a_phase_with_a_blank_cell(visitor: Visitor) -> None:
+    page = visitor.open(EXAMPLE)
+    verdict = page.locator(".verdict")
+    torque(page, 1).fill("")
+    expect(verdict.get_by_role("status").get_by_text("Not of these inputs")).to_be_visible()
+    expect(verdict.get_by_text("✓ suitable")).to_be_hidden()
+    torque(page, 1).fill("41")
+    expect(verdict.get_by_text("Not of these inputs")).to_be_hidden()
+    expect(verdict.get_by_text("✓ suitable")).to_be_visible()
+
+
+def test_verdict_says_in_full_strength_and_in_any_section_that_an_input_is_wrong(visitor: Visitor) -> None:
+    page = visitor.open(EXAMPLE)
+    open_section(page, "Calculation")
+    torque(page, 1).fill("abc")
+    message = page.get_by_text("Not recalculated: one input needs correction.")
+    expect(message).to_be_visible()
+    page.mouse.move(800, 500)
+    page.mouse.wheel(0, 1500)
+    expect(message).to_be_in_viewport()
+    in_full = """message => {
+      const { x, y, width, height } = message.getBoundingClientRect();
+      if (document.elementFromPoint(x + width / 2, y + height / 2) !== message) return false;
+      let strength = 1;
+      for (let each = message; each; each = each.parentElement) strength *= getComputedStyle(each).opacity;
+      return strength === 1;
+    }"""
+    page.wait_for_function(in_full, arg=message.element_handle())
+
+
+def test_foot_of_a_phone_says_that_its_gear_is_not_of_these_inputs(visitor: Visitor) -> None:
+    page = visitor.open(EXAMPLE, width=390)
+    foot = page.locator("#jump")
+    expect(foot).to_have_text(re.compile("HPN-20A-5.*see why"), use_inner_text=True)
+    height = foot.bounding_box()
+    torque(page, 1).fill("")
+    expect(foot).to_have_text(re.compile("^HPN-20A-5 Not of these inputs"), use_inner_text=True)
+    assert foot.bounding_box() == height
+
+
+@pytest.mark.parametrize("typed", ["abc", ""])
+def test_no_link_and_no_file_is_of_the_inputs_before(visitor: Visitor, typed: str) -> None:
+    page = visitor.open(EXAMPLE)
+    page.evaluate("navigator.clipboard.writeText = (text) => { window.copied = text }")
+    downloads: list[Download] = []
+    page.on("download", lambda download: downloads.append(download))
+    torque(page, 1).fill(typed)
+    expect(page.locator(".verdict .outdated")).to_be_visible()
+    reason = page.get_by_text("No link and no file: the result is not of these inputs.")
+    button(page, "Other files").click()
+    for name in ("Copy link", "PDF", "Workbook", "Duty cycle as CSV"):
+        page.locator("#commands").get_by_text(name, exact=True).dispatch_event("click")
+        expect(reason).to_be_visible()
+    assert page.evaluate("window.copied") is None
+    torque(page, 1).fill("41")
+    expect(reason).to_be_hidden()
+    with page.expect_download() as download:
+        page.get_by_role("link", name="PDF").click()
+    assert "T=41&" in download.value.url
+    assert len(downloads) == 1
+
+
+def test_file_that_is_asked_for_while_an_answer_is_under_way_is_of_that_answer(visitor: Visitor) -> None:
+    page = visitor.open(EXAMPLE)
+    with page.expect_download() as download, answer_held_back(page, partial(torque(page, 1).fill, "42")):
+        page.get_by_role("link", name="PDF").click()
+    assert "T=42&" in download.value.url
 
 
 def test_undo_takes_back_the_row_edit_that_is_under_way_and_no_more(visitor: Visitor) -> None:
