@@ -138,6 +138,16 @@ def test_a_column_under_a_name_of_an_index_is_one_where_its_numbers_go_on(
         assert [axis["emergency_stop.count"] for axis in taken.axes] == [5, 5, 200]
 
 
+def test_cells_in_a_unit_of_something_else_are_said_before_their_axes_are_rejected() -> None:
+    table = read(HEAD, "A;40 lb;100;1", "B;40;10 1/s;1", "C;40 Nm;100;300 ms", "D;n. b.;100;1")
+
+    assert [note.text for note in table.notes] == [
+        "Cells that are no numbers, such as n. b.: 1. Their axes are rejected.",
+        "Cells in a unit that is not of their column, such as 40 lb: 2. Their axes are rejected.",
+    ]
+    assert [axis["torque_Nm"] for axis in table.axes] == [["40 lb"], [40], [40], ["n. b."]]
+
+
 def test_every_input_of_an_axis_is_known_by_the_name_of_its_column() -> None:
     names = {".".join(s.path) if s.path[0] != "duty_cycle" else s.path[-1]: s.name for s in BY_ROLE.values()}
     table = read(";".join(["axis", *names]), ";".join(["A", *("1" for _ in names)]))

@@ -154,16 +154,36 @@ class _Reading:
 
     def _decimal(self) -> tuple[Decimal | None, tuple[tuple[str, str], ...]]:
         """Decimal mark of the numbers, None where it is asked for, and what one with two readings is under each."""
-        places = [column.place for column in self.columns if column.is_number]
-        cells = [cell for row in self.body.rows for place in places if not is_blank(cell := row[place])]
+        columns = [column for column in self.columns if column.is_number]
+        held = [
+            (cell, column) for row in self.body.rows for column in columns if not is_blank(cell := row[column.place])
+        ]
+        cells = [cell for cell, _ in held]
         read = {mark: [number_in(cell, mark) for cell in cells] for mark in DECIMALS}
         mark, marks = self._mark(cells, read)
         found = read[mark] if mark else [one or other for one, other in zip(*read.values(), strict=True)]
-        wrong = [cell for cell, number in zip(cells, found, strict=True) if number is None]
-        if wrong:
-            template = N_("Cells that are no numbers, such as {cell}: {count}. Their axes are rejected.")
-            self.notes.append(Sentence(template, {"count": len(wrong), "cell": wrong[0][:40]}))
+        self._note_unread(held, found, (mark,) if mark else DECIMALS)
         return mark, marks
+
+    def _note_unread(
+        self, held: Sequence[tuple[str, AxisColumn]], found: Sequence[Entry | None], marks: Collection[Decimal]
+    ) -> None:
+        """Say which cells are rejected with their axes: no numbers, and those in a unit that is not their column's."""
+        wrong, strange = list[str](), list[str]()
+        for (cell, column), number in zip(held, found, strict=True):
+            if number is None:
+                wrong.append(cell)
+            elif number.unit and all(_read(cell, column, mark) is None for mark in marks):
+                strange.append(cell)
+        for template, cells in (
+            (N_("Cells that are no numbers, such as {cell}: {count}. Their axes are rejected."), wrong),
+            (
+                N_("Cells in a unit that is not of their column, such as {cell}: {count}. Their axes are rejected."),
+                strange,
+            ),
+        ):
+            if cells:
+                self.notes.append(Sentence(template, {"count": len(cells), "cell": cells[0][:40]}))
 
     def _mark(
         self, cells: Sequence[str], read: Mapping[Decimal, Sequence[Entry | None]]
