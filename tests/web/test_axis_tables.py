@@ -148,6 +148,12 @@ def test_cells_in_a_unit_of_something_else_are_said_before_their_axes_are_reject
     assert [axis["torque_Nm"] for axis in table.axes] == [["40 lb"], [40], [40], ["n. b."]]
 
 
+def test_bars_between_ratios_part_no_columns() -> None:
+    table = read("Axis,T,n,t,Ratio", "A,40,250,1,4|5|7", "B,40,250,1,4|5|10")
+
+    assert [axis["requirements.ratios"] for axis in table.axes] == [[4, 5, 7], [4, 5, 10]]
+
+
 def test_every_input_of_an_axis_is_known_by_the_name_of_its_column() -> None:
     names = {".".join(s.path) if s.path[0] != "duty_cycle" else s.path[-1]: s.name for s in BY_ROLE.values()}
     table = read(";".join(["axis", *names]), ";".join(["A", *("1" for _ in names)]))

@@ -22,10 +22,14 @@ SEPARATORS = {
     "tab": N_("tab"),
     "semicolon": N_("semicolon"),
     "comma": N_("comma"),
+    "bar": N_("vertical bar"),
     "blanks": N_("several blanks"),
     "blank": N_("blank"),
 }
-_MARKS = {"tab": "\t", "semicolon": ";", "comma": ","}
+_MARKS = {"tab": "\t", "semicolon": ";", "comma": ",", "bar": "|"}
+_RULE = re.compile(r"(?=.*--)[-|:+ ]+")
+"""A line of a table in Markdown that only sets the header apart."""
+
 _HINT = re.compile(r"sep=(.)\r?\n", re.IGNORECASE)
 """First line with which Excel is told the separator."""
 
@@ -118,11 +122,27 @@ def _separators(text: str) -> list[str]:
     for name in ("tab", "semicolon"):
         if sum(_MARKS[name] in line for line in lines) * 2 > len(lines):
             return [name]
+    if _barred(lines):
+        return ["bar"]
     found = [name for name, mark in (("comma", ","), ("blanks", "  "), ("blank", " ")) if mark in text.strip()]
     return found or ["tab"]
 
 
+def _barred(lines: Sequence[str]) -> bool:
+    """Whether bars make a table: each line has as many as the others, and two at least. One may be part of a cell."""
+    counts = {line.count("|") for line in lines if not _RULE.fullmatch(line.strip())}
+    return len(counts) == 1 and counts.pop() >= 2
+
+
+def _without_frame(line: str) -> str:
+    """A line of a table in Markdown without the bars at its ends; nothing of one that only sets the header apart."""
+    line = line.strip()
+    return "" if _RULE.fullmatch(line) else line.removeprefix("|").removesuffix("|")
+
+
 def _rows(text: str, name: str) -> Iterator[list[str]]:
+    if name == "bar":
+        text = "\n".join(map(_without_frame, text.splitlines()))
     if name in _MARKS:
         try:
             yield from csv.reader(io.StringIO(text, newline=""), delimiter=_MARKS[name], skipinitialspace=True)
