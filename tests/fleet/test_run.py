@@ -3,6 +3,7 @@
 import os
 import random
 import signal
+import socket
 import subprocess
 import sys
 import threading
@@ -22,6 +23,7 @@ from hpn.fleet.grouping import Part
 from hpn.fleet.job import Job
 from hpn.fleet.run import Engine, Order, interrupts_held, processes, size_fleet
 from tests.fleet.tables import here, quiet, row_of, write
+from tests.operations.service import until
 from tests.property.draw import at_random
 from tests.reliability.faults import as_user, full, small_disk
 
@@ -294,10 +296,7 @@ def test_an_interrupt_keeps_the_parts_and_ends_with_1(many: Path, tmp_path: Path
 def test_an_interrupt_while_the_workers_start_says_the_same(many: Path, tmp_path: Path) -> None:
     folder = tmp_path / "out.parquet.parts"
     with started(many, tmp_path / "out.parquet", "--workers", 6) as run:
-        while not (folder / "plan.json").exists():
-            assert run.poll() is None, run.communicate()[1]
-            time.sleep(0.01)
-        time.sleep(0.3)
+        until(lambda: len(members(run.pid)) > 6 or run.poll() is not None)
         os.killpg(run.pid, signal.SIGINT)
         assert run.communicate()[1] == f"stopped; hpn fleet … --resume goes on with the parts in {folder}\n"
     assert run.returncode == 1
@@ -305,15 +304,19 @@ def test_an_interrupt_while_the_workers_start_says_the_same(many: Path, tmp_path
 
 def test_an_interrupt_that_another_thread_takes_waits_until_the_workers_have_started() -> None:
     over, reached = threading.Event(), False
+    told, tells = socket.socketpair()
+    tells.setblocking(False)
     other = threading.Thread(target=over.wait)
     other.start()
     before = signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell's background has it ignored
+    awake = signal.set_wakeup_fd(tells.fileno())
     try:
-        with pytest.raises(KeyboardInterrupt), interrupts_held():
+        with told, tells, pytest.raises(KeyboardInterrupt), interrupts_held():
             signal.pthread_kill(other.ident or 0, signal.SIGINT)
-            time.sleep(0.1)
+            told.recv(1)  # once the other thread has taken it
             reached = True
     finally:
+        signal.set_wakeup_fd(awake)
         signal.signal(signal.SIGINT, before)
         over.set()
         other.join()
