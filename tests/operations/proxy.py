@@ -14,7 +14,7 @@ from typing import Any
 
 from ruamel.yaml import YAML
 
-from tests.operations.service import free_port
+from tests.operations.service import held_port
 
 ROOT = Path(__file__).parents[2]
 SERVICE: dict[str, Any] = YAML(typ="safe").load(ROOT / "docker-compose.yml")["services"]["proxy"]
@@ -51,11 +51,10 @@ class Proxy:
 @contextmanager
 def proxied(service: int) -> Iterator[Proxy]:
     """Run the proxy before a service's port until the block ends."""
-    with tempfile.TemporaryDirectory(prefix="hpn-nginx-") as name:
+    with tempfile.TemporaryDirectory(prefix="hpn-nginx-") as name, held_port() as http, held_port() as https:
         folder = Path(name)
         folder.chmod(0o755)  # the workers of a root's nginx are somebody else
         certify(folder)
-        http, https = free_port(), free_port()
         own = {
             "PROXY_CONFIGURATION": str(ROOT / "backend/nginx.conf"),
             "PROXY_CERTIFICATES": name,

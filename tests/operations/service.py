@@ -76,12 +76,13 @@ def is_gone(pid: int) -> bool:
     return True
 
 
-def free_port() -> int:
-    """A port that nobody listens on."""
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        port: int = probe.getsockname()[1]
-        return port
+@contextmanager
+def held_port() -> Iterator[int]:
+    """A port that the system gives to nobody else until the block ends: a program that asks for it can listen there."""
+    with socket.socket() as held:
+        held.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)  # as servers do, and only then beside each other
+        held.bind(("127.0.0.1", 0))
+        yield held.getsockname()[1]
 
 
 @contextmanager
@@ -92,16 +93,18 @@ def serving(
     program: Sequence[str] = (str(HPN), "serve"),
 ) -> Iterator[Service]:
     """Run `hpn serve`, or another program in its place, with a new database in `folder` until the block ends."""
-    port = free_port()
     log = folder / "service.log"
     database = f"sqlite:///{folder}/store.sqlite3"
     clean = {name: value for name, value in os.environ.items() if not name.startswith("HPN_")}
-    command = [*program, "--port", str(port), *arguments]
-    with log.open("wb") as output:
-        process = subprocess.Popen(
-            command, stdout=output, stderr=output, env={**clean, "HPN_DATABASE_URL": database, **(environment or {})}
-        )
-    with httpx.Client(base_url=f"http://127.0.0.1:{port}", timeout=60, trust_env=False) as client:
+    with held_port() as port, httpx.Client(base_url=f"http://127.0.0.1:{port}", timeout=60, trust_env=False) as client:
+        command = [*program, "--port", str(port), *arguments]
+        with log.open("wb") as output:
+            process = subprocess.Popen(
+                command,
+                stdout=output,
+                stderr=output,
+                env={**clean, "HPN_DATABASE_URL": database, **(environment or {})},
+            )
         service = Service(process, port, log, client)
         try:
             await_start(service)

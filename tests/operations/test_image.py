@@ -4,6 +4,7 @@ Left out for want of an engine: the base images themselves, adding the user, and
 """
 
 import time
+from collections.abc import Iterator
 from pathlib import Path
 
 import httpx
@@ -11,7 +12,7 @@ import pytest
 
 from tests.build import worked_example
 from tests.operations.dockerfile import Image, build
-from tests.operations.service import free_port
+from tests.operations.service import held_port
 
 ROOT = Path(__file__).parents[2]
 
@@ -24,8 +25,14 @@ def image(tmp_path_factory: pytest.TempPathFactory) -> Image:
     return image
 
 
-def test_the_image_starts_answers_is_healthy_and_writes_only_its_data(image: Image) -> None:
-    port = str(free_port())
+@pytest.fixture
+def port() -> Iterator[str]:
+    """Port for a service."""
+    with held_port() as port:
+        yield str(port)
+
+
+def test_the_image_starts_answers_is_healthy_and_writes_only_its_data(image: Image, port: str) -> None:
     before = _files(image.place("."))
     process = image.run(image.command("CMD"), HPN_HOST="127.0.0.1", HPN_PORT=port)
     try:

@@ -16,7 +16,7 @@ import orjson
 import pytest
 
 from tests.build import cycle, phase, worked_example
-from tests.operations.service import Service, children_of, is_gone, serving, until
+from tests.operations.service import Service, children_of, held_port, is_gone, serving, until
 
 SELECT = "/api/v1/select"
 REPORT = "/api/v1/report.pdf"
@@ -211,3 +211,13 @@ def test_everything_that_is_logged_is_json(service: Service) -> None:
     service.event(request_id="last")
 
     assert {"event", "level", "timestamp"} <= set.intersection(*(set(event) for event in service.events()))
+
+
+def test_the_port_of_a_service_under_test_is_given_to_nobody_else_before_it_listens() -> None:
+    with held_port() as port, socket.socket() as other, socket.socket() as server:
+        with pytest.raises(OSError):
+            other.bind(("127.0.0.1", port))
+        server.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        server.bind(("127.0.0.1", port))
+        server.listen()
+        socket.create_connection(("127.0.0.1", port), 20).close()
