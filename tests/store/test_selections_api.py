@@ -353,6 +353,19 @@ def test_a_selection_is_renamed_and_nothing_else_of_it_changes(client: TestClien
     assert client.patch(address, json={}).json()["title"] == "new"
 
 
+def test_a_selection_is_renamed_by_a_merge_patch(client: TestClient) -> None:
+    address = f"{ADDRESS}/{save(client, title='old', reference='4711', **WRITTEN)}"
+
+    headers = {"Content-Type": "application/merge-patch+json; charset=utf-8"}
+    answer = client.patch(address, content='{"title": null}', headers=headers)
+
+    assert answer.status_code == 200, answer.text
+    assert (answer.json()["title"], answer.json()["reference"]) == (None, "4711")
+    refused = client.patch(address, content="[]", headers={"Content-Type": "application/json-patch+json"})
+    assert refused.status_code == 415
+    assert "application/json or application/merge-patch+json" in refused.json()["detail"]
+
+
 @pytest.mark.parametrize(
     ("body", "status", "pointer"),
     [

@@ -306,6 +306,20 @@ def asked(api: TestClient, method: str, address: str, operation: Json, media_typ
     return api.request(method, address, json=body)
 
 
+def test_every_content_type_of_a_body_is_taken_and_no_other(api: TestClient, document: Json) -> None:
+    patched = set()
+    for method, address, operation in operations(document):
+        declared = operation.get("requestBody", {}).get("content", {})
+        for media_type in (*declared, "application/x-other") if declared else ():
+            at = re.sub(r"\{.*?\}", "HPN-20A-5", address)
+            answer = api.request(method, at, content="", headers={"Content-Type": media_type})
+            assert (answer.status_code == 415) is (media_type not in declared), (method, address, media_type)
+            if method.lower() == "patch":
+                patched.add(media_type)
+
+    assert patched == {"application/json", "application/merge-patch+json", "application/x-other"}
+
+
 # --- Headers ----------------------------------------------------------------------------------------------------------
 
 OF_HTTP = {"cache-control", "content-encoding", "content-length", "content-type", "vary", "x-accel-buffering"}

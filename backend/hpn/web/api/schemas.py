@@ -14,6 +14,7 @@ from hpn.fields import Model, name_units
 from hpn.quantities import BOLT, CANDIDATE, CHECK, DUTY, ENVELOPE, GEAR, MOTOR, PHASE, RESERVE, SERIES, Named
 from hpn.selection import Selection
 from hpn.web.api import replies
+from hpn.web.door.bodies import JSON
 from hpn.web.door.problems import MAXIMUM_ERRORS, MEDIA_TYPE, TITLES
 
 DESCRIBED: Mapping[str, Mapping[str, Named]] = {
@@ -125,10 +126,11 @@ def _one_gear(gear: dict[str, Any]) -> dict[str, Any]:
     }
 
 
-def request_body(model: type[BaseModel]) -> dict[str, Any]:
-    """OpenAPI entry of a JSON request body; `openapi.py` adds the model's schema to the document."""
+def request_body(model: type[BaseModel], *media_types: str) -> dict[str, Any]:
+    """OpenAPI entry of a request body in JSON; `openapi.py` adds the model's schema to the document."""
     schema = {"$ref": f"#/components/schemas/{model.__name__}"}
-    return {"requestBody": {"required": True, "content": {"application/json": {"schema": schema}}}}
+    content = {media_type: {"schema": schema} for media_type in media_types or (JSON,)}
+    return {"requestBody": {"required": True, "content": content}}
 
 
 def batch_body() -> dict[str, Any]:

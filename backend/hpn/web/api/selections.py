@@ -39,7 +39,7 @@ from hpn.web.archive import (
     url_of,
 )
 from hpn.web.door.access import admit
-from hpn.web.door.bodies import parsed, read_body
+from hpn.web.door.bodies import JSON, MERGE_PATCH, parsed, read_body
 from hpn.web.door.conditions import conditional, etag_of, idempotency_key, preferred_return, require_match
 from hpn.web.door.observation import note
 from hpn.web.door.pools import calculate
@@ -165,7 +165,7 @@ async def list_selections(
     dependencies=[admit("deleting")],
     operation_id="renameSelection",
     summary="Rename a saved selection",
-    openapi_extra=schemas.request_body(Names)
+    openapi_extra=schemas.request_body(Names, JSON, MERGE_PATCH)
     | {"parameters": [schemas.header("If-Match", "Rename only this state of it.")]},
     responses=schemas.answers(
         "SavedSelectionReply", *(400, 403, 404, 408, 412, 413, 415, 422, 503), headers=schemas.headers("ETag")
@@ -175,12 +175,13 @@ async def list_selections(
 async def rename_selection(request: Request, id: str) -> Response:
     """Gives a saved selection another title or reference; null takes one away, and what is left out stays.
 
-    What was calculated is never rewritten. Where the service has API keys, a key renames what it has saved, and the one
-    named `admin` renames any.
+    The body is a JSON merge patch (RFC 7396). What was calculated is never rewritten. Where the service has API keys, a
+    key renames what it has saved, and the one named `admin` renames any.
     """
     settings: Settings = request.app.state.settings
     store: Store = request.app.state.store
-    body = await read_body(request, maximum_bytes=settings.maximum_body_bytes, seconds=settings.body_seconds)
+    limits: dict[str, Any] = {"maximum_bytes": settings.maximum_body_bytes, "seconds": settings.body_seconds}
+    body = await read_body(request, JSON, MERGE_PATCH, **limits)
     names = parsed(Names, body).model_dump(exclude_unset=True)
     await changeable(request, id)
     if "if-match" in request.headers:

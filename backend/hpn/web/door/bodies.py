@@ -14,6 +14,8 @@ from hpn.web.settings import Settings
 
 M = TypeVar("M", bound=BaseModel)
 
+JSON, MERGE_PATCH = "application/json", "application/merge-patch+json"
+
 MOST_OBJECTS, MOST_NAMES, MOST_LISTS = MAXIMUM_PHASES + 100, 8 * MAXIMUM_PHASES + 1000, 10_000
 """What the JSON of the longest application stays below."""
 
@@ -24,15 +26,14 @@ MOST_PAIRS = MOST_NAMES
 """Parameters of the longest form."""
 
 
-async def read_body(
-    request: Request, content_type: str = "application/json", *, maximum_bytes: int, seconds: float
-) -> bytes:
-    """Body of a request.
+async def read_body(request: Request, *content_types: str, maximum_bytes: int, seconds: float) -> bytes:
+    """Body of a request, JSON where no content types are named.
 
-    Raises Problem 415 for another content type, 413 above `maximum_bytes`, 408 when it has not arrived in `seconds`.
+    Raises Problem 415 for any other content type, 413 above `maximum_bytes`, 408 when it has not arrived in `seconds`.
     """
-    if content_type_of(request) != content_type:
-        raise wrong_type(request, content_type)
+    wanted = content_types or (JSON,)
+    if content_type_of(request) not in wanted:
+        raise wrong_type(request, " or ".join(wanted))
     too_large = _too_large(request, maximum_bytes)
     body = bytearray()
     try:
