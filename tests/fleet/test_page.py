@@ -163,6 +163,18 @@ def test_reasons_of_a_file_for_people_are_in_the_readers_language(client: TestCl
     assert errors("de") == {"csv": german, "xlsx": german, "parquet": english}
 
 
+@pytest.mark.parametrize("suffix", ["csv", "xlsx", "parquet"])
+def test_a_browser_gets_the_page_of_a_fleet_that_is_gone_for_its_files_too(client: TestClient, suffix: str) -> None:
+    browser = {"Accept": "text/html,application/xhtml+xml,*/*;q=0.8"}
+
+    page = client.get(f"/fleets/nowhere/axes.{suffix}", headers=browser)
+    problem = client.get(f"/fleets/nowhere/axes.{suffix}")
+
+    assert page.status_code == problem.status_code == 404
+    assert "There is no such fleet." in page.text and page.headers["content-type"].startswith("text/html")
+    assert problem.headers["content-type"] == "application/problem+json"
+
+
 @pytest.mark.parametrize("form", ["list", "long"])
 @pytest.mark.parametrize("suffix", [".csv", ".ndjson", ".parquet", ".arrow"])
 def test_tables_of_hpn_fleet_are_taken_as_they_are(tmp_path: Path, suffix: str, form: str) -> None:

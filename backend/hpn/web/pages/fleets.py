@@ -39,6 +39,7 @@ from hpn.web.form.pasted import TIMES
 from hpn.web.form.sheets import RefusedError
 from hpn.web.pages.fleet_view import ROWS_ON_PAGE, SHOWN, Chosen, FleetPageView
 from hpn.web.pages.paste import DECIMALS, choices_of
+from hpn.web.pages.refusals import reads_pages
 from hpn.web.pages.templates import environment
 from hpn.wording import N_, Sentence
 
@@ -275,7 +276,12 @@ async def _found(request: Request) -> SavedFleet:
 async def download(request: Request) -> Response:
     """The answers as a file."""
     suffix = request.scope["path"].rpartition(".")[2]
-    saved = await _found(request)
+    try:
+        saved = await _found(request)
+    except (Problem, StoreUnavailableError) as error:
+        if reads_pages(request):
+            return await compute(request, "pages", _refused, request, error)
+        raise
     media_type, content = await compute(request, "exports", _file, saved, suffix, request.state.reader)
     headers = {"Content-Disposition": f'attachment; filename="axes.{suffix}"', "Vary": "Accept-Language, Cookie"}
     return Response(content, 200, headers, media_type)
