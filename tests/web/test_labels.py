@@ -35,6 +35,13 @@ def test_an_edit_keeps_what_is_written_on_the_selection(api: TestClient, more: l
     assert labels_in(edit(api, [*GIVEN, *more])) == WRITTEN | ORDERED
 
 
+def test_the_head_has_the_whole_title_where_its_line_is_too_short_for_it(api: TestClient) -> None:
+    link = next(line for line in api.get(ADDRESS).text.splitlines() if 'class="subject"' in line)
+    assert f'title="{html.escape(WRITTEN["title"])}"' in link
+    unnamed = next(line for line in api.get("/").text.splitlines() if 'class="subject"' in line)
+    assert 'title="Title, reference, author and revision"' in unnamed
+
+
 def test_a_form_without_a_phase_keeps_it_too(api: TestClient) -> None:
     blank = [(name, "") for name, _ in CYCLE]
     assert labels_in(edit(api, [*blank, *WRITTEN.items()])) == WRITTEN
