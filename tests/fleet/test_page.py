@@ -257,6 +257,21 @@ def test_a_fleet_is_saved_listed_and_never_changed(client: TestClient, service: 
     assert client.get(address).status_code == 404
 
 
+def test_a_saved_fleet_is_renamed_on_its_page(client: TestClient, service: FastAPI, kept: FleetDraft) -> None:
+    address = keep(client, service, kept)
+    assert client.post(f"{address}/rename", data={"title": "early"}).status_code == 404
+    client.post(address, data={"title": "Line 4", "ref": "P-7", "author": "MM", "rev": "B"})
+    assert f'action="{address}/rename"' in client.get(address).text
+
+    wrong = client.post(f"{address}/rename", data={"title": "x" * 300})
+    assert wrong.status_code == 422 and "at most 200" in unescape(wrong.text)
+    renamed = client.post(f"{address}/rename", data={"title": "Line <5>", "ref": ""})
+
+    assert renamed.status_code == 303 and renamed.headers["location"] == address
+    page = client.get(address).text
+    assert "<h1>Line &lt;5&gt;</h1>" in page and "P-7" not in page and "MM" in page
+
+
 def test_a_fleet_says_what_differs_today(client: TestClient, service: FastAPI, fleet: str, tmp_path: Path) -> None:
     then = select(Application.model_validate(HUB), service.state.catalogue).candidates[0]
     columns = "size,ratio,repeated_peak_torque_Nm,rated_torque_Nm,momentary_peak_torque_Nm,source\n"
@@ -272,7 +287,7 @@ def test_a_fleet_says_what_differs_today(client: TestClient, service: FastAPI, f
     assert "What differs today" not in client.get(fleet).text
 
 
-def test_only_the_owner_s_key_deletes_a_fleet(kept: FleetDraft, tmp_path: Path) -> None:
+def test_only_the_owner_s_key_renames_and_deletes_a_fleet(kept: FleetDraft, tmp_path: Path) -> None:
     keys = {name: f"key of {name}" for name in ("anna", "bert")}
     pairs = [f"{name}:{hashlib.sha256(key.encode()).hexdigest()}" for name, key in keys.items()]
     settings = Settings.model_validate({"database_url": f"sqlite:///{tmp_path / 'db'}", "api_keys": " ".join(pairs)})
@@ -286,6 +301,7 @@ def test_only_the_owner_s_key_deletes_a_fleet(kept: FleetDraft, tmp_path: Path) 
         client.post(address, data={"title": "Line 4"})
 
         assert client.post(f"{address}/delete", headers=bert).status_code == 403
+        assert client.post(f"{address}/rename", data={"title": "Bert’s"}, headers=bert).status_code == 403
         assert client.post(f"{address}/delete", headers={"X-API-Key": ""}).status_code == 401
         assert client.get(address).status_code == 200
         assert client.post(f"{address}/delete").status_code == 303

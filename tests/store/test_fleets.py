@@ -1,5 +1,6 @@
-"""A fleet is kept for a day when it is calculated, for good when it is saved, and never changed after that."""
+"""A fleet is kept for a day when it is calculated, for good when it is saved, and only renamed after that."""
 
+from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 from typing import Any
 
@@ -52,6 +53,18 @@ async def test_a_saved_fleet_is_not_saved_again_under_another_name(store: Store)
 
     found = await store.find_fleet(id)
     assert found is not None and (found.title, found.owner) == ("Line 4", "anna")
+
+
+async def test_a_saved_fleet_is_renamed_and_nothing_else_of_it_changes(store: Store) -> None:
+    id, left = await store.keep_fleet(draft()), await store.keep_fleet(draft())
+    await store.save_fleet(id, NAMES, "anna")
+    before = await store.find_fleet(id)
+
+    assert await store.rename_fleet(id, {"title": "Line 5", "reference": None})
+    assert not await store.rename_fleet(left, {"title": "not saved", "reference": None})
+
+    assert before is not None
+    assert await store.find_fleet(id) == replace(before, title="Line 5", reference=None)
 
 
 async def test_what_nobody_saves_goes_after_a_day(store: Store) -> None:

@@ -1,6 +1,6 @@
 """What the store keeps of a fleet, and what a transaction does to it.
 
-A fleet is kept for a day when it is calculated, and for good when it is saved; after that it is only deleted.
+A fleet is kept for a day when it is calculated, and for good when it is saved; it is then only renamed and deleted.
 """
 
 import secrets
@@ -80,6 +80,12 @@ async def name_fleet(connection: AsyncConnection, id: str, names: Mapping[str, s
     values = {**names, "owner": owner, "saved": datetime.now(UTC)}
     named = update(fleets).where(fleets.c.id == id, fleets.c.saved.is_(None)).values(values).returning(fleets.c.id)
     return (await connection.execute(named)).one_or_none() is not None
+
+
+async def rename_fleet(connection: AsyncConnection, id: str, names: Mapping[str, str | None]) -> bool:
+    """Give a saved fleet another title or reference; False where there is none."""
+    renamed = update(fleets).where(fleets.c.id == id, fleets.c.saved.is_not(None)).values(**names)
+    return (await connection.execute(renamed.returning(fleets.c.id))).one_or_none() is not None
 
 
 async def remove_fleet(connection: AsyncConnection, id: str) -> bool:

@@ -29,6 +29,7 @@ from hpn.store.fleets import (
     read_fleet,
     read_fleets,
     remove_fleet,
+    rename_fleet,
 )
 from hpn.store.packing import unpacked
 from hpn.store.saved import Draft, Page, SavedSelection, Summary, search_text
@@ -182,6 +183,10 @@ class Store:
     async def save_fleet(self, id: str, names: Mapping[str, str | None], owner: str | None) -> bool:
         """Keep a calculated fleet for good, with title, reference, author and revision; False where there is none."""
         return bool(ID.fullmatch(id)) and await self._write(lambda connection: name_fleet(connection, id, names, owner))
+
+    async def rename_fleet(self, id: str, names: Mapping[str, str | None]) -> bool:
+        """Give a saved fleet another `title` or `reference`, or both; False where there is none with this id."""
+        return bool(ID.fullmatch(id)) and await self._write(lambda connection: rename_fleet(connection, id, names))
 
     async def find_fleet(self, id: str) -> SavedFleet | None:
         """The fleet with this id, saved or calculated not long ago, or None."""

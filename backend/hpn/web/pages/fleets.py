@@ -40,6 +40,7 @@ from hpn.web.form.sheets import RefusedError
 from hpn.web.pages.fleet_view import ROWS_ON_PAGE, SHOWN, Chosen, FleetPageView
 from hpn.web.pages.paste import DECIMALS, choices_of
 from hpn.web.pages.refusals import reads_pages
+from hpn.web.pages.saved_list import names_of
 from hpn.web.pages.templates import environment
 from hpn.wording import N_, Sentence
 
@@ -293,7 +294,7 @@ def _file(saved: SavedFleet, suffix: str, reader: Reader) -> tuple[str, bytes]:
     return fleet_result.FILES[suffix][0], fleet_result.file_of(saved, suffix, reader)
 
 
-# --- Saving, listing, deleting ----------------------------------------------------------------------------------------
+# --- Saving, listing, renaming, deleting ------------------------------------------------------------------------------
 
 
 async def save(request: Request) -> Response:
@@ -324,6 +325,20 @@ async def show_saved(request: Request) -> Response:
         return await compute(request, "pages", _refused, request, error)
     shown = {"lines": lines, "following": following, "later": bool(cursor)}
     return await compute(request, "pages", lambda: _render(request, "fleets_saved.html", 200, **shown))
+
+
+async def rename(request: Request) -> Response:
+    """Gives a saved fleet another title and reference, and leads back to its page."""
+    try:
+        require_same_origin(request)
+        names = names_of(dict(pairs_of(await read_form(request))))
+        saved = await _own(request)
+        if not await request.app.state.store.rename_fleet(saved.id, names):
+            raise Problem(404, GONE)
+    except (Problem, StoreUnavailableError) as error:
+        return await compute(request, "pages", _refused, request, error)
+    note(request, fleet=saved.id)
+    return RedirectResponse(f"{ADDRESS}/{saved.id}", 303)
 
 
 async def ask_to_delete(request: Request) -> Response:
@@ -387,5 +402,6 @@ router.add_api_route(f"{ADDRESS}/{{fleet}}", show, dependencies=[admit("reading"
 router.add_api_route(f"{ADDRESS}/{{fleet}}", save, methods=["POST"], dependencies=[admit("writing")])
 for suffix in SUFFIXES:
     router.add_api_route(f"{ADDRESS}/{{fleet}}/axes.{suffix}", download, dependencies=[admit("reading")])
+router.add_api_route(f"{ADDRESS}/{{fleet}}/rename", rename, methods=["POST"], dependencies=[admit("deleting")])
 router.add_api_route(f"{ADDRESS}/{{fleet}}/delete", ask_to_delete, dependencies=[admit("deleting")])
 router.add_api_route(f"{ADDRESS}/{{fleet}}/delete", delete, methods=["POST"], dependencies=[admit("deleting")])

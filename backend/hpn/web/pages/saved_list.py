@@ -1,5 +1,6 @@
 """The list of saved selections: newest first, in parts, searched; what stands in it is renamed and deleted there."""
 
+from collections.abc import Mapping
 from typing import Any
 
 from fastapi import APIRouter
@@ -67,13 +68,18 @@ async def rename_selection(request: Request) -> Response:
 
 
 async def _rename(request: Request, saved: SavedSelection, fields: dict[str, str]) -> None:
+    await request.app.state.store.rename(saved.id, names_of(fields))
+
+
+def names_of(fields: Mapping[str, str]) -> dict[str, str | None]:
+    """Title and reference of a form that renames; Problem 422 for what can't be one."""
     names = {"title": fields.get("title", "").strip(), "reference": fields.get("ref", "").strip()}
     faults = [fault for text in names.values() for fault in faults_of(text)]
     if faults:
         problem = Problem(422, "; ".join(fault.text for fault in faults))
         problem.sentences = tuple(faults)
         raise problem
-    await request.app.state.store.rename(saved.id, {name: text or None for name, text in names.items()})
+    return {name: text or None for name, text in names.items()}
 
 
 async def ask_to_delete(request: Request) -> Response:
