@@ -119,7 +119,7 @@ def hostile(saved: str, *, whole: bool) -> Iterator[Hostile]:
     yield Hostile("POST", "/fleets", urlencode({"table": "A" * 1_000_000}).encode(), FORM)
     for path in ("", "/axes.parquet", "/axes.csv", "/axes.xlsx", "/delete"):
         yield Hostile("GET", f"/fleets/{'x' * 22}{path}?search={'a' * 10_000}")
-    for path in ("", "/delete"):
+    for path in ("", "/rename", "/delete"):
         yield Hostile("POST", f"/fleets/{'x' * 22}{path}", PAIRS, FORM)
     yield Hostile("PATCH", one, UNKNOWN, JSON)
     yield Hostile("DELETE", one)

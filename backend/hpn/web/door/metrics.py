@@ -147,6 +147,11 @@ class CountedStore(Store):
         with self._counted("save_fleet"):
             return await super().save_fleet(id, names, owner)
 
+    async def rename_fleet(self, id: str, names: Mapping[str, str | None]) -> bool:
+        """See Store."""
+        with self._counted("rename_fleet"):
+            return await super().rename_fleet(id, names)
+
     async def find_fleet(self, id: str) -> SavedFleet | None:
         """See Store."""
         with self._counted("find_fleet"):
