@@ -1,5 +1,6 @@
 """What holds for every route: HEAD like GET, links of a bounded length, compressed JSON, headers of one host."""
 
+import gzip
 import re
 from typing import Any
 from urllib.parse import quote
@@ -29,7 +30,8 @@ QUERIES = {
 }
 """What routes need in their query, those that need any."""
 
-ROUTES = [route for route in iter_route_contexts(create_app().routes) if "GET" in (route.methods or ())]
+ALL = list(iter_route_contexts(create_app().routes))
+ROUTES = [route for route in ALL if "GET" in (route.methods or ())]
 PATHS = {str(route.path): group_of(route) for route in ROUTES}
 LIMITED = [path for path, group in PATHS.items() if group is not None]
 OF_EACH_REQUEST = {"x-request-id", "ratelimit", "date"}
@@ -136,6 +138,42 @@ def test_posted_json_and_problems_are_compressed_and_lines_are_not(api: TestClie
 
     assert [len(answer.content) > 500 for answer in (*answers, lines)] == [True] * 4
     assert [answer.headers.get("Content-Encoding") for answer in (*answers, lines)] == ["gzip"] * 3 + [None]
+
+
+WITHOUT_BODY = "/fleets/{fleet}/delete"
+FORMS = {str(route.path) for route in ALL if "POST" in (route.methods or ())} - {WITHOUT_BODY}
+BODIES = [
+    *(("POST", path, "application/x-www-form-urlencoded") for path in sorted(FORMS) if not path.startswith("/api/")),
+    ("POST", "/api/v1/select", "application/json"),
+    ("POST", "/api/v1/select/batch", "application/json"),
+    ("POST", "/api/v1/select/batch", "application/x-ndjson"),
+    ("POST", "/api/v1/fleet", "text/csv"),
+    ("POST", "/api/v1/fleet", "multipart/form-data; boundary=b"),
+    ("POST", "/paste", "multipart/form-data; boundary=b"),
+    ("PATCH", "/api/v1/selections/{id}", "application/merge-patch+json"),
+]
+
+
+@pytest.mark.parametrize("coding", ["gzip", "Identity, br", "x" * 3000])
+@pytest.mark.parametrize(("method", "path", "kind"), BODIES)
+def test_a_compressed_body_is_a_415(
+    api: TestClient, address: Address, method: str, path: str, kind: str, coding: str
+) -> None:
+    headers = {"Content-Type": kind, "Content-Encoding": coding}
+
+    answer = api.request(method, address(path), content=gzip.compress(b"{}"), headers=headers, follow_redirects=False)
+
+    assert answer.status_code == 415
+    if path.startswith("/api/"):
+        assert answer.headers["Accept-Encoding"] == "identity"
+        assert coding.lower()[:40] in answer.json()["detail"]
+        assert len(answer.json()["detail"]) < 150
+
+
+def test_a_body_that_is_said_to_be_as_it_is_is_read(api: TestClient) -> None:
+    for coding in ("identity", "Identity , identity", ""):
+        answer = api.post("/api/v1/select", json=worked_example(), headers={"Content-Encoding": coding})
+        assert answer.status_code == 200
 
 
 @pytest.mark.parametrize("path", LIMITED)

@@ -59,6 +59,7 @@ CORS: dict[str, Any] = {
         "X-Request-ID",
     ],
     "expose_headers": [
+        "Accept-Encoding",
         "Content-Disposition",
         "ETag",
         "Link",

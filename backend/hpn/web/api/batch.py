@@ -21,7 +21,7 @@ from hpn.web.api.items import Span, items_of
 from hpn.web.api.replies import BatchLine, JSONBytes, ProblemReply, encode
 from hpn.web.api.streaming import Line
 from hpn.web.door.access import admit
-from hpn.web.door.bodies import content_type_of, read_body, require_bounded
+from hpn.web.door.bodies import content_type_of, read_body, require_bounded, require_plain
 from hpn.web.door.metrics import Metrics
 from hpn.web.door.pools import Pool, pool_of, while_present
 from hpn.web.door.problems import Problem
@@ -167,6 +167,7 @@ def _line(item: Any, outcome: Judged | InputError | Problem) -> BatchLine:
 
 
 def _stream(request: Request) -> Response:
+    require_plain(request)
     state: State = request.app.state
     settings: Settings = state.settings
     return streaming.LineStream(

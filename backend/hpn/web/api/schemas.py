@@ -177,6 +177,7 @@ HEADERS = {
     "RateLimit": "What is left of the rate, and when it begins anew; where there is a rate.",
     "RateLimit-Policy": "How many requests are allowed in how many seconds; where there is a rate.",
     "Retry-After": "Seconds after which to come again.",
+    "Accept-Encoding": "identity, where the body was refused because it is compressed.",
     "WWW-Authenticate": "Kind of key that is needed.",
     "ETag": "Tag of this state, for If-None-Match and If-Match.",
     "Location": "Address of what was saved.",
@@ -202,7 +203,12 @@ def _text(description: str) -> dict[str, Any]:
     return {"description": description, "schema": {"type": "string"}}
 
 
-OF_STATUS = {401: headers("WWW-Authenticate"), 429: headers("Retry-After"), 503: headers("Retry-After")}
+OF_STATUS = {
+    401: headers("WWW-Authenticate"),
+    415: headers("Accept-Encoding"),
+    429: headers("Retry-After"),
+    503: headers("Retry-After"),
+}
 """Headers of problems."""
 
 

@@ -29,8 +29,10 @@ MOST_PAIRS = MOST_NAMES
 async def read_body(request: Request, *content_types: str, maximum_bytes: int, seconds: float) -> bytes:
     """Body of a request, JSON where no content types are named.
 
-    Raises Problem 415 for any other content type, 413 above `maximum_bytes`, 408 when it has not arrived in `seconds`.
+    Raises Problem 415 for any other content type and for a compressed body, 413 above `maximum_bytes`, 408 when it has
+    not arrived in `seconds`.
     """
+    require_plain(request)
     wanted = content_types or (JSON,)
     if content_type_of(request) not in wanted:
         raise wrong_type(request, " or ".join(wanted))
@@ -60,8 +62,10 @@ async def pass_body(
 ) -> None:
     """Hand a body on in pieces as it arrives, so that memory holds one of them.
 
-    Raises Problem 413 above `maximum_bytes`, 408 where nothing arrives for `pause_seconds`, or not all in `seconds`.
+    Raises Problem 415 for a compressed body, 413 above `maximum_bytes`, 408 where nothing arrives for `pause_seconds`,
+    or not all in `seconds`.
     """
+    require_plain(request)
     too_large = _too_large(request, maximum_bytes)
     time, stream = asyncio.get_running_loop().time, request.stream()
     end, count, piece = time() + seconds, 0, bytearray()
@@ -82,6 +86,14 @@ async def pass_body(
         raise late(min(pause_seconds, seconds)) from None
     except ClientDisconnect:
         raise _broken_off() from None
+
+
+def require_plain(request: Request) -> None:
+    """Raise Problem 415 for a body that its Content-Encoding says is compressed: nothing here unpacks one."""
+    given = ",".join(request.headers.getlist("content-encoding")).lower()
+    if any(coding.strip() not in ("", "identity") for coding in given.split(",")):
+        text = f"send the body uncompressed (the Content-Encoding header says {given[:40]})"
+        raise Problem(415, text, headers={"Accept-Encoding": "identity"})
 
 
 def _too_large(request: Request, maximum_bytes: int) -> Problem:

@@ -38,7 +38,7 @@ TITLES = {
     412: "Precondition failed",
     413: "The request is too large",
     414: "The address is too long",
-    415: "The content type is not supported",
+    415: "The content type or coding is not supported",
     421: "Not the host of this service",
     422: "The input has errors",
     429: "Too many requests",
