@@ -126,6 +126,20 @@ def test_json_of_some_size_is_compressed(answers: dict[str, Any]) -> None:
     assert {path for path, answer in large.items() if "Accept-Encoding" not in answer.headers["Vary"]} == set()
 
 
+@pytest.mark.parametrize(
+    ("accepted", "coding"),
+    [("gzip;q=0", None), ("GZIP; Q=0.000, br", None), ("*;q=0", None), ("gzip;q=0.001", "gzip"), ("br, gzip", "gzip")],
+)
+@pytest.mark.parametrize("path", ["/api/v1/catalogue", "/catalogue"])
+def test_answers_are_compressed_only_for_whoever_accepts_it(
+    api: TestClient, path: str, accepted: str, coding: str | None
+) -> None:
+    answer = api.get(path, headers={"Accept-Encoding": accepted})
+
+    assert answer.headers.get("Content-Encoding") == coding
+    assert "Accept-Encoding" in answer.headers["Vary"]
+
+
 def test_posted_json_and_problems_are_compressed_and_lines_are_not(api: TestClient) -> None:
     wrong = {"duty_cycle": {"phases": [{**phase(1, 1), "a": 1, "b": 2, "c": 3, "d": 4, "e": 5, "f": 6}] * 5}}
     line = b'{"reference": "' + b"x" * 600 + b'"}\n'

@@ -6,7 +6,7 @@ from typing import Any
 
 from fastapi import APIRouter, FastAPI
 from starlette.middleware.cors import CORSMiddleware
-from starlette.middleware.gzip import DEFAULT_EXCLUDED_CONTENT_TYPES, GZipMiddleware
+from starlette.middleware.gzip import DEFAULT_EXCLUDED_CONTENT_TYPES
 from uvicorn.middleware.proxy_headers import ProxyHeadersMiddleware
 
 from hpn import ENGINE_VERSION
@@ -30,6 +30,7 @@ from hpn.web.api import (
 )
 from hpn.web.door import problems, readers
 from hpn.web.door.access import Gate
+from hpn.web.door.codings import Packing
 from hpn.web.door.heads import Heads
 from hpn.web.door.hosts import Hosts
 from hpn.web.door.logs import make_logger
@@ -156,7 +157,7 @@ def _add_middleware(app: FastAPI, settings: Settings) -> None:
     app.add_middleware(Pieces, budget=app.state.budget)
     app.add_middleware(Readers)
     # Nothing secret stands beside what a page repeats of its query, so its length after compression tells nothing.
-    app.add_middleware(GZipMiddleware, compresslevel=4, exclude_content_types=UNPACKED)
+    app.add_middleware(Packing, compresslevel=4, exclude_content_types=UNPACKED)
     app.add_middleware(Heads)
     if settings.cors_origins:
         app.add_middleware(CORSMiddleware, allow_origins=settings.cors_origins, **CORS)

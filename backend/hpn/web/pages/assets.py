@@ -11,6 +11,7 @@ from starlette.requests import Request
 from starlette.responses import FileResponse, Response
 
 from hpn.web.door.access import OPEN
+from hpn.web.door.codings import accepted_codings
 
 DIST = Path(__file__).parents[4] / "frontend/dist"
 ENCODINGS = {"br": ".br", "gzip": ".gz"}
@@ -54,21 +55,12 @@ async def serve(request: Request) -> Response:
         raise HTTPException(404)
     headers = {"Cache-Control": "public, max-age=31536000, immutable"}
     media_type = mimetypes.guess_type(path.name)[0] or "application/octet-stream"
-    for coding in accepted_codings(request.headers.get("accept-encoding", "")):
+    for coding in accepted_codings(request.headers.get("accept-encoding", ""), ENCODINGS):
         packed = path.with_name(path.name + ENCODINGS[coding])
         if packed.exists():
             headers |= {"Content-Encoding": coding, "Vary": "Accept-Encoding"}
             return FileResponse(packed, headers=headers, media_type=media_type)
     return FileResponse(path, headers=headers, media_type=media_type)
-
-
-def accepted_codings(header: str) -> list[str]:
-    """Codings of an Accept-Encoding header that files exist in, best first."""
-    weights: dict[str, str] = {}
-    for part in header.lower().split(","):
-        coding, _, parameter = part.partition(";")
-        weights[coding.strip()] = parameter.replace(" ", "").removeprefix("q=") or "1"
-    return [name for name in ENCODINGS if weights.get(name, weights.get("*", "0")).strip("0.") != ""]
 
 
 router = APIRouter(include_in_schema=False, dependencies=[OPEN])
