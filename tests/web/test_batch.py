@@ -143,6 +143,35 @@ def test_numbers_that_are_too_large_for_json_readers_are_an_error_of_their_item(
         assert [line["status"] for line in reply.json()["results"]] == ["error", "ok"]
 
 
+@pytest.mark.parametrize("kind", ["application/json", "application/x-ndjson"])
+def test_a_name_twice_is_a_mistake_of_its_item_alone_and_colons_in_texts_are_none(api: TestClient, kind: str) -> None:
+    good = [orjson.dumps(GOOD | {"reference": text}) for text in ("a:b", "c:\\d", "ü")]
+    items = [
+        *good,
+        good[0].replace(b'"ratios":[5]', b'"ratios":[7],"ratios":[5]'),
+        rb'{"reference":"\u003a",' + good[0][1:],
+    ]
+    lines = kind.endswith("ndjson")
+    content = b"\n".join(items) if lines else b'{"applications":[%s]}' % b",".join(items)
+
+    reply = api.post(PATH, content=content, headers={"content-type": kind})
+
+    results = [orjson.loads(line) for line in reply.content.splitlines()] if lines else reply.json()["results"]
+    assert [result["status"] for result in results] == ["ok", "ok", "ok", "error", "error"]
+    assert ["'ratios' 2 times" in results[3]["problem"]["detail"], results[3]["problem"]["status"]] == [True, 422]
+    assert "'reference' 2 times" in results[4]["problem"]["detail"]
+
+
+@pytest.mark.parametrize("first", ["[]", "5"])
+def test_two_lists_of_applications_are_refused(api: TestClient, first: str) -> None:
+    content = f'{{"applications": {first}, "applications": []}}'
+
+    reply = api.post(PATH, content=content, headers={"content-type": "application/json"})
+
+    assert reply.status_code == 422
+    assert reply.json()["errors"] == [{"pointer": "/applications", "detail": "is there twice"}]
+
+
 def test_ten_thousand_applications_are_answered_and_one_more_is_refused(api: TestClient) -> None:
     item = cycle(phase(10, 100), requirements={"ratios": [5], "sizes": ["14A"]})
     lines = send(api, *[item] * 10_000)

@@ -1,7 +1,9 @@
 """`POST /api/v1/select` over HTTP: the contract's shape, and a problem that points at what is wrong."""
 
+import json
 import math
 import re
+import time
 from collections.abc import Iterator
 from typing import Any
 
@@ -201,6 +203,38 @@ def test_what_is_no_json_or_no_finite_number_is_a_4xx(api: TestClient, content: 
     assert reply.status_code in (400, 422)
     assert reply.headers["content-type"] == "application/problem+json"
     assert reply.json()["detail"]
+
+
+TWICE = {
+    "at the top": ('"duty_cycle": ', '"duty_cycle": 5, "duty_cycle": ', "duty_cycle"),
+    "below": ('"phases": ', '"phases": [], "phases": ', "phases"),
+    "in a phase": ('"torque_Nm": 40', '"torque_Nm": 4, "torque_Nm": 40', "torque_Nm"),
+    "the same value": ('"torque_Nm": 40', '"torque_Nm": 40, "torque_Nm": 40', "torque_Nm"),
+    "escaped": ('"torque_Nm": 40', '"torque\\u005fNm": 4, "torque_Nm": 40', "torque_Nm"),
+    "a long integer": ('"torque_Nm": 40', f'"torque_Nm": {"9" * 400}, "torque_Nm": 40', "torque_Nm"),
+    "beside an escaped colon": ('"torque_Nm": 40', '"torque_Nm": "\\u003A:", "torque_Nm": 40', "torque_Nm"),
+}
+
+
+@pytest.mark.parametrize(("once", "twice", "name"), TWICE.values(), ids=TWICE)
+def test_a_name_twice_in_one_object_is_refused_by_name(api: TestClient, once: str, twice: str, name: str) -> None:
+    text = json.dumps(worked_example())
+    assert once in text
+
+    reply = api.post(PATH, content=text.replace(once, twice, 1), headers={"content-type": "application/json"})
+
+    assert reply.status_code == 422
+    assert reply.json()["detail"] == f"has the name '{name}' 2 times in one object"
+
+
+def test_many_names_twice_are_refused_at_once(api: TestClient) -> None:
+    content = b'{"a":1' + b',"a":1' * 150_000 + b"}"
+    start = time.perf_counter()
+
+    reply = api.post(PATH, content=content, headers={"content-type": "application/json"})
+
+    assert reply.status_code == 422
+    assert time.perf_counter() - start < 1  # 0.01 s; the time of counting colons, not of parsing
 
 
 def test_ten_thousand_phases_are_answered_and_one_more_is_refused(api: TestClient) -> None:

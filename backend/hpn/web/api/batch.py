@@ -21,7 +21,7 @@ from hpn.web.api.items import Span, items_of
 from hpn.web.api.replies import BatchLine, JSONBytes, ProblemReply, encode
 from hpn.web.api.streaming import Line
 from hpn.web.door.access import admit
-from hpn.web.door.bodies import content_type_of, read_body, require_bounded, require_plain
+from hpn.web.door.bodies import content_type_of, read_body, require_bounded, require_plain, require_unique
 from hpn.web.door.metrics import Metrics
 from hpn.web.door.pools import Pool, pool_of, while_present
 from hpn.web.door.problems import Problem
@@ -105,13 +105,15 @@ def _evaluated(body: bytes, spans: Sequence[Span], state: State) -> tuple[bytes,
 def _item(text: bytes) -> Any:
     """Value of JSON as pydantic reads it: a number that is none leads to an error of its field, not of the whole.
 
-    A Problem for JSON with more in it than any application has; raises ValueError for what is no JSON.
+    A Problem for JSON with more in it than any application has, or a name twice; raises ValueError for what is no JSON.
     """
     try:
         require_bounded(text)
+        value = from_json(text)
+        require_unique(text, value)
     except Problem as problem:
         return problem
-    return from_json(text)
+    return value
 
 
 def _no_json(what: str, error: ValueError) -> Problem:

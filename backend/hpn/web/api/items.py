@@ -55,11 +55,15 @@ class _Cutter:
         """Items, None where they are no list; and names of other fields."""
         items: list[Span] | None = None
         unknown: list[str] = []
+        given = False
         if not self._takes(b"{"):
             self._other_shape()
         more = not self._takes(b"}")
         while more:
             name = self._name()
+            if name == "applications" and given:
+                raise Problem(422, SHAPE, [((name,), "is there twice")])
+            given = given or name == "applications"
             if name == "applications" and self._takes(b"["):
                 items = self._list()
             else:

@@ -1,11 +1,15 @@
 """Reading a request's body within limits of type, size and time."""
 
 import asyncio
+import json
+from collections import Counter
 from collections.abc import Awaitable, Callable
-from typing import AnyStr, TypeVar
+from typing import Any, AnyStr, TypeVar
 from urllib.parse import parse_qsl
 
+import orjson
 from pydantic import BaseModel
+from pydantic_core import from_json
 from starlette.requests import ClientDisconnect, Request
 
 from hpn.phase import MAXIMUM_PHASES
@@ -116,9 +120,29 @@ def _broken_off() -> Problem:
 
 
 def parsed(model: type[M], text: AnyStr) -> M:
-    """Value of a model in JSON; raises ValidationError, or Problem as `require_bounded` does."""
+    """Value of a model in JSON; raises ValidationError, or Problem as `require_bounded` and `require_unique` do."""
     require_bounded(text)
-    return model.model_validate_json(text)
+    value = model.model_validate_json(text)
+    require_unique(text, from_json(text))
+    return value
+
+
+def require_unique(text: str | bytes, value: Any) -> None:
+    """Raise Problem 422 for JSON, whose value is given, with a name twice in one object: only the last one counts."""
+    content = text.encode() if isinstance(text, str) else text
+    try:  # a name that is lost takes its colon along; those in strings are kept, and only an escape adds one
+        if b"\\u003" not in content and content.count(b":") == orjson.dumps(value).count(b":"):
+            return
+    except TypeError:  # an integer beyond 64 bits
+        pass
+    json.loads(content, strict=False, parse_int=str, parse_float=str, object_pairs_hook=_unique)
+
+
+def _unique(pairs: list[tuple[str, Any]]) -> None:
+    if len(dict(pairs)) < len(pairs):
+        [(name, count)] = Counter(name for name, _ in pairs).most_common(1)
+        detail = f"has the name {name[:40]!r} {count} times in one object"
+        raise Problem(422, detail, [((), detail)])
 
 
 def require_bounded(text: AnyStr) -> None:
