@@ -205,6 +205,20 @@ def test_what_is_no_json_or_no_finite_number_is_a_4xx(api: TestClient, content: 
     assert reply.json()["detail"]
 
 
+@pytest.mark.parametrize("path", ["/api/v1/select", "/api/v1/select/batch", "/api/v1/report.pdf", "/api/v1/selections"])
+def test_a_byte_order_mark_before_json_is_dropped(api: TestClient, path: str) -> None:
+    whole = {"/api/v1/select/batch": {"applications": [EXAMPLE]}, "/api/v1/selections": {"application": EXAMPLE}}
+    content, headers = orjson.dumps(whole.get(path, EXAMPLE)), {"content-type": "application/json"}
+
+    plain, marked, twice = (
+        api.post(path, content=b"\xef\xbb\xbf" * marks + content, headers=headers) for marks in range(3)
+    )
+
+    assert (plain.status_code, plain.headers["content-type"]) == (marked.status_code, marked.headers["content-type"])
+    assert marked.status_code in (200, 201)
+    assert twice.status_code == 400
+
+
 TWICE = {
     "at the top": ('"duty_cycle": ', '"duty_cycle": 5, "duty_cycle": ', "duty_cycle"),
     "below": ('"phases": ', '"phases": [], "phases": ', "phases"),

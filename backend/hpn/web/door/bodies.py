@@ -1,6 +1,7 @@
 """Reading a request's body within limits of type, size and time."""
 
 import asyncio
+import codecs
 import json
 from collections import Counter
 from collections.abc import Awaitable, Callable
@@ -31,7 +32,7 @@ MOST_PAIRS = MOST_NAMES
 
 
 async def read_body(request: Request, *content_types: str, maximum_bytes: int, seconds: float) -> bytes:
-    """Body of a request, JSON where no content types are named.
+    """Body of a request, JSON where no content types are named; without a byte order mark before it (RFC 8259, 8.1).
 
     Raises Problem 415 for any other content type and for a compressed body, 413 above `maximum_bytes`, 408 when it has
     not arrived in `seconds`.
@@ -53,7 +54,7 @@ async def read_body(request: Request, *content_types: str, maximum_bytes: int, s
         raise late(seconds) from None
     except ClientDisconnect:
         raise _broken_off() from None
-    return bytes(body)
+    return bytes(body).removeprefix(codecs.BOM_UTF8 if JSON in wanted else b"")
 
 
 async def pass_body(
