@@ -1,6 +1,7 @@
 """Saved selections over REST, with the store on each kind of database."""
 
 import re
+import threading
 from collections.abc import Iterator
 from typing import Any
 
@@ -9,7 +10,9 @@ import pytest
 from starlette.testclient import TestClient
 
 from hpn.catalogue import Catalogue
+from hpn.web.api import selections
 from hpn.web.app import create_app
+from hpn.web.door.bodies import parsed
 from hpn.web.settings import Settings
 from tests.build import Json, answer, worked_example
 from tests.conftest import Supplement
@@ -351,6 +354,26 @@ def test_a_selection_is_renamed_and_nothing_else_of_it_changes(client: TestClien
     ]
     assert client.patch(address, json={"reference": None}).json()["reference"] is None
     assert client.patch(address, json={}).json()["title"] == "new"
+
+
+def test_long_names_are_read_beside_the_event_loop(client: TestClient, monkeypatch: pytest.MonkeyPatch) -> None:
+    address = f"{ADDRESS}/{save(client, **WRITTEN)}"
+    threads: list[int] = []
+    assert client.portal is not None
+    loop = client.portal.call(threading.get_ident)
+
+    def seen(*arguments: Any) -> Any:
+        threads.append(threading.get_ident())
+        return parsed(*arguments)
+
+    monkeypatch.setattr(selections, "parsed", seen)
+    content = b"{%s}" % b",".join([b'"title":"new"'] * 80_000)
+    answer = client.patch(address, content=content, headers={"Content-Type": "application/json"})
+
+    assert answer.status_code == 422
+    assert answer.json()["detail"] == "has the name 'title' 80000 times in one object"
+    assert len(threads) == 1
+    assert loop not in threads
 
 
 def test_a_selection_is_renamed_by_a_merge_patch(client: TestClient) -> None:

@@ -182,7 +182,7 @@ async def rename_selection(request: Request, id: str) -> Response:
     store: Store = request.app.state.store
     limits: dict[str, Any] = {"maximum_bytes": settings.maximum_body_bytes, "seconds": settings.body_seconds}
     body = await read_body(request, JSON, MERGE_PATCH, **limits)
-    names = parsed(Names, body).model_dump(exclude_unset=True)
+    names = (await calculate(request, body, parsed, Names, body)).model_dump(exclude_unset=True)
     await changeable(request, id)
     if "if-match" in request.headers:
         require_match(request, await _representation(request, id))
