@@ -34,12 +34,21 @@ ITEMS: list[Any] = [
     [1, 2],
     {"reference": "axis-ü", **worked_example(requirements={"ratios": [5]})},
 ]
+LINES = [Line(number, orjson.dumps(item)) for number, item in enumerate(ITEMS, start=1)]
 
 
 def lines_of(content: bytes) -> list[Any]:
     """Result lines."""
     assert content.endswith(b"\n") or not content
     return [json.loads(line) for line in content.splitlines()]
+
+
+def named(results: list[Any]) -> list[Any]:
+    """Results of the JSON form as the stream gives them: a problem without a reference names the line."""
+    for number, result in enumerate(results, start=1):
+        if "problem" in result and result["reference"] is None:
+            result["problem"]["detail"] = f"line {number}: {result['problem']['detail']}"
+    return results
 
 
 def test_lines_are_answered_in_order_as_the_json_form_answers_them(make_client: MakeClient) -> None:
@@ -52,7 +61,7 @@ def test_lines_are_answered_in_order_as_the_json_form_answers_them(make_client: 
     assert streamed.status_code == 200
     assert streamed.headers["Content-Type"] == "application/x-ndjson"
     assert "Content-Encoding" not in streamed.headers  # a packer would hold lines back
-    assert lines_of(streamed.content) == whole.json()["results"]
+    assert lines_of(streamed.content) == named(whole.json()["results"])
     assert [line["status"] for line in lines_of(streamed.content)] == ["ok", "error", "error", "error", "error", "ok"]
 
 
@@ -89,6 +98,30 @@ def test_a_bad_line_gets_its_problem_and_its_neighbours_their_answers(
     assert before["status"] == after["status"] == "ok"
 
 
+def test_a_problem_without_a_reference_names_its_line_and_blank_lines_count(make_client: MakeClient) -> None:
+    lines = [
+        orjson.dumps(ITEMS[0]),
+        b"",
+        b"not json",
+        b"5",
+        orjson.dumps({"reference": 5, **worked_example()}),
+        orjson.dumps({"reference": "axis-2"}),
+        b'"' + b"a" * 3000 + b'"',
+    ]
+    client = make_client(maximum_body_bytes=2000)
+
+    results = lines_of(client.post(PATH, content=b"\r\n".join(lines), headers=NDJSON).content)
+
+    assert [result["problem"]["detail"] for result in results[1:]] == [
+        "line 3: is not JSON: expected ident at column 2",
+        "line 4: must be an object",
+        "line 5: /reference: must be a valid string",
+        "/duty_cycle: is required",
+        "line 7: a line may have 2000 bytes at most",
+    ]
+    assert [result["reference"] for result in results] == ["axis-1", None, None, None, "axis-2", None]
+
+
 def test_more_lines_than_the_json_form_takes(make_client: MakeClient) -> None:
     client = make_client(maximum_batch_count=3)
 
@@ -109,7 +142,11 @@ def test_cutting_does_not_depend_on_how_the_body_is_cut(parts: list[bytes], size
         lines += splitter.feed(body[start : start + size])
     lines += splitter.rest()
 
-    assert lines == [None if len(part) > 8 else part.strip() for part in parts if len(part) > 8 or part.strip()]
+    assert lines == [
+        Line(number, None if len(part) > 8 else part.strip())
+        for number, part in enumerate(parts, start=1)
+        if len(part) > 8 or part.strip()
+    ]
 
 
 @given(st.lists(st.integers(0, MEMORY_BYTES) | st.just(-1), max_size=30))
@@ -144,7 +181,7 @@ def test_twenty_times_the_lines_take_no_more_memory_on_either_side(service: Serv
 
 def echo(lines: Iterable[Line]) -> bytes:
     """Answers every line with itself."""
-    return b"".join((line or b"too long") + b"\n" for line in lines)
+    return b"".join((line.content or b"too long") + b"\n" for line in lines)
 
 
 class Peer:
@@ -330,14 +367,14 @@ async def test_a_mistake_of_ours_is_raised_and_leaves_the_answer_without_its_end
 
 
 def test_the_evaluator_gives_the_lines_of_the_json_form(catalogue: Catalogue) -> None:
-    answers, count = line_evaluator(catalogue, Metrics(), 100)([orjson.dumps(item) for item in ITEMS])
+    answers, count = line_evaluator(catalogue, Metrics(), 100)(LINES)
 
     assert count == len(ITEMS)
-    assert lines_of(answers) == json.loads(encode(batch_lines(ITEMS, catalogue)))
+    assert lines_of(answers) == named(json.loads(encode(batch_lines(ITEMS, catalogue))))
 
 
 def test_a_slice_ends_when_its_time_is_up(catalogue: Catalogue, monkeypatch: pytest.MonkeyPatch) -> None:
-    whole, _ = line_evaluator(catalogue, Metrics(), 100)(lines := [orjson.dumps(item) for item in ITEMS])
+    whole, _ = line_evaluator(catalogue, Metrics(), 100)(lines := LINES)
     monkeypatch.setattr(batch, "SLICE_SECONDS", 0)
     answers, counts = [], []
     while lines:

@@ -85,7 +85,7 @@ def _cut(body: bytes, settings: Settings) -> list[Span]:
     try:
         return items_of(body, settings.maximum_batch_count, settings.maximum_body_bytes)
     except ValueError as error:
-        raise _no_json("body", error) from None
+        raise _no_json(error) from None
 
 
 def _slice(spans: Sequence[Span], first: int) -> Sequence[Span]:
@@ -97,9 +97,10 @@ def _slice(spans: Sequence[Span], first: int) -> Sequence[Span]:
 
 def _evaluated(body: bytes, spans: Sequence[Span], state: State) -> tuple[bytes, int]:
     try:
-        return _encoded((_item(body[span.start : span.end]) for span in spans), state.catalogue, state.metrics)
+        results = _results((_item(body[span.start : span.end]) for span in spans), state.catalogue, state.metrics)
     except ValueError as error:
-        raise _no_json("body", error) from None
+        raise _no_json(error) from None
+    return _encoded(results), len(results)
 
 
 def _item(text: bytes) -> Any:
@@ -116,15 +117,19 @@ def _item(text: bytes) -> Any:
     return value
 
 
-def _no_json(what: str, error: ValueError) -> Problem:
-    return Problem(400, f"the {what} is not JSON: {error}")
+def _no_json(error: ValueError) -> Problem:
+    return Problem(400, f"the body is not JSON: {error}")
 
 
-def _encoded(items: Iterable[Any], catalogue: Catalogue, metrics: Metrics) -> tuple[bytes, int]:
-    """Result lines of the items that could be read in time, and how many these are: one at least."""
+def _results(items: Iterable[Any], catalogue: Catalogue, metrics: Metrics) -> list[BatchLine]:
+    """Result lines of the items that could be read in time: one at least."""
     results = batch_lines(_in_time(items), catalogue)
     metrics.selections(result.verdict for result in results)
-    return b"".join([encode(result) + b"\n" for result in results]), len(results)
+    return results
+
+
+def _encoded(results: Iterable[BatchLine]) -> bytes:
+    return b"".join([encode(result) + b"\n" for result in results])
 
 
 def _in_time(items: Iterable[Any]) -> Iterator[Any]:
@@ -184,17 +189,24 @@ def _stream(request: Request) -> Response:
 
 
 def line_evaluator(catalogue: Catalogue, metrics: Metrics, maximum_line_bytes: int) -> streaming.Evaluate:
-    """Evaluator of lines of JSON for `LineStream`: the same result lines as `batch_lines` gives."""
+    """Evaluator of lines of JSON for `LineStream`: the same result lines as `batch_lines` gives.
+
+    The problem of a line without a reference names the line: blank ones have no result, so that counting finds another.
+    """
 
     def read(line: Line) -> Any:
-        if line is None:
+        if line.content is None:
             return Problem(413, f"a line may have {maximum_line_bytes} bytes at most")
         try:
-            return _item(line)
+            return _item(line.content)
         except ValueError as error:
-            return _no_json("line", error)
+            return Problem(400, f"is not JSON: {str(error).replace(' at line 1 ', ' at ')}")
 
     def evaluate(lines: Sequence[Line]) -> tuple[bytes, int]:
-        return _encoded(map(read, lines), catalogue, metrics)
+        results = _results(map(read, lines), catalogue, metrics)
+        for line, result in zip(lines, results, strict=False):
+            if result.problem and result.reference is None:
+                result.problem.detail = f"line {line.number}: {result.problem.detail}"
+        return _encoded(results), len(results)
 
     return evaluate

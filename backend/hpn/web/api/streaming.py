@@ -5,7 +5,7 @@ import tempfile
 from collections import deque
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import IO
+from typing import IO, NamedTuple
 
 import orjson
 from starlette.responses import Response
@@ -21,8 +21,13 @@ MEMORY_BYTES = 512 * 1024
 READ_BYTES = 128 * 1024
 BYTE_ORDER_MARK = b"\xef\xbb\xbf"
 
-Line = bytes | None
-"""A line without its end, or None for one that is too long."""
+
+class Line(NamedTuple):
+    """A line without its end, None for one that is too long, and its number in the body, which counts from 1."""
+
+    number: int
+    content: bytes | None
+
 
 Evaluate = Callable[[Sequence[Line]], tuple[bytes, int]]
 """Answers to the first of some lines, each with its line end, and how many of them these answer: one at least."""
@@ -35,6 +40,7 @@ class LineSplitter:
         self._maximum = maximum_bytes
         self._part = bytearray()
         self._too_long = False
+        self._number = 0
 
     def feed(self, chunk: bytes) -> list[Line]:
         """Lines that end in this chunk."""
@@ -44,12 +50,12 @@ class LineSplitter:
         for part in others:
             lines.append(self._take())
             self._keep(part)
-        return [line for line in lines if line is None or line]
+        return [line for line in lines if line.content != b""]
 
     def rest(self) -> list[Line]:
         """The last line, where it has no end."""
         line = self._take()
-        return [line] if line is None or line else []
+        return [line] if line.content != b"" else []
 
     def _keep(self, part: bytes) -> None:
         if self._too_long or len(self._part) + len(part) > self._maximum:
@@ -59,10 +65,11 @@ class LineSplitter:
             self._part += part
 
     def _take(self) -> Line:
-        line = None if self._too_long else bytes(self._part).removeprefix(BYTE_ORDER_MARK).strip()
+        content = None if self._too_long else bytes(self._part).removeprefix(BYTE_ORDER_MARK).strip()
         self._too_long = False
         self._part.clear()
-        return line
+        self._number += 1
+        return Line(self._number, content)
 
 
 class Spool:
