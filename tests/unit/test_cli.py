@@ -182,6 +182,17 @@ def test_a_port_that_permissions_forbid_is_a_sentence(monkeypatch: pytest.Monkey
     )
 
 
+def test_a_mistake_of_the_program_is_another_code_of_select_than_no_suitable_gear(
+    file: Path, monkeypatch: pytest.MonkeyPatch, capsys: Output
+) -> None:
+    monkeypatch.setattr("hpn.cli.select.load_catalogue", lambda *folders: 1 / 0)
+    assert main(["select", write(file, worked_example())]) == 3
+
+    monkeypatch.setattr("hpn.cli.select.load_catalogue", lambda *folders: bytearray(1 << 62))
+    assert main(["select", str(file)]) == 3
+    assert capsys.readouterr().err.endswith("hpn can’t go on: this takes more memory than there is\n")
+
+
 def test_a_mistake_of_the_program_is_exit_code_1_in_words_and_a_trace_for_who_asks_for_it(
     monkeypatch: pytest.MonkeyPatch, capsys: Output
 ) -> None:
@@ -196,8 +207,10 @@ def test_a_mistake_of_the_program_is_exit_code_1_in_words_and_a_trace_for_who_as
         main(["catalogue"])
 
 
+FULL = "hpn can’t go on: No space left on device\n"
 SHELL = {
-    "output on a full disk": ("hpn catalogue > /dev/full", 1, "hpn can’t go on: No space left on device\n"),
+    "output on a full disk": ("hpn catalogue > /dev/full", 1, FULL),
+    "answer on a full disk": ('echo "$INPUT" | hpn select - > /dev/full', 3, FULL),
     "no output": ("hpn catalogue >&-", 0, ""),
     "no input": ("hpn select - <&-", 2, "standard input: is closed\n"),
 }
@@ -207,7 +220,8 @@ SHELL = {
 def test_what_a_shell_may_take_away_is_a_line_at_most(case: str) -> None:
     command, code, error = SHELL[case]
     path = f"{Path(sys.executable).parent}:/usr/bin:/bin"
-    done = subprocess.run(["sh", "-c", command], env={"PATH": path}, capture_output=True, text=True, timeout=60)
+    environment = {"PATH": path, "INPUT": orjson.dumps(worked_example()).decode()}
+    done = subprocess.run(["sh", "-c", command], env=environment, capture_output=True, text=True, timeout=60)
 
     assert (done.returncode, done.stderr) == (code, error)
 

@@ -20,8 +20,8 @@ COMMANDS = "select, fleet, catalogue, serve or key"
 def main(arguments: list[str] | None = None) -> int:
     """Run a command.
 
-    0 for success; 1 where no gear is suitable, or something went wrong; 2 for what the caller can mend; 128 and the
-    number of the signal that ended it, as a shell says it.
+    0 for success; 1 where something went wrong, of `hpn select` where no gear is suitable, and 3 where something went
+    wrong; 2 for what the caller can mend; 128 and the number of the signal that ended it, as a shell says it.
     """
     parser = _parser()
     options = parser.parse_args(arguments)

@@ -6,7 +6,7 @@ from pydantic import ValidationError
 
 from hpn.application import InputError
 from hpn.catalogue import CatalogueError
-from hpn.cli.system import CALLERS, OTHERS
+from hpn.cli.system import CALLERS, others
 from hpn.faults import plain_message
 from hpn.fleet.errors import FleetError
 from hpn.store import StoreError
@@ -21,12 +21,12 @@ def words_of(error: Exception, options: argparse.Namespace) -> tuple[int, list[s
     if isinstance(error, CatalogueError | StoreError | FleetError):
         return CALLERS, [str(error)]
     if isinstance(error, MemoryError):
-        return OTHERS, ["hpn can’t go on: this takes more memory than there is"]
+        return others(options), ["hpn can’t go on: this takes more memory than there is"]
     if isinstance(error, ValidationError) and error.title == Settings.__name__:
         return CALLERS, _wrong_settings(error, options)
     if isinstance(error, ValidationError | InputError):
         return CALLERS, _wrong_input(error, options)
-    return OTHERS, None
+    return others(options), None
 
 
 def _wrong_input(error: ValidationError | InputError, options: argparse.Namespace) -> list[str]:

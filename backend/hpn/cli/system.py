@@ -4,12 +4,17 @@ import argparse
 import errno
 import os
 
-CALLERS, OTHERS = 2, 1
+CALLERS = 2
 MEANING = {
     errno.ENOENT: "there is no such file",
     errno.EISDIR: "is a folder, where a file belongs",
     errno.EACCES: "this user has no permission for it",
 }
+
+
+def others(options: argparse.Namespace) -> int:
+    """Exit code for what is not the caller's mistake; 1 of `hpn select` is an answer, that no gear is suitable."""
+    return 3 if options.command == "select" else 1
 
 
 def words_of(error: OSError, options: argparse.Namespace) -> tuple[int, list[str]]:
@@ -18,5 +23,5 @@ def words_of(error: OSError, options: argparse.Namespace) -> tuple[int, list[str
     if text == os.strerror(number):  # what a command says itself is more than that
         text = MEANING.get(number, text)
     if error.filename is None:
-        return OTHERS, [f"hpn can’t go on: {text}"]
+        return others(options), [f"hpn can’t go on: {text}"]
     return CALLERS, [f"{error.filename}: {text}"]
