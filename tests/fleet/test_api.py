@@ -145,6 +145,7 @@ PARQUET, ARROW, NDJSON = ({"Content-Type": TYPES[suffix]} for suffix in (".parqu
 REFUSED: list[tuple[str, bytes, dict[str, str], int, str]] = [
     ("empty", b"", CSV, 422, "input: is empty"),
     ("no table", b"\x00\xff" * 50, CSV, 422, "input: column axis is missing"),
+    ("UTF-16", "axis\ttorque_Nm\n".encode("utf-16"), CSV, 422, "input: is UTF-16, where UTF-8 belongs"),
     ("truncated Parquet", parquet()[:-9], PARQUET, 422, "input: can’t be read as parquet"),
     ("CSV as Arrow", ONE_AXIS, ARROW, 422, "input: can’t be read as arrow"),
     ("no content type", ONE_AXIS, {}, 415, "or multipart/form-data"),

@@ -274,6 +274,14 @@ def test_a_file_that_is_none_is_named(suffix: str, content: bytes, tmp_path: Pat
     assert f"in{suffix}: " in refusal(Order(tmp_path / f"in{suffix}", tmp_path / "out.csv"), catalogue)
 
 
+@pytest.mark.parametrize("suffix", [".csv", ".ndjson"])
+@pytest.mark.parametrize("encoding", ["utf-16-le", "utf-16-be"])
+def test_a_table_in_utf16_is_told_so(suffix: str, encoding: str, tmp_path: Path, catalogue: Catalogue) -> None:
+    (tmp_path / f"in{suffix}").write_bytes("\ufeffaxis\ttorque_Nm\n".encode(encoding))
+    said = refusal(Order(tmp_path / f"in{suffix}", tmp_path / "out.csv"), catalogue)
+    assert f"in{suffix}: is UTF-16, where UTF-8 belongs" in said
+
+
 def test_a_column_of_a_wrong_type_is_named(tmp_path: Path, catalogue: Catalogue) -> None:
     texts = [{**row, "speed_rpm": ["1", "2"]} for row in AXES]
     pq.write_table(pa.Table.from_pylist(texts), tmp_path / "in.parquet")

@@ -5,8 +5,8 @@ from difflib import get_close_matches
 from pathlib import Path
 
 from hpn.fleet.columns import AXIS, COLUMNS
-from hpn.fleet.errors import FleetError
-from hpn.fleet.lines import CsvTable, NdjsonTable
+from hpn.fleet.errors import FleetError, wrong_encoding
+from hpn.fleet.lines import CsvTable, LinesTable, NdjsonTable
 from hpn.fleet.tables import ArrowTable, ParquetTable, Table, TypedTable
 
 FORMATS: dict[str, type[Table]] = {
@@ -51,7 +51,10 @@ def _opened(path: Path) -> Table:
         raise FleetError(f"{path}: {'is not a file' if path.exists() else 'there is no such file'}")
     if not path.stat().st_size:
         raise FleetError(f"{path}: is empty, where a table belongs")
-    return FORMATS[suffix](path)
+    table = FORMATS[suffix](path)
+    if isinstance(table, LinesTable) and (said := wrong_encoding(table.start_of_file())):
+        raise FleetError(f"{path}: {said}")
+    return table
 
 
 def _require(table: Table, allowed: list[str], required: list[str]) -> None:

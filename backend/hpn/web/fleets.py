@@ -22,6 +22,7 @@ from typing import Literal
 
 from starlette.requests import Request
 
+from hpn.fleet.errors import wrong_encoding
 from hpn.web.door.pools import Pool, pool_of, while_present
 from hpn.web.door.problems import Problem
 from hpn.web.settings import Settings
@@ -126,6 +127,8 @@ def _require_tables(tables: Tables) -> None:
             raise Problem(422, f"{name}: is empty, where a table belongs")
         if mark is not None and (head, end) != (mark, mark):
             raise Problem(422, f"{name}: can’t be read as {path.suffix[1:]}: it does not begin and end as such a file")
+        if mark is None and (said := wrong_encoding(head)):
+            raise Problem(422, f"{name}: {said}")
         if mark is None and b"axis" not in head:
             raise Problem(422, f"{name}: column axis is missing")
 
