@@ -274,6 +274,17 @@ def test_a_file_that_is_none_is_named(suffix: str, content: bytes, tmp_path: Pat
     assert f"in{suffix}: " in refusal(Order(tmp_path / f"in{suffix}", tmp_path / "out.csv"), catalogue)
 
 
+def test_without_a_torque_nothing_is_said_of_columns_that_one_of_the_two_forms_has(
+    tmp_path: Path, catalogue: Catalogue
+) -> None:
+    (tmp_path / "in.csv").write_text(
+        "axis,Torque,speed_rpm,duration_s,pause_s,requirements.life_h\na,[1],[2],[3],4,5\n"
+    )
+    assert refusal(Order(tmp_path / "in.csv", tmp_path / "out.csv"), catalogue).endswith(
+        "in.csv: column 'Torque' is unknown; it looks like torque_Nm; column torque_Nm is missing"
+    )
+
+
 @pytest.mark.parametrize("suffix", [".csv", ".ndjson"])
 @pytest.mark.parametrize("encoding", ["utf-16-le", "utf-16-be"])
 def test_a_table_in_utf16_is_told_so(suffix: str, encoding: str, tmp_path: Path, catalogue: Catalogue) -> None:
