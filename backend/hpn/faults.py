@@ -44,6 +44,9 @@ def plain_message(kind: str, message: str) -> str:
         "finite_number": N_("must be a finite number"),
         "float_type": N_("must be a JSON number, such as 9.3"),
         "int_type": N_("must be a JSON integer, such as 5"),
+        "int_parsing": N_("must be a whole number, such as 5"),
+        "string_type": N_("must be text"),
+        "bool_parsing": N_("must be true or false"),
         "tuple_type": N_("must be a list"),
         "model_type": N_("must be an object"),
-    }.get(kind) or SHOULD.sub("must", message.removeprefix("Value error, "))
+    }.get(kind) or SHOULD.sub("must", message.removeprefix("Value error, ")).replace(" after validation,", ",")

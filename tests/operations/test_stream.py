@@ -115,7 +115,7 @@ def test_a_problem_without_a_reference_names_its_line_and_blank_lines_count(make
     assert [result["problem"]["detail"] for result in results[1:]] == [
         "line 3: is not JSON: expected ident at column 2",
         "line 4: must be an object",
-        "line 5: /reference: must be a valid string",
+        "line 5: /reference: must be text",
         "/duty_cycle: is required",
         "line 7: a line may have 2000 bytes at most",
     ]

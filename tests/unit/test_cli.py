@@ -287,7 +287,26 @@ def test_a_supplement_is_used_and_a_wrong_setting_is_a_sentence(
 
     monkeypatch.setenv("HPN_MAXIMUM_BODY_BYTES", "many")
     assert main(["catalogue"]) == 2
-    assert capsys.readouterr().err.startswith("HPN_MAXIMUM_BODY_BYTES: must be a valid integer")
+    assert capsys.readouterr().err == "HPN_MAXIMUM_BODY_BYTES: must be a whole number, such as 5\n"
+
+
+@pytest.mark.parametrize(
+    ("wrong", "said"),
+    [
+        ({"duty_cycle": {"phases": []}}, "/duty_cycle/phases: must have at least 1 item, not 0"),
+        (
+            cycle(phase(1, 1), requirements={"ratios": [5] * 101}),
+            "/requirements/ratios: must have at most 100 items, not 101",
+        ),
+        (
+            cycle(phase(1, 1), requirements={"motor": {"designation": 5}}),
+            "/requirements/motor/designation: must be text",
+        ),
+    ],
+)
+def test_what_pydantic_finds_is_said_in_plain_words(wrong: Json, said: str, file: Path, capsys: Output) -> None:
+    assert main(["select", write(file, wrong)]) == 2
+    assert capsys.readouterr().err == f"{said}\n"
 
 
 def test_a_wrong_setting_is_named_as_it_was_given(monkeypatch: pytest.MonkeyPatch, capsys: Output) -> None:

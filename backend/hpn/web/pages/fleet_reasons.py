@@ -16,7 +16,7 @@ TEMPLATES = (
     N_("must be an integer, as the first valid axis is, not {found}"),
     N_("must be text, as the first valid axis is, not {found}"),
     N_("has {found} phases where torque_Nm has {count}"),
-    N_("must have at most {most} items after validation, not {found}"),
+    N_("must have at most {most} items, not {found}"),
     N_("must have at least 1 character"),
     N_("must have at most {most} characters"),
     N_("must be greater than or equal to {bound}"),
