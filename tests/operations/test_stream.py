@@ -129,7 +129,10 @@ def test_more_lines_than_the_json_form_takes(make_client: MakeClient) -> None:
 
 
 def test_another_content_type_is_a_415(make_client: MakeClient) -> None:
-    assert make_client().post(PATH, content=b"{}", headers={"Content-Type": "text/csv"}).status_code == 415
+    reply = make_client().post(PATH, content=b"{}", headers={"Content-Type": "text/csv"})
+
+    assert reply.status_code == 415
+    assert "as application/json or application/x-ndjson (" in reply.json()["detail"]
 
 
 @given(st.lists(st.sampled_from([b"abc", b"", b" ", b"x" * 8, b"x" * 9, b"y" * 40, b"\r"])), st.integers(1, 20))

@@ -21,7 +21,15 @@ from hpn.web.api.items import Span, items_of
 from hpn.web.api.replies import BatchLine, JSONBytes, ProblemReply, encode
 from hpn.web.api.streaming import Line
 from hpn.web.door.access import admit
-from hpn.web.door.bodies import content_type_of, read_body, require_bounded, require_plain, require_unique
+from hpn.web.door.bodies import (
+    JSON,
+    content_type_of,
+    read_body,
+    require_bounded,
+    require_plain,
+    require_unique,
+    wrong_type,
+)
 from hpn.web.door.metrics import Metrics
 from hpn.web.door.pools import Pool, pool_of, while_present
 from hpn.web.door.problems import Problem
@@ -56,6 +64,8 @@ async def select_batch(request: Request) -> Response:
     settings: Settings = state.settings
     if content_type_of(request) in streaming.MEDIA_TYPES:
         return _stream(request)
+    if content_type_of(request) != JSON:
+        raise wrong_type(request, f"{JSON} or {streaming.MEDIA_TYPES[0]}")
     body = await read_body(request, maximum_bytes=settings.maximum_batch_body_bytes, seconds=settings.body_seconds)
     request.state.held.take(RESULTS_PER_BYTE * len(body))
     pool = pool_of(request, "batches")
