@@ -108,12 +108,13 @@ def test_parts_follow_each_other_newest_first(client: TestClient) -> None:
     assert "Newest" not in first
 
 
-def test_a_reference_filters_as_it_does_over_rest(client: TestClient) -> None:
+def test_a_reference_filters_as_it_does_over_rest_where_an_empty_field_is_none(client: TestClient) -> None:
     for reference in ("4711", "47 & 11"):
         saved(client, reference=reference)
 
     for reference in ("4711", " 4711 ", "47 & 11", "471", ""):
-        listed = client.get("/api/v1/selections", params={"reference": reference}).json()["selections"]
+        asked = {"reference": reference} if reference else {}
+        listed = client.get("/api/v1/selections", params=asked).json()["selections"]
         page = client.get("/selections", params={"reference": reference}).text
         assert [row[1] for row in rows(page)] == [selection["reference"] for selection in listed]
         assert f'value="{html.escape(reference)}"' in page
@@ -160,6 +161,17 @@ def test_what_no_list_has_is_refused_on_the_page(client: TestClient, query: str,
 
     assert page.status_code == 422
     assert text in page.text
+
+
+@pytest.mark.parametrize("empty", ["", "%20"])
+def test_the_api_refuses_an_empty_reference_instead_of_listing_everything(client: TestClient, empty: str) -> None:
+    saved(client, reference="4711")
+
+    reply = client.get(f"/api/v1/selections?reference={empty}")
+
+    assert reply.status_code == 422
+    assert [error["pointer"] for error in reply.json()["errors"]] == ["/reference"]
+    assert "must not be empty" in reply.json()["detail"]
 
 
 def test_the_api_answers_json_to_a_browser_too(client: TestClient) -> None:

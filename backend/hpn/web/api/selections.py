@@ -6,6 +6,8 @@ from urllib.parse import urlencode
 
 from fastapi import APIRouter, Query
 from msgspec import Raw, convert, structs
+from pydantic import AfterValidator, Field
+from pydantic_core import PydanticCustomError
 from starlette.requests import Request
 from starlette.responses import Response
 
@@ -51,6 +53,16 @@ KEY = (
     "an API key or else an address, and lasts: once its selection is deleted it is answered with 410, so that a late "
     "retry saves nothing anew."
 )
+
+
+def _given(reference: str | None) -> str:
+    """A reference to search for. Of an empty variable of a script, every selection would come."""
+    if not reference:
+        raise PydanticCustomError("empty", "must not be empty; leave it out to list every selection")
+    return reference
+
+
+Reference = Annotated[Line, AfterValidator(_given), Field(json_schema_extra={"minLength": 1})]
 
 router = APIRouter(prefix="/api/v1/selections", tags=["Saved selections"])
 """Its routes are of different groups, which each declares."""
@@ -137,7 +149,7 @@ async def read_selection(request: Request, id: str) -> Response:
 )
 async def list_selections(
     request: Request,
-    reference: Annotated[Line | None, Query(description="Only those with this reference.")] = None,
+    reference: Annotated[Reference | None, Query(description="Only those with this reference.")] = None,
     search: Annotated[
         Line | None,
         Query(description="Only those with each of these words in title, reference, author, gear or ordering code."),
