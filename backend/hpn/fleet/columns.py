@@ -5,39 +5,27 @@ list with an item per phase. `pause_s` stands for `duty_cycle.pause_s`. Names, k
 models' JSON Schema, so that a new input needs no line here.
 """
 
-import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, Literal
+from typing import Any
 
 import pyarrow as pa
 import pyarrow.types as kinds
 
-from hpn.application import Application
-from hpn.phase import Phase
+from hpn.input_fields import FIELDS, PHASE_FIELDS, InputField
 
-Kind = Literal["number", "integer", "string"]
 Json = dict[str, Any]
 
 AXIS = "axis"
 PAUSE = ("duty_cycle", "pause_s")
 
 
-@dataclass(frozen=True)
-class Column:
-    """A column: its name, its place in the application, and what its cells, or the items of their lists, may be."""
+@dataclass(frozen=True, kw_only=True)
+class Column(InputField):
+    """A column: its name, and the field whose values its cells, or the items of their lists, are."""
 
     name: str
-    path: tuple[str, ...]
-    kind: Kind
-    is_list: bool
-    required: bool
-    default: Any
-    least: float
-    most: float
-    above: float
-    choices: tuple[str, ...] | None
 
     @property
     def type(self) -> pa.DataType:
@@ -135,53 +123,15 @@ def _plain(value: Any, column: Column) -> Any:
     return value if column.kind == "string" or value is None else float(value)
 
 
-def _columns_below(schema: Json, definitions: Json, path: tuple[str, ...] = ()) -> Iterator[Column]:
-    required = schema.get("required", ())
-    for name, entry in schema["properties"].items():
-        place = (*path, name)
-        if place[0] == "duty_cycle" and len(place) > 1 and place != PAUSE:
-            continue  # phases have columns of their own
-        shape = _resolved(entry, definitions)
-        if "properties" in shape:
-            yield from _columns_below(shape, definitions, place)
-        else:
-            yield _column(place, shape, entry.get("default"), name in required and not path)
+def _column(name: str, field: InputField, *, is_list: bool) -> Column:
+    return Column(**{**vars(field), "name": name, "is_list": is_list})
 
 
-def _resolved(entry: Json, definitions: Json) -> Json:
-    """Schema of a field without its null and its reference."""
-    if "anyOf" in entry:
-        entry = next(option for option in entry["anyOf"] if option.get("type") != "null")
-    return dict(definitions[entry["$ref"].rsplit("/", 1)[1]]) if "$ref" in entry else entry
-
-
-def _column(path: tuple[str, ...], shape: Json, default: Any, required: bool) -> Column:
-    item = shape["items"] if shape["type"] == "array" else shape
-    return Column(
-        name="pause_s" if path == PAUSE else ".".join(path),
-        path=path,
-        kind=item["type"],
-        is_list=shape["type"] == "array",
-        required=required,
-        default=default,
-        least=item.get("minimum", -math.inf),
-        most=item.get("maximum", math.inf),
-        above=item.get("exclusiveMinimum", -math.inf),
-        choices=tuple(item["enum"]) if "enum" in item else None,
-    )
-
-
-def _of_models() -> Columns:
-    schema, phase = Application.model_json_schema(), Phase.model_json_schema()
-    phases = [
-        _column((name,), _resolved(entry, {}), None, name in phase["required"])
-        for name, entry in phase["properties"].items()
-    ]
-    others = _columns_below(schema, schema["$defs"])
-    return Columns(
-        {c.name: Column(**{**c.__dict__, "is_list": True}) for c in phases}, {column.name: column for column in others}
-    )
-
-
-COLUMNS = _of_models()
+COLUMNS = Columns(
+    {name: _column(name, field, is_list=True) for name, field in PHASE_FIELDS.items()},
+    {
+        name: _column(name, field, is_list=field.is_list)
+        for name, field in (("pause_s" if field.path == PAUSE else path, field) for path, field in FIELDS.items())
+    },
+)
 """Columns of the models."""
