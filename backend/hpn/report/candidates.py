@@ -11,6 +11,7 @@ from hpn.report.formulas import CHECK_FORMULAS, GEAR_TERMS, NONE, RATINGS, CellT
 from hpn.report.known import Known
 from hpn.report.sheets import Book
 from hpn.report.unchanged import UNCHANGED
+from hpn.report.wrong import WRONG
 from hpn.selection import Candidate
 from hpn.units import symbol_of
 from hpn.wording import N_
@@ -120,12 +121,13 @@ class CandidatesSheet:
         every = xl_range(row, USED, row, USED + len(CHECKS) - 1)
         over = 'COUNTIF({0},">"&{1}*(1+1E-12))'
         failing = f'{over.format(load, "u")}+{over.format(rest, 1)}+COUNTIF({every},"{NONE}")'
-        unknown = f"COUNTIF({every},{words['not rated']})"
-        status = f"=IF({failing}>0,{words['unsuitable']},IF({unknown}>0,{words['unrated']},{words['suitable']}))"
+        unknown = f"COUNTIF({every},{words['not rated']})+SUMPRODUCT(--ISERROR({every}))"
+        rated = f"IF({failing}>0,{words['unsuitable']},IF({unknown}>0,{words['unrated']},{words['suitable']}))"
+        status = f"=IF({WRONG}>0,{words['unrated']},{rated})"
         self.sheet.write_formula(row, 1, status, self.book.style("verdict"), self.book.words[known.candidate.status])
         cell = xl_rowcol_to_cell(row, 1)
         used = (
-            f'=IF(COUNTIF({every},"{NONE}")>0,"{NONE}",IF({cell}={words["unrated"]},"",'
+            f'=IF({cell}={words["unrated"]},"",IF(COUNTIF({every},"{NONE}")>0,"{NONE}",'
             f"MAX({load},IF({over.format(rest, 1)}>0,MAX({rest}),0))))"
         )
         self.sheet.write_formula(row, 2, used, self.book.style("share"), known.overall())

@@ -25,7 +25,7 @@ _LIMITS = {
 """Published figures that a check names as its limit, and its code."""
 
 _FIELDS = {cell_name(CANDIDATE[field].symbol): field for field in FIGURES}
-_DEMANDS = {"P_max": "output_bearing_load", "P_m": "output_bearing_life"}
+DEMANDS = {"P_max": "output_bearing_load", "P_m": "output_bearing_life"}
 """Where the values of the terms stand: a figure of the candidate, or the demand of a check."""
 
 _MAY_BE_UNLIMITED = ("N_k_max", "L_10", "L_b50")
@@ -58,7 +58,7 @@ class Known:
             formulas |= {code: check.ratio for code, check in CHECK_FORMULAS.items()}
             fixed |= {name for name, formula in formulas.items() if terms_of(formula) & unknown}
         elif loads and loads.model == "digitised":
-            fixed |= _DEMANDS.keys()
+            fixed |= DEMANDS.keys()
         if self.export.follows_efficiency_curve(self.candidate):
             fixed |= set(MOTOR_TORQUES)
         if self.export.selection.turns_motor:
@@ -87,8 +87,8 @@ class Known:
         return {term.name: self._term(term.name) for term in GEAR_TERMS}
 
     def _term(self, name: str) -> float | str:
-        if name in _DEMANDS:
-            return demand_of(self.candidate.check(_DEMANDS[name]))
+        if name in DEMANDS:
+            return demand_of(self.candidate.check(DEMANDS[name]))
         if name in _MAY_BE_UNLIMITED and self.candidate.is_unlimited(_FIELDS[name]):
             return self.words["unlimited"]
         return _cell(getattr(self.candidate, _FIELDS[name]))

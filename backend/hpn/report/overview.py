@@ -1,6 +1,7 @@
 """The first sheet: what was asked as inputs, the chosen gear, and every check of it as a formula."""
 
 import json
+from dataclasses import replace
 from typing import Any
 
 from xlsxwriter.utility import xl_range_abs, xl_rowcol_to_cell
@@ -9,27 +10,35 @@ from hpn import bearing
 from hpn.application import NUMBERS, OutputLoad
 from hpn.check import Check
 from hpn.checks import CHECKS
+from hpn.input_fields import FIELDS
 from hpn.quantities import GEAR, INPUTS
 from hpn.readings import relation_of
 from hpn.report.candidates import COLUMNS, LOAD
 from hpn.report.export import LOSS_FREE
 from hpn.report.formulas import CHECK_FORMULAS, CYCLE_TERMS, GEAR_TERMS, NONE, RATINGS, CellTerm, cell_name, written
 from hpn.report.inputs import LOADS, REQUIREMENTS, Value, value_of
-from hpn.report.known import Known, demand_of, limit_of
+from hpn.report.known import DEMANDS, Known, demand_of, limit_of
 from hpn.report.sheets import Book
 from hpn.report.unchanged import UNCHANGED
 from hpn.report.verdict import STATUS
 from hpn.report.words import equation, origin
+from hpn.report.wrong import WRONG, WRONG_AS_A_WHOLE, WRONG_IN_CYCLE, advice, is_wrong, validation
 from hpn.selection import CheckResult
 from hpn.units import suffix_of
 from hpn.wording import N_
 
 LOAD_PATH, LOAD_INERTIA = "output_load.", "requirements.load_inertia_kgm2"
-EFFICIENCY = "requirements.efficiency"
+EFFICIENCY, MODEL = "requirements.efficiency", "output_load.model"
+NEEDED = {"emergency_stop.torque_Nm": 'N_k<>""'}
+"""When an input may not be blank, though it may be left out."""
 
 ALONG_THE_MOTION = N_("as saved: along the motion, with the motor’s own inertia")
 OUTDATED = N_("not known here: inputs behind it were changed")
 OF_THE_MOTION = N_("of the motion")
+REMARK = 7
+"""Column of remarks on inputs, clear of the values in other units."""
+
+MARKED = N_("marked red under Inputs and on the sheet Duty cycle; no gear is rated while there is one")
 
 REFERENCES = (
     ("rated_speed", N_("Rated input speed"), "rpm", 3000.0),
@@ -51,6 +60,8 @@ class Overview:
         """What no formula gives of one of the gears."""
         self.text = book.reader.text
         self.row = 0
+        self.remarks: list[str] = []
+        """Cells that say what would be right in an input."""
 
     def write(self) -> None:
         """Write the sheet."""
@@ -123,6 +134,7 @@ class Overview:
         self.book.colour(self.sheet, self.row, 2, self.row, 2)
         self._looked_up(N_("Verdict"), 1, "verdict", verdict)
         self._looked_up(N_("Utilisation"), 2, "share", self.known.overall())
+        self._wrong()
         for name, rating in self.known.ratings().items():
             self._rating(name, rating)
         self.row += 1
@@ -131,6 +143,17 @@ class Overview:
         """A column of the list of candidates, for the chosen gear."""
         self._line(label, "", "")
         self.sheet.write_formula(self.row, 2, f"={self._of_candidate(column)}", self.book.style(style), saved)
+        self.row += 1
+
+    def _wrong(self) -> None:
+        """Count of the inputs that the service would refuse: while there is one, no gear is suitable."""
+        self._line(N_("Wrong inputs"), "", "")
+        self.counted = (self.row, 2)
+        self.book.name_cell(WRONG, self.sheet, *self.counted)
+        remark = f'"{self.text(MARKED)}"'
+        for condition, said in WRONG_AS_A_WHOLE.items():
+            remark = f'IF({condition},"{self.text(said)}",{remark})'
+        self.sheet.write_formula(self.row, 4, f'=IF({WRONG}>0,{remark},"")', self.book.style("wrong"), "")
         self.row += 1
 
     def _of_candidate(self, column: int) -> str:
@@ -254,8 +277,9 @@ class Overview:
         words, used = self.book.words, xl_rowcol_to_cell(self.row, 4)
         bound = ("u" if check.code in LOAD else "1") + "*(1+1E-12)"
         formula = (
-            f'=IF({used}="","",IF({used}="{NONE}","{words["fails"]}",IF(ISTEXT({used}),{used},'
-            f'IF({used}<={bound},"{words["passes"]}","{words["fails"]}"))))'
+            f'=IF(ISERROR({used}),"{words["not rated"]}",IF({used}="","",IF({WRONG}>0,"{words["not rated"]}",'
+            f'IF({used}="{NONE}","{words["fails"]}",'
+            f'IF(ISTEXT({used}),{used},IF({used}<={bound},"{words["passes"]}","{words["fails"]}"))))))'
         )
         word = words[STATUS[saved.status]] if saved else ""
         self.sheet.write_formula(self.row, 5, formula, self.book.style("verdict"), word)
@@ -277,8 +301,25 @@ class Overview:
             if live:
                 name = cell_name(INPUTS[path].symbol) or path.removeprefix(LOAD_PATH)
                 self.book.name_cell(name, self.sheet, self.row, 2)
+            if live and not still:
+                self._refuse(path)
             self.row += 1
+        count = "+".join([*(f"(LEN({remark})>0)" for remark in self.remarks), *WRONG_IN_CYCLE])
+        self.sheet.write_formula(*self.counted, f"=IFERROR({count},1)", self.book.style("count"), 0)
         self.row += 1
+
+    def _refuse(self, path: str) -> None:
+        """Say beside an input what would be right, while the service would refuse what stands in it."""
+        field, cell = FIELDS[path], xl_rowcol_to_cell(self.row, 2)
+        if path == MODEL:
+            as_saved = not self.known.fixed().isdisjoint(DEMANDS)
+            field = replace(field, choices=(str(self._input(path)),) if as_saved else ("linear", "iso281"))
+        wrong, said = is_wrong(field, cell, NEEDED.get(path, "")), advice(field, self.book.reader)
+        rule = validation(field, said)
+        self.book.refuse(self.sheet, self.row, 2, self.row, 2, wrong=wrong, validation=rule)
+        remark = f'=IF(IFERROR({wrong},1)>0,"{said}","")'
+        self.sheet.write_formula(self.row, REMARK, remark, self.book.style("wrong"), "")
+        self.remarks.append(xl_rowcol_to_cell(self.row, REMARK))
 
     def _input(self, path: str) -> Value | None:
         """What the application says, and of a load also what it has by default, should the reader add one."""

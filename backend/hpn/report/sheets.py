@@ -6,11 +6,13 @@ from typing import Any
 
 from xlsxwriter.utility import xl_range_abs, xl_rowcol_to_cell
 
+from hpn.input_fields import PHASE_FIELDS
 from hpn.quantities import INPUTS
 from hpn.reader import Reader
 from hpn.report.export import Export
 from hpn.report.formulas import NONE, cell_name
 from hpn.report.words import Paper, paper
+from hpn.report.wrong import BENEATH, advice, is_wrong_in_phase, validation
 from hpn.units import symbol_of
 from hpn.wording import N_
 
@@ -30,6 +32,7 @@ STYLES: dict[str, dict[str, Any]] = {
     "count": {"num_format": "#,##0"},
     "share": {"num_format": "0.0##%"},
     "fixed": {"num_format": "#,##0.00##", "italic": True, "font_color": "#8A6100"},
+    "wrong": {"font_color": "#B3261E", "valign": "top"},
     "verdict": {"bold": True, "indent": 1},
 }
 """Yellow cells are inputs; amber italics are values that a formula can't give."""
@@ -56,6 +59,9 @@ LONGEST_HEADER_TEXT = 100
 LONGEST_FOOTER_LINK = 100
 
 SPARE_PHASES = 20
+
+MOST_BENEATH = 10_000
+"""Rows beneath the last spare one in which no phase may stand."""
 
 PHASE = tuple(path.removeprefix("phase.") for path in INPUTS if path.startswith("phase."))
 VARYING = ("peak_torque_Nm", "peak_speed_rpm", "rms_torque_Nm")
@@ -106,11 +112,17 @@ class Book:
             sheet.conditional_format(*block, rule | {"format": self.file.add_format(look)})
 
     def colour_failures(self, sheet: Any, *block: int, bound: str) -> None:
-        """Colour the utilisations of a block of cells that are beyond a bound, or fail without a number."""
+        """Colour the utilisations of a block that are beyond a bound, fail without a number or are an error."""
         first = xl_rowcol_to_cell(*block[:2])
-        failed = f'=OR(AND(ISNUMBER({first}),{first}>{bound}*(1+1E-12)),{first}="{NONE}")'
+        failed = f'=IF(ISERROR({first}),TRUE,OR(AND(ISNUMBER({first}),{first}>{bound}*(1+1E-12)),{first}="{NONE}"))'
         look = self.file.add_format(FAILED)
         sheet.conditional_format(*block, {"type": "formula", "criteria": failed, "format": look})
+
+    def refuse(self, sheet: Any, *block: int, wrong: str, validation: Mapping[str, Any]) -> None:
+        """Colour those cells of a block that are wrong by a formula on the first, and refuse what is typed wrong."""
+        rule = {"type": "formula", "criteria": f"=IFERROR({wrong},1)>0", "format": self.file.add_format(FAILED)}
+        sheet.conditional_format(*block, rule)
+        sheet.data_validation(*block, validation)
 
     def page(self, sheet: Any, *, across: int = 1, landscape: bool = True) -> None:
         """Set a sheet on paper: everything written on so many pages across, its heads on each."""
@@ -169,6 +181,7 @@ class CycleSheet:
             self.book.name(name, self.sheet, xl_range_abs(1, column, self.last, column))
         for row in range(1, self.last + 1):
             self._phase(row)
+        self._refuse()
         if not self.varies:
             self._fold(len(heads))
         self.sheet.repeat_rows(0)
@@ -195,6 +208,17 @@ class CycleSheet:
             head = f"{self.book.reader.text(INPUTS[f'phase.{name}'].name)} [{symbol}]"
             self.sheet.write_string(0, column, head, self.book.style("head"))
             self.sheet.set_column(column, column, 15)
+
+    def _refuse(self) -> None:
+        """Mark what the service would refuse; name the rows beneath the last, in which nothing counts."""
+        cells = {name: xl_rowcol_to_cell(1, column, col_abs=True) for column, name in enumerate(PHASE, 1)}
+        for column, name in enumerate(PHASE, 1):
+            field, reader = PHASE_FIELDS[name], self.book.reader
+            rule = validation(field, advice(field, reader, name))
+            wrong = is_wrong_in_phase(name, cells)
+            self.book.refuse(self.sheet, 1, column, self.last, column, wrong=wrong, validation=rule)
+        beneath = (self.last + 1, 1, self.last + MOST_BENEATH, len(PHASE))
+        self.book.name(BENEATH, self.sheet, xl_range_abs(*beneath))
 
     def _phase(self, row: int) -> None:
         phase = self.phases[row - 1] if row <= len(self.phases) else None
