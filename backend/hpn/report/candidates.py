@@ -1,5 +1,6 @@
 """The sheet of all candidates: their published figures as cells, everything calculated from them as formulas."""
 
+import json
 from typing import Any
 
 from xlsxwriter.utility import xl_range, xl_range_abs, xl_rowcol_to_cell
@@ -7,10 +8,10 @@ from xlsxwriter.utility import xl_range, xl_range_abs, xl_rowcol_to_cell
 from hpn.checks import CHECKS
 from hpn.quantities import GEAR
 from hpn.report.export import LOWER_BOUND
-from hpn.report.formulas import CHECK_FORMULAS, GEAR_TERMS, NONE, RATINGS, CellTerm, written
+from hpn.report.formulas import CHECK_FORMULAS, GEAR_TERMS, NONE, RATINGS, written
 from hpn.report.known import Known
 from hpn.report.sheets import Book
-from hpn.report.unchanged import UNCHANGED
+from hpn.report.unchanged import as_saved
 from hpn.report.wrong import WRONG
 from hpn.selection import Candidate
 from hpn.units import symbol_of
@@ -95,12 +96,16 @@ class CandidatesSheet:
         fixed, terms = known.fixed(), known.terms()
         for term in GEAR_TERMS:
             saved, is_fixed = terms[term.name], term.name in fixed
-            formula = _as_saved(term, saved) if is_fixed else written(known.formula(term), names, self.book.words)
+            live = written(known.formula(term), names, self.book.words)
+            formula = _while_unchanged(term.name, saved) if is_fixed else live
             self._cell(row, COLUMNS[term.name], formula, saved, "fixed" if is_fixed else "result")
         for column, check in enumerate(CHECKS, USED):
-            formulas = None if check.code in fixed else CHECK_FORMULAS.get(check.code)
+            used, formulas = known.utilisation(check.code), CHECK_FORMULAS.get(check.code)
             formula = written(formulas.ratio, names, self.book.words) if formulas else None
-            self._cell(row, column, formula, known.utilisation(check.code), "share")
+            if formulas and check.code in fixed:
+                unasked = written(f'IF({formulas.asked},"[not rated]","")', names, self.book.words)
+                formula = _while_unchanged(check.code, used, self.book.words["not rated"]) or unasked
+            self._cell(row, column, formula, used, "share")
         self._verdict(row, known)
         figures = known.ratings() | terms
         for column, (name, unit) in enumerate(self.converted.items(), USED + len(CHECKS)):
@@ -133,6 +138,6 @@ class CandidatesSheet:
         self.sheet.write_formula(row, 2, used, self.book.style("share"), known.overall())
 
 
-def _as_saved(term: CellTerm, value: float | str) -> str | None:
-    """A torque at the motor while its inputs are those that were saved; None for what stands without a condition."""
-    return f'=IF({UNCHANGED},{value!r},"")' if term.by_efficiency and isinstance(value, float) else None
+def _while_unchanged(name: str, saved: float | str, otherwise: str = "") -> str | None:
+    """A value as saved for as long as the inputs behind it are, then `otherwise`; None where nothing was saved."""
+    return None if saved == "" else f'=IF({as_saved(name)},{json.dumps(saved, ensure_ascii=False)},"{otherwise}")'

@@ -114,11 +114,6 @@ class Export:
         loss_free = equations.motor_torque(output_torque_Nm=output, ratio=candidate.ratio, efficiency=1.0)
         return bool((np.abs(shown - loss_free) > 1e-9 * loss_free).any())
 
-    @property
-    def has_fixed_motor_torques(self) -> bool:
-        """Whether the motor torques of a candidate are no quotient of the cycle's torques."""
-        return self.selection.turns_motor or any(map(self.follows_efficiency_curve, self.selection.candidates))
-
     def is_lower_bound(self, candidate: Candidate) -> bool:
         """Whether the motor torques of a candidate are loss-free: no efficiency is known."""
         return self.application.requirements.efficiency is None and not self.follows_efficiency_curve(candidate)

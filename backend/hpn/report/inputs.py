@@ -4,22 +4,32 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from hpn.application import Application
+from hpn.application import NUMBERS, Application, OutputLoad
 from hpn.notices import AREAS
 from hpn.quantities import BEARING_MODELS, INPUTS, LIFE_BASES
 from hpn.reader import Reader
+from hpn.report.export import Export
+from hpn.report.formulas import cell_name
 from hpn.units import suffix_of
 from hpn.wording import N_
 
 Value = float | str | tuple[str | int, ...]
 
-_LOADING = ("duty_cycle.", "emergency_stop.", "output_load.")
+LOAD_PATH, LOAD_INERTIA = "output_load.", "requirements.load_inertia_kgm2"
+_LOADING = ("duty_cycle.", "emergency_stop.", LOAD_PATH)
 
 LOADS = tuple(path for path in INPUTS if path.startswith(_LOADING))
 """What loads the gear besides the phases, by its path in the application."""
 
 REQUIREMENTS = tuple(path for path in INPUTS if not path.startswith((*_LOADING, "phase.")))
 """What is asked of the gear, likewise."""
+
+ENTERED: Mapping[str, str] = {
+    cell_name(INPUTS[path].symbol) or path.removeprefix(LOAD_PATH): path
+    for path in (*LOADS, *REQUIREMENTS)
+    if tuple(path.split(".")) in NUMBERS or path.startswith(LOAD_PATH)
+}
+"""Inputs that the formulas of the workbook take, besides the phases: name in formulas, path in the application."""
 
 WORDS: Mapping[str, str] = {
     **BEARING_MODELS,
@@ -51,6 +61,17 @@ def value_of(application: Application, path: str) -> Value | None:
     for step in rest:
         part = getattr(part, step, None)
     value: Value | None = part
+    return value
+
+
+def entered(export: Export, path: str) -> Value | None:
+    """What stands in the workbook's cell of an input; of a load, its default too, should the reader add one."""
+    value = value_of(export.equipped, path)
+    if value is None and path == LOAD_INERTIA:
+        return export.selection.duty.load_inertia_kgm2
+    if value is None and path.startswith(LOAD_PATH):
+        default: Value | None = getattr(OutputLoad(), path.removeprefix(LOAD_PATH))
+        return default
     return value
 
 

@@ -7,7 +7,7 @@ from typing import Any
 from xlsxwriter.utility import xl_range_abs, xl_rowcol_to_cell
 
 from hpn import bearing
-from hpn.application import NUMBERS, OutputLoad
+from hpn.application import OutputLoad
 from hpn.check import Check
 from hpn.checks import CHECKS
 from hpn.input_fields import FIELDS
@@ -15,11 +15,11 @@ from hpn.quantities import GEAR, INPUTS
 from hpn.readings import relation_of
 from hpn.report.candidates import COLUMNS, LOAD
 from hpn.report.export import LOSS_FREE
-from hpn.report.formulas import CHECK_FORMULAS, CYCLE_TERMS, GEAR_TERMS, NONE, RATINGS, CellTerm, cell_name, written
-from hpn.report.inputs import LOADS, REQUIREMENTS, Value, value_of
+from hpn.report.formulas import CHECK_FORMULAS, CYCLE_TERMS, GEAR_TERMS, NONE, RATINGS, CellTerm, written
+from hpn.report.inputs import ENTERED, LOAD_INERTIA, LOADS, REQUIREMENTS, entered
 from hpn.report.known import DEMANDS, Known, demand_of, limit_of
 from hpn.report.sheets import Book
-from hpn.report.unchanged import UNCHANGED
+from hpn.report.unchanged import as_saved
 from hpn.report.verdict import STATUS
 from hpn.report.words import equation, origin
 from hpn.report.wrong import WRONG, WRONG_AS_A_WHOLE, WRONG_IN_CYCLE, advice, is_wrong, validation
@@ -27,8 +27,8 @@ from hpn.selection import CheckResult
 from hpn.units import suffix_of
 from hpn.wording import N_
 
-LOAD_PATH, LOAD_INERTIA = "output_load.", "requirements.load_inertia_kgm2"
 EFFICIENCY, MODEL = "requirements.efficiency", "output_load.model"
+NAMES = {path: name for name, path in ENTERED.items()}
 NEEDED = {"emergency_stop.torque_Nm": 'N_k<>""'}
 """When an input may not be blank, though it may be left out."""
 
@@ -192,25 +192,31 @@ class Overview:
             if term.name in self.fixed:
                 formula, look = self._from_list(term.name), "fixed"
             self.sheet.write_formula(self.row, 2, formula, self.book.style(look), values[term.name])
-            if term.by_efficiency:
-                self._bound(term.name in self.fixed)
+            self._remark(term)
             self.book.name_cell(term.name, self.sheet, self.row, 2)
             self._converted(term.unit, values[term.name])
             self.row += 1
         self.row += 1
 
-    def _bound(self, fixed: bool) -> None:
-        """That a motor torque is a lower bound, for as long as the reader states no efficiency."""
-        saved = self.text(LOSS_FREE) if self.book.export.is_lower_bound(self.known.candidate) else ""
-        if fixed:
-            along = self.text(ALONG_THE_MOTION) if self.book.export.selection.turns_motor else ""
-            said = "; ".join(filter(None, (along, saved)))
-            formula = f'=IF({UNCHANGED},"{said}","{self.text(OUTDATED)}")'
-            room = 4 if self.book.shown.measure("Nm").same else 7  # clear of the value in another unit
-            self.sheet.write_formula(self.row, room, formula, self.book.style("quiet"), said)
-        else:
+    def _remark(self, term: CellTerm) -> None:
+        """Source of a figure, or that inputs behind it were changed; that a motor torque is a lower bound, for as long
+        as the reader states no efficiency.
+        """
+        source = equation(term.named.equation, self.book.reader)
+        bound = self.text(LOSS_FREE) if self.book.export.is_lower_bound(self.known.candidate) else ""
+        if term.name in self.fixed:
+            along = term.by_efficiency and self.book.export.selection.turns_motor
+            said = [self.text(ALONG_THE_MOTION) if along else "", bound if term.by_efficiency else source]
+            room = 4 if not term.by_efficiency or self.book.shown.measure("Nm").same else 7  # clear of another unit
+            self._while_known(room, "; ".join(filter(None, said)), term.name, xl_rowcol_to_cell(self.row, 2))
+        elif term.by_efficiency:
             formula = f'=IF(eta="","{self.text(LOSS_FREE)}","")'
-            self.sheet.write_formula(self.row, 4, formula, self.book.style("quiet"), saved)
+            self.sheet.write_formula(self.row, 4, formula, self.book.style("quiet"), bound)
+
+    def _while_known(self, column: int, said: str, name: str, cell: str) -> None:
+        """What is said of a figure that stands as saved, or that it is not known for the inputs as they are now."""
+        known = f'=IF(OR({as_saved(name)},{cell}<>""),"{said}","{self.text(OUTDATED)}")'
+        self.sheet.write_formula(self.row, column, known, self.book.style("quiet"), said)
 
     def _cycle_values(self) -> dict[str, float | str]:
         duty, loads = self.book.export.selection.duty, self.book.export.application.loads or OutputLoad()
@@ -251,7 +257,10 @@ class Overview:
         self._status(check, saved)
         self.sheet.write(self.row, 6, used, style("share"))
         source = origin(self.book.export, check.code, self.book.reader) if saved else ""
-        self.sheet.write_string(self.row, 7, source, style("quiet"))
+        if check.code in self.fixed:
+            self._while_known(7, source, check.code, xl_rowcol_to_cell(self.row, 2))
+        else:
+            self.sheet.write_string(self.row, 7, source, style("quiet"))
         for column in (2, 3):
             shown = self.book.converted(
                 self.sheet, self.row, column + 6, xl_rowcol_to_cell(self.row, column), check.unit, values[column - 2]
@@ -267,7 +276,8 @@ class Overview:
             return self._written(own.shown_demand), self._written(own.shown_limit), self._written(own.ratio)
         saved, designation = self.known.candidate.check(check.code), self.known.candidate.designation
         values = (json.dumps(value) for value in (demand_of(saved), limit_of(saved)))
-        demand, limit = (f'=IF(gear="{designation}",{value},"")' for value in values)
+        still = f'AND(gear="{designation}",{as_saved(check.code)})'
+        demand, limit = (f'=IF({still},{value},"")' for value in values)
         return demand, limit, self._from_list(check.code)
 
     def _written(self, formula: str) -> str:
@@ -292,16 +302,14 @@ class Overview:
             own = path == LOAD_INERTIA and self.book.export.selection.duty.load_inertia_kgm2 is not None
             source = self.text(OF_THE_MOTION) if own else ""
             self._line(INPUTS[path].name, INPUTS[path].symbol, suffix_of(path) or "", source)
-            live = tuple(path.split(".")) in NUMBERS or path.startswith(LOAD_PATH)
-            value = self._input(path)
+            name, value = NAMES.get(path), entered(self.book.export, path)
             shown = ", ".join(map(str, value)) if isinstance(value, tuple) else value
             still = own or (path == EFFICIENCY and self.book.export.selection.turns_motor)
-            self.sheet.write(self.row, 2, shown, self.book.style("fixed" if still else "input" if live else "label"))
+            self.sheet.write(self.row, 2, shown, self.book.style("fixed" if still else "input" if name else "label"))
             self._converted(suffix_of(path) or "", value if isinstance(value, float) else None)
-            if live:
-                name = cell_name(INPUTS[path].symbol) or path.removeprefix(LOAD_PATH)
+            if name:
                 self.book.name_cell(name, self.sheet, self.row, 2)
-            if live and not still:
+            if name and not still:
                 self._refuse(path)
             self.row += 1
         count = "+".join([*(f"(LEN({remark})>0)" for remark in self.remarks), *WRONG_IN_CYCLE])
@@ -313,23 +321,15 @@ class Overview:
         field, cell = FIELDS[path], xl_rowcol_to_cell(self.row, 2)
         if path == MODEL:
             as_saved = not self.known.fixed().isdisjoint(DEMANDS)
-            field = replace(field, choices=(str(self._input(path)),) if as_saved else ("linear", "iso281"))
+            field = replace(
+                field, choices=(str(entered(self.book.export, path)),) if as_saved else ("linear", "iso281")
+            )
         wrong, said = is_wrong(field, cell, NEEDED.get(path, "")), advice(field, self.book.reader)
         rule = validation(field, said)
         self.book.refuse(self.sheet, self.row, 2, self.row, 2, wrong=wrong, validation=rule)
         remark = f'=IF(IFERROR({wrong},1)>0,"{said}","")'
         self.sheet.write_formula(self.row, REMARK, remark, self.book.style("wrong"), "")
         self.remarks.append(xl_rowcol_to_cell(self.row, REMARK))
-
-    def _input(self, path: str) -> Value | None:
-        """What the application says, and of a load also what it has by default, should the reader add one."""
-        value = value_of(self.book.export.equipped, path)
-        if path == LOAD_INERTIA and value is None:
-            return self.book.export.selection.duty.load_inertia_kgm2
-        if value is None and path.startswith(LOAD_PATH):
-            default: Value | None = getattr(OutputLoad(), path.removeprefix(LOAD_PATH))
-            return default
-        return value
 
     def _references(self) -> None:
         self._section(N_("Figures of the series"))

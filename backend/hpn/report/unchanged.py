@@ -1,45 +1,65 @@
-"""The hidden sheet that says whether the inputs behind motor torques are still those that were saved.
+"""The hidden sheet that says of each figure that stands as saved whether the inputs behind it are still those saved.
 
-Along a motion with the motor's own inertia, and by an efficiency curve, no formula of the workbook gives these torques.
+No formula of the workbook gives digitised bearing loads, motor torques with the motor's own inertia or by an efficiency
+curve, and what takes figures of a catalogue that is not at hand.
 """
 
+import re
+from collections.abc import Iterable
 from typing import Any
 
 from xlsxwriter.utility import xl_range_abs
 
-from hpn.report.inputs import value_of
-from hpn.report.sheets import SPARE_PHASES, Book
+from hpn.report.formulas import CHECK_FORMULAS, CYCLE_TERMS, GEAR_TERMS, MOTOR_TORQUES
+from hpn.report.inputs import ENTERED, entered
+from hpn.report.sheets import PHASE, SPARE_PHASES, USED, Book
 
-UNCHANGED = "motor_inputs_as_saved"
-"""Name of the cell that says it."""
+_FORMULAS = {term.name: term.formula for term in (*CYCLE_TERMS, *GEAR_TERMS)} | {
+    code: check.ratio for code, check in CHECK_FORMULAS.items()
+}
+_BY_CURVE = {"speed_rpm", "peak_speed_rpm"}
+"""What motor torques by an efficiency curve take besides what stands in their formula."""
 
-_BLOCKS = ("torque_Nm", "speed_rpm", "duration_s", "peak_torque_Nm", "peak_speed_rpm", "rms_torque_Nm")
-_CELLS = {"pause_s": "duty_cycle.pause_s", "eta": "requirements.efficiency"}
-"""Inputs by their names in formulas: of each phase, and of any cycle."""
+_ALONG_MOTION = {"J_m", "J_L"}
+"""What they take along a motion: the motor's own inertia, and that of the load."""
 
 
-def write_unchanged(book: Book, sheet: Any) -> None:
-    """Write the sheet: what was saved, in columns, and the cell that compares it with the inputs."""
+def as_saved(name: str) -> str:
+    """Name of the cell that says whether the inputs behind a figure or check are those that were saved."""
+    return f"{name}_as_saved"
+
+
+def inputs_behind(name: str) -> set[str]:
+    """Inputs that a figure or check takes, through all formulas behind it, by their names in these."""
+    if name in PHASE or name in USED or name in ENTERED:
+        return {name}
+    return set().union(*map(inputs_behind, re.findall(r"\w+", _FORMULAS.get(name, ""))))
+
+
+def write_unchanged(book: Book, sheet: Any, fixed: Iterable[str]) -> None:
+    """Write the sheet: the inputs behind `fixed` as they were saved, and for each of these the cell that compares."""
     sheet.hide()
-    phases = book.export.application.duty_cycle.load_phases
-    equal = []
-    for column, name in enumerate(_BLOCKS):
-        for row, phase in enumerate(phases, 1):
-            sheet.write(row, column, getattr(phase, name))
-        book.name(f"{name}_saved", sheet, xl_range_abs(1, column, len(phases) + SPARE_PHASES, column))
-        equal.append(f"SUMPRODUCT(--({name}<>{name}_saved))=0")
-    for column, (name, value) in enumerate(_single(book).items(), len(_BLOCKS)):
-        sheet.write(1, column, value)
-        book.name_cell(f"{name}_saved", sheet, 1, column)
-        equal.append(f"{name}={name}_saved")
-    sheet.write_formula(0, 0, f"=AND({','.join(equal)})", None, True)
-    book.name_cell(UNCHANGED, sheet, 0, 0)
+    behind = {name: inputs_behind(name) for name in fixed}
+    along = book.export.application.duty_cycle.motion is not None
+    turned = _BY_CURVE.union(*map(inputs_behind, MOTOR_TORQUES), _ALONG_MOTION if along else ())
+    behind |= dict.fromkeys(behind.keys() & set(MOTOR_TORQUES), turned)
+    for row, name in enumerate(sorted(behind)):
+        equal = ",".join(f'SUMPRODUCT(--({cell}&""<>{cell}_saved&""))=0' for cell in sorted(behind[name]))
+        sheet.write_formula(row, 0, f"=AND({equal})", None, True)
+        book.name_cell(as_saved(name), sheet, row, 0)
+    for column, name in enumerate(sorted(set().union(*behind.values())), 1):
+        values = _saved(book, name)
+        for row, value in enumerate(values):
+            sheet.write(row, column, value)
+        book.name(f"{name}_saved", sheet, xl_range_abs(0, column, len(values) - 1, column))
 
 
-def _single(book: Book) -> dict[str, Any]:
+def _saved(book: Book, name: str) -> list[Any]:
+    """Values of an input: one, or one of each row for a phase, filled or spare."""
     export = book.export
-    single = {name: value_of(export.equipped, path) for name, path in _CELLS.items()}
-    if export.application.duty_cycle.motion is None:
-        return single
-    motor = value_of(export.equipped, "requirements.motor.inertia_kgm2")
-    return single | {"J_m": motor, "J_L": export.selection.duty.load_inertia_kgm2}
+    if name in ENTERED:
+        return [entered(export, ENTERED[name])]
+    if name in USED:
+        loads: list[Any] = getattr(export.duty.phases, USED[name])[0, 0].tolist()
+        return [*loads, *[0.0] * SPARE_PHASES]
+    return [*(getattr(phase, name) for phase in export.application.duty_cycle.load_phases), *[None] * SPARE_PHASES]

@@ -56,9 +56,10 @@ def _fill(book: Book) -> None:
         write_motion(book, _sheet(book, MOTION_TITLE), motion)
     candidates, notes = (_sheet(book, name) for name in (N_("Candidates"), N_("Notes")))
     rows = CandidatesSheet(book, candidates).write()
-    Overview(book, overview, rows).write()
-    if book.export.has_fixed_motor_torques:
-        write_unchanged(book, _sheet(book, N_("As saved")))
+    sheet = Overview(book, overview, rows)
+    sheet.write()
+    if sheet.fixed:
+        write_unchanged(book, _sheet(book, N_("As saved")), sheet.fixed)
     _notes(book, notes)
     overview.activate()
 
