@@ -206,19 +206,26 @@ def measure(unit: str, chosen: tuple[str, ...]) -> Measure:
 
 @cache
 def _measure(suffix: str, chosen: tuple[str, ...]) -> Measure:
-    whole = suffix.removesuffix("_per_rad")
+    whole = _dividend(suffix)
     return entered(suffix, next((code for code in chosen if _OF_CODE[code] == whole), whole))
 
 
 @cache
 def entered(suffix: str, code: str) -> Measure:
     """Measure of a number that is given in the unit of a code, for a unit of the wire with the same dimension."""
-    whole = suffix.removesuffix("_per_rad")
-    symbol = _SYMBOL.get(code, SYMBOLS.get(suffix, suffix)) + ("/rad" if whole != suffix else "")
+    whole = _dividend(suffix)
+    per = SYMBOLS[suffix].removeprefix(SYMBOLS[whole]) if whole != suffix else ""
+    symbol = _SYMBOL.get(code, SYMBOLS.get(suffix, suffix)) + per
     if code == whole:
         return Measure(symbol)
     zero, one = (_registry().Quantity(Fraction(n), _PINT[whole]).to(_PINT[code]).magnitude for n in (0, 1))
     return Measure(symbol, Fraction(one - zero), Fraction(zero))
+
+
+def _dividend(suffix: str) -> str:
+    """The part of a unit that a reader may choose: of `Nm_per_rad` and `mm_per_s2` what stands before `_per_`."""
+    whole = suffix.partition("_per_")[0]
+    return whole if whole in _OF_CODE.values() else suffix
 
 
 @cache

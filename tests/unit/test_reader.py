@@ -32,6 +32,9 @@ def form_of(**texts: str) -> link_reader.Form:
         (1.0, "kg", "2.20"),
         (25.0, "degC", "77"),
         (143000.0, "Nm/rad", f"1{GROUP}265{GROUP}657"),
+        (254.0, "mm_per_s", "10"),  # an inch is 25.4 mm
+        (9810.0, "mm/s²", "386"),
+        (1.0, "Nm_per_rpm", "8.85"),
         (1500.0, "rpm", f"1{GROUP}500"),
         (20000.0, "h", f"20{GROUP}000"),
     ],
@@ -45,6 +48,9 @@ def test_symbols_follow_suffixes_and_symbols_of_the_wire_alike() -> None:
         *("lb·in", "lb·in/rad", "lb·in/rad", "°F", "°F", "s", "%")
     ]
     assert Reader("en", ("lb_ft", "rad_per_s", "mrad")).unit("Nm_per_rad") == "lb·ft/rad"
+    assert [AMERICAN.unit(unit) for unit in ("mm_per_s", "mm/s²", "Nm_per_rpm", "deg_per_s2", "g_per_cm3")] == [
+        *("in/s", "in/s²", "lb·in/rpm", "°/s²", "g/cm³")
+    ]
 
 
 def test_numbers_follow_the_language() -> None:
