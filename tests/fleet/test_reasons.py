@@ -40,13 +40,14 @@ WRONG: tuple[dict[str, Any], ...] = (
     {"colour": "red"},
 )
 LINES = ('{"axis": "broken", "torque_Nm": [', '{"axis": 7, "torque_Nm": [1]}', json.dumps({"axis": "sound", **SOUND}))
+TWICE = f'{{"axis": "twice", "pause_s": 1, {json.dumps(SOUND)[1:-1]}, "pause_s": 2}}'
 CELLS = b"axis,torque_Nm,speed_rpm,duration_s\na,9,5,1\nb,9 5,5,1\nc,9,5\n,9,5,1\n\xff,9,5,1\nd,inf,5,1\n"
 
 
 def test_every_reason_has_a_german_text(size: Size) -> None:
     rows = [json.dumps({"axis": str(place), **SOUND, **wrong}) for place, wrong in enumerate(WRONG)]
 
-    answers = [*size("\n".join((json.dumps({"axis": "sound", **SOUND}), *rows, *LINES))), *size(CELLS, ".csv")]
+    answers = [*size("\n".join((json.dumps({"axis": "sound", **SOUND}), *rows, *LINES, TWICE))), *size(CELLS, ".csv")]
 
     assert [row["axis"] for row in answers if not row["error"]] == ["a"]
     for error in filter(None, (row["error"] for row in answers)):

@@ -361,3 +361,22 @@ def test_a_name_that_is_no_utf8_rejects_the_axes_that_its_row_may_belong_to(size
         ("d", True),
     ]
     assert ("b", "axis", "phase 2: must be UTF-8") in faults(tmp_path)
+
+
+@pytest.mark.parametrize(
+    "row",
+    [
+        '{"axis": "a", "pause_s": 5, "torque_Nm": [40], "speed_rpm": [250], "duration_s": [3], "pause_s": 9}',
+        '{"axis": "a", "pause_s": 5, "torque_Nm": [40], "speed_rpm": [250], "duration_s": [3], "pause\\u005fs": 9}',
+        '{"axis": "a", "pause_s": 9, "torque_Nm": [40], "speed_rpm": [250], "duration_s": [3], "pause_s" : 9}',
+    ],
+)
+def test_a_line_with_a_name_twice_is_rejected_by_that_name(row: str, size: Size) -> None:
+    sound = (
+        '{"axis": "b: \\"pause_s\\": 5, \\"pause_s\\": 9", "torque_Nm": [40], "speed_rpm": [250], "duration_s": [3]}'
+    )
+    answers = size(f"{row}\n{sound}\n")
+    assert [(answer["error"], bool(answer["selected"])) for answer in answers] == [
+        ("pause_s: is there more than once", False),
+        (None, True),
+    ]

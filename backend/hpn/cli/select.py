@@ -9,6 +9,7 @@ from hpn.application import Application
 from hpn.catalogue import load_catalogue
 from hpn.checks import allowed
 from hpn.selection import Candidate, Selection, encode, select
+from hpn.unique import require_unique
 from hpn.web.form.link_writer import to_link
 from hpn.web.settings import Settings
 from hpn.wording import telling_decimals
@@ -19,7 +20,7 @@ MAXIMUM_FILE_BYTES = 32_000_000
 
 def run(options: argparse.Namespace) -> int:
     """Print the reply, as JSON into a pipe and as a table on a terminal unless asked otherwise."""
-    application, settings = Application.model_validate_json(_content(options.file)), Settings()
+    application, settings = _application(options.file), Settings()
     catalogue = load_catalogue(settings.catalogue_folder, settings.catalogue_supplement, settings.averaging_seconds)
     selection = select(application, catalogue, to_link(application))
     if options.json or not (options.table or sys.stdout.isatty()):
@@ -27,6 +28,14 @@ def run(options: argparse.Namespace) -> int:
     else:
         _print_table(selection, application.requirements.utilisation)
     return 0 if selection.selected else 1
+
+
+def _application(name: str) -> Application:
+    """The application of a file; raises ValidationError, and InputError for a name twice in one object."""
+    content = _content(name)
+    application = Application.model_validate_json(content)
+    require_unique(content)
+    return application
 
 
 def _content(name: str) -> bytes:

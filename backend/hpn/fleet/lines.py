@@ -21,6 +21,7 @@ from hpn.faults import NOT_A_NUMBER
 from hpn.fleet.columns import AXIS, COLUMNS, Column, is_list
 from hpn.fleet.errors import FleetError
 from hpn.fleet.tables import BATCH_ROWS, Batch, CellFault, Table
+from hpn.unique import RepeatedNameError, require_unique
 from hpn.wording import N_
 
 UNIT_BYTES = 8_000_000
@@ -262,6 +263,7 @@ def _one_by_one(cells: pa.Array, read: Any, wanted: pa.DataType, reason: str) ->
 # --- NDJSON -----------------------------------------------------------------------------------------------------------
 
 AXIS_IN_LINE = re.compile(rb'"axis"\s*:\s*("(?:[^"\\]|\\.)*"|-?[0-9]+(?=[\s,}]))')
+NAME_IN_LINE = re.compile(rb'"([^"\\]*)"\s*:')
 Integer = Annotated[int, msgspec.Meta(ge=-(2**63), le=2**63 - 1)]
 """What Arrow holds in 64 bits."""
 
@@ -346,7 +348,10 @@ class NdjsonTable(LinesTable):
         rows, faults = [], []
         for place, line in enumerate(lines):
             try:
-                rows.append(decoder.decode(line))
+                row = decoder.decode(line)
+                if _may_repeat_a_name(line):
+                    require_unique(line)
+                rows.append(row)
             except (ValueError, RecursionError) as error:
                 cells, wrong = self._one_by_one(line, error)
                 rows.append(msgspec.convert(cells, row_type))
@@ -363,6 +368,10 @@ class NdjsonTable(LinesTable):
             cells = _axis_alone(line, self._kinds[AXIS])
             return cells, [(AXIS, f"the line is not a JSON object: {error}, in {_cut(line.decode(errors='replace'))}")]
         cells, wrong = {}, []
+        try:
+            require_unique(line)
+        except RepeatedNameError as repeated:
+            wrong.append((repeated.name, N_("is there more than once")))
         for name, value in given.items():
             if name not in self._kinds:
                 wrong.append((name, N_("is not a column")))
@@ -385,6 +394,12 @@ class NdjsonTable(LinesTable):
             return _no_list(column)
         place, item = next((place, item) for place, item in enumerate(value, start=1) if not _is(item, kind))
         return f"{'phase' if name in COLUMNS.phases else 'item'} {place}: {right}, not {_shown(item)}"
+
+
+def _may_repeat_a_name(line: bytes) -> bool:
+    """Whether a row may have a name more than once: always where it has one, seldom where not."""
+    names = NAME_IN_LINE.findall(line)
+    return len(set(names)) < len(names) or b"\\" in line
 
 
 def _object(line: bytes) -> dict[str, Any]:

@@ -2,8 +2,6 @@
 
 import asyncio
 import codecs
-import json
-from collections import Counter
 from collections.abc import Awaitable, Callable
 from typing import Any, AnyStr, TypeVar
 from urllib.parse import parse_qsl
@@ -13,6 +11,7 @@ from pydantic import BaseModel
 from pydantic_core import from_json
 from starlette.requests import ClientDisconnect, Request
 
+from hpn import unique
 from hpn.phase import MAXIMUM_PHASES
 from hpn.web.door.problems import Problem
 from hpn.web.settings import Settings
@@ -136,14 +135,10 @@ def require_unique(text: str | bytes, value: Any) -> None:
             return
     except TypeError:  # an integer beyond 64 bits
         pass
-    json.loads(content, strict=False, parse_int=str, parse_float=str, object_pairs_hook=_unique)
-
-
-def _unique(pairs: list[tuple[str, Any]]) -> None:
-    if len(dict(pairs)) < len(pairs):
-        [(name, count)] = Counter(name for name, _ in pairs).most_common(1)
-        detail = f"has the name {name[:40]!r} {count} times in one object"
-        raise Problem(422, detail, [((), detail)])
+    try:
+        unique.require_unique(content)
+    except unique.RepeatedNameError as repeated:
+        raise Problem(422, str(repeated), repeated.problems) from None
 
 
 def require_bounded(text: AnyStr) -> None:
