@@ -26,7 +26,8 @@ class Reading:
     """Demand and limit in `unit`, a suffix or symbol; None where there is none, or where nothing limits the demand.
 
     `part` is the share of the limit that the user's own u leaves: the limit times it, for a minimum over it.
-    `limit_name` is a msgid, `relation` the comparison in symbols.
+    `limit_name` is a msgid, `relation` the comparison in symbols. Of what `is_unlimited` the larger side, the demand of
+    a minimum or the limit of a maximum, is above every number.
     """
 
     demand: float | None
@@ -37,6 +38,16 @@ class Reading:
     relation: str
     part: float = 1.0
     is_unlimited: bool = False
+
+    @property
+    def has_unlimited_demand(self) -> bool:
+        """Whether the demand is above every number, such as the life without a torque."""
+        return self.is_unlimited and self.kind == "minimum"
+
+    @property
+    def has_unlimited_limit(self) -> bool:
+        """Whether the limit is above every number, such as that of stops below the repeated peak torque."""
+        return self.is_unlimited and self.kind != "minimum"
 
     @property
     def sign(self) -> str:
@@ -88,7 +99,11 @@ def _as_computed(check: CheckResult, selection: Selection, u: float) -> Reading:
     known, definition = BY_CODE.get(check.code), selection.check_definitions[check.code]
     part = known.allowed(u) if known else 1.0
     relation = relation_of(check.code, turns_motor=selection.turns_motor)
-    return Reading(check.demand, check.limit, definition.unit, definition.kind, definition.limit_name, relation, part)
+    larger = check.demand if definition.kind == "minimum" else check.limit
+    unlimited = larger is None and check.utilisation is not None
+    return Reading(
+        *(check.demand, check.limit, definition.unit, definition.kind, definition.limit_name, relation, part, unlimited)
+    )
 
 
 _REQUIRED = {"L50": N_("L50 required"), "L10": N_("L10 required")}

@@ -6,6 +6,7 @@ import subprocess
 import sys
 from dataclasses import replace
 from io import BytesIO
+from typing import Any
 from urllib.parse import parse_qsl, quote
 
 import pikepdf
@@ -17,9 +18,10 @@ from hpn.application import Application
 from hpn.catalogue import Catalogue
 from hpn.report.content import content
 from hpn.report.pdf import pdf
+from hpn.report.verdict import checks
 from hpn.web.form.link_reader import parse
 from hpn.web.form.link_writer import to_link
-from tests.build import cycle, phase, worked_example
+from tests.build import Json, cycle, phase, worked_example
 from tests.conftest import Supplement
 from tests.report.cases import CASES, language, long_cycle, typed_export_of
 
@@ -174,6 +176,7 @@ import re, sys, time
 from pathlib import Path
 from hpn.catalogue import load_catalogue
 from hpn.report.pdf import pdf
+from hpn.report.verdict import checks
 from hpn.web.door import heap
 from tests.report.cases import language, long_cycle, typed_export_of
 heap.give_back()
@@ -196,3 +199,18 @@ def test_memory_of_a_long_cycle_is_bounded_and_given_back(soak: bool) -> None:
     first, last = (int(line.split()[-1]) for line in (lines[0], lines[-1]))
     assert last < most
     assert last < 1.5 * first
+
+
+@pytest.mark.parametrize(("code", "word"), [("en", "unlimited"), ("de", "unbegrenzt")])
+def test_a_limit_above_every_number_is_a_word(code: str, word: str, catalogue: Catalogue) -> None:
+    """Stops below T_R may come any number of times (17.9), whatever u leaves of it; a dash times u stood there."""
+    stops = worked_example(emergency_stop={"torque_Nm": 5, "count": 10}, requirements={"utilisation": 0.93})
+    idle = cycle(phase(0, 100), requirements={"life_h": 1e4})
+    assert _check("Number of momentary peak torques", stops, catalogue, code)["limit"] == word
+    assert _check("Life", idle, catalogue, code)["demand"] == word
+
+
+def _check(title: str, case: Json, catalogue: Catalogue, code: str) -> dict[str, Any]:
+    """What the report says of a check."""
+    reader = language(code)
+    return {row["title"]: row for row in checks(typed_export_of(case, catalogue), reader)}[reader.text(title)]

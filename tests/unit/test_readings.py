@@ -13,6 +13,8 @@ from tests.build import Json, cycle, phase, worked_example
 from tests.property.draw import at_random
 from tests.reference.test_motion import CONTRACT
 
+LIGHT_STOPS = worked_example(emergency_stop={"torque_Nm": 5, "count": 10}, requirements={"utilisation": 0.93})
+
 
 def readings(application: Json, designation: str, catalogue: Catalogue) -> dict[str, Reading]:
     """Readings of a gear's checks."""
@@ -109,3 +111,14 @@ def test_without_application_or_catalogue_the_pure_numbers_stand(catalogue: Cata
     check = selection.candidates[0].check("output_bearing_load")
     assert check is not None
     assert (read["output_bearing_load"].demand, read["output_bearing_load"].unit) == (check.demand, "")
+
+
+def test_what_nothing_limits_is_unlimited_on_its_own_side(catalogue: Catalogue) -> None:
+    """A stop below T_R may come any number of times (17.9); without a torque the life (17.10) has no end."""
+    idle = readings(cycle(phase(0.0, 100.0), requirements={"life_h": 1e4}), "HPN-20A-5", catalogue)["life"]
+    stops = readings(LIGHT_STOPS, "HPN-20A-5", catalogue)["momentary_peak_count"]
+    ended = readings(worked_example(emergency_stop={"torque_Nm": 200, "count": 10}), "HPN-20A-5", catalogue)
+
+    assert (idle.demand, idle.has_unlimited_demand, idle.has_unlimited_limit) == (None, True, False)
+    assert (stops.limit, stops.has_unlimited_demand, stops.has_unlimited_limit) == (None, False, True)
+    assert not ended["momentary_peak_count"].is_unlimited

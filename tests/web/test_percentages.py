@@ -71,3 +71,15 @@ def test_a_sentence_tells_a_use_from_the_whole_limit(distance: float) -> None:
     under, at, over = (float(str(share(1 + sign * distance)).removesuffix(" %")) for sign in (-1, 0, 1))
 
     assert under < at == 100 < over
+
+
+@pytest.mark.parametrize(
+    ("query", "code", "column"),
+    [("T=40&n=250&t=1&Tk=5&Nk=10&u=0.93", "momentary_peak_count", 1), ("T=0&n=250&t=1&Lh=10000", "life", 0)],
+)
+def test_what_nothing_limits_is_a_word_beside_its_check(api: TestClient, query: str, code: str, column: int) -> None:
+    row = re.search(f'id="check-{code}".*?</tr>', api.get(f"/?{query}").text, re.DOTALL)
+    assert row
+    cell = re.findall(r'<td class="figure">(.*?)</td>', row[0], re.DOTALL)[column]
+    assert "unlimited" in cell
+    assert "–" not in cell and "93" not in cell

@@ -133,12 +133,14 @@ def _check(export: Export, check: CheckResult, read: Reading, reader: Reader) ->
 
 def _limit(read: Reading, reader: Reader) -> str:
     """Limit of a check, and the share of it that the user's own u leaves."""
+    if read.has_unlimited_limit:
+        return reader.text(N_("unlimited"))
     part = f" {'÷' if read.kind == 'minimum' else '×'} {exact_percent(read.part, reader)}" if read.part < 1 else ""
     return measured(read.limit, read.unit, reader) + part
 
 
 def _demand(read: Reading, reader: Reader) -> str:
-    return reader.text(N_("unlimited")) if read.is_unlimited else measured(read.demand, read.unit, reader)
+    return reader.text(N_("unlimited")) if read.has_unlimited_demand else measured(read.demand, read.unit, reader)
 
 
 def _share(check: CheckResult) -> float:
