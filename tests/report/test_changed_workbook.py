@@ -1,5 +1,6 @@
 """The workbook with changed inputs, and on paper: LibreOffice calculates, prints and colours it."""
 
+import re
 from collections.abc import Iterator
 from io import BytesIO
 
@@ -34,6 +35,9 @@ MEANT = cycle(
 )
 """What is saved, and what `changed` makes of it: no gear is left that passes."""
 
+EXTREME = (phase(0.01, 1e-3, 12345.678, peak_torque_Nm=999_999.123, peak_speed_rpm=99_999.1234), phase(0.5, 0, 1e6))
+"""Figures from far below 1 to a life of more hours than a column has room for."""
+
 
 def changed(catalogue: Catalogue) -> Workbook:
     """The workbook on SAVED after its cells were changed to what is MEANT."""
@@ -58,6 +62,7 @@ def printed(catalogue: Catalogue, print_out: Print) -> Iterator[dict[str, bytes]
         "saved": opened(SAVED, catalogue),
         "changed": changed(catalogue),
         "everything": opened(EVERYTHING, catalogue, code="de"),
+        "extreme": opened(cycle(*EXTREME, output_load={"radial_N": 1, "load_coefficient": 1}), catalogue),
         "hostile": openpyxl.load_workbook(
             BytesIO(workbook(export_of(worked_example(requirements=SIZES), catalogue, title=hostile), language("en")))
         ),
@@ -94,6 +99,13 @@ def test_a_workbook_is_printed_on_few_pages_with_numbers_and_heads(name: str, pr
     for page in range(len(document)):
         image = document[page].render(scale=1, grayscale=True).to_numpy()
         assert (image[:, :8] > 200).all() and (image[:, -8:] > 200).all()
+
+
+def test_no_figure_is_too_wide_for_its_column(printed: dict[str, bytes]) -> None:
+    document = pypdfium2.PdfDocument(printed["extreme"])
+    pages = "".join(document[page].get_textpage().get_text_range() for page in range(len(document)))
+    assert "##" not in pages
+    assert re.search(r"\d\.\d\dE\+\d\d", pages)
 
 
 def test_every_sheet_has_its_print_area_and_keeps_its_heads(catalogue: Catalogue) -> None:

@@ -17,6 +17,9 @@ from hpn.units import symbol_of
 from hpn.wording import N_
 
 ACCENT = "#0B5394"
+FIGURE = "[>=10000000]0.00E+00;[>=10000]#,##0.00;#,##0.00##"
+"""Format of a number that has to fit its column, which shows hashes where it does not."""
+
 STYLES: dict[str, dict[str, Any]] = {
     "title": {"bold": True, "font_size": 16},
     "section": {"bold": True, "font_color": ACCENT, "font_size": 12},
@@ -27,11 +30,11 @@ STYLES: dict[str, dict[str, Any]] = {
     "wrap": {"text_wrap": True, "valign": "top"},
     "input": {"bg_color": "#FFF8DC", "border": 1, "border_color": "#D5DBE1", "locked": False},
     "figure": {"bg_color": "#F3F6F9"},
-    "result": {"num_format": "#,##0.00##"},
-    "shown": {"num_format": "#,##0.00##", "font_color": "#5B6875"},
+    "result": {"num_format": FIGURE},
+    "shown": {"num_format": FIGURE, "font_color": "#5B6875"},
     "count": {"num_format": "#,##0"},
     "share": {"num_format": "0.0##%"},
-    "fixed": {"num_format": "#,##0.00##", "italic": True, "font_color": "#8A6100"},
+    "fixed": {"num_format": FIGURE, "italic": True, "font_color": "#8A6100"},
     "wrong": {"font_color": "#B3261E", "valign": "top"},
     "verdict": {"bold": True, "indent": 1},
 }
