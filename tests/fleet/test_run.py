@@ -155,6 +155,18 @@ def test_a_folder_that_is_not_its_own_is_left_alone(
     assert files(tmp_path) == ["out.parquet"]
 
 
+@pytest.mark.parametrize("resume", [False, True])
+def test_a_file_where_the_parts_belong_is_named_and_left_alone(resume: bool, many: Path, tmp_path: Path) -> None:
+    mine = tmp_path / "out.parquet.parts"
+    mine.write_text("mine", encoding="utf-8")
+    with started(many, tmp_path / "out.parquet", *["--resume"] * resume) as run:
+        said = run.communicate()[1]
+
+    assert run.returncode == 2
+    assert said == f"{mine}: is no folder, where the parts of the run belong; move it away\n"
+    assert mine.read_text(encoding="utf-8") == "mine"
+
+
 # --- The command ------------------------------------------------------------------------------------------------------
 
 

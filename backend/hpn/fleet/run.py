@@ -153,7 +153,10 @@ def _fingerprint(path: Path) -> str:
 def _folder(order: Order, plan: Plan) -> Iterator[None]:
     """The folder of the parts, for this run alone; gone when all went well."""
     folder, wanted = order.folder, msgspec.json.encode(plan)
-    folder.mkdir(exist_ok=True)
+    try:
+        folder.mkdir(exist_ok=True)
+    except FileExistsError:
+        raise FleetError(f"{folder}: is no folder, where the parts of the run belong; move it away") from None
     _require_own(folder)
     with (folder / "lock").open("wb") as lock:
         try:
