@@ -185,6 +185,15 @@ def test_links_inside_the_folder_and_files_that_are_no_tables_are_let_be(tmp_pat
     assert load_catalogue(supplement=tmp_path / "link").by_designation["HPN-20A-5"].rated_torque_Nm == 82
 
 
+@pytest.mark.parametrize("names", [(), ("README.md", "ratings.csv~")])
+def test_a_supplement_without_a_table_is_named(names: tuple[str, ...], tmp_path: Path) -> None:
+    """Whoever names a folder believes that it counts: a wrong one, or one that was not mounted, changed nothing."""
+    for name in names:
+        (tmp_path / name).write_text(RATINGS + ROW, encoding="utf-8")
+    with pytest.raises(CatalogueError, match=f"^{tmp_path}: has no table of the catalogue; there are accuracy.csv, "):
+        load_catalogue(supplement=tmp_path)
+
+
 def test_a_catalogue_folder_that_is_none_is_named(tmp_path: Path) -> None:
     with pytest.raises(CatalogueError, match="nowhere: is not a folder"):
         load_catalogue(tmp_path / "nowhere")

@@ -72,6 +72,11 @@ def load_catalogue(
     Raises CatalogueError, which names file, line and column, for the first thing that is wrong.
     """
     parts = [(part, read_folder(part, FILES)) for part in (folder, supplement) if part]
+    for part, contents in parts:
+        if not contents:
+            raise CatalogueError(
+                part, None, None, f"has no table of the catalogue; there are {', '.join(sorted(FILES))}"
+            )
     book = _Book()
     for table in tables.TABLES:
         book[table] = tables.validated(table, _rows(table, parts))
