@@ -289,6 +289,16 @@ def test_beyond_the_bytes_in_flight_bodies_and_then_all_requests_are_refused(mak
     assert client.get("/healthz").status_code == 200
 
 
+@pytest.mark.parametrize("path", ["/paste", "/fleets"])
+def test_a_page_that_refuses_says_when_to_try_again_as_a_problem_does(path: str, make_client: MakeClient) -> None:
+    client = make_client(maximum_bytes_in_flight=1000)
+
+    page = client.post(path, files={"text": (None, "40 250 0.3\n" * 200)}, headers={"Accept": "text/html"})
+
+    assert (page.status_code, page.headers["content-type"]) == (503, "text/html; charset=utf-8")
+    assert int(page.headers["retry-after"]) > 0
+
+
 def test_an_answer_counts_until_it_is_sent(make_client: MakeClient) -> None:
     client = make_client(maximum_bytes_in_flight=70_000)
     budget = state_of(client).budget

@@ -102,7 +102,7 @@ def start(request: Request) -> Response:
 
 async def upload(request: Request) -> Response:
     """Says what each column is read as, or sizes the axes and leads to their page."""
-    draft = Draft()
+    draft, headers = Draft(), {}
     try:
         require_same_origin(request)
         parts = await read_parts(request, request.app.state.settings.maximum_batch_body_bytes)
@@ -112,10 +112,14 @@ async def upload(request: Request) -> Response:
         status, problems = (422 if draft.problems else 200), draft.problems
     except Problem as problem:
         status, problems = problem.status_code, problem.sentences or (Sentence("{text}", {"text": problem.detail}),)
+        headers = dict(problem.headers or {})
     except StoreUnavailableError:
         status, problems = 503, (Sentence(N_("Fleets are temporarily unavailable: try again in a few seconds.")),)
+        headers = {"Retry-After": str(RETRY_SECONDS)}
     shown = {"draft": draft, "problems": problems, **_WORDS}
-    return await compute(request, "pages", lambda: _render(request, "fleets.html", status, **shown))
+    response = await compute(request, "pages", lambda: _render(request, "fleets.html", status, **shown))
+    response.headers.update(headers)
+    return response
 
 
 def _read(parts: Mapping[str, bytes]) -> Draft:

@@ -114,7 +114,9 @@ async def paste(request: Request) -> Response:
         return await compute(request, "pages", _answer, request, await read_parts(request))
     except Problem as problem:
         problems = problem.sentences or (_plain(problem.detail),)
-        return _render(request, PasteDraft("", problems=problems), problem.status_code)
+        response = _render(request, PasteDraft("", problems=problems), problem.status_code)
+        response.headers.update(problem.headers or {})
+        return response
 
 
 def _answer(request: Request, parts: Mapping[str, bytes]) -> Response:
