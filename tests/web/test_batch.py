@@ -132,6 +132,16 @@ def test_what_is_no_json_is_a_400(api: TestClient, content: bytes) -> None:
     assert reply.headers["content-type"] == "application/problem+json"
 
 
+def test_an_item_that_is_no_json_is_named_and_its_columns_counted_from_its_beginning(api: TestClient) -> None:
+    good = orjson.dumps(worked_example())
+    content = b'{"applications": [' + b",".join([*[good] * 700, b'{"duty_cycle" 1}']) + b"]}"
+    reply = api.post(PATH, content=content, headers={"content-type": "application/json"})
+
+    said = "is not JSON: expected `:` at line 1 column 15 of this item"
+    assert (reply.status_code, reply.json()["detail"]) == (400, f"/applications/700 {said}")
+    assert reply.json()["errors"] == [{"pointer": "/applications/700", "detail": said}]
+
+
 def test_numbers_that_are_too_large_for_json_readers_are_an_error_of_their_item(api: TestClient) -> None:
     huge = b'{"duty_cycle": {"phases": [{"torque_Nm": ' + b"9" * 400 + b', "speed_rpm": 1, "duration_s": 1}]}}'
     content = b'{"applications": [' + huge + b", " + orjson.dumps(GOOD) + b"]}"

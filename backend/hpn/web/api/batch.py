@@ -85,7 +85,7 @@ async def _answered(body: bytes, state: State, pool: Pool) -> bytes:
         if time.monotonic() > deadline:
             text = f"the batch took longer than {settings.batch_seconds:g} s; send fewer items at once"
             raise Problem(503, text, headers={"Retry-After": str(RETRY_SECONDS)})
-        answers, count = await pool.run(_evaluated, body, _slice(spans, done), state)
+        answers, count = await pool.run(_evaluated, body, spans, done, state)
         lines.append(answers)
         done += count
     return b"".join(lines)
@@ -105,12 +105,21 @@ def _slice(spans: Sequence[Span], first: int) -> Sequence[Span]:
     return part[: max(sum(span.end <= most for span in part), 1)]
 
 
-def _evaluated(body: bytes, spans: Sequence[Span], state: State) -> tuple[bytes, int]:
-    try:
-        results = _results((_item(body[span.start : span.end]) for span in spans), state.catalogue, state.metrics)
-    except ValueError as error:
-        raise _no_json(error) from None
+def _evaluated(body: bytes, spans: Sequence[Span], first: int, state: State) -> tuple[bytes, int]:
+    """Result lines of the items from the first one on that are evaluated together, and how many these are."""
+    places = enumerate(_slice(spans, first), first)
+    items = (_numbered(number, body[span.start : span.end]) for number, span in places)
+    results = _results(items, state.catalogue, state.metrics)
     return _encoded(results), len(results)
+
+
+def _numbered(number: int, text: bytes) -> Any:
+    """An item, as `_item` reads it; Problem 400 that names it for what is no JSON."""
+    try:
+        return _item(text)
+    except ValueError as error:
+        detail = f"is not JSON: {error} of this item"
+        raise Problem(400, f"/applications/{number} {detail}", [(("applications", number), detail)]) from None
 
 
 def _item(text: bytes) -> Any:
