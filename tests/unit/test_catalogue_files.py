@@ -11,7 +11,7 @@ from pathlib import Path
 import orjson
 import pytest
 
-from hpn.catalogue import HANDBOOK_FOLDER, CatalogueError, load_catalogue
+from hpn.catalogue import HANDBOOK_FOLDER, Catalogue, CatalogueError, load_catalogue
 from hpn.cli import main
 from tests.build import worked_example
 
@@ -206,3 +206,12 @@ def test_a_table_of_the_catalogue_needs_rows_unless_the_handbook_prints_none(fol
 
     with pytest.raises(CatalogueError, match=r"flange_bolts\.csv, line 1: there is a header, but no row below it"):
         load_catalogue(folder)
+
+
+def test_numbers_of_stages_stand_where_they_are_printed(catalogue: Catalogue) -> None:
+    """The heads of the rating tables print them; table 9.1 lists ratios alone, and of HPN-40A nothing more is there."""
+    printed = {"11A": "table 10.1, page 10", "14A": "table 10.2, page 10", "20A": "table 12.1, page 12"}
+    printed |= {"32A": "table 12.2, page 12", "40A": "table 9.1, page 9"}
+    assert {(gear.size, gear.sources["stages"]) for gear in catalogue.gears} == set(printed.items())
+    [said] = {gear.note for gear in catalogue.gears if gear.size == "40A"}
+    assert said and "stages are taken to be those of the other sizes" in said
