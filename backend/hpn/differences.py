@@ -9,7 +9,6 @@ from typing import Annotated, Any, Literal
 from msgspec import Meta, Struct, structs
 
 from hpn.catalogue import Catalogue
-from hpn.gear import Gear
 from hpn.selection import Selection
 
 NAMED_BY = {"candidates": "designation", "checks": "code", "notices": "code"}
@@ -141,47 +140,69 @@ def _weight(difference: Difference) -> int:
 
 # --- Published figures ------------------------------------------------------------------------------------------------
 
-NOT_FIGURES = ("designation", "size", "ratio", "sources", "clamp_bolts", "housing_bolts")
+NOT_FIGURES = ("designation", "size", "ratio", "sources", "source")
 
 
 class FigureDifference(Struct, frozen=True):
-    """A published figure of a gear that two catalogues give differently; None where one has none.
+    """A published figure of a gear, or one of a listed motor, that two catalogues give differently; None where one has
+    none.
 
-    Of a gear that only one of them has, its designation stands for the whole. A supplied curve is a list of points.
+    Of what only one of them has, its designation stands for the whole. A supplied curve is a list of points, bolts are
+    objects.
     """
 
-    candidate: Annotated[str, Meta(description="Designation of the gear.")]
+    candidate: Annotated[str | None, Meta(description="Designation of the gear; null for a figure of a motor.")]
+    motor: Annotated[str | None, Meta(description="Designation of the motor; null for a figure of a gear.")]
     field: Annotated[
-        str, Meta(description="Name of the figure in the catalogue; designation where only one has the gear.")
+        str, Meta(description="Name of the figure in the catalogue; designation where only one has the gear or motor.")
     ]
     saved: Annotated[Any, Meta(description="Figure in the catalogue of then; null where it was not published.")]
     today: Annotated[Any, Meta(description="Figure in today’s catalogue; null where it is not published.")]
 
 
-def figure_differences(saved: Catalogue, today: Catalogue, designations: Iterable[str]) -> list[FigureDifference]:
-    """Differences of the figures that two catalogues publish of some gears, gear by gear."""
-    return [
-        FigureDifference(designation, name, before.get(name), after.get(name))
+def figure_differences(
+    saved: Catalogue, today: Catalogue, designations: Iterable[str], motor: str | None = None
+) -> list[FigureDifference]:
+    """Differences of the figures that two catalogues publish of some gears, gear by gear, and of a listed motor."""
+    found = [
+        FigureDifference(designation, None, *difference)
         for designation in designations
-        for before, after in [(_published(saved, designation), _published(today, designation))]
-        for name in (before | after if before and after else ["designation"])
-        if before.get(name) != after.get(name)
+        for difference in _pairs(_of_gear(saved, designation), _of_gear(today, designation))
     ]
+    of_motor = [] if motor is None else _pairs(_of_motor(saved, motor), _of_motor(today, motor))
+    return found + [FigureDifference(None, motor, *difference) for difference in of_motor]
 
 
-def _published(catalogue: Catalogue, designation: str) -> dict[str, Any]:
+def _pairs(before: dict[str, Any], after: dict[str, Any]) -> list[tuple[str, Any, Any]]:
+    """Name and both values of what differs."""
+    names = before | after if before and after else ["designation"]
+    return [(name, before.get(name), after.get(name)) for name in names if before.get(name) != after.get(name)]
+
+
+def _of_gear(catalogue: Catalogue, designation: str) -> dict[str, Any]:
     """Figures of a gear by name; nothing where the catalogue lacks it."""
     gear = catalogue.by_designation.get(designation)
     if gear is None:
         return {}
-    figures = {f.name: getattr(gear, f.name) for f in fields(Gear) if f.name not in NOT_FIGURES}
     curve, efficiency = catalogue.curves.get(gear.size), catalogue.efficiency.get(designation)
     return {
         "designation": designation,
-        **figures,
+        **_figures(gear),
+        "clamp_bolts": [_figures(bolt) for bolt in gear.clamp_bolts],
+        "housing_bolts": gear.housing_bolts and _figures(gear.housing_bolts),
         "bearing_curve": None if curve is None else _points(curve.axial_N, curve.radial_N),
         "efficiency_curve": None if efficiency is None else _points(*efficiency),
     }
+
+
+def _of_motor(catalogue: Catalogue, designation: str) -> dict[str, Any]:
+    """Figures of a listed motor by name, likewise."""
+    motor = catalogue.motor_by_designation.get(designation)
+    return {"designation": designation, **_figures(motor)} if motor else {}
+
+
+def _figures(row: Any) -> dict[str, Any]:
+    return {f.name: getattr(row, f.name) for f in fields(row) if f.name not in NOT_FIGURES}
 
 
 def _points(*columns: Any) -> list[list[float]]:

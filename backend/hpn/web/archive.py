@@ -203,17 +203,27 @@ def not_found(id: str) -> Problem:
 def reopen(saved: SavedSelection, then: Catalogue | None, catalogue: Catalogue) -> Reopened:
     """Ask today's engine and catalogue again, and compare; what was saved stays as it is."""
     before = decode(saved.result)
-    gears = [candidate.designation for candidate in before.candidates]
-    figures = None if then is None else [] if then is catalogue else figure_differences(then, catalogue, gears)
-    application = None
+    application, after, found, problem = None, None, list[Difference](), None
     try:
         application = Application.model_validate_json(saved.application)
         after = select(application, catalogue, to_link(application))
+        found = differences(before, after)
     except (ValidationError, InputError) as error:
-        link = _link(saved, before, catalogue)
-        return Reopened(saved, before, application, None, [], Problem.of(error), link, then, figures)
-    link = _link(saved, after, catalogue)
-    return Reopened(saved, before, application, after, differences(before, after), None, link, then, figures)
+        problem = Problem.of(error)
+    link = _link(saved, after or before, catalogue)
+    figures = _figures(before, application, then, catalogue)
+    return Reopened(saved, before, application, after, found, problem, link, then, figures)
+
+
+def _figures(
+    before: Selection, application: Application | None, then: Catalogue | None, today: Catalogue
+) -> list[FigureDifference] | None:
+    """What two catalogues publish differently of the candidates and the listed motor; None where one is not kept."""
+    if then is None or then is today:
+        return None if then is None else []
+    motor = application.requirements.motor if application else None
+    gears = [candidate.designation for candidate in before.candidates]
+    return figure_differences(then, today, gears, motor.designation if motor else None)
 
 
 async def unavailable(request: Request, error: Exception) -> Response:

@@ -193,7 +193,7 @@ def _changes(selection: Selection, catalogue: Catalogue) -> Json:
     found = differences(select(heavier, catalogue, to_link(heavier)), selection)
     figures = next(difference for difference in found if difference.check)
     best = selection.foremost.designation
-    weight = FigureDifference(best, "weight_kg", None, catalogue.by_designation[best].weight_kg)
+    weight = FigureDifference(best, None, "weight_kg", None, catalogue.by_designation[best].weight_kg)
     return {
         "difference_count": len(found),
         "differences": [plain(figures)],

@@ -1,7 +1,7 @@
 """The page of a saved selection, and a copy of it on the live page."""
 
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
@@ -13,8 +13,8 @@ from starlette.responses import HTMLResponse, RedirectResponse, Response
 from hpn import ENGINE_VERSION
 from hpn.application import Application
 from hpn.catalogue import Catalogue
-from hpn.differences import Difference
-from hpn.quantities import CANDIDATE, CHECK, DUTY, PHASE, RESERVE, VERDICTS
+from hpn.differences import Difference, FigureDifference
+from hpn.quantities import CANDIDATE, CHECK, DUTY, GEAR, MOTOR, PHASE, RESERVE, VERDICTS
 from hpn.report.export import DIGITS
 from hpn.report.inputs import LOADS, REQUIREMENTS, given
 from hpn.report.motion import lines, move_line
@@ -27,12 +27,13 @@ from hpn.web.door.access import admit
 from hpn.web.door.problems import Problem
 from hpn.web.door.visit import current
 from hpn.web.form import link_reader
+from hpn.web.form.ordering import read_ordering_code
 from hpn.web.pages import calculator
 from hpn.web.pages.gear_figures import Figure, figures_of
 from hpn.web.pages.result import Result
 from hpn.web.pages.saving import refused
 from hpn.web.pages.templates import environment
-from hpn.wording import N_
+from hpn.wording import N_, Sentence
 
 DIFFERENCES_ON_PAGE = 100
 
@@ -43,6 +44,17 @@ NAMES: Mapping[str, str] = {
     **{field: named.name for table in (PHASE, DUTY, RESERVE, CHECK, CANDIDATE) for field, named in table.items()},
 }
 """Fields of a reply in words; any other stands with its own name."""
+
+SHARES = ("utilisation", "torque_factor", "speed_factor", "load_factor")
+"""Fields that are read as percentages."""
+
+FIGURES: Mapping[str, str] = {
+    "clamp_bolts": N_("Bolt of the clamp on the motor shaft"),
+    "housing_bolts": N_("Bolts of the housing flange"),
+    "bearing_curve": N_("Points of the output bearing’s curve"),
+    "efficiency_curve": N_("Points of the efficiency curve"),
+}
+"""Published figures of a gear that are more than a number."""
 
 EXPORTS = (
     ("report.pdf", N_("PDF report")),
@@ -107,7 +119,14 @@ def _page(reopened: Reopened, designation: str, catalogue: Catalogue) -> dict[st
         "lines": [_line(difference, reopened) for difference in reopened.differences[:DIFFERENCES_ON_PAGE]],
         "catalogue_version": catalogue.version,
         "published": _published(reopened.then, catalogue, answer.chosen.designation),
-        "changed_gears": sorted({difference.candidate for difference in reopened.figures or ()}, key=_number),
+        "changed_figures": [
+            _figure_line(difference)
+            for difference in reopened.figures or ()
+            if difference.field != "designation" and difference.candidate in (None, answer.chosen.designation)
+        ],
+        "changed_gears": _gears(reopened.figures, gone=False),
+        "gone_gears": _gears(reopened.figures, gone=True),
+        "ordering": _ordering(reopened.saved, catalogue),
         "engine_version": ENGINE_VERSION,
         "document": reopened.saved.application.decode(),
         "inputs": list(given(application, (*LOADS, *REQUIREMENTS), current())) if application else [],
@@ -158,6 +177,49 @@ def _figures(catalogue: Catalogue | None, designation: str) -> list[Figure]:
     return [figure for _, figures in figures_of(gear) for figure in figures] if gear else []
 
 
+def _gears(figures: Sequence[FigureDifference] | None, *, gone: bool) -> list[str]:
+    """Candidates of which today's catalogue publishes other figures, or those that it lacks."""
+    found = {
+        difference.candidate
+        for difference in figures or ()
+        if difference.candidate and (difference.field == "designation") == gone
+    }
+    return sorted(found, key=_number)
+
+
+def _ordering(saved: SavedSelection, catalogue: Catalogue) -> str:
+    """The saved ordering code where today's catalogue has no such gear or output version, else empty."""
+    code = saved.ordering_code or ""
+    return code if code and isinstance(read_ordering_code(catalogue, code), Sentence) else ""
+
+
+def _figure_line(difference: FigureDifference) -> ChangedField:
+    """A published figure of a gear or motor, ready to read."""
+    table, unit = MOTOR if difference.motor else GEAR, symbol_of(difference.field)
+    name = FIGURES.get(difference.field) or table[difference.field].name
+    saved, today = _both(difference.saved, difference.today, unit) or (
+        _figure_text(value, unit) for value in (difference.saved, difference.today)
+    )
+    return ChangedField(difference.motor or difference.candidate, "", None, name, unit, False, saved, today)
+
+
+_BOLTS = {"number_of_bolts": "{} ×", "pitch_diameter_mm": "⌀ {}", "tightening_torque_Nm": "· {}"}
+"""How the figures of bolts are written beside the thread and its torque."""
+
+
+def _figure_text(value: Any, unit: str) -> str:
+    """A published figure in the reader's language: a number, bolts such as 4 × M6, or the points of a curve."""
+    reader = current()
+    if isinstance(value, str):
+        return value
+    if isinstance(value, dict):
+        given = {name: _figure_text(part, symbol_of(name)) for name, part in value.items() if part is not None}
+        return " ".join(_BOLTS.get(name, "{}").format(text) for name, text in given.items())
+    if isinstance(value, list):
+        return (" / " if all(map(_is_number, value)) else "; ").join(_figure_text(part, unit) for part in value)
+    return reader.with_unit(reader.figure(value, unit), unit)
+
+
 def _number(designation: str) -> list[int]:
     """What gears are sorted by: size, then ratio."""
     return [int(digits) for digits in re.findall(r"\d+", designation)]
@@ -168,11 +230,13 @@ def _line(difference: Difference, reopened: Reopened) -> ChangedField:
     titles = {code: definition.title for code, definition in definitions.items()}
     own = difference.check in definitions and difference.field in ("demand", "limit")
     unit = definitions[difference.check or ""].unit if own else symbol_of(difference.field)
-    if _is_number(difference.saved) and _is_number(difference.today):
-        saved, today = _told_apart(difference.saved, difference.today, unit)
-    else:
-        saved = _text(difference.saved, difference, reopened.selection, reopened, unit)
-        today = _text(difference.today, difference, reopened.today, reopened, unit)
+    given = difference.saved, difference.today
+    if difference.field in SHARES:
+        unit, given = "%", tuple(100 * value if _is_number(value) else value for value in given)
+    saved, today = _both(*given, unit) or (
+        _text(value, difference, selection, reopened, unit)
+        for value, selection in zip(given, (reopened.selection, reopened.today), strict=True)
+    )
     return ChangedField(
         candidate=difference.candidate,
         check=titles.get(difference.check or "", difference.check or ""),
@@ -195,7 +259,8 @@ def _text(value: Any, difference: Difference, selection: Selection | None, reope
     """A value of a difference in the reader's language; what its version kept no values of, as it was written."""
     reader = current()
     if value is None or selection is None:
-        return "–"
+        whole = difference.change != "changed" and difference.field == "status" and difference.check is None
+        return reader.text(N_("no candidate")) if whole and selection is not None else "–"
     if _is_number(value):
         return reader.figure(value, unit)
     candidate = selection.candidate(difference.candidate or "")
@@ -205,6 +270,11 @@ def _text(value: Any, difference: Difference, selection: Selection | None, reope
         return reader.told(notice.sentence)
     definition = selection.check_definitions.get(value)
     return reader.text(definition.title if definition else VERDICTS.get(value, str(value)))
+
+
+def _both(saved: Any, today: Any, unit: str) -> tuple[str, str] | None:
+    """Two numbers for reading; None where one is none."""
+    return _told_apart(saved, today, unit) if _is_number(saved) and _is_number(today) else None
 
 
 def _told_apart(saved: float, today: float, unit: str) -> tuple[str, str]:

@@ -1,0 +1,156 @@
+"""What today's catalogue says otherwise of a saved selection, on its page and by REST, though the verdict stays."""
+
+import html
+import re
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+from starlette.testclient import TestClient
+
+from hpn.web.app import create_app
+from hpn.web.settings import Settings
+from tests.build import Json, worked_example
+from tests.property.test_varying_remedy import MOTORS
+
+ONE_RATIO = worked_example(requirements={"ratios": [5]})
+WITH_MOTOR = worked_example(requirements={"sizes": ["20A"], "ratios": [5], "motor": {"designation": "M 8"}})
+CODE = "HPN-20A-5-J6-BH-AF1"
+
+Edit = Callable[[str], str]
+
+
+@pytest.fixture
+def changed(folder: Path, tmp_path: Path) -> Callable[..., tuple[Json, str]]:
+    """What REST and the page say of a selection that was saved before a file of the catalogue was edited."""
+    (supplement := tmp_path / "supplement").mkdir()
+    (supplement / "motors.csv").write_text(MOTORS, encoding="utf-8")
+    settings = Settings(
+        database_url=f"sqlite:///{tmp_path}/store.sqlite3",
+        catalogue_folder=folder,
+        catalogue_supplement=supplement,
+    )
+
+    def reopened(application: Json, edits: dict[str, Edit], language: str = "en", **labels: str) -> tuple[Json, str]:
+        with TestClient(create_app(settings)) as client:
+            saved = client.post("/api/v1/selections", json={"application": application, **labels})
+            assert saved.status_code == 201, saved.text
+            address = saved.headers["location"]
+        for name, edit in edits.items():
+            file = (supplement if name == "motors.csv" else folder) / name
+            before = file.read_text(encoding="utf-8")
+            assert edit(before) != before
+            file.write_text(edit(before), encoding="utf-8")
+        with TestClient(create_app(settings), cookies={"hpn_language": language}) as client:
+            today = client.get(address).json()["today"]
+            page = client.get(address.removeprefix("/api/v1")).text
+        return today, page[page.index('id="today"') : page.index('class="saved-overview"')]
+
+    return reopened
+
+
+def rows(panel: str, table: str) -> list[list[str]]:
+    """Cells of a table of the panel, without their marks."""
+    found = re.search(rf'<table id="{table}">.*?<tbody>(.*?)</tbody>', panel, re.DOTALL)
+    cells = (
+        re.findall(r"<t[dh][^>]*>(.*?)</t[dh]>", row, re.DOTALL) for row in (found[1] if found else "").split("</tr>")
+    )
+    return [[_text(cell) for cell in row] for row in cells if row]
+
+
+def _text(markup: str) -> str:
+    return " ".join(html.unescape(re.sub(r"<[^>]+>", "", markup)).split())
+
+
+FIGURES: dict[str, tuple[Json, str, Edit, dict[str, Any], list[str]]] = {
+    "clamp bolt": (
+        ONE_RATIO,
+        "clamp_bolts.csv",
+        lambda text: text.replace("20A,M4,4.6", "20A,M4,5.1"),
+        {"candidate": "HPN-20A-5", "motor": None, "field": "clamp_bolts"},
+        ["HPN-20A-5", "Bolt of the clamp on the motor shaft", "M4 · 4.6 Nm", "M4 · 5.1 Nm"],
+    ),
+    "housing bolts": (
+        ONE_RATIO,
+        "housing_bolts.csv",
+        lambda text: text.replace("20A,4,M6,100,10.1", "20A,4,M6,100,11"),
+        {"candidate": "HPN-20A-5", "motor": None, "field": "housing_bolts"},
+        ["HPN-20A-5", "Bolts of the housing flange", "4 × M6 ⌀ 100 mm · 10.1 Nm", "4 × M6 ⌀ 100 mm · 11 Nm"],
+    ),
+    "inertia of the motor": (
+        WITH_MOTOR,
+        "motors.csv",
+        lambda text: text.replace("0.0005", "0.0004"),
+        {"candidate": None, "motor": "M 8", "field": "inertia_kgm2", "saved": 0.0005, "today": 0.0004},
+        ["M 8", "Inertia of the motor kg·m²", "0.0005", "0.0004"],
+    ),
+}
+"""What is saved, which file is edited and how, and what REST and the page then say; no check depends on it."""
+
+
+@pytest.mark.parametrize("name", FIGURES)
+def test_a_figure_that_no_check_depends_on_is_told_with_both_values(
+    name: str, changed: Callable[..., tuple[Json, str]]
+) -> None:
+    application, file, edit, expected, row = FIGURES[name]
+    today, panel = changed(application, {file: edit})
+
+    assert today["difference_count"] == 0
+    assert expected.items() <= next(d for d in today["figure_differences"] if d["field"] == expected["field"]).items()
+    assert "Today the result is the same" in panel
+    assert rows(panel, "figure-differences") == [row]
+
+
+def test_figures_that_are_the_same_are_not_told(changed: Callable[..., tuple[Json, str]]) -> None:
+    today, panel = changed(WITH_MOTOR, {"motors.csv": lambda text: text.replace("M 1,3000", "M 1,2900")})
+    assert today["figure_differences"] == []
+    assert "figure-differences" not in panel
+
+
+@pytest.mark.parametrize(
+    ("language", "gone", "code", "none"),
+    [
+        (
+            "en",
+            "Today’s catalogue no longer has HPN-20A-5.",
+            "The ordering code HPN-20A-5-J6-BH-AF1 is none",
+            "no candidate",
+        ),
+        (
+            "de",
+            "Der heutige Katalog hat HPN-20A-5 nicht mehr.",
+            "Der Bestellschlüssel HPN-20A-5-J6-BH-AF1",
+            "kein Kandidat",
+        ),
+    ],
+)
+def test_a_gear_that_is_gone_is_told_as_that(
+    language: str, gone: str, code: str, none: str, changed: Callable[..., tuple[Json, str]]
+) -> None:
+    def without(text: str) -> str:
+        return re.sub(r"(?m)^20A,5,.*\n", "", text)
+
+    _, panel = changed(ONE_RATIO, {"gears.csv": without, "ratings.csv": without}, language, ordering_code=CODE)
+    said = _text(panel)
+
+    assert gone in said and code in said
+    [[_, _, _, today]] = [row for row in rows(panel, "differences") if row[0] == "HPN-20A-5"]
+    assert today == none
+    assert "publishes other figures" not in said and "andere Werte" not in said
+
+
+def test_an_output_version_that_is_gone_is_told(changed: Callable[..., tuple[Json, str]]) -> None:
+    def without(text: str) -> str:
+        return re.sub(r"(?m)^output,J6,.*\n", "", text)
+
+    _, panel = changed(ONE_RATIO, {"versions.csv": without}, ordering_code=CODE)
+    assert f"The ordering code {CODE} is none of today’s catalogue" in _text(panel)
+
+
+def test_utilisations_and_reserves_are_percentages(changed: Callable[..., tuple[Json, str]]) -> None:
+    """T_N of 50 Nm for 80: 32.02 Nm are 64 % for 40 %; by hand."""
+    _, panel = changed(ONE_RATIO, {"ratings.csv": lambda text: text.replace("20A,5,149,80,", "20A,5,149,50,")})
+    found = {row[1]: row[2:] for row in rows(panel, "differences")}
+    assert found["Load limit 1: average torque: Utilisation %"] == ["40.0", "64.0"]
+    assert found["All duty torques %"] == ["250", "156"]
