@@ -235,3 +235,8 @@ def test_where_a_life_stands_its_basis_stands_too(client: TestClient, section: s
     caveats = " ".join(re.findall(r'<p class="hint caveat">(.*?)</p>', asked, re.S))
     for named in names:
         assert QUANTITIES[f"candidate.{named}"].caveat in caveats
+
+
+def test_sentences_below_the_cycle_stand_apart(api: TestClient) -> None:
+    page = api.get("/?T=40&n=250&t=0.3&T=32&n=500&t=3&tp=4&Tk=200").text
+    assert "Short phases are drawn wider than they are. Arrows: beyond the scale." in page
