@@ -154,3 +154,10 @@ def test_utilisations_and_reserves_are_percentages(changed: Callable[..., tuple[
     found = {row[1]: row[2:] for row in rows(panel, "differences")}
     assert found["Load limit 1: average torque: Utilisation %"] == ["40.0", "64.0"]
     assert found["All duty torques %"] == ["250", "156"]
+
+
+def test_many_gears_with_other_figures_are_counted(changed: Callable[..., tuple[Json, str]]) -> None:
+    """One bolt of a size belongs to all of its 13 ratios."""
+    _, panel = changed(worked_example(), {"clamp_bolts.csv": lambda text: text.replace("20A,M4,4.6", "20A,M4,5.1")})
+    assert "HPN-20A-3, HPN-20A-4, " in (said := _text(panel))
+    assert "HPN-20A-45 and 1 more." in said
