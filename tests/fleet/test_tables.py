@@ -380,3 +380,12 @@ def test_a_line_with_a_name_twice_is_rejected_by_that_name(row: str, size: Size)
         ("pause_s: is there more than once", False),
         (None, True),
     ]
+
+
+def test_lines_nested_as_deep_as_readers_can_go_reject_their_axes_alone(size: Size) -> None:
+    """One reader of JSON gives up a few lists before another; wherever, the run goes on."""
+    sound = '"torque_Nm": [40], "speed_rpm": [250], "duration_s": [3]'
+    deep = (f'{{"axis": "{depth}", {sound}, "pause_s": {"[" * depth}{"]" * depth}}}' for depth in range(880, 1001))
+    answers = size("\n".join((f'{{"axis": "sound", {sound}}}', *deep)))
+    assert [answer["axis"] for answer in answers if answer["selected"]] == ["sound"]
+    assert len(answers) == 122

@@ -363,15 +363,11 @@ class NdjsonTable(LinesTable):
     def _one_by_one(self, line: bytes, error: Exception) -> tuple[dict[str, Any], list[tuple[str, str]]]:
         """The cells of a line that can be read, and what is wrong with the others."""
         try:
-            given = _object(line)
+            given, wrong = _object(line), _repeated(line)
         except (ValueError, RecursionError):
             cells = _axis_alone(line, self._kinds[AXIS])
             return cells, [(AXIS, f"the line is not a JSON object: {error}, in {_cut(line.decode(errors='replace'))}")]
-        cells, wrong = {}, []
-        try:
-            require_unique(line)
-        except RepeatedNameError as repeated:
-            wrong.append((repeated.name, N_("is there more than once")))
+        cells = {}
         for name, value in given.items():
             if name not in self._kinds:
                 wrong.append((name, N_("is not a column")))
@@ -400,6 +396,15 @@ def _may_repeat_a_name(line: bytes) -> bool:
     """Whether a row may have a name more than once: always where it has one, seldom where not."""
     names = NAME_IN_LINE.findall(line)
     return len(set(names)) < len(names) or b"\\" in line
+
+
+def _repeated(line: bytes) -> list[tuple[str, str]]:
+    """Fault of a row that has a name more than once."""
+    try:
+        require_unique(line)
+    except RepeatedNameError as repeated:
+        return [(repeated.name, N_("is there more than once"))]
+    return []
 
 
 def _object(line: bytes) -> dict[str, Any]:
