@@ -26,8 +26,8 @@ class Reading:
     """Demand and limit in `unit`, a suffix or symbol; None where there is none, or where nothing limits the demand.
 
     `part` is the share of the limit that the user's own u leaves: the limit times it, for a minimum over it.
-    `limit_name` is a msgid, `relation` the comparison in symbols. Of what `is_unlimited` the larger side, the demand of
-    a minimum or the limit of a maximum, is above every number.
+    `limit_name` is a msgid, `relation` the comparison in symbols. Where it `is_unlimited`, the larger side is above
+    every number: the demand of a minimum, the limit of a maximum.
     """
 
     demand: float | None
@@ -102,7 +102,7 @@ def _as_computed(check: CheckResult, selection: Selection, u: float) -> Reading:
     larger = check.demand if definition.kind == "minimum" else check.limit
     unlimited = larger is None and check.utilisation is not None
     return Reading(
-        *(check.demand, check.limit, definition.unit, definition.kind, definition.limit_name, relation, part, unlimited)
+        check.demand, check.limit, definition.unit, definition.kind, definition.limit_name, relation, part, unlimited
     )
 
 
