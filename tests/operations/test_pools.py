@@ -321,23 +321,30 @@ def test_a_batch_counts_with_what_it_makes(make_client: MakeClient) -> None:
 
 
 @pytest.mark.anyio
-async def test_a_crowd_that_stays_is_an_overload_of_which_each_turn_answers_the_first(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    monkeypatch.setattr(overload, "WINDOW_SECONDS", 0)  # each turn is a window
+async def test_a_crowd_that_stays_is_an_overload_until_there_is_time_for_all(monkeypatch: pytest.MonkeyPatch) -> None:
+    now, busy = 0.0, 0.0
+    monkeypatch.setattr(overload, "monotonic", lambda: now)
+    monkeypatch.setattr(overload, "thread_time", lambda: busy)
     app = overload.Overload(_answer, Budget(1), Metrics(), make_logger("error"))
 
-    async def crowd(count: int) -> int:
-        answered = sum(await asyncio.gather(*(_asked(app) for _ in range(count))))
-        await asyncio.sleep(0)
+    async def window(*crowds: int, used: float) -> int:
+        """Requests answered in a window of whose time the loop has used that share."""
+        nonlocal now, busy
+        answered = 0
+        for count in crowds:
+            now, busy = now + overload.WINDOW_SECONDS / len(crowds), busy + used * overload.WINDOW_SECONDS / len(crowds)
+            answered += sum(await asyncio.gather(*(_asked(app) for _ in range(count))))
+            await asyncio.sleep(0)
         return answered
 
-    most, few = overload.CROWD, overload.ANSWERED
+    most = overload.CROWD
 
-    assert [await crowd(most) for _ in range(5)] == [most] * 5, "a crowd is served"
-    assert [await crowd(3 * most), await crowd(1), await crowd(3 * most)] == [most, 1, most], "and much of a larger one"
-    assert [await crowd(3 * most) for _ in range(5)] == [most] + [few] * 4
-    assert [await crowd(few), await crowd(most)] == [few, most], "it has ended"
+    assert [await window(most, used=1) for _ in range(5)] == [most] * 5, "a crowd is served"
+    assert [await window(n, used=1) for n in (3 * most, 1, 3 * most)] == [most, 1, most], "and much of a larger one"
+    assert [await window(3 * most, used=1) for _ in range(5)] == [most, 1, 1, 1, 1], "each turn answers the first"
+    assert [await window(1, 3, used=0.4) for _ in range(5)] == [2] * 5, "idle, but for as many again it has no time"
+    assert await window(1, 1, 1, 2, used=0.5) == 4, "in this window there was time for all"
+    assert await window(most, used=1) == most, "so that it has ended"
 
 
 async def _answer(scope: Scope, receive: Receive, send: Send) -> None:

@@ -1,6 +1,7 @@
 """What one process holds and has waiting at most; beyond it, requests are refused before they cost anything."""
 
 import asyncio
+from time import monotonic, thread_time
 from typing import Any
 
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
@@ -15,11 +16,18 @@ PIECE_BYTES = 64 * 1024
 CROWD = 64
 """Requests that one turn of the event loop answers at most."""
 
-ANSWERED = 2
+ANSWERED = 1
 """Requests that a turn answers in an overload: that is how long an answer then waits."""
 
 WINDOW_SECONDS, CROWDED_WINDOWS = 1.0, 2
 """More requests than a crowd in so many windows of time on end are an overload."""
+
+SPARE_SHARE = 0.25
+"""An overload ends once all that came in a window would have left the loop this share of its time.
+
+Neither a refusal nor idle time is a sign: at half of capacity a tenth of the requests and more arrive while another is
+answered, and a client that is held up for a moment leaves any overload some time.
+"""
 
 RETRY_SECONDS = 1
 ALWAYS = frozenset({"/healthz", "/readyz", "/metrics"})
@@ -98,7 +106,7 @@ class Overload:
     """Refuses what the process can't do in time, at the cost of an answer that is ready.
 
     Requests that have arrived wait for a turn of the event loop. A crowd is served; where more come again and again,
-    each turn serves the first few, and these soon, until a window has gone by without a refusal.
+    each turn serves the first, and it soon, until there is time for all that come.
     """
 
     def __init__(self, app: ASGIApp, budget: Budget, metrics: Metrics, logger: FilteringBoundLogger) -> None:
@@ -109,7 +117,8 @@ class Overload:
         self._overloaded = False
         self._most = self._windows = 0
         self._task: asyncio.Task[Any] | None = None
-        self._end = 0.0
+        self._arrived = self._turns = 0
+        self._window_began = self._busy_before = 0.0
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Pass the request on, or refuse it."""
@@ -127,25 +136,25 @@ class Overload:
         task = asyncio.current_task()
         self._count += task is not self._task  # a caller in the same process may ask several times in its turn
         self._task = task
-        return self._count > self._limit or self._budget.held >= self._budget.total
-
-    @property
-    def _limit(self) -> int:
-        return ANSWERED if self._overloaded else CROWD
+        return self._count > (ANSWERED if self._overloaded else CROWD) or self._budget.held >= self._budget.total
 
     def _end_turn(self) -> None:
-        now = asyncio.get_running_loop().time()
+        self._arrived, self._turns = self._arrived + self._count, self._turns + 1
         self._most, self._count = max(self._most, self._count), 0
-        if now >= self._end:
-            self._end_window()
-            self._end = now + WINDOW_SECONDS
+        if (seconds := monotonic() - self._window_began) >= WINDOW_SECONDS:
+            self._end_window(seconds)
+            self._window_began += seconds
+            self._arrived = self._turns = self._most = 0
 
-    def _end_window(self) -> None:
-        """Begin or end an overload where the windows have said so for long enough."""
-        crowded = self._most > self._limit
-        self._most = 0
-        self._windows = 0 if crowded == self._overloaded else self._windows + 1
-        if self._windows >= (1 if self._overloaded else CROWDED_WINDOWS):
-            self._overloaded, self._windows = crowded, 0
-            self._logger.warning("overload begins" if crowded else "overload ends", refused=self._refused)
+    def _end_window(self, seconds: float) -> None:
+        """Begin an overload where crowds have come for long enough, or end it where there is time for all."""
+        busy, self._busy_before = thread_time() - self._busy_before, thread_time()
+        if self._overloaded:  # each turn has answered ANSWERED, and that is most of what the loop was busy with
+            changes = busy * self._arrived / (self._turns * ANSWERED) < seconds * (1 - SPARE_SHARE)
+        else:
+            self._windows = self._windows + 1 if self._most > CROWD else 0
+            changes = self._windows == CROWDED_WINDOWS
+        if changes:
+            self._overloaded, self._windows = not self._overloaded, 0
+            self._logger.warning("overload begins" if self._overloaded else "overload ends", refused=self._refused)
             self._refused = 0
