@@ -130,6 +130,7 @@ def test_a_report_where_nothing_may_be_written_is_refused_before_anything_is_com
     with TemporaryDirectory() as name:
         folder = Path(name)
         axes = write(folder / "axes.csv", rows())
+        assert main(["fleet", str(axes), str(folder / "before.csv")]) == 0  # loads all modules
         (folder / "open").mkdir(mode=0o777)
         (folder / "closed").mkdir(mode=0o755)
         for path, mode in ((folder, 0o755), (folder / "open", 0o777), (folder / "closed", 0o555)):

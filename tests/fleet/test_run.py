@@ -272,6 +272,7 @@ def test_what_permissions_forbid_ends_with_2_and_its_name(
         (folder / "open").mkdir()
         for path in ("in.csv", "secret.csv", "closed/in.csv"):
             write(folder / path, [row_of("a", at_random(random.Random(1)))])
+        assert main(["fleet", str(folder / "in.csv"), str(folder / "before.csv")]) == 0  # loads all modules
         for path, mode in (("", 0o755), ("secret.csv", 0o000), ("closed", 0o000), ("open", 0o777)):
             (folder / path).chmod(mode)
         with as_user(65534):

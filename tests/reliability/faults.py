@@ -133,7 +133,10 @@ def full(folder: Path) -> Iterator[None]:
 
 @contextmanager
 def as_user(user: int) -> Iterator[None]:
-    """As another user in this process, where root runs it: permissions mean nothing to root."""
+    """As another user in this process, where root runs it: permissions mean nothing to root.
+
+    Where Python lies in root's home this user can load no module: what is called has to have run before.
+    """
     before = os.geteuid()
     if os.getuid() == 0:
         os.seteuid(user)
