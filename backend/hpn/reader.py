@@ -3,6 +3,7 @@
 The one catalogue of translations behind page and files is compiled in memory when it is first needed.
 """
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from datetime import UTC, datetime
@@ -137,13 +138,26 @@ class Reader:
             return self.written(f"{shown:.0f}")
         return self.written(f"{shown:#.{self.digits}g}".rstrip("."))
 
-    def brief(self, value: float | None, unit: str = "") -> str:
-        """A life or a count to three digits, from a million on as `1.17·10⁶`; None is a dash."""
+    def brief(self, value: float | None, unit: str = "", beside: float | None = None) -> str:
+        """A life or a count to three digits, from a million on as `1.17·10⁶`; None is a dash.
+
+        Where these read as the limit `beside` it, which it is not, it has the digits that tell them apart.
+        """
         if value is None:
             return NOTHING
         shown = self.measure(unit).shown(value)
         short = f"{shown:.2e}"
+        if beside not in (None, value) and float(short) == self.measure(unit).shown(beside):
+            return self.apart(value, beside, unit)
         return self._scientific(short) if abs(float(short)) >= 1e6 else self.written(f"{float(short):g}")
+
+    def apart(self, value: float, other: float | None, unit: str) -> str:
+        """A number with as many digits as it takes to tell it from another one."""
+        if math.isinf(value):
+            return "∞"
+        number = self.figure(value, unit)
+        is_apart = other is None or math.isinf(other) or number != self.figure(other, unit)
+        return number if is_apart else self.number(Quantity(value, unit, 7))
 
     def exact(self, value: float | None, unit: str = "") -> str:
         """An input as it was given, or to six digits in another unit; None is a dash."""

@@ -182,7 +182,7 @@ def test_bars_say_what_the_checks_say() -> None:
     texts = [Shown.said(text) for text in drawn.of("text", "told")]
     # f_w P of phase 1 is 1.2 (900 / 1800 + 300 / 2200) = 0.764; 1.2 x 949 N / 0.764 x 0.7 is its limit.
     assert texts[0] == "76\u202f%\u20021\u202f138 > 1\u202f044 N"
-    assert texts[1].startswith("64\u202f%\u200275\u202f594 ≥ 58\u202f309")  # 20,000 h / 0.7^3
+    assert texts[1].startswith("64\u202f%\u200275\u202f600 ≥ 58\u202f309")  # 20,000 h / 0.7^3
 
 
 def test_a_load_beyond_the_single_limit_has_a_ring_a_cross_and_words_and_no_other_has() -> None:

@@ -156,3 +156,20 @@ def test_language_is_the_best_that_the_browser_asks_for(header: str, language: s
 )
 def test_lives_and_counts_have_three_digits_on_the_page(value: float | None, english: str, german: str) -> None:
     assert (Reader().brief(value, "h"), GERMAN.brief(value, "h")) == (english, german)
+
+
+@pytest.mark.parametrize(
+    ("life_h", "required_h", "written"),
+    [
+        (183_456.1, 20_000.0, "183 000"),
+        (183_456.1, 183_000.0, "183 456"),
+        (19_960.4, 20_000.0, "19 960"),
+        (19_999.6, 20_000.0, "19 999.6"),
+        (20_000.0, 20_000.0, "20 000"),
+        (1_199_800.0, 1_200_000.0, "1 199 800"),
+    ],
+)
+def test_a_life_next_to_what_is_required_has_the_digits_that_tell_them_apart(
+    life_h: float, required_h: float, written: str
+) -> None:
+    assert Reader().brief(life_h, "h", required_h) == written.replace(" ", GROUP)

@@ -169,18 +169,9 @@ def _bar(
     outside = beyond_limit(used, allowed)
     if outside:
         sign = {"≤": ">", "≥": "<"}[sign]
-    numbers = f"{_told(demand, limit, unit, reader)} {reader.unit(unit)}"
+    is_life = unit == "h" and not math.isinf(demand)
+    numbers = reader.brief(demand, unit, limit) if is_life else reader.apart(demand, limit, unit)
     if limit is not None:
-        numbers = (
-            f"{_told(demand, limit, unit, reader)} {sign} {_told(limit, demand, unit, reader)} {reader.unit(unit)}"
-        )
+        numbers += f" {sign} {reader.apart(limit, demand, unit)}"
+    numbers += f" {reader.unit(unit)}"
     return Bar(label, used, allowed, outside, f"{reader.percent(used, allowed)}\N{EN SPACE}{numbers}")
-
-
-def _told(value: float, other: float | None, unit: str, reader: Reader) -> str:
-    """A number with as many digits as it takes to tell it from another one."""
-    if math.isinf(value):
-        return "∞"
-    number = reader.figure(value, unit)
-    is_told_apart = other is None or math.isinf(other) or number != reader.figure(other, unit)
-    return number if is_told_apart else reader.number(Quantity(value, unit, 7))
