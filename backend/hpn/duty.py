@@ -6,6 +6,7 @@ application and a chunk of a fleet go through the same lines.
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -107,12 +108,11 @@ def _numbers(application: Application) -> list[float | None]:
     return [getattr(parts[path[:-1]], path[-1], None) for path in NUMBERS]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Duty:
-    """What N duty cycles come to, each figure of shape (N, 1), beside their phases and what is asked for.
+    """What N duty cycles come to, beside their phases and what is asked for.
 
-    T_av (equation 17.2), T_max, RMS and T_k in Nm, n_out_av (17.4, pause included) and n_out_max in rpm, the bearing
-    life asked for as L50 in hours, J_L in kg m². NaN: not asked for.
+    Each figure has shape (N, 1), is NaN where it is not asked for, and is computed when it is first read.
 
     `courses` are those of the motions, by the place of their application.
     """
@@ -120,35 +120,50 @@ class Duty:
     phases: Phases
     asked: Asked
     courses: Mapping[int, Course] = field(default_factory=dict)
-    average_torque_Nm: FloatArray = field(init=False)
-    average_output_speed_rpm: FloatArray = field(init=False)
-    maximum_torque_Nm: FloatArray = field(init=False)
-    maximum_output_speed_rpm: FloatArray = field(init=False)
-    rms_torque_Nm: FloatArray = field(init=False)
-    emergency_stop_torque_Nm: FloatArray = field(init=False)
-    required_bearing_life_L50_h: FloatArray = field(init=False)
-    load_inertia_kgm2: FloatArray = field(init=False)
 
-    def __post_init__(self) -> None:
+    @cached_property
+    def average_torque_Nm(self) -> FloatArray:
+        """Average output torque T_av in Nm, equation 17.2."""
         T, n, t = self.phases.torque_Nm, self.phases.speed_rpm, self.phases.duration_s
-        pause, asked = self.asked["duty_cycle.pause_s"], self.asked
-        figures = {
-            "average_torque_Nm": equations.average_output_torque(torque_Nm=T, speed_rpm=n, duration_s=t),
-            "average_output_speed_rpm": equations.average_output_speed(speed_rpm=n, duration_s=t, pause_s=pause),
-            "maximum_torque_Nm": self.phases.peak_torque_Nm.max(axis=-1),
-            "maximum_output_speed_rpm": self.phases.peak_speed_rpm.max(axis=-1),
-            "rms_torque_Nm": equations.rms_torque(torque_Nm=self.phases.rms_torque_Nm, duration_s=t, pause_s=pause),
-            "emergency_stop_torque_Nm": np.abs(asked["emergency_stop.torque_Nm"]),
-            "required_bearing_life_L50_h": bearing.required_L50(
-                life_h=asked["output_load.life_h"], basis=asked.life_basis
-            ),
-            "load_inertia_kgm2": self._load_inertia(),
-        }
-        for name, value in figures.items():
-            object.__setattr__(self, name, value)
+        return equations.average_output_torque(torque_Nm=T, speed_rpm=n, duration_s=t)
 
-    def _load_inertia(self) -> FloatArray:
-        """Inertia of the load at the output: the motion's own, else as it is given."""
+    @cached_property
+    def average_output_speed_rpm(self) -> FloatArray:
+        """Average output speed n_out_av in rpm, pause included, equation 17.4."""
+        n, t = self.phases.speed_rpm, self.phases.duration_s
+        return equations.average_output_speed(speed_rpm=n, duration_s=t, pause_s=self.asked["duty_cycle.pause_s"])
+
+    @cached_property
+    def maximum_torque_Nm(self) -> FloatArray:
+        """Largest torque T_max of the cycle in Nm."""
+        T_max: FloatArray = self.phases.peak_torque_Nm.max(axis=-1)
+        return T_max
+
+    @cached_property
+    def maximum_output_speed_rpm(self) -> FloatArray:
+        """Largest output speed n_out_max of the cycle in rpm."""
+        n_out_max: FloatArray = self.phases.peak_speed_rpm.max(axis=-1)
+        return n_out_max
+
+    @cached_property
+    def rms_torque_Nm(self) -> FloatArray:
+        """RMS of the output torque over the cycle, pause included, in Nm."""
+        T, t = self.phases.rms_torque_Nm, self.phases.duration_s
+        return equations.rms_torque(torque_Nm=T, duration_s=t, pause_s=self.asked["duty_cycle.pause_s"])
+
+    @cached_property
+    def emergency_stop_torque_Nm(self) -> FloatArray:
+        """Torque T_k of an emergency stop in Nm."""
+        return np.abs(self.asked["emergency_stop.torque_Nm"])
+
+    @cached_property
+    def required_bearing_life_L50_h(self) -> FloatArray:
+        """Life asked of the output bearing, as L50 in hours."""
+        return bearing.required_L50(life_h=self.asked["output_load.life_h"], basis=self.asked.life_basis)
+
+    @cached_property
+    def load_inertia_kgm2(self) -> FloatArray:
+        """Inertia J_L of the load at the output in kg m²: the motion's own, else as it is given."""
         inertia = self.asked["requirements.load_inertia_kgm2"].copy()
         for place, course in self.courses.items():
             inertia[place] = course.load_inertia_kgm2
