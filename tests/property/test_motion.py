@@ -13,7 +13,7 @@ from pydantic import ValidationError
 from hpn.application import Application
 from hpn.catalogue import load_catalogue
 from hpn.duty import Duty
-from hpn.motion.course import course_along
+from hpn.motion.course import course_along, course_of
 from hpn.motion.pieces import pieces_of
 from hpn.motion.torque import Torque, cut, integral
 from hpn.web.door.problems import Problem, pointer
@@ -230,3 +230,21 @@ def test_a_field_of_another_mechanism_or_its_moves_is_refused(motion: Json, data
     pointers = {error["pointer"] for error in refusals(body)}
     above = {"mechanism": "/mechanism", "moves": "/moves/0", "": ""}[place]
     assert f"/duty_cycle/motion{above}/{name}" in pointers
+
+
+@given(motions(), motions())
+def test_a_motion_comes_to_the_same_whichever_were_asked_for_before(motion: Json, another: Json) -> None:
+    course_of.cache_clear()
+    first = application_of(motion).duty_cycle.load_phases
+    application_of(another)
+    kept = application_of(motion).duty_cycle.load_phases
+    course_of.cache_clear()
+
+    assert kept == first == application_of(motion).duty_cycle.load_phases
+    changed = copy.deepcopy(motion)
+    changed["mechanism"]["inertia_kgm2"] = changed["mechanism"].get("inertia_kgm2", 0) + 0.01
+    course_of.cache_clear()
+    expected = application_of(changed).duty_cycle.load_phases
+    course_of.cache_clear()
+    application_of(motion)
+    assert application_of(changed).duty_cycle.load_phases == expected
