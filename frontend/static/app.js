@@ -311,6 +311,11 @@ document.addEventListener("submit", (event) => {
     document.querySelector('#connection [data-state="unsaved"]').hidden = false;
     return;
   }
+  if (document.querySelector("[data-stale]")) {
+    event.preventDefault();
+    document.querySelector('#connection [data-state="unreached"]').hidden = false;
+    return;
+  }
   event.target.elements.link.value = `/?${contentOf(form)}`;
 });
 

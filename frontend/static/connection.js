@@ -12,7 +12,8 @@ let latest = null; // the request whose answer counts
 const resultOf = () => document.getElementById("result");
 const message = (state, detail = "") => {
   for (const line of document.querySelectorAll("#connection [data-state]")) {
-    if (line.hidden !== (line.dataset.state !== state)) line.hidden = line.dataset.state !== state;
+    const stays = state && line.dataset.state === "unreached"; // until there is an answer, however often it is tried
+    if (!stays && line.hidden !== (line.dataset.state !== state)) line.hidden = line.dataset.state !== state;
     const place = line.querySelector("[data-detail]");
     if (place) place.textContent = detail;
   }
@@ -80,12 +81,12 @@ document.addEventListener("click", (event) => event.target.closest("[data-retry]
 
 document.addEventListener("htmx:finally:request", (event) => event.detail.ctx === latest && settled());
 
-// A cycle that no address holds would be lost with the page.
+// A cycle that no address holds would be lost with the page, and so would what nobody has answered.
 let downloading = false;
 document.addEventListener("submit", (event) => {
   downloading = Boolean(event.submitter?.hasAttribute("formaction"));
   setTimeout(() => (downloading = false), 1000);
 });
 addEventListener("beforeunload", (event) => {
-  if (!downloading && document.querySelector("[data-unsaved]")) event.preventDefault();
+  if (!downloading && document.querySelector("[data-unsaved], [data-stale]")) event.preventDefault();
 });

@@ -50,6 +50,15 @@ def test_going_back_meanwhile_takes_back_the_edit_that_is_under_way(visitor: Vis
     expect(page).to_have_url(re.compile("T=41&.*tp=5"))
 
 
+def test_result_is_said_to_be_of_other_inputs_while_its_answer_is_late(visitor: Visitor) -> None:
+    page = visitor.open(EXAMPLE)
+    outdated = page.get_by_role("status").get_by_text("Not of these inputs", exact=True)
+    with answer_held_back(page, partial(torque(page, 1).fill, "500")):
+        expect(outdated).to_be_visible()
+    expect(page.get_by_role("region", name="Result")).not_to_have_attribute("aria-busy", "true")
+    expect(outdated).to_be_hidden()
+
+
 def test_what_is_saved_is_what_the_form_says(visitor: Visitor) -> None:
     page = visitor.open(EXAMPLE)
     page.evaluate(

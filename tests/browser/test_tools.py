@@ -5,7 +5,7 @@ from functools import partial
 from pathlib import Path
 
 import pytest
-from playwright.sync_api import Page, expect
+from playwright.sync_api import Dialog, Page, expect
 
 from tests.browser.conftest import Visitor, answer_held_back, button, open_section, pause, torque, violations
 
@@ -198,6 +198,28 @@ class TestWithoutServer:
         page.context.set_offline(False)
         expect(page).to_have_url(re.compile("tp=7"))
         expect(message).to_be_hidden()
+
+    def test_what_nobody_has_answered_is_not_left_behind(self, page: Page) -> None:
+        asked = list[str]()
+
+        def stay(dialog: Dialog) -> None:
+            asked.append(dialog.type)
+            dialog.dismiss()
+
+        page.on("dialog", stay)
+        page.context.set_offline(True)
+        pause(page).fill("7")
+        expect(page.get_by_text("The server can’t be reached.")).to_be_visible()
+        button(page, "Save").click()
+        expect(page.get_by_text("Not saved: there is no answer from the server.")).to_be_visible()
+        page.get_by_role("link", name="Catalogue", exact=True).click()
+        page.wait_for_timeout(100)
+        assert asked == ["beforeunload"]
+        expect(pause(page)).to_have_value("7")
+        page.context.set_offline(False)
+        expect(page).to_have_url(re.compile("tp=7"))
+        button(page, "Save").click()
+        expect(page).to_have_url(re.compile("/selections/"))
 
     def test_reply_that_is_no_page_never_takes_the_forms_place(self, page: Page) -> None:
         page.evaluate(OVERLOADED)
