@@ -45,9 +45,17 @@ document.addEventListener("click", (event) => {
   if (!link.matches(".tabs a")) target.focus({ preventScroll: true });
 });
 
+const showAddressed = () => show(sectionOf(document.getElementById(location.hash.slice(1))) ?? "overview");
+const toTop = () => wide.matches && location.hash && scrollTo({ top: 0 });
+
 wide.addEventListener("change", mark);
-show(sectionOf(document.getElementById(location.hash.slice(1))) ?? "overview");
-if (wide.matches && location.hash) addEventListener("load", () => scrollTo({ top: 0 }));
+showAddressed();
+addEventListener("load", toTop);
+addEventListener("hashchange", () => {
+  showAddressed();
+  watch();
+  toTop();
+});
 
 // --- What is in sight -------------------------------------------------------------------------------------------------
 

@@ -188,3 +188,10 @@ def test_ratios_that_tie_are_said_to_and_rejected_sizes_are_folded(visitor: Visi
     expect(table).to_be_hidden()
     page.get_by_text(re.compile("14A: 13 gears, nearest HPN-14A-4 at 182")).click()
     expect(page.locator("#rejected-14A").get_by_role("row", name=re.compile("HPN-14A-50"))).to_be_visible()
+
+
+def test_another_section_in_the_address_of_an_open_page_is_shown(visitor: Visitor) -> None:
+    page = visitor.open("/")
+    page.evaluate("location.hash = '#bearing'")
+    expect(page.get_by_role("link", name="Bearing", exact=True)).to_have_attribute("aria-current", "true")
+    assert page.evaluate("scrollY") == 0
