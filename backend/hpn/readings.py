@@ -20,6 +20,9 @@ from hpn.quantities import CANDIDATE
 from hpn.selection import Candidate, CheckResult, Selection
 from hpn.wording import N_
 
+OTHERWISE = {"≤": ">", "≥": "<"}
+"""How a demand stands to its limit where it does not stand as it has to."""
+
 
 @dataclass(frozen=True, slots=True)
 class Reading:
@@ -53,6 +56,10 @@ class Reading:
     def sign(self) -> str:
         """How the demand has to stand to the limit."""
         return "≥" if self.kind == "minimum" else "≤"
+
+    def found(self, failed: bool) -> str:
+        """How the demand stands to the limit."""
+        return OTHERWISE[self.sign] if failed else self.sign
 
 
 _AT_MOTOR = {"motor_peak_torque_Nm": "T_in,max", "motor_rated_torque_Nm": "T_in,rms"}

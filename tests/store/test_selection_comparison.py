@@ -78,6 +78,13 @@ def test_what_differs_in_input_verdict_checks_and_figures_stands_side_by_side(cl
     assert list(rows(page, "published").values())[1:] == [["149 Nm", "113 Nm", "differs"]]
 
 
+def test_a_demand_above_its_limit_is_not_said_to_be_below_it(client: TestClient) -> None:
+    a, b = saved(client, cycle(phase(400, 250, 3))), saved(client, cycle(phase(40, 250, 3)))
+    checks = rows(compared(client, a, b), "checks")
+
+    assert [cell.split("Nm", 1)[1] for cell in checks["Average torque"][:2]] == [" > 200 Nm", " ≤ 80 Nm"]
+
+
 def test_two_of_the_same_differ_in_nothing(client: TestClient) -> None:
     page = compared(client, *(saved(client, LOADED) for _ in range(2)))
 

@@ -3,6 +3,7 @@
 import gzip
 import re
 from collections.abc import Iterator
+from html import unescape
 
 import brotli
 import pytest
@@ -240,3 +241,13 @@ def test_where_a_life_stands_its_basis_stands_too(client: TestClient, section: s
 def test_sentences_below_the_cycle_stand_apart(api: TestClient) -> None:
     page = api.get("/?T=40&n=250&t=0.3&T=32&n=500&t=3&tp=4&Tk=200").text
     assert "Short phases are drawn wider than they are. Arrows: beyond the scale." in page
+
+
+@pytest.mark.parametrize("language", ["en", "de"])
+@pytest.mark.parametrize("query", ["", "?T=400&n=250&t=3&FR=500&u=0.8&gear=HPN-14A-5&i=5"])
+def test_a_space_parts_each_sentence_from_the_one_before(client: TestClient, query: str, language: str) -> None:
+    page = client.get(f"/{query}", headers={"Accept-Language": language}).text
+    without_inline = re.sub(r"</?(?:a|abbr|data|em|span|strong|sub|sup|var)\b[^>]*>", "", page)
+    texts = unescape(re.sub(r"<[^>]+>", "\n", without_inline))
+
+    assert re.findall(r".*[a-zäöüß)%][.:!?][A-ZÄÖÜ][a-zäöüß].*", texts) == []

@@ -14,6 +14,7 @@ from hpn.drawings.words import share
 from hpn.envelopes import EnvelopeCurve, EnvelopeQuery, has_envelope, life_envelopes
 from hpn.gear import Gear
 from hpn.reader import DEFAULT, Reader
+from hpn.readings import OTHERWISE
 from hpn.wording import N_, Quantity, Sentence
 
 LAST = -1.0
@@ -168,7 +169,7 @@ def _bar(
     demand, sign, limit, unit = compared
     outside = beyond_limit(used, allowed)
     if outside:
-        sign = {"≤": ">", "≥": "<"}[sign]
+        sign = OTHERWISE[sign]
     is_life = unit == "h" and not math.isinf(demand)
     numbers = reader.brief(demand, unit, limit) if is_life else reader.apart(demand, limit, unit)
     if limit is not None:
