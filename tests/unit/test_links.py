@@ -282,7 +282,7 @@ def test_each_error_of_the_model_stands_at_its_field() -> None:
         ("t", 0): "must be above 0 s",
         ("T", 1): "must be at most 1000000 Nm",
         ("u", None): "must be at most 1",
-        ("rank", None): "must be one of weight, utilisation, length, motor_torque, life or stiffness",
+        ("rank", None): "must be one of weight, utilisation, length, motor_torque, life, stiffness",
         ("K3", None): "must be above 0 Nm/rad",
         ("Nk", None): "must be a whole number",
     }

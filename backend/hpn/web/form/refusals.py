@@ -1,5 +1,6 @@
 """Texts for the errors of the application model, beside the fields of a form and in answers to links."""
 
+import re
 from collections.abc import Mapping
 from typing import Any
 
@@ -40,7 +41,8 @@ def refusal_of(error: Any) -> Sentence:
     if error["type"] == "too_long":
         return Sentence(N_("takes at most {bound} values"), {"bound": str(context["max_length"])})
     if error["type"] == "literal_error":
-        return Sentence(N_("must be one of {expected}"), {"expected": context["expected"].replace("'", "")})
+        choices = ", ".join(re.findall("'([^']*)'", context["expected"]))  # the library's "or" is English
+        return Sentence(N_("must be one of {expected}"), {"expected": choices})
     return Sentence("{text}", {"text": error["msg"]}, ("text",))
 
 
