@@ -27,7 +27,7 @@ document.addEventListener("htmx:before:request", (event) => {
   latest = event.detail.ctx;
   stopTimers();
   timers = [
-    setTimeout(() => resultOf()?.setAttribute("aria-busy", "true"), BUSY_AFTER),
+    setTimeout(() => ofForm(event) && resultOf()?.setAttribute("aria-busy", "true"), BUSY_AFTER), // a table changes nothing yet
     setTimeout(() => tries || message("slow"), SLOW_AFTER),
   ];
 });
@@ -38,9 +38,9 @@ function settled() {
   resultOf()?.removeAttribute("aria-busy");
 }
 
-function failed(state, detail) {
+function failed(event, state, detail) {
   settled();
-  resultOf()?.setAttribute("data-stale", "");
+  if (ofForm(event)) resultOf()?.setAttribute("data-stale", "");
   message(state, detail);
   clearTimeout(retry);
   if (state === "lost") retry = setTimeout(again, RETRIES[Math.min(tries++, RETRIES.length - 1)]);
@@ -63,7 +63,7 @@ document.addEventListener("htmx:before:swap", (event) => {
   } catch {
     detail = String(response.status);
   }
-  failed("refused", detail);
+  failed(event, "refused", detail);
 });
 
 document.addEventListener("htmx:after:swap", (event) => {
@@ -75,7 +75,7 @@ document.addEventListener("htmx:after:swap", (event) => {
   message(null);
 });
 
-document.addEventListener("htmx:error", (event) => ours(event) && event.detail.ctx.status !== "swapped" && failed("lost"));
+document.addEventListener("htmx:error", (event) => ours(event) && event.detail.ctx.status !== "swapped" && failed(event, "lost"));
 addEventListener("online", () => tries && again());
 document.addEventListener("click", (event) => event.target.closest("[data-retry]") && again());
 

@@ -221,6 +221,13 @@ class TestWithoutServer:
         button(page, "Save").click()
         expect(page).to_have_url(re.compile("/selections/"))
 
+    def test_table_that_nobody_reads_leaves_the_result_as_it_is(self, page: Page) -> None:
+        page.context.set_offline(True)
+        paste(page, "40\t250\t3\n32\t500\t3")
+        expect(page.get_by_text("The server can’t be reached.")).to_be_visible()
+        expect(page.get_by_role("region", name="Result", include_hidden=True)).not_to_have_attribute("data-stale", "")
+        page.context.set_offline(False)
+
     def test_reply_that_is_no_page_never_takes_the_forms_place(self, page: Page) -> None:
         page.evaluate(OVERLOADED)
         pause(page).fill("8")
