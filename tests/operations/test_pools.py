@@ -322,17 +322,23 @@ def test_a_batch_counts_with_what_it_makes(make_client: MakeClient) -> None:
 
 @pytest.mark.anyio
 async def test_a_crowd_that_stays_is_an_overload_until_there_is_time_for_all(monkeypatch: pytest.MonkeyPatch) -> None:
-    now, busy = 0.0, 0.0
+    now = busy = 0.0
     monkeypatch.setattr(overload, "monotonic", lambda: now)
-    monkeypatch.setattr(overload, "thread_time", lambda: busy)
-    app = overload.Overload(_answer, Budget(1), Metrics(), make_logger("error"))
+
+    async def answer(scope: Scope, receive: Receive, send: Send) -> None:
+        nonlocal now, busy
+        now, busy = now + busy, 0.0  # the first of a turn takes all of its time
+        await _answer(scope, receive, send)
+
+    app = overload.Overload(answer, Budget(1), Metrics(), make_logger("error"))
 
     async def window(*crowds: int, used: float) -> int:
-        """Requests answered in a window of whose time the loop has used that share."""
+        """Requests answered in a window of whose time the turns have used that share."""
         nonlocal now, busy
         answered = 0
         for count in crowds:
-            now, busy = now + overload.WINDOW_SECONDS / len(crowds), busy + used * overload.WINDOW_SECONDS / len(crowds)
+            busy = used * overload.WINDOW_SECONDS / len(crowds)
+            now += overload.WINDOW_SECONDS / len(crowds) - busy
             answered += sum(await asyncio.gather(*(_asked(app) for _ in range(count))))
             await asyncio.sleep(0)
         return answered
@@ -342,8 +348,8 @@ async def test_a_crowd_that_stays_is_an_overload_until_there_is_time_for_all(mon
     assert [await window(most, used=1) for _ in range(5)] == [most] * 5, "a crowd is served"
     assert [await window(n, used=1) for n in (3 * most, 1, 3 * most)] == [most, 1, most], "and much of a larger one"
     assert [await window(3 * most, used=1) for _ in range(5)] == [most, 1, 1, 1, 1], "each turn answers the first"
-    assert [await window(1, 3, used=0.4) for _ in range(5)] == [2] * 5, "idle, but for as many again it has no time"
-    assert await window(1, 1, 1, 2, used=0.5) == 4, "in this window there was time for all"
+    assert [await window(1, 3, used=0.5) for _ in range(5)] == [2] * 5, "idle, but for as many again it has no time"
+    assert await window(1, 1, 1, 2, used=0.7) == 4, "in this window there was time for all"
     assert await window(most, used=1) == most, "so that it has ended"
 
 

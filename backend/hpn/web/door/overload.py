@@ -1,7 +1,7 @@
 """What one process holds and has waiting at most; beyond it, requests are refused before they cost anything."""
 
 import asyncio
-from time import monotonic, thread_time
+from time import monotonic
 from typing import Any
 
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
@@ -22,8 +22,8 @@ ANSWERED = 1
 WINDOW_SECONDS, CROWDED_WINDOWS = 1.0, 2
 """More requests than a crowd in so many windows of time on end are an overload."""
 
-SPARE_SHARE = 0.25
-"""An overload ends once all that came in a window would have left the loop this share of its time.
+SPARE_SHARE = 0.1
+"""An overload ends once all that came in a window would have left the process this share of its time.
 
 Neither a refusal nor idle time is a sign: at half of capacity a tenth of the requests and more arrive while another is
 answered, and a client that is held up for a moment leaves any overload some time.
@@ -118,7 +118,7 @@ class Overload:
         self._most = self._windows = 0
         self._task: asyncio.Task[Any] | None = None
         self._arrived = self._turns = 0
-        self._window_began = self._busy_before = 0.0
+        self._window_began = self._turn_began = self._busy = 0.0
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Pass the request on, or refuse it."""
@@ -131,7 +131,7 @@ class Overload:
 
     def _is_too_much(self) -> bool:
         if not self._count:
-            self._task = None
+            self._task, self._turn_began = None, monotonic()
             asyncio.get_running_loop().call_soon(self._end_turn)  # behind all that have arrived by now
         task = asyncio.current_task()
         self._count += task is not self._task  # a caller in the same process may ask several times in its turn
@@ -139,18 +139,19 @@ class Overload:
         return self._count > (ANSWERED if self._overloaded else CROWD) or self._budget.held >= self._budget.total
 
     def _end_turn(self) -> None:
+        now = monotonic()
+        self._busy += now - self._turn_began
         self._arrived, self._turns = self._arrived + self._count, self._turns + 1
         self._most, self._count = max(self._most, self._count), 0
-        if (seconds := monotonic() - self._window_began) >= WINDOW_SECONDS:
-            self._end_window(seconds)
-            self._window_began += seconds
+        if now - self._window_began >= WINDOW_SECONDS:
+            self._end_window(now - self._window_began)
+            self._window_began, self._busy = now, 0.0
             self._arrived = self._turns = self._most = 0
 
     def _end_window(self, seconds: float) -> None:
         """Begin an overload where crowds have come for long enough, or end it where there is time for all."""
-        busy, self._busy_before = thread_time() - self._busy_before, thread_time()
         if self._overloaded:  # each turn has answered ANSWERED, and that is most of what the loop was busy with
-            changes = busy * self._arrived / (self._turns * ANSWERED) < seconds * (1 - SPARE_SHARE)
+            changes = self._busy * self._arrived / (self._turns * ANSWERED) < seconds * (1 - SPARE_SHARE)
         else:
             self._windows = self._windows + 1 if self._most > CROWD else 0
             changes = self._windows == CROWDED_WINDOWS
