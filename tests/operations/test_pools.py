@@ -343,11 +343,15 @@ async def test_a_crowd_that_stays_is_an_overload_until_there_is_time_for_all(mon
             await asyncio.sleep(0)
         return answered
 
-    most = overload.CROWD
+    crowd, most = overload.CROWD, overload.QUEUE
+    stall = (crowd + 1, *(1 for _ in range(crowd + 2)))
 
-    assert [await window(most, used=1) for _ in range(5)] == [most] * 5, "a crowd is served"
+    assert [await window(crowd, used=1) for _ in range(5)] == [crowd] * 5, "a crowd is served"
+    assert [await window(*stall, used=1) for _ in range(5)] == [sum(stall)] * 5, (
+        "and what has come while all stood still"
+    )
     assert [await window(n, used=1) for n in (3 * most, 1, 3 * most)] == [most, 1, most], "and much of a larger one"
-    assert [await window(3 * most, used=1) for _ in range(5)] == [most, 1, 1, 1, 1], "each turn answers the first"
+    assert [await window(2 * crowd, used=1) for _ in range(5)] == [2 * crowd, 1, 1, 1, 1], "each turn answers the first"
     assert [await window(1, 3, used=0.5) for _ in range(5)] == [2] * 5, "idle, but for as many again it has no time"
     assert await window(1, 1, 1, 2, used=0.7) == 4, "in this window there was time for all"
     assert await window(most, used=1) == most, "so that it has ended"

@@ -13,14 +13,14 @@ from hpn.web.door.problems import Problem
 PIECE_BYTES = 64 * 1024
 """What the server is handed of an answer at once; it takes the next piece when the client has read enough."""
 
-CROWD = 64
-"""Requests that one turn of the event loop answers at most."""
+QUEUE = 256
+"""Requests that one turn of the event loop answers at most: what comes while others take the processor for 0.4 s."""
 
 ANSWERED = 1
 """Requests that a turn answers in an overload: that is how long an answer then waits."""
 
-WINDOW_SECONDS, CROWDED_WINDOWS = 1.0, 2
-"""More requests than a crowd in so many windows of time on end are an overload."""
+CROWD, WINDOW_SECONDS, CROWDED_WINDOWS = 64, 1.0, 2
+"""Where most requests come in turns of more than a crowd, for so many windows of time on end, that is an overload."""
 
 SPARE_SHARE = 0.1
 """An overload ends once all that came in a window would have left the process this share of its time.
@@ -105,7 +105,7 @@ class Pieces:
 class Overload:
     """Refuses what the process can't do in time, at the cost of an answer that is ready.
 
-    Requests that have arrived wait for a turn of the event loop. A crowd is served; where more come again and again,
+    Requests that have arrived wait for a turn of the event loop. A crowd is served; where crowds come again and again,
     each turn serves the first, and it soon, until there is time for all that come.
     """
 
@@ -115,7 +115,7 @@ class Overload:
         self._refusal = _busy().response()
         self._count = self._refused = 0
         self._overloaded = False
-        self._most = self._windows = 0
+        self._crowded = self._windows = 0
         self._task: asyncio.Task[Any] | None = None
         self._arrived = self._turns = 0
         self._window_began = self._turn_began = self._busy = 0.0
@@ -136,24 +136,25 @@ class Overload:
         task = asyncio.current_task()
         self._count += task is not self._task  # a caller in the same process may ask several times in its turn
         self._task = task
-        return self._count > (ANSWERED if self._overloaded else CROWD) or self._budget.held >= self._budget.total
+        return self._count > (ANSWERED if self._overloaded else QUEUE) or self._budget.held >= self._budget.total
 
     def _end_turn(self) -> None:
         now = monotonic()
         self._busy += now - self._turn_began
         self._arrived, self._turns = self._arrived + self._count, self._turns + 1
-        self._most, self._count = max(self._most, self._count), 0
+        self._crowded += self._count if self._count > CROWD else 0
+        self._count = 0
         if now - self._window_began >= WINDOW_SECONDS:
             self._end_window(now - self._window_began)
             self._window_began, self._busy = now, 0.0
-            self._arrived = self._turns = self._most = 0
+            self._arrived = self._turns = self._crowded = 0
 
     def _end_window(self, seconds: float) -> None:
         """Begin an overload where crowds have come for long enough, or end it where there is time for all."""
         if self._overloaded:  # each turn has answered ANSWERED, and that is most of what the loop was busy with
             changes = self._busy * self._arrived / (self._turns * ANSWERED) < seconds * (1 - SPARE_SHARE)
         else:
-            self._windows = self._windows + 1 if self._most > CROWD else 0
+            self._windows = self._windows + 1 if self._crowded > self._arrived / 2 else 0
             changes = self._windows == CROWDED_WINDOWS
         if changes:
             self._overloaded, self._windows = not self._overloaded, 0
