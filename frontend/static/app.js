@@ -145,16 +145,32 @@ const bodyOf = (content) => {
   return body;
 };
 
-addEventListener("popstate", (event) => {
+function restore(content) {
   const form = formOf();
-  if (!event.state || !form) return;
-  at = event.state.at;
   noted = -1;
   pending.length = 0;
-  restoring = { content: event.state.content, before: fieldsOf(form) };
-  form.setAttribute("hx-method", restoring.content.length > 8000 || new URLSearchParams(restoring.content).has("phases") ? "post" : "get");
+  restoring = { content, before: fieldsOf(form) };
+  form.setAttribute("hx-method", content.length > 8000 || new URLSearchParams(content).has("phases") ? "post" : "get");
   form.requestSubmit();
   showSteps();
+}
+
+addEventListener("popstate", (event) => {
+  if (!event.state || !formOf()) return;
+  at = event.state.at;
+  restore(event.state.content);
+});
+
+// "Try it" leads to other inputs on the same page: an edit that undo takes back.
+document.addEventListener("click", (event) => {
+  const link = event.target.closest("#try-out");
+  if (!link || event.button || event.ctrlKey || event.metaKey || event.shiftKey || event.altKey) return;
+  event.preventDefault();
+  note();
+  const content = link.search.slice(1);
+  history.pushState({ at: (last = ++at), content }, "");
+  restore(content);
+  document.getElementById("result").focus({ preventScroll: true });
 });
 
 function step(direction) {
@@ -281,7 +297,7 @@ const isAnswered = () => !document.querySelector("#problems > *, [data-waiting],
 document.addEventListener("htmx:finally:request", (event) => {
   if (event.detail.ctx !== asked) return;
   asked = null;
-  wanted?.click();
+  if (wanted?.isConnected) wanted.click();
   wanted = null;
 });
 
@@ -289,9 +305,9 @@ document.addEventListener("htmx:finally:request", (event) => {
 document.addEventListener(
   "click",
   (event) => {
-    const button = event.target.closest("[data-copies-address], #files :is(a, [formaction]), .pin");
+    const button = event.target.closest("[data-copies-address], #files :is(a, [formaction]), .pin, #try-out");
     const waits = asked && !button?.matches(".pin");
-    if (!button || (!waits && isAnswered())) return;
+    if (!button || (!waits && (isAnswered() || button.id === "try-out"))) return;
     event.preventDefault();
     event.stopPropagation();
     if (waits) wanted = button;

@@ -52,6 +52,25 @@ def test_trying_the_remedy_by_its_link_without_script(visitor: Visitor) -> None:
     expect(torque(page, 1)).to_have_value("36.2")
 
 
+def test_trying_the_remedy_is_an_edit_that_undo_takes_back(visitor: Visitor) -> None:
+    page = visitor.open(EXAMPLE + "&gear=HPN-14A-5")
+    page.evaluate("window.same = true")
+    torque(page, 2).fill("31")
+    page.get_by_role("link", name="Try it").click()
+    expect(selected(page)).to_contain_text("✓ suitable")
+    expect(torque(page, 1)).to_have_value("37.24")
+    expect(page.locator("#result")).to_be_focused()
+    expect(page).to_have_url(re.compile("T=37.24.*gear=HPN-14A-5"))
+    page.get_by_role("button", name="Undo").click()
+    expect(torque(page, 1)).to_have_value("40")
+    expect(torque(page, 2)).to_have_value("31")
+    expect(selected(page)).to_contain_text("not suitable")
+    page.get_by_role("button", name="Redo").click()
+    expect(torque(page, 1)).to_have_value("37.24")
+    expect(selected(page)).to_contain_text("✓ suitable")
+    assert page.evaluate("window.same"), "the page was not loaded anew"
+
+
 def test_comparing_gears_by_pinning_them_from_the_list(visitor: Visitor) -> None:
     page = visitor.open(EXAMPLE)
     open_section(page, "Candidates")
