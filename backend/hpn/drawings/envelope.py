@@ -147,7 +147,10 @@ def _equivalent(picture: BearingPicture, reader: Reader) -> Mark:
 
 
 def bearing_bars(picture: BearingPicture, reader: Reader) -> list[Bar]:
-    """Largest single load and life: the share, demand and limit that the checks say, f_w counted as load."""
+    """Largest single load and life: the share, demand and limit that the checks say, f_w counted as load.
+
+    Where u leaves a part of the limits, that part stands in place of the limit.
+    """
     worst, load, u = picture.worst, picture.load, picture.allowed
     f_w = load.load_coefficient
     limit = None if worst.limit_N is None else f_w * worst.limit_N
@@ -157,7 +160,7 @@ def bearing_bars(picture: BearingPicture, reader: Reader) -> list[Bar]:
             f"{reader.text(N_('Life'))} {load.life_basis}",
             picture.life_utilisation,
             u,
-            (picture.life_h, "≥", load.life_h / u**3, "h"),
+            (picture.life_h, "≥", load.life_h, "h"),
             reader,
         ),
     ]
@@ -168,11 +171,11 @@ def _bar(
 ) -> Bar:
     demand, sign, limit, unit = compared
     outside = beyond_limit(used, allowed)
-    if outside:
-        sign = OTHERWISE[sign]
     is_life = unit == "h" and not math.isinf(demand)
+    percent = reader.percent(used, allowed)
     numbers = reader.brief(demand, unit, limit) if is_life else reader.apart(demand, limit, unit)
-    if limit is not None:
-        numbers += f" {sign} {reader.apart(limit, demand, unit)}"
-    numbers += f" {reader.unit(unit)}"
-    return Bar(label, used, allowed, outside, f"{reader.percent(used, allowed)}\N{EN SPACE}{numbers}")
+    if allowed < 1:  # the bar has the whole limit at 100 %, and so has what stands beside it
+        percent += f" {OTHERWISE['≤'] if outside else '≤'} {reader.percent(allowed)}"
+    elif limit is not None:
+        numbers += f" {OTHERWISE[sign] if outside else sign} {reader.apart(limit, demand, unit)}"
+    return Bar(label, used, allowed, outside, f"{percent}\N{EN SPACE}{numbers} {reader.unit(unit)}")
