@@ -36,7 +36,7 @@ SYMBOLS = {
     "mm_per_s": "mm/s",
     "mm_per_s2": "mm/s²",
     "kgm2": "kg·m²",
-    "Nm_per_rpm": "Nm/rpm",
+    "Nm_per_rpm": N_("Nm/rpm"),
     "g_per_cm3": "g/cm³",
 }
 """Unit suffix of a field name -> the symbol a reader sees."""

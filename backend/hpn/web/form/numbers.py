@@ -277,6 +277,8 @@ def _is_too_small(plain: str, value: float) -> bool:
 
 
 _SUCH_AS = N_("is not a number; write one such as 9.3")
+_APART = re.compile(r"[0-9][\s'’]+(?![0-9]{3}(?![0-9]))[0-9]")
+"""Digits with a blank between them where no thousands end: two numbers, or a point that was missed."""
 
 
 def _advice(text: str, unit: str = "", *, mostly_whole: bool = False) -> Sentence | None:
@@ -290,7 +292,7 @@ def _not_a_number(text: str, kind: Kind, unit: str = "", *, mostly_whole: bool =
     tight = re.sub(r"[\s'’]", "", text)
     if len(tight) > _LONGEST:
         return Sentence(N_("is too long for a number"))
-    numbers = [reading for reading in _readings(tight) if _ANY_NUMBER.fullmatch(reading)]
+    numbers = [] if _APART.search(text) else [each for each in _readings(tight) if _ANY_NUMBER.fullmatch(each)]
     readings = [number for number in numbers if kind != "whole" or float(number).is_integer()]
     if numbers and not readings:
         return Sentence(NOT_WHOLE)
