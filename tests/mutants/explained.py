@@ -22,6 +22,10 @@ EXPLAINED: dict[str, str] = {
     "momentary_peak_torque_Nm=c.gears.momentary_peak_torque_Nm, ) "
     "-> nothing": "demand over limit is the same quotient; the equation stands there by its name",
     "selection gears_for: \"\" -> 'X'": "any text that names no model says that no curve is asked for",
+    'selection module: "Address of the page that shows this application. The page opens up to 60,000 bytes: save a '
+    'longer application and " "share the address of the saved selection." -> \'Address of the page that shows this '
+    "application. The page opens up to 60,000 bytes: save a longer application and share the address of the saved "
+    "selection.X'": "words for readers of the OpenAPI document; test_openapi_truth holds the number in them",
     **{f"selection candidates_of: True -> False{number}": LENGTHS for number in ("", " #2", " #3", " #4", " #5")},
     "evaluation Checked.status: self.utilisation <= self.bound -> (self.utilisation) < (self.bound)": ON_THE_BOUND,
     "evaluation Evaluation.governing_of: -1 -> (1)": LAST_OF_TWO,
