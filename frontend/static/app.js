@@ -5,6 +5,7 @@ const formOf = () => document.getElementById("application");
 const contentOf = (form) => new URLSearchParams(new FormData(form)).toString();
 const isOfForm = (ctx) => ctx?.sourceElement.id === "application";
 const replacesForm = (ctx) => ctx?.hx?.retarget === "#application";
+const isPlain = (click) => !click.button && !click.ctrlKey && !click.metaKey && !click.shiftKey && !click.altKey;
 const valueOf = (field) => (field.type === "checkbox" ? field.checked : field.value);
 
 // --- Requests of the form ---------------------------------------------------------------------------------------------
@@ -164,7 +165,7 @@ addEventListener("popstate", (event) => {
 // "Try it" leads to other inputs on the same page: an edit that undo takes back.
 document.addEventListener("click", (event) => {
   const link = event.target.closest("#try-out");
-  if (!link || event.button || event.ctrlKey || event.metaKey || event.shiftKey || event.altKey) return;
+  if (!link || !isPlain(event)) return;
   event.preventDefault();
   note();
   const content = link.search.slice(1);
@@ -278,7 +279,7 @@ document.addEventListener("focusout", (event) => {
 
 document.addEventListener("click", (event) => {
   const chooser = event.target.closest("[data-gear]");
-  if (!chooser || event.button || event.ctrlKey || event.metaKey || event.shiftKey || event.altKey) return;
+  if (!chooser || !isPlain(event)) return;
   event.preventDefault();
   document.getElementById("chosen-gear").value = chooser.dataset.gear;
   startEdit();

@@ -175,7 +175,7 @@ def _bar(
     percent = reader.percent(used, allowed)
     numbers = reader.brief(demand, unit, limit) if is_life else reader.apart(demand, limit, unit)
     if allowed < 1:  # the bar has the whole limit at 100 %, and so has what stands beside it
-        percent += f" {OTHERWISE['≤'] if outside else '≤'} {reader.percent(allowed)}"
+        percent += f" {OTHERWISE['≤'] if outside else '≤'} {reader.percent(allowed, used)}"
     elif limit is not None:
         numbers += f" {OTHERWISE[sign] if outside else sign} {reader.apart(limit, demand, unit)}"
     return Bar(label, used, allowed, outside, f"{percent}\N{EN SPACE}{numbers} {reader.unit(unit)}")
