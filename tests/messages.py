@@ -13,7 +13,7 @@ from babel.messages.catalog import Catalog
 from babel.messages.pofile import write_po
 from jinja2.ext import babel_extract
 
-from hpn.reader import LANGUAGES, catalogue, path_of
+from hpn.words.reader import LANGUAGES, catalogue, path_of
 
 ROOT = Path(__file__).parents[1]
 BACKEND, TEMPLATES, FIGURES = ROOT / "backend/hpn", ROOT / "frontend/templates", ROOT / "catalogue"

@@ -6,13 +6,14 @@ from typing import Any
 
 import msgspec
 
-from hpn import batch, calculation, remedy, reserve, selection
 from hpn.application import Application, InputError
-from hpn.calculation import Step
 from hpn.catalogue import Catalogue
-from hpn.checks import BY_CODE
-from hpn.equations import ROUNDING
-from hpn.gear import Gear
+from hpn.catalogue.gear import Gear
+from hpn.engine import batch, remedy, reserve, selection
+from hpn.engine.checks import BY_CODE
+from hpn.explain import calculation
+from hpn.explain.calculation import Step
+from hpn.physics.equations import ROUNDING
 
 Json = dict[str, Any]
 

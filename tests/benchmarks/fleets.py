@@ -20,9 +20,9 @@ import pyarrow.parquet as pq
 from numpy.typing import NDArray
 
 from hpn.catalogue import Catalogue, load_catalogue
-from hpn.equations import FloatArray
-from hpn.evaluation import SUITABLE, evaluate
+from hpn.engine.evaluation import SUITABLE, evaluate
 from hpn.fleet.axes import Axes
+from hpn.physics.equations import FloatArray
 from tests.benchmarks.turns import in_turns, ratios
 from tests.benchmarks.variants import Checkout
 

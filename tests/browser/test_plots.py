@@ -11,10 +11,10 @@ from playwright.sync_api import Browser, Page, Playwright, expect
 
 from hpn.application import Application
 from hpn.catalogue import load_catalogue
-from hpn.drawings import Subject, bearing_picture, envelope_drawing
-from hpn.drawings.svg import markup
-from hpn.reader import Reader
-from hpn.selection import select
+from hpn.engine.selection import select
+from hpn.explain.drawings import Subject, bearing_picture, envelope_drawing
+from hpn.explain.drawings.svg import markup
+from hpn.words.reader import Reader
 from tests.browser.conftest import PATIENCE_S, Visitor, open_section, violations
 from tests.build import cycle, phase
 

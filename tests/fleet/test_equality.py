@@ -9,8 +9,8 @@ import pytest
 
 from hpn.application import Application, InputError
 from hpn.catalogue import Catalogue, load_catalogue
+from hpn.engine.selection import select
 from hpn.fleet.run import Order, processes, size_fleet
-from hpn.selection import select
 from tests.build import Json
 from tests.fleet.tables import FAULTS, Row, here, in_long_form, quiet, read, row_of, spoiled, write
 from tests.property.draw import at_random

@@ -19,10 +19,10 @@ from fastapi import FastAPI
 from starlette.testclient import TestClient
 
 from hpn.application import Application
-from hpn.selection import select
+from hpn.engine.selection import select
 from hpn.store import FleetDraft
+from hpn.tables.columns import NO_CHOICES
 from hpn.web.app import create_app
-from hpn.web.form.columns import NO_CHOICES
 from hpn.web.form.link_writer import to_link
 from hpn.web.pages.fleet_upload import Upload, best_reading, uploaded
 from hpn.web.settings import Settings

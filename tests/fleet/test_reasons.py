@@ -5,8 +5,8 @@ from typing import Any
 
 import pytest
 
-from hpn.reader import Reader
 from hpn.web.pages.fleet_reasons import reasons_of
+from hpn.words.reader import Reader
 from tests.fleet.conftest import Size
 
 SOUND: dict[str, Any] = {"torque_Nm": [40.0, 20.0], "speed_rpm": [250.0, 100.0], "duration_s": [0.5, 3.0]}

@@ -10,11 +10,11 @@ import pytest
 
 from hpn.application import Application
 from hpn.catalogue import Catalogue
+from hpn.engine.selection import select
 from hpn.fleet import grouping, job, lines
 from hpn.fleet.columns import COLUMNS
 from hpn.fleet.errors import FleetError
 from hpn.fleet.run import Order, size_fleet
-from hpn.selection import select
 from tests.fleet.conftest import Size
 from tests.fleet.tables import Row, here, in_long_form, quiet, read, write
 

@@ -13,16 +13,16 @@ import openpyxl
 from hpn.application import Application
 from hpn.catalogue import HANDBOOK_FOLDER, load_catalogue
 from hpn.catalogue.tables import TABLES
+from hpn.engine.selection import select
+from hpn.files.export import Export
+from hpn.files.workbook.workbook import workbook
 from hpn.fleet.columns import COLUMNS as FLEET
-from hpn.reader import Reader
-from hpn.report.export import Export
-from hpn.report.workbook import workbook
-from hpn.selection import select
 from hpn.web.api.samples import LIFTING, TURNING
 from hpn.web.form.labels import LABELS
 from hpn.web.form.link_writer import to_link
 from hpn.web.form.pasted import write_table
 from hpn.web.form.symbols import BY_NAME, MOVE_BY_NAME, PHASE_BY_NAME
+from hpn.words.reader import Reader
 from tests.build import cycle, phase, worked_example
 from tests.fleet.tables import in_long_form, row_of, write
 

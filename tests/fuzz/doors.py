@@ -14,9 +14,9 @@ from pydantic import SecretStr
 from hpn.application import Application, InputError
 from hpn.catalogue import CatalogueError, load_catalogue
 from hpn.catalogue.tables import TABLES
+from hpn.engine.selection import encode, select
 from hpn.fleet.errors import FleetError
 from hpn.fleet.run import Order, size_fleet
-from hpn.selection import encode, select
 from hpn.web.app import create_app
 from hpn.web.door.protocol import HEAD_BYTES
 from hpn.web.settings import Settings

@@ -27,7 +27,14 @@ LIBRARIES = (
 """What the modules need is imported once, so that a forked process has it; the modules and tests themselves are not."""
 
 PACKAGE = Path(__file__).parents[2] / "backend" / "hpn"
-MODULES = ("equations", "bearing", "checks", "evaluation", "selection")
+MODULES = {
+    "equations": "physics",
+    "bearing": "physics",
+    "checks": "engine",
+    "evaluation": "engine",
+    "selection": "engine",
+}
+"""Modules and packages on trial, and their rooms."""
 
 BESIDE = {"selection": ("allowed",)}
 """Modules too small to be tried alone."""
@@ -73,8 +80,9 @@ FURTHER = (
 
 def mutants_in(module: str) -> list[Mutant]:
     """Every mutant of a module with those beside it, or of each file of a package."""
-    folder = PACKAGE / module
-    files = [PACKAGE / f"{name}.py" for name in (module, *BESIDE.get(module, ()))]
+    room = PACKAGE / MODULES[module]
+    folder = room / module
+    files = [room / f"{name}.py" for name in (module, *BESIDE.get(module, ()))]
     if folder.is_dir():
         files = sorted(folder.glob("*.py"))
     return [mutant for file in files for mutant in mutants_of(module, file)]

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from hpn.reader import path_of
+from hpn.words.reader import path_of
 from tests import messages
 
 ROOT = Path(__file__).parents[2]

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays
 
-from hpn import bearing, equations
+from hpn.physics import bearing, equations
 
 positive = st.floats(1e-3, 1e4)
 shapes = st.tuples(st.integers(1, 5), st.integers(1, 6))

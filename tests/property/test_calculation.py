@@ -9,11 +9,11 @@ import pytest
 from hypothesis import example, given
 
 from hpn.application import Application
-from hpn.calculation import Line, Step
-from hpn.calculation.formula import value_of
-from hpn.calculation.mathml import compared, in_symbols, result, with_numbers
 from hpn.catalogue import Catalogue, load_catalogue
-from hpn.reader import Reader
+from hpn.explain.calculation import Line, Step
+from hpn.explain.calculation.formula import value_of
+from hpn.explain.calculation.mathml import compared, in_symbols, result, with_numbers
+from hpn.words.reader import Reader
 from tests.build import Json, candidate, cycle, phase, worked_example
 from tests.property.draw import applications
 from tests.wire import calculation_of, select

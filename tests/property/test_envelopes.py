@@ -6,10 +6,10 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hpn import bearing
 from hpn.application import BearingModel
 from hpn.catalogue import Catalogue, load_catalogue
-from hpn.envelopes import EnvelopeQuery, envelope_curve, life_envelopes
+from hpn.engine.envelopes import EnvelopeQuery, envelope_curve, life_envelopes
+from hpn.physics import bearing
 from tests.build import Json, answer, check, cycle, phase
 
 CATALOGUE: Catalogue = load_catalogue()

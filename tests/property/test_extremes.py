@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 
 from hpn.application import Application
 from hpn.catalogue import Catalogue, load_catalogue
-from hpn.envelopes import EnvelopeQuery, life_envelopes
+from hpn.engine.envelopes import EnvelopeQuery, life_envelopes
 from tests.build import Json, candidate, cycle, phase
 from tests.wire import Selection, select, select_fleet
 

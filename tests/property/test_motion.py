@@ -12,10 +12,10 @@ from pydantic import ValidationError
 
 from hpn.application import Application
 from hpn.catalogue import load_catalogue
-from hpn.duty import Duty
-from hpn.motion.course import course_along, course_of
-from hpn.motion.pieces import pieces_of
-from hpn.motion.torque import Torque, cut, integral
+from hpn.engine.duty import Duty
+from hpn.physics.motion.course import course_along, course_of
+from hpn.physics.motion.pieces import pieces_of
+from hpn.physics.motion.torque import Torque, cut, integral
 from hpn.web.door.problems import Problem, pointer
 from tests.build import Json, answer
 from tests.property.draw import linear_motions, motions, rotary_motions, signs

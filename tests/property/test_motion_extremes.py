@@ -7,7 +7,7 @@ from pydantic import ValidationError
 
 from hpn.application import Application
 from hpn.catalogue import Catalogue
-from hpn.selection import encode, select
+from hpn.engine.selection import encode, select
 from tests.build import Json
 
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from hpn.evaluation import RANKED_BY, SUITABLE, UNRATED, UNSUITABLE, Evaluation
+from hpn.engine.evaluation import RANKED_BY, SUITABLE, UNRATED, UNSUITABLE, Evaluation
 
 GEARS = 7
 RATIO = np.array([3.0, 4, 5, 3, 4, 5, 5])

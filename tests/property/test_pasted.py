@@ -11,10 +11,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hpn.application import DutyCycle
-from hpn.phase import Phase
-from hpn.web.form.cells import DECIMALS
-from hpn.web.form.cells import Decimal as Mark
-from hpn.web.form.columns import Choices
+from hpn.application.phase import Phase
+from hpn.tables.cells import DECIMALS
+from hpn.tables.cells import Decimal as Mark
+from hpn.tables.columns import Choices
 from hpn.web.form.pasted import Table, read_text, write_table
 
 NUMBERS = st.floats(-1e6, 1e6, allow_subnormal=False).map(lambda value: round(value, 4))

@@ -12,12 +12,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hpn.application import Application
-from hpn.calculation import calculation_of
-from hpn.calculation.formula import Formula, Subtraction, leaves_out, value_of
 from hpn.catalogue import Catalogue, load_catalogue
-from hpn.checks import BY_CODE
-from hpn.remedy import alternatives_of, growths_of, remedy_of, tried
-from hpn.selection import Candidate, select
+from hpn.engine.checks import BY_CODE
+from hpn.engine.remedy import alternatives_of, growths_of, remedy_of, tried
+from hpn.engine.selection import Candidate, select
+from hpn.explain.calculation import calculation_of
+from hpn.explain.calculation.formula import Formula, Subtraction, leaves_out, value_of
 from hpn.web.form.link_reader import parse
 from hpn.web.form.link_writer import to_link
 from tests.build import Json

@@ -6,9 +6,9 @@ import mpmath
 import numpy as np
 import pytest
 
-from hpn import bearing
 from hpn.catalogue import Catalogue
-from hpn.envelopes import EnvelopeQuery, life_envelopes
+from hpn.engine.envelopes import EnvelopeQuery, life_envelopes
+from hpn.physics import bearing
 from tests.build import answer, candidate, check, cycle, phase
 from tests.reference import handbook
 

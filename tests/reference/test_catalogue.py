@@ -5,7 +5,7 @@ import dataclasses
 import pytest
 
 from hpn.catalogue import Catalogue, GearColumns, OutputVersion
-from hpn.gear import Gear
+from hpn.catalogue.gear import Gear
 from tests.reference import handbook
 
 RATED_SIZES = ("11A", "14A", "20A", "32A")

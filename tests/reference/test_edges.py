@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from hpn import bearing, equations
+from hpn.physics import bearing, equations
 
 POWER_AND_ROOT = 1e-14  # a power 10/3 and its root lose some tens of units of 1.1e-16
 

@@ -6,7 +6,7 @@ import mpmath
 import numpy as np
 import pytest
 
-from hpn import bearing, equations
+from hpn.physics import bearing, equations
 
 mpmath.mp.dps = 50
 mpf = mpmath.mpf

@@ -10,7 +10,7 @@ import pytest
 
 from hpn.application import Application
 from hpn.catalogue import Catalogue
-from hpn.motion.mechanisms import GRAVITY
+from hpn.physics.motion.mechanisms import GRAVITY
 from tests.build import Json, answer, check
 
 THEIR_G = 9.8 / GRAVITY

@@ -10,7 +10,7 @@ from mpmath import mp, mpf
 
 from hpn.application import Application
 from hpn.catalogue import Catalogue
-from hpn.motion import Course, Trace, motor_trace, trace_of
+from hpn.physics.motion import Course, Trace, motor_trace, trace_of
 from tests.build import Json, answer, candidate
 from tests.reference import motion as reference
 from tests.reference.test_motion import CONTRACT, PENDULUM, SCREW, VISCOUS

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from hpn import equations
 from hpn.catalogue import Catalogue
+from hpn.physics import equations
 from tests.build import answer, candidate, check, suitable, worked_example
 from tests.reference.handbook import WORKED_EXAMPLE as PRINTED
 

@@ -18,7 +18,7 @@ import orjson
 
 from hpn.application import Application
 from hpn.catalogue import Catalogue
-from hpn.selection import encode, select
+from hpn.engine.selection import encode, select
 from hpn.store import Store
 from hpn.web.form.link_writer import to_link
 from tests.build import Json, cycle, phase

@@ -10,12 +10,12 @@ import msgspec
 
 from hpn.application import Application
 from hpn.catalogue import Catalogue
-from hpn.reader import Reader
-from hpn.report import export
-from hpn.report import workbook as sheets
-from hpn.selection import Selection, encode, select
+from hpn.engine.selection import Selection, encode, select
+from hpn.files import export
+from hpn.files.workbook import workbook as sheets
 from hpn.web.api.samples import LIFTING, TURNING
 from hpn.web.form.link_writer import to_link
+from hpn.words.reader import Reader
 from tests.build import Json, cycle, phase, worked_example
 from tests.wire import candidate_of
 

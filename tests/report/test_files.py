@@ -234,7 +234,7 @@ def test_oembed_is_json_only(client: TestClient) -> None:
 
 
 def test_templates_and_catalogues_are_part_of_the_package() -> None:
-    folder = Path(__file__).parents[2] / "backend/hpn/report"
+    folder = Path(__file__).parents[2] / "backend/hpn/files/report"
     assert "report.typ" in {path.name for path in folder.iterdir()}
 
 

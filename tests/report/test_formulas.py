@@ -4,11 +4,11 @@ from dataclasses import replace
 
 import pytest
 
-from hpn.check import Kind
-from hpn.checks import BY_CODE
-from hpn.quantities import INPUTS
-from hpn.report.formulas import CHECK_FORMULAS, CYCLE_TERMS, GEAR_TERMS, RATINGS, cell_name, formulas_of
-from hpn.report.inputs import LOADS, REQUIREMENTS
+from hpn.engine.check import Kind
+from hpn.engine.checks import BY_CODE
+from hpn.files.inputs import LOADS, REQUIREMENTS
+from hpn.files.workbook.formulas import CHECK_FORMULAS, CYCLE_TERMS, GEAR_TERMS, RATINGS, cell_name, formulas_of
+from hpn.words.quantities import INPUTS
 
 
 def test_names_differ_by_more_than_their_capitals() -> None:

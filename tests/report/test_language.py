@@ -4,13 +4,13 @@ import re
 
 import pytest
 
-from hpn import reader as readers
 from hpn.catalogue import Catalogue
-from hpn.reader import LANGUAGES, Reader
-from hpn.reader import catalogue as translated_texts
-from hpn.report.content import content
-from hpn.report.inputs import LOADS, REQUIREMENTS
-from hpn.report.workbook import workbook
+from hpn.files.inputs import LOADS, REQUIREMENTS
+from hpn.files.report.content import content
+from hpn.files.workbook.workbook import workbook
+from hpn.words import reader as readers
+from hpn.words.reader import LANGUAGES, Reader
+from hpn.words.reader import catalogue as translated_texts
 from tests.report.cases import CASES, language, typed_export_of
 
 ENGLISH, GERMAN = language("en"), language("de")

@@ -10,10 +10,10 @@ import pytest
 from pypdf import PdfReader
 
 from hpn.catalogue import Catalogue
-from hpn.reader import Reader
-from hpn.report.content import content
-from hpn.report.pdf import pdf
-from hpn.symbols import formula
+from hpn.files.report.content import content
+from hpn.files.report.pdf import pdf
+from hpn.words.reader import Reader
+from hpn.words.symbols import formula
 from tests.conftest import Supplement
 from tests.property.test_varying_remedy import MOTORS
 from tests.report.cases import CASES, MOVING, language, typed_export_of

@@ -5,7 +5,7 @@ from typing import Any
 from basyx.aas import model
 
 from hpn.catalogue import Catalogue
-from hpn.report.submodel import environment, package
+from hpn.files.aas.submodel import environment, package
 from tests.report.cases import CASES, MOVING, typed_export_of
 
 

@@ -9,10 +9,10 @@ import pytest
 from openpyxl.workbook import Workbook
 
 from hpn.catalogue import Catalogue
-from hpn.checks import BY_CODE
-from hpn.report import workbook as sheets
-from hpn.report.export import LOSS_FREE
-from hpn.report.formulas import MOTOR_TORQUES
+from hpn.engine.checks import BY_CODE
+from hpn.files.export import LOSS_FREE
+from hpn.files.workbook import workbook as sheets
+from hpn.files.workbook.formulas import MOTOR_TORQUES
 from hpn.web.api.samples import TURNING
 from tests.build import Json, answer, cycle, phase
 from tests.conftest import Supplement

@@ -13,11 +13,11 @@ from numpy.typing import NDArray
 from pypdf import PdfReader
 
 from hpn.catalogue import Catalogue, load_catalogue
-from hpn.reader import Reader
-from hpn.readings import readings_of
-from hpn.report.export import DIGITS, Heading
-from hpn.report.pdf import pdf
-from hpn.units import PRESETS
+from hpn.explain.readings import readings_of
+from hpn.files.export import DIGITS, Heading
+from hpn.files.report.pdf import pdf
+from hpn.words.reader import Reader
+from hpn.words.units import PRESETS
 from tests.build import worked_example
 from tests.report.cases import CASES, CREATED, EVERYTHING, language, typed_export_of
 

@@ -16,9 +16,9 @@ from pypdf import PdfReader
 
 from hpn.application import Application
 from hpn.catalogue import Catalogue
-from hpn.report.content import content
-from hpn.report.pdf import pdf
-from hpn.report.verdict import checks
+from hpn.files.report.content import content
+from hpn.files.report.pdf import pdf
+from hpn.files.report.verdict import checks
 from hpn.web.form.link_reader import parse
 from hpn.web.form.link_writer import to_link
 from tests.build import Json, cycle, phase, worked_example
@@ -175,8 +175,8 @@ MEASURE = """
 import re, sys, time
 from pathlib import Path
 from hpn.catalogue import load_catalogue
-from hpn.report.pdf import pdf
-from hpn.report.verdict import checks
+from hpn.files.report.pdf import pdf
+from hpn.files.report.verdict import checks
 from hpn.web.door import heap
 from tests.report.cases import language, long_cycle, typed_export_of
 heap.give_back()

@@ -7,10 +7,10 @@ from pathlib import Path
 import pytest
 
 from hpn.catalogue import Catalogue
-from hpn.reader import Reader
-from hpn.report.export import DIGITS
-from hpn.report.pdf import pdf
-from hpn.units import PRESETS
+from hpn.files.export import DIGITS
+from hpn.files.report.pdf import pdf
+from hpn.words.reader import Reader
+from hpn.words.units import PRESETS
 from tests.report.cases import CASES, language, typed_export_of
 
 ROOT = Path(__file__).parents[2]

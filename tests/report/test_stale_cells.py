@@ -9,9 +9,9 @@ import pytest
 from openpyxl.workbook import Workbook
 
 from hpn.catalogue import Catalogue
-from hpn.checks import BY_CODE
-from hpn.report import workbook as sheets
-from hpn.report.unchanged import inputs_behind
+from hpn.engine.checks import BY_CODE
+from hpn.files.workbook import workbook as sheets
+from hpn.files.workbook.unchanged import inputs_behind
 from tests.build import Json, answer, worked_example
 from tests.conftest import Supplement
 from tests.property.test_varying_remedy import MOTORS

@@ -21,9 +21,9 @@ from basyx.aas.adapter import aasx
 
 from hpn.application import Application
 from hpn.catalogue import Catalogue
-from hpn.report.export import LOSS_FREE
-from hpn.report.submodel import ARTICLE_NUMBER, ORDER_CODE, TECHNICAL_DATA, Metamodel, package
-from hpn.selection import decode, encode
+from hpn.engine.selection import decode, encode
+from hpn.files.aas.submodel import ARTICLE_NUMBER, ORDER_CODE, TECHNICAL_DATA, Metamodel, package
+from hpn.files.export import LOSS_FREE
 from tests.build import worked_example
 from tests.report.cases import CASES, EVERYTHING, typed_export_of
 
@@ -170,7 +170,7 @@ MAKE = """
 import sys
 from hashlib import sha256
 from hpn.catalogue import load_catalogue
-from hpn.report.submodel import package
+from hpn.files.aas.submodel import package
 from tests.report.cases import EVERYTHING, typed_export_of
 print(sha256(package(typed_export_of(EVERYTHING, load_catalogue()))).hexdigest())
 """

@@ -7,10 +7,10 @@ import openpyxl
 import pytest
 
 from hpn.catalogue import Catalogue
-from hpn.reader import Reader
-from hpn.report.export import DIGITS
-from hpn.report.workbook import workbook
-from hpn.units import PRESETS
+from hpn.files.export import DIGITS
+from hpn.files.workbook.workbook import workbook
+from hpn.words.reader import Reader
+from hpn.words.units import PRESETS
 from tests.report.cases import EVERYTHING, language, typed_export_of
 
 AMERICAN = Reader("en", PRESETS["US"], DIGITS)

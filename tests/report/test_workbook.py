@@ -13,8 +13,8 @@ import pytest
 from openpyxl.workbook import Workbook
 
 from hpn.catalogue import Catalogue
-from hpn.report.export import LOSS_FREE, LOWER_BOUND
-from hpn.report.formulas import MOTOR_TORQUES
+from hpn.files.export import LOSS_FREE, LOWER_BOUND
+from hpn.files.workbook.formulas import MOTOR_TORQUES
 from tests.build import Json, answer, cycle, phase, worked_example
 from tests.conftest import Supplement
 from tests.report.cases import CASES, EVERYTHING, export_of, language, workbook

@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 
 from hpn.catalogue import Catalogue
-from hpn.differences import TOLERANCE, differences
+from hpn.explain.differences import TOLERANCE, differences
 from tests.build import Json, answer, worked_example
 
 

@@ -8,7 +8,7 @@ import pytest
 from starlette.testclient import TestClient
 
 from hpn.application import Application, InputError
-from hpn.selection import encode, select
+from hpn.engine.selection import encode, select
 from hpn.web.app import create_app
 from hpn.web.archive import Labels, draft_of
 from hpn.web.door.pools import SMALL_BYTES

@@ -85,7 +85,7 @@ def test_without_a_suitable_gear_the_nearest_stands_there_as_its_page_shows_it(c
 def test_the_list_unpacks_and_computes_nothing(client: TestClient, monkeypatch: pytest.MonkeyPatch) -> None:
     saved(client)
     before = rows(client.get("/selections").text)
-    for name in ("hpn.selection.evaluate", "hpn.store.store.unpacked"):
+    for name in ("hpn.engine.selection.evaluate", "hpn.store.store.unpacked"):
         monkeypatch.setattr(name, None)
 
     assert rows(client.get("/selections").text) == before

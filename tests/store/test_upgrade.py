@@ -21,7 +21,7 @@ from sqlalchemy import Connection, text
 
 from hpn.application import Application
 from hpn.catalogue import load_catalogue
-from hpn.selection import encode, select
+from hpn.engine.selection import encode, select
 from hpn.store import NewerDatabaseError, Store, upgrade
 from hpn.store.engine import make_engine
 from hpn.store.tables import metadata

@@ -8,9 +8,9 @@ from pydantic import ValidationError
 
 from hpn.application import Application, BatchItem, InputError
 from hpn.catalogue import Catalogue
-from hpn.gear import canonical_designation, canonical_size
-from hpn.phase import MAXIMUM_PHASES
-from hpn.units import SYMBOLS, suffix_of, symbol_of
+from hpn.words.designations import canonical_designation, canonical_size
+from hpn.words.fields import MAXIMUM_PHASES
+from hpn.words.units import SYMBOLS, suffix_of, symbol_of
 from tests.build import Json, answer, check, cycle, phase, worked_example
 
 

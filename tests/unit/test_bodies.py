@@ -9,7 +9,7 @@ import pytest
 from numpy.typing import NDArray
 from pydantic import ValidationError
 
-from hpn.motion.bodies import Body, bar_inertia, displaced_inertia, ring_inertia, sum_of
+from hpn.physics.motion.bodies import Body, bar_inertia, displaced_inertia, ring_inertia, sum_of
 
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(24)
 

@@ -3,12 +3,12 @@
 import pytest
 
 from hpn.application import Application
-from hpn.calculation import Step, calculation_of
-from hpn.calculation.formula import Constant, Term, Variable
-from hpn.calculation.mathml import mathml, with_numbers
 from hpn.catalogue import Catalogue
-from hpn.reader import Reader
-from hpn.selection import select
+from hpn.engine.selection import select
+from hpn.explain.calculation import Step, calculation_of
+from hpn.explain.calculation.formula import Constant, Term, Variable
+from hpn.explain.calculation.mathml import mathml, with_numbers
+from hpn.words.reader import Reader
 from tests.build import Json, cycle, phase, worked_example
 from tests.conftest import Supplement
 

@@ -5,10 +5,10 @@ from typing import get_args
 import pytest
 
 from hpn.catalogue import Catalogue
-from hpn.checks import BY_CODE, CHECKS
-from hpn.quantities import CheckCode
-from hpn.remedy import MOTOR_TORQUE_CHECKS
-from hpn.units import suffix_of
+from hpn.engine.checks import BY_CODE, CHECKS
+from hpn.engine.remedy import MOTOR_TORQUE_CHECKS
+from hpn.words.quantities import CheckCode
+from hpn.words.units import suffix_of
 from tests.build import answer, cycle, phase
 
 IN_ORDER = [

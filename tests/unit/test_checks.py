@@ -6,7 +6,7 @@ import pytest
 
 from hpn.application import NUMBERS
 from hpn.catalogue import Catalogue
-from hpn.checks import CHECKS, allowed
+from hpn.engine.checks import CHECKS, allowed
 from tests.build import Json, answer, candidate, check, cycle, phase
 from tests.conftest import Supplement
 from tests.unit.test_supplements import SIZES

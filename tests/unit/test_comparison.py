@@ -4,11 +4,11 @@ import math
 
 import pytest
 
-from hpn import equations
 from hpn.application import Application
 from hpn.catalogue import Catalogue
-from hpn.comparison import Column, Row, groups_of, torsion_of, undominated
-from hpn.selection import Candidate, Selection, select
+from hpn.engine.selection import Candidate, Selection, select
+from hpn.explain.comparison import Column, Row, groups_of, torsion_of, undominated
+from hpn.physics import equations
 from tests.build import Json, cycle, phase, worked_example
 from tests.conftest import Supplement
 

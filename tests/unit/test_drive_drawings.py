@@ -8,14 +8,14 @@ from xml.etree.ElementTree import Element, fromstring
 import numpy as np
 import pytest
 
-from hpn import drawings
 from hpn.application import Application
 from hpn.catalogue import Catalogue, load_catalogue
-from hpn.drawings import Subject
-from hpn.drawings.svg import markup
-from hpn.motion import trace_of
-from hpn.reader import Reader
-from hpn.selection import Candidate, select
+from hpn.engine.selection import Candidate, select
+from hpn.explain import drawings
+from hpn.explain.drawings import Subject
+from hpn.explain.drawings.svg import markup
+from hpn.physics.motion import trace_of
+from hpn.words.reader import Reader
 from tests.build import Json, cycle, phase
 from tests.conftest import Supplement
 from tests.reference.test_motion import CONTRACT, SCREW

@@ -10,13 +10,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from hpn import drawings
 from hpn.application import Application
 from hpn.catalogue import Catalogue, load_catalogue
-from hpn.drawings import Subject
-from hpn.drawings.svg import LETTER, markup
-from hpn.reader import Reader
-from hpn.selection import select
+from hpn.engine.selection import select
+from hpn.explain import drawings
+from hpn.explain.drawings import Subject
+from hpn.explain.drawings.svg import LETTER, markup
+from hpn.words.reader import Reader
 from tests.build import Json, cycle, phase
 from tests.conftest import Supplement
 

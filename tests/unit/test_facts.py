@@ -8,7 +8,7 @@ import pytest
 from starlette.testclient import TestClient
 
 from hpn.catalogue import HANDBOOK_FOLDER, Catalogue
-from hpn.checks import BY_CODE
+from hpn.engine.checks import BY_CODE
 from hpn.web.app import create_app
 
 

@@ -7,10 +7,10 @@ import pytest
 
 from hpn.application import Application
 from hpn.catalogue import Catalogue
-from hpn.equations import FloatArray
-from hpn.motion import Course, motor
-from hpn.motors import MOTOR_CHECKS, motors_on, ratios_with_motor, with_motor
-from hpn.selection import select
+from hpn.engine.motors import MOTOR_CHECKS, motors_on, ratios_with_motor, with_motor
+from hpn.engine.selection import select
+from hpn.physics.equations import FloatArray
+from hpn.physics.motion import Course, motor
 from tests.build import Json, cycle, phase
 from tests.conftest import Supplement
 from tests.reference.test_motion import CONTRACT, SCREW

@@ -7,7 +7,7 @@ import pytest
 
 from hpn.application import Application
 from hpn.catalogue import Catalogue
-from hpn.phase import MAXIMUM_PHASES
+from hpn.words.fields import MAXIMUM_PHASES
 from tests.build import Json, answer, check, notices, phase
 from tests.unit.test_application import refused
 

@@ -5,10 +5,10 @@ from typing import get_args
 import pytest
 
 from hpn.application import Application, ApplicationArea
-from hpn.batch import judge_batch
 from hpn.catalogue import Catalogue, load_catalogue
-from hpn.notices import AREAS
-from hpn.selection import Judged, select
+from hpn.engine.batch import judge_batch
+from hpn.engine.notices import AREAS
+from hpn.engine.selection import Judged, select
 from tests.build import Json, answer, candidate, check, cycle, notices, phase
 from tests.conftest import Supplement
 

@@ -5,13 +5,13 @@ from itertools import pairwise
 import plotly.graph_objects as go
 import pytest
 
-from hpn import drawings as plots
 from hpn.application import Application
 from hpn.catalogue import Catalogue
-from hpn.drawings import Subject
-from hpn.reader import Reader
-from hpn.selection import CheckResult, select
+from hpn.engine.selection import CheckResult, select
+from hpn.explain import drawings as plots
+from hpn.explain.drawings import Subject
 from hpn.web.api.samples import TURNING
+from hpn.words.reader import Reader
 from tests.build import Json, cycle, phase
 from tests.conftest import Supplement
 

@@ -4,12 +4,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hpn import units
-from hpn.reader import GROUP, Reader
+from hpn.tables.numbers import read_decimal
 from hpn.web.door.readers import accepted_language
 from hpn.web.form import link_reader
-from hpn.web.form.numbers import read_decimal
-from hpn.wording import Quantity, Sentence
+from hpn.words import units
+from hpn.words.reader import GROUP, Reader
+from hpn.words.wording import Quantity, Sentence
 
 AMERICAN = Reader("en", units.PRESETS["US"])
 GERMAN = Reader("de")

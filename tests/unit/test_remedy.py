@@ -5,9 +5,9 @@ from msgspec import structs
 
 from hpn.application import Application
 from hpn.catalogue import Catalogue
-from hpn.remedy import followed, growths_of, remedy_of, ways_of
-from hpn.selection import Candidate, Selection, select
-from hpn.wording import rounded
+from hpn.engine.remedy import followed, growths_of, remedy_of, ways_of
+from hpn.engine.selection import Candidate, Selection, select
+from hpn.words.wording import rounded
 from tests.build import Json, cycle, phase, worked_example
 from tests.conftest import Supplement
 

@@ -5,7 +5,7 @@ import pytest
 
 from hpn.application import Application, InputError
 from hpn.catalogue import Catalogue
-from hpn.selection import Candidate, CheckDefinition, Selection, judge, reason_of, select
+from hpn.engine.selection import Candidate, CheckDefinition, Selection, judge, reason_of, select
 from tests.build import Json, cycle, phase
 from tests.conftest import Supplement
 

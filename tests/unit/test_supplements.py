@@ -8,8 +8,8 @@ import pytest
 
 from hpn.application import Application, InputError
 from hpn.catalogue import HANDBOOK_FOLDER, Catalogue, CatalogueError, load_catalogue
-from hpn.envelopes import EnvelopeQuery, life_envelopes
-from hpn.selection import select
+from hpn.engine.envelopes import EnvelopeQuery, life_envelopes
+from hpn.engine.selection import select
 from tests.build import answer, candidate, check, cycle, notices, phase, suitable, worked_example
 from tests.conftest import Supplement
 

@@ -6,14 +6,14 @@ from xml.etree.ElementTree import Element
 
 import pytest
 
-from hpn import symbols
-from hpn.checks import CHECKS
-from hpn.drawings import svg
-from hpn.drawings.words import said
-from hpn.quantities import QUANTITIES
-from hpn.reader import Reader
+from hpn.engine.checks import CHECKS
+from hpn.explain.drawings import svg
+from hpn.explain.drawings.words import said
 from hpn.web.pages.templates import as_formula, with_symbols
-from hpn.wording import Sentence
+from hpn.words import symbols
+from hpn.words.quantities import QUANTITIES
+from hpn.words.reader import Reader
+from hpn.words.wording import Sentence
 
 Set = list[tuple[str, str]]
 

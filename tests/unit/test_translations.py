@@ -5,7 +5,7 @@ from string import Formatter
 
 import pytest
 
-from hpn.reader import LANGUAGES, catalogue, translations
+from hpn.words.reader import LANGUAGES, catalogue, translations
 from tests.messages import missing
 
 OTHERS = [code for code in LANGUAGES if code != "en"]

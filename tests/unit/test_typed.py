@@ -4,11 +4,11 @@ from fractions import Fraction
 
 import pytest
 
-from hpn import units
 from hpn.application import Application
-from hpn.reader import Reader
 from hpn.web.form import link_reader
 from hpn.web.form.link_writer import to_link
+from hpn.words import units
+from hpn.words.reader import Reader
 
 
 def typed(name: str, text: str, written: str = "") -> Application | str:

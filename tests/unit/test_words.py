@@ -9,13 +9,13 @@ import pytest
 from babel.messages.catalog import Catalog
 
 from hpn.application import Application
-from hpn.calculation import calculation_of
 from hpn.catalogue import Catalogue as Gears
-from hpn.drawings import Subject, bearing_figure, bearing_picture
-from hpn.reader import Reader, catalogue
-from hpn.report.inputs import WORDS
-from hpn.selection import select
+from hpn.engine.selection import select
+from hpn.explain.calculation import calculation_of
+from hpn.explain.drawings import Subject, bearing_figure, bearing_picture
+from hpn.files.inputs import WORDS
 from hpn.web.form.symbols import BY_NAME
+from hpn.words.reader import Reader, catalogue
 from tests.build import cycle, phase
 from tests.messages import BACKEND, TEMPLATES, texts
 

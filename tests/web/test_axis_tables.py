@@ -8,13 +8,13 @@ from typing import Any
 import pytest
 from openpyxl import Workbook
 
-from hpn import units
-from hpn.reader import LANGUAGES, Reader
+from hpn.tables.columns import Choices
+from hpn.tables.sheets import grids_of
+from hpn.tables.workbooks import sheets_of
 from hpn.web.form.axis_columns import BY_ROLE, quantity_of
 from hpn.web.form.axis_tables import AxisTable, read_axes
-from hpn.web.form.columns import Choices
-from hpn.web.form.sheets import grids_of
-from hpn.web.form.workbooks import sheets_of
+from hpn.words import units
+from hpn.words.reader import LANGUAGES, Reader
 
 WIRE = tuple({symbol.unit for symbol in BY_ROLE.values()} - {""})
 HEAD = "Achse;Moment [Nm];Drehzahl [1/min];Dauer [s]"

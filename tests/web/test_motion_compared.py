@@ -4,7 +4,7 @@ import re
 
 from starlette.testclient import TestClient
 
-from hpn.report.export import DIGITS
+from hpn.files.export import DIGITS
 from hpn.web.api.samples import TURNING
 from hpn.web.pages.saved import NAMES, phase_of
 from tests.build import Json, cycle, phase

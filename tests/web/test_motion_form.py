@@ -9,7 +9,7 @@ from pydantic import ValidationError
 from starlette.testclient import TestClient
 
 from hpn.application import Application
-from hpn.motion.moves import Stroke, Turn
+from hpn.physics.motion.moves import Stroke, Turn
 from hpn.web.form import symbols
 from hpn.web.form.labels import LABELS
 from hpn.web.form.link_reader import Form, parse

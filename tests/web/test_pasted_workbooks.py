@@ -16,8 +16,8 @@ import pytest
 from openpyxl.workbook import Workbook
 from starlette.testclient import TestClient
 
+from hpn.tables.workbooks import MAXIMUM_BYTES, sheets_of
 from hpn.web.app import create_app
-from hpn.web.form.workbooks import MAXIMUM_BYTES, sheets_of
 
 Cell = str | float | date | clock | timedelta | bool | None | tuple[Any, str]
 HEADER: list[Cell] = ["Drehmoment [Nm]", "Drehzahl [1/min]", "Dauer [s]"]

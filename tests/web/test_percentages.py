@@ -6,9 +6,9 @@ import re
 import pytest
 from starlette.testclient import TestClient
 
-from hpn.drawings.words import share
-from hpn.reader import Reader
-from hpn.wording import telling_decimals
+from hpn.explain.drawings.words import share
+from hpn.words.reader import Reader
+from hpn.words.wording import telling_decimals
 from tests.build import candidate, cycle, phase
 
 # Torque against T_N = 80 Nm of HPN-20A-5, u, and the percentage, by hand: T / 0.8 Nm.

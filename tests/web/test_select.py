@@ -14,7 +14,7 @@ from starlette.testclient import TestClient
 from hpn import ENGINE_VERSION
 from hpn.application import Application
 from hpn.catalogue import load_catalogue
-from hpn.selection import select
+from hpn.engine.selection import select
 from tests.build import Json, candidate, check, cycle, phase, worked_example
 
 PATH = "/api/v1/select"

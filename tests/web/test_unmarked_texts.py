@@ -8,8 +8,8 @@ from html.parser import HTMLParser
 import pytest
 from starlette.testclient import TestClient
 
-from hpn import reader
 from hpn.web.app import create_app
+from hpn.words import reader
 
 EVERYTHING = (
     "/?T=40&n=250&t=0.3&FRi=500&FAi=200&T=32&n=500&t=3&FRi=&FAi=&T=20&n=250&t=0.4&FRi=&FAi=&tp=4&Tk=200&Nk=1000&fw=1.2"

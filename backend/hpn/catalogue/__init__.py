@@ -10,8 +10,8 @@ from hpn.catalogue.catalogue import (
     SeriesFigure,
 )
 from hpn.catalogue.files import CatalogueError
+from hpn.catalogue.gear import GearColumns
 from hpn.catalogue.load import HANDBOOK_FOLDER, load_catalogue
-from hpn.gear import GearColumns
 
 __all__ = [
     "AVERAGING_S",

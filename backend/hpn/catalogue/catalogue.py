@@ -6,9 +6,10 @@ from functools import cached_property
 
 import numpy as np
 
-from hpn.bearing import Curve
-from hpn.equations import FloatArray
-from hpn.gear import Gear, GearColumns, canonical_designation, canonical_size
+from hpn.catalogue.gear import Gear, GearColumns
+from hpn.physics.bearing import Curve
+from hpn.physics.equations import FloatArray
+from hpn.words.designations import canonical_designation, canonical_size
 
 
 @dataclass(frozen=True, slots=True)

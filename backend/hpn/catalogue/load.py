@@ -8,10 +8,10 @@ from typing import Any, cast
 
 import numpy as np
 
-from hpn.bearing import Curve, CurveError, curve_through
 from hpn.catalogue import tables
 from hpn.catalogue.catalogue import AVERAGING_S, Catalogue, Fact, FlangeBolt, ListedMotor, OutputVersion, SeriesFigure
 from hpn.catalogue.files import CatalogueError, read_folder
+from hpn.catalogue.gear import ClampBolt, Gear, HousingBolts
 from hpn.catalogue.tables import (
     AccuracyTable,
     ClampBoltTable,
@@ -33,9 +33,9 @@ from hpn.catalogue.tables import (
     VersionTable,
     WeightTable,
 )
-from hpn.equations import FloatArray
-from hpn.gear import ClampBolt, Gear, HousingBolts
-from hpn.source import printed_source, supplied_source
+from hpn.physics.bearing import Curve, CurveError, curve_through
+from hpn.physics.equations import FloatArray
+from hpn.words.source import printed_source, supplied_source
 
 FILES = tuple(table.file for table in tables.TABLES)
 HANDBOOK_FOLDER = Path(__file__).parents[3] / "catalogue"

@@ -15,9 +15,10 @@ from typing import Annotated, Any, ClassVar, TypeVar
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, create_model
 
 from hpn.catalogue.files import CatalogueError
-from hpn.gear import Gear, canonical_size
-from hpn.quantities import CheckCode
-from hpn.units import SYMBOLS
+from hpn.catalogue.gear import Gear
+from hpn.words.designations import canonical_size
+from hpn.words.quantities import CheckCode
+from hpn.words.units import SYMBOLS
 
 LONGEST_CELL = 1000
 

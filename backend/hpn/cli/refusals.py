@@ -5,9 +5,9 @@ import argparse
 from pydantic import ValidationError
 
 from hpn.application import InputError
+from hpn.application.faults import plain_message
 from hpn.catalogue import CatalogueError
 from hpn.cli.system import CALLERS, others
-from hpn.faults import plain_message
 from hpn.fleet.errors import FleetError
 from hpn.store import StoreError
 from hpn.web.door.problems import Problem

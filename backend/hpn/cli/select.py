@@ -6,13 +6,13 @@ import errno
 import sys
 
 from hpn.application import Application
+from hpn.application.unique import require_unique
 from hpn.catalogue import load_catalogue
-from hpn.checks import allowed
-from hpn.selection import Candidate, Selection, encode, select
-from hpn.unique import require_unique
+from hpn.engine.checks import allowed
+from hpn.engine.selection import Candidate, Selection, encode, select
 from hpn.web.form.link_writer import to_link
 from hpn.web.settings import Settings
-from hpn.wording import telling_decimals
+from hpn.words.wording import telling_decimals
 
 MAXIMUM_FILE_BYTES = 32_000_000
 """Of an application: 10,000 phases, however they are laid out."""

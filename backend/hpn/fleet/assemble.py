@@ -17,7 +17,7 @@ import pyarrow.parquet as pq
 from hpn.fleet.columns import AXIS
 from hpn.fleet.job import HashArray, Job, hashes_of
 from hpn.fleet.opened import format_of
-from hpn.wording import N_
+from hpn.words.wording import N_
 
 BUCKET_HASHES = 20_000_000
 """Hashes that are compared at once; how many axes there are does not change what that takes."""

@@ -14,15 +14,16 @@ import pyarrow as pa
 import pyarrow.compute as pc
 from numpy.typing import NDArray
 
-from hpn.allowed import gears_allowed
 from hpn.application import LEAST_MOTION, LISTED_FIGURES, MOST_WISHES, NUMBERS, InputError
+from hpn.application.phase import ROOM
 from hpn.catalogue import Catalogue, GearList, ListedMotor
-from hpn.chunks import chunks_of
-from hpn.duty import Asked, Duty, Phases, TextArray
-from hpn.equations import FloatArray
+from hpn.engine.allowed import gears_allowed
+from hpn.engine.chunks import chunks_of
+from hpn.engine.duty import Asked, Duty, Phases, TextArray
 from hpn.fleet.columns import AXIS, COLUMNS, Column
-from hpn.gear import canonical_size
-from hpn.phase import MAXIMUM_PHASES, ROOM
+from hpn.physics.equations import FloatArray
+from hpn.words.designations import canonical_size
+from hpn.words.fields import MAXIMUM_PHASES
 
 BoolArray = NDArray[np.bool_]
 IntArray = NDArray[np.intp]

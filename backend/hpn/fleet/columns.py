@@ -13,7 +13,7 @@ from typing import Any
 import pyarrow as pa
 import pyarrow.types as kinds
 
-from hpn.input_fields import FIELDS, PHASE_FIELDS, InputField
+from hpn.application.input_fields import FIELDS, PHASE_FIELDS, InputField
 
 Json = dict[str, Any]
 

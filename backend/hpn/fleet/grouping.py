@@ -12,8 +12,8 @@ from hpn.fleet.axes import BoolArray, IntArray
 from hpn.fleet.columns import AXIS, COLUMNS
 from hpn.fleet.outcome import Fault
 from hpn.fleet.tables import Batch, CellFault, Table
-from hpn.phase import MAXIMUM_PHASES
-from hpn.wording import N_
+from hpn.words.fields import MAXIMUM_PHASES
+from hpn.words.wording import N_
 
 PART_PHASES, PART_AXES, PART_BYTES = 600_000, 60_000, 8_000_000
 """Size of a part, in rows of long and of list form and in bytes of lines: some tenths of a second of work."""

@@ -17,12 +17,12 @@ import pyarrow as pa
 import pyarrow.compute as pc
 import pyarrow.csv as pacsv
 
-from hpn.faults import NOT_A_NUMBER
+from hpn.application.faults import NOT_A_NUMBER
+from hpn.application.unique import RepeatedNameError, require_unique
 from hpn.fleet.columns import AXIS, COLUMNS, Column, is_list
 from hpn.fleet.errors import FleetError
 from hpn.fleet.tables import BATCH_ROWS, Batch, CellFault, Table
-from hpn.unique import RepeatedNameError, require_unique
-from hpn.wording import N_
+from hpn.words.wording import N_
 
 UNIT_BYTES = 8_000_000
 """Length of a stretch of lines, which ends with a line."""

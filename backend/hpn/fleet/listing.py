@@ -13,7 +13,7 @@ import pyarrow.dataset as datasets
 
 from hpn.application import Application
 from hpn.catalogue import Catalogue
-from hpn.evaluation import Evaluation, PlaceArray, evaluate
+from hpn.engine.evaluation import Evaluation, PlaceArray, evaluate
 from hpn.fleet.axes import Axes
 from hpn.fleet.columns import AXIS, COLUMNS
 from hpn.fleet.grouping import axes_of, parts_of, with_others

@@ -9,17 +9,17 @@ import pyarrow as pa
 from numpy.typing import NDArray
 from pydantic import ValidationError
 
-from hpn.allowed import gears_for, with_listed_motor
 from hpn.application import Application, InputError
+from hpn.application.faults import REQUIRED, faults_of
 from hpn.catalogue import Catalogue
-from hpn.checks import CHECKS
-from hpn.equations import FloatArray
-from hpn.evaluation import SUITABLE, Evaluation, evaluate
-from hpn.faults import REQUIRED, faults_of
+from hpn.engine.allowed import gears_for, with_listed_motor
+from hpn.engine.checks import CHECKS
+from hpn.engine.evaluation import SUITABLE, Evaluation, evaluate
+from hpn.engine.selection import Candidate, Reserve, candidates_of
 from hpn.fleet.axes import Allowed, Axes, BoolArray, IntArray, have_sound_lists
 from hpn.fleet.columns import AXIS, COLUMNS
-from hpn.selection import Candidate, Reserve, candidates_of
-from hpn.wording import N_
+from hpn.physics.equations import FloatArray
+from hpn.words.wording import N_
 
 MOST_FAULTS = 20
 """Faults of one axis that are told."""

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from hpn.fleet.columns import AXIS, COLUMNS, Column, is_list, is_text
 from hpn.fleet.errors import FleetError
-from hpn.wording import N_
+from hpn.words.wording import N_
 
 BATCH_ROWS = 16_384
 """Rows that are read at once."""

@@ -13,9 +13,8 @@ from starlette.responses import Response
 from hpn import ENGINE_VERSION
 from hpn.application import Application, InputError
 from hpn.catalogue import Catalogue
-from hpn.differences import Difference, FigureDifference, differences, figure_differences
-from hpn.fields import Model
-from hpn.selection import Selection, decode, encode, select
+from hpn.engine.selection import Selection, decode, encode, select
+from hpn.explain.differences import Difference, FigureDifference, differences, figure_differences
 from hpn.store import Draft, KeyReusedError, KeySpentError, SavedSelection
 from hpn.web.door.observation import note
 from hpn.web.door.pools import compute
@@ -23,7 +22,8 @@ from hpn.web.door.problems import Problem
 from hpn.web.form.labels import CONTROLS, LONGEST_LABEL, NO_CONTROLS, query_of
 from hpn.web.form.link_writer import to_link
 from hpn.web.form.ordering import OrderingCode, read_ordering_code
-from hpn.wording import N_, Sentence
+from hpn.words.fields import Model
+from hpn.words.wording import N_, Sentence
 
 T = TypeVar("T")
 

@@ -3,9 +3,9 @@
 from dataclasses import dataclass
 from urllib.parse import urlencode
 
-from hpn.reader import Reader
-from hpn.report.export import DIGITS
-from hpn.selection import Selection
+from hpn.engine.selection import Selection
+from hpn.files.export import DIGITS
+from hpn.words.reader import Reader
 
 LONGEST_PATH = 2000
 """Length of a link from which a page doesn't carry it a second time."""

@@ -13,9 +13,9 @@ from starlette.requests import Request
 from starlette.responses import Response
 
 from hpn.application import BatchItem, InputError
-from hpn.batch import judge_batch
 from hpn.catalogue import Catalogue
-from hpn.selection import Judged
+from hpn.engine.batch import judge_batch
+from hpn.engine.selection import Judged
 from hpn.web.api import schemas, streaming
 from hpn.web.api.items import Span, items_of
 from hpn.web.api.replies import BatchLine, JSONBytes, ProblemReply, encode

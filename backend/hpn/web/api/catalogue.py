@@ -8,14 +8,14 @@ from starlette.requests import Request
 from starlette.responses import Response
 
 from hpn.catalogue import Catalogue
-from hpn.envelopes import EnvelopeQuery, life_envelopes
-from hpn.gear import Gear
-from hpn.source import supplied_source
+from hpn.catalogue.gear import Gear
+from hpn.engine.envelopes import EnvelopeQuery, life_envelopes
 from hpn.web.api import schemas
 from hpn.web.api.replies import CatalogueReply, EnvelopeReply, JSONBytes, encode
 from hpn.web.door.access import admit
 from hpn.web.door.conditions import conditional
 from hpn.web.door.problems import Problem
+from hpn.words.source import supplied_source
 
 router = APIRouter(
     prefix="/api/v1",

@@ -8,7 +8,7 @@ from pydantic import BaseModel, Field
 from starlette.requests import Request
 
 from hpn.catalogue import Catalogue
-from hpn.selection import decode, select
+from hpn.engine.selection import decode, select
 from hpn.web.api import schemas
 from hpn.web.api.files import absolute
 from hpn.web.door.access import admit

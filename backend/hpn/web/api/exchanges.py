@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 
 from hpn.application import WORKED_EXAMPLE, Application, InputError
 from hpn.catalogue import Catalogue
-from hpn.selection import select
+from hpn.engine.selection import select
 from hpn.web.api.batch import batch_lines
 from hpn.web.api.replies import BatchReply, encode
 from hpn.web.api.samples import WHOLE, Json, envelopes, one_gear, plain, refusal

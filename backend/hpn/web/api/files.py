@@ -15,12 +15,11 @@ from starlette.responses import Response
 
 from hpn.application import Application
 from hpn.catalogue import Catalogue
-from hpn.reader import Reader
-from hpn.report.export import DIGITS, Export, Heading
-from hpn.report.pdf import pdf
-from hpn.report.submodel import Metamodel, package
-from hpn.report.workbook import workbook
-from hpn.selection import decode, select
+from hpn.engine.selection import decode, select
+from hpn.files.aas.submodel import Metamodel, package
+from hpn.files.export import DIGITS, Export, Heading
+from hpn.files.report.pdf import pdf
+from hpn.files.workbook.workbook import workbook
 from hpn.store import SavedSelection
 from hpn.web.api import schemas
 from hpn.web.archive import url_of, with_catalogue
@@ -34,6 +33,7 @@ from hpn.web.form.link_writer import to_link
 from hpn.web.form.linked import linked, query_of
 from hpn.web.form.ordering import ordering_code
 from hpn.web.settings import Settings
+from hpn.words.reader import Reader
 
 SCHEMA_TYPE = "application/schema+json"
 

@@ -7,8 +7,8 @@ from starlette.responses import Response
 
 from hpn.application import Application
 from hpn.catalogue import Catalogue
-from hpn.gear import Gear
-from hpn.motors import motors_on
+from hpn.catalogue.gear import Gear
+from hpn.engine.motors import motors_on
 from hpn.web.api import schemas
 from hpn.web.api.catalogue import gear_named
 from hpn.web.api.replies import JSONBytes, MotorsOnGearReply, MotorsReply, MotorUseReply, encode

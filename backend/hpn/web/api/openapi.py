@@ -13,7 +13,6 @@ from starlette.requests import Request
 from starlette.responses import Response
 
 from hpn.catalogue import Catalogue
-from hpn.units import suffix_of, symbol_of
 from hpn.web.api import samples, schemas
 from hpn.web.api.exchanges import SUMMARIES, Exchange, exchanges
 from hpn.web.api.replies import encode
@@ -21,6 +20,7 @@ from hpn.web.door.access import API, admit, group_of
 from hpn.web.door.conditions import conditional
 from hpn.web.door.pools import compute
 from hpn.web.settings import RouteGroup, Settings
+from hpn.words.units import suffix_of, symbol_of
 
 PATH_PARAMETERS = {
     "designation": "Designation in any of the printed spellings, such as HPN-20A-5.",

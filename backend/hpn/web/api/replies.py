@@ -9,10 +9,10 @@ from starlette.responses import Response
 
 from hpn.application import BearingModel
 from hpn.catalogue import ListedMotor, SeriesFigure
-from hpn.differences import Difference, FigureDifference
-from hpn.envelopes import EnvelopeCurve
-from hpn.gear import Gear
-from hpn.selection import LINK, Selection
+from hpn.catalogue.gear import Gear
+from hpn.engine.envelopes import EnvelopeCurve
+from hpn.engine.selection import LINK, Selection
+from hpn.explain.differences import Difference, FigureDifference
 
 encode = msgspec.json.Encoder().encode
 

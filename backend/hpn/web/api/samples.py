@@ -10,9 +10,9 @@ import msgspec
 from hpn import ENGINE_VERSION
 from hpn.application import WORKED_EXAMPLE, Application, InputError
 from hpn.catalogue import Catalogue, ListedMotor
-from hpn.differences import FigureDifference, differences
-from hpn.envelopes import EnvelopeQuery, life_envelopes
-from hpn.selection import Selection, select
+from hpn.engine.envelopes import EnvelopeQuery, life_envelopes
+from hpn.engine.selection import Selection, select
+from hpn.explain.differences import FigureDifference, differences
 from hpn.web.api.batch import batch_lines
 from hpn.web.api.motors import motors_on_gear
 from hpn.web.api.replies import encode

@@ -1,6 +1,6 @@
 """Entries of the OpenAPI document: the schemas of the typed replies, and what routes take and answer.
 
-Names, sentences and units of quantities come from `hpn.quantities`; the rest stands beside the fields of the replies.
+Names, sentences and units of quantities come from `hpn.words.quantities`; the rest stands beside the replies' fields.
 """
 
 from collections.abc import Iterable, Mapping
@@ -10,12 +10,12 @@ import msgspec
 from pydantic import BaseModel, Field
 
 from hpn.application import BatchItem
-from hpn.fields import Model, name_units
-from hpn.quantities import BOLT, CANDIDATE, CHECK, DUTY, ENVELOPE, GEAR, MOTOR, PHASE, RESERVE, SERIES, Named
-from hpn.selection import Selection
+from hpn.engine.selection import Selection
 from hpn.web.api import replies
 from hpn.web.door.bodies import JSON
 from hpn.web.door.problems import MAXIMUM_ERRORS, MEDIA_TYPE, TITLES
+from hpn.words.fields import Model, name_units
+from hpn.words.quantities import BOLT, CANDIDATE, CHECK, DUTY, ENVELOPE, GEAR, MOTOR, PHASE, RESERVE, SERIES, Named
 
 DESCRIBED: Mapping[str, Mapping[str, Named]] = {
     "DutyFigures": DUTY,

@@ -6,7 +6,7 @@ from starlette.requests import Request
 from starlette.responses import Response
 
 from hpn.application import Application
-from hpn.selection import encode, select
+from hpn.engine.selection import encode, select
 from hpn.web.api import schemas
 from hpn.web.api.replies import JSONBytes
 from hpn.web.door.access import admit

@@ -11,10 +11,10 @@ from pydantic import BaseModel
 from pydantic_core import from_json
 from starlette.requests import ClientDisconnect, Request
 
-from hpn import unique
-from hpn.phase import MAXIMUM_PHASES
+from hpn.application import unique
 from hpn.web.door.problems import Problem
 from hpn.web.settings import Settings
+from hpn.words.fields import MAXIMUM_PHASES
 
 M = TypeVar("M", bound=BaseModel)
 

@@ -14,8 +14,8 @@ from starlette.routing import Match
 from starlette.types import Scope
 
 from hpn.application import InputError
-from hpn.faults import Location, plain_faults
-from hpn.wording import Sentence
+from hpn.application.faults import Location, plain_faults
+from hpn.words.wording import Sentence
 
 MEDIA_TYPE = "application/problem+json"
 

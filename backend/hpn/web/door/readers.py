@@ -12,12 +12,12 @@ from starlette.requests import Request
 from starlette.responses import RedirectResponse, Response
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from hpn import units
-from hpn.reader import LANGUAGES, Reader
 from hpn.web.door.access import admit
 from hpn.web.door.bodies import pairs_of, read_body
 from hpn.web.door.requests import require_same_origin
 from hpn.web.door.visit import VISIT, Visit, current
+from hpn.words import units
+from hpn.words.reader import LANGUAGES, Reader
 
 LANGUAGE, UNITS = "hpn_language", "hpn_units"
 """Cookies; what they hold is no secret and names nobody."""

@@ -3,7 +3,7 @@
 from starlette.requests import Request
 
 from hpn.web.door.problems import Problem
-from hpn.wording import N_
+from hpn.words.wording import N_
 
 
 def require_same_origin(request: Request) -> None:

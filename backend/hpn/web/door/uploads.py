@@ -12,7 +12,7 @@ from hpn.web.door.bodies import content_type_of, pairs_of, read_body
 from hpn.web.door.pools import compute
 from hpn.web.door.problems import Problem
 from hpn.web.settings import Settings
-from hpn.wording import N_, Sentence
+from hpn.words.wording import N_, Sentence
 
 NO_TEXT = N_("the file is no text: save the sheet as CSV, or copy its cells")
 WRONG_BYTE = N_(

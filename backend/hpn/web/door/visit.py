@@ -3,7 +3,7 @@
 from contextvars import ContextVar
 from typing import NamedTuple
 
-from hpn.reader import DEFAULT, Reader
+from hpn.words.reader import DEFAULT, Reader
 
 
 class Visit(NamedTuple):

@@ -10,14 +10,14 @@ from dataclasses import dataclass, replace
 from functools import cache
 from itertools import groupby, pairwise
 
-from hpn import units
-from hpn.quantities import Named
-from hpn.reader import LANGUAGES, Reader
-from hpn.web.form.cells import is_blank, is_number
-from hpn.web.form.columns import NUMBERS, SKIP, Body, Choices, Column, in_steps, is_angular
-from hpn.web.form.headings import INDEX, LONGEST, QUANTITIES, SUM, UNIT, heading_of, parts_of
+from hpn.tables.cells import is_blank, is_number
+from hpn.tables.columns import NUMBERS, SKIP, Body, Choices, Column, in_steps, is_angular
+from hpn.tables.headings import INDEX, LONGEST, QUANTITIES, SUM, UNIT, heading_of, parts_of
 from hpn.web.form.symbols import PHASE_SYMBOLS, SYMBOLS, Symbol
-from hpn.wording import N_, Sentence
+from hpn.words import units
+from hpn.words.quantities import Named
+from hpn.words.reader import LANGUAGES, Reader
+from hpn.words.wording import N_, Sentence
 
 AXIS = "axis"
 AXIS_NAMED = Named(N_("Axis"))

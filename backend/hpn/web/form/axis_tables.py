@@ -13,14 +13,14 @@ from itertools import groupby, pairwise
 from math import isfinite
 from typing import Any
 
-from hpn import units
+from hpn.tables.cells import DECIMALS, LONGEST_CELL, Decimal, Entry, Figure, Merged, entry, is_blank, is_number, plain
+from hpn.tables.columns import NO_CHOICES, REQUIRED, SKIP, Body, Choices, body_of, skipped, unit_question
+from hpn.tables.numbers import split_unit
+from hpn.tables.sheets import Grid, RefusedError
 from hpn.web.form.axis_columns import AXIS, BY_ROLE, PHASES, AxisColumn, columns_of, foreign_unit
-from hpn.web.form.cells import DECIMALS, LONGEST_CELL, Decimal, Entry, Figure, Merged, entry, is_blank, is_number, plain
-from hpn.web.form.columns import NO_CHOICES, REQUIRED, SKIP, Body, Choices, body_of, skipped, unit_question
-from hpn.web.form.numbers import split_unit
 from hpn.web.form.pasted import TIMES
-from hpn.web.form.sheets import Grid, RefusedError
-from hpn.wording import N_, Sentence, Value
+from hpn.words import units
+from hpn.words.wording import N_, Sentence, Value
 
 NEEDED = (AXIS, *REQUIRED)
 SHARES = ("u", "eta", "fw")

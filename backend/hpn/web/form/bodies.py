@@ -9,13 +9,13 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from hpn.motion.bodies import Body, BodySum, sum_of
+from hpn.physics.motion.bodies import Body, BodySum, sum_of
+from hpn.tables.numbers import read_value
 from hpn.web.form.given import FieldProblem
-from hpn.web.form.numbers import read_value
 from hpn.web.form.refusals import refusal_of
 from hpn.web.form.symbols import BODY_BY_LEAF, BODY_BY_NAME
 from hpn.web.form.ways import Pairs, way_of
-from hpn.wording import Sentence
+from hpn.words.wording import Sentence
 
 DIGITS = 6
 """Digits of the figures that the bodies hand over."""

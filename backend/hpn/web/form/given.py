@@ -6,11 +6,10 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 from hpn.application import MOST_WISHES
-from hpn.motion.bodies import MOST_BODIES
-from hpn.motion.motion import MAXIMUM_MOVES
-from hpn.phase import MAXIMUM_PHASES
+from hpn.application.motion import MAXIMUM_MOVES
+from hpn.physics.motion.bodies import MOST_BODIES
+from hpn.tables.numbers import WAS, WRITTEN
 from hpn.web.form.labels import LABELS, faults_of
-from hpn.web.form.numbers import WAS, WRITTEN
 from hpn.web.form.rows import Rows
 from hpn.web.form.symbols import (
     BODY_BY_NAME,
@@ -25,7 +24,8 @@ from hpn.web.form.symbols import (
     VARYING,
 )
 from hpn.web.form.ways import ASIDE
-from hpn.wording import N_, Sentence
+from hpn.words.fields import MAXIMUM_PHASES
+from hpn.words.wording import N_, Sentence
 
 PAGE_NAMES = ("gear", "pin", "unpin", "do", ASIDE, WRITTEN, WAS)
 """Parameters of the page alone: the candidate looked at, those pinned beside it (repeated), one to take away, the

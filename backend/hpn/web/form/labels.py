@@ -7,7 +7,7 @@ import re
 from collections.abc import Iterator, Mapping
 from urllib.parse import urlencode
 
-from hpn.wording import N_, Sentence
+from hpn.words.wording import N_, Sentence
 
 LONGEST_LABEL = 200
 """Characters of a label."""

@@ -13,14 +13,13 @@ from urllib.parse import urlencode
 from pydantic import ValidationError
 
 from hpn.application import Application
-from hpn.motion.mechanisms import TYPES
-from hpn.reader import Reader
+from hpn.physics.motion.mechanisms import TYPES
+from hpn.tables import numbers
+from hpn.tables.numbers import read_value
 from hpn.web.door.access import MAXIMUM_QUERY_BYTES as MAXIMUM_QUERY_BYTES
-from hpn.web.form import numbers
 from hpn.web.form.bodies import BodyTable, body_table, with_inertia
 from hpn.web.form.given import REQUIRED, FieldProblem, Given, shown_columns
 from hpn.web.form.labels import LABELS, query_of
-from hpn.web.form.numbers import read_value
 from hpn.web.form.refusals import refusal_of
 from hpn.web.form.symbols import (
     BY_NAME,
@@ -38,7 +37,8 @@ from hpn.web.form.symbols import (
     units_of,
 )
 from hpn.web.form.ways import CYCLE_NAMES, START, switched, taken_over
-from hpn.wording import N_, Sentence
+from hpn.words.reader import Reader
+from hpn.words.wording import N_, Sentence
 
 Pairs = Sequence[tuple[str, str]]
 

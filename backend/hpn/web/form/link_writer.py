@@ -7,7 +7,7 @@ from urllib.parse import quote
 from pydantic import BaseModel
 
 from hpn.application import Application, DutyCycle, EmergencyStop, Motor, OutputLoad, Requirements
-from hpn.motion import Motion
+from hpn.application.motion import Motion
 from hpn.web.form.symbols import MECHANISM_SYMBOLS, PHASE_SYMBOLS, SYMBOLS, move_symbols
 
 _EMPTY_LOAD = OutputLoad()

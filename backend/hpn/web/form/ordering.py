@@ -5,8 +5,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from hpn.catalogue import Catalogue, OutputVersion
-from hpn.gear import Gear
-from hpn.wording import N_, Sentence
+from hpn.catalogue.gear import Gear
+from hpn.words.wording import N_, Sentence
 
 MOTOR_CODE = r"[A-Za-z0-9]{1,8}([.\-][A-Za-z0-9]{1,8}){0,3}"
 """Codes for the motor adapter look like `BH-AF1` or `xx.xx`; which one fits a motor only the maker says."""

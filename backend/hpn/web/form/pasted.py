@@ -11,11 +11,9 @@ from fractions import Fraction
 from itertools import chain, pairwise
 from math import isfinite
 
-from hpn import units
 from hpn.application import DutyCycle
-from hpn.phase import MAXIMUM_PHASES
-from hpn.web.form.cells import DECIMALS, Decimal, Entry, entry, is_blank, is_number
-from hpn.web.form.columns import (
+from hpn.tables.cells import DECIMALS, Decimal, Entry, entry, is_blank, is_number
+from hpn.tables.columns import (
     DIVIDED,
     NO_CHOICES,
     REQUIRED,
@@ -31,12 +29,14 @@ from hpn.web.form.columns import (
     skipped,
     unit_question,
 )
-from hpn.web.form.headings import QUANTITIES, heading_of
-from hpn.web.form.numbers import either
-from hpn.web.form.sheets import Grid, RefusedError, grids_of, no_number
+from hpn.tables.headings import QUANTITIES, heading_of
+from hpn.tables.numbers import either
+from hpn.tables.sheets import Grid, RefusedError, grids_of, no_number
+from hpn.tables.totals import totals_of
 from hpn.web.form.symbols import columns_used
-from hpn.web.form.totals import totals_of
-from hpn.wording import N_, Sentence, Value
+from hpn.words import units
+from hpn.words.fields import MAXIMUM_PHASES
+from hpn.words.wording import N_, Sentence, Value
 
 COLUMNS = tuple(QUANTITIES)
 """Columns of the duty table by their link symbols."""

@@ -4,11 +4,11 @@ import re
 from collections.abc import Mapping
 from typing import Any
 
-from hpn.motion.refusals import REFUSALS
-from hpn.quantities import PROFILES
-from hpn.units import suffix_of
+from hpn.physics.motion.refusals import REFUSALS
 from hpn.web.form.symbols import BODY_BY_LEAF, MECHANISM_SYMBOLS, STROKE_SYMBOLS, TURN_SYMBOLS, Symbol
-from hpn.wording import N_, Quantity, Sentence, listed
+from hpn.words.quantities import PROFILES
+from hpn.words.units import suffix_of
+from hpn.words.wording import N_, Quantity, Sentence, listed
 
 _BOUNDS = {
     "greater_than": (N_("must be above {bound}"), "gt"),

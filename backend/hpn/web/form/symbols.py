@@ -1,24 +1,22 @@
 """The tables of inputs: symbol in links, place in the application, and how the form shows each.
 
-Form, link writer and link reader are loops over it. What an input is called and its sign stand in `hpn.quantities`.
+Form, link writer and link reader are loops over it. An input's name and sign stand in `hpn.words.quantities`.
 """
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cache
-from typing import Literal
 
+from hpn.application.phase import Phase
 from hpn.catalogue import Catalogue
-from hpn.motion.mechanisms import CLASSES, Rotary
-from hpn.motion.moves import DEFAULT_JERK_SHARE
-from hpn.notices import AREAS
-from hpn.phase import Phase
-from hpn.quantities import BEARING_MODELS, CANDIDATE, INPUTS, LIFE_BASES, QUANTITIES, Named
-from hpn.units import suffix_of
+from hpn.engine.notices import AREAS
+from hpn.physics.motion.mechanisms import CLASSES, Rotary
+from hpn.physics.motion.moves import DEFAULT_JERK_SHARE
+from hpn.tables.numbers import Kind
 from hpn.web.form import labels
-from hpn.wording import N_
-
-Kind = Literal["number", "whole", "text"]
+from hpn.words.quantities import BEARING_MODELS, CANDIDATE, INPUTS, LIFE_BASES, QUANTITIES, Named
+from hpn.words.units import suffix_of
+from hpn.words.wording import N_
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,7 +40,7 @@ class Symbol:
 
     @property
     def place(self) -> str:
-        """Its place as `hpn.quantities` names it."""
+        """Its place as `hpn.words.quantities` names it."""
         if self.path[:2] == MOTION_PATH:
             return ".".join(self.path[1:])
         if self.path[0] == "body":

@@ -7,12 +7,12 @@ from collections.abc import Iterator, Sequence
 from urllib.parse import parse_qsl, urlencode
 
 from hpn.application import Application, DutyCycle
-from hpn.motion.mechanisms import CLASSES, TYPES
-from hpn.phase import Phase
+from hpn.application.phase import Phase
+from hpn.physics.motion.mechanisms import CLASSES, TYPES
+from hpn.tables.numbers import Entry
 from hpn.web.form.link_writer import to_link
-from hpn.web.form.numbers import Entry
 from hpn.web.form.symbols import LOADS, MECHANISM_SYMBOLS, PHASE_SYMBOLS, TURN_SYMBOLS, mechanism_symbols
-from hpn.wording import N_
+from hpn.words.wording import N_
 
 Pairs = Sequence[tuple[str, str]]
 

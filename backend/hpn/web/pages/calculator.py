@@ -11,8 +11,9 @@ from starlette.responses import HTMLResponse, RedirectResponse, Response
 
 from hpn.application import Application, InputError
 from hpn.catalogue import Catalogue
-from hpn.gear import Gear
-from hpn.selection import Candidate, Selection, select
+from hpn.catalogue.gear import Gear
+from hpn.engine.selection import Candidate, Selection, select
+from hpn.tables.numbers import WRITTEN
 from hpn.web.door.access import admit
 from hpn.web.door.bodies import pairs_of
 from hpn.web.door.pools import worked
@@ -22,13 +23,12 @@ from hpn.web.form.given import FieldProblem
 from hpn.web.form.labels import query_of
 from hpn.web.form.link_reader import Form
 from hpn.web.form.link_writer import to_link
-from hpn.web.form.numbers import WRITTEN
 from hpn.web.form.ordering import OrderingCode, ordering_code
 from hpn.web.form.ways import CYCLE_NAMES
 from hpn.web.pages.insight import Insight, checked_pins, tail_of
 from hpn.web.pages.result import Result
 from hpn.web.pages.templates import environment
-from hpn.wording import N_, Sentence
+from hpn.words.wording import N_, Sentence
 
 SECTIONS = ("overview", "bearing", "drive", "candidates", "compare", "calculation", "notes")
 """The result by sections, in their order."""

@@ -10,8 +10,8 @@ from starlette.requests import Request
 from starlette.responses import HTMLResponse, PlainTextResponse, RedirectResponse, Response
 
 from hpn.catalogue import Catalogue
-from hpn.drawings import gear_envelope
-from hpn.gear import Gear, canonical_designation, canonical_size
+from hpn.catalogue.gear import Gear
+from hpn.explain.drawings import gear_envelope
 from hpn.web.door.access import admit
 from hpn.web.door.bodies import pairs_of
 from hpn.web.door.pools import worked
@@ -21,6 +21,7 @@ from hpn.web.form.ordering import OrderingCode, ordering_code
 from hpn.web.pages.carried import carried_pairs, onward
 from hpn.web.pages.gear_figures import figures_of, neighbours, series_figures, supplements_for
 from hpn.web.pages.templates import environment
+from hpn.words.designations import canonical_designation, canonical_size
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,7 +4,7 @@ from fastapi import APIRouter
 from starlette.requests import Request
 from starlette.responses import HTMLResponse, Response
 
-from hpn.checks import BY_CODE
+from hpn.engine.checks import BY_CODE
 from hpn.web.door.access import admit
 from hpn.web.door.pools import worked
 from hpn.web.pages.catalogue import nowhere

@@ -11,15 +11,14 @@ from starlette.requests import Request
 from starlette.responses import HTMLResponse, RedirectResponse, Response
 
 from hpn.application import Application
+from hpn.application.phase import Phase
 from hpn.catalogue import Catalogue
-from hpn.check import Check
-from hpn.checks import BY_CODE
-from hpn.phase import Phase
-from hpn.quantities import CANDIDATE, DUTY, INPUTS, Named, unit_of
-from hpn.readings import Reading, figure_symbol
-from hpn.report.inputs import LOADS, REQUIREMENTS, InputLine, given
-from hpn.report.motion import lines, move_line
-from hpn.selection import FIGURES, Candidate, CheckResult, decode
+from hpn.engine.check import Check
+from hpn.engine.checks import BY_CODE
+from hpn.engine.selection import FIGURES, Candidate, CheckResult, decode
+from hpn.explain.readings import Reading, figure_symbol
+from hpn.files.inputs import LOADS, REQUIREMENTS, InputLine, given
+from hpn.files.motion import lines, move_line
 from hpn.store import SavedSelection, StoreUnavailableError
 from hpn.web.archive import with_catalogue
 from hpn.web.door.access import admit
@@ -33,7 +32,8 @@ from hpn.web.pages.result import Result
 from hpn.web.pages.saved import result_of
 from hpn.web.pages.saving import refused
 from hpn.web.pages.templates import environment
-from hpn.wording import N_
+from hpn.words.quantities import CANDIDATE, DUTY, INPUTS, Named, unit_of
+from hpn.words.wording import N_
 
 PHASES_SHOWN = 50
 """Phases that differ of which so many are shown."""

@@ -4,15 +4,15 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
-from hpn.allowed import with_listed_motor
 from hpn.application import Application, Motor
-from hpn.calculation.motor import BY_CURVE, LOSS_FREE, STATED
 from hpn.catalogue import Catalogue
-from hpn.gear import Gear
-from hpn.motors import MotorUse, SizeWithMotor, asks_inertia_ratio, motors_on, ratios_with_motor, with_motor
-from hpn.selection import Selection
+from hpn.catalogue.gear import Gear
+from hpn.engine.allowed import with_listed_motor
+from hpn.engine.motors import MotorUse, SizeWithMotor, asks_inertia_ratio, motors_on, ratios_with_motor, with_motor
+from hpn.engine.selection import Selection
+from hpn.explain.calculation.motor import BY_CURVE, LOSS_FREE, STATED
 from hpn.web.form.link_writer import to_link
-from hpn.wording import N_, Sentence
+from hpn.words.wording import N_, Sentence
 
 LISTED_AT_ONCE = 25
 """Motors that fit of which the page shows the use."""

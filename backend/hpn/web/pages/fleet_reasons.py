@@ -5,8 +5,8 @@ Fixed texts are translated as they are; of those with values the template is fou
 
 import re
 
-from hpn.allowed import NOT_THERE, NOT_TOGETHER
-from hpn.wording import N_, Sentence
+from hpn.engine.allowed import NOT_THERE, NOT_TOGETHER
+from hpn.words.wording import N_, Sentence
 
 TEMPLATES = (
     N_("phase {number}: {reason}"),

@@ -11,7 +11,6 @@ from starlette.datastructures import State
 from hpn import ENGINE_VERSION
 from hpn.catalogue import Catalogue
 from hpn.fleet.listing import Listing, applications_of, rows_of
-from hpn.reader import Reader
 from hpn.web.door.visit import VISIT, Visit
 from hpn.web.form import link_reader
 from hpn.web.form.labels import faults_of, query_of
@@ -19,6 +18,7 @@ from hpn.web.form.link_writer import to_link
 from hpn.web.pages.assets import Assets
 from hpn.web.pages.fleet_view import SHOWN, FleetView
 from hpn.web.pages.templates import STATIC, environment
+from hpn.words.reader import Reader
 
 STYLES, SCRIPT = ("app.css", "tools.css", "fleet.css"), "fleet-report.js"
 

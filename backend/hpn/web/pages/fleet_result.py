@@ -17,11 +17,11 @@ from hpn.catalogue import Catalogue
 from hpn.fleet.columns import AXIS
 from hpn.fleet.listing import MOST_LISTED, NEAREST, AxisRow, listing_of, read_answers, rows_of
 from hpn.fleet.summary import Summary, summary_of
-from hpn.reader import Reader
 from hpn.store import FleetDraft, SavedFleet
 from hpn.web.door.problems import Problem
 from hpn.web.pages.fleet_reasons import reasons_of
-from hpn.wording import N_, Quantity, Sentence
+from hpn.words.reader import Reader
+from hpn.words.wording import N_, Quantity, Sentence
 
 COMPARED = ("selected", "governing_check", "utilisation", "suitable")
 TOO_MANY = N_(

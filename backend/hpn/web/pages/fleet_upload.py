@@ -14,13 +14,13 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from hpn.fleet.columns import AXIS, COLUMNS, is_list
+from hpn.tables.cells import Figure
+from hpn.tables.columns import Choices
+from hpn.tables.sheets import MOST_CELLS, Grid, RefusedError, grid_of, grids_of
+from hpn.tables.workbooks import MAGIC, OLD_MAGIC, sheets_of
 from hpn.web.door.uploads import decoded
 from hpn.web.form.axis_tables import AxisTable, read_axes
-from hpn.web.form.cells import Figure
-from hpn.web.form.columns import Choices
-from hpn.web.form.sheets import MOST_CELLS, Grid, RefusedError, grid_of, grids_of
-from hpn.web.form.workbooks import MAGIC, OLD_MAGIC, sheets_of
-from hpn.wording import N_
+from hpn.words.wording import N_
 
 PARQUET, ARROW = b"PAR1", b"ARROW1"
 LARGEST = 1e300

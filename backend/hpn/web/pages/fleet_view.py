@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 from urllib.parse import urlencode
 
-from hpn.wording import N_
+from hpn.words.wording import N_
 
 if TYPE_CHECKING:  # Arrow takes half a second to import, which no other page needs
     from hpn.fleet.listing import AxisRow

@@ -18,8 +18,10 @@ from starlette.requests import Request
 from starlette.responses import HTMLResponse, RedirectResponse, Response
 
 from hpn import ENGINE_VERSION
-from hpn.reader import Reader
 from hpn.store import SavedFleet, StoreUnavailableError
+from hpn.tables import cells
+from hpn.tables.columns import SKIP
+from hpn.tables.sheets import RefusedError
 from hpn.web.archive import RETRY_SECONDS
 from hpn.web.door.access import admit
 from hpn.web.door.bodies import pairs_of, read_form
@@ -30,19 +32,17 @@ from hpn.web.door.requests import require_same_origin
 from hpn.web.door.uploads import read_parts
 from hpn.web.door.visit import current
 from hpn.web.fleets import Tables, size_fleet, workplace
-from hpn.web.form import cells
 from hpn.web.form.axis_columns import AXIS, AXIS_NAMED, BY_ROLE, AxisColumn
 from hpn.web.form.axis_tables import AxisTable, number_in
-from hpn.web.form.columns import SKIP
 from hpn.web.form.labels import TITLE_BLOCK, faults_of
 from hpn.web.form.pasted import TIMES
-from hpn.web.form.sheets import RefusedError
 from hpn.web.pages.fleet_view import ROWS_ON_PAGE, SHOWN, Chosen, FleetPageView
 from hpn.web.pages.paste import DECIMALS, choices_of
 from hpn.web.pages.refusals import reads_pages
 from hpn.web.pages.saved_list import names_of
 from hpn.web.pages.templates import environment
-from hpn.wording import N_, Sentence
+from hpn.words.reader import Reader
+from hpn.words.wording import N_, Sentence
 
 ADDRESS = "/fleets"
 SUFFIXES = ("parquet", "csv", "xlsx")

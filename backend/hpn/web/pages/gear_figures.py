@@ -4,11 +4,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from hpn.catalogue import Catalogue
+from hpn.catalogue.gear import Gear
 from hpn.catalogue.tables import TABLES
-from hpn.gear import Gear
-from hpn.quantities import GEAR, Named
-from hpn.units import suffix_of
-from hpn.wording import N_
+from hpn.words.quantities import GEAR, Named
+from hpn.words.units import suffix_of
+from hpn.words.wording import N_
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,14 +7,14 @@ from urllib.parse import quote
 
 from hpn.application import Application
 from hpn.catalogue import Catalogue
-from hpn.comparison import MOST_PINS, Column, RowGroup, groups_of, undominated
-from hpn.remedy import alternatives_of, tried
-from hpn.selection import Candidate, Selection
+from hpn.engine.remedy import alternatives_of, tried
+from hpn.engine.selection import Candidate, Selection
+from hpn.explain.comparison import MOST_PINS, Column, RowGroup, groups_of, undominated
 from hpn.web.form.given import FieldProblem
 from hpn.web.form.link_reader import Form
 from hpn.web.form.link_writer import to_link
 from hpn.web.pages.result import lighter_miss
-from hpn.wording import N_, Sentence
+from hpn.words.wording import N_, Sentence
 
 
 @dataclass(frozen=True)

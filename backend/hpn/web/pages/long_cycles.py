@@ -7,7 +7,6 @@ from fastapi import APIRouter
 from starlette.requests import Request
 from starlette.responses import Response
 
-from hpn.phase import MAXIMUM_PHASES
 from hpn.web.door.access import admit
 from hpn.web.door.bodies import pairs_of, read_form
 from hpn.web.door.pools import compute
@@ -15,6 +14,7 @@ from hpn.web.form import link_reader
 from hpn.web.form.link_reader import Pairs
 from hpn.web.form.symbols import PHASE_SYMBOLS
 from hpn.web.pages import calculator as pages
+from hpn.words.fields import MAXIMUM_PHASES
 
 TEXT = "phases"
 """Field of the form that holds the phases as text, a phase on each line."""

@@ -7,9 +7,9 @@ from jinja2 import pass_context
 from jinja2.runtime import Context
 from markupsafe import Markup
 
-from hpn.calculation.mathml import compared, in_symbols, result, with_numbers
-from hpn.reader import Reader
+from hpn.explain.calculation.mathml import compared, in_symbols, result, with_numbers
 from hpn.web.door.visit import current
+from hpn.words.reader import Reader
 
 
 def _for_reader(write: Callable[[Reader, Any], str]) -> Callable[..., Markup]:

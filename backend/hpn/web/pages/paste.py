@@ -19,28 +19,29 @@ from starlette.requests import Request
 from starlette.responses import HTMLResponse, RedirectResponse, Response
 
 from hpn.application import Application
-from hpn.faults import plain_message
+from hpn.application.faults import plain_message
+from hpn.tables import cells
+from hpn.tables.cells import Decimal, Figure, Merged
+from hpn.tables.columns import CELLS, SKIP, WIRE, Choices, Column
+from hpn.tables.headings import QUANTITIES
+from hpn.tables.sheets import SEPARATORS, RefusedError
+from hpn.tables.workbooks import MAGIC, OLD_MAGIC, Sheet, Sheets, sheets_of
 from hpn.web.door.access import admit
 from hpn.web.door.bodies import pairs_of, parsed
 from hpn.web.door.pools import compute, worked
 from hpn.web.door.problems import Problem, pointer
 from hpn.web.door.uploads import decoded, read_parts
 from hpn.web.door.visit import current
-from hpn.web.form import cells, link_reader
-from hpn.web.form.cells import Decimal, Figure, Merged
-from hpn.web.form.columns import CELLS, SKIP, WIRE, Choices, Column
+from hpn.web.form import link_reader
 from hpn.web.form.given import shown_columns
-from hpn.web.form.headings import QUANTITIES
 from hpn.web.form.link_reader import Pairs
 from hpn.web.form.link_writer import to_link
 from hpn.web.form.pasted import COLUMNS, LAST, PARTS, PHASE, TIMES, TOTALS, Table, read_grid, read_text
-from hpn.web.form.sheets import SEPARATORS, RefusedError
 from hpn.web.form.symbols import LOADS, VARYING
 from hpn.web.form.ways import CYCLE_NAMES
-from hpn.web.form.workbooks import MAGIC, OLD_MAGIC, Sheet, Sheets, sheets_of
 from hpn.web.pages import long_cycles
 from hpn.web.pages.templates import environment
-from hpn.wording import N_, Sentence
+from hpn.words.wording import N_, Sentence
 
 FIRST_ROWS, LAST_ROWS = 6, 2
 """Rows of a long table that the preview shows."""

@@ -7,16 +7,16 @@ from xml.etree.ElementTree import Element
 import orjson
 from markupsafe import Markup
 
-from hpn import drawings
 from hpn.application import Application
 from hpn.catalogue import Catalogue
-from hpn.drawings import BearingPicture, CyclePicture, Figure, Plane, SizeUse, Subject
-from hpn.drawings.svg import markup
-from hpn.gear import Gear
-from hpn.reader import Reader
-from hpn.selection import Candidate
+from hpn.catalogue.gear import Gear
+from hpn.engine.selection import Candidate
+from hpn.explain import drawings
+from hpn.explain.drawings import BearingPicture, CyclePicture, Figure, Plane, SizeUse, Subject
+from hpn.explain.drawings.svg import markup
 from hpn.web.door.visit import current
-from hpn.wording import Sentence
+from hpn.words.reader import Reader
+from hpn.words.wording import Sentence
 
 
 @dataclass(frozen=True)

@@ -8,14 +8,14 @@ from functools import cached_property
 
 from hpn.application import Application, RankBy
 from hpn.catalogue import Catalogue
-from hpn.checks import BY_CODE, allowed
-from hpn.gear import Gear
-from hpn.readings import Reading, readings_of
-from hpn.remedy import Growth, growths_of, remedy_of
-from hpn.selection import Candidate, Selection
+from hpn.catalogue.gear import Gear
+from hpn.engine.checks import BY_CODE, allowed
+from hpn.engine.remedy import Growth, growths_of, remedy_of
+from hpn.engine.selection import Candidate, Selection
+from hpn.explain.readings import Reading, readings_of
 from hpn.web.pages.drive import Drive
 from hpn.web.pages.pictures import Pictures, pictures_of
-from hpn.wording import N_, Sentence
+from hpn.words.wording import N_, Sentence
 
 BEST: Mapping[RankBy, str] = {
     "weight": N_("The lightest gear that passes every check."),

@@ -13,15 +13,13 @@ from starlette.responses import HTMLResponse, RedirectResponse, Response
 from hpn import ENGINE_VERSION
 from hpn.application import Application
 from hpn.catalogue import Catalogue
-from hpn.differences import Difference, FigureDifference
-from hpn.quantities import CANDIDATE, CHECK, DUTY, GEAR, MOTOR, PHASE, RESERVE, VERDICTS
-from hpn.report.export import DIGITS
-from hpn.report.inputs import LOADS, REQUIREMENTS, given
-from hpn.report.motion import lines, move_line
-from hpn.report.tables import number_of
-from hpn.selection import Selection, reason_of
+from hpn.engine.selection import Selection, reason_of
+from hpn.explain.differences import Difference, FigureDifference
+from hpn.files.export import DIGITS
+from hpn.files.inputs import LOADS, REQUIREMENTS, given
+from hpn.files.motion import lines, move_line
+from hpn.files.report.tables import number_of
 from hpn.store import ID, SavedSelection, StoreUnavailableError
-from hpn.units import symbol_of
 from hpn.web.archive import Reopened, found, url_of
 from hpn.web.door.access import admit
 from hpn.web.door.problems import Problem
@@ -33,7 +31,9 @@ from hpn.web.pages.gear_figures import Figure, figures_of
 from hpn.web.pages.result import Result
 from hpn.web.pages.saving import refused
 from hpn.web.pages.templates import environment
-from hpn.wording import N_, Sentence
+from hpn.words.quantities import CANDIDATE, CHECK, DUTY, GEAR, MOTOR, PHASE, RESERVE, VERDICTS
+from hpn.words.units import symbol_of
+from hpn.words.wording import N_, Sentence
 
 DIFFERENCES_ON_PAGE = 100
 

@@ -20,7 +20,7 @@ from hpn.web.form.labels import faults_of
 from hpn.web.pages.carried import onward
 from hpn.web.pages.saving import refused
 from hpn.web.pages.templates import environment
-from hpn.wording import N_
+from hpn.words.wording import N_
 
 ADDRESS = "/selections"
 LINES_ON_PAGE = 25

@@ -27,7 +27,7 @@ from hpn.web.pages import calculator
 from hpn.web.pages.calculator import Answer
 from hpn.web.pages.long_cycles import expanded
 from hpn.web.pages.templates import environment
-from hpn.wording import N_
+from hpn.words.wording import N_
 
 ONCE = re.compile(r"[A-Za-z0-9_-]{22}")
 

@@ -12,11 +12,21 @@ from jinja2.runtime import Context
 from markupsafe import Markup, escape
 from starlette.datastructures import State
 
-from hpn import units
-from hpn.calculation import calculation_of
-from hpn.checks import BY_CODE
-from hpn.drawings.picture import beyond_limit
-from hpn.quantities import (
+from hpn.engine.checks import BY_CODE
+from hpn.engine.remedy import DRIVER_NAMES
+from hpn.engine.selection import Candidate, reason_of
+from hpn.explain.calculation import calculation_of
+from hpn.explain.drawings.picture import beyond_limit
+from hpn.web.door.visit import address, current
+from hpn.web.form import symbols, ways
+from hpn.web.form.ordering import MOTOR_CODE, ordering_code
+from hpn.web.pages import assets, mathml, pictures
+from hpn.web.pages.carried import carried_pairs, onward
+from hpn.web.pages.fleet_reasons import reasons_of
+from hpn.web.pages.result import BEST
+from hpn.web.preview import preview_of
+from hpn.words import units
+from hpn.words.quantities import (
     BEARING_MODELS,
     ENVELOPE_BASIS,
     GEAR,
@@ -28,19 +38,9 @@ from hpn.quantities import (
     VERDICTS,
     unit_of,
 )
-from hpn.reader import GROUP, LANGUAGE_NAMES, Reader
-from hpn.remedy import DRIVER_NAMES
-from hpn.selection import Candidate, reason_of
-from hpn.symbols import Part, formula, sentence
-from hpn.web.door.visit import address, current
-from hpn.web.form import symbols, ways
-from hpn.web.form.ordering import MOTOR_CODE, ordering_code
-from hpn.web.pages import assets, mathml, pictures
-from hpn.web.pages.carried import carried_pairs, onward
-from hpn.web.pages.fleet_reasons import reasons_of
-from hpn.web.pages.result import BEST
-from hpn.web.preview import preview_of
-from hpn.wording import Sentence
+from hpn.words.reader import GROUP, LANGUAGE_NAMES, Reader
+from hpn.words.symbols import Part, formula, sentence
+from hpn.words.wording import Sentence
 
 FRONTEND = Path(__file__).parents[4] / "frontend"
 TEMPLATES, STATIC, COMPILED = FRONTEND / "templates", FRONTEND / "static", FRONTEND / "dist" / "templates"

@@ -7,10 +7,10 @@ from starlette.requests import Request
 from starlette.responses import Response
 
 from hpn.application import Application
+from hpn.tables.cells import Decimal
 from hpn.web.door.access import admit
 from hpn.web.door.pools import compute
 from hpn.web.door.problems import Problem
-from hpn.web.form.cells import Decimal
 from hpn.web.form.linked import linked, query_of
 from hpn.web.form.pasted import write_table
 

@@ -1,0 +1,43 @@
+"""The application: what a person asks, its phases or motion, and the faults of an input."""
+
+from hpn.application.application import (
+    LEAST_MOTION,
+    LISTED_FIGURES,
+    MOST_WISHES,
+    NUMBERS,
+    WORKED_EXAMPLE,
+    Application,
+    ApplicationArea,
+    BatchItem,
+    BearingModel,
+    DutyCycle,
+    EmergencyStop,
+    InputError,
+    LifeBasis,
+    Location,
+    Motor,
+    OutputLoad,
+    RankBy,
+    Requirements,
+)
+
+__all__ = [
+    "LEAST_MOTION",
+    "LISTED_FIGURES",
+    "MOST_WISHES",
+    "NUMBERS",
+    "WORKED_EXAMPLE",
+    "Application",
+    "ApplicationArea",
+    "BatchItem",
+    "BearingModel",
+    "DutyCycle",
+    "EmergencyStop",
+    "InputError",
+    "LifeBasis",
+    "Location",
+    "Motor",
+    "OutputLoad",
+    "RankBy",
+    "Requirements",
+]

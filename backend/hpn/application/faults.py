@@ -1,0 +1,52 @@
+"""What is wrong with an input, as (location, text) pairs in words that say what would be right."""
+
+import re
+from collections.abc import Iterable, Sequence
+
+from pydantic import ValidationError
+
+from hpn.application import InputError
+from hpn.words.wording import N_
+
+Location = Sequence[str | int]
+
+REQUIRED = N_("is required")
+SHOULD = re.compile("(?:Input|Tuple|String) should")
+NOT_A_NUMBER = N_("must be a number, such as 9.3")
+
+
+def faults_of(error: ValidationError | InputError) -> list[tuple[Location, str]]:
+    """Faults that the models or the selection have found."""
+    if isinstance(error, InputError):
+        return list(error.problems)
+    found = error.errors(include_url=False, include_context=False, include_input=False)
+    return plain_faults((entry["loc"], entry["type"], entry["msg"]) for entry in found)
+
+
+def plain_faults(found: Iterable[tuple[Location, str, str]]) -> list[tuple[Location, str]]:
+    """Faults for pydantic's (location, type, message) entries."""
+    # A list whose items are wrong is also reported as too short; the items say it better.
+    entries = list(found)
+    items = {tuple(location[:end]) for location, _, _ in entries for end in range(len(location))}
+    return [
+        (location, plain_message(kind, message))
+        for location, kind, message in entries
+        if kind != "too_short" or tuple(location) not in items
+    ]
+
+
+def plain_message(kind: str, message: str) -> str:
+    """Pydantic's message in words that say what would be right."""
+    return {
+        "extra_forbidden": N_("is not a field of this object"),
+        "missing": REQUIRED,
+        "float_parsing": NOT_A_NUMBER,
+        "finite_number": N_("must be a finite number"),
+        "float_type": N_("must be a JSON number, such as 9.3"),
+        "int_type": N_("must be a JSON integer, such as 5"),
+        "int_parsing": N_("must be a whole number, such as 5"),
+        "string_type": N_("must be text"),
+        "bool_parsing": N_("must be true or false"),
+        "tuple_type": N_("must be a list"),
+        "model_type": N_("must be an object"),
+    }.get(kind) or SHOULD.sub("must", message.removeprefix("Value error, ")).replace(" after validation,", ",")

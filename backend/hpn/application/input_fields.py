@@ -1,0 +1,86 @@
+"""Every field of an application with its kind and bounds, read from the JSON Schema of the models."""
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any, Literal
+
+from hpn.application import Application
+from hpn.application.phase import Phase
+
+Kind = Literal["number", "integer", "string"]
+Json = dict[str, Any]
+
+
+@dataclass(frozen=True)
+class InputField:
+    """One field: its place in the application, or in a phase, and what it, or each item of its list, may be.
+
+    `least` and `most` may be reached, `above` may not. `nullable` is a field that may be left out for good; `required`
+    one that any application, or any phase, has.
+    """
+
+    path: tuple[str, ...]
+    kind: Kind
+    is_list: bool
+    required: bool
+    nullable: bool
+    default: Any
+    least: float
+    most: float
+    above: float
+    choices: tuple[str, ...] | None
+
+
+def _fields_below(schema: Json, definitions: Json, path: tuple[str, ...] = ()) -> Iterator[InputField]:
+    required = schema.get("required", ())
+    for name, entry in schema["properties"].items():
+        place = (*path, name)
+        if place in (("duty_cycle", "phases"), ("duty_cycle", "motion")):
+            continue  # the fields of a phase stand by themselves
+        shape = _resolved(entry, definitions)
+        if "properties" in shape:
+            yield from _fields_below(shape, definitions, place)
+        else:
+            yield _field(place, entry, shape, required=name in required and not path)
+
+
+def _resolved(entry: Json, definitions: Json) -> Json:
+    """Schema of a field without its null and its reference."""
+    if "anyOf" in entry:
+        entry = next(option for option in entry["anyOf"] if option.get("type") != "null")
+    return dict(definitions[entry["$ref"].rsplit("/", 1)[1]]) if "$ref" in entry else entry
+
+
+def _field(path: tuple[str, ...], entry: Json, shape: Json, *, required: bool) -> InputField:
+    item = shape["items"] if shape["type"] == "array" else shape
+    return InputField(
+        path=path,
+        kind=item["type"],
+        is_list=shape["type"] == "array",
+        required=required,
+        nullable="anyOf" in entry,
+        default=entry.get("default"),
+        least=item.get("minimum", -math.inf),
+        most=item.get("maximum", math.inf),
+        above=item.get("exclusiveMinimum", -math.inf),
+        choices=tuple(item["enum"]) if "enum" in item else None,
+    )
+
+
+def _of_phase() -> Iterator[InputField]:
+    schema = Phase.model_json_schema()
+    for name, entry in schema["properties"].items():
+        yield _field((name,), entry, _resolved(entry, {}), required=name in schema["required"])
+
+
+def _of_application() -> Iterator[InputField]:
+    schema = Application.model_json_schema()
+    return _fields_below(schema, schema["$defs"])
+
+
+PHASE_FIELDS: Mapping[str, InputField] = {field.path[0]: field for field in _of_phase()}
+"""Fields of a phase by name."""
+
+FIELDS: Mapping[str, InputField] = {".".join(field.path): field for field in _of_application()}
+"""Fields outside of the phases and the motion by their path: `requirements.life_h`."""

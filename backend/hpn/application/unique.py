@@ -1,0 +1,30 @@
+"""Names that stand more than once in one object of JSON: readers of JSON take the last one without a word."""
+
+import json
+from collections import Counter
+from typing import Any
+
+from hpn.application import InputError
+from hpn.words.wording import N_, Sentence
+
+MOST_SHOWN = 40
+"""Characters of a name that a message has room for."""
+
+
+class RepeatedNameError(InputError):
+    """JSON of which a value would be lost; `name` stands more than once in one object."""
+
+    def __init__(self, name: str, count: int) -> None:
+        self.name = name[:MOST_SHOWN]
+        given = {"name": repr(self.name), "count": str(count)}
+        super().__init__(((), Sentence(N_("has the name {name} {count} times in one object"), given)))
+
+
+def require_unique(content: bytes) -> None:
+    """Raise RepeatedNameError for JSON with a name more than once in one object, ValueError for what is no JSON."""
+    json.loads(content, strict=False, parse_int=str, parse_float=str, object_pairs_hook=_distinct)
+
+
+def _distinct(pairs: list[tuple[str, Any]]) -> None:
+    if len(dict(pairs)) < len(pairs):
+        raise RepeatedNameError(*Counter(name for name, _ in pairs).most_common(1)[0])

@@ -1,0 +1,99 @@
+"""A gear of the series with every figure that is published of it and where each comes from; and columns of gears."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from hpn.physics.equations import FloatArray
+from hpn.words.source import is_supplied
+
+
+@dataclass(frozen=True, slots=True)
+class ClampBolt:
+    """Bolt of the motor coupling (table 26.2); which one depends on the coupling."""
+
+    bolt_size: str
+    tightening_torque_Nm: float | None
+    source: str
+
+
+@dataclass(frozen=True, slots=True)
+class HousingBolts:
+    """Bolts of the housing flange (table 27.1)."""
+
+    number_of_bolts: int | None
+    bolt_size: str | None
+    pitch_diameter_mm: float | None
+    tightening_torque_Nm: float | None
+    source: str
+
+
+def _published(file: str, *, signed: bool = False) -> Any:
+    """Field of a figure, and the file of the catalogue with a column of its name; positive unless it is signed."""
+    return field(default=None, metadata={"file": file, "signed": signed})
+
+
+@dataclass(frozen=True, slots=True)
+class Gear:
+    """A size and ratio. None is a figure that is not published; it is never read as zero."""
+
+    designation: str
+    size: str
+    ratio: int
+    stages: int
+    repeated_peak_torque_Nm: float | None = _published("ratings.csv")
+    rated_torque_Nm: float | None = _published("ratings.csv")
+    momentary_peak_torque_Nm: float | None = _published("ratings.csv")
+    maximum_input_speed_rpm: float | None = _published("sizes.csv")
+    average_input_speed_rpm: float | None = _published("sizes.csv")
+    ambient_temperature_minimum_degC: float | None = _published("sizes.csv", signed=True)
+    ambient_temperature_maximum_degC: float | None = _published("sizes.csv", signed=True)
+    weight_kg: float | None = _published("weights.csv")
+    backlash_arcmin: float | None = _published("accuracy.csv")
+    transmission_accuracy_arcmin: float | None = _published("accuracy.csv")
+    torsional_stiffness_Nm_per_rad: float | None = _published("stiffness.csv")
+    length_min_mm: float | None = _published("lengths.csv")
+    length_max_mm: float | None = _published("lengths.csv")
+    dynamic_radial_load_N: float | None = _published("sizes.csv")
+    dynamic_axial_load_N: float | None = _published("sizes.csv")
+    clamp_bolts: tuple[ClampBolt, ...] = ()
+    housing_bolts: HousingBolts | None = None
+    note: str | None = None
+    sources: dict[str, str] = field(default_factory=dict, hash=False)
+
+    @property
+    def name(self) -> str:
+        """Size as the handbook heads its tables: `HPN-20A`."""
+        return f"HPN-{self.size}"
+
+    def is_supplied(self, figure: str) -> bool:
+        """Whether a figure comes from the user's supplement."""
+        return is_supplied(self.sources.get(figure, ""))
+
+
+class GearColumns:
+    """Figures of some gears as arrays, shape (gears,); NaN where a figure is not published."""
+
+    ratio: FloatArray
+    repeated_peak_torque_Nm: FloatArray
+    rated_torque_Nm: FloatArray
+    momentary_peak_torque_Nm: FloatArray
+    maximum_input_speed_rpm: FloatArray
+    average_input_speed_rpm: FloatArray
+    ambient_temperature_minimum_degC: FloatArray
+    ambient_temperature_maximum_degC: FloatArray
+    weight_kg: FloatArray
+    backlash_arcmin: FloatArray
+    torsional_stiffness_Nm_per_rad: FloatArray
+    length_min_mm: FloatArray
+    length_max_mm: FloatArray
+    dynamic_radial_load_N: FloatArray
+    dynamic_axial_load_N: FloatArray
+
+    def __init__(self, gears: Sequence[Gear]) -> None:
+        for name in self.__class__.__annotations__:
+            column = np.array([getattr(gear, name) for gear in gears], dtype=np.float64)
+            column.flags.writeable = False
+            setattr(self, name, column)

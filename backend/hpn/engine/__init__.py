@@ -1,0 +1,1 @@
+"""The engine: from an application and the catalogue to checks, verdicts and ranked candidates."""

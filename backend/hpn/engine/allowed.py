@@ -1,0 +1,95 @@
+"""What the catalogue has of what an application asks for: the gears that it allows, and the motor that it names."""
+
+from collections.abc import Sequence
+from functools import lru_cache
+
+from hpn.application import LISTED_FIGURES, Application, InputError, Location
+from hpn.catalogue import Catalogue, GearList
+from hpn.words.wording import N_, Sentence, Value
+
+NOT_THERE = N_("the catalogue has no {value}; there are {listed}")
+NOT_TOGETHER = N_("no gear has such a size and ratio together; there are {offered}")
+
+MOTORS_NAMED = 20
+"""Motors that an error names."""
+
+
+def gears_for(application: Application, catalogue: Catalogue) -> GearList:
+    """Gears that an application allows; raises InputError as `select` does."""
+    asked, load = application.requirements, application.output_load
+    return gears_allowed(asked.sizes, asked.ratios, load.model if load else "", catalogue)
+
+
+def gears_allowed(
+    sizes: tuple[str, ...] | None, ratios: tuple[int, ...] | None, bearing_model: str, catalogue: Catalogue
+) -> GearList:
+    """Gears that `sizes` and `ratios` leave; raises InputError as `select` does."""
+    gears = _restricted(catalogue, sizes, ratios)
+    if bearing_model == "digitised" and not any(gears.curves):
+        raise InputError(
+            (
+                ("output_load", "model"),
+                Sentence(
+                    "no candidate has points of a printed curve: put them into bearing_envelopes.csv of a catalogue "
+                    "supplement (setting HPN_CATALOGUE_SUPPLEMENT), or choose linear or iso281"
+                ),
+            )
+        )
+    return gears
+
+
+@lru_cache(maxsize=256)
+def _restricted(catalogue: Catalogue, sizes: tuple[str, ...] | None, ratios: tuple[int, ...] | None) -> GearList:
+    for wanted, there in ((sizes, catalogue.sizes), (ratios, catalogue.ratios)):
+        if wanted is not None and not set(there).issuperset(wanted):
+            raise _not_there(sizes or (), ratios or (), catalogue)
+    gears = catalogue.restricted(sizes, ratios)
+    if not gears.rows:
+        offered = "; ".join(
+            f"{size}: {', '.join(str(gear.ratio) for gear in catalogue.gears if gear.size == size)}"
+            for size in dict.fromkeys(sizes or ())
+        )
+        raise InputError(
+            (
+                ("requirements", "ratios"),
+                Sentence(NOT_TOGETHER, {"offered": offered}),
+            )
+        )
+    return gears
+
+
+def _not_there(sizes: Sequence[str], ratios: Sequence[int], catalogue: Catalogue) -> InputError:
+    problems: list[tuple[Location, Sentence]] = [
+        (
+            ("requirements", name, index),
+            Sentence(NOT_THERE, {"value": str(value), "listed": ", ".join(map(str, there))}),
+        )
+        for name, wanted, there in (("sizes", sizes, catalogue.sizes), ("ratios", ratios, catalogue.ratios))
+        for index, value in enumerate(wanted)
+        if value not in there
+    ]
+    return InputError(*problems)
+
+
+def with_listed_motor(application: Application, catalogue: Catalogue) -> Application:
+    """The application with the figures of the motor that it names.
+
+    Raises InputError for a motor that is not listed, and for one without the inertia that an inertia ratio needs.
+    """
+    asked = application.requirements.motor
+    if asked is None or asked.designation is None:
+        return application
+    place = ("requirements", "motor", "designation")
+    listed = catalogue.motor_by_designation.get(asked.designation)
+    if listed is None:
+        names = list(catalogue.motor_by_designation)
+        if not names:
+            raise InputError((place, Sentence(N_("there are no motors: list them in motors.csv of a supplement"))))
+        more = ["…"] if len(names) > MOTORS_NAMED else []
+        values: dict[str, Value] = {"value": asked.designation, "listed": ", ".join(names[:MOTORS_NAMED] + more)}
+        raise InputError((place, Sentence(NOT_THERE, values)))
+    if asked.inertia_ratio is not None and listed.inertia_kgm2 is None:
+        raise InputError((place, Sentence(N_("motors.csv gives no inertia of this motor, which inertia_ratio needs"))))
+    motor = asked.model_copy(update={name: getattr(listed, name) for name in LISTED_FIGURES})
+    requirements = application.requirements.model_copy(update={"motor": motor})
+    return application.model_copy(update={"requirements": requirements})

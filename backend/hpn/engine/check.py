@@ -1,0 +1,84 @@
+"""What a check is: what it compares, how it goes with each driver of an application, and what it says in words."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Literal
+
+from hpn.catalogue import GearColumns
+from hpn.engine.duty import Asked, Duty
+from hpn.engine.figures import Figures
+from hpn.physics.equations import FloatArray
+from hpn.words.wording import N_
+
+Kind = Literal["maximum", "minimum", "range"]
+Group = Literal["load", "property"]
+Driver = Literal["torque", "speed", "load"]
+
+DRIVERS: tuple[Driver, ...] = ("torque", "speed", "load")
+"""What the checks go with: all torques of the duty cycle, all speeds, all loads on the output."""
+
+
+RATING_TABLES = N_("rating tables 10.1 to 12.2")
+"""Source of most limits."""
+
+
+@dataclass(frozen=True, slots=True)
+class Case:
+    """What the checks look at."""
+
+    duty: Duty
+    gears: GearColumns
+    figures: Figures
+
+    @property
+    def asked(self) -> Asked:
+        """What is asked for besides the phases."""
+        return self.duty.asked
+
+
+Values = Callable[[Case], FloatArray]
+
+
+@dataclass(frozen=True)
+class Check:
+    """One check. Its texts are English msgids; `name` is how it stands inside a sentence.
+
+    `asked` is the input whose presence asks for it, None for a check that is always made. Utilisation is demand over
+    limit, limit over demand for a minimum, or what `share` gives. `limited_by` is the catalogue figure behind the
+    limit, None where that is the user's own. `relation` is the check in the handbook's symbols. `moves` gives the power
+    with which the utilisation grows with each driver; `accepted` says which {value} of the input `asked` lets it pass
+    where none of them moves it, or none in closed form.
+    """
+
+    code: str
+    name: str
+    title: str
+    unit: str
+    kind: Kind
+    group: Group
+    limit_name: str
+    source: str
+    tests: str
+    consequence: str
+    basis: str
+    remedy: str
+    demand: Values
+    limit: Values
+    relation: str
+    asked: str | None = None
+    share: Values | None = None
+    equation: str | None = None
+    limited_by: str | None = None
+    moves: Mapping[Driver, float] = field(default_factory=dict)
+    accepted: str = ""
+
+    def utilisation(self, case: Case) -> FloatArray:
+        """Share of the limit that is used, [-]; broadcasts to (N, G), infinite where a check fails without a number."""
+        if self.share is not None:
+            return self.share(case)
+        demand, limit = self.demand(case), self.limit(case)
+        return limit / demand if self.kind == "minimum" else demand / limit
+
+    def allowed(self, utilisation: float) -> float:
+        """Largest utilisation with which it passes: the user's own u for a load check, 1 for a property check."""
+        return utilisation if self.group == "load" else 1.0

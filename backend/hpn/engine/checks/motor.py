@@ -1,0 +1,130 @@
+"""Checks of the motor, against the limits that the user states: speeds, torques and the inertia ratio."""
+
+from hpn.engine.check import Check
+from hpn.physics import equations
+from hpn.words.wording import N_
+
+MOTOR: tuple[Check, ...] = (
+    Check(
+        code="motor_speed",
+        name=N_("motor speed"),
+        title=N_("Motor speed"),
+        equation="17.6",
+        unit="rpm",
+        kind="maximum",
+        group="load",
+        limit_name=N_("motor’s maximum"),
+        source=N_("your input"),
+        tests=N_("The largest output speed times the ratio stays within the motor’s maximum speed."),
+        consequence=N_("The motor can’t reach the speed that the cycle asks for."),
+        basis=N_("Limit as you stated it."),
+        remedy=N_("Take a smaller ratio, a faster motor, or a lower top speed."),
+        asked="requirements.motor.maximum_speed_rpm",
+        demand=lambda c: c.figures.maximum_input_speed_rpm,
+        limit=lambda c: c.asked["requirements.motor.maximum_speed_rpm"],
+        relation="n_in,max ≤ n_mot",
+        moves={"speed": 1.0},
+    ),
+    Check(
+        code="motor_peak_torque",
+        name=N_("motor peak torque"),
+        title=N_("Motor peak torque"),
+        equation=None,
+        unit="Nm",
+        kind="maximum",
+        group="load",
+        limit_name=N_("motor’s peak torque"),
+        source=N_("your input"),
+        tests=N_(
+            "The largest torque of the cycle over ratio and efficiency stays within the motor’s peak torque. The "
+            "emergency stop does not count."
+        ),
+        consequence=N_("The motor can’t accelerate the load as the cycle asks."),
+        basis=N_(
+            "T_max / (i · η) with the efficiency that you state or a supplement gives; without one loss-free, a "
+            "lower bound. With a motion and the motor’s inertia J_m the largest T / (i · η) + J_m · i · α, "
+            "or T · η / i where the load drives. The inertia of the gear and losses without load are left out, "
+            "and so is that of a motor for which none is given."
+        ),
+        remedy=N_("Take a larger ratio, a stronger motor, or accelerate more gently."),
+        asked="requirements.motor.peak_torque_Nm",
+        demand=lambda c: c.figures.motor_peak_torque_Nm,
+        limit=lambda c: c.asked["requirements.motor.peak_torque_Nm"],
+        relation="T_max / (i · η) ≤ T_mot",
+        moves={"torque": 1.0},
+        accepted=N_("the motor’s peak torque rises to {value}"),
+    ),
+    Check(
+        code="motor_rated_torque",
+        name=N_("motor rated torque"),
+        title=N_("Motor rated torque"),
+        equation=None,
+        unit="Nm",
+        kind="maximum",
+        group="load",
+        limit_name=N_("motor’s rated torque"),
+        source=N_("your input"),
+        tests=N_(
+            "The RMS of the torque over the cycle, pause included, over ratio and efficiency stays within the "
+            "motor’s rated torque."
+        ),
+        consequence=N_("The motor overheats."),
+        basis=N_(
+            "RMS of T / (i · η) with the efficiency that you state or a supplement gives; without one loss-free, a "
+            "lower bound. With a motion and the motor’s inertia J_m that of T / (i · η) + J_m · i · α, or T · η / i "
+            "where the load drives. The inertia of the gear and losses without load are left out, "
+            "and so is that of a motor for which none is given."
+        ),
+        remedy=N_("Take a larger ratio, a stronger motor, or add pause."),
+        asked="requirements.motor.rated_torque_Nm",
+        demand=lambda c: c.figures.motor_rated_torque_Nm,
+        limit=lambda c: c.asked["requirements.motor.rated_torque_Nm"],
+        relation="T_rms / (i · η) ≤ T_mot,N",
+        moves={"torque": 1.0},
+        accepted=N_("the motor’s rated torque rises to {value}"),
+    ),
+    Check(
+        code="motor_rated_speed",
+        name=N_("motor rated speed"),
+        title=N_("Motor rated speed"),
+        equation="17.5",
+        unit="rpm",
+        kind="maximum",
+        group="load",
+        limit_name=N_("motor’s rated speed"),
+        source=N_("your input"),
+        tests=N_("The average output speed times the ratio, pause included, stays within the motor’s rated speed."),
+        consequence=N_("The motor heats up: its rated torque holds up to its rated speed."),
+        basis=N_("Limit as you stated it."),
+        remedy=N_("Take a smaller ratio, a faster motor, or add pause."),
+        asked="requirements.motor.rated_speed_rpm",
+        demand=lambda c: c.figures.average_input_speed_rpm,
+        limit=lambda c: c.asked["requirements.motor.rated_speed_rpm"],
+        relation="n_in,av ≤ n_mot,N",
+        moves={"speed": 1.0},
+    ),
+    Check(
+        code="inertia_ratio",
+        name=N_("inertia ratio"),
+        title=N_("Inertia ratio"),
+        equation=None,
+        unit="",
+        kind="maximum",
+        group="load",
+        limit_name=N_("your limit"),
+        source=N_("your input"),
+        tests=N_("The inertia of the load, seen from the motor, over the motor’s own stays within your limit."),
+        consequence=N_("The axis is hard to control: it swings, or follows slowly."),
+        basis=N_("J_L / (i² · J_m). The inertia of the gear is left out: it is not published in this handbook."),
+        remedy=N_("Take a larger ratio, a motor with more inertia, or a lighter load."),
+        asked="requirements.motor.inertia_ratio",
+        demand=lambda c: equations.inertia_ratio(
+            load_inertia_kgm2=c.duty.load_inertia_kgm2,
+            ratio=c.gears.ratio,
+            motor_inertia_kgm2=c.asked["requirements.motor.inertia_kgm2"],
+        ),
+        limit=lambda c: c.asked["requirements.motor.inertia_ratio"],
+        relation="J_L / (i² · J_m) ≤ r_J",
+        accepted=N_("the permitted inertia ratio rises to {value}"),
+    ),
+)

@@ -1,0 +1,63 @@
+"""Checks of the output bearing: its largest load and its life (ISO 281 between the published limits)."""
+
+import numpy as np
+
+from hpn.engine.check import Check
+from hpn.words.wording import N_
+
+BEARING_LIMITS = N_("F_R,dyn(max) and F_A,dyn(max), rating tables 10.1 to 12.2")
+
+OUTPUT_BEARING: tuple[Check, ...] = (
+    Check(
+        code="output_bearing_load",
+        name=N_("largest load on the output bearing"),
+        title=N_("Output bearing: largest load"),
+        equation=None,
+        unit="",
+        kind="maximum",
+        group="load",
+        limit_name=N_("1"),
+        source=BEARING_LIMITS,
+        tests=N_("In every phase the load times f_w stays inside the envelope of the published maxima."),
+        consequence=N_("Balls and raceways are indented, or the shaft deflects so far that the teeth run crooked."),
+        basis=N_(
+            "Interpolated between the two published limits; printed curve not available. That the limits belong to "
+            "f_w = 1 is our reading. Slower running never enlarges this envelope."
+        ),
+        remedy=N_("Support the load outside the gear, move it, or take a larger size."),
+        asked="output_load.load_coefficient",
+        demand=lambda c: c.figures.bearing_load,
+        limit=lambda c: np.ones((1, 1)),
+        limited_by="dynamic_radial_load_N",
+        relation="max f_w · P_i ≤ 1",
+        moves={"load": 1.0},
+    ),
+    Check(
+        code="output_bearing_life",
+        name=N_("life of the output bearing"),
+        title=N_("Output bearing: life"),
+        equation=None,
+        unit="",
+        kind="maximum",
+        group="load",
+        limit_name=N_("k"),
+        source=BEARING_LIMITS,
+        tests=N_(
+            "The equivalent load f_w P_m of the cycle stays within the load k at which the bearing reaches the "
+            "required life at the average output speed."
+        ),
+        consequence=N_("The output bearing pits: play, noise and leakage at the shaft seal."),
+        basis=N_(
+            "Life by ISO 281 with exponent 3 from the published condition of 100 rpm and 20000 h as L50. L10 = "
+            "L50 / 5 is the relation of the maker’s other handbooks, not printed in this one. The hours include the "
+            "pause."
+        ),
+        remedy=N_("Lower load, speed or required life, choose f_w with more care, or take a larger size."),
+        asked="output_load.load_coefficient",
+        demand=lambda c: c.figures.bearing_mean_load,
+        limit=lambda c: c.figures.bearing_life_factor,
+        limited_by="dynamic_radial_load_N",
+        relation="f_w · P_m ≤ k",
+        moves={"speed": 1 / 3, "load": 1.0},
+    ),
+)

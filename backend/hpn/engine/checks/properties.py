@@ -1,0 +1,138 @@
+"""Checks of properties, against what the user requires: temperature, backlash, stiffness, weight and length."""
+
+import numpy as np
+
+from hpn.engine.check import RATING_TABLES, Case, Check
+from hpn.physics.equations import FloatArray
+from hpn.words.wording import N_
+
+
+def _middle_and_half(case: Case) -> tuple[FloatArray, FloatArray]:
+    lowest, highest = case.gears.ambient_temperature_minimum_degC, case.gears.ambient_temperature_maximum_degC
+    return (lowest + highest) / 2, (highest - lowest) / 2
+
+
+def _nearer_end(case: Case) -> FloatArray:
+    """The end of the permitted range of temperature on whose side of the middle the asked one lies."""
+    asked, gears = case.asked["requirements.ambient_temperature_degC"], case.gears
+    middle, _ = _middle_and_half(case)
+    end = np.where(asked >= middle, gears.ambient_temperature_maximum_degC, gears.ambient_temperature_minimum_degC)
+    return np.where(np.isnan(middle), np.nan, end)
+
+
+def _distance_from_middle(case: Case) -> FloatArray:
+    middle, half = _middle_and_half(case)
+    distance: FloatArray = np.abs(case.asked["requirements.ambient_temperature_degC"] - middle) / half
+    return distance
+
+
+PROPERTIES: tuple[Check, ...] = (
+    Check(
+        code="ambient_temperature",
+        name=N_("ambient temperature"),
+        title=N_("Ambient temperature"),
+        equation=None,
+        unit="°C",
+        kind="range",
+        group="property",
+        limit_name=N_("permitted range"),
+        source=RATING_TABLES,
+        tests=N_("The ambient temperature lies in the range of the rating table."),
+        consequence=N_("Cold grease does not flow; warm grease ages and leaks."),
+        basis=N_(
+            "Utilisation is the distance from the middle of the range over half the range. The lubricant’s range "
+            "reaches down to -10 °C, the gear’s does not."
+        ),
+        remedy=N_("Heat, cool or shield the gear, or ask the maker for another lubricant."),
+        asked="requirements.ambient_temperature_degC",
+        demand=lambda c: c.asked["requirements.ambient_temperature_degC"],
+        limit=_nearer_end,
+        share=_distance_from_middle,
+        limited_by="ambient_temperature_maximum_degC",
+        relation="t_min ≤ t_amb ≤ t_max",
+    ),
+    Check(
+        code="backlash",
+        name=N_("backlash"),
+        title=N_("Backlash"),
+        equation=None,
+        unit="arcmin",
+        kind="maximum",
+        group="property",
+        limit_name=N_("your limit"),
+        source=N_("table 15.1"),
+        tests=N_("The largest backlash of the gear stays within your limit."),
+        consequence=N_("Positioning error and knocking at reversal."),
+        basis=N_("The published figure is an upper limit for new gears and follows the number of stages."),
+        remedy=N_("Take a single-stage ratio, or accept more backlash."),
+        asked="requirements.backlash_arcmin",
+        demand=lambda c: c.gears.backlash_arcmin,
+        limit=lambda c: c.asked["requirements.backlash_arcmin"],
+        limited_by="backlash_arcmin",
+        relation="j ≤ j_req",
+        accepted=N_("the backlash limit rises to {value}"),
+    ),
+    Check(
+        code="torsional_stiffness",
+        name=N_("torsional stiffness"),
+        title=N_("Torsional stiffness"),
+        equation=None,
+        unit="Nm/rad",
+        kind="minimum",
+        group="property",
+        limit_name=N_("your limit"),
+        source=N_("table 15.2"),
+        tests=N_("The torsional stiffness K_3 of the gear reaches what you require."),
+        consequence=N_("The output winds up under torque and swings after a move."),
+        basis=N_("K_3 holds above 15 % of the rated torque (glossary)."),
+        remedy=N_("Take a larger size."),
+        asked="requirements.torsional_stiffness_Nm_per_rad",
+        demand=lambda c: c.gears.torsional_stiffness_Nm_per_rad,
+        limit=lambda c: c.asked["requirements.torsional_stiffness_Nm_per_rad"],
+        limited_by="torsional_stiffness_Nm_per_rad",
+        relation="K_3 ≥ K_3,req",
+        accepted=N_("the required torsional stiffness drops to {value}"),
+    ),
+    Check(
+        code="weight",
+        name=N_("weight"),
+        title=N_("Weight"),
+        equation=None,
+        unit="kg",
+        kind="maximum",
+        group="property",
+        limit_name=N_("your limit"),
+        source=RATING_TABLES,
+        tests=N_("The net weight of the standard version stays within your limit."),
+        consequence=N_("The axis that carries the gear becomes slower."),
+        basis=N_("Net weight without packing, by number of stages."),
+        remedy=N_("Take a smaller size or a single-stage ratio."),
+        asked="requirements.weight_kg",
+        demand=lambda c: c.gears.weight_kg,
+        limit=lambda c: c.asked["requirements.weight_kg"],
+        limited_by="weight_kg",
+        relation="m ≤ m_req",
+        accepted=N_("the weight limit rises to {value}"),
+    ),
+    Check(
+        code="length",
+        name=N_("length"),
+        title=N_("Length"),
+        equation=None,
+        unit="mm",
+        kind="maximum",
+        group="property",
+        limit_name=N_("your limit"),
+        source=N_("tables 11.2 to 13.4"),
+        tests=N_("The largest length L of the gear, which depends on the motor, stays within your limit."),
+        consequence=N_("The gear does not fit its space."),
+        basis=N_("L_max of the table; with a small motor the gear may be as short as L_min."),
+        remedy=N_("Take a smaller size or a single-stage ratio, or check the drawing for your motor."),
+        asked="requirements.length_mm",
+        demand=lambda c: c.gears.length_max_mm,
+        limit=lambda c: c.asked["requirements.length_mm"],
+        limited_by="length_max_mm",
+        relation="L_max ≤ L_req",
+        accepted=N_("the length limit rises to {value}"),
+    ),
+)

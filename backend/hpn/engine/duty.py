@@ -1,0 +1,177 @@
+"""Applications as arrays: what they ask for, and what their duty cycles come to.
+
+What belongs to an application has shape (N, 1), so that it broadcasts against what belongs to a gear, shape (G,); one
+application and a chunk of a fleet go through the same lines.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hpn.application import NUMBERS, Application, OutputLoad
+from hpn.physics import bearing, equations
+from hpn.physics.equations import FloatArray
+from hpn.physics.motion import Course
+
+TextArray = NDArray[np.str_]
+
+_UNLOADED = OutputLoad()
+
+
+@dataclass(frozen=True)
+class Phases:
+    """Phases of N cycles by magnitude, each of shape (N, 1, phases).
+
+    Shorter cycles are padded at the end with phases of no duration, which have no weight in any equation. Each load is
+    the phase's own, else the cycle's, else 0; peaks and RMS are those of a steady phase where none are given.
+    """
+
+    torque_Nm: FloatArray
+    speed_rpm: FloatArray
+    duration_s: FloatArray
+    radial_N: FloatArray
+    axial_N: FloatArray
+    peak_torque_Nm: FloatArray
+    peak_speed_rpm: FloatArray
+    rms_torque_Nm: FloatArray
+
+    @classmethod
+    def of(cls, applications: Sequence[Application]) -> "Phases":
+        """Phases of applications, each padded to the longest cycle."""
+        longest = max(len(application.duty_cycle.load_phases) for application in applications)
+        table = np.zeros((8, len(applications), 1, longest))
+        for place, application in enumerate(applications):
+            rows = _rows(application)
+            table[:, place, 0, : len(rows)] = np.array(rows).T
+        return cls(*np.abs(table))
+
+
+def _rows(application: Application) -> list[tuple[float, ...]]:
+    load, phases = application.loads or _UNLOADED, application.duty_cycle.load_phases
+    radial, axial = load.radial_N or 0.0, load.axial_N or 0.0
+    return [
+        (
+            T := phase.torque_Nm,
+            n := phase.speed_rpm,
+            phase.duration_s,
+            radial if phase.radial_N is None else phase.radial_N,
+            axial if phase.axial_N is None else phase.axial_N,
+            T if phase.peak_torque_Nm is None else phase.peak_torque_Nm,
+            n if phase.peak_speed_rpm is None else phase.peak_speed_rpm,
+            T if phase.rms_torque_Nm is None else phase.rms_torque_Nm,
+        )
+        for phase in phases
+    ]
+
+
+@dataclass(frozen=True)
+class Asked:
+    """What N applications ask for besides their phases, each array of shape (N, 1).
+
+    `numbers` holds every single number of the application model by its path with dots, such as `requirements.life_h`;
+    NaN where it is not given. Where no load is given, neither are the conditions of a load.
+    """
+
+    numbers: Mapping[str, FloatArray]
+    bearing_model: TextArray
+    life_basis: TextArray
+    rank_by: TextArray
+
+    @classmethod
+    def of(cls, applications: Sequence[Application]) -> "Asked":
+        """What applications ask for."""
+        table = np.array([_numbers(application) for application in applications], dtype=np.float64)
+        loads = [application.loads for application in applications]
+        return cls(
+            {".".join(path): table[:, place, None] for place, path in enumerate(NUMBERS)},
+            np.array([[load.model if load else ""] for load in loads]),
+            np.array([[load.life_basis if load else ""] for load in loads]),
+            np.array([[application.rank_by] for application in applications]),
+        )
+
+    def __getitem__(self, path: str) -> FloatArray:
+        return self.numbers[path]
+
+
+def _numbers(application: Application) -> list[float | None]:
+    """Numbers of one application in the order of NUMBERS; None where it is not given."""
+    parts = {
+        ("duty_cycle",): application.duty_cycle,
+        ("emergency_stop",): application.emergency_stop,
+        ("output_load",): application.loads,
+        ("requirements",): application.requirements,
+        ("requirements", "motor"): application.requirements.motor,
+    }
+    return [getattr(parts[path[:-1]], path[-1], None) for path in NUMBERS]
+
+
+@dataclass(frozen=True, eq=False)
+class Duty:
+    """What N duty cycles come to, beside their phases and what is asked for.
+
+    Each figure has shape (N, 1), is NaN where it is not asked for, and is computed when it is first read.
+
+    `courses` are those of the motions, by the place of their application.
+    """
+
+    phases: Phases
+    asked: Asked
+    courses: Mapping[int, Course] = field(default_factory=dict)
+
+    @cached_property
+    def average_torque_Nm(self) -> FloatArray:
+        """Average output torque T_av in Nm, equation 17.2."""
+        T, n, t = self.phases.torque_Nm, self.phases.speed_rpm, self.phases.duration_s
+        return equations.average_output_torque(torque_Nm=T, speed_rpm=n, duration_s=t)
+
+    @cached_property
+    def average_output_speed_rpm(self) -> FloatArray:
+        """Average output speed n_out_av in rpm, pause included, equation 17.4."""
+        n, t = self.phases.speed_rpm, self.phases.duration_s
+        return equations.average_output_speed(speed_rpm=n, duration_s=t, pause_s=self.asked["duty_cycle.pause_s"])
+
+    @cached_property
+    def maximum_torque_Nm(self) -> FloatArray:
+        """Largest torque T_max of the cycle in Nm."""
+        T_max: FloatArray = self.phases.peak_torque_Nm.max(axis=-1)
+        return T_max
+
+    @cached_property
+    def maximum_output_speed_rpm(self) -> FloatArray:
+        """Largest output speed n_out_max of the cycle in rpm."""
+        n_out_max: FloatArray = self.phases.peak_speed_rpm.max(axis=-1)
+        return n_out_max
+
+    @cached_property
+    def rms_torque_Nm(self) -> FloatArray:
+        """RMS of the output torque over the cycle, pause included, in Nm."""
+        T, t = self.phases.rms_torque_Nm, self.phases.duration_s
+        return equations.rms_torque(torque_Nm=T, duration_s=t, pause_s=self.asked["duty_cycle.pause_s"])
+
+    @cached_property
+    def emergency_stop_torque_Nm(self) -> FloatArray:
+        """Torque T_k of an emergency stop in Nm."""
+        return np.abs(self.asked["emergency_stop.torque_Nm"])
+
+    @cached_property
+    def required_bearing_life_L50_h(self) -> FloatArray:
+        """Life asked of the output bearing, as L50 in hours."""
+        return bearing.required_L50(life_h=self.asked["output_load.life_h"], basis=self.asked.life_basis)
+
+    @cached_property
+    def load_inertia_kgm2(self) -> FloatArray:
+        """Inertia J_L of the load at the output in kg m²: the motion's own, else as it is given."""
+        inertia = self.asked["requirements.load_inertia_kgm2"].copy()
+        for place, course in self.courses.items():
+            inertia[place] = course.load_inertia_kgm2
+        return inertia
+
+    @classmethod
+    def of(cls, applications: Sequence[Application]) -> "Duty":
+        """Duty of applications, in their order."""
+        motions = enumerate(application.duty_cycle.motion for application in applications)
+        courses = {place: motion.course for place, motion in motions if motion}
+        return cls(Phases.of(applications), Asked.of(applications), courses)

@@ -1,0 +1,238 @@
+"""What gears come to under duty cycles: speeds, lives, stops, torques at the motor, load on the output bearing."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from hpn.catalogue import Catalogue, GearList
+from hpn.catalogue.gear import Gear
+from hpn.engine.duty import Duty
+from hpn.physics import bearing, equations
+from hpn.physics.equations import FloatArray
+from hpn.physics.motion import Course, motor_torques
+
+
+@dataclass(frozen=True, eq=False)
+class Figures:
+    """Figures of G gears under N applications, each array broadcasting to (N, G) and computed when it is first read.
+
+    NaN: not published, or not asked for; infinity: without a limit.
+    """
+
+    duty: Duty
+    gears: GearList
+    catalogue: Catalogue
+
+    @cached_property
+    def average_input_speed_rpm(self) -> FloatArray:
+        """Average input speed n_in_av in rpm, equation 17.5; shape (N, G)."""
+        return equations.average_input_speed(
+            ratio=self.gears.columns.ratio, average_output_speed_rpm=self.duty.average_output_speed_rpm
+        )
+
+    @cached_property
+    def maximum_input_speed_rpm(self) -> FloatArray:
+        """Maximum input speed n_in_max in rpm, equation 17.6; shape (N, G)."""
+        return equations.maximum_input_speed(
+            ratio=self.gears.columns.ratio, maximum_output_speed_rpm=self.duty.maximum_output_speed_rpm
+        )
+
+    @cached_property
+    def life_L10_h(self) -> FloatArray:
+        """Life L10 of the gear in hours, equation 17.10; shape (N, G)."""
+        return equations.life(
+            average_torque_Nm=self.duty.average_torque_Nm,
+            average_input_speed_rpm=self.average_input_speed_rpm,
+            rated_torque_Nm=self.gears.columns.rated_torque_Nm,
+            rated_input_speed_rpm=self.catalogue.rated_input_speed_rpm,
+            life_at_rated_torque_h=self.catalogue.life_at_rated_torque_h,
+        )
+
+    @cached_property
+    def momentary_peak_count(self) -> FloatArray:
+        """Permitted number N_k,max of emergency stops, equation 17.9; shape (N, G). [-]"""
+        return equations.allowed_momentary_peaks(
+            emergency_stop_torque_Nm=self.duty.emergency_stop_torque_Nm,
+            repeated_peak_torque_Nm=self.gears.columns.repeated_peak_torque_Nm,
+        )
+
+    @cached_property
+    def bearing_load(self) -> FloatArray:
+        """Largest f_w P of a phase on the output bearing, shape (N, G). [-]"""
+        return self._bearing_loads[0]
+
+    @cached_property
+    def bearing_mean_load(self) -> FloatArray:
+        """Equivalent load f_w P_m of the cycle on the output bearing, shape (N, G). [-]"""
+        return self._bearing_loads[1]
+
+    @cached_property
+    def bearing_life_factor(self) -> FloatArray:
+        """Load factor k that speed and required life allow on the output bearing, shape (N, 1). [-]"""
+        reference_speed_rpm, reference_life_h = self.catalogue.bearing_reference
+        return bearing.life_factor(
+            average_output_speed_rpm=self.duty.average_output_speed_rpm,
+            required_life_L50_h=self.duty.required_bearing_life_L50_h,
+            reference_speed_rpm=reference_speed_rpm,
+            reference_life_h=reference_life_h,
+        )
+
+    @cached_property
+    def bearing_life_L50_h(self) -> FloatArray:
+        """Life L50 of the output bearing in hours, shape (N, G)."""
+        reference_speed_rpm, reference_life_h = self.catalogue.bearing_reference
+        return bearing.life_L50(
+            equivalent_load=self.bearing_mean_load,
+            average_output_speed_rpm=self.duty.average_output_speed_rpm,
+            reference_speed_rpm=reference_speed_rpm,
+            reference_life_h=reference_life_h,
+        )
+
+    @cached_property
+    def bearing_life_L10_h(self) -> FloatArray:
+        """Life L10 of the output bearing in hours, shape (N, G)."""
+        return self.bearing_life_L50_h / bearing.L50_PER_L10
+
+    @cached_property
+    def motor_peak_torque_Nm(self) -> FloatArray:
+        """Largest torque of the cycle at the motor in Nm, shape (N, G)."""
+        return self._motor_torques[0]
+
+    @cached_property
+    def motor_rated_torque_Nm(self) -> FloatArray:
+        """RMS torque of the cycle at the motor in Nm, shape (N, G)."""
+        return self._motor_torques[1]
+
+    @cached_property
+    def _bearing_loads(self) -> tuple[FloatArray, FloatArray]:
+        return _bearing_loads(self.duty, self.gears)
+
+    @cached_property
+    def _motor_torques(self) -> tuple[FloatArray, FloatArray]:
+        return _motor_torques(self.duty, self.gears, self.catalogue)
+
+
+# --- Output bearing ---------------------------------------------------------------------------------------------------
+
+
+def phase_loads(duty: Duty, gears: GearList) -> FloatArray:
+    """f_w P of every phase on the bearing of every size, shape (N, sizes, phases).
+
+    NaN without a load, where the limits of a size are not published, and where the digitised model lacks its curve.
+    """
+    first, phases, model = gears.first_of_size, duty.phases, duty.asked.bearing_model[..., None]
+    with np.errstate(all="ignore"):
+        r = phases.radial_N / gears.columns.dynamic_radial_load_N[first][:, None]
+        a = phases.axial_N / gears.columns.dynamic_axial_load_N[first][:, None]
+    P = np.where(model == "iso281", bearing.iso281_load(radial=r, axial=a), bearing.linear_load(radial=r, axial=a))
+    along = np.flatnonzero(model == "digitised")
+    if along.size:
+        P[along] = np.nan
+        for place, gear in enumerate(first):
+            if (curve := gears.curves[gear]) is not None:
+                P[along, place] = curve.equivalent_load(phases.radial_N[along, 0], phases.axial_N[along, 0])
+    return P * duty.asked["output_load.load_coefficient"][..., None]
+
+
+def _bearing_loads(duty: Duty, gears: GearList) -> tuple[FloatArray, FloatArray]:
+    """Largest f_w P of a phase, and f_w P_m of the cycle, on every gear, shape (N, G)."""
+    if np.isnan(duty.asked["output_load.load_coefficient"]).all():
+        nothing = np.full((1, 1), np.nan)
+        return nothing, nothing
+    loads, phases = phase_loads(duty, gears), duty.phases
+    mean = bearing.mean_equivalent_load(equivalent_load=loads, speed_rpm=phases.speed_rpm, duration_s=phases.duration_s)
+    return loads.max(axis=-1)[:, gears.of_size], mean[:, gears.of_size]
+
+
+# --- Motor ------------------------------------------------------------------------------------------------------------
+
+
+def _motor_torques(duty: Duty, gears: GearList, catalogue: Catalogue) -> tuple[FloatArray, FloatArray]:
+    """Peak and RMS torque at the motor, shape (N, G); loss-free where no efficiency is known.
+
+    A stated efficiency goes before a supplied curve, which is read at a phase's peak for the peak and at its RMS for
+    the RMS. Of a motion whose motor's inertia is known the torque counts at every instant, that inertia included.
+    """
+    stated, ratio = duty.asked["requirements.efficiency"], gears.columns.ratio
+    eta = np.where(np.isnan(stated), 1.0, stated)
+    peak = equations.motor_torque(output_torque_Nm=duty.maximum_torque_Nm, ratio=ratio, efficiency=eta)
+    rated = equations.motor_torque(output_torque_Nm=duty.rms_torque_Nm, ratio=ratio, efficiency=eta)
+    peaks, squares, unstated = duty.phases.peak_torque_Nm[:, 0], duty.phases.rms_torque_Nm[:, 0], np.isnan(stated)[:, 0]
+    for place, gear in enumerate(gears.rows):
+        if not unstated.any() or gear.designation not in catalogue.efficiency:
+            continue
+        at_peak, at_rms = (
+            equations.motor_torque(
+                output_torque_Nm=T, ratio=gear.ratio, efficiency=efficiency_along(catalogue, gear, T)
+            )
+            for T in (peaks, squares)
+        )
+        rms = equations.rms_torque(
+            torque_Nm=at_rms,
+            duration_s=duty.phases.duration_s[:, 0],
+            pause_s=duty.asked["duty_cycle.pause_s"][:, 0],
+        )
+        peak[unstated, place], rated[unstated, place] = at_peak.max(axis=1)[unstated], rms[unstated]
+    for index, course in duty.courses.items():
+        inertia = duty.asked["requirements.motor.inertia_kgm2"].item(index)
+        if not np.isnan(inertia):
+            peak[index], rated[index] = _with_own_inertia(duty, index, course, inertia, gears, catalogue)
+    return peak, rated
+
+
+def _with_own_inertia(
+    duty: Duty, index: int, course: Course, inertia_kgm2: float, gears: GearList, catalogue: Catalogue
+) -> tuple[FloatArray, FloatArray]:
+    """Peak and RMS torque at the motor of application `index`, its own inertia included, shape (G,) each.
+
+    Gears of one ratio without a curve of their own have the same torques, which are worked out once.
+    """
+    stated = duty.asked["requirements.efficiency"].item(index)
+    curved = [np.isnan(stated) and gear.designation in catalogue.efficiency for gear in gears.rows]
+    kinds = [gear.designation if own else str(gear.ratio) for gear, own in zip(gears.rows, curved, strict=True)]
+    first = {kind: kinds.index(kind) for kind in kinds}
+    eta = np.full((2, len(first), len(course.move)), 1.0 if np.isnan(stated) else stated)
+    for row, place in enumerate(first.values()):
+        if curved[place]:
+            for at, T in enumerate((course.peak_torque_Nm, course.rms_torque_Nm)):
+                eta[at, row] = efficiency_along(catalogue, gears.rows[place], T)
+    peak, rms = motor_torques(
+        course,
+        ratio=gears.columns.ratio[list(first.values())],
+        efficiency_at_peak=eta[0],
+        efficiency_at_rms=eta[1],
+        motor_inertia_kgm2=inertia_kgm2,
+        pause_s=duty.asked["duty_cycle.pause_s"].item(index),
+    )
+    rows = [list(first).index(kind) for kind in kinds]
+    return peak[rows], rms[rows]
+
+
+def efficiency_along(catalogue: Catalogue, gear: Gear, torque_Nm: FloatArray) -> FloatArray:
+    """Efficiency at torques by the curve that a supplement gives of a gear; beyond its ends that of the nearer end.
+
+    Raises KeyError for a gear without a curve.
+    """
+    return np.interp(torque_Nm, *catalogue.efficiency[gear.designation])
+
+
+def efficiencies(duty: Duty, gear: Gear, catalogue: Catalogue) -> tuple[FloatArray, FloatArray]:
+    """Efficiency of a gear in each phase of one application, at the phase's peak and at its RMS; 1 where none is known.
+
+    As the torques at the motor have it: stated, else by a supplied curve.
+    """
+    phases, stated = duty.phases, duty.asked["requirements.efficiency"].item()
+    torques = phases.peak_torque_Nm[0, 0], phases.rms_torque_Nm[0, 0]
+    if np.isnan(stated) and gear.designation in catalogue.efficiency:
+        at_peak, at_rms = (efficiency_along(catalogue, gear, torque) for torque in torques)
+        return at_peak, at_rms
+    eta = np.full(len(torques[0]), 1.0 if np.isnan(stated) else stated)
+    return eta, eta
+
+
+def leaves_curve(catalogue: Catalogue, gear: Gear, duty: Duty, index: int) -> bool:
+    """Whether a torque of application `index` lies beyond the ends of a gear's efficiency curve; one of 0 does not."""
+    known, _ = catalogue.efficiency[gear.designation]
+    torques = np.concatenate((duty.phases.peak_torque_Nm[index, 0], duty.phases.rms_torque_Nm[index, 0]))
+    return bool(((torques > 0) & ((torques < known[0]) | (torques > known[-1]))).any())

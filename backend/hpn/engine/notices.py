@@ -1,0 +1,274 @@
+"""What the reader of a result must know beyond its numbers: assumptions, standings, unlimited values.
+
+A notice is a code and values; its sentence is one of NOTICES, and is put together where it is shown.
+"""
+
+from collections.abc import Iterable, Mapping, Sequence
+from functools import lru_cache
+from string import Formatter
+from typing import Annotated
+
+import msgspec
+import numpy as np
+from msgspec import Meta
+from numpy.typing import NDArray
+
+from hpn.application import Application, DutyCycle, OutputLoad
+from hpn.catalogue import Catalogue, GearList
+from hpn.catalogue.gear import Gear
+from hpn.engine.evaluation import SUITABLE, Evaluation
+from hpn.engine.figures import leaves_curve
+from hpn.physics.equations import ROUNDING, FloatArray
+from hpn.words.units import suffix_of
+from hpn.words.wording import N_, Quantity, Sentence
+
+DIGITS: Mapping[str | None, int] = {"Nm": 6, "percent": 3, "s": 6}
+"""Digits of the numbers in a notice, by unit."""
+
+NOTICES: Mapping[str, str] = {
+    "motion_triangle": N_("Moves {moves} leave no time to run: they are triangles, which nobody asked for."),
+    "motion_left_off": N_(
+        "The motion ends at another angle than it starts, so that the next cycle meets gravity otherwise than this one."
+    ),
+    "application_area": N_(
+        "Use in this area ({area}) needs a risk assessment and the maker’s approval (handbook 2.4)."
+    ),
+    "emergency_stop_below_maximum": N_(
+        "The emergency-stop torque of {stop_Nm} is below the largest torque of the cycle, {largest_Nm}: check T_k."
+    ),
+    "momentary_peak_count_unlimited": N_(
+        "Where the emergency-stop torque is at or below T_R, equation 17.9 sets no limit to the number of stops: the "
+        "permitted number is empty there."
+    ),
+    "life_unlimited": N_(
+        "The average torque is 0 or so small that equation 17.10 gives a life without limit: the life is empty."
+    ),
+    "bearing_envelope_supplied": N_("The output bearing is judged along curve points that you supplied."),
+    "speed_above_average": N_(
+        "With ratio {ratios} the input runs above n_av(max) for {longest_s} on end. The handbook’s average has no time "
+        "scale: beyond {bound_s} (our assumption, setting HPN_AVERAGING_SECONDS) the thermal average may not hold."
+    ),
+    "bearing_envelope_computed": N_(
+        "The envelope of the output bearing is interpolated between the two published limits; printed curve not "
+        "available."
+    ),
+    "bearing_iso281": N_(
+        "Model ISO 281 keeps the factor Y constant, set by the published axial limit; the standard tabulates a Y that "
+        "falls as the axial load rises."
+    ),
+    "bearing_load_position": N_(
+        "Loads act at the centre of the output shaft and along its axis; a load that acts elsewhere can’t be judged "
+        "from the published data."
+    ),
+    "bearing_life_basis": N_(
+        "Bearing life L10 = L50 / 5 is the relation of the maker’s other handbooks, not printed in this one; a Weibull "
+        "slope of 10/9 gives 5.45."
+    ),
+    "bearing_life_unlimited": N_(
+        "The equivalent load of the moving phases is 0 or so small that the bearing life has no limit: it is empty."
+    ),
+    "efficiency_assumed": N_("Motor torques use the efficiency of {efficiency_percent} that you assume."),
+    "efficiency_supplied": N_(
+        "Motor torques use the efficiency curves that you supplied; a gear without one is loss-free: a lower bound."
+    ),
+    "efficiency_beyond_curve": N_(
+        "Torques of the cycle lie beyond the ends of the efficiency curves of {names}: there the efficiency at the "
+        "nearer end counts."
+    ),
+    "efficiency_unknown": N_(
+        "Motor torques are loss-free, a lower bound: the handbook’s efficiency curves were not available and no "
+        "efficiency is stated."
+    ),
+    "motor_torque_partial": N_("Motor torques leave out the inertia of motor and gear and losses without load."),
+    "motor_inertia_included": N_(
+        "Motor torques include the motor’s own inertia; they leave out that of the gear and losses without load, which "
+        "are not published."
+    ),
+    "load_inertia_unused": N_(
+        "The inertia of the load enters no check: it counts where the motor’s largest inertia ratio is given."
+    ),
+    "size_unrated": N_("{name} is not rated. {note}"),
+    "gears_unrated": N_("{names} are not rated. {note}"),
+    "catalogue_supplement": N_("Some catalogue figures are supplied by the user; their sources say so."),
+}
+"""Sentences by code; a value whose name ends in a unit is a number in that unit."""
+
+TRANSLATED = ("area", "note")
+"""Values that are texts to be translated."""
+
+AREAS: Mapping[str, str] = {
+    "aerospace": N_("aerospace"),
+    "explosive_area": N_("areas at risk of explosion"),
+    "nuclear": N_("machines for a nuclear purpose"),
+    "vacuum": N_("vacuum"),
+    "household": N_("household devices"),
+    "medical": N_("medical equipment"),
+    "human_contact": N_("devices that interact directly with the human body"),
+    "people_transport": N_("machines for transporting or lifting people"),
+    "amusement": N_("devices for funfairs and leisure parks"),
+}
+"""Application areas of section 2.4 by their code; English msgids."""
+
+Value = float | str
+
+
+class Notice(msgspec.Struct, frozen=True):
+    """A note on the result: a code for programs, its sentence in English, and the values in it."""
+
+    code: Annotated[str, Meta(description="Code of the notice.")]
+    text: Annotated[str, Meta(description="The notice.")]
+    values: Annotated[dict[str, Value], Meta(description="The values in the notice, each with its unit.")] = {}
+
+    @property
+    def sentence(self) -> Sentence:
+        """The notice for any language and units; as it was written where its version kept no values."""
+        template = NOTICES.get(_template_of(self.code, self.values))
+        if template is None or not {name for _, name, *_ in Formatter().parse(template) if name} <= self.values.keys():
+            return Sentence("{text}", {"text": self.text})
+        return _sentence(template, self.values)
+
+
+def _template_of(code: str, values: Mapping[str, Value]) -> str:
+    return "gears_unrated" if code == "size_unrated" and "names" in values else code
+
+
+def _sentence(template: str, values: Mapping[str, Value]) -> Sentence:
+    shown = {
+        name: value if isinstance(value, str) else Quantity(value, suffix_of(name) or "", DIGITS[suffix_of(name)])
+        for name, value in values.items()
+    }
+    return Sentence(template, shown, TRANSLATED)
+
+
+def notice(code: str, **values: Value) -> Notice:
+    """Notice of a code, with its English text."""
+    return Notice(code, _sentence(NOTICES[_template_of(code, values)], values).text, values)
+
+
+def notices_of(application: Application, evaluation: Evaluation, index: int) -> tuple[Notice, ...]:
+    """Notices on an application, which is number `index` of an evaluation; the most general ones last."""
+    found: list[Notice] = []
+    if application.application_area is not None:
+        found.append(notice("application_area", area=AREAS[application.application_area]))
+    found += _on_the_motion(application.duty_cycle)
+    found += _on_stop_and_life(evaluation, index)
+    found += _on_speed(evaluation, index)
+    if application.loads is not None:
+        found += _on_the_bearing(application.loads, evaluation, index)
+    found += _on_the_motor(application, evaluation, index)
+    found += _unrated(evaluation.gears, evaluation.catalogue)
+    return (*found, *([notice("catalogue_supplement")] if evaluation.catalogue.supplement else ()))
+
+
+def _on_the_motion(cycle: DutyCycle) -> Iterable[Notice]:
+    if cycle.motion is None:
+        return
+    if cycle.motion.triangles:
+        yield notice("motion_triangle", moves=_ranges(cycle.motion.triangles))
+    if cycle.motion.is_left_off:
+        yield notice("motion_left_off")
+
+
+def _ranges(places: Sequence[int]) -> str:
+    """Numbers of places, those in a row as a range: `1, 3–5`."""
+    rows: list[list[int]] = []
+    for place in places:
+        if rows and rows[-1][-1] == place - 1:
+            rows[-1].append(place)
+        else:
+            rows.append([place])
+    return ", ".join(f"{row[0] + 1}" if len(row) == 1 else f"{row[0] + 1}–{row[-1] + 1}" for row in rows)
+
+
+def _is_unlimited(figure: FloatArray, index: int) -> bool:
+    """Whether a figure of an application is without a limit on any gear."""
+    return bool(np.isinf(figure[index if len(figure) > 1 else 0]).any())
+
+
+def _on_stop_and_life(evaluation: Evaluation, index: int) -> Iterable[Notice]:
+    figures, duty = evaluation.case.figures, evaluation.case.duty
+    stop, largest = duty.emergency_stop_torque_Nm.item(index), duty.maximum_torque_Nm.item(index)
+    if stop < largest:
+        yield notice("emergency_stop_below_maximum", stop_Nm=stop, largest_Nm=largest)
+    if _is_unlimited(figures.momentary_peak_count, index):
+        yield notice("momentary_peak_count_unlimited")
+    if _is_unlimited(figures.life_L10_h, index):
+        yield notice("life_unlimited")
+
+
+def _on_speed(evaluation: Evaluation, index: int) -> Iterable[Notice]:
+    """Suitable gears whose input runs above the permissible average speed for longer than is taken to average out."""
+    bound, gears, phases = evaluation.catalogue.averaging_s, evaluation.gears.columns, evaluation.case.duty.phases
+    lasting = phases.duration_s[index, 0] > 0  # what a shorter cycle is filled up with lasts no time
+    n, t = phases.speed_rpm[index, 0][lasting], phases.duration_s[index, 0][lasting]
+    if t.sum() <= bound:
+        return
+    circular = not evaluation.case.asked["duty_cycle.pause_s"].item(index)
+    longest: dict[float, float] = {}
+    for place in np.flatnonzero(evaluation.verdict[index] == SUITABLE).tolist():
+        i = gears.ratio.item(place)
+        time = _longest_run(n * i > gears.average_input_speed_rpm.item(place) * (1 + ROUNDING), t, circular=circular)
+        if time > bound * (1 + ROUNDING):
+            longest[i] = max(longest.get(i, 0.0), time)
+    if longest:
+        ratios = ", ".join(f"{i:g}" for i in sorted(longest))
+        yield notice("speed_above_average", ratios=ratios, longest_s=max(longest.values()), bound_s=bound)
+
+
+def _longest_run(above: NDArray[np.bool_], duration_s: FloatArray, *, circular: bool) -> float:
+    """Longest time on end of the phases that are above; without a pause the cycle's end runs into its start."""
+    if above.all() or not above.any():
+        return float(duration_s.sum()) if above.any() else 0.0
+    if circular:
+        start = int(np.argmin(above))  # a phase below, so that no run goes round the end
+        above, duration_s = np.roll(above, -start), np.roll(duration_s, -start)
+    ends = np.flatnonzero(~above)
+    return max(float(part.sum()) for part in np.split(np.where(above, duration_s, 0.0), ends))
+
+
+def _on_the_bearing(load: OutputLoad, evaluation: Evaluation, index: int) -> Iterable[Notice]:
+    yield notice("bearing_envelope_supplied" if load.model == "digitised" else "bearing_envelope_computed")
+    if load.model == "iso281":
+        yield notice("bearing_iso281")
+    yield notice("bearing_load_position")
+    yield notice("bearing_life_basis")
+    if _is_unlimited(evaluation.case.figures.bearing_life_L50_h, index):
+        yield notice("bearing_life_unlimited")
+
+
+def _on_the_motor(application: Application, evaluation: Evaluation, index: int) -> Iterable[Notice]:
+    asked, catalogue = application.requirements, evaluation.catalogue
+    if asked.efficiency is not None:
+        yield notice("efficiency_assumed", efficiency_percent=100 * asked.efficiency)
+    elif asked.motor is not None or application.rank_by == "motor_torque":
+        yield notice("efficiency_supplied" if catalogue.efficiency else "efficiency_unknown")
+        curved = (gear for gear in evaluation.gears.rows if gear.designation in catalogue.efficiency)
+        left = [gear.designation for gear in curved if leaves_curve(catalogue, gear, evaluation.case.duty, index)]
+        if left:
+            yield notice("efficiency_beyond_curve", names=", ".join(left))
+    if asked.motor is not None or application.rank_by == "motor_torque":
+        included = not np.isnan(evaluation.case.asked["requirements.motor.inertia_kgm2"].item(index))
+        moving = application.duty_cycle.motion is not None
+        yield notice("motor_inertia_included" if moving and included else "motor_torque_partial")
+    if asked.load_inertia_kgm2 is not None and (asked.motor is None or asked.motor.inertia_ratio is None):
+        yield notice("load_inertia_unused")
+
+
+@lru_cache(maxsize=256)
+def _unrated(gears: GearList, catalogue: Catalogue) -> tuple[Notice, ...]:
+    """A notice per size with gears that aren't rated; it names them where a supplement rates others of the size."""
+    rated = {gear.name for gear in catalogue.gears if gear.rated_torque_Nm is not None}
+    unrated: dict[str, list[Gear]] = {}
+    for gear in gears.rows:
+        if gear.note and gear.rated_torque_Nm is None:
+            unrated.setdefault(gear.name, []).append(gear)
+    return tuple(
+        _size_unrated([gear.designation for gear in rows] if name in rated else [name], rows[0].note or "")
+        for name, rows in unrated.items()
+    )
+
+
+def _size_unrated(names: list[str], note: str) -> Notice:
+    if len(names) == 1:
+        return notice("size_unrated", name=names[0], note=note)
+    return notice("size_unrated", names=", ".join(names), note=note)

@@ -1,0 +1,392 @@
+"""What would make a rejected gear fit, and how far the drivers of each check may grow, in words.
+
+Built on the reserve's powers (`hpn.engine.reserve.MOVES`) and on a candidate of the reply. Every bound in a sentence is
+rounded to the safe side, so that following the words passes.
+"""
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+from hpn.application import LISTED_FIGURES, Application, DutyCycle, EmergencyStop
+from hpn.application.motion import Motion
+from hpn.application.phase import Phase
+from hpn.catalogue import Catalogue
+from hpn.engine.allowed import with_listed_motor
+from hpn.engine.check import Driver
+from hpn.engine.checks import BY_CODE
+from hpn.engine.reserve import MOVES
+from hpn.engine.selection import Candidate, CheckResult
+from hpn.physics.equations import ROUNDING
+from hpn.words.units import suffix_of
+from hpn.words.wording import N_, Quantity, Sentence, listed, rounded
+
+LIVES = ("life", "output_bearing_life")
+"""Checks that two drivers move: slower running mends them as well as a smaller torque or load."""
+
+MOTOR_TORQUE_CHECKS = ("motor_peak_torque", "motor_rated_torque")
+"""Checks that no closed form follows where the torque at the motor goes by an efficiency curve."""
+
+
+@dataclass(frozen=True, slots=True)
+class Way:
+    """Factors on the drivers with which every load check passes that they move; 1 where one may stay as it is.
+
+    The emergency stop has its largest torque, and as an alternative its largest number, where one is exceeded.
+    """
+
+    torque: float = 1.0
+    speed: float = 1.0
+    load: float = 1.0
+    emergency_stop_torque_Nm: float | None = None
+    emergency_stop_count: int | None = None
+
+
+def ways_of(candidate: Candidate, reserve_utilisation: float = 1.0) -> tuple[Way, ...]:
+    """Ways to make every load check of a rejected gear pass; any one of them is enough.
+
+    None where nothing is exceeded, and where not every check can be judged.
+    Where a life fails beyond what the other checks ask for anyway there are two: less torque or load, or less speed.
+    `reserve_utilisation` is the user's u.
+    """
+    if not candidate.is_judged:
+        return ()
+    u = reserve_utilisation
+    used = {check.code: check.utilisation for check in candidate.checks if check.utilisation is not None}
+    torque, speed, load = (_needed(used, u, driver, _is_untold(candidate, "torque")) for driver in MOVES)
+    life = _excess(used.get("life", 0.0) * torque ** (10 / 3) * speed / u)
+    bearing = _excess(used.get("output_bearing_life", 0.0) * load * speed ** (1 / 3) / u)
+    stop = _stop(candidate, u)
+    gentler = Way(torque * life**-0.3, speed, load / bearing, *stop)
+    slower = Way(torque, speed / max(life, bearing**3), load, *stop)
+    return () if gentler == Way() else (gentler,) if gentler == slower else (gentler, slower)
+
+
+def _needed(used: Mapping[str, float], u: float, driver: Driver, untold: bool) -> float:
+    """Factor on a driver that the checks ask for which no other driver moves."""
+    rooms = [
+        u / used[code]
+        for code in MOVES[driver]
+        if code in used and code not in LIVES and not (untold and code in MOTOR_TORQUE_CHECKS)
+        if _excess(used[code] / u) > 1
+    ]
+    return min(rooms, default=1.0)
+
+
+def _is_untold(candidate: Candidate, driver: Driver) -> bool:
+    """Whether no closed form follows a driver of a judged gear: its reserve has no factor, yet a check of it is used.
+
+    That is the torque where the motor's torques go by an efficiency curve, and torque and speed where they have a part
+    of the motor's own inertia, which goes by the motion.
+    """
+    used = (check.utilisation or 0.0 for check in candidate.checks if check.code in MOVES[driver])
+    return getattr(candidate.reserve, f"{driver}_factor") is None and any(share > _LEAST for share in used)
+
+
+def _excess(relative: float) -> float:
+    """How far a utilisation lies above its bound, as a factor; 1 where it does not."""
+    return relative if relative > 1 + ROUNDING else 1.0
+
+
+def _stop(candidate: Candidate, u: float) -> tuple[float | None, int | None]:
+    checks = {check.code: check for check in candidate.failing}
+    torque, count = checks.get("momentary_peak_torque"), checks.get("momentary_peak_count")
+    if not torque and not count:
+        return None, None
+    fewer = math.floor(u * (count.limit or 0) * (1 + ROUNDING)) if count and not torque else 0
+    return candidate.reserve.emergency_stop_torque_Nm, fewer or None
+
+
+# --- Alternatives -----------------------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class Requirement:
+    """A limit of the user that has to change: the path of the input, its new value and the clause that says so."""
+
+    path: str
+    value: Quantity
+    clause: str
+
+
+@dataclass(frozen=True, slots=True)
+class Alternative:
+    """Changes that together make a rejected gear pass every check. Of the emergency stop it changes one thing."""
+
+    way: Way
+    requirements: tuple[Requirement, ...] = ()
+
+
+def alternatives_of(candidate: Candidate, reserve_utilisation: float = 1.0) -> tuple[Alternative, ...]:
+    """Alternatives that each make a rejected gear suitable.
+
+    None for one that is not rejected, where not every check can be judged, and where a driver has to change that no
+    closed form follows: what the motor has to give then is a matter of its curve, or of the motion.
+    """
+    if candidate.status != "unsuitable" or not candidate.is_judged:
+        return ()
+    ways, changed = ways_of(candidate, reserve_utilisation), tuple(_requirements(candidate, reserve_utilisation))
+    if any(getattr(way, driver) < 1 for way in ways for driver in MOVES if _is_untold(candidate, driver)):
+        return ()
+    return tuple(Alternative(one, changed) for way in ways or (Way(),) for one in _by_stop(way))
+
+
+def _by_stop(way: Way) -> Iterable[Way]:
+    """The way with a smaller emergency stop, and where that suffices with fewer of them."""
+    yield replace(way, emergency_stop_count=None)
+    if way.emergency_stop_count is not None:
+        yield replace(way, emergency_stop_torque_Nm=None)
+
+
+_AMBIENT = (N_("the ambient temperature drops to {value}"), N_("the ambient temperature rises to {value}"))
+
+
+def _requirements(candidate: Candidate, u: float) -> Iterable[Requirement]:
+    """What has to be required instead, for the checks that no driver moves."""
+    for check in candidate.failing:
+        known = BY_CODE[check.code]
+        if known.asked is None or check.demand is None or check.limit is None:
+            continue
+        if known.kind == "range":
+            rises = check.demand < check.limit
+            value = Quantity(check.limit, "degC", 6, "up" if rises else "down")
+            yield Requirement(known.asked, value, _AMBIENT[rises])
+        elif known.accepted and (not known.moves or _is_untold(candidate, "torque")):
+            least, allowed = known.kind == "minimum", known.allowed(u)
+            needed = check.demand * (allowed if least else 1 / allowed)
+            computed = bool(known.moves) or known.group == "load"
+            digits = 4 if computed else 6  # a published figure is told in full
+            shown = Quantity(needed, suffix_of(known.asked) or "", digits, "down" if least else "up")
+            yield Requirement(known.asked, shown, known.accepted)
+
+
+def tried(application: Application, alternative: Alternative, catalogue: Catalogue) -> Application:
+    """The application changed by an alternative, with its figures as the words print them.
+
+    Where a figure of a listed motor changes, its figures stand in place of its name.
+    """
+    changed = followed(application, alternative.way)
+    figures = {f"requirements.motor.{name}" for name in LISTED_FIGURES}
+    if any(requirement.path in figures for requirement in alternative.requirements):
+        changed = with_listed_motor(changed, catalogue)
+        changed = _with(changed, ("requirements", "motor", "designation"), None)
+    for requirement in alternative.requirements:
+        value = requirement.value
+        changed = _with(changed, requirement.path.split("."), float(rounded(value.value, value.digits, value.rounding)))
+    return changed
+
+
+def _with(model: Any, path: Sequence[str], value: float | None) -> Any:
+    name, *below = path
+    return model.model_copy(update={name: _with(getattr(model, name), below, value) if below else value})
+
+
+def followed(application: Application, way: Way) -> Application:
+    """The application changed by a way, with its figures as the words print them.
+
+    Of a motion the phases that come out of it take its place where their torques or speeds change.
+    """
+    torque, speed, load = (_printed(factor, 3) for factor in (way.torque, way.speed, way.load))
+    cycle, parts = application.duty_cycle, dict[str, Any]()
+    if cycle.motion is not None and (torque, speed) == (1, 1):
+        parts["duty_cycle"] = cycle.model_copy(update={"motion": _loaded(cycle.motion, load)})
+    else:
+        parts["duty_cycle"] = cycle.model_copy(update={"phases": _driven(cycle, torque, speed, load), "motion": None})
+        if cycle.motion is not None:
+            inertia = {"load_inertia_kgm2": cycle.motion.load_inertia_kgm2}
+            parts["requirements"] = application.requirements.model_copy(update=inertia)
+    if (given := application.output_load) is not None:
+        loads = {name: _scaled(getattr(given, name), load) for name in LOADS}
+        parts["output_load"] = given.model_copy(update={k: v for k, v in loads.items() if v is not None})
+    if (stop := application.emergency_stop) is not None:
+        parts["emergency_stop"] = _stopped(stop, way)
+    return application.model_copy(update=parts)
+
+
+LOADS = ("radial_N", "axial_N")
+
+
+def _loaded(motion: Motion, load: float) -> Motion:
+    """The motion with the loads of its moves by a factor."""
+    if load == 1:
+        return motion
+    given = motion.model_dump(exclude_unset=True)  # validated again, since a copy would keep the phases of before
+    for move in given["moves"]:
+        move |= {name: _scaled(move[name], load) for name in LOADS if move.get(name) is not None}
+    return type(motion).model_validate(given)
+
+
+def _driven(cycle: DutyCycle, torque: float, speed: float, load: float) -> tuple[Phase, ...]:
+    """Phases of a cycle with their torques, speeds and loads by factors; a mean, its peak and its RMS go together."""
+    return tuple(
+        phase.model_copy(
+            update={
+                "torque_Nm": _scaled(phase.torque_Nm, torque),
+                "peak_torque_Nm": _scaled(phase.peak_torque_Nm, torque),
+                "rms_torque_Nm": _scaled(phase.rms_torque_Nm, torque),
+                "speed_rpm": _scaled(phase.speed_rpm, speed),
+                "peak_speed_rpm": _scaled(phase.peak_speed_rpm, speed),
+                **{name: _scaled(getattr(phase, name), load) for name in LOADS},
+            }
+        )
+        for phase in cycle.load_phases
+    )
+
+
+def _stopped(stop: EmergencyStop, way: Way) -> EmergencyStop:
+    """The emergency stop with its largest torque, else with its largest number, else as it is."""
+    if way.emergency_stop_torque_Nm is not None:
+        limit = _printed(way.emergency_stop_torque_Nm, 4)
+        return stop.model_copy(update={"torque_Nm": math.copysign(limit, stop.torque_Nm)})
+    return stop if way.emergency_stop_count is None else stop.model_copy(update={"count": way.emergency_stop_count})
+
+
+def _printed(value: float, digits: int) -> float:
+    return value if value == 1 else float(rounded(value, digits, "down"))
+
+
+def _scaled(value: float | None, factor: float) -> float | None:
+    """A figure by a factor, as somebody would type it: without the last digits of floating point."""
+    if value is None or factor == 1:
+        return value
+    return math.copysign(float(rounded(abs(value * factor), 12, "down")), value)
+
+
+# --- In words ---------------------------------------------------------------------------------------------------------
+
+BY_CURVE = N_("not in closed form: the efficiency follows your curve")
+BY_INERTIA = N_("not in closed form: the motor’s own inertia follows the motion")
+UNTOLD = N_("What would make it fit is {reason}.")
+"""Why something is not told."""
+
+_DRIVERS = {
+    "torque": (N_("torques drop to {value}"), N_("torques to {value}")),
+    "speed": (N_("speeds drop to {value}"), N_("speeds to {value}")),
+    "load": (N_("output loads drop to {value}"), N_("output loads to {value}")),
+}
+_STOP_TORQUE = (N_("T_k drops to {value}"), N_("T_k to {value}"))
+_STOP_COUNT = (N_("N_k drops to {value}"), N_("N_k to {value}"))
+"""What drops to which value, as the first clause of a sentence and as a later one."""
+
+
+def remedy_of(candidate: Candidate, reserve_utilisation: float = 1.0) -> Sentence | None:
+    """What makes a rejected gear fit, all alternatives in one sentence, or why no closed form tells it.
+
+    None for a gear that is not rejected, and where not every check can be judged.
+    """
+    conditions = [condition_of(alternative) for alternative in alternatives_of(candidate, reserve_utilisation)]
+    if not conditions:
+        reason = _untold(candidate) if candidate.status == "unsuitable" and candidate.is_judged else ""
+        return Sentence(UNTOLD, {"reason": reason}, ("reason",)) if reason else None
+    if len(conditions) == 1:
+        return Sentence(N_("Fits if {conditions}."), {"conditions": conditions[0]})
+    numbered = [
+        Sentence("({number}) {condition}", {"number": number, "condition": condition})
+        for number, condition in enumerate(conditions, start=1)
+    ]
+    return Sentence(
+        N_("Fits if one of these holds: {conditions}."), {"conditions": listed(numbered, "{first}; {rest}")}
+    )
+
+
+def _untold(candidate: Candidate) -> str:
+    """Why no closed form follows the torque, a msgid; blank where one does."""
+    by_curve = BY_CURVE if _is_untold(candidate, "torque") else ""
+    return BY_INERTIA if _is_untold(candidate, "speed") else by_curve
+
+
+def condition_of(alternative: Alternative) -> Sentence:
+    """The changes of an alternative as a list in words: `a, b and c`."""
+    *early, last = _clauses(alternative)
+    if not early:
+        return last
+    return Sentence(N_("{first} and {second}"), {"first": listed(early, "{first}, {rest}"), "second": last})
+
+
+def _clauses(alternative: Alternative) -> list[Sentence]:
+    way, changes = alternative.way, []
+    for driver, wording in _DRIVERS.items():
+        if (factor := getattr(way, driver)) < 1:
+            changes.append((wording, _bound(100 * factor, "percent")))
+    if way.emergency_stop_torque_Nm is not None:
+        changes.append((_STOP_TORQUE, _bound(way.emergency_stop_torque_Nm, "Nm", 4)))
+    if way.emergency_stop_count is not None:
+        changes.append((_STOP_COUNT, _bound(way.emergency_stop_count, "", 16)))
+    drops = [Sentence(wording[place > 0], {"value": value}) for place, (wording, value) in enumerate(changes)]
+    return drops + [Sentence(one.clause, {"value": one.value}) for one in alternative.requirements]
+
+
+def _bound(value: float, unit: str, digits: int = 3) -> Quantity:
+    return Quantity(value, unit, digits, "down")
+
+
+# --- Reserve ----------------------------------------------------------------------------------------------------------
+
+DRIVER_NAMES = {
+    "torque": N_("All duty torques"),
+    "speed": N_("All speeds"),
+    "load": N_("All output loads"),
+    "emergency_stop": N_("Emergency-stop torque"),
+    "emergency_stop_count": N_("Emergency stops"),
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Growth:
+    """How far one driver may grow until one check is at its limit, the rest unchanged.
+
+    The factor is None without a limit, and where no closed form gives it: `untold` then says why.
+    """
+
+    driver: str
+    factor: float | None
+    untold: str = ""
+
+    @property
+    def bound(self) -> Sentence:
+        """In words: `up to 249 %`, rounded down."""
+        if self.factor is None:
+            return Sentence(self.untold or N_("without limit"))
+        return Sentence(N_("up to {limit}"), {"limit": _bound(100 * self.factor, "percent")})
+
+    @property
+    def share(self) -> Quantity | None:
+        """The same for a column of a table: 249 %."""
+        return None if self.factor is None else _bound(100 * self.factor, "percent")
+
+
+def growths_of(candidate: Candidate, reserve_utilisation: float = 1.0) -> dict[str, tuple[Growth, ...]]:
+    """For each check of a candidate, how far every driver of it may grow until that very check is at its limit.
+
+    Below 1 where the check fails. Empty for a check that no driver moves and for one that is not rated. Not told for
+    motor torques that go by an efficiency curve or by the motor's own inertia, which no closed form follows; empty for
+    motor torques of a gear that is not judged, whose reserve can't tell either.
+    """
+    untold = _untold(candidate)
+    return {
+        check.code: ()
+        if untold and check.code in MOTOR_TORQUE_CHECKS and not candidate.is_judged
+        else tuple(_growths(check, reserve_utilisation, untold if check.code in MOTOR_TORQUE_CHECKS else ""))
+        for check in candidate.checks
+    }
+
+
+def _growths(check: CheckResult, u: float, untold: str) -> Iterable[Growth]:
+    if check.utilisation is None:
+        return
+    if check.code == "momentary_peak_torque":
+        yield _growth("emergency_stop", check.utilisation / u, 1.0)
+    elif check.code == "momentary_peak_count" and check.demand:
+        most = None if check.limit is None else math.floor(u * check.limit * (1 + ROUNDING))
+        yield Growth("emergency_stop_count", None if most is None else most / check.demand)
+    for driver, power in BY_CODE[check.code].moves.items():
+        yield Growth(driver, None, untold) if untold else _growth(driver, check.utilisation / u, power)
+
+
+def _growth(driver: str, full: float, power: float) -> Growth:
+    return Growth(driver, full ** (-1 / power) if full > _LEAST else None)
+
+
+_LEAST = 1e-99
+"""Share of a limit below which its inverse, to the power 3, would overflow: as good as without a limit."""

@@ -1,0 +1,82 @@
+"""How far each driver of an application may grow, or must shrink, until a check that it moves meets its limit.
+
+In closed form, because every utilisation is a power of each driver: `moves` of a check gives the powers. The other
+inputs stay as they are. A factor below 1 is what a rejected gear needs; all factors below 1 together are the remedy.
+"""
+
+from collections.abc import Iterable, Mapping
+
+import numpy as np
+
+from hpn.engine.check import DRIVERS, Driver
+from hpn.engine.checks import CHECKS
+from hpn.engine.evaluation import Checked, Evaluation
+from hpn.physics import equations
+from hpn.physics.equations import ROUNDING, FloatArray
+
+MOVES: Mapping[Driver, Mapping[str, float]] = {
+    driver: {check.code: check.moves[driver] for check in CHECKS if driver in check.moves} for driver in DRIVERS
+}
+"""Driver -> check -> power with which the driver moves the utilisation of the check (eq. 17.2 to 17.10, ISO 281)."""
+
+MOTOR_TORQUE_INPUTS = ("requirements.motor.peak_torque_Nm", "requirements.motor.rated_torque_Nm")
+
+
+def reserves(evaluation: Evaluation, index: int) -> dict[str, FloatArray]:
+    """Reserve of application `index` on every gear, shape (G,) each: infinite without a limit, NaN where not rated.
+
+    Factors on all torques of the duty cycle (not the emergency stop), on all speeds and on all loads, and the largest
+    permissible emergency-stop torque in Nm. A torque's mean, peak and RMS go together, and so do a speed's mean and
+    peak. NaN also where the application moves no such check, and where no closed form follows a motor torque: for the
+    torque factor where it goes by the gear's efficiency curve, for those of torque and speed where the motor's own
+    inertia has a part in it, which goes by the motion's acceleration.
+    """
+    asked = evaluation.case.asked
+    u = asked["requirements.utilisation"].item(index)
+    with np.errstate(all="ignore"):
+        factors = {
+            f"{driver}_factor": _factor((one for one in evaluation.checked if one.asked.item(index)), index, driver, u)
+            for driver in DRIVERS
+        }
+    if any(not np.isnan(asked[path].item(index)) for path in MOTOR_TORQUE_INPUTS):
+        follows_curve = np.array(
+            [gear.designation in evaluation.catalogue.efficiency for gear in evaluation.gears.rows]
+        )
+        stated = not np.isnan(asked["requirements.efficiency"].item(index))
+        own_inertia = not np.isnan(asked["requirements.motor.inertia_kgm2"].item(index))
+        turns = own_inertia and evaluation.case.duty.courses.get(index) is not None
+        by_curve = follows_curve & ~np.bool_(stated)
+        factors["torque_factor"] = np.where(by_curve | np.bool_(turns), np.nan, factors["torque_factor"])
+        factors["speed_factor"] = np.where(np.bool_(turns), np.nan, factors["speed_factor"])
+    return {**factors, "emergency_stop_torque_Nm": _emergency_stop_torque(evaluation, index, u)}
+
+
+def _factor(checked: Iterable[Checked], index: int, driver: Driver, u: float) -> FloatArray:
+    """Smallest (u / utilisation)^(1 / power) over the checks that a driver moves; NaN where it moves none."""
+    rooms = [
+        room if power == 1 else room ** (1 / power)
+        for one in checked
+        if (power := one.check.moves.get(driver))
+        for room in (u / one.utilisation[index],)
+    ]
+    return np.minimum.reduce(rooms) if rooms else np.array(np.nan)
+
+
+def _emergency_stop_torque(evaluation: Evaluation, index: int, u: float) -> FloatArray:
+    """Largest T_k that equations 17.8 and 17.9 allow, shape (G,).
+
+    The number that equation 17.9 has to allow is the expected one over u, rounded up, since it gives a count; a reserve
+    next to 0 leaves no stop above T_R. Without an expected number T_M alone limits.
+    """
+    asked, gears = evaluation.case.asked, evaluation.gears.columns
+    if np.isnan(asked["emergency_stop.torque_Nm"].item(index)):
+        return np.array(np.nan)
+    by_torque = u * gears.momentary_peak_torque_Nm
+    count = asked["emergency_stop.count"].item(index)
+    if np.isnan(count):
+        return by_torque
+    needed = max(np.ceil(count / u * (1 - ROUNDING)), 1.0)
+    by_count = equations.emergency_stop_torque_for(
+        momentary_peak_count=needed, repeated_peak_torque_Nm=gears.repeated_peak_torque_Nm
+    )
+    return np.minimum(by_torque, by_count)

@@ -1,0 +1,394 @@
+"""From an application and the catalogue to a ranked list of candidates, each with its checks and a reason.
+
+A `Selection` is the reply: what the API encodes as JSON, what pages and files read, what a saved reply decodes to.
+"""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from itertools import islice, repeat
+from typing import Annotated, NamedTuple
+
+import msgspec
+import numpy as np
+from msgspec import Meta
+
+from hpn import ENGINE_VERSION
+from hpn.application import Application
+from hpn.catalogue import Catalogue
+from hpn.engine.allowed import gears_for, with_listed_motor
+from hpn.engine.check import Check, Group, Kind
+from hpn.engine.checks import BY_CODE, allowed
+from hpn.engine.duty import Duty
+from hpn.engine.evaluation import (
+    CHECK_STATUS,
+    STATUS,
+    SUITABLE,
+    UNRATED,
+    Checked,
+    CheckStatus,
+    Evaluation,
+    PlaceArray,
+    Status,
+    evaluate,
+)
+from hpn.engine.notices import Notice, notices_of
+from hpn.engine.reserve import reserves
+from hpn.physics.equations import FloatArray
+from hpn.words.quantities import DUTY
+from hpn.words.wording import N_, Quantity, Sentence, Value, telling_decimals
+
+
+class CheckResult(msgspec.Struct, frozen=True):
+    """One check of one candidate."""
+
+    code: str
+    demand: float | None
+    limit: float | None
+    utilisation: float | None
+    status: CheckStatus
+
+
+class Reserve(msgspec.Struct, frozen=True):
+    """How far each driver may grow (above 1) or must shrink (below 1) on one candidate, the others as given."""
+
+    torque_factor: float | None = None
+    speed_factor: float | None = None
+    load_factor: float | None = None
+    emergency_stop_torque_Nm: float | None = None
+
+
+class Candidate(msgspec.Struct, frozen=True):
+    """One gear, its verdict and why."""
+
+    designation: str
+    size: str
+    ratio: int
+    stages: int
+    status: Status
+    rank: int | None
+    utilisation: float | None
+    governing_check: str | None
+    reason: str
+    average_input_speed_rpm: float | None = None
+    maximum_input_speed_rpm: float | None = None
+    life_L10_h: float | None = None
+    momentary_peak_count: float | None = None
+    bearing_life_L50_h: float | None = None
+    bearing_life_L10_h: float | None = None
+    motor_peak_torque_Nm: float | None = None
+    motor_rated_torque_Nm: float | None = None
+    reserve: Reserve = Reserve()
+    checks: tuple[CheckResult, ...] = ()
+
+    def check(self, code: str) -> CheckResult | None:
+        """The check of a code, or None where it was not asked for."""
+        return next((check for check in self.checks if check.code == code), None)
+
+    @property
+    def failing(self) -> tuple[CheckResult, ...]:
+        """The checks that fail."""
+        return tuple(check for check in self.checks if check.status == "fail")
+
+    @property
+    def is_judged(self) -> bool:
+        """Whether every check could be judged. One that is unsuitable needs not be rated for that."""
+        return all(check.status != "not_rated" for check in self.checks)
+
+    def is_unlimited(self, figure: str) -> bool:
+        """Whether a figure is empty because nothing limits it, and not because nobody asked or a rating lacks.
+
+        Its own status doesn't tell: a gear that fails a check is unsuitable, whether it is rated or not.
+        """
+        asked, rated = _UNLIMITED_BY[figure]
+        rating = self.check(rated)
+        known = rating is not None and rating.status != "not_rated"
+        return getattr(self, figure) is None and self.check(asked) is not None and known
+
+
+_UNLIMITED_BY = {
+    "life_L10_h": ("average_torque", "average_torque"),
+    "momentary_peak_count": ("momentary_peak_torque", "repeated_peak_torque"),
+    "bearing_life_L50_h": ("output_bearing_life", "output_bearing_life"),
+}
+"""Figures that may be without limit: the check that stands there where they are asked for, and the one that says
+whether the gear has the rating that they come from."""
+
+
+class PhaseFigures(msgspec.Struct, frozen=True, omit_defaults=True):
+    """A load phase that comes out of a motion, as one is typed."""
+
+    torque_Nm: float
+    speed_rpm: float
+    duration_s: float
+    peak_torque_Nm: float
+    peak_speed_rpm: float
+    rms_torque_Nm: float
+    radial_N: float | None = None
+    axial_N: float | None = None
+
+
+class DutyFigures(msgspec.Struct, frozen=True, omit_defaults=True):
+    """What the duty cycle comes to; phases and inertia where it is a motion."""
+
+    average_torque_Nm: float
+    average_output_speed_rpm: float
+    maximum_torque_Nm: float
+    maximum_output_speed_rpm: float
+    phases: Annotated[tuple[PhaseFigures, ...], Meta(description="Load phases that the motion comes to.")] = ()
+    load_inertia_kgm2: Annotated[
+        float | None, Meta(description="Moment of inertia of the motion’s load at the gear’s output.")
+    ] = None
+
+
+class CheckDefinition(msgspec.Struct, frozen=True):
+    """What is the same of a check for every candidate; `Check` says what its fields mean."""
+
+    title: Annotated[str, Meta(description="Name of the check.")]
+    equation: Annotated[str | None, Meta(description="Number of the handbook’s equation, where it has one.")]
+    unit: Annotated[str, Meta(description="Unit of demand and limit; empty for a pure number.")]
+    kind: Annotated[Kind, Meta(description="Which way the limit bounds the demand.")]
+    group: Annotated[
+        Group,
+        Meta(description="Load checks count in the candidate’s utilisation; property checks only where they fail."),
+    ]
+    limit_name: Annotated[str, Meta(description="Symbol of the limit.")] = ""
+    source: Annotated[str, Meta(description="Where the limit comes from.")] = ""
+    tests: Annotated[str, Meta(description="What is checked.")] = ""
+    consequence: Annotated[str, Meta(description="What happens if the limit is exceeded.")] = ""
+    basis: Annotated[str, Meta(description="On which basis it stands.")] = ""
+    remedy: Annotated[str, Meta(description="What to change.")] = ""
+
+
+LINK = (
+    "Address of the page that shows this application. The page opens up to 60,000 bytes: save a longer application and "
+    "share the address of the saved selection."
+)
+
+
+class Selection(msgspec.Struct, frozen=True):
+    """The answer to one application. `link` is the address of the page that shows the application."""
+
+    engine_version: Annotated[str, Meta(description="Version of the calculation.")]
+    catalogue_version: Annotated[str, Meta(description="Hash of the catalogue’s content, supplement included.")]
+    link: Annotated[str, Meta(description=LINK)]
+    duty: Annotated[DutyFigures, Meta(description="The duty cycle’s own figures.")]
+    selected: Annotated[str | None, Meta(description="Designation of the first suitable candidate, or null.")]
+    candidates: Annotated[tuple[Candidate, ...], Meta(description="Every gear considered, best first.")]
+    check_definitions: Annotated[dict[str, CheckDefinition], Meta(description="Definitions by check code.")]
+    notices: Annotated[tuple[Notice, ...], Meta(description="Assumptions and standings.")]
+
+    @property
+    def foremost(self) -> Candidate:
+        """The selected gear, else the nearest miss among those that could be judged, if any could."""
+        return next((candidate for candidate in self.candidates if candidate.is_judged), self.candidates[0])
+
+    @property
+    def turns_motor(self) -> bool:
+        """Whether the motor's own inertia counts in its torques, which a notice says."""
+        return any(notice.code == "motor_inertia_included" for notice in self.notices)
+
+    def candidate(self, designation: str) -> Candidate | None:
+        """The candidate of a designation, or None."""
+        return next((entry for entry in self.candidates if entry.designation == designation), None)
+
+
+encode = msgspec.json.Encoder().encode
+"""JSON of a selection; NaN and infinity, which stand for unpublished and unlimited, become null."""
+
+decode = msgspec.json.Decoder(Selection).decode
+"""Selection of JSON, also of JSON that an earlier version has saved; raises msgspec.MsgspecError for any other."""
+
+
+class Outcome(NamedTuple):
+    """One line of a batch: the selected gear, how close it is to its limits, and how many gears are suitable."""
+
+    selected: str | None
+    governing_check: str | None
+    utilisation: float | None
+    suitable: int
+
+
+@dataclass(frozen=True, slots=True)
+class Judged:
+    """An application on its gears: number `index` of an evaluation."""
+
+    application: Application
+    evaluation: Evaluation
+    index: int = 0
+
+    def outcome(self) -> Outcome:
+        """The answer in brief."""
+        evaluation, index = self.evaluation, self.index
+        suitable = int((evaluation.verdict[index] == SUITABLE).sum())
+        if not suitable:
+            return Outcome(None, None, None, 0)
+        best = evaluation.order.item(index, 0)
+        check = evaluation.checked[evaluation.governing.item(index, best)].check
+        used = evaluation.utilisation.item(index, best)
+        return Outcome(evaluation.gears.rows[best].designation, check.code, used, suitable)
+
+    def selection(self, link: str = "") -> Selection:
+        """The answer in full."""
+        evaluation, index = self.evaluation, self.index
+        candidates = tuple(candidates_of(evaluation, index))
+        checks = tuple(one.check.code for one in evaluation.checked if one.asked.item(index))
+        return Selection(
+            engine_version=ENGINE_VERSION,
+            catalogue_version=evaluation.catalogue.version,
+            link=link,
+            duty=_duty(self.application, evaluation, index),
+            selected=candidates[0].designation if candidates[0].status == "suitable" else None,
+            candidates=candidates,
+            check_definitions=dict(_definitions(checks)),
+            notices=notices_of(self.application, evaluation, index),
+        )
+
+
+def select(application: Application, catalogue: Catalogue, link: str = "") -> Selection:
+    """Evaluate every gear that the application allows, and rank them.
+
+    Raises InputError for a ratio or size that the catalogue lacks, for a combination that leaves no gear, and for the
+    digitised bearing model where no candidate has curve points.
+    """
+    return judge(application, catalogue).selection(link)
+
+
+def judge(application: Application, catalogue: Catalogue) -> Judged:
+    """The same, before it is put together; raises as `select` does."""
+    gears, equipped = gears_for(application, catalogue), with_listed_motor(application, catalogue)
+    return Judged(application, evaluate(Duty.of([equipped]), gears, catalogue))
+
+
+def _duty(application: Application, evaluation: Evaluation, index: int) -> DutyFigures:
+    figures = DutyFigures(*(getattr(evaluation.case.duty, name).item(index) for name in DUTY))
+    motion = application.duty_cycle.motion
+    if motion is None:
+        return figures
+    phases = tuple(PhaseFigures(**vars(phase)) for phase in motion.phases)
+    return msgspec.structs.replace(figures, phases=phases, load_inertia_kgm2=motion.load_inertia_kgm2)
+
+
+# --- Candidates -------------------------------------------------------------------------------------------------------
+
+
+def candidates_of(evaluation: Evaluation, index: int) -> Iterator[Candidate]:
+    """Candidates of an application, best first."""
+    order = evaluation.order[index]
+    asked = [one for one in evaluation.checked if one.asked.item(index)]
+    codes = [one.check.code for one in evaluation.checked]
+    u = evaluation.case.asked["requirements.utilisation"].item(index)
+    figures = (getattr(evaluation.case.figures, name)[index] for name in FIGURES)
+    terms = (values[index] for one in asked for values in (one.demand, one.limit, one.utilisation))
+    columns = iter(
+        _columns([evaluation.utilisation[index], *figures, *reserves(evaluation, index).values(), *terms], order)
+    )
+    used, values = next(columns), zip(*islice(columns, len(FIGURES)), strict=True)
+    reserve = map(Reserve, *islice(columns, len(Reserve.__struct_fields__)))
+    checks = [
+        map(
+            CheckResult, repeat(one.check.code), next(columns), next(columns), next(columns), _states(one, index, order)
+        )
+        for one in asked
+    ]
+    rows = zip(used, values, reserve, zip(*checks, strict=True), strict=True)
+    for place, (gear, (utilisation, numbers, own_reserve, results)) in enumerate(
+        zip(order.tolist(), rows, strict=True)
+    ):
+        verdict = evaluation.verdict.item(index, gear)
+        governing = None if verdict == UNRATED else codes[evaluation.governing.item(index, gear)]
+        known = evaluation.gears.rows[gear]
+        failed = sum(result.status == "fail" for result in results)
+        yield Candidate(
+            designation=known.designation,
+            size=known.size,
+            ratio=known.ratio,
+            stages=known.stages,
+            status=STATUS[verdict],
+            rank=place + 1 if verdict == SUITABLE else None,
+            utilisation=utilisation,
+            governing_check=governing,
+            reason=_reason(known.size, STATUS[verdict], utilisation, governing, failed, u),
+            **dict(zip(FIGURES, numbers, strict=True)),
+            reserve=own_reserve,
+            checks=results,
+        )
+
+
+def _columns(values: Sequence[FloatArray], order: PlaceArray) -> list[list[float | None]]:
+    """Values of the gears in an order, a list for each; None where one is not finite."""
+    table = np.empty((len(values), len(order)))
+    for place, column in enumerate(values):
+        table[place] = column
+    table = table[:, order]
+    numbers = table.astype(object)
+    numbers[~np.isfinite(table)] = None
+    columns: list[list[float | None]] = numbers.tolist()
+    return columns
+
+
+def _states(checked: Checked, index: int, order: PlaceArray) -> Iterator[CheckStatus]:
+    return map(CHECK_STATUS.__getitem__, checked.status[index][order].tolist())
+
+
+FIGURES = (
+    "average_input_speed_rpm",
+    "maximum_input_speed_rpm",
+    "life_L10_h",
+    "momentary_peak_count",
+    "bearing_life_L50_h",
+    "bearing_life_L10_h",
+    "motor_peak_torque_Nm",
+    "motor_rated_torque_Nm",
+)
+"""Figures of a candidate, in the order of its fields."""
+
+
+@lru_cache(maxsize=1024)
+def _definitions(codes: tuple[str, ...]) -> dict[str, CheckDefinition]:
+    return {code: _definition(BY_CODE[code]) for code in codes}
+
+
+def _definition(check: Check) -> CheckDefinition:
+    return CheckDefinition(*(getattr(check, name) for name in CheckDefinition.__struct_fields__))
+
+
+# --- Reasons ----------------------------------------------------------------------------------------------------------
+
+REASONS = {
+    "suitable": N_("Every check passes; the closest is {check} at {percent} of its limit."),
+    "unsuitable": N_("{check} is at {percent} of its limit."),
+    "unsuitable_more": N_("{check} is at {percent} of its limit; checks that fail: {failed}."),
+    "no_stop_allowed": N_("T_k is too high: no emergency stop is permitted (eq. 17.9)."),
+    "unrated": N_("Not rated: figures of {name} that the checks need are not in this catalogue’s source."),
+}
+"""Why a candidate stands where it does: templates of sentences."""
+
+
+def reason_of(candidate: Candidate, utilisation: float) -> Sentence:
+    """Why a candidate stands where it does, for any language; `utilisation` is the user's u."""
+    used, code, failed = candidate.utilisation, candidate.governing_check, len(candidate.failing)
+    if used is None or code is None:
+        key = "unrated" if candidate.status == "unrated" else "no_stop_allowed"
+        return Sentence(REASONS[key], {"name": f"HPN-{candidate.size}"})
+    percent = Quantity(_told_percent(used, code, utilisation), "percent", 12)
+    values: dict[str, Value] = {"check": BY_CODE[code].title, "percent": percent, "failed": failed}
+    return Sentence(REASONS[_key(candidate.status, failed)], values, ("check",))
+
+
+def _reason(size: str, status: Status, used: float | None, code: str | None, failed: int, u: float) -> str:
+    """The same as the API gives it: in English, its number with every digit that is told."""
+    if used is None or code is None:
+        return REASONS["unrated" if status == "unrated" else "no_stop_allowed"].format(name=f"HPN-{size}")
+    percent = f"{_told_percent(used, code, u)!r} %"
+    return REASONS[_key(status, failed)].format(check=BY_CODE[code].title, percent=percent, failed=failed)
+
+
+def _key(status: Status, failed: int) -> str:
+    return "unsuitable_more" if failed > 1 else status
+
+
+def _told_percent(used: float, code: str, u: float) -> float:
+    """Utilisation in percent, with as many decimals as tell it from what is allowed."""
+    percent = 100 * used
+    return round(percent, telling_decimals(percent, 100 * allowed(code, u), 1))

@@ -1,0 +1,1 @@
+"""Explanations of a selection: its calculation, drawings, comparisons and differences."""

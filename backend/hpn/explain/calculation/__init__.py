@@ -1,0 +1,28 @@
+"""The calculation of one gear as the handbook's equations, each with its numbers, its limit and where that is from.
+
+Only shows what the selection has worked out: a test holds every formula against the figure of the candidate.
+"""
+
+from hpn.application import Application
+from hpn.catalogue import Catalogue
+from hpn.catalogue.gear import Gear
+from hpn.engine.allowed import with_listed_motor
+from hpn.engine.selection import Candidate
+from hpn.explain.calculation.handbook import handbook_steps
+from hpn.explain.calculation.motor import motor_steps
+from hpn.explain.calculation.output_bearing import bearing_steps
+from hpn.explain.calculation.sheet import Comparison, Line, Sheet, Step
+
+__all__ = ["Comparison", "Line", "Step", "calculation_of"]
+
+
+def calculation_of(
+    candidate: Candidate, gear: Gear, application: Application, catalogue: Catalogue
+) -> tuple[Step, ...]:
+    """Every equation that applies to a gear, in the order of the handbook, then the motor and the output bearing.
+
+    `candidate` is what the gear comes to under the application. What a figure that is not published keeps from being
+    worked out is left out.
+    """
+    sheet = Sheet(candidate, gear, with_listed_motor(application, catalogue), catalogue)
+    return (*handbook_steps(sheet), *motor_steps(sheet), *bearing_steps(sheet))

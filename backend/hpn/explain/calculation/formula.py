@@ -1,0 +1,220 @@
+"""Formulas as trees of terms that know their symbol and their value: written in symbols, with numbers, or evaluated.
+
+One tree serves all three, so that what a reader sees substituted is what the result came from.
+"""
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Self
+
+from hpn.physics.equations import FloatArray
+
+SHOWN_TERMS = 6
+"""A series over more phases is abbreviated."""
+
+
+@dataclass(frozen=True, slots=True)
+class Variable:
+    """A letter of the handbook with its index, such as T and `av`."""
+
+    letter: str
+    index: str = ""
+
+    @classmethod
+    def of(cls, written: str) -> Self:
+        """Symbol as the tables of quantities and checks write it, its index behind an underscore: `T_av`."""
+        letter, _, index = written.partition("_")
+        return cls(letter, index)
+
+    def of_phase(self, index: str) -> "Variable":
+        """The same of one phase."""
+        return Variable(self.letter, ",".join(filter(None, (self.index, index))))
+
+
+@dataclass(frozen=True, slots=True)
+class Term:
+    """A symbol and the value that stands for it; `unit` is a suffix such as `Nm`, blank for a pure number."""
+
+    symbol: Variable
+    value: float
+    unit: str = ""
+
+
+@dataclass(frozen=True)
+class PhaseValues:
+    """A quantity of every phase; `values` has shape (phases,)."""
+
+    symbol: Variable
+    values: FloatArray
+    unit: str = ""
+
+    def term(self, index: str, place: int) -> Term:
+        """The quantity of one phase, written with an index."""
+        return Term(self.symbol.of_phase(index), self.values.item(place), self.unit)
+
+
+@dataclass(frozen=True, slots=True)
+class Constant:
+    """A number that the equation itself prints."""
+
+    value: float
+    unit: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Sum:
+    """Terms added up."""
+
+    terms: "tuple[Formula, ...]"
+
+
+@dataclass(frozen=True, slots=True)
+class Series:
+    """A sum over the phases. `pattern` is its first, second and last term in symbols.
+
+    Of a long series only the first terms are kept, and the last one; `total` is the value of all `count` of them.
+    """
+
+    pattern: "tuple[Formula, Formula, Formula]"
+    terms: "tuple[Formula, ...]"
+    count: int
+    total: float
+
+    @property
+    def abbreviated(self) -> bool:
+        """Whether terms in the middle are left out."""
+        return self.count > len(self.terms)
+
+
+@dataclass(frozen=True, slots=True)
+class Subtraction:
+    """One formula less another."""
+
+    left: "Formula"
+    right: "Formula"
+
+
+@dataclass(frozen=True, slots=True)
+class Product:
+    """Factors multiplied."""
+
+    factors: "tuple[Formula, ...]"
+
+
+@dataclass(frozen=True, slots=True)
+class Quotient:
+    """A fraction; `flat` where it stands in an exponent."""
+
+    above: "Formula"
+    below: "Formula"
+    flat: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Power:
+    """A base with an exponent."""
+
+    base: "Formula"
+    exponent: "Formula"
+
+
+@dataclass(frozen=True, slots=True)
+class Root:
+    """A root; the square root where no degree is given."""
+
+    body: "Formula"
+    degree: "Formula | None" = None
+
+
+@dataclass(frozen=True, slots=True)
+class Magnitude:
+    """Bars around what may be signed; the number in them is shown without its sign."""
+
+    body: "Formula"
+
+
+@dataclass(frozen=True, slots=True)
+class Largest:
+    """The largest of some formulas."""
+
+    of: "tuple[Formula, ...]"
+
+
+Formula = Term | Constant | Sum | Series | Subtraction | Product | Quotient | Power | Root | Magnitude | Largest
+
+TEN_THIRDS = Quotient(Constant(10), Constant(3), flat=True)
+
+
+def value_of(formula: Formula, instead: Mapping[Variable, float] | None = None) -> float:
+    """Value of a formula; raises what arithmetic raises, such as ZeroDivisionError.
+
+    `instead` gives some symbols another value, but for those in a series.
+    """
+    return float(_evaluated(formula, instead or {}))
+
+
+def values_of(formula: Formula, values: Mapping[Variable, FloatArray]) -> FloatArray:
+    """Values of a formula where some of its symbols have many values each."""
+    result: FloatArray = _evaluated(formula, values)
+    return result
+
+
+def _evaluated(formula: Formula, instead: Mapping[Variable, Any]) -> Any:
+    """Value of a formula, a number or an array as its symbols are."""
+
+    def each(formulas: Sequence[Formula]) -> list[Any]:
+        return [_evaluated(one, instead) for one in formulas]
+
+    match formula:
+        case Term(symbol, value):
+            return instead.get(symbol, value)
+        case Constant(value=value) | Series(total=value):
+            return value
+        case Sum(terms):
+            return sum(each(terms))
+        case Subtraction(left, right):
+            return _evaluated(left, instead) - _evaluated(right, instead)
+        case Product(factors):
+            return math.prod(each(factors))
+        case Quotient(above, below):
+            return _evaluated(above, instead) / _evaluated(below, instead)
+        case Power(base, exponent):
+            return _evaluated(base, instead) ** _evaluated(exponent, instead)
+        case Root(body, degree):
+            return _evaluated(body, instead) ** (1 / _evaluated(degree, instead) if degree else 0.5)
+        case Magnitude(body):
+            return abs(_evaluated(body, instead))
+        case Largest(of):
+            return max(each(of))
+
+
+def over_phases(make: Callable[..., Formula], *quantities: PhaseValues) -> Series:
+    """Series over the phases; `make` gives the term of a phase from its quantities, in their order."""
+    count = len(quantities[0].values)
+
+    def term(index: str, place: int) -> Formula:
+        return make(*(quantity.term(index, place) for quantity in quantities))
+
+    shown: Sequence[int] = range(count)
+    if count > SHOWN_TERMS:
+        shown = (*range(SHOWN_TERMS - 2), count - 1)
+    general = term("n", 0)
+    every = values_of(general, {quantity.symbol.of_phase("n"): quantity.values for quantity in quantities})
+    terms = tuple(term(str(place + 1), place) for place in shown)
+    return Series((term("1", 0), term("2", 0), general), terms, count, math.fsum(every.tolist()))
+
+
+def leaves_out(formula: Formula) -> bool:
+    """Whether a series in a formula is abbreviated."""
+    match formula:
+        case Term() | Constant():
+            return False
+        case Series():
+            return formula.abbreviated
+        case Sum(parts) | Product(parts) | Largest(parts):
+            return any(map(leaves_out, parts))
+        case Subtraction(first, second) | Quotient(first, second) | Power(first, second):
+            return leaves_out(first) or leaves_out(second)
+        case Root(body) | Magnitude(body):
+            return leaves_out(body)

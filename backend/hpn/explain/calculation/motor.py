@@ -1,0 +1,172 @@
+"""The motor: peak torque without the emergency stop, RMS over the cycle with its pause, inertia ratio. Not printed."""
+
+from collections.abc import Iterable
+from dataclasses import replace
+
+import numpy as np
+
+from hpn.engine.figures import efficiency_along
+from hpn.explain.calculation.formula import (
+    Constant,
+    Formula,
+    PhaseValues,
+    Power,
+    Product,
+    Quotient,
+    Root,
+    Subtraction,
+    Sum,
+    Term,
+    Variable,
+    over_phases,
+    values_of,
+)
+from hpn.explain.calculation.sheet import Line, Sheet, Step, known, step_of_check
+from hpn.physics.equations import FloatArray
+from hpn.physics.motion import Course, peak_instant, square_torque
+from hpn.words.quantities import INPUTS
+from hpn.words.wording import N_, Quantity, Sentence, Value
+
+SQUARED = Constant(2)
+EFFICIENCY = Variable.of(INPUTS["requirements.efficiency"].symbol)
+MOTOR_PEAK, MOTOR_RMS = Variable("T", "in,max"), Variable("T", "in,rms")
+STATED = N_("η as you state it.")
+LOSS_FREE = N_("η = 1, since no efficiency is known: loss-free, a lower bound.")
+BY_CURVE = N_("η of every phase from the efficiency curve that you supplied; beyond its ends that of the nearer end.")
+
+
+def motor_steps(sheet: Sheet) -> Iterable[Step]:
+    """Peak and RMS torque, loss-free where no efficiency is known; the inertia ratio where it is asked for."""
+    yield from _torques(sheet)
+    yield from _inertia_ratio(sheet)
+
+
+def _torques(sheet: Sheet) -> Iterable[Step]:
+    course, inertia = sheet.duty.courses.get(0), sheet.given("requirements.motor.inertia_kgm2")
+    if course is not None and inertia is not None:
+        return _along_the_motion(sheet, course, inertia)
+    stated = sheet.given("requirements.efficiency")
+    if stated is None and sheet.gear.designation in sheet.catalogue.efficiency:
+        return _by_curve(sheet)
+    eta = stated or Term(EFFICIENCY, 1.0)
+    shaft = Product((sheet.i, eta))
+    squares = over_phases(lambda T, t: Product((Power(T, SQUARED), t)), sheet.rms_torque, sheet.time)
+    rated = Quotient(Root(Quotient(squares, sheet.cycle_time)), shaft)
+    return _steps(sheet, Quotient(sheet.T_max, shaft), rated)
+
+
+# --- With the motor's own inertia -------------------------------------------------------------------------------------
+
+
+def _along_the_motion(sheet: Sheet, course: Course, inertia: Term) -> Iterable[Step]:
+    """Torques with the motor's own inertia: the peak at its instant, the RMS from that of each phase."""
+    common = Sentence(
+        N_("From T / (i · η) + J_m · i · α at every instant of the motion; T · η / i where the load drives.")
+    )
+    at_peak, at_rms = (_efficiencies(sheet, torque) for torque in (course.peak_torque_Nm, course.rms_torque_Nm))
+    squares = square_torque(
+        course, ratio=np.array([sheet.i.value]), efficiency=at_rms[None], motor_inertia_kgm2=inertia.value
+    )[0]
+    of_phases = PhaseValues(MOTOR_RMS, np.sqrt(np.maximum(squares, 0.0) / course.duration_s), "Nm")
+    series = over_phases(lambda T, t: Product((Power(T, SQUARED), t)), of_phases, sheet.time)
+    peak, notes = _at_its_instant(sheet, course, inertia, at_peak)
+    yield _step(sheet, "motor_peak_torque", MOTOR_PEAK, peak, common, *notes)
+    rated = Root(Quotient(series, sheet.cycle_time))
+    of_each = Sentence(N_("T_in,rms of a phase is the RMS of the motor’s torque over the course of that phase."))
+    yield _step(sheet, "motor_rated_torque", MOTOR_RMS, rated, common, of_each)
+
+
+def _at_its_instant(
+    sheet: Sheet, course: Course, inertia: Term, efficiency: FloatArray
+) -> tuple[Formula, tuple[Sentence, ...]]:
+    """The largest torque as what the load takes and what the motor's inertia takes, and what is to be known of both."""
+    i = sheet.i.value
+    instant = peak_instant(course, ratio=i, efficiency=efficiency, motor_inertia_kgm2=inertia.value)
+    eta = Term(EFFICIENCY, efficiency.item(instant.phase))
+    T, own = instant.torque_Nm, inertia.value * i * instant.acceleration_rad_per_s2
+    at_motor = T / (i * eta.value) if instant.is_driven else T * eta.value / i
+    load = Term(Variable("T"), abs(T), "Nm")
+    borne = Quotient(load, Product((sheet.i, eta))) if instant.is_driven else Quotient(Product((load, eta)), sheet.i)
+    accelerated = Term(Variable("T", "J"), abs(own), "Nm")
+    formula: Formula = Sum((borne, accelerated))
+    if at_motor * own < 0:
+        formula = Subtraction(*((borne, accelerated) if abs(at_motor) > abs(own) else (accelerated, borne)))
+    values: dict[str, Value] = {
+        "phase": instant.phase + 1,
+        "inertia": Quantity(inertia.value, "kgm2", 6),
+        "acceleration": Quantity(abs(instant.acceleration_rad_per_s2), "rad_per_s2", 6),
+        "torque": Quantity(abs(own), "Nm", 6),
+    }
+    text = N_(
+        "The largest is in phase {phase}: there J_m of {inertia} and α of {acceleration} at the output take "
+        "T_J = J_m · i · α = {torque}."
+    )
+    return formula, (Sentence(text, values), *_on_efficiency(sheet))
+
+
+def _efficiencies(sheet: Sheet, torque_Nm: FloatArray) -> FloatArray:
+    """Efficiency of every phase: as stated, by the gear's curve, or 1."""
+    stated = sheet.given("requirements.efficiency")
+    if stated is None and sheet.gear.designation in sheet.catalogue.efficiency:
+        return efficiency_along(sheet.catalogue, sheet.gear, torque_Nm)
+    return np.full(len(torque_Nm), stated.value if stated else 1.0)
+
+
+def _on_efficiency(sheet: Sheet) -> tuple[Sentence]:
+    """Where the efficiency is from."""
+    if sheet.given("requirements.efficiency") is not None:
+        return (Sentence(STATED),)
+    return (Sentence(BY_CURVE if sheet.gear.designation in sheet.catalogue.efficiency else LOSS_FREE),)
+
+
+# --- Phase by phase ---------------------------------------------------------------------------------------------------
+
+
+def _by_curve(sheet: Sheet) -> Iterable[Step]:
+    """Motor torques phase by phase, the efficiency read at the peak for the peak and at the RMS for the RMS."""
+    eta, eta_rms = (
+        PhaseValues(EFFICIENCY, efficiency_along(sheet.catalogue, sheet.gear, torque.values))
+        for torque in (sheet.peak_torque, sheet.rms_torque)
+    )
+
+    def at_motor(T: Formula, eta: Formula) -> Formula:
+        return Quotient(T, Product((sheet.i, eta)))
+
+    def of_phase(index: str, place: int) -> Formula:
+        return at_motor(sheet.peak_torque.term(index, place), eta.term(index, place))
+
+    every = {quantity.symbol.of_phase("n"): quantity.values for quantity in (sheet.peak_torque, eta)}
+    largest = int(values_of(of_phase("n", 0), every).argmax())
+    squares = over_phases(
+        lambda T, eta, t: Product((Power(at_motor(T, eta), SQUARED), t)), sheet.rms_torque, eta_rms, sheet.time
+    )
+    rated = Root(Quotient(squares, sheet.cycle_time))
+    return _steps(sheet, of_phase(str(largest + 1), largest), rated)
+
+
+def _steps(sheet: Sheet, peak: Formula, rated: Formula) -> Iterable[Step]:
+    notes = _on_efficiency(sheet)
+    yield _step(sheet, "motor_peak_torque", MOTOR_PEAK, peak, *notes)
+    yield _step(sheet, "motor_rated_torque", MOTOR_RMS, rated, *notes)
+
+
+def _step(sheet: Sheet, code: str, symbol: Variable, formula: Formula, *notes: Sentence) -> Step:
+    torque = replace(known(sheet.figure(f"{code}_Nm")), symbol=symbol)
+    limit, trivial = sheet.compared(code, torque), code == "motor_peak_torque"
+    return step_of_check(code, (Line(torque, formula),), limit, notes, trivial=trivial)
+
+
+# --- Inertia ----------------------------------------------------------------------------------------------------------
+
+
+def _inertia_ratio(sheet: Sheet) -> Iterable[Step]:
+    """Inertia of the load at the motor over the motor's own."""
+    load, motor = sheet.load_inertia, sheet.given("requirements.motor.inertia_kgm2")
+    if load is None or motor is None or sheet.given("requirements.motor.inertia_ratio") is None:
+        return
+    formula = Quotient(load, Product((Power(sheet.i, SQUARED), motor)))
+    note = N_("J_L from what you give for the load.")
+    if sheet.duty.courses:
+        note = N_("J_L is the inertia of the motion’s load at the gear’s output.")
+    limit = sheet.compared("inertia_ratio", formula)
+    yield step_of_check("inertia_ratio", (), limit, (Sentence(note),), trivial=True)

@@ -1,0 +1,222 @@
+"""What a calculation consists of, and the sheet of figures that its steps draw on."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+
+from hpn.application import Application
+from hpn.catalogue import Catalogue, GearList
+from hpn.catalogue.gear import Gear
+from hpn.engine.check import Check
+from hpn.engine.checks import BY_CODE
+from hpn.engine.duty import Duty
+from hpn.engine.evaluation import CheckStatus
+from hpn.engine.selection import Candidate
+from hpn.explain.calculation.formula import (
+    Formula,
+    Magnitude,
+    PhaseValues,
+    Product,
+    Series,
+    Sum,
+    Term,
+    Variable,
+    leaves_out,
+    over_phases,
+    value_of,
+)
+from hpn.physics.equations import ROUNDING, FloatArray
+from hpn.words.quantities import CANDIDATE, DUTY, GEAR, INPUTS, Named
+from hpn.words.units import suffix_of
+from hpn.words.wording import Sentence
+
+
+@dataclass(frozen=True, slots=True)
+class Line:
+    """One equation: what it gives, and the formula; `rounded_down` where the result is a whole number."""
+
+    result: Term
+    formula: Formula
+    rounded_down: bool = False
+
+    def by_hand(self, rounded: Mapping[Variable, float]) -> float:
+        """What it would give with rounded values for some of its symbols."""
+        value = value_of(self.formula, rounded)
+        return float(math.floor(value * (1 + ROUNDING))) if self.rounded_down else value
+
+
+@dataclass(frozen=True, slots=True)
+class Comparison:
+    """A check: the tested formula and its value, the limit by its names, and where that comes from.
+
+    `source` is blank where the limit is the user's own; `allowed` is their u.
+    """
+
+    code: str
+    tested: Formula
+    value: float
+    unit: str
+    relation: str
+    limit: float
+    limit_names: tuple[Variable, ...]
+    source: str
+    utilisation: float | None
+    status: CheckStatus
+    allowed: float
+
+    @property
+    def bound(self) -> float:
+        """The limit with the user's own reserve."""
+        return self.limit * self.allowed if self.relation == "≤" else self.limit / self.allowed
+
+
+@dataclass(frozen=True, slots=True)
+class Step:
+    """One equation of the handbook, or of the model that stands in for it; `equation` is None where none is printed."""
+
+    code: str
+    title: str
+    equation: str | None
+    lines: tuple[Line, ...] = ()
+    comparisons: tuple[Comparison, ...] = ()
+    notes: tuple[Sentence, ...] = ()
+    trivial: bool = False
+
+    @property
+    def abbreviated(self) -> bool:
+        """Whether some of the phases are not written out."""
+        return any(leaves_out(line.formula) for line in self.lines)
+
+
+def step_of_check(
+    code: str,
+    lines: tuple[Line, ...] = (),
+    comparisons: tuple[Comparison, ...] = (),
+    notes: tuple[Sentence, ...] = (),
+    *,
+    trivial: bool = False,
+) -> Step:
+    """The step that works out a check; it has the check's title and equation."""
+    check = BY_CODE[code]
+    return Step(code, check.title, check.equation, lines, comparisons, notes, trivial)
+
+
+def known(term: Term | None) -> Term:
+    """A term of what is always there."""
+    assert term is not None
+    return term
+
+
+class Sheet:
+    """What the steps of one gear draw on: the candidate's figures, the gear's, the duty's and the phases."""
+
+    def __init__(self, candidate: Candidate, gear: Gear, application: Application, catalogue: Catalogue) -> None:
+        self.candidate, self.gear, self.application, self.catalogue = candidate, gear, application, catalogue
+        self.duty = Duty.of([application])
+        self.torque = self._of_phases("torque_Nm")
+        self.peak_torque = self._varying("peak_torque_Nm", self.torque)
+        self.rms_torque = self._varying("rms_torque_Nm", self.torque)
+        self.speed = self._of_phases("speed_rpm")
+        self.time = self._of_phases("duration_s")
+        self.radial = self._of_phases("radial_N")
+        self.axial = self._of_phases("axial_N")
+        self.T_av, self.n_out_av = self._of_duty("average_torque_Nm"), self._of_duty("average_output_speed_rpm")
+        self.T_max, self.n_out_max = self._of_duty("maximum_torque_Nm"), self._of_duty("maximum_output_speed_rpm")
+        self.i = known(self.rating("ratio"))
+        self.n_in_av = known(self.figure("average_input_speed_rpm"))
+        self.n_in_max = known(self.figure("maximum_input_speed_rpm"))
+        self.T_k = self.given("emergency_stop.torque_Nm")
+        self.load_inertia = self._load_inertia()
+
+    def _of_phases(self, name: str) -> PhaseValues:
+        values: FloatArray = getattr(self.duty.phases, name)[0, 0]
+        return PhaseValues(Variable.of(INPUTS[f"phase.{name}"].symbol), values, suffix_of(name) or "")
+
+    def _load_inertia(self) -> Term | None:
+        """Inertia of the load: the motion's own, else as it is given; None without one."""
+        value, place = self.duty.load_inertia_kgm2.item(), "requirements.load_inertia_kgm2"
+        return None if math.isnan(value) else _term(INPUTS[place], place, value)
+
+    @property
+    def varies(self) -> bool:
+        """Whether torque or speed vary in some phase."""
+        return self.peak_torque is not self.torque or self.rms_torque is not self.torque or self._outruns
+
+    @cached_property
+    def _outruns(self) -> bool:
+        return bool((self.duty.phases.peak_speed_rpm != self.duty.phases.speed_rpm).any())
+
+    def _varying(self, name: str, steady: PhaseValues) -> PhaseValues:
+        """A figure of phases that vary; what it is of a steady phase where none does."""
+        varying = self._of_phases(name)
+        return varying if (varying.values != steady.values).any() else steady
+
+    def _of_duty(self, name: str) -> Term:
+        return _term(DUTY[name], name, getattr(self.duty, name).item())
+
+    def figure(self, name: str) -> Term | None:
+        """A figure of the candidate; None where it has none."""
+        value: float | None = getattr(self.candidate, name)
+        return None if value is None else _term(CANDIDATE[name], name, value)
+
+    def rating(self, name: str) -> Term | None:
+        """A figure of the catalogue; None where it is not published."""
+        value: float | None = getattr(self.gear, name)
+        return None if value is None else _term(GEAR[name], name, value)
+
+    def given(self, place: str) -> Term | None:
+        """A number that the application gives, by magnitude; None where it doesn't."""
+        value = abs(self.duty.asked[place].item())
+        return None if math.isnan(value) else _term(INPUTS[place], place, value)
+
+    @cached_property
+    def gears(self) -> GearList:
+        """The gear alone, as what works out figures takes it."""
+        return GearList([self.gear], [self.catalogue.curves.get(self.gear.size)])
+
+    @cached_property
+    def travel(self) -> Series:
+        """|n_1| t_1 + … + |n_n| t_n."""
+        return over_phases(lambda n, t: Product((Magnitude(n), t)), self.speed, self.time)
+
+    @cached_property
+    def cycle_time(self) -> Sum:
+        """t_1 + … + t_n + t_p."""
+        return Sum((over_phases(lambda t: t, self.time), known(self.given("duty_cycle.pause_s"))))
+
+    def compared(self, code: str, tested: Formula) -> tuple[Comparison, ...]:
+        """The check of a code, where the application asks for it and the gear's figures are published."""
+        check, result = BY_CODE[code], self.candidate.check(code)
+        if result is None or result.demand is None or result.limit is None:
+            return ()
+        return (
+            Comparison(
+                code=code,
+                tested=tested,
+                value=result.demand,
+                unit=check.unit,
+                relation="≥" if check.kind == "minimum" else "≤",
+                limit=result.limit,
+                limit_names=_limit_names(check),
+                source=self._source(check),
+                utilisation=result.utilisation,
+                status=result.status,
+                allowed=check.allowed(self.application.requirements.utilisation),
+            ),
+        )
+
+    def _source(self, check: Check) -> str:
+        """Where the limit of a check is printed; blank where it is the user's own, as what is required at least is."""
+        figure = None if check.kind == "minimum" else check.limited_by
+        return self.gear.sources.get(figure, "") if figure else ""
+
+
+def _term(named: Named, name: str, value: float) -> Term:
+    return Term(Variable.of(named.symbol), value, suffix_of(name) or "")
+
+
+def _limit_names(check: Check) -> tuple[Variable, ...]:
+    """Symbols of a check's limit, as its relation writes them: `T_av ≤ T_A = T_N`; none where it is a number."""
+    names = check.relation.replace("≥", "≤").partition(" ≤ ")[2].split(" = ")
+    return tuple(Variable.of(name) for name in names if not name.isdigit())

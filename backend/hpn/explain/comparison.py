@@ -1,0 +1,229 @@
+"""Candidates side by side: row by row what they are and do, which is best at it, and which none other outdoes."""
+
+import math
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from hpn.catalogue import Catalogue
+from hpn.catalogue.gear import Gear
+from hpn.engine.selection import Candidate
+from hpn.physics import equations
+from hpn.words.wording import N_, Quantity, Sentence, listed
+
+Kind = Literal["figure", "percent", "words"]
+MOST_PINS = 4
+
+
+@dataclass(frozen=True, slots=True)
+class Column:
+    """One gear of the comparison: its entry in the reply, and its catalogue figures."""
+
+    candidate: Candidate
+    gear: Gear
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """One quantity of all gears compared; `best` are the columns that are ahead, none where all are equal.
+
+    `unit` is a suffix; figures are in the units of the wire, None is not published or not asked for.
+    """
+
+    code: str
+    title: str
+    symbol: str
+    unit: str
+    kind: Kind
+    values: tuple[float | Sentence | None, ...]
+    best: frozenset[int]
+    differs: bool
+
+
+@dataclass(frozen=True, slots=True)
+class RowGroup:
+    """Rows under one heading."""
+
+    title: str
+    rows: tuple[Row, ...]
+
+
+# --- Rows -------------------------------------------------------------------------------------------------------------
+
+Read = Callable[[Column], float | Sentence | None]
+
+
+def _figure(name: str) -> Read:
+    return lambda column: getattr(column.gear, name)
+
+
+def _result(name: str) -> Read:
+    return lambda column: getattr(column.candidate, name)
+
+
+def _unlimited_result(name: str) -> Read:
+    """A figure of the reply; infinite where it is empty because nothing limits it."""
+    return lambda column: math.inf if column.candidate.is_unlimited(name) else getattr(column.candidate, name)
+
+
+def groups_of(columns: Sequence[Column], maximum_torque_Nm: float, checks: Mapping[str, str]) -> tuple[RowGroup, ...]:
+    """The comparison. `checks` are the titles of the checks that the application asks for, by code."""
+    return (
+        RowGroup(N_("Utilisation"), tuple(_utilisations(columns, checks))),
+        RowGroup(N_("Life and drive"), tuple(_results(columns, maximum_torque_Nm))),
+        RowGroup(N_("Stiffness and accuracy"), tuple(_accuracies(columns, maximum_torque_Nm))),
+        RowGroup(N_("Ratings"), tuple(_ratings(columns))),
+        RowGroup(N_("Size and mounting"), tuple(_mounting(columns))),
+    )
+
+
+def _utilisations(columns: Sequence[Column], checks: Mapping[str, str]) -> Iterable[Row]:
+    def read(code: str) -> Read:
+        return lambda column: check.utilisation if (check := column.candidate.check(code)) else None
+
+    for code, title in checks.items():
+        yield _row(columns, code, title, read(code), lowest=True, kind="percent")
+
+
+def _results(columns: Sequence[Column], maximum_torque_Nm: float) -> Iterable[Row]:
+    yield _row(columns, "life", N_("Life"), _unlimited_result("life_L10_h"), "L_10", "h", lowest=False)
+    if any(column.candidate.momentary_peak_count is not None for column in columns):
+        stops = _unlimited_result("momentary_peak_count")
+        yield _row(columns, "stops", N_("Permitted stops"), stops, "N_k,max", lowest=False)
+    if any(column.candidate.bearing_life_L50_h is not None for column in columns):
+        bearing_life = _unlimited_result("bearing_life_L50_h")
+        yield _row(columns, "bearing_life", N_("Bearing life"), bearing_life, "L_b,50", "h", lowest=False)
+    peak, average = _result("motor_peak_torque_Nm"), _result("average_input_speed_rpm")
+    yield _row(columns, "motor_torque", _motor_title(columns, maximum_torque_Nm), peak, "", "Nm", lowest=True)
+    yield _row(columns, "input_speed", N_("Average input speed"), average, "n_in,av", "rpm")
+    largest = _result("maximum_input_speed_rpm")
+    yield _row(columns, "largest_input_speed", N_("Maximum input speed"), largest, "n_in,max", "rpm")
+
+
+def _motor_title(columns: Sequence[Column], maximum_torque_Nm: float) -> str:
+    loss_free = maximum_torque_Nm * (1 + equations.ROUNDING)
+    if any((column.candidate.motor_peak_torque_Nm or 0.0) * column.gear.ratio <= loss_free for column in columns):
+        return N_("Peak torque at the motor, a lower bound where η is 1")
+    return N_("Peak torque at the motor")
+
+
+def _accuracies(columns: Sequence[Column], maximum_torque_Nm: float) -> Iterable[Row]:
+    backlash, accuracy = _figure("backlash_arcmin"), _figure("transmission_accuracy_arcmin")
+    stiffness = _figure("torsional_stiffness_Nm_per_rad")
+
+    def torsion(column: Column) -> float | None:
+        return torsion_of(column.gear, maximum_torque_Nm)
+
+    title = N_("Torsion at T_max, from 15 % of T_N on")
+    yield _row(columns, "torsion", title, torsion, "", "arcmin", lowest=True)
+    yield _row(columns, "backlash", N_("Backlash, at most"), backlash, "j", "arcmin", lowest=True)
+    yield _row(columns, "accuracy", N_("Transmission accuracy, at most"), accuracy, "", "arcmin", lowest=True)
+    yield _row(columns, "stiffness", N_("Torsional stiffness"), stiffness, "K_3", "Nm_per_rad", lowest=False)
+
+
+def torsion_of(gear: Gear, maximum_torque_Nm: float) -> float | None:
+    """Torsion in arcmin from 15 % of T_N up to the largest torque; 0 below, None where a figure is not published."""
+    if gear.rated_torque_Nm is None or gear.torsional_stiffness_Nm_per_rad is None:
+        return None
+    return equations.torsion(
+        maximum_torque_Nm=maximum_torque_Nm,
+        rated_torque_Nm=gear.rated_torque_Nm,
+        torsional_stiffness_Nm_per_rad=gear.torsional_stiffness_Nm_per_rad,
+    ).item()
+
+
+def _ratings(columns: Sequence[Column]) -> Iterable[Row]:
+    for name, title, symbol in (
+        ("rated_torque_Nm", N_("Rated torque"), "T_N"),
+        ("repeated_peak_torque_Nm", N_("Repeated peak torque"), "T_R"),
+        ("momentary_peak_torque_Nm", N_("Momentary peak torque"), "T_M"),
+        ("average_input_speed_rpm", N_("Average input speed, limit"), "n_av(max)"),
+        ("maximum_input_speed_rpm", N_("Maximum input speed, limit"), "n_in(max)"),
+    ):
+        yield _row(columns, name, title, _figure(name), symbol, name.rpartition("_")[2], lowest=False)
+
+
+def _mounting(columns: Sequence[Column]) -> Iterable[Row]:
+    weight, length, longest = _figure("weight_kg"), _figure("length_min_mm"), _figure("length_max_mm")
+    yield _row(columns, "weight", N_("Weight"), weight, "m", "kg", lowest=True)
+    yield _row(columns, "length", N_("Length, at least"), length, "L_min", "mm", lowest=True)
+    yield _row(columns, "longest", N_("Length, at most"), longest, "L_max", "mm", lowest=True)
+    yield _row(columns, "housing_bolts", N_("Housing bolts"), _housing_bolts, kind="words")
+    yield _row(columns, "clamp_bolts", N_("Motor coupling bolt"), _clamp_bolts, kind="words")
+
+
+def _row(
+    columns: Sequence[Column],
+    code: str,
+    title: str,
+    read: Read,
+    symbol: str = "",
+    unit: str = "",
+    *,
+    lowest: bool | None = None,
+    kind: Kind = "figure",
+) -> Row:
+    """Row of what `read` finds in every column; without `lowest` no column is better than another."""
+    values = tuple(map(read, columns))
+    numbers = [value for value in values if isinstance(value, float | int)]
+    best: frozenset[int] = frozenset()
+    if lowest is not None and len(numbers) > 1 and min(numbers) < max(numbers):
+        first = min(numbers) if lowest else max(numbers)
+        best = frozenset(place for place, value in enumerate(values) if value == first)
+    return Row(code, title, symbol, unit, kind, values, best, any(value != values[0] for value in values))
+
+
+def _housing_bolts(column: Column) -> Sentence | None:
+    bolts = column.gear.housing_bolts
+    if bolts is None or bolts.bolt_size is None:
+        return None
+    parts = [Sentence("{number} × {bolt}", {"number": bolts.number_of_bolts or "?", "bolt": bolts.bolt_size})]
+    if bolts.pitch_diameter_mm is not None:
+        parts.append(Sentence("Ø\u00a0{diameter}", {"diameter": Quantity(bolts.pitch_diameter_mm, "mm", 4)}))
+    if bolts.tightening_torque_Nm is not None:
+        parts.append(Sentence("{torque}", {"torque": Quantity(bolts.tightening_torque_Nm, "Nm", 4)}))
+    return listed(parts)
+
+
+def _clamp_bolts(column: Column) -> Sentence | None:
+    parts = [
+        Sentence("{bolt}", {"bolt": bolt.bolt_size})
+        if bolt.tightening_torque_Nm is None
+        else Sentence(
+            "{bolt} {torque}", {"bolt": bolt.bolt_size, "torque": Quantity(bolt.tightening_torque_Nm, "Nm", 4)}
+        )
+        for bolt in column.gear.clamp_bolts
+    ]
+    return listed(parts, Sentence(N_("{first} or {rest}")).template) if parts else None
+
+
+# --- Not dominated (Pareto) -------------------------------------------------------------------------------------------
+
+
+def undominated(candidates: Sequence[Candidate], catalogue: Catalogue) -> frozenset[str]:
+    """Designations of the suitable gears that no other suitable one outdoes (Pareto).
+
+    One outdoes another that is nowhere worse and somewhere better: in weight, utilisation, torsional stiffness, largest
+    length and peak torque at the motor. What is not published counts as worst.
+    """
+    suitable = [candidate for candidate in candidates if candidate.status == "suitable"]
+    if not suitable:
+        return frozenset()
+    table = np.array([_costs(candidate, catalogue.by_designation[candidate.designation]) for candidate in suitable])
+    nowhere_worse = (table[:, None] <= table[None]).all(axis=2)
+    outdone = np.any(nowhere_worse & (table[:, None] < table[None]).any(axis=2), axis=0)
+    return frozenset(suitable[place].designation for place in np.flatnonzero(~outdone).tolist())
+
+
+def _costs(candidate: Candidate, gear: Gear) -> tuple[float, ...]:
+    stiffness = gear.torsional_stiffness_Nm_per_rad
+    costs = (
+        gear.weight_kg,
+        candidate.utilisation,
+        None if stiffness is None else -stiffness,
+        gear.length_max_mm,
+        candidate.motor_peak_torque_Nm,
+    )
+    return tuple(np.inf if cost is None else cost for cost in costs)

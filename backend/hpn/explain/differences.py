@@ -1,0 +1,209 @@
+"""What two replies to the same application say differently, field by field, verdicts first."""
+
+import math
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field, fields
+from typing import Annotated, Any, Literal
+
+from msgspec import Meta, Struct, structs
+
+from hpn.catalogue import Catalogue
+from hpn.engine.selection import Selection
+
+NAMED_BY = {"candidates": "designation", "checks": "code", "notices": "code"}
+"""Lists whose items are matched by a field of theirs: their order follows from what the items say."""
+
+BRIEFLY = {"candidates": "status", "checks": "status", "notices": "text", "check_definitions": "title"}
+"""The one field that stands for an item which only one reply has."""
+
+VERDICTS = ("selected", "status", "governing_check", "rank")
+TEXTS = ("reason", "link", "notices", "check_definitions")
+NOT_COMPARED = ("engine_version", "catalogue_version", "values")
+"""The versions themselves, and the values of a notice, which its text shows."""
+
+TOLERANCE = 1e-12
+"""Relative; the same calculation on another processor may differ by less."""
+
+Name = tuple[str, ...]
+Change = Literal["changed", "added", "removed"]
+Kind = Literal["verdict", "figure", "text"]
+
+
+class Difference(Struct, frozen=True):
+    """One field that two replies give differently.
+
+    `pointer` is its JSON pointer in the saved reply, or in today's where the saved one lacks it. Of a candidate, check
+    or notice that only one of them has, its status or text stands for the whole.
+    """
+
+    pointer: Annotated[
+        str,
+        Meta(
+            description="JSON pointer into the saved result; into today’s where change is added, since the saved "
+            "lacks it."
+        ),
+    ]
+    kind: Annotated[Kind, Meta(description="Verdicts come first, then figures, then texts.")]
+    change: Annotated[Change, Meta(description="Whether both have the field, or only one.")]
+    candidate: Annotated[str | None, Meta(description="Designation of the candidate it belongs to.")]
+    check: Annotated[str | None, Meta(description="Code of the check it belongs to.")]
+    field: Annotated[str, Meta(description="Name of the field.")]
+    saved: Annotated[Any, Meta(description="Value as saved.")]
+    today: Annotated[Any, Meta(description="Value today.")]
+
+
+@dataclass(slots=True)
+class _Fields:
+    """The fields of a reply by a name that does not depend on any order, and the items they belong to."""
+
+    values: dict[Name, tuple[str, Any]] = field(default_factory=dict)
+    items: set[Name] = field(default_factory=set)
+
+    def add(self, value: Any, name: Name = (), pointer: str = "") -> None:
+        """Take in a value with all that is in it."""
+        for key, part, item in _parts(value, name[-1] if name else ""):
+            inner = (*name, key)
+            if name and name[-1] in BRIEFLY:
+                self.items.add(inner)
+            if isinstance(item, Struct | Mapping | list | tuple):
+                self.add(item, inner, f"{pointer}/{part}")
+            else:
+                self.values[inner] = f"{pointer}/{part}", item
+
+
+def _parts(value: Any, holder: str) -> Iterator[tuple[str, str, Any]]:
+    """Name, JSON pointer and value of each part of an object or a list."""
+    if isinstance(value, Struct | Mapping):
+        for key, item in _fields_of(value).items():
+            if key not in NOT_COMPARED:
+                yield key, key.replace("~", "~0").replace("/", "~1"), item
+        return
+    seen: Counter[str] = Counter()
+    for index, item in enumerate(value):
+        name = str(_fields_of(item)[NAMED_BY[holder]]) if holder in NAMED_BY else str(index)
+        seen[name] += 1
+        yield name if seen[name] == 1 else f"{name} {seen[name]}", str(index), item
+
+
+def _fields_of(value: Struct | Mapping[str, Any]) -> Mapping[str, Any]:
+    return structs.asdict(value) if isinstance(value, Struct) else value
+
+
+def differences(saved: Selection | Mapping[str, Any], today: Selection | Mapping[str, Any]) -> list[Difference]:
+    """Differences of two replies: verdicts, then figures, then texts; the versions themselves are left out."""
+    before, after = _Fields(), _Fields()
+    before.add(saved)
+    after.add(today)
+    found = [
+        _difference(name, before.values.get(name), after.values.get(name))
+        for name in before.values | after.values
+        if _differs(name, before, after)
+    ]
+    return sorted(found, key=_weight)
+
+
+def _differs(name: Name, before: _Fields, after: _Fields) -> bool:
+    old, new = before.values.get(name), after.values.get(name)
+    if old is not None and new is not None:
+        return not _same(old[1], new[1])
+    lacking = before.items if old is None else after.items
+    items = (name[:length] for length in range(2, len(name)) if name[length - 2] in BRIEFLY)
+    alone = next((item for item in items if item not in lacking), None)
+    return alone is None or name == (*alone, BRIEFLY[alone[-2]])
+
+
+def _same(saved: Any, today: Any) -> bool:
+    numbers = all(isinstance(value, int | float) and not isinstance(value, bool) for value in (saved, today))
+    return bool(saved == today or (numbers and math.isclose(saved, today, rel_tol=TOLERANCE)))
+
+
+def _difference(name: Name, old: tuple[str, Any] | None, new: tuple[str, Any] | None) -> Difference:
+    pointer, _ = old or new or ("", None)
+    return Difference(
+        pointer=pointer,
+        kind="text" if any(part in TEXTS for part in name) else "verdict" if name[-1] in VERDICTS else "figure",
+        change="added" if old is None else "removed" if new is None else "changed",
+        candidate=name[1] if name[0] == "candidates" else None,
+        check=name[3] if len(name) > 3 and (name[0], name[2]) == ("candidates", "checks") else None,
+        field=name[-1],
+        saved=old and old[1],
+        today=new and new[1],
+    )
+
+
+def _weight(difference: Difference) -> int:
+    if difference.kind == "verdict":
+        return 2 * VERDICTS.index(difference.field) + (difference.check is not None)
+    return 100 if difference.kind == "figure" else 200
+
+
+# --- Published figures ------------------------------------------------------------------------------------------------
+
+NOT_FIGURES = ("designation", "size", "ratio", "sources", "source")
+
+
+class FigureDifference(Struct, frozen=True):
+    """A published figure of a gear, or one of a listed motor, that two catalogues give differently; None where one has
+    none.
+
+    Of what only one of them has, its designation stands for the whole. A supplied curve is a list of points, bolts are
+    objects.
+    """
+
+    candidate: Annotated[str | None, Meta(description="Designation of the gear; null for a figure of a motor.")]
+    motor: Annotated[str | None, Meta(description="Designation of the motor; null for a figure of a gear.")]
+    field: Annotated[
+        str, Meta(description="Name of the figure in the catalogue; designation where only one has the gear or motor.")
+    ]
+    saved: Annotated[Any, Meta(description="Figure in the catalogue of then; null where it was not published.")]
+    today: Annotated[Any, Meta(description="Figure in today’s catalogue; null where it is not published.")]
+
+
+def figure_differences(
+    saved: Catalogue, today: Catalogue, designations: Iterable[str], motor: str | None = None
+) -> list[FigureDifference]:
+    """Differences of the figures that two catalogues publish of some gears, gear by gear, and of a listed motor."""
+    found = [
+        FigureDifference(designation, None, *difference)
+        for designation in designations
+        for difference in _pairs(_of_gear(saved, designation), _of_gear(today, designation))
+    ]
+    of_motor = [] if motor is None else _pairs(_of_motor(saved, motor), _of_motor(today, motor))
+    return found + [FigureDifference(None, motor, *difference) for difference in of_motor]
+
+
+def _pairs(before: dict[str, Any], after: dict[str, Any]) -> list[tuple[str, Any, Any]]:
+    """Name and both values of what differs."""
+    names = before | after if before and after else ["designation"]
+    return [(name, before.get(name), after.get(name)) for name in names if before.get(name) != after.get(name)]
+
+
+def _of_gear(catalogue: Catalogue, designation: str) -> dict[str, Any]:
+    """Figures of a gear by name; nothing where the catalogue lacks it."""
+    gear = catalogue.by_designation.get(designation)
+    if gear is None:
+        return {}
+    curve, efficiency = catalogue.curves.get(gear.size), catalogue.efficiency.get(designation)
+    return {
+        "designation": designation,
+        **_figures(gear),
+        "clamp_bolts": [_figures(bolt) for bolt in gear.clamp_bolts],
+        "housing_bolts": gear.housing_bolts and _figures(gear.housing_bolts),
+        "bearing_curve": None if curve is None else _points(curve.axial_N, curve.radial_N),
+        "efficiency_curve": None if efficiency is None else _points(*efficiency),
+    }
+
+
+def _of_motor(catalogue: Catalogue, designation: str) -> dict[str, Any]:
+    """Figures of a listed motor by name, likewise."""
+    motor = catalogue.motor_by_designation.get(designation)
+    return {"designation": designation, **_figures(motor)} if motor else {}
+
+
+def _figures(row: Any) -> dict[str, Any]:
+    return {f.name: getattr(row, f.name) for f in fields(row) if f.name not in NOT_FIGURES}
+
+
+def _points(*columns: Any) -> list[list[float]]:
+    return [list(point) for point in zip(*(column.tolist() for column in columns), strict=True)]

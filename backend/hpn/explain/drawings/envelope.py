@@ -1,0 +1,181 @@
+"""The drawings of load envelopes: of one gear under an application, of all sizes, and of a gear in the catalogue."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from xml.etree.ElementTree import Element
+
+from hpn.catalogue import Catalogue
+from hpn.catalogue.gear import Gear
+from hpn.engine.envelopes import EnvelopeCurve, EnvelopeQuery, has_envelope, life_envelopes
+from hpn.explain.drawings.chart import Bar, Line, Mark, chart
+from hpn.explain.drawings.picture import BearingPicture, PhaseLoad, beyond_limit
+from hpn.explain.drawings.sizes import SizeUse
+from hpn.explain.drawings.words import share
+from hpn.explain.readings import OTHERWISE
+from hpn.physics.bearing import PRINTED_LOAD_COEFFICIENTS
+from hpn.words.reader import DEFAULT, Reader
+from hpn.words.wording import N_, Quantity, Sentence
+
+LAST = -1.0
+"""Use of a mark whose disc gives way to all others."""
+
+MOST_NUMBERS = 24
+"""Loads that have a numbered disc, those nearest to their limit; others are dots."""
+
+
+def envelope_drawing(picture: BearingPicture, reader: Reader = DEFAULT, governing: Sequence[int] = ()) -> Element:
+    """Envelopes and loads of one gear, and how far life and single loads use them; `governing` phases stand out."""
+    lines = [Line("limit", reader.text(N_("limit now")), _corners(picture, "own"), strong=True)]
+    lines += _of_coefficients(picture, reader)
+    if picture.life_factor < 1 and picture.loads:
+        lines.append(Line("single", reader.text(N_("single load")), _corners(picture, "published")))
+    if not picture.loads:
+        return chart(lines, [], [], reader)
+    marks = _marks(picture, governing, reader, judged=True)
+    ray = None
+    if picture.mean > 0:
+        marks.append(_equivalent(picture, reader))
+        ray = max(picture.equivalent_N, (picture.worst.radial_N, picture.worst.axial_N))
+    return chart(lines, marks, bearing_bars(picture, reader), reader, ray)
+
+
+def sizes_drawing(
+    uses: Sequence[SizeUse], picture: BearingPicture, reader: Reader = DEFAULT, governing: Sequence[int] = ()
+) -> Element:
+    """What a constant load may be on each size, with the loads of the phases; the gear's own size stands out."""
+    lines = []
+    for place, use in enumerate(uses):
+        if use.curve is not None:
+            corners = list(zip(use.curve.radial_N, use.curve.axial_N, strict=True))
+            own = use.gear.size == picture.gear.size
+            lines.append(Line("limit" if own else f"size s{place % 4}", use.gear.size, corners, strong=own))
+    return chart(lines, _marks(picture, governing, reader, judged=False), [], reader)
+
+
+@dataclass(frozen=True, slots=True)
+class GearEnvelope:
+    """Envelopes of a gear for f_w = 1, 1.2, 1.5; `supplied` tells whether they follow points of a supplement."""
+
+    curves: list[EnvelopeCurve]
+    supplied: bool
+    drawing: Element
+
+
+def gear_envelope(catalogue: Catalogue, gear: Gear, reader: Reader = DEFAULT) -> GearEnvelope | None:
+    """Envelopes of a gear at the published speed and life, or None where its limits are not published."""
+    supplied = gear.size in catalogue.curves
+    query = EnvelopeQuery(model="digitised" if supplied else "linear")
+    if not has_envelope(catalogue, gear, query.model):
+        return None
+    curves = life_envelopes(catalogue, gear, query)
+    corners = [list(zip(curve.radial_N, curve.axial_N, strict=True)) for curve in curves]
+    lines = [_coefficient(c.load_coefficient, along, reader) for c, along in zip(curves, corners, strict=True)]
+    limit = Line("limit", reader.text(N_("published")), corners[0], strong=True)
+    return GearEnvelope(curves, supplied, chart([limit, *lines], [], [], reader))
+
+
+# --- Lines ------------------------------------------------------------------------------------------------------------
+
+
+def _corners(picture: BearingPicture, kind: str) -> list[tuple[float, float]]:
+    return next(named.corners for named in picture.named_curves if named.kind == kind)
+
+
+def _of_coefficients(picture: BearingPicture, reader: Reader) -> list[Line]:
+    named = [named for named in picture.named_curves if named.kind in ("own", "life")]
+    by_coefficient = {one.curve.load_coefficient: one.corners for one in named}
+    return [_coefficient(f_w, by_coefficient[f_w], reader) for f_w in PRINTED_LOAD_COEFFICIENTS]
+
+
+def _coefficient(f_w: float, corners: list[tuple[float, float]], reader: Reader) -> Line:
+    return Line("coefficient", f"f_w {reader.exact(f_w)}", corners)
+
+
+# --- Loads ------------------------------------------------------------------------------------------------------------
+
+
+def _marks(picture: BearingPicture, governing: Sequence[int], reader: Reader, *, judged: bool) -> list[Mark]:
+    """The loads, of which those nearest to their limit are numbered; `judged`: by the limit of the picture's gear."""
+    order = sorted(range(len(picture.loads)), key=lambda place: -picture.loads[place].published)
+    numbered = set(order[:MOST_NUMBERS])
+    marks = []
+    for at, load in enumerate(picture.loads):
+        place, outside = (load.radial_N, load.axial_N), judged and load.is_outside
+        kind = "load governing" if set(governing) & set(load.places) else "load"
+        if at not in numbered:
+            marks.append(Mark(kind, "", place, "", load.published, outside, load.marked))
+        else:
+            told = _told_of(load, outside, reader)
+            marks.append(Mark(kind, _label(load), place, told, load.published, outside, load.marked))
+    return marks
+
+
+def _label(load: PhaseLoad) -> str:
+    return load.phases if len(load.places) <= 3 or "–" in load.phases else f"{load.places[0] + 1} …"
+
+
+def _told_of(load: PhaseLoad, outside: bool, reader: Reader) -> str:
+    told = reader.told(
+        Sentence(
+            "Phase {phases}: radial {radial}, axial {axial}, {used} of the published maximum",
+            {
+                "phases": load.phases,
+                "radial": Quantity(load.radial_N, "N", 4),
+                "axial": Quantity(load.axial_N, "N", 4),
+                "used": share(load.published),
+            },
+        )
+    )
+    return f"{told}, {reader.text(N_('outside the limit'))}" if outside else told
+
+
+def _equivalent(picture: BearingPicture, reader: Reader) -> Mark:
+    outside = beyond_limit(picture.constant_load_utilisation, picture.allowed)
+    told = reader.told(
+        Sentence(
+            "Equivalent load of the cycle: {used} of the permissible constant load",
+            {"used": share(picture.constant_load_utilisation)},
+        )
+    )
+    if outside:
+        told += ", " + reader.text(N_("outside the limit"))
+    return Mark("equivalent", "P_m", picture.equivalent_N, told, LAST, outside)
+
+
+# --- Bars -------------------------------------------------------------------------------------------------------------
+
+
+def bearing_bars(picture: BearingPicture, reader: Reader) -> list[Bar]:
+    """Largest single load and life: the share, demand and limit that the checks say, f_w counted as load.
+
+    Where u leaves a part of the limits, that part stands in place of the limit.
+    """
+    worst, load, u = picture.worst, picture.load, picture.allowed
+    f_w = load.load_coefficient
+    limit = None if worst.limit_N is None else f_w * worst.limit_N
+    return [
+        _bar(reader.text(N_("Single load")), worst.published, u, (f_w * worst.magnitude_N, "≤", limit, "N"), reader),
+        _bar(
+            f"{reader.text(N_('Life'))} {load.life_basis}",
+            picture.life_utilisation,
+            u,
+            (picture.life_h, "≥", load.life_h, "h"),
+            reader,
+        ),
+    ]
+
+
+def _bar(
+    label: str, used: float, allowed: float, compared: tuple[float, str, float | None, str], reader: Reader
+) -> Bar:
+    demand, sign, limit, unit = compared
+    outside = beyond_limit(used, allowed)
+    is_life = unit == "h" and not math.isinf(demand)
+    percent = reader.percent(used, allowed)
+    numbers = reader.brief(demand, unit, limit) if is_life else reader.apart(demand, limit, unit)
+    if allowed < 1:  # the bar has the whole limit at 100 %, and so has what stands beside it
+        percent += f" {OTHERWISE['≤'] if outside else '≤'} {reader.percent(allowed, used)}"
+    elif limit is not None:
+        numbers += f" {OTHERWISE[sign] if outside else sign} {reader.apart(limit, demand, unit)}"
+    return Bar(label, used, allowed, outside, f"{percent}\N{EN SPACE}{numbers} {reader.unit(unit)}")

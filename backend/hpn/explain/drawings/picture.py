@@ -1,0 +1,240 @@
+"""Loads of one application on an output bearing: what drawing, plot, table and verdict are made from."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+from hpn.application import OutputLoad
+from hpn.catalogue.gear import Gear
+from hpn.engine.duty import Duty
+from hpn.engine.envelopes import EnvelopeCurve, envelope_curve, envelopes_for, has_envelope
+from hpn.engine.figures import phase_loads
+from hpn.engine.selection import CheckResult
+from hpn.explain.drawings.subject import Subject
+from hpn.explain.drawings.words import phase_numbers
+from hpn.physics import bearing
+from hpn.physics.equations import ROUNDING
+from hpn.words.wording import Quantity, Sentence, Value
+
+MOST_LOADS = 200
+"""Different loads that plot and table show; of more, those that use the published maximum most."""
+
+
+MOST_MARKED = 100
+"""Phases from the first on that have a row of their own on a page, so that a load can be marked together with them."""
+
+
+@dataclass(frozen=True, slots=True)
+class PhaseLoad:
+    """One load in N, the phases that have it, and its f_w P, which may be `allowed`; the published envelope is 1."""
+
+    places: list[int]
+    radial_N: float
+    axial_N: float
+    published: float
+    allowed: float = 1.0
+
+    @property
+    def phases(self) -> str:
+        """Numbers of the phases as a reader counts them."""
+        return phase_numbers(self.places)
+
+    @property
+    def marked(self) -> list[int]:
+        """Places of the phases whose rows are marked together with the load."""
+        return [place for place in self.places if place < MOST_MARKED]
+
+    @property
+    def magnitude_N(self) -> float:
+        """Length of the load vector."""
+        return math.hypot(self.radial_N, self.axial_N)
+
+    @property
+    def limit_N(self) -> float | None:
+        """Largest permissible load in its own direction."""
+        return self.magnitude_N * (self.allowed / self.published) if self.published > 1e-300 else None
+
+    @property
+    def distance_N(self) -> float | None:
+        """From the load to that limit; negative beyond it."""
+        return None if self.limit_N is None else self.limit_N - self.magnitude_N
+
+    @property
+    def is_outside(self) -> bool:
+        """Whether it is more than a single load may be."""
+        return beyond_limit(self.published, self.allowed)
+
+
+CurveKind = Literal["own", "life", "published", "equivalent"]
+
+
+@dataclass(frozen=True, slots=True)
+class NamedCurve:
+    """One curve of the picture, and the condition that it stands for; `kind` tells the curves apart in the figure."""
+
+    kind: CurveKind
+    name: Sentence
+    curve: EnvelopeCurve
+
+    @property
+    def corners(self) -> list[tuple[float, float]]:
+        """Radial and axial load in N of each corner, from the axial to the radial axis."""
+        return list(zip(self.curve.radial_N, self.curve.axial_N, strict=True))
+
+
+@dataclass(frozen=True, slots=True)
+class BearingPicture:
+    """What the output bearing of one gear may carry at the speed and life of an application, and what it does carry.
+
+    `mean` is P_m without f_w, `life_factor` the k that speed and required life allow, `allowed` the user's u, which
+    every curve but the equivalent load's is scaled by. `loads` are in the order of the phases, and `hidden` is the
+    number of those left out. Without a load `loads` is empty, and `load` holds the conditions that count by default.
+    """
+
+    gear: Gear
+    load: OutputLoad
+    allowed: float
+    loads: list[PhaseLoad]
+    hidden: int
+    mean: float
+    life_factor: float
+    average_output_speed_rpm: float
+    curves: list[EnvelopeCurve]
+    published_curve: EnvelopeCurve
+    mean_curve: EnvelopeCurve
+
+    @property
+    def worst(self) -> PhaseLoad:
+        """The load that uses the published envelope most, where there are loads."""
+        return max(self.loads, key=lambda load: load.published)
+
+    @property
+    def equivalent_N(self) -> tuple[float, float]:
+        """Constant load with the life of the cycle, radial and axial, in the direction of the worst load."""
+        worst = self.worst
+        share = self.mean * self.load.load_coefficient / worst.published if worst.published > 1e-300 else 0.0
+        return share * worst.radial_N, share * worst.axial_N
+
+    @property
+    def life_utilisation(self) -> float:
+        """Equivalent load over what its life allows: f_w P_m over k."""
+        return self.mean * self.load.load_coefficient / self.life_factor
+
+    @property
+    def constant_load_utilisation(self) -> float:
+        """Share of what a constant load may be: f_w P_m over min(1, k)."""
+        return self.mean * self.load.load_coefficient / min(1.0, self.life_factor)
+
+    @property
+    def life_h(self) -> float:
+        """Life of the bearing on the basis of the required one; infinite without a load."""
+        used = self.life_utilisation
+        return self.load.life_h / used**3 if used > 1e-100 else math.inf
+
+    @property
+    def life_governs(self) -> bool:
+        """Whether the life of the cycle is nearer to its limit than the largest single load."""
+        return self.life_factor < 1 and self.life_utilisation >= self.worst.published
+
+    @property
+    def named_curves(self) -> list[NamedCurve]:
+        """All curves, the user's own first."""
+        f_w = self.load.load_coefficient
+        own = [
+            NamedCurve("own", Sentence("Limit now: constant load, f_w = {f_w}", _coefficient(curve)), curve)
+            for curve in self.curves
+            if curve.load_coefficient == f_w
+        ]
+        others = [
+            NamedCurve("life", Sentence("Constant load, f_w = {f_w}", _coefficient(curve)), curve)
+            for curve in self.curves
+            if curve.load_coefficient != f_w
+        ]
+        published = Sentence("Single load: published maximum over f_w = {f_w}", _coefficient(self.published_curve))
+        named = [*own, *others, NamedCurve("published", published, self.published_curve)]
+        equivalent = NamedCurve("equivalent", Sentence("Equivalent load of the cycle, P = P_m"), self.mean_curve)
+        return [*named, equivalent] if self.mean > 0 else named
+
+    @property
+    def condition(self) -> Sentence:
+        """Speed and life that the curves hold for, and the user's u where it is below 1."""
+        values: dict[str, Value] = {
+            "speed": Quantity(self.average_output_speed_rpm, "rpm"),
+            "life": Quantity(self.load.life_h, "h", 6),
+            "basis": self.load.life_basis,
+        }
+        if self.allowed == 1:
+            return Sentence("{speed}, {life}, {basis}", values)
+        return Sentence(
+            "{speed}, {life}, {basis}, u = {allowed}", values | {"allowed": Quantity(100 * self.allowed, "percent", 6)}
+        )
+
+
+def _coefficient(curve: EnvelopeCurve) -> dict[str, Value]:
+    return {"f_w": Quantity(curve.load_coefficient, "", 6)}
+
+
+def beyond_limit(utilisation: float, allowed: float) -> bool:
+    """Whether so much of a limit is more than is allowed, floating-point rounding apart."""
+    return utilisation > allowed * (1 + ROUNDING)
+
+
+def bearing_picture(subject: Subject, life: CheckResult | None = None) -> BearingPicture | None:
+    """Picture of the bearing of a gear, or None where its size has no envelope or its loads are not rated.
+
+    `life` is the check of the bearing's life, just made or saved: it compares f_w P_m and k.
+    """
+    application, catalogue, gear = subject.application, subject.catalogue, subject.gear
+    load, allowed = application.loads or OutputLoad(), application.requirements.utilisation
+    if not has_envelope(catalogue, gear, load.model):
+        return None
+    loads: list[PhaseLoad] = []
+    mean, k = 0.0, _life_factor(subject, load)
+    if application.loads is not None:
+        if life is None or life.demand is None or life.limit is None:
+            return None
+        mean, k = life.demand / load.load_coefficient, life.limit
+        published = phase_loads(subject.duty, subject.sizes)[0, subject.place].tolist()
+        loads = different_loads(subject.duty, published, allowed)
+    return BearingPicture(
+        gear=gear,
+        load=load,
+        allowed=allowed,
+        loads=_foremost(loads),
+        hidden=max(len(loads) - MOST_LOADS, 0),
+        mean=mean,
+        life_factor=k,
+        average_output_speed_rpm=subject.duty.average_output_speed_rpm.item(),
+        curves=envelopes_for(catalogue, gear, load.model, load.load_coefficient, allowed * min(1.0, k)),
+        published_curve=envelope_curve(catalogue, gear, load.model, load.load_coefficient, allowed),
+        mean_curve=envelope_curve(catalogue, gear, load.model, 1.0, mean),
+    )
+
+
+def _life_factor(subject: Subject, load: OutputLoad) -> float:
+    """k of an application: what speed and required life make of the published limits."""
+    speed, life = subject.catalogue.bearing_reference
+    k = bearing.life_factor(
+        average_output_speed_rpm=subject.duty.average_output_speed_rpm,
+        required_life_L50_h=bearing.required_L50(life_h=load.life_h, basis=load.life_basis),
+        reference_speed_rpm=speed,
+        reference_life_h=life,
+    )
+    return k.item()
+
+
+def different_loads(duty: Duty, published: Sequence[float], allowed: float) -> list[PhaseLoad]:
+    """Different loads of a cycle, in the order in which they first occur; `published` is f_w P of each phase."""
+    found: dict[tuple[float, float], PhaseLoad] = {}
+    series = (duty.phases.radial_N[0, 0].tolist(), duty.phases.axial_N[0, 0].tolist(), published)
+    for place, (radial, axial, used) in enumerate(zip(*series, strict=True)):
+        found.setdefault((radial, axial), PhaseLoad([], radial, axial, used, allowed)).places.append(place)
+    return list(found.values())
+
+
+def _foremost(loads: list[PhaseLoad]) -> list[PhaseLoad]:
+    if len(loads) <= MOST_LOADS:
+        return loads
+    kept = sorted(loads, key=lambda load: load.published, reverse=True)[:MOST_LOADS]
+    return sorted(kept, key=lambda load: load.places[0])

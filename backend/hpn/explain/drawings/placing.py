@@ -1,0 +1,107 @@
+"""Places for labels: none lies over another, and of the free ones the first that the fewest lines cross is taken."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from itertools import pairwise
+from math import cos, inf, pi, sin
+
+from hpn.explain.drawings.svg import Point
+
+DISTANCES = (21.0, 29.0, 39.0, 52.0, 70.0)
+LETTERS = 0.75
+"""Part of a label's room that its letters fill in most fonts: a line beside them does no harm."""
+
+DIRECTIONS = tuple((cos(turn * pi / 6), -sin(turn * pi / 6)) for turn in (1, 2, 0, 3, 11, 5, 10, 4, 9, 6, 8, 7))
+"""Upwards to the right first, where a load has room beyond it."""
+
+
+@dataclass(frozen=True, slots=True)
+class Box:
+    """A rectangle with its sides along the axes, y downwards."""
+
+    left: float
+    top: float
+    right: float
+    bottom: float
+
+    @classmethod
+    def around(cls, centre: Point, width: float, height: float) -> "Box":
+        """Box of a size about its centre."""
+        x, y = centre
+        return cls(x - width / 2, y - height / 2, x + width / 2, y + height / 2)
+
+    @property
+    def centre(self) -> Point:
+        """Its middle."""
+        return (self.left + self.right) / 2, (self.top + self.bottom) / 2
+
+    def meets(self, other: "Box") -> bool:
+        """Whether they have more than an edge in common."""
+        across = self.left < other.right and other.left < self.right
+        return across and self.top < other.bottom and other.top < self.bottom
+
+    def within(self, other: "Box") -> bool:
+        """Whether nothing of it is outside the other."""
+        across = other.left <= self.left and self.right <= other.right
+        return across and other.top <= self.top and self.bottom <= other.bottom
+
+    def is_crossed(self, start: Point, end: Point) -> bool:
+        """Whether a line from start to end has a part inside (Liang and Barsky)."""
+        if max(start[0], end[0]) <= self.left or min(start[0], end[0]) >= self.right:
+            return False
+        low, high = 0.0, 1.0
+        edges = ((self.left, self.right), (self.top, self.bottom))
+        for at, to, (first, last) in zip(start, end, edges, strict=True):
+            if at == to:
+                if not first < at < last:
+                    return False
+                continue
+            enter, leave = sorted(((first - at) / (to - at), (last - at) / (to - at)))
+            low, high = max(low, enter), min(high, leave)
+        return low < high
+
+
+class Places:
+    """Room inside a frame: what is taken, and the lines that a label had better not lie on."""
+
+    def __init__(self, frame: Box) -> None:
+        self.frame = frame
+        self.taken: list[Box] = []
+        self.lines: list[list[Point]] = []
+
+    def is_free(self, box: Box) -> bool:
+        """Whether a box lies inside the frame and over nothing that is taken."""
+        return box.within(self.frame) and all(not box.meets(other) for other in self.taken)
+
+    def first(self, candidates: Iterable[Box]) -> Box | None:
+        """Take the first free one of some boxes; None where there is none."""
+        return self._take(next(filter(self.is_free, candidates), None))
+
+    def clearest(self, candidates: Iterable[Box]) -> Box | None:
+        """Take the first of the free boxes that the fewest lines cross; None where none is free."""
+        best, least = None, inf
+        for box in filter(self.is_free, candidates):
+            crossings = self._crossings(box)
+            if crossings < least:
+                best, least = box, crossings
+            if least == 0:
+                break
+        return self._take(best)
+
+    def _take(self, box: Box | None) -> Box | None:
+        if box is not None:
+            self.taken.append(box)
+        return box
+
+    def _crossings(self, box: Box) -> int:
+        letters = Box.around(box.centre, LETTERS * (box.right - box.left), LETTERS * (box.bottom - box.top))
+        return sum(letters.is_crossed(start, end) for line in self.lines for start, end in pairwise(line))
+
+
+def around(point: Point, width: float, height: float) -> Iterable[Box]:
+    """Boxes of a size at a point and about it, the nearest first."""
+    yield Box.around(point, width, height)
+    for distance in DISTANCES:
+        for across, down in DIRECTIONS:
+            reach = distance + abs(across) * (width - height) / 2
+            yield Box.around((point[0] + reach * across, point[1] + distance * down), width, height)

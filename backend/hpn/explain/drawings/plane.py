@@ -1,0 +1,279 @@
+"""Torques at their speeds beside what is permitted, at the gear's output and at the motor; all by magnitude."""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from math import inf, isinf
+from xml.etree.ElementTree import Element
+
+import numpy as np
+
+from hpn.application import Motor
+from hpn.catalogue import GearList
+from hpn.engine import figures as of_gear
+from hpn.engine.allowed import with_listed_motor
+from hpn.engine.figures import Figures
+from hpn.explain.drawings.chart import Axes, Line, Mark, chart
+from hpn.explain.drawings.cycle import OUT_OF_SCALE
+from hpn.explain.drawings.picture import beyond_limit
+from hpn.explain.drawings.subject import Subject
+from hpn.explain.drawings.svg import Point
+from hpn.explain.drawings.words import phase_numbers
+from hpn.physics.equations import FloatArray
+from hpn.physics.motion import Trace, motor_trace, trace_of
+from hpn.words.quantities import DUTY, GEAR, INPUTS
+from hpn.words.reader import DEFAULT, Reader
+from hpn.words.wording import N_, Quantity, Sentence, Value
+
+OUTPUT = Axes(N_("output speed"), "rpm", N_("output torque"), "Nm")
+MOTOR = Axes(N_("motor speed"), "rpm", N_("motor torque"), "Nm")
+
+MOST_NUMBERS, MOST_MARKS = 24, 200
+"""Phases that have a numbered disc, those nearest to their limit, and those that are drawn at all."""
+
+LAST = -1.0
+"""Use of a mark whose disc gives way to all others."""
+
+
+@dataclass(frozen=True, slots=True)
+class Plane:
+    """The drawing, and what it says in words."""
+
+    drawing: Element
+    words: list[Sentence]
+
+
+@dataclass(frozen=True, slots=True)
+class _Limit:
+    """A limit by its symbol; None where it is not known."""
+
+    symbol: str
+    value: float | None
+
+
+@dataclass(frozen=True, slots=True)
+class _Limits:
+    """Limits of torque and speed that hold together, and the demands that they bound."""
+
+    kind: str
+    torque: _Limit
+    speed: _Limit
+    demand: Point
+
+
+@dataclass(frozen=True, eq=False)
+class _Cycle:
+    """What is drawn of a cycle: means and peaks of its phases, shape (phases,), and the curve of a motion."""
+
+    speed_rpm: FloatArray
+    torque_Nm: FloatArray
+    peak_speed_rpm: FloatArray
+    peak_torque_Nm: FloatArray
+    curves: dict[int, list[Point]]
+
+
+def gear_plane(subject: Subject, reader: Reader = DEFAULT, governing: Sequence[int] = ()) -> Plane:
+    """Output torque against output speed, with the gear's limits of both, averages and peaks."""
+    duty, gear, phases = subject.duty, subject.gear, subject.duty.phases
+    rated, peak = (
+        _Limit(GEAR[name].symbol, getattr(gear, name)) for name in ("rated_torque_Nm", "repeated_peak_torque_Nm")
+    )
+    average, maximum = (
+        _Limit(f"{GEAR[name].symbol}/i", value and value / gear.ratio)
+        for name in ("average_input_speed_rpm", "maximum_input_speed_rpm")
+        for value in [getattr(gear, name)]
+    )
+    limits = (
+        _Limits("limit", peak, maximum, (duty.maximum_output_speed_rpm.item(), duty.maximum_torque_Nm.item())),
+        _Limits("mean", rated, average, (duty.average_output_speed_rpm.item(), duty.average_torque_Nm.item())),
+    )
+    course = duty.courses.get(0)
+    curves = {}
+    if course is not None:
+        trace = trace_of(course)
+        curves = _curves(trace, np.abs(trace.speed_rpm), np.abs(trace.torque_Nm))
+    n, T, fastest, largest = phases.speed_rpm, phases.torque_Nm, phases.peak_speed_rpm, phases.peak_torque_Nm
+    cycle = _Cycle(n[0, 0], T[0, 0], fastest[0, 0], largest[0, 0], curves)
+    words = [
+        _compared(N_("Largest torque {torque}, largest speed {speed}."), limits[0], subject),
+        _compared(N_("Average torque {torque}, average speed {speed}."), limits[1], subject),
+    ]
+    mean = DUTY["average_torque_Nm"].symbol
+    return Plane(_drawn(cycle, limits, mean, OUTPUT, subject, reader, governing), words)
+
+
+def motor_plane(subject: Subject, reader: Reader = DEFAULT, governing: Sequence[int] = ()) -> Plane:
+    """Motor torque against motor speed on a gear, with the limits of the motor that were given.
+
+    Of a motion whose motor's inertia is known the curve holds it.
+    """
+    equipped = Subject(with_listed_motor(subject.application, subject.catalogue), subject.gear, subject.catalogue)
+    duty, gear, motor = equipped.duty, subject.gear, equipped.application.requirements.motor or Motor()
+    gears = GearList([gear], [subject.catalogue.curves.get(gear.size)])
+    figures = Figures(duty, gears, subject.catalogue)
+    limits = (
+        _Limits(
+            "limit",
+            _of_motor(motor, "peak_torque_Nm"),
+            _of_motor(motor, "maximum_speed_rpm"),
+            (figures.maximum_input_speed_rpm.item(), figures.motor_peak_torque_Nm.item()),
+        ),
+        _Limits(
+            "mean",
+            _of_motor(motor, "rated_torque_Nm"),
+            _of_motor(motor, "rated_speed_rpm"),
+            (figures.average_input_speed_rpm.item(), figures.motor_rated_torque_Nm.item()),
+        ),
+    )
+    words = [
+        _compared(N_("Largest torque {torque}, largest speed {speed}."), limits[0], subject),
+        _compared(N_("RMS torque {torque}, average speed {speed}."), limits[1], subject),
+    ]
+    return Plane(_drawn(_at_motor(equipped, motor), limits, "T_rms", MOTOR, subject, reader, governing), words)
+
+
+def _of_motor(motor: Motor, name: str) -> _Limit:
+    return _Limit(INPUTS[f"requirements.motor.{name}"].symbol, getattr(motor, name))
+
+
+def _at_motor(subject: Subject, motor: Motor) -> _Cycle:
+    """Phases at the motor: RMS torque at the mean speed, and peaks; of a motion the torque at every instant."""
+    duty, i, phases = subject.duty, subject.gear.ratio, subject.duty.phases
+    at_peak, at_rms = of_gear.efficiencies(duty, subject.gear, subject.catalogue)
+    peaks = phases.peak_torque_Nm[0, 0] / (i * at_peak)
+    course, curves = duty.courses.get(0), {}
+    if course is not None and motor.inertia_kgm2 is not None:
+        trace, torque = motor_trace(course, ratio=i, efficiency=at_peak, motor_inertia_kgm2=motor.inertia_kgm2)
+        curves = _curves(trace, np.abs(trace.speed_rpm) * i, np.abs(torque))
+        peaks = np.maximum.reduceat(np.abs(torque).max(axis=1), np.unique(trace.phase, return_index=True)[1])
+    elif course is not None:
+        trace = trace_of(course)
+        torque = np.abs(trace.torque_Nm) / (i * at_peak[trace.phase])[:, None]
+        curves = _curves(trace, np.abs(trace.speed_rpm) * i, torque)
+    means = phases.rms_torque_Nm[0, 0] / (i * at_rms)
+    return _Cycle(phases.speed_rpm[0, 0] * i, means, phases.peak_speed_rpm[0, 0] * i, peaks, curves)
+
+
+def _curves(trace: Trace, speed: FloatArray, torque: FloatArray) -> dict[int, list[Point]]:
+    """Curve of each phase of a motion."""
+    starts = np.flatnonzero(np.diff(trace.phase, prepend=-1))
+    pieces = zip(np.split(speed, starts[1:]), np.split(torque, starts[1:]), strict=True)
+    return {k: list(zip(n.ravel().tolist(), T.ravel().tolist(), strict=True)) for k, (n, T) in enumerate(pieces)}
+
+
+# --- The drawing ------------------------------------------------------------------------------------------------------
+
+
+def _drawn(
+    cycle: _Cycle,
+    limits: Sequence[_Limits],
+    mean: str,
+    axes: Axes,
+    subject: Subject,
+    reader: Reader,
+    governing: Sequence[int],
+) -> Element:
+    u = subject.application.requirements.utilisation
+    most = max(cycle.peak_speed_rpm), max(cycle.peak_torque_Nm)
+    lines = [line for one in limits for line in _lines(one, u, most)]
+    lines += [Line("curve", "", points) for points in dict.fromkeys(map(tuple, cycle.curves.values()))]
+    if not cycle.curves:
+        lines += _spans(cycle)
+    marks = _phases(cycle, limits[0], u, governing, reader)
+    told = reader.told(_compared("{torque}, {speed}", limits[1], subject))
+    outside = any(
+        beyond_limit(demand / limit.value, u)
+        for demand, limit in zip(limits[1].demand, (limits[1].speed, limits[1].torque), strict=True)
+        if limit.value
+    )
+    marks.append(Mark("equivalent", mean, limits[1].demand, told, LAST, outside))
+    return chart(lines, marks, [], reader, axes=axes, beyond=list(_beyond(limits, u, most, reader)))
+
+
+def _lines(limits: _Limits, u: float, most: Point) -> Iterable[Line]:
+    """The rectangle of a torque and a speed; where one of them is not drawn, the other goes right across."""
+    n, T = (_drawn_at(limit, u, value) for limit, value in zip((limits.speed, limits.torque), most, strict=True))
+    if limits.kind == "limit" and not (isinf(n) and isinf(T)):
+        yield Line("region", "", [(0.0, T), (n, T), (n, 0.0)], strong=True)
+    if not isinf(T):
+        yield Line(limits.kind, _name(limits.torque, u), [(0.0, T), (n, T)])
+    if not isinf(n):
+        yield Line(limits.kind, _name(limits.speed, u), [(n, T), (n, 0.0)])
+
+
+def _drawn_at(limit: _Limit, u: float, most: float) -> float:
+    """What a limit comes to; infinity where it is not known, or far beyond the cycle."""
+    return u * limit.value if limit.value is not None and u * limit.value <= OUT_OF_SCALE * most else inf
+
+
+def _name(limit: _Limit, u: float) -> str:
+    return limit.symbol if u == 1 else f"u·{limit.symbol}"
+
+
+def _beyond(limits: Sequence[_Limits], u: float, most: Point, reader: Reader) -> Iterable[str]:
+    """Limits far beyond the cycle, each with an arrow that says where it lies; those that belong together in a row."""
+    for one in limits:
+        pairs = ((one.torque, most[1], "↑", "Nm"), (one.speed, most[0], "→", "rpm"))
+        names = [
+            f"{arrow} {_name(limit, u)} {reader.with_unit(reader.figure(u * limit.value, unit), unit)}"
+            for limit, value, arrow, unit in pairs
+            if limit.value is not None and isinf(_drawn_at(limit, u, value))
+        ]
+        if names:
+            yield "\N{EM SPACE}".join(names)
+
+
+def _spans(cycle: _Cycle) -> Iterable[Line]:
+    """From the mean of each phase that varies to its peak."""
+    means, peaks = ((cycle.speed_rpm, cycle.torque_Nm), (cycle.peak_speed_rpm, cycle.peak_torque_Nm))
+    ends = zip(*(map(tuple, np.stack(points, axis=1)[:MOST_MARKS].tolist()) for points in (means, peaks)), strict=True)
+    return [Line("span", "", [mean, peak]) for mean, peak in dict.fromkeys(ends) if mean != peak]
+
+
+def _phases(cycle: _Cycle, limits: _Limits, u: float, governing: Sequence[int], reader: Reader) -> list[Mark]:
+    """A numbered disc at the peak of each phase, those of one place together; what varies has a dot at its mean."""
+    n, T = cycle.peak_speed_rpm, cycle.peak_torque_Nm
+    used = np.maximum(n / (limits.speed.value or np.inf), T / (limits.torque.value or np.inf))
+    together: dict[Point, list[int]] = {}
+    for k in np.argsort(-used, kind="stable").tolist():
+        place = max(cycle.curves[k], key=lambda point: point[1]) if cycle.curves else (n.item(k), T.item(k))
+        together.setdefault(place, []).append(k)
+    marks = []
+    for order, (place, unsorted) in enumerate(list(together.items())[:MOST_MARKS]):
+        places = sorted(unsorted)
+        most = max(places, key=lambda k: used[k])
+        kind = "load governing" if set(governing) & set(places) else "load"
+        label = phase_numbers(places) if order < MOST_NUMBERS else ""
+        if len(places) > 3 and "–" not in label and label:
+            label = f"{places[0] + 1} …"
+        told = reader.told(_told(cycle, most, places)) if label else ""
+        marks.append(Mark(kind, label, place, told, used.item(most), beyond_limit(used.item(most), u), places[:100]))
+    if not cycle.curves:
+        means = set(zip(cycle.speed_rpm.tolist(), cycle.torque_Nm.tolist(), strict=True)) - set(together)
+        marks += [Mark("mean", "", place, "") for place in sorted(means)[:MOST_MARKS]]
+    return marks
+
+
+def _told(cycle: _Cycle, k: int, places: Sequence[int]) -> Sentence:
+    values: dict[str, Value] = {
+        "phases": phase_numbers(places),
+        "torque": Quantity(cycle.peak_torque_Nm.item(k), "Nm"),
+        "speed": Quantity(cycle.peak_speed_rpm.item(k), "rpm"),
+    }
+    return Sentence(N_("Phase {phases}: up to {torque} and {speed}"), values)
+
+
+# --- In words ---------------------------------------------------------------------------------------------------------
+
+
+def _compared(template: str, limits: _Limits, subject: Subject) -> Sentence:
+    u = subject.application.requirements.utilisation
+    n, T = limits.demand
+    return Sentence(template, {"torque": _of(T, limits.torque, u, "Nm"), "speed": _of(n, limits.speed, u, "rpm")})
+
+
+def _of(demand: float, limit: _Limit, u: float, unit: str) -> Value:
+    """A demand, and what it may be where that is known."""
+    if limit.value is None:
+        return Quantity(demand, unit)
+    values: dict[str, Value] = {"demand": Quantity(demand, unit), "limit": Quantity(u * limit.value, unit)}
+    return Sentence(N_("{demand} of {limit}"), values)

@@ -1,0 +1,48 @@
+"""What pictures are of: an application, and the gear that its reader looks at."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+from hpn.application import Application
+from hpn.catalogue import Catalogue, GearList
+from hpn.catalogue.gear import Gear
+from hpn.engine.duty import Duty
+from hpn.engine.figures import Figures
+
+
+@dataclass(frozen=True)
+class Subject:
+    """An application and one gear; what its pictures share is worked out once, when the first of them asks for it."""
+
+    application: Application
+    gear: Gear
+    catalogue: Catalogue
+
+    @cached_property
+    def duty(self) -> Duty:
+        """What the duty cycle comes to."""
+        return Duty.of([self.application])
+
+    @cached_property
+    def sizes(self) -> GearList:
+        """The first gear of every size: what belongs to a size, as its output bearing does, is the same in all."""
+        first: dict[str, Gear] = {}
+        for gear in self.catalogue.gears:
+            first.setdefault(gear.size, gear)
+        return GearList(list(first.values()), [self.catalogue.curves.get(size) for size in first])
+
+    @cached_property
+    def of_sizes(self) -> Figures:
+        """What the first gear of every size comes to."""
+        return Figures(self.duty, self.sizes, self.catalogue)
+
+    @property
+    def place(self) -> int:
+        """Place of the gear's own size in `sizes`."""
+        return self.catalogue.sizes.index(self.gear.size)
+
+    @property
+    def emergency_stop_torque_Nm(self) -> float | None:
+        """Torque of the emergency stop by magnitude, or None where there is none."""
+        stop = self.application.emergency_stop
+        return None if stop is None else abs(stop.torque_Nm)

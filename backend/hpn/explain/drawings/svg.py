@@ -1,0 +1,72 @@
+"""Elements of an SVG drawing, with the handbook's symbols set as such; a style sheet gives colours and letter sizes."""
+
+from collections.abc import Iterable
+from xml.etree.ElementTree import Element, SubElement, tostring
+
+from hpn.words.symbols import sentence
+
+Point = tuple[float, float]
+
+LETTER = 14.0
+"""Size of a letter, in units of a drawing, that texts have room for; a style sheet may only set smaller ones."""
+
+WIDE = 0.64
+"""Width of a character in letter sizes: that of a digit in DejaVu Sans, the widest of the usual fonts."""
+
+
+def canvas(width: float, height: float) -> Element:
+    """An empty drawing."""
+    box = f"0 0 {written(width)} {written(height)}"
+    return Element("svg", {"xmlns": "http://www.w3.org/2000/svg", "viewBox": box})
+
+
+def add(parent: Element, name: str, kind: str, **attributes: float | str) -> Element:
+    """Add an element of a kind that the style sheet knows; `_` in the name of an attribute is a hyphen."""
+    given = {key.replace("_", "-"): written(value) for key, value in attributes.items()}
+    return SubElement(parent, name, {"class": kind, **given})
+
+
+def text(parent: Element, kind: str, at: Point, content: str, anchor: str = "start") -> Element:
+    """Add a text, its symbols in italics with their index below."""
+    element = add(parent, "text", kind, x=at[0], y=at[1], text_anchor=anchor)
+    lowered = False
+    for part in sentence(content):
+        back = -3 if lowered else 0
+        lowered = not isinstance(part, str)
+        if isinstance(part, str):
+            _run(element, "", part, back)
+        else:
+            _run(element, "letter", part[0], back)
+            _run(element, "index", part[1], 3)
+    return element
+
+
+def _run(element: Element, kind: str, content: str, shift: float) -> None:
+    attributes = ({"class": kind} if kind else {}) | ({"dy": written(shift)} if shift else {})
+    SubElement(element, "tspan", attributes).text = content
+
+
+def width_of(content: str) -> float:
+    """Most room that a text takes."""
+    return WIDE * LETTER * (len(content) - content.count("_") / 2)
+
+
+def path(points: Iterable[Point], *, closed: bool = False) -> str:
+    """Path through some points."""
+    steps = "L".join(f"{written(x)} {written(y)}" for x, y in points)
+    return f"M{steps}{'Z' if closed else ''}"
+
+
+def written(value: float | str) -> str:
+    """An attribute: a number to a thousandth of a unit."""
+    return value if isinstance(value, str) else f"{value:.3f}".rstrip("0").rstrip(".")
+
+
+def markup(drawing: Element, style: str = "") -> str:
+    """A drawing as text; with a style sheet of its own where no page is around it."""
+    if not style:
+        return tostring(drawing, encoding="unicode")
+    alone = Element(drawing.tag, drawing.attrib)
+    SubElement(alone, "style").text = style
+    alone.extend(drawing)
+    return tostring(alone, encoding="unicode")

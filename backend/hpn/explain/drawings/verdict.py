@@ -1,0 +1,76 @@
+"""The verdict on the output bearing in words."""
+
+from hpn.explain.drawings.picture import BearingPicture, beyond_limit
+from hpn.explain.drawings.words import phase_numbers, share
+from hpn.physics import bearing
+from hpn.words.wording import Quantity, Sentence, Value
+
+
+def carries(picture: BearingPicture) -> bool:
+    """Whether single loads and life stay within what is allowed."""
+    return not beyond_limit(_most_used(picture), picture.allowed)
+
+
+def _most_used(picture: BearingPicture) -> float:
+    return max(picture.worst.published, picture.life_utilisation)
+
+
+def bearing_verdict(picture: BearingPicture) -> Sentence:
+    """Whether the bearing carries the loads; where only the user's u is exceeded, it says that."""
+    if picture.allowed == 1:
+        if carries(picture):
+            return Sentence("The output bearing carries these loads.")
+        return Sentence("The output bearing does not carry these loads.")
+    values: dict[str, Value] = {"allowed": Quantity(100 * picture.allowed, "percent", 6)}
+    if carries(picture):
+        return Sentence("The output bearing carries these loads within u = {allowed}.", values)
+    if beyond_limit(_most_used(picture), 1.0):
+        return Sentence("The output bearing does not carry these loads, u = {allowed} apart.", values)
+    return Sentence(
+        "The loads exceed u = {allowed}: they use {used} of what the output bearing may carry.",
+        values | {"used": share(_most_used(picture))},
+    )
+
+
+def bearing_words(picture: BearingPicture) -> list[Sentence]:
+    """What governs, both utilisations, which loads are outside, and what the next printed f_w would come to."""
+    governs = (
+        Sentence("Bearing life governs.") if picture.life_governs else Sentence("The largest single load governs.")
+    )
+    equivalent = Sentence(
+        "Equivalent load: {used} of the permissible constant load ({speed}, {life}, {basis}).",
+        {
+            "used": share(picture.constant_load_utilisation),
+            "speed": Quantity(picture.average_output_speed_rpm, "rpm"),
+            "life": Quantity(picture.load.life_h, "h", 6),
+            "basis": picture.load.life_basis,
+        },
+    )
+    return [governs, equivalent, _largest(picture), *_outside(picture), *_next_load_coefficient(picture)]
+
+
+def _largest(picture: BearingPicture) -> Sentence:
+    used: dict[str, Value] = {"used": share(picture.worst.published)}
+    if len(picture.loads) == 1:
+        return Sentence("Single load: {used} of the published maximum.", used)
+    return Sentence(
+        "Largest single load: {used} of the published maximum (phase {phases}).",
+        used | {"phases": picture.worst.phases},
+    )
+
+
+def _outside(picture: BearingPicture) -> list[Sentence]:
+    places = sorted(place for load in picture.loads if load.is_outside for place in load.places)
+    if not places or len(picture.loads) == 1:
+        return []
+    return [Sentence("Outside the limit of a single load: phase {phases}.", {"phases": phase_numbers(places)})]
+
+
+def _next_load_coefficient(picture: BearingPicture) -> list[Sentence]:
+    """What the next printed load coefficient would make of the equivalent load."""
+    f_w, used = picture.load.load_coefficient, picture.constant_load_utilisation
+    larger = next((printed for printed in bearing.PRINTED_LOAD_COEFFICIENTS if printed > f_w), None)
+    if larger is None or used == 0:
+        return []
+    values: dict[str, Value] = {"coefficient": Quantity(larger, ""), "used": share(used * larger / f_w)}
+    return [Sentence("With f_w = {coefficient}: {used}.", values)]

@@ -1,0 +1,38 @@
+"""What pictures say: titles of axes, symbols with their index below, shares, and the numbers of phases."""
+
+from collections.abc import Iterable, Sequence
+
+from hpn.words.reader import Reader
+from hpn.words.symbols import sentence as parts_of
+from hpn.words.wording import N_, Quantity, Sentence, telling_decimals
+
+
+def said(sentence: Sentence, reader: Reader) -> str:
+    """A sentence as Plotly sets it: the handbook's symbols with their index below."""
+    parts = parts_of(reader.told(sentence))
+    return "".join(part if isinstance(part, str) else f"{part[0]}<sub>{part[1]}</sub>" for part in parts)
+
+
+def axis_title(quantity: str, unit: str, reader: Reader) -> str:
+    """Title of an axis: a quantity (an English msgid) and the reader's unit."""
+    values = {"quantity": quantity, "unit": reader.unit(unit)}
+    return said(Sentence(N_("{quantity} in {unit}"), values, ("quantity",)), reader)
+
+
+def shown(values: Iterable[float], unit: str, reader: Reader) -> list[float]:
+    """Values in the reader's unit."""
+    return list(map(reader.measure(unit).shown, values))
+
+
+def share(used: float) -> Quantity:
+    """A utilisation in percent, with as many digits as it takes to tell it from 100 %."""
+    decimals = telling_decimals(100 * used, 100.0, 0)
+    return Quantity(100 * used, "percent", 3 + decimals if used > 1 else max(3, 2 + decimals))
+
+
+def phase_numbers(places: Sequence[int]) -> str:
+    """Phase numbers from their places, three or more in a row as a range: `1–3`."""
+    if len(places) > 2 and places[-1] - places[0] == len(places) - 1:
+        return f"{places[0] + 1}–{places[-1] + 1}"
+    numbers = ", ".join(str(place + 1) for place in places[:6])
+    return numbers if len(places) <= 6 else numbers + " …"

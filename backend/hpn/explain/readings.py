@@ -1,0 +1,140 @@
+"""Demand and limit of each check as an engineer reads them.
+
+The two checks of the output bearing compare pure numbers (f_w P with 1 and k). What is read instead is the load in N
+beside the published maximum in its own direction, and the life beside the required one, both on the basis asked for:
+the same comparisons, since P grows in proportion with a load along its direction and the life with its power -3.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from hpn.application import Application, OutputLoad
+from hpn.catalogue import Catalogue, GearList
+from hpn.catalogue.gear import Gear
+from hpn.engine.check import Kind
+from hpn.engine.checks import BY_CODE
+from hpn.engine.duty import Duty
+from hpn.engine.figures import phase_loads
+from hpn.engine.selection import Candidate, CheckResult, Selection
+from hpn.words.quantities import CANDIDATE
+from hpn.words.wording import N_
+
+OTHERWISE = {"≤": ">", "≥": "<"}
+"""How a demand stands to its limit where it does not stand as it has to."""
+
+
+@dataclass(frozen=True, slots=True)
+class Reading:
+    """Demand and limit in `unit`, a suffix or symbol; None where there is none, or where nothing limits the demand.
+
+    `part` is the share of the limit that the user's own u leaves: the limit times it, for a minimum over it.
+    `limit_name` is a msgid, `relation` the comparison in symbols. Where it `is_unlimited`, the larger side is above
+    every number: the demand of a minimum, the limit of a maximum.
+    """
+
+    demand: float | None
+    limit: float | None
+    unit: str
+    kind: Kind
+    limit_name: str
+    relation: str
+    part: float = 1.0
+    is_unlimited: bool = False
+
+    @property
+    def has_unlimited_demand(self) -> bool:
+        """Whether the demand is above every number, such as the life without a torque."""
+        return self.is_unlimited and self.kind == "minimum"
+
+    @property
+    def has_unlimited_limit(self) -> bool:
+        """Whether the limit is above every number, such as that of stops below the repeated peak torque."""
+        return self.is_unlimited and self.kind != "minimum"
+
+    @property
+    def sign(self) -> str:
+        """How the demand has to stand to the limit."""
+        return "≥" if self.kind == "minimum" else "≤"
+
+    def found(self, failed: bool) -> str:
+        """How the demand stands to the limit."""
+        return OTHERWISE[self.sign] if failed else self.sign
+
+
+_AT_MOTOR = {"motor_peak_torque_Nm": "T_in,max", "motor_rated_torque_Nm": "T_in,rms"}
+"""Symbols of torques at the motor to which its own inertia adds, so that they are no quotient of the load's torque."""
+
+_RELATIONS = {"motor_peak_torque": "T_in,max ≤ T_mot", "motor_rated_torque": "T_in,rms ≤ T_mot,N"}
+
+
+def figure_symbol(name: str, *, turns_motor: bool) -> str:
+    """Symbol of a candidate's figure; `turns_motor` says whether the motor's own inertia counts in its torques."""
+    own = _AT_MOTOR.get(name) if turns_motor else None
+    return own or CANDIDATE[name].symbol
+
+
+def relation_of(code: str, *, turns_motor: bool) -> str:
+    """What a check compares, in symbols; blank for one that this version does not know."""
+    if turns_motor and code in _RELATIONS:
+        return _RELATIONS[code]
+    return BY_CODE[code].relation if code in BY_CODE else ""
+
+
+def readings_of(
+    candidate: Candidate,
+    selection: Selection,
+    application: Application | None,
+    catalogue: Catalogue | None,
+) -> dict[str, Reading]:
+    """Readings of a candidate's checks by code; as they were computed where application or catalogue is not known."""
+    load = application.loads if application else None
+    gear = catalogue.by_designation.get(candidate.designation) if catalogue else None
+    u = application.requirements.utilisation if application else 1.0
+    readings: dict[str, Reading] = {}
+    for check in candidate.checks:
+        reading = None
+        if check.code == "output_bearing_life" and load:
+            reading = _bearing_life(candidate, check, load, u)
+        if check.code == "output_bearing_load" and application and load and catalogue and gear:
+            reading = _bearing_load(check, application, load, catalogue, gear, u)
+        readings[check.code] = reading or _as_computed(check, selection, u)
+    return readings
+
+
+def _as_computed(check: CheckResult, selection: Selection, u: float) -> Reading:
+    known, definition = BY_CODE.get(check.code), selection.check_definitions[check.code]
+    part = known.allowed(u) if known else 1.0
+    relation = relation_of(check.code, turns_motor=selection.turns_motor)
+    larger = check.demand if definition.kind == "minimum" else check.limit
+    unlimited = larger is None and check.utilisation is not None
+    return Reading(
+        check.demand, check.limit, definition.unit, definition.kind, definition.limit_name, relation, part, unlimited
+    )
+
+
+_REQUIRED = {"L50": N_("L50 required"), "L10": N_("L10 required")}
+
+
+def _bearing_life(candidate: Candidate, check: CheckResult, load: OutputLoad, u: float) -> Reading:
+    """Life on the basis of the required one. A load that may be u times as large leaves a life of L / u³."""
+    basis = load.life_basis
+    life = candidate.bearing_life_L50_h if basis == "L50" else candidate.bearing_life_L10_h
+    relation = f"L_b,{basis[1:]} ≥ L_b"
+    unlimited = life is None and check.utilisation is not None
+    return Reading(life, load.life_h, "h", "minimum", _REQUIRED[basis], relation, u**3, unlimited)
+
+
+def _bearing_load(
+    check: CheckResult, application: Application, load: OutputLoad, catalogue: Catalogue, gear: Gear, u: float
+) -> Reading | None:
+    """Load vector of the worst phase times f_w, and how long it may be in its own direction; None without a load."""
+    if not check.demand:
+        return None
+    duty = Duty.of([application])
+    used = phase_loads(duty, GearList([gear], [catalogue.curves.get(gear.size)]))[0, 0]
+    worst = int(np.argmax(used))
+    radial, axial = duty.phases.radial_N[0, 0, worst], duty.phases.axial_N[0, 0, worst]
+    demand = load.load_coefficient * float(np.hypot(radial, axial))
+    name = N_("maximum in this direction")
+    return Reading(demand, demand / check.demand, "N", "maximum", name, "f_w · F ≤ F_max", u)

@@ -1,0 +1,1 @@
+"""Files of a selection: PDF report, workbook with live formulas, Asset Administration Shell."""

@@ -1,0 +1,1 @@
+"""The Asset Administration Shell of a selection."""

@@ -1,0 +1,92 @@
+"""Every input of an application as a reader finds it: name, symbol, value, unit."""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from hpn.application import NUMBERS, Application, OutputLoad
+from hpn.engine.notices import AREAS
+from hpn.files.export import Export
+from hpn.files.workbook.formulas import cell_name
+from hpn.words.quantities import BEARING_MODELS, INPUTS, LIFE_BASES
+from hpn.words.reader import Reader
+from hpn.words.units import suffix_of
+from hpn.words.wording import N_
+
+Value = float | str | tuple[str | int, ...]
+
+LOAD_PATH, LOAD_INERTIA = "output_load.", "requirements.load_inertia_kgm2"
+_LOADING = ("duty_cycle.", "emergency_stop.", LOAD_PATH)
+
+LOADS = tuple(path for path in INPUTS if path.startswith(_LOADING))
+"""What loads the gear besides the phases, by its path in the application."""
+
+REQUIREMENTS = tuple(path for path in INPUTS if not path.startswith((*_LOADING, "phase.")))
+"""What is asked of the gear, likewise."""
+
+ENTERED: Mapping[str, str] = {
+    cell_name(INPUTS[path].symbol) or path.removeprefix(LOAD_PATH): path
+    for path in (*LOADS, *REQUIREMENTS)
+    if tuple(path.split(".")) in NUMBERS or path.startswith(LOAD_PATH)
+}
+"""Inputs that the formulas of the workbook take, besides the phases: name in formulas, path in the application."""
+
+WORDS: Mapping[str, str] = {
+    **BEARING_MODELS,
+    **LIFE_BASES,
+    "weight": N_("weight"),
+    "utilisation": N_("utilisation"),
+    "length": N_("length"),
+    "motor_torque": N_("motor torque"),
+    "life": N_("life"),
+    "stiffness": N_("stiffness"),
+    **{str(area): text for area, text in AREAS.items()},
+}
+"""Values that are a code, in words."""
+
+
+@dataclass(frozen=True, slots=True)
+class InputLine:
+    """One input that is given, ready to read."""
+
+    label: str
+    symbol: str
+    text: str
+
+
+def value_of(application: Application, path: str) -> Value | None:
+    """What an application says at a path of INPUTS, or None; of the load, also the defaults that a phase's load has."""
+    first, *rest = path.split(".")
+    part: Any = application.loads if first == "output_load" else getattr(application, first)
+    for step in rest:
+        part = getattr(part, step, None)
+    value: Value | None = part
+    return value
+
+
+def entered(export: Export, path: str) -> Value | None:
+    """What stands in the workbook's cell of an input; of a load, its default too, should the reader add one."""
+    value = value_of(export.equipped, path)
+    if value is None and path == LOAD_INERTIA:
+        return export.selection.duty.load_inertia_kgm2
+    if value is None and path.startswith(LOAD_PATH):
+        default: Value | None = getattr(OutputLoad(), path.removeprefix(LOAD_PATH))
+        return default
+    return value
+
+
+def given(application: Application, paths: Iterable[str], reader: Reader) -> Iterable[InputLine]:
+    """Those inputs that are given or have a default."""
+    for path in paths:
+        value = value_of(application, path)
+        if value is not None:
+            yield InputLine(reader.text(INPUTS[path].name), INPUTS[path].symbol, _written(value, path, reader))
+
+
+def _written(value: Value, path: str, reader: Reader) -> str:
+    if isinstance(value, tuple):
+        return ", ".join(map(str, value))
+    if isinstance(value, str):
+        return reader.text(WORDS.get(value, value))
+    unit = suffix_of(path) or ""
+    return reader.with_unit(reader.exact(value, unit), unit)

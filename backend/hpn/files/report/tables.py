@@ -1,0 +1,139 @@
+"""Tables of the report: duty cycle, what it and the gear come to, and the gear's published figures."""
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+from hpn.application import DutyCycle
+from hpn.application.phase import Phase
+from hpn.engine.selection import FIGURES
+from hpn.explain.readings import figure_symbol
+from hpn.files import inputs
+from hpn.files.export import Export
+from hpn.files.motion import MOVES, lines, moves_of, written
+from hpn.files.words import equation, measured
+from hpn.words.quantities import CANDIDATE, DUTY, GEAR, INPUTS
+from hpn.words.reader import Reader
+from hpn.words.symbols import formula
+from hpn.words.units import suffix_of
+from hpn.words.wording import N_, Sentence
+
+MOST_PHASES = 20
+"""Phases up to which each is listed; beyond, their range and sum."""
+
+_ALWAYS = ("torque_Nm", "speed_rpm", "duration_s")
+_WHERE_GIVEN = ("peak_torque_Nm", "peak_speed_rpm", "rms_torque_Nm", "radial_N", "axial_N")
+
+Column = Sequence[float | None]
+
+
+def given(export: Export, paths: Sequence[str], reader: Reader) -> list[dict[str, Any]]:
+    """Inputs that are given."""
+    rows = inputs.given(export.equipped, paths, reader)
+    return [{"label": row.label, "symbol": formula(row.symbol), "text": row.text} for row in rows]
+
+
+def phases(export: Export, reader: Reader) -> dict[str, Any]:
+    """The duty cycle: each phase, or of a long cycle least, largest and sum."""
+    cycle = export.application.duty_cycle
+    listed, number = cycle.load_phases, number_of(cycle, reader)
+    given = columns(listed)
+    if len(listed) <= MOST_PHASES:
+        cells = [
+            ["" if value is None else number(value, _unit(name)) for value in column] for name, column in given.items()
+        ]
+        rows, note = [[str(k), *row] for k, row in enumerate(zip(*cells, strict=True), 1)], ""
+    else:
+        rows = _summary(given, reader)
+        text = N_("{count} phases, summarised here; each stands on the last pages.")
+        note = reader.told(Sentence(text, {"count": reader.exact(len(listed))}))
+    heads = [[formula(INPUTS[f"phase.{name}"].symbol), reader.unit(_unit(name))] for name in given]
+    return {"header": [[[], ""], *heads], "rows": rows, "note": note}
+
+
+def number_of(cycle: DutyCycle, reader: Reader) -> Callable[[float, str], str]:
+    """How the figures of phases are written: as they were given, or rounded where they come out of a motion."""
+    return reader.exact if cycle.motion is None else reader.figure
+
+
+def columns(phases: Sequence[Phase]) -> dict[str, Column]:
+    """Columns of the duty cycle by field: what each phase says, and None where it says nothing."""
+    optional = (name for name in _WHERE_GIVEN if any(getattr(phase, name) is not None for phase in phases))
+    return {name: [getattr(phase, name) for phase in phases] for name in (*_ALWAYS, *optional)}
+
+
+def motion(export: Export, reader: Reader) -> dict[str, Any] | None:
+    """Mechanism and moves as they were given; of many moves their number alone. None where phases were given."""
+    given = export.application.duty_cycle.motion
+    if given is None:
+        return None
+    mechanism = [
+        {"label": line.label, "symbol": formula(line.symbol), "text": line.text} for line in lines(given, reader)
+    ]
+    columns = moves_of(given)
+    heads = [
+        [formula(MOVES[name].symbol), reader.unit(_unit(name)) if MOVES[name].symbol else reader.text(MOVES[name].name)]
+        for name in columns
+    ]
+    rows, note = [], ""
+    if len(given.moves) <= MOST_PHASES:
+        cells = [[written(value, name, reader) for value in column] for name, column in columns.items()]
+        rows = [[str(k), *row] for k, row in enumerate(zip(*cells, strict=True), 1)]
+    else:
+        text = N_("{count} moves; each stands on the last pages.")
+        note = reader.told(Sentence(text, {"count": reader.exact(len(given.moves))}))
+    return {"mechanism": mechanism, "moves": {"header": [[[], ""], *heads], "rows": rows, "note": note}}
+
+
+def _summary(given: Mapping[str, Column], reader: Reader) -> list[list[str]]:
+    known = {name: [value for value in column if value is not None] for name, column in given.items()}
+    sums = [reader.figure(sum(values)) if name == "duration_s" else "" for name, values in known.items()]
+    return [
+        [reader.text(N_("least")), *(reader.figure(min(values), _unit(name)) for name, values in known.items())],
+        [reader.text(N_("largest")), *(reader.figure(max(values), _unit(name)) for name, values in known.items())],
+        [reader.text(N_("sum")), *sums],
+    ]
+
+
+def _unit(name: str) -> str:
+    return suffix_of(name) or ""
+
+
+def derived(export: Export, reader: Reader) -> list[dict[str, Any]]:
+    """Figures of the cycle and of the reported gear."""
+    duty, candidate = export.selection.duty, export.candidate
+    figures = [(name, DUTY[name], getattr(duty, name)) for name in DUTY]
+    if duty.load_inertia_kgm2 is not None:
+        figures.append(("load_inertia_kgm2", INPUTS["requirements.load_inertia_kgm2"], duty.load_inertia_kgm2))
+    figures += [(name, CANDIDATE[name], getattr(candidate, name)) for name in FIGURES]
+    lower_bound = export.is_lower_bound(candidate)
+    loss_free = lower_bound and not export.follows_efficiency_curve(candidate)
+    turns = export.selection.turns_motor
+    rows = []
+    for name, named, value in figures:
+        if value is not None:
+            at_motor = name.startswith("motor_")
+            bound = f", {reader.text(N_('lower bound'))}" if lower_bound and at_motor else ""
+            rows.append(
+                {
+                    "label": reader.text(named.name) + bound,
+                    "symbol": formula(figure_symbol(name, turns_motor=turns) if name in CANDIDATE else named.symbol),
+                    "text": measured(value, suffix_of(name) or "", reader),
+                    "where": "η = 1" if loss_free and at_motor else equation(named.equation, reader),
+                }
+            )
+    return rows
+
+
+def ratings(export: Export, reader: Reader) -> list[dict[str, Any]]:
+    """Published figures of the reported gear, each with its source."""
+    gear = export.gear(export.candidate)
+    return [
+        {
+            "label": reader.text(named.name),
+            "symbol": formula(named.symbol),
+            "text": reader.with_unit(reader.exact(value, unit), unit),
+            "where": reader.source(gear.sources.get(name, "")),
+        }
+        for name, named in GEAR.items()
+        if gear and (unit := suffix_of(name)) and (value := getattr(gear, name)) is not None
+    ]

@@ -1,0 +1,143 @@
+"""The sheet of all candidates: their published figures as cells, everything calculated from them as formulas."""
+
+import json
+from typing import Any
+
+from xlsxwriter.utility import xl_range, xl_range_abs, xl_rowcol_to_cell
+
+from hpn.engine.checks import CHECKS
+from hpn.engine.selection import Candidate
+from hpn.files.export import LOWER_BOUND
+from hpn.files.workbook.formulas import CHECK_FORMULAS, GEAR_TERMS, NONE, RATINGS, written
+from hpn.files.workbook.known import Known
+from hpn.files.workbook.sheets import Book
+from hpn.files.workbook.unchanged import as_saved
+from hpn.files.workbook.wrong import WRONG
+from hpn.words.quantities import GEAR
+from hpn.words.units import symbol_of
+from hpn.words.wording import N_
+
+FIRST_ROW = 1
+IDENTITY = ("designation", "status", "utilisation", "rank")
+FIGURES = len(IDENTITY)
+TERMS = FIGURES + len(RATINGS)
+USED = TERMS + len(GEAR_TERMS)
+
+COLUMNS = (
+    {name: FIGURES + k for k, name in enumerate(RATINGS)}
+    | {term.name: TERMS + k for k, term in enumerate(GEAR_TERMS)}
+    | {check.code: USED + k for k, check in enumerate(CHECKS)}
+)
+"""Column by the name of a figure or the code of a check."""
+
+LOAD = [check.code for check in CHECKS if check.group == "load"]
+"""Load checks stand first; the property checks count only where they fail."""
+
+
+class CandidatesSheet:
+    """One row per candidate, best first as saved."""
+
+    def __init__(self, book: Book, sheet: Any) -> None:
+        self.book, self.sheet = book, sheet
+        self.symbols = {name: GEAR[field].symbol for name, field in RATINGS.items()}
+        known = Known(book.export, book.export.candidate, book.words)
+        self.symbols |= {term.name: known.symbol(term) for term in GEAR_TERMS}
+        units = {name: symbol_of(field) for name, field in RATINGS.items()}
+        units |= {term.name: term.unit for term in GEAR_TERMS}
+        self.converted = {name: unit for name, unit in units.items() if not book.shown.measure(unit).same}
+
+    def write(self) -> range:
+        """Write the sheet; the rows of the candidates."""
+        rows = range(FIRST_ROW, FIRST_ROW + len(self.book.export.selection.candidates))
+        self._heads()
+        for row, candidate in zip(rows, self.book.export.selection.candidates, strict=True):
+            self._row(row, candidate)
+        blocks = {"candidates": 0, **{f"{name}_all": COLUMNS[name] for name in RATINGS}}
+        for name, column in blocks.items():
+            self.book.name(name, self.sheet, xl_range_abs(rows[0], column, rows[-1], column))
+        self._colours(rows)
+        self.sheet.repeat_rows(0)
+        self.sheet.repeat_columns(0)
+        self.book.page(self.sheet, across=3)
+        self.sheet.autofilter(0, 0, rows[-1], USED + len(CHECKS) - 1)
+        return rows
+
+    def _colours(self, rows: range) -> None:
+        self.book.colour(self.sheet, rows[0], 1, rows[-1], 1)
+        properties = USED + len(LOAD)
+        self.book.colour_failures(self.sheet, rows[0], USED, rows[-1], properties - 1, bound="u")
+        self.book.colour_failures(self.sheet, rows[0], properties, rows[-1], USED + len(CHECKS) - 1, bound="1")
+
+    def _heads(self) -> None:
+        text, head = self.book.reader.text, self.book.head
+        heads = [text(title) for title in (N_("Gear"), N_("Verdict"), N_("Utilisation"), N_("Rank as saved"))]
+        heads += [head(GEAR[field].symbol, symbol_of(field)) for field in RATINGS.values()]
+        bound = f", {text(LOWER_BOUND)}"
+        heads += [head(self.symbols[term.name], term.unit) + bound * term.by_efficiency for term in GEAR_TERMS]
+        heads += [text(check.title) for check in CHECKS]
+        unit_of = self.book.shown.unit
+        heads += [f"{self.symbols[name]} [{unit_of(unit)}]" for name, unit in self.converted.items()]
+        for column, shown in enumerate(heads):
+            self.sheet.write_string(0, column, shown, self.book.style("head"))
+        self.sheet.set_row(0, 80)
+        self.sheet.set_column(0, 0, 14)
+        self.sheet.set_column(1, len(heads) - 1, 14)
+        self.sheet.freeze_panes(1, 1)
+
+    def _row(self, row: int, candidate: Candidate) -> None:
+        known = Known(self.book.export, candidate, self.book.words)
+        names = {name: xl_rowcol_to_cell(row, column, col_abs=True) for name, column in COLUMNS.items()}
+        self.sheet.write_string(row, 0, candidate.designation, self.book.style("verdict"))
+        if candidate.rank is not None:
+            self.sheet.write_number(row, 3, candidate.rank)
+        for name, value in known.ratings().items():
+            if value is not None:
+                self.sheet.write_number(row, COLUMNS[name], value, self.book.style("figure"))
+        fixed, terms = known.fixed(), known.terms()
+        for term in GEAR_TERMS:
+            saved, is_fixed = terms[term.name], term.name in fixed
+            live = written(known.formula(term), names, self.book.words)
+            formula = _while_unchanged(term.name, saved) if is_fixed else live
+            self._cell(row, COLUMNS[term.name], formula, saved, "fixed" if is_fixed else "result")
+        for column, check in enumerate(CHECKS, USED):
+            used, formulas = known.utilisation(check.code), CHECK_FORMULAS.get(check.code)
+            formula = written(formulas.ratio, names, self.book.words) if formulas else None
+            if formulas and check.code in fixed:
+                unasked = written(f'IF({formulas.asked},"[not rated]","")', names, self.book.words)
+                formula = _while_unchanged(check.code, used, self.book.words["not rated"]) or unasked
+            self._cell(row, column, formula, used, "share")
+        self._verdict(row, known)
+        figures = known.ratings() | terms
+        for column, (name, unit) in enumerate(self.converted.items(), USED + len(CHECKS)):
+            source = xl_rowcol_to_cell(row, COLUMNS[name])
+            self.book.converted(self.sheet, row, column, source, unit, figures[name])
+
+    def _cell(self, row: int, column: int, formula: str | None, value: float | str, style: str) -> None:
+        """A formula with its value, or the value alone as it was saved."""
+        if formula is None:
+            self.sheet.write(row, column, value, self.book.style(style))
+        else:
+            self.sheet.write_formula(row, column, formula, self.book.style(style), value)
+
+    def _verdict(self, row: int, known: Known) -> None:
+        words = {name: f'"{word}"' for name, word in self.book.words.items()}
+        load = xl_range(row, USED, row, USED + len(LOAD) - 1)
+        rest = xl_range(row, USED + len(LOAD), row, USED + len(CHECKS) - 1)
+        every = xl_range(row, USED, row, USED + len(CHECKS) - 1)
+        over = 'COUNTIF({0},">"&{1}*(1+1E-12))'
+        failing = f'{over.format(load, "u")}+{over.format(rest, 1)}+COUNTIF({every},"{NONE}")'
+        unknown = f"COUNTIF({every},{words['not rated']})+SUMPRODUCT(--ISERROR({every}))"
+        rated = f"IF({failing}>0,{words['unsuitable']},IF({unknown}>0,{words['unrated']},{words['suitable']}))"
+        status = f"=IF({WRONG}>0,{words['unrated']},{rated})"
+        self.sheet.write_formula(row, 1, status, self.book.style("verdict"), self.book.words[known.candidate.status])
+        cell = xl_rowcol_to_cell(row, 1)
+        used = (
+            f'=IF({cell}={words["unrated"]},"",IF(COUNTIF({every},"{NONE}")>0,"{NONE}",'
+            f"MAX({load},IF({over.format(rest, 1)}>0,MAX({rest}),0))))"
+        )
+        self.sheet.write_formula(row, 2, used, self.book.style("share"), known.overall())
+
+
+def _while_unchanged(name: str, saved: float | str, otherwise: str = "") -> str | None:
+    """A value as saved for as long as the inputs behind it are, then `otherwise`; None where nothing was saved."""
+    return None if saved == "" else f'=IF({as_saved(name)},{json.dumps(saved, ensure_ascii=False)},"{otherwise}")'

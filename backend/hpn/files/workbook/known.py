@@ -1,0 +1,122 @@
+"""What a selection says of one candidate, by the names of the workbook's formulas."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from hpn.engine.checks.motor import MOTOR
+from hpn.engine.selection import FIGURES, Candidate, CheckResult
+from hpn.explain.readings import figure_symbol
+from hpn.files.export import Export
+from hpn.files.workbook.formulas import (
+    CHECK_FORMULAS,
+    GEAR_TERMS,
+    MOTOR_TORQUES,
+    NONE,
+    RATINGS,
+    CellTerm,
+    cell_name,
+    terms_of,
+)
+from hpn.words.quantities import CANDIDATE
+
+_LIMITS = {
+    name: code for code, formulas in CHECK_FORMULAS.items() for name in RATINGS if formulas.limit == f"{{{name}}}"
+}
+"""Published figures that a check names as its limit, and its code."""
+
+_FIELDS = {cell_name(CANDIDATE[field].symbol): field for field in FIGURES}
+DEMANDS = {"P_max": "output_bearing_load", "P_m": "output_bearing_life"}
+"""Where the values of the terms stand: a figure of the candidate, or the demand of a check."""
+
+_MAY_BE_UNLIMITED = ("N_k_max", "L_10", "L_b50")
+
+
+@dataclass(frozen=True)
+class Known:
+    """One candidate; `words` are those that stand where a number would."""
+
+    export: Export
+    candidate: Candidate
+    words: Mapping[str, str]
+
+    def ratings(self) -> dict[str, float | None]:
+        """Published figures: from the catalogue of the selection, else as far as its checks name them as limits."""
+        gear = self.export.gear(self.candidate)
+        if gear:
+            return {name: getattr(gear, field) for name, field in RATINGS.items()}
+        known: dict[str, float | None] = {cell_name(CANDIDATE["ratio"].symbol): self.candidate.ratio}
+        known |= {name: check.limit for name, code in _LIMITS.items() if (check := self.candidate.check(code))}
+        return {name: known.get(name) for name in RATINGS}
+
+    def fixed(self) -> set[str]:
+        """Terms that no formula of this workbook can give, and codes of such checks: they stand as saved."""
+        fixed: set[str] = set()
+        loads = self.export.application.loads
+        if self.export.figures is None:
+            unknown = RATINGS.keys() - _LIMITS.keys() - {cell_name(CANDIDATE["ratio"].symbol)}
+            formulas = {term.name: term.formula for term in GEAR_TERMS}
+            formulas |= {code: check.ratio for code, check in CHECK_FORMULAS.items()}
+            fixed |= {name for name, formula in formulas.items() if terms_of(formula) & unknown}
+        elif loads and loads.model == "digitised":
+            fixed |= DEMANDS.keys()
+        if self.export.follows_efficiency_curve(self.candidate):
+            fixed |= set(MOTOR_TORQUES)
+        if self.export.selection.turns_motor:
+            fixed |= set(MOTOR_TORQUES)
+        if self.export.figures is None and self._has_listed_motor:
+            fixed |= {check.code for check in MOTOR}
+        return fixed
+
+    def formula(self, term: CellTerm) -> str:
+        """The formula of a term that is not fixed. Along a motion a motor's inertia adds what no formula gives."""
+        moves = self.export.application.duty_cycle.motion is not None
+        return f'IF(J_m="",{term.formula},"")' if moves and term.by_efficiency else term.formula
+
+    def symbol(self, term: CellTerm) -> str:
+        """Symbol of a term, as the report has it."""
+        turns = self.export.selection.turns_motor
+        return figure_symbol(term.field, turns_motor=turns) if term.field else term.named.symbol
+
+    @property
+    def _has_listed_motor(self) -> bool:
+        motor = self.export.application.requirements.motor
+        return motor is not None and motor.designation is not None
+
+    def terms(self) -> dict[str, float | str]:
+        """Values of GEAR_TERMS as saved; words where there is no number."""
+        return {term.name: self._term(term.name) for term in GEAR_TERMS}
+
+    def _term(self, name: str) -> float | str:
+        if name in DEMANDS:
+            return demand_of(self.candidate.check(DEMANDS[name]))
+        if name in _MAY_BE_UNLIMITED and self.candidate.is_unlimited(_FIELDS[name]):
+            return self.words["unlimited"]
+        return _cell(getattr(self.candidate, _FIELDS[name]))
+
+    def utilisation(self, code: str) -> float | str:
+        """Utilisation of a check as saved; blank where it was not asked for."""
+        check = self.candidate.check(code)
+        if check is None:
+            return ""
+        if check.utilisation is not None:
+            return check.utilisation
+        return NONE if check.status == "fail" else self.words["not rated"]
+
+    def overall(self) -> float | str:
+        """Utilisation of the candidate as saved."""
+        unlimited = NONE if self.candidate.status == "unsuitable" else ""
+        return unlimited if self.candidate.utilisation is None else self.candidate.utilisation
+
+
+def demand_of(check: CheckResult | None) -> float | str:
+    """Value of a check as a cell; blank where there is none."""
+    return _cell(check.demand if check else None)
+
+
+def limit_of(check: CheckResult | None) -> float | str:
+    """Limit of a check as a cell; blank where there is none."""
+    return _cell(check.limit if check else None)
+
+
+def _cell(value: float | None) -> float | str:
+    return "" if value is None else value

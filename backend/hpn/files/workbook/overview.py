@@ -1,0 +1,346 @@
+"""The first sheet: what was asked as inputs, the chosen gear, and every check of it as a formula."""
+
+import json
+from dataclasses import replace
+from typing import Any
+
+from xlsxwriter.utility import xl_range_abs, xl_rowcol_to_cell
+
+from hpn.application import OutputLoad
+from hpn.application.input_fields import FIELDS
+from hpn.engine.check import Check
+from hpn.engine.checks import CHECKS
+from hpn.engine.selection import CheckResult
+from hpn.explain.readings import relation_of
+from hpn.files.export import LOSS_FREE
+from hpn.files.inputs import ENTERED, LOAD_INERTIA, LOADS, REQUIREMENTS, entered
+from hpn.files.report.verdict import STATUS
+from hpn.files.words import equation, origin
+from hpn.files.workbook.candidates import COLUMNS, LOAD
+from hpn.files.workbook.formulas import CHECK_FORMULAS, CYCLE_TERMS, GEAR_TERMS, NONE, RATINGS, CellTerm, written
+from hpn.files.workbook.known import DEMANDS, Known, demand_of, limit_of
+from hpn.files.workbook.sheets import Book
+from hpn.files.workbook.unchanged import as_saved
+from hpn.files.workbook.wrong import WRONG, WRONG_AS_A_WHOLE, WRONG_IN_CYCLE, advice, is_wrong, validation
+from hpn.physics import bearing
+from hpn.words.quantities import GEAR, INPUTS
+from hpn.words.units import suffix_of
+from hpn.words.wording import N_
+
+EFFICIENCY, MODEL = "requirements.efficiency", "output_load.model"
+NAMES = {path: name for name, path in ENTERED.items()}
+NEEDED = {"emergency_stop.torque_Nm": 'N_k<>""'}
+"""When an input may not be blank, though it may be left out."""
+
+ALONG_THE_MOTION = N_("as saved: along the motion, with the motor’s own inertia")
+OUTDATED = N_("not known here: inputs behind it were changed")
+OF_THE_MOTION = N_("of the motion")
+REMARK = 7
+"""Column of remarks on inputs, clear of the values in other units."""
+
+MARKED = N_("marked red under Inputs and on the sheet Duty cycle; no gear is rated while there is one")
+
+REFERENCES = (
+    ("rated_speed", N_("Rated input speed"), "rpm", 3000.0),
+    ("rated_life", N_("Life at rated torque and speed"), "h", 20_000.0),
+    ("bearing_speed", N_("Speed that the published bearing loads hold for"), "rpm", 100.0),
+    ("bearing_life", N_("Bearing life L50 that the published loads hold for"), "h", 20_000.0),
+)
+"""Series figures of the equations: name, what it is, unit, the handbook's value."""
+
+
+class Overview:
+    """Rows from top to bottom: label, symbol, value, unit, source."""
+
+    def __init__(self, book: Book, sheet: Any, candidates: range) -> None:
+        self.book, self.sheet, self.candidates = book, sheet, candidates
+        self.known = Known(book.export, book.export.candidate, book.words)
+        every = (Known(book.export, candidate, book.words) for candidate in book.export.selection.candidates)
+        self.fixed = set().union(*(known.fixed() for known in every))
+        """What no formula gives of one of the gears."""
+        self.text = book.reader.text
+        self.row = 0
+        self.remarks: list[str] = []
+        """Cells that say what would be right in an input."""
+
+    def write(self) -> None:
+        """Write the sheet."""
+        for column, width in enumerate((52, 24, 18, 16, 14, 16, 14, 38)):
+            self.sheet.set_column(column, column, width)
+        self._head()
+        self._gear()
+        self._checks()
+        self._terms(N_("What the cycle comes to"), CYCLE_TERMS, self._cycle_values())
+        self._terms(N_("What the gear comes to"), GEAR_TERMS, self.known.terms())
+        self._inputs()
+        self._references()
+        self.book.page(self.sheet)
+
+    def _head(self) -> None:
+        export = self.book.export
+        self.sheet.write_string(
+            0, 0, export.heading.title or self.text(N_("Untitled selection")), self.book.style("title")
+        )
+        self.sheet.freeze_panes(1, 0)
+        heading, made = export.heading, export.made
+        lines = [
+            (N_("Reference"), heading.reference),
+            (N_("Revision"), heading.revision),
+            (N_("Author"), heading.author),
+            (N_("Ordering code"), heading.ordering_code),
+            (N_("Saved"), self.book.reader.date(export.created) if export.created else ""),
+            (N_("Made, not saved"), self.book.reader.day(made) if made and not export.created else ""),
+            (N_("Link"), export.link if len(export.link) < 32_000 else ""),
+        ]
+        self.row = 1
+        for label, value in lines:
+            if value:
+                self.sheet.write_string(self.row, 0, self.text(label), self.book.style("quiet"))
+                self.sheet.write_string(self.row, 1, value, self.book.style("label"))
+                self.row += 1
+        hint = N_("Yellow cells are inputs: change them, and everything else follows. Amber figures stay as saved.")
+        self.sheet.write_string(self.row, 0, self.text(hint), self.book.style("quiet"))
+        self.row += 2
+
+    def _section(self, title: str, *heads: str) -> None:
+        self.sheet.write_string(self.row, 0, self.text(title), self.book.style("section"))
+        if self.book.shown.units and not heads:
+            self.sheet.write_string(self.row, 5, self.text(N_("In your units")), self.book.style("quiet"))
+        self.row += 1
+        for column, head in enumerate(heads):
+            self.sheet.write_string(self.row, column, self.text(head), self.book.style("head"))
+        self.row += bool(heads)
+
+    def _converted(self, unit: str, value: float | str | None) -> None:
+        """The value of a line in the reader's own unit, where that is another."""
+        if self.book.converted(self.sheet, self.row, 5, xl_rowcol_to_cell(self.row, 2), unit, value):
+            self.sheet.write_string(self.row, 6, self.book.shown.unit(unit), self.book.style("unit"))
+
+    def _line(self, label: str, symbol: str, unit: str, source: str = "") -> None:
+        self.sheet.write_string(self.row, 0, self.text(label), self.book.style("label"))
+        self.sheet.write_string(self.row, 1, symbol, self.book.style("quiet"))
+        self.sheet.write_string(self.row, 3, self.book.reader.unit(unit), self.book.style("unit"))
+        self.sheet.write_string(self.row, 4, source, self.book.style("quiet"))
+
+    def _gear(self) -> None:
+        self._section(N_("Gear"))
+        self._line(N_("Chosen gear (any candidate)"), "", "")
+        cell, designation = (self.row, 2), self.known.candidate.designation
+        self.sheet.write_string(*cell, designation, self.book.style("input"))
+        self.sheet.data_validation(*cell, *cell, {"validate": "list", "source": "=candidates"})
+        self.book.name_cell("gear", self.sheet, *cell)
+        self.row += 1
+        verdict = self.book.words[self.known.candidate.status]
+        self.book.colour(self.sheet, self.row, 2, self.row, 2)
+        self._looked_up(N_("Verdict"), 1, "verdict", verdict)
+        self._looked_up(N_("Utilisation"), 2, "share", self.known.overall())
+        self._wrong()
+        for name, rating in self.known.ratings().items():
+            self._rating(name, rating)
+        self.row += 1
+
+    def _looked_up(self, label: str, column: int, style: str, saved: float | str) -> None:
+        """A column of the list of candidates, for the chosen gear."""
+        self._line(label, "", "")
+        self.sheet.write_formula(self.row, 2, f"={self._of_candidate(column)}", self.book.style(style), saved)
+        self.row += 1
+
+    def _wrong(self) -> None:
+        """Count of the inputs that the service would refuse: while there is one, no gear is suitable."""
+        self._line(N_("Wrong inputs"), "", "")
+        self.counted = (self.row, 2)
+        self.book.name_cell(WRONG, self.sheet, *self.counted)
+        remark = f'"{self.text(MARKED)}"'
+        for condition, said in WRONG_AS_A_WHOLE.items():
+            remark = f'IF({condition},"{self.text(said)}",{remark})'
+        self.sheet.write_formula(self.row, 4, f'=IF({WRONG}>0,{remark},"")', self.book.style("wrong"), "")
+        self.row += 1
+
+    def _of_candidate(self, column: int) -> str:
+        """What the list of candidates says of the chosen gear."""
+        block = xl_range_abs(self.candidates[0], column, self.candidates[-1], column)
+        return f"INDEX('{self.text(N_('Candidates'))}'!{block},MATCH(gear,candidates,0))"
+
+    def _from_list(self, name: str) -> str:
+        """A figure or utilisation that no formula of this sheet gives, as a formula: blank where the list has none."""
+        listed = self._of_candidate(COLUMNS[name])
+        return f'=IF({listed}="","",{listed})'
+
+    def _rating(self, name: str, value: float | None) -> None:
+        field = RATINGS[name]
+        gear = self.book.export.gear(self.known.candidate)
+        source = self.book.reader.source(gear.sources.get(field, "")) if gear else ""
+        self._line(GEAR[field].name, GEAR[field].symbol, suffix_of(field) or "", source)
+        block = f"INDEX({name}_all,MATCH(gear,candidates,0))"
+        saved = "" if value is None else value
+        self.sheet.write_formula(self.row, 2, f'=IF({block}="","",{block})', self.book.style("figure"), saved)
+        self.book.name_cell(name, self.sheet, self.row, 2)
+        self._converted(suffix_of(field) or "", value)
+        self.row += 1
+
+    # --- Calculated ---------------------------------------------------------------------------------------------------
+
+    def _names(self) -> dict[str, str]:
+        return {name: name for name in (*RATINGS, *(term.name for term in GEAR_TERMS))}
+
+    def _terms(self, title: str, terms: tuple[CellTerm, ...], values: dict[str, float | str]) -> None:
+        self._section(title)
+        for term in terms:
+            named = term.named
+            self._line(named.name, self.known.symbol(term), term.unit, equation(named.equation, self.book.reader))
+            formula, look = self._written(self.known.formula(term)), "result"
+            if term.name in self.fixed:
+                formula, look = self._from_list(term.name), "fixed"
+            self.sheet.write_formula(self.row, 2, formula, self.book.style(look), values[term.name])
+            self._remark(term)
+            self.book.name_cell(term.name, self.sheet, self.row, 2)
+            self._converted(term.unit, values[term.name])
+            self.row += 1
+        self.row += 1
+
+    def _remark(self, term: CellTerm) -> None:
+        """Source of a figure, or that inputs behind it were changed; that a motor torque is a lower bound, for as long
+        as the reader states no efficiency.
+        """
+        source = equation(term.named.equation, self.book.reader)
+        bound = self.text(LOSS_FREE) if self.book.export.is_lower_bound(self.known.candidate) else ""
+        if term.name in self.fixed:
+            along = term.by_efficiency and self.book.export.selection.turns_motor
+            said = [self.text(ALONG_THE_MOTION) if along else "", bound if term.by_efficiency else source]
+            room = 4 if not term.by_efficiency or self.book.shown.measure("Nm").same else 7  # clear of another unit
+            self._while_known(room, "; ".join(filter(None, said)), term.name, xl_rowcol_to_cell(self.row, 2))
+        elif term.by_efficiency:
+            formula = f'=IF(eta="","{self.text(LOSS_FREE)}","")'
+            self.sheet.write_formula(self.row, 4, formula, self.book.style("quiet"), bound)
+
+    def _while_known(self, column: int, said: str, name: str, cell: str) -> None:
+        """What is said of a figure that stands as saved, or that it is not known for the inputs as they are now."""
+        known = f'=IF(OR({as_saved(name)},{cell}<>""),"{said}","{self.text(OUTDATED)}")'
+        self.sheet.write_formula(self.row, column, known, self.book.style("quiet"), said)
+
+    def _cycle_values(self) -> dict[str, float | str]:
+        duty, loads = self.book.export.selection.duty, self.book.export.application.loads or OutputLoad()
+        speed, life = self._series()[2:]
+        factor = bearing.life_factor(
+            average_output_speed_rpm=duty.average_output_speed_rpm,
+            required_life_L50_h=bearing.required_L50(life_h=loads.life_h, basis=loads.life_basis),
+            reference_speed_rpm=speed,
+            reference_life_h=life,
+        )
+        return {
+            "T_max": duty.maximum_torque_Nm,
+            "T_av": duty.average_torque_Nm,
+            "T_rms": self.book.export.duty.rms_torque_Nm.item(),
+            "n_out_max": duty.maximum_output_speed_rpm,
+            "n_out_av": duty.average_output_speed_rpm,
+            "k_b": factor.item(),
+        }
+
+    def _checks(self) -> None:
+        heads = (N_("Check"), N_("Relation"), N_("Demand"), N_("Limit"), N_("Utilisation"), N_("Verdict"))
+        own = (N_("Demand"), N_("Limit"), N_("Your unit")) if self.book.shown.units else ()
+        self._section(N_("Checks"), *heads, N_("As saved"), N_("Source"), *own)
+        self.book.colour(self.sheet, self.row, 5, self.row + len(CHECKS) - 1, 5)
+        for check in CHECKS:
+            self._check(check)
+        self.row += 1
+
+    def _check(self, check: Check) -> None:
+        style, saved, used = self.book.style, self.known.candidate.check(check.code), self.known.utilisation(check.code)
+        self.sheet.write_string(self.row, 0, self.book.head(self.text(check.title), check.unit), style("label"))
+        relation = relation_of(check.code, turns_motor=self.book.export.selection.turns_motor)
+        self.sheet.write_string(self.row, 1, relation, style("quiet"))
+        values = (demand_of(saved), limit_of(saved), used)
+        for column, (formula, value) in enumerate(zip(self._formulas(check), values, strict=True), 2):
+            look = style("share" if column == 4 else "result")
+            self.sheet.write_formula(self.row, column, formula, look, value)
+        self._status(check, saved)
+        self.sheet.write(self.row, 6, used, style("share"))
+        source = origin(self.book.export, check.code, self.book.reader) if saved else ""
+        if check.code in self.fixed:
+            self._while_known(7, source, check.code, xl_rowcol_to_cell(self.row, 2))
+        else:
+            self.sheet.write_string(self.row, 7, source, style("quiet"))
+        for column in (2, 3):
+            shown = self.book.converted(
+                self.sheet, self.row, column + 6, xl_rowcol_to_cell(self.row, column), check.unit, values[column - 2]
+            )
+            if shown:
+                self.sheet.write_string(self.row, 10, self.book.shown.unit(check.unit), style("unit"))
+        self.row += 1
+
+    def _formulas(self, check: Check) -> tuple[str, str, str]:
+        """Demand, limit and utilisation of a check; of one that no formula gives, the first two for the saved gear."""
+        own = CHECK_FORMULAS.get(check.code)
+        if own and check.code not in self.fixed:
+            return self._written(own.shown_demand), self._written(own.shown_limit), self._written(own.ratio)
+        saved, designation = self.known.candidate.check(check.code), self.known.candidate.designation
+        values = (json.dumps(value) for value in (demand_of(saved), limit_of(saved)))
+        still = f'AND(gear="{designation}",{as_saved(check.code)})'
+        demand, limit = (f'=IF({still},{value},"")' for value in values)
+        return demand, limit, self._from_list(check.code)
+
+    def _written(self, formula: str) -> str:
+        return written(formula, self._names(), self.book.words)
+
+    def _status(self, check: Check, saved: CheckResult | None) -> None:
+        words, used = self.book.words, xl_rowcol_to_cell(self.row, 4)
+        bound = ("u" if check.code in LOAD else "1") + "*(1+1E-12)"
+        formula = (
+            f'=IF(ISERROR({used}),"{words["not rated"]}",IF({used}="","",IF({WRONG}>0,"{words["not rated"]}",'
+            f'IF({used}="{NONE}","{words["fails"]}",'
+            f'IF(ISTEXT({used}),{used},IF({used}<={bound},"{words["passes"]}","{words["fails"]}"))))))'
+        )
+        word = words[STATUS[saved.status]] if saved else ""
+        self.sheet.write_formula(self.row, 5, formula, self.book.style("verdict"), word)
+
+    # --- Inputs -------------------------------------------------------------------------------------------------------
+
+    def _inputs(self) -> None:
+        self._section(N_("Inputs"))
+        for path in (*LOADS, *REQUIREMENTS):
+            own = path == LOAD_INERTIA and self.book.export.selection.duty.load_inertia_kgm2 is not None
+            source = self.text(OF_THE_MOTION) if own else ""
+            self._line(INPUTS[path].name, INPUTS[path].symbol, suffix_of(path) or "", source)
+            name, value = NAMES.get(path), entered(self.book.export, path)
+            shown = ", ".join(map(str, value)) if isinstance(value, tuple) else value
+            still = own or (path == EFFICIENCY and self.book.export.selection.turns_motor)
+            self.sheet.write(self.row, 2, shown, self.book.style("fixed" if still else "input" if name else "label"))
+            self._converted(suffix_of(path) or "", value if isinstance(value, float) else None)
+            if name:
+                self.book.name_cell(name, self.sheet, self.row, 2)
+            if name and not still:
+                self._refuse(path)
+            self.row += 1
+        count = "+".join([*(f"(LEN({remark})>0)" for remark in self.remarks), *WRONG_IN_CYCLE])
+        self.sheet.write_formula(*self.counted, f"=IFERROR({count},1)", self.book.style("count"), 0)
+        self.row += 1
+
+    def _refuse(self, path: str) -> None:
+        """Say beside an input what would be right, while the service would refuse what stands in it."""
+        field, cell = FIELDS[path], xl_rowcol_to_cell(self.row, 2)
+        if path == MODEL:
+            as_saved = not self.known.fixed().isdisjoint(DEMANDS)
+            field = replace(
+                field, choices=(str(entered(self.book.export, path)),) if as_saved else ("linear", "iso281")
+            )
+        wrong, said = is_wrong(field, cell, NEEDED.get(path, "")), advice(field, self.book.reader)
+        rule = validation(field, said)
+        self.book.refuse(self.sheet, self.row, 2, self.row, 2, wrong=wrong, validation=rule)
+        remark = f'=IF(IFERROR({wrong},1)>0,"{said}","")'
+        self.sheet.write_formula(self.row, REMARK, remark, self.book.style("wrong"), "")
+        self.remarks.append(xl_rowcol_to_cell(self.row, REMARK))
+
+    def _references(self) -> None:
+        self._section(N_("Figures of the series"))
+        for (name, label, unit, _), value in zip(REFERENCES, self._series(), strict=True):
+            self._line(label, "", unit)
+            self.sheet.write_number(self.row, 2, value, self.book.style("figure"))
+            self.book.name_cell(name, self.sheet, self.row, 2)
+            self.row += 1
+
+    def _series(self) -> list[float]:
+        figures = self.book.export.figures
+        if figures is None:
+            return [figure for *_, figure in REFERENCES]
+        return [figures.rated_input_speed_rpm, figures.life_at_rated_torque_h, *figures.bearing_reference]

@@ -1,0 +1,242 @@
+"""What the sheets of the workbook share, and the sheet of the duty cycle."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from xlsxwriter.utility import xl_range_abs, xl_rowcol_to_cell
+
+from hpn.application.input_fields import PHASE_FIELDS
+from hpn.files.export import Export
+from hpn.files.words import Paper, paper
+from hpn.files.workbook.formulas import NONE, cell_name
+from hpn.files.workbook.wrong import BENEATH, advice, is_wrong_in_phase, validation
+from hpn.words.quantities import INPUTS
+from hpn.words.reader import Reader
+from hpn.words.units import symbol_of
+from hpn.words.wording import N_
+
+ACCENT = "#0B5394"
+FIGURE = "[>=10000000]0.00E+00;[>=10000]#,##0.00;#,##0.00##"
+"""Format of a number that has to fit its column, which shows hashes where it does not."""
+
+STYLES: dict[str, dict[str, Any]] = {
+    "title": {"bold": True, "font_size": 16},
+    "section": {"bold": True, "font_color": ACCENT, "font_size": 12},
+    "head": {"bold": True, "font_color": "#FFFFFF", "bg_color": ACCENT, "text_wrap": True, "valign": "top"},
+    "label": {"valign": "top"},
+    "quiet": {"font_color": "#5B6875", "valign": "top"},
+    "unit": {"font_color": "#5B6875", "valign": "top", "indent": 1},
+    "wrap": {"text_wrap": True, "valign": "top"},
+    "input": {"bg_color": "#FFF8DC", "border": 1, "border_color": "#D5DBE1", "locked": False},
+    "figure": {"bg_color": "#F3F6F9"},
+    "result": {"num_format": FIGURE},
+    "shown": {"num_format": FIGURE, "font_color": "#5B6875"},
+    "count": {"num_format": "#,##0"},
+    "share": {"num_format": "0.0##%"},
+    "fixed": {"num_format": FIGURE, "italic": True, "font_color": "#8A6100"},
+    "wrong": {"font_color": "#B3261E", "valign": "top"},
+    "verdict": {"bold": True, "indent": 1},
+}
+"""Yellow cells are inputs; amber italics are values that a formula can't give."""
+
+PASSED, FAILED, OPEN = (
+    {"font_color": "#1B7F3B", "bg_color": "#E6F4EA"},
+    {"font_color": "#B3261E", "bg_color": "#FCE8E6"},
+    {"font_color": "#8A6100", "bg_color": "#FFF4D6"},
+)
+COLOURS: Mapping[str, Mapping[str, str]] = {
+    "passes": PASSED,
+    "suitable": PASSED,
+    "fails": FAILED,
+    "unsuitable": FAILED,
+    "not rated": OPEN,
+    "unrated": OPEN,
+}
+"""Colours of verdicts, which follow the formulas."""
+
+PAPERS: Mapping[Paper, int] = {"a4": 9, "us-letter": 1}
+"""Numbers of the sizes of paper in the file format."""
+
+LONGEST_HEADER_TEXT = 100
+LONGEST_FOOTER_LINK = 100
+
+SPARE_PHASES = 20
+
+MOST_BENEATH = 10_000
+"""Rows beneath the last spare one in which no phase may stand."""
+
+PHASE = tuple(path.removeprefix("phase.") for path in INPUTS if path.startswith("phase."))
+VARYING = ("peak_torque_Nm", "peak_speed_rpm", "rms_torque_Nm")
+"""Columns that are folded away unless a phase has one of them."""
+
+FOLDED = {"level": 1, "hidden": True}
+USED = {"radial_used": "radial_N", "axial_used": "axial_N"}
+"""Columns of a phase: what is given, and the loads that it has after all, by name and field."""
+
+
+@dataclass
+class Book:
+    """A workbook in the making. Its formulas compute in the units of the wire, as `reader` reads them; what `shown`
+    reads in another unit stands beside, converted by formula.
+    """
+
+    file: Any
+    export: Export
+    reader: Reader
+    shown: Reader
+    words: Mapping[str, str]
+    styles: dict[str, Any] = field(default_factory=dict)
+
+    def style(self, name: str) -> Any:
+        """One of STYLES."""
+        if name not in self.styles:
+            self.styles[name] = self.file.add_format(STYLES[name])
+        return self.styles[name]
+
+    def head(self, text: str, unit: str) -> str:
+        """Head of a column: a text or symbol, with a unit if there is one."""
+        return f"{text} [{self.reader.unit(unit)}]" if unit else text
+
+    def converted(self, sheet: Any, row: int, column: int, source: str, unit: str, value: float | str | None) -> bool:
+        """Write what a cell says in the unit of whoever reads it; nothing, and False, where that is the wire's."""
+        measure = self.shown.measure(unit)
+        if measure.same:
+            return False
+        formula = f'=IF(ISNUMBER({source}),{source}*{float(measure.factor)!r}+{float(measure.offset)!r},"")'
+        saved = measure.shown(value) if isinstance(value, int | float) else ""
+        sheet.write_formula(row, column, formula, self.style("shown"), saved)
+        return True
+
+    def colour(self, sheet: Any, *block: int) -> None:
+        """Colour the verdicts of a block of cells, by the words that stand in them now."""
+        for word, look in COLOURS.items():
+            rule = {"type": "cell", "criteria": "==", "value": f'"{self.words[word]}"'}
+            sheet.conditional_format(*block, rule | {"format": self.file.add_format(look)})
+
+    def colour_failures(self, sheet: Any, *block: int, bound: str) -> None:
+        """Colour the utilisations of a block that are beyond a bound, fail without a number or are an error."""
+        first = xl_rowcol_to_cell(*block[:2])
+        failed = f'=IF(ISERROR({first}),TRUE,OR(AND(ISNUMBER({first}),{first}>{bound}*(1+1E-12)),{first}="{NONE}"))'
+        look = self.file.add_format(FAILED)
+        sheet.conditional_format(*block, {"type": "formula", "criteria": failed, "format": look})
+
+    def refuse(self, sheet: Any, *block: int, wrong: str, validation: Mapping[str, Any]) -> None:
+        """Colour those cells of a block that are wrong by a formula on the first, and refuse what is typed wrong."""
+        rule = {"type": "formula", "criteria": f"=IFERROR({wrong},1)>0", "format": self.file.add_format(FAILED)}
+        sheet.conditional_format(*block, rule)
+        sheet.data_validation(*block, validation)
+
+    def page(self, sheet: Any, *, across: int = 1, landscape: bool = True) -> None:
+        """Set a sheet on paper: everything written on so many pages across, its heads on each."""
+        if landscape:
+            sheet.set_landscape()
+        sheet.set_paper(PAPERS[paper(self.shown)])
+        sheet.set_margins(left=0.5, right=0.4, top=0.7, bottom=0.7)
+        sheet.print_area(0, 0, sheet.dim_rowmax, sheet.dim_colmax)
+        sheet.fit_to_pages(across, 0)
+        export, text = self.export, self.reader.text
+        title = " ".join(f"{export.heading.title} {export.heading.reference}".split())[:LONGEST_HEADER_TEXT]
+        saved = self.reader.date(export.created) if export.created else ""
+        link = export.link if len(export.link) <= LONGEST_FOOTER_LINK else ""
+        numbers = text(N_("Page {page} of {pages}")).format(page="&P", pages="&N")
+        sheet.set_header(f"&L{_plain(title)}&R{_plain(saved)}")
+        sheet.set_footer(f"&LHPN Select {_plain(link)}&R{numbers}")
+
+    def name(self, name: str, sheet: Any, reference: str) -> None:
+        """Define a name for a cell or a block of a sheet."""
+        title = sheet.get_name().replace("'", "''")
+        self.file.define_name(name, f"='{title}'!{reference}")
+
+    def name_cell(self, name: str, sheet: Any, row: int, column: int) -> None:
+        """Define a name for one cell."""
+        self.name(name, sheet, xl_rowcol_to_cell(row, column, row_abs=True, col_abs=True))
+
+
+def _plain(text: str) -> str:
+    """A text of a header, in which & begins a command."""
+    return text.replace("&", "&&")
+
+
+class CycleSheet:
+    """Phases as inputs with room for more, and the loads that each phase has after all."""
+
+    def __init__(self, book: Book, sheet: Any) -> None:
+        self.book, self.sheet = book, sheet
+        self.phases = book.export.application.duty_cycle.load_phases
+        self.last = len(self.phases) + SPARE_PHASES
+        self.converted = [name for name in PHASE if not book.shown.measure(symbol_of(name)).same]
+        self.loads = {name: getattr(book.export.duty.phases, name)[0, 0] for name in USED.values()}
+
+    def write(self) -> None:
+        """Write the sheet and name its columns."""
+        heads = [(N_("Phase"), ""), *((INPUTS[f"phase.{name}"].name, symbol_of(name)) for name in PHASE)]
+        heads += [(N_("Radial load that counts"), "N"), (N_("Axial load that counts"), "N")]
+        for column, (head, unit) in enumerate(heads):
+            self.sheet.write_string(
+                0, column, self.book.head(self.book.reader.text(head), unit), self.book.style("head")
+            )
+        self.sheet.set_row(0, 32)
+        self.sheet.set_column(0, len(heads) - 1, 15)
+        self.sheet.freeze_panes(1, 0)
+        self._heads_converted(len(heads))
+        for column, name in enumerate((*PHASE, *USED), 1):
+            self.book.name(name, self.sheet, xl_range_abs(1, column, self.last, column))
+        for row in range(1, self.last + 1):
+            self._phase(row)
+        self._refuse()
+        if not self.varies:
+            self._fold(len(heads))
+        self.sheet.repeat_rows(0)
+        self.book.page(self.sheet, landscape=self.varies)
+
+    @property
+    def varies(self) -> bool:
+        """Whether a phase has a peak or an RMS of its own."""
+        return any(getattr(phase, name) is not None for phase in self.phases for name in VARYING)
+
+    def _fold(self, start: int) -> None:
+        """Fold the columns of phases that vary; a reader opens them by the mark above the column behind."""
+        first, last = (1 + PHASE.index(VARYING[k]) for k in (0, -1))
+        self.sheet.set_column(first, last, 15, None, FOLDED)
+        self.sheet.set_column(last + 1, last + 1, 15, None, {"collapsed": True})
+        for column, name in enumerate(self.converted, start):
+            if name in VARYING:
+                self.sheet.set_column(column, column, 15, None, {"hidden": True})
+
+    def _heads_converted(self, start: int) -> None:
+        """Heads of the columns in other units, behind all others."""
+        for column, name in enumerate(self.converted, start):
+            symbol = self.book.shown.unit(symbol_of(name))
+            head = f"{self.book.reader.text(INPUTS[f'phase.{name}'].name)} [{symbol}]"
+            self.sheet.write_string(0, column, head, self.book.style("head"))
+            self.sheet.set_column(column, column, 15)
+
+    def _refuse(self) -> None:
+        """Mark what the service would refuse; name the rows beneath the last, in which nothing counts."""
+        cells = {name: xl_rowcol_to_cell(1, column, col_abs=True) for column, name in enumerate(PHASE, 1)}
+        for column, name in enumerate(PHASE, 1):
+            field, reader = PHASE_FIELDS[name], self.book.reader
+            rule = validation(field, advice(field, reader, name))
+            wrong = is_wrong_in_phase(name, cells)
+            self.book.refuse(self.sheet, 1, column, self.last, column, wrong=wrong, validation=rule)
+        beneath = (self.last + 1, 1, self.last + MOST_BENEATH, len(PHASE))
+        self.book.name(BENEATH, self.sheet, xl_range_abs(*beneath))
+
+    def _phase(self, row: int) -> None:
+        phase = self.phases[row - 1] if row <= len(self.phases) else None
+        self.sheet.write_number(row, 0, row, self.book.style("quiet"))
+        for column, name in enumerate(PHASE, 1):
+            value = getattr(phase, name, None)
+            if value is None:
+                self.sheet.write_blank(row, column, None, self.book.style("input"))
+            else:
+                self.sheet.write_number(row, column, value, self.book.style("input"))
+        for column, name in enumerate(self.converted, 1 + len(PHASE) + len(USED)):
+            source = xl_rowcol_to_cell(row, 1 + PHASE.index(name))
+            self.book.converted(self.sheet, row, column, source, symbol_of(name), getattr(phase, name, None))
+        duration = xl_rowcol_to_cell(row, 1 + PHASE.index("duration_s"))
+        for column, (name, loads) in enumerate(self.loads.items(), 1 + len(PHASE)):
+            own, whole = xl_rowcol_to_cell(row, 1 + PHASE.index(name)), cell_name(INPUTS[f"output_load.{name}"].symbol)
+            formula = f'=IF({duration}="",0,ABS(IF({own}="",IF({whole}="",0,{whole}),{own})))'
+            self.sheet.write_formula(row, column, formula, None, loads[row - 1].item() if phase else 0.0)

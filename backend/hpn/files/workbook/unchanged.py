@@ -1,0 +1,65 @@
+"""The hidden sheet that says of each figure that stands as saved whether the inputs behind it are still those saved.
+
+No formula of the workbook gives digitised bearing loads, motor torques with the motor's own inertia or by an efficiency
+curve, and what takes figures of a catalogue that is not at hand.
+"""
+
+import re
+from collections.abc import Iterable
+from typing import Any
+
+from xlsxwriter.utility import xl_range_abs
+
+from hpn.files.inputs import ENTERED, entered
+from hpn.files.workbook.formulas import CHECK_FORMULAS, CYCLE_TERMS, GEAR_TERMS, MOTOR_TORQUES
+from hpn.files.workbook.sheets import PHASE, SPARE_PHASES, USED, Book
+
+_FORMULAS = {term.name: term.formula for term in (*CYCLE_TERMS, *GEAR_TERMS)} | {
+    code: check.ratio for code, check in CHECK_FORMULAS.items()
+}
+_BY_CURVE = {"speed_rpm", "peak_speed_rpm"}
+"""What motor torques by an efficiency curve take besides what stands in their formula."""
+
+_ALONG_MOTION = {"J_m", "J_L"}
+"""What they take along a motion: the motor's own inertia, and that of the load."""
+
+
+def as_saved(name: str) -> str:
+    """Name of the cell that says whether the inputs behind a figure or check are those that were saved."""
+    return f"{name}_as_saved"
+
+
+def inputs_behind(name: str) -> set[str]:
+    """Inputs that a figure or check takes, through all formulas behind it, by their names in these."""
+    if name in PHASE or name in USED or name in ENTERED:
+        return {name}
+    return set().union(*map(inputs_behind, re.findall(r"\w+", _FORMULAS.get(name, ""))))
+
+
+def write_unchanged(book: Book, sheet: Any, fixed: Iterable[str]) -> None:
+    """Write the sheet: the inputs behind `fixed` as they were saved, and for each of these the cell that compares."""
+    sheet.hide()
+    behind = {name: inputs_behind(name) for name in fixed}
+    along = book.export.application.duty_cycle.motion is not None
+    turned = _BY_CURVE.union(*map(inputs_behind, MOTOR_TORQUES), _ALONG_MOTION if along else ())
+    behind |= dict.fromkeys(behind.keys() & set(MOTOR_TORQUES), turned)
+    for row, name in enumerate(sorted(behind)):
+        equal = ",".join(f'SUMPRODUCT(--({cell}&""<>{cell}_saved&""))=0' for cell in sorted(behind[name]))
+        sheet.write_formula(row, 0, f"=AND({equal})", None, True)
+        book.name_cell(as_saved(name), sheet, row, 0)
+    for column, name in enumerate(sorted(set().union(*behind.values())), 1):
+        values = _saved(book, name)
+        for row, value in enumerate(values):
+            sheet.write(row, column, value)
+        book.name(f"{name}_saved", sheet, xl_range_abs(0, column, len(values) - 1, column))
+
+
+def _saved(book: Book, name: str) -> list[Any]:
+    """Values of an input: one, or one of each row for a phase, filled or spare."""
+    export = book.export
+    if name in ENTERED:
+        return [entered(export, ENTERED[name])]
+    if name in USED:
+        loads: list[Any] = getattr(export.duty.phases, USED[name])[0, 0].tolist()
+        return [*loads, *[0.0] * SPARE_PHASES]
+    return [*(getattr(phase, name) for phase in export.application.duty_cycle.load_phases), *[None] * SPARE_PHASES]

@@ -1,0 +1,1 @@
+"""Physics: the printed formulas and the mechanics of mechanisms, on arrays."""

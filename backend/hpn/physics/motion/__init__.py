@@ -1,0 +1,16 @@
+"""Motion of a mechanism: what a person says of mechanism and moves, and the load phases that come out."""
+
+from hpn.physics.motion.course import Course
+from hpn.physics.motion.motor import motor_torques, square_torque
+from hpn.physics.motion.trace import Instant, Trace, motor_trace, peak_instant, trace_of
+
+__all__ = [
+    "Course",
+    "Instant",
+    "Trace",
+    "motor_torques",
+    "motor_trace",
+    "peak_instant",
+    "square_torque",
+    "trace_of",
+]

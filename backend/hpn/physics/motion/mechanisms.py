@@ -1,0 +1,194 @@
+"""Mechanisms between gear and load, and what they come to as a load on a shaft that turns."""
+
+import math
+from abc import abstractmethod
+from dataclasses import dataclass
+from typing import Annotated, Literal, Self
+
+from pydantic import Field, model_validator
+
+from hpn.physics.motion.refusals import refusal
+from hpn.words.fields import Model, Number, Positive, Share, TorqueMagnitude, refused
+
+GRAVITY = 9.80665
+"""Standard acceleration of gravity in m/s²."""
+
+RPM = 2 * math.pi / 60
+"""One rpm in rad/s."""
+
+
+def cosine(angle_deg: float) -> float:
+    """Cosine of an angle in degrees; exact at multiples of 90."""
+    reduced = math.fmod(abs(angle_deg), 360.0)
+    if reduced in (90.0, 270.0):
+        return 0.0
+    return math.cos(math.radians(reduced))
+
+
+def sine(angle_deg: float) -> float:
+    """Sine of an angle in degrees; exact at multiples of 90."""
+    reduced = math.fmod(angle_deg, 360.0)
+    if reduced in (0.0, 180.0, -180.0):
+        return 0.0
+    return math.sin(math.radians(reduced))
+
+
+@dataclass(frozen=True, slots=True)
+class ShaftLoad:
+    """Load on the mechanism's shaft: T_load = J α + T_f sgn ω + b ω + G cos θ + T_0, in Nm, rad and s.
+
+    `way_per_rad` is how many degrees or mm of way there are to a radian, `external_Nm` the torque of an external torque
+    of 1 Nm or force of 1 N. At the gear T = T_load / (η ratio) where the load is driven, T_load η / ratio where it
+    drives.
+    """
+
+    inertia_kgm2: float
+    friction_Nm: float
+    viscous_Nms: float
+    gravity_Nm: float
+    constant_Nm: float
+    way_per_rad: float
+    external_Nm: float
+    efficiency: float
+    ratio: float
+
+
+class Mechanism(Model):
+    """What every mechanism has."""
+
+    efficiency: Share = Field(1.0, description="Efficiency of the mechanism.", examples=[0.9])
+    ratio: Positive = Field(
+        1.0,
+        description="Stage between gear and mechanism: turns of the gear per turn of the mechanism. Its inertia is not "
+        "counted.",
+        examples=[1.0],
+    )
+
+    @property
+    @abstractmethod
+    def load(self) -> ShaftLoad:
+        """The load on its shaft."""
+
+
+class Rotary(Mechanism):
+    """A mass that turns about the mechanism's shaft; T_load = J α + T_f sgn ω + b n + m g r cos θ + T_ext."""
+
+    type: Literal["rotary"] = Field(description="Kind of mechanism.", examples=["rotary"])
+    inertia_kgm2: Positive = Field(
+        description="Moment of inertia J about the shaft; it includes m r² of the gravity mass.", examples=[0.8]
+    )
+    gravity_mass_kg: Positive | None = Field(
+        None, description="Mass m whose centre of gravity lies off the shaft.", examples=[12.0]
+    )
+    gravity_radius_mm: Positive | None = Field(
+        None, description="Distance r of its centre of gravity from the shaft.", examples=[250.0]
+    )
+    friction_torque_Nm: TorqueMagnitude = Field(
+        0.0, description="Friction torque T_f, against the motion.", examples=[1.5]
+    )
+    viscous_friction_Nm_per_rpm: Annotated[Number, Field(ge=0, le=1e6)] = Field(
+        0.0, description="Viscous friction b per speed of the mechanism.", examples=[0.01]
+    )
+
+    @model_validator(mode="after")
+    def _gravity_is_whole(self) -> Self:
+        given = [name for name in ("gravity_mass_kg", "gravity_radius_mm") if getattr(self, name) is not None]
+        if len(given) == 1:
+            other = "gravity_radius_mm" if given == ["gravity_mass_kg"] else "gravity_mass_kg"
+            raise refused(self, ((given[0],), refusal("gravity_needs", field=other)))
+        return self
+
+    @property
+    def load(self) -> ShaftLoad:
+        """The load on its shaft."""
+        mass, radius = self.gravity_mass_kg or 0.0, (self.gravity_radius_mm or 0.0) / 1000
+        return ShaftLoad(
+            inertia_kgm2=self.inertia_kgm2,
+            friction_Nm=self.friction_torque_Nm,
+            viscous_Nms=self.viscous_friction_Nm_per_rpm / RPM,
+            gravity_Nm=mass * GRAVITY * radius,
+            constant_Nm=0.0,
+            way_per_rad=math.degrees(1.0),
+            external_Nm=1.0,
+            efficiency=self.efficiency,
+            ratio=self.ratio,
+        )
+
+
+class Linear(Mechanism):
+    """A mass that moves along a line; T_load = (m a + m g (sin β + μ cos β sgn v) + F_ext) ρ + J a / ρ."""
+
+    mass_kg: Positive = Field(description="Moved mass m.", examples=[80.0])
+    incline_deg: Annotated[Number, Field(ge=-90, le=90)] = Field(
+        0.0, description="Incline β; positive motion raises the mass where it is positive.", examples=[30.0]
+    )
+    friction_coefficient: Annotated[Number, Field(ge=0, le=1e3)] = Field(
+        0.0, description="Coefficient of friction μ of the guide.", examples=[0.05]
+    )
+    inertia_kgm2: Annotated[Number, Field(ge=0, le=1e12)] = Field(
+        0.0, description="Moment of inertia J of everything that turns with pinion, pulley or screw.", examples=[0.002]
+    )
+
+    @property
+    @abstractmethod
+    def radius_mm(self) -> float:
+        """Way per radian ρ."""
+
+    @property
+    def load(self) -> ShaftLoad:
+        """The load on its shaft."""
+        radius = self.radius_mm / 1000
+        weight_Nm = self.mass_kg * GRAVITY * radius
+        return ShaftLoad(
+            inertia_kgm2=self.mass_kg * radius**2 + self.inertia_kgm2,
+            friction_Nm=weight_Nm * self.friction_coefficient * cosine(self.incline_deg),
+            viscous_Nms=0.0,
+            gravity_Nm=0.0,
+            constant_Nm=weight_Nm * sine(self.incline_deg),
+            way_per_rad=self.radius_mm,
+            external_Nm=radius,
+            efficiency=self.efficiency,
+            ratio=self.ratio,
+        )
+
+
+class _Wheel(Linear):
+    diameter_mm: Positive = Field(description="Pitch diameter of the pinion or pulley.", examples=[60.0])
+
+    @property
+    def radius_mm(self) -> float:
+        """Half the diameter."""
+        return self.diameter_mm / 2
+
+
+class RackAndPinion(_Wheel):
+    """A pinion on a rack."""
+
+    type: Literal["rack_and_pinion"] = Field(description="Kind of mechanism.", examples=["rack_and_pinion"])
+
+
+class Belt(_Wheel):
+    """A belt over a pulley."""
+
+    type: Literal["belt"] = Field(description="Kind of mechanism.", examples=["belt"])
+
+
+class BallScrew(Linear):
+    """A ball screw."""
+
+    type: Literal["ball_screw"] = Field(description="Kind of mechanism.", examples=["ball_screw"])
+    lead_mm: Positive = Field(description="Lead of the screw: way per turn.", examples=[10.0])
+
+    @property
+    def radius_mm(self) -> float:
+        """Lead over 2 π."""
+        return self.lead_mm / (2 * math.pi)
+
+
+LinearMechanism = RackAndPinion | Belt | BallScrew
+TYPES: tuple[str, ...] = ("rotary", "rack_and_pinion", "belt", "ball_screw")
+CLASSES: dict[str, type[RackAndPinion] | type[Belt] | type[BallScrew]] = {
+    "rack_and_pinion": RackAndPinion,
+    "belt": Belt,
+    "ball_screw": BallScrew,
+}

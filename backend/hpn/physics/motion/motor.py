@@ -1,0 +1,115 @@
+"""Torque at the motor along a motion, its own inertia included: T / (i η) or T η / i, plus J_m i α."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from hpn.physics.equations import FloatArray
+from hpn.physics.motion.course import Course
+from hpn.physics.motion.torque import Torque, monotone
+
+LOOKED_AT_ONCE = 10_000
+"""Pieces that are cut together, those with the largest torque first."""
+
+PIECES_AT_ONCE = 200_000
+"""Pieces times gears, or motors, that are looked at together."""
+
+
+def motor_torques(
+    course: Course,
+    *,
+    ratio: FloatArray,
+    efficiency_at_peak: FloatArray,
+    efficiency_at_rms: FloatArray,
+    motor_inertia_kgm2: float | FloatArray,
+    pause_s: float,
+) -> tuple[FloatArray, FloatArray]:
+    """Peak and RMS torque in Nm of the motor over the cycle, on gears or of motors, shape (gears,) each.
+
+    `ratio` and `motor_inertia_kgm2` broadcast to (gears,), the efficiencies to (gears, phases). At least one gear.
+    """
+    i, J = np.broadcast_arrays(ratio, motor_inertia_kgm2)
+    shape = len(i), len(course.move)
+    at_peak, at_rms = (np.broadcast_to(eta, shape) for eta in (efficiency_at_peak, efficiency_at_rms))
+    step = max(1, PIECES_AT_ONCE // len(course.pieces))
+    some = [slice(k, k + step) for k in range(0, len(i), step)]
+    peaks = [peak_torque(course, ratio=i[s], efficiency=at_peak[s], motor_inertia_kgm2=J[s]) for s in some]
+    rms = [rms_torque(course, ratio=i[s], efficiency=at_rms[s], motor_inertia_kgm2=J[s], pause_s=pause_s) for s in some]
+    return np.concatenate(peaks), np.concatenate(rms)
+
+
+def rms_torque(
+    course: Course, *, ratio: FloatArray, efficiency: FloatArray, motor_inertia_kgm2: float | FloatArray, pause_s: float
+) -> FloatArray:
+    """RMS torque in Nm of the motor over the cycle, its pause included, on gears, shape (gears,).
+
+    `efficiency` broadcasts to (gears, phases), `motor_inertia_kgm2` to (gears,). In a phase the motor's torque is
+    a T + b α with an a and b of its own.
+    """
+    squares = square_torque(course, ratio=ratio, efficiency=efficiency, motor_inertia_kgm2=motor_inertia_kgm2)
+    rms: FloatArray = np.sqrt(np.maximum(squares.sum(axis=1), 0.0) / (course.duration_s.sum() + pause_s))
+    return rms
+
+
+def square_torque(
+    course: Course, *, ratio: FloatArray, efficiency: FloatArray, motor_inertia_kgm2: float | FloatArray
+) -> FloatArray:
+    """Integral of the square of the motor's torque over each phase in Nm² s, shape (gears, phases)."""
+    a, b = share_of_torque(course, ratio, efficiency), (motor_inertia_kgm2 * ratio)[:, None]
+    squares: FloatArray = (
+        a**2 * course.square_torque + 2 * a * b * course.torque_acceleration + b**2 * course.square_acceleration
+    )
+    return squares
+
+
+def peak_torque(
+    course: Course, *, ratio: FloatArray, efficiency: FloatArray, motor_inertia_kgm2: float | FloatArray
+) -> FloatArray:
+    """Largest torque in Nm of the motor on gears, shape (gears,).
+
+    `efficiency` broadcasts to (gears, phases), `motor_inertia_kgm2` to (gears,).
+
+    The ends of the pieces give it, unless it is larger in between: by no more than h² / 8 times the largest second
+    derivative. The pieces where that matters are cut at the extremes of the motor's own torque.
+    """
+    p, load = course.pieces, course.load
+    a = share_of_torque(course, ratio, efficiency)[:, course.phase] * course.factor
+    b = (motor_inertia_kgm2 * ratio * load.ratio)[:, None]
+    torque = Torque(load.viscous_Nms, load.gravity_Nm)
+    larger = np.maximum(*(np.abs(a * torque.at(p, t) + b * p.acceleration_at(t)) for t in (p.start_s, p.end_s)))
+    peak: FloatArray = larger.max(axis=1)
+
+    most = larger + _bow(course, a, b)
+    rows, places = np.nonzero(most > peak[:, None])
+    order = np.argsort(-most[rows, places])
+    for part in np.array_split(order, 1 + len(order) // LOOKED_AT_ONCE):
+        row, place = (which[part] for which in (rows, places))
+        open_ = most[row, place] > peak[row]  # what came before may have settled it
+        row, place = row[open_], place[open_]
+        own, some = a[row, place], p.at(place)
+        with_motor = some.inertia_kgm2 + b[row, 0] / own
+        some = monotone(torque, replace(some, inertia_kgm2=with_motor, move=np.arange(len(row))))
+        for t in (some.start_s, some.end_s):
+            np.maximum.at(peak, row[some.move], np.abs(torque.at(some, t)) * own[some.move])
+    return peak
+
+
+def share_of_torque(course: Course, ratio: FloatArray, efficiency: FloatArray) -> FloatArray:
+    """Motor's torque over the gear's output torque, shape (gears, phases): the gear loses in the sense of the power."""
+    drives = course.torque_Nm * course.speed_rpm >= 0
+    share: FloatArray = np.where(drives, 1 / efficiency, efficiency) / ratio[:, None]
+    return share
+
+
+def _bow(course: Course, a: FloatArray, b: FloatArray) -> FloatArray:
+    """How far a T + b α may rise above the line between the ends of a piece, at most; shape (gears, pieces)."""
+    p, load = course.pieces, course.load
+    ends = (p.start_s, p.end_s)
+    speed, acceleration, jerk = (
+        np.maximum(*(np.abs(function(t)) for t in ends)) for function in (p.speed_at, p.acceleration_at, p.jerk_at)
+    )
+    snap = np.abs(p.swing) * p.frequency**2
+    jerk = np.maximum(jerk, np.abs(p.swing) * p.frequency)
+    bend = load.viscous_Nms * jerk + load.gravity_Nm * (speed**2 + acceleration)
+    bow: FloatArray = (a * (bend + p.inertia_kgm2 * snap) + b * snap) * (p.end_s - p.start_s) ** 2 / 8
+    return bow

@@ -1,0 +1,35 @@
+"""Why a motion or a body is refused: texts by code, with the bound that would do."""
+
+from collections.abc import Mapping
+
+from pydantic_core import PydanticCustomError
+
+from hpn.words.wording import N_
+
+REFUSALS: Mapping[str, str] = {
+    "way_zero": N_("must not be 0: what stands still is a dwell"),
+    "way_vanishing": N_("must be at least 1e-12 in magnitude"),
+    "move_needs": N_("a move with the profile {profile} needs {field}"),
+    "move_has_no": N_("a move with the profile {profile} has no {field}: leave it out"),
+    "move_takes_two": N_("a move with the profile {profile} takes two of {fields}, or time_s alone; given: {given}"),
+    "move_takes_one": N_("a move with the profile {profile} takes one of {fields}; given: {given}"),
+    "move_too_slow": N_("must be above {bound}, the way over the time; from {triangle} on the move is a triangle"),
+    "move_too_gentle": N_("must be at least {bound} to cover the way in this time"),
+    "gravity_needs": N_("gravity needs {field} as well"),
+    "no_move": N_("no move moves: give at least one a profile other than dwell"),
+    "motion_torque": N_("the torque at the gear reaches {found} in this move; it may be {bound} at most"),
+    "motion_speed": N_("the speed of the gear reaches {found} in this move; it may be {bound} at most"),
+    "motion_time": N_("this move takes {found}; a phase may take {bound} at most"),
+    "motion_phases": N_("the moves come to {found} phases; a cycle may have {bound} at most"),
+    "body_needs": N_("this shape needs {field}"),
+    "body_has_no": N_("this shape has no {field}: leave it out"),
+    "body_mass": N_("give either the mass or the density"),
+    "body_bore": N_("must be below the outer diameter"),
+    "motion_turns": N_("with gravity the angles of all moves may add up to {bound} at most; they add up to {found}"),
+}
+"""English msgids; the values are texts."""
+
+
+def refusal(code: str, **values: str) -> PydanticCustomError:
+    """Refusal of a code, for a validator to raise."""
+    return PydanticCustomError(code, REFUSALS[code], values)

@@ -1,1 +1,0 @@
-"""What leaves the service as a file: PDF report, workbook with live formulas, Asset Administration Shell."""

@@ -1,0 +1,168 @@
+"""Headings of a table in several languages: which quantity a column holds, and in which unit."""
+
+import re
+from dataclasses import dataclass
+from functools import lru_cache
+
+from hpn.tables.cells import is_blank, tidy
+from hpn.words import units
+
+QUANTITIES = {
+    **{"T": "torque", "n": "speed", "t": "time"},
+    **{"FRi": "force", "FAi": "force"},
+    **{"Tpk": "torque", "npk": "speed", "Trms": "torque"},
+}
+"""Link symbols of the columns of the duty table -> what they measure."""
+
+INDEX, SUM, UNIT = "index", "sum", "unit"
+LONGEST = 80
+
+_EXACT = {"T": "T", "n": "n", "t": "t", "ω": "n", "Md": "T", "Δt": "t", "dt": "t", "FR": "FRi", "FA": "FAi"}
+_MEASURED = {"M": "T", "M2": "T", "T2": "T", "τ": "T", "n2": "n", "Velocity": "n", "velocity": "n"}
+"""Names that mean a quantity only together with a unit of it."""
+
+_SYMBOLS = {**_EXACT, **_MEASURED, "Fr": "FRi", "Fa": "FAi", "t2": "t", "ω2": "n"}
+"""Symbols that may stand behind a name, as in `Drehmoment T2 [Nm]`; those of the motor’s side are none."""
+
+_WORDS = {
+    "T": "torque; drehmoment; moment; lastmoment; abtriebsmoment; abtriebsdrehmoment; output torque; load torque; "
+    "t out; torque out; couple; coppia; momento; momento torcente; par; vridmoment; koppel",
+    "n": "speed; drehzahl; abtriebsdrehzahl; output speed; rotational speed; winkelgeschwindigkeit; angular velocity; "
+    "angular speed; omega; n out; vitesse; vitesse de rotation; velocità; velocità di rotazione; velocidad; "
+    "velocidad de giro; varvtal; toerental",
+    "t": "duration; dauer; zeitdauer; phasendauer; time; zeit; durée; temps; durata; tempo; duración; tiempo; tid; "
+    "varaktighet; tijd; duur; delta t; zeitpunkt; instant; timestamp; endzeit; startzeit; end time; start time; ende; "
+    "end; start; beginn; bis; von; until; from",
+    "FRi": "radial; radial load; radial force; radialkraft; radiallast; fr; fri; f r; charge radiale; force radiale; "
+    "carico radiale; carga radial; fuerza radial; radiallast",
+    "FAi": "axial; axial load; axial force; axialkraft; axiallast; fa; fai; f a; charge axiale; force axiale; "
+    "carico assiale; carga axial; fuerza axial",
+    "Tpk": "peak torque; maximum torque; max torque; torque peak; torque max; tpk; t pk; t max; tmax; m max; mmax; "
+    "spitzenmoment; spitzendrehmoment; maximalmoment; maximaldrehmoment; maximales moment; maximales drehmoment; "
+    "größtes moment; größtes drehmoment; max drehmoment; max moment",
+    "npk": "peak speed; maximum speed; max speed; speed peak; speed max; npk; n pk; n max; nmax; "
+    "spitzendrehzahl; maximaldrehzahl; maximale drehzahl; größte drehzahl; höchste drehzahl; max drehzahl",
+    "Trms": "rms torque; torque rms; effective torque; trms; t rms; t eff; teff; m eff; meff; "
+    "effektivmoment; effektivdrehmoment; effektives moment; effektives drehmoment",
+    INDEX: "nr; no; #; №; n°; nº; pos; index; idx; id; lfd nr; lfd-nr; lfdnr; nummer; number; num; phase; phase nr; "
+    "phase no; phasen-nr; phasennr; phasennummer; step; schritt; segment; abschnitt; row; zeile; étape; fase; steg; "
+    "i; k; line; item; point; punkt",
+}
+_NAMES = {word.strip(): kind for kind, words in _WORDS.items() for word in words.split(";")}
+DURATIONS = {"duration", "dauer", "zeitdauer", "phasendauer", "durée", "durata", "duración", "varaktighet", "duur"} | {
+    *("delta t", "δt", "dt")
+}
+"""Names that mean how long something lasts, and never a point in time."""
+INSTANTS = {
+    "zeitpunkt",
+    "instant",
+    "timestamp",
+    "endzeit",
+    "startzeit",
+    "end time",
+    "start time",
+    "ende",
+    "end",
+    "start",
+} | {*("beginn", "bis", "von", "until", "from")}
+"""Names that mean a point in time, and never how long something lasts."""
+
+ANGULAR = {"ω", "omega", "winkelgeschwindigkeit", "angular velocity", "angular speed"}
+"""Names of a speed that is as likely in rad/s as in rpm."""
+
+_SUMS = re.compile(
+    r"(?:(?:summe|sum|total|gesamt|insgesamt|kumuliert\w*|kumulativ\w*|kum|cumul\w*|cum|somme|somma|suma|totale|summa)\b"
+    r"|[σ∑]) *(?P<rest>.*)"
+)
+_TOTALS = re.compile(
+    r"[σ∑ø].*|.*\b(?:subtotal|zwischensumme|gesamtzeit|zykluszeit|cycle time|overall|ergebnis|"
+    r"mittel|mittelwert\w*|mittlere\w*|average|mean|avg|durchschnitt\w*|moyenne|media|medelvärde|"
+    r"max|maximum|maximal\w*|(?<![0-9] )min|minimum|minimal\w*|rms|effektivwert\w*|std|standardabweichung)\b.*"
+)
+_BRACKETS = re.compile(r"(.*?)\s*[\[(<{]\s*(.*?)\s*[\])>}]")
+_BETWEEN = re.compile(r"\s+in\s+|\s*/\s*|\s*,\s*|[\s_]+")
+
+
+@dataclass(frozen=True, slots=True)
+class Heading:
+    """What a heading says: the quantity, an index, a sum, a unit alone, or nothing that is known (`kind` blank)."""
+
+    kind: str
+    unit: str = ""
+    lasting: bool = False
+    angular: bool = False
+    instant: bool = False
+
+
+@lru_cache(maxsize=2000)
+def heading_of(cell: str) -> Heading:
+    """What a cell says as a heading."""
+    text = " ".join(tidy(cell).split()).rstrip(":").strip()
+    if is_blank(text.strip("[]()")):
+        return Heading(UNIT)
+    if len(text) > LONGEST:
+        return Heading("")
+    if not _kind(text, "") and (unit := _unit_alone(text)):
+        return Heading(UNIT, unit)
+    name, unit = parts_of(text)
+    folded = _folded(name)
+    if summed := _SUMS.fullmatch(folded):
+        of = _kind(summed["rest"], "")
+        return Heading(SUM if of == "t" or (not of and units.codes_for(unit, "time")) else "", unit)
+    kind = _kind(name, unit)
+    codes = units.codes_for(unit)
+    if kind in QUANTITIES and codes and QUANTITIES[kind] not in {units.QUANTITY_OF[code] for code in codes}:
+        return Heading("", unit)
+    words = {folded, *map(_folded, name.rpartition(" "))}
+    lasting, angular, instant = (not words.isdisjoint(names) for names in (DURATIONS, ANGULAR, INSTANTS))
+    return Heading(kind, unit, lasting, angular, instant)
+
+
+def _unit_alone(text: str) -> str:
+    """The unit that a cell is nothing but, or blank."""
+    inner = _without_in(_without_in(text).strip("[]()<>{} "))
+    known = inner in units.SPELLINGS if len(inner) == 1 else bool(units.codes_for(inner))
+    return inner if known else ""
+
+
+def _without_in(unit: str) -> str:
+    """A unit without the word “in” before it, which in `in lb` is the inch."""
+    return unit if units.codes_for(unit) else unit.removeprefix("in ")
+
+
+def parts_of(text: str) -> tuple[str, str]:
+    """Name and unit of `Drehzahl [1/min]`, `Drehzahl in 1/min`, `Drehzahl_1/min`, `n / min-1`."""
+    if _kind(text, ""):
+        return text, ""
+    if match := _BRACKETS.fullmatch(text):
+        return match[1].strip(" ,/"), _without_in(match[2])
+    for between in _BETWEEN.finditer(text):
+        name, unit = text[: between.start()], text[between.end() :]
+        if name and units.codes_for(unit):
+            return name, unit
+    return text, ""
+
+
+def _kind(name: str, unit: str) -> str:
+    if name in _MEASURED:
+        return _MEASURED[name] if units.codes_for(unit, QUANTITIES[_MEASURED[name]]) else ""
+    if name in _EXACT:
+        return _EXACT[name]
+    folded = _folded(name)
+    if len(folded) == 1 and folded in "tnm":
+        return ""
+    word, _, symbol = name.strip().rpartition(" ")
+    meant = _NAMES.get(_folded(word), "")
+    return _NAMES.get(folded) or (meant if meant and _SYMBOLS.get(symbol) == meant else "")
+
+
+def _folded(name: str) -> str:
+    return " ".join(name.replace("_", " ").replace(".", ". ").casefold().split()).replace(".", "").strip()
+
+
+def is_total(cell: str) -> bool:
+    """Whether a cell may label its row as a sum or another figure of the whole table."""
+    if len(cell) > LONGEST:
+        return False
+    folded = _folded(cell.rstrip(":"))
+    return bool(_SUMS.fullmatch(folded) or _TOTALS.fullmatch(folded))

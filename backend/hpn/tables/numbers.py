@@ -1,0 +1,321 @@
+"""What people type: numbers in their own units and with their decimal mark, turned into the wire's and back.
+
+A form that shows something else than the wire's units in plain notation says so in its field `written`. Nothing is lost
+on the way: a number that is shown shorter than it is stands in the field `was`, and counts as long as nobody edits it.
+A number may carry a unit of its own, `40 Nm`, or be a sum, `=40*2`: the wire has the plain number.
+"""
+
+import re
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
+from decimal import Decimal
+from math import isfinite
+from typing import Literal, NamedTuple
+
+from hpn.tables.arithmetic import worked_out
+from hpn.words import units as measures
+from hpn.words.reader import Reader
+from hpn.words.units import NUMBER, SYMBOLS
+from hpn.words.wording import N_, Sentence
+
+Kind = Literal["number", "whole", "text"]
+
+WRITTEN, WAS = "written", "was"
+"""Fields that say how the others are written, and which exact numbers stand behind them."""
+
+DIGITS = 5
+"""Digits that a number from elsewhere is shown with in another unit."""
+
+_GROUPED = re.compile(r"[+-]?[1-9][0-9]{0,2}(\.[0-9]{3})+")
+DASHES = str.maketrans(dict.fromkeys("\N{MINUS SIGN}\N{EN DASH}\N{NON-BREAKING HYPHEN}", "-"))
+"""What stands for a minus in documents."""
+
+LONGEST_TEXT = 100
+_LONGEST = 60
+"""Characters of a text, such as the designation of a motor, and of a number."""
+
+_WITH_UNIT = re.compile(
+    r"(?P<number>.*?[0-9][.,]?(?:[eE][+-]?[0-9]{1,3})?)"
+    r"(?:\s+(?P<per>1\s?/[^0-9]+)|\s*(?P<unit>(?![eE][+-]?[0-9])(?:[^\W\d_]|[°'/])[^0-9]*(?:\^?\(?[-−–]1\)?)?))"
+)
+"""A number and its unit: letters, or one divided by something."""
+
+Units = Mapping[str, str]
+"""Names of the fields that take numbers -> the suffix of their unit, blank for a pure number."""
+
+
+class Entry(str):
+    """A number in the wire's notation, with what stands in its field, and why it can't be read if it can't."""
+
+    shown: str
+    refusal: Sentence | None
+
+    def __new__(cls, wire: str, shown: str, refusal: Sentence | None = None) -> "Entry":
+        """A text that behaves as `wire`."""
+        entry = super().__new__(cls, wire)
+        entry.shown, entry.refusal = shown, refusal
+        return entry
+
+
+class Shown(NamedTuple):
+    """Texts for the fields, by the texts of the wire that were asked for, and the field `was`."""
+
+    texts: list[str]
+    was: str
+
+
+def to_wire(pairs: Sequence[tuple[str, str]], units: Units) -> tuple[list[tuple[str, str]], str]:
+    """Pairs of a form in the wire's units and notation, and the marker of what they were written in."""
+    given = dict(reversed(pairs))
+    reader = Reader.of_marker(given.get(WRITTEN, ""))
+    plain = [(name, text) for name, text in pairs if name not in (WRITTEN, WAS)]
+    known = _Known(reader, given.get(WAS, ""))
+    return [(name, known.entry(text, units[name]) if name in units else text) for name, text in plain], reader.marker
+
+
+def split_unit(text: str) -> tuple[str, str]:
+    """Number and unit of a text such as `40 Nm`; the unit is blank where there is none."""
+    match = _WITH_UNIT.fullmatch(text)
+    return (match["number"], (match["per"] or match["unit"]).strip()) if match else (text, "")
+
+
+class _Known:
+    """Numbers that a form was rendered from, and reading of what its reader writes."""
+
+    def __init__(self, reader: Reader, was: str) -> None:
+        self.reader = reader
+        self.was: dict[tuple[str, str], float] = {}
+        for token in was.split():
+            unit, _, text = token.partition(":")
+            if unit in SYMBOLS and len(text) <= _LONGEST and NUMBER.fullmatch(text) and isfinite(float(text)):
+                self.was[unit, reader.measure(unit).written(float(text), DIGITS)] = float(text)
+
+    def entry(self, text: str, unit: str) -> str:
+        """A text of a field as an entry; what is no number stays as it is."""
+        if not self.reader.marker and NUMBER.fullmatch(text):
+            return text
+        plain, measure = self._number(text, unit)
+        if isinstance(plain, Sentence):
+            return Entry(f"{text}?", text, plain)
+        if plain is None:
+            return text
+        if measure.same:
+            return Entry(plain, text) if self.reader.marker or plain != text.strip() else text
+        own = measure is self.reader.measure(unit)
+        value = self.was.get((unit, plain), measure.wire(plain)) if own else measure.wire(plain)
+        return Entry(_plain(value) if isfinite(value) and not _is_too_small(plain, value) else plain, text)
+
+    def _number(self, text: str, unit: str) -> tuple[str | Sentence | None, measures.Measure]:
+        """Number in plain notation and the unit that it is in; None where it is none, a message for what is wrong."""
+        own, decimal = self.reader.measure(unit), self.reader.decimal
+        if text.lstrip().startswith("="):
+            return worked_out(text.strip(), lambda number: read_decimal(number, decimal) or _advice(number)), own
+        plain = read_decimal(text, decimal)
+        if plain is not None or len(text) > _LONGEST:
+            return plain, own
+        if not unit and text.rstrip().endswith("%"):
+            return _without_percent(read_decimal(text.rstrip()[:-1], decimal)), own
+        number, spelled = split_unit(text.strip())
+        plain = (
+            (read_decimal(number, decimal) or _advice(number, spelled, mostly_whole=unit == "h")) if spelled else None
+        )
+        if not isinstance(plain, str):
+            return plain, own
+        code = unit_code(spelled, unit)
+        return (code, own) if isinstance(code, Sentence) else (plain, measures.entered(unit, code))
+
+
+def _without_percent(number: str | Sentence | None) -> Sentence | None:
+    """What to write in place of a percentage."""
+    if not isinstance(number, str):
+        return None
+    return Sentence(N_("write {number}"), {"number": f"{Decimal(number).scaleb(-2).normalize():f}"})
+
+
+def unit_code(spelled: str, unit: str) -> str | Sentence:
+    """Code of a unit as somebody writes it, for a quantity in a unit of the wire, or what is wrong with it."""
+    quantity = measures.quantity_of(unit)
+    per_rad = unit.endswith("_per_rad")
+    codes = measures.codes_for(spelled.removesuffix("/rad") if per_rad else spelled, quantity) if quantity else ()
+    if len(codes) == 1 and spelled.endswith("/rad") >= per_rad:
+        return codes[0]
+    if len(codes) > 1:
+        template = N_("{unit} can be {first} or {second}; write one of them")
+        return Sentence(template, {"unit": spelled, **either(codes)})
+    if not quantity:
+        return Sentence(N_("takes a number without a unit"))
+    listed = ", ".join(f"{symbol}{'/rad' if per_rad else ''}" for symbol in measures.READ[quantity].values())
+    return Sentence(
+        N_("{unit} is not a unit of this quantity; it takes {units}"), {"unit": spelled[:20], "units": listed}
+    )
+
+
+def either(codes: Sequence[str]) -> dict[str, Sentence]:
+    """Symbols of the two units that a spelling may mean, as values of a sentence."""
+    first, second = (Sentence(measures.symbol_of_code(code)) for code in codes[:2])
+    return {"first": first, "second": second}
+
+
+def read_decimal(text: str, decimal: str) -> str | Sentence | None:
+    """A number in plain notation; None where it is none, a message where it could be two."""
+    plain = text.strip().translate(DASHES)
+    if len(plain) > _LONGEST:
+        return None
+    if decimal == ",":
+        if _GROUPED.fullmatch(plain) and plain.count(".") == 1:
+            values = {"first": plain.replace(".", ","), "second": plain.replace(".", "")}
+            return Sentence(N_("write {first} or {second}"), values)
+        plain = _with_point(plain)
+    return plain if NUMBER.fullmatch(plain) else None
+
+
+def _with_point(text: str) -> str:
+    """A text with a decimal comma, perhaps with points between thousands, in plain notation."""
+    if text.count(",") == 1:
+        whole, _, fraction = text.partition(",")
+        return f"{whole.replace('.', '') if _GROUPED.fullmatch(whole) else whole}.{fraction}"
+    return text.replace(".", "") if _GROUPED.fullmatch(text) else text
+
+
+def to_fields(entries: Iterable[tuple[str, str]], reader: Reader, written: str) -> Shown:
+    """Texts of the wire, with their units, as the reader's form shows them; `written` marks how they came in.
+
+    What the reader has typed stands there as typed. What comes from elsewhere is shown to five digits in another unit,
+    or to all where two numbers would look alike, and is remembered where that is not all of it.
+    """
+    listed = [_Field(text, unit, reader, own=reader.marker == written) for text, unit in entries]
+    alike = Counter(short for short, _ in {(field.short, field.value) for field in listed if field.value is not None})
+    texts, was = [], []
+    for field in listed:
+        texts.append(field.text if alike[field.short] < 2 else field.exact)
+        if field.value is not None and field.read(texts[-1]) != field.value:
+            was.append(f"{field.unit}:{_plain(field.value)}")
+    return Shown(texts, " ".join(dict.fromkeys(was)))
+
+
+class _Field:
+    """A text of the wire, and how its field shows it; `value` is None where it shows the wire's own unit."""
+
+    def __init__(self, wire: str, unit: str, reader: Reader, *, own: bool) -> None:
+        self.unit, self.reader, self.measure = unit, reader, reader.measure(unit)
+        plain = wire.strip().translate(DASHES)
+        number = bool(NUMBER.fullmatch(plain))
+        self.value = float(plain) if number and not self.measure.same and isfinite(float(plain)) else None
+        self.short = "" if self.value is None else self.measure.written(self.value, DIGITS), unit
+        self.typed = wire.shown if isinstance(wire, Entry) and (own or wire.refusal) else None
+        self.wire = self._marked(wire) if number else wire
+
+    @property
+    def text(self) -> str:
+        """As typed, else short."""
+        if self.typed is not None:
+            return self.typed
+        return self.wire if self.value is None else self._marked(self.short[0])
+
+    @property
+    def exact(self) -> str:
+        """As typed, else with every digit."""
+        if self.typed is not None:
+            return self.typed
+        return self.wire if self.value is None else self._marked(self.measure.shortest(self.value))
+
+    def read(self, text: str) -> float | None:
+        """Number of the wire that a text would be read as, without memory."""
+        plain = read_decimal(text, self.reader.decimal)
+        return self.measure.wire(plain) if isinstance(plain, str) else None
+
+    def _marked(self, number: str) -> str:
+        return number.replace(".", self.reader.decimal)
+
+
+def _plain(value: float) -> str:
+    return repr(value).removesuffix(".0").replace("e+", "e").replace("e-0", "e-")
+
+
+# --- Values -----------------------------------------------------------------------------------------------------------
+
+NOT_WHOLE = N_("must be a whole number")
+_ANY_NUMBER = re.compile(r"[+-]?([0-9]+(\.[0-9]*)?|\.[0-9]+)([eE][+-]?[0-9]+)?")
+_COMMAS = re.compile(r"[+-]?[0-9]{1,3}(,[0-9]{3})+(?![0-9,])")
+
+
+_IN_GROUPS = re.compile(r"[+-]?[1-9][0-9]{0,2}\.[0-9]{2}0")
+"""A number as nobody writes a whole one, unless the point is meant to stand between thousands."""
+
+
+def read_value(text: str, kind: Kind, *, mostly_whole: bool = False) -> float | int | str | Sentence:
+    """Value that a text stands for, or what to write instead; `mostly_whole` where hardly anyone means decimals."""
+    if isinstance(text, Entry) and text.refusal:
+        return text.refusal
+    given, text = text, text.strip()
+    if kind == "text":
+        return text if len(text) <= LONGEST_TEXT else Sentence(N_("is too long"))
+    plain = text.translate(DASHES)
+    if len(plain) > _LONGEST or not _ANY_NUMBER.fullmatch(plain):
+        return _not_a_number(plain, kind, mostly_whole=mostly_whole)
+    value = float(plain)
+    if value in (float("inf"), float("-inf")):
+        return Sentence(N_("is too large"))
+    if _is_too_small(plain, value):
+        return Sentence(N_("is too small"))
+    with_comma = isinstance(given, Entry) and "," in given.shown
+    if (mostly_whole or kind == "whole") and not with_comma and _IN_GROUPS.fullmatch(plain):
+        decimal = _without_zeros(plain)
+        return _to_write([decimal, plain.replace(".", "")][kind == "whole" and "." in decimal :])
+    if kind == "number":
+        return value
+    return int(value) if value.is_integer() else Sentence(NOT_WHOLE)
+
+
+def _without_zeros(number: str) -> str:
+    """A number whose decimals can't be taken for a group of thousands."""
+    return number.rstrip("0").rstrip(".") if _IN_GROUPS.fullmatch(number) else number
+
+
+def _is_too_small(plain: str, value: float) -> bool:
+    """Whether a number in plain notation is another one than the zero that became of it."""
+    return value == 0 and bool(re.search("[1-9]", re.split("[eE]", plain)[0]))
+
+
+_SUCH_AS = N_("is not a number; write one such as 9.3")
+_APART = re.compile(r"[0-9][\s'’]+(?![0-9]{3}(?![0-9]))[0-9]")
+"""Digits with a blank between them where no thousands end: two numbers, or a point that was missed."""
+
+
+def _advice(text: str, unit: str = "", *, mostly_whole: bool = False) -> Sentence | None:
+    """What to write instead of a number with this unit, None where it can't be told."""
+    told = _not_a_number(text.strip().translate(DASHES), "number", unit, mostly_whole=mostly_whole)
+    return None if told.template == _SUCH_AS else told
+
+
+def _not_a_number(text: str, kind: Kind, unit: str = "", *, mostly_whole: bool = False) -> Sentence:
+    """What to write instead, where it can be told."""
+    tight = re.sub(r"[\s'’]", "", text)
+    if len(tight) > _LONGEST:
+        return Sentence(N_("is too long for a number"))
+    numbers = [] if _APART.search(text) else [each for each in _readings(tight) if _ANY_NUMBER.fullmatch(each)]
+    readings = [number for number in numbers if kind != "whole" or float(number).is_integer()]
+    if numbers and not readings:
+        return Sentence(NOT_WHOLE)
+    if mostly_whole or kind == "whole":
+        readings = [_without_zeros(reading) for reading in readings]
+    return _to_write([f"{reading} {unit}".strip() for reading in readings]) if readings else Sentence(_SUCH_AS)
+
+
+def _to_write(readings: Sequence[str]) -> Sentence:
+    if len(readings) > 1:
+        return Sentence(N_("write {first} or {second}"), {"first": readings[0], "second": readings[1]})
+    return Sentence(N_("write {number}"), {"number": readings[0]})
+
+
+def _readings(text: str) -> list[str]:
+    """Numbers that a text with commas may stand for; `1,234` is either of two."""
+    if text.rfind(".") > text.rfind(",") or text.count(",") > 1:
+        return [text.replace(",", "")] if _COMMAS.match(text) else []
+    whole = text.partition(",")[0]
+    if "." in whole and not _GROUPED.fullmatch(whole):
+        return []
+    decimal = text.replace(".", "").replace(",", ".")
+    if re.fullmatch(r"[+-]?[1-9][0-9]{0,2},[0-9]{3}", text):
+        return [decimal, text.replace(",", "")]
+    return [decimal]

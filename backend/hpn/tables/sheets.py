@@ -1,0 +1,167 @@
+"""From a text to the cells of a table, by every separator that makes sense of it."""
+
+import csv
+import io
+import re
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from itertools import zip_longest
+
+from hpn.tables.cells import Merged, tidy
+from hpn.words.fields import MAXIMUM_PHASES
+from hpn.words.wording import N_, Sentence, Value
+
+MAXIMUM_CHARACTERS = 1_000_000
+MOST_HEAD_ROWS = 50
+"""Rows beside those of the phases: title, header, units, sums."""
+
+MOST_CELLS = 150_000
+
+SEPARATORS = {
+    "tab": N_("tab"),
+    "semicolon": N_("semicolon"),
+    "comma": N_("comma"),
+    "bar": N_("vertical bar"),
+    "blanks": N_("several blanks"),
+    "blank": N_("blank"),
+}
+_MARKS = {"tab": "\t", "semicolon": ";", "comma": ",", "bar": "|"}
+_RULE = re.compile(r"(?=.*--)[-|:+ ]+")
+"""A line of a table in Markdown that only sets the header apart."""
+
+_HINT = re.compile(r"sep=(.)\r?\n", re.IGNORECASE)
+"""First line with which Excel is told the separator."""
+
+
+class RefusedError(ValueError):
+    """A table that can't be read, and why."""
+
+    def __init__(self, template: str, **values: Value) -> None:
+        super().__init__(template)
+        self.sentence = Sentence(template, dict(values))
+
+
+def no_number(row: int, cell: str) -> RefusedError:
+    """Why a cell of a row is no number, and what would be right where that can be told."""
+    template = N_("row {row}: {cell} is not a number")
+    if cell.startswith("="):
+        template = N_("row {row}: {cell} has no calculated value; open and save the table in the spreadsheet program")
+    elif isinstance(cell, Merged):
+        template = N_("row {row}: the cells {cell} are merged; write a number into each of them")
+    return RefusedError(template, row=row, cell=cell[:40])
+
+
+@dataclass(frozen=True, slots=True)
+class Grid:
+    """Rows of cells, all of one width, with the number that each row has for the user.
+
+    `even` tells whether the rows had to have equally many cells: where a separator is a mark of numbers as well.
+    `notes` say what a reader of the file might not expect.
+    """
+
+    rows: tuple[tuple[str, ...], ...]
+    numbers: tuple[int, ...]
+    separator: str = ""
+    turned: bool = False
+    counts: tuple[int, ...] = ()
+    notes: tuple[Sentence, ...] = ()
+
+    @property
+    def width(self) -> int:
+        """Number of columns."""
+        return len(self.rows[0])
+
+    @property
+    def even(self) -> bool:
+        """Whether rows of different lengths are a sign of a wrong separator."""
+        return self.separator in ("comma", "blanks", "blank")
+
+    def transposed(self) -> "Grid":
+        """Columns as rows."""
+        columns = tuple(zip(*self.rows, strict=True))
+        return Grid(columns, tuple(range(1, self.width + 1)), self.separator, True, notes=self.notes)
+
+
+def grid_of(rows: Sequence[Sequence[str]], separator: str = "") -> Grid:
+    """A table of rows that may differ in length; rows and columns at the ends that say nothing are left out.
+
+    Raises RefusedError for none, and for more cells than the longest cycle has.
+    """
+    kept = [(k, row, len(row)) for k, row in enumerate(rows, start=1) if any(row)]
+    if not kept:
+        raise RefusedError(N_("there is nothing in the text"))
+    if len(kept) * max(len(row) for _, row, _ in kept) > MOST_CELLS:
+        raise RefusedError(
+            N_("there are more than {most} cells: leave out the columns that are not needed"), most=MOST_CELLS
+        )
+    columns = list(zip_longest(*(row for _, row, _ in kept), fillvalue=""))
+    while not any(columns[-1]):
+        columns.pop()
+    cells = tuple(zip(*columns, strict=True))
+    return Grid(cells, tuple(k for k, _, _ in kept), separator, counts=tuple(count for _, _, count in kept))
+
+
+def grids_of(text: str, most_rows: int = MAXIMUM_PHASES, most_characters: int = MAXIMUM_CHARACTERS) -> list[Grid]:
+    """The text's cells by each separator that it may have; raises RefusedError where there are none."""
+    if len(text) > most_characters:
+        raise RefusedError(N_("the text is too long: at most {most} characters"), most=most_characters)
+    text = text.removeprefix("\ufeff")
+    if not tidy(text):
+        raise RefusedError(N_("there is nothing in the text"))
+    if sum(bool(line.strip()) for line in text.splitlines()) > most_rows + MOST_HEAD_ROWS:
+        raise RefusedError(N_("there are more than {most} rows"), most=most_rows)
+    hint = _HINT.match(text)
+    text = text[hint.end() :] if hint else text
+    return [grid_of([[tidy(cell) for cell in row] for row in _rows(text, name)], name) for name in _separators(text)]
+
+
+def _separators(text: str) -> list[str]:
+    """Names of the separators that are possible. A tab or a semicolon is never part of a number; a comma may be."""
+    lines = [line for line in text.splitlines() if line.strip()]
+    for name in ("tab", "semicolon"):
+        if sum(_MARKS[name] in line for line in lines) * 2 > len(lines):
+            return [name]
+    if _barred(lines):
+        return ["bar"]
+    found = [name for name, mark in (("comma", ","), ("blanks", "  "), ("blank", " ")) if mark in text.strip()]
+    return found or ["tab"]
+
+
+def _barred(lines: Sequence[str]) -> bool:
+    """Whether bars make a table: each line has as many as the others, and two at least. One may be part of a cell."""
+    counts = {line.count("|") for line in lines if not _RULE.fullmatch(line.strip())}
+    return len(counts) == 1 and counts.pop() >= 2
+
+
+def _without_frame(line: str) -> str:
+    """A line of a table in Markdown without the bars at its ends; nothing of one that only sets the header apart."""
+    line = line.strip()
+    return "" if _RULE.fullmatch(line) else line.removeprefix("|").removesuffix("|")
+
+
+def _rows(text: str, name: str) -> Iterator[list[str]]:
+    if name == "bar":
+        text = "\n".join(map(_without_frame, text.splitlines()))
+    if name in _MARKS:
+        try:
+            yield from csv.reader(io.StringIO(text, newline=""), delimiter=_MARKS[name], skipinitialspace=True)
+        except csv.Error:  # a cell longer than the module takes
+            raise RefusedError(N_("a cell is longer than any number or heading")) from None
+    else:
+        between = re.compile("  +" if name == "blanks" else " +")
+        for line in re.split(r"\r\n|\r|\n", text):
+            yield between.split(line.strip(" \t"))
+
+
+def require_even(grid: Grid, first: int, head: int) -> None:
+    """Raise RefusedError where rows of the body, from `first` on, or of the header just above it differ in length
+    though they must not.
+    """
+    if not grid.even or not grid.counts:
+        return
+    usual = Counter(grid.counts[first:]).most_common(1)[0][0]
+    for number, count in list(zip(grid.numbers, grid.counts, strict=True))[first - head :]:
+        if count != usual:
+            template = N_("row {row} has {cells} cells, others have {usual}")
+            raise RefusedError(template, row=number, cells=count, usual=usual)

@@ -1,0 +1,23 @@
+"""Designations of gears and sizes in the handbook's spelling, from every spelling that it prints."""
+
+import re
+from typing import Any
+
+_DESIGNATION = re.compile(r"(?:HPN-?)?(\d{1,3})A?-0*(\d{1,3})(?:-.*)?", re.IGNORECASE)
+_SIZE = re.compile(r"(?:HPN-?)?(\d{1,3})A?", re.IGNORECASE)
+
+
+def canonical_size(text: Any) -> Any:
+    """Size in the handbook's spelling: `14`, `14a` and `HPN-14A` are `14A`; anything else comes back as it is."""
+    match = _SIZE.fullmatch(text.strip()) if isinstance(text, str) else None
+    return f"{int(match[1])}A" if match else text
+
+
+def canonical_designation(text: str) -> str | None:
+    """Designation `HPN-20A-5` from any of the printed spellings, or None.
+
+    The handbook writes `HPN-11A-4-J6-BH-AF1` (ordering code, 3.2), `HPN-20-5` (equation 18.2) and `HPN-11A-04`
+    (illustration 19.1) for gears of one kind.
+    """
+    match = _DESIGNATION.fullmatch(text.strip())
+    return f"HPN-{int(match[1])}A-{int(match[2])}" if match else None

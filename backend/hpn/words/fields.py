@@ -1,0 +1,97 @@
+"""What the fields of an input model may hold: kinds of numbers with their bounds, and the closed, frozen model.
+
+Every field name ends in its unit. The bounds keep every power in chapter 4 far inside the range of a floating-point
+number.
+"""
+
+from collections.abc import Callable
+from typing import Annotated, Any
+
+from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, ValidationError
+from pydantic_core import InitErrorDetails, PydanticCustomError, PydanticKnownError
+
+from hpn.words.units import suffix_of, symbol_of
+
+MAXIMUM_PHASES = 10_000
+
+LEAST = 1e-12
+"""Smallest number that stands below a fraction: a quotient by a smaller one could overflow."""
+
+
+def _above_zero(value: float) -> float:
+    """Refuse what is not above 0, and what is but so small that a quotient by it could overflow."""
+    if value <= 0:
+        raise PydanticKnownError("greater_than", {"gt": 0})
+    if value < LEAST:
+        raise PydanticCustomError("vanishing", "must be at least 1e-12")
+    return value
+
+
+def at_most(most: int) -> BeforeValidator:
+    """Refuse a longer list before its items are looked at: each wrong one would leave its errors behind."""
+
+    def check(value: object) -> object:
+        if isinstance(value, list | tuple) and len(value) > most:
+            counts = {"field_type": "Tuple", "max_length": most, "actual_length": len(value)}
+            raise PydanticKnownError("too_long", counts)
+        return value
+
+    return BeforeValidator(check)
+
+
+PART = 500
+
+
+def in_parts(value: Any, validate: Callable[[Any], tuple[Any, ...]]) -> tuple[Any, ...]:
+    """Validate a long list part by part: other threads get their turn in between, and only one part has errors.
+
+    What is validated stays in front, so that an error is told at its place in the whole.
+    """
+    if not isinstance(value, list | tuple) or len(value) <= PART:
+        return validate(value)
+    done: tuple[Any, ...] = ()
+    for start in range(0, len(value), PART):
+        done = validate((*done, *value[start : start + PART]))
+    return done
+
+
+def _whole(value: object) -> object:
+    """Whole floats as the integers that JSON Schema counts them as; anything else unchanged."""
+    return int(value) if isinstance(value, float) and value.is_integer() else value
+
+
+WHOLE = BeforeValidator(_whole)
+"""Stands behind the bounds of an integer, which JSON Schema then tells."""
+
+Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
+Torque = Annotated[Number, Field(ge=-1e6, le=1e6)]
+TorqueMagnitude = Annotated[Number, Field(ge=0, le=1e6)]
+Speed = Annotated[Number, Field(ge=-1e6, le=1e6)]
+SpeedMagnitude = Annotated[Number, Field(ge=0, le=1e6)]
+Duration = Annotated[Number, Field(gt=0, le=1e9)]
+Load = Annotated[Number, Field(ge=-1e9, le=1e9)]
+SAYS_LEAST: Any = Field(json_schema_extra={"minimum": LEAST})
+Hours = Annotated[Number, Field(le=1e9), AfterValidator(_above_zero), SAYS_LEAST]
+MoveTime = Annotated[Number, Field(le=1e9), AfterValidator(_above_zero), SAYS_LEAST]
+Positive = Annotated[Number, Field(le=1e12), AfterValidator(_above_zero), SAYS_LEAST]
+Share = Annotated[Number, Field(le=1), AfterValidator(_above_zero), SAYS_LEAST]
+Ratio = Annotated[int, Field(strict=True, ge=1, le=10_000), WHOLE]
+
+
+def name_units(schema: dict[str, Any]) -> None:
+    """Put the unit of every field beside it in the JSON Schema, read from the field's own name."""
+    for name, entry in schema.get("properties", {}).items():
+        if suffix_of(name):
+            entry["x-unit"] = symbol_of(name)
+
+
+class Model(BaseModel):
+    """Frozen, and closed: an unknown field is an error, never ignored."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", json_schema_extra=name_units)
+
+
+def refused(model: BaseModel, *problems: tuple[tuple[str | int, ...], PydanticCustomError]) -> ValidationError:
+    """Error of a model at places below it: (location, error) each; a validator raises it."""
+    details = [InitErrorDetails(type=error, loc=location, input=None) for location, error in problems]
+    return ValidationError.from_exception_data(type(model).__name__, details)

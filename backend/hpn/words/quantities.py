@@ -1,0 +1,396 @@
+"""Every public quantity: what it is called, the handbook's symbol for it, and what it is in one sentence.
+
+A quantity is named by the place where it stands: an input by its path in the application, a figure by `duty`,
+`candidate`, `check`, `reserve` or `gear` before its field. Its unit is the suffix of the field. Page, report, workbook,
+Asset Administration Shell, comparison, differences and the OpenAPI document all call it so.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Literal
+
+from hpn.words.units import symbol_of
+from hpn.words.wording import N_
+
+CheckCode = Literal[
+    "average_torque",
+    "repeated_peak_torque",
+    "momentary_peak_torque",
+    "momentary_peak_count",
+    "average_input_speed",
+    "maximum_input_speed",
+    "life",
+    "output_bearing_load",
+    "output_bearing_life",
+    "motor_speed",
+    "motor_peak_torque",
+    "motor_rated_torque",
+    "motor_rated_speed",
+    "inertia_ratio",
+    "ambient_temperature",
+    "backlash",
+    "torsional_stiffness",
+    "weight",
+    "length",
+]
+"""Codes of the checks, in the order of the contract."""
+
+
+@dataclass(frozen=True, slots=True)
+class Named:
+    """Name of a quantity (an English msgid), its symbol, a sentence on it, and the handbook's equation that gives it.
+
+    `caveat` (a msgid too) is what its reader must know wherever it stands.
+
+    An index stands behind an underscore: `T_av`. Of an input the sentence stands in the application model.
+    """
+
+    name: str
+    symbol: str = ""
+    sentence: str = ""
+    equation: str = ""
+    caveat: str = ""
+
+
+INPUTS: Mapping[str, Named] = {
+    "phase.torque_Nm": Named(N_("Torque"), "T"),
+    "phase.speed_rpm": Named(N_("Speed"), "n"),
+    "phase.duration_s": Named(N_("Duration"), "t"),
+    "phase.radial_N": Named(N_("Radial load"), "F_R"),
+    "phase.axial_N": Named(N_("Axial load"), "F_A"),
+    "phase.peak_torque_Nm": Named(N_("Peak torque"), "T_pk"),
+    "phase.peak_speed_rpm": Named(N_("Peak speed"), "n_pk"),
+    "phase.rms_torque_Nm": Named(N_("RMS torque"), "T_rms"),
+    "duty_cycle.pause_s": Named(N_("Pause"), "t_p"),
+    "emergency_stop.torque_Nm": Named(N_("Emergency-stop torque"), "T_k"),
+    "emergency_stop.count": Named(N_("Expected emergency stops"), "N_k"),
+    "output_load.radial_N": Named(N_("Radial load of the cycle"), "F_R"),
+    "output_load.axial_N": Named(N_("Axial load of the cycle"), "F_A"),
+    "output_load.load_coefficient": Named(N_("Load coefficient"), "f_w"),
+    "output_load.life_h": Named(N_("Required bearing life"), "L_b"),
+    "output_load.life_basis": Named(N_("Life basis")),
+    "output_load.model": Named(N_("Model of the bearing envelope")),
+    "requirements.life_h": Named(N_("Required gear life"), "L_10,req"),
+    "requirements.utilisation": Named(N_("Maximum utilisation"), "u"),
+    "requirements.efficiency": Named(N_("Assumed efficiency"), "η"),
+    "requirements.motor.maximum_speed_rpm": Named(N_("Maximum motor speed"), "n_mot"),
+    "requirements.motor.peak_torque_Nm": Named(N_("Peak motor torque"), "T_mot"),
+    "requirements.motor.rated_torque_Nm": Named(N_("Rated motor torque"), "T_mot,N"),
+    "requirements.motor.rated_speed_rpm": Named(N_("Rated motor speed"), "n_mot,N"),
+    "requirements.motor.inertia_kgm2": Named(N_("Inertia of the motor"), "J_m"),
+    "requirements.motor.inertia_ratio": Named(N_("Largest inertia ratio"), "r_J"),
+    "requirements.motor.designation": Named(N_("Motor of your list")),
+    "requirements.load_inertia_kgm2": Named(N_("Inertia of the load"), "J_L"),
+    "requirements.ambient_temperature_degC": Named(N_("Ambient temperature"), "t_amb"),
+    "requirements.backlash_arcmin": Named(N_("Maximum backlash"), "j_req"),
+    "requirements.torsional_stiffness_Nm_per_rad": Named(N_("Minimum torsional stiffness"), "K_3,req"),
+    "requirements.weight_kg": Named(N_("Maximum weight"), "m_req"),
+    "requirements.length_mm": Named(N_("Maximum length"), "L_req"),
+    "requirements.sizes": Named(N_("Only these sizes")),
+    "requirements.ratios": Named(N_("Only these ratios"), "i"),
+    "application_area": Named(N_("Area of use")),
+    "rank_by": Named(N_("Rank by")),
+}
+"""Inputs, in the order in which a file lists them."""
+
+MOTION: Mapping[str, Named] = {
+    "mechanism.type": Named(N_("Mechanism")),
+    "mechanism.inertia_kgm2": Named(N_("Moment of inertia"), "J"),
+    "mechanism.gravity_mass_kg": Named(N_("Mass off the shaft"), "m"),
+    "mechanism.gravity_radius_mm": Named(N_("Its distance from the shaft"), "r"),
+    "mechanism.friction_torque_Nm": Named(N_("Friction torque"), "T_f"),
+    "mechanism.viscous_friction_Nm_per_rpm": Named(N_("Viscous friction"), "b"),
+    "mechanism.efficiency": Named(N_("Efficiency of the mechanism"), "η_m"),
+    "mechanism.ratio": Named(N_("Ratio of a stage between"), "i_m"),
+    "start_deg": Named(N_("Angle at the start"), "θ_0"),
+    "mechanism.diameter_mm": Named(N_("Pitch diameter"), "d"),
+    "mechanism.lead_mm": Named(N_("Lead"), "h"),
+    "mechanism.mass_kg": Named(N_("Moved mass"), "m"),
+    "mechanism.incline_deg": Named(N_("Incline"), "β"),
+    "mechanism.friction_coefficient": Named(N_("Coefficient of friction"), "μ"),
+    "move.profile": Named(N_("Profile")),
+    "move.angle_deg": Named(N_("Angle"), "φ"),
+    "move.distance_mm": Named(N_("Distance"), "s"),
+    "move.time_s": Named(N_("Time"), "t"),
+    "move.speed_rpm": Named(N_("Peak speed"), "n"),
+    "move.speed_mm_per_s": Named(N_("Largest speed"), "v"),
+    "move.acceleration_deg_per_s2": Named(N_("Acceleration"), "α"),
+    "move.acceleration_mm_per_s2": Named(N_("Acceleration"), "a"),
+    "move.jerk_share": Named(N_("Jerk share")),
+    "move.external_torque_Nm": Named(N_("External torque"), "T_ext"),
+    "move.external_force_N": Named(N_("External force"), "F_ext"),
+}
+"""Inputs of a motion: of its mechanism, and of each move."""
+
+MECHANISMS: Mapping[str, str] = {
+    "rotary": N_("Rotary"),
+    "rack_and_pinion": N_("Rack and pinion"),
+    "belt": N_("Belt"),
+    "ball_screw": N_("Ball screw"),
+}
+"""Kinds of mechanisms."""
+
+PROFILES: Mapping[str, str] = {
+    "trapezoidal": N_("Trapezoidal"),
+    "triangular": N_("Triangular"),
+    "s_curve": N_("S-curve"),
+    "modified_sine": N_("Modified sine"),
+    "dwell": N_("Dwell"),
+}
+"""Profiles of a move."""
+
+BODY: Mapping[str, Named] = {
+    "shape": Named(N_("Shape")),
+    "count": Named(N_("Number")),
+    "mass_kg": Named(N_("Mass")),
+    "density_g_per_cm3": Named(N_("or density")),
+    "diameter_mm": Named(N_("Diameter")),
+    "inner_diameter_mm": Named(N_("Inner diameter")),
+    "length_mm": Named(N_("Length")),
+    "width_mm": Named(N_("Width")),
+    "height_mm": Named(N_("Height")),
+    "distance_mm": Named(N_("Off the axis")),
+}
+"""Inputs of a body whose moment of inertia is worked out; none is part of an application."""
+
+BEARING_MODELS: Mapping[str, str] = {
+    "linear": N_("straight line (safe)"),
+    "iso281": N_("ISO 281"),
+    "digitised": N_("digitised graph"),
+}
+"""Models of the bearing envelope."""
+
+ENVELOPE_BASIS: Mapping[str, str] = {
+    "linear": N_("Basis: interpolated between the two published limits; printed curve not available."),
+    "iso281": N_(
+        "Basis: equivalent load of ISO 281 with a constant Y, set by the published axial limit; printed curve not "
+        "available."
+    ),
+    "digitised": N_("Basis: curve points that you supplied; printed curve not available."),
+}
+"""Where the envelope of a model comes from."""
+
+LIFE_BASES: Mapping[str, str] = {"L50": N_("L50 (50 % survive)"), "L10": N_("L10 (90 % survive)")}
+"""Bases of a bearing life."""
+
+SHAPES: Mapping[str, str] = {
+    "disc": N_("Disc"),
+    "ring": N_("Ring"),
+    "bar": N_("Bar"),
+    "block": N_("Block"),
+    "point_mass": N_("Point mass"),
+}
+"""Shapes of bodies."""
+
+DUTY: Mapping[str, Named] = {
+    "average_torque_Nm": Named(N_("Average torque"), "T_av", "Average output torque T_av.", "17.2"),
+    "average_output_speed_rpm": Named(
+        N_("Average output speed"), "n_out,av", "Average output speed n_out,av, pause included.", "17.4"
+    ),
+    "maximum_torque_Nm": Named(N_("Maximum torque"), "T_max", "Largest torque T_max of the cycle."),
+    "maximum_output_speed_rpm": Named(
+        N_("Maximum output speed"), "n_out,max", "Largest output speed n_out,max of the cycle."
+    ),
+}
+
+PHASE: Mapping[str, Named] = {
+    name.removeprefix("phase."): Named(named.name, named.symbol, sentence)
+    for (name, named), sentence in zip(
+        INPUTS.items(),
+        (
+            "Mean torque that equation 17.2 weighs, with the torque’s sign.",
+            "Mean speed, with the direction of the motion.",
+            "Duration.",
+            "Radial load; left out where the move has none.",
+            "Axial load; left out where the move has none.",
+            "Largest torque in the phase.",
+            "Largest speed in the phase.",
+            "RMS of the torque over the phase.",
+        ),
+        strict=False,
+    )
+}
+"""Figures of a phase that comes out of a motion."""
+
+CANDIDATE: Mapping[str, Named] = {
+    "designation": Named(N_("Gear"), "", "Designation such as HPN-20A-5."),
+    "size": Named(N_("Size"), "", "Size such as 20A."),
+    "ratio": Named(N_("Ratio"), "i", "Ratio i."),
+    "stages": Named(N_("Number of stages"), "", "Number of stages."),
+    "status": Named(N_("Verdict"), "", "Verdict on the candidate."),
+    "rank": Named(N_("Rank"), "", "Place among the suitable candidates; null for the rest."),
+    "utilisation": Named(
+        N_("Utilisation"), "", "Largest utilisation of the load checks and of failing property checks."
+    ),
+    "governing_check": Named(N_("Governing check"), "", "Code of the check with that utilisation."),
+    "reason": Named(N_("Reason"), "", "Why the candidate stands where it does."),
+    "average_input_speed_rpm": Named(N_("Average input speed"), "n_in,av", "Average input speed.", "17.5"),
+    "maximum_input_speed_rpm": Named(N_("Maximum input speed"), "n_in,max", "Maximum input speed.", "17.6"),
+    "life_L10_h": Named(
+        N_("Gear life"),
+        "L_10",
+        "Life as equation 17.10 gives it, named L10; the hours include the pause. Null where unlimited or not rated.",
+        "17.10",
+        caveat=N_("L10 as eq. 17.10 prints it; the glossary’s basis is L50. The hours include the pause."),
+    ),
+    "momentary_peak_count": Named(
+        N_("Permitted emergency stops"),
+        "N_k,max",
+        "Permitted number of emergency stops; null where the equation sets no limit.",
+        "17.9",
+    ),
+    "bearing_life_L50_h": Named(
+        N_("Bearing life L50"),
+        "L_b,50",
+        "Life of the output bearing on the basis L50: 50 % of the bearings survive it.",
+    ),
+    "bearing_life_L10_h": Named(
+        N_("Bearing life L10"),
+        "L_b,10",
+        "Life of the output bearing on the basis L10: 90 % of the bearings survive it, L50 / 5.",
+        caveat=N_("L10 = L50 / 5, a relation of other handbooks. The hours include the pause."),
+    ),
+    "motor_peak_torque_Nm": Named(
+        N_("Peak motor torque needed"),
+        "T_max/(i·η)",
+        "Largest torque at the motor, T/(i·η), without the emergency stop; along a motion with the motor’s own "
+        "inertia, where that is given. Where no efficiency is known η is 1, and the torque a lower bound.",
+    ),
+    "motor_rated_torque_Nm": Named(
+        N_("RMS motor torque needed"),
+        "T_rms/(i·η)",
+        "RMS torque at the motor, T/(i·η), over the cycle with pause; along a motion with the motor’s own inertia, "
+        "where that is given. Where no efficiency is known η is 1, and the torque a lower bound.",
+    ),
+    "reserve": Named(N_("Reserve"), "", "Reserve per driver, the other inputs as given."),
+    "checks": Named(N_("Checks"), "", "Every check that was asked for, in a fixed order."),
+}
+
+LISTED: Mapping[str, Named] = {
+    "life_L10_h": Named(N_("Life"), "L_10"),
+    "maximum_input_speed_rpm": Named(N_("Input speed")),
+}
+"""Figures of a candidate that the page lists of all of them, by a name as short as a column."""
+
+RESERVE: Mapping[str, Named] = {
+    "torque_factor": Named(
+        N_("All duty torques"), "", "Factor on all duty torques; null where nothing limits, and where it is not rated."
+    ),
+    "speed_factor": Named(N_("All speeds"), "", "Factor on all speeds; null likewise."),
+    "load_factor": Named(N_("All output loads"), "", "Factor on all output loads; null likewise."),
+    "emergency_stop_torque_Nm": Named(N_("Emergency-stop torque"), "T_k", "Largest permissible emergency-stop torque."),
+}
+
+CHECK: Mapping[str, Named] = {
+    "code": Named(N_("Check"), "", "Code of the check; its definition stands in check_definitions."),
+    "demand": Named(
+        N_("Demand"), "", "The value tested, in the check’s unit; null where it is unlimited or not published."
+    ),
+    "limit": Named(N_("Limit"), "", "Its bound, in the check’s unit; null where it is unlimited or not published."),
+    "utilisation": Named(
+        N_("Utilisation"), "", "Demand over limit (limit over demand for a minimum); null where there is none."
+    ),
+    "status": Named(N_("Verdict"), "", "Verdict of the check."),
+}
+
+GEAR: Mapping[str, Named] = {
+    "designation": Named(N_("Gear"), "", "Designation such as HPN-20A-5."),
+    "size": Named(N_("Size"), "", "Size such as 20A."),
+    "ratio": Named(N_("Ratio"), "i", "Ratio i."),
+    "stages": Named(N_("Number of stages"), "", "Number of stages."),
+    "rated_torque_Nm": Named(N_("Rated torque"), "T_N", "Rated torque T_N."),
+    "repeated_peak_torque_Nm": Named(N_("Repeated peak torque"), "T_R", "Repeated peak torque T_R."),
+    "momentary_peak_torque_Nm": Named(N_("Momentary peak torque"), "T_M", "Momentary peak torque T_M."),
+    "average_input_speed_rpm": Named(
+        N_("Permissible average input speed"), "n_av(max)", "Permissible average input speed, grease."
+    ),
+    "maximum_input_speed_rpm": Named(
+        N_("Permissible maximum input speed"), "n_in(max)", "Permissible maximum input speed, grease."
+    ),
+    "dynamic_radial_load_N": Named(
+        N_("Radial load without axial load"), "F_R,dyn(max)", "Permissible radial load at L50 20000 h and 100 rpm."
+    ),
+    "dynamic_axial_load_N": Named(
+        N_("Axial load without radial load"), "F_A,dyn(max)", "Permissible axial load at L50 20000 h and 100 rpm."
+    ),
+    "ambient_temperature_minimum_degC": Named(N_("Lowest ambient temperature"), "t_min", "Lowest ambient temperature."),
+    "ambient_temperature_maximum_degC": Named(
+        N_("Highest ambient temperature"), "t_max", "Highest ambient temperature."
+    ),
+    "backlash_arcmin": Named(N_("Backlash"), "j", "Largest backlash."),
+    "transmission_accuracy_arcmin": Named(N_("Transmission accuracy"), "", "Largest transmission error."),
+    "torsional_stiffness_Nm_per_rad": Named(N_("Torsional stiffness"), "K_3", "Torsional stiffness K_3."),
+    "weight_kg": Named(N_("Weight"), "m", "Net weight of the standard version."),
+    "length_min_mm": Named(N_("Shortest length"), "L_min", "Shortest length L; it depends on the motor."),
+    "length_max_mm": Named(N_("Longest length"), "L_max", "Longest length L; it depends on the motor."),
+    "clamp_bolts": Named(N_("Motor coupling bolt"), "", "Bolts of the motor coupling."),
+    "housing_bolts": Named(N_("Housing bolts"), "", "Bolts of the housing flange."),
+    "note": Named(N_("Note"), "", "What is particular about the size."),
+    "sources": Named(N_("Source"), "", "Where each figure comes from, by field name."),
+}
+
+BOLT: Mapping[str, Named] = {
+    "number_of_bolts": Named(N_("Number of bolts"), "", "Number of bolts."),
+    "bolt_size": Named(N_("Thread"), "", "Thread."),
+    "pitch_diameter_mm": Named(N_("Bolt pitch diameter"), "", "Bolt pitch diameter."),
+    "tightening_torque_Nm": Named(N_("Tightening torque"), "", "Tightening torque."),
+    "source": Named(N_("Source"), "", "Where the figures come from."),
+}
+
+MOTOR: Mapping[str, Named] = {
+    "designation": Named(N_("Motor"), "", "Designation of the motor."),
+    "maximum_speed_rpm": Named(N_("Maximum motor speed"), "n_mot", "Maximum speed."),
+    "rated_speed_rpm": Named(N_("Rated motor speed"), "n_mot,N", "Rated speed."),
+    "rated_torque_Nm": Named(N_("Rated motor torque"), "T_mot,N", "Continuous torque."),
+    "peak_torque_Nm": Named(N_("Peak motor torque"), "T_mot", "Peak torque."),
+    "inertia_kgm2": Named(N_("Inertia of the motor"), "J_m", "Moment of inertia of the rotor."),
+    "source": Named(N_("Source"), "", "Where the figures come from."),
+}
+
+SERIES: Mapping[str, Named] = {
+    "value": Named(N_("Value"), "", "The figure or text."),
+    "unit": Named(N_("Unit"), "", "Its unit."),
+    "source": Named(N_("Source"), "", "Where it comes from."),
+}
+
+ENVELOPE: Mapping[str, Named] = {
+    "load_coefficient": Named(N_("Load coefficient"), "f_w", "Load coefficient f_w."),
+    "radial_N": Named(N_("Radial load"), "F_R", "Radial loads, from the axial to the radial axis."),
+    "axial_N": Named(N_("Axial load"), "F_A", "Axial loads, likewise."),
+}
+
+VERDICTS: Mapping[str, str] = {
+    "suitable": N_("suitable"),
+    "unsuitable": N_("not suitable"),
+    "unrated": N_("not rated"),
+    "pass": N_("passes"),
+    "fail": N_("fails"),
+    "not_rated": N_("not rated"),
+}
+"""Verdicts on candidates and on their checks, in words."""
+
+QUANTITIES: Mapping[str, Named] = {
+    **INPUTS,
+    **{f"motion.{place}": named for place, named in MOTION.items()},
+    **{f"body.{place}": named for place, named in BODY.items()},
+    **{
+        f"{place}.{name}": named
+        for place, table in (
+            ("duty", DUTY),
+            ("candidate", CANDIDATE),
+            ("reserve", RESERVE),
+            ("check", CHECK),
+            ("gear", GEAR),
+            ("bolt", BOLT),
+            ("series", SERIES),
+            ("motor", MOTOR),
+            ("envelope", ENVELOPE),
+        )
+        for name, named in table.items()
+    },
+}
+
+
+def unit_of(place: str) -> str:
+    """Symbol of the unit of a quantity, empty for a pure number or a text."""
+    return symbol_of(place.rpartition(".")[2])

@@ -1,0 +1,270 @@
+"""Who reads a page or a file: the language, the units and the number format that everything is shown in.
+
+The one catalogue of translations behind page and files is compiled in memory when it is first needed.
+"""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from functools import cache
+from gettext import GNUTranslations, NullTranslations
+from io import BytesIO
+from pathlib import Path
+
+from babel import Locale
+from babel.dates import format_date
+from babel.messages.catalog import Catalog
+from babel.messages.mofile import write_mo
+from babel.messages.pofile import read_po
+
+from hpn.words import units
+from hpn.words.source import source_sentence
+from hpn.words.units import Measure
+from hpn.words.wording import Quantity, Sentence, rounded, telling_decimals
+
+FOLDER = Path(__file__).parent / "locale"
+LANGUAGES = ("en", "de")
+"""English is the language of the texts themselves and needs no catalogue."""
+
+LANGUAGE_NAMES = {"en": "English", "de": "Deutsch"}
+"""Each language by its own name."""
+
+GROUP = "\N{NARROW NO-BREAK SPACE}"
+"""Between thousands in English, where a comma would be a decimal mark elsewhere; and before a unit."""
+
+MINUS, NOTHING = "\N{MINUS SIGN}", "–"
+_DATES = {"en": "en_GB", "de": "de_DE"}
+_SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+
+
+@dataclass(frozen=True)
+class Reader:
+    """A language, units for display, and how many significant digits a computed number has: 3 on pages, 4 in files.
+
+    Everything else (API, links, `data-value`) speaks the units of the wire and has every digit.
+    """
+
+    language: str = "en"
+    units: tuple[str, ...] = ()
+    digits: int = 3
+
+    @classmethod
+    def of_marker(cls, marker: str) -> "Reader":
+        """Reader of a `marker`; what is unknown in it counts as English and the units of the wire."""
+        code = marker.partition(".")[0]
+        return cls(code if code in LANGUAGES else "en", units.codes_of(marker))
+
+    @property
+    def marker(self) -> str:
+        """Language and units in one word, such as `de.lb_in`; blank for English in the units of the wire."""
+        return ".".join((*((self.language,) if self.language != "en" else ()), *self.units))
+
+    @property
+    def preset(self) -> str:
+        """Name of the preset that these units are, or blank."""
+        return next((name for name, codes in units.PRESETS.items() if set(codes) == set(self.units)), "")
+
+    @property
+    def decimal(self) -> str:
+        """Decimal mark."""
+        return _marks(self.language)[0]
+
+    @property
+    def group(self) -> str:
+        """Mark between thousands."""
+        return _marks(self.language)[1]
+
+    # --- Texts --------------------------------------------------------------------------------------------------------
+
+    def text(self, english: str) -> str:
+        """A text in the reader's language; an unknown one stays English."""
+        return translations(self.language).gettext(english) if english else ""
+
+    def plural(self, one: str, many: str, number: int) -> str:
+        """A text that depends on a number."""
+        return translations(self.language).ngettext(one, many, number)
+
+    def told(self, sentence: Sentence) -> str:
+        """A sentence in the reader's language and units."""
+        return sentence.render(self.text, self.quantity)
+
+    def source(self, source: str) -> str:
+        """Where a figure of the catalogue or the limit of a check comes from, in short: `table 12.1, p. 12`."""
+        return self.told(source_sentence(source))
+
+    def translated(self, texts: Mapping[str, str]) -> list[tuple[str, str]]:
+        """Options of a choice: codes with their texts."""
+        return [(code, self.text(text)) for code, text in texts.items()]
+
+    def date(self, moment: datetime) -> str:
+        """Day and time in UTC."""
+        return f"{self.day(moment)}, {moment.astimezone(UTC):%H:%M} UTC"
+
+    def day(self, moment: datetime) -> str:
+        """Day in UTC."""
+        return format_date(moment.astimezone(UTC).date(), "long", locale=_DATES[self.language])
+
+    # --- Units --------------------------------------------------------------------------------------------------------
+
+    def measure(self, unit: str) -> Measure:
+        """How a quantity in a unit of the wire, given as suffix or symbol, is shown."""
+        return units.measure(unit, self.units)
+
+    def unit(self, unit: str) -> str:
+        """Symbol of the unit that the reader sees in place of a unit of the wire, given as suffix or symbol."""
+        return self.text(self.measure(unit).symbol)
+
+    def value(self, value: float | None, unit: str) -> float | None:
+        """A number of the wire in the unit that the reader sees."""
+        return None if value is None else self.measure(unit).shown(value)
+
+    # --- Numbers ------------------------------------------------------------------------------------------------------
+
+    def figure(self, value: float | None, unit: str = "") -> str:
+        """A number of the wire in the reader's unit: as printed if it is short, else to `digits`; None is a dash.
+
+        No digit before the decimal mark is lost: with three digits 32.0210136 is `32.0`, 1167275.9 is `1 167 276`.
+        """
+        if value is None:
+            return NOTHING
+        shown = self.measure(unit).shown(value)
+        if _is_extreme(shown):
+            return self._scientific(f"{shown:.{self.digits - 1}e}")
+        short = f"{shown:.12g}"
+        if "e" not in short and len(short.lstrip("-").replace(".", "").lstrip("0")) <= 4:
+            return self.written(short)
+        if abs(shown) >= 10 ** (self.digits - 1):
+            return self.written(f"{shown:.0f}")
+        return self.written(f"{shown:#.{self.digits}g}".rstrip("."))
+
+    def brief(self, value: float | None, unit: str = "", beside: float | None = None) -> str:
+        """A life or a count to three digits, from a million on as `1.17·10⁶`; None is a dash.
+
+        Where these read as the limit `beside` it, which it is not, it has the digits that tell them apart.
+        """
+        if value is None:
+            return NOTHING
+        shown = self.measure(unit).shown(value)
+        short = f"{shown:.2e}"
+        if beside not in (None, value) and float(short) == self.measure(unit).shown(beside):
+            return self.apart(value, beside, unit)
+        return self._scientific(short) if abs(float(short)) >= 1e6 else self.written(f"{float(short):g}")
+
+    def apart(self, value: float, other: float | None, unit: str) -> str:
+        """A number with as many digits as it takes to tell it from another one."""
+        if math.isinf(value):
+            return "∞"
+        number = self.figure(value, unit)
+        is_apart = other is None or math.isinf(other) or number != self.figure(other, unit)
+        return number if is_apart else self.number(Quantity(value, unit, 7))
+
+    def exact(self, value: float | None, unit: str = "") -> str:
+        """An input as it was given, or to six digits in another unit; None is a dash."""
+        if value is None:
+            return NOTHING
+        measure = self.measure(unit)
+        return self.written(f"{value:.12g}" if measure.same else measure.written(value, 6))
+
+    def with_unit(self, number: str, unit: str) -> str:
+        """A number as it is written, and the reader's unit behind it; alone where the unit is blank."""
+        return f"{number}{GROUP}{self.unit(unit)}" if unit and number != NOTHING else number
+
+    def quantity(self, quantity: Quantity) -> str:
+        """A quantity of a sentence, with its unit."""
+        return self.with_unit(self.number(quantity), quantity.unit)
+
+    def number(self, quantity: Quantity) -> str:
+        """The number of a quantity in the reader's unit, which stands elsewhere."""
+        return self.written(
+            rounded(self.measure(quantity.unit).shown(quantity.value), quantity.digits, quantity.rounding)
+        )
+
+    def bound(self, quantity: Quantity) -> str:
+        """The number of a quantity as it was given, for a message beside a field that shows the unit."""
+        return self.exact(quantity.value, quantity.unit)
+
+    def percent(self, share: float | None, allowed: float = 1.0) -> str:
+        """A share as a percentage, with as many digits as it takes to tell it from what is allowed."""
+        return NOTHING if share is None else f"{self._percent(100 * share, allowed)}{GROUP}%"
+
+    def capped_percent(self, share: float | None, allowed: float = 1.0) -> str:
+        """Percentage without its sign, for a narrow cell: beyond tenfold it matters no more by how much."""
+        if share is None:
+            return NOTHING
+        return ">999" if share >= 9.995 else self._percent(100 * share, allowed)
+
+    def _percent(self, value: float, allowed: float) -> str:
+        if value >= 1e7:
+            return self._scientific(f"{value:.{self.digits - 1}e}")
+        least = 1 if 0 < value < 9.95 else self.digits - 3 if value < 1000 else 0
+        return self.written(f"{value:.{telling_decimals(value, 100 * allowed, least)}f}")
+
+    def tick(self, value: float) -> str:
+        """A round number on an axis."""
+        if value == 0 or 1e-3 <= abs(value) < 1e6:
+            return self.written(f"{value:.6g}")
+        mantissa, exponent = f"{value:.3e}".split("e")
+        return self._scientific(f"{float(mantissa):g}e{exponent}")
+
+    def written(self, number: str) -> str:
+        """A number that was rounded already, such as `2e+04` or `-1234.50`, with the reader's marks."""
+        exponent = number.partition("e")[2]
+        if not exponent:
+            return self._marked(number)
+        if -5 <= int(exponent) < 10:
+            return self._marked(f"{float(number):.15f}".rstrip("0").rstrip("."))
+        return self._scientific(number)
+
+    def _scientific(self, number: str) -> str:
+        mantissa, exponent = number.split("e")
+        return f"{self._marked(mantissa)}·10{str(int(exponent)).translate(_SUPERSCRIPT)}"
+
+    def _marked(self, number: str) -> str:
+        decimal, group = _marks(self.language)
+        whole, _, fraction = number.lstrip("+-").partition(".")
+        if not whole.isdigit():  # infinity
+            return number
+        sign = MINUS if number.startswith("-") else ""
+        return sign + f"{int(whole):,}".replace(",", group) + (decimal + fraction if fraction else "")
+
+
+DEFAULT = Reader()
+
+
+def _is_extreme(value: float) -> bool:
+    return abs(value) >= 1e10 or 0 < abs(value) < 1e-4
+
+
+@cache
+def _marks(code: str) -> tuple[str, str]:
+    """Decimal and group mark."""
+    marks = Locale.parse(code).number_symbols["latn"]
+    return marks["decimal"], GROUP if code == "en" else marks["group"]
+
+
+# --- Translations -----------------------------------------------------------------------------------------------------
+
+
+def path_of(code: str) -> Path:
+    """Catalogue of a language."""
+    return FOLDER / code / "LC_MESSAGES/hpn.po"
+
+
+def catalogue(code: str) -> Catalog:
+    """Catalogue of a language as it stands in its file."""
+    with path_of(code).open("rb") as file:
+        return read_po(file, locale=code, domain="hpn")
+
+
+@cache
+def translations(code: str) -> NullTranslations:
+    """Translations of one of LANGUAGES for gettext; raises KeyError for another."""
+    if code not in LANGUAGES:
+        raise KeyError(code)
+    if code == "en":
+        return NullTranslations()
+    compiled = BytesIO()
+    write_mo(compiled, catalogue(code))
+    compiled.seek(0)
+    return GNUTranslations(compiled)

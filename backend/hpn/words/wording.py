@@ -1,0 +1,109 @@
+"""Sentences with numbers in them: an English template, and values that each reader sees in their own units."""
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Literal, Union
+
+from hpn.words.units import N_ as N_
+from hpn.words.units import SYMBOLS
+
+Rounding = Literal["nearest", "down", "up"]
+
+
+@dataclass(frozen=True, slots=True)
+class Quantity:
+    """A number with the suffix of its unit, rounded for reading where it is shown; a blank unit is a pure number.
+
+    A bound that somebody will follow is rounded towards the safe side, in whatever unit it is shown.
+    """
+
+    value: float
+    unit: str
+    digits: int = 3
+    rounding: Rounding = "nearest"
+
+    def __str__(self) -> str:
+        """English, in the unit of the wire; a large number in full, `5830` in place of `5.83e+03`."""
+        number = rounded(self.value, self.digits, self.rounding)
+        if "e+" in number and abs(self.value) < 1e12:
+            number = f"{float(number):.0f}"
+        return f"{number} {SYMBOLS.get(self.unit, '')}".rstrip()
+
+
+def rounded(value: float, digits: int, rounding: Rounding = "nearest") -> str:
+    """A number to so many significant digits; a bound never passes over to the wrong side by its rounding."""
+    text = f"{value:.{digits}g}"
+    if rounding == "nearest" or not math.isfinite(value):
+        return text
+    # What is off by an error of floating point alone is exact: 107 stays 107, up and down.
+    beyond = float(text) > value * (1 + 1e-14) if rounding == "down" else float(text) < value * (1 - 1e-14)
+    if not beyond:
+        return text
+    step = 10.0 ** (math.floor(math.log10(abs(value))) - digits + 1)
+    return f"{float(text) + (step if rounding == 'up' else -step):.{digits}g}"
+
+
+MOST_DECIMALS = 10
+
+
+def telling_decimals(value: float, bound: float, least: int) -> int:
+    """Decimals with which a value, once rounded, still lies on its own side of a bound, `least` at least.
+
+    Within a relative 1e-12 a value is on neither side, as in the checks.
+    """
+    decimals = least
+    if abs(value - bound) <= 1 + _ROOM * abs(bound):  # to round it further away moves it by half at most
+        while decimals < MOST_DECIMALS and _side(round(value, decimals), bound) != _side(value, bound):
+            decimals += 1
+    return decimals
+
+
+def _side(value: float, bound: float) -> int:
+    if abs(value / bound - 1) <= _ROOM:
+        return 0
+    return 1 if value > bound else -1
+
+
+_ROOM = 1e-12
+
+Value = Union[Quantity, str, int, "Sentence"]
+
+
+@dataclass(frozen=True, slots=True)
+class Sentence:
+    """An English template (msgid for translation) and the values in it, among them other sentences.
+
+    `translated` names values that are msgids.
+    """
+
+    template: str
+    values: Mapping[str, Value] = field(default_factory=dict)
+    translated: tuple[str, ...] = ()
+
+    @property
+    def text(self) -> str:
+        """The sentence in English and in the units of the wire."""
+        return self.render(str, str)
+
+    def render(self, translate: Callable[[str], str], show: Callable[[Quantity], str]) -> str:
+        """The sentence in the reader's language and units."""
+        values = {
+            name: show(value)
+            if isinstance(value, Quantity)
+            else value.render(translate, show)
+            if isinstance(value, Sentence)
+            else translate(str(value))
+            if name in self.translated
+            else str(value)
+            for name, value in self.values.items()
+        }
+        return translate(self.template).format(**values)
+
+
+def listed(parts: Sequence[Sentence], template: str = "{first}, {rest}") -> Sentence:
+    """Sentences in a row, one behind the other by a template with `first` and `rest`."""
+    *early, joined = parts
+    for part in reversed(early):
+        joined = Sentence(template, {"first": part, "rest": joined})
+    return joined
