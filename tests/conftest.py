@@ -2,13 +2,14 @@
 
 import os
 import shutil
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
 from hypothesis import HealthCheck, settings
 
 from hpn.catalogue import HANDBOOK_FOLDER, Catalogue, load_catalogue
+from tests import last_bits
 
 # Two shared cores: no deadline per example, and as many examples as fit a test run of every commit. The long form draws
 # more and others each time, so that it finds what no run before has met.
@@ -46,6 +47,16 @@ def _forget_the_settings_of_the_machine() -> None:
     for name in list(os.environ):
         if name.upper().startswith("HPN_") and not name.startswith("HPN_TEST_"):
             del os.environ[name]
+
+
+@pytest.fixture(scope="session", autouse=True)
+def other_processor() -> Iterator[None]:
+    """numpy's functions with other last bits, where `HPN_TEST_LAST_BITS` asks for them."""
+    way = os.environ.get("HPN_TEST_LAST_BITS")
+    with pytest.MonkeyPatch.context() as patch:
+        if way:
+            last_bits.moved(patch, last_bits.way_of(way))
+        yield
 
 
 def pytest_report_header(config: pytest.Config) -> str:

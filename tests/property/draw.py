@@ -197,6 +197,12 @@ def _of(mechanism: st.SearchStrategy[Json], moves: st.SearchStrategy[Json], **mo
     return st.fixed_dictionaries({"mechanism": mechanism, "moves": listed, **more})
 
 
+def _weighted(mechanism: Json, gravity: Json) -> Json:
+    """A mechanism with a mass off its axis, whose own moment of inertia counts in the whole."""
+    own = gravity["gravity_mass_kg"] * (gravity["gravity_radius_mm"] / 1000) ** 2
+    return mechanism | gravity | {"inertia_kgm2": mechanism["inertia_kgm2"] + own}
+
+
 def rotary_motions() -> st.SearchStrategy[Json]:
     """A possible motion of a mass that turns, with and without gravity."""
     common = {
@@ -207,7 +213,7 @@ def rotary_motions() -> st.SearchStrategy[Json]:
     }
     plain = st.fixed_dictionaries({"type": st.just("rotary"), "inertia_kgm2": st.floats(0.01, 5)}, optional=common)
     gravity = {"gravity_mass_kg": st.floats(0.5, 20), "gravity_radius_mm": st.floats(10, 400)}
-    heavy = st.builds(lambda one, other: one | other, plain, st.fixed_dictionaries(gravity))
+    heavy = st.builds(_weighted, plain, st.fixed_dictionaries(gravity))
     moves = _moves("angle_deg", "speed_rpm", 6.0, "acceleration_deg_per_s2", "external_torque_Nm")
     return _of(plain | heavy, moves, start_deg=st.sampled_from([0, 90, -90, 180]) | st.floats(-400, 400))
 

@@ -209,7 +209,10 @@ def test_status_utilisation_governing_check_and_rank_fit_together(application: J
             assert (gear["utilisation"], gear["governing_check"]) == (None, None)
         else:
             governing = next(check for check in gear["checks"] if check["code"] == gear["governing_check"])
-            assert governing["utilisation"] == gear["utilisation"]
+            if gear["utilisation"] is None:
+                assert governing["utilisation"] is None
+            else:
+                assert governing["utilisation"] >= gear["utilisation"] * (1 - 1e-12)  # the first of those that tie
             assert expected == "suitable" or governing["status"] == "fail"
         assert gear["reason"]
     ranks = [gear["rank"] for gear in reply["candidates"]]

@@ -19,8 +19,10 @@ def mechanism_at_random(chance: random.Random) -> Json:
     wide = [extreme(chance, 1e-12, 1e12) for _ in range(6)]
     if chance.random() < 0.6:
         mechanism: Json = {"type": "rotary", "inertia_kgm2": wide[0]}
-        if chance.random() < 0.5:
-            mechanism |= {"gravity_mass_kg": wide[1], "gravity_radius_mm": wide[2]}
+        own = wide[1] * (wide[2] / 1000) ** 2
+        if chance.random() < 0.5 and own <= 1e12:
+            inertia = max(wide[0], own)
+            mechanism |= {"gravity_mass_kg": wide[1], "gravity_radius_mm": wide[2], "inertia_kgm2": inertia}
         if chance.random() < 0.5:
             mechanism |= {"friction_torque_Nm": min(wide[3], 1e6), "viscous_friction_Nm_per_rpm": min(wide[4], 1e6)}
     else:

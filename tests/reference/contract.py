@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -16,6 +16,18 @@ from tests.reference import handbook as book
 
 ROOM = 1e-12
 INFINITE = math.inf
+
+
+@dataclass(frozen=True)
+class Arithmetic:
+    """Numbers to compute with: how a figure becomes one, their sum, and the largest whole number below one."""
+
+    number: Callable[[Any], Any] = float
+    total: Callable[[Iterable[Any]], Any] = math.fsum
+    floor: Callable[[Any], int] = math.floor
+
+
+FLOATS = Arithmetic()
 
 
 @dataclass
@@ -99,8 +111,11 @@ def printed_gears() -> list[Gear]:
     return gears
 
 
-def answer(application: Mapping[str, Any], gears: Sequence[Gear]) -> Answer:
-    """Everything that the contract fixes of a reply, in its order."""
+def answer(application: Mapping[str, Any], gears: Sequence[Gear], by: Arithmetic = FLOATS) -> Answer:
+    """Everything that the contract fixes of a reply, in its order.
+
+    With another arithmetic than floats, application and gears have to be of its numbers.
+    """
     wishes = application.get("requirements", {})
     chosen = [
         gear
@@ -108,7 +123,7 @@ def answer(application: Mapping[str, Any], gears: Sequence[Gear]) -> Answer:
         if (not wishes.get("sizes") or gear.size in wishes["sizes"])
         and (not wishes.get("ratios") or gear.ratio in wishes["ratios"])
     ]
-    duty = _duty(application["duty_cycle"])
+    duty = _duty(application["duty_cycle"], by)
     result = Answer(
         {
             "average_torque_Nm": duty.T_av,
@@ -117,7 +132,7 @@ def answer(application: Mapping[str, Any], gears: Sequence[Gear]) -> Answer:
             "maximum_output_speed_rpm": duty.n_max,
         }
     )
-    judged = [_judge(application, wishes, duty, gear) for gear in chosen]
+    judged = [_judge(application, wishes, duty, gear, by) for gear in chosen]
     result.candidates = _ordered(judged, application.get("rank_by", "weight"))
     return result
 
@@ -131,34 +146,37 @@ class _Duty:
     T_rms: float
 
 
-def _duty(cycle: Mapping[str, Any]) -> _Duty:
+def _duty(cycle: Mapping[str, Any], by: Arithmetic) -> _Duty:
     phases, pause = cycle["phases"], cycle.get("pause_s", 0)
     T_max = max(_peak(p, "torque_Nm") for p in phases)
-    way = math.fsum(abs(p["speed_rpm"]) * p["duration_s"] for p in phases)
-    time = math.fsum(p["duration_s"] for p in phases) + pause
-    T_av = T_rms = 0.0
+    way = by.total(abs(p["speed_rpm"]) * p["duration_s"] for p in phases)
+    time = by.total(p["duration_s"] for p in phases) + pause
+    T_av = T_rms = by.number(0)
     if T_max > 0:
         shares = [
             (abs(p["speed_rpm"]) * p["duration_s"] / way, abs(p["torque_Nm"]) / T_max, p["duration_s"] / time)
             for p in phases
         ]
-        T_av = T_max * math.fsum(w * r ** (10 / 3) for w, r, _ in shares) ** 0.3
+        T_av = T_max * by.total(w * r ** (by.number(10) / 3) for w, r, _ in shares) ** (by.number(3) / 10)
         squares = [(_own(p, "rms_torque_Nm", "torque_Nm") / T_max) ** 2 for p in phases]
-        T_rms = T_max * math.sqrt(math.fsum(s * r for (_, _, s), r in zip(shares, squares, strict=True)))
+        T_rms = T_max * by.total(s * r for (_, _, s), r in zip(shares, squares, strict=True)) ** (by.number(1) / 2)
     return _Duty(T_av, way / time, T_max, max(_peak(p, "speed_rpm") for p in phases), T_rms)
 
 
 def _own(phase: Mapping[str, Any], name: str, steady: str) -> float:
     """A figure of a phase that varies; of a steady one the magnitude of its torque or speed."""
-    return abs(phase[steady]) if phase.get(name) is None else float(phase[name])
+    own: float = abs(phase[steady]) if phase.get(name) is None else phase[name]
+    return own
 
 
 def _peak(phase: Mapping[str, Any], name: str) -> float:
     return _own(phase, f"peak_{name}", name)
 
 
-def _judge(application: Mapping[str, Any], wishes: Mapping[str, Any], duty: _Duty, gear: Gear) -> Candidate:
-    u = wishes.get("utilisation", 1.0)
+def _judge(
+    application: Mapping[str, Any], wishes: Mapping[str, Any], duty: _Duty, gear: Gear, by: Arithmetic
+) -> Candidate:
+    u = wishes.get("utilisation", by.number(1))
     checks: list[Check] = []
 
     def compare(code: str, demand: float | None, limit: float | None, used: float | None, bound: float) -> None:
@@ -177,7 +195,7 @@ def _judge(application: Mapping[str, Any], wishes: Mapping[str, Any], duty: _Dut
     if gear.T_N is not None:
         life = INFINITE
         if duty.T_av > 0:
-            life = 20000 * (book.RATED_INPUT_SPEED_RPM / n_in_av) * (gear.T_N / duty.T_av) ** (10 / 3)
+            life = 20000 * (book.RATED_INPUT_SPEED_RPM / n_in_av) * (gear.T_N / duty.T_av) ** (by.number(10) / 3)
     at_most("average_torque", duty.T_av, gear.T_N)
     at_most("repeated_peak_torque", duty.T_max, gear.T_R)
 
@@ -189,7 +207,7 @@ def _judge(application: Mapping[str, Any], wishes: Mapping[str, Any], duty: _Dut
         if gear.T_R is not None:
             allowed = INFINITE
             if T_k > gear.T_R:
-                allowed = math.floor(10 ** max(8.5 - 1.5 * T_k / gear.T_R, -300) * (1 + ROOM))
+                allowed = by.floor(by.number(10) ** max(8.5 - 1.5 * T_k / gear.T_R, -300) * (1 + ROOM))
         if stop.get("count") is not None:
             used = None if allowed is None else INFINITE if allowed == 0 else stop["count"] / allowed
             compare("momentary_peak_count", stop["count"], allowed, used, u)
@@ -199,7 +217,7 @@ def _judge(application: Mapping[str, Any], wishes: Mapping[str, Any], duty: _Dut
     if wishes.get("life_h") is not None:
         at_least("life", life, wishes["life_h"])
 
-    bearing_life = _bearing(application, duty, gear, at_most)
+    bearing_life = _bearing(application, duty, gear, at_most, by)
 
     loss = gear.ratio * (wishes.get("efficiency") or 1.0)
     motor = wishes.get("motor") or {}
@@ -251,7 +269,7 @@ def _judge(application: Mapping[str, Any], wishes: Mapping[str, Any], duty: _Dut
     return result
 
 
-def _bearing(application: Mapping[str, Any], duty: _Duty, gear: Gear, at_most: Any) -> float | None:
+def _bearing(application: Mapping[str, Any], duty: _Duty, gear: Gear, at_most: Any, by: Arithmetic) -> float | None:
     """Both checks of the output bearing; its life L50."""
     phases = application["duty_cycle"]["phases"]
     given = application.get("output_load")
@@ -259,7 +277,7 @@ def _bearing(application: Mapping[str, Any], duty: _Duty, gear: Gear, at_most: A
     if given is None and not own:
         return None
     given = given or {}
-    f_w = given.get("load_coefficient", 1.0)
+    f_w = given.get("load_coefficient", by.number(1))
     loads = [
         tuple(
             abs(p[key] if p.get(key) is not None else given[key] if given.get(key) is not None else 0.0)
@@ -269,14 +287,14 @@ def _bearing(application: Mapping[str, Any], duty: _Duty, gear: Gear, at_most: A
     ]
     P = [_equivalent(given.get("model", "linear"), F_R, F_A, gear) for F_R, F_A in loads]
     required = given.get("life_h", 20000) * (5 if given.get("life_basis") == "L10" else 1)
-    k = (100 * 20000 / (duty.n_av * required)) ** (1 / 3)
+    k = (100 * 20000 / (duty.n_av * required)) ** (by.number(1) / 3)
     known = [p for p in P if p is not None]
     if len(known) < len(P):
         at_most("output_bearing_load", None, 1.0)
         at_most("output_bearing_life", None, k)
         return None
     weights = [abs(p["speed_rpm"]) * p["duration_s"] for p in phases]
-    mean = (math.fsum(w * p**3 for w, p in zip(weights, known, strict=True)) / math.fsum(weights)) ** (1 / 3)
+    mean = (by.total(w * p**3 for w, p in zip(weights, known, strict=True)) / by.total(weights)) ** (by.number(1) / 3)
     at_most("output_bearing_load", f_w * max(known), 1.0)
     at_most("output_bearing_life", f_w * mean, k)
     return 20000 * (100 / duty.n_av) / (f_w * mean) ** 3 if mean > 0 else INFINITE
@@ -288,7 +306,7 @@ def _equivalent(model: str, F_R: float, F_A: float, gear: Gear) -> float | None:
     if gear.F_R is None or gear.F_A is None:
         return None
     r, a = F_R / gear.F_R, F_A / gear.F_A
-    return r + a if model == "linear" else max(r, 0.56 * r + a)
+    return r + a if model == "linear" else max(r, r * 56 / 100 + a)
 
 
 def _along_curve(curve: Sequence[tuple[float, float]], F_R: float, F_A: float) -> float:
@@ -314,12 +332,21 @@ def _conclude(result: Candidate, load_checks: int) -> None:
         return
     else:
         result.status = "suitable"
-    for place, check in enumerate(result.checks):
-        counts = place < load_checks or check.status == "fail"
-        if not counts or check.utilisation is None:
-            continue
-        if result.utilisation is None or check.utilisation > result.utilisation:  # a tie stays with the first
-            result.utilisation, result.governing = check.utilisation, check.code
+    counting = [check for place, check in enumerate(result.checks) if place < load_checks or check.status == "fail"]
+    used = [(check.utilisation, check.code) for check in counting if check.utilisation is not None]
+    result.utilisation = max(utilisation for utilisation, _ in used)
+    result.governing = next(code for utilisation, code in used if utilisation >= result.utilisation * (1 - ROOM))
+
+
+def _places(values: Sequence[float]) -> list[int]:
+    """Places in ascending order; sorted neighbours that differ by less than 1e-12 of themselves share one."""
+    places, place, before = [0] * len(values), 0, None
+    for index in sorted(range(len(values)), key=values.__getitem__):
+        value = values[index]
+        if before is not None and value != before and not value - before < ROOM * abs(value) < INFINITE:
+            place += 1
+        places[index], before = place, value
+    return places
 
 
 def _ordered(candidates: list[Candidate], rank_by: str) -> list[Candidate]:
@@ -339,8 +366,12 @@ def _ordered(candidates: list[Candidate], rank_by: str) -> list[Candidate]:
             "stiffness": last(c.gear.K3, -1),
         }[rank_by]
 
-    good = sorted((c for c in candidates if c.status == "suitable"), key=lambda c: (wish(c), *ties(c)))
-    bad = sorted((c for c in candidates if c.status == "unsuitable"), key=lambda c: (last(c.utilisation), *ties(c)))
+    def ordered(status: str, first: Callable[[Candidate], float]) -> list[Candidate]:
+        some = [c for c in candidates if c.status == status]
+        keys = zip(*map(_places, zip(*[(first(c), *ties(c)) for c in some], strict=True)), strict=True)
+        return [c for _, _, c in sorted(zip(keys, itertools.count(), some, strict=False), key=lambda entry: entry[:2])]
+
+    good, bad = ordered("suitable", wish), ordered("unsuitable", lambda c: last(c.utilisation))
     for place, c in enumerate(good):
         c.rank = place + 1
     return good + bad + [c for c in candidates if c.status == "unrated"]

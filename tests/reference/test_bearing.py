@@ -14,6 +14,8 @@ from tests.reference import handbook
 
 SIZES = tuple(handbook.DYNAMIC_RADIAL_LOAD_N)
 MODELS = ("linear", "iso281")
+ROUNDING = 1e-12
+"""Cube roots come out otherwise in their last bit on other processors."""
 
 # Rows of ISO 281's table of factors for deep groove ball bearings, X = 0.56: f0 Fa/C0, e, Y.
 ISO_281 = (
@@ -63,11 +65,11 @@ def test_a_published_limit_alone_uses_the_bearing_fully_and_gives_the_published_
         load = {direction: limit, "model": model}
         reply = answer(cycle(phase(1, 100), output_load=load, requirements={"sizes": [size]}), catalogue)
         for gear in reply["candidates"]:
-            assert gear["bearing_life_L50_h"] == handbook.BEARING_REFERENCE_LIFE_H
-            assert gear["bearing_life_L10_h"] == handbook.BEARING_REFERENCE_LIFE_H / 5
+            assert gear["bearing_life_L50_h"] == pytest.approx(handbook.BEARING_REFERENCE_LIFE_H, rel=ROUNDING)
+            assert gear["bearing_life_L10_h"] == pytest.approx(handbook.BEARING_REFERENCE_LIFE_H / 5, rel=ROUNDING)
             for code in ("output_bearing_load", "output_bearing_life"):
                 found = check(reply, gear["designation"], code)
-                assert (found["demand"], found["limit"], found["utilisation"]) == (1, 1, 1)
+                assert (found["demand"], found["limit"], found["utilisation"]) == pytest.approx((1, 1, 1), rel=ROUNDING)
                 assert found["status"] == "pass"
 
 

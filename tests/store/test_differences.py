@@ -136,3 +136,27 @@ def test_a_pointer_is_escaped_as_the_standard_says() -> None:
     (difference,) = differences({"a/b~c": 1}, {"a/b~c": 2})
 
     assert difference.pointer == "/a~1b~0c"
+
+
+def test_a_zero_beside_larger_numbers_of_its_list_is_no_difference(reply: Json) -> None:
+    before, after = changed(reply), changed(reply)
+    before["duty"]["phases"] = [{"torque_Nm": 46.2}, {"torque_Nm": -1.1e-16}]
+    after["duty"]["phases"] = [{"torque_Nm": 46.2}, {"torque_Nm": 0.0}]
+
+    assert differences(before, after) == []
+    after["duty"]["phases"][1]["torque_Nm"] = 1e-9
+    assert [one.pointer for one in differences(before, after)] == ["/duty/phases/1/torque_Nm"]
+
+
+def test_a_verdict_that_differs_though_no_figure_does_is_the_tie_rules(reply: Json) -> None:
+    today = changed(reply)
+    first, second = today["candidates"][:2]
+    first["rank"], second["rank"] = second["rank"], first["rank"]
+    today["selected"] = second["designation"]
+
+    found = differences(reply, today)
+
+    assert {one.field for one in found} == {"selected", "rank"}
+    assert {one.cause for one in found} == {"tie_rule"}
+    today["duty"]["average_torque_Nm"] *= 1.01
+    assert {one.cause for one in differences(reply, today)} == {None}

@@ -133,7 +133,8 @@ def test_a_tie_for_governing_goes_to_the_first_check(catalogue: Catalogue) -> No
     reply = answer(cycle(phase(80, 600), requirements=ONLY), catalogue)
 
     used = {c["code"]: c["utilisation"] for c in candidate(reply, GEAR)["checks"]}
-    assert used["average_torque"] == used["average_input_speed"] == 1
+    assert used["average_torque"] == pytest.approx(1, rel=1e-12)  # by a power, which processors round differently
+    assert used["average_input_speed"] == 1
     assert candidate(reply, GEAR)["governing_check"] == "average_torque"
 
 

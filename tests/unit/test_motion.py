@@ -7,6 +7,7 @@ import pytest
 
 from hpn.application import Application
 from hpn.catalogue import Catalogue
+from hpn.physics.motion.mechanisms import GRAVITY
 from hpn.words.fields import MAXIMUM_PHASES
 from tests.build import Json, answer, check, notices, phase
 from tests.unit.test_application import refused
@@ -127,7 +128,7 @@ def test_a_thousand_moves_are_accepted_and_one_more_is_not() -> None:
 
 def test_the_phases_that_come_out_are_no_more_than_may_be_typed() -> None:
     """Two of a turn change their sign: a pendulum that nothing else moves."""
-    swing = TABLE | {"inertia_kgm2": 1e-3, "gravity_mass_kg": 1.0, "gravity_radius_mm": 100.0}
+    swing = TABLE | {"inertia_kgm2": 1e-2, "gravity_mass_kg": 1.0, "gravity_radius_mm": 100.0}
     move = {"profile": "trapezoidal", "angle_deg": 360.0 * 1500, "time_s": 1000}
     errors = refused(motion(move, move, mechanism=swing))
     assert "720000" in errors["duty_cycle", "motion", "moves"]
@@ -197,3 +198,35 @@ def test_an_application_with_a_motion_survives_its_own_json() -> None:
     application = Application.model_validate(motion(TURN, {"profile": "dwell", "time_s": 1}, start_deg=30))
     assert Application.model_validate_json(application.model_dump_json()) == application
     assert hash(application)
+
+
+@pytest.mark.parametrize("incline_deg", [30.0, -30.0, 17.0])
+def test_a_weight_that_its_counterweight_holds_takes_no_torque(incline_deg: float) -> None:
+    weight_N = 100.0 * GRAVITY * math.sin(math.radians(incline_deg))
+    dwell = {"profile": "dwell", "time_s": 0.5, "external_force_N": -weight_N}
+    way = {"profile": "trapezoidal", "distance_mm": 100.0, "time_s": 0.5, "external_force_N": -weight_N}
+
+    _, run, _, rest = phases_of(motion(way, dwell, mechanism=SCREW | {"incline_deg": incline_deg}))
+
+    assert [str(phase.torque_Nm) for phase in (run, rest)] == ["0.0", "0.0"]  # neither -0.0 nor a rounding error
+    assert [phase.peak_torque_Nm for phase in (run, rest)] == [0.0, 0.0]
+
+
+def test_a_ramp_that_friction_alone_brakes_takes_no_torque() -> None:
+    braking = {"profile": "trapezoidal", "angle_deg": 90.0, "time_s": 0.9}
+    peak = math.radians(90 / 0.6)
+    table = TABLE | {"friction_torque_Nm": peak / 0.3}
+
+    _, _, brake = phases_of(motion(braking, mechanism=table))
+
+    assert str(brake.torque_Nm) == "0.0"
+
+
+def test_an_inertia_below_that_of_the_gravity_mass_is_refused_with_the_bound() -> None:
+    heavy = TABLE | {"gravity_mass_kg": 12.0, "gravity_radius_mm": 250.0}
+
+    ((place, said),) = refused(motion(TURN, mechanism=heavy | {"inertia_kgm2": 0.7})).items()
+
+    assert place == ("duty_cycle", "motion", "mechanism", "inertia_kgm2")
+    assert "at least 0.75 kg" in said
+    assert phases_of(motion(TURN, mechanism=heavy | {"inertia_kgm2": 0.75}))

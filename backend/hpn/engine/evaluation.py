@@ -14,7 +14,7 @@ from hpn.engine.check import Case, Check, Values
 from hpn.engine.checks import CHECKS
 from hpn.engine.duty import Duty
 from hpn.engine.figures import Figures
-from hpn.physics.equations import ROUNDING, FloatArray
+from hpn.physics.equations import ROUNDING, FloatArray, tied
 
 BoolArray = NDArray[np.bool_]
 PlaceArray = NDArray[np.intp]
@@ -90,14 +90,15 @@ class Evaluation:
 
     @cached_property
     def governing(self) -> PlaceArray:
-        """Place in `checked` of the check that makes the utilisation of a gear, shape (N, G); of a tie, the first."""
+        """Place in `checked` of the first check that reaches a gear's utilisation within ROUNDING, shape (N, G)."""
         return self.governing_of(np.broadcast_to(np.arange(self.verdict.shape[1]), self.verdict.shape))
 
     def governing_of(self, gears: PlaceArray) -> PlaceArray:
         """The same for some gears of each application, by their places (N, any number)."""
         used, place = np.take_along_axis(self.utilisation, gears, -1), np.zeros(gears.shape, np.intp)
+        reached = used * (1 - ROUNDING)
         for index, one in reversed(tuple(enumerate(self.checked))):
-            place[np.take_along_axis(_counted(one), gears, -1) == used] = index
+            place[np.take_along_axis(_counted(one), gears, -1) >= reached] = index
         return place
 
     @cached_property
@@ -106,13 +107,14 @@ class Evaluation:
 
         Suitable gears come first by `rank_by`, then unsuitable ones by ascending utilisation, then unrated ones in the
         order of the catalogue. Ties fall to weight, utilisation, life and ratio, and last to the order of the
-        catalogue; what is not published comes last, since numpy sorts NaN behind every number.
+        catalogue; what is not published comes last.
         """
-        places = np.arange(self.verdict.shape[1], dtype=np.float64)
-        rejected = np.where(self.verdict == UNSUITABLE, self.utilisation, places)
-        wish = np.where(self.verdict == SUITABLE, self._wish, rejected)
-        keys = [np.broadcast_to(key, self.verdict.shape) for key in (self.verdict, wish, *self._ties)]
-        return np.lexsort(keys[::-1], axis=-1)  # the last key decides first
+        shape = self.verdict.shape
+        places = np.arange(shape[1], dtype=np.float64)
+        weight, used, life, ratio = (np.broadcast_to(key, shape) for key in self._ties)
+        wish, used, life = tied(np.stack((np.broadcast_to(self._wish, shape), used, life)))
+        wish = np.where(self.verdict == SUITABLE, wish, np.where(self.verdict == UNSUITABLE, used, places))
+        return np.lexsort((ratio, life, used, weight, wish, self.verdict), axis=-1)  # the last key decides first
 
     def foremost(self, among: BoolArray) -> PlaceArray:
         """Place of the first gear by that order out of some of the suitable ones (N, G); any where there is none.
@@ -126,7 +128,7 @@ class Evaluation:
                 break
             values = np.where(left & ~np.isnan(key), key, np.inf)
             least = np.take_along_axis(values, values.argmin(axis=-1, keepdims=True), -1)
-            left = left & (values == least)
+            left = left & (values <= least * (1 + np.copysign(ROUNDING, least)))
         places: PlaceArray = left.argmax(axis=-1)  # of a tie in all of them the first in the catalogue
         return places
 

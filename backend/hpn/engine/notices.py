@@ -188,7 +188,7 @@ def _is_unlimited(figure: FloatArray, index: int) -> bool:
 def _on_stop_and_life(evaluation: Evaluation, index: int) -> Iterable[Notice]:
     figures, duty = evaluation.case.figures, evaluation.case.duty
     stop, largest = duty.emergency_stop_torque_Nm.item(index), duty.maximum_torque_Nm.item(index)
-    if stop < largest:
+    if stop < largest * (1 - ROUNDING):
         yield notice("emergency_stop_below_maximum", stop_Nm=stop, largest_Nm=largest)
     if _is_unlimited(figures.momentary_peak_count, index):
         yield notice("momentary_peak_count_unlimited")

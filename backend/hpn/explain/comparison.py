@@ -167,12 +167,12 @@ def _row(
 ) -> Row:
     """Row of what `read` finds in every column; without `lowest` no column is better than another."""
     values = tuple(map(read, columns))
-    numbers = [value for value in values if isinstance(value, float | int)]
-    best: frozenset[int] = frozenset()
-    if lowest is not None and len(numbers) > 1 and min(numbers) < max(numbers):
-        first = min(numbers) if lowest else max(numbers)
-        best = frozenset(place for place, value in enumerate(values) if value == first)
-    return Row(code, title, symbol, unit, kind, values, best, any(value != values[0] for value in values))
+    numbers = np.array([value if isinstance(value, float | int) else np.nan for value in values])
+    known = ~np.isnan(numbers)
+    places = equations.tied(numbers if lowest else -numbers)
+    is_ahead = (places == 0) & known & (lowest is not None and np.unique(places[known]).size > 1)
+    differs = np.unique(places).size > 1 if known.all() else any(value != values[0] for value in values)
+    return Row(code, title, symbol, unit, kind, values, frozenset(np.flatnonzero(is_ahead).tolist()), differs)
 
 
 def _housing_bolts(column: Column) -> Sentence | None:
@@ -211,7 +211,8 @@ def undominated(candidates: Sequence[Candidate], catalogue: Catalogue) -> frozen
     suitable = [candidate for candidate in candidates if candidate.status == "suitable"]
     if not suitable:
         return frozenset()
-    table = np.array([_costs(candidate, catalogue.by_designation[candidate.designation]) for candidate in suitable])
+    costs = np.array([_costs(candidate, catalogue.by_designation[candidate.designation]) for candidate in suitable])
+    table = equations.tied(costs.T).T
     nowhere_worse = (table[:, None] <= table[None]).all(axis=2)
     outdone = np.any(nowhere_worse & (table[:, None] < table[None]).any(axis=2), axis=0)
     return frozenset(suitable[place].designation for place in np.flatnonzero(~outdone).tolist())

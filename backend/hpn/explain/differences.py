@@ -4,6 +4,7 @@ import math
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, fields
+from itertools import chain
 from typing import Annotated, Any, Literal
 
 from msgspec import Meta, Struct, structs
@@ -23,7 +24,7 @@ NOT_COMPARED = ("engine_version", "catalogue_version", "values")
 """The versions themselves, and the values of a notice, which its text shows."""
 
 TOLERANCE = 1e-12
-"""Relative; the same calculation on another processor may differ by less."""
+"""Relative, in a list to its largest value; the same calculation on another processor may differ by less."""
 
 Name = tuple[str, ...]
 Change = Literal["changed", "added", "removed"]
@@ -51,6 +52,13 @@ class Difference(Struct, frozen=True):
     field: Annotated[str, Meta(description="Name of the field.")]
     saved: Annotated[Any, Meta(description="Value as saved.")]
     today: Annotated[Any, Meta(description="Value today.")]
+    cause: Annotated[
+        Literal["tie_rule"] | None,
+        Meta(
+            description="Why a verdict differs though no figure does: gears or checks tie, and an earlier version let "
+            "the last bit of a number decide."
+        ),
+    ] = None
 
 
 @dataclass(slots=True)
@@ -95,27 +103,48 @@ def differences(saved: Selection | Mapping[str, Any], today: Selection | Mapping
     before, after = _Fields(), _Fields()
     before.add(saved)
     after.add(today)
+    largest = _largest_of_lists(before, after)
     found = [
         _difference(name, before.values.get(name), after.values.get(name))
         for name in before.values | after.values
-        if _differs(name, before, after)
+        if _differs(name, before, after, largest)
     ]
+    if not any(one.kind == "figure" or one.field == "status" for one in found):
+        found = [structs.replace(one, cause="tie_rule") if one.kind == "verdict" else one for one in found]
     return sorted(found, key=_weight)
 
 
-def _differs(name: Name, before: _Fields, after: _Fields) -> bool:
+def _list_of(name: Name) -> Name:
+    """Name of a field of a numbered item without its number: the same of all items."""
+    return tuple("" if part.isdecimal() else part for part in name)
+
+
+def _largest_of_lists(*replies: _Fields) -> dict[Name, float]:
+    """Largest magnitude of each field of numbered items, such as the torque of phases."""
+    largest: dict[Name, float] = {}
+    for name, (_, value) in chain.from_iterable(reply.values.items() for reply in replies):
+        if _is_number(value) and (one := _list_of(name)) != name:
+            largest[one] = max(largest.get(one, 0.0), abs(value))
+    return largest
+
+
+def _differs(name: Name, before: _Fields, after: _Fields, largest: Mapping[Name, float]) -> bool:
     old, new = before.values.get(name), after.values.get(name)
     if old is not None and new is not None:
-        return not _same(old[1], new[1])
+        return not _same(old[1], new[1], TOLERANCE * largest.get(_list_of(name), 0.0))
     lacking = before.items if old is None else after.items
     items = (name[:length] for length in range(2, len(name)) if name[length - 2] in BRIEFLY)
     alone = next((item for item in items if item not in lacking), None)
     return alone is None or name == (*alone, BRIEFLY[alone[-2]])
 
 
-def _same(saved: Any, today: Any) -> bool:
-    numbers = all(isinstance(value, int | float) and not isinstance(value, bool) for value in (saved, today))
-    return bool(saved == today or (numbers and math.isclose(saved, today, rel_tol=TOLERANCE)))
+def _is_number(value: Any) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool)
+
+
+def _same(saved: Any, today: Any, room: float) -> bool:
+    numbers = _is_number(saved) and _is_number(today)
+    return bool(saved == today or (numbers and math.isclose(saved, today, rel_tol=TOLERANCE, abs_tol=room)))
 
 
 def _difference(name: Name, old: tuple[str, Any] | None, new: tuple[str, Any] | None) -> Difference:

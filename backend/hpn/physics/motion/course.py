@@ -145,5 +145,5 @@ def _weighed(
     damages[coarse] = halved_integral(damage, pieces.at(coarse), damages[coarse], whole[coarse])
     damages *= power_ten_thirds(factor)
     with np.errstate(all="ignore"):
-        mean: FloatArray = (np.add.reduceat(damages, starts) / np.abs(angle)) ** 0.3 * largest / peak
+        mean: FloatArray = np.power(np.add.reduceat(damages, starts) / np.abs(angle), 0.3) * largest / peak
     return np.nan_to_num(mean)

@@ -7,8 +7,10 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
+from hpn.physics.equations import ROUNDING
 from hpn.physics.motion.refusals import refusal
 from hpn.words.fields import Model, Number, Positive, Share, TorqueMagnitude, refused
+from hpn.words.wording import Quantity
 
 GRAVITY = 9.80665
 """Standard acceleration of gravity in m/s²."""
@@ -96,6 +98,10 @@ class Rotary(Mechanism):
         if len(given) == 1:
             other = "gravity_radius_mm" if given == ["gravity_mass_kg"] else "gravity_mass_kg"
             raise refused(self, ((given[0],), refusal("gravity_needs", field=other)))
+        least = (self.gravity_mass_kg or 0.0) * ((self.gravity_radius_mm or 0.0) / 1000) ** 2
+        if self.inertia_kgm2 < least * (1 - ROUNDING):
+            bound = str(Quantity(least, "kgm2", 6, "up"))
+            raise refused(self, (("inertia_kgm2",), refusal("gravity_inertia", bound=bound)))
         return self
 
     @property

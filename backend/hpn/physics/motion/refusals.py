@@ -16,6 +16,7 @@ REFUSALS: Mapping[str, str] = {
     "move_too_slow": N_("must be above {bound}, the way over the time; from {triangle} on the move is a triangle"),
     "move_too_gentle": N_("must be at least {bound} to cover the way in this time"),
     "gravity_needs": N_("gravity needs {field} as well"),
+    "gravity_inertia": N_("includes the gravity mass and must be at least {bound}, its mass times its radius squared"),
     "no_move": N_("no move moves: give at least one a profile other than dwell"),
     "motion_torque": N_("the torque at the gear reaches {found} in this move; it may be {bound} at most"),
     "motion_speed": N_("the speed of the gear reaches {found} in this move; it may be {bound} at most"),

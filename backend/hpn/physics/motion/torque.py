@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from hpn.physics.equations import FloatArray
+from hpn.physics.equations import ROUNDING, FloatArray, total
 from hpn.physics.motion.pieces import Pieces, PlaceArray
 
 Function = Callable[[Pieces, FloatArray], FloatArray]
@@ -19,11 +19,15 @@ class Torque:
     gravity_Nm: float
 
     def at(self, p: Pieces, t: FloatArray) -> FloatArray:
-        """Torque in Nm."""
-        turning = p.inertia_kgm2 * p.acceleration_at(t) + p.held_Nm
+        """Torque in Nm; 0 where it is below ROUNDING of its largest term, so that no rounding error has a sign."""
+        turning, held = p.inertia_kgm2 * p.acceleration_at(t), p.held_Nm
+        torque, largest = turning + held, np.maximum(np.abs(turning), np.abs(held))
         if self.viscous_Nms:
-            turning = turning + self.viscous_Nms * p.speed_at(t)
-        return turning + self.gravity_Nm * p.cosine_at(t) if self.gravity_Nm else turning
+            rubbing = self.viscous_Nms * p.speed_at(t)
+            torque, largest = torque + rubbing, np.maximum(largest, np.abs(rubbing))
+        if self.gravity_Nm:
+            torque, largest = torque + self.gravity_Nm * p.cosine_at(t), np.maximum(largest, self.gravity_Nm)
+        return np.where(np.abs(torque) < ROUNDING * largest, 0.0, torque)
 
     def slope(self, p: Pieces, t: FloatArray) -> FloatArray:
         """First derivative in Nm/s."""
@@ -124,8 +128,7 @@ def summed(pieces: Pieces, values: FloatArray) -> FloatArray:
 
     For functions without kinks: on pieces of an eighth of a turn the rule of 16 points errs by rounding alone.
     """
-    result: FloatArray = (values @ WEIGHTS) * (pieces.end_s - pieces.start_s)
-    return result
+    return total(values * WEIGHTS) * (pieces.end_s - pieces.start_s)  # `@` adds in an order of the processor's own
 
 
 def integral(function: Function, pieces: Pieces) -> FloatArray:
