@@ -25,7 +25,7 @@ endif
 export UV_SYSTEM_CERTS ?= true
 export NODE_USE_SYSTEM_CA ?= 1
 
-.PHONY: run install assets test soak mutants check bench screenshots browser office curl nginx pdfua messages lock licences sbom audit digests clean
+.PHONY: run install assets test soak mutants check bench screenshots browser office curl nginx pdfua messages lock licences sbom audit digests restore clean
 .DELETE_ON_ERROR:
 
 run: install
@@ -193,6 +193,20 @@ digests:
 	        || { echo "no digest of $$tag: this needs docker with buildx, and the registry" >&2; exit 1; }; \
 	    echo "$$tag@$$digest"; script="$$script;s|$$image|$$tag@$$digest|"; \
 	done; sed -i "$$script" $(PINNED)
+
+# A backup takes the database's place, which is kept under its time; without the name of a backup there is a list of them.
+NAME ?= $(filter %.dump,$(MAKECMDGOALS))
+BACKUP := docker compose run --rm backup
+restore:
+	@[ -n "$(NAME)" ] || { echo "which backup? make restore NAME=… with one of these:" >&2; $(BACKUP) ls >&2; exit 2; }
+	@running=$$(docker compose ps --quiet web) && [ -z "$$running" ] \
+	    || { echo "the service runs, and would go on saving what a restore loses: docker compose stop web" >&2; exit 1; }
+	@$(BACKUP) sh /backup.sh unpack "$(NAME)"
+	@docker compose run --rm --env HPN_DATABASE_URL=postgresql://hpn@db/hpn_restored web hpn database \
+	    || $(BACKUP) sh /backup.sh give_up "the service can't use $(NAME)"
+	@$(BACKUP) sh /backup.sh swap
+
+%.dump: ;
 
 clean:
 	rm -rf $(VENV) $(MODULES) frontend/dist sbom.cdx.json .*_cache .hypothesis

@@ -16,7 +16,7 @@ from dataclasses import dataclass, field
 from fnmatch import fnmatch
 from pathlib import Path
 
-CHANGES_THE_SYSTEM = ("useradd ",)
+CHANGES_THE_SYSTEM = ("useradd ", "groupadd ", "/usr/local/")
 OF_THE_ENGINE = ("USER", "EXPOSE", "VOLUME", "HEALTHCHECK", "CMD")
 
 
@@ -99,7 +99,7 @@ def _set(image: Image, rest: str) -> None:
 
 
 def _run(image: Image, command: str) -> None:
-    if command.startswith(CHANGES_THE_SYSTEM):
+    if any(change in command for change in CHANGES_THE_SYSTEM):
         image.skipped.append(command)
         return
     environment = machine() | image.environment

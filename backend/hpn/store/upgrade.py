@@ -3,6 +3,7 @@
 from pathlib import Path
 
 from alembic import command
+from alembic.autogenerate import compare_metadata
 from alembic.config import Config
 from alembic.runtime.migration import MigrationContext
 from alembic.script import ScriptDirectory
@@ -12,6 +13,7 @@ from sqlalchemy.ext.asyncio import AsyncEngine
 from hpn import ENGINE_VERSION
 from hpn.store.engine import WRITES
 from hpn.store.errors import NewerDatabaseError
+from hpn.store.tables import metadata
 
 MIGRATIONS = Path(__file__).parent / "migrations"
 LOCK = 0x48504E  # any number, the same in every version
@@ -29,6 +31,13 @@ async def bring_up_to_date(engine: AsyncEngine) -> None:
         if engine.dialect.name == "postgresql":
             await connection.execute(text("SELECT pg_advisory_xact_lock(:lock)"), {"lock": LOCK})
         await connection.run_sync(_migrate)
+
+
+def missing_parts(connection: Connection) -> list[str]:
+    """Names of tables, columns and indexes of this version that the database lacks; what it has besides may stay."""
+    differences = compare_metadata(MigrationContext.configure(connection), metadata)
+    added = [each for each in differences if isinstance(each, tuple) and each[0].startswith("add_")]
+    return [".".join(str(getattr(part, "name", part)) for part in each[1:] if part is not None) for each in added]
 
 
 def _is_current(connection: Connection) -> bool:
