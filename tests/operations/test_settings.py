@@ -72,6 +72,8 @@ def test_every_setting_is_described() -> None:
         ("trusted_proxies", "*,10.0.0.1", "alone"),
         ("spool_folder", "/there/is/none", "exists"),
         ("spool_folder", __file__, "must be a folder"),
+        ("secrets_folder", "/there/is/none", "exists"),
+        ("secrets_folder", __file__, "must be a folder"),
         ("batch_rate", "0/minute", "at least 1"),
         ("batch_rate", "5/minute;1/second", "one rate"),
         ("batch_rate", "often", "such as 120/minute"),
@@ -119,6 +121,79 @@ def test_a_misspelt_variable_keeps_the_service_from_starting(
 
     assert main(["serve"]) == 2
     assert capsys.readouterr().err == f"{name} is not a setting; it looks like {meant}\n"
+
+
+SERVICE = {
+    "HPN_PORT": "tcp://10.96.0.7:8000",
+    "HPN_SERVICE_HOST": "10.96.0.7",
+    "HPN_SERVICE_PORT": "8000",
+    "HPN_SERVICE_PORT_HTTP": "8000",
+    "HPN_PORT_8000_TCP": "tcp://10.96.0.7:8000",
+    "HPN_PORT_8000_TCP_PROTO": "tcp",
+    "HPN_PORT_8000_TCP_PORT": "8000",
+    "HPN_PORT_8000_TCP_ADDR": "10.96.0.7",
+}
+"""What Kubernetes sets beside a service that is named hpn."""
+
+
+@pytest.mark.parametrize("service", ["HPN", "HPN_DB", "HPN_DATABASE", "HPN_SELECT", "HPN_WEB"])
+def test_what_kubernetes_sets_beside_a_service_changes_nothing(service: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    before = Settings()
+    for name, value in SERVICE.items():
+        monkeypatch.setenv(name.replace("HPN", service), value)
+
+    assert Settings() == before
+
+
+def test_a_setting_is_read_from_a_file_unless_a_variable_gives_it(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("HPN_SECRETS_FOLDER", str(tmp_path))
+    (tmp_path / "..data").mkdir()  # as Kubernetes mounts them
+    (tmp_path / "..data/hpn_database_password").write_text("ü@:/?#\n")
+    (tmp_path / "hpn_database_password").symlink_to("..data/hpn_database_password")
+    (tmp_path / "hpn_api_keys").write_text(f"erp:{'0' * 64}\nplm:{'1' * 64}\n")
+    (tmp_path / "hpn_port").write_text("8001")
+    (tmp_path / "of_another_program").write_bytes(b"\xff")
+    monkeypatch.setenv("HPN_PORT", "8002")
+
+    settings = Settings()
+
+    assert settings.database()["password"] == "ü@:/?#"
+    assert [key.name for key in settings.api_keys] == ["erp", "plm"]
+    assert settings.port == 8002
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "words"),
+    [
+        ("hpn_api_keys", b"erp", "hpn_api_keys: "),
+        ("hpn_port", b"many", "hpn_port: "),
+        ("hpn_port", b"", "hpn_port: "),
+        ("hpn_database_password", b"\xff\xfe", "hpn_database_password: can’t be read: "),
+        ("hpn_database_password", None, "hpn_database_password: can’t be read: "),
+        ("hpn_api_key", b"erp", "hpn_api_key is not a setting; it looks like HPN_API_KEYS"),
+    ],
+)
+def test_a_file_that_can_not_be_meant_keeps_the_service_from_starting(
+    name: str,
+    content: bytes | None,
+    words: str,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    monkeypatch.setenv("HPN_SECRETS_FOLDER", str(tmp_path))
+    if content is None:
+        (tmp_path / name).mkdir()
+    else:
+        (tmp_path / name).write_bytes(content)
+
+    assert main(["serve"]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert words in line
+    assert str(tmp_path) in line or "is not a setting" in line
+    assert "made a mistake" not in line
 
 
 def test_variables_of_others_are_left_alone(monkeypatch: pytest.MonkeyPatch) -> None:

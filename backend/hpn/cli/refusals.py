@@ -3,6 +3,7 @@
 import argparse
 
 from pydantic import ValidationError
+from pydantic_settings import SettingsError
 
 from hpn.application import InputError
 from hpn.application.faults import plain_message
@@ -11,7 +12,7 @@ from hpn.cli.system import CALLERS, others
 from hpn.fleet.errors import FleetError
 from hpn.store import StoreError
 from hpn.web.door.problems import Problem
-from hpn.web.settings import Settings
+from hpn.web.settings import Settings, source_of
 
 MOST_LINES = 20
 
@@ -20,6 +21,8 @@ def words_of(error: Exception, options: argparse.Namespace) -> tuple[int, list[s
     """Exit code and lines for an error of input, settings, catalogue or database; no lines for one of the program."""
     if isinstance(error, CatalogueError | StoreError | FleetError):
         return CALLERS, [str(error)]
+    if isinstance(error, SettingsError):
+        return CALLERS, [str(error.__cause__ or error)]
     if isinstance(error, MemoryError):
         return others(options), ["hpn can’t go on: this takes more memory than there is"]
     if isinstance(error, ValidationError) and error.title == Settings.__name__:
@@ -40,12 +43,12 @@ def _wrong_input(error: ValidationError | InputError, options: argparse.Namespac
 
 
 def _wrong_settings(error: ValidationError, options: argparse.Namespace) -> list[str]:
-    """A line for each wrong setting, named as it was given: by option or by variable."""
+    """A line for each wrong setting, named as it was given: by option, variable or file."""
     lines = []
     for entry in error.errors(include_url=False, include_context=False, include_input=False):
         text = plain_message(entry["type"], entry["msg"])
         for name in map(str, entry["loc"][:1]):
-            given = f"--{name}" if getattr(options, name, None) is not None else f"HPN_{name.upper()}"
+            given = f"--{name}" if getattr(options, name, None) is not None else source_of(name)
             text = f"{given}: {text}"
         lines.append(text)
     return list(dict.fromkeys(lines))

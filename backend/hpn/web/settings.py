@@ -1,15 +1,24 @@
-"""Every setting of the service, by environment variable `HPN_…`; the README's table lists them."""
+"""Every setting, by environment variable `HPN_…` or secret file `hpn_…`; the README's table lists them."""
 
 import os
 import re
+import warnings
 from difflib import get_close_matches
 from ipaddress import ip_network
 from pathlib import Path
-from typing import Annotated, Literal, Self, TypedDict
+from typing import Annotated, Any, Literal, Self, TypedDict
 
 import limits
 from pydantic import AfterValidator, BeforeValidator, Field, SecretStr, model_validator
-from pydantic_settings import BaseSettings, NoDecode, SettingsConfigDict
+from pydantic.fields import FieldInfo
+from pydantic_settings import (
+    BaseSettings,
+    NoDecode,
+    PydanticBaseSettingsSource,
+    SecretsSettingsSource,
+    SettingsConfigDict,
+    SettingsError,
+)
 
 from hpn.catalogue import AVERAGING_S, HANDBOOK_FOLDER
 from hpn.web.door.keys import ApiKey
@@ -73,6 +82,20 @@ def _folder(path: Path | None) -> Path | None:
     return path
 
 
+def _readable_folder(path: Path | None) -> Path | None:
+    if path is not None and not (path.is_dir() and os.access(path, os.R_OK | os.X_OK)):
+        raise ValueError(f"must be a folder that exists and can be read; {str(path)!r} is none")
+    return path
+
+
+def _own_port(value: object) -> object:
+    """The default for an address: Kubernetes sets HPN_PORT to that of a service named hpn, which is no port of ours."""
+    return PORT if isinstance(value, str) and value.startswith("tcp://") else value
+
+
+PORT = 8000
+SECRETS = Path("/run/secrets")
+"""Where engines put secret files, unless HPN_SECRETS_FOLDER says otherwise."""
 ORIGIN = re.compile(
     r"(?!http://[^/]*:80$|https://[^/]*:443$)[a-z][a-z0-9+.-]*://([a-z0-9._-]+|\[[0-9a-f:]+\])(:[0-9]+)?"
 )
@@ -87,6 +110,37 @@ class DatabaseSettings(TypedDict):
     address: str
     seconds: float
     password: str | None
+
+
+class SecretFiles(SecretsSettingsSource):
+    """Settings out of files, such as /run/secrets/hpn_api_keys; what can't be read is an error that names the file."""
+
+    def __call__(self) -> dict[str, Any]:
+        """Settings by name; a folder that isn't one is refused with the setting that names it."""
+        self.secrets_dir = _secrets_folder(self.current_state.get("secrets_folder"))
+        return super().__call__()
+
+    def get_field_value(self, field: FieldInfo, field_name: str) -> tuple[Any, str, bool]:
+        """Content of a setting's file, if there is one."""
+        try:
+            with warnings.catch_warnings(action="error"):  # a file that would be left out
+                return super().get_field_value(field, field_name)
+        except (OSError, UnicodeDecodeError, UserWarning) as error:
+            raise SettingsError(f"{self.secrets_dir}/hpn_{field_name}: can’t be read: {error}") from error
+
+
+def _secrets_folder(named: str | Path | None) -> Path | None:
+    folder = Path(named or SECRETS)
+    return folder if folder.is_dir() and os.access(folder, os.R_OK | os.X_OK) else None
+
+
+def source_of(name: str) -> str:
+    """Variable that gives a setting, or else the file."""
+    variable = f"HPN_{name.upper()}"
+    given = {key.upper(): value for key, value in os.environ.items()}
+    folder = _secrets_folder(given.get("HPN_SECRETS_FOLDER"))
+    files = [file for file in folder.iterdir() if file.name.upper() == variable] if folder else []
+    return str(files[0]) if files and not given.get(variable) else variable
 
 
 class Settings(BaseSettings):
@@ -157,7 +211,9 @@ class Settings(BaseSettings):
         "without reading; most bytes of all files of one fleet.",
     )
     host: str = Field("127.0.0.1", description="Address that `hpn serve` listens on.")
-    port: int = Field(8000, ge=0, le=65535, description="Port that `hpn serve` listens on.")
+    port: Annotated[int, BeforeValidator(_own_port)] = Field(
+        PORT, ge=0, le=65535, description="Port that `hpn serve` listens on."
+    )
     workers: int = Field(1, ge=1, le=64, description="Processes that `hpn serve` starts.")
     worker_seconds: int = Field(
         30, gt=0, description="Time without an answer after which one of several processes is replaced."
@@ -196,6 +252,22 @@ class Settings(BaseSettings):
         description="Origins whose scripts may use the API, such as https://plm.example.",
     )
 
+    secrets_folder: Annotated[Path | None, AfterValidator(_readable_folder)] = Field(
+        None, description="Folder of files that give settings, such as hpn_api_keys; /run/secrets by default."
+    )
+
+    @classmethod
+    def settings_customise_sources(
+        cls,
+        settings_cls: type[BaseSettings],
+        init_settings: PydanticBaseSettingsSource,
+        env_settings: PydanticBaseSettingsSource,
+        dotenv_settings: PydanticBaseSettingsSource,
+        file_secret_settings: PydanticBaseSettingsSource,
+    ) -> tuple[PydanticBaseSettingsSource, ...]:
+        """What a caller gives goes before a variable, and that before a file."""
+        return init_settings, env_settings, SecretFiles(settings_cls)
+
     def database(self) -> "DatabaseSettings":
         """What a store is opened with."""
         password = self.database_password and self.database_password.get_secret_value()
@@ -207,9 +279,10 @@ class Settings(BaseSettings):
 
     @model_validator(mode="after")
     def _no_name_misspelt(self) -> Self:
-        """Raise ValueError for a variable next to a setting's name: who believes in it would miss what it guards."""
+        """Raise ValueError for a variable or file next to a setting's name, else what it guards would stay open."""
         known = [f"HPN_{name.upper()}" for name in type(self).model_fields]
-        for name in sorted(os.environ.keys() - known):
+        folder = _secrets_folder(self.secrets_folder)
+        for name in sorted({*os.environ, *(os.listdir(folder) if folder else ())}):
             meant = get_close_matches(name.upper(), known, 1, 0.85) if name.upper() not in known else []
             if meant and name.upper().startswith("HPN_"):
                 raise ValueError(f"{name} is not a setting; it looks like {meant[0]}")
