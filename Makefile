@@ -25,7 +25,7 @@ endif
 export UV_SYSTEM_CERTS ?= true
 export NODE_USE_SYSTEM_CA ?= 1
 
-.PHONY: run install assets test soak mutants check bench screenshots browser office curl nginx pdfua messages lock licences sbom audit digests restore clean
+.PHONY: run install assets test soak mutants check bench screenshots browser office curl nginx pdfua messages lock licences sbom audit digests certificates restore clean
 .DELETE_ON_ERROR:
 
 run: install
@@ -193,6 +193,11 @@ digests:
 	        || { echo "no digest of $$tag: this needs docker with buildx, and the registry" >&2; exit 1; }; \
 	    echo "$$tag@$$digest"; script="$$script;s|$$image|$$tag@$$digest|"; \
 	done; sed -i "$$script" $(PINNED)
+
+# The proxy's certificate and key out of a folder such as /etc/letsencrypt/live/plm.example, checked; as root.
+FROM ?= certificates
+certificates:
+	@sh backend/certificates.sh "$(FROM)"
 
 # A backup takes the database's place, which is kept under its time; without the name of a backup there is a list of them.
 NAME ?= $(filter %.dump,$(MAKECMDGOALS))

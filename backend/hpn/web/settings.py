@@ -282,8 +282,10 @@ class Settings(BaseSettings):
         """Raise ValueError for a variable or file next to a setting's name, else what it guards would stay open."""
         known = [f"HPN_{name.upper()}" for name in type(self).model_fields]
         folder = _secrets_folder(self.secrets_folder)
-        for name in sorted({*os.environ, *(os.listdir(folder) if folder else ())}):
+        given = {name: name for name in os.environ}
+        given |= {file.name: str(file) for file in (folder.iterdir() if folder else ())}
+        for name in sorted(given):
             meant = get_close_matches(name.upper(), known, 1, 0.85) if name.upper() not in known else []
             if meant and name.upper().startswith("HPN_"):
-                raise ValueError(f"{name} is not a setting; it looks like {meant[0]}")
+                raise ValueError(f"{given[name]} is not a setting; it looks like {meant[0]}")
         return self
