@@ -46,6 +46,9 @@ def started(folder: Path) -> "subprocess.CompletedProcess[str]":
         "PROXY_HTTP": "127.0.0.1:18080",
         "PROXY_HTTPS": "127.0.0.1:18443",
         "PROXY_SERVICE": "127.0.0.1:1",
+        "PROXY_RESOLVER": "127.0.0.1",
+        "PROXY_NAMES": "localhost",
+        "PROXY_BALANCERS": "",
     }
     command = [word.replace("$$", "$").replace("exec nginx", "exec nginx -t") for word in SERVICE["command"]]
     with tempfile.TemporaryDirectory(prefix="hpn-nginx-") as work:

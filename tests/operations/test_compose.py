@@ -1,5 +1,6 @@
 """The compose file: valid and hardened. No engine runs here."""
 
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -87,8 +88,13 @@ def test_healthy_means_that_selections_can_be_saved() -> None:
     assert f"http://127.0.0.1:{environment('HPN_PORT')}/readyz" in SERVICES["web"]["healthcheck"]["test"][-1]
 
 
-def test_memory_grows_with_the_workers_by_a_variable() -> None:
-    assert SERVICES["web"]["deploy"]["resources"]["limits"]["memory"] == "${WEB_MEMORY:-4608m}"
+def test_memory_grows_with_the_workers_by_a_variable_of_which_the_documents_have_a_table() -> None:
+    table = dict(re.findall(r"^\| (\d+)\D* \| (\d+)m \|$", (ROOT / "docs/deployment.md").read_text(), re.M))
+    spool = 1024
+    worker = 768 + 1024
+
+    assert table == {number: str(int(number) * worker + spool) for number in ("1", "2", "4", "8")}
+    assert SERVICES["web"]["deploy"]["resources"]["limits"]["memory"] == f"${{WEB_MEMORY:-{table['2']}m}}"
     assert environment("HPN_WORKERS") == "${HPN_WORKERS:-2}"
 
 
