@@ -204,7 +204,7 @@ NAME ?= $(filter %.dump,$(MAKECMDGOALS))
 BACKUP := docker compose run --rm backup
 restore:
 	@[ -n "$(NAME)" ] || { echo "which backup? make restore NAME=… with one of these:" >&2; $(BACKUP) ls >&2; exit 2; }
-	@running=$$(docker compose ps --quiet web) && [ -z "$$running" ] \
+	@running=$$(docker compose ps --quiet web) || exit 1; [ -z "$$running" ] \
 	    || { echo "the service runs, and would go on saving what a restore loses: docker compose stop web" >&2; exit 1; }
 	@$(BACKUP) sh /backup.sh unpack "$(NAME)"
 	@docker compose run --rm --env HPN_DATABASE_URL=postgresql://hpn@db/hpn_restored web hpn database \
