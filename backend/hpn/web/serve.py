@@ -21,7 +21,7 @@ from uvicorn.supervisors import Multiprocess
 from hpn.catalogue import CatalogueError
 from hpn.store import StoreError
 from hpn.web.app import create_app
-from hpn.web.door import heap, logs, metrics
+from hpn.web.door import heap, logs, memory, metrics
 from hpn.web.door.protocol import BoundedProtocol
 from hpn.web.pages import templates
 from hpn.web.settings import Settings
@@ -103,6 +103,8 @@ def options(settings: Settings) -> dict[str, Any]:
 def run(settings: Settings) -> int:
     """Serve until a signal says otherwise; 1 where the workers could not start."""
     logs.configure(settings.log_level)
+    if short := memory.shortage(settings.workers, settings.fleet_processes * settings.fleet_memory_bytes):
+        logger.warning(short)
     if settings.workers == 1:
         uvicorn.run("hpn.web.serve:served_app", **options(settings))
         return 0
