@@ -219,6 +219,6 @@ def test_operations_of_the_store_are_counted_and_its_failures(make_client: MakeC
 
 
 def test_every_operation_of_the_store_is_counted() -> None:
-    operations = {name for name in vars(Store) if not name.startswith("_")} - {"open", "close"}
+    operations = {name for name in vars(Store) if not name.startswith("_")} - {"open", "close", "require_complete"}
 
     assert operations == {name for name in vars(CountedStore) if not name.startswith("_")}

@@ -19,6 +19,7 @@ from alembic.script import ScriptDirectory
 from ruamel.yaml import YAML
 from sqlalchemy import create_engine, text
 
+from hpn.cli import main
 from hpn.store import Store
 from hpn.store.upgrade import MIGRATIONS
 from tests.databases import PostgreSQL, postgresql
@@ -305,3 +306,17 @@ def test_without_the_name_of_a_backup_those_there_are_get_listed(stack: Stack) -
     assert name in missing.stderr
     assert "no backup hpn-1.dump" in wrong.stderr
     assert by_goal.returncode == 0, by_goal.stderr
+
+
+def test_the_command_in_between_makes_a_new_database_ready_and_says_why_it_can_not(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setenv("HPN_DATABASE_URL", f"sqlite:///{tmp_path}/new.sqlite3")
+    made = main(["database"])
+    monkeypatch.setenv("HPN_DATABASE_URL", "postgresql://hpn@127.0.0.1:1/hpn")
+    unreachable = main(["database"])
+
+    said = capsys.readouterr()
+    assert (made, unreachable) == (0, 2)
+    assert said.out == "the database is up to date, and selections can be saved in it\n"
+    assert "unavailable" in said.err
