@@ -196,6 +196,24 @@ def test_a_file_that_can_not_be_meant_keeps_the_service_from_starting(
     assert "made a mistake" not in line
 
 
+def test_a_folder_of_secrets_that_can_not_be_read_is_not_taken_for_one_without_keys(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr("hpn.web.settings.SECRETS", tmp_path / "secrets")
+    (tmp_path / "secrets").mkdir(mode=0)
+    as_root = os.geteuid() == 0
+    if as_root:
+        os.seteuid(65534)  # nobody, because root reads everything
+    try:
+        code = main(["serve"])
+    finally:
+        if as_root:
+            os.seteuid(0)
+
+    assert code == 2
+    assert f"{tmp_path}/secrets" in capsys.readouterr().err
+
+
 def test_variables_of_others_are_left_alone(monkeypatch: pytest.MonkeyPatch) -> None:
     for name in ("HPN_KEY", "HPN_CUSTOMER", "hpn_port"):
         monkeypatch.setenv(name, "1")

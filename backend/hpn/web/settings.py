@@ -82,9 +82,9 @@ def _folder(path: Path | None) -> Path | None:
     return path
 
 
-def _readable_folder(path: Path | None) -> Path | None:
-    if path is not None and not (path.is_dir() and os.access(path, os.R_OK | os.X_OK)):
-        raise ValueError(f"must be a folder that exists and can be read; {str(path)!r} is none")
+def _existing_folder(path: Path | None) -> Path | None:
+    if path is not None and not path.is_dir():
+        raise ValueError(f"must be a folder that exists; {str(path)!r} is none")
     return path
 
 
@@ -131,7 +131,7 @@ class SecretFiles(SecretsSettingsSource):
 
 def _secrets_folder(named: str | Path | None) -> Path | None:
     folder = Path(named or SECRETS)
-    return folder if folder.is_dir() and os.access(folder, os.R_OK | os.X_OK) else None
+    return folder if folder.is_dir() else None
 
 
 def source_of(name: str) -> str:
@@ -252,7 +252,7 @@ class Settings(BaseSettings):
         description="Origins whose scripts may use the API, such as https://plm.example.",
     )
 
-    secrets_folder: Annotated[Path | None, AfterValidator(_readable_folder)] = Field(
+    secrets_folder: Annotated[Path | None, AfterValidator(_existing_folder)] = Field(
         None, description="Folder of files that give settings, such as hpn_api_keys; /run/secrets by default."
     )
 
