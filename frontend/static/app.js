@@ -164,7 +164,7 @@ addEventListener("popstate", (event) => {
 
 // "Try it" leads to other inputs on the same page: an edit that undo takes back.
 document.addEventListener("click", (event) => {
-  const link = event.target.closest("#try-out");
+  const link = event.target.closest("[data-tries]");
   if (!link || !isPlain(event)) return;
   event.preventDefault();
   note();

@@ -171,9 +171,9 @@ def test_axes_reach_115_percent_of_the_largest_value_with_round_numbers_in_the_r
 @pytest.mark.parametrize(
     ("u", "told"),
     [
-        (1.0, ["76\u202f%\u20021\u202f138 ≤ 1\u202f491 N", "64\u202f%\u200275\u202f600 ≥ 20\u202f000 h"]),
-        (0.7, ["76\u202f% > 70\u202f%\u20021\u202f138 N", "64\u202f% ≤ 70\u202f%\u200275\u202f600 h"]),
-        (0.764, ["76\u202f% ≤ 76.4\u202f%\u20021\u202f138 N", "64\u202f% ≤ 76\u202f%\u200275\u202f600 h"]),
+        (1.0, ["76\u202f%\u20021\u202f138 ≤ 1\u202f491 N", "64\u202f%\u200275\u202f594 ≥ 20\u202f000 h"]),
+        (0.7, ["76\u202f% > 70\u202f%\u20021\u202f138 N", "64\u202f% ≤ 70\u202f%\u200275\u202f594 h"]),
+        (0.764, ["76\u202f% ≤ 76.4\u202f%\u20021\u202f138 N", "64\u202f% ≤ 76\u202f%\u200275\u202f594 h"]),
     ],
 )
 def test_bars_say_what_the_checks_say_on_one_scale_whatever_u_is(u: float, told: list[str]) -> None:

@@ -198,3 +198,29 @@ def test_an_inertia_of_the_load_that_nothing_asks_for_is_told(catalogue: Catalog
     assert "load_inertia_unused" in codes(with_motor(), catalogue)
     assert "load_inertia_unused" in codes(with_motor(peak_torque_Nm=5.0, inertia_kgm2=1e-4), catalogue)
     assert "load_inertia_unused" not in codes(with_motor(inertia_ratio=5.0, inertia_kgm2=1e-4), catalogue)
+
+
+@pytest.mark.parametrize(
+    ("load", "told"),
+    [
+        ({"radial_N": 1500}, True),
+        ({"radial_N": 1500, "life_h": 40000}, False),
+        ({"radial_N": 1500, "life_basis": "L10"}, False),
+        (None, False),
+    ],
+)
+def test_a_life_asked_of_the_gear_alone_says_for_which_life_its_bearing_is_judged(
+    catalogue: Catalogue, load: Json | None, told: bool
+) -> None:
+    """HPN-20A-5 lasts 40000 h as asked, and its bearing 34600 h as L50, which is more than the default of 20000 h."""
+    parts = {"output_load": load} if load else {}
+    long = cycle(phase(25, 150, 2), pause_s=1, requirements={"life_h": 40000}, **parts)
+
+    text = notices(answer(long, catalogue)).get("bearing_life_at_default", "")
+
+    assert ("40000 h (L10)" in text, "20000 h (L50)" in text) == (told, told)
+
+
+@pytest.mark.parametrize(("stop", "told"), [({"torque_Nm": 200}, True), ({"torque_Nm": 200, "count": 9}, False)])
+def test_stops_without_their_number_say_that_it_is_not_judged(catalogue: Catalogue, stop: Json, told: bool) -> None:
+    assert ("stops_not_counted" in codes(PLAIN | {"emergency_stop": stop}, catalogue)) == told

@@ -1,6 +1,7 @@
 """The application: what a person asks, its phases or motion, and the faults of an input."""
 
 from hpn.application.application import (
+    BEARING_LIFE_H,
     LEAST_MOTION,
     LISTED_FIGURES,
     MOST_WISHES,
@@ -22,6 +23,7 @@ from hpn.application.application import (
 )
 
 __all__ = [
+    "BEARING_LIFE_H",
     "LEAST_MOTION",
     "LISTED_FIGURES",
     "MOST_WISHES",

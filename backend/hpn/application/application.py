@@ -125,6 +125,10 @@ class EmergencyStop(Model):
     )
 
 
+BEARING_LIFE_H = 20_000.0
+"""Life for which an output bearing is judged where none is asked of it, as L50."""
+
+
 class OutputLoad(Model):
     """Load on the output shaft, at the centre of the shaft and along its axis."""
 
@@ -133,7 +137,7 @@ class OutputLoad(Model):
     load_coefficient: Annotated[Number, Field(ge=1, le=3)] = Field(
         1.0, description="Load coefficient f_w multiplies the load; printed curves: 1, 1.2, 1.5.", examples=[1.2]
     )
-    life_h: Hours = Field(20_000.0, description="Required life of the output bearing.", examples=[20000.0])
+    life_h: Hours = Field(BEARING_LIFE_H, description="Required life of the output bearing.", examples=[20000.0])
     life_basis: LifeBasis = Field("L50", description="L50: 50 % of the bearings survive it. L10: 90 % do.")
     model: BearingModel = Field("linear", description="How the envelope runs between the two published limits.")
 

@@ -5,11 +5,13 @@ beside the published maximum in its own direction, and the life beside the requi
 the same comparisons, since P grows in proportion with a load along its direction and the life with its power -3.
 """
 
+import math
 from dataclasses import dataclass
+from operator import itemgetter
 
 import numpy as np
 
-from hpn.application import Application, OutputLoad
+from hpn.application import Application, LifeBasis, OutputLoad
 from hpn.catalogue import Catalogue, GearList
 from hpn.catalogue.gear import Gear
 from hpn.engine.check import Kind
@@ -53,6 +55,13 @@ class Reading:
         return self.is_unlimited and self.kind != "minimum"
 
     @property
+    def bound(self) -> float | None:
+        """Limit that the user's own u leaves; None where there is no limit."""
+        if self.limit is None:
+            return None
+        return self.limit / self.part if self.kind == "minimum" else self.limit * self.part
+
+    @property
     def sign(self) -> str:
         """How the demand has to stand to the limit."""
         return "≥" if self.kind == "minimum" else "≤"
@@ -60,6 +69,35 @@ class Reading:
     def found(self, failed: bool) -> str:
         """How the demand stands to the limit."""
         return OTHERWISE[self.sign] if failed else self.sign
+
+
+@dataclass(frozen=True, slots=True)
+class Life:
+    """A life in hours by the name of the check that it belongs to, on a basis; None where it is unlimited."""
+
+    check: str
+    life_h: float | None
+    basis: LifeBasis
+
+
+def shortest_life(candidate: Candidate, application: Application | None) -> Life | None:
+    """Life of a gear or of its output bearing, whichever has the shorter L10; None where none is known.
+
+    That of the bearing is on the basis on which it is judged.
+    """
+    lives: list[tuple[float, Life]] = []
+    if candidate.life_L10_h is not None or candidate.is_unlimited("life_L10_h"):
+        lives.append((_endless(candidate.life_L10_h), Life("life", candidate.life_L10_h, "L10")))
+    bearing, load = candidate.check("output_bearing_life"), application.loads if application else None
+    if bearing and bearing.status != "not_rated":
+        basis: LifeBasis = load.life_basis if load else "L50"
+        judged = candidate.bearing_life_L10_h if basis == "L10" else candidate.bearing_life_L50_h
+        lives.append((_endless(candidate.bearing_life_L10_h), Life("output_bearing_life", judged, basis)))
+    return min(lives, key=itemgetter(0))[1] if lives else None
+
+
+def _endless(life_h: float | None) -> float:
+    return math.inf if life_h is None else life_h
 
 
 _AT_MOTOR = {"motor_peak_torque_Nm": "T_in,max", "motor_rated_torque_Nm": "T_in,rms"}

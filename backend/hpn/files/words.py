@@ -47,14 +47,9 @@ def used(export: Export, code: str | None, utilisation: float | None, reader: Re
     )
 
 
-def measured(value: float | None, unit: str, reader: Reader) -> str:
-    """A computed number with its unit, given as suffix or symbol."""
-    return reader.with_unit(reader.figure(value, unit), unit)
-
-
-def rounded(value: float, unit: str, reader: Reader) -> str:
-    """A life or a count in a summary: three significant digits say as much as the equations behind them."""
-    return reader.with_unit(reader.tick(float(f"{value:.3g}")), unit)
+def measured(value: float | None, unit: str, reader: Reader, beside: float | None = None) -> str:
+    """A computed number with its unit, given as suffix or symbol, told apart from the number beside it."""
+    return reader.with_unit(reader.figure(value, unit, beside), unit)
 
 
 def paper(reader: Reader) -> Paper:

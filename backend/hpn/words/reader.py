@@ -4,7 +4,7 @@ The one catalogue of translations behind page and files is compiled in memory wh
 """
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from functools import cache
@@ -121,43 +121,29 @@ class Reader:
 
     # --- Numbers ------------------------------------------------------------------------------------------------------
 
-    def figure(self, value: float | None, unit: str = "") -> str:
-        """A number of the wire in the reader's unit: as printed if it is short, else to `digits`; None is a dash.
+    def figure(self, value: float | None, unit: str = "", beside: float | None = None) -> str:
+        """A number of the wire in the reader's unit; None is a dash.
 
-        No digit before the decimal mark is lost: with three digits 32.0210136 is `32.0`, 1167275.9 is `1 167 276`.
+        As printed if it is short, else to `digits`, but no digit before the decimal mark is lost: with three digits
+        32.0210136 is `32.0`, 1167275.9 `1 167 276`. Hours are whole from 100 on, and above 100 million
+        `> 100 000 000`. It has the digits that tell it from the number `beside` it.
         """
         if value is None:
             return NOTHING
-        shown = self.measure(unit).shown(value)
+        measure = self.measure(unit)
+        shown = measure.shown(value)
+        if unit == HOURS and shown > MOST_HOURS:
+            return f">{GROUP}{self.written(str(MOST_HOURS))}"
         if _is_extreme(shown):
             return self._scientific(f"{shown:.{self.digits - 1}e}")
-        short = f"{shown:.12g}"
-        if "e" not in short and len(short.lstrip("-").replace(".", "").lstrip("0")) <= 4:
-            return self.written(short)
-        if abs(shown) >= 10 ** (self.digits - 1):
-            return self.written(f"{shown:.0f}")
-        return self.written(f"{shown:#.{self.digits}g}".rstrip("."))
-
-    def brief(self, value: float | None, unit: str = "", beside: float | None = None) -> str:
-        """A life or a count to three digits, from a million on as `1.17·10⁶`; None is a dash.
-
-        Where these read as the limit `beside` it, which it is not, it has the digits that tell them apart.
-        """
-        if value is None:
-            return NOTHING
-        shown = self.measure(unit).shown(value)
-        short = f"{shown:.2e}"
-        if beside not in (None, value) and float(short) == self.measure(unit).shown(beside):
-            return self.apart(value, beside, unit)
-        return self._scientific(short) if abs(float(short)) >= 1e6 else self.written(f"{float(short):g}")
+        is_whole = unit == HOURS and abs(shown) >= 100
+        write, digits = (_decimals, 0) if is_whole else (_short, self.digits)
+        other = None if beside is None else measure.shown(beside)
+        return self.written(_told_apart(write, shown, other, digits))
 
     def apart(self, value: float, other: float | None, unit: str) -> str:
         """A number with as many digits as it takes to tell it from another one."""
-        if math.isinf(value):
-            return "∞"
-        number = self.figure(value, unit)
-        is_apart = other is None or math.isinf(other) or number != self.figure(other, unit)
-        return number if is_apart else self.number(Quantity(value, unit, 7))
+        return "∞" if math.isinf(value) else self.figure(value, unit, other)
 
     def exact(self, value: float | None, unit: str = "") -> str:
         """An input as it was given, or to six digits in another unit; None is a dash."""
@@ -230,6 +216,36 @@ class Reader:
 
 
 DEFAULT = Reader()
+
+
+HOURS = "h"
+MOST_HOURS = 100_000_000
+"""Longest life that is written out."""
+
+MOST_DIGITS = 15
+
+
+def _short(value: float, digits: int) -> str:
+    """A number as it is where it has four digits at most, else to so many, and none before its point is lost."""
+    short = f"{value:.12g}"
+    if "e" not in short and len(short.lstrip("-").replace(".", "").lstrip("0")) <= 4:
+        return short
+    return f"{value:.0f}" if abs(value) >= 10 ** (digits - 1) else f"{value:#.{digits}g}".rstrip(".")
+
+
+def _decimals(value: float, decimals: int) -> str:
+    return f"{value:.{decimals}f}"
+
+
+def _told_apart(write: Callable[[float, int], str], value: float, other: float | None, digits: int) -> str:
+    """A number as it is written with the fewest digits that tell it from another one.
+
+    Both would have as many, so that the larger one never reads as the smaller; equal within 1e-12 needs no more.
+    """
+    if other is not None and math.isfinite(other) and not math.isclose(value, other, rel_tol=1e-12):
+        while digits < MOST_DIGITS and float(write(value, digits)) == float(write(other, digits)):
+            digits += 1
+    return write(value, digits)
 
 
 def _is_extreme(value: float) -> bool:

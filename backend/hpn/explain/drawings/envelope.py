@@ -1,6 +1,5 @@
 """The drawings of load envelopes: of one gear under an application, of all sizes, and of a gear in the catalogue."""
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from xml.etree.ElementTree import Element
@@ -171,9 +170,8 @@ def _bar(
 ) -> Bar:
     demand, sign, limit, unit = compared
     outside = beyond_limit(used, allowed)
-    is_life = unit == "h" and not math.isinf(demand)
     percent = reader.percent(used, allowed)
-    numbers = reader.brief(demand, unit, limit) if is_life else reader.apart(demand, limit, unit)
+    numbers = reader.apart(demand, limit, unit)
     if allowed < 1:  # the bar has the whole limit at 100 %, and so has what stands beside it
         percent += f" {OTHERWISE['≤'] if outside else '≤'} {reader.percent(allowed, used)}"
     elif limit is not None:

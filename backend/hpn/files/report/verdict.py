@@ -5,9 +5,9 @@ from typing import Any
 
 from hpn.engine.remedy import remedy_of
 from hpn.engine.selection import Candidate, CheckResult
-from hpn.explain.readings import Reading, readings_of
+from hpn.explain.readings import Reading, readings_of, shortest_life
 from hpn.files.export import Export
-from hpn.files.words import bound_of, exact_percent, measured, origin, rounded, title_of, used
+from hpn.files.words import bound_of, exact_percent, measured, origin, title_of, used
 from hpn.words.reader import Reader
 from hpn.words.symbols import formula, sentence
 from hpn.words.wording import N_, Sentence
@@ -54,7 +54,11 @@ BEST: Mapping[str, str] = {
 ONLY = N_("It is the only suitable gear.")
 RANKED = N_("It was chosen; {selected} ranks first of {count} suitable gears.")
 
-LIVES: Mapping[str, str] = {"life_L10_h": N_("gear, L10"), "bearing_life_L10_h": N_("output bearing, L10")}
+LIVES: Mapping[tuple[str, str], str] = {
+    ("life", "L10"): N_("gear, L10"),
+    ("output_bearing_life", "L10"): N_("output bearing, L10"),
+    ("output_bearing_life", "L50"): N_("output bearing, L50"),
+}
 """Lives of which the shortest counts, as both are on the same basis."""
 
 
@@ -85,11 +89,12 @@ def _said(export: Export, reader: Reader) -> Iterable[Sentence]:
         yield _place(export)
     elif remedy := remedy_of(candidate, export.application.requirements.utilisation):
         yield remedy
-    lives = {name: life for name in LIVES if (life := getattr(candidate, name)) is not None}
-    if lives:
-        name = min(lives, key=lives.__getitem__)
-        shortest = {"life": rounded(lives[name], "h", reader), "part": reader.text(LIVES[name])}
-        yield Sentence(N_("Shortest life: {life} ({part})."), shortest)
+    life = shortest_life(candidate, export.application)
+    if life is not None and life.life_h is not None:
+        part = reader.text(LIVES[life.check, life.basis])
+        yield Sentence(
+            N_("Shortest life: {life} ({part})."), {"life": measured(life.life_h, "h", reader), "part": part}
+        )
 
 
 def _place(export: Export) -> Sentence:
@@ -136,11 +141,13 @@ def _limit(read: Reading, reader: Reader) -> str:
     if read.has_unlimited_limit:
         return reader.text(N_("unlimited"))
     part = f" {'÷' if read.kind == 'minimum' else '×'} {exact_percent(read.part, reader)}" if read.part < 1 else ""
-    return measured(read.limit, read.unit, reader) + part
+    return measured(read.limit, read.unit, reader, read.demand) + part
 
 
 def _demand(read: Reading, reader: Reader) -> str:
-    return reader.text(N_("unlimited")) if read.has_unlimited_demand else measured(read.demand, read.unit, reader)
+    if read.has_unlimited_demand:
+        return reader.text(N_("unlimited"))
+    return measured(read.demand, read.unit, reader, read.bound)
 
 
 def _share(check: CheckResult) -> float:
@@ -195,7 +202,7 @@ def _row(export: Export, candidate: Candidate, reader: Reader) -> list[str]:
         candidate.designation,
         _published(gear.weight_kg if gear else None, "kg", reader),
         _published(gear.length_max_mm if gear else None, "mm", reader),
-        reader.text(N_("unlimited")) if unlimited else "–" if life is None else rounded(life, "h", reader),
+        reader.text(N_("unlimited")) if unlimited else "–" if life is None else measured(life, "h", reader),
         reader.percent(candidate.utilisation, bound_of(export, code)),
         title_of(export, code, reader) if code else "",
     ]

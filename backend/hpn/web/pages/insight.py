@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from urllib.parse import quote
 
-from hpn.application import Application
+from hpn.application import Application, OutputLoad
 from hpn.catalogue import Catalogue
 from hpn.engine.remedy import alternatives_of, tried
 from hpn.engine.selection import Candidate, Selection
@@ -36,6 +36,13 @@ class Insight:
         """Link that follows the first alternative of the chosen gear's remedy; None where it has none."""
         alternatives = alternatives_of(self.chosen, self.application.requirements.utilisation)
         return to_link(tried(self.application, alternatives[0], self.catalogue)) if alternatives else None
+
+    @property
+    def same_life(self) -> str:
+        """Link that asks of the output bearing the life that is asked of the gear, as L10."""
+        load = self.application.loads or OutputLoad()
+        lasting = load.model_copy(update={"life_h": self.application.requirements.life_h, "life_basis": "L10"})
+        return to_link(self.application.model_copy(update={"output_load": lasting}))
 
     @cached_property
     def columns(self) -> tuple[Column, ...]:

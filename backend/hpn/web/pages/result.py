@@ -1,7 +1,6 @@
 """What a page shows of a selection, computed just now or saved: the partials of the templates read it."""
 
 import itertools
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -12,7 +11,7 @@ from hpn.catalogue.gear import Gear
 from hpn.engine.checks import BY_CODE, allowed
 from hpn.engine.remedy import Growth, growths_of, remedy_of
 from hpn.engine.selection import Candidate, Selection
-from hpn.explain.readings import Reading, readings_of
+from hpn.explain.readings import Life, Reading, readings_of, shortest_life
 from hpn.web.pages.drive import Drive
 from hpn.web.pages.pictures import Pictures, pictures_of
 from hpn.words.wording import N_, Sentence
@@ -32,14 +31,6 @@ LONGEST_REPEATED = 3000
 
 LISTED_AT_ONCE = 8
 """Suitable gears that the list shows before somebody unfolds the rest."""
-
-
-@dataclass(frozen=True, slots=True)
-class Life:
-    """A life in hours by the name of the check that it belongs to; None where it is unlimited."""
-
-    check: str
-    life_h: float | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -145,14 +136,8 @@ class Result:
 
     @property
     def shortest_life(self) -> Life | None:
-        """The shortest L10 of the chosen gear, its own or its output bearing's; None where none is known."""
-        chosen, lives = self.chosen, []
-        if chosen.life_L10_h is not None or chosen.is_unlimited("life_L10_h"):
-            lives.append(Life("life", chosen.life_L10_h))
-        bearing = chosen.check("output_bearing_life")
-        if bearing and bearing.status != "not_rated":
-            lives.append(Life("output_bearing_life", chosen.bearing_life_L10_h))
-        return min(lives, key=lambda life: math.inf if life.life_h is None else life.life_h, default=None)
+        """The shortest life of the chosen gear; None where none is known."""
+        return shortest_life(self.chosen, self.application)
 
     @cached_property
     def listed(self) -> CandidateList:

@@ -121,14 +121,14 @@ def _for_reader(method: str) -> Callable[..., Any]:
 
 
 @lru_cache(maxsize=4096)
-def _written(reader: Reader, value: float | None, unit: str) -> str:
+def _written(reader: Reader, value: float | None, unit: str, beside: float | None) -> str:
     """A number of the wire as a reader sees it; most numbers of a page are the catalogue's, again and again."""
-    return reader.figure(value, unit)
+    return reader.figure(value, unit, beside)
 
 
 @pass_context
-def _figure(_: Context, value: float | None, unit: str = "") -> str:
-    return _written(current(), value, unit)
+def _figure(_: Context, value: float | None, unit: str = "", beside: float | None = None) -> str:
+    return _written(current(), value, unit, beside)
 
 
 @pass_context
@@ -193,7 +193,7 @@ FILTERS: dict[str, Callable[..., Any]] = {
     "t": _for_reader("text"),
     **{
         name: _for_reader(name)
-        for name in ("brief", "exact", "percent", "capped_percent", "unit", "told", "quantity", "source", "translated")
+        for name in ("exact", "percent", "capped_percent", "unit", "told", "quantity", "source", "translated")
     },
 }
 """`{{ 40 | figure("Nm") }}`, `{{ "Nm" | unit }}`, `{{ sentence | told }}`: for whoever reads the page."""
