@@ -124,7 +124,7 @@ def test_the_saved_page_has_the_chart_of_the_cycle_the_envelope_and_the_life_of_
     if query == LOADED:
         assert "The largest single load governs." in bearing
         assert phases(bearing, "mark load") == ["0", "1", "2", "0", "1", "2"]  # this size, all sizes
-        assert "75\u202f600" in unescape(bearing)
+        assert "75\u202f594" in unescape(bearing)
     else:
         assert "Add a load" not in bearing
 
