@@ -64,7 +64,7 @@ async def test_a_saved_fleet_is_renamed_and_nothing_else_of_it_changes(store: St
     assert not await store.rename_fleet(left, {"title": "not saved", "reference": None})
 
     assert before is not None
-    assert await store.find_fleet(id) == replace(before, title="Line 5", reference=None)
+    assert await store.find_fleet(id) == replace(before, title="Line 5", reference=None, version=before.version + 1)
 
 
 async def test_what_nobody_saves_goes_after_a_day(store: Store) -> None:

@@ -13,6 +13,7 @@ from sqlalchemy import delete, or_, select, tuple_, update
 from sqlalchemy.ext.asyncio import AsyncConnection
 
 from hpn.store.tables import fleets
+from hpn.store.writing import in_version
 
 UNSAVED_LASTS = timedelta(days=1)
 MOST_UNSAVED = 100
@@ -41,7 +42,7 @@ class FleetDraft(FleetCounts):
 
 @dataclass(frozen=True, slots=True)
 class FleetSummary(FleetCounts):
-    """One line of a list of fleets; `saved` is None while it is only calculated."""
+    """One line of a list of fleets; `saved` is None while it is only calculated, `version` counts changes from 1."""
 
     id: str
     created: datetime
@@ -51,6 +52,7 @@ class FleetSummary(FleetCounts):
     author: str | None
     revision: str | None
     owner: str | None
+    version: int
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,20 +79,24 @@ async def insert_fleet(connection: AsyncConnection, draft: FleetDraft) -> str:
 
 async def name_fleet(connection: AsyncConnection, id: str, names: Mapping[str, str | None], owner: str | None) -> bool:
     """Save a calculated fleet under a title and the like; False where there is none that is not saved."""
-    values = {**names, "owner": owner, "saved": datetime.now(UTC)}
+    values = {**names, "owner": owner, "saved": datetime.now(UTC), "version": fleets.c.version + 1}
     named = update(fleets).where(fleets.c.id == id, fleets.c.saved.is_(None)).values(values).returning(fleets.c.id)
     return (await connection.execute(named)).one_or_none() is not None
 
 
-async def rename_fleet(connection: AsyncConnection, id: str, names: Mapping[str, str | None]) -> bool:
-    """Give a saved fleet another title or reference; False where there is none."""
-    renamed = update(fleets).where(fleets.c.id == id, fleets.c.saved.is_not(None)).values(**names)
-    return (await connection.execute(renamed.returning(fleets.c.id))).one_or_none() is not None
+async def rename_fleet(
+    connection: AsyncConnection, id: str, names: Mapping[str, str | None], version: int | None = None
+) -> bool:
+    """Give a saved fleet another title or reference; False where there is none, or none in the version given."""
+    c = fleets.c
+    renamed = update(fleets).where(*in_version(fleets, id, version), c.saved.is_not(None))
+    values = {**names, "version": c.version + 1}
+    return (await connection.execute(renamed.values(values).returning(c.id))).one_or_none() is not None
 
 
-async def remove_fleet(connection: AsyncConnection, id: str) -> bool:
-    """Delete a fleet; False where there is none."""
-    gone = delete(fleets).where(fleets.c.id == id).returning(fleets.c.id)
+async def remove_fleet(connection: AsyncConnection, id: str, version: int | None = None) -> bool:
+    """Delete a fleet; False as `rename_fleet`."""
+    gone = delete(fleets).where(*in_version(fleets, id, version)).returning(fleets.c.id)
     return (await connection.execute(gone)).one_or_none() is not None
 
 

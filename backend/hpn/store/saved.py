@@ -49,7 +49,7 @@ class Summary:
     """One line of a list of saved selections.
 
     `designation` is the gear that its page shows first, as it was judged then; None where an earlier version has saved
-    a reply that can't be read.
+    a reply that can't be read. `version` counts its changes from 1.
     """
 
     id: str
@@ -65,6 +65,7 @@ class Summary:
     utilisation: float | None
     engine_version: str
     catalogue_version: str
+    version: int
 
 
 @dataclass(frozen=True, slots=True)

@@ -169,17 +169,16 @@ class Store:
         more = len(found) > limit
         return Page(found[:limit], _cursor(found[limit - 1].created, found[limit - 1].id) if more else None)
 
-    async def rename(self, id: str, names: Mapping[str, str | None]) -> bool:
-        """Give a selection another `title` or `reference`, or both; False where there is none with this id."""
-        if not ID.fullmatch(id):
-            return False
-        return await self._write(lambda connection: rename(connection, id, names))
+    async def rename(self, id: str, names: Mapping[str, str | None], version: int | None = None) -> bool:
+        """Give a selection another `title` or `reference`, or both; False where there is none with this id.
 
-    async def delete(self, id: str) -> bool:
-        """Delete a selection; False where there is none with this id."""
-        if not ID.fullmatch(id):
-            return False
-        return await self._write(lambda connection: remove(connection, id))
+        With a version, False also where it has been changed since: of those who saw one version, one can change it.
+        """
+        return bool(ID.fullmatch(id)) and await self._write(lambda connection: rename(connection, id, names, version))
+
+    async def delete(self, id: str, version: int | None = None) -> bool:
+        """Delete a selection; False as `rename`."""
+        return bool(ID.fullmatch(id)) and await self._write(lambda connection: remove(connection, id, version))
 
     # --- Fleets -------------------------------------------------------------------------------------------------------
 
@@ -191,9 +190,11 @@ class Store:
         """Keep a calculated fleet for good, with title, reference, author and revision; False where there is none."""
         return bool(ID.fullmatch(id)) and await self._write(lambda connection: name_fleet(connection, id, names, owner))
 
-    async def rename_fleet(self, id: str, names: Mapping[str, str | None]) -> bool:
-        """Give a saved fleet another `title` or `reference`, or both; False where there is none with this id."""
-        return bool(ID.fullmatch(id)) and await self._write(lambda connection: rename_fleet(connection, id, names))
+    async def rename_fleet(self, id: str, names: Mapping[str, str | None], version: int | None = None) -> bool:
+        """Give a saved fleet another `title` or `reference`, or both; False as `rename`."""
+        return bool(ID.fullmatch(id)) and await self._write(
+            lambda connection: rename_fleet(connection, id, names, version)
+        )
 
     async def find_fleet(self, id: str) -> SavedFleet | None:
         """The fleet with this id, saved or calculated not long ago, or None."""
@@ -212,9 +213,9 @@ class Store:
         last = found[limit - 1]
         return found[:limit], _cursor(last.saved or last.created, last.id)
 
-    async def delete_fleet(self, id: str) -> bool:
-        """Delete a fleet; False where there is none with this id."""
-        return bool(ID.fullmatch(id)) and await self._write(lambda connection: remove_fleet(connection, id))
+    async def delete_fleet(self, id: str, version: int | None = None) -> bool:
+        """Delete a fleet; False as `rename`."""
+        return bool(ID.fullmatch(id)) and await self._write(lambda connection: remove_fleet(connection, id, version))
 
     # --- Transactions -------------------------------------------------------------------------------------------------
 

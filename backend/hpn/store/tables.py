@@ -47,6 +47,8 @@ selections = Table(
     Column("status", Text),
     Column("utilisation", Double),
     Column("search_text", Text, nullable=False, server_default=""),
+    # Counts its changes: whoever changes it names the version that they have seen.
+    Column("version", Integer, nullable=False, server_default="1"),
     Index("selections_created", "created", "id"),
     Index("selections_reference", "reference", "created", "id"),
     Index("selections_idempotency_key", "idempotency_key", unique=True),
@@ -78,7 +80,9 @@ fleets = Table(
     Column("reference", Text),
     Column("author", Text),
     Column("revision", Text),
-    Column("owner", Text),
+    Column("owner", Text),  # name of the API key that calculated or saved it
+    Column("caller", Text, nullable=False, server_default=""),  # hash of the key or address that calculated it
+    Column("version", Integer, nullable=False, server_default="1"),
     Column("axes", Integer, nullable=False),
     Column("selected", Integer, nullable=False),
     Column("unsuitable", Integer, nullable=False),

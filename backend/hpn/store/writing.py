@@ -9,7 +9,7 @@ from types import SimpleNamespace
 from typing import Any
 
 import brotli
-from sqlalchemy import Table, delete, literal, select, update
+from sqlalchemy import ColumnElement, Table, delete, literal, select, update
 from sqlalchemy.dialects import postgresql, sqlite
 from sqlalchemy.ext.asyncio import AsyncConnection
 
@@ -117,28 +117,36 @@ async def rehearse(connection: AsyncConnection) -> None:
     await connection.execute(delete(selections).where(selections.c.id.in_([row["id"] for row in rows])))
 
 
-async def rename(connection: AsyncConnection, id: str, names: Mapping[str, str | None]) -> bool:
-    """Give a selection another title or reference; False where there is none."""
+async def rename(
+    connection: AsyncConnection, id: str, names: Mapping[str, str | None], version: int | None = None
+) -> bool:
+    """Give a selection another title or reference; False where there is none, or none in the version that is given."""
     c = selections.c
     columns = (c.title, c.reference, c.author, c.ordering_code, c.designation)
-    row = (await connection.execute(select(*columns).where(c.id == id).with_for_update())).one_or_none()
+    state = in_version(selections, id, version)
+    row = (await connection.execute(select(*columns).where(*state).with_for_update())).one_or_none()
     if row is None:
         return False
     named = SimpleNamespace(**{**row._asdict(), **names})
     values = {"title": named.title, "reference": named.reference, "search_text": _search_text(named)}
-    await connection.execute(update(selections).where(c.id == id).values(values))
-    return True
+    renamed = update(selections).where(*state).values(**values, version=c.version + 1).returning(c.id)
+    return (await connection.execute(renamed)).one_or_none() is not None
 
 
-async def remove(connection: AsyncConnection, id: str) -> bool:
-    """Delete a selection, and remember that its idempotency key is spent; False where there is none."""
-    c = selections.c
-    statement = delete(selections).where(c.id == id).returning(c.idempotency_key)
+async def remove(connection: AsyncConnection, id: str, version: int | None = None) -> bool:
+    """Delete a selection, and remember that its idempotency key is spent; False where there is none, as `rename`."""
+    statement = delete(selections).where(*in_version(selections, id, version)).returning(selections.c.idempotency_key)
     gone = (await connection.execute(statement)).one_or_none()
     if gone is not None and gone.idempotency_key is not None:
         spent = {"key_sha256": _hash(gone.idempotency_key), "deleted": datetime.now(UTC)}
         await _insert_new(connection, spent_keys, spent)
     return gone is not None
+
+
+def in_version(table: Table, id: str, version: int | None) -> list[ColumnElement[bool]]:
+    """Condition for a row in the version that somebody has seen: a change since then leaves none. None: any version."""
+    c = table.c
+    return [c.id == id] if version is None else [c.id == id, c.version == version]
 
 
 def _hash(key: str) -> str:

@@ -42,7 +42,7 @@ from hpn.web.archive import (
 )
 from hpn.web.door.access import admit
 from hpn.web.door.bodies import JSON, MERGE_PATCH, parsed, read_body
-from hpn.web.door.conditions import conditional, etag_of, idempotency_key, preferred_return, require_match
+from hpn.web.door.conditions import conditional, etag_of, idempotency_key, other_state, preferred_return, require_match
 from hpn.web.door.observation import note
 from hpn.web.door.pools import calculate
 from hpn.web.door.problems import Problem
@@ -196,10 +196,9 @@ async def rename_selection(request: Request, id: str) -> Response:
     body = await read_body(request, JSON, MERGE_PATCH, **limits)
     names = (await calculate(request, body, parsed, Names, body)).model_dump(exclude_unset=True)
     await changeable(request, id)
-    if "if-match" in request.headers:
-        require_match(request, await _representation(request, id))
-    if not await store.rename(id, names):
-        raise not_found(id)
+    version = await _matched_version(request, id)
+    if not await store.rename(id, names, version):
+        raise not_found(id) if version is None else other_state()
     note(request, selection=id)
     renamed = await _representation(request, id)
     return JSONBytes(renamed, headers={"ETag": etag_of(renamed), "Cache-Control": "no-cache"})
@@ -221,12 +220,24 @@ async def delete_selection(request: Request, id: str) -> Response:
     """
     store: Store = request.app.state.store
     await changeable(request, id)
-    if "if-match" in request.headers:
-        require_match(request, await _representation(request, id))
-    if not await store.delete(id):
-        raise not_found(id)
+    version = await _matched_version(request, id)
+    if not await store.delete(id, version):
+        raise not_found(id) if version is None else other_state()
     note(request, selection=id)
     return Response(status_code=204)
+
+
+async def _matched_version(request: Request, id: str) -> int | None:
+    """Version of the state that `If-Match` names, None where it names none; Problem 412 where it names another.
+
+    The write then asks for this version: a look beforehand holds for nobody who writes in between.
+    """
+    if request.headers.get("if-match", "*").strip() == "*":  # any state, as long as there is one
+        return None
+    represented = partial(_represented, catalogue=request.app.state.catalogue)
+    version, body = await found(request, id, lambda reopened: (reopened.saved.version, represented(reopened)))
+    require_match(request, body)
+    return version
 
 
 async def _representation(request: Request, id: str) -> bytes:

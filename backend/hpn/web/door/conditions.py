@@ -37,7 +37,12 @@ def require_match(request: Request, body: bytes) -> None:
     """Raise Problem 412 where `If-Match` names another state than this one."""
     given = request.headers.get("if-match")
     if given is not None and not _lists(given, etag_of(body), weakly=False):
-        raise Problem(412, "If-Match names another state of this selection; read it again")
+        raise other_state()
+
+
+def other_state() -> Problem:
+    """What `If-Match` names is not, or is no longer, the state that there is."""
+    return Problem(412, "If-Match names another state of this selection; read it again")
 
 
 def _lists(header: str, etag: str, *, weakly: bool) -> bool:

@@ -127,15 +127,15 @@ class CountedStore(Store):
         with self._counted("page"):
             return await super().page(reference=reference, search=search, cursor=cursor, limit=limit)
 
-    async def rename(self, id: str, names: Mapping[str, str | None]) -> bool:
+    async def rename(self, id: str, names: Mapping[str, str | None], version: int | None = None) -> bool:
         """See Store."""
         with self._counted("rename"):
-            return await super().rename(id, names)
+            return await super().rename(id, names, version)
 
-    async def delete(self, id: str) -> bool:
+    async def delete(self, id: str, version: int | None = None) -> bool:
         """See Store."""
         with self._counted("delete"):
-            return await super().delete(id)
+            return await super().delete(id, version)
 
     async def keep_fleet(self, draft: FleetDraft) -> str:
         """See Store."""
@@ -147,10 +147,10 @@ class CountedStore(Store):
         with self._counted("save_fleet"):
             return await super().save_fleet(id, names, owner)
 
-    async def rename_fleet(self, id: str, names: Mapping[str, str | None]) -> bool:
+    async def rename_fleet(self, id: str, names: Mapping[str, str | None], version: int | None = None) -> bool:
         """See Store."""
         with self._counted("rename_fleet"):
-            return await super().rename_fleet(id, names)
+            return await super().rename_fleet(id, names, version)
 
     async def find_fleet(self, id: str) -> SavedFleet | None:
         """See Store."""
@@ -162,10 +162,10 @@ class CountedStore(Store):
         with self._counted("fleets"):
             return await super().fleets(cursor, limit)
 
-    async def delete_fleet(self, id: str) -> bool:
+    async def delete_fleet(self, id: str, version: int | None = None) -> bool:
         """See Store."""
         with self._counted("delete_fleet"):
-            return await super().delete_fleet(id)
+            return await super().delete_fleet(id, version)
 
     @contextmanager
     def _counted(self, operation: str) -> Iterator[None]:

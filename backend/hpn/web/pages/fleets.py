@@ -39,7 +39,7 @@ from hpn.web.form.pasted import TIMES
 from hpn.web.pages.fleet_view import ROWS_ON_PAGE, SHOWN, Chosen, FleetPageView
 from hpn.web.pages.paste import DECIMALS, choices_of
 from hpn.web.pages.refusals import reads_pages
-from hpn.web.pages.saved_list import names_of
+from hpn.web.pages.saved_list import changed_since, names_of, version_of
 from hpn.web.pages.templates import environment
 from hpn.words.reader import Reader
 from hpn.words.wording import N_, Sentence
@@ -52,6 +52,7 @@ CHANGES_ON_PAGE = 100
 WRITTEN = {"title": "title", "ref": "reference", "author": "author", "rev": "revision"}
 NOTHING = N_("choose a file, or put cells into the field")
 LARGER = N_("Larger tables take the command hpn fleet and POST /api/v1/fleet, which have no such limit.")
+SAVED_MEANWHILE = N_("This fleet was saved meanwhile, under other names. Open it again, then rename it.")
 GONE = N_("There is no such fleet. What nobody saves is kept for a day.")
 
 
@@ -311,11 +312,19 @@ async def save(request: Request) -> Response:
         if not form.is_sound:
             return await _shown(request, saved, 422, form)
         names = {WRITTEN[name]: text or None for name, text in form.labels.items()}
-        await request.app.state.store.save_fleet(saved.id, names, request.state.api_key)
+        if not await request.app.state.store.save_fleet(saved.id, names, request.state.api_key):
+            await _require_same(request, names)
     except (Problem, StoreUnavailableError) as error:
         return await compute(request, "pages", _refused, request, error)
     note(request, fleet=saved.id)
     return RedirectResponse(f"{ADDRESS}/{saved.id}", 303)
+
+
+async def _require_same(request: Request, names: Mapping[str, str | None]) -> None:
+    """Raise Problem 412 unless a fleet is saved under these names: a form that is sent twice saves once."""
+    saved = await _found(request)
+    if any(getattr(saved, name) != text for name, text in names.items()):
+        raise Problem(412, SAVED_MEANWHILE)
 
 
 async def show_saved(request: Request) -> Response:
@@ -335,10 +344,11 @@ async def rename(request: Request) -> Response:
     """Gives a saved fleet another title and reference, and leads back to its page."""
     try:
         require_same_origin(request)
-        names = names_of(dict(pairs_of(await read_form(request))))
+        fields = dict(pairs_of(await read_form(request)))
+        names, version = names_of(fields), version_of(fields)
         saved = await _own(request)
-        if not await request.app.state.store.rename_fleet(saved.id, names):
-            raise Problem(404, GONE)
+        if not await request.app.state.store.rename_fleet(saved.id, names, version):
+            raise Problem(404, GONE) if version is None or saved.saved is None else changed_since()
     except (Problem, StoreUnavailableError) as error:
         return await compute(request, "pages", _refused, request, error)
     note(request, fleet=saved.id)
@@ -358,8 +368,11 @@ async def delete(request: Request) -> Response:
     """Deletes a fleet for good, and leads to the list."""
     try:
         require_same_origin(request)
+        given = "content-type" in request.headers  # a script may send no body
+        version = version_of(dict(pairs_of(await read_form(request)))) if given else None
         saved = await _own(request)
-        await request.app.state.store.delete_fleet(saved.id)
+        if not await request.app.state.store.delete_fleet(saved.id, version):
+            raise Problem(404, GONE) if version is None else changed_since()
     except (Problem, StoreUnavailableError) as error:
         return await compute(request, "pages", _refused, request, error)
     note(request, fleet=saved.id)

@@ -9,7 +9,7 @@ from starlette.requests import Request
 from starlette.responses import HTMLResponse, RedirectResponse, Response
 
 from hpn.store import SavedSelection, Store, StoreUnavailableError
-from hpn.web.archive import Line, Names, changeable
+from hpn.web.archive import Line, Names, changeable, not_found
 from hpn.web.door.access import admit
 from hpn.web.door.bodies import pairs_of, read_form
 from hpn.web.door.observation import note
@@ -24,6 +24,7 @@ from hpn.words.wording import N_
 
 ADDRESS = "/selections"
 LINES_ON_PAGE = 25
+CHANGED = N_("Somebody has renamed or deleted this since you opened the page. Open it again, then decide.")
 NO_SUCH_PART = N_("This part of the list can’t be found; its address is not whole.")
 
 
@@ -68,7 +69,20 @@ async def rename_selection(request: Request) -> Response:
 
 
 async def _rename(request: Request, saved: SavedSelection, fields: dict[str, str]) -> None:
-    await request.app.state.store.rename(saved.id, names_of(fields))
+    version = version_of(fields)
+    if not await request.app.state.store.rename(saved.id, names_of(fields), version):
+        raise not_found(saved.id) if version is None else changed_since()
+
+
+def version_of(fields: Mapping[str, str]) -> int | None:
+    """Version of what a form was made for, None where it says none; one that can't be is none that there is."""
+    text = fields.get("version", "")
+    return (int(text) if text.isascii() and text.isdigit() and len(text) < 10 else -1) if text else None
+
+
+def changed_since() -> Problem:
+    """What a form was made for is no longer as it was then."""
+    return Problem(412, CHANGED)
 
 
 def names_of(fields: Mapping[str, str]) -> dict[str, str | None]:
@@ -98,7 +112,9 @@ async def delete_selection(request: Request) -> Response:
 
 
 async def _delete(request: Request, saved: SavedSelection, fields: dict[str, str]) -> None:
-    await request.app.state.store.delete(saved.id)
+    version = version_of(fields)
+    if not await request.app.state.store.delete(saved.id, version):
+        raise not_found(saved.id) if version is None else changed_since()
 
 
 async def _changed(request: Request, change: Any) -> Response:
