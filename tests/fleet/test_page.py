@@ -21,6 +21,7 @@ from starlette.testclient import TestClient
 from hpn.application import Application
 from hpn.engine.selection import select
 from hpn.store import FleetDraft
+from hpn.store.fleets import MOST_OF_CALLER
 from hpn.tables.columns import NO_CHOICES
 from hpn.web.app import create_app
 from hpn.web.form.link_writer import to_link
@@ -28,6 +29,7 @@ from hpn.web.pages.fleet_upload import Upload, best_reading, uploaded
 from hpn.web.settings import Settings
 from tests.fleet.tables import in_long_form, row_of, write
 from tests.state import state_of
+from tests.store.test_fleets import MOST_BYTES
 
 GERMAN = """Maschine 7;;;;;
 Achse;Nr.;Drehmoment [Nm];Drehzahl [1/min];Dauer [ms];Lebensdauer Getriebe [h]
@@ -232,13 +234,13 @@ def kept(client: TestClient, service: FastAPI, fleet: str) -> FleetDraft:
     """What was kept of the fleet of the German table."""
     assert client.portal is not None
     found = client.portal.call(service.state.store.find_fleet, fleet.rpartition("/")[2])
-    return FleetDraft(**{name: getattr(found, name) for name in FleetDraft.__dataclass_fields__})
+    return FleetDraft(**{name: getattr(found, name) for name in FleetDraft.__dataclass_fields__ if name != "caller"})
 
 
 def keep(client: TestClient, service: FastAPI, draft: FleetDraft) -> str:
     """Address of a fleet that is kept as if it had just been sized."""
     assert client.portal is not None
-    return f"/fleets/{client.portal.call(service.state.store.keep_fleet, draft)}"
+    return f"/fleets/{client.portal.call(service.state.store.keep_fleet, draft, MOST_BYTES)}"
 
 
 def test_a_fleet_is_saved_listed_and_never_changed(client: TestClient, service: FastAPI, kept: FleetDraft) -> None:
@@ -306,6 +308,67 @@ def test_only_the_owner_s_key_renames_and_deletes_a_fleet(kept: FleetDraft, tmp_
         assert client.get(address).status_code == 200
         assert client.post(f"{address}/delete").status_code == 303
         assert client.get(address).status_code == 404
+
+
+@pytest.fixture
+def keyed(tmp_path: Path) -> Iterator[TestClient]:
+    """A service with keys."""
+    pairs = [f"{name}:{hashlib.sha256(name.encode()).hexdigest()}" for name in ("anna", "bert", "admin")]
+    settings = Settings.model_validate({"database_url": f"sqlite:///{tmp_path / 'db'}", "api_keys": " ".join(pairs)})
+    with TestClient(create_app(settings), follow_redirects=False) as client:
+        yield client
+
+
+def test_what_a_key_has_calculated_only_that_key_sees_and_saves(keyed: TestClient, tmp_path: Path) -> None:
+    anna, bert, admin = ({"X-API-Key": name} for name in ("anna", "bert", "admin"))
+    table = write(tmp_path / "axes.csv", [row_of("one", HUB)]).read_bytes()
+    sized = keyed.post("/fleets", files={"file": ("axes.csv", table)}, headers=anna)
+    assert sized.status_code == 303, sized.text
+    place = sized.headers["location"]
+
+    for other in (bert, admin):
+        for address in (place, f"{place}/axes.csv", f"{place}/delete"):
+            seen = keyed.get(address, headers=other)
+            assert seen.status_code == 403 and "one" not in seen.text
+        assert keyed.post(place, data={"title": "taken"}, headers=other).status_code == 403
+        assert keyed.post(f"{place}/delete", headers=other).status_code == 403
+    assert keyed.get(place).status_code == 401  # the browser asks for the key
+    assert "Only the key that calculated" in keyed.get(place, headers=bert | {"Accept": "text/html"}).text
+
+    assert keyed.get(place, headers=anna).status_code == 200
+    assert keyed.post(place, data={"title": "Line 4"}, headers=anna).status_code == 303
+    assert keyed.get(place, headers=bert).status_code == 200  # what is saved is there for all
+
+
+def test_a_caller_with_many_unsaved_fleets_is_told_what_to_do(keyed: TestClient, tmp_path: Path) -> None:
+    table = write(tmp_path / "axes.csv", [row_of("one", HUB)]).read_bytes()
+    sized = keyed.post("/fleets", files={"file": ("axes.csv", table)}, headers={"X-API-Key": "anna"})
+    store, place = state_of(keyed).store, sized.headers["location"]
+    assert keyed.portal is not None
+    found = keyed.portal.call(store.find_fleet, place.rpartition("/")[2])
+    caller = hashlib.sha256(b"key anna").hexdigest()
+    names = set(FleetDraft.__dataclass_fields__) - {"caller"}
+    draft = FleetDraft(**{name: getattr(found, name) for name in names}, caller=caller)
+    for _ in range(MOST_OF_CALLER - 1):
+        keyed.portal.call(store.keep_fleet, draft, MOST_BYTES)
+
+    refused = keyed.post("/fleets", files={"file": ("axes.csv", table)}, headers={"X-API-Key": "anna"})
+
+    assert (refused.status_code, int(refused.headers["retry-after"]) > 0) == (429, True)
+    assert "20 of them are yours" in refused.text
+    assert keyed.post("/fleets", files={"file": ("a.csv", table)}, headers={"X-API-Key": "bert"}).status_code == 303
+    assert keyed.post(f"{place}/delete", headers={"X-API-Key": "anna"}).status_code == 303
+    assert keyed.post("/fleets", files={"file": ("a.csv", table)}, headers={"X-API-Key": "anna"}).status_code == 303
+
+
+def test_where_unsaved_fleets_take_all_their_room_a_new_one_is_refused(tmp_path: Path) -> None:
+    table = write(tmp_path / "axes.csv", [row_of("one", HUB)]).read_bytes()
+    settings = Settings(database_url=f"sqlite:///{tmp_path / 'db'}", maximum_unsaved_fleet_bytes=1000)
+    with TestClient(create_app(settings), follow_redirects=False) as client:
+        refused = post(client, table)
+
+        assert refused.status_code == 503 and "take the room there is for them" in refused.text
+        assert client.post("/api/v1/fleet", content=table, headers={"Content-Type": "text/csv"}).status_code == 200
 
 
 def test_a_reader_who_changes_language_over_a_table_comes_back_to_the_page_of_tables(client: TestClient) -> None:

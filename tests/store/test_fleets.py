@@ -1,5 +1,6 @@
 """A fleet is kept for a day when it is calculated, for good when it is saved, and only renamed after that."""
 
+import asyncio
 from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 from typing import Any
@@ -7,12 +8,15 @@ from typing import Any
 import pytest
 from sqlalchemy import update
 
-from hpn.store import FleetDraft, Store
+from hpn.store import FleetDraft, NoRoomError, ShareSpentError, Store
 from hpn.store.engine import WRITES
-from hpn.store.fleets import MOST_UNSAVED
+from hpn.store.fleets import MOST_OF_CALLER
 from hpn.store.tables import fleets
 
 pytestmark = pytest.mark.anyio
+
+MOST_BYTES = 1_000_000
+"""Room for what nobody has saved that these tests never fill."""
 
 NAMES: dict[str, str | None] = {"title": "Line 4", "reference": "P-77", "author": None, "revision": "B"}
 
@@ -31,7 +35,7 @@ async def age(store: Store, id: str, by: timedelta) -> None:
 
 async def test_a_calculated_fleet_is_found_and_listed_once_it_is_saved(store: Store) -> None:
     given = draft()
-    id = await store.keep_fleet(given)
+    id = await store.keep_fleet(given, MOST_BYTES)
 
     found = await store.find_fleet(id)
     assert found is not None and found.saved is None
@@ -46,7 +50,7 @@ async def test_a_calculated_fleet_is_found_and_listed_once_it_is_saved(store: St
 
 
 async def test_a_saved_fleet_is_not_saved_again_under_another_name(store: Store) -> None:
-    id = await store.keep_fleet(draft())
+    id = await store.keep_fleet(draft(), MOST_BYTES)
     assert await store.save_fleet(id, NAMES, "anna")
 
     assert not await store.save_fleet(id, {**NAMES, "title": "another"}, "bert")
@@ -56,7 +60,7 @@ async def test_a_saved_fleet_is_not_saved_again_under_another_name(store: Store)
 
 
 async def test_a_saved_fleet_is_renamed_and_nothing_else_of_it_changes(store: Store) -> None:
-    id, left = await store.keep_fleet(draft()), await store.keep_fleet(draft())
+    id, left = await store.keep_fleet(draft(), MOST_BYTES), await store.keep_fleet(draft(), MOST_BYTES)
     await store.save_fleet(id, NAMES, "anna")
     before = await store.find_fleet(id)
 
@@ -68,31 +72,73 @@ async def test_a_saved_fleet_is_renamed_and_nothing_else_of_it_changes(store: St
 
 
 async def test_what_nobody_saves_goes_after_a_day(store: Store) -> None:
-    kept, left = await store.keep_fleet(draft()), await store.keep_fleet(draft())
+    kept, left = await store.keep_fleet(draft(), MOST_BYTES), await store.keep_fleet(draft(), MOST_BYTES)
     await store.save_fleet(kept, NAMES, None)
     for id in (kept, left):
         await age(store, id, timedelta(hours=25))
 
     assert await store.find_fleet(left) is None
     assert await store.find_fleet(kept) is not None
-    await store.keep_fleet(draft())
+    await store.keep_fleet(draft(), MOST_BYTES)
     assert not await store.delete_fleet(left)
 
 
-async def test_what_nobody_saves_is_bounded(store: Store) -> None:
-    first = await store.keep_fleet(draft())
-    await age(store, first, timedelta(hours=1))
-    second = await store.keep_fleet(draft())
+async def test_what_others_calculate_takes_nothing_away_that_is_younger_than_a_day(store: Store) -> None:
+    first = await store.keep_fleet(draft(caller="anna"), MOST_BYTES)
+    await age(store, first, timedelta(hours=23))
 
-    for _ in range(MOST_UNSAVED - 1):
-        await store.keep_fleet(draft())
+    for number in range(105):
+        await store.keep_fleet(draft(caller=f"other {number}"), MOST_BYTES)
 
-    assert await store.find_fleet(first) is None
-    assert await store.find_fleet(second) is not None
+    assert await store.find_fleet(first) is not None
+
+
+async def test_a_caller_has_so_many_unsaved_and_room_again_once_one_is_saved_or_a_day_old(store: Store) -> None:
+    ids = [await store.keep_fleet(draft(caller="anna"), MOST_BYTES) for _ in range(MOST_OF_CALLER)]
+
+    with pytest.raises(ShareSpentError):
+        await store.require_room("anna", MOST_BYTES)
+    with pytest.raises(ShareSpentError):
+        await store.keep_fleet(draft(caller="anna"), MOST_BYTES)
+    await store.keep_fleet(draft(caller="bert"), MOST_BYTES)
+
+    assert None not in [await store.find_fleet(id) for id in ids]
+    await store.save_fleet(ids[0], NAMES, "anna")
+    await store.keep_fleet(draft(caller="anna"), MOST_BYTES)
+    await age(store, ids[1], timedelta(hours=25))
+    await store.keep_fleet(draft(caller="anna"), MOST_BYTES)
+
+
+async def test_what_all_have_unsaved_is_bounded_in_bytes_and_a_new_one_gives_way(store: Store) -> None:
+    size = len(draft().asked) + len(draft().answers)
+    first = await store.keep_fleet(draft(), 2 * size)
+    saved = await store.keep_fleet(draft(), 2 * size)
+
+    with pytest.raises(NoRoomError):
+        await store.keep_fleet(draft(caller="other"), 2 * size)
+    with pytest.raises(NoRoomError):
+        await store.require_room("other", 2 * size - 1)
+
+    assert await store.find_fleet(first) is not None
+    await store.save_fleet(saved, NAMES, None)
+    await store.keep_fleet(draft(), 2 * size)
+
+
+async def test_those_that_come_at_once_do_not_pass_the_bounds_together(store: Store) -> None:
+    size = len(draft().asked) + len(draft().answers)
+    others = [draft(caller=f"other {number}") for number in range(8)]
+
+    of_all = await asyncio.gather(*(store.keep_fleet(one, 3 * size) for one in others), return_exceptions=True)
+    of_one = await asyncio.gather(
+        *(store.keep_fleet(draft(caller="anna"), MOST_BYTES) for _ in range(MOST_OF_CALLER + 8)), return_exceptions=True
+    )
+
+    assert [type(found) for found in of_all].count(str) == 3
+    assert [type(found) for found in of_one].count(str) == MOST_OF_CALLER
 
 
 async def test_fleets_are_listed_newest_first_in_parts(store: Store) -> None:
-    ids = [await store.keep_fleet(draft()) for _ in range(3)]
+    ids = [await store.keep_fleet(draft(), MOST_BYTES) for _ in range(3)]
     for id in ids:
         await store.save_fleet(id, NAMES, None)
 
@@ -106,7 +152,7 @@ async def test_fleets_are_listed_newest_first_in_parts(store: Store) -> None:
 
 
 async def test_a_deleted_fleet_is_gone(store: Store) -> None:
-    id = await store.keep_fleet(draft())
+    id = await store.keep_fleet(draft(), MOST_BYTES)
 
     assert await store.delete_fleet(id)
 

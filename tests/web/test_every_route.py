@@ -16,6 +16,7 @@ from hpn.web.pages.assets import Assets
 from tests.build import phase, worked_example
 from tests.fleet.sized import fleet_draft
 from tests.fleet.tables import row_of
+from tests.store.test_fleets import MOST_BYTES
 
 LINK = "T=40&n=250&t=0.3&T=32&n=500&t=3&tp=4&i=5"
 QUERIES = {
@@ -48,7 +49,7 @@ def fleet(api: TestClient, service: FastAPI, tmp_path_factory: pytest.TempPathFa
     """Id of a fleet that was sized."""
     draft = fleet_draft([row_of("hub", worked_example())], tmp_path_factory.mktemp("fleet"), service.state.catalogue)
     assert api.portal is not None
-    id: str = api.portal.call(service.state.store.keep_fleet, draft)
+    id: str = api.portal.call(service.state.store.keep_fleet, draft, MOST_BYTES)
     return id
 
 

@@ -1,6 +1,14 @@
 """Selections that last: saved once, never rewritten, in an SQLite file or a PostgreSQL database."""
 
-from hpn.store.errors import KeyReusedError, KeySpentError, NewerDatabaseError, StoreError, StoreUnavailableError
+from hpn.store.errors import (
+    KeyReusedError,
+    KeySpentError,
+    NewerDatabaseError,
+    NoRoomError,
+    ShareSpentError,
+    StoreError,
+    StoreUnavailableError,
+)
 from hpn.store.fleets import FleetDraft, FleetSummary, SavedFleet
 from hpn.store.saved import Draft, Page, SavedSelection, Summary
 from hpn.store.store import ID, Store
@@ -13,9 +21,11 @@ __all__ = [
     "KeyReusedError",
     "KeySpentError",
     "NewerDatabaseError",
+    "NoRoomError",
     "Page",
     "SavedFleet",
     "SavedSelection",
+    "ShareSpentError",
     "Store",
     "StoreError",
     "StoreUnavailableError",

@@ -13,6 +13,14 @@ class NewerDatabaseError(StoreError):
     """A newer version of this program has changed the database in a way that this one does not know."""
 
 
+class ShareSpentError(StoreError):
+    """A caller has as many calculated fleets as one may have that nobody has saved."""
+
+
+class NoRoomError(StoreError):
+    """The calculated fleets that nobody has saved take as much room as all of them may."""
+
+
 class KeySpentError(StoreError):
     """What was saved under an idempotency key has been deleted since."""
 

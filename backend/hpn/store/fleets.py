@@ -9,15 +9,18 @@ from dataclasses import asdict, dataclass, field
 from datetime import UTC, datetime, timedelta
 from typing import Any
 
-from sqlalchemy import delete, or_, select, tuple_, update
+from sqlalchemy import delete, func, or_, select, text, tuple_, update
 from sqlalchemy.ext.asyncio import AsyncConnection
 
+from hpn.store.errors import NoRoomError, ShareSpentError
 from hpn.store.tables import fleets
 from hpn.store.writing import in_version
 
 UNSAVED_LASTS = timedelta(days=1)
-MOST_UNSAVED = 100
-"""Fleets that are kept without being saved; the oldest make room."""
+MOST_OF_CALLER = 20
+"""Fleets of one caller that are kept without being saved."""
+
+LOCK = 0x48504F  # any number but that of the migrations: who adds a fleet on PostgreSQL counts what there is alone
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,10 +37,16 @@ class FleetCounts:
 
 @dataclass(frozen=True, slots=True)
 class FleetDraft(FleetCounts):
-    """A fleet that was calculated: counts of its axes, and tables of what they were asked with and of their answers."""
+    """A fleet that was calculated: counts of its axes, and tables of what they were asked with and of their answers.
+
+    `owner` is the name of the API key that calculated it, None without one; `caller` stands for that key or else the
+    address, whose unsaved fleets are counted.
+    """
 
     asked: bytes = field(repr=False)
     answers: bytes = field(repr=False)
+    owner: str | None = None
+    caller: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,19 +76,35 @@ SUMMARY = [fleets.c[name] for name in FleetSummary.__dataclass_fields__]
 WHOLE = [fleets.c[name] for name in SavedFleet.__dataclass_fields__]
 
 
-async def insert_fleet(connection: AsyncConnection, draft: FleetDraft) -> str:
-    """Id of the new fleet; those that nobody has saved for long make room."""
+async def insert_fleet(connection: AsyncConnection, draft: FleetDraft, most_bytes: int) -> str:
+    """Id of the new fleet. Those that nobody has saved for a day are gone then, and no other: raises as `require_room`.
+
+    Of two that are added at once, each would fit alone; so they are counted one after the other.
+    """
     id, now, c = secrets.token_urlsafe(16), datetime.now(UTC), fleets.c
-    latest = select(c.id).where(c.saved.is_(None)).order_by(c.created.desc()).limit(MOST_UNSAVED - 1)
-    old = or_(c.created < now - UNSAVED_LASTS, c.id.not_in(latest))
-    await connection.execute(delete(fleets).where(c.saved.is_(None), old))
+    if connection.dialect.name == "postgresql":
+        await connection.execute(text("SELECT pg_advisory_xact_lock(:lock)"), {"lock": LOCK})
+    await connection.execute(delete(fleets).where(c.saved.is_(None), c.created < now - UNSAVED_LASTS))
+    await require_room(connection, draft.caller, most_bytes - len(draft.asked) - len(draft.answers))
     await connection.execute(fleets.insert().values(id=id, created=now, **asdict(draft)))
     return id
 
 
+async def require_room(connection: AsyncConnection, caller: str, most_bytes: int) -> None:
+    """Raise ShareSpentError where a caller has enough unsaved fleets, NoRoomError where all take more than that."""
+    c = fleets.c
+    kept = c.saved.is_(None) & (c.created >= datetime.now(UTC) - UNSAVED_LASTS)
+    of_caller = select(func.count()).where(kept, c.caller == caller)
+    if (await connection.execute(of_caller)).scalar_one() >= MOST_OF_CALLER:
+        raise ShareSpentError(f"{MOST_OF_CALLER} fleets of this caller are kept for a day without being saved")
+    taken = select(func.coalesce(func.sum(func.length(c.asked) + func.length(c.answers)), 0)).where(kept)
+    if (await connection.execute(taken)).scalar_one() > most_bytes:
+        raise NoRoomError("the fleets that nobody has saved take all the room that they may")
+
+
 async def name_fleet(connection: AsyncConnection, id: str, names: Mapping[str, str | None], owner: str | None) -> bool:
     """Save a calculated fleet under a title and the like; False where there is none that is not saved."""
-    values = {**names, "owner": owner, "saved": datetime.now(UTC), "version": fleets.c.version + 1}
+    values = {**names, "owner": owner, "caller": "", "saved": datetime.now(UTC), "version": fleets.c.version + 1}
     named = update(fleets).where(fleets.c.id == id, fleets.c.saved.is_(None)).values(values).returning(fleets.c.id)
     return (await connection.execute(named)).one_or_none() is not None
 

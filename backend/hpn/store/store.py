@@ -30,6 +30,7 @@ from hpn.store.fleets import (
     read_fleets,
     remove_fleet,
     rename_fleet,
+    require_room,
 )
 from hpn.store.packing import unpacked
 from hpn.store.saved import Draft, Page, SavedSelection, Summary, search_text
@@ -182,9 +183,18 @@ class Store:
 
     # --- Fleets -------------------------------------------------------------------------------------------------------
 
-    async def keep_fleet(self, draft: FleetDraft) -> str:
-        """Id of a calculated fleet, which is kept for a day, or until many more were calculated."""
-        return await self._write(lambda connection: insert_fleet(connection, draft))
+    async def require_room(self, caller: str, most_bytes: int) -> None:
+        """Raise what `keep_fleet` would, before a fleet is calculated."""
+        async with self._reading() as connection:
+            await require_room(connection, caller, most_bytes)
+
+    async def keep_fleet(self, draft: FleetDraft, most_bytes: int) -> str:
+        """Id of a calculated fleet, which is kept for a day.
+
+        Raises ShareSpentError where its caller has as many as one may have, and NoRoomError where this one would take
+        all that nobody has saved beyond so many bytes; none goes before its day to make room.
+        """
+        return await self._write(lambda connection: insert_fleet(connection, draft, most_bytes))
 
     async def save_fleet(self, id: str, names: Mapping[str, str | None], owner: str | None) -> bool:
         """Keep a calculated fleet for good, with title, reference, author and revision; False where there is none."""

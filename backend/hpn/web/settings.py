@@ -210,6 +210,12 @@ class Settings(BaseSettings):
         description="Most bytes of results that one streamed batch keeps in a temporary file for a client that sends "
         "without reading; most bytes of all files of one fleet.",
     )
+    maximum_unsaved_fleet_bytes: int = Field(
+        1_000_000_000,
+        gt=0,
+        description="Most bytes in the database of all fleets that the page has calculated and nobody has saved, each "
+        "kept for a day; a new one beyond it gets a 503.",
+    )
     host: str = Field("127.0.0.1", description="Address that `hpn serve` listens on.")
     port: Annotated[int, BeforeValidator(_own_port)] = Field(
         PORT, ge=0, le=65535, description="Port that `hpn serve` listens on."

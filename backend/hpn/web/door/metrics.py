@@ -19,9 +19,11 @@ from hpn.store import (
     FleetSummary,
     KeyReusedError,
     KeySpentError,
+    NoRoomError,
     Page,
     SavedFleet,
     SavedSelection,
+    ShareSpentError,
     Store,
 )
 
@@ -90,7 +92,7 @@ class Metrics:
         return generate_latest(registry)
 
 
-CALLERS_MISTAKES = (KeyReusedError, KeySpentError, ValueError)
+CALLERS_MISTAKES = (KeyReusedError, KeySpentError, ShareSpentError, NoRoomError, ValueError)
 
 
 class CountedStore(Store):
@@ -137,10 +139,15 @@ class CountedStore(Store):
         with self._counted("delete"):
             return await super().delete(id, version)
 
-    async def keep_fleet(self, draft: FleetDraft) -> str:
+    async def require_room(self, caller: str, most_bytes: int) -> None:
+        """See Store."""
+        with self._counted("require_room"):
+            await super().require_room(caller, most_bytes)
+
+    async def keep_fleet(self, draft: FleetDraft, most_bytes: int) -> str:
         """See Store."""
         with self._counted("keep_fleet"):
-            return await super().keep_fleet(draft)
+            return await super().keep_fleet(draft, most_bytes)
 
     async def save_fleet(self, id: str, names: Mapping[str, str | None], owner: str | None) -> bool:
         """See Store."""

@@ -10,7 +10,7 @@ import hashlib
 import zlib
 from collections.abc import Mapping
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from fastapi import APIRouter
@@ -18,12 +18,13 @@ from starlette.requests import Request
 from starlette.responses import HTMLResponse, RedirectResponse, Response
 
 from hpn import ENGINE_VERSION
-from hpn.store import SavedFleet, StoreUnavailableError
+from hpn.store import FleetDraft, NoRoomError, SavedFleet, ShareSpentError, StoreUnavailableError
+from hpn.store.fleets import MOST_OF_CALLER
 from hpn.tables import cells
 from hpn.tables.columns import SKIP
 from hpn.tables.sheets import RefusedError
 from hpn.web.archive import RETRY_SECONDS
-from hpn.web.door.access import admit
+from hpn.web.door.access import admit, key_needed
 from hpn.web.door.bodies import pairs_of, read_form
 from hpn.web.door.observation import note
 from hpn.web.door.pools import compute, worked
@@ -49,9 +50,19 @@ SUFFIXES = ("parquet", "csv", "xlsx")
 ROWS_IN_PREVIEW = 8
 MOST_CARRIED = 16_000_000
 CHANGES_ON_PAGE = 100
+NO_ROOM_SECONDS = 3600
 WRITTEN = {"title": "title", "ref": "reference", "author": "author", "rev": "revision"}
 NOTHING = N_("choose a file, or put cells into the field")
 LARGER = N_("Larger tables take the command hpn fleet and POST /api/v1/fleet, which have no such limit.")
+SHARE_SPENT = N_(
+    "Fleets that nobody has saved are kept for a day, and {most} of them are yours. Save one on its page or delete it "
+    "there, then size this table again."
+)
+NO_ROOM = N_(
+    "Fleets that nobody has saved are kept for a day, and those of all take the room there is for them. The command "
+    "hpn fleet and POST /api/v1/fleet size this table; here there is room again as soon as others are saved or go."
+)
+NOT_YOURS = N_("Only the key that calculated this fleet may see it and save it.")
 SAVED_MEANWHILE = N_("This fleet was saved meanwhile, under other names. Open it again, then rename it.")
 GONE = N_("There is no such fleet. What nobody saves is kept for a day.")
 
@@ -168,15 +179,36 @@ def _assumed() -> tuple[str, ...]:
 
 async def _sized(request: Request, content: bytes, suffix: str) -> str:
     """Id of the fleet that comes of a table; raises Problem, or StoreUnavailableError."""
-    state = request.app.state
+    store, most_bytes = request.app.state.store, request.app.state.settings.maximum_unsaved_fleet_bytes
+    caller = hashlib.sha256(request.state.caller.encode()).hexdigest()  # no address is kept in clear
+    try:
+        await store.require_room(caller, most_bytes)
+        draft = await _calculated(request, content, suffix)
+        id: str = await store.keep_fleet(replace(draft, owner=request.state.api_key, caller=caller), most_bytes)
+    except ShareSpentError:
+        raise _no_room(429, Sentence(SHARE_SPENT, {"most": str(MOST_OF_CALLER)})) from None
+    except NoRoomError:
+        raise _no_room(503, Sentence(NO_ROOM)) from None
+    note(request, fleet=id)
+    return id
+
+
+def _no_room(status: int, sentence: Sentence) -> Problem:
+    problem = Problem(status, sentence.text, headers={"Retry-After": str(NO_ROOM_SECONDS)})
+    problem.sentences = (sentence,)
+    return problem
+
+
+async def _calculated(request: Request, content: bytes, suffix: str) -> FleetDraft:
+    """What comes of a table; raises Problem."""
     async with workplace(request) as folder:
         axes = folder / f"axes{suffix}"
         await compute(request, "pages", axes.write_bytes, content)
         files = await size_fleet(request, Tables(axes, input_name="The table"), suffix=".parquet")
-        draft = await compute(request, "exports", _kept, axes, files["answers"], state.catalogue)
-    id: str = await state.store.keep_fleet(draft)
-    note(request, fleet=id)
-    return id
+        draft: FleetDraft = await compute(
+            request, "exports", _kept, axes, files["answers"], request.app.state.catalogue
+        )
+    return draft
 
 
 def _kept(*arguments: Any) -> Any:
@@ -276,7 +308,17 @@ async def _found(request: Request) -> SavedFleet:
     saved: SavedFleet | None = await request.app.state.store.find_fleet(request.path_params["fleet"])
     if saved is None:
         raise Problem(404, GONE)
+    if saved.saved is None and saved.owner is not None and request.app.state.gate.has_keys:
+        _require_key(request, saved.owner)
     return saved
+
+
+def _require_key(request: Request, owner: str) -> None:
+    """Raise Problem 403 for another key than the one that calculated a fleet, 401 without any."""
+    if request.state.api_key is None:
+        raise key_needed(request.scope["path"])
+    if request.state.api_key != owner:
+        raise Problem(403, NOT_YOURS)
 
 
 async def download(request: Request) -> Response:
