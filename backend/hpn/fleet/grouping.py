@@ -119,7 +119,8 @@ def _is_broken(batch: Batch, row: int) -> bool:
 def _filled(batch: Batch, before: Batch | None) -> Batch:
     """The batch with the axis of the row before where a line can't be read; the row behind is under suspicion."""
     axis = batch.rows[AXIS].combine_chunks()
-    broken = [f.row for f in batch.faults if f.column == AXIS and not axis[f.row].is_valid]
+    missing = np.asarray(pc.is_null(axis))
+    broken = [f.row for f in batch.faults if f.column == AXIS and missing[f.row]]
     if not broken:
         return batch
     values = axis.to_pylist()
@@ -183,10 +184,10 @@ def _listed(batch: Batch, starts: IntArray) -> Listed:
         else pa.ListArray.from_arrays(ends, rows[name].combine_chunks())
         for name in rows.column_names
     ]
-    faults = []
-    for fault in sorted(set(batch.faults)):
-        place = int(np.searchsorted(starts, fault.row, side="right")) - 1
-        faults.append(Fault(place, fault.column, f"phase {fault.row - starts[place] + 1}: {fault.reason}"))
+    faults, given = [], sorted(set(batch.faults))
+    places = np.searchsorted(starts, [fault.row for fault in given], side="right") - 1
+    for fault, place, start in zip(given, places.tolist(), starts[places].tolist(), strict=True):
+        faults.append(Fault(place, fault.column, f"phase {fault.row - start + 1}: {fault.reason}"))
     return Listed(pa.Table.from_arrays(columns, names=rows.column_names), faults)
 
 

@@ -8,6 +8,7 @@ worked on it and however often. On a cluster the folder has to be one that every
 
 import os
 import re
+from bisect import bisect_left
 from contextlib import ExitStack
 from dataclasses import dataclass
 from functools import lru_cache
@@ -24,7 +25,7 @@ from hpn.fleet.columns import AXIS, is_text
 from hpn.fleet.grouping import Part, axes_of
 from hpn.fleet.opened import open_axes, open_requirements
 from hpn.fleet.outcome import answer_fields, candidate_fields, outcome, rejected_fields
-from hpn.fleet.tables import Table
+from hpn.fleet.tables import Table, row_of
 
 SLICE_AXES = 16_384
 """Axes that are evaluated in one go."""
@@ -97,8 +98,10 @@ def compute(job: Job, number: int, part: Part) -> int:
             hashes.append(hashes_of(listed.rows[AXIS]))
             are_whole = are_whole and _are_whole(listed.rows[AXIS])
             step = SLICE_WITH_CANDIDATES if job.with_candidates else SLICE_AXES
+            ordered, begun = sorted(listed.faults, key=row_of), 0
             for start in range(0, listed.rows.num_rows, step):
-                faults = [fault.moved(-start) for fault in listed.faults if start <= fault.row < start + step]
+                end = bisect_left(ordered, start + step, begun, key=row_of)
+                faults, begun = [fault.moved(-start) for fault in ordered[begun:end]], end
                 found = outcome(listed.rows.slice(start, step), catalogue, faults, with_candidates=job.with_candidates)
                 for kind, writer in writers.items():
                     writer.write_table(getattr(found, kind))

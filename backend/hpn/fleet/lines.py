@@ -5,6 +5,7 @@ import io
 import os
 import re
 from abc import abstractmethod
+from bisect import bisect_left
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from functools import cached_property
@@ -21,7 +22,7 @@ from hpn.application.faults import NOT_A_NUMBER
 from hpn.application.unique import RepeatedNameError, require_unique
 from hpn.fleet.columns import AXIS, COLUMNS, Column, is_list
 from hpn.fleet.errors import FleetError
-from hpn.fleet.tables import BATCH_ROWS, Batch, CellFault, Table
+from hpn.fleet.tables import BATCH_ROWS, Batch, CellFault, Table, row_of
 from hpn.words.wording import N_
 
 UNIT_BYTES = 8_000_000
@@ -29,6 +30,9 @@ UNIT_BYTES = 8_000_000
 
 MOST_LINE_BYTES = 64_000_000
 """Longest line; an axis of 10,000 phases has about 1 MB."""
+
+MOST_BROKEN = 100_000
+"""Lines of a stretch that are no rows; a file with more is no table of axes, and the run ends with that."""
 
 OTHER_SEPARATORS = {";": "semicolons", "\t": "tabs"}
 BOM = b"\xef\xbb\xbf"
@@ -89,6 +93,13 @@ class LinesTable(Table):
         with open(self.path, "rb") as file:
             file.seek(self.cuts[unit])
             return file.read(self.cuts[unit + 1] - self.cuts[unit])
+
+    def too_many_broken(self, first: str) -> FleetError:
+        """Refusal of a file of which hardly a line is a row."""
+        return FleetError(
+            f"{self.path}: more than {MOST_BROKEN} lines of one stretch of {UNIT_BYTES} bytes can’t be read as rows, "
+            f"the first of them is {_cut(first)}; mend them or leave them out"
+        )
 
     def start_of_file(self) -> bytes:
         """The first lines."""
@@ -168,7 +179,7 @@ class CsvTable(LinesTable):
 
         def skip(row: pacsv.InvalidRow) -> str:
             broken.append(row)
-            return "skip"
+            return "skip" if len(broken) <= MOST_BROKEN else "error"
 
         try:
             rows = pacsv.read_csv(
@@ -184,13 +195,17 @@ class CsvTable(LinesTable):
                 ),
             )
         except pa.ArrowInvalid as error:
+            if len(broken) > MOST_BROKEN:
+                raise self.too_many_broken(broken[0].text) from None
             if "Empty CSV" not in str(error):
                 raise self.unreadable(error) from None
             rows = pa.table({name: pa.array([], pa.string()) for name in names})
         rows, faults = self._with_broken(rows, broken)
+        begun = 0
         for start in range(0, rows.num_rows, BATCH_ROWS):
-            here = [f._replace(row=f.row - start) for f in faults if start <= f.row < start + BATCH_ROWS]
-            yield Batch(rows.slice(start, BATCH_ROWS), here)
+            end = bisect_left(faults, start + BATCH_ROWS, begun, key=row_of)
+            yield Batch(rows.slice(start, BATCH_ROWS), [f._replace(row=f.row - start) for f in faults[begun:end]])
+            begun = end
 
     def _with_broken(self, rows: pa.Table, broken: Sequence[pacsv.InvalidRow]) -> tuple[pa.Table, list[CellFault]]:
         """Rows in their places that have too few or too many cells; the number of a row counts from 1."""
@@ -211,14 +226,18 @@ class CsvTable(LinesTable):
 
     def _axis_of(self, line: str, cells: int) -> str | None:
         """Axis of a broken row, where its cell has an end, and the header names it."""
-        if AXIS not in self.names:
+        place = self._axis_place
+        if place is None or cells <= place + 1:
             return None
-        place = list(self.names).index(AXIS)
         try:
             found = next(csv.reader([line]), [])
         except csv.Error:
             return None
-        return (found[place] or None) if min(cells, len(found)) > place + 1 else None
+        return (found[place] or None) if len(found) > place + 1 else None
+
+    @cached_property
+    def _axis_place(self) -> int | None:
+        return list(self.names).index(AXIS) if AXIS in self.names else None
 
 
 def _parsed(texts: pa.Array, column: Column | None, wanted: pa.DataType) -> tuple[pa.Array, list[tuple[int, str]]]:
@@ -337,10 +356,14 @@ class NdjsonTable(LinesTable):
         if unit + 1 >= len(self.cuts):
             return
         lines = [line for line in self.content(unit).split(b"\n") if line.strip()]
+        broken = list[bytes]()
         for start in range(0, len(lines), BATCH_ROWS):
-            yield self._batch(lines[start : start + BATCH_ROWS], names)
+            yield self._batch(lines[start : start + BATCH_ROWS], names, broken)
+            if len(broken) > MOST_BROKEN:
+                raise self.too_many_broken(broken[0].decode(errors="replace"))
 
-    def _batch(self, lines: Sequence[bytes], names: Sequence[str]) -> Batch:
+    def _batch(self, lines: Sequence[bytes], names: Sequence[str], broken: list[bytes]) -> Batch:
+        """Rows of lines; those that are no JSON object are added to the broken ones."""
         fields = [(f"c{place}", kind | None, None) for place, kind in enumerate(self._kinds.values())]
         rename = {f"c{place}": name for place, name in enumerate(self._kinds)}
         row_type = msgspec.defstruct("Row", fields, rename=rename.get, forbid_unknown_fields=True)
@@ -353,18 +376,21 @@ class NdjsonTable(LinesTable):
                     require_unique(line)
                 rows.append(row)
             except (ValueError, RecursionError) as error:
-                cells, wrong = self._one_by_one(line, error)
-                rows.append(msgspec.convert(cells, row_type))
+                cells, wrong = self._one_by_one(line, error, broken)
+                rows.append(msgspec.convert(cells, row_type) if cells else row_type())
                 faults += [CellFault(place, *fault) for fault in wrong]
         field_of = {name: field for field, name in rename.items()}
         columns = [pa.array([getattr(row, field_of[name]) for row in rows], self.type_of(name)) for name in names]
         return Batch(pa.Table.from_arrays(columns, names=list(names)), faults)
 
-    def _one_by_one(self, line: bytes, error: Exception) -> tuple[dict[str, Any], list[tuple[str, str]]]:
+    def _one_by_one(
+        self, line: bytes, error: Exception, broken: list[bytes]
+    ) -> tuple[dict[str, Any], list[tuple[str, str]]]:
         """The cells of a line that can be read, and what is wrong with the others."""
         try:
             given, wrong = _object(line), _repeated(line)
         except (ValueError, RecursionError):
+            broken.append(line)
             cells = _axis_alone(line, self._kinds[AXIS])
             return cells, [(AXIS, f"the line is not a JSON object: {error}, in {_cut(line.decode(errors='replace'))}")]
         cells = {}
@@ -437,8 +463,10 @@ def _is(value: Any, kind: Any) -> bool:
 def _axis_alone(line: bytes, kind: Any) -> dict[str, Any]:
     """Axis of a line that is cut or broken, where it can be read."""
     found = AXIS_IN_LINE.search(line)
+    if found is None:
+        return {}
     try:
-        axis = msgspec.json.decode(found[1]) if found else None
+        axis = msgspec.json.decode(found[1])
     except ValueError:
         axis = None
     return {AXIS: axis} if _is(axis, kind) else {}

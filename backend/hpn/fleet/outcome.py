@@ -2,10 +2,12 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from itertools import pairwise
+from typing import Any, NamedTuple
 
 import numpy as np
 import pyarrow as pa
+import pyarrow.compute as pc
 from numpy.typing import NDArray
 from pydantic import ValidationError
 
@@ -17,7 +19,7 @@ from hpn.engine.checks import CHECKS
 from hpn.engine.evaluation import SUITABLE, Evaluation, evaluate
 from hpn.engine.selection import Candidate, Reserve, candidates_of
 from hpn.fleet.axes import Allowed, Axes, BoolArray, IntArray, have_sound_lists
-from hpn.fleet.columns import AXIS, COLUMNS
+from hpn.fleet.columns import AXIS, COLUMNS, is_list
 from hpn.physics.equations import FloatArray
 from hpn.words.wording import N_
 
@@ -28,8 +30,11 @@ DISAGREED = N_("is refused by the rules for columns and taken by those for one a
 """Reason of a row on which both disagree, a fault of the service that ends no fleet."""
 
 
-@dataclass(frozen=True, slots=True)
-class Fault:
+MOST_CELLS = 100_000
+"""Cells and items of lists that are objects at once, while it is found what is wrong with axes."""
+
+
+class Fault(NamedTuple):
     """What is wrong with an axis: number `row` of its table."""
 
     row: int
@@ -188,13 +193,28 @@ def _all_faults(table: pa.Table, mask: BoolArray, faults: Sequence[Fault], catal
     known: dict[int, list[Fault]] = {row: [] for row in np.flatnonzero(~mask).tolist()}
     for fault in faults:
         known[fault.row].append(fault)
-    return [fault for row, found in known.items() for fault in (found or _found(table, row, catalogue))[:MOST_FAULTS]]
+    for row, cells in _cells_of(table, [row for row, found in known.items() if not found]):
+        known[row] = _found(row, cells, catalogue)
+    return [fault for found in known.values() for fault in found[:MOST_FAULTS]]
 
 
-def _found(table: pa.Table, row: int, catalogue: Catalogue) -> list[Fault]:
+def _cells_of(table: pa.Table, rows: Sequence[int]) -> Iterator[tuple[int, dict[str, Any]]]:
+    """Rows with those of their cells that may be given: columns that none of them fills are left out."""
+    wanted = table.take(pa.array(rows, pa.int64()))
+    wanted = wanted.select([name for name in wanted.column_names if wanted[name].null_count < len(rows)])
+    size = np.full(len(rows), max(wanted.num_columns, 1))
+    for column in wanted.columns:
+        if is_list(column.type):
+            size += np.asarray(pc.fill_null(pc.list_value_length(column), 0))
+    starts = np.unique(np.cumsum(size) // MOST_CELLS, return_index=True)[1].tolist()
+    for start, end in pairwise([*starts, len(rows)]):
+        some = wanted.slice(start, end - start).to_pylist() if wanted.num_columns else [{}] * (end - start)
+        yield from zip(rows[start:end], some, strict=True)
+
+
+def _found(row: int, cells: Mapping[str, Any], catalogue: Catalogue) -> list[Fault]:
     """What the lists lack, or else what the models or the selection refuse."""
-    cells = {name: table[name][row].as_py() for name in table.column_names}
-    faults = [] if cells[AXIS] is not None else [Fault(row, AXIS, REQUIRED)]
+    faults = [] if cells.get(AXIS) is not None else [Fault(row, AXIS, REQUIRED)]
     if found := faults + [Fault(row, *fault) for fault in _faults_of_lists(cells)]:
         return found
     try:
@@ -207,7 +227,7 @@ def _found(table: pa.Table, row: int, catalogue: Catalogue) -> list[Fault]:
 
 
 def _faults_of_lists(cells: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
-    count = len(cells["torque_Nm"] or ())
+    count = len(cells.get("torque_Nm") or ())
     for name, column in COLUMNS.phases.items():
         values = cells.get(name)
         if values is None and column.required:

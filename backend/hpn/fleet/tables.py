@@ -7,6 +7,7 @@ A unit can be read on its own: a row group, a record batch, a stretch of lines. 
 from abc import ABC, abstractmethod
 from collections.abc import Iterator, Sequence
 from functools import cached_property
+from operator import attrgetter
 from pathlib import Path
 from typing import NamedTuple
 
@@ -36,6 +37,10 @@ class CellFault(NamedTuple):
     row: int
     column: str
     reason: str
+
+
+row_of = attrgetter("row")
+"""Row of a fault, by which faults are sorted."""
 
 
 class Batch(NamedTuple):
