@@ -274,6 +274,20 @@ def test_a_saved_fleet_is_renamed_on_its_page(client: TestClient, service: FastA
     assert "<h1>Line &lt;5&gt;</h1>" in page and "P-7" not in page and "MM" in page
 
 
+def test_names_of_fleets_that_look_like_others_are_refused(
+    client: TestClient, service: FastAPI, kept: FleetDraft
+) -> None:
+    address = keep(client, service, kept)
+    for name in ("title", "ref", "author", "rev"):
+        wrong = client.post(address, data={name: "Line\u200b 4"})
+        assert wrong.status_code == 422 and "U+200B ZERO WIDTH SPACE" in wrong.text
+    client.post(address, data={"title": "Line 4"})
+
+    wrong = client.post(f"{address}/rename", data={"title": "Line 4", "ref": "\U000e0041"})
+
+    assert wrong.status_code == 422 and "Reference: must not contain U+E0041" in unescape(wrong.text)
+
+
 def test_a_fleet_says_what_differs_today(client: TestClient, service: FastAPI, fleet: str, tmp_path: Path) -> None:
     then = select(Application.model_validate(HUB), service.state.catalogue).candidates[0]
     columns = "size,ratio,repeated_peak_torque_Nm,rated_torque_Nm,momentary_peak_torque_Nm,source\n"

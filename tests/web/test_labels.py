@@ -9,6 +9,8 @@ from starlette.testclient import TestClient
 
 from hpn.catalogue import Catalogue
 from hpn.web.form.labels import LABELS
+from tests.build import worked_example
+from tests.state import state_of
 
 CYCLE = [("T", "40"), ("n", "250"), ("t", "0.3")]
 WRITTEN = {"title": "Rotary table <7> & Ä", "ref": "4711-07", "author": "M. Muster", "rev": "B"}
@@ -78,6 +80,12 @@ def test_the_page_of_a_gear_gives_it_back(api: TestClient) -> None:
         ("a\nb", "must not contain control characters or line breaks"),
         ("a\u202eb", "must not contain control characters or line breaks"),
         ("x" * 201, "takes at most 200 characters"),
+        ("a\u200bb", re.escape("must not contain U+200B ZERO WIDTH SPACE, which nobody sees")),
+        ("a\u2060b", re.escape("must not contain U+2060 WORD JOINER")),
+        ("a\ufeff", re.escape("must not contain U+FEFF ZERO WIDTH NO-BREAK SPACE")),
+        ("a\U000e0041", re.escape("must not contain U+E0041 TAG LATIN CAPITAL LETTER A")),
+        ("a\U000e0000", re.escape("must not contain U+E0000, which nobody sees")),
+        ("a" + "\u0301\u0323\u0330\u0331\u0332\u0333", "takes at most 4 combining marks in a row"),
     ],
 )
 def test_what_cannot_be_written_on_it_is_named(api: TestClient, name: str, text: str, message: str) -> None:
@@ -92,9 +100,66 @@ def test_what_is_written_twice_is_asked_for_once(api: TestClient) -> None:
     assert "takes one value, given were a, b" in reply.text
 
 
-def test_joined_characters_stay_joined(api: TestClient) -> None:
-    family = "\U0001f468\u200d\U0001f469\u200d\U0001f467"
-    assert labels_in(edit(api, [*CYCLE, ("title", family)])) == {"title": family}
+SPELT = [
+    "\U0001f468\u200d\U0001f469\u200d\U0001f467",
+    "\u0645\u06cc\u200c\u062e\u0648\u0627\u0647\u0645",  # Persian, with a joiner that keeps letters apart
+    "a\u0301\u0323\u0330\u0331\u0332",  # five marks, of which one is composed with its letter
+    "\u0e17\u0e35\u0e48",  # Thai, a vowel and a tone above one letter
+]
+
+
+@pytest.mark.parametrize("text", SPELT)
+def test_what_is_spelling_stays(api: TestClient, text: str) -> None:
+    assert labels_in(edit(api, [*CYCLE, ("title", text)])) == {"title": text}
+    saved = api.post("/api/v1/selections", json={"application": worked_example(), "title": text})
+    assert api.get(saved.headers["Location"]).json()["title"] == text
+
+
+LOOK_ALIKE = ["Axis\u200b 7", "Axis\u2060 7", "Axis 7\ufeff.", "Axis 7\U000e0037", "Axis 7\u0301" + "\u0335" * 4]
+
+
+@pytest.mark.parametrize("text", LOOK_ALIKE)
+@pytest.mark.parametrize("name", ["title", "reference", "author", "revision"])
+def test_rest_refuses_names_that_look_like_others(api: TestClient, name: str, text: str) -> None:
+    answer = api.post("/api/v1/selections", json={"application": worked_example(), name: text})
+
+    assert answer.status_code == 422
+    (error,) = answer.json()["errors"]
+    assert error["pointer"] == f"/{name}" and "U+" in error["detail"]
+    if name in ("title", "reference"):
+        place = api.post("/api/v1/selections", json={"application": worked_example()}).headers["Location"]
+        assert api.patch(place, json={name: text}).json()["errors"] == [error]
+
+
+@pytest.mark.parametrize("text", LOOK_ALIKE)
+def test_forms_refuse_names_that_look_like_others(api: TestClient, text: str) -> None:
+    link = {"link": "/?T=40&n=250&t=0.3"}
+    refused = api.post("/selections", data={**link, "title": text}, follow_redirects=False)
+    assert refused.status_code == 422 and "U+" in refused.text
+    saved = api.post("/selections", data={**link, "title": "Axis 7"}, follow_redirects=False)
+
+    renamed = api.post(f"{saved.headers['Location']}/rename", data={"title": "Axis 7", "ref": text})
+
+    assert renamed.status_code == 422
+    assert re.search(r'class="reason">Reference: [^<]*U\+', renamed.text)
+
+
+@pytest.mark.parametrize("text", LOOK_ALIKE)
+def test_what_was_saved_before_opens_is_found_and_may_be_renamed(api: TestClient, text: str) -> None:
+    old = {"title": text, "reference": text}
+    saved = api.post("/selections", data={"link": "/?T=40&n=250&t=0.3"}, follow_redirects=False)
+    place = saved.headers["Location"]
+    assert api.portal is not None
+    api.portal.call(state_of(api).store.rename, place.rpartition("/")[2], old)
+
+    assert api.get(place).status_code == api.get("/selections").status_code == 200
+    found = api.get(f"/api/v1{place}")
+    assert (found.status_code, found.json()["title"]) == (200, text)
+    assert len(api.get("/api/v1/selections", params={"reference": text}).json()["selections"]) == 1
+    # A form sends both back: what stays as it is, is no obstacle to the other.
+    assert api.post(f"{place}/rename", data={"title": "new", "ref": text}, follow_redirects=False).status_code == 303
+    assert api.patch(f"/api/v1{place}", json={"reference": "new"}).status_code == 200
+    assert api.delete(f"/api/v1{place}").status_code == 204
 
 
 @pytest.mark.parametrize("path", ["/catalogue", "/catalogue/HPN-20A-5", "/selections", "/paste"])

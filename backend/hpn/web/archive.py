@@ -19,7 +19,7 @@ from hpn.store import Draft, KeyReusedError, KeySpentError, SavedSelection
 from hpn.web.door.observation import note
 from hpn.web.door.pools import compute
 from hpn.web.door.problems import Problem
-from hpn.web.form.labels import CONTROLS, LONGEST_LABEL, NO_CONTROLS, query_of
+from hpn.web.form.labels import CONTROLS, LONGEST_LABEL, NO_CONTROLS, faults_of, query_of
 from hpn.web.form.link_writer import to_link
 from hpn.web.form.ordering import OrderingCode, read_ordering_code
 from hpn.words.fields import Model
@@ -34,17 +34,25 @@ def _plain(text: str) -> str | None:
     return text or None
 
 
-Line = Annotated[
+def _label(text: str) -> str | None:
+    for fault in faults_of(text):
+        raise PydanticCustomError("label", "{text}", {"text": fault.text})
+    return text or None
+
+
+_SHORT = StringConstraints(strip_whitespace=True, max_length=LONGEST_LABEL)
+_CONTROLS = "\\u0000-\\u001f\\u007f-\\u009f\\u2028-\\u202e\\u2066-\\u2069\\ufffe\\uffff"
+
+Line = Annotated[str, _SHORT, AfterValidator(_plain), Field(json_schema_extra={"pattern": f"^[^{_CONTROLS}]*$"})]
+"""One line of text that something is looked for by; an empty one counts as none."""
+
+Label = Annotated[
     str,
-    StringConstraints(strip_whitespace=True, max_length=LONGEST_LABEL),
-    AfterValidator(_plain),
-    Field(
-        json_schema_extra={
-            "pattern": "^[^\\u0000-\\u001f\\u007f-\\u009f\\u2028-\\u202e\\u2066-\\u2069\\ufffe\\uffff]*$"
-        }
-    ),
+    _SHORT,
+    AfterValidator(_label),
+    Field(json_schema_extra={"pattern": f"^[^{_CONTROLS}\\u200b\\u2060\\ufeff]*$"}),
 ]
-"""One line of text; an empty one counts as none."""
+"""One line of text that something is called by: it has nothing in it that nobody sees. An empty one counts as none."""
 
 RETRY_SECONDS = 5
 """Time after which to try a store that is out of reach again."""
@@ -53,15 +61,15 @@ RETRY_SECONDS = 5
 class Names(Model):
     """What a saved selection is called, and may be called otherwise later."""
 
-    title: Line | None = Field(None, description="Title for people.", examples=["Rotary table, axis 7"])
-    reference: Line | None = Field(None, description="Your own number, such as a part number.", examples=["4711-07"])
+    title: Label | None = Field(None, description="Title for people.", examples=["Rotary table, axis 7"])
+    reference: Label | None = Field(None, description="Your own number, such as a part number.", examples=["4711-07"])
 
 
 class Labels(Names):
     """What people write on a saved selection."""
 
-    author: Line | None = Field(None, description="Who made it.", examples=["M. Muster"])
-    revision: Line | None = Field(None, description="Its revision in your own documents.", examples=["B"])
+    author: Label | None = Field(None, description="Who made it.", examples=["M. Muster"])
+    revision: Label | None = Field(None, description="Its revision in your own documents.", examples=["B"])
     ordering_code: Line | None = Field(
         None,
         description="Gear, output version and motor adapter as ordered, as far as they are known. The gear has to be "

@@ -4,6 +4,7 @@ They stand beside the application, in the address of its page as in its form; th
 """
 
 import re
+import unicodedata
 from collections.abc import Iterator, Mapping
 from urllib.parse import urlencode
 
@@ -32,6 +33,12 @@ CONTROLS = re.compile(r"[\x00-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069\ufffe\ufff
 
 NO_CONTROLS = N_("must not contain control characters or line breaks")
 
+HIDDEN = re.compile("[\u200b\u2060\ufeff\U000e0000-\U000e007f]")
+"""What nobody sees and no word needs: with it two titles look alike. Joiners (U+200C, U+200D) are spelling."""
+
+MOST_MARKS = 4
+"""Combining marks one after another that a letter has in any script."""
+
 
 def faults_of(text: str) -> Iterator[Sentence]:
     """Why a text can't be a label."""
@@ -39,6 +46,26 @@ def faults_of(text: str) -> Iterator[Sentence]:
         yield Sentence(NO_CONTROLS)
     if len(text.strip()) > LONGEST_LABEL:
         yield Sentence(N_("takes at most {most} characters"), {"most": str(LONGEST_LABEL)})
+    else:  # to compose a long text can take long
+        yield from _hidden_in(text.strip())
+
+
+def _hidden_in(text: str) -> Iterator[Sentence]:
+    """Characters by which a text looks like another."""
+    if found := HIDDEN.search(text):
+        yield Sentence(N_("must not contain {character}, which nobody sees"), {"character": _named(found[0])})
+    count = 0
+    for character in unicodedata.normalize("NFC", text):
+        count = count + 1 if unicodedata.category(character).startswith("M") else 0
+        if count > MOST_MARKS:
+            values = {"most": str(MOST_MARKS), "character": _named(character)}
+            yield Sentence(N_("takes at most {most} combining marks in a row, {character} is one more"), values)
+            return
+
+
+def _named(character: str) -> str:
+    """Code and name of a character that can't be shown by itself: U+200B ZERO WIDTH SPACE."""
+    return f"U+{ord(character):04X} {unicodedata.name(character, '')}".rstrip()
 
 
 def query_of(labels: Mapping[str, str]) -> str:

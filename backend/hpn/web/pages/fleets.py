@@ -387,8 +387,8 @@ async def rename(request: Request) -> Response:
     try:
         require_same_origin(request)
         fields = dict(pairs_of(await read_form(request)))
-        names, version = names_of(fields), version_of(fields)
-        saved = await _own(request)
+        saved, version = await _own(request), version_of(fields)
+        names = names_of(fields, saved)
         if not await request.app.state.store.rename_fleet(saved.id, names, version):
             raise Problem(404, GONE) if version is None or saved.saved is None else changed_since()
     except (Problem, StoreUnavailableError) as error:

@@ -8,19 +8,20 @@ from pydantic import ValidationError
 from starlette.requests import Request
 from starlette.responses import HTMLResponse, RedirectResponse, Response
 
-from hpn.store import SavedSelection, Store, StoreUnavailableError
-from hpn.web.archive import Line, Names, changeable, not_found
+from hpn.store import SavedFleet, SavedSelection, Store, StoreUnavailableError
+from hpn.web.archive import Line, changeable, not_found
 from hpn.web.door.access import admit
 from hpn.web.door.bodies import pairs_of, read_form
 from hpn.web.door.observation import note
 from hpn.web.door.pools import compute
 from hpn.web.door.problems import Problem
 from hpn.web.door.requests import require_same_origin
-from hpn.web.form.labels import faults_of
+from hpn.web.form.labels import TITLE_BLOCK, faults_of
 from hpn.web.pages.carried import onward
 from hpn.web.pages.saving import refused
 from hpn.web.pages.templates import environment
-from hpn.words.wording import N_
+from hpn.words.fields import Model
+from hpn.words.wording import N_, Sentence
 
 ADDRESS = "/selections"
 LINES_ON_PAGE = 25
@@ -28,9 +29,10 @@ CHANGED = N_("Somebody has renamed or deleted this since you opened the page. Op
 NO_SUCH_PART = N_("This part of the list can’t be found; its address is not whole.")
 
 
-class Wanted(Names):
+class Wanted(Model):
     """What the list is to show: those of a reference, or those with every word of a search."""
 
+    reference: Line | None = None
     search: Line | None = None
 
 
@@ -70,7 +72,7 @@ async def rename_selection(request: Request) -> Response:
 
 async def _rename(request: Request, saved: SavedSelection, fields: dict[str, str]) -> None:
     version = version_of(fields)
-    if not await request.app.state.store.rename(saved.id, names_of(fields), version):
+    if not await request.app.state.store.rename(saved.id, names_of(fields, saved), version):
         raise not_found(saved.id) if version is None else changed_since()
 
 
@@ -85,15 +87,20 @@ def changed_since() -> Problem:
     return Problem(412, CHANGED)
 
 
-def names_of(fields: Mapping[str, str]) -> dict[str, str | None]:
-    """Title and reference of a form that renames; Problem 422 for what can't be one."""
-    names = {"title": fields.get("title", "").strip(), "reference": fields.get("ref", "").strip()}
-    faults = [fault for text in names.values() for fault in faults_of(text)]
+def names_of(fields: Mapping[str, str], saved: SavedSelection | SavedFleet) -> dict[str, str | None]:
+    """Title and reference of a form that renames; Problem 422 for what can't be one, unless it was one before."""
+    names = {"title": fields.get("title", "").strip(), "ref": fields.get("ref", "").strip()}
+    faults = [
+        Sentence("{field}: {message}", {"field": TITLE_BLOCK[name], "message": fault}, ("field",))
+        for name, text in names.items()
+        if text not in (saved.title, saved.reference)
+        for fault in faults_of(text)
+    ]
     if faults:
         problem = Problem(422, "; ".join(fault.text for fault in faults))
         problem.sentences = tuple(faults)
         raise problem
-    return {name: text or None for name, text in names.items()}
+    return {"title": names["title"] or None, "reference": names["ref"] or None}
 
 
 async def ask_to_delete(request: Request) -> Response:
