@@ -144,6 +144,53 @@ def test_files_hold_the_answers(client: TestClient, fleet: str) -> None:
     assert list(parquet[0])[-1] == "error" and parquet[0]["selected"] and parquet[1]["suitable"] == 0
 
 
+HOSTILE = [
+    "=1+1",
+    "+cmd|' /C calc'!A0",
+    "-2+3",
+    "@SUM(A1)",
+    "\t=1",
+    "\r=1",
+    "-7",
+    "+1.5e3",
+    "plain",
+    "a=1",
+    "x" * 40_000,
+]
+
+
+def test_no_cell_of_the_file_for_excel_begins_a_formula_and_the_workbook_comes_first(
+    client: TestClient, tmp_path: Path
+) -> None:
+    table = write(tmp_path / "axes.ndjson", [row_of(name, HUB) for name in HOSTILE]).read_bytes()
+    place = post(client, table).headers["location"]
+
+    csv_rows = list(csv.reader(io.StringIO(client.get(f"{place}/axes.csv").content.decode(), newline="")))
+    sheet = openpyxl.load_workbook(io.BytesIO(client.get(f"{place}/axes.xlsx").content)).active
+    typed = pq.read_table(io.BytesIO(client.get(f"{place}/axes.parquet").content))
+    rest = client.post("/api/v1/fleet", content=table, headers={"Content-Type": "application/x-ndjson"})
+
+    harmless = [f"'{name}" for name in HOSTILE[:6]] + HOSTILE[6:]
+    assert [row[0] for row in csv_rows[1:]] == harmless
+    assert sheet is not None
+    cells = [row[0] for row in sheet.iter_rows(min_row=2)]
+    assert {cell.data_type for cell in cells} == {"s"}
+    assert [str(cell.value).replace("_x000D_", "\r") for cell in cells[:-1]] == HOSTILE[:-1]
+    assert str(cells[-1].value) == "x" * 32_766 + "…"  # no cell of XLSX holds more
+    assert typed["axis"].to_pylist() == [json.loads(line)["axis"] for line in rest.text.splitlines()] == HOSTILE
+    assert re.findall(r'href="[^"]*/axes\.(\w+)"', client.get(place).text) == ["xlsx", "csv", "parquet"]
+
+
+def test_files_of_a_fleet_are_made_in_the_process_beside_the_service(client: TestClient, fleet: str) -> None:
+    pool = state_of(client).pools["exports"]
+    pool.apart.close()
+
+    for suffix in ("xlsx", "csv", "parquet"):
+        assert client.get(f"{fleet}/axes.{suffix}").status_code == 200
+        assert pool.apart._process is not None and pool.apart._process.poll() is None
+        pool.apart.close()
+
+
 def test_reasons_of_a_file_for_people_are_in_the_readers_language(client: TestClient, fleet: str) -> None:
     def errors(language: str) -> dict[str, list[str | None]]:
         files = {

@@ -8,9 +8,10 @@ Arrow is imported by the requests that need it.
 import base64
 import hashlib
 import zlib
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import Any
 
 from fastapi import APIRouter
@@ -27,7 +28,7 @@ from hpn.web.archive import RETRY_SECONDS
 from hpn.web.door.access import admit, key_needed
 from hpn.web.door.bodies import pairs_of, read_form
 from hpn.web.door.observation import note
-from hpn.web.door.pools import compute, worked
+from hpn.web.door.pools import compute, pool_of, while_present, worked
 from hpn.web.door.problems import Problem
 from hpn.web.door.requests import require_same_origin
 from hpn.web.door.uploads import read_parts
@@ -46,7 +47,13 @@ from hpn.words.reader import Reader
 from hpn.words.wording import N_, Sentence
 
 ADDRESS = "/fleets"
-SUFFIXES = ("parquet", "csv", "xlsx")
+MEDIA_TYPES = {
+    "xlsx": "application/vnd.openxmlformats-officedocument.spreadsheetml.sheet",
+    "csv": "text/csv; charset=utf-8",
+    "parquet": "application/vnd.apache.parquet",
+}
+"""Formats of the answers in the order in which they are offered: what keeps a text a text comes first."""
+
 ROWS_IN_PREVIEW = 8
 MOST_CARRIED = 16_000_000
 CHANGES_ON_PAGE = 100
@@ -277,7 +284,7 @@ def _page(
         engine_version=ENGINE_VERSION,
         catalogue_version=request.app.state.catalogue.version,
         most_changes=CHANGES_ON_PAGE,
-        suffixes=SUFFIXES,
+        suffixes=tuple(MEDIA_TYPES),
     )
 
 
@@ -330,15 +337,23 @@ async def download(request: Request) -> Response:
         if reads_pages(request):
             return await compute(request, "pages", _refused, request, error)
         raise
-    media_type, content = await compute(request, "exports", _file, saved, suffix, request.state.reader)
+    pool = pool_of(request, "exports")
+
+    async def work() -> bytes:
+        async with pool.turn:
+            return await pool.run_apart(await pool.run(_file, saved, suffix, request.state.reader))
+
+    with pool.place(request.state.caller):
+        content = await while_present(request, work())
     headers = {"Content-Disposition": f'attachment; filename="axes.{suffix}"', "Vary": "Accept-Language, Cookie"}
-    return Response(content, 200, headers, media_type)
+    return Response(content, 200, headers, MEDIA_TYPES[suffix])
 
 
-def _file(saved: SavedFleet, suffix: str, reader: Reader) -> tuple[str, bytes]:
-    from hpn.web.pages import fleet_result
+def _file(saved: SavedFleet, suffix: str, reader: Reader) -> Callable[[], bytes]:
+    """The call that makes a file."""
+    from hpn.web.pages.fleet_files import file_of
 
-    return fleet_result.FILES[suffix][0], fleet_result.file_of(saved, suffix, reader)
+    return partial(file_of, saved.answers, saved.created, suffix, reader)
 
 
 # --- Saving, listing, renaming, deleting ------------------------------------------------------------------------------
@@ -459,7 +474,7 @@ router.add_api_route(ADDRESS, upload, methods=["POST"], dependencies=[admit("bat
 router.add_api_route(f"{ADDRESS}/saved", show_saved, dependencies=[admit("listing")])
 router.add_api_route(f"{ADDRESS}/{{fleet}}", show, dependencies=[admit("reading")])
 router.add_api_route(f"{ADDRESS}/{{fleet}}", save, methods=["POST"], dependencies=[admit("writing")])
-for suffix in SUFFIXES:
+for suffix in MEDIA_TYPES:
     router.add_api_route(f"{ADDRESS}/{{fleet}}/axes.{suffix}", download, dependencies=[admit("reading")])
 router.add_api_route(f"{ADDRESS}/{{fleet}}/rename", rename, methods=["POST"], dependencies=[admit("deleting")])
 router.add_api_route(f"{ADDRESS}/{{fleet}}/delete", ask_to_delete, dependencies=[admit("deleting")])

@@ -1,0 +1,99 @@
+"""The answers of a fleet as files for a table calculator or a program.
+
+They are made in a process beside the service, which imports this module and none of the web's libraries.
+"""
+
+import io
+import re
+from datetime import datetime
+from typing import Any
+
+import pyarrow as pa
+import pyarrow.csv as pacsv
+import pyarrow.parquet as pq
+import pyarrow.types as kinds
+import xlsxwriter
+
+from hpn.fleet.listing import NEAREST
+from hpn.web.pages.fleet_reasons import reasons_of
+from hpn.words.reader import Reader
+
+BEGINS_A_FORMULA = ("=", "+", "-", "@", "\t", "\r")
+NUMBER = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?")
+LONGEST_CELL = 32_767
+"""Characters that a cell of XLSX holds."""
+
+
+def file_of(answers: bytes, created: datetime, suffix: str, reader: Reader) -> bytes:
+    """The answers of a fleet in the format of a suffix, with the columns that `hpn fleet` gives them.
+
+    Reasons are in the reader's language where people read them.
+    """
+    table = table_of(answers).drop_columns(NEAREST.names)
+    if suffix == "parquet":
+        return packed(table)
+    told = _told(table, reader)
+    return _csv(told) if suffix == "csv" else _workbook(told, created)
+
+
+def packed(table: pa.Table) -> bytes:
+    """A table as it is kept."""
+    sink = io.BytesIO()
+    pq.write_table(table, sink, compression="zstd")
+    return sink.getvalue()
+
+
+def table_of(content: bytes) -> pa.Table:
+    """A table that was kept."""
+    return pq.read_table(io.BytesIO(content))
+
+
+def _told(table: pa.Table, reader: Reader) -> pa.Table:
+    errors = [error and _reasons_in(error, reader) for error in table["error"].to_pylist()]
+    return table.set_column(table.column_names.index("error"), "error", pa.array(errors, pa.string()))
+
+
+def _reasons_in(error: str, reader: Reader) -> str:
+    return "; ".join(f"{column}: {reader.told(reason)}" for column, reason in reasons_of(error))
+
+
+def _csv(table: pa.Table) -> bytes:
+    """Lines for a table calculator: no cell of them is read as a formula there, quoted or not."""
+    columns = [
+        pa.array(map(_harmless, column.to_pylist()), pa.string()) if kinds.is_string(column.type) else column
+        for column in table.columns
+    ]
+    sink = io.BytesIO()
+    pacsv.write_csv(pa.Table.from_arrays(columns, names=table.column_names), sink)
+    return sink.getvalue()
+
+
+def _harmless(cell: str | None) -> str | None:
+    """A text with an apostrophe before it where it would begin a formula; a number stays one."""
+    if cell is None or not cell.startswith(BEGINS_A_FORMULA) or NUMBER.fullmatch(cell):
+        return cell
+    return f"'{cell}"
+
+
+def _workbook(table: pa.Table, moment: datetime) -> bytes:
+    sink = io.BytesIO()
+    with xlsxwriter.Workbook(sink, {"in_memory": True, "strings_to_formulas": False, "strings_to_urls": False}) as book:
+        book.set_properties({"created": moment.replace(tzinfo=None)})  # the same bytes each time
+        sheet = book.add_worksheet("axes")
+        sheet.freeze_panes(1, 1)
+        sheet.write_row(0, 0, table.column_names, book.add_format({"bold": True}))
+        for number, row in enumerate(table.to_pylist(), start=1):
+            for place, value in enumerate(row.values()):
+                _write(sheet, number, place, value)
+        sheet.autofilter(0, 0, max(table.num_rows, 1), table.num_columns - 1)
+        sheet.set_column(0, table.num_columns - 1, 20)
+    return sink.getvalue()
+
+
+def _write(sheet: Any, row: int, place: int, value: Any) -> None:
+    """A text as text, whatever it begins with; one that no cell holds is cut and says so."""
+    if isinstance(value, str):
+        whole = len(value) <= LONGEST_CELL
+        sheet.write_string(row, place, value if whole else f"{value[: LONGEST_CELL - 1]}…")
+    elif value is not None:
+        sheet.write_number(row, place, value)
