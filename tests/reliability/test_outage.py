@@ -5,9 +5,10 @@ import threading
 import time
 from pathlib import Path
 
+import psycopg
 import pytest
 
-from hpn.store import Store, StoreUnavailableError
+from hpn.store import Store, StoreUnavailableError, upgrade
 from hpn.web.door.pools import SMALL_BYTES
 from tests.build import cycle, phase
 from tests.databases import PostgreSQL
@@ -85,6 +86,24 @@ def test_a_service_that_starts_before_its_database_saves_as_soon_as_it_can(postg
 
     assert client.post("/api/v1/selections", json=SAVE).status_code == 201
     client.__exit__(None, None, None)
+
+
+def test_a_service_whose_database_takes_long_at_its_start_answers_meanwhile(postgresql: PostgreSQL) -> None:
+    database = postgresql.new_database()
+    with psycopg.connect(database, autocommit=True) as other:
+        other.execute("SELECT pg_advisory_lock(%s)", [upgrade.LOCK])  # as another worker has it, which migrates
+
+        start = time.monotonic()
+        slow = client_of(database)
+        slow.__enter__()
+        assert time.monotonic() - start < WAIT_S + SLACK_S
+        assert slow.get("/healthz").status_code == 200
+        assert slow.get("/?T=40&n=250&t=1").status_code == 200
+        assert_unavailable(slow.get("/readyz"))
+
+        other.execute("SELECT pg_advisory_unlock(%s)", [upgrade.LOCK])
+        assert slow.post("/api/v1/selections", json=SAVE).status_code == 201
+        slow.__exit__(None, None, None)
 
 
 def test_a_file_that_cannot_be_opened_keeps_only_the_store_from_working(tmp_path: Path) -> None:

@@ -4,6 +4,7 @@ import asyncio
 import hashlib
 import time
 from datetime import UTC, datetime, timedelta, tzinfo
+from functools import partial
 from pathlib import Path
 from typing import Self
 
@@ -395,7 +396,7 @@ async def test_readiness_is_tried_by_a_transaction_that_leaves_nothing_and_at_mo
     assert len(tried) == before + 1
 
 
-@pytest.mark.parametrize("table", ["selections", "catalogues", "spent_keys"])
+@pytest.mark.parametrize("table", ["selections", "catalogues", "spent_keys", "fleets"])
 async def test_a_table_that_is_missing_is_no_readiness(database: str, table: str) -> None:
     store = Store(database)
     await store.open()
@@ -403,4 +404,32 @@ async def test_a_table_that_is_missing_is_no_readiness(database: str, table: str
 
     with pytest.raises(StoreUnavailableError):
         await store.check()
+    await store.close()
+
+
+TWICE = (
+    "CREATE TABLE copies AS SELECT * FROM catalogues",
+    "DROP TABLE catalogues",
+    "ALTER TABLE copies RENAME TO catalogues",
+    "INSERT INTO catalogues SELECT * FROM catalogues",
+)
+"""What restoring a dump into tables that are in use may leave: a catalogue twice, and no key that forbids it."""
+
+
+@pytest.mark.parametrize("statements", [TWICE, ("DROP INDEX selections_idempotency_key",)])
+async def test_readiness_is_gone_where_saving_or_its_promises_are(
+    database: str, catalogue: Catalogue, statements: tuple[str, ...]
+) -> None:
+    store = Store(database)
+    await store.open()
+    given = draft(catalogue=catalogue, catalogue_version=catalogue.version)
+    await store.save(given)
+    await store.check(catalogue)
+    for statement in statements:
+        await change(store, partial(Connection.execute, statement=text(statement)))
+    await asyncio.sleep(TRIAL_SECONDS)
+
+    with pytest.raises(StoreUnavailableError):
+        await store.check(catalogue)
+    assert await count(store) == 1
     await store.close()

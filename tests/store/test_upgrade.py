@@ -5,6 +5,7 @@ import os
 import subprocess
 import sys
 from concurrent.futures import ThreadPoolExecutor
+from datetime import UTC, datetime
 from multiprocessing.context import ForkServerContext
 from multiprocessing.synchronize import Barrier
 from pathlib import Path
@@ -203,4 +204,34 @@ async def test_what_earlier_versions_saved_is_listed_and_found_as_it_was(databas
     words = ("äb-1", "hpn-20a-5", "SPOILT", "SPOILT fits")
     found = {word: len((await store.page(search=word, limit=300)).selections) for word in words}
     assert found == {"äb-1": 209, "hpn-20a-5": 2, "SPOILT": 205, "SPOILT fits": 0}
+    await store.close()
+
+
+def _fleets_as_before(connection: Connection) -> None:
+    """A saved and a calculated fleet of before they had versions and callers."""
+    config = Config()
+    config.set_main_option("script_location", str(upgrade.MIGRATIONS))
+    config.attributes["connection"] = connection
+    command.upgrade(config, "0007")
+    columns = "axes, selected, unsuitable, rejected, engine_version, catalogue_version, asked, answers"
+    statement = (
+        f"INSERT INTO fleets (id, created, saved, title, {columns}) "
+        "VALUES (:id, :now, :saved, :title, 1, 1, 0, 0, '1', 'x', :asked, :asked)"
+    )
+    for number, (title, saved) in enumerate((("kept", datetime.now(UTC)), ("calculated", None))):
+        values = {"id": f"{number:022}", "now": datetime.now(UTC), "saved": saved, "title": title}
+        connection.execute(text(statement), {**values, "asked": b"PAR1\x00\xff"})
+
+
+async def test_fleets_of_earlier_versions_are_renamed_saved_and_deleted(database: str) -> None:
+    store = Store(database)
+    await change(store, _fleets_as_before)
+    kept, calculated = f"{0:022}", f"{1:022}"
+
+    found = await store.find_fleet(kept)
+    assert found is not None and (found.title, found.asked, found.version) == ("kept", b"PAR1\x00\xff", 1)
+    assert await store.rename_fleet(kept, {"title": "new"}, 1)
+    assert await store.save_fleet(calculated, {"title": "saved"}, None)
+    assert [line.title for line in (await store.fleets())[0]] == ["saved", "new"]
+    assert not await store.delete_fleet(kept, 1) and await store.delete_fleet(kept, 2)
     await store.close()

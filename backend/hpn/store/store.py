@@ -33,10 +33,11 @@ from hpn.store.fleets import (
     require_room,
 )
 from hpn.store.packing import unpacked
+from hpn.store.rehearsal import rehearse
 from hpn.store.saved import Draft, Page, SavedSelection, Summary, search_text
 from hpn.store.tables import catalogues, selections
 from hpn.store.upgrade import bring_up_to_date, missing_parts
-from hpn.store.writing import insert, rehearse, remove, rename
+from hpn.store.writing import insert, remove, rename
 
 logger = logging.getLogger(__name__)
 T = TypeVar("T")
@@ -91,21 +92,21 @@ class Store:
         async with self._turn:
             await self._engine.dispose()
 
-    async def check(self) -> None:
-        """Raise StoreUnavailableError unless something could be saved now.
+    async def check(self, catalogue: Catalogue | None = None) -> None:
+        """Raise StoreUnavailableError unless something could be saved now, under a catalogue where one is given.
 
         That is tried, at most once in TRIAL_SECONDS; who asks in between gets the same answer.
         """
         now = time.monotonic()
         if self._trial is None or (self._trial.done() and now >= self._next_trial):
             self._next_trial = now + TRIAL_SECONDS
-            self._trial = asyncio.create_task(self._try_saving())
+            self._trial = asyncio.create_task(self._try_saving(catalogue))
         if not await asyncio.shield(self._trial):
             raise StoreUnavailableError(UNAVAILABLE)
 
-    async def _try_saving(self) -> bool:
+    async def _try_saving(self, catalogue: Catalogue | None) -> bool:
         try:
-            await self._write(rehearse)
+            await self._write(lambda connection: rehearse(connection, catalogue))
         except StoreUnavailableError:
             return False
         return True

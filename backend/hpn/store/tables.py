@@ -94,4 +94,5 @@ fleets = Table(
     Column("answers", LargeBinary, nullable=False),
     Index("fleets_saved", "saved", "id"),
     Index("fleets_created", "created"),
+    Index("fleets_caller", "caller", "saved", "created"),
 )

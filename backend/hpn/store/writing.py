@@ -9,7 +9,7 @@ from types import SimpleNamespace
 from typing import Any
 
 import brotli
-from sqlalchemy import ColumnElement, Table, delete, literal, select, update
+from sqlalchemy import ColumnElement, Table, delete, select, update
 from sqlalchemy.dialects import postgresql, sqlite
 from sqlalchemy.ext.asyncio import AsyncConnection
 
@@ -19,19 +19,6 @@ from hpn.store.errors import KeyReusedError, KeySpentError
 from hpn.store.packing import packed
 from hpn.store.saved import Draft, search_text
 from hpn.store.tables import catalogues, selections, spent_keys
-
-
-def _rehearsed(size: int) -> Draft:
-    """Content of so many bytes that can't be packed."""
-    return Draft(
-        application=b"", result=secrets.token_bytes(size), engine_version="", catalogue_version="", selected=None
-    )
-
-
-REHEARSED = (_rehearsed(64 * 1024), *[_rehearsed(1500)] * 12)
-"""What a rehearsal saves; nobody ever sees it. More than most selections take, as a small row still finds a place in a
-file of a full disk; in PostgreSQL of both files, as long results stand in one of their own, and rows in pages of 8 kB.
-"""
 
 
 async def insert(connection: AsyncConnection, draft: Draft) -> str:
@@ -106,15 +93,6 @@ async def _holder(connection: AsyncConnection, key: str, digest: str) -> str:
             "this idempotency key was used before, with other content; take a new key for a new selection"
         )
     return str(held.id)
-
-
-async def rehearse(connection: AsyncConnection) -> None:
-    """Do to the tables what saving does, and take it back in the same transaction: fails where saving would fail."""
-    for table in (catalogues, spent_keys):
-        await connection.execute(select(literal(1)).select_from(table).limit(1))
-    rows = [_row_of(draft) for draft in REHEARSED]
-    await _insert_new(connection, selections, *rows)
-    await connection.execute(delete(selections).where(selections.c.id.in_([row["id"] for row in rows])))
 
 
 async def rename(

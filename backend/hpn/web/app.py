@@ -1,5 +1,6 @@
 """The service: one factory that puts settings, catalogue, store, routes and limits together."""
 
+import asyncio
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager, suppress
 from typing import Any
@@ -118,7 +119,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     """The application; raises CatalogueError where the catalogue or its supplement is wrong.
 
     At its start it brings the database up to date, and raises NewerDatabaseError where a newer version has changed it.
-    A database that is out of reach keeps nothing from starting.
+    A database that is out of reach keeps nothing from starting, nor does one that takes long.
     """
     settings = settings or Settings()
     app = FastAPI(
@@ -174,8 +175,9 @@ def _add_middleware(app: FastAPI, settings: Settings) -> None:
 async def _with_store(app: FastAPI) -> AsyncIterator[None]:
     store: Store = app.state.store
     fleets.remove_leftovers(app.state.settings)
-    with suppress(StoreUnavailableError):  # it is in the log, and the store opens as soon as it can
-        await store.open()
+    with suppress(StoreUnavailableError, TimeoutError):  # the store says so in the log, and opens as soon as it can
+        async with asyncio.timeout(app.state.settings.database_seconds):
+            await store.open()
     yield
     app.state.pools.close()
     await store.close()

@@ -38,7 +38,7 @@ async def healthz() -> Health:
 async def readyz(request: Request) -> Readiness:
     """The catalogue is loaded and a selection could be saved, which is tried at most once a second; else 503."""
     catalogue = request.app.state.catalogue
-    await request.app.state.store.check()
+    await request.app.state.store.check(catalogue)
     return Readiness(status="ok", catalogue_version=catalogue.version, gears=len(catalogue.gears), store="ok")
 
 

@@ -102,10 +102,10 @@ class CountedStore(Store):
         super().__init__(address, seconds=seconds, password=password)
         self._metrics = metrics
 
-    async def check(self) -> None:
+    async def check(self, catalogue: Catalogue | None = None) -> None:
         """See Store."""
         with self._counted("check"):
-            await super().check()
+            await super().check(catalogue)
 
     async def save(self, draft: Draft) -> str:
         """See Store."""

@@ -8,7 +8,21 @@ down_revision = "0007"
 
 
 def upgrade() -> None:
-    """Add the columns; what is there already is in its first version, and of no caller."""
-    for table in ("selections", "fleets"):
-        op.add_column(table, sa.Column("version", sa.Integer(), nullable=False, server_default="1"))
-    op.add_column("fleets", sa.Column("caller", sa.Text(), nullable=False, server_default=""))
+    """Add the columns; what is there already is in its first version, and of no caller.
+
+    In SQLite a fleet's stand before its tables: what stands behind them is read through all their pages.
+    """
+    op.add_column("selections", _version())
+    caller = sa.Column("caller", sa.Text(), nullable=False, server_default="")
+    if op.get_bind().dialect.name == "sqlite":
+        with op.batch_alter_table("fleets", recreate="always") as fleets:
+            fleets.add_column(caller, insert_after="owner")
+            fleets.add_column(_version(), insert_after="caller")
+    else:
+        op.add_column("fleets", caller)
+        op.add_column("fleets", _version())
+    op.create_index("fleets_caller", "fleets", ["caller", "saved", "created"])
+
+
+def _version() -> sa.Column[int]:
+    return sa.Column("version", sa.Integer(), nullable=False, server_default="1")
