@@ -14,7 +14,7 @@ from hpn import ENGINE_VERSION
 from hpn.application import Application
 from hpn.catalogue import load_catalogue
 from hpn.store import Store, StoreUnavailableError
-from hpn.web import archive, fleets
+from hpn.web import archive, fleets, spool
 from hpn.web.api import (
     batch,
     catalogue,
@@ -139,6 +139,8 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     app.state.catalogue = load_catalogue(
         settings.catalogue_folder, settings.catalogue_supplement, settings.averaging_seconds
     )
+    app.state.spool = spool.Trial(settings)
+    app.state.fleets_under_way = set()
     app.state.gate = Gate(settings)
     app.state.pools = Pools(settings.fleet_processes)
     app.state.budget = Budget(settings.maximum_bytes_in_flight)
@@ -179,5 +181,6 @@ async def _with_store(app: FastAPI) -> AsyncIterator[None]:
         async with asyncio.timeout(app.state.settings.database_seconds):
             await store.open()
     yield
+    await fleets.ended(app.state)
     app.state.pools.close()
     await store.close()

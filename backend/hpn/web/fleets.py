@@ -20,9 +20,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
 
+from starlette.datastructures import State
 from starlette.requests import Request
 
 from hpn.fleet.errors import wrong_encoding
+from hpn.web import spool
 from hpn.web.door.pools import Pool, pool_of, while_present
 from hpn.web.door.problems import Problem
 from hpn.web.settings import Settings
@@ -37,6 +39,7 @@ HEAD_BYTES = 2_000_000
 
 PREFIX = "hpn-fleet-"
 NICENESS = 10
+END_SECONDS = 5
 WATCH_SECONDS = 0.5
 CALLERS = 2
 """Exit code of the command for what the caller can mend."""
@@ -65,7 +68,7 @@ async def workplace(request: Request) -> AsyncIterator[Path]:
     """
     settings: Settings = request.app.state.settings
     pool = pool_of(request, "fleets")
-    with pool.place(request.state.caller):
+    with pool.place(request.state.caller), spool.usable(), _under_way(request.app.state):
         folder = Path(tempfile.mkdtemp(prefix=PREFIX, dir=settings.spool_folder))
         with locked(folder):
             try:
@@ -75,9 +78,32 @@ async def workplace(request: Request) -> AsyncIterator[Path]:
 
 
 @contextmanager
+def _under_way(state: State) -> Iterator[None]:
+    """Have the end of the service wait for the end of this task."""
+    task = asyncio.current_task()
+    state.fleets_under_way.add(task)
+    try:
+        yield
+    except asyncio.CancelledError:  # nothing but the end of the service cancels a request
+        text = "the service ends before the fleet is sized; send it again"
+        raise Problem(503, text, headers={"Retry-After": str(RETRY_SECONDS)}) from None
+    finally:
+        state.fleets_under_way.discard(task)
+
+
+async def ended(state: State) -> None:
+    """Wait until fleets whose requests were cancelled at the end have ended, and nothing is left of their folders.
+
+    The server ends the process right after the application, whatever its tasks do.
+    """
+    if state.fleets_under_way:
+        await asyncio.wait(set(state.fleets_under_way), timeout=END_SECONDS)
+
+
+@contextmanager
 def locked(folder: Path, *, wait: bool = True) -> Iterator[None]:
     """Hold the lock of a folder, which ends with this process; OSError where there is no wait and another holds it."""
-    lock = os.open(folder, os.O_RDONLY | os.O_NOFOLLOW)
+    lock = os.open(folder, os.O_RDONLY | os.O_NOFOLLOW | os.O_DIRECTORY)  # anything else could wait: a FIFO for ever
     try:
         fcntl.flock(lock, fcntl.LOCK_EX | (0 if wait else fcntl.LOCK_NB))
         yield
@@ -143,6 +169,8 @@ async def _sized(tables: Tables, files: Mapping[Kind, Path], settings: Settings,
     async with pool.turn:
         code = await _run(command, messages, settings)
     if code:
+        if code != CALLERS:  # where there is no room, the command could not write why it ended either
+            await pool.run(spool.require_room, messages.parent)
         raise _refusal(code, _end_of(messages), tables, settings)
 
 
@@ -217,6 +245,8 @@ def _refusal(code: int, text: str, tables: Tables, settings: Settings) -> Except
             last = last.replace(path, name)
         last = last.replace("--axes", tables.axes_name)
         return Problem(422, last if len(last) <= DETAIL_LENGTH else f"{last[:DETAIL_LENGTH]}…")
+    if codes := [code for code in spool.FULL_CODES if os.strerror(code) in text]:
+        return spool.refusal(codes[0])
     if "memory" in last:
         return Problem(413, f"the fleet takes more than {settings.fleet_memory_bytes} bytes of memory; send fewer axes")
     if code < 0 or "hpn made a mistake" not in text:

@@ -26,6 +26,7 @@ class Readiness(Health):
     catalogue_version: str = Field(description="Hash of the loaded catalogue’s content.")
     gears: int = Field(description="Number of gears in the catalogue.")
     store: str = Field(description="ok while selections can be saved.")
+    spool: str = Field(description="ok while files of fleets and streamed batches can be set aside.")
 
 
 @router.get("/healthz", operation_id="getHealth", summary="Is the process alive")
@@ -36,10 +37,13 @@ async def healthz() -> Health:
 
 @router.get("/readyz", operation_id="getReadiness", summary="Is the service ready", responses=problems(503))
 async def readyz(request: Request) -> Readiness:
-    """The catalogue is loaded and a selection could be saved, which is tried at most once a second; else 503."""
+    """The catalogue is loaded; that selections and files can be kept is tried at most once a second; else 503."""
     catalogue = request.app.state.catalogue
     await request.app.state.store.check(catalogue)
-    return Readiness(status="ok", catalogue_version=catalogue.version, gears=len(catalogue.gears), store="ok")
+    await request.app.state.spool.check()
+    return Readiness(
+        status="ok", catalogue_version=catalogue.version, gears=len(catalogue.gears), store="ok", spool="ok"
+    )
 
 
 @metrics_router.get(

@@ -138,6 +138,7 @@ def _samples(catalogue: Catalogue) -> Json:
             "catalogue_version": catalogue.version,
             "gears": len(catalogue.gears),
             "store": "ok",
+            "spool": "ok",
         },
         "Health": {"status": "ok"},
         "OEmbedReply": plain(preview_of(selection, link)) | _PROVIDER,
