@@ -5,6 +5,7 @@ It imports what its calls name and nothing else of the web, so that it starts so
 
 import os
 import pickle
+import resource
 import signal
 import subprocess
 import sys
@@ -13,21 +14,41 @@ import traceback
 from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
-from typing import Any, TypeVar, cast
-
-from hpn.web.door import heap
+from typing import IO, Any, NamedTuple, TypeVar, cast
 
 T = TypeVar("T")
 
+NICENESS = 10
+EXHAUSTED = 75
+"""Exit code of a process whose work has met the bound of its memory."""
+
+PLAIN_MEMORY = {"ARROW_DEFAULT_MEMORY_POOL": "system", "OPENBLAS_NUM_THREADS": "1", "MALLOC_ARENA_MAX": "1"}
+"""Environment of a bounded process: no library sets memory aside that the work then lacks."""
+
+
+class Bounds(NamedTuple):
+    """Most memory of a process, code and libraries included, and most time of one call on the clock."""
+
+    memory_bytes: int
+    seconds: float
+
 
 class EndedError(Exception):
-    """The process has ended before its work was done, or could not be started; the text says how."""
+    """The process has ended before its work was done, or could not be started; the text says how.
+
+    `is_excess` tells that the work took more than it may.
+    """
+
+    def __init__(self, text: str, *, is_excess: bool = False) -> None:
+        super().__init__(text)
+        self.is_excess = is_excess
 
 
 class Apart:
-    """At most one such process, for one caller at a time."""
+    """At most one such process, for one caller at a time; with bounds, the system ends it where its work meets one."""
 
-    def __init__(self) -> None:
+    def __init__(self, bounds: Bounds | None = None) -> None:
+        self._bounds = bounds
         self._calling = threading.Lock()  # whoever has it may use the pipes
         self._lock = threading.Lock()  # whoever has it may start and end the process
         self._process: subprocess.Popen[bytes] | None = None
@@ -46,10 +67,17 @@ class Apart:
                 done, result = pickle.load(cast(Any, process.stdout))
             except (OSError, EOFError, pickle.UnpicklingError):
                 self._reap(process)
-                raise EndedError(f"exit code {process.returncode}") from None
+                raise self._ended(process.returncode) from None
         if not done:
             raise RuntimeError(result)
         return cast(T, result)
+
+    def _ended(self, code: int) -> EndedError:
+        """Killed is a process by this one, or by the system where the machine's memory runs out: no fault of the work.
+
+        Whatever else ends a bounded one is its work: libraries abort, or worse, where they get no memory.
+        """
+        return EndedError(f"exit code {code}", is_excess=self._bounds is not None and code != -signal.SIGKILL)
 
     def end(self) -> None:
         """Kill the process; whoever calls at the moment gets an EndedError."""
@@ -65,7 +93,10 @@ class Apart:
                 self._reap(self._process)
 
     def _reap(self, process: "subprocess.Popen[bytes]") -> None:
+        """End a process that may be on its way out: how it ends by itself is told by its code."""
         with self._lock:
+            with suppress(subprocess.TimeoutExpired):
+                process.wait(0.1)
             process.kill()
             process.communicate()  # closes its pipes
 
@@ -74,12 +105,13 @@ class Apart:
             if self._process.poll() is None:
                 return self._process
             self._process.communicate()
+        environment = {name: value for name, value in os.environ.items() if not name.upper().startswith("HPN_")}
         try:
             self._process = subprocess.Popen(
-                [sys.executable, "-m", __name__],
+                [sys.executable, "-m", __name__, *map(str, self._bounds or ())],
                 stdin=subprocess.PIPE,
                 stdout=subprocess.PIPE,
-                env={name: value for name, value in os.environ.items() if not name.upper().startswith("HPN_")},
+                env=environment | PLAIN_MEMORY if self._bounds else environment,
                 start_new_session=True,  # Ctrl+C is for the service, which finishes what runs
             )
         except OSError as error:
@@ -87,22 +119,41 @@ class Apart:
         return self._process
 
 
-def main() -> None:
+def main(bounds: Bounds | None) -> None:
     """Answer calls until there are no more; what they print goes where errors go."""
-    heap.give_back()
     signal.signal(signal.SIGTERM, signal.SIG_IGN)  # of supervisors that send it to all: the service ends this one last
     with suppress(OSError):  # where memory runs out, the system ends this one before the service
         Path("/proc/self/oom_score_adj").write_text("1000", encoding="utf-8")
+    if bounds:
+        _restrain(bounds)
     calls, answers = os.fdopen(0, "rb"), os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)
     while calls.peek(1):
-        try:
-            answer = True, pickle.load(calls)()
-        except BaseException:
-            answer = False, traceback.format_exc()
+        signal.setitimer(signal.ITIMER_REAL, bounds.seconds if bounds else 0)  # nothing here holds up the signal
+        answer = _answer(calls, is_bounded=bounds is not None)
         pickle.dump(answer, answers)
         answers.flush()
+        signal.setitimer(signal.ITIMER_REAL, 0)
+
+
+def _answer(calls: IO[bytes], *, is_bounded: bool) -> tuple[bool, Any]:
+    """Result of the next call, or the traceback of what goes wrong."""
+    try:
+        return True, pickle.load(calls)()
+    except BaseException as error:
+        if is_bounded and isinstance(error, MemoryError):
+            os._exit(EXHAUSTED)
+        return False, traceback.format_exc()
+
+
+def _restrain(bounds: Bounds) -> None:
+    """Take no more memory than is allowed, and stand back behind the service."""
+    os.nice(NICENESS)
+    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+    hard = resource.getrlimit(resource.RLIMIT_DATA)[1]
+    most = bounds.memory_bytes if hard < 0 else min(bounds.memory_bytes, hard)
+    resource.setrlimit(resource.RLIMIT_DATA, (most, hard))
 
 
 if __name__ == "__main__":
-    main()
+    main(Bounds(int(sys.argv[1]), float(sys.argv[2])) if sys.argv[1:] else None)

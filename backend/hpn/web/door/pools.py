@@ -17,13 +17,14 @@ from typing import Any, Literal, NamedTuple, ParamSpec, TypeVar
 from starlette.requests import Request
 from starlette.responses import Response
 
-from hpn.web.door.apart import Apart, EndedError
+from hpn.web.door.apart import Apart, Bounds, EndedError
 from hpn.web.door.observation import GONE
 from hpn.web.door.problems import Problem
+from hpn.words.wording import N_, Sentence
 
 P = ParamSpec("P")
 T = TypeVar("T")
-PoolName = Literal["pages", "exports", "batches", "metrics", "fleets"]
+PoolName = Literal["pages", "exports", "files", "batches", "metrics", "fleets"]
 
 
 class Places(NamedTuple):
@@ -36,13 +37,19 @@ class Places(NamedTuple):
 PLACES: Mapping[PoolName, Places] = {
     "pages": Places(2, 30),
     "exports": Places(1, 15),  # the longest report takes 300 MB, in a process beside the service
+    "files": Places(1, 7),  # a hostile one keeps the others waiting for FILE_BOUNDS.seconds
     "batches": Places(1, 15),
     "metrics": Places(1, 3),
     "fleets": Places(1, 3),
 }
-"""Pages and long calculations; files; batches and streams, each for its whole time; what Prometheus asks; fleets, which
-are sized in processes of their own, and whose number at once is a setting.
+"""Pages and long calculations; files that are made; files of strangers that are read; batches and streams, each for its
+whole time; what Prometheus asks; fleets, which are sized in processes of their own, and whose number is a setting.
 """
+
+FILE_BOUNDS = Bounds(400_000_000, 30)
+"""Of reading a stranger's file: what takes longest, 150,000 cells of a workbook, takes half of either."""
+
+TOO_LARGE = N_("This file takes too much memory or time to read: save the table alone, without formats, as CSV.")
 
 SMALL_BYTES = 16 * 1024
 """Phases up to this size are computed at once: a few milliseconds, about what a change of threads may take."""
@@ -60,9 +67,9 @@ logger = logging.getLogger(__name__)
 class Pool:
     """Workers for one kind of work. One subject, a key or an address, has at most half of all places."""
 
-    def __init__(self, places: Places) -> None:
+    def __init__(self, places: Places, bounds: Bounds | None = None) -> None:
         self._executor = ThreadPoolExecutor(places.workers)
-        self.apart = Apart()
+        self.apart = Apart(bounds)
         self.turn = asyncio.Semaphore(places.workers)  # of work that is done elsewhere: as many have one at once
         self._most = places.workers + places.waiting
         self._taken: Counter[str] = Counter()
@@ -95,7 +102,7 @@ class Pool:
         """Result of work in a process beside this one, which is killed where the caller is cancelled meanwhile.
 
         For what no thread can leave before its end, and for whoever has the pool's turn. Raises Problem 503 where the
-        process ends first.
+        process ends first, 413 where its work meets the pool's bounds.
         """
         given_up = threading.Event()
         try:
@@ -105,7 +112,10 @@ class Pool:
             self.apart.end()
             raise
         except EndedError as error:
-            logger.error("the process that makes files ended before its work was done: %s", error)
+            if error.is_excess:
+                logger.warning("a file took too much to read: %s", error)
+                raise Problem.told(413, Sentence(TOO_LARGE)) from None
+            logger.error("a process beside the service ended before its work was done: %s", error)
             text = f"this can’t be made at the moment; try again in {RETRY_SECONDS} s"
             raise Problem(503, text, headers={"Retry-After": str(RETRY_SECONDS)}) from None
 
@@ -115,7 +125,7 @@ class Pools:
 
     def __init__(self, fleets: int = 1) -> None:
         places = {**PLACES, "fleets": PLACES["fleets"]._replace(workers=fleets)}
-        self._pools = {name: Pool(places) for name, places in places.items()}
+        self._pools = {name: Pool(places, FILE_BOUNDS if name == "files" else None) for name, places in places.items()}
 
     def __getitem__(self, name: PoolName) -> Pool:
         return self._pools[name]
@@ -137,6 +147,18 @@ async def compute(request: Request, name: PoolName, work: Callable[P, T], *args:
     pool = pool_of(request, name)
     with pool.place(request.state.caller):
         return await while_present(request, pool.run(work, *args, **kwargs))
+
+
+async def compute_apart(request: Request, name: PoolName, work: Callable[[], T]) -> T:
+    """Result of work in the process of a pool, for a request whose body has been read; Problem as `run_apart` says."""
+    pool = pool_of(request, name)
+
+    async def in_turn() -> T:
+        async with pool.turn:
+            return await pool.run_apart(work)
+
+    with pool.place(request.state.caller):
+        return await while_present(request, in_turn())
 
 
 async def calculate(request: Request, body: bytes, work: Callable[P, T], *args: P.args, **kwargs: P.kwargs) -> T:

@@ -70,6 +70,13 @@ class Problem(HTTPException):
         super().__init__(status, detail, headers)
 
     @classmethod
+    def told(cls, status: int, sentence: Sentence) -> "Problem":
+        """Problem that says a sentence, on pages in the reader's language."""
+        problem = cls(status, sentence.text)
+        problem.sentences = (sentence,)
+        return problem
+
+    @classmethod
     def of(cls, error: ValidationError | InputError) -> "Problem":
         """Problem for input that the models or the selection refuse."""
         if isinstance(error, InputError):

@@ -1,0 +1,83 @@
+"""Work in a process beside the service that may take only so much memory and time, as reading a file does."""
+
+import asyncio
+import os
+import resource
+import signal
+import time
+from collections.abc import Iterator
+from functools import partial
+from typing import Any
+
+import pytest
+
+from hpn.web.door.apart import Bounds
+from hpn.web.door.pools import TOO_LARGE, Places, Pool
+from hpn.web.door.problems import Problem
+from tests.operations.service import is_gone
+
+SMALL = Bounds(200_000_000, 0.5)
+
+
+@pytest.fixture
+def free() -> Iterator[Pool]:
+    """A pool whose process has no bounds."""
+    pool = Pool(Places(1, 3))
+    yield pool
+    pool.apart.close()
+
+
+@pytest.fixture
+def bounded() -> Iterator[Pool]:
+    """A pool whose process may take little."""
+    pool = Pool(Places(1, 3), SMALL)
+    yield pool
+    pool.apart.close()
+
+
+@pytest.mark.anyio
+@pytest.mark.parametrize(
+    "work",
+    [
+        pytest.param(partial(bytearray, 300_000_000), id="memory"),
+        pytest.param(partial(sum, range(10**12)), id="processor, in one call of a library"),
+        pytest.param(partial(time.sleep, 60), id="time"),
+        pytest.param(os.abort, id="a library that aborts"),
+    ],
+)
+async def test_work_that_meets_a_bound_is_a_413_and_the_next_is_done(bounded: Pool, work: Any) -> None:
+    first = await bounded.run_apart(os.getpid)
+
+    start = time.monotonic()
+    with pytest.raises(Problem) as ended:
+        await bounded.run_apart(work)
+
+    assert ended.value.status_code == 413
+    assert [sentence.template for sentence in ended.value.sentences] == [TOO_LARGE]
+    assert time.monotonic() - start < 10
+    assert is_gone(first)
+    assert await bounded.run_apart(partial(sum, [1, 2])) == 3
+
+
+@pytest.mark.anyio
+async def test_a_bounded_process_that_the_system_kills_is_a_503(bounded: Pool) -> None:
+    with pytest.raises(Problem) as ended:
+        await bounded.run_apart(partial(signal.raise_signal, signal.SIGKILL))
+    assert ended.value.status_code == 503
+
+
+@pytest.mark.anyio
+async def test_a_bound_of_time_counts_for_each_call_alone(bounded: Pool) -> None:
+    own = await bounded.run_apart(os.getpid)
+    for _ in range(4):
+        await bounded.run_apart(partial(time.sleep, 0.2))
+    await asyncio.sleep(SMALL.seconds)
+    assert await bounded.run_apart(os.getpid) == own
+
+
+@pytest.mark.anyio
+async def test_a_bounded_process_stands_back_and_others_have_no_bounds(free: Pool, bounded: Pool) -> None:
+    own = await bounded.run_apart(os.getpid)
+    assert os.getpriority(os.PRIO_PROCESS, own) >= 10
+    assert resource.prlimit(own, resource.RLIMIT_DATA)[0] == SMALL.memory_bytes
+    assert resource.prlimit(await free.run_apart(os.getpid), resource.RLIMIT_DATA)[0] != SMALL.memory_bytes
