@@ -389,3 +389,39 @@ def test_lines_nested_as_deep_as_readers_can_go_reject_their_axes_alone(size: Si
     answers = size("\n".join((f'{{"axis": "sound", {sound}}}', *deep)))
     assert [answer["axis"] for answer in answers if answer["selected"]] == ["sound"]
     assert len(answers) == 122
+
+
+# --- Texts that are too long ------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("unit_rows", [2, 100])
+@pytest.mark.parametrize("form", ["list", "long"])
+@pytest.mark.parametrize("suffix", [".parquet", ".arrow", ".csv", ".ndjson"])
+def test_an_axis_whose_name_is_too_long_is_rejected_under_its_beginning(
+    suffix: str, form: str, unit_rows: int, size: Size, tmp_path: Path
+) -> None:
+    rows = [AXES[0], {**AXES[1], "axis": "ü" * 1001}, AXES[2], {**AXES[3], "axis": "b" * 1000}]
+    given = write(tmp_path / f"in{suffix}", rows if form == "list" else in_long_form(rows)[0], unit_rows=unit_rows)
+
+    answers = size(given.read_bytes(), suffix)
+
+    assert [row["axis"] for row in answers] == ["a0", "ü" * 1000, "a2", "b" * 1000]
+    assert [bool(row["error"]) for row in answers] == [False, True, False, False]
+    assert faults(tmp_path) == [("ü" * 1000, "axis", "must have at most 1000 characters")]
+
+
+@pytest.mark.parametrize("suffix", [".parquet", ".arrow", ".csv", ".ndjson"])
+def test_a_text_that_is_too_long_is_a_fault_of_its_axis(suffix: str, size: Size, tmp_path: Path) -> None:
+    rows = [
+        {**AXES[0], "rank_by": "weight", "requirements.sizes": ["14A"]},
+        {**AXES[1], "rank_by": "x" * 5000, "requirements.sizes": ["20A", "14A"]},
+        {**AXES[2], "rank_by": "weight", "requirements.sizes": ["20A", "y" * 5000]},
+    ]
+
+    answers = size(rows, suffix)
+
+    assert [bool(row["error"]) for row in answers] == [False, True, True]
+    assert faults(tmp_path) == [
+        ("a1", "rank_by", "must have at most 1000 characters"),
+        ("a2", "requirements.sizes", "must have at most 1000 characters"),
+    ]

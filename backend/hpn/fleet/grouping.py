@@ -11,7 +11,7 @@ import pyarrow.compute as pc
 from hpn.fleet.axes import BoolArray, IntArray
 from hpn.fleet.columns import AXIS, COLUMNS
 from hpn.fleet.outcome import Fault
-from hpn.fleet.tables import Batch, CellFault, Table
+from hpn.fleet.tables import TOO_LONG, Batch, CellFault, Table
 from hpn.words.fields import MAXIMUM_PHASES
 from hpn.words.wording import N_
 
@@ -113,7 +113,8 @@ def _end_of(table: Table, unit: int) -> Batch | None:
 
 
 def _is_broken(batch: Batch, row: int) -> bool:
-    return any(fault.row == row and fault.column == AXIS for fault in batch.faults)
+    faults = [fault for fault in batch.faults if fault.row == row and fault.column == AXIS]
+    return any(fault.reason != TOO_LONG for fault in faults)
 
 
 def _filled(batch: Batch, before: Batch | None) -> Batch:
@@ -187,7 +188,11 @@ def _listed(batch: Batch, starts: IntArray) -> Listed:
     faults, given = [], sorted(set(batch.faults))
     places = np.searchsorted(starts, [fault.row for fault in given], side="right") - 1
     for fault, place, start in zip(given, places.tolist(), starts[places].tolist(), strict=True):
-        faults.append(Fault(place, fault.column, f"phase {fault.row - start + 1}: {fault.reason}"))
+        number = fault.row - start + 1
+        if (fault.column, fault.reason) != (AXIS, TOO_LONG):
+            faults.append(Fault(place, fault.column, f"phase {number}: {fault.reason}"))
+        elif number == 1:  # the name is that of all its phases
+            faults.append(Fault(place, AXIS, TOO_LONG))
     return Listed(pa.Table.from_arrays(columns, names=rows.column_names), faults)
 
 

@@ -161,7 +161,7 @@ class CsvTable(LinesTable):
         ends = np.flatnonzero((given == ord("\n")) & outside)
         return int(ends[-1]) + 1 if len(ends) else 0
 
-    def read(self, unit: int, names: Sequence[str]) -> Iterator[Batch]:
+    def _batches(self, unit: int, names: Sequence[str]) -> Iterator[Batch]:
         for texts in self._texts(unit, names):
             faults, broken = list(texts.faults), {fault.row for fault in texts.faults}
             columns = []
@@ -352,7 +352,7 @@ class NdjsonTable(LinesTable):
                 kinds[name] = READ_AS[COLUMNS.all[name].kind == "string", is_list(self.type_of(name))]
         return kinds
 
-    def read(self, unit: int, names: Sequence[str]) -> Iterator[Batch]:
+    def _batches(self, unit: int, names: Sequence[str]) -> Iterator[Batch]:
         if unit + 1 >= len(self.cuts):
             return
         lines = [line for line in self.content(unit).split(b"\n") if line.strip()]

@@ -6,6 +6,7 @@ A unit can be read on its own: a row group, a record batch, a stretch of lines. 
 
 from abc import ABC, abstractmethod
 from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from functools import cached_property
 from operator import attrgetter
 from pathlib import Path
@@ -26,6 +27,10 @@ BATCH_ROWS = 16_384
 """Rows that are read at once."""
 
 
+LONGEST_TEXT = 1000
+"""Characters of a text: axes come back in every file, and what is wrong in its reason."""
+
+TOO_LONG = f"must have at most {LONGEST_TEXT} characters"
 NOT_WHOLE = N_("must be text or a whole number")
 UNREADABLE = (pa.ArrowException, OSError, UnicodeDecodeError)
 """What Arrow raises for a file that it can't read."""
@@ -48,6 +53,34 @@ class Batch(NamedTuple):
 
     rows: pa.Table
     faults: Sequence[CellFault] = ()
+
+
+def _with_short_texts(batch: Batch) -> Batch:
+    rows, faults = batch.rows, list(batch.faults)
+    for place, name in enumerate(batch.rows.column_names):
+        column = batch.rows[name]
+        long = _too_long(column.combine_chunks() if column.num_chunks != 1 else column.chunk(0))
+        if long.any():
+            is_axis = name == AXIS
+            cut = (
+                pc.utf8_slice_codeunits(column, 0, LONGEST_TEXT)
+                if is_axis
+                else pc.if_else(pa.array(long), None, column)
+            )
+            rows = rows.set_column(place, name, cut)
+            faults += (CellFault(int(row), name, TOO_LONG) for row in np.flatnonzero(long))
+    return Batch(rows, faults)
+
+
+def _too_long(column: pa.Array) -> NDArray[np.bool_]:
+    """Cells that are such a text, or a list with one."""
+    found = np.zeros(len(column), np.bool_)
+    if is_text(column.type):
+        found |= np.asarray(pc.fill_null(pc.greater(pc.utf8_length(column), LONGEST_TEXT), False))
+    elif is_list(column.type) and is_text(column.type.value_type):
+        items = _too_long(pc.list_flatten(column))
+        found[np.asarray(pc.list_parent_indices(column))[items]] = True
+    return found
 
 
 class Table(ABC):
@@ -79,9 +112,13 @@ class Table(ABC):
     measured_in = "rows"
     """What sizes count."""
 
-    @abstractmethod
     def read(self, unit: int, names: Sequence[str]) -> Iterator[Batch]:
-        """Some columns of a unit."""
+        """Some columns of a unit; a text that is too long is a fault, and of an axis its beginning stays."""
+        return map(_with_short_texts, self._batches(unit, names))
+
+    @abstractmethod
+    def _batches(self, unit: int, names: Sequence[str]) -> Iterator[Batch]:
+        """Some columns of a unit, as they stand."""
 
     def type_of(self, name: str) -> pa.DataType:
         """Type that a column is read as."""
@@ -124,6 +161,16 @@ class TypedTable(Table):
         if _may_be_whole(given):
             return pa.int64()
         return pa.string() if kinds.is_string_view(given) or kinds.is_null(given) else given
+
+    @contextmanager
+    def _told(self, where: str = "") -> Iterator[None]:
+        """Raise FleetError in place of what Arrow says of a file, but for memory: that is of the machine."""
+        try:
+            yield
+        except MemoryError:
+            raise
+        except UNREADABLE as error:
+            raise self.unreadable(error, where) from None
 
     def wrong_types(self) -> Iterator[str]:
         """Columns whose type can't hold what belongs into them, in words."""
@@ -177,10 +224,8 @@ class ParquetTable(TypedTable):
 
     @cached_property
     def _file(self) -> pq.ParquetFile:
-        try:
+        with self._told():
             return pq.ParquetFile(self.path)
-        except UNREADABLE as error:
-            raise self.unreadable(error) from None
 
     @property
     def given(self) -> pa.Schema:
@@ -191,13 +236,11 @@ class ParquetTable(TypedTable):
         metadata = self._file.metadata
         return [metadata.row_group(unit).num_rows for unit in range(metadata.num_row_groups)]
 
-    def read(self, unit: int, names: Sequence[str]) -> Iterator[Batch]:
-        try:
+    def _batches(self, unit: int, names: Sequence[str]) -> Iterator[Batch]:
+        with self._told(f"row group {unit + 1} "):
             for rows in self._file.iter_batches(BATCH_ROWS, [unit], list(names), use_threads=False):
                 rows.validate(full=True)  # texts are taken as they stand, UTF-8 or not
                 yield self._batch(rows, names)
-        except UNREADABLE as error:
-            raise self.unreadable(error, f"row group {unit + 1} ") from None
 
 
 class ArrowTable(TypedTable):
@@ -205,10 +248,8 @@ class ArrowTable(TypedTable):
 
     @cached_property
     def _file(self) -> pa.RecordBatchFileReader:
-        try:
+        with self._told():
             return pa.ipc.open_file(pa.OSFile(str(self.path)))
-        except UNREADABLE as error:
-            raise self.unreadable(error) from None
 
     @property
     def given(self) -> pa.Schema:
@@ -218,15 +259,13 @@ class ArrowTable(TypedTable):
     def unit_sizes(self) -> Sequence[int]:
         return [self._read(unit).num_rows for unit in range(self._file.num_record_batches)]
 
-    def read(self, unit: int, names: Sequence[str]) -> Iterator[Batch]:
+    def _batches(self, unit: int, names: Sequence[str]) -> Iterator[Batch]:
         rows = self._read(unit)
         for start in range(0, rows.num_rows, BATCH_ROWS):
             yield self._batch(rows.slice(start, BATCH_ROWS), names)
 
     def _read(self, unit: int) -> pa.RecordBatch:
-        try:
+        with self._told(f"record batch {unit + 1} "):
             batch = self._file.get_batch(unit)
             batch.validate(full=True)
-        except UNREADABLE as error:
-            raise self.unreadable(error, f"record batch {unit + 1} ") from None
         return batch
