@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from hpn.catalogue import Catalogue
+from hpn.fleet.listing import kept_listing_of
 from hpn.fleet.run import Order, size_fleet
 from hpn.store import FleetDraft
 from hpn.web.pages.fleet_result import draft_of
@@ -14,4 +15,4 @@ def fleet_draft(rows: Sequence[Row], folder: Path, catalogue: Catalogue) -> Flee
     """What is kept of a fleet of rows."""
     axes, answers = write(folder / "axes.ndjson", rows), folder / "answers.parquet"
     size_fleet(Order(axes, answers), catalogue, here, quiet)
-    return draft_of(axes, answers, catalogue)
+    return draft_of(kept_listing_of(axes, answers, catalogue), catalogue)

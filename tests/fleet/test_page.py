@@ -19,15 +19,24 @@ from fastapi import FastAPI
 from starlette.testclient import TestClient
 
 from hpn.application import Application
+from hpn.catalogue import Catalogue
 from hpn.engine.selection import select
+from hpn.fleet import listing
+from hpn.fleet.listing import kept_listing_of
+from hpn.fleet.run import Order, size_fleet
 from hpn.store import FleetDraft
 from hpn.store.fleets import MOST_OF_CALLER
 from hpn.tables.columns import NO_CHOICES
+from hpn.tables.files import Contents, contents_of
 from hpn.web.app import create_app
+from hpn.web.door.problems import Problem
 from hpn.web.form.link_writer import to_link
-from hpn.web.pages.fleet_upload import Upload, best_reading, uploaded
+from hpn.web.pages import fleet_result
+from hpn.web.pages.fleet_upload import WANTED, best_reading
 from hpn.web.settings import Settings
-from tests.fleet.tables import in_long_form, row_of, write
+from hpn.words.wording import Sentence
+from tests.fleet.tables import here, in_long_form, quiet, row_of, write
+from tests.fuzz.costly import made
 from tests.state import state_of
 from tests.store.test_fleets import MOST_BYTES
 
@@ -230,7 +239,7 @@ def test_tables_of_hpn_fleet_are_taken_as_they_are(tmp_path: Path, suffix: str, 
     rows = [row_of("one", HUB), row_of("two", HEAVY)]
     file = write(tmp_path / f"axes{suffix}", rows if form == "list" else in_long_form(rows)[0])
 
-    assert uploaded(file.read_bytes()) == Upload(suffix)
+    assert contents_of(file.read_bytes(), WANTED) == Contents(suffix=suffix)
 
 
 def test_a_table_of_hpn_fleet_is_sized_at_once(client: TestClient, tmp_path: Path) -> None:
@@ -252,10 +261,10 @@ def test_typed_tables_with_other_headings_are_read_with_every_digit(tmp_path: Pa
     else:
         file.write_text(json.dumps(row))
 
-    sheets = uploaded(file.read_bytes()).sheets
+    grids = contents_of(file.read_bytes(), WANTED).sheets[""]
 
-    assert sheets is not None
-    axes = best_reading(sheets[""], NO_CHOICES, ()).axes
+    assert not isinstance(grids, Sentence)
+    axes = best_reading(grids, NO_CHOICES, ()).axes
     assert axes == ({"axis": "A", "torque_Nm": [exact], "speed_rpm": [1234.567], "duration_s": [1e-3]},)
 
 
@@ -445,3 +454,39 @@ def test_a_table_that_is_too_large_for_the_page_is_told_where_there_is_room(clie
 
     assert answer.status_code == 422
     assert "leave out the columns" in answer.text and "POST /api/v1/fleet, which have no such limit" in answer.text
+
+
+def test_a_file_that_stands_for_too_much_is_a_413_and_what_was_typed_is_kept(client: TestClient) -> None:
+    files = {"file": ("a.arrow", made("Arrow with a long text"))}
+
+    answer = client.post("/fleets", data={"text": "typed before"}, files=files)
+
+    assert answer.status_code == 413
+    assert "too much memory or time" in answer.text and "typed before" in answer.text
+
+
+def test_an_axis_whose_name_is_too_long_is_a_rejected_one(client: TestClient) -> None:
+    """The same as over REST and by the command, since it is refused where tables are read."""
+    rows = [{**row_of("x", HUB), "axis": "a" * 5000}, row_of("two", HUB)]
+    content = "".join(json.dumps(row) + "\n" for row in rows).encode()
+
+    sized = post(client, content)
+    page = client.get(sized.headers["location"]).text
+    answers = client.post("/api/v1/fleet", content=content, headers={"Content-Type": "application/x-ndjson"})
+
+    assert "must have at most 1000 characters" in page and "a" * 1000 in page and "a" * 1001 not in page
+    first, second = map(json.loads, answers.text.splitlines())
+    assert (first["axis"], first["error"]) == ("a" * 1000, "axis: must have at most 1000 characters")
+    assert second["error"] is None
+
+
+def test_what_a_fleet_was_asked_is_kept_up_to_a_size(
+    tmp_path: Path, catalogue: Catalogue, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    axes, answers = write(tmp_path / "axes.ndjson", [row_of("one", HUB)]), tmp_path / "answers.parquet"
+    size_fleet(Order(axes, answers), catalogue, here, quiet)
+    assert fleet_result.draft_of(kept_listing_of(axes, answers, catalogue), catalogue).selected == 1
+    monkeypatch.setattr(listing, "MOST_BYTES", 100)
+    with pytest.raises(Problem) as refused:
+        fleet_result.draft_of(kept_listing_of(axes, answers, catalogue), catalogue)
+    assert refused.value.status_code == 413 and "hpn fleet" in refused.value.detail

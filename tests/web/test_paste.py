@@ -1,14 +1,23 @@
 """Pasting a table, opening a file, long cycles and the files that the page gives away, over HTTP."""
 
+import io
 import json
 import re
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager
+from html import escape, unescape
 from urllib.parse import parse_qs, quote, urlsplit
 
+import pyarrow as pa
+import pyarrow.parquet as pq
 import pytest
 from starlette.testclient import TestClient
 
 from hpn.web.app import create_app
+from hpn.web.door.pools import PLACES
 from hpn.web.form.link_reader import MAXIMUM_QUERY_BYTES, ROWS_IN_TABLE
+from tests.fuzz.costly import made
+from tests.state import state_of
 
 LINK = "T=40&n=250&t=0.3&T=32&n=500&t=3&tp=4&Tk=200&i=5"
 GERMAN = "Drehmoment [Nm]\tDrehzahl [1/min]\tDauer [s]\r\n9,3\t1.250\t0,3\r\n-12,5\t500\t1,25\r\n"
@@ -17,8 +26,10 @@ HTMX = {"HX-Request": "true"}
 
 
 @pytest.fixture(scope="module")
-def client() -> TestClient:
-    return TestClient(create_app(), follow_redirects=False)
+def client() -> Iterator[TestClient]:
+    app = create_app()
+    yield TestClient(app, follow_redirects=False)
+    app.state.pools.close()  # files are read in a process
 
 
 def query_of(location: str) -> dict[str, list[str]]:
@@ -359,3 +370,57 @@ def test_a_file_that_is_no_text_is_refused_in_the_readers_language(client: TestC
 
     assert reply.status_code == 422
     assert "die Datei ist kein Text" in reply.text
+
+
+# --- Files that are read beside the service ---------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("script", [True, False])
+def test_a_file_that_stands_for_too_much_is_a_413_and_the_form_is_kept(client: TestClient, script: bool) -> None:
+    files, headers = {"file": ("a.arrow", made("Arrow with a long text"))}, HTMX if script else {}
+    reply = client.post("/paste", data={"link": LINK}, files=files, headers={**headers, "Accept-Language": "de"})
+
+    assert reply.status_code == 413
+    assert "braucht zu viel Speicher oder Zeit" in reply.text
+    assert script or quoted(LINK) in reply.text
+
+
+def test_where_all_places_are_taken_the_file_is_to_be_sent_again_and_the_form_is_kept(client: TestClient) -> None:
+    with taken_places(client):
+        reply = client.post("/paste", data={"link": LINK}, files={"file": ("a.csv", GERMAN.encode())})
+        short = client.post("/paste", data={"link": LINK, "text": GERMAN})
+        long = client.post("/paste", data={"link": LINK, "text": LONG})
+
+    assert (reply.status_code, short.status_code, long.status_code) == (503, 200, 503)
+    assert int(reply.headers["Retry-After"]) > 0 and quoted(LINK) in reply.text
+    assert "40.9;339;0.25" in long.text
+
+
+@contextmanager
+def taken_places(client: TestClient) -> Iterator[None]:
+    """Every place for files is taken by others."""
+    pool, places = state_of(client).pools["files"], PLACES["files"]
+    with ExitStack() as stack:
+        for number in range(sum(places)):
+            stack.enter_context(pool.place(f"caller {number}"))
+        yield
+
+
+def quoted(link: str) -> str:
+    """A link as it stands in the form."""
+    return f'value="{escape(link)}"'
+
+
+@pytest.mark.parametrize("script", [True, False])
+def test_a_cycle_may_come_as_parquet(client: TestClient, script: bool) -> None:
+    file, headers = io.BytesIO(), HTMX if script else {}
+    pq.write_table(pa.table({"torque_Nm": [40.5, 32], "speed_rpm": [250, 500], "duration_s": [0.3, 3]}), file)
+    shown = client.post("/paste", files={"file": ("cycle.parquet", file.getvalue())}, headers=headers)
+    assert shown.status_code == 200
+    hidden = {name: unescape(value) for name, value in re.findall(r'name="(of|book)" value="([^"]*)"', shown.text)}
+    again = {"file": ("cycle.parquet", file.getvalue() if script else b"")}
+
+    reply = client.post("/paste", data={**hidden, "take": "replace"}, files=again, headers=headers)
+
+    query = query_of(reply.headers["location"])
+    assert (query["T"], query["n"], query["t"]) == (["40.5", "32"], ["250", "500"], ["0.3", "3"])

@@ -2,6 +2,7 @@
 
 import re
 import tomllib
+from collections.abc import Iterator
 from html import unescape
 from pathlib import Path
 from typing import Any
@@ -21,8 +22,10 @@ SYMBOLS = ("T", "n", "t", "FRi", "FAi", "Tpk", "npk", "Trms")
 
 
 @pytest.fixture(scope="module")
-def client() -> TestClient:
-    return TestClient(create_app(), follow_redirects=False)
+def client() -> Iterator[TestClient]:
+    app = create_app()
+    yield TestClient(app, follow_redirects=False)
+    app.state.pools.close()  # files are read in a process
 
 
 def outcome(client: TestClient, case: Case, chosen: dict[str, str]) -> tuple[str, str | list[str]]:

@@ -4,7 +4,7 @@ import io
 import re
 import time
 import zipfile
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from datetime import date, timedelta
 from datetime import time as clock
 from html import unescape
@@ -24,8 +24,10 @@ HEADER: list[Cell] = ["Drehmoment [Nm]", "Drehzahl [1/min]", "Dauer [s]"]
 
 
 @pytest.fixture(scope="module")
-def client() -> TestClient:
-    return TestClient(create_app(), follow_redirects=False)
+def client() -> Iterator[TestClient]:
+    app = create_app()
+    yield TestClient(app, follow_redirects=False)
+    app.state.pools.close()  # files are read in a process
 
 
 def book(*rows: Sequence[Cell], name: str = "Tabelle1", into: Workbook | None = None) -> Workbook:

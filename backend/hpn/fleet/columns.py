@@ -5,7 +5,7 @@ list with an item per phase. `pause_s` stands for `duty_cycle.pause_s`. Names, k
 models' JSON Schema, so that a new input needs no line here.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -135,3 +135,9 @@ COLUMNS = Columns(
     },
 )
 """Columns of the models."""
+
+
+def are_taken(names: Sequence[str], is_in_list_form: bool) -> bool:
+    """True for columns that the command knows; a page makes list form of long form with other columns in it."""
+    known = {AXIS, *COLUMNS.phases, *(COLUMNS.others if is_in_list_form else ())}
+    return {AXIS, "torque_Nm"} <= set(names) <= known

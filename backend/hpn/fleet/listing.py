@@ -1,5 +1,6 @@
 """The axes that are shown one by one, in a page or a report: their answers, and what they were asked with."""
 
+import io
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -10,6 +11,7 @@ import pyarrow as pa
 import pyarrow.compute as pc
 import pyarrow.csv as pacsv
 import pyarrow.dataset as datasets
+import pyarrow.parquet as pq
 
 from hpn.application import Application
 from hpn.catalogue import Catalogue
@@ -32,6 +34,10 @@ FORMATS = {
 }
 
 State = Literal["selected", "unsuitable", "rejected"]
+
+
+MOST_BYTES = 64_000_000
+"""What was asked of these axes, in memory: a page reads it anew each time."""
 
 
 @dataclass(frozen=True)
@@ -74,6 +80,29 @@ def listing_of(axes: Path, requirements: Path | None, answers: Path, catalogue: 
     for field in NEAREST:
         first = first.append_column(field, misses[field.name].take(places))
     return Listing(summary_of(read_answers(answers)), first, asked)
+
+
+class KeptListing(NamedTuple):
+    """A listing to be kept: its tables are Parquet."""
+
+    summary: Summary
+    answers: bytes
+    axes: bytes
+
+
+def kept_listing_of(axes: Path, answers: Path, catalogue: Catalogue) -> KeptListing | None:
+    """The same to be kept; None where more was asked than a page can read."""
+    listing = listing_of(axes, None, answers, catalogue)
+    if listing.axes.nbytes > MOST_BYTES:
+        return None
+    return KeptListing(listing.summary, as_parquet(listing.answers), as_parquet(listing.axes))
+
+
+def as_parquet(table: pa.Table) -> bytes:
+    """A table as a file."""
+    sink = io.BytesIO()
+    pq.write_table(table, sink, compression="zstd")
+    return sink.getvalue()
 
 
 def read_answers(path: Path) -> Iterator[pa.RecordBatch]:

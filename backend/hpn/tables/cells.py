@@ -78,12 +78,12 @@ def entry(cell: str, decimal: Decimal) -> Entry | None:
     if isinstance(cell, Figure):
         number, _, unit = cell.partition(" ")
         return None if unit == "%" else Entry(number, unit)
-    return _entry(cell, decimal)
+    return _entry(cell, decimal) if len(cell) <= LONGEST_CELL else None
 
 
 @lru_cache(maxsize=20_000)
 def _entry(cell: str, decimal: Decimal) -> Entry | None:
-    if len(cell) > LONGEST_CELL or not any(map(str.isdigit, cell)):
+    if not any(map(str.isdigit, cell)):
         return None
     if (number := plain(cell, decimal)) is not None:
         return Entry(number, "")

@@ -17,6 +17,9 @@ QUANTITIES = {
 INDEX, SUM, UNIT = "index", "sum", "unit"
 LONGEST = 80
 
+LONGEST_WRITTEN = 1000
+"""The same before blanks are taken out of it."""
+
 _EXACT = {"T": "T", "n": "n", "t": "t", "ω": "n", "Md": "T", "Δt": "t", "dt": "t", "FR": "FRi", "FA": "FAi"}
 _MEASURED = {"M": "T", "M2": "T", "T2": "T", "τ": "T", "n2": "n", "Velocity": "n", "velocity": "n"}
 """Names that mean a quantity only together with a unit of it."""
@@ -94,9 +97,13 @@ class Heading:
     instant: bool = False
 
 
-@lru_cache(maxsize=2000)
 def heading_of(cell: str) -> Heading:
-    """What a cell says as a heading."""
+    """What a cell says as a heading; one that is far too long for any is not even kept in mind."""
+    return _heading_of(cell) if len(cell) <= LONGEST_WRITTEN else Heading("")
+
+
+@lru_cache(maxsize=2000)
+def _heading_of(cell: str) -> Heading:
     text = " ".join(tidy(cell).split()).rstrip(":").strip()
     if is_blank(text.strip("[]()")):
         return Heading(UNIT)

@@ -3,6 +3,10 @@
 import operator
 import re
 from dataclasses import dataclass
+from functools import lru_cache
+
+LONGEST_FORMAT = 255
+"""Characters, the most that spreadsheet programs take."""
 
 _TOKEN = re.compile(
     r'"(?P<quoted>[^"]*)"|\\(?P<escaped>.)'
@@ -54,6 +58,8 @@ def section_of(number_format: str, value: float) -> Section | None:
 
     A zero may be shown as a dash.
     """
+    if len(number_format) > LONGEST_FORMAT:
+        return None
     sections = _sections(number_format)[:3]
     numbers = [section for section in sections if section.number]
     if len({section.thousands for section in numbers}) > len({section.unit for section in numbers}):
@@ -69,6 +75,7 @@ def section_of(number_format: str, value: float) -> Section | None:
     return shown[0] if shown else None
 
 
+@lru_cache(maxsize=1000)
 def _sections(number_format: str) -> list[Section]:
     sections = [Section()]
     for token in _TOKEN.finditer(number_format):

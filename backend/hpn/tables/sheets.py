@@ -2,9 +2,10 @@
 
 import csv
 import io
+import itertools
 import re
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import zip_longest
 
@@ -17,6 +18,11 @@ MOST_HEAD_ROWS = 50
 """Rows beside those of the phases: title, header, units, sums."""
 
 MOST_CELLS = 150_000
+MOST_CHARACTERS = 4_000_000
+"""Of all cells of a file, text by text."""
+
+LONGEST_TEXT = 131_072
+"""Characters of a cell, the most that the csv module takes, and four times what spreadsheet programs do."""
 
 SEPARATORS = {
     "tab": N_("tab"),
@@ -34,12 +40,42 @@ _HINT = re.compile(r"sep=(.)\r?\n", re.IGNORECASE)
 """First line with which Excel is told the separator."""
 
 
+Takes = Callable[[Sequence[str], bool], bool]
+"""Says of the names of columns, and whether phases stand in lists, that a table needs no reading: it is taken as it is.
+"""
+
+
 class RefusedError(ValueError):
     """A table that can't be read, and why."""
 
     def __init__(self, template: str, **values: Value) -> None:
         super().__init__(template)
         self.sentence = Sentence(template, dict(values))
+
+
+def too_many_cells() -> RefusedError:
+    """Why a table of very many cells is not read."""
+    template = N_("there are more than {most} cells: leave out the columns that are not needed")
+    return RefusedError(template, most=MOST_CELLS)
+
+
+class Room:
+    """Cells and characters that a file may still have: one short text may stand in each of very many cells."""
+
+    def __init__(self, cells: int = MOST_CELLS) -> None:
+        self._cells, self._characters = cells, MOST_CHARACTERS
+
+    def take(self, texts: Iterable[str]) -> None:
+        """Count the cells of a row; raises RefusedError once there are too many, or they say too much."""
+        for text in texts:
+            self._cells -= 1
+            self._characters -= len(text)
+            if len(text) > LONGEST_TEXT:
+                raise RefusedError(N_("a cell is longer than any number or heading"))
+        if self._cells < 0:
+            raise too_many_cells()
+        if self._characters < 0:
+            raise RefusedError(N_("the cells have more than {most} characters"), most=MOST_CHARACTERS)
 
 
 def no_number(row: int, cell: str) -> RefusedError:
@@ -83,23 +119,26 @@ class Grid:
         return Grid(columns, tuple(range(1, self.width + 1)), self.separator, True, notes=self.notes)
 
 
-def grid_of(rows: Sequence[Sequence[str]], separator: str = "") -> Grid:
+def grid_of(rows: Iterable[Sequence[str]], separator: str = "", numbers: Iterable[int] | None = None) -> Grid:
     """A table of rows that may differ in length; rows and columns at the ends that say nothing are left out.
 
     Raises RefusedError for none, and for more cells than the longest cycle has.
     """
-    kept = [(k, row, len(row)) for k, row in enumerate(rows, start=1) if any(row)]
+    room = Room()
+    kept = list[tuple[int, Sequence[str], int]]()
+    for number, row in zip(itertools.count(1) if numbers is None else numbers, rows, strict=False):
+        if any(row):
+            room.take(row)
+            kept.append((number, row, len(row)))
     if not kept:
         raise RefusedError(N_("there is nothing in the text"))
     if len(kept) * max(len(row) for _, row, _ in kept) > MOST_CELLS:
-        raise RefusedError(
-            N_("there are more than {most} cells: leave out the columns that are not needed"), most=MOST_CELLS
-        )
+        raise too_many_cells()
     columns = list(zip_longest(*(row for _, row, _ in kept), fillvalue=""))
     while not any(columns[-1]):
         columns.pop()
     cells = tuple(zip(*columns, strict=True))
-    return Grid(cells, tuple(k for k, _, _ in kept), separator, counts=tuple(count for _, _, count in kept))
+    return Grid(cells, tuple(k for k, _, _ in kept), separator, counts=tuple(width for _, _, width in kept))
 
 
 def grids_of(text: str, most_rows: int = MAXIMUM_PHASES, most_characters: int = MAXIMUM_CHARACTERS) -> list[Grid]:
@@ -113,7 +152,7 @@ def grids_of(text: str, most_rows: int = MAXIMUM_PHASES, most_characters: int = 
         raise RefusedError(N_("there are more than {most} rows"), most=most_rows)
     hint = _HINT.match(text)
     text = text[hint.end() :] if hint else text
-    return [grid_of([[tidy(cell) for cell in row] for row in _rows(text, name)], name) for name in _separators(text)]
+    return [grid_of(([tidy(cell) for cell in row] for row in _rows(text, name)), name) for name in _separators(text)]
 
 
 def _separators(text: str) -> list[str]:

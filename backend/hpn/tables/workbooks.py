@@ -13,10 +13,11 @@ from fractions import Fraction
 from io import BytesIO
 from math import inf
 from typing import TYPE_CHECKING, Any
+from warnings import catch_warnings
 
 from hpn.tables.cells import Figure, Merged, is_number, tidy
-from hpn.tables.number_formats import section_of
-from hpn.tables.sheets import MOST_CELLS, Grid, RefusedError, grid_of
+from hpn.tables.number_formats import LONGEST_FORMAT, section_of
+from hpn.tables.sheets import LONGEST_TEXT, MOST_CELLS, Grid, RefusedError, Room, grid_of, too_many_cells
 from hpn.words.wording import N_, Sentence
 
 if TYPE_CHECKING:
@@ -34,12 +35,36 @@ MOST_SHEETS = 20
 MOST_ROWS = 1_048_576
 """Of a sheet, by the format."""
 
+MOST_CELLS_OF_BOOK = 2 * MOST_CELLS
+MOST_WRITTEN_CELLS = 500_000
+"""Cells of a workbook, and of a sheet those that the file has, blank ones with a format among them."""
+
+COUNTED = (
+    ("styles.xml", b"<", 250_000, N_("styles")),  # 64,000 formats of cells are the most that Excel writes
+    ("sharedStrings.xml", b"<si", MOST_CELLS_OF_BOOK, N_("texts")),
+    ("sharedStrings.xml", b"<", 4 * MOST_CELLS_OF_BOOK, N_("texts")),
+    ("worksheets/", b"<c", MOST_WRITTEN_CELLS, N_("cells")),
+    ("worksheets/", b"<row", MOST_WRITTEN_CELLS, N_("rows")),
+    ("worksheets/", b"<mergeCell", 20_000, N_("merged cells")),
+    ("worksheets/", b"<conditionalFormatting", 20_000, N_("conditional formats")),
+    ("worksheets/", b"<", 4 * MOST_WRITTEN_CELLS, N_("cells")),
+    ("workbook.xml", b"<", 50_000, N_("names")),
+    (".rels", b"<", 10_000, N_("parts")),
+    ("[Content_Types].xml", b"<", 10_000, N_("parts")),
+    ("docProps/", b"<", 10_000, N_("properties")),
+    ("theme/", b"<", 50_000, N_("styles")),
+)
+"""Marks in the parts of a file, by what stands in their names: what a reader takes far more time and memory for than
+there are bytes. A file may hide them under other names, and is then read until it meets the bounds of the process.
+"""
+
 
 @dataclass(frozen=True, slots=True)
 class Sheet:
-    """Rows of a sheet, and which of its rows and columns are hidden in the workbook: they are read as well."""
+    """Rows of a sheet and their numbers; rows and columns that are hidden in the workbook are read as well."""
 
     rows: list[list[str]]
+    numbers: list[int]
     hidden_rows: str = ""
     hidden_columns: str = ""
 
@@ -50,7 +75,7 @@ class Sheet:
             for template, hidden in ((HIDDEN_ROWS, self.hidden_rows), (HIDDEN_COLUMNS, self.hidden_columns))
             if hidden
         ]
-        return replace(grid_of(self.rows), notes=tuple(notes))
+        return replace(grid_of(self.rows, numbers=self.numbers), notes=tuple(notes))
 
 
 Sheets = dict[str, Sheet]
@@ -66,7 +91,7 @@ def sheets_of(content: bytes) -> Sheets:
     try:
         _require_bounded(content)
         sheets = _read(content)
-    except RefusedError:
+    except (RefusedError, MemoryError):
         raise
     except Exception:  # whatever the library meets in a broken file
         raise unreadable from None
@@ -78,10 +103,25 @@ def sheets_of(content: bytes) -> Sheets:
 def _require_bounded(content: bytes) -> None:
     with zipfile.ZipFile(BytesIO(content)) as archive:
         parts = archive.infolist()
-    # The zip module unpacks no more of a part than is declared here.
-    if len(parts) > MOST_PARTS or sum(part.file_size for part in parts) > MAXIMUM_BYTES:
-        template = N_("the workbook unpacks to more than {most} MB: save the sheet of the duty cycle alone")
-        raise RefusedError(template, most=MAXIMUM_BYTES // 1_000_000)
+        if len(parts) > MOST_PARTS:
+            raise _too_many(N_("parts"))
+        # The zip module unpacks no more of a part than is declared here.
+        if sum(part.file_size for part in parts) > MAXIMUM_BYTES:
+            template = N_("the workbook unpacks to more than {most} MB: save the sheet of the duty cycle alone")
+            raise RefusedError(template, most=MAXIMUM_BYTES // 1_000_000)
+        for part in parts:
+            _require_few(part.filename, archive.read(part))
+
+
+def _require_few(name: str, part: bytes) -> None:
+    for place, mark, most, what in COUNTED:
+        if place in name and part.count(mark) > most:
+            raise _too_many(what)
+
+
+def _too_many(what: str) -> RefusedError:
+    template = N_("the workbook has too many {what}: copy the cells into a new one, or save the sheet as CSV")
+    return RefusedError(template, what=Sentence(what))
 
 
 def _read(content: bytes) -> Sheets:
@@ -89,39 +129,35 @@ def _read(content: bytes) -> Sheets:
 
     from hpn.tables.worksheets import Worksheet
 
-    book = openpyxl.load_workbook(BytesIO(content), read_only=True, data_only=True, keep_links=False)
+    with catch_warnings(action="ignore"):  # of styles that are missing, and what else no cell shows
+        book = openpyxl.load_workbook(BytesIO(content), read_only=True, data_only=True, keep_links=False)
     sheets: Sheets = {}
+    room = Room(MOST_CELLS_OF_BOOK)
     with suppress(AttributeError):  # sheets of charts have no cells
         for sheet in book.worksheets[:MOST_SHEETS]:
-            if sheet.sheet_state == "visible" and (read := _sheet(Worksheet(sheet))).rows:
+            if sheet.sheet_state == "visible" and (read := _sheet(Worksheet(sheet), room)).rows:
                 sheets[sheet.title] = read
     return sheets
 
 
-def _sheet(sheet: "Worksheet") -> Sheet:
-    rows: list[list[str]] = []
-    cells = 0
+def _sheet(sheet: "Worksheet", room: Room) -> Sheet:
+    rows, own, last = dict[int, list[str]](), Room(), 0
     for number, row in sheet.rows():
-        said = _placed(row)
-        cells += len(said)
-        if cells > MOST_CELLS or number > MOST_ROWS:
-            raise _too_many()
-        rows += [[] for _ in range(number - 1 - len(rows))]
-        rows.append(said)
-    while rows and not any(rows[-1]):
-        rows.pop()
-    _mark_merged(rows, sheet.merged)
-    filled = {place for row in rows for place, cell in enumerate(row, start=1) if cell}
+        last = max(number, last + 1)  # a number that is there twice is no row above
+        if last > MOST_ROWS:
+            raise too_many_cells()
+        if said := _placed(row):
+            own.take(said)
+            room.take(said)
+            rows[last] = said
+    rows = _with_merged(rows, sheet.merged)
+    filled = {place for row in rows.values() for place, cell in enumerate(row, start=1) if cell}
     return Sheet(
-        rows,
-        _stretches((k for k, row in enumerate(rows, start=1) if k in sheet.hidden_rows and any(row)), str),
+        list(rows.values()),
+        list(rows),
+        _stretches((k for k, row in rows.items() if k in sheet.hidden_rows and any(row)), str),
         _stretches(sheet.hidden_columns(filled), sheet.letters),
     )
-
-
-def _too_many() -> RefusedError:
-    template = N_("there are more than {most} cells: leave out the columns that are not needed")
-    return RefusedError(template, most=MOST_CELLS)
 
 
 def _placed(row: list[Any]) -> list[str]:
@@ -130,30 +166,29 @@ def _placed(row: list[Any]) -> list[str]:
     return [said.get(place, "") for place in range(1, max(said, default=0) + 1)]
 
 
-def _mark_merged(rows: list[list[str]], spans: Iterable["Span"]) -> None:
-    """Let cells that a merged one with a number covers say so: it may be the number of each of them, or of all.
+def _with_merged(rows: dict[int, list[str]], spans: Iterable["Span"]) -> dict[int, list[str]]:
+    """Rows whose cells say so where a merged one with a number covers them: it may be the number of each, or of all.
 
     A row that is covered altogether says nothing: there a row of the table is several rows high.
     """
-    widest = max(map(len, rows), default=0)
+    widest, lowest = max(map(len, rows.values()), default=0), max(rows, default=0)
     cells = 0
     for span in spans:
-        if span.top > len(rows) or span.first > len(rows[span.top - 1]):
+        if len(rows.get(span.top, ())) < span.first or not is_number(number := rows[span.top][span.first - 1]):
             continue
-        number = rows[span.top - 1][span.first - 1]
-        if not is_number(number):
-            continue
-        last, bottom = min(span.last, widest), min(span.bottom, len(rows))
+        last, bottom = min(span.last, widest), min(span.bottom, lowest)
         cells += (last - span.first + 1) * (bottom - span.top + 1)
         if cells > MOST_CELLS:
-            raise _too_many()
-        for row in rows[span.top - 1 : bottom]:
+            raise too_many_cells()
+        for place in range(span.top, bottom + 1):
+            row = rows.setdefault(place, [])
             row += [""] * (last - len(row))
             row[span.first - 1 : last] = [Merged(span.name)] * (last - span.first + 1)
-        rows[span.top - 1][span.first - 1] = number
-    for row in rows if cells else ():
+        rows[span.top][span.first - 1] = number
+    for row in rows.values() if cells else ():
         if all(isinstance(cell, Merged) for cell in row if cell):
             row.clear()
+    return dict(sorted(rows.items()))
 
 
 def _stretches(places: Iterable[int], named: Callable[[int], str]) -> str:
@@ -176,11 +211,12 @@ def _text(cell: Any) -> str:
     if isinstance(value, time | timedelta) and "s" in str(cell.number_format).lower():
         return Figure(f"{_seconds(value)} s")
     if isinstance(value, bool) or not isinstance(value, int | float) or abs(value) == inf:
-        return tidy(str(value))  # an infinite one, such as 1e999, is no number
+        text = str(value)
+        return tidy(text) if len(text) <= LONGEST_TEXT else text  # an infinite one, such as 1e999, is no number
     written = str(cell.number_format)
     section = section_of(written, value)
     if section is None:
-        return Figure(f"{_plain(value)} {written}")
+        return Figure(f"{_plain(value)} {written[:LONGEST_FORMAT]}")
     if section.percent:
         return Figure(f"{Decimal(repr(value)).scaleb(2):f} %")
     scaled = float(Fraction(value) / 1000**section.thousands) if section.thousands else value

@@ -1,32 +1,17 @@
 """Forms that a browser posts, with or without files, within limits of size and time."""
 
-import codecs
 import re
 from collections.abc import Callable
-from contextlib import suppress
 from typing import NamedTuple
 
 from starlette.requests import Request
 
+from hpn.tables.sheets import RefusedError
+from hpn.tables.texts import text_of
 from hpn.web.door.bodies import content_type_of, pairs_of, read_body
 from hpn.web.door.pools import compute
 from hpn.web.door.problems import Problem
 from hpn.web.settings import Settings
-from hpn.words.wording import N_, Sentence
-
-NO_TEXT = N_("the file is no text: save the sheet as CSV, or copy its cells")
-WRONG_BYTE = N_(
-    "the file is marked as {encoding}, but in line {line} the byte {byte}, number {place} of the file, does not belong "
-    "to it: save the sheet as CSV again"
-)
-MARKS = (
-    (codecs.BOM_UTF8, "utf-8"),
-    (codecs.BOM_UTF32_LE, "utf-32-le"),  # before UTF-16, whose mark is the beginning of this one
-    (codecs.BOM_UTF32_BE, "utf-32-be"),
-    (codecs.BOM_UTF16_LE, "utf-16-le"),
-    (codecs.BOM_UTF16_BE, "utf-16-be"),
-)
-"""Byte order marks, and what each promises of the bytes behind it."""
 
 FORM, MULTIPART = "application/x-www-form-urlencoded", "multipart/form-data"
 
@@ -159,35 +144,8 @@ def parts_of(content_type: str, body: bytes) -> list[tuple[str, bytes]]:
 
 
 def decoded(content: bytes) -> str:
-    """Text of a file: in the encoding that its byte order mark promises, else UTF-8, else Windows-1252 as spreadsheets
-    write CSV. Raises Problem 422, which names the place of a byte that breaks the promise.
-    """
-    for mark, encoding in MARKS:
-        if content.startswith(mark):
-            return _marked(content.removeprefix(mark), encoding, len(mark))
-    if b"\x00" not in content:  # a workbook or a picture
-        for encoding in ("utf-8", "cp1252"):
-            with suppress(UnicodeDecodeError):
-                return content.decode(encoding)
-    raise _refused(NO_TEXT)
-
-
-def _marked(content: bytes, encoding: str, mark: int) -> str:
+    """Text of a field or a file; raises Problem 422 as `text_of` refuses it."""
     try:
-        return content.decode(encoding)
-    except UnicodeDecodeError as error:
-        line = 1 + content[: error.start].decode(encoding).count("\n")
-        raise _refused(
-            WRONG_BYTE,
-            encoding=encoding.upper(),
-            line=line,
-            byte=f"0x{content[error.start]:02x}",
-            place=mark + error.start + 1,
-        ) from None
-
-
-def _refused(template: str, **values: str | int) -> Problem:
-    sentence = Sentence(template, dict(values))
-    problem = Problem(422, sentence.text)
-    problem.sentences = (sentence,)
-    return problem
+        return text_of(content)
+    except RefusedError as refused:
+        raise Problem.told(422, refused.sentence) from None

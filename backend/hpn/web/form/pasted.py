@@ -97,9 +97,15 @@ class Table:
 def read_text(text: str, choices: Choices = NO_CHOICES, assumed: Collection[str] = tuple(WIRE.values())) -> Table:
     """What a pasted text is read as; raises nothing, `problem` says why it can't be."""
     try:
-        grids = grids_of(text)
+        return read_grids(grids_of(text), choices, assumed)
     except RefusedError as refused:
         return Table(refused.sentence)
+
+
+def read_grids(
+    grids: Sequence[Grid], choices: Choices = NO_CHOICES, assumed: Collection[str] = tuple(WIRE.values())
+) -> Table:
+    """What the cells of a table are read as, out of those by each separator; raises nothing."""
     tables = [read_grid(grid, choices, assumed) for grid in grids]
     divided = next((table for table in tables if table.problem and table.problem.template == DIVIDED), None)
     if divided:

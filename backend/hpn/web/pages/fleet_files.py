@@ -14,7 +14,7 @@ import pyarrow.parquet as pq
 import pyarrow.types as kinds
 import xlsxwriter
 
-from hpn.fleet.listing import NEAREST
+from hpn.fleet.listing import NEAREST, as_parquet
 from hpn.web.pages.fleet_reasons import reasons_of
 from hpn.words.reader import Reader
 
@@ -31,16 +31,9 @@ def file_of(answers: bytes, created: datetime, suffix: str, reader: Reader) -> b
     """
     table = table_of(answers).drop_columns(NEAREST.names)
     if suffix == "parquet":
-        return packed(table)
+        return as_parquet(table)
     told = _told(table, reader)
     return _csv(told) if suffix == "csv" else _workbook(told, created)
-
-
-def packed(table: pa.Table) -> bytes:
-    """A table as it is kept."""
-    sink = io.BytesIO()
-    pq.write_table(table, sink, compression="zstd")
-    return sink.getvalue()
 
 
 def table_of(content: bytes) -> pa.Table:

@@ -6,15 +6,16 @@ from typing import Any, NamedTuple
 
 import pyarrow as pa
 import pyarrow.compute as pc
+import pyarrow.parquet as pq
 
 from hpn import ENGINE_VERSION
 from hpn.catalogue import Catalogue
 from hpn.fleet.columns import AXIS
-from hpn.fleet.listing import MOST_LISTED, AxisRow, listing_of, read_answers, rows_of
+from hpn.fleet.listing import MOST_BYTES, MOST_LISTED, AxisRow, KeptListing, read_answers, rows_of
 from hpn.fleet.summary import Summary, summary_of
 from hpn.store import FleetDraft, SavedFleet
 from hpn.web.door.problems import Problem
-from hpn.web.pages.fleet_files import packed, table_of
+from hpn.web.pages.fleet_files import table_of
 from hpn.words.wording import N_, Quantity, Sentence
 
 COMPARED = ("selected", "governing_check", "utilisation", "suitable")
@@ -22,17 +23,25 @@ TOO_MANY = N_(
     "The table has {axes} axes, and a page takes {most} at most: size it with the command hpn fleet or POST "
     "/api/v1/fleet, which have no such limit."
 )
+TOO_LONG = N_(
+    "The phases of all axes take more than {most} MB, the most that a page reads: size the table with the command hpn "
+    "fleet or POST /api/v1/fleet, which have no such limit."
+)
 
 
-def draft_of(axes: Path, answers: Path, catalogue: Catalogue) -> FleetDraft:
-    """What is kept of tables that were sized; Problem 413 for more axes than a page shows."""
-    listing = listing_of(axes, None, answers, catalogue)
+def require_few(answers: Path) -> None:
+    """Raise Problem 413 for more axes than a page shows."""
+    count = pq.read_metadata(answers).num_rows
+    if count > MOST_LISTED:
+        values = {"axes": Quantity(count, "", 12), "most": Quantity(MOST_LISTED, "", 12)}
+        raise Problem.told(413, Sentence(TOO_MANY, values))
+
+
+def draft_of(listing: KeptListing | None, catalogue: Catalogue) -> FleetDraft:
+    """What is kept of tables that were sized; Problem 413 for more than a page can read."""
+    if listing is None:
+        raise Problem.told(413, Sentence(TOO_LONG, {"most": MOST_BYTES // 1_000_000}))
     summary = listing.summary
-    if summary.axes > MOST_LISTED:
-        sentence = Sentence(TOO_MANY, {"axes": Quantity(summary.axes, "", 12), "most": Quantity(MOST_LISTED, "", 12)})
-        problem = Problem(413, sentence.text)
-        problem.sentences = (sentence,)
-        raise problem
     return FleetDraft(
         axes=summary.axes,
         selected=summary.selected,
@@ -40,8 +49,8 @@ def draft_of(axes: Path, answers: Path, catalogue: Catalogue) -> FleetDraft:
         rejected=summary.rejected,
         engine_version=ENGINE_VERSION,
         catalogue_version=catalogue.version,
-        asked=packed(listing.axes),
-        answers=packed(listing.answers),
+        asked=listing.axes,
+        answers=listing.answers,
     )
 
 

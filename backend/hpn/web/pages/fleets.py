@@ -5,13 +5,11 @@ That is kept for a day, and for good once it is saved with its title block: the 
 Arrow is imported by the requests that need it.
 """
 
-import base64
 import hashlib
-import zlib
 from collections.abc import Callable, Mapping
-from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import partial
+from pathlib import Path
 from typing import Any
 
 from fastapi import APIRouter
@@ -19,16 +17,17 @@ from starlette.requests import Request
 from starlette.responses import HTMLResponse, RedirectResponse, Response
 
 from hpn import ENGINE_VERSION
+from hpn.catalogue import Catalogue
 from hpn.store import FleetDraft, NoRoomError, SavedFleet, ShareSpentError, StoreUnavailableError
 from hpn.store.fleets import MOST_OF_CALLER
 from hpn.tables import cells
 from hpn.tables.columns import SKIP
-from hpn.tables.sheets import RefusedError
+from hpn.tables.files import Contents, Wanted, contents_of, packed, unpacked
 from hpn.web.archive import RETRY_SECONDS
 from hpn.web.door.access import admit, key_needed
 from hpn.web.door.bodies import pairs_of, read_form
 from hpn.web.door.observation import note
-from hpn.web.door.pools import compute, pool_of, while_present, worked
+from hpn.web.door.pools import compute, compute_apart, pool_of, while_present, worked
 from hpn.web.door.problems import Problem
 from hpn.web.door.requests import require_same_origin
 from hpn.web.door.uploads import read_parts
@@ -55,7 +54,6 @@ MEDIA_TYPES = {
 """Formats of the answers in the order in which they are offered: what keeps a text a text comes first."""
 
 ROWS_IN_PREVIEW = 8
-MOST_CARRIED = 16_000_000
 CHANGES_ON_PAGE = 100
 NO_ROOM_SECONDS = 3600
 WRITTEN = {"title": "title", "ref": "reference", "author": "author", "rev": "revision"}
@@ -125,7 +123,8 @@ async def upload(request: Request) -> Response:
     try:
         require_same_origin(request)
         parts = await read_parts(request, request.app.state.settings.maximum_batch_body_bytes)
-        draft = await compute(request, "pages", _read, parts)
+        draft = Draft(parts.get("text", b"").decode(errors="replace"))
+        draft = await _read(request, parts)
         if draft.taken:
             return RedirectResponse(f"{ADDRESS}/{await _sized(request, *draft.taken)}", 303)
         status, problems = (422 if draft.problems else 200), draft.problems
@@ -141,41 +140,47 @@ async def upload(request: Request) -> Response:
     return response
 
 
-def _read(parts: Mapping[str, bytes]) -> Draft:
-    """What was uploaded, or carried along; `taken` once nothing is left to be asked."""
-    from hpn.web.pages import fleet_upload
-
-    fields = {
-        name: content.decode(errors="replace") for name, content in parts.items() if name not in ("file", "table")
-    }
-    text = fields.get("text", "")
-    content = parts.get("file") or text.strip().encode() or _unpacked(parts.get("table", b""))
+async def _read(request: Request, parts: Mapping[str, bytes]) -> Draft:
+    """What was uploaded, or carried along, read beside the service; `taken` once nothing is left to be asked."""
+    content = parts.get("file") or parts.get("text", b"").strip()
+    content = content or await compute(request, "pages", unpacked, parts.get("table", b""))
     if not content.strip():
         return Draft(problems=(Sentence(NOTHING),))
+    wanted = await compute(request, "pages", _wanted)
+    contents = await compute_apart(request, "files", partial(contents_of, content, wanted))
+    if contents.suffix:
+        return Draft(parts.get("text", b"").decode(errors="replace"), taken=(content, contents.suffix))
+    return await compute(request, "pages", _draft_of, parts, content, contents)
+
+
+def _wanted() -> Wanted:
+    from hpn.web.pages import fleet_upload
+
+    return fleet_upload.WANTED
+
+
+def _draft_of(parts: Mapping[str, bytes], content: bytes, contents: Contents) -> Draft:
+    from hpn.web.pages import fleet_upload
+
+    fields = {name: part.decode(errors="replace") for name, part in parts.items() if name not in ("file", "table")}
+    text = fields.get("text", "")
     of = hashlib.sha256(content).hexdigest()[:16]
-    carried = base64.b64encode(zlib.compress(content)).decode()
-    try:
-        found = fleet_upload.uploaded(content)
-        if found.sheets is None:
-            return Draft(taken=(content, found.suffix))
-        chosen = fields.get("sheet", "") if fields.get("of") == of else ""
-        sheet = chosen if chosen in found.sheets else next(iter(found.sheets))
-        table = fleet_upload.best_reading(found.sheets[sheet], choices_of(fields, of), _assumed())
-    except RefusedError as refused:
-        larger = (Sentence(LARGER),) if "most" in refused.sentence.values else ()
-        return Draft(text, (refused.sentence, *larger))
+    if contents.problem:
+        return _refused_table(text, contents.problem)
+    chosen = fields.get("sheet", "") if fields.get("of") == of else ""
+    sheet = chosen if chosen in contents.sheets else next(iter(contents.sheets))
+    found = contents.sheets[sheet]
+    if isinstance(found, Sentence):
+        return replace(_refused_table(text, found), of=of, carried=packed(content), sheets=tuple(contents.sheets))
+    table = fleet_upload.best_reading(found, choices_of(fields, of), _assumed())
     taken = (fleet_upload.lines_of(table), ".ndjson") if table.whole and "size" in fields else None
     problems = (table.problem,) if table.problem else ()
-    return Draft(text, problems, table, of, carried, tuple(found.sheets), sheet, taken)
+    return Draft(text, problems, table, of, packed(content), tuple(contents.sheets), sheet, taken)
 
 
-def _unpacked(carried: bytes) -> bytes:
-    """A table as a form carries it; nothing where it is none."""
-    with suppress(ValueError, zlib.error):
-        unpacking = zlib.decompressobj()
-        content = unpacking.decompress(base64.b64decode(carried, validate=True), MOST_CARRIED)
-        return content if unpacking.eof else b""
-    return b""
+def _refused_table(text: str, problem: Sentence) -> Draft:
+    larger = (Sentence(LARGER),) if "most" in problem.values else ()
+    return Draft(text, (problem, *larger))
 
 
 def _assumed() -> tuple[str, ...]:
@@ -212,10 +217,19 @@ async def _calculated(request: Request, content: bytes, suffix: str) -> FleetDra
         axes = folder / f"axes{suffix}"
         await compute(request, "pages", axes.write_bytes, content)
         files = await size_fleet(request, Tables(axes, input_name="The table"), suffix=".parquet")
-        draft: FleetDraft = await compute(
-            request, "exports", _kept, axes, files["answers"], request.app.state.catalogue
-        )
+        work = await compute(request, "pages", _listed, axes, files["answers"], request.app.state.catalogue)
+        listing = await compute_apart(request, "files", work)
+        draft: FleetDraft = await compute(request, "pages", _kept, listing, request.app.state.catalogue)
     return draft
+
+
+def _listed(axes: Path, answers: Path, catalogue: Catalogue) -> Any:
+    """The work of reading a table again that was sized, with its answers; Problem 413 where these are too many."""
+    from hpn.fleet.listing import kept_listing_of
+    from hpn.web.pages import fleet_result
+
+    fleet_result.require_few(answers)
+    return partial(kept_listing_of, axes, answers, catalogue)
 
 
 def _kept(*arguments: Any) -> Any:

@@ -6,13 +6,13 @@ comes along as the field `link`, so that nothing typed is lost on the way.
 
 import hashlib
 import re
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import partial
 from math import isfinite
 from typing import Any
 from urllib.parse import urlencode
 
-import orjson
 from fastapi import APIRouter
 from pydantic import ValidationError
 from starlette.requests import Request
@@ -21,14 +21,15 @@ from starlette.responses import HTMLResponse, RedirectResponse, Response
 from hpn.application import Application
 from hpn.application.faults import plain_message
 from hpn.tables import cells
-from hpn.tables.cells import Decimal, Figure, Merged
+from hpn.tables.cells import Decimal
 from hpn.tables.columns import CELLS, SKIP, WIRE, Choices, Column
+from hpn.tables.files import Contents, Wanted, contents_of, contents_of_text, packed, unpacked
 from hpn.tables.headings import QUANTITIES
-from hpn.tables.sheets import SEPARATORS, RefusedError
-from hpn.tables.workbooks import MAGIC, OLD_MAGIC, Sheet, Sheets, sheets_of
+from hpn.tables.sheets import MAXIMUM_CHARACTERS, SEPARATORS, Grid
+from hpn.tables.texts import tidied
 from hpn.web.door.access import admit
 from hpn.web.door.bodies import pairs_of, parsed
-from hpn.web.door.pools import compute, worked
+from hpn.web.door.pools import compute, compute_apart, worked
 from hpn.web.door.problems import Problem, pointer
 from hpn.web.door.uploads import decoded, read_parts
 from hpn.web.door.visit import current
@@ -36,20 +37,23 @@ from hpn.web.form import link_reader
 from hpn.web.form.given import shown_columns
 from hpn.web.form.link_reader import Pairs
 from hpn.web.form.link_writer import to_link
-from hpn.web.form.pasted import COLUMNS, LAST, PARTS, PHASE, TIMES, TOTALS, Table, read_grid, read_text
+from hpn.web.form.pasted import COLUMNS, LAST, PARTS, PHASE, TIMES, TOTALS, Table, read_grids
 from hpn.web.form.symbols import LOADS, VARYING
 from hpn.web.form.ways import CYCLE_NAMES
 from hpn.web.pages import long_cycles
 from hpn.web.pages.templates import environment
+from hpn.words.fields import MAXIMUM_PHASES
 from hpn.words.wording import N_, Sentence
 
 FIRST_ROWS, LAST_ROWS = 6, 2
 """Rows of a long table that the preview shows."""
 
 DECIMALS = {".": N_("a point"), ",": N_("a comma")}
-OLD_WORKBOOK = N_("a workbook of this old format can’t be read: save it as XLSX or CSV")
+NOTHING = N_("there is nothing in the workbook")
+WANTED = Wanted(MAXIMUM_PHASES, MAXIMUM_CHARACTERS)
+SHORT_CHARACTERS = 8_000
+"""Texts up to which a worker reads at once: whatever they say, that takes some 50 ms."""
 
-_CLASSES: dict[str, type[str]] = {kind.__name__: kind for kind in (Figure, Merged)}
 _PLACE = re.compile(r"([ru])([0-9]{1,6})")
 
 
@@ -87,8 +91,8 @@ class TablePreview:
 class PasteDraft:
     """State of the page: the form that it came from, what was given, and what can be made of it.
 
-    `of` names what the choices belong to: they end when another text or file is given. `book` carries the cells of a
-    workbook along where no script sends its file again.
+    `of` names what the choices belong to: they end when another text or file is given. `book` carries a file along that
+    is no text, where no script sends it again.
     """
 
     link: str
@@ -111,83 +115,70 @@ def start(request: Request) -> Response:
 
 async def paste(request: Request) -> Response:
     """Previews what was pasted or uploaded, or takes it."""
+    given = Given()
     try:
-        return await compute(request, "pages", _answer, request, await read_parts(request))
+        given = await compute(request, "pages", _given, await read_parts(request))
+        return await compute(request, "pages", _answer, request, given, await _contents(request, given))
     except Problem as problem:
         problems = problem.sentences or (_plain(problem.detail),)
-        response = _render(request, PasteDraft("", problems=problems), problem.status_code)
+        draft = PasteDraft(given.link, given.text, problems=problems)
+        response = await compute(request, "pages", _render, request, draft, problem.status_code)
         response.headers.update(problem.headers or {})
         return response
 
 
-def _answer(request: Request, parts: Mapping[str, bytes]) -> Response:
-    file = parts.get("file", b"")
+@dataclass(frozen=True, slots=True)
+class Given:
+    """What was posted: the form that it came from, a text or a file, and what was chosen."""
+
+    link: str = ""
+    text: str = ""
+    file: bytes = b""
+    fields: Mapping[str, str] = field(default_factory=dict)
+
+
+def _given(parts: Mapping[str, bytes]) -> Given:
     fields = {name: decoded(content) for name, content in parts.items() if name != "file"}
-    link = fields.get("link", "").removeprefix("/").removeprefix("?")
-    if file.startswith((MAGIC, OLD_MAGIC)) or (fields.get("book") and not file and not fields.get("text", "").strip()):
-        return _of_workbook(request, link, file, fields)
-    text = (decoded(file) or fields.get("text", "")).removeprefix("\ufeff").replace("\r\n", "\n")
-    if text.lstrip().startswith("{"):
-        return _of_application(request, link, text, fields.get("take", ""))
-    of = _digest(text.encode(errors="replace"))
-    table = read_text(text, choices_of(fields, of), _assumed()) if text.strip() else None
-    return _taken_or_shown(request, fields, _draft(link, text, table, of=of))
+    link, text = fields.get("link", "").removeprefix("/").removeprefix("?"), tidied(fields.get("text", ""))
+    file = parts.get("file", b"")
+    if not file and not text.strip() and (book := fields.get("book")):
+        file = unpacked(book.encode(errors="replace"))
+        if not file:
+            raise Problem.told(422, Sentence(NOTHING))
+    return Given(link, text, file, fields)
 
 
-def _of_workbook(request: Request, link: str, file: bytes, fields: Mapping[str, str]) -> Response:
-    if file.startswith(OLD_MAGIC):
-        return _render(request, PasteDraft(link, problems=(Sentence(OLD_WORKBOOK),)), 422)
-    try:
-        sheets = sheets_of(file) if file else _unpacked(fields["book"])
-    except RefusedError as refused:
-        return _render(request, PasteDraft(link, problems=(refused.sentence,)), 422)
-    book = _packed(sheets)
-    of = _digest(book)
+async def _contents(request: Request, given: Given) -> Contents:
+    """Cells of what was given: a short text is read here, a file in a process whose memory and time are bounded."""
+    if given.file:
+        return await compute_apart(request, "files", partial(contents_of, given.file, WANTED))
+    if len(given.text) > SHORT_CHARACTERS:
+        return await compute_apart(request, "files", partial(contents_of_text, given.text, WANTED))
+    if not given.text.strip():
+        return Contents()
+    return await compute(request, "pages", contents_of_text, given.text, WANTED)
+
+
+def _answer(request: Request, given: Given, contents: Contents) -> Response:
+    text = contents.text if given.file else given.text
+    if contents.problem:
+        return _render(request, PasteDraft(given.link, text, problems=(contents.problem,)), 422)
+    if contents.is_application:
+        return _of_application(request, given.link, text, given.fields.get("take", ""))
+    of = _digest(text.encode(errors="replace") or given.file)
+    sheets, fields = contents.sheets, given.fields
     chosen = fields.get("sheet", "") if fields.get("of") == of else ""
     sheet = chosen if chosen in sheets else next(iter(sheets)) if len(sheets) == 1 else ""
-    table = _of_sheet(sheets[sheet], choices_of(fields, of)) if sheet else None
-    carried = "" if "hx-request" in request.headers else book.decode()
-    draft = _draft(link, "", table, of=of, sheets=tuple(sheets), sheet=sheet, book=carried)
+    table = _table(sheets[sheet], choices_of(fields, of)) if sheet in sheets else None
+    draft = _draft(given.link, text, table, of=of)
+    if given.file and not text:
+        carried = "" if "hx-request" in request.headers else packed(given.file)
+        draft = replace(draft, sheets=tuple(sheets), sheet=sheet, book=carried)
     return _taken_or_shown(request, fields, draft)
 
 
-def _of_sheet(sheet: Sheet, choices: Choices) -> Table:
-    try:
-        return read_grid(sheet.grid(), choices, _assumed())
-    except RefusedError as refused:
-        return Table(refused.sentence)
-
-
-def _packed(sheets: Sheets) -> bytes:
-    """Cells of a workbook as JSON: one that is more than a text is a list of its class and its text."""
-    return orjson.dumps(
-        {
-            name: [
-                [
-                    [[type(c).__name__, str(c)] if type(c).__name__ in _CLASSES else c for c in row]
-                    for row in sheet.rows
-                ],
-                [sheet.hidden_rows, sheet.hidden_columns],
-            ]
-            for name, sheet in sheets.items()
-        }
-    )
-
-
-def _unpacked(book: str) -> Sheets:
-    """Cells as `_packed` wrote them; raises RefusedError for anything else."""
-    try:
-        sheets = {
-            str(name): Sheet(
-                [[c if isinstance(c, str) else _CLASSES[c[0]](c[1]) for c in row] for row in rows], *map(str, hidden)
-            )
-            for name, (rows, hidden) in orjson.loads(book).items()
-        }
-    except (ValueError, TypeError, KeyError, IndexError, AttributeError):
-        sheets = {}
-    if not sheets:
-        raise RefusedError(N_("there is nothing in the workbook"))
-    return sheets
+def _table(found: Sequence[Grid] | Sentence, choices: Choices) -> Table:
+    return Table(found) if isinstance(found, Sentence) else read_grids(found, choices, _assumed())
 
 
 def _digest(content: bytes) -> str:

@@ -1,0 +1,132 @@
+"""From the bytes of a file to the cells of its sheets: the one way in for tables of phases and of axes.
+
+A file of kilobytes may stand for gigabytes: a service calls this in a process whose memory and time are bounded. What
+a file says about itself is looked at before it is read, so that most of those get a sentence.
+"""
+
+import base64
+import csv
+import io
+import zlib
+from collections.abc import Mapping
+from contextlib import suppress
+from dataclasses import dataclass, field
+
+from hpn.tables.sheets import MOST_CELLS, Grid, RefusedError, Takes, grids_of, too_many_cells
+from hpn.tables.texts import text_of, tidied
+from hpn.tables.workbooks import MAGIC, OLD_MAGIC, sheets_of
+from hpn.words.wording import N_, Sentence
+
+OLD_WORKBOOK = N_("a workbook of this old format can’t be read: save it as XLSX or CSV")
+PARQUET, ARROW = b"PAR1", b"ARROW1"
+MOST_HEAD = 2_000_000
+"""Characters in which the header and the first row of a text stand."""
+
+MOST_CELLS_IN_ALL = 4 * MOST_CELLS
+"""Of all sheets, those that fill rows up to their widest included."""
+
+
+@dataclass(frozen=True, slots=True)
+class Wanted:
+    """What a file is read for: its longest text, most rows of a text, and tables that are taken as they are.
+
+    Objects of JSON are rows of a table where tables may be taken as they are, else one application.
+    """
+
+    most_rows: int
+    most_characters: int
+    takes: Takes | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Contents:
+    """What is in a file: cells of each sheet by each way to part them, or why it has none that can be read.
+
+    Without sheets: `suffix` names the format of a table that is taken as it is, and `is_application` an object of JSON.
+    """
+
+    sheets: Mapping[str, tuple[Grid, ...] | Sentence] = field(default_factory=dict)
+    text: str = ""
+    suffix: str = ""
+    is_application: bool = False
+    problem: Sentence | None = None
+
+
+def contents_of(content: bytes, wanted: Wanted) -> Contents:
+    """What is in a file; raises nothing but MemoryError, `problem` says why it can't be read."""
+    try:
+        if content.startswith(OLD_MAGIC):
+            raise RefusedError(OLD_WORKBOOK)
+        if content.startswith(MAGIC):
+            return Contents(_sheets(content))
+        if content.startswith((PARQUET, ARROW)):
+            from hpn.tables import records  # Arrow takes half a second to import
+
+            read = records.parquet if content.startswith(PARQUET) else records.arrow
+            return _of_rows(*read(content, wanted.takes))
+        text = tidied(text_of(content))
+    except RefusedError as refused:
+        return Contents(problem=refused.sentence)
+    return contents_of_text(text, wanted)
+
+
+def contents_of_text(text: str, wanted: Wanted) -> Contents:
+    """The same of a text."""
+    try:
+        if not text.lstrip().startswith("{"):
+            if wanted.takes and _is_taken_csv(text, wanted.takes):
+                return Contents(suffix=".csv")
+            return Contents({"": tuple(grids_of(text, wanted.most_rows, wanted.most_characters))}, text)
+        if wanted.takes is None:
+            return Contents(text=text, is_application=True)
+        from hpn.tables import records
+
+        return _of_rows(*records.objects(text, wanted.takes))
+    except RefusedError as refused:
+        return Contents(text=text if len(text) <= wanted.most_characters else "", problem=refused.sentence)
+
+
+def _of_rows(suffix: str, grid: Grid | None) -> Contents:
+    return Contents({"": (grid,)}) if grid else Contents(suffix=suffix)
+
+
+def _sheets(content: bytes) -> dict[str, tuple[Grid, ...] | Sentence]:
+    found = dict[str, tuple[Grid, ...] | Sentence]()
+    left = MOST_CELLS_IN_ALL
+    for name, sheet in sheets_of(content).items():
+        try:
+            grid = sheet.grid()
+            left -= len(grid.rows) * grid.width
+            found[name] = (grid,) if left >= 0 else too_many_cells().sentence
+        except RefusedError as refused:
+            found[name] = refused.sentence
+    return found
+
+
+def _is_taken_csv(text: str, takes: Takes) -> bool:
+    rows = csv.reader(io.StringIO(text[:MOST_HEAD], newline=""))
+    try:
+        first, second = dict.fromkeys(next(rows, [])), next(rows, [])
+    except csv.Error:
+        return False
+    cells = dict(zip(first, second, strict=False))
+    return takes(list(first), cells.get("torque_Nm", "").lstrip().startswith("["))
+
+
+# --- A file that a form carries along ---------------------------------------------------------------------------------
+
+MOST_CARRIED = 32_000_000
+
+
+def packed(content: bytes) -> str:
+    """A file as a hidden field, for a form that can't send it again."""
+    return base64.b64encode(zlib.compress(content)).decode()
+
+
+def unpacked(carried: bytes) -> bytes:
+    """The file of such a field; nothing where it is none."""
+    with suppress(ValueError, zlib.error):
+        unpacking = zlib.decompressobj()
+        content = unpacking.decompress(base64.b64decode(carried, validate=True), MOST_CARRIED)
+        return content if unpacking.eof else b""
+    return b""

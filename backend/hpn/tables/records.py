@@ -1,0 +1,115 @@
+"""From Parquet, Arrow and NDJSON to the cells of a table. Arrow is imported by this module.
+
+What is read is bounded by what the file claims, and then by what has come of it: claims may be wrong.
+"""
+
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
+from itertools import chain
+from typing import Any
+
+import msgspec
+import pyarrow as pa
+import pyarrow.dataset as datasets
+import pyarrow.parquet as pq
+import pyarrow.types as kinds
+
+from hpn.tables.cells import Figure
+from hpn.tables.sheets import MOST_CELLS, MOST_CHARACTERS, Grid, RefusedError, Takes, grid_of, too_many_cells
+from hpn.words.wording import N_
+
+LARGEST = 1e300
+"""Numbers beyond it stand as text, and are none."""
+
+MOST_BYTES = 16 * MOST_CHARACTERS
+"""Of the columns of a table in memory: cells, and what they say."""
+
+UNREADABLE = N_("the file can’t be read as Parquet, Arrow or NDJSON: save the table as CSV or XLSX")
+TOO_LONG = N_("the columns of the table take more than {most} MB: leave out those that are not needed")
+
+Found = tuple[str, Grid | None]
+"""Suffix of a table that is taken as it is, without cells; or its cells."""
+
+
+def parquet(content: bytes, takes: Takes | None) -> Found:
+    """A table of Parquet; raises RefusedError."""
+    with _told():
+        file = pq.ParquetFile(pa.BufferReader(content))
+        if _is_taken(file.schema_arrow, takes):
+            return ".parquet", None
+        claimed = file.metadata
+        _require_few(claimed.num_rows, len(file.schema_arrow.names))
+        _require_short(claimed.row_group(k).total_byte_size for k in range(claimed.num_row_groups))
+        return "", _grid(file.read(use_threads=False))
+
+
+def arrow(content: bytes, takes: Takes | None) -> Found:
+    """A table of Arrow; raises RefusedError."""
+    with _told():
+        file = pa.ipc.open_file(pa.BufferReader(content))
+        if _is_taken(file.schema, takes):
+            return ".arrow", None
+        fragment = datasets.IpcFileFormat().make_fragment(pa.py_buffer(content))
+        _require_few(fragment.count_rows(use_threads=False), len(file.schema.names))
+        return "", _grid(file.read_all())
+
+
+@contextmanager
+def _told() -> Iterator[None]:
+    try:
+        yield
+    except (RefusedError, MemoryError):
+        raise
+    except Exception:  # whatever the library meets in a broken file
+        raise RefusedError(UNREADABLE) from None
+
+
+def _is_taken(schema: pa.Schema, takes: Takes | None) -> bool:
+    has_lists = any(
+        kinds.is_list(field.type) or kinds.is_large_list(field.type) or kinds.is_fixed_size_list(field.type)
+        for field in schema
+    )
+    return takes is not None and (has_lists or takes(schema.names, False))
+
+
+def _require_few(rows: int, columns: int) -> None:
+    if rows * columns > MOST_CELLS:
+        raise too_many_cells()
+
+
+def _require_short(sizes: Iterable[int]) -> None:
+    if sum(sizes) > MOST_BYTES:
+        raise RefusedError(TOO_LONG, most=MOST_BYTES // 1_000_000)
+
+
+def _grid(table: pa.Table) -> Grid:
+    table.validate(full=True)
+    _require_few(table.num_rows, table.num_columns)
+    _require_short([table.nbytes])
+    rows = (row.values() for batch in table.to_batches(1000) for row in batch.to_pylist())
+    return _cells(table.column_names, rows)
+
+
+def objects(text: str, takes: Takes) -> Found:
+    """A table of JSON objects, one in each line; what is none is taken as it is, and refused by its line."""
+    try:
+        rows = [msgspec.json.decode(line, type=dict[str, Any]) for line in text.split("\n") if line.strip()]
+    except (ValueError, RecursionError):
+        return ".ndjson", None
+    names = list(dict.fromkeys(name for row in rows for name in row))
+    if any(isinstance(value, list) for row in rows for value in row.values()) or takes(names, False):
+        return ".ndjson", None
+    _require_few(len(rows), len(names))
+    return "", _cells(names, ([row.get(name) for name in names] for row in rows))
+
+
+def _cells(names: Sequence[str], rows: Iterable[Iterable[Any]]) -> Grid:
+    return grid_of([_cell(value) for value in row] for row in chain([names], rows))
+
+
+def _cell(value: Any) -> str:
+    if value is None:
+        return ""
+    if isinstance(value, int | float) and not isinstance(value, bool) and abs(value) < LARGEST:
+        return Figure(repr(value).removesuffix(".0"))
+    return str(value)

@@ -1,0 +1,153 @@
+"""Cost, not only bytes: whatever a file stands for, reading it ends within its bounds, and what comes of it is small.
+
+Most such files are refused with a sentence that says what there is too much of; the rest meet the bounds of the
+process.
+"""
+
+import pickle
+import threading
+import time
+from collections.abc import Iterator
+from functools import partial
+from pathlib import Path
+
+import pytest
+
+from hpn.tables.columns import NO_CHOICES
+from hpn.tables.files import Contents, Wanted, contents_of
+from hpn.tables.sheets import MAXIMUM_CHARACTERS, Grid
+from hpn.web.door.apart import Apart, EndedError
+from hpn.web.door.pools import FILE_BOUNDS
+from hpn.web.form.pasted import read_grids
+from hpn.web.pages.fleet_upload import WANTED as AXES
+from hpn.web.pages.fleet_upload import best_reading
+from hpn.web.pages.paste import WANTED as PHASES
+from hpn.words.wording import Sentence
+from tests.fuzz.costly import OBJECTS, TABLES, TEXTS, WORKBOOKS, made
+
+SMALL_BYTES = 100_000
+"""Of what the issue of cost is about; some that were reported are larger."""
+
+LARGER = {"attributes", "a cell in the last column of each row", "a long text in each cell"} | {
+    *("a text as long as may be in each cell", "14,000 rows, each with a key of its own", "objects in one another"),
+    *("Parquet of 10⁸ rows", "Parquet of 10⁷ phases", "Parquet of 10⁷ rows as the command names them"),
+    *("Parquet of many columns", "Parquet of many groups of rows", "Arrow of columns", "columns", "header rows"),
+}
+SLOW = {"phonetic parts", "cells by the row", "inline texts", "formulas", "elements in one another", "attributes"}
+"""What takes some seconds within the bounds, and is left to the long form."""
+
+MOST_PICKLED = 20_000_000
+"""Bytes that come back to the service at most."""
+
+MOST_SECONDS = 10.0
+"""Processor time of the service to make a table of the cells: in a thread, which gives way to others."""
+
+FOR_PHASES = {**WORKBOOKS, **TABLES, **TEXTS}
+FOR_AXES = {**TABLES, **TEXTS, **OBJECTS}
+CASES = [
+    pytest.param(name, wanted, marks=[pytest.mark.soak] if name in SLOW else [], id=f"{name}, for {of}")
+    for names, wanted, of in ((FOR_PHASES, PHASES, "phases"), (FOR_AXES, AXES, "axes"))
+    for name in names
+]
+
+
+@pytest.fixture(scope="module")
+def apart() -> Iterator[Apart]:
+    """A process like that of the service."""
+    apart = Apart(FILE_BOUNDS)
+    yield apart
+    apart.close()
+
+
+def peak_of(apart: Apart) -> int:
+    """Most memory that the process has had, in bytes; 0 where it has ended."""
+    process = apart._process
+    status = Path(f"/proc/{process.pid if process else 0}/status")
+    return int(status.read_text().partition("VmHWM:")[2].split()[0]) * 1024 if status.exists() else 0
+
+
+@pytest.mark.parametrize(("name", "wanted"), CASES)
+def test_a_file_is_read_or_refused_within_its_bounds(apart: Apart, name: str, wanted: Wanted) -> None:
+    content = made(name)
+    assert len(content) <= SMALL_BYTES or name in LARGER
+
+    start = time.monotonic()
+    try:
+        contents = apart.call(partial(contents_of, content, wanted), threading.Event())
+    except EndedError as ended:
+        assert ended.is_excess, ended
+        contents = Contents(problem=Sentence("too large"))
+
+    assert time.monotonic() - start < FILE_BOUNDS.seconds + 10
+    assert peak_of(apart) < FILE_BOUNDS.memory_bytes * 1.3  # code and what is mapped come on top
+    assert len(pickle.dumps(contents)) < MOST_PICKLED
+    start = time.process_time()
+    for found in list(contents.sheets.values())[:2]:
+        if not isinstance(found, Sentence):
+            _table(found, wanted)
+    assert time.process_time() - start < MOST_SECONDS
+
+
+def _table(grids: tuple[Grid, ...], wanted: Wanted) -> object:
+    return best_reading(grids, NO_CHOICES, ()) if wanted is AXES else read_grids(grids)
+
+
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [
+        ("1,500,000 formats", "too many styles"),
+        ("fonts", "too many styles"),
+        ("rich texts", "too many texts"),
+        ("one rich text of very many parts", "too many texts"),
+        ("shared strings", "too many texts"),
+        ("empty rows", "too many rows"),
+        ("empty cells", "too many cells"),
+        ("merged cells", "too many merged cells"),
+        ("defined names", "too many names"),
+        ("very many parts", "too many parts"),
+        ("rules of conditional formats", "too many conditional formats"),
+        ("a long text in each cell", "a cell is longer"),
+        ("a text as long as may be in each cell", "more than 4000000 characters"),
+        ("Parquet of 10⁸ rows", "more than 150000 cells"),
+        ("Parquet with a long text", "take more than 64 MB"),
+        ("Arrow of 20 columns and 10⁷ rows", "more than 150000 cells"),
+        ("Arrow of nothing, 2⁴⁰ times", "more than 150000 cells"),
+        ("14,000 rows, each with a key of its own", "more than 150000 cells"),
+    ],
+)
+def test_a_refusal_says_what_there_is_too_much_of(name: str, words: str) -> None:
+    problem = contents_of(made(name), AXES).problem
+    assert problem is not None and words in problem.text
+
+
+def test_a_cell_far_away_is_read_like_any_other() -> None:
+    sheets = contents_of(made("a cell in the last row of 20 sheets"), PHASES).sheets
+    assert len(sheets) == 20
+    for grids in sheets.values():
+        assert not isinstance(grids, Sentence)
+        assert (grids[0].rows, grids[0].numbers) == ((("1",),), (1048576,))
+
+
+def test_long_cells_are_not_kept_in_mind() -> None:
+    from hpn.tables import cells, headings
+
+    before = cells._entry.cache_info().currsize, headings._heading_of.cache_info().currsize
+    for number in range(10):
+        cell = f"{number}" * 20_000
+        assert not cells.is_number(cell) and not headings.heading_of(cell).kind
+    assert before == (cells._entry.cache_info().currsize, headings._heading_of.cache_info().currsize)
+
+
+@pytest.mark.parametrize("name", TEXTS)
+def test_text_of_the_largest_size_is_read_or_refused(apart: Apart, name: str) -> None:
+    part = made(name)
+    content = (part * (MAXIMUM_CHARACTERS // len(part) + 1))[:MAXIMUM_CHARACTERS]
+
+    contents = apart.call(partial(contents_of, content, PHASES), threading.Event())
+
+    assert len(pickle.dumps(contents)) < MOST_PICKLED
+    start = time.process_time()
+    for found in contents.sheets.values():
+        if not isinstance(found, Sentence):
+            read_grids(found)
+    assert time.process_time() - start < MOST_SECONDS
