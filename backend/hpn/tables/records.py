@@ -91,16 +91,30 @@ def _grid(table: pa.Table) -> Grid:
 
 
 def objects(text: str, takes: Takes) -> Found:
-    """A table of JSON objects, one in each line; what is none is taken as it is, and refused by its line."""
+    """A table of JSON objects, one in each line; what is none is taken as it is, and refused by its line.
+
+    No more rows are kept than a table may have: one that is taken as it is has far more.
+    """
+    rows, names, count = list[dict[str, Any]](), dict[str, None](), 0
     try:
-        rows = [msgspec.json.decode(line, type=dict[str, Any]) for line in text.split("\n") if line.strip()]
+        for line in filter(str.strip, text.split("\n")):
+            row = msgspec.json.decode(line, type=dict[str, Any])
+            if any(isinstance(value, list) for value in row.values()):
+                return ".ndjson", None
+            names.update(dict.fromkeys(row))
+            count += 1
+            if count * len(names) <= MOST_CELLS:
+                rows.append(row)
+            elif not takes(list(names), False):
+                raise too_many_cells()
+    except RefusedError:
+        raise
     except (ValueError, RecursionError):
         return ".ndjson", None
-    names = list(dict.fromkeys(name for row in rows for name in row))
-    if any(isinstance(value, list) for row in rows for value in row.values()) or takes(names, False):
+    if takes(list(names), False):
         return ".ndjson", None
-    _require_few(len(rows), len(names))
-    return "", _cells(names, ([row.get(name) for name in names] for row in rows))
+    _require_few(count, len(names))
+    return "", _cells(list(names), ([row.get(name) for name in names] for row in rows))
 
 
 def _cells(names: Sequence[str], rows: Iterable[Iterable[Any]]) -> Grid:

@@ -46,7 +46,7 @@ PLACES: Mapping[PoolName, Places] = {
 whole time; what Prometheus asks; fleets, which are sized in processes of their own, and whose number is a setting.
 """
 
-FILE_BOUNDS = Bounds(400_000_000, 30)
+FILE_BOUNDS = Bounds(500_000_000, 30)
 """Of reading a stranger's file: what takes longest, 150,000 cells of a workbook, takes half of either."""
 
 TOO_LARGE = N_("This file takes too much memory or time to read: save the table alone, without formats, as CSV.")
