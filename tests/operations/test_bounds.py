@@ -16,7 +16,7 @@ from hpn.web.door.pools import TOO_LARGE, Places, Pool
 from hpn.web.door.problems import Problem
 from tests.operations.service import is_gone
 
-SMALL = Bounds(200_000_000, 0.5)
+SMALL = Bounds(400_000_000, 0.5)
 
 
 @pytest.fixture
@@ -39,7 +39,7 @@ def bounded() -> Iterator[Pool]:
 @pytest.mark.parametrize(
     "work",
     [
-        pytest.param(partial(bytearray, 300_000_000), id="memory"),
+        pytest.param(partial(bytearray, 500_000_000), id="memory"),
         pytest.param(partial(sum, range(10**12)), id="processor, in one call of a library"),
         pytest.param(partial(time.sleep, 60), id="time"),
         pytest.param(os.abort, id="a library that aborts"),
@@ -81,3 +81,13 @@ async def test_a_bounded_process_stands_back_and_others_have_no_bounds(free: Poo
     assert os.getpriority(os.PRIO_PROCESS, own) >= 10
     assert resource.prlimit(own, resource.RLIMIT_DATA)[0] == SMALL.memory_bytes
     assert resource.prlimit(await free.run_apart(os.getpid), resource.RLIMIT_DATA)[0] != SMALL.memory_bytes
+
+
+@pytest.mark.anyio
+async def test_a_bounded_process_that_has_grown_is_not_kept(bounded: Pool) -> None:
+    own = await bounded.run_apart(os.getpid)
+    assert await bounded.run_apart(partial(len, bytearray(1000))) == 1000
+    assert await bounded.run_apart(os.getpid) == own
+    assert await bounded.run_apart(partial(eval, "len(bytes(100_000_000).hex())")) == 200_000_000
+    assert is_gone(own)
+    assert await bounded.run_apart(os.getpid) != own

@@ -5,6 +5,7 @@ It imports what its calls name and nothing else of the web, so that it starts so
 
 import os
 import pickle
+import re
 import resource
 import signal
 import subprocess
@@ -21,6 +22,9 @@ T = TypeVar("T")
 NICENESS = 10
 EXHAUSTED = 75
 """Exit code of a process whose work has met the bound of its memory."""
+
+KEPT_SHARE = 0.4
+"""Share of its bound up to which a process is kept for the next call: of more, much would lie idle in it."""
 
 PLAIN_MEMORY = {"ARROW_DEFAULT_MEMORY_POOL": "system", "OPENBLAS_NUM_THREADS": "1", "MALLOC_ARENA_MAX": "1"}
 """Environment of a bounded process: no library sets memory aside that the work then lacks."""
@@ -64,10 +68,13 @@ class Apart:
             try:
                 cast(Any, process.stdin).write(call)
                 cast(Any, process.stdin).flush()
-                done, result = pickle.load(cast(Any, process.stdout))
+                done, result, has_grown = pickle.load(cast(Any, process.stdout))
             except (OSError, EOFError, pickle.UnpicklingError):
                 self._reap(process)
                 raise self._ended(process.returncode) from None
+            if has_grown:
+                self.end()
+                self._reap(process)
         if not done:
             raise RuntimeError(result)
         return cast(T, result)
@@ -131,7 +138,7 @@ def main(bounds: Bounds | None) -> None:
     while calls.peek(1):
         signal.setitimer(signal.ITIMER_REAL, bounds.seconds if bounds else 0)  # nothing here holds up the signal
         answer = _answer(calls, is_bounded=bounds is not None)
-        pickle.dump(answer, answers)
+        pickle.dump((*answer, bounds is not None and _peak_bytes() > KEPT_SHARE * bounds.memory_bytes), answers)
         answers.flush()
         signal.setitimer(signal.ITIMER_REAL, 0)
 
@@ -144,6 +151,13 @@ def _answer(calls: IO[bytes], *, is_bounded: bool) -> tuple[bool, Any]:
         if is_bounded and isinstance(error, MemoryError):
             os._exit(EXHAUSTED)
         return False, traceback.format_exc()
+
+
+def _peak_bytes() -> int:
+    """Most memory that this process has had, 0 where the system doesn't say it."""
+    status = Path("/proc/self/status")
+    found = re.search(r"VmHWM:\s+(\d+) kB", status.read_text(encoding="ascii")) if status.exists() else None
+    return int(found[1]) * 1024 if found else 0
 
 
 def _restrain(bounds: Bounds) -> None:
