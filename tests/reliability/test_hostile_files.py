@@ -120,7 +120,7 @@ def at_work(service: Service) -> list[int]:
 
 
 def test_many_files_at_once_are_read_one_by_one_and_the_rest_is_asked_to_come_again(tmp_path: Path) -> None:
-    content = made("elements in one another")
+    content = made("hidden columns")
     statuses: Counter[int] = Counter()
 
     def send(service: Service) -> None:
@@ -130,13 +130,13 @@ def test_many_files_at_once_are_read_one_by_one_and_the_rest_is_asked_to_come_ag
         assert reply.status_code != 503 or int(reply.headers["Retry-After"]) > 0
 
     with serving(tmp_path, SETTINGS) as service, another_caller(service) as waits:
-        threads = [threading.Thread(target=send, args=(service,)) for _ in range(8)]
+        threads = [threading.Thread(target=send, args=(service,)) for _ in range(12)]
         for thread in threads:
             thread.start()
         for thread in threads:
             thread.join()
         assert len(children_of(service.process.pid)) <= 1
-    assert set(statuses) <= {422, 503} and statuses[503] >= 4
+    assert set(statuses) == {200, 503} and statuses[503] >= 4  # there are eight places
     assert max(waits) < LONGEST_WAIT_S
 
 

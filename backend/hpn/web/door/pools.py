@@ -47,7 +47,7 @@ whole time; what Prometheus asks; fleets, which are sized in processes of their 
 """
 
 FILE_BOUNDS = Bounds(500_000_000, 30)
-"""Of reading a stranger's file: what takes longest, 150,000 cells of a workbook, takes half of either."""
+"""Of reading a stranger's file: a workbook of 150,000 cells takes 7 s, and listing the longest fleet 400 MB."""
 
 TOO_LARGE = N_("This file takes too much memory or time to read: save the table alone, without formats, as CSV.")
 
