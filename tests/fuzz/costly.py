@@ -235,7 +235,7 @@ TABLES: dict[str, Make] = {
         pa.RecordBatch.from_arrays([long_text(300 * MILLION), *[zeros(1)] * 3], names=list(PHASE))
     ),
     "Arrow with a long text": lambda: arrow(
-        pa.RecordBatch.from_arrays([long_text(300 * MILLION), *[zeros(1)] * 3], names=list(OTHERS))
+        pa.RecordBatch.from_arrays([long_text(500 * MILLION), *[zeros(1)] * 3], names=list(OTHERS))
     ),
     "Arrow of nothing, 2⁴⁰ times": lambda: arrow(
         *[pa.RecordBatch.from_arrays([_nothing(2**31 - 1)], names=["a"])] * 500
