@@ -308,6 +308,7 @@ TEXTS: dict[str, Make] = {
     "one axis": lambda: b"Achse;Moment [Nm];Drehzahl [1/min];Dauer [s]\n" + b"a;1;2;3\n" * 12_000,
     "an axis with a long name": lambda: b"Achse;Moment [Nm];Drehzahl [1/min];Dauer [s]\n" + b"a" * 30_000 + b";1;2;3\n",
     "columns as the command names them": lambda: b"axis,torque_Nm,speed_rpm,duration_s\n" + b",,,,,,,,\n" * 10_000,
+    "broken rows": lambda: b"axis,torque_Nm,speed_rpm,duration_s\n" + b"a,1\n" * 24_000,
     "UTF-16": lambda: ("\ufeff" + ";" * 49_000).encode("utf-16-le"),
 }
 
@@ -319,6 +320,7 @@ OBJECTS: dict[str, Make] = {
     "a number of many digits": lambda: b'{"axis":"a","x":' + b"1" * 90_000 + b"}",
     "an exponent of many digits": lambda: b'{"axis":"a","x":1e' + b"1" * 90_000 + b"}",
     "one name again and again": lambda: b"{" + b'"a":1,' * 16_000 + b'"a":1}',
+    "broken lines": lambda: b'{"axis":"a","torque_Nm":[1],"speed_rpm":[1],"duration_s":[1]}\n' + b"{x\n" * 33_000,
     "objects that say nothing": lambda: b"{}\n" * 33_000,
     "a list for each axis": lambda: b'{"axis":"a","torque_Nm":[1],"speed_rpm":[1],"duration_s":[1]}\n' * 1_500,
     "one list": lambda: b'{"axis":"a","torque_Nm":[%s1],"speed_rpm":[1],"duration_s":[1]}' % (b"1," * 49_000),
