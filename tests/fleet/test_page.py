@@ -22,7 +22,7 @@ from hpn.application import Application
 from hpn.catalogue import Catalogue
 from hpn.engine.selection import select
 from hpn.fleet import listing
-from hpn.fleet.listing import kept_listing_of
+from hpn.fleet.listing import as_parquet, kept_listing_of
 from hpn.fleet.run import Order, size_fleet
 from hpn.store import FleetDraft
 from hpn.store.fleets import MOST_OF_CALLER
@@ -32,8 +32,10 @@ from hpn.web.app import create_app
 from hpn.web.door.problems import Problem
 from hpn.web.form.link_writer import to_link
 from hpn.web.pages import fleet_result
+from hpn.web.pages.fleet_files import file_of
 from hpn.web.pages.fleet_upload import WANTED, best_reading
 from hpn.web.settings import Settings
+from hpn.words.reader import Reader
 from hpn.words.wording import Sentence
 from tests.fleet.tables import here, in_long_form, quiet, row_of, write
 from tests.fuzz.costly import made
@@ -164,7 +166,7 @@ HOSTILE = [
     "+1.5e3",
     "plain",
     "a=1",
-    "x" * 40_000,
+    "x" * 1_000,  # as many characters as an axis may have
 ]
 
 
@@ -184,10 +186,25 @@ def test_no_cell_of_the_file_for_excel_begins_a_formula_and_the_workbook_comes_f
     assert sheet is not None
     cells = [row[0] for row in sheet.iter_rows(min_row=2)]
     assert {cell.data_type for cell in cells} == {"s"}
-    assert [str(cell.value).replace("_x000D_", "\r") for cell in cells[:-1]] == HOSTILE[:-1]
-    assert str(cells[-1].value) == "x" * 32_766 + "…"  # no cell of XLSX holds more
+    assert [str(cell.value).replace("_x000D_", "\r") for cell in cells] == HOSTILE
     assert typed["axis"].to_pylist() == [json.loads(line)["axis"] for line in rest.text.splitlines()] == HOSTILE
     assert re.findall(r'href="[^"]*/axes\.(\w+)"', client.get(place).text) == ["xlsx", "csv", "parquet"]
+
+
+def test_a_name_of_a_fleet_that_was_saved_before_names_had_a_bound_is_cut_in_the_workbook_alone(
+    service: FastAPI, client: TestClient, fleet: str
+) -> None:
+    assert client.portal is not None
+    saved = client.portal.call(service.state.store.find_fleet, fleet.rpartition("/")[2])
+    table = pq.read_table(io.BytesIO(saved.answers)).slice(0, 1)
+    long = as_parquet(table.set_column(0, "axis", pa.array(["x" * 40_000])))
+
+    book, typed = (file_of(long, saved.created, suffix, Reader("en")) for suffix in ("xlsx", "parquet"))
+
+    sheet = openpyxl.load_workbook(io.BytesIO(book)).active
+    assert sheet is not None
+    assert sheet["A2"].value == "x" * 32_766 + "…"  # no cell of XLSX holds more
+    assert pq.read_table(io.BytesIO(typed))["axis"].to_pylist() == ["x" * 40_000]
 
 
 def test_files_of_a_fleet_are_made_in_the_process_beside_the_service(client: TestClient, fleet: str) -> None:
