@@ -49,8 +49,8 @@ class Proxy:
 
 
 @contextmanager
-def proxied(service: int) -> Iterator[Proxy]:
-    """Run the proxy before a service's port until the block ends."""
+def proxied(service: int, balancers: str = "") -> Iterator[Proxy]:
+    """Run the proxy before a service's port, behind load balancers at these addresses, until the block ends."""
     with tempfile.TemporaryDirectory(prefix="hpn-nginx-") as name, held_port() as http, held_port() as https:
         folder = Path(name)
         folder.chmod(0o755)  # the workers of a root's nginx are somebody else
@@ -61,6 +61,9 @@ def proxied(service: int) -> Iterator[Proxy]:
             "PROXY_HTTP": f"127.0.0.1:{http}",
             "PROXY_HTTPS": f"127.0.0.1:{https}",
             "PROXY_SERVICE": f"127.0.0.1:{service}",
+            "PROXY_RESOLVER": "127.0.0.1",  # asks nobody: the service's address is no name
+            "PROXY_NAMES": f"{HOST},127.0.0.1",
+            "PROXY_BALANCERS": balancers,
         }
         command = [word.replace("$$", "$") for word in SERVICE["command"]]
         with (folder / "log").open("ab") as log:  # its two logs would write over each other

@@ -53,8 +53,16 @@ def test_the_proxy_serves_what_is_calculated_while_nothing_can_be_saved_and_writ
     assert proxy["depends_on"]["web"]["condition"] == "service_started"
     assert proxy["healthcheck"]["test"][-1].endswith("/healthz")
     assert all(volume.endswith(":ro") for volume in proxy["volumes"])
-    assert (ROOT / proxy["volumes"][0].split(":")[0]).read_text().count("${PROXY_") == 6
     assert proxy["tmpfs"][0].startswith(f"{proxy['working_dir']}:size=")
+
+
+def test_the_proxy_is_told_all_that_its_configuration_asks_for() -> None:
+    proxy = SERVICES["proxy"]
+    asked = set(re.findall(r"\$\{(PROXY_\w+)\}", (ROOT / proxy["volumes"][0].split(":")[0]).read_text()))
+    set_by_the_command = set(re.findall(r"(PROXY_\w+)=", proxy["command"][-1]))
+
+    assert asked <= set(proxy["environment"]) | set_by_the_command
+    assert proxy["environment"]["PROXY_NAMES"] == "${HPN_ALLOWED_HOSTS:?set it in .env}"
 
 
 def test_the_service_waits_for_a_healthy_database_and_has_time_to_end() -> None:

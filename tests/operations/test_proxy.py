@@ -2,10 +2,15 @@
 
 import http.client
 import json
+import os
+import re
+import signal
 import socket
 import subprocess
 import time
-from collections.abc import Callable, Iterator
+from collections import Counter
+from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack, closing
 from typing import Any
 
@@ -50,6 +55,12 @@ def test_a_calculation_comes_through_and_says_that_it_wants_tls(client: httpx.Cl
     assert answer.headers["Strict-Transport-Security"] == "max-age=31536000"
     assert answer.headers["X-Content-Type-Options"] == "nosniff"
     assert "nginx/" not in answer.headers["Server"]
+
+
+def test_it_starts_without_a_warning_whichever_version_it_is(proxy: Proxy) -> None:
+    log = (proxy.folder / "log").read_text()
+
+    assert [line for line in log.splitlines() if not line.startswith("{")] == []
 
 
 def test_http_leads_on_to_https_with_method_and_body(proxy: Proxy) -> None:
@@ -194,46 +205,111 @@ def chunk(piece: bytes) -> bytes:
     return b"%x\r\n%b\r\n" % (len(piece), piece)
 
 
+def begun(proxy: Proxy, path: str, kind: str, length: int) -> socket.socket:
+    """A connection whose request is counted and whose body is to come: nginx has asked for it."""
+    head = f"POST {path} HTTP/1.1\r\nHost: localhost\r\nContent-Type: {kind}\r\nContent-Length: {length}\r\n"
+    for _ in range(100):  # what tests before have left may be counted still
+        connection = proxy.connect()
+        connection.sendall(f"{head}Expect: 100-continue\r\n\r\n".encode())
+        if (answer := connection.recv(500)).startswith(b"HTTP/1.1 100 "):
+            return connection
+        connection.close()
+        time.sleep(0.1)
+    raise AssertionError(answer)
+
+
 def test_one_address_has_a_hundred_requests_at_once(proxy: Proxy) -> None:
     with ExitStack() as held:
         for _ in range(100):
-            connection = held.enter_context(proxy.connect())
-            connection.sendall(b"POST /api/v1/select HTTP/1.1\r\nHost: localhost\r\nContent-Length: 9\r\n\r\n")
-        assert refused(lambda: status_from(proxy, "127.0.0.1"))
+            held.enter_context(begun(proxy, "/api/v1/select", "application/json", 9))
+        assert status_from(proxy, "127.0.0.1") == 429
         assert status_from(proxy, "127.0.0.2") == 200
 
 
-@pytest.mark.parametrize(("kind", "most"), [("application/json", 8), ("application/x-ndjson", 1)])
-def test_what_one_address_has_of_long_bodies_leaves_room_for_others(proxy: Proxy, kind: str, most: int) -> None:
-    head = f"POST {BATCH} HTTP/1.1\r\nHost: localhost\r\nContent-Type: {kind}\r\nContent-Length: ".encode()
+@pytest.mark.parametrize(
+    ("path", "kind", "most"),
+    [
+        (BATCH, "application/json", 8),
+        (BATCH, "application/x-ndjson", 1),
+        (FLEET, "text/csv", 4),
+        ("/api/v1/report.pdf", "application/json", 4),
+    ],
+)
+def test_what_one_address_has_of_long_requests_leaves_room_for_others(
+    proxy: Proxy, path: str, kind: str, most: int
+) -> None:
+    head = f"POST {path} HTTP/1.1\r\nHost: localhost\r\nContent-Type: {kind}\r\nContent-Length: ".encode()
     with ExitStack() as held:
         for _ in range(most):
-            held.enter_context(proxy.connect()).sendall(head + b"30000000\r\n\r\n")
-        assert refused(lambda: status_from(proxy, "127.0.0.1", head + b"2\r\n\r\n{}"))
+            held.enter_context(begun(proxy, path, kind, 1_000_000))
+        assert status_from(proxy, "127.0.0.1", head + b"2\r\n\r\n{}") == 429
         assert status_from(proxy, "127.0.0.2", head + b"2\r\n\r\n{}") in (200, 422)
         assert status_from(proxy, "127.0.0.1") == 200
 
 
 def test_a_batch_of_lines_too_many_is_told_so(client: httpx.Client, proxy: Proxy) -> None:
-    head = f"POST {BATCH} HTTP/1.1\r\nHost: localhost\r\nContent-Type: {LINES['Content-Type']}\r\nContent-Length: "
-    with proxy.connect() as connection:
-        connection.sendall(f"{head}30000000\r\n\r\n".encode())
-        assert refused(lambda: client.post(BATCH, content=LINE, headers=LINES).status_code)
+    with begun(proxy, BATCH, LINES["Content-Type"], 30_000_000):
         answer = client.post(BATCH, content=LINE, headers=LINES)
 
     assert answer.headers["Content-Type"] == "application/problem+json"
-    assert answer.json()["status"] == 429
+    assert answer.status_code == answer.json()["status"] == 429
     assert answer.json()["detail"] == "this address has too many requests at once; try again in 1 s"
     assert answer.headers["Retry-After"] == "1"
 
 
-def refused(ask: Callable[[], int]) -> bool:
-    """Whether what is asked is answered by 429 in the end: nginx counts what is held once it has read the heads."""
-    deadline = time.monotonic() + 5
-    while time.monotonic() < deadline:
-        if ask() == 429:
-            return True
-    return False
+def test_ten_people_who_open_the_page_at_once_get_all_of_it(proxy: Proxy) -> None:
+    def opened(number: int) -> Counter[int]:
+        """Statuses of the page and of what it asks for, six at once as a browser does."""
+        source = httpx.HTTPTransport(verify=proxy.trust(), local_address=f"127.0.0.{10 + number}")
+        with httpx.Client(base_url=proxy.url, transport=source, timeout=60) as browser, ThreadPoolExecutor(6) as six:
+            page = browser.get("/")
+            parts = re.findall(r'(?:href|src)="(/static/[^"]+)"', page.text)
+            assert len(parts) >= 13
+            return Counter(answer.status_code for answer in [page, *six.map(browser.get, parts)])
+
+    with ThreadPoolExecutor(10) as people:
+        statuses = sum(people.map(opened, range(10)), Counter[int]())
+
+    assert set(statuses) == {200}
+
+
+def test_more_than_the_service_does_in_time_is_refused_at_once_and_what_a_page_needs_is_not(
+    service: Service, proxy: Proxy, client: httpx.Client
+) -> None:
+    style = re.findall(r'href="(/static/[^"]+)"', client.get("/").text)[0]
+    os.kill(service.process.pid, signal.SIGSTOP)
+    try:
+        with ExitStack() as held:
+            for number in range(64):
+                connection = held.enter_context(proxy.connect(source=f"127.0.0.{2 + number % 2}"))
+                connection.sendall(HEALTH)
+            asked = [held.enter_context(proxy.connect(source="127.0.0.4")) for _ in range(2)]
+            asked[0].sendall(HEALTH)
+            answer = asked[0].recv(5000)
+            asked[1].sendall(b"GET %s HTTP/1.1\r\nHost: localhost\r\n\r\n" % style.encode())
+            os.kill(service.process.pid, signal.SIGCONT)
+            assert asked[1].recv(500)[9:12] == b"200"
+    finally:
+        os.kill(service.process.pid, signal.SIGCONT)
+
+    assert answer.startswith(b"HTTP/1.1 503")
+    assert b"too much to do" in answer
+    assert b"Retry-After: 5" in answer
+
+
+def test_files_for_one_address_are_made_one_after_another_and_soon_for_others(proxy: Proxy) -> None:
+    asked = b"GET /report.pdf?T=40&n=250&t=1 HTTP/1.1\r\nHost: localhost\r\n\r\n"
+    with ThreadPoolExecutor(31) as crowd:
+        statuses = [crowd.submit(status_from, proxy, "127.0.0.2", asked) for _ in range(30)]
+        time.sleep(0.5)
+        start = time.monotonic()
+        assert status_from(proxy, "127.0.0.3", asked) == 200
+        waited = time.monotonic() - start
+        found = Counter(status.result() for status in statuses)
+
+    assert set(found) <= {200, 429}
+    assert found[200] >= 4
+    assert waited < 5  # 10 s without, on two cores
 
 
 HEALTH = b"GET /healthz HTTP/1.1\r\nHost: localhost\r\n\r\n"
@@ -242,8 +318,38 @@ HEALTH = b"GET /healthz HTTP/1.1\r\nHost: localhost\r\n\r\n"
 def status_from(proxy: Proxy, address: str, request: bytes = HEALTH) -> int:
     """Status that a caller from an address of loopback gets."""
     with proxy.connect(source=address) as connection:
+        connection.settimeout(60)
         connection.sendall(request)
         return int(connection.recv(500)[9:12])
+
+
+@pytest.mark.parametrize("path", ["/", "/api/v1/catalogue", BATCH, "/static/x.css", "/report.pdf?T=1"])
+def test_a_name_that_is_not_the_services_is_a_421_that_names_it_and_the_setting(path: str, proxy: Proxy) -> None:
+    answers = [
+        httpx.get(f"{proxy.url}{path}", headers={"Host": host}, verify=proxy.trust(), trust_env=False)
+        for host in ("evil.example:8443", '"><b>')
+    ]
+
+    assert answers[0].status_code == answers[0].json()["status"] == 421
+    assert answers[1].status_code == answers[1].json()["status"] in (421, 400)  # nginx 1.30 finds it malformed
+    assert [answer.headers["Content-Type"] for answer in answers] == ["application/problem+json"] * 2
+    assert "evil.example" in answers[0].json()["detail"]
+    assert "HPN_ALLOWED_HOSTS" in answers[0].json()["detail"]
+
+
+@pytest.mark.parametrize("path", ["/healthz", "/readyz"])
+def test_load_balancers_ask_for_health_by_any_name(path: str, client: httpx.Client) -> None:
+    assert client.get(path, headers={"Host": "10.1.2.3"}).status_code == 200
+
+
+def test_behind_a_load_balancer_callers_are_who_it_says_and_nobody_else_is_believed(service: Service) -> None:
+    with proxied(service.port, balancers="127.0.0.2, 127.0.0.9") as proxy:
+        for source, id in (("127.0.0.2", "by-balancer"), ("127.0.0.3", "by-stranger")):
+            said = f"X-Forwarded-For: 192.0.2.7\r\nX-Request-ID: {id}\r\n\r\n".encode()
+            assert status_from(proxy, source, b"GET /catalogue HTTP/1.1\r\nHost: localhost\r\n" + said) == 200
+
+    assert service.event(request_id="by-balancer")["client"] == "192.0.2.7"
+    assert service.event(request_id="by-stranger")["client"] == "127.0.0.3"
 
 
 def test_what_is_asked_is_in_no_line_of_the_log(client: httpx.Client, proxy: Proxy) -> None:
@@ -263,7 +369,7 @@ def test_without_the_service_the_answer_says_to_come_again(alone: Proxy) -> None
     answer = httpx.get(f"{alone.url}/", verify=alone.trust(), trust_env=False)
 
     assert answer.status_code == answer.json()["status"] == 503
-    assert answer.json()["detail"] == "the service does not answer; try again in 5 s"
+    assert answer.json()["detail"] == "the service has too much to do or does not answer; try again in 5 s"
     assert answer.headers["Retry-After"] == "5"
     assert answer.headers["Strict-Transport-Security"] == "max-age=31536000"
 

@@ -13,7 +13,7 @@ from hpn.cli import main
 from hpn.web.settings import Settings
 
 ROOT = Path(__file__).parents[2]
-OF_COMPOSE_ALONE = {"POSTGRES_PASSWORD", "PUBLISH", "PUBLISH_HTTP", "SPOOL_SIZE", "WEB_MEMORY"}
+OF_COMPOSE_ALONE = {"POSTGRES_PASSWORD", "PUBLISH", "PUBLISH_HTTP", "LOAD_BALANCERS", "SPOOL_SIZE", "WEB_MEMORY"}
 NAMES = {f"HPN_{name.upper()}" for name in Settings.model_fields}
 
 
