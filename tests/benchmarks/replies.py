@@ -84,10 +84,8 @@ async def _client(port: int, waiting: Iterator[bytes], latencies: Seconds) -> No
 
 
 def _request(path: str, content: bytes) -> bytes:
-    head = (
-        f"POST {path} HTTP/1.1\r\nHost: x\r\nContent-Type: application/json\r\nContent-Length: {len(content)}\r\n\r\n"
-    )
-    return head.encode() + content
+    head = f"POST {path} HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\n"
+    return f"{head}Content-Length: {len(content)}\r\n\r\n".encode() + content
 
 
 def prove_equal(servers: Mapping[str, Server]) -> None:

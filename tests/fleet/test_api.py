@@ -264,8 +264,8 @@ def test_where_too_many_wait_the_next_is_a_503(bounded: Callable[..., TestClient
     client = bounded()
     pool: Pool = state_of(client).pools["fleets"]
     with ExitStack() as stack:
-        for caller in ("one", "one", "two", "two"):
-            stack.enter_context(pool.place(caller))
+        for _ in range(4):
+            stack.enter_context(pool.place())
         refused = client.post(PATH, content=b"", headers=CSV)
 
     assert (refused.status_code, "Retry-After" in refused.headers) == (503, True)
@@ -313,7 +313,7 @@ def long_work(tmp_path_factory: pytest.TempPathFactory) -> bytes:
 def test_small_calculations_are_answered_beside_a_fleet_which_ends_when_its_client_leaves(
     service: Service, long_work: bytes
 ) -> None:
-    head = f"POST {PATH}?give=candidates HTTP/1.1\r\nHost: a\r\nContent-Type: {TYPES['.parquet']}\r\n"
+    head = f"POST {PATH}?give=candidates HTTP/1.1\r\nHost: localhost\r\nContent-Type: {TYPES['.parquet']}\r\n"
     with socket.create_connection(("127.0.0.1", service.port)) as connection:
         connection.sendall(f"{head}Content-Length: {len(long_work)}\r\n\r\n".encode() + long_work)
         (command,) = until(lambda: fleet_processes(service))
@@ -343,7 +343,7 @@ def test_a_fleet_ends_when_its_service_is_killed_and_the_next_one_cleans_up(long
     with ExitStack() as stack:
         first = stack.enter_context(serving(tmp_path, settings))
         connection = stack.enter_context(socket.create_connection(("127.0.0.1", first.port)))
-        head = f"POST {PATH}?give=candidates HTTP/1.1\r\nHost: a\r\nContent-Type: {TYPES['.parquet']}\r\n"
+        head = f"POST {PATH}?give=candidates HTTP/1.1\r\nHost: localhost\r\nContent-Type: {TYPES['.parquet']}\r\n"
         connection.sendall(f"{head}Content-Length: {len(long_work)}\r\n\r\n".encode() + long_work)
         (command,) = until(lambda: fleet_processes(first))
         until(lambda: list((tmp_path / "spool").glob("*/*.parts/plan.json")))

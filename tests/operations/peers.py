@@ -63,15 +63,16 @@ class Peer:
     tls: bool = True
     nginx_waits: bool = False  # nginx has no bound for the whole time of a body: it is gone once it stops
     protocol: str = ""  # h2, which nginx alone speaks
+    alone: bool = False  # the service alone ends it too
 
 
 SELECT, BATCH, NOWHERE = b"/api/v1/select", b"/api/v1/select/batch", b"/nowhere"
 PEERS = (
     Peer("head that drips", b"GET / HTTP/1.1\r\nHost: localhost\r\nX-Slow: ", b"a"),
-    Peer("body that drips, read by its handler", post(SELECT, JSON, 100_000), b" ", nginx_waits=True),
+    Peer("body that drips, read by its handler", post(SELECT, JSON, 100_000), b" ", nginx_waits=True, alone=True),
     Peer("body that drips, read by nobody", post(NOWHERE, JSON, 100_000), b" ", nginx_waits=True),
-    Peer("streamed batch that drips blanks", post(BATCH, NDJSON, None), chunk(b" ")),
-    Peer("body announced and never sent", post(SELECT, JSON, 100_000)),
+    Peer("streamed batch that drips blanks", post(BATCH, NDJSON, None), chunk(b" "), many=10, alone=True),
+    Peer("body announced and never sent", post(SELECT, JSON, 100_000), alone=True),
     Peer("early error, body still coming", post(NOWHERE, JSON, 10**9), bytes(65536)),
     Peer("body larger than allowed", post(SELECT, JSON, 10**8), bytes(65536)),
     Peer("chunked body without end", post(SELECT, JSON, None), chunk(bytes(65536))),
@@ -83,10 +84,10 @@ PEERS = (
     Peer("pipelined flood", head(b"GET", b"/healthz") * 2000, head(b"GET", b"/healthz") * 2000, reads=False),
     Peer("huge head", b"GET / HTTP/1.1\r\nHost: localhost\r\nX-Long: " + b"a" * 300_000),
     Peer("many headers", head(b"GET", b"/", *[b"X-%d: b" % n for n in range(20_000)])),
-    Peer("half-closed", head(b"GET", LINK), end="half", tls=False),
-    Peer("keep-alive idle", head(b"GET", b"/healthz")),
+    Peer("half-closed", head(b"GET", LINK), end="half", tls=False, alone=True),
+    Peer("keep-alive idle", head(b"GET", b"/healthz"), alone=True),
     Peer("HTTP/2 rapid reset", resets(20_000), protocol="h2"),
-    Peer("reset in the middle", post(SELECT, JSON, 100_000) + b"{" * 1000, end="reset"),
+    Peer("reset in the middle", post(SELECT, JSON, 100_000) + b"{" * 1000, end="reset", alone=True),
 )
 
 

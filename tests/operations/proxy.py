@@ -42,9 +42,14 @@ class Proxy:
             context.set_alpn_protocols(protocols)
         return context
 
-    def connect(self, *protocols: str, source: str = "127.0.0.1") -> ssl.SSLSocket:
-        """A connection to it, with TLS."""
-        plain = socket.create_connection(("127.0.0.1", self.https), 20, (source, 0))
+    def connect(self, *protocols: str, source: str = "127.0.0.1", receiving: int = 0) -> ssl.SSLSocket:
+        """A connection to it, with TLS, of a client that has room for so many bytes."""
+        plain = socket.socket()
+        if receiving:
+            plain.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, receiving)
+        plain.settimeout(20)
+        plain.bind((source, 0))
+        plain.connect(("127.0.0.1", self.https))
         return self.trust(*protocols).wrap_socket(plain, server_hostname=HOST)
 
 

@@ -1,10 +1,12 @@
-"""Memory of a streamed batch on both sides: `python -m tests.operations.streamed PORT COUNT` is its client.
+"""Memory of a streamed batch on both sides: `python -m tests.operations.streamed PORT COUNT` is its client, which
+comes through nginx where a file with its certificate is named as well.
 
 The client sends everything before it reads anything, as most HTTP libraries do: for the service that is the hard case.
 """
 
 import http.client
 import json
+import ssl
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -13,10 +15,11 @@ from pathlib import Path
 LINES_AT_ONCE = 100
 
 
-def peaks_MB(server: int, port: int, count: int) -> tuple[float, float]:
+def peaks_MB(server: int, port: int, count: int, certificate: Path | None = None) -> tuple[float, float]:
     """Most memory of the server's process and of a client in a process of its own, while a batch is answered."""
     Path(f"/proc/{server}/clear_refs").write_text("5")  # the peak counts anew from here
     command = [sys.executable, "-m", "tests.operations.streamed", str(port), str(count)]
+    command += [str(certificate)] if certificate else []
     client = float(subprocess.run(command, check=True, capture_output=True).stdout)
     return _peak_MB(server), client
 
@@ -41,9 +44,12 @@ def _line(number: int) -> bytes:
     return json.dumps(application).encode() + b"\n"
 
 
-def _client(port: int, count: int) -> float:
+def _client(port: int, count: int, certificate: str | None = None) -> float:
     """Send, then read line by line; its own peak in the end."""
     connection = http.client.HTTPConnection("127.0.0.1", port, timeout=120)
+    if certificate is not None:
+        trust = ssl.create_default_context(cafile=certificate)
+        connection = http.client.HTTPSConnection("localhost", port, timeout=120, context=trust)
     connection.request("POST", "/api/v1/select/batch", _body(count), {"Content-Type": "application/x-ndjson"})
     answered = 0
     for answer in connection.getresponse():
@@ -57,4 +63,4 @@ def _client(port: int, count: int) -> float:
 
 
 if __name__ == "__main__":
-    print(_client(int(sys.argv[1]), int(sys.argv[2])))
+    print(_client(int(sys.argv[1]), int(sys.argv[2]), *sys.argv[3:]))

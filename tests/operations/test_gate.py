@@ -124,7 +124,7 @@ class Wire:
 
     def ask(self, method: str, target: str, *headers: str) -> tuple[int, bytes]:
         """Status and body of an answer; 0 where the connection was closed without one."""
-        lines = [f"{method} {target} HTTP/1.1", "Host: a", "Content-Length: 0", *headers]
+        lines = [f"{method} {target} HTTP/1.1", "Host: localhost", "Content-Length: 0", *headers]
         request = ("\r\n".join(lines) + "\r\n\r\n").encode("latin-1")
         for _ in range(2):  # the service may have closed the connection that the answer before came on
             self._socket = self._socket or socket.create_connection(("127.0.0.1", self._port), 30)

@@ -1,12 +1,14 @@
-"""Load on a service from a process of its own: `python -m tests.reliability.load PORT RATE SECONDS`.
+"""Load on nginx from a process of its own: `python -m tests.reliability.load PORT RATE SECONDS CERTIFICATE`.
 
-Requests begin at fixed moments, whether earlier ones are answered or not; one that finds no free connection waits, and
-that counts as its latency. A rate of 0 asks for as much as eight connections take in turns, which measures capacity.
+Connections come from eight addresses, since one may have a hundred requests at once. Requests begin at fixed moments,
+whether earlier ones are answered or not; one that finds no free connection waits, and that counts as its latency. A
+rate of 0 asks for as much as eight connections take in turns, which measures capacity.
 """
 
 import asyncio
 import json
 import math
+import ssl
 import subprocess
 import sys
 import time
@@ -15,16 +17,19 @@ from dataclasses import asdict, dataclass, field
 from itertools import count
 
 from tests.build import worked_example
+from tests.operations.proxy import Proxy
 
 CONNECTIONS = 256
 AT_ONCE = 8
 """Connections by which capacity is measured: fewer than make an overload."""
 
+ADDRESSES = 8
+
 BODY = json.dumps(worked_example()).encode()
 """Its answer is short, so that reading it costs the client less than the service."""
 
 REQUEST = (
-    b"POST /api/v1/select HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Type: application/json\r\n"
+    b"POST /api/v1/select HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\n"
     b"Content-Length: %d\r\n\r\n%s" % (len(BODY), BODY)
 )
 
@@ -50,14 +55,20 @@ class Outcome:
         return self.statuses.get(503, 0)
 
     @property
+    def share_refused(self) -> float:
+        """Part of all requests that was answered with 503."""
+        return self.refused / max(sum(self.statuses.values()), 1)
+
+    @property
     def others(self) -> int:
         """Requests with any other answer, or none, which counts as status 0."""
         return sum(self.statuses.values()) - self.answered - self.refused
 
 
-def load(port: int, rate: float, seconds: float) -> Outcome:
+def load(proxy: Proxy, rate: float, seconds: float) -> Outcome:
     """Outcome of load from a process of its own."""
-    command = [sys.executable, "-m", "tests.reliability.load", str(port), str(rate), str(seconds)]
+    certificate = str(proxy.folder / "fullchain.pem")
+    command = [sys.executable, "-m", "tests.reliability.load", str(proxy.https), str(rate), str(seconds), certificate]
     done = subprocess.run(command, check=True, capture_output=True, timeout=seconds + 120)
     found = json.loads(done.stdout)
     return Outcome(**found | {"statuses": {int(status): n for status, n in found["statuses"].items()}})
@@ -75,8 +86,10 @@ Stream = tuple[asyncio.StreamReader, asyncio.StreamWriter]
 
 
 class _Load:
-    def __init__(self, port: int, rate: float, seconds: float) -> None:
+    def __init__(self, port: int, rate: float, seconds: float, certificate: str) -> None:
         self._port, self._rate, self._seconds = port, rate, seconds
+        self._trust = ssl.create_default_context(cafile=certificate)
+        self._opened = count()
         self._numbers = count()
         self._latencies: list[float] = []
         self._statuses: dict[int, int] = {}
@@ -106,7 +119,10 @@ class _Load:
             yield moment
 
     async def _open(self) -> Stream:
-        return await asyncio.open_connection("127.0.0.1", self._port)
+        source = f"127.0.0.{2 + next(self._opened) % ADDRESSES}"
+        return await asyncio.open_connection(
+            "127.0.0.1", self._port, ssl=self._trust, server_hostname="localhost", local_addr=(source, 0)
+        )
 
     async def _connection(self, stream: Stream | None) -> None:
         for moment in self._moments():
@@ -126,4 +142,5 @@ class _Load:
 
 
 if __name__ == "__main__":
-    print(json.dumps(asdict(asyncio.run(_Load(int(sys.argv[1]), float(sys.argv[2]), float(sys.argv[3])).run()))))
+    port, rate, seconds, certificate = sys.argv[1:]
+    print(json.dumps(asdict(asyncio.run(_Load(int(port), float(rate), float(seconds), certificate).run()))))

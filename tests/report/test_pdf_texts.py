@@ -177,9 +177,7 @@ from pathlib import Path
 from hpn.catalogue import load_catalogue
 from hpn.files.report.pdf import pdf
 from hpn.files.report.verdict import checks
-from hpn.web.door import heap
 from tests.report.cases import language, long_cycle, typed_export_of
-heap.give_back()
 phases, turns = map(int, sys.argv[1:])
 export = typed_export_of(long_cycle(phases), load_catalogue())
 for turn in range(turns):

@@ -8,7 +8,6 @@ from typing import Any
 from fastapi import APIRouter, FastAPI
 from starlette.middleware.cors import CORSMiddleware
 from starlette.middleware.gzip import DEFAULT_EXCLUDED_CONTENT_TYPES
-from uvicorn.middleware.proxy_headers import ProxyHeadersMiddleware
 
 from hpn import ENGINE_VERSION
 from hpn.application import Application
@@ -32,12 +31,12 @@ from hpn.web.api import (
 from hpn.web.door import problems, readers
 from hpn.web.door.access import Gate
 from hpn.web.door.codings import Packing
+from hpn.web.door.disk import Disk
 from hpn.web.door.heads import Heads
-from hpn.web.door.hosts import Hosts
+from hpn.web.door.hosts import Hosts, Proxies
 from hpn.web.door.logs import make_logger
 from hpn.web.door.metrics import CountedStore, Metrics
 from hpn.web.door.observation import Observation
-from hpn.web.door.overload import Budget, Overload, Pieces
 from hpn.web.door.pools import Pools
 from hpn.web.door.readers import Readers
 from hpn.web.pages import assets, compared, long_cycles, paste, refusals, saved_list, saving, transfer
@@ -143,7 +142,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     app.state.fleets_under_way = set()
     app.state.gate = Gate(settings)
     app.state.pools = Pools(settings.fleet_processes)
-    app.state.budget = Budget(settings.maximum_bytes_in_flight)
+    app.state.disk = Disk(settings.maximum_spool_bytes)
     app.state.metrics = Metrics()
     app.state.store = CountedStore(app.state.metrics, **settings.database())
     problems.install(app, refusals.page_of)
@@ -157,20 +156,16 @@ def create_app(settings: Settings | None = None) -> FastAPI:
 
 def _add_middleware(app: FastAPI, settings: Settings) -> None:
     """What every request passes, from the inside out."""
-    app.add_middleware(Pieces, budget=app.state.budget)
     app.add_middleware(Readers)
     # Nothing secret stands beside what a page repeats of its query, so its length after compression tells nothing.
     app.add_middleware(Packing, compresslevel=4, exclude_content_types=UNPACKED)
     app.add_middleware(Heads)
     if settings.cors_origins:
         app.add_middleware(CORSMiddleware, allow_origins=settings.cors_origins, **CORS)
-    if settings.allowed_hosts:
-        app.add_middleware(Hosts, allowed=settings.allowed_hosts)
-    logger = make_logger(settings.log_level)
-    app.add_middleware(Observation, logger=logger, metrics=app.state.metrics)
+    app.add_middleware(Hosts, allowed=settings.allowed_hosts)
+    app.add_middleware(Observation, logger=make_logger(settings.log_level), metrics=app.state.metrics)
     if settings.trusted_proxies:
-        app.add_middleware(ProxyHeadersMiddleware, trusted_hosts=list(settings.trusted_proxies))
-    app.add_middleware(Overload, budget=app.state.budget, metrics=app.state.metrics, logger=logger)
+        app.add_middleware(Proxies, trusted_hosts=list(settings.trusted_proxies))
 
 
 @asynccontextmanager

@@ -62,19 +62,15 @@ class Tables:
 
 @asynccontextmanager
 async def workplace(request: Request) -> AsyncIterator[Path]:
-    """A folder for the files of one fleet, gone at the end; Problem 503 where too many others are there.
-
-    Taken before the tables arrive, so that what they take on the disk is bounded.
-    """
+    """A folder for the files of one fleet, gone at the end."""
     settings: Settings = request.app.state.settings
-    pool = pool_of(request, "fleets")
-    with pool.place(request.state.caller), spool.usable(), _under_way(request.app.state):
+    with spool.usable(), _under_way(request.app.state):
         folder = Path(tempfile.mkdtemp(prefix=PREFIX, dir=settings.spool_folder))
         with locked(folder):
             try:
                 yield folder
             finally:
-                await asyncio.shield(pool.run(shutil.rmtree, folder, ignore_errors=True))
+                await asyncio.shield(pool_of(request, "fleets").run(shutil.rmtree, folder, ignore_errors=True))
 
 
 @contextmanager
@@ -124,16 +120,19 @@ async def size_fleet(
 ) -> Mapping[Kind, Path]:
     """Size the axes of tables in a workplace; gives files by kind, in the input's format or that of a suffix.
 
-    Raises Problem 422 for tables that can't be used, 413 for what takes too much, 503 for what takes too long, the
-    wait for its turn included. Who leaves ends the work. The body of the request has been read.
+    Raises Problem 422 for tables that can't be used, 413 for what takes too much, 503 where too many others wait or for
+    what takes too long, the wait for its turn included. A client that leaves ends the work. The body of the request has
+    been read: a place that was taken before would be free to take, by a body that drips.
     """
     settings: Settings = request.app.state.settings
-    await pool_of(request, "fleets").run(_require_tables, tables)
+    pool = pool_of(request, "fleets")
+    await pool.run(_require_tables, tables)
     kinds: tuple[Kind, ...] = ("answers", "rejected", "candidates") if candidates else ("answers", "rejected")
     files = {kind: tables.input.with_name(f"{kind}{suffix or tables.input.suffix}") for kind in kinds}
     try:
-        async with asyncio.timeout(settings.fleet_seconds):
-            await while_present(request, _sized(tables, files, settings, pool_of(request, "fleets")))
+        with pool.place():
+            async with asyncio.timeout(settings.fleet_seconds):
+                await while_present(request, _sized(tables, files, settings, pool))
     except TimeoutError:
         text = f"the fleet was not sized within {settings.fleet_seconds:g} s; send fewer axes at once"
         raise Problem(503, text, headers={"Retry-After": str(RETRY_SECONDS)}) from None

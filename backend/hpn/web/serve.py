@@ -10,7 +10,6 @@ import threading
 import time
 import traceback
 from contextlib import suppress
-from functools import partial
 from typing import Any
 
 import uvicorn
@@ -21,10 +20,10 @@ from uvicorn.supervisors import Multiprocess
 from hpn.catalogue import CatalogueError
 from hpn.store import StoreError
 from hpn.web.app import create_app
-from hpn.web.door import heap, logs, memory, metrics
-from hpn.web.door.protocol import BoundedProtocol
+from hpn.web.door import logs, memory, metrics
+from hpn.web.door.hosts import is_loopback
 from hpn.web.pages import templates
-from hpn.web.settings import Settings
+from hpn.web.settings import GONE, Settings
 
 logger = logging.getLogger(__name__)
 RETRY_SECONDS = 2
@@ -33,7 +32,6 @@ RETRY_SECONDS = 2
 
 def served_app() -> FastAPI:
     """The application in a process of its own, whose logs are all the service's."""
-    heap.give_back()
     settings = Settings()
     logs.configure(settings.log_level)
     app = create_app(settings)
@@ -88,16 +86,28 @@ def options(settings: Settings) -> dict[str, Any]:
         "host": settings.host,
         "port": settings.port,
         "workers": settings.workers,
-        "http": partial(BoundedProtocol, head_s=settings.head_seconds, stalled_s=settings.body_seconds),
+        "http": "httptools",
         "ws": "none",
         "log_config": None,
         "access_log": False,
         "proxy_headers": False,  # who is trusted is a setting, and nobody is by default
         "server_header": False,
-        "limit_concurrency": settings.maximum_connections,
         "timeout_graceful_shutdown": settings.shutdown_seconds,
         "timeout_worker_healthcheck": settings.worker_seconds,
     }
+
+
+def _say_what_is_missed(settings: Settings) -> None:
+    """Log in a line each which variables do nothing any more, and that a proxy belongs before what others reach."""
+    for name in sorted(os.environ):
+        if (instead := GONE.get(name.upper())) and os.environ[name]:
+            logger.warning("%s is no setting any more and does nothing; nginx has %s in its place", name, instead)
+    if not is_loopback(settings.host) and not settings.trusted_proxies:
+        logger.warning(
+            "the service listens on %s, and HPN_TRUSTED_PROXIES names no proxy: one belongs before what others reach "
+            "(docs/deployment.md)",
+            settings.host,
+        )
 
 
 def run(settings: Settings) -> int:
@@ -105,6 +115,7 @@ def run(settings: Settings) -> int:
     logs.configure(settings.log_level)
     if short := memory.shortage(settings.workers, settings.fleet_processes * settings.fleet_memory_bytes):
         logger.warning(short)
+    _say_what_is_missed(settings)
     if settings.workers == 1:
         uvicorn.run("hpn.web.serve:served_app", **options(settings))
         return 0

@@ -104,6 +104,14 @@ Words = Annotated[tuple[str, ...], NoDecode, BeforeValidator(_split)]
 Rate = Annotated[str, AfterValidator(_rate)]
 
 
+GONE = {
+    "HPN_MAXIMUM_BYTES_IN_FLIGHT": "max_conns and client_max_body_size",
+    "HPN_MAXIMUM_CONNECTIONS": "worker_connections and max_conns",
+    "HPN_HEAD_SECONDS": "client_header_timeout",
+}
+"""Variables that were settings, and what stands in their place in backend/nginx.conf."""
+
+
 class DatabaseSettings(TypedDict):
     """Arguments of a store."""
 
@@ -172,18 +180,11 @@ class Settings(BaseSettings):
     maximum_body_bytes: int = Field(2_000_000, gt=0, description="Largest body of a request for one application.")
     maximum_batch_body_bytes: int = Field(32_000_000, gt=0, description="Largest body of a batch request.")
     maximum_batch_count: int = Field(10_000, gt=0, le=10_000, description="Most applications in one batch request.")
-    maximum_bytes_in_flight: int = Field(
-        120_000_000,
-        gt=0,
-        description="Most bytes of bodies and answers that one process holds at once; more get a 503. A batch "
-        "counts as three times its body.",
-    )
-    head_seconds: float = Field(20.0, gt=0, description="Longest time for a request’s head to arrive.")
     body_seconds: float = Field(
         30.0,
         gt=0,
-        description="Longest time for a body, or a line of a streamed batch, to arrive, and for a client to leave an "
-        "answer unread.",
+        description="Longest time for a body, or a line of a streamed batch, to arrive, and for the client of one to "
+        "leave its answers unread.",
     )
     batch_seconds: float = Field(60.0, gt=0, description="Longest computing time of one batch request.")
     maximum_fleet_bytes: int = Field(200_000_000, gt=0, description="Largest body of a request for a fleet.")
@@ -207,8 +208,8 @@ class Settings(BaseSettings):
     maximum_spool_bytes: int = Field(
         2_000_000_000,
         gt=0,
-        description="Most bytes of results that one streamed batch keeps in a temporary file for a client that sends "
-        "without reading; most bytes of all files of one fleet.",
+        description="Most bytes that fleets and streamed batches of one process set aside together while they arrive, "
+        "a seventh for each streamed batch; most bytes of all files of one fleet.",
     )
     maximum_unsaved_fleet_bytes: int = Field(
         1_000_000_000,
@@ -223,9 +224,6 @@ class Settings(BaseSettings):
     workers: int = Field(1, ge=1, le=64, description="Processes that `hpn serve` starts.")
     worker_seconds: int = Field(
         30, gt=0, description="Time without an answer after which one of several processes is replaced."
-    )
-    maximum_connections: int = Field(
-        1000, gt=0, description="Most connections of one process: an idle one makes room, else more get a 503."
     )
     shutdown_seconds: int = Field(30, ge=0, description="Longest time that running requests get to finish at the end.")
     log_level: Literal["debug", "info", "warning", "error"] = Field("info", description="Least level that is logged.")
@@ -250,8 +248,8 @@ class Settings(BaseSettings):
     )
     allowed_hosts: Annotated[Words, AfterValidator(_hosts)] = Field(
         (),
-        description="Hosts that the service answers for, such as plm.example or *.plm.example, whatever the port; any "
-        "by default.",
+        description="Hosts that the service answers for, such as plm.example or *.plm.example, whatever the port; by "
+        "default any, but over loopback, and not through a trusted proxy, localhost, 127.0.0.1 and [::1] alone.",
     )
     cors_origins: Annotated[Words, AfterValidator(_origins)] = Field(
         (),
@@ -291,7 +289,7 @@ class Settings(BaseSettings):
         given = {name: name for name in os.environ}
         given |= {file.name: str(file) for file in (folder.iterdir() if folder else ())}
         for name in sorted(given):
-            meant = get_close_matches(name.upper(), known, 1, 0.85) if name.upper() not in known else []
+            meant = get_close_matches(name.upper(), known, 1, 0.85) if name.upper() not in {*known, *GONE} else []
             if meant and name.upper().startswith("HPN_"):
                 raise ValueError(f"{given[name]} is not a setting; it looks like {meant[0]}")
         return self

@@ -39,9 +39,6 @@ from hpn.web.settings import Settings
 SLICE_ITEMS, SLICE_BYTES, SLICE_SECONDS = 256, 1_000_000, 0.25
 """Items that are evaluated in one go, their bytes, and the time for reading them: a motion may take half a second."""
 
-RESULTS_PER_BYTE = 2
-"""Memory that a batch takes beside its body, in the worst case: for its results, and what one slice is parsed to."""
-
 RETRY_SECONDS = 5
 
 router = APIRouter(prefix="/api/v1", tags=["Selection"], dependencies=[admit("batch")])
@@ -67,9 +64,8 @@ async def select_batch(request: Request) -> Response:
     if content_type_of(request) != JSON:
         raise wrong_type(request, f"{JSON} or {streaming.MEDIA_TYPES[0]}")
     body = await read_body(request, maximum_bytes=settings.maximum_batch_body_bytes, seconds=settings.body_seconds)
-    request.state.held.take(RESULTS_PER_BYTE * len(body))
     pool = pool_of(request, "batches")
-    with pool.place(request.state.caller):
+    with pool.place():
         lines = await while_present(request, _answered(body, state, pool))
     return JSONBytes(b'{"results":[' + lines[:-1].replace(b"\n", b",") + b"]}")
 
@@ -199,9 +195,8 @@ def _stream(request: Request) -> Response:
     return streaming.LineStream(
         line_evaluator(state.catalogue, state.metrics, settings.maximum_body_bytes),
         pool=pool_of(request, "batches"),
-        subject=request.state.caller,
+        disk=state.disk,
         maximum_line_bytes=settings.maximum_body_bytes,
-        maximum_spool_bytes=settings.maximum_spool_bytes,
         spool_folder=settings.spool_folder,
         seconds=settings.body_seconds,
     )

@@ -254,7 +254,7 @@ async def _answer(request: Request, file: File, lang: str | None, chosen: Option
             export = await pool.run(make)
             return await pool.run_apart(file.content(export, reader, chosen)), file.named(export)
 
-    with pool.place(request.state.caller):
+    with pool.place():
         content, name = await while_present(request, work())
     headers = {"ETag": etag_of(content), "Cache-Control": "no-cache", "Vary": "Accept-Language, Cookie"}
     if request.method == "GET" and has_already(request, headers["ETag"]):

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Annotated, BinaryIO
 
 from fastapi import APIRouter, Query
+from starlette.datastructures import State
 from starlette.requests import Request
 from starlette.responses import Response, StreamingResponse
 from starlette.types import Receive, Scope, Send
@@ -15,8 +16,10 @@ from starlette.types import Receive, Scope, Send
 from hpn.web.api import schemas, streaming
 from hpn.web.door.access import admit
 from hpn.web.door.bodies import content_type_of, pass_body, wrong_type
+from hpn.web.door.disk import Share
 from hpn.web.door.pools import pool_of
 from hpn.web.door.problems import Problem
+from hpn.web.door.requests import require_same_origin
 from hpn.web.door.uploads import MULTIPART, FormSplitter, PartHead, Write
 from hpn.web.fleets import Kind, Tables, size_fleet, workplace
 from hpn.web.settings import Settings
@@ -61,10 +64,14 @@ async def size(
     As one table with a row for each axis, or as a form with a table of phases and one of what else is given of each
     axis. The answer is a table in the format of the input, and comes when it is complete.
     """
-    async with workplace(request) as folder:
-        tables = await _received(request, folder)
-        files = await size_fleet(request, tables, candidates=give == "candidates")
-        return TableFile(files[give])
+    state: State = request.app.state
+    if content_type_of(request) == MULTIPART:  # which a page of any site may send without asking
+        require_same_origin(request, *state.settings.cors_origins)
+    with state.disk.share() as share:
+        async with workplace(request) as folder:
+            tables = await _received(request, folder, share)
+            files = await size_fleet(request, tables, candidates=give == "candidates")
+            return TableFile(files[give])
 
 
 class TableFile(StreamingResponse):
@@ -89,29 +96,30 @@ class TableFile(StreamingResponse):
 # --- What arrives -----------------------------------------------------------------------------------------------------
 
 
-async def _received(request: Request, folder: Path) -> Tables:
+async def _received(request: Request, folder: Path, share: Share) -> Tables:
     """The tables of a request, in files; raises Problem as `pass_body` does, 415 for what is no table."""
     content_type = content_type_of(request)
     with ExitStack() as stack:
         if content_type == MULTIPART:
             form = _Form(folder, stack)
             splitter = FormSplitter(request.headers["content-type"], form.begin)
-            await _pass_on(request, splitter.feed)
+            await _pass_on(request, share, splitter.feed)
             if not splitter.ended:
                 raise Problem(400, "the form has no end, or its Content-Type names no boundary")
             return form.tables()
         if content_type not in SUFFIXES:
             raise wrong_type(request, f"{', '.join(MEDIA_TYPES.values())} or {MULTIPART}")
         path = folder / f"input{SUFFIXES[content_type]}"
-        await _pass_on(request, stack.enter_context(path.open("wb")).write)
+        await _pass_on(request, share, stack.enter_context(path.open("wb")).write)
     return Tables(path)
 
 
-async def _pass_on(request: Request, write: Write) -> None:
+async def _pass_on(request: Request, share: Share, write: Write) -> None:
     settings: Settings = request.app.state.settings
     pool = pool_of(request, "fleets")
 
     async def take(piece: bytes) -> None:
+        share.take(len(piece))
         await pool.run(write, piece)  # a slow disk holds up nobody else
 
     await pass_body(

@@ -1,17 +1,19 @@
 """Newline-delimited JSON, streamed in and out at once, in memory that does not grow with the number of lines."""
 
 import asyncio
+import logging
 import tempfile
-from collections import deque
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from pathlib import Path
-from typing import IO, NamedTuple
+from typing import NamedTuple
 
 import orjson
 from starlette.responses import Response
 from starlette.types import Message, Receive, Scope, Send
 
 from hpn.web.door.bodies import late
+from hpn.web.door.disk import RETRY_SECONDS, Disk, Share
 from hpn.web.door.pools import Pool
 from hpn.web.door.problems import Problem
 
@@ -19,7 +21,20 @@ MEDIA_TYPES = ("application/x-ndjson", "application/ndjson", "application/jsonl"
 LINES_AT_ONCE = 256
 MEMORY_BYTES = 512 * 1024
 READ_BYTES = 128 * 1024
+
+SHARES = 7
+"""Streams that would fill the disk together: what one sends beyond its part waits until it reads its answers."""
+
+PAUSE_S = 0.05
+"""Time without anything arriving after which a client waits for its answers, rather than sends."""
+
+PATIENCE_S, LITTLE_BYTES = 1.0, 500_000
+"""Time after which what arrives without a pause is answered meanwhile, and what must not be there by then."""
+
 BYTE_ORDER_MARK = b"\xef\xbb\xbf"
+
+
+logger = logging.getLogger(__name__)
 
 
 class Line(NamedTuple):
@@ -73,57 +88,49 @@ class LineSplitter:
 
 
 class Spool:
-    """First in, first out; what exceeds a little memory waits in a temporary file.
+    """First in, first out; what exceeds a little memory waits in a temporary file."""
 
-    A client that sends everything before it reads anything, as most do, would otherwise block both sides for good.
-    """
-
-    def __init__(self, folder: Path | None = None) -> None:
-        self._folder = folder
-        self._pieces: deque[bytes] = deque()
-        self._in_memory = 0
-        self._file: IO[bytes] | None = None
+    def __init__(self, share: Share, most: int, folder: Path | None = None) -> None:
+        self._share, self._most = share, most
+        self._file = tempfile.SpooledTemporaryFile(MEMORY_BYTES, dir=str(folder) if folder else None)  # noqa: SIM115
         self._begin = self._end = 0
 
     def __len__(self) -> int:
-        return self._in_memory + self._end - self._begin
+        return self._end - self._begin
+
+    def fits(self, piece: bytes) -> bool:
+        """True where there is room for more: a file shrinks once all of it has been read."""
+        return not self._end or (self._end + len(piece) <= self._most and self._share.fits(len(piece)))
 
     def write(self, piece: bytes) -> None:
         """Add at the end."""
-        if not piece:  # what is read as nothing ends the reading
-            return
-        if self._begin == self._end and self._in_memory + len(piece) <= MEMORY_BYTES:
-            self._pieces.append(piece)
-            self._in_memory += len(piece)
-            return
-        self._file = self._file or tempfile.TemporaryFile(buffering=0, dir=self._folder)  # noqa: SIM115
         self._file.seek(self._end)
         self._end += self._file.write(piece)
+        self._share.add(len(piece))
 
     def read(self) -> bytes:
         """Take from the front; nothing where nothing is left."""
-        if self._pieces:
-            piece = self._pieces.popleft()
-            self._in_memory -= len(piece)
-            return piece
-        if self._file is None or self._begin == self._end:
-            return b""
         self._file.seek(self._begin)
-        piece = self._file.read(min(READ_BYTES, self._end - self._begin))
+        piece = self._file.read(min(READ_BYTES, len(self)))
         self._begin += len(piece)
         if self._begin == self._end:
-            self._file.truncate(0)
+            self._file.seek(0)
+            self._file.truncate()
+            self._share.give_back()
             self._begin = self._end = 0
         return piece
 
     def close(self) -> None:
         """Give the file back."""
-        if self._file is not None:
-            self._file.close()
+        self._file.close()
 
 
 class LineStream(Response):
     """Answers each line of the request's body with one line, while the body still arrives if its length is unknown.
+
+    What arrives is read first, and answered once the client pauses, or sends so little that reading it takes no time:
+    most clients send all before they read, and nginx passes no more of a body on where it has had to wait for a
+    service whose answer has begun.
 
     A client that neither sends a line nor reads for `seconds` is told so in a last line, and the stream ends.
     """
@@ -135,27 +142,29 @@ class LineStream(Response):
         evaluate: Evaluate,
         *,
         pool: Pool,
-        subject: str,
+        disk: Disk,
         maximum_line_bytes: int,
-        maximum_spool_bytes: int,
         spool_folder: Path | None = None,
         seconds: float,
     ) -> None:
         self.status_code = 200
         self.background = None
         self.init_headers({"X-Accel-Buffering": "no", "Cache-Control": "no-store"})
-        self._evaluate, self._pool, self._subject = evaluate, pool, subject
+        self._evaluate, self._pool, self._disk = evaluate, pool, disk
         self._splitter = LineSplitter(maximum_line_bytes)
-        self._maximum_spool = maximum_spool_bytes
-        self._seconds = seconds
-        self._spool = Spool(spool_folder)
-        self._filled, self._drained, self._whole = asyncio.Event(), asyncio.Event(), asyncio.Event()
-        self._begun = self._done = self._gone = self._sending = False
+        self._folder, self._seconds = spool_folder, seconds
+        self._changed, self._drained = asyncio.Event(), asyncio.Event()
+        self._arrived = self._waiting_since = 0.0
+        self._begun = self._whole = self._full = self._gone = self._sending = self._text = False
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Run both directions until every line is answered, or the client has gone; raises Problem 503 at once."""
-        with self._pool.place(self._subject):
-            await self._run(scope, receive, send)
+        with self._pool.place(), self._disk.share() as share:
+            self._spool = Spool(share, self._disk.total // SHARES, self._folder)
+            try:
+                await self._run(scope, receive, send)
+            finally:
+                self._spool.close()
 
     async def _run(self, scope: Scope, receive: Receive, send: Send) -> None:
         try:
@@ -163,73 +172,102 @@ class LineStream(Response):
                 first = await receive()  # before the head: only asking for the body answers `Expect: 100-continue`
         except TimeoutError:
             raise late(self._seconds) from None
-        work = asyncio.create_task(self._work(first, receive))
+        self._told = any(name == b"content-length" for name, _ in scope.get("headers", ()))
+        reading: asyncio.Task[None] | None = None
         try:
             async with asyncio.timeout(self._seconds) as self._limit:
-                if any(name == b"content-length" for name, _ in scope.get("headers", ())):
-                    # nginx sends no more of a body once its answer has begun and the service has kept it waiting.
-                    await self._whole.wait()
-                await send({"type": "http.response.start", "status": self.status_code, "headers": self.raw_headers})
-                self._begun = True
-                await self._forward(send)
-            if work.done():
-                work.result()  # raises what went wrong; the answer then stays without its end
-            await send({"type": "http.response.body", "body": b"", "more_body": False})
+                reading = asyncio.create_task(self._read(first, receive))
+                await self._answer(send)
+                if reading.done():
+                    reading.result()  # raises what went wrong; the answer then stays without its end
+                await self._send(send, b"", more=False)
         except TimeoutError:
-            work.cancel()
             if not self._begun:
                 raise late(self._seconds) from None
             await self._give_up(send)
         finally:
-            work.cancel()
-            await asyncio.gather(work, return_exceptions=True)
-            self._spool.close()
+            if reading is not None:
+                reading.cancel()
+                await asyncio.gather(reading, return_exceptions=True)
 
-    async def _work(self, message: Message, receive: Receive) -> None:
-        """Read and evaluate until the body ends, then watch whether the client stays."""
+    # --- What arrives -------------------------------------------------------------------------------------------------
+
+    async def _read(self, message: Message, receive: Receive) -> None:
+        """Set aside what arrives until the body ends, then watch whether the client stays."""
         try:
+            while message["type"] == "http.request" and not self._whole:
+                await self._set_aside(message.get("body", b""))
+                self._whole = not message.get("more_body", False)
+                self._changed.set()
+                message = await receive()
             while message["type"] == "http.request":
-                await self._answer(self._splitter.feed(message.get("body", b"")))
-                if not message.get("more_body", False):
-                    await self._answer(self._splitter.rest())
-                    break
                 message = await receive()
         finally:
-            self._done = True
-            self._filled.set()
-            self._whole.set()
-        while message["type"] == "http.request":
-            message = await receive()
-        self._gone = True
-        self._filled.set()
+            self._gone = True
+            self._changed.set()
 
-    async def _answer(self, lines: Sequence[Line]) -> None:
-        done = 0
-        while done < len(lines):
-            answers, count = await self._pool.run(self._evaluate, lines[done : done + LINES_AT_ONCE])
-            done += count
+    async def _set_aside(self, piece: bytes) -> None:
+        self._arrived = asyncio.get_running_loop().time()
+        self._waiting_since = self._waiting_since if len(self._spool) else self._arrived
+        self._text = self._text or bool(piece.strip())
+        if self._text and b"\n" in piece:  # blank lines are no sign of life
+            self._text = False
             self._progress()
-            while len(self._spool) > self._maximum_spool:
-                self._whole.set()
-                self._drained.clear()
-                await self._drained.wait()
-            self._spool.write(answers)
-            self._filled.set()
+        while not self._spool.fits(piece):
+            self._full = True
+            self._changed.set()
+            self._drained.clear()
+            await self._drained.wait()
+        self._full = False
+        try:
+            self._spool.write(piece)
+        except OSError as error:
+            logger.error("a streamed batch can’t be set aside: %s", error)
+            text = "what arrives can’t be set aside at the moment"
+            raise Problem(503, text, headers={"Retry-After": str(RETRY_SECONDS)}) from None
 
-    async def _forward(self, send: Send) -> None:
+    # --- What is answered ---------------------------------------------------------------------------------------------
+
+    async def _answer(self, send: Send) -> None:
+        """Answer what has been set aside, again and again, until all is answered or the client has gone."""
         while not self._gone:
+            await self._pause()
             piece = self._spool.read()
-            if piece:
-                self._sending = True
-                await send({"type": "http.response.body", "body": piece, "more_body": True})
-                self._sending = False
-                self._progress()
-                self._drained.set()
-            elif self._done:
+            self._drained.set()
+            ended = self._whole and not len(self._spool)
+            lines = self._splitter.feed(piece) + (self._splitter.rest() if ended else [])
+            while lines and not self._gone:
+                answers, count = await self._pool.run(self._evaluate, lines[:LINES_AT_ONCE])
+                lines = lines[count:]
+                await self._send(send, answers)
+            if ended:
                 return
-            else:
-                self._filled.clear()
-                await self._filled.wait()
+
+    async def _pause(self) -> None:
+        """Return when there is something to answer, and a moment for it."""
+        time = asyncio.get_running_loop().time
+        while not (self._whole or self._full or self._gone):
+            now, waits = time(), len(self._spool) and not self._told
+            if waits and (now - self._arrived >= PAUSE_S or self._is_slow(now)):
+                return
+            self._changed.clear()
+            with suppress(TimeoutError):
+                async with asyncio.timeout(PAUSE_S if waits else None):
+                    await self._changed.wait()
+            await asyncio.sleep(0)  # where the loop was held, what has arrived meanwhile is read first
+
+    def _is_slow(self, now: float) -> bool:
+        """True for a client that sends without a pause, and so little that it can be answered meanwhile."""
+        return now - self._waiting_since >= PATIENCE_S and len(self._spool) < LITTLE_BYTES
+
+    async def _send(self, send: Send, piece: bytes, *, more: bool = True) -> None:
+        if not self._begun:
+            await send({"type": "http.response.start", "status": self.status_code, "headers": self.raw_headers})
+            self._begun = True
+        self._sending = True
+        await send({"type": "http.response.body", "body": piece, "more_body": more})
+        self._sending = False
+        self._progress()
 
     def _progress(self) -> None:
         self._limit.reschedule(asyncio.get_running_loop().time() + self._seconds)

@@ -1,20 +1,52 @@
-"""Names under which the service answers, so that no link it writes leads anywhere else."""
+"""Names under which the service answers: no link that it writes leads anywhere else, and no page elsewhere reads it."""
 
 from collections.abc import Collection
+from ipaddress import IPv6Address, ip_address
+from typing import Any
 
 from starlette.requests import HTTPConnection
 from starlette.types import ASGIApp, Receive, Scope, Send
+from uvicorn.middleware.proxy_headers import ProxyHeadersMiddleware
 
 from hpn.web.door.problems import Problem
 
 ANY_HOST = frozenset({"/healthz", "/readyz"})
 """What load balancers ask for by an address; no link stands in the answers."""
 
+LOCAL = frozenset({"localhost", "127.0.0.1", "::1"})
+"""Names of this machine for itself."""
+
+LONGEST_NAMED = 100
+"""Characters of a host that a refusal repeats."""
+
+
+def is_loopback(host: str) -> bool:
+    """True for an address, or the name, that this machine alone reaches."""
+    try:
+        address = ip_address(host.strip("[]"))
+    except ValueError:
+        return host == "localhost"
+    mapped = address.ipv4_mapped if isinstance(address, IPv6Address) else None
+    return (mapped or address).is_loopback
+
+
+class Proxies(ProxyHeadersMiddleware):
+    """Takes from a trusted proxy what it says of its caller, and remembers that the request came through it."""
+
+    async def __call__(self, scope: Any, receive: Any, send: Any) -> None:
+        """Pass the request on."""
+        if client := scope.get("client"):
+            scope.setdefault("state", {})["proxied"] = client[0] in self.trusted_hosts
+        await super().__call__(scope, receive, send)
+
 
 class Hosts:
     """Refuses requests for any other host than the permitted ones, whatever the port.
 
-    Starlette's own middleware does so in plain text. Judged is the address that links are made of: where the Host
+    Where none is named, what comes over loopback and from no trusted proxy is for this machine: a page elsewhere could
+    else read and save through a name of its own that leads to 127.0.0.1.
+
+    Starlette's own middleware refuses in plain text. Judged is the address that links are made of: where the Host
     header is missing or is none, that of the server's socket.
     """
 
@@ -26,11 +58,24 @@ class Hosts:
         """Pass the request on, or answer 421."""
         app = self.app
         if scope["type"] == "http" and scope["path"] not in ANY_HOST and not self._allows(scope):
-            app = Problem(
-                421, "the service does not answer for this host: use the address it is published at"
-            ).response()
+            app = _refusal(HTTPConnection(scope)).response()
         await app(scope, receive, send)
 
     def _allows(self, scope: Scope) -> bool:
+        names = self._names or (LOCAL if _for_this_machine(scope) else None)
+        if names is None:
+            return True
         host = HTTPConnection(scope).base_url.hostname or ""
-        return host in self._names or any(name.startswith("*.") and host.endswith(name[1:]) for name in self._names)
+        return host in names or any(name.startswith("*.") and host.endswith(name[1:]) for name in names)
+
+
+def _for_this_machine(scope: Scope) -> bool:
+    server = scope.get("server")
+    return server is not None and is_loopback(server[0]) and not scope.get("state", {}).get("proxied", False)
+
+
+def _refusal(connection: HTTPConnection) -> Problem:
+    asked = connection.headers.get("host", "")[:LONGEST_NAMED]
+    return Problem(
+        421, f"the service does not answer for the host {asked!r}; HPN_ALLOWED_HOSTS names those it answers for"
+    )

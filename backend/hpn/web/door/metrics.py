@@ -50,7 +50,6 @@ class Metrics:
             buckets=BUCKETS,
             registry=registry,
         )
-        self._refused = Counter("hpn_http_refused", "Requests refused at once.", registry=registry)
         self._selections = Counter(
             "hpn_selections",
             "Applications evaluated: selected, none suitable, or refused.",
@@ -69,10 +68,6 @@ class Metrics:
         method = method if method in METHODS else "other"
         self._requests.labels(route, method, str(status)).inc()
         self._seconds.labels(route, method).observe(seconds)
-
-    def refused(self) -> None:
-        """Count a request that was refused before it cost anything."""
-        self._refused.inc()
 
     def selections(self, verdicts: Iterable[str]) -> None:
         """Count evaluated applications, each by its verdict: `selected`, `none` or `refused`."""

@@ -7,7 +7,6 @@ import asyncio
 import contextvars
 import logging
 import threading
-from collections import Counter
 from collections.abc import Awaitable, Callable, Coroutine, Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
@@ -65,33 +64,26 @@ logger = logging.getLogger(__name__)
 
 
 class Pool:
-    """Workers for one kind of work. One subject, a key or an address, has at most half of all places."""
+    """Workers for one kind of work, and few places to wait in; nginx bounds how many of them one address has."""
 
     def __init__(self, places: Places, bounds: Bounds | None = None) -> None:
         self._executor = ThreadPoolExecutor(places.workers)
         self.apart = Apart(bounds)
         self.turn = asyncio.Semaphore(places.workers)  # of work that is done elsewhere: as many have one at once
         self._most = places.workers + places.waiting
-        self._taken: Counter[str] = Counter()
-
-    @property
-    def taken(self) -> int:
-        """Places that are taken."""
-        return self._taken.total()
+        self.taken = 0
 
     @contextmanager
-    def place(self, subject: str) -> Iterator[None]:
-        """Take a place for a while; Problem 503 where all are taken, or the subject's half of them."""
-        if self.taken >= self._most or self._taken[subject] >= max(self._most // 2, 1):
+    def place(self) -> Iterator[None]:
+        """Take a place for a while; Problem 503 where all are taken."""
+        if self.taken >= self._most:
             text = f"too much of this kind is being computed; try again in {RETRY_SECONDS} s"
             raise Problem(503, text, headers={"Retry-After": str(RETRY_SECONDS)})
-        self._taken[subject] += 1
+        self.taken += 1
         try:
             yield
         finally:
-            self._taken[subject] -= 1
-            if not self._taken[subject]:
-                del self._taken[subject]
+            self.taken -= 1
 
     async def run(self, work: Callable[P, T], *args: P.args, **kwargs: P.kwargs) -> T:
         """Result of work on a worker. Who is cancelled while it waits gives up its place in the queue."""
@@ -145,7 +137,7 @@ def pool_of(request: Request, name: PoolName) -> Pool:
 async def compute(request: Request, name: PoolName, work: Callable[P, T], *args: P.args, **kwargs: P.kwargs) -> T:
     """Result of work on a worker of a pool, for a request whose body has been read."""
     pool = pool_of(request, name)
-    with pool.place(request.state.caller):
+    with pool.place():
         return await while_present(request, pool.run(work, *args, **kwargs))
 
 

@@ -1,0 +1,56 @@
+"""Bytes that arrive faster than they are worked on wait on the disk: so many of all requests of a process together."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+from hpn.web.door.problems import Problem
+
+RETRY_SECONDS = 30
+
+
+class Disk:
+    """Bytes that all requests of one process may set aside; at `app.state.disk`."""
+
+    def __init__(self, total: int) -> None:
+        self.total = total
+        self.taken = 0
+
+    @contextmanager
+    def share(self) -> Iterator["Share"]:
+        """What one request sets aside, given back at the end."""
+        share = Share(self)
+        try:
+            yield share
+        finally:
+            share.give_back()
+
+
+class Share:
+    """Bytes that one request has set aside."""
+
+    def __init__(self, disk: Disk) -> None:
+        self._disk = disk
+        self.taken = 0
+
+    def fits(self, count: int) -> bool:
+        """True where the disk has room for so many more."""
+        return self._disk.taken + count <= self._disk.total
+
+    def take(self, count: int) -> None:
+        """Set more aside; Problem 413 for more than there is room for at all, 503 where others have too much there."""
+        if self.taken + count > self._disk.total:
+            raise Problem(413, f"more than {self._disk.total} bytes can’t be set aside; send less at once")
+        if not self.fits(count):
+            text = f"other requests have set {self._disk.taken} of {self._disk.total} bytes aside; try again later"
+            raise Problem(503, text, headers={"Retry-After": str(RETRY_SECONDS)})
+        self.add(count)
+
+    def add(self, count: int) -> None:
+        """Set more aside, whatever room there is."""
+        self.taken += count
+        self._disk.taken += count
+
+    def give_back(self) -> None:
+        """Set nothing aside any more."""
+        self._disk.taken -= self.taken
+        self.taken = 0

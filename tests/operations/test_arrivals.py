@@ -1,0 +1,111 @@
+"""Fleets that arrive: a place is taken by a body that is there, the disk is bounded, no page elsewhere sends one."""
+
+import socket
+from collections.abc import Iterator
+from contextlib import ExitStack
+from typing import Any
+
+import pytest
+from starlette.testclient import TestClient
+
+from hpn.web.door.disk import Disk
+from hpn.web.door.problems import Problem
+from tests.operations.conftest import MakeClient
+from tests.operations.service import Service
+from tests.state import state_of
+
+PATH = "/api/v1/fleet"
+CSV = {"Content-Type": "text/csv"}
+AXES = b'axis,torque_Nm,speed_rpm,duration_s\n1,"[40]","[250]","[2]"\n'
+
+
+def dripping(service: Service) -> socket.socket:
+    """A connection that has sent the beginning of a fleet."""
+    connection = socket.create_connection(("127.0.0.1", service.port), 20)
+    head = f"POST {PATH} HTTP/1.1\r\nHost: localhost\r\nContent-Type: text/csv\r\nExpect: 100-continue\r\n"
+    connection.sendall(f"{head}Content-Length: 100000\r\n\r\n".encode())
+    assert connection.recv(100).startswith(b"HTTP/1.1 100")  # the service waits for the body
+    connection.sendall(b"a")
+    return connection
+
+
+def test_callers_whose_bodies_drip_shut_fleets_for_nobody(service: Service) -> None:
+    with ExitStack() as held:
+        for _ in range(8):
+            held.enter_context(dripping(service))
+        answer = service.client.post(PATH, content=AXES, headers=CSV)
+
+    assert (answer.status_code, answer.text.count("\n")) == (200, 2)
+
+
+def test_what_arrives_is_bounded_for_all_together_and_given_back(make_client: MakeClient) -> None:
+    client = make_client(maximum_spool_bytes=1_000_000)
+    disk: Disk = state_of(client).disk
+    with disk.share() as others:
+        others.take(999_990)
+        refused = client.post(PATH, content=AXES, headers=CSV)
+    too_much = client.post(PATH, content=b"x" * 1_000_001, headers=CSV)
+
+    assert (refused.status_code, refused.headers["Retry-After"]) == (503, "30")
+    assert "999990 of 1000000 bytes" in refused.json()["detail"]
+    assert (too_much.status_code, "1000000 bytes" in too_much.text) == (413, True)
+    assert client.post(PATH, content=AXES, headers=CSV).status_code == 200
+    assert disk.taken == 0
+
+
+def test_shares_of_the_disk_add_up() -> None:
+    disk = Disk(100)
+    with disk.share() as one, disk.share() as other:
+        one.take(60)
+        with pytest.raises(Problem) as refused:
+            other.take(41)
+        other.take(40)
+        assert not one.fits(1)
+
+    assert refused.value.status_code == 503
+    assert disk.taken == 0
+
+
+# --- Pages elsewhere --------------------------------------------------------------------------------------------------
+
+
+def sent_by(client: TestClient, headers: dict[str, str]) -> Any:
+    """Answer to a form with a fleet."""
+    return client.post(PATH, files={"input": ("axes.csv", AXES, "text/csv")}, headers=headers)
+
+
+@pytest.fixture
+def permitting(make_client: MakeClient) -> Iterator[TestClient]:
+    """A service that permits scripts of one origin."""
+    yield make_client(cors_origins="https://plm.example")
+
+
+@pytest.mark.parametrize(
+    "headers",
+    [
+        {"Sec-Fetch-Site": "cross-site", "Origin": "https://evil.example"},
+        {"Sec-Fetch-Site": "same-site", "Origin": "http://other.testserver"},
+        {"Sec-Fetch-Site": "cross-site"},
+        {"Origin": "https://evil.example"},
+        {"Origin": "null"},
+    ],
+)
+def test_a_form_of_a_page_elsewhere_is_refused(headers: dict[str, str], permitting: TestClient) -> None:
+    answer = sent_by(permitting, headers)
+
+    assert (answer.status_code, answer.headers["Content-Type"]) == (403, "application/problem+json")
+
+
+@pytest.mark.parametrize(
+    "headers",
+    [
+        {},
+        {"Sec-Fetch-Site": "same-origin", "Origin": "http://testserver"},
+        {"Origin": "http://testserver"},
+        {"Sec-Fetch-Site": "cross-site", "Origin": "https://plm.example"},
+    ],
+)
+def test_a_form_of_a_program_an_own_page_or_a_permitted_origin_is_taken(
+    headers: dict[str, str], permitting: TestClient
+) -> None:
+    assert sent_by(permitting, headers).status_code == 200
