@@ -266,7 +266,7 @@ def test_where_too_many_wait_the_next_is_a_503(bounded: Callable[..., TestClient
     with ExitStack() as stack:
         for _ in range(4):
             stack.enter_context(pool.place())
-        refused = client.post(PATH, content=b"", headers=CSV)
+        refused = client.post(PATH, content=ONE_AXIS, headers=CSV)
 
     assert (refused.status_code, "Retry-After" in refused.headers) == (503, True)
     assert client.post(PATH, content=b"", headers=CSV).status_code == 422

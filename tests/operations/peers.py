@@ -60,26 +60,42 @@ class Peer:
     reads: bool = True
     end: str = ""  # "half" closes its sending half, "reset" resets the connection
     many: int = 20
+    crowd: int = 0  # how many there are behind nginx in the long form, where that is more
     tls: bool = True
-    nginx_waits: bool = False  # nginx has no bound for the whole time of a body: it is gone once it stops
+    nginx_waits: bool = False  # nginx has no bound for the whole time of a body: gone once it stops, or after minutes
     protocol: str = ""  # h2, which nginx alone speaks
     alone: bool = False  # the service alone ends it too
 
 
 SELECT, BATCH, NOWHERE = b"/api/v1/select", b"/api/v1/select/batch", b"/nowhere"
+SLOW = post(SELECT, JSON, 100_000)
 PEERS = (
-    Peer("head that drips", b"GET / HTTP/1.1\r\nHost: localhost\r\nX-Slow: ", b"a"),
-    Peer("body that drips, read by its handler", post(SELECT, JSON, 100_000), b" ", nginx_waits=True, alone=True),
+    Peer("head that drips", b"GET / HTTP/1.1\r\nHost: localhost\r\nX-Slow: ", b"a", crowd=1000),
+    Peer(
+        "body that drips, read by its handler",
+        post(SELECT, JSON, 100_000),
+        b" ",
+        crowd=1000,
+        nginx_waits=True,
+        alone=True,
+    ),
     Peer("body that drips, read by nobody", post(NOWHERE, JSON, 100_000), b" ", nginx_waits=True),
     Peer("streamed batch that drips blanks", post(BATCH, NDJSON, None), chunk(b" "), many=10, alone=True),
     Peer("body announced and never sent", post(SELECT, JSON, 100_000), alone=True),
     Peer("early error, body still coming", post(NOWHERE, JSON, 10**9), bytes(65536)),
     Peer("body larger than allowed", post(SELECT, JSON, 10**8), bytes(65536)),
     Peer("chunked body without end", post(SELECT, JSON, None), chunk(bytes(65536))),
-    Peer("answer nobody reads: page", head(b"GET", LINK) * 4, reads=False),
+    Peer("answer nobody reads: page", head(b"GET", LINK) * 4, reads=False, crowd=1000),
     Peer("answer nobody reads: PDF", head(b"GET", b"/report.pdf" + LINK[1:]) * 2, reads=False, many=4),
     Peer("answer nobody reads: JSON of 2,000", post(BATCH, JSON, len(ITEMS)) + ITEMS, reads=False, many=4),
-    Peer("answer nobody reads: streamed batch", post(BATCH, NDJSON, None), chunk(LINE * 20), reads=False, many=4),
+    Peer(
+        "answer nobody reads: streamed batch",
+        post(BATCH, NDJSON, None),
+        chunk(LINE * 20),
+        reads=False,
+        many=4,
+        nginx_waits=True,
+    ),
     Peer("connections that say nothing", many=1000, tls=False),
     Peer("pipelined flood", head(b"GET", b"/healthz") * 2000, head(b"GET", b"/healthz") * 2000, reads=False),
     Peer("huge head", b"GET / HTTP/1.1\r\nHost: localhost\r\nX-Long: " + b"a" * 300_000),
@@ -94,12 +110,12 @@ PEERS = (
 class Crowd:
     """Many of one kind of peer, played by a thread until each has been cut off or `stop` ends it."""
 
-    def __init__(self, peer: Peer, connect: Callable[[], socket.socket], count: int) -> None:
+    def __init__(self, peer: Peer, connect: Callable[[int], socket.socket], count: int) -> None:
         self._peer = peer
         self._selector = selectors.DefaultSelector()
         self._stopped = threading.Event()
-        for _ in range(count):
-            self._add(connect())
+        for number in range(count):
+            self._add(connect(number))
         self._thread = threading.Thread(target=self._play)
         self._thread.start()
 

@@ -39,26 +39,34 @@ class Front:
     service: Service
     proxy: Proxy | None
 
-    def connect(self, peer: Peer) -> socket.socket:
-        """A connection of a peer."""
+    def connect(self, peer: Peer, number: int) -> socket.socket:
+        """A connection of a peer: at most a hundred have one address."""
         port = self.proxy.https if self.proxy else self.service.port
         plain = socket.socket()
         if not peer.reads:
             plain.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
         plain.settimeout(20)
+        plain.bind((f"127.0.0.{2 + number // 100}", 0))
         plain.connect(("127.0.0.1", port))
         if self.proxy and peer.tls:
             return self.proxy.trust(*filter(None, [peer.protocol])).wrap_socket(plain, server_hostname="localhost")
         return plain
 
     def ask(self, count: int) -> list[float]:
-        """Seconds that a second client waits for each of some small calculations, each on a connection of its own."""
+        """Seconds that a second client waits for each of some small calculations, each on a connection of its own.
+
+        Where it is told that there is too much to do, it asks again, and that counts.
+        """
         url = self.proxy.url if self.proxy else self.service.url
         verify = self.proxy.trust() if self.proxy else False
         waits = []
         for _ in range(count):
             start = time.monotonic()
-            answer = httpx.post(f"{url}/api/v1/select", json=SMALL, verify=verify, trust_env=False, timeout=30)
+            while True:
+                answer = httpx.post(f"{url}/api/v1/select", json=SMALL, verify=verify, trust_env=False, timeout=30)
+                if answer.status_code != 503:
+                    break
+                time.sleep(0.1)
             assert answer.json()["selected"] == "HPN-20A-5", answer.text
             waits.append(time.monotonic() - start)
         return waits
@@ -118,7 +126,8 @@ CASES = [
 def test_others_are_served_memory_stays_and_the_peer_is_gone_in_the_end(peer: Peer, front: Front, soak: bool) -> None:
     front.ask(3)
     before = front.memory_MB()
-    crowd = Crowd(peer, lambda: front.connect(peer), peer.many)
+    count = peer.crowd if soak and peer.crowd and front.proxy else peer.many
+    crowd = Crowd(peer, lambda number: front.connect(peer, number), count)
     try:
         waits = front.ask(30 if soak else 5)
         during = front.memory_MB()
@@ -129,7 +138,7 @@ def test_others_are_served_memory_stays_and_the_peer_is_gone_in_the_end(peer: Pe
     front.ask(1)
     after = front.memory_MB()
 
-    print(row(peer, front, waits, (before, during, after), gone))
+    print(row(f"{peer.name} × {count} | {front.name}", waits, (before, during, after), gone))
     # 10 ms were measured, on two cores that others use as well
     assert statistics.median(waits) < 2
     assert during - before < 150
@@ -143,9 +152,8 @@ def ends(peer: Peer, front: Front, crowd: Crowd) -> float:
     return until(lambda: crowd.left == 0 or front.connected() == 0, GONE_S[front.name])
 
 
-def row(peer: Peer, front: Front, waits: list[float], memory: tuple[float, float, float], gone: float) -> str:
+def row(who: str, waits: list[float], memory: tuple[float, float, float], gone: float) -> str:
     """A row of the table in the docs."""
     median, worst = 1000 * statistics.median(waits), 1000 * max(waits)
     sizes = " / ".join(f"{size:.0f}" for size in memory)
-    who = f"{peer.name} × {peer.many} | {front.name}"
     return f"| {who} | {median:.0f} ms, at most {worst:.0f} | {sizes} MB | {gone:.0f} s |"

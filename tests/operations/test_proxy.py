@@ -280,7 +280,7 @@ def test_more_than_the_service_does_in_time_is_refused_at_once_and_what_a_page_n
     os.kill(service.process.pid, signal.SIGSTOP)
     try:
         with ExitStack() as held:
-            for number in range(64):
+            for number in range(32):
                 connection = held.enter_context(proxy.connect(source=f"127.0.0.{2 + number % 2}"))
                 connection.sendall(HEALTH)
             asked = [held.enter_context(proxy.connect(source="127.0.0.4")) for _ in range(2)]

@@ -19,7 +19,7 @@ from tests.operations.service import Service, serving
 from tests.reliability.load import Outcome, load
 
 MINUTES = float(os.environ.get("HPN_TEST_ENDURANCE_MINUTES", "30"))
-RATIO = 30
+RATIO = 40
 """How many times the unloaded median the slowest of a hundred answers may take, on a machine of its own: as many as may
 wait for each other make it, and not how many ask.
 """
