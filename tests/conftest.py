@@ -25,7 +25,7 @@ BULK = ("test_fuzz.py",)
 
 LONGEST_FIRST = (
     *("workbook", "api", "run", "contract", "pdf", "image", "serving", "fuzz", "invariances", "workers", "examples"),
-    *("remedy", "loop", "selections_api", "load", "year_later", "protocol", "outage"),
+    *("remedy", "loop", "selections_api", "load", "year_later", "outage"),
     *("tools", "reader", "page", "plots"),
 )
 """Files that take longest, so that none of them is left alone at the end."""

@@ -229,7 +229,7 @@ def test_one_address_has_a_hundred_requests_at_once(proxy: Proxy) -> None:
 @pytest.mark.parametrize(
     ("path", "kind", "most"),
     [
-        (BATCH, "application/json", 8),
+        (BATCH, "application/json", 4),
         (BATCH, "application/x-ndjson", 1),
         (FLEET, "text/csv", 4),
         ("/api/v1/report.pdf", "application/json", 4),
