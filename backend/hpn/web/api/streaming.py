@@ -1,7 +1,6 @@
 """Newline-delimited JSON, streamed in and out at once, in memory that does not grow with the number of lines."""
 
 import asyncio
-import logging
 import tempfile
 from collections.abc import Callable, Sequence
 from contextlib import suppress
@@ -12,8 +11,9 @@ import orjson
 from starlette.responses import Response
 from starlette.types import Message, Receive, Scope, Send
 
+from hpn.web import spool
 from hpn.web.door.bodies import late
-from hpn.web.door.disk import RETRY_SECONDS, Disk, Share
+from hpn.web.door.disk import Disk, Share
 from hpn.web.door.pools import Pool
 from hpn.web.door.problems import Problem
 
@@ -32,9 +32,6 @@ PATIENCE_S, LITTLE_BYTES = 1.0, 500_000
 """Time after which what arrives without a pause is answered meanwhile, and what must not be there by then."""
 
 BYTE_ORDER_MARK = b"\xef\xbb\xbf"
-
-
-logger = logging.getLogger(__name__)
 
 
 class Line(NamedTuple):
@@ -219,12 +216,8 @@ class LineStream(Response):
             self._drained.clear()
             await self._drained.wait()
         self._full = False
-        try:
+        with spool.usable():
             self._spool.write(piece)
-        except OSError as error:
-            logger.error("a streamed batch can’t be set aside: %s", error)
-            text = "what arrives can’t be set aside at the moment"
-            raise Problem(503, text, headers={"Retry-After": str(RETRY_SECONDS)}) from None
 
     # --- What is answered ---------------------------------------------------------------------------------------------
 

@@ -357,7 +357,7 @@ async def download(request: Request) -> Response:
         async with pool.turn:
             return await pool.run_apart(await pool.run(_file, saved, suffix, request.state.reader))
 
-    with pool.place(request.state.caller):
+    with pool.place():
         content = await while_present(request, work())
     headers = {"Content-Disposition": f'attachment; filename="axes.{suffix}"', "Vary": "Accept-Language, Cookie"}
     return Response(content, 200, headers, MEDIA_TYPES[suffix])
