@@ -401,8 +401,8 @@ def taken_places(client: TestClient) -> Iterator[None]:
     """Every place for files is taken by others."""
     pool, places = state_of(client).pools["files"], PLACES["files"]
     with ExitStack() as stack:
-        for number in range(sum(places)):
-            stack.enter_context(pool.place(f"caller {number}"))
+        for _ in range(sum(places)):
+            stack.enter_context(pool.place())
         yield
 
 

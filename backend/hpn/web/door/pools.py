@@ -149,7 +149,7 @@ async def compute_apart(request: Request, name: PoolName, work: Callable[[], T])
         async with pool.turn:
             return await pool.run_apart(work)
 
-    with pool.place(request.state.caller):
+    with pool.place():
         return await while_present(request, in_turn())
 
 
