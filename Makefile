@@ -12,7 +12,7 @@ MODULES := frontend/node_modules
 ASSETS := frontend/dist/manifest.json
 COMPILED := frontend/dist/templates/.all
 # What is installed: enough to run, or all of it. Once a tree has the tools, `make run` must not take them away again.
-FOR := $(if $(filter check test soak mutants bench screenshots browser messages licences sbom audit,$(MAKECMDGOALS))$(wildcard $(VENV)/.dev),dev,run)
+FOR := $(if $(filter check test soak mutants bench screenshots browser messages licences sbom audit containers,$(MAKECMDGOALS))$(wildcard $(VENV)/.dev),dev,run)
 PAGE_FOR := $(if $(filter test soak,$(MAKECMDGOALS))$(wildcard $(MODULES)/.dev),dev,run)
 ENVIRONMENT := $(VENV)/.$(FOR)
 PACKAGES := $(MODULES)/.$(PAGE_FOR)
@@ -184,6 +184,11 @@ sbom: $(ENVIRONMENT)
 # The locks against known vulnerabilities: ends with 1 where there is one, 3 where no database can be asked.
 audit: $(ENVIRONMENT) | $(NODE)
 	$(BIN)/python -m tests.supply.audit
+
+# The image and the compose file on a real engine: ends with 1 where a trial fails, 3 where no engine can be had.
+.PHONY: containers
+containers: $(ENVIRONMENT)
+	$(BIN)/python -m tests.containers "$(ONLY)"
 
 # Images are named by digest; this asks their registry for today's and writes them, all or none.
 PINNED := docker-compose.yml backend/Dockerfile
