@@ -45,7 +45,7 @@ class Stack:
         return subprocess.run(
             words,
             cwd=self.folder,
-            env=self.engine.environment,
+            env=self.engine.environment | {"COMPOSE_ANSI": "never"},
             input=text,
             capture_output=True,
             text=True,
@@ -94,7 +94,7 @@ class Stack:
 
     def logs(self, service: str, lines: int = 30) -> str:
         """The end of a container's log."""
-        return self.compose("logs", "--no-color", "--no-log-prefix", "--tail", str(lines), service)
+        return self.compose("logs", "--no-log-prefix", "--tail", str(lines), service)
 
     def trust(self) -> ssl.SSLContext:
         """Context of a client that knows the certificate."""
