@@ -19,7 +19,7 @@ RECIPES = Path(__file__).parent / "recipes"
 PACKAGES = {"python": "python3", "nginx": "nginx", "postgres": "postgresql-{major}"}
 """What tells which release of Debian has the version that a name asks for."""
 
-PULL_S = 300.0
+PULL_S = 180.0
 KEPT = "1GB"
 """Of the layers that builds leave."""
 
@@ -110,7 +110,10 @@ class Images:
             file.write(recipe)
             file.flush()
             words = ["--network", "host", "--tag", name, "--file", file.name, str(folder)]
-            self.engine.docker("build", *words, seconds=1800)
+            try:
+                self.engine.docker("build", *words, seconds=1800)
+            except (RuntimeError, subprocess.TimeoutExpired) as error:
+                raise UnavailableError(f"{name} can't be made: {error}") from error
 
     def with_machine(self, dockerfile: str) -> str:
         """A Dockerfile whose first stage installs with this machine's certificates and registries."""
