@@ -5,6 +5,7 @@ where there is no engine: that says nothing about the containers.
 """
 
 import os
+import signal
 import sys
 from pathlib import Path
 
@@ -21,6 +22,7 @@ KINDS = (serving, restarts, upkeep)
 
 def main(wanted: str) -> int:
     """Try all, or what a pattern finds by its name; exit code."""
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))  # ends what was started, as Ctrl+C does
     cache = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "hpn-containers"
     cache.mkdir(parents=True, exist_ok=True)
     debian = Debian(cache)

@@ -113,16 +113,28 @@ def _start(engine: Engine, folder: Path, data: Path) -> "subprocess.Popen[bytes]
         with log.open("ab") as output:
             # In a session of its own: Ctrl+C is for the trials, which then stop it in order.
             daemon = subprocess.Popen(["dockerd", *own, *way], stdout=output, stderr=output, start_new_session=True)
-        for _ in range(60):
-            if daemon.poll() is not None:
-                break
-            if _works(engine, "info"):
-                return daemon
-            time.sleep(0.5)
-        daemon.kill()
-        daemon.wait()
+        answers = False
+        try:
+            answers = _answers(engine, daemon)
+        finally:
+            if not answers:
+                daemon.kill()
+                daemon.wait()
+        if answers:
+            return daemon
     print(log.read_text()[-2000:], file=sys.stderr)
     raise UnavailableError("dockerd does not start here; the end of its log stands above")
+
+
+def _answers(engine: Engine, daemon: "subprocess.Popen[bytes]") -> bool:
+    """True once it answers, False if it ends or takes half a minute."""
+    for _ in range(60):
+        if daemon.poll() is not None:
+            break
+        if _works(engine, "info"):
+            return True
+        time.sleep(0.5)
+    return False
 
 
 def _output(*command: str) -> str:
