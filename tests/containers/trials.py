@@ -8,6 +8,9 @@ from dataclasses import dataclass, field
 
 from tests.containers.stack import Stack
 
+RECOVERY_S = 25
+"""Two checks of health, and some."""
+
 Body = Callable[[Stack], str | None]
 
 
@@ -53,7 +56,11 @@ class Trials:
 
 
 def _from_healthy(stack: Stack, body: Body) -> str | None:
-    stack.up()
+    try:
+        stack.up()
+    except RuntimeError:  # `up --wait` ends at once where the trial before has left a container unhealthy
+        time.sleep(RECOVERY_S)
+        stack.up()
     return body(stack)
 
 
