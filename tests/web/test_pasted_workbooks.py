@@ -105,7 +105,7 @@ def test_workbook_becomes_what_its_cells_show(client: TestClient, rows: Any, pha
     [
         ([(0.4, "0%"), 250, 3], "40 % is not a number"),
         ([(40, "0 [$€-407]"), 250, "x"], "x is not a number"),
-        ([40, 250, (clock(0, 3), "h:mm")], "00:03:00 is not a number"),  # may be meant as minutes and seconds
+        ([40, 250, (clock(0, 3), "h:mm")], "0:03 may be hours or minutes; write 0:03:00 or 0:00:03"),
         ([40, 250, date(2026, 3, 1)], "is not a number"),
         ([True, 250, 3], "True is not a number"),
         ([40, "#DIV/0!", 3], "#DIV/0! is not a number"),

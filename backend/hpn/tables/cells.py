@@ -5,9 +5,11 @@ follows a leading zero: `0,250` is a quarter under every reading.
 """
 
 import re
+from decimal import Decimal as Exact
 from functools import lru_cache
 from typing import Literal, NamedTuple
 
+from hpn.tables.clocks import seconds_of
 from hpn.tables.numbers import DASHES, split_unit
 from hpn.words.units import QUANTITY_OF, codes_for
 
@@ -32,6 +34,9 @@ _NUMBER = {
     )
     for decimal, group, trailing in ((".", ",", r"\.?"), (",", ".", ""))
 }
+THOUSANDS = "÷"
+"""Stands before what a format divides a number by, where nothing says the unit of what it shows."""
+
 _OF_PHASES = ("torque", "speed", "time", "force")
 _NOTHING = ("", "-", "–", "—", "\N{MINUS SIGN}", "\N{NON-BREAKING HYPHEN}")
 _HELD_AS_TEXT = re.compile(r"=\"(?P<formula>[^\"]*)\"|'(?P<text>[-+\N{MINUS SIGN}]?(?!0[0-9])[0-9].*)")
@@ -73,6 +78,15 @@ def is_blank(cell: str) -> bool:
     return cell in _NOTHING
 
 
+def held_of(cell: str) -> tuple[str, str] | None:
+    """What a workbook shows of a number in thousands without saying so, and what it holds: 40 of `40000 ÷1000`."""
+    number, _, thousands = cell.partition(f" {THOUSANDS}") if isinstance(cell, Figure) else ("", "", "")
+    if not thousands:
+        return None
+    shown = Exact(number).scaleb(1 - len(thousands)).normalize()
+    return f"{shown:f}", number
+
+
 def entry(cell: str, decimal: Decimal) -> Entry | None:
     """A cell as a number under a decimal mark; None where it is none, as a percentage is none of a phase."""
     if isinstance(cell, Figure):
@@ -87,6 +101,8 @@ def _entry(cell: str, decimal: Decimal) -> Entry | None:
         return None
     if (number := plain(cell, decimal)) is not None:
         return Entry(number, "")
+    if (seconds := seconds_of(cell)) is not None:
+        return Entry(seconds, "s")
     written, unit = split_unit(cell)
     # `1/min` is a unit, and no number of its own; `1'` is no phase's.
     known = any(QUANTITY_OF[code] in _OF_PHASES for code in codes_for(unit))

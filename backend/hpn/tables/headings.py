@@ -1,6 +1,7 @@
 """Headings of a table in several languages: which quantity a column holds, and in which unit."""
 
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -35,18 +36,21 @@ _WORDS = {
     "velocidad de giro; varvtal; toerental",
     "t": "duration; dauer; zeitdauer; phasendauer; time; zeit; durée; temps; durata; tempo; duración; tiempo; tid; "
     "varaktighet; tijd; duur; delta t; zeitpunkt; instant; timestamp; endzeit; startzeit; end time; start time; ende; "
-    "end; start; beginn; bis; von; until; from",
+    "end; start; beginn; bis; von; until; from; "
+    "zeitstempel; uhrzeit; datetime; date time",
     "FRi": "radial; radial load; radial force; radialkraft; radiallast; fr; fri; f r; charge radiale; force radiale; "
     "carico radiale; carga radial; fuerza radial; radiallast",
     "FAi": "axial; axial load; axial force; axialkraft; axiallast; fa; fai; f a; charge axiale; force axiale; "
     "carico assiale; carga axial; fuerza axial",
     "Tpk": "peak torque; maximum torque; max torque; torque peak; torque max; tpk; t pk; t max; tmax; m max; mmax; "
     "spitzenmoment; spitzendrehmoment; maximalmoment; maximaldrehmoment; maximales moment; maximales drehmoment; "
-    "größtes moment; größtes drehmoment; max drehmoment; max moment",
+    "größtes moment; größtes drehmoment; max drehmoment; max moment; drehmoment max; moment max",
     "npk": "peak speed; maximum speed; max speed; speed peak; speed max; npk; n pk; n max; nmax; "
-    "spitzendrehzahl; maximaldrehzahl; maximale drehzahl; größte drehzahl; höchste drehzahl; max drehzahl",
+    "spitzendrehzahl; maximaldrehzahl; maximale drehzahl; größte drehzahl; höchste drehzahl; max drehzahl; "
+    "drehzahl max",
     "Trms": "rms torque; torque rms; effective torque; trms; t rms; t eff; teff; m eff; meff; "
-    "effektivmoment; effektivdrehmoment; effektives moment; effektives drehmoment",
+    "effektivmoment; effektivdrehmoment; effektives moment; effektives drehmoment; drehmoment eff; "
+    "moment eff; drehmoment effektiv",
     INDEX: "nr; no; #; №; n°; nº; pos; index; idx; id; lfd nr; lfd-nr; lfdnr; nummer; number; num; phase; phase nr; "
     "phase no; phasen-nr; phasennr; phasennummer; step; schritt; segment; abschnitt; row; zeile; étape; fase; steg; "
     "i; k; line; item; point; punkt",
@@ -60,6 +64,7 @@ INSTANTS = {
     "zeitpunkt",
     "instant",
     "timestamp",
+    *("zeitstempel", "uhrzeit", "datetime", "date time"),
     "endzeit",
     "startzeit",
     "end time",
@@ -69,6 +74,15 @@ INSTANTS = {
     "start",
 } | {*("beginn", "bis", "von", "until", "from")}
 """Names that mean a point in time, and never how long something lasts."""
+
+QUALIFIERS = {
+    *("max", "maximum", "min", "minimum", "peak", "spitze", "mean", "average", "avg", "mittel", "mittelwert"),
+    *("rms", "eff", "effective", "effektiv", "nominal", "rated", "nenn"),
+}
+"""Names below that of a quantity, which say what of it a column holds."""
+
+OF_LOAD = {"load", "last", "load cycle", "lastzyklus", "duty cycle", "cycle", "zyklus"}
+"""Names above that of a quantity that change nothing of it."""
 
 ANGULAR = {"ω", "omega", "winkelgeschwindigkeit", "angular velocity", "angular speed"}
 """Names of a speed that is as likely in rad/s as in rpm."""
@@ -128,6 +142,8 @@ def _heading_of(cell: str) -> Heading:
 def _unit_alone(text: str) -> str:
     """The unit that a cell is nothing but, or blank."""
     inner = _without_in(_without_in(text).strip("[]()<>{} "))
+    if text == "d":  # rather a symbol of something than days
+        return ""
     known = inner in units.SPELLINGS if len(inner) == 1 else bool(units.codes_for(inner))
     return inner if known else ""
 
@@ -165,6 +181,74 @@ def _kind(name: str, unit: str) -> str:
 
 def _folded(name: str) -> str:
     return " ".join(name.replace("_", " ").replace(".", ". ").casefold().split()).replace(".", "").strip()
+
+
+@dataclass(frozen=True, slots=True)
+class Over:
+    """What all texts above a column say together. A unit outranks no name: beside a name it says the unit alone.
+
+    `kind` is blank where nothing is known, or two things; `name` is what the column is called without its units.
+    """
+
+    kind: str
+    name: str
+    units: frozenset[str]
+    lasting: bool = False
+    angular: bool = False
+    instant: bool = False
+
+    @property
+    def may_be_time(self) -> bool:
+        """True for a time, and for a column without a name."""
+        return self.kind == "t" or not self.name
+
+    @property
+    def codes(self) -> frozenset[str]:
+        """Codes that its units may stand for."""
+        return frozenset(code for unit in self.units for code in units.codes_for(unit))
+
+
+def heading_over(texts: Sequence[str]) -> Over:
+    """What the texts above a column say together: `Torque` over `max` is the largest torque, over `Nm` one in Nm."""
+    said = [heading_of(text) for text in texts]
+    measured = frozenset(each.unit for each in said) - {""}
+    names = [text for text, each in zip(texts, said, strict=True) if each.kind != UNIT]
+    if len(names) < 2:
+        kind = next((each.kind for each in said if each.kind != UNIT), "")
+        found, name = said, names[0] if names else ""
+    else:
+        found, name = _together(names)
+        kind = found[0].kind
+    return Over(
+        kind,
+        name,
+        measured,
+        lasting=any(each.lasting for each in found),
+        angular=any(each.angular for each in found),
+        instant=any(each.instant for each in found),
+    )
+
+
+def _together(names: Sequence[str]) -> tuple[list[Heading], str]:
+    """What names above one another say: as they are read, or the other way round; and what they are called."""
+    bare = [parts_of(" ".join(name.split()))[0] for name in names]
+    bare = [name for name in bare if _folded(name) not in OF_LOAD] or bare
+    for name in (" ".join(bare), " ".join(reversed(bare))):
+        if (found := heading_of(name)).kind:
+            return [found], name
+    each = [heading_of(name) for name in bare]
+    same = len({heading.kind for heading in each}) == 1
+    return (each if same else [Heading("")]), " ".join(bare)
+
+
+def is_qualifier(cell: str) -> bool:
+    """True for a word that says of a quantity above it which figure of it a column holds."""
+    return len(cell) <= LONGEST and _folded(cell.strip("[]()")) in QUALIFIERS
+
+
+def quantities_of(unit: str) -> set[str]:
+    """What a unit may measure."""
+    return {units.QUANTITY_OF[code] for code in units.codes_for(unit)}
 
 
 def is_total(cell: str) -> bool:

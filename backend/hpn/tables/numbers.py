@@ -36,7 +36,7 @@ _LONGEST = 60
 
 _WITH_UNIT = re.compile(
     r"(?P<number>.*?[0-9][.,]?(?:[eE][+-]?[0-9]{1,3})?)"
-    r"(?:\s+(?P<per>1\s?/[^0-9]+)|\s*(?P<unit>(?![eE][+-]?[0-9])(?:[^\W\d_]|[°'/])[^0-9]*(?:\^?\(?[-−–]1\)?)?))"
+    r"(?:\s+(?P<per>1\s?/[^0-9]+)|\s*(?P<unit>(?![eE][+-]?[0-9])(?:[^\W\d_]|[°'/])[^0-9]*(?:\^?\(?(?:[-−–]1|2)\)?)?))"
 )
 """A number and its unit: letters, or one divided by something."""
 
@@ -141,19 +141,24 @@ def unit_code(spelled: str, unit: str) -> str | Sentence:
         return codes[0]
     if len(codes) > 1:
         template = N_("{unit} can be {first} or {second}; write one of them")
-        return Sentence(template, {"unit": spelled, **either(codes)})
+        return Sentence(template, {"unit": spelled, **either(codes, spelled)})
     if not quantity:
         return Sentence(N_("takes a number without a unit"))
-    listed = ", ".join(f"{symbol}{'/rad' if per_rad else ''}" for symbol in measures.READ[quantity].values())
     return Sentence(
-        N_("{unit} is not a unit of this quantity; it takes {units}"), {"unit": spelled[:20], "units": listed}
+        N_("{unit} is not a unit of this quantity; it takes {units}"),
+        {"unit": spelled[:20], "units": known_units(quantity, "/rad" if per_rad else "")},
     )
 
 
-def either(codes: Sequence[str]) -> dict[str, Sentence]:
-    """Symbols of the two units that a spelling may mean, as values of a sentence."""
+def known_units(quantity: str, per: str = "") -> str:
+    """Symbols of all units that are read for a quantity."""
+    return ", ".join(f"{symbol}{per}" for symbol in measures.READ[quantity].values())
+
+
+def either(codes: Sequence[str], spelled: str) -> dict[str, Sentence]:
+    """What a spelling may mean, as values of a sentence: two units, or one and a frequency that counts no turns."""
     first, second = (Sentence(measures.symbol_of_code(code)) for code in codes[:2])
-    return {"first": first, "second": second}
+    return {"first": first, "second": Sentence(ELECTRICAL) if spelled.strip() == measures.FREQUENCY else second}
 
 
 def read_decimal(text: str, decimal: str) -> str | Sentence | None:
@@ -234,6 +239,7 @@ def _plain(value: float) -> str:
 
 # --- Values -----------------------------------------------------------------------------------------------------------
 
+ELECTRICAL = N_("an electrical frequency")
 NOT_WHOLE = N_("must be a whole number")
 _ANY_NUMBER = re.compile(r"[+-]?([0-9]+(\.[0-9]*)?|\.[0-9]+)([eE][+-]?[0-9]+)?")
 _COMMAS = re.compile(r"[+-]?[0-9]{1,3}(,[0-9]{3})+(?![0-9,])")

@@ -159,12 +159,24 @@ def _separators(text: str) -> list[str]:
     """Names of the separators that are possible. A tab or a semicolon is never part of a number; a comma may be."""
     lines = [line for line in text.splitlines() if line.strip()]
     for name in ("tab", "semicolon"):
-        if sum(_MARKS[name] in line for line in lines) * 2 > len(lines):
+        if any(_parts(name, lines, begin) for begin in _begins(name, lines)):
             return [name]
     if _barred(lines):
         return ["bar"]
     found = [name for name, mark in (("comma", ","), ("blanks", "  "), ("blank", " ")) if mark in text.strip()]
     return found or ["tab"]
+
+
+def _begins(name: str, lines: Sequence[str]) -> set[int]:
+    """Lines with which a table may begin: the first of all, or below others the first with a mark or with two."""
+    counts = [line.count(_MARKS[name]) for line in lines]
+    return {next((k for k, count in enumerate(counts) if count >= least), 0) for least in (0, 1, 2)}
+
+
+def _parts(name: str, lines: Sequence[str], begin: int) -> bool:
+    """Whether a mark is in most lines from one on, and in two of them below others."""
+    count = sum(_MARKS[name] in line for line in lines[begin:])
+    return count * 2 > len(lines) - begin and (begin == 0 or count >= 2)
 
 
 def _barred(lines: Sequence[str]) -> bool:
@@ -199,8 +211,9 @@ def require_even(grid: Grid, first: int, head: int) -> None:
     """
     if not grid.even or not grid.counts:
         return
-    usual = Counter(grid.counts[first:]).most_common(1)[0][0]
-    for number, count in list(zip(grid.numbers, grid.counts, strict=True))[first - head :]:
+    counts = [min(count, grid.width) for count in grid.counts]  # a separator at the end of a row begins no cell
+    usual = Counter(counts[first:]).most_common(1)[0][0]
+    for number, count in list(zip(grid.numbers, counts, strict=True))[first - head :]:
         if count != usual:
             template = N_("row {row} has {cells} cells, others have {usual}")
             raise RefusedError(template, row=number, cells=count, usual=usual)

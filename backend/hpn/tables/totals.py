@@ -3,8 +3,9 @@
 from collections.abc import Sequence
 from math import isclose, nan
 
+from hpn.tables.bodies import Body, Labelled
 from hpn.tables.cells import DECIMALS, Decimal, Entry, entry, is_blank
-from hpn.tables.columns import Body, Column, Labelled
+from hpn.tables.columns import Column
 
 MOST_TOTALS = 20
 """Rows named like totals that are compared with the others; of more none is taken for a total."""

@@ -15,7 +15,7 @@ from math import inf
 from typing import TYPE_CHECKING, Any
 from warnings import catch_warnings
 
-from hpn.tables.cells import Figure, Merged, is_number, tidy
+from hpn.tables.cells import THOUSANDS, Figure, Merged, is_number, tidy
 from hpn.tables.number_formats import LONGEST_FORMAT, section_of
 from hpn.tables.sheets import LONGEST_TEXT, MOST_CELLS, Grid, RefusedError, Room, grid_of, too_many_cells
 from hpn.words.wording import N_, Sentence
@@ -208,8 +208,10 @@ def _text(cell: Any) -> str:
     value = cell.value
     if value is None:
         return ""
-    if isinstance(value, time | timedelta) and "s" in str(cell.number_format).lower():
-        return Figure(f"{_seconds(value)} s")
+    if isinstance(value, time | timedelta):
+        seconds = _seconds(value)
+        # Without seconds it may be meant as minutes and seconds, and stands as it is shown.
+        return Figure(f"{_plain(seconds)} s") if "s" in str(cell.number_format).lower() else _without_seconds(seconds)
     if isinstance(value, bool) or not isinstance(value, int | float) or abs(value) == inf:
         text = str(value)
         return tidy(text) if len(text) <= LONGEST_TEXT else text  # an infinite one, such as 1e999, is no number
@@ -219,14 +221,21 @@ def _text(cell: Any) -> str:
         return Figure(f"{_plain(value)} {written[:LONGEST_FORMAT]}")
     if section.percent:
         return Figure(f"{Decimal(repr(value)).scaleb(2):f} %")
+    if section.thousands and not section.unit:
+        return Figure(f"{_plain(value)} {THOUSANDS}{1000**section.thousands}")
     scaled = float(Fraction(value) / 1000**section.thousands) if section.thousands else value
     return Figure(f"{_plain(scaled)} {section.unit}".strip())
 
 
-def _seconds(value: time | timedelta) -> str:
+def _seconds(value: time | timedelta) -> float:
     if isinstance(value, time):
         value = timedelta(hours=value.hour, minutes=value.minute, seconds=value.second, microseconds=value.microsecond)
-    return _plain(value.total_seconds())
+    return value.total_seconds()
+
+
+def _without_seconds(seconds: float) -> str:
+    hours, minutes = divmod(int(abs(seconds) // 60), 60)
+    return f"{'-' if seconds < 0 else ''}{hours}:{minutes:02d}"
 
 
 def _plain(number: float) -> str:

@@ -110,6 +110,7 @@ _PINT = {
     "kgf_m": "kilogram_force * meter",
     "kgf_cm": "kilogram_force * centimeter",
     "rev_per_s": "revolution / second",
+    "krpm": "kilorpm",
     "deg_per_min": "degree / minute",
     "kN": "kilonewton",
     "daN": "decanewton",
@@ -123,18 +124,32 @@ _PINT = {
     "us": "microsecond",
     "min": "minute",
     "h": "hour",
+    "day": "day",
+    "kgm2": "kilogram * meter ** 2",
+    "kg_cm2": "kilogram * centimeter ** 2",
+    "kg_mm2": "kilogram * millimeter ** 2",
+    "g_cm2": "gram * centimeter ** 2",
+    "lb_in2": "pound * inch ** 2",
+    "lb_ft2": "pound * foot ** 2",
+    "oz_in2": "ounce * inch ** 2",
+    "lb_in_s2": "force_pound * inch * second ** 2",
+    "oz_in_s2": "force_ounce * inch * second ** 2",
 }
 FURTHER = {
     "torque": {
         **{"kNm": "kNm", "daNm": "daNm", "Ncm": "Ncm", "Nmm": "Nmm", "mNm": "mNm"},
         **{"oz_in": "oz·in", "kgf_m": "kgf·m", "kgf_cm": "kgf·cm"},
     },
-    "speed": {"rev_per_s": N_("rev/s"), "deg_per_min": "°/min"},
+    "speed": {"krpm": "krpm", "rev_per_s": N_("rev/s"), "deg_per_min": "°/min"},
     "force": {"kN": "kN", "daN": "daN"},
     "weight": {"g": "g"},
     "length": {"cm": "cm", "m": "m"},
     "angle": {"deg": "°", "arcsec": "arcsec"},
-    "time": {"s": "s", "ms": "ms", "us": "µs", "min": "min", "h": "h"},
+    "time": {"s": "s", "ms": "ms", "us": "µs", "min": "min", "h": "h", "day": "d"},
+    "inertia": {
+        **{"kgm2": "kg·m²", "kg_cm2": "kg·cm²", "kg_mm2": "kg·mm²", "g_cm2": "g·cm²"},
+        **{"lb_in2": "lb·in²", "lb_ft2": "lb·ft²", "oz_in2": "oz·in²", "lb_in_s2": "lb·in·s²", "oz_in_s2": "oz·in·s²"},
+    },
 }
 """Units that are read, beside those that are shown: what is measured -> codes with their symbols."""
 
@@ -244,15 +259,16 @@ def codes_of(text: str) -> tuple[str, ...]:
 
 # --- Units that people type -------------------------------------------------------------------------------------------
 
-READ = {name: {**CHOICES.get(name, {}), **FURTHER.get(name, {})} for name in (*CHOICES, "time")}
+READ = {name: {**CHOICES.get(name, {}), **FURTHER.get(name, {})} for name in (*CHOICES, "time", "inertia")}
 """What is measured -> codes of the units that it may be given in, with their symbols."""
 
 _SPELLED = {
     "rpm": "rpm r.p.m. 1/min /min U/min Umdr/min r/min rev/min revs/min Upm tr/min giri/min varv/min omw/min ot/min "
-    "min-1 U·min-1 r·min-1 rev·min-1 tr·min-1",
-    "rev_per_s": "rev/s rev/sec revs/s revs/sec U/s r/s rps tr/s giri/s varv/s 1/s /s s-1 Hz "
+    "turn/min turns/min min-1 U·min-1 r·min-1 rev·min-1 tr·min-1",
+    "krpm": "krpm kU/min",
+    "rev_per_s": "rev/s rev/sec revs/s revs/sec U/s r/s rps tr/s giri/s varv/s turn/s turns/s turns/sec 1/s /s s-1 Hz "
     "U·s-1 r·s-1 rev·s-1 tr·s-1",
-    "rad_per_s": "rad/s rad/sec rads-1 1/s /s s-1",
+    "rad_per_s": "rad/s rad/sec rads-1 1/s /s s-1 Hz",
     "deg_per_s": "°/s °/sec deg/s deg/sec degree/s degrees/s Grad/s degs-1 °s-1",
     "deg_per_min": "°/min deg/min degree/min degrees/min Grad/min",
     "N": "N Newton newtons",
@@ -277,6 +293,7 @@ _SPELLED = {
     "us": "µs us usec",
     "min": "min min. mins minute minutes Minuten",
     "h": "h hr hrs hour hours Std Std. Stunde Stunden heures",
+    "day": "d day days Tag Tage jour jours",
 }
 _ARMS = {
     "Nm": "N·m kN·mm",
@@ -289,9 +306,25 @@ _ARMS = {
     "lb_in": "lbf·in lb·in lbs·in",
     "lb_ft": "lbf·ft lb·ft lbs·ft",
     "kgf_m": "kgf·m kp·m",
-    "kgf_cm": "kgf·cm kp·cm",
+    "kgf_cm": "kgf·cm kp·cm kg·cm",
 }
-"""Units of torque as force and arm; inch and foot may stand first."""
+"""Units of torque as force and arm; inch and foot may stand first. `kg·cm` is how servos are sold."""
+
+_INERTIAS = {
+    "kgm2": "kg·m2",
+    "kg_cm2": "kg·cm2",
+    "kg_mm2": "kg·mm2",
+    "g_cm2": "g·cm2",
+    "lb_in2": "lb·in2 lbm·in2 lbs·in2",
+    "lb_ft2": "lb·ft2 lbm·ft2 lbs·ft2",
+    "oz_in2": "oz·in2",
+    "lb_in_s2": "lb·in·s2 lbf·in·s2 lb·in·sec2 lbf·in·sec2",
+    "oz_in_s2": "oz·in·s2 ozf·in·s2 oz·in·sec2 ozf·in·sec2",
+}
+"""Units of inertia: with a square of time as torque for each angular acceleration, else as mass and arm squared."""
+
+FREQUENCY = "Hz"
+"""May count turns, or be the electrical frequency of a motor: so many times the turns as it has pairs of poles."""
 
 _SIGNS = " .·⋅∙•‧・*×"
 """What stands for a product, beside a hyphen."""
@@ -299,6 +332,7 @@ _SIGNS = " .·⋅∙•‧・*×"
 _PRODUCT = re.compile(rf"(?<=[A-Za-z])[{_SIGNS}_-]+(?=[A-Za-z])")
 _AS_TYPED = str.maketrans({**dict.fromkeys("\N{MINUS SIGN}\N{EN DASH}\N{HYPHEN}", "-"), "μ": "µ"})
 _SUPERSCRIPT = re.compile(r"\^?\(?-1\)?$")
+_SQUARE = re.compile(r"(?:\^|\*\*)\(?2\)?$")
 
 
 def _spelling(text: str) -> str:
@@ -307,7 +341,7 @@ def _spelling(text: str) -> str:
     inverse = _SUPERSCRIPT.sub("-1", tight)
     if inverse != tight or inverse.endswith("-1"):
         return re.sub(rf"[{_SIGNS}^()]", "", inverse)
-    product = _PRODUCT.sub("·", tight)
+    product = _PRODUCT.sub("·", _SQUARE.sub("2", tight))
     return re.sub(r"\.? */ *", "/", product.removesuffix(".") if "·" in product else product)
 
 
@@ -322,6 +356,9 @@ def _spellings() -> dict[str, tuple[str, ...]]:
             for first, second in ((force, arm), (arm, force))[: 2 if arm in ("in", "ft") else 1]:
                 found[f"{first}·{second}"] = found[f"{first}{second}"] = [code]
                 found[f"{first}·{second}s"] = [code]
+    for code, products in _INERTIAS.items():
+        for product in products.split():
+            found[product] = found[product.replace("·", "")] = [code]
     found["Newtonmeter"] = found["Newton·meter"] = found["newton·metres"] = ["Nm"]
     return {spelling: tuple(codes) for spelling, codes in found.items()}
 
@@ -334,6 +371,7 @@ _FOLDED = {
     for spelling, codes in SPELLINGS.items()
     if len({other for each, other in SPELLINGS.items() if each.casefold() == spelling.casefold()}) == 1
     and not spelling.startswith(("mN", "Ms"))  # M and m are a factor of a thousand million
+    and spelling != "d"
 }
 QUANTITY_OF = {code: name for name, codes in READ.items() for code in codes}
 """Code of a unit -> what it measures."""

@@ -10,9 +10,10 @@ from dataclasses import dataclass, replace
 from functools import cache
 from itertools import groupby, pairwise
 
+from hpn.tables.bodies import Body
 from hpn.tables.cells import is_blank, is_number
-from hpn.tables.columns import NUMBERS, SKIP, Body, Choices, Column, in_steps, is_angular
-from hpn.tables.headings import INDEX, LONGEST, QUANTITIES, SUM, UNIT, heading_of, parts_of
+from hpn.tables.columns import NUMBERS, SKIP, Choices, Column, in_steps, is_angular, said_of, unit_by
+from hpn.tables.headings import INDEX, LONGEST, QUANTITIES, SUM, UNIT, Over, heading_of, heading_over, parts_of
 from hpn.web.form.symbols import PHASE_SYMBOLS, SYMBOLS, Symbol
 from hpn.words import units
 from hpn.words.quantities import Named
@@ -78,31 +79,34 @@ def columns_of(body: Body, choices: Choices, assumed: Collection[str]) -> tuple[
     """What each column that is not empty is; without a unit it is in that of the wire, where that may be assumed."""
     filled = [place for place in range(body.grid.width) if any(not is_blank(row[place]) for row in body.rows)]
     proposed = [_proposed(body, place) for place in filled]
-    roles = [column.role for column in proposed]
-    doubled = {role for role in roles if roles.count(role) > 1} - {SKIP, ""}
-    columns = [replace(column, role="") if column.role in doubled else column for column in proposed]
-    return tuple(_chosen(body, column, choices, assumed) for column in columns)
+    return tuple(_with_unit(body, column, choices, assumed) for column in said_of(proposed, choices, (AXIS, *BY_ROLE)))
 
 
 def _proposed(body: Body, place: int) -> AxisColumn:
     headings = body.headings[place]
     heading = " ".join(" ".join(text.split()) for text in headings)[:LONGEST]
-    for text in headings:
-        if role := _role_of(text):
-            return AxisColumn(place, heading, role)
-    said = [heading_of(text) for text in headings]
-    kinds = {each.kind for each in said} - {UNIT, ""}
-    kind = kinds.pop() if len(kinds) == 1 else ""
+    said = heading_over(headings)
+    if role := _role_over(headings, said):
+        return AxisColumn(place, heading, role)
+    kind = said.kind
     if kind in (INDEX, SUM):
         why = Sentence(NUMBERS) if kind == INDEX else Sentence(N_("a sum"))
         counts = kind == INDEX and not _numbers_rows([row[place] for row in body.rows if not is_blank(row[place])])
         return AxisColumn(place, heading, "" if counts else SKIP, skipped=why)
     if kind in QUANTITIES:
-        lasting, instant = any(each.lasting for each in said), any(each.instant for each in said)
-        return AxisColumn(place, heading, kind, lasting=lasting, instant=instant)
+        return AxisColumn(place, heading, kind, lasting=said.lasting, instant=said.instant or place in body.dated)
     if not any(is_number(row[place]) for row in body.rows):
         return AxisColumn(place, heading, SKIP, skipped=Sentence(N_("text")))
     return AxisColumn(place, heading)
+
+
+def _role_over(headings: Sequence[str], said: Over) -> str:
+    """Role by the name of an input that all texts above a column make together, or by the same name in each."""
+    found = {role for text in headings if (role := _role_of(text))}
+    names = [text for text in headings if heading_of(text).kind != UNIT]
+    if len(names) > 1:
+        found = {role} if (role := _role_of(said.name)) else found if len(found) == len(names) == 1 else set()
+    return found.pop() if len(found) == 1 else ""
 
 
 def _numbers_rows(cells: Sequence[str]) -> bool:
@@ -144,11 +148,8 @@ def _folded(text: str) -> str:
     return " ".join(text.casefold().replace("_", " ").split()).strip(" :.")
 
 
-def _chosen(body: Body, column: AxisColumn, choices: Choices, assumed: Collection[str]) -> AxisColumn:
-    """A column with what somebody has said about it, and with its unit."""
-    role = choices.roles.get(column.place, "")
-    if role in (AXIS, SKIP, *BY_ROLE):
-        column = replace(column, role=role, skipped=column.skipped if role == SKIP else None)
+def _with_unit(body: Body, column: AxisColumn, choices: Choices, assumed: Collection[str]) -> AxisColumn:
+    """A column with its unit, as somebody has said it or as it is written."""
     if not column.quantity:
         return replace(column, unit=column.symbol.unit if column.symbol else "")
     unit = choices.units.get(column.place, "")
@@ -158,13 +159,10 @@ def _chosen(body: Body, column: AxisColumn, choices: Choices, assumed: Collectio
 def _unit(body: Body, column: AxisColumn, assumed: Collection[str]) -> str:
     """Unit as the headings say it, else that of the wire if it may be assumed; else blank."""
     wire = BY_ROLE[column.role].unit
-    headings = body.headings[column.place]
-    written = {_written_unit(text, wire) for text in headings} - {""}
+    written = {_written_unit(text, wire) for text in body.headings[column.place]} - {""}
     if not written:
         return wire if wire in assumed and not is_angular(body, column) else ""
-    codes = {(wire,) if unit == wire else units.codes_for(unit, column.quantity) for unit in written}
-    only = codes.pop() if len(codes) == 1 else ()
-    return only[0] if len(only) == 1 else ""
+    return wire if written == {wire} else unit_by(written, column.quantity)
 
 
 def _written_unit(text: str, wire: str) -> str:

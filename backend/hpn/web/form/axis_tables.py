@@ -13,12 +13,14 @@ from itertools import groupby, pairwise
 from math import isfinite
 from typing import Any
 
+from hpn.tables.bodies import Body, body_of
 from hpn.tables.cells import DECIMALS, LONGEST_CELL, Decimal, Entry, Figure, Merged, entry, is_blank, is_number, plain
-from hpn.tables.columns import NO_CHOICES, REQUIRED, SKIP, Body, Choices, body_of, skipped, unit_question
+from hpn.tables.columns import NO_CHOICES, SCALES, SKIP, Choices, unit_question
+from hpn.tables.heads import REQUIRED, skipped
 from hpn.tables.numbers import split_unit
 from hpn.tables.sheets import Grid, RefusedError
 from hpn.web.form.axis_columns import AXIS, BY_ROLE, PHASES, AxisColumn, columns_of, foreign_unit
-from hpn.web.form.pasted import TIMES
+from hpn.web.form.pasted import TIMES, require_moments, scale_question, scaled_in
 from hpn.words import units
 from hpn.words.wording import N_, Sentence, Value
 
@@ -50,6 +52,8 @@ class AxisTable:
     marks: tuple[tuple[str, str], ...] = ()
     times: str = ""
     asks_times: bool = False
+    scales: str = ""
+    scaled: tuple[str, str] | None = None
     axes: tuple[dict[str, Any], ...] = ()
 
     @property
@@ -57,11 +61,16 @@ class AxisTable:
         """Whether it can be taken as it is."""
         return bool(self.axes) and not self.questions
 
+    @property
+    def unknown(self) -> int:
+        """How many columns below a header nothing is known of: they can be skipped at once."""
+        return sum(column.is_unknown for column in self.columns) if self.body and self.body.headed else 0
+
 
 def read_axes(grid: Grid, choices: Choices = NO_CHOICES, assumed: Collection[str] = ()) -> AxisTable:
     """What a table of cells is read as; raises nothing, `problem` says why it can't be."""
     try:
-        body = body_of(grid)
+        body = body_of(grid, choices.scales)
         body = _with_axes(body, columns_of(body, choices, assumed))
         columns = columns_of(body, choices, assumed)
         return _Reading(_unmerged(body, columns), columns, choices).table()
@@ -115,6 +124,9 @@ class _Reading:
         decimal, marks = self._decimal()
         groups = self._groups()
         times, asks_times = self._times(groups, decimal or ".")
+        scaled = scaled_in(self.body, (column for column in self.columns if column.is_number))
+        if scaled and self.choices.scales not in SCALES:
+            self.questions.append(scale_question(scaled))
         open_ = bool(self.questions)
         return AxisTable(
             questions=tuple(self.questions),
@@ -124,6 +136,8 @@ class _Reading:
             marks=marks,
             times=times,
             asks_times=asks_times,
+            scales=self.choices.scales,
+            scaled=scaled,
             axes=() if open_ else tuple(self._axes(groups, decimal or ".", times)),
             notes=(*self.notes, *self.body.grid.notes),
         )
@@ -218,6 +232,7 @@ class _Reading:
         if not going_on and not column.instant:
             return "durations", False
         if self.choices.times in TIMES:
+            require_moments(self.body, [column.place], self.choices.times)
             return self.choices.times, True
         if not column.instant and sum(going_on) < MOSTLY * len(going_on):
             return "durations", True

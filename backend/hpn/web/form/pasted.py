@@ -5,32 +5,31 @@ read in two ways (`1.234` is 1.234 or 1234; 0.1, 0.2, 0.3 last so long or are po
 user is asked.
 """
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import chain, pairwise
 from math import isfinite
 
 from hpn.application import DutyCycle
+from hpn.tables.bodies import DIVIDED, Body, Labelled, body_of
 from hpn.tables.cells import DECIMALS, Decimal, Entry, entry, is_blank, is_number
+from hpn.tables.clocks import PARTED
 from hpn.tables.columns import (
-    DIVIDED,
+    CELLS,
     NO_CHOICES,
-    REQUIRED,
+    SCALES,
     SKIP,
     WIRE,
-    Body,
     Choices,
     Column,
-    Labelled,
-    body_of,
     columns_of,
     has_two_ways,
-    skipped,
     unit_question,
 )
-from hpn.tables.headings import QUANTITIES, heading_of
-from hpn.tables.numbers import either
+from hpn.tables.headings import QUANTITIES, heading_over
+from hpn.tables.heads import REQUIRED, skipped
+from hpn.tables.numbers import either, known_units, split_unit
 from hpn.tables.sheets import Grid, RefusedError, grids_of, no_number
 from hpn.tables.totals import totals_of
 from hpn.web.form.symbols import columns_used
@@ -82,6 +81,8 @@ class Table:
     totals: str = ""
     asks_totals: bool = False
     named: tuple[Labelled, ...] = ()
+    scales: str = ""
+    scaled: tuple[str, str] | None = None
     parts: str = ""
     asks_parts: bool = False
     columns: tuple[Column, ...] = ()
@@ -92,6 +93,11 @@ class Table:
     def whole(self) -> bool:
         """Whether it can be taken as it is."""
         return bool(self.phases) and not self.questions
+
+    @property
+    def unknown(self) -> int:
+        """How many columns below a header nothing is known of: they can be skipped at once."""
+        return sum(column.is_unknown for column in self.columns) if self.body and self.body.headed else 0
 
 
 def read_text(text: str, choices: Choices = NO_CHOICES, assumed: Collection[str] = tuple(WIRE.values())) -> Table:
@@ -132,10 +138,10 @@ def _said(table: Table) -> tuple[object, ...]:
 def read_grid(grid: Grid, choices: Choices = NO_CHOICES, assumed: Collection[str] = tuple(WIRE.values())) -> Table:
     """What a table of cells is read as; raises nothing, `problem` says why it can't be."""
     try:
-        body = body_of(grid)
+        body = body_of(grid, choices.scales)
         asks = has_two_ways(body)
         if asks and choices.phase == "column":
-            body = body_of(grid.transposed())
+            body = body_of(grid.transposed(), choices.scales)
         parting = body.parting
         if parting and choices.parts == "first":
             body = body.above(parting[0].number)
@@ -178,6 +184,9 @@ class _Reading:
         readings = self._readings()
         decimal, marks = self._decimal(readings)
         mark = decimal if decimal else next(iter(readings))
+        scaled = scaled_in(self.body, self.used)
+        if scaled and self.choices.scales not in SCALES:
+            self.questions.append(scale_question(scaled))
         rows = readings[mark]
         self._ask_parts()
         named = self._totals(mark)
@@ -196,6 +205,8 @@ class _Reading:
             last=last,
             asks_last=asks_last,
             named=named,
+            scales=self.choices.scales,
+            scaled=scaled,
             columns=self.columns,
             body=self.body,
             phases=() if open_ else self._phases(rows, times),
@@ -241,7 +252,7 @@ class _Reading:
             for column in self.used:
                 cell = row[column.place]
                 if not is_blank(cell) and not any(entry(cell, decimal) for decimal in DECIMALS):
-                    return no_number(number, cell)
+                    return _no_number(number, cell, column)
         return RefusedError(N_("the rows write their decimals in different ways: use a point or a comma throughout"))
 
     def _decimal(self, readings: dict[Decimal, list[Row]]) -> tuple[Decimal | None, tuple[tuple[str, str], ...]]:
@@ -297,6 +308,7 @@ class _Reading:
         if lasting or not (rising or instant):
             return "durations", False
         if self.choices.times in TIMES:
+            require_moments(self.body, (column.place for column in self.used if column.role == "t"), self.choices.times)
             return self.choices.times, True
         self._ask(N_("Do the times say how long a phase lasts, or when it is?"))
         return "", True
@@ -349,13 +361,14 @@ class _Reading:
             return column.unit
         codes = units.codes_for(cell.unit, column.quantity)
         written = f"{cell.number[:30]} {cell.unit[:30]}"
-        headed = any(heading_of(text).unit for text in self.body.headings[column.place])
+        headed = column.unit != CELLS and bool(heading_over(self.body.headings[column.place]).units)
         if len(codes) > 1 and not headed:
             template = N_("{cell} in column {name} can be {first} or {second}; write one of them")
-            raise RefusedError(template, cell=written, name=column.called, **either(codes))
+            raise RefusedError(template, cell=written, name=column.called, **either(codes, cell.unit))
         if len(codes) != 1 or (headed and codes[0] != column.unit):
-            template = N_("{cell}: this unit does not belong to column {name}")
-            raise RefusedError(template, cell=written, name=column.called)
+            template = N_("{cell}: this unit does not belong to column {name}, which takes {units}")
+            taken = units.symbol_of_code(column.unit) if headed and column.unit else known_units(column.quantity)
+            raise RefusedError(template, cell=written, name=column.called, units=taken)
         return codes[0]
 
     def _phases(self, rows: Sequence[Row], times: str) -> tuple[tuple[str, ...], ...]:
@@ -383,6 +396,38 @@ class _Reading:
             return cell.number
         value = measure.wire(cell.number)
         return _text(value) if isfinite(value) else cell.number
+
+
+def _no_number(row: int, cell: str, column: Column) -> RefusedError:
+    """Why a cell is no number of a column, and what would be right: a unit that is known, a time that is one alone."""
+    number, unit = split_unit(cell)
+    if column.role == "t" and PARTED.fullmatch(cell):
+        template = N_("row {row}: {cell} may be hours or minutes; write {first} or {second}")
+        return RefusedError(template, row=row, cell=cell, first=f"{cell}:00", second=f"0:{cell:0>5}")
+    if unit[:1].isalpha() and is_number(number):
+        template = N_("row {row}: {cell} is not a number with a unit that is known here: {units}")
+        return RefusedError(template, row=row, cell=cell[:40], units=known_units(column.quantity))
+    return no_number(row, cell)
+
+
+def scaled_in(body: Body, columns: Iterable[Column]) -> tuple[str, str] | None:
+    """What a cell of some columns shows, and what it holds, where a format leaves open which of the two counts."""
+    return next((body.scaled[column.place] for column in columns if column.place in body.scaled), None)
+
+
+def scale_question(scaled: tuple[str, str]) -> Sentence:
+    """Question for numbers that a workbook shows in thousands without saying so."""
+    template = N_("The workbook shows {shown} where the cell holds {held}. Which number counts?")
+    return Sentence(template, dict(zip(("shown", "held"), scaled, strict=True)))
+
+
+def require_moments(body: Body, places: Iterable[int], times: str) -> None:
+    """Raise RefusedError for dates that are taken as durations, or as ends where nothing says when the first began."""
+    dated = not body.dated.isdisjoint(places)
+    if dated and times == "durations":
+        raise RefusedError(N_("dates say when a phase is, and not how long it lasts"))
+    if dated and times == "ends":
+        raise RefusedError(N_("dates of ends don’t say when the first phase starts: give the dates of starts"))
 
 
 MISSING = {

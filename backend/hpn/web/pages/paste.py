@@ -194,7 +194,8 @@ def choices_of(fields: Mapping[str, str], of: str) -> Choices:
         if place := _PLACE.fullmatch(name):
             said[place[1]][int(place[2])] = value
     named = {
-        name: fields.get(name, "") for name in ("separator", "phase", "decimal", "times", "last", "totals", "parts")
+        name: fields.get(name, "")
+        for name in ("separator", "phase", "decimal", "times", "last", "totals", "parts", "scales", "rest")
     }
     return Choices(**named, roles=said["r"], units=said["u"])
 

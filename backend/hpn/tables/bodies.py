@@ -1,0 +1,163 @@
+"""Body of a table: its rows of numbers below the headings, and the rows that are named like sums or like titles."""
+
+import re
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from itertools import pairwise
+from typing import NamedTuple
+
+from hpn.tables.cells import Figure, held_of, is_blank, is_number
+from hpn.tables.clocks import moment_of, seconds_between
+from hpn.tables.headings import heading_of, heading_over, is_total
+from hpn.tables.heads import MOST_COLUMNS, head_of, numbers_in, skipped, uncommented, upright
+from hpn.tables.sheets import Grid, RefusedError, require_even
+from hpn.words.wording import N_, Sentence
+
+DIVIDED = N_("row {row}: {cell} can be one number or two")
+_DIVIDED = re.compile("[0-9] [0-9]")
+_LEADS, _FOLLOWS = re.compile("[-+]?[1-9][0-9]{0,2}"), re.compile("[0-9]{3}([.,][0-9]+)?")
+
+
+class Labelled(NamedTuple):
+    """A row that its text sets apart from the phases: its number for the user, its cells, and the text."""
+
+    number: int
+    cells: tuple[str, ...]
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class Body:
+    """Rows of numbers with their numbers for the user, the headings above each column, and what was left out.
+
+    `totals` are rows of numbers by whose names they may be sums, means or extremes of the others, and `titles` rows of
+    one text. Where every row may be a total, they are among the rows as well. Columns that are `dated` had dates with a
+    time of day, and have the seconds since the first; of one that is `scaled`, what a cell shows and what it holds.
+    """
+
+    rows: tuple[tuple[str, ...], ...]
+    numbers: tuple[int, ...]
+    headings: tuple[tuple[str, ...], ...]
+    notes: tuple[Sentence, ...]
+    grid: Grid
+    totals: tuple[Labelled, ...] = ()
+    titles: tuple[Labelled, ...] = ()
+    dated: frozenset[int] = frozenset()
+    scaled: Mapping[int, tuple[str, str]] = field(default_factory=dict)
+
+    @property
+    def headed(self) -> bool:
+        """Whether anything stands above the numbers."""
+        return any(self.headings)
+
+    @property
+    def parting(self) -> tuple[Labelled, ...]:
+        """Titles with rows of numbers above and below."""
+        return tuple(title for title in self.titles if self.numbers[0] < title.number < self.numbers[-1])
+
+    def including(self, more: Iterable[Labelled]) -> "Body":
+        """With further rows among the others, in their places."""
+        rows = dict(zip(self.numbers, self.rows, strict=True)) | {each.number: each.cells for each in more}
+        return replace(self, numbers=tuple(sorted(rows)), rows=tuple(rows[number] for number in sorted(rows)))
+
+    def above(self, number: int) -> "Body":
+        """What stands above a row."""
+        count = sum(each < number for each in self.numbers)
+        totals = tuple(total for total in self.totals if total.number < number)
+        return replace(self, numbers=self.numbers[:count], rows=self.rows[:count], totals=totals)
+
+
+def body_of(grid: Grid, scales: str = "") -> Body:
+    """Rows of a table, the right way round; raises RefusedError where they make no table.
+
+    `scales` says which of two numbers counts where a format of a workbook shows another than the cell holds.
+    """
+    grid = upright(uncommented(grid))
+    if grid.turned and grid.separator == "blank":
+        _require_ungrouped(grid)
+    if grid.width > MOST_COLUMNS:
+        raise RefusedError(N_("there are more than {most} columns"), most=MOST_COLUMNS)
+    head = head_of(grid)
+    if head.end == len(grid.rows):
+        raise _no_numbers(grid)
+    require_even(grid, head.end, head.count)
+    settled = _Settled(grid.rows[head.end :], head.headings, scales)
+    notes = list(head.notes)
+    rows, totals, titles = list[Labelled](), list[Labelled](), list[Labelled]()
+    for number, row in zip(grid.numbers[head.end :], settled.rows, strict=True):
+        written, filled = [cell for cell in row if cell], [cell for cell in row if not is_blank(cell)]
+        text = next((cell for cell in filled if not is_number(cell)), "")
+        if not filled or written == [text]:
+            titles += [Labelled(number, row, text)] if text else []
+            notes += [skipped(number, " ".join(written))] if written else []
+        else:
+            _require_undivided(grid, number, filled)
+            (totals if is_total(text) else rows).append(Labelled(number, row, text))
+    found = rows or totals
+    if not found:
+        raise RefusedError(N_("there is a header, but no row of numbers below it"))
+    left_out = tuple(totals), tuple(titles)
+    body = Body((), (), head.headings, tuple(notes), grid, *left_out, settled.dated, settled.scaled)
+    return body.including(found)
+
+
+def _no_numbers(grid: Grid) -> RefusedError:
+    """Why there is no row of numbers: by a cell that may be meant as one, where a row has several."""
+    for number, row in zip(grid.numbers, grid.rows, strict=True):
+        meant = [cell for cell in row if any(map(str.isdigit, cell)) and not heading_of(cell).kind]
+        if len(meant) >= 2:
+            return RefusedError(N_("row {row}: {cell} is not a number"), row=number, cell=meant[0][:40])
+    return RefusedError(N_("there is a header, but no row of numbers below it"))
+
+
+def _require_undivided(grid: Grid, number: int, cells: Sequence[str]) -> None:
+    """Raise RefusedError where a blank between digits may end a column as well: `1 100,1 100,0` with decimal commas."""
+    for cell in cells if grid.separator == "comma" else ():
+        if _DIVIDED.search(cell) and is_number(cell):
+            raise RefusedError(DIVIDED, row=number, cell=cell[:40])
+
+
+def _require_ungrouped(grid: Grid) -> None:
+    """Raise RefusedError where every line of a turned table may have thousands in it that a blank parts: `1 1 000`."""
+    lines = [line for line in grid.transposed().rows if numbers_in(line)]
+    pairs = [
+        next((f"{a} {b}" for a, b in pairwise(line) if _LEADS.fullmatch(a) and _FOLLOWS.fullmatch(b)), None)
+        for line in lines
+    ]
+    if pairs and None not in pairs:
+        raise RefusedError(DIVIDED, row=1, cell=str(pairs[0]))
+
+
+class _Settled:
+    """Rows of cells that each hold one number: of a date its seconds, of a number in thousands the one that counts."""
+
+    def __init__(self, rows: Sequence[tuple[str, ...]], headings: Sequence[Sequence[str]], scales: str) -> None:
+        self.rows, self.dated, self.scaled = rows, frozenset[int](), dict[int, tuple[str, str]]()
+        columns = list(zip(*rows, strict=True))
+        changed = {}
+        for place, cells in enumerate(columns):
+            if not all(type(cell) is not Figure or held_of(cell) is None for cell in cells):
+                changed[place] = [self._unscaled(place, cell, scales) for cell in cells]
+            elif (dated := _seconds_since(cells)) and heading_over(headings[place]).may_be_time:
+                changed[place], self.dated = dated, self.dated | {place}
+        if changed:
+            columns = [tuple(changed.get(place, cells)) for place, cells in enumerate(columns)]
+            self.rows = list(zip(*columns, strict=True))
+
+    def _unscaled(self, place: int, cell: str, scales: str) -> str:
+        both = held_of(cell)
+        if both is None:
+            return cell
+        self.scaled.setdefault(place, both)
+        return Figure(both[scales == "held"])
+
+
+def _seconds_since(cells: Sequence[str]) -> list[str]:
+    """A column of moments as seconds since the first of them; empty where there are none, or numbers beside them."""
+    moments = [moment_of(cell) for cell in cells]
+    if not any(moment is not None for moment in moments) or any(map(is_number, cells)):
+        return []
+    return [
+        cell if moment is None else Figure(f"{seconds_between(moments, moment)} s")
+        for cell, moment in zip(cells, moments, strict=True)
+    ]
