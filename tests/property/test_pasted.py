@@ -2,7 +2,8 @@
 
 import csv
 import io
-from dataclasses import dataclass
+import re
+from dataclasses import dataclass, replace
 from decimal import Decimal
 from itertools import accumulate
 
@@ -65,9 +66,12 @@ HEADINGS = {
     "t": ("Duration", "Zeit", "t", "Durée", "Time", "Dauer", "Tid"),
 }
 UNITS: dict[str, dict[str, Decimal | int]] = {
-    "T": {"Nm": 1, "kNm": 1000, "N·m": 1, "Nmm": Decimal("0.001"), "lbf·in": Decimal("0.1129848290276167")},
-    "n": {"rpm": 1, "1/min": 1, "min-1": 1, "U/s": 60, "°/s": 1 / Decimal(6)},
-    "t": {"s": 1, "ms": Decimal("0.001"), "min": 60, "sec": 1},
+    "T": {
+        **{"Nm": 1, "kNm": 1000, "N·m": 1, "Nmm": Decimal("0.001")},
+        **{"lbf·in": Decimal("0.1129848290276167"), "kg·cm": Decimal("0.0980665")},
+    },
+    "n": {"rpm": 1, "1/min": 1, "min-1": 1, "turns/s": 60, "krpm": 1000, "°/s": 1 / Decimal(6)},
+    "t": {"s": 1, "ms": Decimal("0.001"), "min": 60, "sec": 1, "d": 86_400},
 }
 """Spellings of units, and how many of the wire's each is."""
 
@@ -92,6 +96,10 @@ class Writing:
     instants: bool
     turned: bool
     padded: bool
+    above: int = 0
+    marked: bool = False
+    tail: bool = False
+    clock: bool = False
 
 
 WRITINGS = st.builds(
@@ -108,23 +116,30 @@ WRITINGS = st.builds(
     instants=st.sampled_from([False, False, False, True]),
     turned=st.sampled_from([False, False, True]),
     padded=st.booleans(),
+    above=st.sampled_from([0, 0, 1, 12]),
+    marked=st.sampled_from([False, False, True]),
+    tail=st.sampled_from([False, False, True]),
+    clock=st.sampled_from([False, False, True]),
 )
+ABOVE = ("Project 7", "Operator: M. Muster", "Range 200 Nm", "State warm, dry")
+"""Lines about a table, as loggers write them above it."""
 
 
 def written(rows: list[tuple[Decimal, ...]], how: Writing) -> tuple[str, list[tuple[Decimal, ...]]]:
     """The text of a cycle, and the cycle in units of the wire."""
     units = how.units if how.place_of_units != "none" else ("Nm", "rpm", "s")
+    units = (*units[:2], "s") if how.clock else units
     wire = [
         tuple(value * UNITS[name][unit] for name, value, unit in zip(LETTERS, row, units, strict=True)) for row in rows
     ]
     order = how.order if how.headings >= 0 or how.place_of_units != "none" else (0, 1, 2)
     times = list(accumulate(row[2] for row in rows)) if how.instants else [row[2] for row in rows]
     body = [[*row[:2], time] for row, time in zip(rows, times, strict=True)]
-    cells = [[_number(row[k], how) + _behind(units[k], how) for k in order] for row in body]
+    cells = [[_cell(k, row[k], units[k], how) for k in order] for row in body]
     cells = [[*_first(how, number), *row] for number, row in enumerate(cells, start=1)]
     shift = SHIFTS[how.first]
     if how.last != "none":
-        totals = [_number(sum((row[k] for row in rows), Decimal(0)), how) + _behind(units[k], how) for k in range(3)]
+        totals = [_cell(k, sum((row[k] for row in rows), Decimal(0)), units[k], how) for k in range(3)]
         sums = [totals[k] if k == 2 or how.last == "sum" else "" for k in order]
         label = ["Total"] if how.last == "labelled" else [""]
         cells.append([*label[:shift], *sums])
@@ -132,7 +147,20 @@ def written(rows: list[tuple[Decimal, ...]], how: Writing) -> tuple[str, list[tu
     table = [*head, *cells]
     if how.turned and head:  # bare numbers are rows of phases, as the page says
         table = [list(column) for column in zip(*table, strict=True)]
-    return _text(table, how), wire
+    text = _text(table, how)
+    above = "".join(f"{ABOVE[k % len(ABOVE)]}\n" for k in range(how.above))
+    if how.tail and how.separator.strip():
+        text = "".join(line.rstrip("\r\n") + how.separator + "\n" for line in text.splitlines())
+    return f"{above}{'# ' if how.marked and how.headings >= 0 else ''}{text}", wire
+
+
+def _cell(k: int, value: Decimal, unit: str, how: Writing) -> str:
+    if LETTERS[k] != "t" or not how.clock:
+        return _number(value, how) + _behind(unit, how)
+    whole, _, fraction = f"{value:f}".partition(".")
+    minutes, seconds = divmod(int(whole), 60)
+    mark = f"{LOCALES[how.locale][0]}{fraction}" if fraction else ""
+    return f"{minutes // 60}:{minutes % 60:02d}:{seconds:02d}{mark}"
 
 
 def _number(value: Decimal, how: Writing) -> str:
@@ -196,6 +224,31 @@ def test_answers_to_what_is_asked_lead_to_the_cycle(rows: list[tuple[Decimal, ..
     if table.whole and not (how.instants and not table.asks_times) and (how.last != "sum" or table.asks_last):
         wanted = [pytest.approx([float(value) for value in row], rel=1e-9) for row in wire]
         assert [list(phase[:3]) for phase in phases_of(table)] == wanted, text
+
+
+UNKNOWN = ("Motor speed", "Motormoment", "Drehzahl n1", "Temp", "Position", "I_eff")
+
+
+@given(
+    st.lists(st.tuples(numbers, numbers, numbers), min_size=1, max_size=5),
+    WRITINGS,
+    st.sampled_from(LETTERS),
+    st.sampled_from(UNKNOWN),
+)
+def test_a_column_under_a_name_that_nobody_knows_is_asked_whatever_its_unit_says(
+    rows: list[tuple[Decimal, ...]], how: Writing, letter: str, name: str
+) -> None:
+    how = replace(how, headings=max(how.headings, 0))
+    known = HEADINGS[letter][how.headings] if not (how.instants and letter == "t") else "t"
+    text, _ = written(rows, how)
+    lines = text.splitlines()
+    head = min(how.above, len(lines) - 1)
+    if known not in text or how.turned or not (how.separator.strip() or how.separator == "\t"):
+        return
+    lines[head] = re.sub(rf"(?<![^\W_]){re.escape(known)}(?![^\W_])", name, lines[head], count=1)
+    table = read_text("\n".join(lines))
+    assert not any(column.role in set(LETTERS) and name in column.heading for column in table.columns), lines
+    assert not table.whole, lines
 
 
 @given(st.text(max_size=200))

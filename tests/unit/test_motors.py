@@ -184,3 +184,50 @@ def test_a_question_that_cannot_be_answered_says_why(path: str, body: str, statu
         assert said in reply.text
         fine = client.post("/api/v1/motors/HPN-20A-5", json=worked_example())
         assert (fine.status_code, fine.json()["motors"]) == (200, [])
+
+
+@pytest.mark.parametrize(
+    ("header", "cell"),
+    [
+        ("inertia_kgm2", "1.5 kg·cm²"),
+        ("inertia_kgm2", "0.00015 kgm2"),
+        ("inertia_kgcm2", "1.5"),
+        ("inertia_kg_cm2", "1.5"),
+        ("inertia [kg·cm²]", "1.5"),
+        ("inertia_gcm2", "1500"),
+        ("inertia_gcm2", "1.5 kgcm2"),
+    ],
+)
+def test_inertia_of_a_motor_is_read_in_the_unit_that_it_is_written_in(
+    supplemented: Supplement, header: str, cell: str
+) -> None:
+    book = supplemented(motors=f"{HEADER.replace('inertia_kgm2', header)}M 40,6000,3000,2.4,7.2,{cell},data sheet\n")
+
+    assert book.motors[0].inertia_kgm2 == 0.00015
+
+
+@pytest.mark.parametrize(
+    ("cell", "inertia_kgm2"),
+    [("1 lb·in²", 0.0002926396534292), ("1 oz·in·s²", 0.0070615518142260435), ("1 oz-in²", 1.8289978339325e-05)],
+)
+def test_inertia_of_a_motor_in_inches_is_exact(supplemented: Supplement, cell: str, inertia_kgm2: float) -> None:
+    book = supplemented(motors=f"{HEADER}M 40,6000,3000,2.4,7.2,{cell},data sheet\n")
+
+    assert book.motors[0].inertia_kgm2 == pytest.approx(inertia_kgm2, rel=1e-11)  # twelve digits are kept
+
+
+def test_other_figures_of_a_motor_have_their_units_as_well(supplemented: Supplement) -> None:
+    book = supplemented(motors=HEADER.replace("peak_torque_Nm", "peak_torque_Ncm") + "M 40,6 krpm,3000,2.4,720,,\n")
+
+    assert (book.motors[0].maximum_speed_rpm, book.motors[0].peak_torque_Nm) == (6000, 7.2)
+
+
+@pytest.mark.parametrize(
+    ("header", "cell", "column"), [("inertia_kgm2", "1.5 kgm", "inertia_kgm2"), ("inertia_kgm", "1.5", "inertia_kgm")]
+)
+def test_unknown_unit_of_a_motor_names_those_that_are_known(
+    supplemented: Supplement, header: str, cell: str, column: str
+) -> None:
+    with pytest.raises(CatalogueError, match=r"kgm is not a unit of this quantity; it takes kg·m², kg·cm²") as refusal:
+        supplemented(motors=f"{HEADER.replace('inertia_kgm2', header)}M 40,6000,3000,2.4,7.2,{cell},data sheet\n")
+    assert column in str(refusal.value)

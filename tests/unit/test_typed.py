@@ -35,6 +35,21 @@ def typed(name: str, text: str, written: str = "") -> Application | str:
         ("Lh", "60 min", "&Lh=1"),
         ("ta", "77 °F", "&ta=25"),
         ("K3", "2 kNm/rad", "&K3=2000"),
+        ("n", "2.5 krpm", "n=2500&"),
+        ("n", "4 turns/s", "n=240&"),
+        ("T", "100 kg·cm", "T=9.80665&"),
+        ("T", "1000 oz-in", "T=7.06155181423&"),
+        ("Lh", "2 d", "&Lh=48"),
+        ("Lh", "2 days", "&Lh=48"),
+        ("JL", "1.5 kg·cm²", "&JL=0.00015"),
+        ("JL", "1.5 kgcm2", "&JL=0.00015"),
+        ("JL", "1.5 kg cm^2", "&JL=0.00015"),
+        ("JL", "1500 g·cm²", "&JL=0.00015"),
+        ("JL", "0.15 kgm²", "&JL=0.15"),
+        ("JL", "1 lb·in²", "&JL=0.000292639653429"),
+        ("JL", "1 lb-in2", "&JL=0.000292639653429"),
+        ("JL", "1 oz·in·s²", "&JL=0.00706155181423"),
+        ("JL", "1 oz-in-sec²", "&JL=0.00706155181423"),
         ("T", "=40*2", "T=80&"),
         ("T", "=0.1+0.2", "T=0.3&"),
         ("T", "=-(12 - 3.5) / 2", "T=-4.25&"),
@@ -63,6 +78,10 @@ def test_unit_of_its_own_counts_before_the_readers_and_a_sum_is_in_the_readers(t
         ("T", "5 N", "N is not a unit of this quantity; it takes Nm, lb·in"),
         ("T", "5 MNm", "MNm is not a unit"),
         ("n", "5 1/s", "1/s can be rev/s or rad/s"),
+        ("n", "50 Hz", "Hz can be rev/s or an electrical frequency"),
+        ("JL", "5 kg·cm", "kg·cm is not a unit of this quantity; it takes kg·m², kg·cm², kg·mm², g·cm², lb·in²"),
+        ("T", "5 kg·cm²", "kg·cm² is not a unit of this quantity; it takes Nm, lb·in"),
+        ("Lh", "2 weeks", "weeks is not a unit of this quantity; it takes s, ms, µs, min, h, d"),
         ("fw", "1 Nm", "takes a number without a unit"),
         ("K3", "5 Nm", "Nm is not a unit of this quantity; it takes Nm/rad"),
         ("T", "=40,5*2", "write 40.5"),
@@ -98,6 +117,9 @@ def test_every_unit_is_read_by_its_own_symbol() -> None:
             assert units.codes_for(symbol, quantity) == (code,), symbol
 
 
+POUND, INCH = Fraction("0.45359237"), Fraction("0.0254")
+"""In kg and m, by the agreement of 1959."""
+
 STANDARD_GRAVITY = Fraction("9.80665")
 """In m/s², ISO 80000-4 and the third CGPM: a kilogram-force, or kilopond, is so many newtons."""
 
@@ -117,7 +139,20 @@ STANDARD_GRAVITY = Fraction("9.80665")
         ("r.p.m. R.P.M. revs/min rev./min ot./min Umdr./min", "rpm", "rpm", Fraction(1)),
         ("tr.min-1 tr·min⁻¹ U·min-1 min–1 min−1 min^–1", "rpm", "rpm", Fraction(1)),
         ("revs/sec", "rev_per_s", "rpm", Fraction(60)),
-        ("U·s-1 rev·s⁻¹ r·s-1", "rev_per_s", "rpm", Fraction(60)),
+        ("U·s-1 rev·s⁻¹ r·s-1 turns/s turn/s", "rev_per_s", "rpm", Fraction(60)),
+        ("krpm kRPM kU/min", "krpm", "rpm", Fraction(1000)),
+        ("turn/min turns/min", "rpm", "rpm", Fraction(1)),
+        ("d day days Tage", "day", "h", Fraction(24)),
+        ("kg·cm kg-cm kgcm kg.cm", "kgf_cm", "Nm", STANDARD_GRAVITY / 100),
+        ("kg·m² kgm2 kgm² kg.m^2 kg*m**2 kg-m2", "kgm2", "kgm2", Fraction(1)),
+        ("kg·cm² kgcm2 kgcm² kg.cm2 kg·cm^2 KG·CM²", "kg_cm2", "kgm2", Fraction(1, 10**4)),
+        ("g·cm² gcm2 gcm² g-cm^2", "g_cm2", "kgm2", Fraction(1, 10**7)),
+        ("kg·mm² kgmm2", "kg_mm2", "kgm2", Fraction(1, 10**6)),
+        ("lb·in² lb-in² lbin2 lb.in^2 lbm·in²", "lb_in2", "kgm2", POUND * INCH**2),
+        ("lb·ft² lb-ft2", "lb_ft2", "kgm2", POUND * (12 * INCH) ** 2),
+        ("oz·in² oz-in2", "oz_in2", "kgm2", POUND / 16 * INCH**2),
+        ("oz·in·s² oz-in-s² oz-in-sec² oz.in.s^2", "oz_in_s2", "kgm2", POUND / 16 * STANDARD_GRAVITY * INCH),
+        ("lb·in·s² lb-in-sec² lbf·in·s²", "lb_in_s2", "kgm2", POUND * STANDARD_GRAVITY * INCH),
     ],
 )
 def test_unit_in_another_spelling_is_the_same_to_the_last_digit(

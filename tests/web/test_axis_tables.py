@@ -323,6 +323,89 @@ def test_a_unit_row_below_the_names_of_columns_is_asked_where_it_says_otherwise(
     ]
 
 
+def test_a_row_of_units_lets_no_name_vanish() -> None:
+    table = read("Axis;Duration;Motor speed;Torque", ";s;rpm;Nm", "A;1;2500;40")
+
+    assert asked(table) == ["What is column “Motor speed rpm”?", "Which column is the speed?"]
+    assert [column.role for column in table.columns] == ["axis", "t", "", "T"]
+
+
+def test_a_name_above_that_of_a_quantity_counts() -> None:
+    table = read("Achse;Motor;;Dauer", ";Drehmoment;Drehzahl;", "A;4;2500;1")
+
+    assert [column.role for column in table.columns] == ["axis", "", "", "t"]
+    assert "What is column “Motor Drehzahl”?" in asked(table)
+    joined = read("Achse;Drehmoment;;Drehzahl;Dauer", ";;max;;", "A;40;55;250;1", roles={1: "T"})
+    assert [column.role for column in joined.columns] == ["axis", "T", "Tpk", "n", "t"]
+
+
+def test_lines_above_the_header_are_skipped_and_that_is_said() -> None:
+    lines = ["Project;X7", "Operator: M", "State: warm", "Date: March", "Sensor: T40"]
+    table = read(*lines, f"# {HEAD}", "A;40;250;1")
+
+    assert table.whole
+    assert [note.text for note in table.notes] == ["5 rows above the header are skipped: 1 to 5."]
+
+
+def test_columns_that_nobody_knows_are_skipped_at_once() -> None:
+    table = f"{HEAD};Temp;Motormoment [Nm];Lebensdauer [h]", "A;40;250;1;20;4;9"
+
+    assert read(*table).unknown == 3
+    assert read(*table, rest="skip").whole
+    taken = read(*table, rest="skip", roles={6: "Lh"})
+    assert taken.axes[0]["requirements.life_h"] == 9
+
+
+@pytest.mark.parametrize("unit", ["kg·cm²", "kgcm2"])
+def test_an_inertia_is_read_in_the_unit_of_its_heading_or_cell(unit: str) -> None:
+    headed = read(f"{HEAD};Inertia of the load [{unit}]", "A;40;250;1;12")
+    in_cells = read(f"{HEAD};Inertia of the load", f"A;40;250;1;12 {unit}")
+
+    assert headed.axes == in_cells.axes
+    assert headed.axes[0]["requirements.load_inertia_kgm2"] == 0.0012
+
+
+def test_an_inertia_in_an_unknown_unit_names_those_that_are_known() -> None:
+    (said,) = asked(read(f"{HEAD};Inertia of the load [kgm]", "A;40;250;1;12"))
+
+    assert "kgm is none that is known; known are kg·m², kg·cm²" in said
+
+
+def test_times_of_clocks_and_dates_are_read() -> None:
+    clock = read(HEAD.replace("Dauer [s]", "Dauer"), "A;40;250;0:00:30", "B;40;250;00:00:01,5")
+    dates = ("A;1;9;2026-03-01T08:00:00", "A;2;9;2026-03-01T08:00:02,5", "B;1;9;2026-03-02T08:00:00")
+    dated = HEAD.replace("Dauer [s]", "Timestamp"), *dates, "B;1;9;2026-03-02T08:00:01"
+
+    assert [axis["duration_s"] for axis in clock.axes] == [[30], [1.5]]
+    assert asked(read(*dated)) == ["Do the times say how long a phase lasts, or when it is?"]
+    assert [axis["duration_s"] for axis in read(*dated, times="starts").axes] == [[2.5], [1]]
+    assert [read(*dated, times=times).problem is None for times in ("durations", "ends")] == [False, False]
+
+
+def test_a_frequency_of_a_speed_is_asked() -> None:
+    assert asked(read("Achse;Moment [Nm];Drehzahl [Hz];Dauer [s]", "A;40;50;1")) == [
+        "Which unit is column “Drehzahl [Hz]” in? It can be rev/s or an electrical frequency."
+    ]
+
+
+def test_a_number_that_a_workbook_shows_in_thousands_is_asked() -> None:
+    table = sheet_of("0.0", "0.9")
+    assert table.scaled is None
+    book = Workbook()
+    sheet: Any = book.active
+    sheet.append(HEAD.split(";"))
+    sheet.append(["A", 40_000, 250, 1])
+    sheet["B2"].number_format = "0.0,"
+    book.save(file := io.BytesIO())
+    grid = next(iter(sheets_of(file.getvalue()).values())).grid()
+
+    assert asked(read_axes(grid, assumed=WIRE)) == [
+        "The workbook shows 40 where the cell holds 40000. Which number counts?"
+    ]
+    for scales, torque in (("shown", 40), ("held", 40_000)):
+        assert read_axes(grid, Choices(scales=scales), WIRE).axes[0]["torque_Nm"] == [torque]
+
+
 def sheet_of(format_: str, *values: str) -> AxisTable:
     """A table whose last column holds these numbers of a workbook in a format, read as weight and efficiency."""
     book = Workbook()

@@ -5,7 +5,7 @@ import re
 import time
 import zipfile
 from collections.abc import Callable, Iterator, Sequence
-from datetime import date, timedelta
+from datetime import date, datetime, timedelta
 from datetime import time as clock
 from html import unescape
 from typing import Any
@@ -118,6 +118,32 @@ def test_cell_that_shows_no_number_is_refused(client: TestClient, cells: list[Ce
     reply = answer(client, content(book(["T", "n", "Dauer", "FR"], [*cells, 1], [40, 250, 3, 1])))
     assert reply.status_code == 422
     assert words in said(reply)
+
+
+@pytest.mark.parametrize("number_format", ["0.0,", "#,##0,", "0.00,;-0.00,"])
+def test_number_that_a_format_shows_in_thousands_is_asked(client: TestClient, number_format: str) -> None:
+    file = content(book(["T", "n", "Dauer"], [(40_250, number_format), 250, 3]))
+
+    asked = answer(client, file)
+    assert asked.status_code == 200
+    assert "The workbook shows 40.25 where the cell holds 40250. Which number counts?" in said(asked)
+    of = re.findall(r'name="of" value="(\w+)"', asked.text)[0]
+    assert taken(answer(client, file, of=of, scales="shown")) == [("40.25", "250", "3")]
+    assert taken(answer(client, file, of=of, scales="held")) == [("40250", "250", "3")]
+
+
+def test_scaled_number_of_a_column_that_is_not_read_asks_nothing(client: TestClient) -> None:
+    file = content(book(["T", "n", "Dauer", "Nr."], [40, 250, 3, (1000, "0,")], [20, 250, 1, (2000, "0,")]))
+
+    assert taken(answer(client, file)) == [("40", "250", "3"), ("20", "250", "1")]
+
+
+def test_dates_of_a_workbook_are_points_in_time(client: TestClient) -> None:
+    rows: list[list[Cell]] = [[40, 250, datetime(2026, 3, 1, 8, 0, second, 500_000)] for second in (0, 2, 5)]
+    file = content(book(["T", "n", "Zeitstempel"], *rows))
+    of = re.findall(r'name="of" value="(\w+)"', answer(client, file).text)[0]
+
+    assert taken(answer(client, file, of=of, times="starts")) == [("40", "250", "2"), ("40", "250", "3")]
 
 
 def test_unit_of_a_format_that_is_none_of_its_column_is_refused(client: TestClient) -> None:

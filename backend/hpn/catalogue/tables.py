@@ -9,6 +9,7 @@ import csv
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass, fields
+from decimal import Decimal
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, TypeVar
 
@@ -16,9 +17,11 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationEr
 
 from hpn.catalogue.files import CatalogueError
 from hpn.catalogue.gear import Gear
+from hpn.tables.numbers import split_unit, unit_code
 from hpn.words.designations import canonical_size
 from hpn.words.quantities import CheckCode
-from hpn.words.units import SYMBOLS
+from hpn.words.units import NUMBER, SYMBOLS, entered, quantity_of, suffix_of
+from hpn.words.wording import Sentence
 
 LONGEST_CELL = 1000
 
@@ -333,7 +336,8 @@ def _lines(path: Path, text: str, table: type[Table]) -> Iterator[tuple[int, lis
     reader = csv.reader(text.splitlines(), strict=True)
     columns = table.columns()
     try:
-        header = next(reader, [])
+        written = next(reader, [])
+        header, codes = _header(path, written, columns)
         if sorted(header) != sorted(columns):
             wrong = [name[:40] for name in sorted(set(header) ^ set(columns)) or header]
             detail = f"the header must have the columns {', '.join(columns)}; see {', '.join(wrong[:20])}"
@@ -350,10 +354,43 @@ def _lines(path: Path, text: str, table: type[Table]) -> Iterator[tuple[int, lis
                 place = next(column for column, cell in zip(header, row, strict=True) if len(cell) > LONGEST_CELL)
                 detail = f"the cell has more than {LONGEST_CELL} characters"
                 raise CatalogueError(path, reader.line_num, place, detail)
-            yield reader.line_num, [row[index] for index in order]
+            texts = [_in_wire(row[index], columns[k], codes[index]) for k, index in enumerate(order)]
+            for column, found in zip(columns, texts, strict=True):
+                if isinstance(found, Sentence):
+                    raise CatalogueError(path, reader.line_num, column, found.text)
+            yield reader.line_num, list(map(str, texts))
     except csv.Error as error:
         detail = {"unexpected end of data": "a quote is opened and not closed"}.get(str(error), str(error))
         raise CatalogueError(path, reader.line_num, None, detail) from None
+
+
+def _header(path: Path, written: list[str], columns: list[str]) -> tuple[list[str], list[str]]:
+    """Columns by what a header calls them, and codes of their units: `inertia_kgcm2` is `inertia_kgm2` in kg·cm²."""
+    names, codes = list(written), [""] * len(written)
+    for place, name in enumerate(written):
+        for column in columns if name not in columns else ():
+            unit = suffix_of(column)
+            stem = column.removesuffix(unit or "").rstrip("_")
+            if unit and quantity_of(unit) and name.startswith((f"{stem}_", f"{stem} ")):
+                code = unit_code(name.removeprefix(stem).strip("_ []()"), unit)
+                if isinstance(code, Sentence):
+                    raise CatalogueError(path, 1, name[:40], code.text)
+                names[place], codes[place] = column, code
+    return names, codes
+
+
+def _in_wire(text: str, column: str, code: str) -> str | Sentence:
+    """A cell in the unit of its column; the unit that it says itself counts before that of the header."""
+    unit = suffix_of(column)
+    if not unit or not quantity_of(unit):
+        return text
+    number, own = split_unit(text.strip())
+    found = unit_code(own, unit) if own else code
+    if isinstance(found, Sentence):
+        return found
+    if not found or not NUMBER.fullmatch(number) or (measure := entered(unit, found)).same:
+        return number if own else text
+    return f"{Decimal(repr(measure.wire(number))):f}"
 
 
 def _key_text(column: str, text: str) -> str:

@@ -219,6 +219,7 @@ def heading_over(texts: Sequence[str]) -> Over:
     else:
         found, name = _together(names)
         kind = found[0].kind
+        measured |= {each.unit for each in found} - {""}
     return Over(
         kind,
         name,

@@ -13,8 +13,11 @@ from hpn.words.wording import N_, Sentence
 REQUIRED = ("T", "n", "t")
 """Quantities without which there is no phase."""
 
-HEAD_ROWS = MOST_HEAD_ROWS
-"""Rows among which the header is looked for."""
+HEAD_ROWS, HEAD_CELLS = MOST_HEAD_ROWS, 4000
+"""Rows among which the header is looked for, and their cells: of a wide table fewer rows."""
+
+MOST_ABOVE = 3
+"""Rows of names above the lowest: groups of columns, and groups of those."""
 
 MOST_TURNED = 20
 """Rows of a table whose quantities stand down its side."""
@@ -78,7 +81,7 @@ def upright(grid: Grid) -> Grid:
 
 def head_of(grid: Grid) -> Head:
     """Head of an upright table; raises RefusedError where numbers stand above it."""
-    named = [_named(row) for row in grid.rows[:HEAD_ROWS]]
+    named = [_named(row) for row in grid.rows[: max(1, min(HEAD_ROWS, HEAD_CELLS // grid.width))]]
     if max(named) >= 2:
         bottom = named.index(max(named))
         end = bottom + 1
@@ -92,7 +95,7 @@ def head_of(grid: Grid) -> Head:
         several = [k for k in range(end) if _filled(grid.rows[k]) >= min(2, grid.width - 1)]
         last = bottom = several[-1] if several else -1
     top = bottom
-    while top > 0 and _heads(grid.rows[top - 1], grid.rows[top]):
+    while top > max(0, bottom - MOST_ABOVE) and _heads(grid.rows[top - 1], grid.rows[top]):
         top -= 1
     places = range(max(top, 0), last + 1)
     notes = _notes(grid, [k for k in range(end) if k not in places])
