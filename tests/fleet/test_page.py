@@ -109,6 +109,17 @@ def test_german_headings_are_read_and_can_be_put_right(client: TestClient) -> No
     assert fields_of(second.text)["u3"] == "rev_per_s"
 
 
+def test_a_button_skips_all_columns_that_nobody_knows(client: TestClient) -> None:
+    first = post(client, b"Axis;Torque [Nm];Speed [rpm];Duration [s];Temp A;Temp B\nA;12,5;250;0,3;20;21\n")
+    page = unescape(first.text)
+    assert page.index("Skip 2 columns that were not recognised") < page.index("What is column “Temp A”?")
+
+    skipped = post(client, fields={**fields_of(first.text), "rest": "skip"})
+
+    assert "1 axis" in unescape(skipped.text) and 'name="rest"' not in skipped.text
+    assert post(client, fields={**fields_of(skipped.text), "size": "1"}).status_code == 303
+
+
 def test_a_fleet_shows_each_axis_with_its_link(client: TestClient, fleet: str, service: FastAPI) -> None:
     page = unescape(client.get(fleet).text)
 

@@ -371,6 +371,12 @@ def test_an_inertia_in_an_unknown_unit_names_those_that_are_known() -> None:
     assert "kgm is none that is known; known are kg·m², kg·cm²" in said
 
 
+def test_a_cell_in_an_unknown_unit_is_said_with_those_that_are_known() -> None:
+    (note,) = read(HEAD, "A;40 kgm;100;1", "B;40;100;1").notes
+
+    assert "such as 40 kgm: 1. Known are Nm, lb·in, lb·ft, kNm" in note.text
+
+
 def test_times_of_clocks_and_dates_are_read() -> None:
     clock = read(HEAD.replace("Dauer [s]", "Dauer"), "A;40;250;0:00:30", "B;40;250;00:00:01,5")
     dates = ("A;1;9;2026-03-01T08:00:00", "A;2;9;2026-03-01T08:00:02,5", "B;1;9;2026-03-02T08:00:00")

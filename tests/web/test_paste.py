@@ -82,6 +82,23 @@ def test_each_column_can_be_read_as_something_else(client: TestClient, headers: 
     }
 
 
+@pytest.mark.parametrize("headers", [HTMX, {}], ids=["with script", "without"])
+def test_a_button_before_the_questions_skips_all_columns_that_nobody_knows(
+    client: TestClient, headers: dict[str, str]
+) -> None:
+    text = "T;n;Dauer;Temp A;Temp B\n40;250;0,3;20;21"
+    page = client.post("/paste", data={"text": text}, headers=headers).text
+    button = page.index('name="rest" value="skip"')
+    assert "Skip 2 columns that were not recognised" in page
+    assert button < page.index("What is column")
+
+    skipped = client.post("/paste", data={"text": text, **chosen(page), "of": of(page), "rest": "skip"}).text
+    assert chosen(skipped)["r3"] == chosen(skipped)["r4"] == "skip"
+    assert 'name="rest"' not in skipped
+    took = client.post("/paste", data={"text": text, **chosen(skipped), "of": of(skipped), "take": "replace"})
+    assert query_of(took.headers["location"])["T"] == ["40"]
+
+
 def test_nothing_is_taken_while_anything_is_asked(client: TestClient) -> None:
     page = client.post("/paste", data={"link": LINK, "text": "1.234\t250\t3", "take": "replace"}, headers=HTMX)
     assert page.status_code == 200

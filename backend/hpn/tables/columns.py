@@ -14,7 +14,6 @@ from hpn.tables.cells import DECIMALS, entry, is_blank, is_number
 from hpn.tables.clocks import FORMAT
 from hpn.tables.headings import INDEX, LONGEST, QUANTITIES, SUM, heading_over, quantities_of
 from hpn.tables.heads import REQUIRED
-from hpn.tables.numbers import either, known_units
 from hpn.tables.sheets import RefusedError, no_number
 from hpn.words import units
 from hpn.words.wording import N_, Sentence, Value
@@ -27,9 +26,6 @@ SKIP, CELLS = "skip", "cells"
 
 NUMBERS = N_("numbers the phases")
 UNKNOWN = N_("not recognised")
-
-SCALES = ("shown", "held")
-"""Which numbers count where a format of a workbook shows thousands of what its cells hold."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -208,22 +204,6 @@ def _with_unit(body: Body, column: Column, choices: Choices, assumed: Collection
     unit = choices.units.get(column.place, "")
     known = unit in units.READ[column.quantity] or (unit == CELLS and "" not in _units_in(body, column.place))
     return replace(column, unit=unit if known else _unit(body, column, assumed))
-
-
-def unit_question(body: Body, column: Column) -> Sentence:
-    """What to ask where the unit of a column is open: which of two, or which at all where another is written."""
-    written = heading_over(body.headings[column.place]).units
-    codes = {units.codes_for(unit, column.quantity): unit for unit in sorted(written)}
-    meant, spelled = next(iter(codes.items())) if len(codes) == 1 else ((), "")
-    if len(meant) > 1:
-        template = N_("Which unit is column {name} in? It can be {first} or {second}.")
-        return Sentence(template, {"name": column.called, **either(meant, spelled)})
-    unknown = next((unit for unit in sorted(written) if not units.codes_for(unit, column.quantity)), "")
-    if unknown:
-        template = N_("Which unit is column {name} in? {unit} is none that is known; known are {units}.")
-        listed = known_units(column.quantity)
-        return Sentence(template, {"name": column.called, "unit": unknown[:20], "units": listed})
-    return Sentence(N_("Which unit is column {name} in?"), {"name": column.called})
 
 
 def is_angular(body: Body, column: Column) -> bool:

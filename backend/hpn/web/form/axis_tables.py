@@ -15,16 +15,16 @@ from typing import Any
 
 from hpn.tables.bodies import Body, body_of
 from hpn.tables.cells import DECIMALS, LONGEST_CELL, Decimal, Entry, Figure, Merged, entry, is_blank, is_number, plain
-from hpn.tables.columns import NO_CHOICES, SCALES, SKIP, Choices, unit_question
+from hpn.tables.columns import NO_CHOICES, SKIP, Choices
 from hpn.tables.heads import REQUIRED, skipped
-from hpn.tables.numbers import split_unit
+from hpn.tables.numbers import known_units, split_unit
+from hpn.tables.questions import MISSING, require_moments, scale_question, scaled_in, unit_behind, unit_question
 from hpn.tables.sheets import Grid, RefusedError
 from hpn.web.form.axis_columns import AXIS, BY_ROLE, PHASES, AxisColumn, columns_of, foreign_unit
-from hpn.web.form.pasted import TIMES, require_moments, scale_question, scaled_in
+from hpn.web.form.pasted import TIMES
 from hpn.words import units
 from hpn.words.wording import N_, Sentence, Value
 
-NEEDED = (AXIS, *REQUIRED)
 SHARES = ("u", "eta", "fw")
 """Inputs that may be written as percentages."""
 
@@ -125,8 +125,7 @@ class _Reading:
         groups = self._groups()
         times, asks_times = self._times(groups, decimal or ".")
         scaled = scaled_in(self.body, (column for column in self.columns if column.is_number))
-        if scaled and self.choices.scales not in SCALES:
-            self.questions.append(scale_question(scaled))
+        self.questions += scale_question(scaled, self.choices)
         open_ = bool(self.questions)
         return AxisTable(
             questions=tuple(self.questions),
@@ -158,7 +157,9 @@ class _Reading:
                 template = N_("Column {name}: {unit} is not read there. Convert it to {wire}, or let it be not read.")
                 wire = units.SYMBOLS.get(column.unit, "1")
                 self._ask(template, name=column.called, unit=unit, wire=wire)
-        for role in NEEDED:
+        if AXIS not in roles:
+            self._ask(N_("Which column names the axis?"))
+        for role in REQUIRED:
             if role not in roles:
                 self._ask(MISSING[role])
         for role in dict.fromkeys(roles):
@@ -183,9 +184,11 @@ class _Reading:
         self, held: Sequence[tuple[str, AxisColumn]], found: Sequence[Entry | None], marks: Collection[Decimal]
     ) -> None:
         """Say which cells are rejected with their axes: no numbers, and those in a unit that is not their column's."""
-        wrong, strange = list[str](), list[str]()
+        wrong, strange, unknown = list[str](), list[str](), list[tuple[str, AxisColumn]]()
         for (cell, column), number in zip(held, found, strict=True):
-            if number is None:
+            if number is None and column.quantity and _has_unknown_unit(cell):
+                unknown.append((cell, column))
+            elif number is None:
                 wrong.append(cell)
             elif number.unit and all(_read(cell, column, mark) is None for mark in marks):
                 strange.append(cell)
@@ -198,6 +201,13 @@ class _Reading:
         ):
             if cells:
                 self.notes.append(Sentence(template, {"count": len(cells), "cell": cells[0][:40]}))
+        if unknown:
+            cell, column = unknown[0]
+            template = N_(
+                "Cells in an unknown unit, such as {cell}: {count}. Known are {units}. Their axes are rejected."
+            )
+            said: dict[str, Value] = {"count": len(unknown), "cell": cell[:40], "units": known_units(column.quantity)}
+            self.notes.append(Sentence(template, said))
 
     def _mark(
         self, cells: Sequence[str], read: Mapping[Decimal, Sequence[Entry | None]]
@@ -362,6 +372,10 @@ def number_in(cell: str, decimal: Decimal) -> Entry | None:
     return Entry(number, unit) if number else None
 
 
+def _has_unknown_unit(cell: str) -> bool:
+    return bool(unit := unit_behind(cell)) and not units.codes_for(unit)
+
+
 def _read(cell: str, column: AxisColumn, decimal: Decimal) -> Entry | None:
     """A cell as a number in the unit of its column, or in one of its own that measures the same; None otherwise."""
     found = None if is_blank(cell) else number_in(cell, decimal)
@@ -402,11 +416,3 @@ def _seconds(cell: str, column: AxisColumn, decimal: Decimal) -> float | None:
 def _goes_on(times: Sequence[float | None]) -> bool:
     known = [time for time in times if time is not None]
     return known == sorted(known) and known[-1] > known[0]
-
-
-MISSING = {
-    AXIS: N_("Which column names the axis?"),
-    "T": N_("Which column is the torque?"),
-    "n": N_("Which column is the speed?"),
-    "t": N_("Which column is the duration?"),
-}

@@ -5,7 +5,7 @@ read in two ways (`1.234` is 1.234 or 1234; 0.1, 0.2, 0.3 last so long or are po
 user is asked.
 """
 
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import chain, pairwise
@@ -14,23 +14,21 @@ from math import isfinite
 from hpn.application import DutyCycle
 from hpn.tables.bodies import DIVIDED, Body, Labelled, body_of
 from hpn.tables.cells import DECIMALS, Decimal, Entry, entry, is_blank, is_number
-from hpn.tables.clocks import PARTED
 from hpn.tables.columns import (
     CELLS,
     NO_CHOICES,
-    SCALES,
     SKIP,
     WIRE,
     Choices,
     Column,
     columns_of,
     has_two_ways,
-    unit_question,
 )
 from hpn.tables.headings import QUANTITIES, heading_over
 from hpn.tables.heads import REQUIRED, skipped
-from hpn.tables.numbers import either, known_units, split_unit
-from hpn.tables.sheets import Grid, RefusedError, grids_of, no_number
+from hpn.tables.numbers import either, known_units
+from hpn.tables.questions import MISSING, no_number_of, require_moments, scale_question, scaled_in, unit_question
+from hpn.tables.sheets import Grid, RefusedError, grids_of
 from hpn.tables.totals import totals_of
 from hpn.web.form.symbols import columns_used
 from hpn.words import units
@@ -185,8 +183,7 @@ class _Reading:
         decimal, marks = self._decimal(readings)
         mark = decimal if decimal else next(iter(readings))
         scaled = scaled_in(self.body, self.used)
-        if scaled and self.choices.scales not in SCALES:
-            self.questions.append(scale_question(scaled))
+        self.questions += scale_question(scaled, self.choices)
         rows = readings[mark]
         self._ask_parts()
         named = self._totals(mark)
@@ -252,7 +249,7 @@ class _Reading:
             for column in self.used:
                 cell = row[column.place]
                 if not is_blank(cell) and not any(entry(cell, decimal) for decimal in DECIMALS):
-                    return _no_number(number, cell, column)
+                    return no_number_of(number, cell, column)
         return RefusedError(N_("the rows write their decimals in different ways: use a point or a comma throughout"))
 
     def _decimal(self, readings: dict[Decimal, list[Row]]) -> tuple[Decimal | None, tuple[tuple[str, str], ...]]:
@@ -398,43 +395,6 @@ class _Reading:
         return _text(value) if isfinite(value) else cell.number
 
 
-def _no_number(row: int, cell: str, column: Column) -> RefusedError:
-    """Why a cell is no number of a column, and what would be right: a unit that is known, a time that is one alone."""
-    number, unit = split_unit(cell)
-    if column.role == "t" and PARTED.fullmatch(cell):
-        template = N_("row {row}: {cell} may be hours or minutes; write {first} or {second}")
-        return RefusedError(template, row=row, cell=cell, first=f"{cell}:00", second=f"0:{cell:0>5}")
-    if unit[:1].isalpha() and is_number(number):
-        template = N_("row {row}: {cell} is not a number with a unit that is known here: {units}")
-        return RefusedError(template, row=row, cell=cell[:40], units=known_units(column.quantity))
-    return no_number(row, cell)
-
-
-def scaled_in(body: Body, columns: Iterable[Column]) -> tuple[str, str] | None:
-    """What a cell of some columns shows, and what it holds, where a format leaves open which of the two counts."""
-    return next((body.scaled[column.place] for column in columns if column.place in body.scaled), None)
-
-
-def scale_question(scaled: tuple[str, str]) -> Sentence:
-    """Question for numbers that a workbook shows in thousands without saying so."""
-    template = N_("The workbook shows {shown} where the cell holds {held}. Which number counts?")
-    return Sentence(template, dict(zip(("shown", "held"), scaled, strict=True)))
-
-
-def require_moments(body: Body, places: Iterable[int], times: str) -> None:
-    """Raise RefusedError for dates that are taken as durations, or as ends where nothing says when the first began."""
-    dated = not body.dated.isdisjoint(places)
-    if dated and times == "durations":
-        raise RefusedError(N_("dates say when a phase is, and not how long it lasts"))
-    if dated and times == "ends":
-        raise RefusedError(N_("dates of ends don’t say when the first phase starts: give the dates of starts"))
-
-
-MISSING = {
-    "T": N_("Which column is the torque?"),
-    "n": N_("Which column is the speed?"),
-    "t": N_("Which column is the duration?"),
-}
 TWICE = {
     "T": N_("Two columns are the torque."),
     "n": N_("Two columns are the speed."),
