@@ -84,6 +84,12 @@ QUALIFIERS = {
 OF_LOAD = {"load", "last", "load cycle", "lastzyklus", "duty cycle", "cycle", "zyklus"}
 """Names above that of a quantity that change nothing of it."""
 
+OF_MOTOR = {
+    *("motor", "servo", "servomotor", "motorseite", "motor side", "antrieb", "antriebsseite", "eingang", "input"),
+    *("input side", "drive", "drive side"),
+}
+"""Names above that of a quantity which say that it is another shaft's than the gear's output."""
+
 ANGULAR = {"ω", "omega", "winkelgeschwindigkeit", "angular velocity", "angular speed"}
 """Names of a speed that is as likely in rad/s as in rpm."""
 
@@ -245,6 +251,11 @@ def _together(names: Sequence[str]) -> tuple[list[Heading], str]:
 def is_qualifier(cell: str) -> bool:
     """True for a word that says of a quantity above it which figure of it a column holds."""
     return len(cell) <= LONGEST and _folded(cell.strip("[]()")) in QUALIFIERS
+
+
+def is_of_motor(cell: str) -> bool:
+    """True for a name of the motor's side."""
+    return len(cell) <= LONGEST and _folded(cell.strip("[]():")) in OF_MOTOR
 
 
 def quantities_of(unit: str) -> set[str]:

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from hpn.tables.cells import is_blank, is_meant_as_number
-from hpn.tables.headings import QUANTITIES, UNIT, heading_of, is_qualifier, quantities_of
+from hpn.tables.headings import QUANTITIES, UNIT, heading_of, is_of_motor, is_qualifier, quantities_of
 from hpn.tables.sheets import MOST_HEAD_ROWS, Grid, RefusedError
 from hpn.words.wording import N_, Sentence
 
@@ -52,7 +52,7 @@ def uncommented(grid: Grid) -> Grid:
 
     A `#` above a column of numbers stays: it is the heading of their index.
     """
-    usual = Counter(grid.counts).most_common(1)[0][0] if grid.counts else 0
+    usual = Counter(reversed(grid.counts)).most_common(1)[0][0] if grid.counts else 0
     rows, counts = list(grid.rows), list(grid.counts)
     for k, row in enumerate(rows[:HEAD_ROWS]):
         if row[0] == "#" and grid.separator in ("blank", "blanks") and counts[k] == usual + 1:
@@ -156,6 +156,8 @@ def _qualifies(row: Sequence[str], above: Sequence[str]) -> bool:
 def _heads(row: Sequence[str], below: Sequence[str]) -> bool:
     """True for a row of names above a row of the header, which are no title and no pair such as `Project;Axis 7`."""
     filled = [(k, cell) for k, cell in enumerate(row) if not is_blank(cell)]
+    if filled and all(is_of_motor(cell) for _, cell in filled):
+        return True
     if len(filled) < 2 or any(is_meant_as_number(cell) or cell[0].isdigit() or cell[-1] == ":" for _, cell in filled):
         return False
     if all(heading_of(cell).kind == UNIT for cell in below):
