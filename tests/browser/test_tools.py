@@ -87,6 +87,19 @@ def test_column_is_corrected_and_taken(visitor: Visitor) -> None:
     expect(page).to_have_url(re.compile(r"\?T=1250&n=9\.3&t=0\.3&T=500&n=12\.5&t=0\.2$"))
 
 
+def test_columns_that_nobody_knows_are_skipped_by_one_button(visitor: Visitor) -> None:
+    page = visitor.open(EXAMPLE)
+    paste(page, "T;n;Dauer;Temp A;Temp B;Lage\n9;1250;0,3;20;21;1,5\n12;500;0,2;20;22;2,5\n")
+    expect(page.get_by_text("What is column “Temp A”?")).to_be_visible()
+    button(page, "Skip 3 columns that were not recognised").click()
+    expect(page.get_by_text("All phases take 0.5 s.")).to_be_visible()
+    expect(page.get_by_label("Quantity of Temp B")).to_have_value("skip")
+    page.get_by_label("Unit of Dauer").select_option("ms")  # what the button said stays said
+    expect(page.get_by_text("All phases take 0.0005 s.")).to_be_visible()
+    button(page, "Replace phases").click()
+    expect(page).to_have_url(re.compile(r"\?T=9&n=1250&t=0\.0003&T=12&n=500&t=0\.0002$"))
+
+
 def test_what_can_not_be_read_is_said_and_nothing_is_taken(visitor: Visitor) -> None:
     page = visitor.open(EXAMPLE)
     paste(page, "40\tabc\t3")
