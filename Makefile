@@ -7,7 +7,10 @@ UPGRADE ?=# make lock UPGRADE=--upgrade
 
 VENV := .venv
 BIN := $(VENV)/bin
-UV := $(VENV)/uv/bin/uv
+TOOLS := $(VENV)/build
+UV := $(TOOLS)/bin/uv
+# Builds with the locked hatchling, which stands beside the environment as uv does.
+BUILD := PYTHONPATH="$(CURDIR)/$(TOOLS)" $(UV)
 MODULES := frontend/node_modules
 ASSETS := frontend/dist/manifest.json
 COMPILED := frontend/dist/templates/.all
@@ -25,7 +28,7 @@ endif
 export UV_SYSTEM_CERTS ?= true
 export NODE_USE_SYSTEM_CA ?= 1
 
-.PHONY: run install assets test soak mutants check bench screenshots browser office curl nginx pdfua messages lock licences sbom audit digests certificates restore clean
+.PHONY: run install assets package test soak mutants check bench screenshots browser office curl nginx pdfua messages lock licences sbom audit digests certificates restore clean
 .DELETE_ON_ERROR:
 
 run: install
@@ -79,20 +82,24 @@ screenshots: install browser
 
 # --- Python -----------------------------------------------------------------------------------------------------------
 
-$(UV): requirements-uv.lock
+$(UV): requirements-build.lock
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || { echo "Python 3.11 or newer is needed" >&2; exit 1; }
 	@$(PYTHON) -c 'import ensurepip' 2>/dev/null || { apt-get update && apt-get install -y --no-install-recommends python3-venv; }
 	$(PYTHON) -m venv $(VENV)
-	@rm -rf $(VENV)/uv
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps --require-hashes --target $(VENV)/uv -r $<
+	@rm -rf $(TOOLS)
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps --require-hashes --target $(TOOLS) -r $<
 	@touch $@
 
 $(VENV)/.run: requirements.lock
 $(VENV)/.dev: requirements-dev.lock
 $(VENV)/.run $(VENV)/.dev: $(UV) pyproject.toml
 	$(UV) pip sync --quiet --compile-bytecode --python $(BIN)/python --require-hashes $(filter %.lock,$^)
-	$(UV) pip install --quiet --python $(BIN)/python --offline --no-deps --editable .
+	$(BUILD) pip install --quiet --python $(BIN)/python --offline --no-build-isolation --no-deps --editable .
 	@touch $@
+
+# Wheel and sdist for pip, in dist/; the folders at the top of the checkout go into both.
+package: install
+	$(BUILD) build --quiet --python $(BIN)/python --offline --no-build-isolation --out-dir dist
 
 # --- Page -------------------------------------------------------------------------------------------------------------
 
@@ -158,14 +165,17 @@ nginx:
 COMPILE := pip compile --quiet --universal --python-version 3.11 --generate-hashes --no-header --no-annotate --no-config \
 	--no-emit-index-url --no-emit-find-links $(UPGRADE)
 
+# Extras that a service is installed with.
+SERVED := serve report aas fleet postgres
+
 # Texts of code and templates into the catalogues of translations; prints what is left to translate.
 messages: $(ENVIRONMENT)
 	$(BIN)/python -m tests.messages
 
 lock: $(UV) | $(NODE)
-	$(UV) $(COMPILE) pyproject.toml --output-file requirements.lock
-	$(UV) $(COMPILE) pyproject.toml --group dev --extra cluster --constraints requirements.lock --output-file requirements-dev.lock
-	$(UV) $(COMPILE) --group uv --output-file requirements-uv.lock
+	$(UV) $(COMPILE) pyproject.toml $(addprefix --extra ,$(SERVED)) --output-file requirements.lock
+	$(UV) $(COMPILE) pyproject.toml --group dev --extra all --constraints requirements.lock --output-file requirements-dev.lock
+	$(UV) $(COMPILE) --group build --output-file requirements-build.lock
 	$(UV) $(COMPILE) --group node --output-file requirements-node.lock
 	cd frontend && npm install --package-lock-only --loglevel=error
 	@# npm copies each author's funding address into the lock; the project names no addresses
@@ -219,4 +229,4 @@ restore:
 %.dump: ;
 
 clean:
-	rm -rf $(VENV) $(MODULES) frontend/dist sbom.cdx.json .*_cache .hypothesis
+	rm -rf $(VENV) $(MODULES) dist frontend/dist sbom.cdx.json .*_cache .hypothesis

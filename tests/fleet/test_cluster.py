@@ -60,7 +60,7 @@ def test_the_command_starts_a_cluster_of_its_own(tmp_path: Path) -> None:
     command: list[Any] = [
         sys.executable,
         "-m",
-        "hpn.cli",
+        "hpn",
         "fleet",
         path,
         tmp_path / "out.csv",

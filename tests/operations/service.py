@@ -91,6 +91,7 @@ def serving(
     environment: Mapping[str, str] | None = None,
     *arguments: str,
     program: Sequence[str] = (str(HPN), "serve"),
+    cwd: Path | None = None,
 ) -> Iterator[Service]:
     """Run `hpn serve`, or another program in its place, with a new database in `folder` until the block ends."""
     log = folder / "service.log"
@@ -101,6 +102,7 @@ def serving(
         with log.open("wb") as output:
             process = subprocess.Popen(
                 command,
+                cwd=cwd,
                 stdout=output,
                 stderr=output,
                 env={**clean, "HPN_DATABASE_URL": database, **(environment or {})},

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 ROOT = Path(__file__).parents[2]
 RUN_LOCK = ROOT / "requirements.lock"
-DEVELOPMENT_LOCKS = tuple(ROOT / f"requirements-{name}.lock" for name in ("dev", "uv", "node"))
+DEVELOPMENT_LOCKS = tuple(ROOT / f"requirements-{name}.lock" for name in ("dev", "build", "node"))
 PAGE = ROOT / "frontend"
 ENTRY = re.compile(r"^([\w.-]+)==(\S+)[^\\]*\\\n((?: +--hash=.*\n)+)", re.M)
 

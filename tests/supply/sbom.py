@@ -9,6 +9,7 @@ import sys
 import tomllib
 from base64 import b64decode
 from collections.abc import Iterable
+from itertools import chain
 from pathlib import Path
 from typing import Any
 from uuid import NAMESPACE_OID, uuid5
@@ -75,7 +76,8 @@ def bill() -> Bom:
         licenses=[LicenseExpression(project["license"])],
     )
     python, page = of_python(), of_page()
-    named = {re.split(r"[^\w.-]", line)[0] for line in project["dependencies"]}
+    asked = [*project["dependencies"], *chain.from_iterable(project["optional-dependencies"].values())]
+    named = {re.split(r"[^\w.-]", line)[0] for line in asked}
     bom = Bom(components=[*python, *page])
     bom.metadata.component = root
     bom.register_dependency(root, [package for package in python if package.name in named] + page)

@@ -13,6 +13,8 @@ from typing import Any
 from tests.supply import locks
 from tests.supply.audit import Answer, report
 
+LOCK = locks.ROOT / "requirements-build.lock"
+PACKAGES = locks.python(LOCK)
 OF_PYPI = {
     "vulns": [
         {
@@ -39,7 +41,7 @@ def test_known_vulnerabilities_are_named() -> None:
         audit = run(address)
 
     assert audit.returncode == 1, audit.stdout
-    (uv,) = locks.python(locks.ROOT / "requirements-uv.lock")
+    uv = next(package for package in PACKAGES if package.name == "uv")
     assert f"uv {uv.version}: PYSEC-0000-1 CVE-0000-1, mended in no version" in audit.stdout
     assert f"npm: {len(locks.page())} packages, 0 could not be looked up, 1 known" in audit.stdout
     assert "htmx.org : Made up" in audit.stdout
@@ -50,13 +52,13 @@ def test_a_database_that_refuses_is_no_sign_of_safety() -> None:
         audit = run(address)
 
     assert audit.returncode == 3, audit.stdout
-    assert "Python: 1 packages, 1 could not be looked up" in audit.stdout
+    assert f"Python: {len(PACKAGES)} packages, {len(PACKAGES)} could not be looked up" in audit.stdout
     assert "405" in audit.stdout
     assert "NOT AUDITED" in audit.stdout
 
 
 def run(address: str) -> "subprocess.CompletedProcess[str]":
-    """Audit a lock of one package, and the page's, at these databases."""
+    """Audit a short lock, and the page's, at these databases."""
     environment = os.environ | {
         "PIP_AUDIT_VULNERABILITY_SERVICE": "osv",
         "PIP_AUDIT_OSV_URL": address,
@@ -64,7 +66,7 @@ def run(address: str) -> "subprocess.CompletedProcess[str]":
         "npm_config_fetch_retries": "0",
         "NO_PROXY": "127.0.0.1",
     }
-    command = [sys.executable, "-m", "tests.supply.audit", "requirements-uv.lock"]
+    command = [sys.executable, "-m", "tests.supply.audit", LOCK.name]
     return subprocess.run(command, cwd=locks.ROOT, env=environment, capture_output=True, text=True)
 
 

@@ -232,7 +232,7 @@ def test_what_a_shell_may_take_away_is_a_line_at_most(case: str) -> None:
 
 def test_an_interruption_ends_it_without_a_word(tmp_path: Path) -> None:
     os.mkfifo(tmp_path / "pipe")
-    command = [sys.executable, "-m", "hpn.cli", "select", str(tmp_path / "pipe")]
+    command = [sys.executable, "-m", "hpn", "select", str(tmp_path / "pipe")]
     # Whoever starts the tests in the background has interruptions ignored, which processes inherit.
     heard = partial(signal.signal, signal.SIGINT, signal.default_int_handler)
     process = subprocess.Popen(command, stderr=subprocess.PIPE, preexec_fn=heard)
@@ -332,7 +332,7 @@ def test_a_wrong_setting_is_named_as_it_was_given(monkeypatch: pytest.MonkeyPatc
     ids=" ".join,
 )
 def test_a_reader_who_has_seen_enough_ends_it_quietly(arguments: list[str]) -> None:
-    command = [sys.executable, "-m", "hpn.cli", *arguments]
+    command = [sys.executable, "-m", "hpn", *arguments]
     with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
         assert process.stdin and process.stdout and process.stderr
         process.stdout.close()

@@ -33,12 +33,13 @@ from hpn.catalogue.tables import (
     VersionTable,
     WeightTable,
 )
+from hpn.installed import data_folder
 from hpn.physics.bearing import Curve, CurveError, curve_through
 from hpn.physics.equations import FloatArray
 from hpn.words.source import printed_source, supplied_source
 
 FILES = tuple(table.file for table in tables.TABLES)
-HANDBOOK_FOLDER = Path(__file__).parents[3] / "catalogue"
+HANDBOOK_FOLDER = data_folder("catalogue")
 
 SERIES_FIGURES = {
     "rated_input_speed": "rpm",

@@ -10,10 +10,11 @@ from starlette.exceptions import HTTPException
 from starlette.requests import Request
 from starlette.responses import FileResponse, Response
 
+from hpn.installed import data_folder
 from hpn.web.door.access import OPEN
 from hpn.web.door.codings import accepted_codings
 
-DIST = Path(__file__).parents[4] / "frontend/dist"
+DIST = data_folder("frontend/dist")
 ENCODINGS = {"br": ".br", "gzip": ".gz"}
 """Content codings in order of preference, and the suffix of the file that holds each."""
 

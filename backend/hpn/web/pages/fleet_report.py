@@ -15,9 +15,9 @@ from hpn.web.door.visit import VISIT, Visit
 from hpn.web.form import link_reader
 from hpn.web.form.labels import faults_of, query_of
 from hpn.web.form.link_writer import to_link
-from hpn.web.pages.assets import Assets
+from hpn.web.pages.assets import DIST, Assets
 from hpn.web.pages.fleet_view import SHOWN, FleetView
-from hpn.web.pages.templates import STATIC, environment
+from hpn.web.pages.templates import environment
 from hpn.words.reader import Reader
 
 STYLES, SCRIPT = ("app.css", "tools.css", "fleet.css"), "fleet-report.js"
@@ -55,9 +55,10 @@ def _titled(axis: str) -> str:
 
 def _environment() -> Environment:
     state = State()
-    state.assets = Assets(STATIC, {})  # what a page asks the service for stands in the file itself
+    state.assets = Assets(DIST, {})  # what a page asks the service for stands in the file itself
     return environment(state)
 
 
 def _inlined(*names: str) -> Markup:
-    return Markup("\n".join((STATIC / name).read_text(encoding="utf-8") for name in names))
+    assets = Assets.load()
+    return Markup("\n".join((assets.folder / assets.manifest[name]).read_text(encoding="utf-8") for name in names))

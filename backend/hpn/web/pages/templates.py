@@ -3,7 +3,6 @@
 import re
 from collections.abc import Callable
 from functools import lru_cache
-from pathlib import Path
 from typing import Any
 
 from jinja2 import Environment, FileSystemBytecodeCache, FileSystemLoader, StrictUndefined, pass_context
@@ -17,6 +16,7 @@ from hpn.engine.remedy import DRIVER_NAMES
 from hpn.engine.selection import Candidate, reason_of
 from hpn.explain.calculation import calculation_of
 from hpn.explain.drawings.picture import beyond_limit
+from hpn.installed import data_folder
 from hpn.web.door.visit import address, current
 from hpn.web.form import symbols, ways
 from hpn.web.form.ordering import MOTOR_CODE, ordering_code
@@ -42,8 +42,7 @@ from hpn.words.reader import GROUP, LANGUAGE_NAMES, Reader
 from hpn.words.symbols import Part, formula, sentence
 from hpn.words.wording import Sentence
 
-FRONTEND = Path(__file__).parents[4] / "frontend"
-TEMPLATES, STATIC, COMPILED = FRONTEND / "templates", FRONTEND / "static", FRONTEND / "dist" / "templates"
+TEMPLATES, COMPILED = data_folder("frontend/templates"), assets.DIST / "templates"
 
 
 class Compiled(FileSystemBytecodeCache):

@@ -1,4 +1,4 @@
-"""`python -m hpn.cli`."""
+"""`python -m hpn`."""
 
 import sys
 
