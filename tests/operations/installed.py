@@ -93,6 +93,11 @@ def needed(name: str, *extras: str) -> list[Distribution]:
     return [package for (of, _), package in found.items() if of != name]
 
 
+def brings(name: str, *extras: str) -> set[str]:
+    """Modules that may be imported where a package is installed with these extras, itself left out."""
+    return {top.removesuffix(".py").partition(".")[0] for package in needed(name, *extras) for top in _tops(package)}
+
+
 def _tops(package: Distribution) -> Iterator[str]:
     """Names of a package in the folder where packages are installed."""
     for file in package.files or ():

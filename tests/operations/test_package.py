@@ -1,17 +1,20 @@
 """Wheel and sdist: what pip installs runs every command and the page, from any folder, with the extras that it has."""
 
+import ast
 import json
 import shutil
 import subprocess
+import sys
 from collections.abc import Iterator
 from pathlib import Path
 from zipfile import ZipFile
 
 import pytest
 
+from hpn.installed import EXTRAS
 from tests.build import worked_example
 from tests.operations.dockerfile import machine
-from tests.operations.installed import ROOT, Installed, build, copy_of_checkout, install
+from tests.operations.installed import ROOT, Installed, brings, build, copy_of_checkout, install
 from tests.operations.service import Service, serving
 
 PHASES = "axis,torque_Nm,speed_rpm,duration_s\na,40,250,1\na,0,0,4\n"
@@ -35,9 +38,28 @@ def whole(wheel: Path, tmp_path_factory: pytest.TempPathFactory) -> Installed:
 
 
 @pytest.fixture(scope="module")
+def bare(wheel: Path, tmp_path_factory: pytest.TempPathFactory) -> Installed:
+    """The package without any extra."""
+    return install(wheel, tmp_path_factory.mktemp("bare"))
+
+
+@pytest.fixture(scope="module")
 def service(whole: Installed) -> Iterator[Service]:
     """A service of the package."""
     with serving(whole.elsewhere, program=(whole.hpn, "serve"), cwd=whole.elsewhere) as service:
+        yield service
+
+
+@pytest.fixture(scope="module")
+def lean(wheel: Path, tmp_path_factory: pytest.TempPathFactory) -> Installed:
+    """The package with the one extra of a service."""
+    return install(wheel, tmp_path_factory.mktemp("lean"), "serve")
+
+
+@pytest.fixture(scope="module")
+def lean_service(lean: Installed) -> Iterator[Service]:
+    """A service without further extras."""
+    with serving(lean.elsewhere, program=(lean.hpn, "serve"), cwd=lean.elsewhere) as service:
         yield service
 
 
@@ -77,26 +99,62 @@ def test_without_assets_nothing_is_built_and_a_sentence_says_why(tmp_path: Path)
     assert not [*tmp_path.glob("dist/hpn*")]
 
 
-def test_a_selection_comes_out_as_in_the_checkout(whole: Installed) -> None:
-    (whole.elsewhere / "application.json").write_text(json.dumps(worked_example()))
+@pytest.mark.parametrize("name", ["bare", "whole"])
+def test_a_selection_comes_out_as_in_the_checkout(name: str, request: pytest.FixtureRequest) -> None:
+    installed: Installed = request.getfixturevalue(name)
+    (installed.elsewhere / "application.json").write_text(json.dumps(worked_example()))
     here = subprocess.run(
         [ROOT / ".venv/bin/hpn", "select", "application.json"],
-        cwd=whole.elsewhere,
+        cwd=installed.elsewhere,
         env=machine(),
         capture_output=True,
         text=True,
     )
 
     for words in (["select", "application.json"], ["select", "application.json", "--table"], ["catalogue"]):
-        answer = whole.run(*words)
+        answer = installed.run(*words)
         assert (answer.returncode, answer.stderr) == (0, "")
         assert "HPN-" in answer.stdout
-    assert whole.run("select", "application.json").stdout == here.stdout
-    assert '"designation": "HPN-20A-5"' in whole.run("catalogue", "HPN-20-5").stdout
-    assert whole.run("--version").stdout.startswith("HPN Select ")
-    assert whole.run("key", "somebody").stdout.startswith("key, to be given to somebody")
-    module = [str(whole.environment / "bin/python"), "-m", "hpn", "--version"]
-    assert subprocess.run(module, cwd=whole.elsewhere, env=machine()).returncode == 0
+    assert installed.run("select", "application.json").stdout == here.stdout
+    assert '"designation": "HPN-20A-5"' in installed.run("catalogue", "HPN-20-5").stdout
+    assert installed.run("--version").stdout.startswith("HPN Select ")
+    assert installed.run("key", "somebody").stdout.startswith("key, to be given to somebody")
+    module = [str(installed.environment / "bin/python"), "-m", "hpn", "--version"]
+    assert subprocess.run(module, cwd=installed.elsewhere, env=machine()).returncode == 0
+
+
+def test_wrong_input_is_told_without_any_extra(bare: Installed) -> None:
+    (bare.elsewhere / "wrong.json").write_text('{"duty_cycle": {"phases": []}}')
+    (bare.elsewhere / "none.json").write_text("{")
+
+    wrong, none, setting = (
+        bare.run("select", "wrong.json"),
+        bare.run("select", "none.json"),
+        bare.run("select", "wrong.json", HPN_CATALOGUE_FOLDER="nowhere"),
+    )
+
+    assert (wrong.returncode, none.returncode, setting.returncode) == (2, 2, 2)
+    assert wrong.stderr.startswith("/duty_cycle/phases: ")
+    assert none.stderr.startswith("none.json: ")
+    assert bare.run("catalogue", HPN_CATALOGUE_FOLDER="nowhere").stderr == "nowhere: is not a folder\n"
+    assert bare.run("catalogue", HPN_PORT="70000").stderr.startswith("HPN_PORT: ")
+
+
+@pytest.mark.parametrize(
+    ("words", "extra"),
+    [
+        (["serve"], "serve"),
+        (["database"], "serve"),
+        (["fleet", "axes.csv", "answers.csv"], "fleet"),
+        (["fleet", "axes.csv", "answers.csv", "--report", "report.html"], "fleet"),
+    ],
+    ids=" ".join,
+)
+def test_a_command_without_its_extra_names_it(bare: Installed, words: list[str], extra: str) -> None:
+    answer = bare.run(*words)
+
+    assert answer.returncode == 2
+    assert answer.stderr == f"hpn {words[0]}: the extra {extra} is not installed: pip install 'hpn-select[{extra}]'\n"
 
 
 def test_a_fleet_is_sized_and_reported(whole: Installed) -> None:
@@ -128,3 +186,85 @@ def test_the_page_has_its_styles_and_a_selection_is_saved_and_printed(service: S
     for name, mark in {"report.pdf": b"%PDF", "report.xlsx": b"PK", "submodel.aasx": b"PK"}.items():
         assert service.client.get(f"{address}/{name}").content.startswith(mark)
     assert service.client.get("/fleets").status_code == 200
+
+
+@pytest.mark.parametrize(
+    ("path", "extra"),
+    [("report.pdf", "report"), ("submodel.aasx", "aas"), ("fleets", "fleet")],
+)
+def test_a_route_without_its_extra_names_it(lean_service: Service, path: str, extra: str) -> None:
+    files = {"file": ("axes.csv", PHASES, "text/csv")}
+    answer = (
+        lean_service.client.post("/fleets", files=files)
+        if path == "fleets"
+        else lean_service.client.get(f"/{path}?T=40&n=250&t=1&tp=1")
+    )
+
+    assert answer.status_code == 501
+    assert answer.json()["detail"] == f"the extra {extra} is not installed: pip install 'hpn-select[{extra}]'"
+
+
+def test_a_table_that_needs_an_extra_is_refused_by_its_name(lean_service: Service) -> None:
+    answer = lean_service.client.post("/paste", files={"file": ("cycle.parquet", b"PAR1 and more PAR1")})
+
+    assert answer.status_code == 422
+    assert "the extra fleet is not installed: pip install &#39;hpn-select[fleet]&#39;" in answer.text
+
+
+def test_a_service_with_its_one_extra_serves_page_and_api(lean_service: Service) -> None:
+    page = lean_service.client.get("/")
+    saved = lean_service.client.post("/api/v1/selections", json={"application": worked_example()})
+
+    workbook = lean_service.client.get(f"{saved.headers['Location']}/report.xlsx")
+
+    assert (page.status_code, saved.status_code, workbook.status_code) == (200, 201, 200)
+
+
+@pytest.mark.parametrize(
+    ("words", "extra"),
+    [
+        (["database"], "postgres"),
+        (["serve"], "postgres"),
+        (["fleet", "axes.csv", "answers.csv"], "fleet"),
+    ],
+    ids=lambda value: " ".join(value) if isinstance(value, list) else value,
+)
+def test_a_command_names_a_further_extra(lean: Installed, words: list[str], extra: str) -> None:
+    answer = lean.run(*words, HPN_DATABASE_URL="postgresql://nobody@127.0.0.1/none")
+
+    assert answer.returncode == 2
+    assert answer.stderr == f"hpn {words[0]}: the extra {extra} is not installed: pip install 'hpn-select[{extra}]'\n"
+
+
+@pytest.mark.parametrize(
+    ("words", "extra"), [(["--report", "report.html"], "serve"), (["--engine", "dask"], "cluster")]
+)
+def test_an_option_without_its_extra_names_it(words: list[str], extra: str, wheel: Path, tmp_path: Path) -> None:
+    installed = install(wheel, tmp_path, "fleet")
+    (installed.elsewhere / "axes.csv").write_text(PHASES)
+
+    answer = installed.run("fleet", "axes.csv", "answers.csv", *words)
+
+    assert answer.returncode == 2
+    assert answer.stderr == f"hpn fleet: the extra {extra} is not installed: pip install 'hpn-select[{extra}]'\n"
+    assert not (installed.elsewhere / "answers.csv").exists()
+    assert installed.run("fleet", "axes.csv", "answers.csv").returncode == 0
+
+
+def imported() -> set[str]:
+    """Modules of packages that any module of this one imports."""
+    trees = [ast.parse(path.read_text(encoding="utf-8")) for path in (ROOT / "backend/hpn").rglob("*.py")]
+    nodes = [node for tree in trees for node in ast.walk(tree)]
+    names = {alias.name for node in nodes if isinstance(node, ast.Import) for alias in node.names}
+    names |= {str(node.module) for node in nodes if isinstance(node, ast.ImportFrom) and not node.level}
+    return {name.partition(".")[0] for name in names} - sys.stdlib_module_names - {"hpn"}
+
+
+def test_every_module_that_is_imported_comes_with_the_package_or_an_extra_that_names_it() -> None:
+    modules = {extra: set(names) for extra, names in EXTRAS.items()}
+    brought = {extra: brings("hpn-select", extra) for extra in ("", *EXTRAS)}
+
+    assert imported() <= brought[""].union(*modules.values())
+    for extra, names in modules.items():
+        assert names <= brought[extra] - brought[""]
+    assert brought[""].union(*brought.values()) == brings("hpn-select", "all")

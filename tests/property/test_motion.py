@@ -11,12 +11,13 @@ from hypothesis import strategies as st
 from pydantic import ValidationError
 
 from hpn.application import Application
+from hpn.application.faults import pointer
 from hpn.catalogue import load_catalogue
 from hpn.engine.duty import Duty
 from hpn.physics.motion.course import course_along, course_of
 from hpn.physics.motion.pieces import pieces_of
 from hpn.physics.motion.torque import Torque, cut, integral
-from hpn.web.door.problems import Problem, pointer
+from hpn.web.door.problems import Problem
 from tests.build import Json, answer
 from tests.property.draw import linear_motions, motions, rotary_motions, signs
 from tests.reference.motion import sampled

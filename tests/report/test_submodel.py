@@ -22,7 +22,8 @@ from basyx.aas.adapter import aasx
 from hpn.application import Application
 from hpn.catalogue import Catalogue
 from hpn.engine.selection import decode, encode
-from hpn.files.aas.submodel import ARTICLE_NUMBER, ORDER_CODE, TECHNICAL_DATA, Metamodel, package
+from hpn.files.aas import Metamodel
+from hpn.files.aas.submodel import ARTICLE_NUMBER, ORDER_CODE, TECHNICAL_DATA, package
 from hpn.files.export import LOSS_FREE
 from tests.build import worked_example
 from tests.report.cases import CASES, EVERYTHING, typed_export_of

@@ -10,6 +10,9 @@ from hpn.words.wording import N_
 
 Location = Sequence[str | int]
 
+LISTED_ERRORS = 5000
+"""Errors up to which they are listed at all; of more it is only told how many there are."""
+
 REQUIRED = N_("is required")
 SHOULD = re.compile("(?:Input|Tuple|String) should")
 NOT_A_NUMBER = N_("must be a number, such as 9.3")
@@ -19,8 +22,21 @@ def faults_of(error: ValidationError | InputError) -> list[tuple[Location, str]]
     """Faults that the models or the selection have found."""
     if isinstance(error, InputError):
         return list(error.problems)
+    if error.error_count() > LISTED_ERRORS:
+        return [((), f"has {error.error_count()} errors")]
     found = error.errors(include_url=False, include_context=False, include_input=False)
     return plain_faults((entry["loc"], entry["type"], entry["msg"]) for entry in found)
+
+
+def unreadable(error: ValidationError) -> str | None:
+    """Text on an input that is no JSON; None for any other."""
+    (first, *_) = error.errors(include_url=False, include_context=False, include_input=False)
+    return first["msg"] if first["type"] == "json_invalid" else None
+
+
+def pointer(location: Location) -> str:
+    """JSON pointer (RFC 6901) of a location."""
+    return "".join("/" + str(part).replace("~", "~0").replace("/", "~1") for part in location)
 
 
 def plain_faults(found: Iterable[tuple[Location, str, str]]) -> list[tuple[Location, str]]:

@@ -5,6 +5,8 @@ import stat
 from collections.abc import Collection
 from pathlib import Path, PurePath
 
+from hpn.words.mendable import MendableError
+
 MAXIMUM_FILE_BYTES = 4_000_000
 
 SHEETS = (".csv", ".tsv", ".txt", ".xls", ".xlsx", ".ods")
@@ -19,7 +21,7 @@ KINDS = {
 }
 
 
-class CatalogueError(ValueError):
+class CatalogueError(MendableError, ValueError):
     """A catalogue or supplement file that can't be used; the text names file, line and column."""
 
     def __init__(self, file: Path | str, line: int | None, column: str | None, detail: str) -> None:

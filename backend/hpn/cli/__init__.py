@@ -14,6 +14,10 @@ from importlib import import_module
 from pathlib import Path
 from types import ModuleType
 
+from hpn.installed import require
+
+EXTRAS = {"serve": "serve", "database": "serve", "fleet": "fleet"}
+"""Extras of commands that need one."""
 COMMANDS = "select, fleet, catalogue, serve, database or key"
 
 
@@ -44,6 +48,8 @@ def main(arguments: list[str] | None = None) -> int:
 
 def _command(name: str) -> ModuleType:
     """Module of a command. What it imports is never garbage: to search it while it grows takes a fifth of a start."""
+    if name in EXTRAS:
+        require(EXTRAS[name])
     gc.disable()
     try:
         return import_module(f"hpn.cli.{name}")

@@ -3,7 +3,7 @@
 import argparse
 import sys
 
-import orjson
+import msgspec
 
 from hpn.catalogue import load_catalogue
 from hpn.web.settings import Settings
@@ -26,5 +26,5 @@ def run(options: argparse.Namespace) -> int:
             file=sys.stderr,
         )
         return 2
-    print(orjson.dumps(found, option=orjson.OPT_INDENT_2).decode())
+    print(msgspec.json.format(msgspec.json.encode(found)).decode())
     return 0

@@ -15,6 +15,7 @@ from hpn.fleet.assemble import Use
 from hpn.fleet.errors import FleetError
 from hpn.fleet.listing import listing_of
 from hpn.fleet.run import Engine, Order, processes, require_writable, size_fleet
+from hpn.installed import require
 from hpn.web.settings import Settings
 
 STOPPED = 1
@@ -87,6 +88,7 @@ def _require_report(report: Path) -> None:
     if report.suffix != ".html":
         raise FleetError(f"{report}: the suffix of a report must be .html")
     require_writable(report)
+    require("serve")  # whose page it is
 
 
 def _write_report(options: argparse.Namespace, catalogue: Catalogue, answers: Path) -> None:

@@ -6,20 +6,20 @@ from pydantic import ValidationError
 from pydantic_settings import SettingsError
 
 from hpn.application import InputError
-from hpn.application.faults import plain_message
-from hpn.catalogue import CatalogueError
+from hpn.application.faults import faults_of, plain_message, pointer, unreadable
 from hpn.cli.system import CALLERS, others
-from hpn.fleet.errors import FleetError
-from hpn.store import StoreError
-from hpn.web.door.problems import Problem
+from hpn.installed import ExtraMissingError
 from hpn.web.settings import Settings, source_of
+from hpn.words.mendable import MendableError
 
 MOST_LINES = 20
 
 
 def words_of(error: Exception, options: argparse.Namespace) -> tuple[int, list[str] | None]:
     """Exit code and lines for an error of input, settings, catalogue or database; no lines for one of the program."""
-    if isinstance(error, CatalogueError | StoreError | FleetError):
+    if isinstance(error, ExtraMissingError):
+        return CALLERS, [f"hpn {options.command}: {error}"]
+    if isinstance(error, MendableError):
         return CALLERS, [str(error)]
     if isinstance(error, SettingsError):
         return CALLERS, [str(error.__cause__ or error)]
@@ -34,12 +34,13 @@ def words_of(error: Exception, options: argparse.Namespace) -> tuple[int, list[s
 
 def _wrong_input(error: ValidationError | InputError, options: argparse.Namespace) -> list[str]:
     """A line for each field, named by its pointer; for what is no JSON a line that names the file."""
-    problem = Problem.of(error)
-    lines = [f"{entry['pointer'] or '/'}: {entry['detail']}" for entry in problem.body().get("errors", ())]
+    if isinstance(error, ValidationError) and (text := unreadable(error)):
+        file = "standard input" if options.file == "-" else options.file
+        return [f"{file}: {text}; an application is a JSON object, such as README.md shows"]
+    lines = [f"{pointer(location) or '/'}: {detail}" for location, detail in faults_of(error)]
     if len(lines) > MOST_LINES:
         lines[MOST_LINES:] = [f"and {len(lines) - MOST_LINES} more"]
-    file = "standard input" if options.file == "-" else options.file
-    return lines or [f"{file}: {problem.detail}; an application is a JSON object, such as README.md shows"]
+    return lines
 
 
 def _wrong_settings(error: ValidationError, options: argparse.Namespace) -> list[str]:

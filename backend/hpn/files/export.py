@@ -1,9 +1,12 @@
 """One selection as it leaves the service: what was asked and what was answered, never computed again."""
 
 import re
+from collections.abc import Callable
 from dataclasses import dataclass, field, fields
 from datetime import datetime
 from functools import cached_property
+from pkgutil import resolve_name
+from typing import Any
 
 import numpy as np
 
@@ -138,3 +141,9 @@ class Export:
     def _weight(self, candidate: Candidate) -> float | None:
         gear = self.gear(candidate)
         return gear.weight_kg if gear else None
+
+
+def made_by(maker: str, export: Export, *more: Any, **chosen: Any) -> bytes:
+    """File that a function, named `module:function`, makes of an export: what only names it loads nothing for it."""
+    make: Callable[..., bytes] = resolve_name(maker)
+    return make(export, *more, **chosen)

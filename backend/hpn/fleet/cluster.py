@@ -10,6 +10,7 @@ from hpn.fleet.errors import FleetError
 from hpn.fleet.grouping import Part
 from hpn.fleet.job import Job, compute
 from hpn.fleet.run import MEMORY, Engine, interrupts_held
+from hpn.installed import require
 
 CONNECT_SECONDS = 10
 
@@ -19,10 +20,8 @@ def dask(scheduler: str | None, workers: int) -> Engine:
 
     Parts are independent: nothing is exchanged between workers, and what a lost worker had is given to another.
     """
-    try:
-        distributed: Any = import_module("distributed")  # it has no types
-    except ImportError:
-        raise FleetError("--engine dask needs the extra: pip install '.[cluster]' in a checkout") from None
+    require("cluster")
+    distributed: Any = import_module("distributed")  # it has no types
 
     def run(job: Job, parts: Mapping[int, Part]) -> Iterator[int]:
         with ExitStack() as stack:

@@ -11,6 +11,7 @@ from sqlalchemy import URL, Connection, event, make_url
 from sqlalchemy.exc import ArgumentError
 from sqlalchemy.ext.asyncio import AsyncEngine, create_async_engine
 
+from hpn.installed import require
 from hpn.store.errors import StoreError
 
 WRITES = {"writes": True}
@@ -39,6 +40,7 @@ def make_engine(address: str, *, seconds: float, password: str | None = None) ->
 
 
 def _postgresql(url: URL, seconds: float) -> AsyncEngine:
+    require("postgres")
     return create_async_engine(
         url.set(drivername="postgresql+psycopg"),
         hide_parameters=True,

@@ -1,7 +1,9 @@
 """What can go wrong with the store."""
 
+from hpn.words.mendable import MendableError
 
-class StoreError(Exception):
+
+class StoreError(MendableError):
     """Base of the store's errors; its text is for people."""
 
 

@@ -12,6 +12,7 @@ from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field
 
+from hpn.installed import ExtraMissingError, require
 from hpn.tables.sheets import MOST_CELLS, Grid, RefusedError, Takes, grids_of, too_many_cells
 from hpn.tables.texts import text_of, tidied
 from hpn.tables.workbooks import MAGIC, OLD_MAGIC, sheets_of
@@ -60,12 +61,13 @@ def contents_of(content: bytes, wanted: Wanted) -> Contents:
         if content.startswith(MAGIC):
             return Contents(_sheets(content))
         if content.startswith((PARQUET, ARROW)):
+            require("fleet")
             from hpn.tables import records  # Arrow takes half a second to import
 
             read = records.parquet if content.startswith(PARQUET) else records.arrow
             return _of_rows(*read(content, wanted.takes))
         text = tidied(text_of(content))
-    except RefusedError as refused:
+    except (RefusedError, ExtraMissingError) as refused:
         return Contents(problem=refused.sentence)
     return contents_of_text(text, wanted)
 

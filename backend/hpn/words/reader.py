@@ -1,6 +1,7 @@
 """Who reads a page or a file: the language, the units and the number format that everything is shown in.
 
-The one catalogue of translations behind page and files is compiled in memory when it is first needed.
+The one catalogue of translations behind page and files is compiled in memory when it is first needed. Babel comes with
+the extra `serve`, a third of what `hpn select` would take: it is imported where something is shown to a reader.
 """
 
 import math
@@ -11,17 +12,15 @@ from functools import cache
 from gettext import GNUTranslations, NullTranslations
 from io import BytesIO
 from pathlib import Path
-
-from babel import Locale
-from babel.dates import format_date
-from babel.messages.catalog import Catalog
-from babel.messages.mofile import write_mo
-from babel.messages.pofile import read_po
+from typing import TYPE_CHECKING
 
 from hpn.words import units
 from hpn.words.source import source_sentence
 from hpn.words.units import Measure
 from hpn.words.wording import Quantity, Sentence, rounded, telling_decimals
+
+if TYPE_CHECKING:
+    from babel.messages.catalog import Catalog
 
 FOLDER = Path(__file__).parent / "locale"
 LANGUAGES = ("en", "de")
@@ -103,6 +102,8 @@ class Reader:
 
     def day(self, moment: datetime) -> str:
         """Day in UTC."""
+        from babel.dates import format_date
+
         return format_date(moment.astimezone(UTC).date(), "long", locale=_DATES[self.language])
 
     # --- Units --------------------------------------------------------------------------------------------------------
@@ -255,6 +256,8 @@ def _is_extreme(value: float) -> bool:
 @cache
 def _marks(code: str) -> tuple[str, str]:
     """Decimal and group mark."""
+    from babel import Locale
+
     marks = Locale.parse(code).number_symbols["latn"]
     return marks["decimal"], GROUP if code == "en" else marks["group"]
 
@@ -267,8 +270,10 @@ def path_of(code: str) -> Path:
     return FOLDER / code / "LC_MESSAGES/hpn.po"
 
 
-def catalogue(code: str) -> Catalog:
+def catalogue(code: str) -> "Catalog":
     """Catalogue of a language as it stands in its file."""
+    from babel.messages.pofile import read_po
+
     with path_of(code).open("rb") as file:
         return read_po(file, locale=code, domain="hpn")
 
@@ -280,6 +285,8 @@ def translations(code: str) -> NullTranslations:
         raise KeyError(code)
     if code == "en":
         return NullTranslations()
+    from babel.messages.mofile import write_mo
+
     compiled = BytesIO()
     write_mo(compiled, catalogue(code))
     compiled.seek(0)

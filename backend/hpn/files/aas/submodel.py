@@ -12,7 +12,6 @@ which one a package claims. Most other tools read 3.0 alone.
 from collections.abc import Iterable, Iterator, Mapping
 from datetime import UTC
 from io import BytesIO
-from typing import Literal
 from zipfile import ZIP_DEFLATED, ZipFile, ZipInfo
 
 from basyx.aas import model
@@ -20,6 +19,7 @@ from basyx.aas.adapter import aasx
 from pyecma376_2.core_properties import OPCCoreProperties
 
 from hpn.engine.selection import FIGURES, Candidate, CheckResult, DutyFigures, encode
+from hpn.files.aas import Metamodel
 from hpn.files.aas.concepts import CONCEPTS, concept, concept_id, published, reference, texts, told, urn
 from hpn.files.export import LOSS_FREE, Export
 from hpn.files.motion import mechanism_of, moves_of
@@ -56,7 +56,6 @@ ORDER_CODE = {
     "de": "Bestellschlüssel, soweit bekannt: Abtriebsausführung und Motoradapter folgen (Tab. 9.1).",
 }
 
-Metamodel = Literal["3.0", "3.1"]
 WRITTEN: Metamodel = "3.1"
 NAMESPACES: Mapping[Metamodel, bytes] = {
     "3.0": b"https://admin-shell.io/aas/3/0",

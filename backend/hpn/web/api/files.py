@@ -16,10 +16,8 @@ from starlette.responses import Response
 from hpn.application import Application
 from hpn.catalogue import Catalogue
 from hpn.engine.selection import decode, select
-from hpn.files.aas.submodel import Metamodel, package
-from hpn.files.export import DIGITS, Export, Heading
-from hpn.files.report.pdf import pdf
-from hpn.files.workbook.workbook import workbook
+from hpn.files.aas import Metamodel
+from hpn.files.export import DIGITS, Export, Heading, made_by
 from hpn.store import SavedSelection
 from hpn.web.api import schemas
 from hpn.web.archive import url_of, with_catalogue
@@ -27,7 +25,7 @@ from hpn.web.door.access import admit
 from hpn.web.door.bodies import parsed, read_body
 from hpn.web.door.conditions import etag_of, has_already
 from hpn.web.door.pools import pool_of, while_present
-from hpn.web.door.problems import Problem
+from hpn.web.door.problems import Problem, needs
 from hpn.web.form.labels import query_of as query_of_labels
 from hpn.web.form.link_writer import to_link
 from hpn.web.form.linked import linked, query_of
@@ -57,15 +55,16 @@ def _metamodel(
 
 @dataclass(frozen=True, slots=True)
 class File:
-    """A kind of file: its name, what the API calls it, its media type, what it is, how it is made and what of it may
-    be chosen.
+    """A kind of file: its name, what the API calls it, its media type, what it is, the function that makes it in a
+    process beside the service, the extra for that, and what of it may be chosen.
     """
 
     name: str
     noun: str
     media_type: str
     summary: str
-    build: Callable[..., bytes]
+    maker: str
+    extra: str
     disposition: str = "attachment"
     options: Callable[..., Options] = _nothing
     is_translated: bool = True
@@ -76,24 +75,26 @@ class File:
 
     def content(self, export: Export, reader: Reader, chosen: Options) -> "partial[bytes]":
         """The call that makes the file: one that a process can take which knows nothing of the web."""
-        return partial(self.build, export, *([reader] if self.is_translated else []), **chosen)
+        return partial(made_by, self.maker, export, *([reader] if self.is_translated else []), **chosen)
 
 
 FILES = (
-    File("report.pdf", "Report", "application/pdf", "PDF report", pdf, "inline"),
+    File("report.pdf", "Report", "application/pdf", "PDF report", "hpn.files.report.pdf:pdf", "report", "inline"),
     File(
         "report.xlsx",
         "Workbook",
         "application/vnd.openxmlformats-officedocument.spreadsheetml.sheet",
         "Workbook with live formulas",
-        workbook,
+        "hpn.files.workbook.workbook:workbook",
+        "serve",
     ),
     File(
         "submodel.aasx",
         "Submodel",
         "application/asset-administration-shell-package",
         "Asset Administration Shell: technical data and selection",
-        package,
+        "hpn.files.aas.submodel:package",
+        "aas",
         options=_metamodel,
         is_translated=False,
     ),
@@ -128,14 +129,18 @@ def _route(file: File) -> None:
         query = await query_of(request)
         return await _answer(request, file, lang, chosen, lambda: _linked(query, request))
 
-    shared: dict[str, Any] = {"response_class": Response, "summary": file.summary}
+    shared: dict[str, Any] = {
+        "response_class": Response,
+        "summary": file.summary,
+        "dependencies": [needs(file.extra)],
+    }
     saved_files.add_api_route(
         f"/{file.name}",
         of_saved,
         operation_id=f"getSelection{file.noun}",
         **shared,
         description=f"{file.summary} of a saved selection, as it was saved.",
-        responses=content | schemas.HAS_IT_ALREADY | schemas.problems(404, 409, 422, 503),
+        responses=content | schemas.HAS_IT_ALREADY | schemas.problems(404, 409, 422, 501, 503),
     )
     posted_files.add_api_route(
         f"/{file.name}",
@@ -144,7 +149,7 @@ def _route(file: File) -> None:
         methods=["POST"],
         description=f"{file.summary} of an application, computed now; nothing is saved.",
         openapi_extra=schemas.request_body(Application),
-        responses=content | schemas.problems(400, 408, 413, 415, 422, 503),
+        responses=content | schemas.problems(400, 408, 413, 415, 422, 501, 503),
         **shared,
     )
     linked_files.add_api_route(f"/{file.name}", of_link, methods=["GET", "POST"], **shared)

@@ -18,7 +18,7 @@ from hpn.web.door.access import admit
 from hpn.web.door.bodies import content_type_of, pass_body, wrong_type
 from hpn.web.door.disk import Share
 from hpn.web.door.pools import pool_of
-from hpn.web.door.problems import Problem
+from hpn.web.door.problems import Problem, needs
 from hpn.web.door.requests import require_same_origin
 from hpn.web.door.uploads import MULTIPART, FormSplitter, PartHead, Write
 from hpn.web.fleets import Kind, Tables, size_fleet, workplace
@@ -38,7 +38,7 @@ SUFFIXES = {media_type: suffix for suffix, media_type in MEDIA_TYPES.items()} | 
 PARTS = ("input", "axes")
 READ_BYTES = 64 * 1024
 
-router = APIRouter(prefix="/api/v1", tags=["Selection"], dependencies=[admit("batch")])
+router = APIRouter(prefix="/api/v1", tags=["Selection"], dependencies=[admit("batch"), needs("fleet")])
 
 
 @router.post(
@@ -46,7 +46,7 @@ router = APIRouter(prefix="/api/v1", tags=["Selection"], dependencies=[admit("ba
     operation_id="sizeFleet",
     summary="Select gears for a table of axes",
     openapi_extra=schemas.fleet_body(MEDIA_TYPES.values()),
-    responses=schemas.fleet_answers(MEDIA_TYPES.values(), 400, 408, 413, 415, 422, 503),
+    responses=schemas.fleet_answers(MEDIA_TYPES.values(), 400, 408, 413, 415, 422, 501, 503),
     response_class=Response,
 )
 async def size(

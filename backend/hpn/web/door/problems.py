@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterable
 from typing import Any
 
 import orjson
-from fastapi import FastAPI
+from fastapi import Depends, FastAPI
 from fastapi.exceptions import RequestValidationError
 from pydantic import ValidationError
 from starlette.exceptions import HTTPException
@@ -14,16 +14,14 @@ from starlette.routing import Match
 from starlette.types import Scope
 
 from hpn.application import InputError
-from hpn.application.faults import Location, plain_faults
+from hpn.application.faults import Location, faults_of, plain_faults, pointer, unreadable
+from hpn.installed import ExtraMissingError, require
 from hpn.words.wording import Sentence
 
 MEDIA_TYPE = "application/problem+json"
 
 MAXIMUM_ERRORS = 20
 """Errors that an answer names."""
-
-LISTED_ERRORS = 5000
-"""Errors up to which they are listed at all; of more it is only told how many there are."""
 
 TITLES = {
     400: "The request can’t be read",
@@ -44,6 +42,7 @@ TITLES = {
     429: "Too many requests",
     431: "The head of the request is too large",
     500: "Internal error",
+    501: "Not installed here",
     503: "Temporarily unavailable",
 }
 
@@ -83,18 +82,17 @@ class Problem(HTTPException):
             problem = cls(422, str(error), error.problems)
             problem.sentences = tuple(sentence for _, sentence in error.sentences)
             return problem
-        if error.error_count() > LISTED_ERRORS:
-            text = f"has {error.error_count()} errors"
-            return cls(422, text, [((), text)])
-        found = error.errors(include_url=False, include_context=False, include_input=False)
-        if found and found[0]["type"] == "json_invalid":
-            return cls(400, found[0]["msg"])
-        return cls.at((entry["loc"], entry["type"], entry["msg"]) for entry in found)
+        if text := unreadable(error):
+            return cls(400, text)
+        return cls._listing(faults_of(error))
 
     @classmethod
     def at(cls, found: Iterable[tuple[Location, str, str]]) -> "Problem":
         """Problem for pydantic's (location, type, message) entries."""
-        errors = plain_faults(found)
+        return cls._listing(plain_faults(found))
+
+    @classmethod
+    def _listing(cls, errors: list[tuple[Location, str]]) -> "Problem":
         detail = "; ".join(": ".join(filter(None, (pointer(at), text))) for at, text in errors[:3])
         return cls(422, detail, errors)
 
@@ -115,9 +113,18 @@ class Problem(HTTPException):
         return Response(orjson.dumps(self.body()), self.status_code, self.headers, MEDIA_TYPE)
 
 
-def pointer(location: Location) -> str:
-    """JSON pointer (RFC 6901) of a location."""
-    return "".join("/" + str(part).replace("~", "~0").replace("/", "~1") for part in location)
+def needs(extra: str) -> Any:
+    """Dependency of the routes that need an extra: Problem 501 where it is not installed."""
+
+    async def check() -> None:
+        try:
+            require(extra)
+        except ExtraMissingError as error:
+            problem = Problem(501, str(error))
+            problem.sentences = (error.sentence,)
+            raise problem from None
+
+    return Depends(check)
 
 
 def mistake() -> Problem:

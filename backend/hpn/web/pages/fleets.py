@@ -28,7 +28,7 @@ from hpn.web.door.access import admit, key_needed
 from hpn.web.door.bodies import pairs_of, read_form
 from hpn.web.door.observation import note
 from hpn.web.door.pools import compute, compute_apart, pool_of, while_present, worked
-from hpn.web.door.problems import Problem
+from hpn.web.door.problems import Problem, needs
 from hpn.web.door.requests import require_same_origin
 from hpn.web.door.uploads import read_parts
 from hpn.web.door.visit import current
@@ -482,7 +482,7 @@ _WORDS: dict[str, Any] = {
     "times": TIMES,
 }
 
-router = APIRouter(include_in_schema=False)
+router = APIRouter(include_in_schema=False, dependencies=[needs("fleet")])
 router.add_api_route(ADDRESS, worked(start), dependencies=[admit("calculator")])
 router.add_api_route(ADDRESS, upload, methods=["POST"], dependencies=[admit("batch")])
 router.add_api_route(f"{ADDRESS}/saved", show_saved, dependencies=[admit("listing")])

@@ -19,7 +19,7 @@ from starlette.requests import Request
 from starlette.responses import HTMLResponse, RedirectResponse, Response
 
 from hpn.application import Application
-from hpn.application.faults import plain_message
+from hpn.application.faults import plain_message, pointer
 from hpn.tables import cells
 from hpn.tables.cells import Decimal
 from hpn.tables.columns import CELLS, SKIP, WIRE, Choices, Column
@@ -30,7 +30,7 @@ from hpn.tables.texts import tidied
 from hpn.web.door.access import admit
 from hpn.web.door.bodies import pairs_of, parsed
 from hpn.web.door.pools import compute, compute_apart, worked
-from hpn.web.door.problems import Problem, pointer
+from hpn.web.door.problems import Problem
 from hpn.web.door.uploads import decoded, read_parts
 from hpn.web.door.visit import current
 from hpn.web.form import link_reader
