@@ -261,11 +261,23 @@ def test_an_option_that_says_nothing_without_another_is_refused(
         ("secret.csv", "open/out.csv", "secret.csv: this user may not read it"),
         ("closed/in.csv", "open/out.csv", "closed/in.csv: this user may not read it"),
         ("in.csv", "out.csv", "out.csv: this user may not write into "),
+        ("in.csv", "closed/out.csv", "closed/out.csv: this user may not write into "),
+        ("in.csv", "closed/deeper/out.csv", "closed/deeper: this user may not read it"),
     ],
 )
+@pytest.mark.parametrize("python", ["this", "3.14"])
 def test_what_permissions_forbid_ends_with_2_and_its_name(
-    capsys: pytest.CaptureFixture[str], source: str, output: str, said: str
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+    source: str,
+    output: str,
+    said: str,
+    python: str,
 ) -> None:
+    if python == "3.14":  # whose paths say that nothing is there where this user may not look
+        monkeypatch.setattr(Path, "exists", lambda path: os.path.exists(path))
+        monkeypatch.setattr(Path, "is_file", lambda path: os.path.isfile(path))
+        monkeypatch.setattr(Path, "is_dir", lambda path: os.path.isdir(path))
     with TemporaryDirectory() as name:
         folder = Path(name)
         (folder / "closed").mkdir()

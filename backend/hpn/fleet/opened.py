@@ -1,5 +1,7 @@
 """Opening the tables of a fleet: their formats by suffix, and the columns that must and may be there."""
 
+import os
+import stat
 from collections import Counter
 from difflib import get_close_matches
 from pathlib import Path
@@ -19,6 +21,7 @@ FORMATS: dict[str, type[Table]] = {
 FORM = "torque_Nm"
 """Column that tells the form of a table."""
 
+UNREADABLE = "this user may not read it; see its permissions"
 MOST_PROBLEMS = 20
 """Columns that are told to be wrong."""
 
@@ -28,6 +31,16 @@ def format_of(path: Path) -> str:
     if path.suffix not in FORMATS:
         raise FleetError(f"{path}: the suffix must be one of {', '.join(FORMATS)}")
     return path.suffix
+
+
+def status_of(path: Path) -> os.stat_result | None:
+    """Status of what stands at a path, or None; FleetError where this user may not look, which is another thing."""
+    try:
+        return path.stat()
+    except (FileNotFoundError, NotADirectoryError):
+        return None
+    except PermissionError:
+        raise FleetError(f"{path}: {UNREADABLE}") from None
 
 
 def open_axes(path: Path) -> Table:
@@ -50,9 +63,10 @@ def open_requirements(path: Path, phases: Table) -> Table:
 
 def _opened(path: Path) -> Table:
     suffix = format_of(path)
-    if not path.is_file():
-        raise FleetError(f"{path}: {'is not a file' if path.exists() else 'there is no such file'}")
-    if not path.stat().st_size:
+    found = status_of(path)
+    if found is None or not stat.S_ISREG(found.st_mode):
+        raise FleetError(f"{path}: {'is not a file' if found else 'there is no such file'}")
+    if not found.st_size:
         raise FleetError(f"{path}: is empty, where a table belongs")
     table = FORMATS[suffix](path)
     if isinstance(table, LinesTable) and (said := wrong_encoding(table.start_of_file())):

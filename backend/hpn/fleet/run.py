@@ -5,6 +5,7 @@ import hashlib
 import os
 import shutil
 import signal
+import stat
 import threading
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor, as_completed
@@ -23,7 +24,7 @@ from hpn.fleet.assemble import Use, assemble
 from hpn.fleet.errors import FleetError
 from hpn.fleet.grouping import Part, parts_of, with_others
 from hpn.fleet.job import Job, compute, is_own
-from hpn.fleet.opened import format_of
+from hpn.fleet.opened import UNREADABLE, format_of, status_of
 from hpn.fleet.tables import Table
 
 Engine = Callable[[Job, Mapping[int, Part]], Iterator[int]]
@@ -116,8 +117,8 @@ def _require_usable(order: Order) -> None:
     """Raise FleetError where a file would be written over, or could not be read or written."""
     read = [path for path in (order.axes, order.requirements) if path is not None]
     for path in read:
-        if not _is_readable(path):
-            raise FleetError(f"{path}: this user may not read it; see its permissions")
+        if status_of(path) is not None and not os.access(path, os.R_OK, effective_ids=True):
+            raise FleetError(f"{path}: {UNREADABLE}")
     written = list(order.targets.values())
     for place, path in enumerate(written):
         format_of(path)
@@ -126,22 +127,16 @@ def _require_usable(order: Order) -> None:
             raise FleetError(f"{path}: is named twice")
 
 
-def _is_readable(path: Path) -> bool:
-    """Whether this user may read a file; so too of none, which is told apart."""
-    try:
-        return not path.exists() or os.access(path, os.R_OK, effective_ids=True)
-    except PermissionError:  # of a folder above it
-        return False
-
-
 def require_writable(path: Path) -> None:
     """Raise FleetError where no file can be written."""
-    if not path.parent.is_dir():
+    folder = status_of(path.parent)
+    if folder is None or not stat.S_ISDIR(folder.st_mode):
         raise FleetError(f"{path}: there is no folder {path.parent}")
-    if path.is_dir():
-        raise FleetError(f"{path}: is a folder, where a file belongs")
     if not os.access(path.parent, os.W_OK | os.X_OK, effective_ids=True):
         raise FleetError(f"{path}: this user may not write into {path.parent}")
+    found = status_of(path)
+    if found is not None and stat.S_ISDIR(found.st_mode):
+        raise FleetError(f"{path}: is a folder, where a file belongs")
 
 
 def _fingerprint(path: Path) -> str:

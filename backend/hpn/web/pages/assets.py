@@ -36,9 +36,10 @@ class Assets:
     def load(cls, folder: Path = DIST) -> "Assets":
         """Read the manifest; FileNotFoundError says how to make one."""
         path = folder / "manifest.json"
-        if not path.exists():
-            raise FileNotFoundError(f"{path} is missing: build the assets with `make assets`")
-        return cls(folder, json.loads(path.read_text(encoding="utf-8")))
+        try:
+            return cls(folder, json.loads(path.read_text(encoding="utf-8")))
+        except FileNotFoundError:
+            raise FileNotFoundError(f"{path} is missing: build the assets with `make assets`") from None
 
     def url(self, name: str) -> str:
         """Address of a file, such as `/static/app.3f2a9c1b.css` for `app.css`; KeyError for an unknown name."""
