@@ -241,3 +241,30 @@ def test_what_is_no_object_and_what_is_no_field_are_told_so(api: TestClient) -> 
 
     assert line["problem"]["detail"] == "must be an object"
     assert unknown.json()["errors"] == [{"pointer": "/foo", "detail": "is not a field of this object"}]
+
+
+TWICE = b'"rank_by":"x","rank_by":"y"'
+PHASES = b'"duty_cycle":{"phases":[{"torque_Nm":40,"speed_rpm":250,"duration_s":0.3}]}'
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        b"{%s,%s}" % (PHASES, TWICE),
+        b'{"duty_cycle":{},%s}' % TWICE.replace(b"x", b"life").replace(b"y", b"weight"),
+        b'{%s,"requirements":{"ratios":[6],"life_h":-1}}' % PHASES,
+        b'{%s,"requirements":{"ratios":[6],"sizes":["99A"]}}' % PHASES,
+        b'{%s,"output_load":{"life_h":3}}' % PHASES,
+        b'{%s,"unknown":1}' % PHASES,
+        b"[]",
+        b"7",
+    ],
+)
+def test_an_item_is_refused_as_select_refuses_it(api: TestClient, text: bytes) -> None:
+    as_json = {"Content-Type": "application/json"}
+    alone = api.post("/api/v1/select", content=text, headers=as_json).json()
+    item = api.post(PATH, content=b'{"applications":[%s]}' % text, headers=as_json).json()["results"][0]["problem"]
+    line = api.post(PATH, content=text + b"\n", headers={"Content-Type": "application/x-ndjson"}).json()["problem"]
+
+    assert item == alone
+    assert line | {"detail": line["detail"].removeprefix("line 1: ")} == alone

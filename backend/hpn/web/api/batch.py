@@ -2,12 +2,12 @@
 
 import time
 from collections.abc import Iterable, Iterator, Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
 import msgspec
 from fastapi import APIRouter
 from pydantic import ValidationError
-from pydantic_core import from_json
+from pydantic_core import from_json, to_json
 from starlette.datastructures import State
 from starlette.requests import Request
 from starlette.responses import Response
@@ -109,8 +109,15 @@ def _evaluated(body: bytes, spans: Sequence[Span], first: int, state: State) -> 
     return _encoded(results), len(results)
 
 
-def _numbered(number: int, text: bytes) -> Any:
-    """An item, as `_item` reads it; Problem 400 that names it for what is no JSON."""
+class _Item(NamedTuple):
+    """An item of a batch by its own reference: what it asks, or what is wrong with it."""
+
+    reference: str | None
+    asked: BatchItem | Problem
+
+
+def _numbered(number: int, text: bytes) -> _Item:
+    """An item; Problem 400 that names it for what is no JSON."""
     try:
         return _item(text)
     except ValueError as error:
@@ -118,27 +125,30 @@ def _numbered(number: int, text: bytes) -> Any:
         raise Problem(400, f"/applications/{number} {detail}", [(("applications", number), detail)]) from None
 
 
-def _item(text: bytes) -> Any:
-    """Value of JSON as pydantic reads it: a number that is none leads to an error of its field, not of the whole.
-
-    A Problem for JSON with more in it than any application has, or a name twice; raises ValueError for what is no JSON.
-    """
+def _item(text: bytes) -> _Item:
+    """An item as `select` reads an application, in the same order of its refusals; ValueError for what is no JSON."""
+    reference = None
     try:
         require_bounded(text)
         value = from_json(text)
+        given = value.get("reference") if isinstance(value, dict) else None
+        reference = given if isinstance(given, str) else None
+        asked = BatchItem.model_validate_json(text)
         require_unique(text, value)
+    except ValidationError as error:
+        return _Item(reference, Problem.of(error))
     except Problem as problem:
-        return problem
-    return value
+        return _Item(reference, problem)
+    return _Item(reference, asked)
 
 
 def _no_json(error: ValueError) -> Problem:
     return Problem(400, f"the body is not JSON: {error}")
 
 
-def _results(items: Iterable[Any], catalogue: Catalogue, metrics: Metrics) -> list[BatchLine]:
+def _results(items: Iterable[_Item], catalogue: Catalogue, metrics: Metrics) -> list[BatchLine]:
     """Result lines of the items that could be read in time: one at least."""
-    results = batch_lines(_in_time(items), catalogue)
+    results = _lines_of(_in_time(items), catalogue)
     metrics.selections(result.verdict for result in results)
     return results
 
@@ -147,7 +157,7 @@ def _encoded(results: Iterable[BatchLine]) -> bytes:
     return b"".join([encode(result) + b"\n" for result in results])
 
 
-def _in_time(items: Iterable[Any]) -> Iterator[Any]:
+def _in_time(items: Iterable[_Item]) -> Iterator[_Item]:
     """Items as long as whoever takes them one by one has time for another."""
     end = time.monotonic() + SLICE_SECONDS
     for item in items:
@@ -157,27 +167,18 @@ def _in_time(items: Iterable[Any]) -> Iterator[Any]:
 
 
 def batch_lines(items: Iterable[Any], catalogue: Catalogue) -> list[BatchLine]:
-    """Result lines of batch items, in their order; each item is validated on its own, before the next one is taken.
-
-    An item that is a Problem already becomes its line.
-    """
-    read = [(item, _validated(item)) for item in items]
-    judged = iter(judge_batch([outcome for _, outcome in read if isinstance(outcome, BatchItem)], catalogue))
-    return [_line(item, next(judged) if isinstance(outcome, BatchItem) else outcome) for item, outcome in read]
+    """Result lines of batch items, given as values of JSON, in their order."""
+    return _lines_of([_item(to_json(item)) for item in items], catalogue)
 
 
-def _validated(item: Any) -> BatchItem | Problem:
-    if isinstance(item, Problem):
-        return item
-    try:
-        return BatchItem.model_validate(item)
-    except ValidationError as error:
-        return Problem.of(error)
+def _lines_of(items: Iterable[_Item], catalogue: Catalogue) -> list[BatchLine]:
+    """Result lines of items, in their order; each is validated on its own, before the next one is taken."""
+    read = list(items)
+    judged = iter(judge_batch([item.asked for item in read if isinstance(item.asked, BatchItem)], catalogue))
+    return [_line(item.reference, next(judged) if isinstance(item.asked, BatchItem) else item.asked) for item in read]
 
 
-def _line(item: Any, outcome: Judged | InputError | Problem) -> BatchLine:
-    given = item.get("reference") if isinstance(item, dict) else None
-    reference = given if isinstance(given, str) else None
+def _line(reference: str | None, outcome: Judged | InputError | Problem) -> BatchLine:
     if isinstance(outcome, Judged):
         brief = outcome.outcome()
         return BatchLine(reference, "ok", *brief, link=to_link(outcome.application))
@@ -208,13 +209,13 @@ def line_evaluator(catalogue: Catalogue, metrics: Metrics, maximum_line_bytes: i
     The problem of a line without a reference names the line: blank ones have no result, so that counting finds another.
     """
 
-    def read(line: Line) -> Any:
+    def read(line: Line) -> _Item:
         if line.content is None:
-            return Problem(413, f"a line may have {maximum_line_bytes} bytes at most")
+            return _Item(None, Problem(413, f"a line may have {maximum_line_bytes} bytes at most"))
         try:
             return _item(line.content)
         except ValueError as error:
-            return Problem(400, f"is not JSON: {str(error).replace(' at line 1 ', ' at ')}")
+            return _Item(None, Problem(400, f"is not JSON: {str(error).replace(' at line 1 ', ' at ')}"))
 
     def evaluate(lines: Sequence[Line]) -> tuple[bytes, int]:
         results = _results(map(read, lines), catalogue, metrics)

@@ -83,7 +83,7 @@ class Problem(HTTPException):
             problem.sentences = tuple(sentence for _, sentence in error.sentences)
             return problem
         if text := unreadable(error):
-            return cls(400, text)
+            return cls(400, text.replace("Invalid JSON:", "the body is not JSON:"))
         return cls._listing(faults_of(error))
 
     @classmethod
