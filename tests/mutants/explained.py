@@ -32,7 +32,7 @@ EXPLAINED: dict[str, str] = {
     "evaluation Evaluation.governing_of: -1 -> (1) #2": LAST_OF_TWO,
     "evaluation Evaluation.order: dtype=np.float64 -> nothing": "numpy.where makes them float64 beside utilisation",
     "evaluation Evaluation.order: axis=-1 -> nothing": LAST,
-    "evaluation Evaluation.order: -1 -> (1) #2": LAST_OF_TWO,
+    "evaluation Evaluation.order: -1 -> (1)": LAST_OF_TWO,
     "evaluation Evaluation.foremost: among.any -> among.all": SOONER,
     "evaluation Evaluation.foremost: axis=-1 -> nothing": SOONER,
     "evaluation Evaluation.foremost: -1 -> (1)": LAST_OF_TWO,

@@ -139,7 +139,7 @@ def test_an_item_that_is_no_json_is_named_and_its_columns_counted_from_its_begin
 
     said = "is not JSON: expected `:` at line 1 column 15 of this item"
     assert (reply.status_code, reply.json()["detail"]) == (400, f"/applications/700 {said}")
-    assert reply.json()["errors"] == [{"pointer": "/applications/700", "detail": said}]
+    assert reply.json()["errors"] == [{"pointer": "/applications/700", "code": "invalid", "detail": said}]
 
 
 def test_numbers_that_are_too_large_for_json_readers_are_an_error_of_their_item(api: TestClient) -> None:
@@ -179,7 +179,7 @@ def test_two_lists_of_applications_are_refused(api: TestClient, first: str) -> N
     reply = api.post(PATH, content=content, headers={"content-type": "application/json"})
 
     assert reply.status_code == 422
-    assert reply.json()["errors"] == [{"pointer": "/applications", "detail": "is there twice"}]
+    assert reply.json()["errors"] == [{"pointer": "/applications", "code": "invalid", "detail": "is there twice"}]
 
 
 def test_ten_thousand_applications_are_answered_and_one_more_is_refused(api: TestClient) -> None:
@@ -240,7 +240,9 @@ def test_what_is_no_object_and_what_is_no_field_are_told_so(api: TestClient) -> 
     unknown = api.post(PATH, json={"applications": [], "foo": 1})
 
     assert line["problem"]["detail"] == "must be an object"
-    assert unknown.json()["errors"] == [{"pointer": "/foo", "detail": "is not a field of this object"}]
+    assert unknown.json()["errors"] == [
+        {"pointer": "/foo", "code": "invalid", "detail": "is not a field of this object"}
+    ]
 
 
 TWICE = b'"rank_by":"x","rank_by":"y"'

@@ -69,6 +69,7 @@ class Address:
             "{designation}": "HPN-20A-5",
             "{size}": "20A",
             "{code}": "average_torque",
+            "{name}": "not-found",
             "{name:path}": Assets.load().url("app.css").removeprefix("/static/"),
         }
 

@@ -1,7 +1,8 @@
-"""What is wrong with an input, as (location, text) pairs in words that say what would be right."""
+"""Faults of an input: where, in words that say what would be right, and a code for programs."""
 
 import re
 from collections.abc import Iterable, Sequence
+from typing import NamedTuple
 
 from pydantic import ValidationError
 
@@ -15,15 +16,26 @@ LISTED_ERRORS = 5000
 
 REQUIRED = N_("is required")
 SHOULD = re.compile("(?:Input|Tuple|String) should")
+NOT_AVAILABLE = "not_available"
+"""Code of a wish that the catalogue can't answer."""
+
 NOT_A_NUMBER = N_("must be a number, such as 9.3")
 
 
-def faults_of(error: ValidationError | InputError) -> list[tuple[Location, str]]:
+class Fault(NamedTuple):
+    """A fault at a location; `code` is pydantic's type of error, or of our own."""
+
+    location: Location
+    text: str
+    code: str = "invalid"
+
+
+def faults_of(error: ValidationError | InputError) -> list[Fault]:
     """Faults that the models or the selection have found."""
     if isinstance(error, InputError):
-        return list(error.problems)
+        return [Fault(location, text, NOT_AVAILABLE) for location, text in error.problems]
     if error.error_count() > LISTED_ERRORS:
-        return [((), f"has {error.error_count()} errors")]
+        return [Fault((), f"has {error.error_count()} errors")]
     found = error.errors(include_url=False, include_context=False, include_input=False)
     return plain_faults((entry["loc"], entry["type"], entry["msg"]) for entry in found)
 
@@ -39,13 +51,13 @@ def pointer(location: Location) -> str:
     return "".join("/" + str(part).replace("~", "~0").replace("/", "~1") for part in location)
 
 
-def plain_faults(found: Iterable[tuple[Location, str, str]]) -> list[tuple[Location, str]]:
+def plain_faults(found: Iterable[tuple[Location, str, str]]) -> list[Fault]:
     """Faults for pydantic's (location, type, message) entries."""
     # A list whose items are wrong is also reported as too short; the items say it better.
     entries = list(found)
     items = {tuple(location[:end]) for location, _, _ in entries for end in range(len(location))}
     return [
-        (location, plain_message(kind, message))
+        Fault(location, plain_message(kind, message), kind)
         for location, kind, message in entries
         if kind != "too_short" or tuple(location) not in items
     ]

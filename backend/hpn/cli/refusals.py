@@ -37,7 +37,7 @@ def _wrong_input(error: ValidationError | InputError, options: argparse.Namespac
     if isinstance(error, ValidationError) and (text := unreadable(error)):
         file = "standard input" if options.file == "-" else options.file
         return [f"{file}: {text}; an application is a JSON object, such as README.md shows"]
-    lines = [f"{pointer(location) or '/'}: {detail}" for location, detail in faults_of(error)]
+    lines = [f"{pointer(location) or '/'}: {detail}" for location, detail, _ in faults_of(error)]
     if len(lines) > MOST_LINES:
         lines[MOST_LINES:] = [f"and {len(lines) - MOST_LINES} more"]
     return lines

@@ -222,7 +222,7 @@ def _found(row: int, cells: Mapping[str, Any], catalogue: Catalogue) -> list[Fau
         gears_for(application, catalogue)
         with_listed_motor(application, catalogue)
     except (ValidationError, InputError) as error:
-        return [_located(row, tuple(location), text) for location, text in faults_of(error)]
+        return [_located(row, tuple(location), text) for location, text, _ in faults_of(error)]
     return [Fault(row, AXIS, DISAGREED)]
 
 

@@ -44,6 +44,7 @@ from hpn.web.pages import calculator as pages
 from hpn.web.pages import catalogue as catalogue_pages
 from hpn.web.pages import checks as check_pages
 from hpn.web.pages import fleets as fleet_pages
+from hpn.web.pages import kinds as kind_pages
 from hpn.web.pages import saved as selection_pages
 from hpn.web.settings import Settings
 
@@ -103,6 +104,7 @@ ROUTERS: tuple[APIRouter, ...] = (
     readers.router,
     catalogue_pages.router,
     check_pages.router,
+    kind_pages.router,
     long_cycles.router,
     paste.router,
     fleet_pages.router,

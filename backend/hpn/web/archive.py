@@ -116,9 +116,9 @@ async def keep(request: Request, draft: Draft) -> str:
     try:
         id: str = await state.store.save(draft)
     except KeyReusedError as error:
-        raise Problem(422, str(error)) from None
+        raise Problem(422, str(error), kind="idempotency-key-reused") from None
     except KeySpentError as error:
-        raise Problem(410, str(error)) from None
+        raise Problem(410, str(error), kind="idempotency-key-spent") from None
     note(request, selection=id)
     return id
 

@@ -38,13 +38,14 @@ class FieldError(Struct):
     """What is wrong with one field."""
 
     pointer: Annotated[str, Meta(description="JSON pointer to the field.")]
+    code: Annotated[str, Meta(description="Kind of the fault, for programs.")]
     detail: Annotated[str, Meta(description="What would be right.")]
 
 
 class ProblemReply(Struct, omit_defaults=True):
     """Problem details, RFC 9457."""
 
-    type: Annotated[str, Meta(description="Kind of problem.")]
+    type: Annotated[str, Meta(description="Kind of problem: address of a page with its cause and remedy.")]
     title: Annotated[str, Meta(description="Name of the kind.")]
     status: Annotated[int, Meta(description="HTTP status.")]
     detail: Annotated[str, Meta(description="What was wrong and what would be right.")]

@@ -57,8 +57,9 @@ class Gate:
         )
 
     def admit(self, request: Request, group: RouteGroup) -> None:
-        """Count a request; raises Problem 429 where there were too many, then 401 where a key is needed."""
-        name = request.state.api_key = self._holder(request)
+        """Count a request; raises Problem 429 where there were too many, then 401 for a key unknown or missing."""
+        presented = presented_key(request.headers.raw) if self._keys else None
+        name = request.state.api_key = None if presented is None else holder(presented, self._keys)
         caller = request.state.caller = f"key {name}" if name else _subject(request)
         if group in SAVED:
             add_headers(request, {"Cache-Control": "private, no-cache"})
@@ -67,7 +68,7 @@ class Gate:
             add_headers(request, counted.headers)
             if not counted.granted:
                 raise too_many(counted.rate, counted.wait_seconds)
-        if name is None and group in self._guarded:
+        if name is None and (presented is not None or group in self._guarded):
             raise key_needed(request.scope["path"])
         if len(request.scope.get("query_string", b"")) > MAXIMUM_QUERY_BYTES:
             raise Problem(414, f"a link may have {MAXIMUM_QUERY_BYTES} bytes at most; post what is longer")
@@ -88,10 +89,6 @@ class Gate:
         if name is None or name not in (ADMIN, owner):
             text = f"only the key that saved this selection, or the one named {ADMIN}, may rename or delete it"
             raise Problem(403, text)
-
-    def _holder(self, request: Request) -> str | None:
-        presented = presented_key(request.headers.raw) if self._keys else None
-        return None if presented is None else holder(presented, self._keys)
 
 
 class _Admission:

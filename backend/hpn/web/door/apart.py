@@ -12,6 +12,7 @@ import subprocess
 import sys
 import threading
 import traceback
+import weakref
 from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
@@ -123,7 +124,14 @@ class Apart:
             )
         except OSError as error:
             raise EndedError(f"it can’t be started: {error}") from None
+        weakref.finalize(self, _forsaken, self._process)
         return self._process
+
+
+def _forsaken(process: "subprocess.Popen[bytes]") -> None:
+    """End a process whose owner is gone without having closed it."""
+    process.kill()
+    process.communicate()
 
 
 def main(bounds: Bounds | None) -> None:

@@ -14,8 +14,9 @@ from starlette.routing import Match
 from starlette.types import Scope
 
 from hpn.application import InputError
-from hpn.application.faults import Location, faults_of, plain_faults, pointer, unreadable
+from hpn.application.faults import Fault, Location, faults_of, plain_faults, pointer, unreadable
 from hpn.installed import ExtraMissingError, require
+from hpn.web.door.kinds import KINDS, OF_STATUS, PATH
 from hpn.words.wording import Sentence
 
 MEDIA_TYPE = "application/problem+json"
@@ -23,33 +24,13 @@ MEDIA_TYPE = "application/problem+json"
 MAXIMUM_ERRORS = 20
 """Errors that an answer names."""
 
-TITLES = {
-    400: "The request can’t be read",
-    401: "An API key is needed",
-    403: "Not allowed",
-    404: "Not found",
-    405: "Method not allowed",
-    406: "Not acceptable",
-    408: "The request took too long to arrive",
-    409: "In conflict with the present state",
-    410: "No longer there",
-    412: "Precondition failed",
-    413: "The request is too large",
-    414: "The address is too long",
-    415: "The content type or coding is not supported",
-    421: "Not the host of this service",
-    422: "The input has errors",
-    429: "Too many requests",
-    431: "The head of the request is too large",
-    500: "Internal error",
-    501: "Not installed here",
-    503: "Temporarily unavailable",
-}
+TITLES = {status: KINDS[name].title for status, name in OF_STATUS.items()}
 
 
 class Problem(HTTPException):
     """A refusal with its status, a text for people, and the fields it is about.
 
+    `kind` is a name of KINDS, by default that of the status. An error without a code of its own is `invalid`.
     `sentences` say the same in any language; a page that has none shows the text.
     """
 
@@ -59,10 +40,12 @@ class Problem(HTTPException):
         self,
         status: int,
         detail: str,
-        errors: Iterable[tuple[Location, str]] = (),
+        errors: Iterable[tuple[Location, str] | Fault] = (),
         headers: dict[str, str] | None = None,
+        kind: str = "",
     ) -> None:
-        self.errors = list(errors)
+        self.kind = kind or OF_STATUS.get(status, "")
+        self.errors = [Fault(*error) for error in errors]
         if len(self.errors) > MAXIMUM_ERRORS:
             detail += f"; {len(self.errors)} errors were found, of which the first {MAXIMUM_ERRORS} are named"
             del self.errors[MAXIMUM_ERRORS:]
@@ -79,7 +62,7 @@ class Problem(HTTPException):
     def of(cls, error: ValidationError | InputError) -> "Problem":
         """Problem for input that the models or the selection refuse."""
         if isinstance(error, InputError):
-            problem = cls(422, str(error), error.problems)
+            problem = cls(422, str(error), faults_of(error))
             problem.sentences = tuple(sentence for _, sentence in error.sentences)
             return problem
         if text := unreadable(error):
@@ -92,20 +75,22 @@ class Problem(HTTPException):
         return cls._listing(plain_faults(found))
 
     @classmethod
-    def _listing(cls, errors: list[tuple[Location, str]]) -> "Problem":
-        detail = "; ".join(": ".join(filter(None, (pointer(at), text))) for at, text in errors[:3])
+    def _listing(cls, errors: list[Fault]) -> "Problem":
+        detail = "; ".join(": ".join(filter(None, (pointer(at), text))) for at, text, _ in errors[:3])
         return cls(422, detail, errors)
 
     def body(self) -> dict[str, Any]:
         """The problem as a JSON object."""
         body: dict[str, Any] = {
-            "type": "about:blank",
-            "title": TITLES.get(self.status_code, "Error"),
+            "type": f"{PATH}{self.kind}" if self.kind else "about:blank",
+            "title": KINDS[self.kind].title if self.kind else "Error",
             "status": self.status_code,
             "detail": self.detail,
         }
         if self.errors:
-            body["errors"] = [{"pointer": pointer(location), "detail": detail} for location, detail in self.errors]
+            body["errors"] = [
+                {"pointer": pointer(fault.location), "code": fault.code, "detail": fault.text} for fault in self.errors
+            ]
         return body
 
     def response(self) -> Response:

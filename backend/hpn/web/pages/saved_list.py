@@ -54,7 +54,7 @@ async def show_selections(request: Request) -> Response:
         wanted = Wanted.model_validate(given)
         page = await store.page(reference=wanted.reference, search=wanted.search, cursor=cursor, limit=LINES_ON_PAGE)
     except ValidationError as error:
-        errors = {location[0]: text for location, text in Problem.of(error).errors}
+        errors = {fault.location[0]: fault.text for fault in Problem.of(error).errors}
         return await _rendered(request, "selections.html", 422, shown | {"errors": errors})
     except ValueError:
         return await _rendered(request, "selections.html", 422, shown | {"problem": NO_SUCH_PART})

@@ -1,0 +1,157 @@
+"""Kinds of problems by the name at the end of their `type`: what each means, why it arises, and what to do."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from hpn.words.wording import N_
+
+PATH = "/problems/"
+
+
+@dataclass(frozen=True, slots=True)
+class Kind:
+    """Kind of problem: its HTTP status, its title in English, and texts for its page."""
+
+    status: int
+    title: str
+    cause: str
+    remedy: str
+
+
+KINDS: Mapping[str, Kind] = {
+    "unreadable-request": Kind(
+        400,
+        N_("The request can’t be read"),
+        N_("The body is not the JSON, form or file that its content type says, or the request itself is broken."),
+        N_("Send what the API’s document describes; the detail names the place where reading ended."),
+    ),
+    "api-key-needed": Kind(
+        401,
+        N_("An API key is needed"),
+        N_("This service asks for an API key here, and none was sent, or an unknown one."),
+        N_("Send a key of this service as X-API-Key, as a Bearer token, or as the password of Basic authentication."),
+    ),
+    "not-allowed": Kind(
+        403,
+        N_("Not allowed"),
+        N_("The key is known but may not do this, or a form was sent from another site."),
+        N_("Use the key that saved it or an administrator’s, or send the form from this service’s own page."),
+    ),
+    "not-found": Kind(
+        404,
+        N_("Not found"),
+        N_("There is nothing at this address: a part of it is mistyped, or what stood there has been deleted."),
+        N_("Check the address; lists of gears and of saved selections say what there is."),
+    ),
+    "method-not-allowed": Kind(
+        405,
+        N_("Method not allowed"),
+        N_("The address exists, but not with this method."),
+        N_("Use a method of the header Allow."),
+    ),
+    "not-acceptable": Kind(
+        406,
+        N_("Not acceptable"),
+        N_("The answer can’t be given in the format that was asked for."),
+        N_("Ask for JSON."),
+    ),
+    "too-slow": Kind(
+        408,
+        N_("The request took too long to arrive"),
+        N_("A part of the request did not arrive in time."),
+        N_("Send it again, faster or in smaller parts."),
+    ),
+    "conflict": Kind(
+        409,
+        N_("In conflict with the present state"),
+        N_("What was asked does not go with the present state."),
+        N_("Read the present state and decide again."),
+    ),
+    "gone": Kind(
+        410,
+        N_("No longer there"),
+        N_("It was there once and has been deleted, or the way it was asked for has ended."),
+        N_("Use what the detail names in its place."),
+    ),
+    "idempotency-key-spent": Kind(
+        410,
+        N_("The idempotency key is spent"),
+        N_("What was saved under this Idempotency-Key has been deleted."),
+        N_("Send another key to save it anew."),
+    ),
+    "other-state": Kind(
+        412,
+        N_("Precondition failed"),
+        N_("If-Match names another state: somebody has changed it since it was read."),
+        N_("Read it again, and repeat the change with its new ETag."),
+    ),
+    "too-large": Kind(
+        413,
+        N_("The request is too large"),
+        N_("The body, or what it stands for, is more than the service takes at once."),
+        N_("Send less at once; the detail says how much is taken."),
+    ),
+    "address-too-long": Kind(
+        414,
+        N_("The address is too long"),
+        N_("A link holds some 1,400 phases; this one has more."),
+        N_("Send the application in the body, or save it and share the address of the saved selection."),
+    ),
+    "unsupported-type": Kind(
+        415,
+        N_("The content type or coding is not supported"),
+        N_("The content type or coding of the body is not one that is read here."),
+        N_("Send one of those that the detail names."),
+    ),
+    "other-host": Kind(
+        421,
+        N_("Not the host of this service"),
+        N_("The request names a host for which this service does not answer."),
+        N_("Use the address at which it is published, or add the name to HPN_ALLOWED_HOSTS."),
+    ),
+    "input-errors": Kind(
+        422,
+        N_("The input has errors"),
+        N_("The input could be read, but some of it can’t be calculated with."),
+        N_("Each entry of errors names a field by its JSON pointer, a code, and what would be right."),
+    ),
+    "idempotency-key-reused": Kind(
+        422,
+        N_("The idempotency key was used for another request"),
+        N_("An Idempotency-Key belongs to one request; this one was sent before with another body."),
+        N_("Send a new key with a new request, and the same body when a request is repeated."),
+    ),
+    "too-many-requests": Kind(
+        429,
+        N_("Too many requests"),
+        N_("This key or address has sent more than its share."),
+        N_("Wait for the time of Retry-After; RateLimit says how much is left."),
+    ),
+    "head-too-large": Kind(
+        431,
+        N_("The head of the request is too large"),
+        N_("The address and headers together are too long."),
+        N_("Send fewer or shorter headers."),
+    ),
+    "internal-error": Kind(
+        500,
+        N_("Internal error"),
+        N_("The service made a mistake, which is in its log under the request’s id."),
+        N_("Tell the operator the X-Request-ID of the answer."),
+    ),
+    "not-installed": Kind(
+        501,
+        N_("Not installed here"),
+        N_("This service was installed without the part that this needs."),
+        N_("Tell the operator the extra that the detail names."),
+    ),
+    "unavailable": Kind(
+        503,
+        N_("Temporarily unavailable"),
+        N_("The service, its database or its folder for files can’t take more at the moment."),
+        N_("Try again after the time of Retry-After."),
+    ),
+}
+
+OF_STATUS: Mapping[int, str] = {kind.status: name for name, kind in reversed(list(KINDS.items()))}
+"""Kind of a status where nothing more is known: the first one of it."""
