@@ -35,6 +35,7 @@ class Column(InputField):
 
     def takes(self, given: pa.DataType, wanted: pa.DataType) -> bool:
         """Whether a column of an Arrow type can be read as one of a wanted type."""
+        given = plain_type(given)
         if kinds.is_null(given):
             return not self.required
         if is_list(wanted):
@@ -42,8 +43,6 @@ class Column(InputField):
         return self._takes_item(given)
 
     def _takes_item(self, given: pa.DataType) -> bool:
-        if kinds.is_dictionary(given):
-            given = given.value_type
         if kinds.is_null(given):
             return True
         if self.kind == "string":
@@ -53,7 +52,19 @@ class Column(InputField):
 
 def is_list(given: pa.DataType) -> bool:
     """Whether an Arrow type is one of the kinds of lists."""
-    return bool(kinds.is_list(given) or kinds.is_large_list(given) or kinds.is_fixed_size_list(given))
+    return any(test(given) for test in LISTS)
+
+
+LISTS = (kinds.is_list, kinds.is_large_list, kinds.is_fixed_size_list, kinds.is_list_view, kinds.is_large_list_view)
+
+
+def plain_type(given: pa.DataType) -> pa.DataType:
+    """Arrow type of the values themselves, however they are encoded: as a dictionary, as runs, in views."""
+    if kinds.is_dictionary(given) or kinds.is_run_end_encoded(given):
+        return plain_type(given.value_type)
+    if is_list(given):
+        return pa.list_(plain_type(given.value_type))
+    return pa.string() if kinds.is_string_view(given) else given
 
 
 def is_text(given: pa.DataType) -> bool:

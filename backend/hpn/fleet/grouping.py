@@ -2,7 +2,7 @@
 
 from bisect import bisect_right
 from collections.abc import Iterator, Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import pyarrow as pa
@@ -78,63 +78,81 @@ def _no_axes(table: Table) -> pa.Table:
 # --- Long form --------------------------------------------------------------------------------------------------------
 
 
+class _Before(NamedTuple):
+    """The row before some rows: its axis, and whether it can't be read, its axis included; `is_read` once one can."""
+
+    axis: Any = None
+    is_broken: bool = False
+    is_read: bool = False
+
+
 def _own_rows(table: Table, part: Part, names: Sequence[str]) -> Iterator[Batch]:
     """Rows of the axes that begin in a part, also those that lie in the units behind it.
 
-    A line that can't be read, its axis included, counts as one of the axis before it.
+    A line that can't be read, its axis included, counts as one of the axis before it, and the line behind it may belong
+    to either. What lies before a batch goes along with it, so that no end of a batch, a unit or a part changes that.
     """
-    before = _end_of(table, part.first - 1)
-    last: Batch | None = None
+    last, own = _before(table, part.first), None
+    leading = last
     for unit in range(part.first, len(table.unit_sizes)):
-        for batch in table.read(unit, names):
-            given = _filled(batch, before if last is None else last)
-            if before is not None and last is None:
-                given = _from(given, _leading(given.rows, before.rows[AXIS][-1]))
-                if given.rows.num_rows and _is_broken(before, before.rows.num_rows - 1):
-                    given = Batch(given.rows, [*given.faults, CellFault(0, AXIS, BROKEN_BEFORE)])
-            whole = given.rows.num_rows
-            if unit >= part.end:
-                whole = 0 if last is None else _leading(given.rows, last.rows[AXIS][-1])
-            if whole:
-                last = _until(given, whole)
-                yield last
-            if unit >= part.end and whole < given.rows.num_rows:
-                return
-        if unit >= part.end - 1 and last is None:
+        if unit >= part.end and own is None:
             return
+        for batch in table.read(unit, names):
+            given, last = _filled(batch, last)
+            if own is None and leading is not None:
+                given = _from(given, _leading(given.rows, leading.axis))
+            count = given.rows.num_rows
+            whole = count if unit < part.end or own is None else _leading(given.rows, own.axis)
+            if whole:
+                given, own = _until(given, whole), _Before(given.rows[AXIS][whole - 1].as_py())
+                yield given
+            if whole < count:
+                return
 
 
-def _end_of(table: Table, unit: int) -> Batch | None:
-    """The last rows of a unit, None where there is none."""
-    last = None
-    for batch in table.read(unit, [AXIS]) if unit >= 0 else ():
-        last = _filled(batch, last) if batch.rows.num_rows else last
+def _before(table: Table, unit: int) -> _Before | None:
+    """The last row before a unit, None where there is none: it has the axis of the last one before that can be read."""
+    last: _Before | None = None
+    for earlier in reversed(range(unit)):
+        found: _Before | None = None
+        for batch in table.read(earlier, [AXIS]):
+            _, found = _filled(batch, found)
+        if found is not None:
+            last = found if last is None else last._replace(axis=found.axis, is_read=found.is_read)
+            if last.is_read:
+                break
     return last
 
 
-def _is_broken(batch: Batch, row: int) -> bool:
-    faults = [fault for fault in batch.faults if fault.row == row and fault.column == AXIS]
-    return any(fault.reason != TOO_LONG for fault in faults)
-
-
-def _filled(batch: Batch, before: Batch | None) -> Batch:
-    """The batch with the axis of the row before where a line can't be read; the row behind is under suspicion."""
+def _filled(batch: Batch, before: _Before | None) -> tuple[Batch, _Before | None]:
+    """The batch with the axis of the row before where a line can't be read, and its last row; the row behind such a
+    line is under suspicion."""
+    count = batch.rows.num_rows
+    if not count:
+        return batch, before
     axis = batch.rows[AXIS].combine_chunks()
     missing = np.asarray(pc.is_null(axis))
-    broken = [f.row for f in batch.faults if f.column == AXIS and missing[f.row]]
-    if not broken:
-        return batch
-    values = axis.to_pylist()
-    for row in broken:
-        values[row] = values[row - 1] if row else (before.rows[AXIS][-1].as_py() if before else None)
-    faults = [*batch.faults, *(CellFault(row + 1, AXIS, BROKEN_BEFORE) for row in broken if row + 1 < len(values))]
-    place = batch.rows.column_names.index(AXIS)
-    return Batch(batch.rows.set_column(place, AXIS, pa.array(values, axis.type)), faults)
+    broken = sorted({fault.row for fault in batch.faults if fault.column == AXIS and missing[fault.row]})
+    suspected = [row + 1 for row in broken if row + 1 < count]
+    if before is not None and before.is_broken:
+        suspected.insert(0, 0)
+    is_read = len(broken) < count or (before is not None and before.is_read)
+    if broken:
+        values = axis.to_pylist()
+        for row in broken:
+            values[row] = values[row - 1] if row else (None if before is None else before.axis)
+        axis = pa.array(values, axis.type)
+    last = _Before(axis[count - 1].as_py(), bool(broken) and broken[-1] == count - 1, is_read)
+    if not broken and not suspected:
+        return batch, last
+    faults = [*batch.faults, *(CellFault(row, AXIS, BROKEN_BEFORE) for row in suspected)]
+    return Batch(batch.rows.set_column(batch.rows.column_names.index(AXIS), AXIS, axis), faults), last
 
 
-def _leading(rows: pa.Table, axis: pa.Scalar) -> int:
+def _leading(rows: pa.Table, axis: Any) -> int:
     """How many rows at the beginning belong to an axis."""
-    same = pc.fill_null(pc.equal(rows[AXIS], axis), False) if axis.is_valid else pc.is_null(rows[AXIS])
+    column = rows[AXIS]
+    same = pc.is_null(column) if axis is None else pc.fill_null(pc.equal(column, pa.scalar(axis, column.type)), False)
     other = np.flatnonzero(~np.asarray(same))
     return int(other[0]) if len(other) else rows.num_rows
 
@@ -154,7 +172,8 @@ def _gathered(batches: Iterator[Batch]) -> Iterator[Listed]:
     for batch in batches:
         joined = batch if left is None else _appended(left, batch)
         starts = run_starts(joined.rows[AXIS])
-        yield _listed(_until(joined, int(starts[-1])), starts[:-1])
+        if len(starts) > 1:
+            yield _listed(_until(joined, int(starts[-1])), starts[:-1])
         left = _until(_from(joined, int(starts[-1])), MAXIMUM_PHASES + 1)  # more would be too many all the same
     if left is not None:
         yield _listed(left, np.zeros(1, np.intp))
@@ -175,8 +194,21 @@ def run_starts(axis: pa.ChunkedArray) -> IntArray:
     return np.concatenate((np.zeros(1, np.intp), np.flatnonzero(differs) + 1))
 
 
+def _shortened(batch: Batch, starts: IntArray) -> tuple[Batch, IntArray]:
+    """The axes with one phase more than may be where they have more: what is said of them is the same all the same,
+    however many of their rows were read at once."""
+    counts = np.diff(np.append(starts, batch.rows.num_rows))
+    if not len(counts) or counts.max() <= MAXIMUM_PHASES + 1:
+        return batch, starts
+    kept = np.arange(batch.rows.num_rows) - np.repeat(starts, counts) <= MAXIMUM_PHASES
+    moved = np.cumsum(kept) - 1
+    faults = [fault._replace(row=int(moved[fault.row])) for fault in batch.faults if kept[fault.row]]
+    return Batch(batch.rows.filter(pa.array(kept)), faults), moved[starts]
+
+
 def _listed(batch: Batch, starts: IntArray) -> Listed:
     """Axes whose phases begin at rows; the columns of the phases become lists."""
+    batch, starts = _shortened(batch, starts)
     rows = batch.rows
     ends = pa.array(np.append(starts, rows.num_rows).astype(np.int32))
     columns = [

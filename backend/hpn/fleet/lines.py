@@ -17,6 +17,7 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.compute as pc
 import pyarrow.csv as pacsv
+from numpy.typing import NDArray
 
 from hpn.application.faults import NOT_A_NUMBER
 from hpn.application.unique import RepeatedNameError, require_unique
@@ -27,6 +28,9 @@ from hpn.words.wording import N_
 
 UNIT_BYTES = 8_000_000
 """Length of a stretch of lines, which ends with a line."""
+
+START_BYTES = 8_000_000
+"""Beginning of a file, in which its header or its first row stands."""
 
 MOST_LINE_BYTES = 64_000_000
 """Longest line; an axis of 10,000 phases has about 1 MB."""
@@ -42,6 +46,9 @@ NO_NUMBERS = N_("must be a JSON list of numbers, such as [40, 32.5]")
 NO_TEXTS = N_('must be a JSON list of texts, such as ["14A", "20A"]')
 NO_TEXT = N_("must be text")
 NOT_UTF8 = N_("must be UTF-8")
+QUOTED = re.compile(rb'(?:\A|(?<=[,\r\n]))"[^"]*(?:""[^"]*)*"?')
+"""A cell in quotes, up to the end of the file where nothing closes it."""
+
 REPLACED = "\ufffd"
 """Stands for bytes that are no UTF-8, here and in every text that was read so before."""
 
@@ -104,7 +111,7 @@ class LinesTable(Table):
     def start_of_file(self) -> bytes:
         """The first lines."""
         with open(self.path, "rb") as file:
-            return file.read(UNIT_BYTES)
+            return file.read(START_BYTES)
 
 
 # --- CSV --------------------------------------------------------------------------------------------------------------
@@ -144,7 +151,8 @@ class CsvTable(LinesTable):
     def is_in_list_form(self) -> bool:
         if "torque_Nm" not in self.names:
             return False
-        first = next((batch.rows for batch in self._texts(0, ["torque_Nm"]) if batch.rows.num_rows), None)
+        batches = (batch for unit in range(len(self.unit_sizes)) for batch in self._texts(unit, ["torque_Nm"]))
+        first = next((batch.rows for batch in batches if batch.rows.num_rows), None)
         if first is None:
             return any(name in COLUMNS.others for name in self.names)
         return (first[0][0].as_py() or "").lstrip().startswith("[")
@@ -156,9 +164,7 @@ class CsvTable(LinesTable):
     def last_line_end(self, content: bytes) -> int:
         if b'"' not in content:
             return content.rfind(b"\n") + 1
-        given = np.frombuffer(content, np.uint8)
-        outside = np.cumsum(given == ord('"'), dtype=np.uint8) % 2 == 0
-        ends = np.flatnonzero((given == ord("\n")) & outside)
+        ends = np.flatnonzero((np.frombuffer(content, np.uint8) == ord("\n")) & ~_quoted(content))
         return int(ends[-1]) + 1 if len(ends) else 0
 
     def _batches(self, unit: int, names: Sequence[str]) -> Iterator[Batch]:
@@ -254,6 +260,22 @@ def _parsed(texts: pa.Array, column: Column | None, wanted: pa.DataType) -> tupl
     if len(wrong):
         texts = pc.if_else(numbers, texts, None)
     return texts.cast(wanted), [(int(row), NO_NUMBER) for row in wrong]
+
+
+def _quoted(content: bytes) -> NDArray[np.bool_]:
+    """Bytes that are quoted, as the reader of the cells takes them: a quote inside of a bare cell is a character."""
+    given = np.frombuffer(content, np.uint8)
+    marks = np.flatnonzero(given == ord('"'))
+    opening = marks[::2]
+    before = given[opening - 1]
+    follows = np.zeros(len(opening), np.bool_)
+    follows[1:] = opening[1:] == marks[1::2][: len(opening) - 1] + 1
+    if (np.isin(before, np.frombuffer(b",\r\n", np.uint8)) | (opening == 0) | follows).all():
+        return np.cumsum(given == ord('"'), dtype=np.uint8) % 2 == 1
+    quoted = np.zeros(len(content), np.bool_)
+    for found in QUOTED.finditer(content):
+        quoted[found.start() : found.end()] = True
+    return quoted
 
 
 def _as_utf8(content: bytes) -> bytes:

@@ -75,17 +75,21 @@ def _opened(path: Path) -> Table:
 
 
 def _require(table: Table, allowed: list[str], required: list[str]) -> None:
-    if FORM not in table.names:  # nothing is known of where other columns belong
+    if not _tells_its_form(table):  # nothing is known of where other columns belong
         allowed = [*allowed, *COLUMNS.others]
     unknown = [name for name in table.names if name not in allowed]
     others = [f"column {name} is missing" for name in required if name not in table.names]
     others += [f"column {name:.80} is there twice" for name, count in Counter(table.names).items() if count > 1]
-    if not unknown and not others and isinstance(table, TypedTable):
+    if not others and isinstance(table, TypedTable):
         others += table.wrong_types()
     if found := len(unknown) + len(others):
         problems = [*(_unknown(name, allowed) for name in unknown[:MOST_PROBLEMS]), *others][:MOST_PROBLEMS]
         more = [f"{found - MOST_PROBLEMS} more"] if found > MOST_PROBLEMS else []
         raise FleetError(f"{table.path}: {'; '.join([*problems, *more])}")
+
+
+def _tells_its_form(table: Table) -> bool:
+    return FORM in table.names and not (isinstance(table, TypedTable) and table.wrong_type(FORM))
 
 
 def _unknown(name: str, allowed: list[str]) -> str:

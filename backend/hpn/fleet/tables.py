@@ -19,7 +19,7 @@ import pyarrow.parquet as pq
 import pyarrow.types as kinds
 from numpy.typing import NDArray
 
-from hpn.fleet.columns import AXIS, COLUMNS, Column, is_list, is_text
+from hpn.fleet.columns import AXIS, COLUMNS, Column, is_list, is_text, plain_type
 from hpn.fleet.errors import FleetError
 from hpn.words.wording import N_
 
@@ -155,12 +155,10 @@ class TypedTable(Table):
 
     @property
     def axis_type(self) -> pa.DataType:
-        given = self.given.field(AXIS).type
-        if kinds.is_dictionary(given):
-            given = given.value_type
+        given = plain_type(self.given.field(AXIS).type)
         if _may_be_whole(given):
             return pa.int64()
-        return pa.string() if kinds.is_string_view(given) or kinds.is_null(given) else given
+        return pa.string() if kinds.is_null(given) else given
 
     @contextmanager
     def _told(self, where: str = "") -> Iterator[None]:
@@ -174,23 +172,28 @@ class TypedTable(Table):
 
     def wrong_types(self) -> Iterator[str]:
         """Columns whose type can't hold what belongs into them, in words."""
-        for field in self.given:
-            if field.name == AXIS:
-                if not (is_text(self.axis_type) or kinds.is_integer(self.axis_type)):
-                    yield f"column axis is {field.type!s:.80}, where text or integers belong"
-            elif not (column := COLUMNS.all[field.name]).takes(field.type, self.type_of(field.name)):
-                wanted = _words(column, self.type_of(field.name))
-                yield f"column {field.name} is {field.type!s:.80}, where {wanted} belong"
+        return filter(None, map(self.wrong_type, self.names))
+
+    def wrong_type(self, name: str) -> str:
+        """What is wrong with the type of a column, in words; nothing where it can be read."""
+        given = self.given.field(name).type
+        if name == AXIS:
+            is_right = is_text(self.axis_type) or kinds.is_integer(self.axis_type)
+            wanted = "text or integers"
+        else:
+            column = COLUMNS.all[name]
+            is_right = column.takes(given, self.type_of(name))
+            wanted = _words(column, self.type_of(name))
+        return "" if is_right else f"column {name} is {given!s:.80}, where {wanted} belong"
 
     def _batch(self, rows: pa.RecordBatch, names: Sequence[str]) -> Batch:
         columns, faults = [], list[CellFault]()
         for name in names:
-            column = _plain(rows.column(name))
+            column = _plain(rows.column(rows.schema.get_field_index(name)))
             if name == AXIS and _may_be_whole(column.type):
                 column, wrong = _whole(column)
                 faults += (CellFault(int(row), AXIS, NOT_WHOLE) for row in np.flatnonzero(wrong))
-            wanted = self.type_of(name)
-            columns.append(column if column.type.equals(wanted) else column.cast(wanted, safe=False))
+            columns.append(_cast(column, self.type_of(name)))
         return Batch(pa.Table.from_arrays(columns, names=list(names)), faults)
 
 
@@ -200,11 +203,28 @@ def _words(column: Column, wanted: pa.DataType) -> str:
 
 
 def _plain(column: pa.Array) -> pa.Array:
-    if kinds.is_dictionary(column.type):
-        return column.dictionary_decode()
-    if is_list(column.type) and kinds.is_dictionary(column.type.value_type):
-        return column.cast(pa.list_(column.type.value_type.value_type))
-    return column
+    """The values themselves, in the type that `plain_type` says."""
+    given = column.type
+    if kinds.is_dictionary(given):
+        return _plain(column.dictionary).take(column.indices)
+    if kinds.is_run_end_encoded(given):
+        return _plain(pc.run_end_decode(column))
+    if is_list(given) and not given.equals(plain_type(given)):
+        lengths = pc.list_value_length(column)
+        ends = np.cumsum([0, *np.asarray(pc.fill_null(lengths, 0))])
+        items = _plain(pc.list_flatten(column))
+        return pa.ListArray.from_arrays(pa.array(ends, pa.int32()), items, mask=pc.is_null(lengths))
+    return column.cast(pa.string()) if kinds.is_string_view(given) else column
+
+
+def _cast(column: pa.Array, wanted: pa.DataType) -> pa.Array:
+    """The column in a type; decimals by their digits, which Arrow's own cast misses by a last bit in one of eight."""
+    given = column.type
+    if is_list(given) and kinds.is_decimal(given.value_type):
+        column = column.cast(pa.list_(pa.string()))
+    elif kinds.is_decimal(given) and kinds.is_floating(wanted):
+        column = column.cast(pa.string())
+    return column if column.type.equals(wanted) else column.cast(wanted, safe=False)
 
 
 def _may_be_whole(given: pa.DataType) -> bool:

@@ -1,0 +1,165 @@
+"""Columns in every kind of Arrow that other tools write: each is read, or refused by the column's name."""
+
+import io
+import json
+import random
+from decimal import Decimal
+from pathlib import Path
+from typing import Any
+
+import pyarrow as pa
+import pyarrow.parquet as pq
+import pytest
+
+from hpn.catalogue import Catalogue
+from hpn.fleet.errors import FleetError
+from hpn.fleet.grouping import axes_of, parts_of
+from hpn.fleet.opened import open_axes
+from hpn.fleet.run import Order, size_fleet
+from tests.fleet.tables import here, quiet, read
+
+NAMES = ("lift", "turn", "lift 2")
+ITEMS = [40.0, 20.0, 40.0, 20.0, 40.0, 32.0]
+OFFSETS = [0, 2, 4, 6]
+PLAIN = {
+    "axis": pa.array(NAMES),
+    "torque_Nm": pa.ListArray.from_arrays(pa.array(OFFSETS, pa.int32()), pa.array(ITEMS)),
+    "speed_rpm": pa.array([[250.0, 100.0]] * 3),
+    "duration_s": pa.array([[0.5, 3.0]] * 3),
+    "rank_by": pa.array(["weight", None, "weight"]),
+    "pause_s": pa.array([1.0, 2.0, 1.0]),
+}
+
+SAID = {"axis": "text or integers belong", "torque_Nm": "numbers belong", "rank_by": "texts belong"}
+
+
+def views(values: pa.Array) -> pa.Array:
+    """A Categorical as polars writes it."""
+    coded = values.dictionary_encode()
+    return pa.DictionaryArray.from_arrays(coded.indices, coded.dictionary.cast(pa.string_view()))
+
+
+def lists(items: pa.Array) -> pa.Array:
+    """Lists of items of any kind."""
+    return pa.ListArray.from_arrays(pa.array(OFFSETS, pa.int32()), items)
+
+
+READ: dict[str, tuple[str, Any]] = {
+    "axis of dictionary<string_view>": ("axis", views(PLAIN["axis"])),
+    "axis of string_view": ("axis", PLAIN["axis"].cast(pa.string_view())),
+    "axis of large_string": ("axis", PLAIN["axis"].cast(pa.large_string())),
+    "rank_by of dictionary<string_view>": ("rank_by", views(PLAIN["rank_by"])),
+    "rank_by in runs": ("rank_by", pa.RunEndEncodedArray.from_arrays([1, 2, 3], PLAIN["rank_by"])),
+    "large_list": ("torque_Nm", PLAIN["torque_Nm"].cast(pa.large_list(pa.float64()))),
+    "fixed_size_list": ("torque_Nm", PLAIN["torque_Nm"].cast(pa.list_(pa.float64(), 2))),
+    "list_view": ("torque_Nm", pa.array(PLAIN["torque_Nm"].to_pylist(), pa.list_view(pa.float64()))),
+    "large_list_view": ("torque_Nm", pa.array(PLAIN["torque_Nm"].to_pylist(), pa.large_list_view(pa.float64()))),
+    "large_list<dictionary>": (
+        "torque_Nm",
+        pa.LargeListArray.from_arrays(pa.array(OFFSETS, pa.int64()), pa.array(ITEMS).dictionary_encode()),
+    ),
+    **{
+        f"pause_s of {kind}": ("pause_s", PLAIN["pause_s"].cast(kind))
+        for kind in (pa.float16(), pa.float32(), pa.decimal128(9, 3), pa.decimal256(40, 9), pa.int8(), pa.uint64())
+    },
+    **{
+        f"list of {kind}": ("torque_Nm", lists(pa.array(ITEMS).cast(kind)))
+        for kind in (pa.float16(), pa.float32(), pa.decimal128(9, 3), pa.decimal256(40, 9), pa.int16(), pa.uint32())
+    },
+}
+
+
+def arrow(columns: dict[str, Any], path: Path) -> Path:
+    """A file of columns."""
+    table = pa.table(columns)
+    with pa.ipc.new_file(str(path), table.schema) as file:
+        file.write_table(table)
+    return path
+
+
+@pytest.mark.parametrize("kind", READ)
+def test_every_kind_of_column_is_read(kind: str, tmp_path: Path, catalogue: Catalogue) -> None:
+    name, column = READ[kind]
+    plain = Order(arrow(PLAIN, tmp_path / "plain.arrow"), tmp_path / "plain.ndjson")
+    other = Order(arrow(PLAIN | {name: column}, tmp_path / "other.arrow"), tmp_path / "other.ndjson")
+
+    size_fleet(plain, catalogue, here, quiet)
+    size_fleet(other, catalogue, here, quiet)
+
+    assert read(other.answers) == read(plain.answers)
+    assert not any(row["error"] for row in read(other.answers))
+
+
+@pytest.mark.parametrize("name", SAID)
+@pytest.mark.parametrize(
+    "kind", [pa.bool_(), pa.date32(), pa.timestamp("ns"), pa.binary(), pa.struct([("a", pa.int8())]), pa.duration("s")]
+)
+def test_a_kind_that_cant_be_read_is_refused_by_the_name_of_its_column(
+    kind: pa.DataType, name: str, tmp_path: Path, catalogue: Catalogue
+) -> None:
+    path = arrow(PLAIN | {name: pa.nulls(3, kind)}, tmp_path / "in.arrow")
+    with pytest.raises(FleetError, match=rf"column {name} is .*, where .*{SAID[name]}"):
+        size_fleet(Order(path, tmp_path / "out.ndjson"), catalogue, here, quiet)
+
+
+# --- Decimals ---------------------------------------------------------------------------------------------------------
+
+
+def typed_decimals() -> list[str]:
+    """Figures as people type them."""
+    draw = random.Random(37)
+    texts = [f"{draw.randint(0, 10 ** draw.randint(1, 7))}.{draw.randint(0, 99999)}" for _ in range(4000)]
+    return ["254.230", "0.1", "0.30", "1000000.000001", *texts]
+
+
+@pytest.mark.parametrize("suffix", [".csv", ".ndjson", ".arrow", ".parquet"])
+@pytest.mark.parametrize("form", ["list", "long"])
+def test_decimals_are_read_by_their_digits(suffix: str, form: str, tmp_path: Path) -> None:
+    texts = typed_decimals()
+    path = tmp_path / f"in{suffix}"
+    if suffix in (".csv", ".ndjson"):
+        path.write_text(in_lines(texts, suffix, form))
+    else:
+        path.write_bytes(in_arrow(texts, suffix, form))
+    table = open_axes(path)
+
+    found = [
+        value
+        for part in parts_of(table)
+        for listed in axes_of(table, part)
+        for value in listed.rows["torque_Nm"].combine_chunks().flatten().to_pylist()
+    ]
+
+    assert found == [float(text) for text in texts]
+
+
+def in_lines(texts: list[str], suffix: str, form: str) -> str:
+    """Rows of one phase each."""
+    is_list = form == "list"
+    if suffix == ".csv":
+        cell = '"[{}]"' if is_list else "{}"
+        rows = [f"a{row},{cell.format(text)},{cell.format(1)},{cell.format(1)}" for row, text in enumerate(texts)]
+        return "\n".join(["axis,torque_Nm,speed_rpm,duration_s", *rows, ""])
+    cell = "[{}]" if is_list else "{}"
+    row_of = '{{"axis":{},"torque_Nm":{},"speed_rpm":{},"duration_s":{}}}\n'
+    return "".join(
+        row_of.format(json.dumps(f"a{row}"), cell.format(text), cell.format(1), cell.format(1))
+        for row, text in enumerate(texts)
+    )
+
+
+def in_arrow(texts: list[str], suffix: str, form: str) -> bytes:
+    """The same as columns of decimals."""
+    torque, ones = pa.array([Decimal(text) for text in texts], pa.decimal128(20, 6)), pa.array([1] * len(texts))
+    if form == "list":
+        ends = pa.array(range(len(texts) + 1), pa.int32())
+        torque, ones = (pa.ListArray.from_arrays(ends, values) for values in (torque, ones))
+    names = [f"a{row}" for row in range(len(texts))]
+    table = pa.table({"axis": names, "torque_Nm": torque, "speed_rpm": ones, "duration_s": ones})
+    sink = io.BytesIO()
+    if suffix == ".parquet":
+        pq.write_table(table, sink)
+    else:
+        with pa.ipc.new_file(sink, table.schema) as file:
+            file.write_table(table)
+    return sink.getvalue()
