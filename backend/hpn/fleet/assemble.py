@@ -1,11 +1,11 @@
 """From the parts of a job to its files, each whole under its name at the end or not at all."""
 
 import os
-from collections import Counter
-from collections.abc import Callable, Iterator, Sequence
+from collections import deque
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import closing
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any, Literal, NamedTuple
 
 import msgspec
 import numpy as np
@@ -15,6 +15,7 @@ import pyarrow.csv as pacsv
 import pyarrow.parquet as pq
 
 from hpn.fleet.columns import AXIS
+from hpn.fleet.grouping import NO_PHASES, NOT_BESIDE
 from hpn.fleet.job import HashArray, Job, hashes_of
 from hpn.fleet.opened import format_of
 from hpn.words.wording import N_
@@ -91,16 +92,51 @@ def _axis_type(job: Job, parts: int) -> pa.DataType:
 # --- Axes that are not together ---------------------------------------------------------------------------------------
 
 
-def _torn(job: Job, parts: int) -> pa.Array:
-    """Axes that are there twice; each is rejected whole and has one row, where it came first."""
+class _Torn(NamedTuple):
+    """Axes with more than one row: those that are rejected whole, and those that stand elsewhere in the other table."""
+
+    twice: Mapping[Any, bool]
+    """Whether the phases have a row of each of them, or the other table alone."""
+    elsewhere: frozenset[Any]
+
+    def kept(self, answers: pa.Table, told: set[Any]) -> list[bool]:
+        """Which rows of a part stay: one for each axis, where it came first; those that were told are added."""
+        kept = []
+        for axis, is_other in zip(answers[AXIS].to_pylist(), _are_of_others(answers), strict=True):
+            if axis in self.twice:
+                kept.append(axis not in told and not (is_other and self.twice[axis]))
+                told.update([axis] if kept[-1] else [])
+            else:
+                kept.append(not (is_other and axis in self.elsewhere))
+        return kept
+
+
+def _are_of_others(answers: pa.Table) -> list[bool]:
+    """Which rows are of the other table alone."""
+    found = pc.match_substring(answers["error"], f"{AXIS}: {NO_PHASES}")
+    return list(pc.fill_null(found, False).to_pylist())
+
+
+def _torn(job: Job, parts: int) -> _Torn:
+    """Axes that are there twice, of which each has one row in what is written."""
     hashes = [np.load(job.file(number, "hashes"), mmap_mode="r") for number in range(parts)]
     repeated = _repeated(hashes)
-    counts: Counter[Any] = Counter()
+    rows: dict[Any, list[str]] = {}
     for number, own in enumerate(hashes if len(repeated) else ()):
         if np.isin(own, repeated).any():
-            axis = _part(job, number, "answers")[AXIS]
-            counts.update(axis.filter(pa.array(np.isin(hashes_of(axis), repeated))).drop_null().to_pylist())
-    return pa.array([axis for axis, count in counts.items() if count > 1], job.tables()[0].axis_type)
+            answers = _part(job, number, "answers")
+            found = answers.filter(pa.array(np.isin(hashes_of(answers[AXIS]), repeated)))
+            for axis, error in zip(found[AXIS].to_pylist(), found["error"].to_pylist(), strict=True):
+                if axis is not None:
+                    rows.setdefault(axis, []).append(error or "")
+    twice, elsewhere = {}, set()
+    for axis, errors in rows.items():
+        own_rows = [error for error in errors if f"{AXIS}: {NO_PHASES}" not in error]
+        if len(own_rows) == 1 and len(errors) == 2 and f"{AXIS}: {NOT_BESIDE}" in own_rows[0]:
+            elsewhere.add(axis)
+        elif len(errors) > 1:
+            twice[axis] = bool(own_rows)
+    return _Torn(twice, frozenset(elsewhere))
 
 
 def _repeated(hashes: Sequence[HashArray]) -> HashArray:
@@ -121,35 +157,42 @@ def _part(job: Job, number: int, kind: str) -> pa.Table:
         return pa.ipc.open_file(file).read_all()
 
 
-def _tables(job: Job, parts: int, kind: str, torn: pa.Array) -> Iterator[pa.Table]:
+def _tables(job: Job, parts: int, kind: str, torn: _Torn) -> Iterator[pa.Table]:
     """What the parts have come to, with one row for each torn axis."""
-    torn_axes, told = frozenset(torn.to_pylist()), set[Any]()
+    touched, told = torn.twice.keys() | torn.elsewhere, set[Any]()
     for number in range(parts):
         table = _part(job, number, kind)
-        here = _part(job, number, "answers")[AXIS].to_pylist() if torn_axes else []
-        first = [axis for axis in dict.fromkeys(here) if axis in torn_axes and axis not in told]
-        told.update(first)
-        if torn_axes.isdisjoint(here):
+        answers = _part(job, number, "answers") if touched else table
+        if not touched or touched.isdisjoint(answers[AXIS].to_pylist()):
             yield table
-        elif kind == "answers":
-            yield _told_once(table, torn, first)
+            continue
+        kept = torn.kept(answers, told)
+        if kind == "answers":
+            yield _told_once(table.filter(pa.array(kept)), torn)
+        elif kind == "rejected":
+            yield _rejected_once(table, answers[AXIS].to_pylist(), kept, torn)
         else:
-            rest = table.filter(pc.invert(pc.is_in(table[AXIS], torn)))
-            faults = {AXIS: first, "column": [AXIS] * len(first), "reason": [TWICE] * len(first)}
-            yield pa.concat_tables([rest, pa.table(faults, schema=table.schema)]) if kind == "rejected" else rest
+            yield table.filter(pc.invert(pc.is_in(table[AXIS], pa.array(torn.twice, table[AXIS].type))))
 
 
-def _told_once(answers: pa.Table, torn: pa.Array, first: Sequence[Any]) -> pa.Table:
-    """Answers in which a torn axis has an error, in the row where it comes first, and no other row."""
-    left = set(first)
-    keep = []
-    for axis, is_torn in zip(answers[AXIS].to_pylist(), pc.is_in(answers[AXIS], torn).to_pylist(), strict=True):
-        keep.append(not is_torn or axis in left)
-        left.discard(axis)
-    kept = answers.filter(pa.array(keep))
-    is_torn = pc.is_in(kept[AXIS], torn)
-    columns = [kept[AXIS]]
-    for field in list(kept.schema)[1:]:
+def _told_once(answers: pa.Table, torn: _Torn) -> pa.Table:
+    """Answers in which a torn axis has an error and nothing else."""
+    is_torn = pc.is_in(answers[AXIS], pa.array(torn.twice, answers[AXIS].type))
+    columns = [answers[AXIS]]
+    for field in list(answers.schema)[1:]:
         instead = pa.scalar(f"{AXIS}: {TWICE}" if field.name == "error" else None, field.type)
-        columns.append(pc.if_else(is_torn, instead, kept[field.name]))
-    return pa.Table.from_arrays(columns, schema=kept.schema)
+        columns.append(pc.if_else(is_torn, instead, answers[field.name]))
+    return pa.Table.from_arrays(columns, schema=answers.schema)
+
+
+def _rejected_once(rejected: pa.Table, axes: Sequence[Any], kept: Sequence[bool], torn: _Torn) -> pa.Table:
+    """Faults in the order of the axes, those of a torn one as one."""
+    left = deque(rejected.to_pylist())
+    rows = []
+    for axis, is_kept in zip(axes, kept, strict=True):
+        own = []
+        while left and left[0][AXIS] == axis:
+            own.append(left.popleft())
+        if is_kept:
+            rows += own if axis not in torn.twice else [{AXIS: axis, "column": AXIS, "reason": TWICE}]
+    return pa.Table.from_pylist(rows, rejected.schema)

@@ -1,7 +1,9 @@
 """From parts of tables to axes in list form: phases of long form are gathered, and their other columns joined."""
 
 from bisect import bisect_right
+from collections import deque
 from collections.abc import Iterator, Sequence
+from itertools import islice
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -239,15 +241,34 @@ def with_others(table: Table, parts: Sequence[Part], others: Table) -> list[Part
     stream, placed = _AxisStream(others), list[Part]()
     for part in parts:
         ids = _texts([piece.rows[AXIS] for piece in _gathered(_own_rows(table, part, [AXIS]))])
-        window, count = stream.ahead(len(ids) + WINDOW), len(ids)
-        if not window.slice(0, count).equals(ids):
-            found = pc.max(pc.index_in(ids, window)).as_py()
-            count = 0 if found is None else found + 1
+        count = len(ids)
+        if not stream.ahead(count).equals(ids):
+            places = [place for place in _places(ids, stream.following()) if place is not None]
+            count = places[-1] + 1 if places else 0
         placed.append(part._replace(others=(*stream.place, count)))
         stream.drop(count)
     unit, row, count = placed[-1].others
     placed[-1] = placed[-1]._replace(others=(unit, row, count + stream.rest()))
     return placed
+
+
+def _places(axes: pa.Array, others: Iterator[str | None]) -> list[int | None]:
+    """Where each axis stands in the other table behind the one before, up to WINDOW further on; None where it doesn't.
+
+    One after another: what comes of an axis depends on those before it alone, not on the part that it lies in.
+    """
+    where: dict[str | None, deque[int]] = {}
+    places, read, done = list[int | None](), 0, 0
+    for axis in axes.to_pylist():
+        for other in islice(others, done + WINDOW - read):
+            where.setdefault(other, deque()).append(read)
+            read += 1
+        own = where.get(axis, deque())
+        while own and own[0] < done:
+            own.popleft()
+        places.append(own[0] if own else None)
+        done = own[0] + 1 if own else done
+    return places
 
 
 def _texts(columns: Sequence[pa.ChunkedArray]) -> pa.Array:
@@ -288,6 +309,14 @@ class _AxisStream:
         self._held = pa.concat_arrays(held)
         return self._held.slice(0, count)
 
+    def following(self) -> Iterator[str | None]:
+        """The next axes one by one; they stay the next ones."""
+        given = 0
+        while given < len(self.ahead(given + 1)):
+            more = self._held.slice(given).to_pylist()
+            given += len(more)
+            yield from more
+
     def drop(self, count: int) -> None:
         """Go on behind the next axes."""
         self._held, self._done = self._held.slice(count), self._done + count
@@ -321,12 +350,11 @@ def _joined(listed: Listed, others: Listed) -> Listed:
     """Axes with their other columns; one that a table lacks is a fault."""
     left, right = _matched(_texts([listed.rows[AXIS]]), _texts([others.rows[AXIS]]))
     rows, beside = listed.rows.take(pa.array(left, pa.int64())), others.rows.take(pa.array(right, pa.int64()))
-    faults = []
+    faults = [Fault(row, AXIS, NOT_BESIDE) for row, place in enumerate(right) if place is None]  # first: they are told
+    faults += [Fault(row, AXIS, NO_PHASES) for row, place in enumerate(left) if place is None]
     for places, given in ((left, listed.faults), (right, others.faults)):
         at = {row: place for place, row in enumerate(places)}
         faults += [Fault(at[fault.row], fault.column, fault.reason) for fault in given if fault.row in at]
-    faults += [Fault(row, AXIS, NOT_BESIDE) for row, place in enumerate(right) if place is None]
-    faults += [Fault(row, AXIS, NO_PHASES) for row, place in enumerate(left) if place is None]
     if any(place is None for place in left):
         axis = pc.coalesce(rows[AXIS], _as_type(beside[AXIS], rows[AXIS].type))
         rows = rows.set_column(rows.column_names.index(AXIS), AXIS, axis)
@@ -341,20 +369,13 @@ def _matched(axes: pa.Array, others: pa.Array) -> tuple[list[int | None], list[i
     if axes.equals(others):
         return list(range(len(axes))), list(range(len(axes)))
     left, right, done = list[int | None](), list[int | None](), 0
-    elsewhere = pc.is_valid(pc.index_in(others, axes)).to_pylist()
-    places = [*enumerate(pc.index_in(axes, others).to_pylist()), (None, len(others))]
-    for axis, place in places:
-        if place is None or place < done:
-            left.append(axis)
-            right.append(None)
-            continue
-        alone = [other for other in range(done, place) if not elsewhere[other]]
-        left += [None] * len(alone)
-        right += alone
-        if axis is not None:
-            left.append(axis)
-            right.append(place)
-            done = place + 1
+    for axis, place in enumerate(_places(axes, iter(others.to_pylist()))):
+        alone = range(done, done if place is None else place)
+        left += [*(None for _ in alone), axis]
+        right += [*alone, place]
+        done = done if place is None else place + 1
+    left += [None] * (len(others) - done)
+    right += range(done, len(others))
     return left, right
 
 
@@ -365,4 +386,11 @@ def _as_type(axis: pa.ChunkedArray, wanted: pa.DataType) -> pa.ChunkedArray:
     try:
         return axis.cast(wanted)
     except pa.ArrowException:
-        return pa.chunked_array([pa.nulls(len(axis), wanted)])
+        return pa.chunked_array([_one_as_type(cell, wanted) for cell in axis], wanted)
+
+
+def _one_as_type(axis: pa.Scalar, wanted: pa.DataType) -> pa.Array:
+    try:
+        return pa.array([axis.cast(wanted).as_py()], wanted)
+    except pa.ArrowException:
+        return pa.nulls(1, wanted)

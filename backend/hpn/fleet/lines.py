@@ -152,10 +152,10 @@ class CsvTable(LinesTable):
         if "torque_Nm" not in self.names:
             return False
         batches = (batch for unit in range(len(self.unit_sizes)) for batch in self._texts(unit, ["torque_Nm"]))
-        first = next((batch.rows for batch in batches if batch.rows.num_rows), None)
+        first = next((cells[0].as_py() for batch in batches if len(cells := batch.rows[0].drop_null())), None)
         if first is None:
             return any(name in COLUMNS.others for name in self.names)
-        return (first[0][0].as_py() or "").lstrip().startswith("[")
+        return bool(first.lstrip().startswith("["))
 
     @property
     def axis_type(self) -> pa.DataType:

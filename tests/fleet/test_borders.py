@@ -1,0 +1,187 @@
+"""No end of a batch, a stretch, a slice or a part changes an answer: each kind of fault is moved over every border."""
+
+import json
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from hpn.catalogue import Catalogue
+from hpn.fleet import grouping, job, lines, tables
+from hpn.fleet.opened import open_axes
+from hpn.fleet.run import Order, size_fleet
+from tests.fleet.tables import Row, here, quiet, read, write
+
+AXES, PHASES = 5, 3
+ROWS = AXES * PHASES
+SIZES = (1, 2, 3, 7)
+LINE_BYTES = 70
+
+Change = Callable[[list[Any], int], None]
+
+
+def _row(axis: int, phase: int, *, is_list: bool) -> Row:
+    cells: Row = {"torque_Nm": 40.0, "speed_rpm": 250.0, "duration_s": phase + 1.0}
+    return {"axis": f"a{axis}", **{name: [cell] * 2 if is_list else cell for name, cell in cells.items()}}
+
+
+def _sound(form: str) -> list[Row]:
+    places = [(place, 0) for place in range(ROWS)] if form == "list" else [divmod(p, PHASES) for p in range(ROWS)]
+    return [_row(axis, phase, is_list=form == "list") for axis, phase in places]
+
+
+def _lines(rows: list[Row], suffix: str) -> list[str]:
+    if suffix == ".ndjson":
+        return [json.dumps(row) for row in rows]
+    return [",".join(_csv(cell) for cell in row.values()) for row in rows]
+
+
+def _csv(cell: Any) -> str:
+    return f'"{json.dumps(cell)}"' if isinstance(cell, list) else str(cell)
+
+
+def _cell(name: str, value: Any) -> Callable[[Row], Row]:
+    return lambda row: {**row, name: value}
+
+
+OF_ROWS: dict[str, Callable[[Row], Row]] = {
+    "no axis": _cell("axis", None),
+    "another axis": _cell("axis", "other"),
+    "the first axis again": _cell("axis", "a0"),
+    "the last axis too early": _cell("axis", "a4"),
+    "no torque": _cell("torque_Nm", None),
+    "a name that is too long": _cell("axis", "n" * 1001),
+    "no sound number": _cell("duration_s", -1.0),
+}
+OF_LINES: dict[str, Callable[[str], str]] = {
+    "a line cut in its name": lambda line: line[:2],
+    "a line cut behind its name": lambda line: line[: line.index("a") + 16],
+    "a line without anything": lambda line: ",,",
+    "a line with more": lambda line: line + ",9",
+    "an empty line": lambda line: "",
+    "no number": lambda line: line.replace("250", "2 50"),
+    "a quote within a cell": lambda line: line.replace("40", '4"0', 1),
+    "two quotes within a cell": lambda line: line.replace("40", '4""0', 1),
+    "bytes that are no text": lambda line: line.replace("a", "\udcff", 1),
+}
+
+
+@pytest.fixture
+def cut(monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[[int], None]]:
+    """Makes batches, stretches, slices and parts as small as wanted."""
+
+    def into(size: int) -> None:
+        job.opened.cache_clear()
+        for module, name in ((tables, "BATCH_ROWS"), (lines, "BATCH_ROWS"), (job, "SLICE_AXES")):
+            monkeypatch.setattr(module, name, size)
+        for module, name in ((lines, "UNIT_BYTES"), (grouping, "PART_BYTES")):
+            monkeypatch.setattr(module, name, size * LINE_BYTES)
+        for name in ("PART_PHASES", "PART_AXES"):
+            monkeypatch.setattr(grouping, name, size)
+
+    yield into
+    job.opened.cache_clear()
+
+
+def axes(path: Path) -> list[Any]:
+    """Axes of a file with their phases, and what is wrong with them."""
+    table = open_axes(path)
+    found = []
+    for part in grouping.parts_of(table):
+        for listed in grouping.axes_of(table, part):
+            reasons: list[Any] = [[] for _ in range(listed.rows.num_rows)]
+            for fault in listed.faults:
+                reasons[fault.row].append((fault.column, fault.reason))
+            found += [(*row.values(), told) for row, told in zip(listed.rows.to_pylist(), reasons, strict=True)]
+    return found
+
+
+@pytest.fixture
+def answers(tmp_path: Path, catalogue: Catalogue) -> Callable[..., Any]:
+    """Sizes a file: answers and rejected rows."""
+
+    def run(path: Path, beside: Path | None = None) -> Any:
+        order = Order(path, tmp_path / "out.ndjson", beside, rejected=tmp_path / "rejected.ndjson")
+        size_fleet(order, catalogue, here, quiet)
+        return read(order.answers), read(tmp_path / "rejected.ndjson")
+
+    return run
+
+
+@pytest.mark.parametrize("form", ["long", "list"])
+@pytest.mark.parametrize("suffix", [".csv", ".ndjson"])
+@pytest.mark.parametrize("fault", OF_LINES)
+def test_a_damaged_line_is_told_alike_wherever_the_file_is_cut(
+    fault: str, suffix: str, form: str, cut: Callable[[int], None], tmp_path: Path
+) -> None:
+    head = "axis,torque_Nm,speed_rpm,duration_s\n" if suffix == ".csv" else ""
+    for places in [(place,) for place in range(1, ROWS)] + [(place - 1, place) for place in range(2, ROWS)]:
+        rows = _lines(_sound(form), suffix)
+        for place in places:
+            rows[place] = OF_LINES[fault](rows[place])
+        path = tmp_path / f"in{suffix}"
+        path.write_text(head + "\n".join(rows) + "\n", errors="surrogateescape")
+        cut(10**6)
+        whole = axes(path)
+        for size in SIZES:
+            cut(size)
+            assert repr(axes(path)) == repr(whole), (places, size)
+
+
+@pytest.mark.parametrize("form", ["long", "list"])
+@pytest.mark.parametrize("suffix", [".csv", ".ndjson", ".parquet", ".arrow"])
+@pytest.mark.parametrize("fault", OF_ROWS)
+def test_a_row_that_is_wrong_is_told_alike_wherever_the_file_is_cut(
+    fault: str, suffix: str, form: str, cut: Callable[[int], None], tmp_path: Path
+) -> None:
+    for place in range(1, ROWS):
+        rows = _sound(form)
+        rows[place] = OF_ROWS[fault](rows[place])
+        cut(10**6)
+        whole = axes(write(tmp_path / f"in{suffix}", rows))
+        for size in SIZES:
+            cut(size)
+            assert repr(axes(write(tmp_path / f"in{suffix}", rows, unit_rows=size))) == repr(whole), (place, size)
+
+
+@pytest.mark.parametrize("fault", ["another axis", "the first axis again", "the last axis too early"])
+def test_a_torn_axis_is_told_alike_wherever_the_file_is_cut(
+    fault: str, cut: Callable[[int], None], answers: Callable[..., Any], tmp_path: Path
+) -> None:
+    for place in range(2, ROWS, 3):
+        rows = _sound("long")
+        rows[place] = OF_ROWS[fault](rows[place])
+        path = write(tmp_path / "in.csv", rows)
+        cut(10**6)
+        whole = answers(path)
+        for size in (1, 4):
+            cut(size)
+            assert answers(path) == whole, (place, size)
+
+
+BESIDE: dict[str, Change] = {
+    "is missing": lambda rows, place: rows.pop(place),
+    "is there twice": lambda rows, place: rows.insert(place, rows[place]),
+    "is one more": lambda rows, place: rows.insert(place, {"axis": "more"}),
+    "stands too late": lambda rows, place: rows.append(rows.pop(place)),
+    "stands behind the next": lambda rows, place: rows.insert(place + 1, rows.pop(place)),
+    "is damaged": lambda rows, place: rows.__setitem__(place, {"axis": None}),
+}
+
+
+@pytest.mark.parametrize("suffix", [".csv", ".parquet"])
+@pytest.mark.parametrize("fault", BESIDE)
+def test_what_is_wrong_beside_the_phases_is_told_alike_wherever_both_are_cut(
+    fault: str, suffix: str, cut: Callable[[int], None], answers: Callable[..., Any], tmp_path: Path
+) -> None:
+    other, path = tmp_path / f"beside{suffix}", tmp_path / f"in{suffix}"
+    for place in range(AXES):
+        beside = [{"axis": f"a{axis}", "pause_s": 1.0 + axis} for axis in range(AXES)]
+        BESIDE[fault](beside, place)
+        cut(10**6)
+        whole = answers(write(path, _sound("long")), write(other, beside))
+        for size in (1, 4):
+            cut(size)
+            write(other, beside, unit_rows=size)
+            assert answers(write(path, _sound("long"), unit_rows=size), other) == whole, (place, size)
