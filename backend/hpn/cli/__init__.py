@@ -106,13 +106,26 @@ def _parser() -> argparse.ArgumentParser:
 
 
 def _add_fleet(fleet: argparse.ArgumentParser) -> None:
-    formats = "Parquet, Arrow IPC, CSV or NDJSON, by the suffix .parquet, .arrow, .csv or .ndjson"
+    formats = (
+        "Parquet, Arrow IPC, CSV or NDJSON, by the suffix .parquet, .arrow, .arrows, .feather, .csv, .csv.gz, .ndjson "
+        "or .jsonl"
+    )
     fleet.add_argument("input", type=Path, metavar="INPUT", help=f"the axes, or the phases of axes: {formats}")
-    fleet.add_argument("output", type=Path, metavar="OUTPUT", help="a row for each axis")
+    fleet.add_argument(
+        "output", type=Path, metavar="OUTPUT", help="a row for each axis; .parquet, .arrow, .csv, .ndjson"
+    )
     fleet.add_argument("--axes", type=Path, metavar="FILE", help="the other columns, where a row of INPUT is a phase")
     fleet.add_argument("--candidates", type=Path, metavar="FILE", help="write every candidate of every axis")
     fleet.add_argument(
         "--rejected", type=Path, metavar="FILE", help="write what is wrong with axes that have no answer"
+    )
+    fleet.add_argument(
+        "--ignore",
+        metavar="NAME",
+        nargs="+",
+        action="extend",
+        default=[],
+        help="leave out columns of the tables that no application has",
     )
     fleet.add_argument("--report", type=Path, metavar="FILE", help="write counts and the first 10,000 axes as HTML")
     fleet.add_argument("--lang", choices=("en", "de"), help="language of the report")

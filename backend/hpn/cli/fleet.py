@@ -32,6 +32,7 @@ def run(options: argparse.Namespace) -> int:
         candidates=options.candidates,
         rejected=options.rejected,
         resume=options.resume,
+        ignored=tuple(options.ignore),
     )
     _require_used(options)
     if options.report:
@@ -56,7 +57,10 @@ def _sized(order: Order, catalogue: Catalogue, engine: Engine, use: Use) -> dict
             bar.total, bar.unit = total, counted
             bar.update(done - bar.n)
 
-        return size_fleet(order, catalogue, engine, watch, use)
+        def tell(path: Path, name: str) -> None:
+            tqdm.write(f"{path}: column {name!r} is an index that pandas wrote, and ignored", file=sys.stderr)
+
+        return size_fleet(order, catalogue, engine, watch, use, tell)
 
 
 def _reason(error: BaseException) -> str:
@@ -97,7 +101,7 @@ def _write_report(options: argparse.Namespace, catalogue: Catalogue, answers: Pa
         return
     from hpn.web.pages.fleet_report import report_of  # a second of imports, which no fleet without a report waits for
 
-    listing = listing_of(options.input, options.axes, answers, catalogue)
+    listing = listing_of(options.input, options.axes, answers, catalogue, options.ignore)
     written = options.report.with_name(f".{options.report.name}.{os.getpid()}")
     try:
         service: str = (options.service or "").rstrip("/")

@@ -17,7 +17,7 @@ import pyarrow.parquet as pq
 from hpn.fleet.columns import AXIS
 from hpn.fleet.grouping import NO_PHASES, NOT_BESIDE
 from hpn.fleet.job import HashArray, Job, hashes_of
-from hpn.fleet.opened import format_of
+from hpn.fleet.opened import format_of, suffix_of
 from hpn.words.wording import N_
 
 BUCKET_HASHES = 20_000_000
@@ -85,8 +85,9 @@ def _write(path: Path, suffix: str, schema: pa.Schema, tables: Iterator[pa.Table
 
 def _axis_type(job: Job, parts: int) -> pa.DataType:
     """Type of the axes; those of CSV are integers if every one is written as one."""
-    are_text = job.axes.suffix != ".csv" or any(job.file(number, "text").exists() for number in range(parts))
-    return job.tables()[0].axis_type if are_text else pa.int64()
+    if suffix_of(job.axes) not in (".csv", ".csv.gz") or any(job.file(part, "text").exists() for part in range(parts)):
+        return job.tables()[0].axis_type
+    return pa.int64()
 
 
 # --- Axes that are not together ---------------------------------------------------------------------------------------
@@ -188,7 +189,7 @@ def _told_once(answers: pa.Table, torn: _Torn) -> pa.Table:
 def _rejected_once(rejected: pa.Table, axes: Sequence[Any], kept: Sequence[bool], torn: _Torn) -> pa.Table:
     """Faults in the order of the axes, those of a torn one as one."""
     left = deque(rejected.to_pylist())
-    rows = []
+    rows = list[Any]()
     for axis, is_kept in zip(axes, kept, strict=True):
         own = []
         while left and left[0][AXIS] == axis:

@@ -58,11 +58,13 @@ class Job:
     catalogue: bytes
     with_candidates: bool
     fingerprints: tuple[str, ...] = ()
+    ignored: tuple[str, ...] = ()
 
     def tables(self) -> tuple[Table, Table | None]:
         """The table of axes, and the one beside it."""
-        table = open_axes(self.axes)
-        return table, None if self.requirements is None else open_requirements(self.requirements, table)
+        table = open_axes(self.axes, self.ignored)
+        beside = None if self.requirements is None else open_requirements(self.requirements, table, self.ignored)
+        return table, beside
 
     def schemas(self, axis: pa.DataType) -> dict[str, pa.Schema]:
         """Columns of what comes out, by the kind of file."""

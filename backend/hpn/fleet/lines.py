@@ -1,16 +1,18 @@
 """Tables of axes in lines of text: CSV and NDJSON."""
 
 import csv
+import gzip
 import io
 import os
 import re
+import zlib
 from abc import abstractmethod
 from bisect import bisect_left
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from functools import cached_property
 from itertools import pairwise
-from typing import Annotated, Any
+from typing import Annotated, Any, BinaryIO
 
 import msgspec
 import numpy as np
@@ -23,7 +25,7 @@ from hpn.application.faults import NOT_A_NUMBER
 from hpn.application.unique import RepeatedNameError, require_unique
 from hpn.fleet.columns import AXIS, COLUMNS, Column, is_list
 from hpn.fleet.errors import FleetError
-from hpn.fleet.tables import BATCH_ROWS, Batch, CellFault, Table, row_of
+from hpn.fleet.tables import BATCH_ROWS, INDEX, MOST_HELD_BYTES, Batch, CellFault, Table, row_of
 from hpn.words.wording import N_
 
 UNIT_BYTES = 8_000_000
@@ -56,12 +58,16 @@ REPLACED = "\ufffd"
 class LinesTable(Table):
     """A table in lines; its units are stretches of lines."""
 
+    def open(self) -> BinaryIO:
+        """The file, to be read from its start."""
+        return open(self.path, "rb")
+
     @cached_property
     def cuts(self) -> Sequence[int]:
         """Where stretches begin and end, in bytes from the start of the file."""
         cuts = [self.first_byte]
-        with open(self.path, "rb") as file:
-            size = os.fstat(file.fileno()).st_size
+        with self.open() as file:
+            size = file.seek(0, os.SEEK_END)
             while cuts[-1] < size:
                 cuts.append(self._next_cut(file, cuts[-1], size))
         return cuts
@@ -97,7 +103,7 @@ class LinesTable(Table):
 
     def content(self, unit: int) -> bytes:
         """The lines of a stretch."""
-        with open(self.path, "rb") as file:
+        with self.open() as file:
             file.seek(self.cuts[unit])
             return file.read(self.cuts[unit + 1] - self.cuts[unit])
 
@@ -110,7 +116,7 @@ class LinesTable(Table):
 
     def start_of_file(self) -> bytes:
         """The first lines."""
-        with open(self.path, "rb") as file:
+        with self.open() as file:
             return file.read(START_BYTES)
 
 
@@ -140,7 +146,7 @@ class CsvTable(LinesTable):
         return names, min(skipped, len(content))
 
     @property
-    def names(self) -> Sequence[str]:
+    def all_names(self) -> Sequence[str]:
         return self._header[0]
 
     @property
@@ -190,10 +196,10 @@ class CsvTable(LinesTable):
         try:
             rows = pacsv.read_csv(
                 io.BytesIO(_as_utf8(self.content(unit))),
-                pacsv.ReadOptions(column_names=self.names, use_threads=False, block_size=MOST_LINE_BYTES),
+                pacsv.ReadOptions(column_names=self.all_names, use_threads=False, block_size=MOST_LINE_BYTES),
                 pacsv.ParseOptions(newlines_in_values=True, invalid_row_handler=skip),
                 pacsv.ConvertOptions(
-                    column_types=dict.fromkeys(self.names, pa.string()),
+                    column_types=dict.fromkeys(self.all_names, pa.string()),
                     include_columns=list(names),
                     null_values=[""],
                     strings_can_be_null=True,
@@ -243,7 +249,30 @@ class CsvTable(LinesTable):
 
     @cached_property
     def _axis_place(self) -> int | None:
-        return list(self.names).index(AXIS) if AXIS in self.names else None
+        return list(self.all_names).index(AXIS) if AXIS in self.all_names else None
+
+    @property
+    def indices(self) -> Sequence[str]:
+        return [name for place, name in enumerate(self.all_names) if INDEX.fullmatch(name) or not (place or name)]
+
+
+class GzipCsvTable(CsvTable):
+    """CSV in a gzip file, which is unfolded once and held."""
+
+    @cached_property
+    def _content(self) -> bytes:
+        try:
+            with gzip.open(self.path) as file:
+                content = file.read(MOST_HELD_BYTES + 1)
+        except (OSError, EOFError, zlib.error) as error:
+            raise FleetError(f"{self.path}: can’t be read as gzip: {error}") from None
+        if len(content) > MOST_HELD_BYTES:
+            raise FleetError(f"{self.path}: unfolds to more than {MOST_HELD_BYTES:,} bytes; unpack it and send the CSV")
+        return content
+
+    def open(self) -> BinaryIO:
+        """What the file holds, to be read from its start."""
+        return io.BytesIO(self._content)
 
 
 def _parsed(texts: pa.Array, column: Column | None, wanted: pa.DataType) -> tuple[pa.Array, list[tuple[int, str]]]:
@@ -271,7 +300,7 @@ def _quoted(content: bytes) -> NDArray[np.bool_]:
     follows = np.zeros(len(opening), np.bool_)
     follows[1:] = opening[1:] == marks[1::2][: len(opening) - 1] + 1
     if (np.isin(before, np.frombuffer(b",\r\n", np.uint8)) | (opening == 0) | follows).all():
-        return np.cumsum(given == ord('"'), dtype=np.uint8) % 2 == 1
+        return np.asarray(np.cumsum(given == ord('"'), dtype=np.uint8) % 2 == 1)
     quoted = np.zeros(len(content), np.bool_)
     for found in QUOTED.finditer(content):
         quoted[found.start() : found.end()] = True
@@ -334,7 +363,7 @@ class NdjsonTable(LinesTable):
         return {}
 
     @property
-    def names(self) -> Sequence[str]:
+    def all_names(self) -> Sequence[str]:
         """Every column that a row may have: they need not stand in the first one."""
         phases = COLUMNS.phases if "torque_Nm" in self._first or not self._first else ()
         others = COLUMNS.others if self.is_in_list_form or not phases else ()
@@ -372,7 +401,7 @@ class NdjsonTable(LinesTable):
         for name in self.names:
             if name != AXIS:
                 kinds[name] = READ_AS[COLUMNS.all[name].kind == "string", is_list(self.type_of(name))]
-        return kinds
+        return kinds | dict.fromkeys(self.ignored, Any)
 
     def _batches(self, unit: int, names: Sequence[str]) -> Iterator[Batch]:
         if unit + 1 >= len(self.cuts):

@@ -1,7 +1,7 @@
 """The axes that are shown one by one, in a page or a report: their answers, and what they were asked with."""
 
 import io
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal, NamedTuple
@@ -22,6 +22,7 @@ from hpn.fleet.grouping import axes_of, parts_of, with_others
 from hpn.fleet.opened import format_of, open_axes, open_requirements
 from hpn.fleet.outcome import answer_fields
 from hpn.fleet.summary import Summary, summary_of
+from hpn.fleet.tables import Table
 
 MOST_LISTED = 10_000
 """Axes that a page or a report shows one by one; more are in the files."""
@@ -71,10 +72,14 @@ NEAREST = pa.schema([("nearest", pa.string()), ("nearest_check", pa.string()), (
 """Columns beside those of the answers: the gear that comes nearest where none suits."""
 
 
-def listing_of(axes: Path, requirements: Path | None, answers: Path, catalogue: Catalogue) -> Listing:
+def listing_of(
+    axes: Path, requirements: Path | None, answers: Path, catalogue: Catalogue, ignored: Sequence[str] = ()
+) -> Listing:
     """Listing of tables that were sized: of the axes as they were given, and of their answers."""
     first = _first(read_answers(answers))
-    asked = _asked(axes, requirements, first.filter(pc.is_null(first["error"]))[AXIS])
+    table = open_axes(axes, ignored)
+    others = None if requirements is None else open_requirements(requirements, table, ignored)
+    asked = _asked(table, others, first.filter(pc.is_null(first["error"]))[AXIS])
     lacking = asked.filter(pc.is_in(asked[AXIS], first.filter(pc.equal(first["suitable"], 0))[AXIS].combine_chunks()))
     misses, places = nearest_misses(lacking, catalogue), pc.index_in(first[AXIS], lacking[AXIS].combine_chunks())
     for field in NEAREST:
@@ -121,10 +126,8 @@ def _first(batches: Iterator[pa.RecordBatch]) -> pa.Table:
     return pa.concat_tables(pieces)
 
 
-def _asked(axes: Path, requirements: Path | None, names: pa.ChunkedArray) -> pa.Table:
+def _asked(table: Table, others: Table | None, names: pa.ChunkedArray) -> pa.Table:
     """Axes of these names in list form, their names as text."""
-    table = open_axes(axes)
-    others = None if requirements is None else open_requirements(requirements, table)
     parts = parts_of(table) if others is None else with_others(table, parts_of(table), others)
     pieces, count, wanted = list[pa.Table](), 0, names.combine_chunks()
     for listed in (listed for part in parts for listed in axes_of(table, part, others)):

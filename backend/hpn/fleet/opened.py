@@ -3,12 +3,13 @@
 import os
 import stat
 from collections import Counter
+from collections.abc import Sequence
 from difflib import get_close_matches
 from pathlib import Path
 
 from hpn.fleet.columns import AXIS, COLUMNS
 from hpn.fleet.errors import FleetError, wrong_encoding
-from hpn.fleet.lines import CsvTable, LinesTable, NdjsonTable
+from hpn.fleet.lines import CsvTable, GzipCsvTable, LinesTable, NdjsonTable
 from hpn.fleet.tables import ArrowTable, ParquetTable, Table, TypedTable
 
 FORMATS: dict[str, type[Table]] = {
@@ -16,7 +17,15 @@ FORMATS: dict[str, type[Table]] = {
     ".arrow": ArrowTable,
     ".csv": CsvTable,
     ".ndjson": NdjsonTable,
+    ".arrows": ArrowTable,
+    ".feather": ArrowTable,
+    ".jsonl": NdjsonTable,
+    ".csv.gz": GzipCsvTable,
 }
+"""Formats that are read, by suffix."""
+
+WRITTEN = {".arrows": ".arrow", ".feather": ".arrow", ".jsonl": ".ndjson", ".csv.gz": ".csv"}
+"""Formats that are read and not written, and which each is answered in."""
 
 FORM = "torque_Nm"
 """Column that tells the form of a table."""
@@ -26,11 +35,17 @@ MOST_PROBLEMS = 20
 """Columns that are told to be wrong."""
 
 
+def suffix_of(path: Path) -> str | None:
+    """Suffix of a file that is read."""
+    return next((suffix for suffix in FORMATS if path.name.endswith(suffix)), None)
+
+
 def format_of(path: Path) -> str:
-    """Suffix of a file, which says its format."""
-    if path.suffix not in FORMATS:
-        raise FleetError(f"{path}: the suffix must be one of {', '.join(FORMATS)}")
-    return path.suffix
+    """Suffix of a file that is written, which says its format."""
+    suffix = suffix_of(path)
+    if suffix is None or suffix in WRITTEN:
+        raise FleetError(f"{path}: the suffix must be one of {', '.join(s for s in FORMATS if s not in WRITTEN)}")
+    return suffix
 
 
 def status_of(path: Path) -> os.stat_result | None:
@@ -43,32 +58,36 @@ def status_of(path: Path) -> os.stat_result | None:
         raise FleetError(f"{path}: {UNREADABLE}") from None
 
 
-def open_axes(path: Path) -> Table:
+def open_axes(path: Path, ignored: Sequence[str] = ()) -> Table:
     """The table of phases or of axes; raises FleetError for columns that are missing, unknown or of a wrong type."""
-    table = _opened(path)
+    table = _opened(path, ignored)
     allowed = [AXIS, *COLUMNS.phases, *(COLUMNS.others if table.is_in_list_form else ())]
     required = [AXIS, *(column.name for column in COLUMNS.phases.values() if column.required)]
     _require(table, allowed, required)
     return table
 
 
-def open_requirements(path: Path, phases: Table) -> Table:
+def open_requirements(path: Path, phases: Table, ignored: Sequence[str] = ()) -> Table:
     """The table beside phases in long form, a row for each axis with its other columns."""
     if phases.is_in_list_form:
         raise FleetError(f"{phases.path}: has its axes in list form; --axes belongs to the long form alone")
-    table = _opened(path)
+    table = _opened(path, ignored)
     _require(table, [AXIS, *COLUMNS.others], [AXIS])
     return table
 
 
-def _opened(path: Path) -> Table:
-    suffix = format_of(path)
+def _opened(path: Path, ignored: Sequence[str]) -> Table:
+    suffix = suffix_of(path)
+    if suffix is None:
+        raise FleetError(f"{path}: the suffix must be one of {', '.join(FORMATS)}")
     found = status_of(path)
     if found is None or not stat.S_ISREG(found.st_mode):
         raise FleetError(f"{path}: {'is not a file' if found else 'there is no such file'}")
     if not found.st_size:
         raise FleetError(f"{path}: is empty, where a table belongs")
-    table = FORMATS[suffix](path)
+    table = FORMATS[suffix](path, ignored)
+    known = (AXIS, *COLUMNS.all)
+    table.ignored += tuple(name for name in table.indices if name not in known and name not in ignored)
     if isinstance(table, LinesTable) and (said := wrong_encoding(table.start_of_file())):
         raise FleetError(f"{path}: {said}")
     return table
@@ -98,4 +117,5 @@ def _unknown(name: str, allowed: list[str]) -> str:
     if name in COLUMNS.phases:
         return f"column {name} belongs to the phases"
     close = get_close_matches(name[:80], allowed, 1)
-    return f"column {name!r:.80} is unknown" + (f"; it looks like {close[0]}" if close else "")
+    said = f"; it looks like {close[0]}" if close else ""
+    return f"column {name!r:.80} is unknown{said}"

@@ -44,6 +44,8 @@ class Order:
     candidates: Path | None = None
     rejected: Path | None = None
     resume: bool = False
+    ignored: tuple[str, ...] = ()
+    """Columns that are left out, whatever is in them."""
 
     @property
     def targets(self) -> dict[str, Path]:
@@ -72,15 +74,22 @@ class Plan(msgspec.Struct, frozen=True):
     catalogue_version: str
     fingerprints: tuple[str, ...]
     with_candidates: bool
+    ignored: tuple[str, ...]
     parts: tuple[Part, ...]
 
 
 def size_fleet(
-    order: Order, catalogue: Catalogue, engine: Engine, watch: Watch, use: Use = lambda _: None
+    order: Order,
+    catalogue: Catalogue,
+    engine: Engine,
+    watch: Watch,
+    use: Use = lambda _: None,
+    tell: Callable[[Path, str], None] = lambda path, name: None,
 ) -> dict[str, int]:
     """Size all axes; gives the numbers of rows of the files by kind.
 
-    `use` is given the answers before they have their name, for what has to be written along with them.
+    `use` is given the answers before they have their name, for what has to be written along with them; `tell` is told
+    of columns that are ignored though nobody asked for that.
     Raises FleetError for input that can't be used, and for parts that belong to another one.
     """
     _require_usable(order)
@@ -92,12 +101,16 @@ def size_fleet(
         copy_of(catalogue),
         order.candidates is not None,
         tuple(_fingerprint(path) for path in read if path.is_file()),
+        order.ignored,
     )
     table, requirements = job.tables()
+    for each in filter(None, (table, requirements)):
+        for name in each.ignored[len(order.ignored) :]:
+            tell(each.path, name)
     parts = parts_of(table)
     if requirements is not None:
         parts = with_others(table, parts, requirements)
-    plan = Plan(ENGINE_VERSION, catalogue.version, job.fingerprints, job.with_candidates, tuple(parts))
+    plan = Plan(ENGINE_VERSION, catalogue.version, job.fingerprints, job.with_candidates, job.ignored, tuple(parts))
     with _folder(order, plan):
         _work(job, parts, table, engine, watch)
         return assemble(job, len(parts), order.targets, use)

@@ -4,6 +4,8 @@ A unit can be read on its own: a row group, a record batch, a stretch of lines. 
 `columns.py` in their types. A cell that is none is null and a fault; the file goes on.
 """
 
+import json
+import re
 from abc import ABC, abstractmethod
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -32,8 +34,16 @@ LONGEST_TEXT = 1000
 
 TOO_LONG = f"must have at most {LONGEST_TEXT} characters"
 NOT_WHOLE = N_("must be text or a whole number")
+INDEX = re.compile("__index_level_[0-9]+__")
 UNREADABLE = (pa.ArrowException, OSError, UnicodeDecodeError)
 """What Arrow raises for a file that it can't read."""
+
+
+ARROW_MARK = b"ARROW1"
+"""What an Arrow file begins with; a stream does not."""
+
+MOST_HELD_BYTES = 500_000_000
+"""Bytes of a table that has to be held as a whole: an Arrow stream, or what a gzip file unfolds to."""
 
 
 class CellFault(NamedTuple):
@@ -86,13 +96,24 @@ def _too_long(column: pa.Array) -> NDArray[np.bool_]:
 class Table(ABC):
     """A table of axes in a file. Raises FleetError, which names the file, where it can't be read."""
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: Path, ignored: Sequence[str] = ()) -> None:
         self.path = path
+        self.ignored = tuple(ignored)
+
+    @property
+    def names(self) -> Sequence[str]:
+        """Names of the columns that are read."""
+        return [name for name in self.all_names if name not in self.ignored]
 
     @property
     @abstractmethod
-    def names(self) -> Sequence[str]:
+    def all_names(self) -> Sequence[str]:
         """Names of the columns."""
+
+    @property
+    def indices(self) -> Sequence[str]:
+        """Columns that pandas wrote of an index without a meaning, as far as the format tells."""
+        return [name for name in self.all_names if INDEX.fullmatch(name)]
 
     @property
     @abstractmethod
@@ -142,7 +163,16 @@ class TypedTable(Table):
         """Columns with their types, as they stand."""
 
     @property
-    def names(self) -> Sequence[str]:
+    def indices(self) -> Sequence[str]:
+        try:
+            told = json.loads((self.given.metadata or {}).get(b"pandas", b"{}"))["index_columns"]
+        except (ValueError, TypeError, KeyError, RecursionError):
+            told = []
+        named = [name for name in told if isinstance(name, str)] if isinstance(told, list) else []
+        return [name for name in self.all_names if name in named or INDEX.fullmatch(name)]
+
+    @property
+    def all_names(self) -> Sequence[str]:
         try:
             names: Sequence[str] = self.given.names
         except UnicodeDecodeError as error:
@@ -172,7 +202,8 @@ class TypedTable(Table):
 
     def wrong_types(self) -> Iterator[str]:
         """Columns whose type can't hold what belongs into them, in words."""
-        return filter(None, map(self.wrong_type, self.names))
+        known = (name for name in self.names if name == AXIS or name in COLUMNS.all)
+        return filter(None, map(self.wrong_type, known))
 
     def wrong_type(self, name: str) -> str:
         """What is wrong with the type of a column, in words; nothing where it can be read."""
@@ -264,19 +295,40 @@ class ParquetTable(TypedTable):
 
 
 class ArrowTable(TypedTable):
-    """An Arrow IPC file; its units are its record batches."""
+    """Arrow IPC; its units are its record batches. Those of a stream, which has no list of them, are held."""
 
     @cached_property
     def _file(self) -> pa.RecordBatchFileReader:
         with self._told():
             return pa.ipc.open_file(pa.OSFile(str(self.path)))
 
+    @cached_property
+    def _is_file(self) -> bool:
+        with open(self.path, "rb") as file:
+            return file.read(len(ARROW_MARK)) == ARROW_MARK
+
+    @cached_property
+    def _stream(self) -> tuple[pa.Schema, list[pa.RecordBatch]]:
+        batches, size = list[pa.RecordBatch](), 0
+        with self._told(), pa.ipc.open_stream(pa.OSFile(str(self.path))) as stream:
+            for batch in stream:
+                size += batch.nbytes
+                if size > MOST_HELD_BYTES:
+                    raise FleetError(
+                        f"{self.path}: an Arrow stream may hold {MOST_HELD_BYTES:,} bytes; write Arrow’s file format "
+                        "for more, or Parquet"
+                    )
+                batches.append(batch)
+            return stream.schema, batches
+
     @property
     def given(self) -> pa.Schema:
-        return self._file.schema
+        return self._file.schema if self._is_file else self._stream[0]
 
     @cached_property
     def unit_sizes(self) -> Sequence[int]:
+        if not self._is_file:
+            return [batch.num_rows for batch in self._stream[1]]
         return [self._read(unit).num_rows for unit in range(self._file.num_record_batches)]
 
     def _batches(self, unit: int, names: Sequence[str]) -> Iterator[Batch]:
@@ -286,6 +338,6 @@ class ArrowTable(TypedTable):
 
     def _read(self, unit: int) -> pa.RecordBatch:
         with self._told(f"record batch {unit + 1} "):
-            batch = self._file.get_batch(unit)
+            batch = self._file.get_batch(unit) if self._is_file else self._stream[1][unit]
             batch.validate(full=True)
         return batch

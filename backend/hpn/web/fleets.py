@@ -31,8 +31,16 @@ from hpn.web.settings import Settings
 
 Kind = Literal["answers", "rejected", "candidates"]
 
-MARKS = {".parquet": b"PAR1", ".arrow": b"ARROW1"}
+MARKS = {".parquet": (b"PAR1", b"PAR1"), ".csv.gz": (b"\x1f\x8b", b"")} | dict.fromkeys(
+    (".arrow", ".arrows", ".feather"), (b"ARROW1", b"ARROW1")
+)
 """What files of a format begin and end with."""
+
+STREAM = b"\xff\xff\xff\xff"
+"""What an Arrow stream begins with; it may end in any way."""
+
+ANSWERED_IN = {".arrows": ".arrow", ".feather": ".arrow", ".jsonl": ".ndjson", ".csv.gz": ".csv"}
+"""Formats that are read and not written."""
 
 HEAD_BYTES = 2_000_000
 """Beginning of a text, in which its first axis has to stand."""
@@ -58,6 +66,8 @@ class Tables:
     axes: Path | None = None
     input_name: str = "input"
     axes_name: str = "axes"
+    ignored: tuple[str, ...] = ()
+    """Columns that are left out."""
 
 
 @asynccontextmanager
@@ -128,7 +138,8 @@ async def size_fleet(
     pool = pool_of(request, "fleets")
     await pool.run(_require_tables, tables)
     kinds: tuple[Kind, ...] = ("answers", "rejected", "candidates") if candidates else ("answers", "rejected")
-    files = {kind: tables.input.with_name(f"{kind}{suffix or tables.input.suffix}") for kind in kinds}
+    given = suffix_of(tables.input)
+    files = {kind: tables.input.with_name(f"{kind}{suffix or ANSWERED_IN.get(given, given)}") for kind in kinds}
     try:
         with pool.place():
             async with asyncio.timeout(settings.fleet_seconds):
@@ -143,19 +154,26 @@ def _require_tables(tables: Tables) -> None:
     """Raise Problem 422 for what a look shows to be no table of axes: no process is started for that."""
     names = {tables.input: tables.input_name} | ({tables.axes: tables.axes_name} if tables.axes else {})
     for path, name in names.items():
-        size, mark = path.stat().st_size, MARKS.get(path.suffix)
+        size, mark = path.stat().st_size, MARKS.get(suffix_of(path))
         with path.open("rb") as file:
-            head = file.read(HEAD_BYTES if mark is None else len(mark))
-            file.seek(max(size - len(mark or b""), 0))
+            head = file.read(HEAD_BYTES if mark is None else len(mark[0]))
+            file.seek(max(size - len(mark[1] if mark else b""), 0))
             end = file.read()
         if not size:
             raise Problem(422, f"{name}: is empty, where a table belongs")
-        if mark is not None and (head, end) != (mark, mark):
-            raise Problem(422, f"{name}: can’t be read as {path.suffix[1:]}: it does not begin and end as such a file")
+        is_stream = path.suffix.startswith(".arrow") and head.startswith(STREAM)
+        if mark is not None and (head, end) != mark and not is_stream:
+            text = f"can’t be read as {suffix_of(path)[1:]}: it does not begin and end as such a file"
+            raise Problem(422, f"{name}: {text}")
         if mark is None and (said := wrong_encoding(head)):
             raise Problem(422, f"{name}: {said}")
         if mark is None and b"axis" not in head:
             raise Problem(422, f"{name}: column axis is missing")
+
+
+def suffix_of(path: Path) -> str:
+    """Suffix of a table, `.csv.gz` as one."""
+    return "".join(path.suffixes[-2:]) if path.suffix == ".gz" else path.suffix
 
 
 async def _sized(tables: Tables, files: Mapping[Kind, Path], settings: Settings, pool: Pool) -> None:
@@ -164,6 +182,7 @@ async def _sized(tables: Tables, files: Mapping[Kind, Path], settings: Settings,
     beside = {"axes": tables.axes, "rejected": files["rejected"], "candidates": files.get("candidates")}
     for option, path in beside.items():
         command += [f"--{option}", str(path)] if path else []
+    command += [f"--ignore={name}" for name in tables.ignored]
     messages = tables.input.with_name("messages")
     async with pool.turn:
         code = await _run(command, messages, settings)

@@ -3,6 +3,7 @@
 import os
 from collections.abc import Iterator
 from contextlib import ExitStack
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Annotated, BinaryIO
@@ -21,7 +22,7 @@ from hpn.web.door.pools import pool_of
 from hpn.web.door.problems import Problem, needs
 from hpn.web.door.requests import require_same_origin
 from hpn.web.door.uploads import MULTIPART, FormSplitter, PartHead, Write
-from hpn.web.fleets import Kind, Tables, size_fleet, workplace
+from hpn.web.fleets import ANSWERED_IN, Kind, Tables, size_fleet, suffix_of, workplace
 from hpn.web.settings import Settings
 
 MEDIA_TYPES = {
@@ -32,11 +33,18 @@ MEDIA_TYPES = {
 }
 """Formats of tables by suffix."""
 
-SUFFIXES = {media_type: suffix for suffix, media_type in MEDIA_TYPES.items()} | dict.fromkeys(
+READ_TYPES = {".arrows": "application/vnd.apache.arrow.stream", ".csv.gz": "application/gzip"}
+"""Formats that are read and not written."""
+
+SUFFIXES = {media_type: suffix for suffix, media_type in (MEDIA_TYPES | READ_TYPES).items()} | dict.fromkeys(
     streaming.MEDIA_TYPES, ".ndjson"
 )
+NAMES = (*MEDIA_TYPES, *ANSWERED_IN)
+"""How the name of a table may end."""
 PARTS = ("input", "axes")
 READ_BYTES = 64 * 1024
+MOST_IGNORED, MOST_NAME = 100, 200
+"""Columns that are left out by their names, and characters of a name."""
 
 router = APIRouter(prefix="/api/v1", tags=["Selection"], dependencies=[admit("batch"), needs("fleet")])
 
@@ -45,7 +53,7 @@ router = APIRouter(prefix="/api/v1", tags=["Selection"], dependencies=[admit("ba
     "/fleet",
     operation_id="sizeFleet",
     summary="Select gears for a table of axes",
-    openapi_extra=schemas.fleet_body(MEDIA_TYPES.values()),
+    openapi_extra=schemas.fleet_body((*MEDIA_TYPES.values(), *READ_TYPES.values())),
     responses=schemas.fleet_answers(MEDIA_TYPES.values(), 400, 408, 413, 415, 422, 501, 503),
     response_class=Response,
 )
@@ -58,18 +66,23 @@ async def size(
             "or the candidates, a row for each gear that an axis allows."
         ),
     ] = "answers",
+    ignore: Annotated[
+        list[Annotated[str, Query(max_length=MOST_NAME)]],
+        Query(description="Columns that no application has, and that are left out.", max_length=MOST_IGNORED),
+    ] = [],  # noqa: B006
 ) -> Response:
     """A row for each axis, in its order; one with faults has an error and never fails its neighbours.
 
     As one table with a row for each axis, or as a form with a table of phases and one of what else is given of each
-    axis. The answer is a table in the format of the input, and comes when it is complete.
+    axis. The answer is a table in the format of the input (Arrow’s file format for a stream, CSV for CSV in gzip), and
+    comes when it is complete.
     """
     state: State = request.app.state
     if content_type_of(request) == MULTIPART:  # which a page of any site may send without asking
         require_same_origin(request, *state.settings.cors_origins)
     with state.disk.share() as share:
         async with workplace(request) as folder:
-            tables = await _received(request, folder, share)
+            tables = replace(await _received(request, folder, share), ignored=tuple(ignore))
             files = await size_fleet(request, tables, candidates=give == "candidates")
             return TableFile(files[give])
 
@@ -108,7 +121,7 @@ async def _received(request: Request, folder: Path, share: Share) -> Tables:
                 raise Problem(400, "the form has no end, or its Content-Type names no boundary")
             return form.tables()
         if content_type not in SUFFIXES:
-            raise wrong_type(request, f"{', '.join(MEDIA_TYPES.values())} or {MULTIPART}")
+            raise wrong_type(request, f"{', '.join((*MEDIA_TYPES.values(), *READ_TYPES.values()))} or {MULTIPART}")
         path = folder / f"input{SUFFIXES[content_type]}"
         await _pass_on(request, share, stack.enter_context(path.open("wb")).write)
     return Tables(path)
@@ -142,10 +155,10 @@ class _Form:
         """Open the file of a part."""
         if head.name not in PARTS or head.name in self._paths:
             raise Problem(422, f"the form may have one part input and one part axes; {head.name[:40]!r} is one more")
-        suffix = Path(head.file_name).suffix.lower()
-        suffix = suffix if suffix in MEDIA_TYPES else SUFFIXES.get(head.content_type, "")
+        suffix = suffix_of(Path(head.file_name.lower()))
+        suffix = suffix if suffix in NAMES else SUFFIXES.get(head.content_type, "")
         if not suffix:
-            text = f"needs a file name that ends in one of {', '.join(MEDIA_TYPES)}, or a content type of those"
+            text = f"needs a file name that ends in one of {', '.join(NAMES)}, or a content type of those"
             raise Problem(415, f"the part {head.name} {text}")
         self._paths[head.name] = path = self._folder / f"{head.name}{suffix}"
         return self._stack.enter_context(path.open("wb")).write
