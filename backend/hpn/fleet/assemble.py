@@ -187,12 +187,12 @@ def _told_once(answers: pa.Table, torn: _Torn) -> pa.Table:
 
 
 def _rejected_once(rejected: pa.Table, axes: Sequence[Any], kept: Sequence[bool], torn: _Torn) -> pa.Table:
-    """Faults in the order of the axes, those of a torn one as one."""
+    """Faults in the order of the axes, those of a torn one as one; a row that one table lacks has that first."""
     left = deque(rejected.to_pylist())
     rows = list[Any]()
     for axis, is_kept in zip(axes, kept, strict=True):
         own = []
-        while left and left[0][AXIS] == axis:
+        while left and left[0][AXIS] == axis and not (own and left[0]["reason"] in (NO_PHASES, NOT_BESIDE)):
             own.append(left.popleft())
         if is_kept:
             rows += own if axis not in torn.twice else [{AXIS: axis, "column": AXIS, "reason": TWICE}]

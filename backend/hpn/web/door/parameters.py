@@ -1,6 +1,7 @@
-"""The query of a route of the API: parameters that the route declares, each once."""
+"""The query of a route of the API: parameters that the route declares, each once but for lists."""
 
 from collections import Counter
+from typing import get_origin
 
 from fastapi.dependencies.utils import get_flat_params
 from starlette.requests import Request
@@ -13,7 +14,7 @@ MOST_NAMED = 60
 
 
 def require_declared(request: Request) -> None:
-    """Raise Problem 422 for a parameter that the matched route does not declare, or that is there twice.
+    """Raise Problem 422 for a parameter that the matched route does not declare, or that is there twice and no list.
 
     Raises Problem 414 for so many that to name each as unknown takes long.
     """
@@ -22,8 +23,9 @@ def require_declared(request: Request) -> None:
         raise Problem(414, f"the address may have {MOST_PARAMETERS} parameters at most")
     if not query:
         return
-    declared = (field.alias for field in get_flat_params(request.scope["route"].dependant))
+    declared = {field.alias: field for field in get_flat_params(request.scope["route"].dependant)}
     known = [name for name in declared if name not in request.path_params]
+    lists = {name for name in known if get_origin(declared[name].field_info.annotation) is list}
     right = f"there are {', '.join(known)}" if known else "it takes none"
     counts = Counter(name for name, _ in request.query_params.multi_items())
     unknown = [
@@ -31,6 +33,6 @@ def require_declared(request: Request) -> None:
         for name in counts
         if name not in known
     ]
-    twice = [((name,), "repeated", "must be given once") for name in known if counts[name] > 1]
+    twice = [((name,), "repeated", "must be given once") for name in known if counts[name] > 1 and name not in lists]
     if unknown or twice:
         raise Problem.at(unknown + twice)
