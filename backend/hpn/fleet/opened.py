@@ -86,10 +86,10 @@ def _opened(path: Path, ignored: Sequence[str]) -> Table:
     if not found.st_size:
         raise FleetError(f"{path}: is empty, where a table belongs")
     table = FORMATS[suffix](path, ignored)
-    known = (AXIS, *COLUMNS.all)
-    table.ignored += tuple(name for name in table.indices if name not in known and name not in ignored)
     if isinstance(table, LinesTable) and (said := wrong_encoding(table.start_of_file())):
         raise FleetError(f"{path}: {said}")
+    known = (AXIS, *COLUMNS.all)
+    table.ignored += tuple(name for name in table.indices if name not in known and name not in ignored)
     return table
 
 
