@@ -191,7 +191,7 @@ def _rejected_once(rejected: pa.Table, axes: Sequence[Any], kept: Sequence[bool]
     left = deque(rejected.to_pylist())
     rows = list[Any]()
     for axis, is_kept in zip(axes, kept, strict=True):
-        own = []
+        own = list[dict[str, Any]]()
         while left and left[0][AXIS] == axis and not (own and left[0]["reason"] in (NO_PHASES, NOT_BESIDE)):
             own.append(left.popleft())
         if is_kept:
