@@ -101,7 +101,7 @@ def test_holders_of_different_keys_are_counted_apart(make_client: MakeClient) ->
 
     assert statuses(client, 2, **{"X-API-Key": one}) == [200, 429]
     assert statuses(client, 2, **{"X-API-Key": two}) == [200, 429]
-    assert statuses(client, 2, **{"X-API-Key": "invalid"}) == [200, 429]
+    assert statuses(client, 2, **{"X-API-Key": "invalid"}) == [401, 429]  # counted by its address
 
 
 def test_a_forwarded_address_counts_only_from_a_trusted_proxy(make_client: MakeClient) -> None:

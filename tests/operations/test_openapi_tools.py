@@ -28,10 +28,12 @@ GENERATOR = {
     "post_hooks": [],
     "content_type_overrides": {
         "application/asset-administration-shell-package": "application/octet-stream",
+        "application/gzip": "application/octet-stream",
         "application/pdf": "application/octet-stream",
         "application/schema+json": "application/json",
         "application/vnd.openxmlformats-officedocument.spreadsheetml.sheet": "application/octet-stream",
         "application/vnd.apache.arrow.file": "application/octet-stream",
+        "application/vnd.apache.arrow.stream": "application/octet-stream",
         "application/vnd.apache.parquet": "application/octet-stream",
         "application/x-ndjson": "application/octet-stream",
         "text/csv": "application/octet-stream",

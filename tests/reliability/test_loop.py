@@ -108,6 +108,7 @@ def hostile(saved: str, *, whole: bool) -> Iterator[Hostile]:
     yield from (Hostile("GET", path) for path in ("/healthz", "/readyz", "/metrics", "/static/none"))
     yield Hostile("POST", "/api/v1/motors/HPN-20A-5", LONG_JSON, JSON)
     yield Hostile("GET", "/checks/" + "a" * 60_000)
+    yield Hostile("GET", "/problems/" + "a" * 60_000)
     yield Hostile("GET", f"/selections/compare?a={saved}&b={saved}")
     yield Hostile("GET", f"/selections/{saved}/delete")
     yield Hostile("POST", f"/selections/{saved}/rename", PAIRS, FORM)

@@ -176,6 +176,8 @@ def _describe(parameter: dict[str, Any]) -> None:
         parameter.setdefault("description", PATH_PARAMETERS[parameter["name"]])
     if parameter["in"] == "query":
         _leave_out_null(parameter["schema"])
+        if parameter["schema"].get("type") == "array":
+            parameter |= {"style": "form", "explode": True}  # named again for each value
     if suffix_of(parameter["name"]):
         parameter["schema"]["x-unit"] = symbol_of(parameter["name"])
 
