@@ -27,10 +27,7 @@ EXPLAINED: dict[str, str] = {
     "application. The page opens up to 60,000 bytes: save a longer application and share the address of the saved "
     "selection.X'": "words for readers of the OpenAPI document; test_openapi_truth holds the number in them",
     **{f"selection candidates_of: True -> False{number}": LENGTHS for number in ("", " #2", " #3", " #4", " #5")},
-    "evaluation Checked.status: self.utilisation <= self.bound -> (self.utilisation) < (self.bound)": ON_THE_BOUND,
-    "evaluation Evaluation.governing_of: -1 -> (1)": LAST_OF_TWO,
-    "evaluation Evaluation.governing_of: -1 -> (1) #2": LAST_OF_TWO,
-    "evaluation Evaluation.order: dtype=np.float64 -> nothing": "numpy.where makes them float64 beside utilisation",
+    "evaluation Evaluation.status: self.used <= self.bound -> (self.used) < (self.bound)": ON_THE_BOUND,
     "evaluation Evaluation.order: axis=-1 -> nothing": LAST,
     "evaluation Evaluation.order: -1 -> (1)": LAST_OF_TWO,
     "evaluation Evaluation.foremost: among.any -> among.all": SOONER,
@@ -39,8 +36,7 @@ EXPLAINED: dict[str, str] = {
     "evaluation Evaluation.foremost: -1 -> (1) #2": LAST_OF_TWO,
     "evaluation Evaluation.foremost: -1 -> (1) #3": LAST_OF_TWO,
     "evaluation Evaluation.foremost: -1 -> (1) #4": LAST_OF_TWO,
-    "evaluation _verdicts: 0 -> 1": FIRST_TWO,
-    "evaluation _verdicts: largest > checked[0].bound -> (largest) >= (checked[0].bound)": ON_THE_BOUND,
-    "evaluation _verdicts: 0 -> 1 #2": FIRST_TWO,
-    "evaluation _counted: one.utilisation > one.bound -> (one.utilisation) >= (one.bound)": ON_THE_BOUND,
+    "evaluation evaluate: used > bound -> (used) >= (bound)": ON_THE_BOUND,
+    "evaluation evaluate: 0 -> 1": FIRST_TWO,
+    "evaluation _verdicts: largest > bound -> (largest) >= (bound)": ON_THE_BOUND,
 }

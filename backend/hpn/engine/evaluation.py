@@ -1,6 +1,6 @@
 """Every check of applications on gears, and from the checks to verdicts and the order of the candidates."""
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Literal
@@ -39,67 +39,63 @@ RANKED_BY: Mapping[RankBy, Callable[[Case, FloatArray], FloatArray]] = {
 
 
 @dataclass(frozen=True, eq=False)
-class Checked:
-    """A check of N applications on G gears; shape (N, G) each, but for `asked`, shape (N, 1).
-
-    `utilisation` is NaN where it is not rated or not asked for, infinite where the check fails without a number; it
-    passes up to `bound`, which broadcasts.
-    """
-
-    check: Check
-    case: Case
-    asked: BoolArray
-    utilisation: FloatArray
-    bound: FloatArray
-
-    @cached_property
-    def demand(self) -> FloatArray:
-        """The value that is tested."""
-        return self._spread(self.check.demand)
-
-    @cached_property
-    def limit(self) -> FloatArray:
-        """Its bound."""
-        return self._spread(self.check.limit)
-
-    @cached_property
-    def status(self) -> NDArray[np.int8]:
-        """Places in CHECK_STATUS."""
-        judged = np.where(self.utilisation <= self.bound, PASS, FAIL)
-        return np.where(np.isnan(self.utilisation), NOT_RATED, judged).astype(np.int8)
-
-    def _spread(self, values: Values) -> FloatArray:
-        with np.errstate(all="ignore"):
-            return np.broadcast_to(values(self.case), self.utilisation.shape)
-
-
-@dataclass(frozen=True, eq=False)
 class Evaluation:
-    """N applications on G gears.
+    """N applications on G gears, by the C checks that one of them asks for.
 
-    `verdict` (N, G) is a place in STATUS; `utilisation` (N, G) the largest that counts for a gear, NaN for an unrated
-    one: that of every failing check and of every load check that passes.
+    `asked` (C, N, 1). `used` (C, N, G) is the utilisation of each check, NaN where it is not rated or not asked for,
+    infinite where the check fails without a number; it passes up to `bound` (C, N, 1). `counted` (C, N, G) is what
+    counts for a gear: of a property check the utilisation where it fails, NaN elsewhere. `verdict` (N, G) is a place in
+    STATUS; `utilisation` (N, G) the largest that counts, NaN for an unrated gear.
     """
 
     case: Case
     gears: GearList
     catalogue: Catalogue
-    checked: tuple[Checked, ...]
+    checks: tuple[Check, ...]
+    asked: BoolArray
+    used: FloatArray
+    bound: FloatArray
+    counted: FloatArray
     verdict: NDArray[np.int8]
     utilisation: FloatArray
 
+    def asked_by(self, index: int) -> list[int]:
+        """Places in `checks` of those that application `index` asks for."""
+        places: list[int] = np.flatnonzero(self.asked[:, index, 0]).tolist()
+        return places
+
+    @cached_property
+    def demand(self) -> FloatArray:
+        """Values that the checks test, shape (C, N, G)."""
+        return self._table(check.demand for check in self.checks)
+
+    @cached_property
+    def limit(self) -> FloatArray:
+        """Bounds of these values, shape (C, N, G)."""
+        return self._table(check.limit for check in self.checks)
+
+    def _table(self, columns: Iterable[Values]) -> FloatArray:
+        table = np.empty(self.used.shape)
+        with np.errstate(all="ignore"):
+            for place, values in enumerate(columns):
+                table[place] = values(self.case)
+        return table
+
+    @cached_property
+    def status(self) -> NDArray[np.int8]:
+        """Places in CHECK_STATUS, shape (C, N, G)."""
+        judged = np.where(self.used <= self.bound, np.int8(PASS), np.int8(FAIL))
+        return np.where(np.isnan(self.used), np.int8(NOT_RATED), judged)
+
     @cached_property
     def governing(self) -> PlaceArray:
-        """Place in `checked` of the first check that reaches a gear's utilisation within ROUNDING, shape (N, G)."""
-        return self.governing_of(np.broadcast_to(np.arange(self.verdict.shape[1]), self.verdict.shape))
+        """Place in `checks` of the first check that reaches a gear's utilisation within ROUNDING, shape (N, G)."""
+        return _first_that_reaches(self.utilisation, self.counted)
 
     def governing_of(self, gears: PlaceArray) -> PlaceArray:
-        """The same for some gears of each application, by their places (N, any number)."""
-        used, place = np.take_along_axis(self.utilisation, gears, -1), np.zeros(gears.shape, np.intp)
-        reached = used * (1 - ROUNDING)
-        for index, one in reversed(tuple(enumerate(self.checked))):
-            place[np.take_along_axis(_counted(one), gears, -1) >= reached] = index
-        return place
+        """The same for one gear of each application, by its place, shape (N,)."""
+        rows = np.arange(len(gears))
+        return _first_that_reaches(self.utilisation[rows, gears], self.counted[:, rows, gears])
 
     @cached_property
     def order(self) -> PlaceArray:
@@ -109,11 +105,14 @@ class Evaluation:
         order of the catalogue. Ties fall to weight, utilisation, life and ratio, and last to the order of the
         catalogue; what is not published comes last.
         """
-        shape = self.verdict.shape
-        places = np.arange(shape[1], dtype=np.float64)
-        weight, used, life, ratio = (np.broadcast_to(key, shape) for key in self._ties)
-        wish, used, life = tied(np.stack((np.broadcast_to(self._wish, shape), used, life)))
-        wish = np.where(self.verdict == SUITABLE, wish, np.where(self.verdict == UNSUITABLE, used, places))
+        keys = np.empty((5, *self.verdict.shape))
+        weight, used, life, ratio = self._ties
+        for place, key in enumerate((self._wish, used, life, weight, ratio)):
+            keys[place] = key
+        keys[:3] = tied(keys[:3])  # weights and ratios are published figures, without rounding
+        wish, used, life, weight, ratio = keys
+        rejected = np.where(self.verdict == UNSUITABLE, used, np.arange(used.shape[1]))
+        wish = np.where(self.verdict == SUITABLE, wish, rejected)
         return np.lexsort((ratio, life, used, weight, wish, self.verdict), axis=-1)  # the last key decides first
 
     def foremost(self, among: BoolArray) -> PlaceArray:
@@ -150,40 +149,43 @@ class Evaluation:
 def evaluate(duty: Duty, gears: GearList, catalogue: Catalogue) -> Evaluation:
     """Every check that the applications of a duty ask for on every gear, and how the gears stand."""
     case = Case(duty, gears.columns, Figures(duty, gears, catalogue))
+    checks, asked = _asked(case)
+    used = np.empty((*asked.shape[:2], len(gears.rows)))
+    is_load = np.array([check.group == "load" for check in checks])[:, None, None]
+    bound = np.where(is_load, case.asked["requirements.utilisation"], 1.0) * (1 + ROUNDING)
     with np.errstate(all="ignore"):  # NaN and infinity are answers
-        checked = tuple(_checked(case))
-        verdict, utilisation = _verdicts(checked)
-    return Evaluation(case, gears, catalogue, checked, verdict, utilisation)
+        for place, check in enumerate(checks):
+            used[place] = check.utilisation(case)
+        counted = used if is_load.all() else np.where(is_load | (used > bound), used, np.nan)
+        verdict, utilisation = _verdicts(asked, used, bound[0], counted)
+    return Evaluation(case, gears, catalogue, checks, asked, used, bound, counted, verdict, utilisation)
 
 
-def _checked(case: Case) -> Iterator[Checked]:
-    shape = len(case.duty.average_torque_Nm), len(case.gears.ratio)
-    u = case.asked["requirements.utilisation"]
-    for check in CHECKS:
-        asked = np.ones((shape[0], 1), np.bool_) if check.asked is None else ~np.isnan(case.asked[check.asked])
-        if asked.any():
-            bound = (u if check.group == "load" else np.ones((1, 1))) * (1 + ROUNDING)
-            yield Checked(check, case, asked, np.broadcast_to(check.utilisation(case), shape), bound)
+def _asked(case: Case) -> tuple[tuple[Check, ...], BoolArray]:
+    """Checks that an application asks for, and which do, shape (C, N, 1)."""
+    always = np.zeros((len(case.duty.average_torque_Nm), 1))
+    inputs = [always if check.asked is None else case.asked[check.asked] for check in CHECKS]
+    given = ~np.isnan(np.concatenate(inputs, axis=1)).T
+    places = np.flatnonzero(given.any(axis=1))
+    return tuple(CHECKS[place] for place in places.tolist()), given[places, :, None]
 
 
-def _verdicts(checked: Sequence[Checked]) -> tuple[NDArray[np.int8], FloatArray]:
-    """Verdict on each gear, and its utilisation; that of an unrated one is NaN.
+def _verdicts(
+    asked: BoolArray, used: FloatArray, bound: FloatArray, counted: FloatArray
+) -> tuple[NDArray[np.int8], FloatArray]:
+    """Verdict on each gear, and its utilisation; that of an unrated one is NaN. `bound` is that of the load checks.
 
-    What counts of a property check is above 1, and so above u: one comparison with the bound of the load checks, of
-    which the first is one, tells whether anything fails.
+    What counts of a property check is above 1, and so above u: one comparison with the bound of the load checks tells
+    whether anything fails.
     """
-    shape = checked[0].utilisation.shape
-    largest, unrated = np.full(shape, -np.inf), np.zeros(shape, np.bool_)
-    for one in checked:
-        unrated |= np.isnan(one.utilisation) if one.asked.all() else one.asked & np.isnan(one.utilisation)
-        np.fmax(largest, _counted(one), out=largest)
-    fails = largest > checked[0].bound
-    verdict = np.where(fails, np.int8(UNSUITABLE), np.where(unrated, np.int8(UNRATED), np.int8(SUITABLE)))
-    return verdict, np.where(verdict == UNRATED, np.nan, largest)
+    largest = np.fmax.reduce(counted, axis=0)
+    fails = largest > bound
+    unrated = (asked & np.isnan(used)).any(axis=0) & ~fails
+    largest[unrated] = np.nan
+    return np.int8(UNSUITABLE) * fails + np.int8(UNRATED) * unrated, largest  # neither: SUITABLE, which is 0
 
 
-def _counted(one: Checked) -> FloatArray:
-    """Utilisation that counts for a gear: of a property check where it fails alone."""
-    if one.check.group == "load":
-        return one.utilisation
-    return np.where(one.utilisation > one.bound, one.utilisation, np.nan)
+def _first_that_reaches(utilisation: FloatArray, counted: FloatArray) -> PlaceArray:
+    """Place along the first axis of the first value that reaches a utilisation within ROUNDING."""
+    places: PlaceArray = (counted >= utilisation * (1 - ROUNDING)).argmax(axis=0)
+    return places

@@ -159,9 +159,9 @@ def _motor_torques(duty: Duty, gears: GearList, catalogue: Catalogue) -> tuple[F
     peak = equations.motor_torque(output_torque_Nm=duty.maximum_torque_Nm, ratio=ratio, efficiency=eta)
     rated = equations.motor_torque(output_torque_Nm=duty.rms_torque_Nm, ratio=ratio, efficiency=eta)
     peaks, squares, unstated = duty.phases.peak_torque_Nm[:, 0], duty.phases.rms_torque_Nm[:, 0], np.isnan(stated)[:, 0]
-    for place, gear in enumerate(gears.rows):
-        if not unstated.any() or gear.designation not in catalogue.efficiency:
-            continue
+    curved = [place for place, gear in enumerate(gears.rows) if gear.designation in catalogue.efficiency]
+    for place in curved if unstated.any() else ():
+        gear = gears.rows[place]
         at_peak, at_rms = (
             equations.motor_torque(
                 output_torque_Nm=T, ratio=gear.ratio, efficiency=efficiency_along(catalogue, gear, T)

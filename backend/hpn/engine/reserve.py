@@ -4,13 +4,13 @@ In closed form, because every utilisation is a power of each driver: `moves` of 
 inputs stay as they are. A factor below 1 is what a rejected gear needs; all factors below 1 together are the remedy.
 """
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 
 import numpy as np
 
 from hpn.engine.check import DRIVERS, Driver
 from hpn.engine.checks import CHECKS
-from hpn.engine.evaluation import Checked, Evaluation
+from hpn.engine.evaluation import Evaluation
 from hpn.physics import equations
 from hpn.physics.equations import ROUNDING, FloatArray
 
@@ -34,10 +34,7 @@ def reserves(evaluation: Evaluation, index: int) -> dict[str, FloatArray]:
     asked = evaluation.case.asked
     u = asked["requirements.utilisation"].item(index)
     with np.errstate(all="ignore"):
-        factors = {
-            f"{driver}_factor": _factor((one for one in evaluation.checked if one.asked.item(index)), index, driver, u)
-            for driver in DRIVERS
-        }
+        factors = {f"{driver}_factor": _factor(evaluation, index, driver, u) for driver in DRIVERS}
     if any(not np.isnan(asked[path].item(index)) for path in MOTOR_TORQUE_INPUTS):
         follows_curve = np.array(
             [gear.designation in evaluation.catalogue.efficiency for gear in evaluation.gears.rows]
@@ -51,13 +48,13 @@ def reserves(evaluation: Evaluation, index: int) -> dict[str, FloatArray]:
     return {**factors, "emergency_stop_torque_Nm": _emergency_stop_torque(evaluation, index, u)}
 
 
-def _factor(checked: Iterable[Checked], index: int, driver: Driver, u: float) -> FloatArray:
+def _factor(evaluation: Evaluation, index: int, driver: Driver, u: float) -> FloatArray:
     """Smallest (u / utilisation)^(1 / power) over the checks that a driver moves; NaN where it moves none."""
     rooms = [
         room if power == 1 else room ** (1 / power)
-        for one in checked
-        if (power := one.check.moves.get(driver))
-        for room in (u / one.utilisation[index],)
+        for place, check in enumerate(evaluation.checks)
+        if (power := check.moves.get(driver)) and evaluation.asked.item(place, index, 0)
+        for room in (u / evaluation.used[place, index],)
     ]
     return np.minimum.reduce(rooms) if rooms else np.array(np.nan)
 

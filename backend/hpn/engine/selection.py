@@ -25,7 +25,6 @@ from hpn.engine.evaluation import (
     STATUS,
     SUITABLE,
     UNRATED,
-    Checked,
     CheckStatus,
     Evaluation,
     PlaceArray,
@@ -224,7 +223,7 @@ class Judged:
         if not suitable:
             return Outcome(None, None, None, 0)
         best = evaluation.order.item(index, 0)
-        check = evaluation.checked[evaluation.governing.item(index, best)].check
+        check = evaluation.checks[evaluation.governing.item(index, best)]
         used = evaluation.utilisation.item(index, best)
         return Outcome(evaluation.gears.rows[best].designation, check.code, used, suitable)
 
@@ -232,7 +231,7 @@ class Judged:
         """The answer in full."""
         evaluation, index = self.evaluation, self.index
         candidates = tuple(candidates_of(evaluation, index))
-        checks = tuple(one.check.code for one in evaluation.checked if one.asked.item(index))
+        checks = tuple(evaluation.checks[place].code for place in evaluation.asked_by(index))
         return Selection(
             engine_version=ENGINE_VERSION,
             catalogue_version=evaluation.catalogue.version,
@@ -274,29 +273,29 @@ def _duty(application: Application, evaluation: Evaluation, index: int) -> DutyF
 
 def candidates_of(evaluation: Evaluation, index: int) -> Iterator[Candidate]:
     """Candidates of an application, best first."""
-    order = evaluation.order[index]
-    asked = [one for one in evaluation.checked if one.asked.item(index)]
-    codes = [one.check.code for one in evaluation.checked]
+    order, asked = evaluation.order[index], evaluation.asked_by(index)
+    codes = [check.code for check in evaluation.checks]
     u = evaluation.case.asked["requirements.utilisation"].item(index)
     figures = (getattr(evaluation.case.figures, name)[index] for name in FIGURES)
-    terms = (values[index] for one in asked for values in (one.demand, one.limit, one.utilisation))
+    tables = (evaluation.demand, evaluation.limit, evaluation.used)
+    terms = (table[place, index] for place in asked for table in tables)
     columns = iter(
         _columns([evaluation.utilisation[index], *figures, *reserves(evaluation, index).values(), *terms], order)
     )
     used, values = next(columns), zip(*islice(columns, len(FIGURES)), strict=True)
     reserve = map(Reserve, *islice(columns, len(Reserve.__struct_fields__)))
+    states = [map(CHECK_STATUS.__getitem__, row) for row in evaluation.status[asked, index][:, order].tolist()]
     checks = [
-        map(
-            CheckResult, repeat(one.check.code), next(columns), next(columns), next(columns), _states(one, index, order)
-        )
-        for one in asked
+        map(CheckResult, repeat(codes[place]), next(columns), next(columns), next(columns), state)
+        for place, state in zip(asked, states, strict=True)
     ]
     rows = zip(used, values, reserve, zip(*checks, strict=True), strict=True)
+    verdicts, governs = evaluation.verdict[index].tolist(), evaluation.governing[index].tolist()
     for place, (gear, (utilisation, numbers, own_reserve, results)) in enumerate(
         zip(order.tolist(), rows, strict=True)
     ):
-        verdict = evaluation.verdict.item(index, gear)
-        governing = None if verdict == UNRATED else codes[evaluation.governing.item(index, gear)]
+        verdict = verdicts[gear]
+        governing = None if verdict == UNRATED else codes[governs[gear]]
         known = evaluation.gears.rows[gear]
         failed = sum(result.status == "fail" for result in results)
         yield Candidate(
@@ -325,10 +324,6 @@ def _columns(values: Sequence[FloatArray], order: PlaceArray) -> list[list[float
     numbers[~np.isfinite(table)] = None
     columns: list[list[float | None]] = numbers.tolist()
     return columns
-
-
-def _states(checked: Checked, index: int, order: PlaceArray) -> Iterator[CheckStatus]:
-    return map(CHECK_STATUS.__getitem__, checked.status[index][order].tolist())
 
 
 FIGURES = (

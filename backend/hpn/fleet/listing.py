@@ -147,20 +147,18 @@ def nearest_misses(axes: pa.Table, catalogue: Catalogue) -> pa.Table:
         evaluation = evaluate(read.duty(rows), allowed, catalogue)
         best = _foremost(evaluation)
         used = np.take_along_axis(evaluation.utilisation, best, -1)[:, 0]
-        governing = evaluation.governing_of(best)[:, 0]
+        governing = evaluation.governing_of(best[:, 0])
         for index, row in enumerate(rows.tolist()):
             found["nearest"][row] = evaluation.gears.rows[best[index, 0]].designation
             if not np.isnan(used[index]):
-                found["nearest_check"][row] = evaluation.checked[governing[index]].check.code
+                found["nearest_check"][row] = evaluation.checks[governing[index]].code
                 found["nearest_utilisation"][row] = used.item(index) if np.isfinite(used[index]) else None
     return pa.table(found, NEAREST)
 
 
 def _foremost(evaluation: Evaluation) -> PlaceArray:
     """Place of the first gear out of those on which every check could be judged, of any if there is none, (N, 1)."""
-    judged = np.ones(evaluation.verdict.shape, np.bool_)
-    for one in evaluation.checked:
-        judged &= ~(one.asked & np.isnan(one.utilisation))
+    judged = ~(evaluation.asked & np.isnan(evaluation.used)).any(axis=0)
     first = np.take_along_axis(judged, evaluation.order, -1).argmax(axis=-1)[:, None]
     places: PlaceArray = np.take_along_axis(evaluation.order, first, -1)
     return places

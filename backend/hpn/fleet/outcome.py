@@ -123,12 +123,12 @@ class _Answers:
         count = suits.sum(axis=-1)
         best, found = evaluation.foremost(suits), count > 0
         names = np.array([self._number(gear.designation) for gear in evaluation.gears.rows], np.int32)
-        codes = np.array([CODES.index(one.check.code) for one in evaluation.checked], np.int32)
+        codes = np.array([CODES.index(check.code) for check in evaluation.checks], np.int32)
         rows = np.arange(len(places))
         self.suitable[places] = count
         self.average_torque_Nm[places] = evaluation.case.duty.average_torque_Nm[:, 0]
         self.selected[places] = np.where(found, names[best], -1)
-        self.governing[places] = np.where(found, codes[evaluation.governing_of(best[:, None])[:, 0]], -1)
+        self.governing[places] = np.where(found, codes[evaluation.governing_of(best)], -1)
         self.utilisation[places] = np.where(found, evaluation.utilisation[rows, best], np.nan)
         life = np.broadcast_to(evaluation.case.figures.life_L10_h, suits.shape)
         self.life_L10_h[places] = np.where(found, life[rows, best], np.nan)

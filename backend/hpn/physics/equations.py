@@ -164,8 +164,11 @@ def life(
 
     Infinite where T_av is 0 or so small that the result exceeds floating point. NaN where T_N is not published.
     """
-    by_torque = power_ten_thirds(np.divide(rated_torque_Nm, average_torque_Nm))
-    return np.asarray(life_at_rated_torque_h) * (np.divide(rated_input_speed_rpm, average_input_speed_rpm) * by_torque)
+    # The power of a quotient is taken as a quotient of powers: a root for each gear and each axis, none for each pair.
+    rated, average = (power_ten_thirds(np.asarray(torque)) for torque in (rated_torque_Nm, average_torque_Nm))
+    reference = np.asarray(life_at_rated_torque_h) * np.asarray(rated_input_speed_rpm)
+    L_10: FloatArray = reference * rated / (np.asarray(average_input_speed_rpm) * average)
+    return L_10
 
 
 @equation

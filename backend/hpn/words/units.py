@@ -8,7 +8,7 @@ import unicodedata
 from dataclasses import dataclass
 from decimal import ROUND_HALF_EVEN, Context, Decimal
 from fractions import Fraction
-from functools import cache
+from functools import cache, lru_cache
 from math import inf
 from typing import Any
 
@@ -44,6 +44,7 @@ SYMBOLS = {
 _LONGEST_FIRST = sorted(SYMBOLS, key=len, reverse=True)
 
 
+@lru_cache(maxsize=1024)  # names may be a stranger's: what they fill has a limit
 def suffix_of(field_name: str) -> str | None:
     """Unit suffix that ends a field name (`torque_Nm` -> `Nm`), or None for a field without a unit."""
     return next((unit for unit in _LONGEST_FIRST if field_name.endswith("_" + unit)), None)

@@ -14,6 +14,7 @@ import pyarrow.parquet as pq
 import pyarrow.types as kinds
 import xlsxwriter
 
+from hpn.files.workbook import EveryDigit
 from hpn.fleet.listing import NEAREST, as_parquet
 from hpn.web.pages.fleet_reasons import reasons_of
 from hpn.words.reader import Reader
@@ -89,4 +90,4 @@ def _write(sheet: Any, row: int, place: int, value: Any) -> None:
         whole = len(value) <= LONGEST_CELL
         sheet.write_string(row, place, value if whole else f"{value[: LONGEST_CELL - 1]}…")
     elif value is not None:
-        sheet.write_number(row, place, value)
+        sheet.write_number(row, place, EveryDigit(value))
