@@ -1,6 +1,8 @@
 """The workbook with changed inputs, and on paper: LibreOffice calculates, prints and colours it."""
 
+import random
 import re
+from collections import Counter
 from collections.abc import Iterator
 from io import BytesIO
 
@@ -10,8 +12,11 @@ import pypdfium2
 import pytest
 from openpyxl.workbook import Workbook
 
+from hpn.application import InputError
 from hpn.catalogue import Catalogue
-from tests.build import answer, cycle, phase, worked_example
+from hpn.engine.checks import CHECKS
+from tests.build import Json, answer, cycle, phase, worked_example
+from tests.property.draw import at_random
 from tests.report.cases import EVERYTHING, export_of, language, workbook
 from tests.report.conftest import Print, Recalculate
 from tests.report.test_workbook import assert_agrees, got, opened, put, same
@@ -48,6 +53,33 @@ def changed(catalogue: Catalogue) -> Workbook:
     return book
 
 
+def drawn(catalogue: Catalogue, count: int) -> dict[str, tuple[Json, Json]]:
+    """Drawn applications with their replies, by seed; those that leave no gear are not among them."""
+    found: dict[str, tuple[Json, Json]] = {}
+    for seed in range(10 * count):
+        application = at_random(random.Random(seed))
+        try:
+            found[f"seed {seed}"] = application, answer(application, catalogue)
+        except InputError:
+            continue
+        if len(found) == count:
+            break
+    return found
+
+
+def assert_chosen_agrees(book: Workbook, chosen: Json, name: str) -> None:
+    """Demand, limit and verdict of each check of the chosen gear are those of the reply."""
+    words = {"pass": "passes", "fail": "fails", "not_rated": "not rated"}
+    titles = {check.code: f"{check.title} [{check.unit}]" if check.unit else check.title for check in CHECKS}
+    rows = {row[0]: row for row in book["Selection"].iter_rows(max_col=7, values_only=True)}
+    for check in chosen["checks"]:
+        _, _, demand, limit, used, verdict, _ = rows[titles[check["code"]]]
+        assert verdict == words[check["status"]], (name, check, verdict)
+        assert check["demand"] is None or same(demand, check["demand"]), (name, check, demand)
+        assert check["limit"] is None or same(limit, check["limit"]), (name, check, limit)
+        assert check["utilisation"] is None or same(used, check["utilisation"]), (name, check, used)
+
+
 def shows(document: bytes, colour: tuple[int, int, int]) -> bool:
     """Whether an area of the first page has a colour."""
     image = pypdfium2.PdfDocument(document)[0].render(rev_byteorder=True).to_numpy()[..., :3]
@@ -80,6 +112,20 @@ def test_inputs_that_fail_every_gear_recalculate_to_what_the_service_says(
     assert same(got(fresh, "T_av"), reply["duty"]["average_torque_Nm"])
     words = {row[5].value for row in fresh["Selection"].iter_rows()}
     assert {"fails", "passes"} <= words
+
+
+def test_service_and_workbook_agree_on_drawn_applications(
+    catalogue: Catalogue, recalculate: Recalculate, soak: bool
+) -> None:
+    """By the formulas alone: the values saved beside them are gone before LibreOffice calculates. Many are negative."""
+    cases = drawn(catalogue, 300 if soak else 24)
+    fresh = recalculate({name: opened(application, catalogue) for name, (application, _) in cases.items()})
+    asked = Counter(check["code"] for _, reply in cases.values() for check in reply["candidates"][0]["checks"])
+    assert asked.keys() == {check.code for check in CHECKS}
+    for name, (_, reply) in cases.items():
+        assert_agrees(fresh[name], reply)
+        designation = got(fresh[name], "gear")
+        assert_chosen_agrees(fresh[name], next(c for c in reply["candidates"] if c["designation"] == designation), name)
 
 
 def test_what_passed_and_now_fails_turns_from_green_to_red(printed: dict[str, bytes]) -> None:

@@ -2,7 +2,10 @@
 
 import html
 import json
+import os
 import re
+import subprocess
+import sys
 from collections.abc import Iterator
 from io import BytesIO
 from pathlib import Path
@@ -62,6 +65,27 @@ def test_a_file_is_the_same_each_time_and_known_by_its_tag(name: str, client: Te
     assert client.get(f"{saved}/{name}").content == first.content
     again = client.get(f"{saved}/{name}", headers={"If-None-Match": first.headers["etag"]})
     assert (again.status_code, again.content) == (304, b"")
+
+
+SERVED = """
+import sys
+from starlette.testclient import TestClient
+from hpn.web.serve import served_app
+
+with TestClient(served_app()) as client:
+    for address in ("/", "/?T=40&n=250&t=1", "/catalogue", "/selections", "/api/v1/catalogue"):
+        assert client.get(address).status_code == 200, address
+    assert client.get("/report.xlsx?T=40&n=250&t=1").content.startswith(b"PK")
+print(*sys.modules.keys() & {"typst", "basyx", "xlsxwriter", "pint", "pyarrow", "openpyxl"})
+"""
+
+
+def test_the_service_loads_no_library_that_makes_or_reads_files(tmp_path: Path) -> None:
+    """They are loaded in the processes beside it, which end with their work."""
+    settings = {**os.environ, "HPN_DATABASE_URL": f"sqlite:///{tmp_path / 'hpn.sqlite3'}", "HPN_LOG_LEVEL": "error"}
+    command = [sys.executable, "-c", SERVED]
+    run = subprocess.run(command, env=settings, cwd=tmp_path, capture_output=True, text=True, check=True)
+    assert run.stdout.split() == []
 
 
 def test_language_is_asked_for_or_the_browsers(client: TestClient, saved: str) -> None:

@@ -1,14 +1,19 @@
 """The workbook's formulas come from the tables of checks and quantities."""
 
+import re
 from dataclasses import replace
 
 import pytest
 
-from hpn.engine.check import Kind
+from hpn.engine.check import Sheet
 from hpn.engine.checks import BY_CODE
-from hpn.files.inputs import LOADS, REQUIREMENTS
+from hpn.files.inputs import ENTERED, LOADS, REQUIREMENTS
 from hpn.files.workbook.formulas import CHECK_FORMULAS, CYCLE_TERMS, GEAR_TERMS, RATINGS, cell_name, formulas_of
+from hpn.files.workbook.overview import REFERENCES
+from hpn.files.workbook.sheets import PHASE, USED
 from hpn.words.quantities import INPUTS
+
+SERIES = {name for name, *_ in REFERENCES}
 
 
 def test_names_differ_by_more_than_their_capitals() -> None:
@@ -24,20 +29,29 @@ def test_the_workbook_calculates_every_check_of_today() -> None:
 
 
 @pytest.mark.parametrize(
-    ("relation", "kind", "asked", "demand", "limit", "share"),
+    ("code", "sheet", "asked", "share"),
     [
-        ("L_min ≤ L_req", "maximum", 'L_req<>""', "{L_min}", "L_req", "{L_min}/L_req"),
-        ("K_3 ≥ T_mot,N", "minimum", 'L_req<>""', "{K_3}", "T_mot_N", "T_mot_N/{K_3}"),
-        ("T_max / (i · η) ≤ T_A = T_N", "maximum", 'L_req<>""', "{T_mot_peak}", "{T_N}", "{T_mot_peak}/{T_N}"),
+        ("length", Sheet("{L_min}", "L_req"), 'L_req<>""', "{L_min}/L_req"),
+        ("torsional_stiffness", Sheet("{K_3}", "T_mot_N"), 'K_3_req<>""', "T_mot_N/{K_3}"),
+        ("length", Sheet("ABS(T_k)", "{T_N}", asked="TRUE"), "TRUE", "ABS(T_k)/{T_N}"),
+        ("length", Sheet("T_k", "{T_N}", share="-T_k/{T_N}"), 'L_req<>""', "-T_k/{T_N}"),
     ],
 )
-def test_a_new_plain_check_has_its_formulas_from_its_relation(
-    relation: str, kind: Kind, asked: str, demand: str, limit: str, share: str
-) -> None:
-    formulas = formulas_of(replace(BY_CODE["length"], code="new", relation=relation, kind=kind))
+def test_a_check_gives_demand_and_limit_and_the_rest_follows(code: str, sheet: Sheet, asked: str, share: str) -> None:
+    formulas = formulas_of(replace(BY_CODE[code], sheet=sheet))
     assert formulas is not None
-    assert (formulas.asked, formulas.demand, formulas.limit, formulas.utilisation) == (asked, demand, limit, share)
+    given = (formulas.asked, formulas.demand, formulas.limit, formulas.utilisation)
+    assert given == (asked, sheet.demand, sheet.limit, share)
 
 
-def test_a_check_of_what_no_cell_holds_stands_as_saved() -> None:
-    assert formulas_of(replace(BY_CODE["length"], code="new", relation="Q ≤ L_req")) is None
+def test_a_check_without_formulas_stands_as_saved() -> None:
+    assert formulas_of(replace(BY_CODE["length"], sheet=None)) is None
+
+
+def test_formulas_name_what_there_is() -> None:
+    terms = (*CYCLE_TERMS, *GEAR_TERMS)
+    ours = {*RATINGS, *(term.name for term in terms), *PHASE, *USED, *ENTERED, *SERIES, "unlimited", "iso281", "L10"}
+    functions = {"IF", "OR", "AND", "NOT", "ABS", "COUNT", "SUM", "SUMPRODUCT", "MAX", "SQRT", "INT", "IFERROR", "TRUE"}
+    for text in (*(term.formula for term in terms), *(check.ratio for check in CHECK_FORMULAS.values())):
+        names = set(re.findall(r"[A-Za-z]\w*", re.sub(r"\b[\d.]+(E[+-]?\d+)?\b", "", text)))
+        assert names - functions - ours - {"not", "rated"} == set(), text

@@ -12,6 +12,7 @@ import openpyxl
 import pytest
 from openpyxl.workbook import Workbook
 
+from hpn import ENGINE_VERSION
 from hpn.catalogue import Catalogue
 from hpn.files.export import LOSS_FREE, LOWER_BOUND
 from hpn.files.workbook.formulas import MOTOR_TORQUES
@@ -88,6 +89,24 @@ def test_recalculated_as_saved_no_cell_changes(catalogue: Catalogue, recalculate
                     value = fresh[name][sheet.title][cell.coordinate].value
                     assert same(cell.value, value), (name, sheet.title, cell.coordinate, cell.value, value)
         assert_agrees(fresh[name], answer(case, catalogue))
+
+
+def test_figures_are_numbers_with_every_digit(catalogue: Catalogue) -> None:
+    uneven = 0.1 + 0.2  # needs 17 digits; the writer of workbooks keeps 16
+    asked = {"life_h": 1e4 * uneven, "ratios": [5]}
+    case = cycle(phase(uneven, 100 * uneven), output_load={"radial_N": uneven}, requirements=asked)
+    book = opened(case, catalogue, values=True)
+    assert got(book, "F_R") == uneven
+    assert got(book, "L_10_req") == 1e4 * uneven
+    assert [book["Duty cycle"].cell(2, column).value for column in (2, 3)] == [uneven, 100 * uneven]
+    for application in (case, EVERYTHING):
+        for sheet in opened(application, catalogue, values=True):
+            texts = (cell.value for row in sheet.iter_rows() for cell in row if isinstance(cell.value, str))
+            assert [text for text in texts if re.fullmatch(r"[<>≤≥]?\s*[-−]?[\d.,\s]*\d", text)] in (
+                [],
+                ["3, 5, 10, 25"],  # the ratios to choose from
+                [ENGINE_VERSION],
+            )
 
 
 def _merged(application: Json, part: str, **values: Any) -> Json:

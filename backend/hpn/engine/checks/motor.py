@@ -1,6 +1,6 @@
 """Checks of the motor, against the limits that the user states: speeds, torques and the inertia ratio."""
 
-from hpn.engine.check import Check
+from hpn.engine.check import Check, Sheet
 from hpn.physics import equations
 from hpn.words.wording import N_
 
@@ -22,6 +22,7 @@ MOTOR: tuple[Check, ...] = (
         asked="requirements.motor.maximum_speed_rpm",
         demand=lambda c: c.figures.maximum_input_speed_rpm,
         limit=lambda c: c.asked["requirements.motor.maximum_speed_rpm"],
+        sheet=Sheet("{n_in_max}", "n_mot"),
         relation="n_in,max ≤ n_mot",
         moves={"speed": 1.0},
     ),
@@ -50,6 +51,7 @@ MOTOR: tuple[Check, ...] = (
         asked="requirements.motor.peak_torque_Nm",
         demand=lambda c: c.figures.motor_peak_torque_Nm,
         limit=lambda c: c.asked["requirements.motor.peak_torque_Nm"],
+        sheet=Sheet("{T_mot_peak}", "T_mot"),
         relation="T_max / (i · η) ≤ T_mot",
         moves={"torque": 1.0},
         accepted=N_("the motor’s peak torque rises to {value}"),
@@ -79,6 +81,7 @@ MOTOR: tuple[Check, ...] = (
         asked="requirements.motor.rated_torque_Nm",
         demand=lambda c: c.figures.motor_rated_torque_Nm,
         limit=lambda c: c.asked["requirements.motor.rated_torque_Nm"],
+        sheet=Sheet("{T_mot_rms}", "T_mot_N"),
         relation="T_rms / (i · η) ≤ T_mot,N",
         moves={"torque": 1.0},
         accepted=N_("the motor’s rated torque rises to {value}"),
@@ -100,6 +103,7 @@ MOTOR: tuple[Check, ...] = (
         asked="requirements.motor.rated_speed_rpm",
         demand=lambda c: c.figures.average_input_speed_rpm,
         limit=lambda c: c.asked["requirements.motor.rated_speed_rpm"],
+        sheet=Sheet("{n_in_av}", "n_mot_N"),
         relation="n_in,av ≤ n_mot,N",
         moves={"speed": 1.0},
     ),
@@ -124,6 +128,7 @@ MOTOR: tuple[Check, ...] = (
             motor_inertia_kgm2=c.asked["requirements.motor.inertia_kgm2"],
         ),
         limit=lambda c: c.asked["requirements.motor.inertia_ratio"],
+        sheet=Sheet('IF(J_L="","",J_L/({i}^2*J_m))', "r_J"),
         relation="J_L / (i² · J_m) ≤ r_J",
         accepted=N_("the permitted inertia ratio rises to {value}"),
     ),

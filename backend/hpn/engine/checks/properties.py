@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from hpn.engine.check import RATING_TABLES, Case, Check
+from hpn.engine.check import RATING_TABLES, Case, Check, Sheet
 from hpn.physics.equations import FloatArray
 from hpn.words.wording import N_
 
@@ -26,6 +26,8 @@ def _distance_from_middle(case: Case) -> FloatArray:
     return distance
 
 
+_MIDDLE = "(({amb_min}+{amb_max})/2)"
+
 PROPERTIES: tuple[Check, ...] = (
     Check(
         code="ambient_temperature",
@@ -47,6 +49,11 @@ PROPERTIES: tuple[Check, ...] = (
         asked="requirements.ambient_temperature_degC",
         demand=lambda c: c.asked["requirements.ambient_temperature_degC"],
         limit=_nearer_end,
+        sheet=Sheet(
+            "t_amb",
+            f'IF(OR({{amb_min}}="",{{amb_max}}=""),"",IF(t_amb>={_MIDDLE},{{amb_max}},{{amb_min}}))',
+            share=f"ABS(t_amb-{_MIDDLE})/(({{amb_max}}-{{amb_min}})/2)",
+        ),
         share=_distance_from_middle,
         limited_by="ambient_temperature_maximum_degC",
         relation="t_min ≤ t_amb ≤ t_max",
@@ -68,6 +75,7 @@ PROPERTIES: tuple[Check, ...] = (
         asked="requirements.backlash_arcmin",
         demand=lambda c: c.gears.backlash_arcmin,
         limit=lambda c: c.asked["requirements.backlash_arcmin"],
+        sheet=Sheet("{j}", "j_req"),
         limited_by="backlash_arcmin",
         relation="j ≤ j_req",
         accepted=N_("the backlash limit rises to {value}"),
@@ -89,6 +97,7 @@ PROPERTIES: tuple[Check, ...] = (
         asked="requirements.torsional_stiffness_Nm_per_rad",
         demand=lambda c: c.gears.torsional_stiffness_Nm_per_rad,
         limit=lambda c: c.asked["requirements.torsional_stiffness_Nm_per_rad"],
+        sheet=Sheet("{K_3}", "K_3_req"),
         limited_by="torsional_stiffness_Nm_per_rad",
         relation="K_3 ≥ K_3,req",
         accepted=N_("the required torsional stiffness drops to {value}"),
@@ -110,6 +119,7 @@ PROPERTIES: tuple[Check, ...] = (
         asked="requirements.weight_kg",
         demand=lambda c: c.gears.weight_kg,
         limit=lambda c: c.asked["requirements.weight_kg"],
+        sheet=Sheet("{m}", "m_req"),
         limited_by="weight_kg",
         relation="m ≤ m_req",
         accepted=N_("the weight limit rises to {value}"),
@@ -131,6 +141,7 @@ PROPERTIES: tuple[Check, ...] = (
         asked="requirements.length_mm",
         demand=lambda c: c.gears.length_max_mm,
         limit=lambda c: c.asked["requirements.length_mm"],
+        sheet=Sheet("{L_max}", "L_req"),
         limited_by="length_max_mm",
         relation="L_max ≤ L_req",
         accepted=N_("the length limit rises to {value}"),

@@ -92,7 +92,7 @@ class CandidatesSheet:
             self.sheet.write_number(row, 3, candidate.rank)
         for name, value in known.ratings().items():
             if value is not None:
-                self.sheet.write_number(row, COLUMNS[name], value, self.book.style("figure"))
+                self.book.put(self.sheet, row, COLUMNS[name], value, "figure")
         fixed, terms = known.fixed(), known.terms()
         for term in GEAR_TERMS:
             saved, is_fixed = terms[term.name], term.name in fixed
@@ -115,7 +115,7 @@ class CandidatesSheet:
     def _cell(self, row: int, column: int, formula: str | None, value: float | str, style: str) -> None:
         """A formula with its value, or the value alone as it was saved."""
         if formula is None:
-            self.sheet.write(row, column, value, self.book.style(style))
+            self.book.put(self.sheet, row, column, value, style)
         else:
             self.sheet.write_formula(row, column, formula, self.book.style(style), value)
 

@@ -7,11 +7,12 @@ formulas.
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from string import Formatter
 
 from hpn.engine.check import Check
 from hpn.engine.checks import CHECKS
+from hpn.engine.checks.output_bearing import LOADED
 from hpn.words.quantities import CANDIDATE, DUTY, GEAR, INPUTS, Named
 from hpn.words.units import suffix_of
 from hpn.words.wording import N_
@@ -116,11 +117,10 @@ CYCLE_TERMS = (
 
 _R, _A = "(radial_used/{F_R_dyn_limit})", "(axial_used/{F_A_dyn_limit})"
 _P = f'({_R}+{_A}+(model="iso281")*(({_R}+0.56*{_R}+{_A}+ABS({_R}-0.56*{_R}-{_A}))/2-{_R}-{_A}))'
-_LOADED = "COUNT(F_R,F_A,radial_N,axial_N)>0"
 
 
 def _bearing(formula: str) -> str:
-    return f'IF(NOT({_LOADED}),"",IF(OR({{F_R_dyn_limit}}="",{{F_A_dyn_limit}}=""),"",{formula}))'
+    return f'IF(NOT({LOADED}),"",IF(OR({{F_R_dyn_limit}}="",{{F_A_dyn_limit}}=""),"",{formula}))'
 
 
 GEAR_TERMS = (
@@ -177,61 +177,14 @@ class SheetCheck:
         return f'IF({self.asked},{self.limit},"")'
 
 
-_CELLS: Mapping[str, str] = {
-    "1": "1",
-    "maxf_w·P_i": "{P_max}",
-    "J_L/(i²·J_m)": 'IF(J_L="","",J_L/({i}^2*J_m))',
-    **{named.symbol: cell_name(named.symbol) for path, named in INPUTS.items() if not path.startswith("phase.")},
-    **{term.named.symbol: term.name for term in CYCLE_TERMS},
-    **{GEAR[field].symbol: f"{{{name}}}" for name, field in RATINGS.items()},
-    **{term.named.symbol: f"{{{term.name}}}" for term in GEAR_TERMS},
-}
-"""Cells by the symbol of what they hold, as a relation writes it without its blanks."""
-
-
-def _plain(check: Check) -> SheetCheck | None:
-    """A check that compares two cells, as its relation says; None where one of them is in no cell."""
-    demand, limit = (_CELLS.get(side.split("=")[-1]) for side in _sides(check.relation))
-    if demand is None or limit is None:
+def formulas_of(check: Check) -> SheetCheck | None:
+    """A check as formulas; None where no cell holds what it compares."""
+    sheet = check.sheet
+    if sheet is None:
         return None
     asked = f'{cell_name(INPUTS[check.asked].symbol)}<>""' if check.asked else "TRUE"
-    share = f"{limit}/{demand}" if check.kind == "minimum" else f"{demand}/{limit}"
-    return SheetCheck(asked, demand, limit, share)
-
-
-def _sides(relation: str) -> tuple[str, str]:
-    left, _, right = relation.replace(" ", "").replace("≥", "≤").partition("≤")
-    return left, right
-
-
-_MIDDLE, _HALF = "(({amb_min}+{amb_max})/2)", "(({amb_max}-{amb_min})/2)"
-
-_OWN: Mapping[str, Mapping[str, str]] = {
-    "momentary_peak_torque": {"demand": "ABS(T_k)", "utilisation": "ABS(T_k)/{T_M}"},
-    "momentary_peak_count": {
-        "asked": 'AND(T_k<>"",N_k<>"")',
-        "utilisation": 'IF({N_k_max}="[unlimited]",0,IF({N_k_max}=0,"–",N_k/{N_k_max}))',
-    },
-    "life": {"utilisation": 'IF({L_10}="[unlimited]",0,L_10_req/{L_10})'},
-    "output_bearing_load": {"asked": _LOADED},
-    "output_bearing_life": {"asked": _LOADED},
-}
-"""What a check has otherwise than a plain comparison."""
-
-_RANGE = SheetCheck(
-    't_amb<>""',
-    "t_amb",
-    'IF(OR({amb_min}="",{amb_max}=""),"",IF(t_amb>=' + _MIDDLE + ",{amb_max},{amb_min}))",
-    f"ABS(t_amb-{_MIDDLE})/{_HALF}",
-)
-
-
-def formulas_of(check: Check) -> SheetCheck | None:
-    """A check as formulas; None where its relation names what is in no cell."""
-    if check.code == "ambient_temperature":
-        return _RANGE
-    plain = _plain(check)
-    return replace(plain, **_OWN.get(check.code, {})) if plain else None
+    share = f"{sheet.limit}/{sheet.demand}" if check.kind == "minimum" else f"{sheet.demand}/{sheet.limit}"
+    return SheetCheck(sheet.asked or asked, sheet.demand, sheet.limit, sheet.share or share)
 
 
 CHECK_FORMULAS: Mapping[str, SheetCheck] = {

@@ -62,6 +62,6 @@ def _moves(book: Book, sheet: Any, motion: Motion, row: int) -> None:
 
 def _cell(book: Book, sheet: Any, row: int, column: int, name: str, value: Value | None) -> None:
     if isinstance(value, str):
-        sheet.write_string(row, column, written(value, name, book.reader), book.style("label"))
+        book.put(sheet, row, column, written(value, name, book.reader), "label")
     elif value is not None:
-        sheet.write_number(row, column, value, book.style("figure"))
+        book.put(sheet, row, column, value, "figure")

@@ -255,7 +255,7 @@ class Overview:
             look = style("share" if column == 4 else "result")
             self.sheet.write_formula(self.row, column, formula, look, value)
         self._status(check, saved)
-        self.sheet.write(self.row, 6, used, style("share"))
+        self.book.put(self.sheet, self.row, 6, used, "share")
         source = origin(self.book.export, check.code, self.book.reader) if saved else ""
         if check.code in self.fixed:
             self._while_known(7, source, check.code, xl_rowcol_to_cell(self.row, 2))
@@ -303,9 +303,9 @@ class Overview:
             source = self.text(OF_THE_MOTION) if own else ""
             self._line(INPUTS[path].name, INPUTS[path].symbol, suffix_of(path) or "", source)
             name, value = NAMES.get(path), entered(self.book.export, path)
-            shown = ", ".join(map(str, value)) if isinstance(value, tuple) else value
+            shown = (value[0] if len(value) == 1 else ", ".join(map(str, value))) if isinstance(value, tuple) else value
             still = own or (path == EFFICIENCY and self.book.export.selection.turns_motor)
-            self.sheet.write(self.row, 2, shown, self.book.style("fixed" if still else "input" if name else "label"))
+            self.book.put(self.sheet, self.row, 2, shown, "fixed" if still else "input" if name else "label")
             self._converted(suffix_of(path) or "", value if isinstance(value, float) else None)
             if name:
                 self.book.name_cell(name, self.sheet, self.row, 2)
@@ -335,7 +335,7 @@ class Overview:
         self._section(N_("Figures of the series"))
         for (name, label, unit, _), value in zip(REFERENCES, self._series(), strict=True):
             self._line(label, "", unit)
-            self.sheet.write_number(self.row, 2, value, self.book.style("figure"))
+            self.book.put(self.sheet, self.row, 2, value, "figure")
             self.book.name_cell(name, self.sheet, self.row, 2)
             self.row += 1
 

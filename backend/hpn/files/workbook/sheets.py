@@ -9,6 +9,7 @@ from xlsxwriter.utility import xl_range_abs, xl_rowcol_to_cell
 from hpn.application.input_fields import PHASE_FIELDS
 from hpn.files.export import Export
 from hpn.files.words import Paper, paper
+from hpn.files.workbook import EveryDigit
 from hpn.files.workbook.formulas import NONE, cell_name
 from hpn.files.workbook.wrong import BENEATH, advice, is_wrong_in_phase, validation
 from hpn.words.quantities import INPUTS
@@ -93,6 +94,15 @@ class Book:
         if name not in self.styles:
             self.styles[name] = self.file.add_format(STYLES[name])
         return self.styles[name]
+
+    def put(self, sheet: Any, row: int, column: int, value: float | str | None, style: str) -> None:
+        """Write a value into a cell: a number with every digit, a text as it stands; None leaves the cell blank."""
+        if value is None or value == "":
+            sheet.write_blank(row, column, None, self.style(style))
+        elif isinstance(value, str):
+            sheet.write_string(row, column, value, self.style(style))
+        else:
+            sheet.write_number(row, column, EveryDigit(value), self.style(style))
 
     def head(self, text: str, unit: str) -> str:
         """Head of a column: a text or symbol, with a unit if there is one."""
@@ -227,11 +237,7 @@ class CycleSheet:
         phase = self.phases[row - 1] if row <= len(self.phases) else None
         self.sheet.write_number(row, 0, row, self.book.style("quiet"))
         for column, name in enumerate(PHASE, 1):
-            value = getattr(phase, name, None)
-            if value is None:
-                self.sheet.write_blank(row, column, None, self.book.style("input"))
-            else:
-                self.sheet.write_number(row, column, value, self.book.style("input"))
+            self.book.put(self.sheet, row, column, getattr(phase, name, None), "input")
         for column, name in enumerate(self.converted, 1 + len(PHASE) + len(USED)):
             source = xl_rowcol_to_cell(row, 1 + PHASE.index(name))
             self.book.converted(self.sheet, row, column, source, symbol_of(name), getattr(phase, name, None))

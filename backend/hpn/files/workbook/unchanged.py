@@ -50,7 +50,7 @@ def write_unchanged(book: Book, sheet: Any, fixed: Iterable[str]) -> None:
     for column, name in enumerate(sorted(set().union(*behind.values())), 1):
         values = _saved(book, name)
         for row, value in enumerate(values):
-            sheet.write(row, column, value)
+            book.put(sheet, row, column, value, "label")
         book.name(f"{name}_saved", sheet, xl_range_abs(0, column, len(values) - 1, column))
 
 
