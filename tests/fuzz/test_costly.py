@@ -14,11 +14,11 @@ from pathlib import Path
 import pytest
 
 from hpn.tables.columns import NO_CHOICES
+from hpn.tables.cycles import read_grids
 from hpn.tables.files import Contents, Wanted, contents_of
 from hpn.tables.sheets import MAXIMUM_CHARACTERS, Grid
 from hpn.web.door.apart import Apart, EndedError
 from hpn.web.door.pools import FILE_BOUNDS
-from hpn.web.form.pasted import read_grids
 from hpn.web.pages.fleet_upload import WANTED as AXES
 from hpn.web.pages.fleet_upload import best_reading
 from hpn.web.pages.paste import WANTED as PHASES

@@ -16,7 +16,9 @@ from hpn.application.phase import Phase
 from hpn.tables.cells import DECIMALS
 from hpn.tables.cells import Decimal as Mark
 from hpn.tables.columns import Choices
-from hpn.web.form.pasted import Table, read_text, write_table
+from hpn.tables.cycles import CycleTable as Table
+from hpn.tables.cycles import read_text
+from hpn.web.pages.transfer import write_table
 
 NUMBERS = st.floats(-1e6, 1e6, allow_subnormal=False).map(lambda value: round(value, 4))
 PEAKS = st.none() | st.floats(1e5, 1e6).map(lambda value: round(value, 4))

@@ -8,21 +8,21 @@ from typing import Any
 import pytest
 from openpyxl import Workbook
 
+from hpn.tables.axes import AxisTable, read_axes
 from hpn.tables.columns import Choices
 from hpn.tables.sheets import grids_of
 from hpn.tables.workbooks import sheets_of
-from hpn.web.form.axis_columns import BY_ROLE, quantity_of
-from hpn.web.form.axis_tables import AxisTable, read_axes
+from hpn.web.form.symbols import AXIS_INPUTS
 from hpn.words import units
 from hpn.words.reader import LANGUAGES, Reader
 
-WIRE = tuple({symbol.unit for symbol in BY_ROLE.values()} - {""})
+WIRE = tuple(AXIS_INPUTS.units)
 HEAD = "Achse;Moment [Nm];Drehzahl [1/min];Dauer [s]"
 
 
 def read(*lines: str, assumed: tuple[str, ...] = WIRE, **said: Any) -> AxisTable:
     """What a table is read as."""
-    return read_axes(grids_of("\n".join(lines))[0], Choices(**said), assumed)
+    return read_axes(grids_of("\n".join(lines))[0], AXIS_INPUTS, Choices(**said), assumed)
 
 
 def asked(table: AxisTable) -> list[str]:
@@ -81,9 +81,9 @@ def test_the_unit_of_an_angular_velocity_is_asked_where_nothing_says_it() -> Non
 @pytest.mark.parametrize("form", ["{} {}", "{} [{}]"])
 def test_a_unit_behind_a_name_is_never_taken_for_another(form: str) -> None:
     wrong = []
-    for role, symbol in BY_ROLE.items():
-        quantity = quantity_of(role)
-        names = {Reader(language).text(symbol.named.name) for language in LANGUAGES} if quantity else ()
+    for role, held in AXIS_INPUTS.by_role.items():
+        quantity = held.quantity
+        names = {Reader(language).text(held.named.name) for language in LANGUAGES} if quantity else ()
         for name, spelling in product(names, units.SPELLINGS):
             codes = units.codes_for(spelling, quantity)
             _, column, *_ = read(f"Achse;{form.format(name, spelling)};Nr.;Pos.", "A;1;1;1").columns
@@ -155,10 +155,10 @@ def test_bars_between_ratios_part_no_columns() -> None:
 
 
 def test_every_input_of_an_axis_is_known_by_the_name_of_its_column() -> None:
-    names = {".".join(s.path) if s.path[0] != "duty_cycle" else s.path[-1]: s.name for s in BY_ROLE.values()}
-    table = read(";".join(["axis", *names]), ";".join(["A", *("1" for _ in names)]))
+    names = {each.place: each.role for each in AXIS_INPUTS.by_role.values()}
+    table = read(";".join(names), ";".join(["A", *("1" for _ in names)][:-1]))
 
-    assert {column.heading: column.role for column in table.columns} == {"axis": "axis", **names}
+    assert {column.heading: column.role for column in table.columns} == names
 
 
 def test_a_cell_that_is_no_number_stays_as_it_is_written_and_spoils_its_axis_alone() -> None:
@@ -330,6 +330,34 @@ def test_a_row_of_units_lets_no_name_vanish() -> None:
     assert [column.role for column in table.columns] == ["axis", "t", "", "T"]
 
 
+@pytest.mark.parametrize(("unit", "factor"), [("d", 86_400), ("min", 60), ("ms", 0.001), ("[s]", 1)])
+def test_a_row_of_units_counts_for_axes_as_for_cycles(unit: str, factor: float) -> None:
+    (axis,) = read("Achse;Moment;Drehzahl;Zeit", f";Nm;rpm;{unit}", "A;40;250;2").axes
+
+    assert axis["duration_s"] == [2 * factor]
+
+
+def test_units_of_cells_count_where_each_has_one_and_are_asked_where_some_have_none() -> None:
+    head = "Achse;Moment;Drehzahl [1/min];Dauer [hh:mm:ss]"
+    table = read(head, "A;40 Nm;250;0:00:30", "A;0.3 kNm;250;0:01:00", assumed=())
+
+    assert [axis["torque_Nm"] for axis in table.axes] == [[40, 300]]
+    assert [axis["duration_s"] for axis in table.axes] == [[30, 60]]
+    assert asked(read(head, "A;40 Nm;250;0:00:30", "A;300;250;0:01:00")) == ["Which unit is column “Moment” in?"]
+
+
+def test_a_column_that_is_named_as_a_duration_has_no_points_in_time() -> None:
+    table = read("axis;torque_Nm;speed_rpm;duration_s", "A;40;250;1", "A;32;500;2")
+
+    assert [axis["duration_s"] for axis in table.axes] == [[1, 2]]
+
+
+def test_points_in_time_beyond_every_number_spoil_their_axis() -> None:
+    table = read(HEAD.replace("Dauer", "Endzeit"), "A;40;250;1", "A;32;500;1e999", "B;1;2;3", times="ends")
+
+    assert [axis["duration_s"] for axis in table.axes] == [[1, "1e999"], [3]]
+
+
 def test_a_name_above_that_of_a_quantity_counts() -> None:
     table = read("Achse;Motor;;Dauer", ";Drehmoment;Drehzahl;", "A;4;2500;1")
 
@@ -405,11 +433,11 @@ def test_a_number_that_a_workbook_shows_in_thousands_is_asked() -> None:
     book.save(file := io.BytesIO())
     grid = next(iter(sheets_of(file.getvalue()).values())).grid()
 
-    assert asked(read_axes(grid, assumed=WIRE)) == [
+    assert asked(read_axes(grid, AXIS_INPUTS, assumed=WIRE)) == [
         "The workbook shows 40 where the cell holds 40000. Which number counts?"
     ]
     for scales, torque in (("shown", 40), ("held", 40_000)):
-        assert read_axes(grid, Choices(scales=scales), WIRE).axes[0]["torque_Nm"] == [torque]
+        assert read_axes(grid, AXIS_INPUTS, Choices(scales=scales), WIRE).axes[0]["torque_Nm"] == [torque]
 
 
 def sheet_of(format_: str, *values: str) -> AxisTable:
@@ -430,7 +458,7 @@ def sheet_of(format_: str, *values: str) -> AxisTable:
                 text = text.replace(b"<v>%d</v>" % (1000 + place), b"<v>%b</v>" % value.encode())
             after.writestr(name, text)
     (read_,) = sheets_of(written.getvalue()).values()
-    return read_axes(read_.grid(), Choices(roles={4: "m", 5: "eta"}, units={4: "kg"}), WIRE)
+    return read_axes(read_.grid(), AXIS_INPUTS, Choices(roles={4: "m", 5: "eta"}, units={4: "kg"}), WIRE)
 
 
 HEADED = (*HEAD.split(";"), "Lebensdauer [h]")
@@ -445,7 +473,7 @@ def merged(*rows: tuple[object, ...], cells: str) -> AxisTable:
     sheet.merge_cells(cells)
     book.save(file := io.BytesIO())
     (read_,) = sheets_of(file.getvalue()).values()
-    return read_axes(read_.grid(), Choices(roles={4: "Lh"}), WIRE)
+    return read_axes(read_.grid(), AXIS_INPUTS, Choices(roles={4: "Lh"}), WIRE)
 
 
 def test_merged_names_and_inputs_of_an_axis_count_for_its_rows() -> None:

@@ -6,8 +6,7 @@ from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from typing import NamedTuple
 
-from hpn.tables.cells import Figure, held_of, is_blank, is_number
-from hpn.tables.clocks import moment_of, seconds_between
+from hpn.tables.cells import Figure, held_of, is_blank, is_number, moment_of, seconds_between
 from hpn.tables.headings import heading_of, heading_over, is_total
 from hpn.tables.heads import MOST_COLUMNS, head_of, numbers_in, skipped, uncommented, upright
 from hpn.tables.sheets import Grid, RefusedError, require_even

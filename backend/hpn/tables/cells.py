@@ -1,15 +1,18 @@
-"""Cells of a table: what is blank, and what is a number, perhaps with a unit, under either decimal mark.
+"""Cells of a table: blank ones, numbers, perhaps with a unit, under either decimal mark, and times.
 
 A mark between thousands stands before groups of exactly three digits, is the same throughout a number, and never
-follows a leading zero: `0,250` is a quarter under every reading.
+follows a leading zero: `0,250` is a quarter under every reading. `0:00:30` and `PT30S` last so long, and
+`2026-03-01T08:00:30` is a moment.
 """
 
 import re
+from collections.abc import Sequence
+from datetime import UTC, datetime
 from decimal import Decimal as Exact
+from fractions import Fraction
 from functools import lru_cache
 from typing import Literal, NamedTuple
 
-from hpn.tables.clocks import seconds_of
 from hpn.tables.numbers import DASHES, split_unit
 from hpn.words.units import QUANTITY_OF, codes_for
 
@@ -37,6 +40,7 @@ _NUMBER = {
 THOUSANDS = "÷"
 """Stands before what a format divides a number by, where nothing says the unit of what it shows."""
 
+PERCENT = "%"
 _OF_PHASES = ("torque", "speed", "time", "force")
 _NOTHING = ("", "-", "–", "—", "\N{MINUS SIGN}", "\N{NON-BREAKING HYPHEN}")
 _HELD_AS_TEXT = re.compile(r"=\"(?P<formula>[^\"]*)\"|'(?P<text>[-+\N{MINUS SIGN}]?(?!0[0-9])[0-9].*)")
@@ -52,7 +56,7 @@ class Figure(str):
 
 
 class Merged(str):
-    """A cell that a merged one with a number covers, by the name of both, `D2:D4`: whose the number is, is not said."""
+    """A cell that a merged one with a number covers, by the name of both, `D2:D4`: the number may be of either."""
 
     __slots__ = ()
 
@@ -74,12 +78,12 @@ def tidy(cell: str) -> str:
 
 
 def is_blank(cell: str) -> bool:
-    """Whether a cell says nothing: empty, or a dash."""
+    """True for a cell that is empty, or a dash."""
     return cell in _NOTHING
 
 
 def held_of(cell: str) -> tuple[str, str] | None:
-    """What a workbook shows of a number in thousands without saying so, and what it holds: 40 of `40000 ÷1000`."""
+    """Number that a workbook shows in thousands without saying so, and the one that it holds: 40 of `40000 ÷1000`."""
     number, _, thousands = cell.partition(f" {THOUSANDS}") if isinstance(cell, Figure) else ("", "", "")
     if not thousands:
         return None
@@ -87,25 +91,29 @@ def held_of(cell: str) -> tuple[str, str] | None:
     return f"{shown:f}", number
 
 
-def entry(cell: str, decimal: Decimal) -> Entry | None:
-    """A cell as a number under a decimal mark; None where it is none, as a percentage is none of a phase."""
+def entry(cell: str, decimal: Decimal, *, any_unit: bool = False) -> Entry | None:
+    """A cell as a number under a decimal mark; None where it is none.
+
+    Its unit is one that a phase has, or any that is known, a percentage among them.
+    """
     if isinstance(cell, Figure):
         number, _, unit = cell.partition(" ")
-        return None if unit == "%" else Entry(number, unit)
-    return _entry(cell, decimal) if len(cell) <= LONGEST_CELL else None
+        return None if unit == PERCENT and not any_unit else Entry(number, unit)
+    return _entry(cell, decimal, any_unit) if len(cell) <= LONGEST_CELL else None
 
 
 @lru_cache(maxsize=20_000)
-def _entry(cell: str, decimal: Decimal) -> Entry | None:
+def _entry(cell: str, decimal: Decimal, any_unit: bool) -> Entry | None:
     if not any(map(str.isdigit, cell)):
         return None
     if (number := plain(cell, decimal)) is not None:
         return Entry(number, "")
     if (seconds := seconds_of(cell)) is not None:
         return Entry(seconds, "s")
-    written, unit = split_unit(cell)
+    written, unit = (cell[:-1].rstrip(), PERCENT) if cell.endswith(PERCENT) else split_unit(cell)
+    codes = codes_for(unit)
+    known = unit == PERCENT or bool(codes) if any_unit else any(QUANTITY_OF[code] in _OF_PHASES for code in codes)
     # `1/min` is a unit, and no number of its own; `1'` is no phase's.
-    known = any(QUANTITY_OF[code] in _OF_PHASES for code in codes_for(unit))
     number = plain(written, decimal) if known and not codes_for(cell) else None
     return None if number is None else Entry(number, unit)
 
@@ -121,11 +129,73 @@ def plain(text: str, decimal: Decimal) -> str | None:
     return text.replace(decimal, ".").removesuffix(".")
 
 
+def written(number: float) -> str:
+    """A number in plain notation, with all its digits."""
+    return repr(float(number)).removesuffix(".0")
+
+
 def is_meant_as_number(cell: str) -> bool:
-    """Whether a cell is a number, or stands where one does: a formula, or a part of merged cells with a number."""
+    """True for a number, and for what stands in place of one: a formula, or a part of merged cells with a number."""
     return cell.startswith("=") or isinstance(cell, Merged) or is_number(cell)
 
 
 def is_number(cell: str) -> bool:
-    """Whether a cell is a number under any decimal mark."""
+    """True for a number of a phase under any decimal mark."""
     return any(entry(cell, decimal) is not None for decimal in DECIMALS)
+
+
+# --- Times ------------------------------------------------------------------------------------------------------------
+
+LONGEST_TIME = 40
+
+_CLOCK = re.compile(r"([0-9]{1,4}):([0-5][0-9]):([0-5][0-9])(?:[.,]([0-9]{1,9}))?")
+_MINUTES = re.compile(r"()([0-9]{1,3}):([0-5][0-9])[.,]([0-9]{1,9})")
+"""Minutes, seconds and a fraction: nobody writes one of minutes."""
+
+_ISO = re.compile(r"PT(?=[0-9])(?:([0-9]{1,6})H)?(?:([0-9]{1,6})M)?(?:([0-9]{1,6})(?:[.,]([0-9]{1,9}))?S)?")
+_MOMENT = re.compile(
+    r"([0-9]{4}-[0-9]{2}-[0-9]{2})[T ]([0-9]{2}:[0-9]{2}(?::[0-9]{2})?)(?:[.,]([0-9]{1,9}))?"
+    r"\s?(Z|[+-][0-9]{2}:?[0-9]{2})?"
+)
+TIME_FORMAT = re.compile(r"\[?[hH]{1,2}\]?:[mM]{2}:[sS]{2}(?:[.,](?:[0fsS]{1,6}|ms|xxx))?")
+"""Format in a heading whose times are written as on a clock."""
+
+TIME_PARTED = re.compile(r"[0-5]?[0-9]:[0-5][0-9]")
+"""A time of two parts, hours and minutes or minutes and seconds."""
+
+
+@lru_cache(maxsize=5000)
+def seconds_of(cell: str) -> str | None:
+    """Seconds of a time on a clock or of a duration, in plain notation; None for anything else."""
+    if len(cell) > LONGEST_TIME:
+        return None
+    match = _CLOCK.fullmatch(cell) or _MINUTES.fullmatch(cell) or _ISO.fullmatch(cell)
+    if match is None:
+        return None
+    hours, minutes, seconds = (int(part or 0) for part in match.groups()[:3])
+    return _with_fraction(3600 * hours + 60 * minutes + seconds, match[4])
+
+
+def _with_fraction(whole: int, fraction: str | None) -> str:
+    return f"{whole}.{fraction}" if fraction and fraction.strip("0") else str(whole)
+
+
+@lru_cache(maxsize=5000)
+def moment_of(cell: str) -> Fraction | None:
+    """Seconds from the year 1970 to a date with a time of day, all digits of its fraction counted; None for no such."""
+    match = _MOMENT.fullmatch(cell) if len(cell) <= LONGEST_TIME else None
+    if match is None or (match[3] and match[2].count(":") < 2):
+        return None
+    try:
+        moment = datetime.fromisoformat(f"{match[1]}T{match[2]}{match[4] or 'Z'}").astimezone(UTC)
+    except (ValueError, OverflowError):
+        return None
+    return Fraction(int(moment.timestamp())) + Fraction(f"0.{match[3] or 0}")
+
+
+def seconds_between(moments: Sequence[Fraction | None], moment: Fraction) -> str:
+    """Seconds from the first of some moments to one, in plain notation."""
+    first = next(each for each in moments if each is not None)
+    nanoseconds = round((moment - first) * 10**9)
+    sign, (whole, rest) = "-" if nanoseconds < 0 else "", divmod(abs(nanoseconds), 10**9)
+    return sign + _with_fraction(whole, f"{rest:09d}".rstrip("0"))

@@ -15,7 +15,7 @@ from math import inf
 from typing import TYPE_CHECKING, Any
 from warnings import catch_warnings
 
-from hpn.tables.cells import THOUSANDS, Figure, Merged, is_number, tidy
+from hpn.tables.cells import THOUSANDS, Figure, Merged, is_number, tidy, written
 from hpn.tables.number_formats import LONGEST_FORMAT, section_of
 from hpn.tables.sheets import LONGEST_TEXT, MOST_CELLS, Grid, RefusedError, Room, grid_of, too_many_cells
 from hpn.words.wording import N_, Sentence
@@ -211,20 +211,20 @@ def _text(cell: Any) -> str:
     if isinstance(value, time | timedelta):
         seconds = _seconds(value)
         # Without seconds it may be meant as minutes and seconds, and stands as it is shown.
-        return Figure(f"{_plain(seconds)} s") if "s" in str(cell.number_format).lower() else _without_seconds(seconds)
+        return Figure(f"{written(seconds)} s") if "s" in str(cell.number_format).lower() else _without_seconds(seconds)
     if isinstance(value, bool) or not isinstance(value, int | float) or abs(value) == inf:
         text = str(value)
         return tidy(text) if len(text) <= LONGEST_TEXT else text  # an infinite one, such as 1e999, is no number
-    written = str(cell.number_format)
-    section = section_of(written, value)
+    shown_as = str(cell.number_format)
+    section = section_of(shown_as, value)
     if section is None:
-        return Figure(f"{_plain(value)} {written[:LONGEST_FORMAT]}")
+        return Figure(f"{written(value)} {shown_as[:LONGEST_FORMAT]}")
     if section.percent:
         return Figure(f"{Decimal(repr(value)).scaleb(2):f} %")
     if section.thousands and not section.unit:
-        return Figure(f"{_plain(value)} {THOUSANDS}{1000**section.thousands}")
+        return Figure(f"{written(value)} {THOUSANDS}{1000**section.thousands}")
     scaled = float(Fraction(value) / 1000**section.thousands) if section.thousands else value
-    return Figure(f"{_plain(scaled)} {section.unit}".strip())
+    return Figure(f"{written(scaled)} {section.unit}".strip())
 
 
 def _seconds(value: time | timedelta) -> float:
@@ -236,7 +236,3 @@ def _seconds(value: time | timedelta) -> float:
 def _without_seconds(seconds: float) -> str:
     hours, minutes = divmod(int(abs(seconds) // 60), 60)
     return f"{'-' if seconds < 0 else ''}{hours}:{minutes:02d}"
-
-
-def _plain(number: float) -> str:
-    return repr(float(number)).removesuffix(".0")

@@ -6,8 +6,8 @@ from typing import NamedTuple
 
 from starlette.requests import Request
 
+from hpn.tables.files import text_of
 from hpn.tables.sheets import RefusedError
-from hpn.tables.texts import text_of
 from hpn.web.door.bodies import content_type_of, pairs_of, read_body
 from hpn.web.door.pools import compute
 from hpn.web.door.problems import Problem

@@ -12,6 +12,7 @@ from hpn.catalogue import Catalogue
 from hpn.engine.notices import AREAS
 from hpn.physics.motion.mechanisms import CLASSES, Rotary
 from hpn.physics.motion.moves import DEFAULT_JERK_SHARE
+from hpn.tables.inputs import PHASE, Input, Inputs
 from hpn.tables.numbers import Kind
 from hpn.web.form import labels
 from hpn.words.quantities import BEARING_MODELS, CANDIDATE, INPUTS, LIFE_BASES, QUANTITIES, Named
@@ -82,16 +83,7 @@ class FormGroup:
         return tuple(BY_NAME[name] for name in self.names)
 
 
-PHASE_SYMBOLS = (
-    Symbol("T", ("torque_Nm",)),
-    Symbol("n", ("speed_rpm",)),
-    Symbol("t", ("duration_s",)),
-    Symbol("FRi", ("radial_N",)),
-    Symbol("FAi", ("axial_N",)),
-    Symbol("Tpk", ("peak_torque_Nm",)),
-    Symbol("npk", ("peak_speed_rpm",)),
-    Symbol("Trms", ("rms_torque_Nm",)),
-)
+PHASE_SYMBOLS = tuple(Symbol(each.role, (each.place,)) for each in PHASE)
 """Repeated once per phase, all of equal length."""
 
 LOADS, VARYING = ("FRi", "FAi"), ("Tpk", "npk", "Trms")
@@ -347,6 +339,11 @@ LABELS = {
     **labels.LABELS,
 }
 """What a list of errors calls the fields of the form."""
+
+AXIS_INPUTS = Inputs(
+    *(Input(each.name, each.place.removeprefix("duty_cycle."), each.named, each.kind, each.many) for each in SYMBOLS)
+)
+"""Inputs that a table of axes may have columns for."""
 
 
 def units_of(mechanism: str) -> Mapping[str, str]:

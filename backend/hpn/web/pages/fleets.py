@@ -20,9 +20,11 @@ from hpn import ENGINE_VERSION
 from hpn.catalogue import Catalogue
 from hpn.store import FleetDraft, NoRoomError, SavedFleet, ShareSpentError, StoreUnavailableError
 from hpn.store.fleets import MOST_OF_CALLER
-from hpn.tables import cells
-from hpn.tables.columns import SKIP
+from hpn.tables.axes import AxisTable
+from hpn.tables.cells import is_blank
+from hpn.tables.columns import CELLS, SKIP, Column
 from hpn.tables.files import Contents, Wanted, contents_of, packed, unpacked
+from hpn.tables.reading import TIMES
 from hpn.web.archive import RETRY_SECONDS
 from hpn.web.door.access import admit, key_needed
 from hpn.web.door.bodies import pairs_of, read_form
@@ -31,14 +33,11 @@ from hpn.web.door.pools import compute, compute_apart, pool_of, while_present, w
 from hpn.web.door.problems import Problem, needs
 from hpn.web.door.requests import require_same_origin
 from hpn.web.door.uploads import read_parts
-from hpn.web.door.visit import current
 from hpn.web.fleets import Tables, size_fleet, workplace
-from hpn.web.form.axis_columns import AXIS, AXIS_NAMED, BY_ROLE, AxisColumn
-from hpn.web.form.axis_tables import AxisTable, number_in
 from hpn.web.form.labels import TITLE_BLOCK, faults_of
-from hpn.web.form.pasted import TIMES
+from hpn.web.form.symbols import AXIS_INPUTS
 from hpn.web.pages.fleet_view import ROWS_ON_PAGE, SHOWN, Chosen, FleetPageView
-from hpn.web.pages.paste import DECIMALS, choices_of
+from hpn.web.pages.paste import DECIMALS, assumed, choices_of
 from hpn.web.pages.refusals import reads_pages
 from hpn.web.pages.saved_list import changed_since, names_of, version_of
 from hpn.web.pages.templates import environment
@@ -94,17 +93,17 @@ class Draft:
         body = self.table and self.table.body
         if not body or not self.table:
             return []
-        columns, decimal = self.table.columns, self.table.decimal
+        table = self.table
         pairs = list(zip(body.numbers, body.rows, strict=True))[:ROWS_IN_PREVIEW]
-        return [(number, [_cell(row[column.place], column, decimal) for column in columns]) for number, row in pairs]
+        return [
+            (number, [_cell(row[column.place], column, table) for column in table.columns]) for number, row in pairs
+        ]
 
 
-def _cell(cell: str, column: AxisColumn, decimal: cells.Decimal | None) -> tuple[str, bool, bool]:
-    if not column.is_number or cells.is_blank(cell):
-        return cell, False, False
-    found = {read for mark in ((decimal,) if decimal else cells.DECIMALS) if (read := number_in(cell, mark))}
+def _cell(cell: str, column: Column, table: AxisTable) -> tuple[str, bool, bool]:
+    found = table.entries(cell, column)
     if len(found) != 1:
-        return cell, False, True
+        return cell, False, column.is_number and not is_blank(cell)
     number, unit = found.pop()
     return f"{number} {unit}".strip(), not unit, False
 
@@ -172,7 +171,7 @@ def _draft_of(parts: Mapping[str, bytes], content: bytes, contents: Contents) ->
     found = contents.sheets[sheet]
     if isinstance(found, Sentence):
         return replace(_refused_table(text, found), of=of, carried=packed(content), sheets=tuple(contents.sheets))
-    table = fleet_upload.best_reading(found, choices_of(fields, of), _assumed())
+    table = fleet_upload.best_reading(found, choices_of(fields, of), assumed(AXIS_INPUTS))
     taken = (fleet_upload.lines_of(table), ".ndjson") if table.whole and "size" in fields else None
     problems = (table.problem,) if table.problem else ()
     return Draft(text, problems, table, of, packed(content), tuple(contents.sheets), sheet, taken)
@@ -181,12 +180,6 @@ def _draft_of(parts: Mapping[str, bytes], content: bytes, contents: Contents) ->
 def _refused_table(text: str, problem: Sentence) -> Draft:
     larger = (Sentence(LARGER),) if "most" in problem.values else ()
     return Draft(text, (problem, *larger))
-
-
-def _assumed() -> tuple[str, ...]:
-    """Units that a column without one is taken to be in: those of the wire that the reader sees as well."""
-    reader = current()
-    return tuple(unit for unit in {symbol.unit for symbol in BY_ROLE.values()} if unit and reader.measure(unit).same)
 
 
 async def _sized(request: Request, content: bytes, suffix: str) -> str:
@@ -476,8 +469,9 @@ def _render(request: Request, template: str, status: int, **shown: Any) -> Respo
 
 
 _WORDS: dict[str, Any] = {
-    "roles": {AXIS: AXIS_NAMED, **{name: symbol.named for name, symbol in BY_ROLE.items()}},
+    "roles": {role: each.named for role, each in AXIS_INPUTS.by_role.items()},
     "skip": SKIP,
+    "cells": CELLS,
     "decimals": DECIMALS,
     "times": TIMES,
 }

@@ -20,13 +20,12 @@ from starlette.responses import HTMLResponse, RedirectResponse, Response
 
 from hpn.application import Application
 from hpn.application.faults import plain_message, pointer
-from hpn.tables import cells
-from hpn.tables.cells import Decimal
-from hpn.tables.columns import CELLS, SKIP, WIRE, Choices, Column
-from hpn.tables.files import Contents, Wanted, contents_of, contents_of_text, packed, unpacked
-from hpn.tables.headings import QUANTITIES
+from hpn.tables.columns import CELLS, SKIP, Choices, Column
+from hpn.tables.cycles import LAST, PARTS, PHASE, TOTALS, CycleTable, read_grids
+from hpn.tables.files import Contents, Wanted, contents_of, contents_of_text, packed, tidied, unpacked
+from hpn.tables.inputs import CYCLE, PHASE_ROLES, Inputs
+from hpn.tables.reading import TIMES
 from hpn.tables.sheets import MAXIMUM_CHARACTERS, SEPARATORS, Grid
-from hpn.tables.texts import tidied
 from hpn.web.door.access import admit
 from hpn.web.door.bodies import pairs_of, parsed
 from hpn.web.door.pools import compute, compute_apart, worked
@@ -37,7 +36,6 @@ from hpn.web.form import link_reader
 from hpn.web.form.given import shown_columns
 from hpn.web.form.link_reader import Pairs
 from hpn.web.form.link_writer import to_link
-from hpn.web.form.pasted import COLUMNS, LAST, PARTS, PHASE, TIMES, TOTALS, Table, read_grids
 from hpn.web.form.symbols import LOADS, VARYING
 from hpn.web.form.ways import CYCLE_NAMES
 from hpn.web.pages import long_cycles
@@ -79,7 +77,7 @@ class TableCell:
 class TablePreview:
     """A table as the page shows it."""
 
-    table: Table
+    table: CycleTable
     count: int
     hidden: int
     first: tuple[TableRow, ...]
@@ -177,8 +175,8 @@ def _answer(request: Request, given: Given, contents: Contents) -> Response:
     return _taken_or_shown(request, fields, draft)
 
 
-def _table(found: Sequence[Grid] | Sentence, choices: Choices) -> Table:
-    return Table(found) if isinstance(found, Sentence) else read_grids(found, choices, _assumed())
+def _table(found: Sequence[Grid] | Sentence, choices: Choices) -> CycleTable:
+    return CycleTable(problem=found) if isinstance(found, Sentence) else read_grids(found, choices, assumed(CYCLE))
 
 
 def _digest(content: bytes) -> str:
@@ -200,10 +198,10 @@ def choices_of(fields: Mapping[str, str], of: str) -> Choices:
     return Choices(**named, roles=said["r"], units=said["u"])
 
 
-def _assumed() -> tuple[str, ...]:
+def assumed(inputs: Inputs) -> tuple[str, ...]:
     """Units that a column without one is taken to be in: those of the wire that the reader sees as well."""
     reader = current()
-    return tuple(unit for unit in WIRE.values() if reader.measure(unit).same)
+    return tuple(unit for unit in inputs.units if reader.measure(unit).same)
 
 
 def _taken_or_shown(request: Request, fields: Mapping[str, str], draft: PasteDraft) -> Response:
@@ -245,7 +243,7 @@ def _opened(link: str, text: str) -> PasteDraft:
 # --- Drafts and previews ----------------------------------------------------------------------------------------------
 
 
-def _draft(link: str, text: str = "", table: Table | None = None, **more: Any) -> PasteDraft:
+def _draft(link: str, text: str = "", table: CycleTable | None = None, **more: Any) -> PasteDraft:
     """Draft of a table, or of nothing yet."""
     return PasteDraft(
         link,
@@ -264,12 +262,12 @@ def is_example(link: str) -> bool:
     return application is not None and to_link(application) == to_link(Application.worked_example())
 
 
-def _preview(table: Table) -> TablePreview:
+def _preview(table: CycleTable) -> TablePreview:
     assert table.body is not None  # only a table with a problem has none
     count = len(table.body.rows)
     short = count <= FIRST_ROWS + LAST_ROWS + 1
     first, last = (range(count), range(0)) if short else (range(FIRST_ROWS), range(count - LAST_ROWS, count))
-    total_s = sum(float(phase[COLUMNS.index("t")] or 0) for phase in table.phases)
+    total_s = sum(float(phase[PHASE_ROLES.index("t")] or 0) for phase in table.phases)
     return TablePreview(
         table=table,
         count=len(table.phases),
@@ -280,17 +278,14 @@ def _preview(table: Table) -> TablePreview:
     )
 
 
-def _row(table: Table, k: int) -> TableRow:
+def _row(table: CycleTable, k: int) -> TableRow:
     assert table.body is not None
     row = table.body.rows[k]
     return TableRow(table.body.numbers[k], tuple(_cell(table, column, row[column.place]) for column in table.columns))
 
 
-def _cell(table: Table, column: Column, cell: str) -> TableCell:
-    if column.role not in COLUMNS:
-        return TableCell(cell)
-    marks: tuple[Decimal, ...] = (table.decimal,) if table.decimal else cells.DECIMALS
-    found = {read for mark in marks if (read := cells.entry(cell, mark))}
+def _cell(table: CycleTable, column: Column, cell: str) -> TableCell:
+    found = table.entries(cell, column)
     if len(found) != 1:
         return TableCell(cell, asked=bool(found))
     read = found.pop()
@@ -308,7 +303,7 @@ def taken(draft: PasteDraft, *, append: bool) -> list[tuple[str, str]]:
     if draft.example and not append:
         dropped |= {name for name, _ in pairs_of(to_link(Application.worked_example()).removeprefix("/?"))}
     rest = [(name, value) for name, value in pairs if value.strip() and name not in dropped]
-    rows = [dict(zip(COLUMNS, phase, strict=True)) for phase in draft.preview.table.phases]
+    rows = [dict(zip(PHASE_ROLES, phase, strict=True)) for phase in draft.preview.table.phases]
     if append:
         given = link_reader.parse(pairs).rows
         rows = [dict(row) for row in given if any(text.strip() for text in row.values())] + rows
@@ -337,7 +332,7 @@ def _render(request: Request, draft: PasteDraft, status: int) -> Response:
 
 
 _WORDS = {
-    "columns": COLUMNS,
+    "columns": PHASE_ROLES,
     "skip": SKIP,
     "cells": CELLS,
     "separators": SEPARATORS,
@@ -347,7 +342,6 @@ _WORDS = {
     "last": LAST,
     "totals": TOTALS,
     "parts": PARTS,
-    "quantities": QUANTITIES,
 }
 
 router = APIRouter(include_in_schema=False, dependencies=[admit("calculator")])

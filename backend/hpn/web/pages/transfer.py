@@ -6,13 +6,13 @@ from fastapi import APIRouter
 from starlette.requests import Request
 from starlette.responses import Response
 
-from hpn.application import Application
-from hpn.tables.cells import Decimal
+from hpn.application import Application, DutyCycle
+from hpn.tables.cells import Decimal, written
 from hpn.web.door.access import admit
 from hpn.web.door.pools import compute
 from hpn.web.door.problems import Problem
 from hpn.web.form.linked import linked, query_of
-from hpn.web.form.pasted import write_table
+from hpn.web.form.symbols import columns_used
 
 
 async def application_file(request: Request) -> Response:
@@ -33,6 +33,18 @@ async def cycle_file(request: Request) -> Response:
 def _csv_of(query: str) -> Response:
     application, decimal = _read(query)
     return _file(write_table(application.duty_cycle, decimal), "duty-cycle.csv", "text/csv")
+
+
+def write_table(cycle: DutyCycle, decimal: Decimal = ".") -> str:
+    """Phases as CSV that the page and a spreadsheet of that language read back exactly; also those of a motion."""
+    separator = ";" if decimal == "," else ","
+    fields = [symbol.path[0] for symbol in columns_used(cycle.load_phases)]
+    lines = [separator.join(fields)]
+    for phase in cycle.load_phases:
+        values = [getattr(phase, name) for name in fields]
+        cells = ["" if v is None else written(v).replace(".", decimal) for v in values]
+        lines.append(separator.join(cells))
+    return "\n".join(lines) + "\n"
 
 
 def _read(query: str) -> tuple[Application, Decimal]:

@@ -1,0 +1,244 @@
+"""A table of axes that somebody uploads, in whichever way it is written: a row is a phase, those of an axis together.
+
+A cell that is no number spoils its axis alone, which is then rejected with its reason.
+"""
+
+import re
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass, replace
+from itertools import groupby, pairwise
+from math import isfinite
+from typing import Any
+
+from hpn.tables.bodies import Body, body_of
+from hpn.tables.cells import Decimal, Entry, Merged, entry, is_blank, is_number
+from hpn.tables.columns import NO_CHOICES, Choices, Column, proposed, settled
+from hpn.tables.heads import REQUIRED, skipped
+from hpn.tables.inputs import AXIS, PHASE, PHASE_ROLES, Inputs
+from hpn.tables.numbers import known_units
+from hpn.tables.reading import Reading, Row, Table, durations_of, in_plain, unit_behind
+from hpn.tables.sheets import Grid, RefusedError
+from hpn.words import units
+from hpn.words.wording import N_, Sentence
+
+_BETWEEN = re.compile(r"[;/|\s]+")
+_OF_RATIO = re.compile(r"\bi\s*=\s*|\s*:\s*1(?![0-9.,])")
+"""Signs beside the number of a ratio: `i = 5`, `5:1`."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AxisTable(Table):
+    """Reading of a table as axes.
+
+    `axes` are rows in list form by the names of `hpn fleet`; a cell that is no number stands there as it is written.
+    """
+
+    axes: tuple[dict[str, Any], ...] = ()
+
+
+def read_axes(grid: Grid, inputs: Inputs, choices: Choices = NO_CHOICES, assumed: Collection[str] = ()) -> AxisTable:
+    """Reading of a table of cells; raises nothing, `problem` says why there is none."""
+
+    def columns_of(body: Body) -> tuple[Column, ...]:
+        return settled(proposed(body, inputs), body, inputs, choices, assumed)
+
+    try:
+        body = body_of(grid, choices.scales)
+        body = _with_axes(body, columns_of(body))
+        columns = columns_of(body)
+        return _AxesReading(_unmerged(body, columns), columns, choices).table()
+    except RefusedError as refused:
+        return AxisTable(problem=refused.sentence)
+
+
+def _unmerged(body: Body, columns: Sequence[Column]) -> Body:
+    """A table in which an axis has its name, and each input that is merged, in its first row alone."""
+    axis = next((column.place for column in columns if column.role == AXIS), None)
+    once = {column.place for column in columns if column.role not in PHASE_ROLES}
+    rows: list[tuple[str, ...]] = []
+    known = ""
+    for row in body.rows:
+        name = "" if axis is None or isinstance(row[axis], Merged) else row[axis]
+        goes_on = bool(rows) and (is_blank(name) or name == known)
+        known = known if goes_on else name
+        rows.append(
+            tuple(
+                "" if isinstance(cell, Merged) and (place == axis or (goes_on and place in once)) else cell
+                for place, cell in enumerate(row)
+            )
+        )
+    return replace(body, rows=tuple(rows))
+
+
+def _with_axes(body: Body, columns: Sequence[Column]) -> Body:
+    """A table with those of its totals and titles among the rows that name an axis or have numbers of a phase."""
+    places = {column.role: column.place for column in columns}
+    named = [row for row in (*body.totals, *body.titles) if AXIS in places and not is_blank(row.cells[places[AXIS]])]
+    moving = [places[role] for role in ("T", "n") if role in places]
+    numbered = [row for row in body.totals if any(is_number(row.cells[place]) for place in moving)]
+    kept = {row.number for row in (*named, *numbered)}
+    notes = tuple(note for note in body.notes if note.values.get("row") not in kept)
+    left = [row for row in body.totals if row.number not in kept and row.number not in body.numbers]
+    return replace(body.including([*named, *numbered]), notes=(*notes, *(skipped(*row[::2]) for row in left)))
+
+
+@dataclass(frozen=True, slots=True)
+class _Group:
+    """Rows of an axis: their cells, and the numbers in the columns that are used."""
+
+    name: str
+    cells: tuple[tuple[str, ...], ...]
+    rows: tuple[Row, ...]
+
+
+class _AxesReading(Reading):
+    """A table on its way to axes."""
+
+    required = (AXIS, *REQUIRED)
+    any_unit = True
+
+    def table(self) -> AxisTable:
+        """The table with what is to be asked, or with its axes."""
+        self.ask_columns()
+        self.read_numbers()
+        self._note_unread()
+        groups = self._groups()
+        times, asks_times = self.read_times([group.rows for group in groups])
+        self.ask_scale()
+        axes = () if self.questions else tuple(self._axis(group, times) for group in groups)
+        return AxisTable(**self.said, times=times, asks_times=asks_times, axes=axes)
+
+    def _note_unread(self) -> None:
+        """Note cells that are rejected with their axes: no numbers, and those in a unit that their column has not."""
+        wrong, unknown, strange = list[str](), list[str](), list[str]()
+        known = ""
+        for cells, row in zip(self.body.rows, self.rows, strict=True):
+            for column, found in zip(self.used, row, strict=True):
+                cell = cells[column.place]
+                if found is not None:
+                    strange += [cell] if found.unit and not self.in_wire(found, column) else []
+                elif column.quantity and (unit := unit_behind(cell)) and not units.codes_for(unit):
+                    unknown.append(cell)
+                    known = known or known_units(column.quantity)
+                elif not is_blank(cell):
+                    wrong.append(cell)
+        self._note(N_("Cells that are no numbers, such as {cell}: {count}. Their axes are rejected."), wrong)
+        self._note(
+            N_("Cells in a unit that is not of their column, such as {cell}: {count}. Their axes are rejected."),
+            strange,
+        )
+        template = N_("Cells in an unknown unit, such as {cell}: {count}. Known are {units}. Their axes are rejected.")
+        self._note(template, unknown, units=known)
+
+    def _note(self, template: str, cells: Sequence[str], **values: str) -> None:
+        if cells:
+            self.notes.append(Sentence(template, {"count": len(cells), "cell": cells[0][:40], **values}))
+
+    # --- Rows of an axis ----------------------------------------------------------------------------------------------
+
+    def _groups(self) -> list[_Group]:
+        """Rows of each axis; one without a name belongs to the axis above."""
+        axis = next((column for column in reversed(self.columns) if column.role == AXIS), None)
+        rows = list(zip(self.body.rows, self.rows, strict=True))
+        if axis is None:
+            return [_Group("", self.body.rows, tuple(self.rows))]
+        names, continued = list[str](), 0
+        for cells, _ in rows:
+            goes_on = is_blank(cells[axis.place]) and bool(names)
+            continued += goes_on
+            names.append(names[-1] if goes_on else cells[axis.place])
+        self._ask_unnamed(axis)
+        if continued:
+            template = N_("Rows that name no axis and belong to the one above: {count}.")
+            self.notes.append(Sentence(template, {"count": continued}))
+        groups = []
+        for name, members in groupby(zip(names, rows, strict=True), key=lambda row: row[0]):
+            found = [row for _, row in members]
+            groups.append(_Group(name, tuple(cells for cells, _ in found), tuple(numbers for _, numbers in found)))
+        return groups
+
+    def _ask_unnamed(self, axis: Column) -> None:
+        """Ask for a row without an axis that most likely is none of the axis above it.
+
+        That is one with no axis above it; and one without a number, most likely a sum, where other rows without an axis
+        have one, or where rows repeat the name of their axis.
+        """
+        indices = [column.place for column in self.columns if column.numbers_phases]
+        names = [row[axis.place] for row in self.body.rows]
+        counted = [any(not is_blank(row[place]) for place in indices) for row in self.body.rows]
+        unnamed = [place for place, name in enumerate(names) if is_blank(name)]
+        repeated = any(one == other and not is_blank(one) for one, other in pairwise(names))
+        if unnamed[:1] == [0]:
+            self.ask(N_("Row {row} names no axis, and none stands above it."), row=self.body.numbers[0])
+            return
+        strange = repeated or any(counted[place] for place in unnamed)
+        totals = {total.number for total in self.body.totals}
+        sums = [place for place in unnamed if (strange and not counted[place]) or self.body.numbers[place] in totals]
+        for place in sums[:1]:
+            template = N_(
+                "Row {row} has no axis, which other rows have: leave it out if it is a sum, or write its axis into it."
+            )
+            self.ask(template, row=self.body.numbers[place])
+
+    # --- Values of an axis --------------------------------------------------------------------------------------------
+
+    def _axis(self, group: _Group, times: str) -> dict[str, Any]:
+        values: dict[str, Any] = {AXIS: str(group.name)}
+        numbers = dict(zip((column.place for column in self.used), zip(*group.rows, strict=True), strict=True))
+        for column in self.columns:
+            if column.held is None or column.role == AXIS:
+                continue
+            cells = [row[column.place] for row in group.cells]
+            found = numbers.get(column.place, (None,) * len(cells))
+            if column.role in PHASE_ROLES:
+                listed = [self._number(*each, column) for each in zip(cells, found, strict=True)]
+                if column.role in REQUIRED or any(value is not None for value in listed):
+                    values[column.held.place] = listed
+            elif (value := self._one(dict(zip(cells, found, strict=True)), column)) is not None:
+                values[column.held.place] = value
+        return self._lasting(values, group, times)
+
+    def _number(self, cell: str, found: Entry | None, column: Column) -> float | str | None:
+        """A number in the unit of the wire; the cell as it is written where it is none, None where it is blank."""
+        number = self.in_wire(found, column) if found else ""
+        if number and isfinite(value := float(number)):
+            return value
+        return None if is_blank(cell) else str(cell)
+
+    def _one(self, found: dict[str, Entry | None], column: Column) -> Any:
+        """Value that the rows of an axis have in common; where they have two, these as they are written: no input."""
+        given = [cell for cell in found if not is_blank(cell)]
+        if not given or column.held is None:
+            return None
+        many = column.held.many
+        if many:
+            values: list[Any] = [_listed(cell, column.held.kind == "text", self.decimal or ".") for cell in given]
+        else:
+            values = [self._number(cell, found[cell], column) for cell in given]
+        if all(value == values[0] for value in values):
+            return values[0]
+        written = " / ".join(given[:3])
+        return [written] if many else written
+
+    def _lasting(self, values: dict[str, Any], group: _Group, times: str) -> dict[str, Any]:
+        """An axis whose points in time became durations. Of starts the last one ends the cycle, and is no phase."""
+        moments = [moment for row in group.rows if (moment := self.seconds(row)) is not None]
+        if times not in ("starts", "ends") or len(moments) < len(group.rows):
+            return values
+        texts = [in_plain(duration) for duration in durations_of(moments, times)]
+        durations = [float(text) if isfinite(float(text)) else text for text in texts]
+        values |= {_DURATION: durations}
+        return {name: value[: len(durations)] if name in _OF_PHASE else value for name, value in values.items()}
+
+
+_OF_PHASE = frozenset(each.place for each in PHASE)
+_DURATION = "duration_s"
+
+
+def _listed(cell: str, texts: bool, decimal: Decimal) -> list[float | str]:
+    """Several ratios or sizes in a cell. A comma between digits is a decimal mark, and no ratio has one."""
+    parts = [text for part in _BETWEEN.split(_OF_RATIO.sub("", cell).strip("[]")) if (text := part.strip(","))]
+    if texts:
+        return [text.strip() for part in parts for text in part.split(",") if text.strip()]
+    found = [entry(part, decimal) for part in parts]
+    return [part if read is None or read.unit else float(read.number) for part, read in zip(parts, found, strict=True)]

@@ -1,0 +1,379 @@
+"""A table that is one duty cycle, in whichever way it is written: its columns, its phases, and rows that are none."""
+
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from itertools import chain
+from math import isclose, nan
+
+from hpn.tables.bodies import DIVIDED, Body, Labelled, body_of
+from hpn.tables.cells import DECIMALS, TIME_PARTED, Decimal, Entry, entry, is_blank, is_number
+from hpn.tables.columns import CELLS, NO_CHOICES, Choices, Column, by_units, counts, proposed, settled, units_in
+from hpn.tables.headings import heading_over
+from hpn.tables.heads import REQUIRED, skipped
+from hpn.tables.inputs import CYCLE, PHASE_ROLES
+from hpn.tables.numbers import either, known_units
+from hpn.tables.reading import Reading, Row, Table, durations_of, in_plain, unit_behind
+from hpn.tables.sheets import Grid, RefusedError, grids_of, no_number
+from hpn.words import units
+from hpn.words.fields import MAXIMUM_PHASES
+from hpn.words.wording import N_, Sentence
+
+LAST = {"phase": N_("a phase"), "sum": N_("a sum: skip it")}
+TOTALS = {"phase": N_("phases"), "sum": N_("sums or other figures of the table: skip them")}
+PARTS = {"one": N_("one cycle"), "first": N_("several: take the first alone")}
+PHASE = {"row": N_("a row"), "column": N_("a column")}
+"""Meanings of the last row, of rows named like sums, of rows below a title in between, and of a row at all."""
+
+BLANK = {
+    "T": N_("row {row}: the torque is blank"),
+    "n": N_("row {row}: the speed is blank"),
+    "t": N_("row {row}: the duration is blank"),
+}
+
+MOST_NAMED = 5
+"""Rows named like totals that a question names."""
+
+MOST_TOTALS = 20
+"""Rows named like totals that are compared with the others; of more none is taken for a total."""
+
+THREE_DIGITS = 0.005
+"""Relative error of a number rounded to three digits."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CycleTable(Table):
+    """Reading of a table as one cycle.
+
+    `phases` are plain numbers in units of the wire, in the order of PHASE_ROLES, blank where a phase has no load.
+    """
+
+    separator: str = ""
+    separators: tuple[str, ...] = ()
+    turned: bool = False
+    phase: str = ""
+    asks_phase: bool = False
+    last: str = ""
+    asks_last: bool = False
+    totals: str = ""
+    asks_totals: bool = False
+    named: tuple[Labelled, ...] = ()
+    parts: str = ""
+    asks_parts: bool = False
+    phases: tuple[tuple[str, ...], ...] = ()
+
+
+def read_text(text: str, choices: Choices = NO_CHOICES, assumed: Collection[str] = tuple(CYCLE.units)) -> CycleTable:
+    """Reading of a pasted text; raises nothing, `problem` says why there is none."""
+    try:
+        return read_grids(grids_of(text), choices, assumed)
+    except RefusedError as refused:
+        return CycleTable(problem=refused.sentence)
+
+
+def read_grids(
+    grids: Sequence[Grid], choices: Choices = NO_CHOICES, assumed: Collection[str] = tuple(CYCLE.units)
+) -> CycleTable:
+    """Reading of the cells of a table, out of those by each separator; raises nothing."""
+    tables = [_read_grid(grid, choices, assumed) for grid in grids]
+    divided = next((table for table in tables if table.problem and table.problem.template == DIVIDED), None)
+    if divided:
+        return divided
+    readable = [table for table in tables if table.problem is None]
+    distinct = list({_told_apart(table): table for table in reversed(readable)}.values())[::-1]
+    if not distinct:
+        return tables[0]
+    names = tuple(table.separator for table in distinct)
+    if len(distinct) == 1:
+        return distinct[0]
+    chosen = next((table for table in distinct if table.separator == choices.separator), None)
+    if chosen:
+        return replace(chosen, separators=names)
+    question = Sentence(N_("Which mark stands between the columns?"))
+    return replace(distinct[0], separators=names, separator="", questions=(question,), phases=())
+
+
+def _told_apart(table: CycleTable) -> tuple[object, ...]:
+    """Two readings of one text are told apart by their phases, or by their rows."""
+    return table.phases if table.whole or not table.body else table.body.rows
+
+
+def _read_grid(grid: Grid, choices: Choices, assumed: Collection[str]) -> CycleTable:
+    try:
+        body = body_of(grid, choices.scales)
+        asks = _has_two_ways(body)
+        if asks and choices.phase == "column":
+            body = body_of(grid.transposed(), choices.scales)
+        parting = body.parting
+        if parting and choices.parts == "first":
+            body = body.above(parting[0].number)
+        if len(body.rows) > MAXIMUM_PHASES:
+            raise RefusedError(N_("there are more than {most} rows"), most=MAXIMUM_PHASES)
+        columns = _columns_of(body, choices, assumed)
+        if asks and choices.phase not in PHASE:
+            question = Sentence(N_("Is a phase a row or a column?"))
+            return CycleTable(
+                questions=(question,), separator=grid.separator, asks_phase=True, columns=columns, body=body
+            )
+        table = _CycleReading(body, columns, choices).table()
+        named = table.named
+        if named and choices.totals == "phase":
+            body = replace(body.including(named), totals=(), notes=table.notes)
+            table = _CycleReading(body, _columns_of(body, choices, assumed), choices).table()
+        return replace(
+            table,
+            phase=choices.phase,
+            asks_phase=asks,
+            totals=choices.totals,
+            asks_totals=bool(named),
+            parts=choices.parts,
+            asks_parts=bool(parting),
+        )
+    except RefusedError as refused:
+        return CycleTable(problem=refused.sentence, separator=grid.separator)
+
+
+# --- Columns ----------------------------------------------------------------------------------------------------------
+
+
+def _columns_of(body: Body, choices: Choices, assumed: Collection[str]) -> tuple[Column, ...]:
+    found = proposed(body, CYCLE)
+    if sum(not column.text for column in found) < len(REQUIRED):
+        raise _too_few(body, found)
+    if not body.headed:
+        roles = _by_place(body, found)
+        found = [replace(column, role=roles.get(column.place, column.role)) for column in found]
+    return settled(found, body, CYCLE, choices, assumed)
+
+
+def _too_few(body: Body, columns: Sequence[Column]) -> RefusedError:
+    """Error for less than three columns of numbers."""
+    for number, row in zip(body.numbers, body.rows, strict=True):
+        wrong = next((cell for cell in row if not is_blank(cell) and not is_number(cell)), None)
+        if wrong and len(columns) >= len(REQUIRED):
+            return no_number(number, wrong)
+    cells = sum(not is_blank(cell) for cell in body.rows[0])
+    template = N_("row {row} has {cells} cells; a phase has torque, speed and duration at least")
+    return RefusedError(template, row=body.numbers[0], cells=cells)
+
+
+def _by_place(body: Body, columns: Sequence[Column]) -> dict[int, str]:
+    """Quantities of columns without a heading: by the units in their cells, else torque, speed, duration in order.
+
+    None for more than three columns, nor where the first may count the phases, or its texts name quantities.
+    """
+    numeric = [column.place for column in columns if not column.text]
+    inside = {place: units_in(body, place) for place in numeric}
+    if any(found != {""} for found in inside.values()):
+        return {place: by_units(found) for place, found in inside.items()}
+    labelled = any(column.text for column in columns) and len(REQUIRED) <= len(body.rows) <= len(PHASE_ROLES)
+    if len(numeric) != len(REQUIRED) or labelled or counts(body, numeric[0]):
+        return {}
+    return dict(zip(numeric, REQUIRED, strict=True))
+
+
+def _has_two_ways(body: Body) -> bool:
+    """True where a phase can be a row or a column: three rows of as many plain numbers or more, and nothing else."""
+    places = range(body.grid.width)
+    if body.headed or len(body.rows) != len(REQUIRED) or len(places) < len(REQUIRED) or counts(body, 0):
+        return False
+    return all(map(is_number, chain.from_iterable(body.rows))) and all(units_in(body, k) == {""} for k in places)
+
+
+# --- Rows -------------------------------------------------------------------------------------------------------------
+
+
+class _CycleReading(Reading):
+    """A table on its way to the phases of one cycle: a cell that is no number spoils it."""
+
+    def table(self) -> CycleTable:
+        """The table with what is to be asked, or with its phases; raises RefusedError."""
+        self.ask_columns()
+        self.read_numbers()
+        self.ask_scale()
+        self._ask_parts()
+        named = self._totals()
+        times, asks_times = self.read_times([self.rows])
+        rows, last, asks_last = self._last(times)
+        phases = () if self.questions else self._phases(rows, times)
+        return CycleTable(
+            **self.said,
+            separator=self.body.grid.separator,
+            turned=self.body.grid.turned,
+            times=times,
+            asks_times=asks_times,
+            last=last,
+            asks_last=asks_last,
+            named=named,
+            phases=phases,
+        )
+
+    def is_missed(self, role: str, roles: Collection[str]) -> bool:
+        """True unless another column is asked, which may be it."""
+        return "" not in roles
+
+    def may_go_on(self, going_on: Sequence[bool]) -> bool:
+        """True where the times of the cycle go on."""
+        return any(going_on)
+
+    def require_numbers(self, read: Mapping[Decimal, Sequence[Row]]) -> None:
+        """Raise RefusedError unless all cells that are used are numbers by one decimal mark."""
+        wanted = sum(not is_blank(row[column.place]) for row in self.body.rows for column in self.used)
+        if any(sum(cell is not None for row in rows for cell in row) == wanted for rows in read.values()):
+            return
+        for number, row in zip(self.body.numbers, self.body.rows, strict=True):
+            for column in self.used:
+                cell = row[column.place]
+                if not is_blank(cell) and not is_number(cell):
+                    raise _no_number_of(number, cell, column)
+        raise RefusedError(N_("the rows write their decimals in different ways: use a point or a comma throughout"))
+
+    def code(self, found: Entry, column: Column) -> str:
+        """Code of the unit that a number is in; raises RefusedError where the column says another, or it is unclear."""
+        code = super().code(found, column)
+        if not found.unit:
+            return code
+        codes = units.codes_for(found.unit, column.quantity)
+        said = f"{found.number[:30]} {found.unit[:30]}"
+        headed = column.unit != CELLS and bool(heading_over(self.body.headings[column.place]).units)
+        if len(codes) > 1 and not headed:
+            template = N_("{cell} in column {name} can be {first} or {second}; write one of them")
+            raise RefusedError(template, cell=said, name=column.called, **either(codes, found.unit))
+        if not code or (headed and code != column.unit):
+            template = N_("{cell}: this unit does not belong to column {name}, which takes {units}")
+            taken = units.symbol_of_code(column.unit) if headed and column.unit else known_units(column.quantity)
+            raise RefusedError(template, cell=said, name=column.called, units=taken)
+        return code
+
+    def _ask_parts(self) -> None:
+        """Ask for rows below a title: they may belong to the cycle of those above."""
+        if (parting := self.body.parting) and self.choices.parts not in PARTS:
+            template = N_("Row {row}, “{text}”, stands between the phases. Are they one cycle?")
+            self.ask(template, row=parting[0].number, text=parting[0].text[:40])
+
+    def _totals(self) -> tuple[Labelled, ...]:
+        """Rows that are named like totals without being any, and asked for; those that are totals are skipped."""
+        totals, sure = self.body.totals, _totals_of(self.body, self.used, self.decimal or DECIMALS[0])
+        open_ = tuple(total for total in totals if total not in sure)
+        if open_ and self.choices.totals not in TOTALS:
+            listed = ", ".join(f"{total.number} ({total.text[:40]})" for total in open_[:MOST_NAMED])
+            self.ask(N_("Rows that may be phases, sums or other figures of the table: {rows}."), rows=listed)
+        if self.choices.totals == "sum" and {total.number for total in totals}.issuperset(self.body.numbers):
+            raise RefusedError(N_("there is a header, but no row of numbers below it"))
+        self.notes += [skipped(*each[::2]) for each in (totals if self.choices.totals == "sum" else sure)]
+        return open_
+
+    def _last(self, times: str) -> tuple[list[Row], str, bool]:
+        """Rows of phases, the meaning of the last one, and True where that is asked, as it may sum up the others."""
+        rows = self.rows
+        if times == "starts":
+            self._require_filled(rows[:-1])
+            return rows, "", False
+        bare = len(rows) > 1 and self._time_alone(rows[-1])
+        sums = times == "durations" and self._sums()
+        self._require_filled(rows[:-1] if sums or (bare and not times) else rows)
+        if bare and sums:
+            self.notes.append(skipped(self.body.numbers[-1], " ".join(filter(None, self.body.rows[-1]))))
+            return rows[:-1], "sum", False
+        if not sums:
+            return rows, "", False
+        if len(rows) == 2 and rows[0] != rows[1]:  # two phases that take equally long are no sign of a sum
+            self._require_filled(rows)
+            return rows, "", False
+        if self.choices.last in LAST:
+            rows = rows[:-1] if self.choices.last == "sum" else rows
+            self._require_filled(rows)
+            return rows, self.choices.last, True
+        self.ask(N_("The last row takes as long as all others together. What is it?"))
+        return rows, "", True
+
+    def _time_alone(self, row: Row) -> bool:
+        """True where the last row has a time and nothing else."""
+        given = {column.role for column, cell in zip(self.used, row, strict=True) if cell is not None}
+        return given == {"t"} and all(is_blank(cell) or is_number(cell) for cell in self.body.rows[-1])
+
+    def _sums(self) -> bool:
+        """True where the last row takes as long as all others together, to three digits."""
+        *before, last = [self.seconds(row) or Fraction(0) for row in self.rows]
+        return bool(before) and last > 0 and abs(last - sum(before)) <= last / 1000
+
+    def _require_filled(self, rows: Sequence[Row]) -> None:
+        """Raise RefusedError where torque, speed or duration of a phase is blank."""
+        for number, row in zip(self.body.numbers, rows, strict=False):
+            for column, cell in zip(self.used, row, strict=True):
+                if cell is None and column.role in REQUIRED:
+                    raise RefusedError(BLANK[column.role], row=number)
+
+    def _phases(self, rows: Sequence[Row], times: str) -> tuple[tuple[str, ...], ...]:
+        """Numbers in units of the wire; points in time become how long each phase lasts."""
+        phases = [
+            {column.role: self.in_wire(cell, column) for column, cell in zip(self.used, row, strict=True) if cell}
+            for row in rows
+        ]
+        if times in ("starts", "ends"):
+            durations = durations_of([self.seconds(row) or Fraction(0) for row in rows], times)
+            if not durations:
+                raise RefusedError(N_("the last row ends the cycle, and there is no other"))
+            for number, duration in zip(self.body.numbers[times == "starts" :], durations, strict=False):
+                if duration < 0:
+                    raise RefusedError(N_("row {row}: the time goes back"), row=number)
+            phases = [{**phase, "t": in_plain(t)} for phase, t in zip(phases, durations, strict=False)]
+        return tuple(tuple(phase.get(role, "") for role in PHASE_ROLES) for phase in phases)
+
+
+def _no_number_of(row: int, cell: str, column: Column) -> RefusedError:
+    """Error for a cell that is no number of a column, with what would be: a known unit, a time that is one alone."""
+    if column.role == "t" and TIME_PARTED.fullmatch(cell):
+        template = N_("row {row}: {cell} may be hours or minutes; write {first} or {second}")
+        return RefusedError(template, row=row, cell=cell, first=f"{cell}:00", second=f"0:{cell:0>5}")
+    if unit_behind(cell):
+        template = N_("row {row}: {cell} is not a number with a unit that is known here: {units}")
+        return RefusedError(template, row=row, cell=cell[:40], units=known_units(column.quantity))
+    return no_number(row, cell)
+
+
+# --- Totals -----------------------------------------------------------------------------------------------------------
+
+
+def _totals_of(body: Body, used: Sequence[Column], mark: Decimal) -> list[Labelled]:
+    """Rows that are totals of the others in the columns that are used, their numbers read with a decimal mark."""
+    named = {total.number for total in body.totals}
+    phases = [row for number, row in zip(body.numbers, body.rows, strict=True) if number not in named]
+    found = []
+    for total in body.totals if phases and len(body.totals) <= MOST_TOTALS else ():
+        others = [other.cells for other in body.totals if other is not total]
+        if any(_sums_up(total, rows, used, mark) for rows in (phases, [*phases, *others])):
+            found.append(total)
+    return found
+
+
+def _sums_up(total: Labelled, rows: Sequence[Sequence[str]], used: Sequence[Column], mark: Decimal) -> bool:
+    """True where all numbers of a row are the sums, the means, the largest or the smallest of other rows.
+
+    Where its own numbers are none with this decimal mark the other counts: a formula without a format stands as 3.75
+    below 0,25.
+    """
+    columns = []
+    for column in used:
+        cells = [row[column.place] for row in (total.cells, *rows) if not is_blank(row[column.place])]
+        if cells and cells[0] is total.cells[column.place] and cells[0] != total.text:
+            columns.append([_entry(cells[0], mark), *(entry(cell, mark) for cell in cells[1:])])
+    read = [[float(cell.number) if cell else nan for cell in column] for column in columns]
+    of_one_unit = all(len({cell and cell.unit for cell in column}) == 1 for column in columns)
+    figures = (sum, _mean, max, min)
+    return (
+        len(rows) > 1
+        and of_one_unit
+        and any(
+            all(isclose(first, figure(others or [nan]), rel_tol=THREE_DIGITS) for first, *others in read)
+            for figure in figures
+        )
+    )
+
+
+def _entry(cell: str, mark: Decimal) -> Entry | None:
+    return next(filter(None, (entry(cell, each) for each in (mark, *DECIMALS))), None)
+
+
+def _mean(values: Sequence[float]) -> float:
+    return sum(values) / len(values)

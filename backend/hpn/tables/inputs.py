@@ -1,0 +1,121 @@
+"""Inputs that the columns of a table may hold, and the names by which a heading calls them.
+
+A table of the eight quantities of a phase is one duty cycle. Where a column may name the axis, it has many: beside the
+phases it may have a column for every other input of an application.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+from hpn.tables.headings import LONGEST, UNIT, Over, heading_of, parts_of
+from hpn.tables.numbers import Kind
+from hpn.words import quantities, units
+from hpn.words.quantities import Named
+from hpn.words.reader import LANGUAGES, Reader
+from hpn.words.wording import N_
+
+AXIS = "axis"
+
+FURTHER = {
+    AXIS: "axis name, achse, achsname, achsbezeichnung, achse nr, antrieb, drive, joint, gelenk, bezeichnung, name",
+    "tp": "pause, pausenzeit, dwell",
+    "Tk": "not-halt-moment, nothaltmoment, not-halt-drehmoment",
+    "Nk": "emergency stops, not-halt-vorgänge, anzahl not-halt",
+    "Lh": "gear life, lebensdauer getriebe",
+    "Lb": "bearing life, lagerlebensdauer",
+    "i": "ratio, ratios, übersetzung, übersetzungen",
+    "size": "size, sizes, baugröße, baugrößen",
+    "ta": "ambient, umgebungstemperatur",
+    "fw": "betriebsfaktor",
+}
+"""Further names by role. One that fits two inputs, such as “life” or “motor torque”, is in none: it is asked for."""
+
+
+@dataclass(frozen=True)
+class Input:
+    """An input that a column may hold: its role, which is its symbol in links, and its place in an application.
+
+    The place is the name of its column in the tables of `hpn fleet`, which ends in its unit.
+    """
+
+    role: str
+    place: str
+    named: Named
+    kind: Kind = "number"
+    many: bool = False
+
+    @cached_property
+    def unit(self) -> str:
+        """Suffix of its unit, blank for a pure number or a text."""
+        return units.suffix_of(self.place) or ""
+
+    @cached_property
+    def quantity(self) -> str:
+        """Quantity that its unit measures, blank for a pure number or a text, and where there is one unit alone."""
+        quantity = "" if self.unit.endswith("_per_rad") else units.quantity_of(self.unit)
+        return quantity if quantity in units.READ else ""
+
+    @property
+    def is_number(self) -> bool:
+        """True where its cells hold one number each."""
+        return self.kind != "text" and not self.many
+
+
+_OF_PHASE = {
+    **{"T": "torque_Nm", "n": "speed_rpm", "t": "duration_s", "FRi": "radial_N", "FAi": "axial_N"},
+    **{"Tpk": "peak_torque_Nm", "npk": "peak_speed_rpm", "Trms": "rms_torque_Nm"},
+}
+PHASE = tuple(Input(role, place, quantities.INPUTS[f"phase.{place}"]) for role, place in _OF_PHASE.items())
+PHASE_ROLES = tuple(_OF_PHASE)
+
+
+class Inputs:
+    """Inputs by role, and the names of those that are none of a phase."""
+
+    def __init__(self, *further: Input) -> None:
+        named = (Input(AXIS, AXIS, Named(N_("Axis")), "text"), *PHASE, *further) if further else PHASE
+        self.by_role: Mapping[str, Input] = {each.role: each for each in named}
+        self.has_axes = bool(further)
+
+    @property
+    def units(self) -> set[str]:
+        """Suffixes of the units of all inputs."""
+        return {each.unit for each in self.by_role.values()} - {""}
+
+    def role_over(self, headings: Sequence[str], said: Over) -> str:
+        """Role by the name of an input that all texts above a column make together, or by the same name in each."""
+        if not self.has_axes:
+            return ""
+        found = {role for text in headings if (role := self._role_of(text))}
+        names = [text for text in headings if heading_of(text).kind != UNIT]
+        if len(names) > 1:
+            found = {role} if (role := self._role_of(said.name)) else found if len(found) == len(names) == 1 else set()
+        return found.pop() if len(found) == 1 else ""
+
+    def _role_of(self, heading: str) -> str:
+        """Role by one of the names of an input, with or without a unit behind it."""
+        if len(heading) > LONGEST:
+            return ""
+        return self._roles.get(_folded(heading)) or self._roles.get(_folded(parts_of(heading)[0]), "")
+
+    @cached_property
+    def _roles(self) -> dict[str, str]:
+        roles: dict[str, str] = {}
+        readers = [Reader(language) for language in LANGUAGES]
+        for each in self.by_role.values():
+            if each.role not in _OF_PHASE:
+                texts = (each.place, *(reader.text(each.named.name) for reader in readers))
+                roles |= {_folded(text): each.role for text in texts}
+                if len(each.named.symbol) > 2:
+                    roles[_folded(each.named.symbol)] = each.role
+        roles |= {_folded(place): role for role, place in _OF_PHASE.items()} | {_folded(AXIS): AXIS}
+        return roles | {_folded(word): role for role, words in FURTHER.items() for word in words.split(", ")}
+
+
+CYCLE = Inputs()
+"""Of a table that is one duty cycle."""
+
+
+def _folded(text: str) -> str:
+    return " ".join(text.casefold().replace("_", " ").split()).strip(" :.")

@@ -1,0 +1,302 @@
+"""Reading of a table from its columns to numbers: what is asked on the way, and what is said about it.
+
+A number is never silently another number: what a table says in one way alone is read so and shown; where it can be
+read in two ways (`1.234` is 1.234 or 1234; 0.1, 0.2, 0.3 last so long or are points in time), none is chosen: the
+user is asked.
+"""
+
+import decimal as decimals
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from itertools import chain, pairwise
+from math import inf, isfinite
+from typing import Any
+
+from hpn.tables.bodies import Body
+from hpn.tables.cells import DECIMALS, LONGEST_CELL, PERCENT, Decimal, Entry, entry, is_blank, is_number, written
+from hpn.tables.columns import SKIP, Choices, Column
+from hpn.tables.headings import heading_over
+from hpn.tables.heads import REQUIRED
+from hpn.tables.inputs import AXIS
+from hpn.tables.numbers import either, known_units, split_unit
+from hpn.tables.sheets import RefusedError
+from hpn.words import units
+from hpn.words.wording import N_, Sentence, Value
+
+TIMES = {
+    "durations": N_("how long each phase lasts"),
+    "ends": N_("when each phase ends"),
+    "starts": N_("when each phase starts; the last row ends the cycle"),
+}
+"""Meanings of the times of a table."""
+
+MISSING = {
+    AXIS: N_("Which column names the axis?"),
+    "T": N_("Which column is the torque?"),
+    "n": N_("Which column is the speed?"),
+    "t": N_("Which column is the duration?"),
+}
+
+SCALES = ("shown", "held")
+"""Which numbers count where a format of a workbook shows thousands of what its cells hold."""
+
+SHARES = ("u", "eta", "fw")
+"""Inputs that may be written as percentages."""
+
+MOSTLY = 0.75
+"""Share of the axes from which on all times count as going on: a bad cell in one changes nothing for the others."""
+
+Row = tuple[Entry | None, ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Table:
+    """Reading of a table. It can be taken when there is no problem and no question."""
+
+    problem: Sentence | None = None
+    questions: tuple[Sentence, ...] = ()
+    notes: tuple[Sentence, ...] = ()
+    columns: tuple[Column, ...] = ()
+    body: Body | None = None
+    decimal: Decimal | None = None
+    marks: tuple[tuple[str, str], ...] = ()
+    times: str = ""
+    asks_times: bool = False
+    scales: str = ""
+    scaled: tuple[str, str] | None = None
+
+    @property
+    def whole(self) -> bool:
+        """True where it can be taken as it is."""
+        return self.problem is None and not self.questions
+
+    @property
+    def unknown(self) -> int:
+        """Number of columns below a header of which nothing is known: they can be skipped at once."""
+        return sum(column.is_unknown for column in self.columns) if self.body and self.body.headed else 0
+
+    def entries(self, cell: str, column: Column) -> set[Entry]:
+        """Numbers that a cell of a column may be: none for a blank cell or a text, two where the mark is asked."""
+        marks = (self.decimal,) if self.decimal else DECIMALS
+        found = {entry(cell, mark, any_unit=True) for mark in marks if column.is_number and not is_blank(cell)}
+        return {each for each in found if each}
+
+
+class Reading:
+    """A table on its way from cells to numbers.
+
+    `rows` are the numbers of the columns that are used: None for a blank cell, and for one that is no number.
+    """
+
+    required: Sequence[str] = REQUIRED
+    any_unit = False
+
+    def __init__(self, body: Body, columns: tuple[Column, ...], choices: Choices) -> None:
+        self.body, self.columns, self.choices = body, columns, choices
+        self.used = [column for column in columns if column.is_number]
+        self.questions: list[Sentence] = []
+        self.notes = list(body.notes)
+        self.decimal: Decimal | None = None
+        self.marks: tuple[tuple[str, str], ...] = ()
+        self.rows: list[Row] = []
+
+    @property
+    def said(self) -> dict[str, Any]:
+        """What every table says."""
+        return {
+            "questions": tuple(self.questions),
+            "notes": (*self.body.grid.notes, *self.notes),
+            "columns": self.columns,
+            "body": self.body,
+            "decimal": self.decimal,
+            "marks": self.marks,
+            "scales": self.choices.scales,
+            "scaled": self.scaled,
+        }
+
+    def ask(self, template: str, **values: Value) -> None:
+        """Add a question."""
+        self.questions.append(Sentence(template, dict(values)))
+
+    # --- Columns ------------------------------------------------------------------------------------------------------
+
+    def ask_columns(self) -> None:
+        """Ask for columns without a role or a unit, and for what has no column or two."""
+        for column in self.columns:
+            if not column.role:
+                self.ask(N_("What is column {name}?"), name=column.called)
+            elif column.quantity and not column.unit:
+                self.questions.append(self._unit_question(column))
+            elif column.foreign:
+                template = N_("Column {name}: {unit} is not read there. Convert it to {wire}, or let it be not read.")
+                wire = units.SYMBOLS.get(column.unit, "1")
+                self.ask(template, name=column.called, unit=column.foreign, wire=wire)
+        roles = [column.role for column in self.columns]
+        for role in self.required:
+            if role not in roles and self.is_missed(role, roles):
+                self.ask(MISSING[role])
+        for role in dict.fromkeys(roles):
+            if role not in ("", SKIP) and roles.count(role) > 1:
+                names = [column.called for column in self.columns if column.role == role]
+                self.ask(N_("Columns {one} and {other} are read as the same."), one=names[0], other=names[1])
+
+    def is_missed(self, role: str, roles: Collection[str]) -> bool:
+        """True where a role is asked that no column has."""
+        return True
+
+    def _unit_question(self, column: Column) -> Sentence:
+        """Question for a unit that is open: which of two, or which at all where another is written."""
+        said = heading_over(self.body.headings[column.place]).units
+        codes = {units.codes_for(unit, column.quantity): unit for unit in sorted(said)}
+        meant, spelled = next(iter(codes.items())) if len(codes) == 1 else ((), "")
+        if len(meant) > 1:
+            template = N_("Which unit is column {name} in? It can be {first} or {second}.")
+            return Sentence(template, {"name": column.called, **either(meant, spelled)})
+        unknown = next((unit for unit in sorted(said) if not units.codes_for(unit, column.quantity)), "")
+        if unknown:
+            template = N_("Which unit is column {name} in? {unit} is none that is known; known are {units}.")
+            listed = known_units(column.quantity)
+            return Sentence(template, {"name": column.called, "unit": unknown[:20], "units": listed})
+        return Sentence(N_("Which unit is column {name} in?"), {"name": column.called})
+
+    # --- Numbers ------------------------------------------------------------------------------------------------------
+
+    @property
+    def scaled(self) -> tuple[str, str] | None:
+        """Number that a cell shows and the one that it holds, where a format leaves open which of the two counts."""
+        return next((self.body.scaled[column.place] for column in self.used if column.place in self.body.scaled), None)
+
+    def ask_scale(self) -> None:
+        """Ask for numbers that a workbook shows in thousands without saying so."""
+        if self.scaled and self.choices.scales not in SCALES:
+            shown, held = self.scaled
+            template = N_("The workbook shows {shown} where the cell holds {held}. Which number counts?")
+            self.ask(template, shown=shown, held=held)
+
+    def read_numbers(self) -> None:
+        """Read the numbers of the used columns by their decimal mark, which is asked where it has two readings."""
+        read = {mark: [self._row(row, mark) for row in self.body.rows] for mark in DECIMALS}
+        self.require_numbers(read)
+        self.decimal, self.marks = self._mark(read)
+        if self.decimal:
+            self.rows = read[self.decimal]
+        else:
+            pairs = zip(*read.values(), strict=True)
+            self.rows = [tuple(one or other for one, other in zip(*pair, strict=True)) for pair in pairs]
+
+    def _row(self, row: Sequence[str], mark: Decimal) -> Row:
+        cells = (row[column.place] for column in self.used)
+        return tuple(None if is_blank(cell) else entry(cell, mark, any_unit=self.any_unit) for cell in cells)
+
+    def require_numbers(self, read: Mapping[Decimal, Sequence[Row]]) -> None:
+        """Raise RefusedError where a cell that is no number spoils the table."""
+
+    def _mark(self, read: Mapping[Decimal, Sequence[Row]]) -> tuple[Decimal | None, tuple[tuple[str, str], ...]]:
+        """The mark by which most cells are numbers; asked where two would give different ones, or both are written."""
+        pairs = list(zip(*(chain.from_iterable(rows) for rows in read.values()), strict=True))
+        counts = [sum(pair[k] is not None for pair in pairs) for k in (0, 1)]
+        alone = [next((k for k, pair in enumerate(pairs) if pair[j] and not pair[1 - j]), None) for j in (0, 1)]
+        both = None not in alone
+        differing = next((pair for pair in pairs if pair[0] != pair[1] and all(pair)), None)
+        if differing is None or (counts[0] != counts[1] and not both):
+            return DECIMALS[counts[1] > counts[0]], ()
+        marks = tuple((mark, cell.number) for mark, cell in zip(DECIMALS, differing, strict=True) if cell)
+        if self.choices.decimal in DECIMALS:
+            return next(mark for mark in DECIMALS if mark == self.choices.decimal), marks
+        if both:
+            one, other = (self._cell(place or 0)[:40] for place in alone)
+            template = N_("Both decimal marks are written, as in {one} and {other}: which one counts?")
+            self.ask(template, one=one, other=other)
+        else:
+            self.ask(N_("Which is the decimal mark?"))
+        return None, marks
+
+    def _cell(self, place: int) -> str:
+        """Cell of the used columns by its number, row after row."""
+        row, column = divmod(place, len(self.used))
+        return self.body.rows[row][self.used[column].place]
+
+    def code(self, found: Entry, column: Column) -> str:
+        """Code of the unit that a number is in: its own, else its column's; blank where it is none of the column's."""
+        if not found.unit:
+            return column.unit
+        codes = units.codes_for(found.unit, column.quantity) if column.quantity else ()
+        return codes[0] if len(codes) == 1 else ""
+
+    def in_wire(self, found: Entry, column: Column) -> str:
+        """A number in the unit of the wire, in plain notation; blank where its unit is none of the column's."""
+        if found.unit == PERCENT:
+            return str(decimals.Decimal(found.number).scaleb(-2)) if column.role in SHARES else ""
+        if column.held is None or not column.quantity:
+            return "" if found.unit else found.number
+        if not (code := self.code(found, column)):
+            return ""
+        measure = units.entered(column.held.unit, code)
+        value = inf if measure.same else measure.wire(found.number)
+        return written(value) if isfinite(value) else found.number
+
+    # --- Times --------------------------------------------------------------------------------------------------------
+
+    def seconds(self, row: Row) -> Fraction | None:
+        """Time of a row in seconds, None where it is blank or its unit is to be asked."""
+        for column, cell in zip(self.used, row, strict=True):
+            if column.role == "t" and cell is not None and column.unit and (code := self.code(cell, column)):
+                return Fraction(cell.number) / units.entered("s", code).factor
+        return None
+
+    def read_times(self, groups: Iterable[Sequence[Row]]) -> tuple[str, bool]:
+        """Meaning of the times, blank where it is asked, and True where there is a choice.
+
+        There is one where they go on in most axes, or are named as points in time.
+        """
+        columns = [column for column in self.columns if column.role == "t"]
+        instant = any(column.instant for column in columns)
+        series = [[self.seconds(row) for row in rows] for rows in groups]
+        going_on = [_goes_on(times) for times in series if len(times) > 1 and None not in times]
+        few = sum(going_on) < MOSTLY * len(going_on)
+        if any(column.lasting for column in columns) or not (instant or self.may_go_on(going_on)):
+            return "durations", False
+        if self.choices.times in TIMES:
+            self._require_moments([column.place for column in columns])
+            return self.choices.times, True
+        if few and not instant:
+            return "durations", True
+        self.ask(N_("Do the times say how long a phase lasts, or when it is?"))
+        return "", True
+
+    def may_go_on(self, going_on: Sequence[bool]) -> bool:
+        """True where the times of axes leave a choice."""
+        return bool(going_on)
+
+    def _require_moments(self, places: Iterable[int]) -> None:
+        """Raise RefusedError for dates taken as durations, or as ends where nothing says when the first began."""
+        dated = not self.body.dated.isdisjoint(places)
+        if dated and self.choices.times == "durations":
+            raise RefusedError(N_("dates say when a phase is, and not how long it lasts"))
+        if dated and self.choices.times == "ends":
+            raise RefusedError(N_("dates of ends don’t say when the first phase starts: give the dates of starts"))
+
+
+def _goes_on(times: Sequence[Fraction | None]) -> bool:
+    known = [time for time in times if time is not None]
+    return known == sorted(known) and known[-1] > known[0]
+
+
+def durations_of(moments: Sequence[Fraction], times: str) -> list[Fraction]:
+    """Seconds between points in time. Of starts the last one ends the cycle; the first phase of ends starts at 0."""
+    return [end - start for start, end in pairwise(moments if times == "starts" else [Fraction(0), *moments])]
+
+
+def in_plain(value: Fraction) -> str:
+    """A number in plain notation; one beyond every float stays one that is too large."""
+    try:
+        return written(float(value))
+    except OverflowError:
+        return "1e999" if value > 0 else "-1e999"
+
+
+def unit_behind(cell: str) -> str:
+    """Letters behind a number as its unit, blank for any other cell."""
+    number, unit = split_unit(cell) if len(cell) <= LONGEST_CELL else ("", "")
+    return unit if unit[:1].isalpha() and is_number(number) else ""
