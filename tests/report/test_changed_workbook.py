@@ -121,7 +121,7 @@ def test_service_and_workbook_agree_on_drawn_applications(
     cases = drawn(catalogue, 300 if soak else 24)
     fresh = recalculate({name: opened(application, catalogue) for name, (application, _) in cases.items()})
     asked = Counter(check["code"] for _, reply in cases.values() for check in reply["candidates"][0]["checks"])
-    assert asked.keys() == {check.code for check in CHECKS}
+    assert asked.keys() == {check.code for check in CHECKS}, "draw what asks for them in tests/property/draw.py"
     for name, (_, reply) in cases.items():
         assert_agrees(fresh[name], reply)
         designation = got(fresh[name], "gear")

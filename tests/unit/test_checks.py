@@ -6,7 +6,7 @@ import pytest
 
 from hpn.application import NUMBERS
 from hpn.catalogue import Catalogue
-from hpn.engine.checks import CHECKS, allowed
+from hpn.engine.checks import BY_CODE, CHECKS, allowed
 from tests.build import Json, answer, candidate, check, cycle, phase
 from tests.conftest import Supplement
 from tests.unit.test_supplements import SIZES
@@ -45,6 +45,11 @@ AT: dict[str, Callable[[float], Json]] = {
     "length": lambda x: with_wish(length_mm=122 / x),
 }
 PROPERTIES = {"ambient_temperature", "backlash", "torsional_stiffness", "weight", "length"}
+
+
+def test_every_check_is_tried_at_its_limit() -> None:
+    counted = {"momentary_peak_count"}  # whole numbers: tried below by counts
+    assert AT.keys() | counted == BY_CODE.keys()
 
 
 @pytest.mark.parametrize("code", AT)

@@ -1,5 +1,6 @@
 """The catalogue to read, over HTTP."""
 
+import dataclasses
 import gzip
 import re
 from pathlib import Path
@@ -8,7 +9,9 @@ import pytest
 from starlette.testclient import TestClient
 
 from hpn.catalogue import Catalogue
+from hpn.catalogue.gear import Gear
 from hpn.web.app import create_app
+from hpn.web.pages.gear_figures import GROUPS
 from hpn.web.settings import Settings
 
 
@@ -25,6 +28,12 @@ def test_every_gear_has_a_page_that_the_catalogue_links(client: TestClient, cata
         assert page.status_code == 200
         assert f"<title>{designation} · HPN Select</title>" in page.text
         assert f'<link rel="canonical" href="http://testserver/catalogue/{designation}">' in page.text
+
+
+def test_each_published_figure_stands_in_one_group_of_the_page_of_a_gear() -> None:
+    grouped = [name for _, labels in GROUPS for label in labels for name in label.fields]
+    published = [field.name for field in dataclasses.fields(Gear) if "file" in field.metadata]
+    assert sorted(grouped) == sorted(published)
 
 
 def test_page_of_a_gear_gives_each_figure_with_its_source(client: TestClient) -> None:
