@@ -1,4 +1,4 @@
-"""What the catalogue has of what an application asks for: the gears that it allows, and the motor that it names."""
+"""Gears that an application allows and the motor that it names, looked up in the catalogue."""
 
 from collections.abc import Sequence
 from functools import lru_cache

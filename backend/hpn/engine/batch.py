@@ -1,15 +1,42 @@
-"""Many applications at once: the batch behind a PLM system's ten thousand axes."""
+"""Many applications at once, as a PLM system has them: evaluated in chunks of duty cycles of like length."""
 
 from collections import defaultdict
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from hpn.application import Application, InputError
 from hpn.catalogue import Catalogue, GearList
 from hpn.engine.allowed import gears_for, with_listed_motor
-from hpn.engine.chunks import chunks_of
 from hpn.engine.duty import Duty
 from hpn.engine.evaluation import evaluate
 from hpn.engine.selection import Judged
+
+CHUNK_CYCLES = 1024
+CHUNK_PHASES = 100_000
+"""Cycles and phases of a chunk: its arrays stay in the processor's cache."""
+
+LIKE = 2
+"""Ratio of the longest cycle of a chunk to its shortest, at most; every cycle is padded to the longest."""
+
+SHORT_CYCLE = 16
+"""Phases up to which a cycle counts as long as this."""
+
+
+def chunks_of(counts: ArrayLike) -> Iterator[NDArray[np.intp]]:
+    """Places of cycles in chunks of like length, from their numbers of phases."""
+    lengths = np.asarray(counts, dtype=np.intp)
+    order = np.argsort(lengths, kind="stable")
+    ascending = lengths[order]
+    start = 0
+    while start < len(order):
+        like = np.searchsorted(ascending, LIKE * max(ascending[start], SHORT_CYCLE), side="right")
+        end = min(int(like), start + CHUNK_CYCLES)
+        while (end - start) * ascending[end - 1] > CHUNK_PHASES and end > start + 1:
+            end = start + max(int(CHUNK_PHASES // ascending[end - 1]), 1)
+        yield order[start:end]
+        start = end
 
 
 def judge_batch(applications: Sequence[Application], catalogue: Catalogue) -> list[Judged | InputError]:

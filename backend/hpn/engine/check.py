@@ -1,4 +1,4 @@
-"""What a check is: what it compares, how it goes with each driver of an application, and what it says in words."""
+"""A check as a table entry: its comparison, its power of each driver of an application, and its texts."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
@@ -15,7 +15,7 @@ Group = Literal["load", "property"]
 Driver = Literal["torque", "speed", "load"]
 
 DRIVERS: tuple[Driver, ...] = ("torque", "speed", "load")
-"""What the checks go with: all torques of the duty cycle, all speeds, all loads on the output."""
+"""Quantities that utilisations are powers of: all torques of the duty cycle, all speeds, all loads on the output."""
 
 
 RATING_TABLES = N_("rating tables 10.1 to 12.2")
@@ -24,7 +24,7 @@ RATING_TABLES = N_("rating tables 10.1 to 12.2")
 
 @dataclass(frozen=True, slots=True)
 class Case:
-    """What the checks look at."""
+    """Arguments of every check: duty, published figures and computed figures."""
 
     duty: Duty
     gears: GearColumns
@@ -32,7 +32,7 @@ class Case:
 
     @property
     def asked(self) -> Asked:
-        """What is asked for besides the phases."""
+        """Inputs besides the phases."""
         return self.duty.asked
 
 

@@ -1,6 +1,6 @@
-"""Applications as arrays: what they ask for, and what their duty cycles come to.
+"""Applications as arrays: their inputs, and the figures of their duty cycles.
 
-What belongs to an application has shape (N, 1), so that it broadcasts against what belongs to a gear, shape (G,); one
+A figure of an application has shape (N, 1), so that it broadcasts against a figure of a gear, shape (G,); one
 application and a chunk of a fleet go through the same lines.
 """
 
@@ -69,7 +69,7 @@ def _rows(application: Application) -> list[tuple[float, ...]]:
 
 @dataclass(frozen=True)
 class Asked:
-    """What N applications ask for besides their phases, each array of shape (N, 1).
+    """Inputs of N applications besides their phases, each array of shape (N, 1).
 
     `numbers` holds every single number of the application model by its path with dots, such as `requirements.life_h`;
     NaN where it is not given. Where no load is given, neither are the conditions of a load.
@@ -82,7 +82,7 @@ class Asked:
 
     @classmethod
     def of(cls, applications: Sequence[Application]) -> "Asked":
-        """What applications ask for."""
+        """Inputs of applications, in their order."""
         table = np.array([_numbers(application) for application in applications], dtype=np.float64)
         loads = [application.loads for application in applications]
         return cls(
@@ -110,7 +110,7 @@ def _numbers(application: Application) -> list[float | None]:
 
 @dataclass(frozen=True, eq=False)
 class Duty:
-    """What N duty cycles come to, beside their phases and what is asked for.
+    """Phases and inputs of N applications, and the figures of their duty cycles.
 
     Each figure has shape (N, 1), is NaN where it is not asked for, and is computed when it is first read.
 

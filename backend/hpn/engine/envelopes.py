@@ -38,7 +38,7 @@ class EnvelopeCurve:
 
 
 def life_envelopes(catalogue: Catalogue, gear: Gear, query: EnvelopeQuery) -> list[EnvelopeCurve]:
-    """What a constant load may be at the query's speed and life, for f_w = 1, 1.2, 1.5 and the query's own.
+    """Envelopes of a constant load at the query's speed and life, for f_w = 1, 1.2, 1.5 and the query's own.
 
     The published envelope times min(1, k) / f_w: slower running never enlarges it. Raises InputError where the size
     has no published limits, or no curve points for the digitised model.
@@ -56,13 +56,13 @@ def life_envelopes(catalogue: Catalogue, gear: Gear, query: EnvelopeQuery) -> li
 def envelopes_for(
     catalogue: Catalogue, gear: Gear, model: BearingModel, load_coefficient: float, life_factor: float
 ) -> list[EnvelopeCurve]:
-    """The same for a life factor k that is known."""
+    """Envelopes for a known life factor k."""
     coefficients = dict.fromkeys((*bearing.PRINTED_LOAD_COEFFICIENTS, load_coefficient))
     return [envelope_curve(catalogue, gear, model, f_w, min(1.0, life_factor)) for f_w in coefficients]
 
 
 def has_envelope(catalogue: Catalogue, gear: Gear, model: BearingModel) -> bool:
-    """Whether a size has published limits, or for the digitised model the points of its curve."""
+    """True for a size with published limits, or for the digitised model with points of its curve."""
     if model == "digitised":
         return gear.size in catalogue.curves
     return gear.dynamic_radial_load_N is not None and gear.dynamic_axial_load_N is not None

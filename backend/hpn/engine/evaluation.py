@@ -1,4 +1,4 @@
-"""Every check of applications on gears, and from the checks to verdicts and the order of the candidates."""
+"""Checks of applications on gears, the verdicts that follow from them, and the order of the candidates."""
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
@@ -35,7 +35,7 @@ RANKED_BY: Mapping[RankBy, Callable[[Case, FloatArray], FloatArray]] = {
     "life": lambda case, used: -case.figures.life_L10_h,
     "stiffness": lambda case, used: -case.gears.torsional_stiffness_Nm_per_rad,
 }
-"""What suitable gears are ordered by, ascending; `used` is their utilisation."""
+"""Keys by which suitable gears are ordered, ascending; `used` is their utilisation."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,8 +43,8 @@ class Evaluation:
     """N applications on G gears, by the C checks that one of them asks for.
 
     `asked` (C, N, 1). `used` (C, N, G) is the utilisation of each check, NaN where it is not rated or not asked for,
-    infinite where the check fails without a number; it passes up to `bound` (C, N, 1). `counted` (C, N, G) is what
-    counts for a gear: of a property check the utilisation where it fails, NaN elsewhere. `verdict` (N, G) is a place in
+    infinite where the check fails without a number; it passes up to `bound` (C, N, 1). `counted` (C, N, G) is the
+    utilisation that counts for a gear, NaN for a property check that passes. `verdict` (N, G) is a place in
     STATUS; `utilisation` (N, G) the largest that counts, NaN for an unrated gear.
     """
 
@@ -133,7 +133,7 @@ class Evaluation:
 
     @cached_property
     def _wish(self) -> FloatArray:
-        """What suitable gears are ordered by, ascending."""
+        """Key by which suitable gears are ordered, ascending."""
         rank_by = self.case.asked.rank_by
         wishes = {name: RANKED_BY[name](self.case, self.utilisation) for name in RANKED_BY if (rank_by == name).any()}
         if len(wishes) == 1:
@@ -147,7 +147,7 @@ class Evaluation:
 
 
 def evaluate(duty: Duty, gears: GearList, catalogue: Catalogue) -> Evaluation:
-    """Every check that the applications of a duty ask for on every gear, and how the gears stand."""
+    """Evaluation of every check that an application of a duty asks for, on every gear."""
     case = Case(duty, gears.columns, Figures(duty, gears, catalogue))
     checks, asked = _asked(case)
     used = np.empty((*asked.shape[:2], len(gears.rows)))
@@ -162,7 +162,7 @@ def evaluate(duty: Duty, gears: GearList, catalogue: Catalogue) -> Evaluation:
 
 
 def _asked(case: Case) -> tuple[tuple[Check, ...], BoolArray]:
-    """Checks that an application asks for, and which do, shape (C, N, 1)."""
+    """Checks that some application asks for, and a mask of those that do, shape (C, N, 1)."""
     always = np.zeros((len(case.duty.average_torque_Nm), 1))
     inputs = [always if check.asked is None else case.asked[check.asked] for check in CHECKS]
     given = ~np.isnan(np.concatenate(inputs, axis=1)).T
@@ -175,8 +175,8 @@ def _verdicts(
 ) -> tuple[NDArray[np.int8], FloatArray]:
     """Verdict on each gear, and its utilisation; that of an unrated one is NaN. `bound` is that of the load checks.
 
-    What counts of a property check is above 1, and so above u: one comparison with the bound of the load checks tells
-    whether anything fails.
+    A property check counts where it is above 1, and so above u: one comparison with the bound of the load checks finds
+    everything that fails.
     """
     largest = np.fmax.reduce(counted, axis=0)
     fails = largest > bound

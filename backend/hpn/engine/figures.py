@@ -1,4 +1,4 @@
-"""What gears come to under duty cycles: speeds, lives, stops, torques at the motor, load on the output bearing."""
+"""Figures of gears under duty cycles: speeds, lives, stops, torques at the motor, load on the output bearing."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -151,8 +151,8 @@ def _bearing_loads(duty: Duty, gears: GearList) -> tuple[FloatArray, FloatArray]
 def _motor_torques(duty: Duty, gears: GearList, catalogue: Catalogue) -> tuple[FloatArray, FloatArray]:
     """Peak and RMS torque at the motor, shape (N, G); loss-free where no efficiency is known.
 
-    A stated efficiency goes before a supplied curve, which is read at a phase's peak for the peak and at its RMS for
-    the RMS. Of a motion whose motor's inertia is known the torque counts at every instant, that inertia included.
+    A stated efficiency has precedence over a supplied curve, which is read at a phase's peak for the peak and at its
+    RMS for the RMS. In a motion with a known motor inertia the torque counts at every instant, that inertia included.
     """
     stated, ratio = duty.asked["requirements.efficiency"], gears.columns.ratio
     eta = np.where(np.isnan(stated), 1.0, stated)
@@ -186,7 +186,7 @@ def _with_own_inertia(
 ) -> tuple[FloatArray, FloatArray]:
     """Peak and RMS torque at the motor of application `index`, its own inertia included, shape (G,) each.
 
-    Gears of one ratio without a curve of their own have the same torques, which are worked out once.
+    Gears of one ratio without a curve of their own have the same torques, which are computed once.
     """
     stated = duty.asked["requirements.efficiency"].item(index)
     curved = [np.isnan(stated) and gear.designation in catalogue.efficiency for gear in gears.rows]
@@ -220,7 +220,7 @@ def efficiency_along(catalogue: Catalogue, gear: Gear, torque_Nm: FloatArray) ->
 def efficiencies(duty: Duty, gear: Gear, catalogue: Catalogue) -> tuple[FloatArray, FloatArray]:
     """Efficiency of a gear in each phase of one application, at the phase's peak and at its RMS; 1 where none is known.
 
-    As the torques at the motor have it: stated, else by a supplied curve.
+    The same as for torques at the motor: stated, else by a supplied curve.
     """
     phases, stated = duty.phases, duty.asked["requirements.efficiency"].item()
     torques = phases.peak_torque_Nm[0, 0], phases.rms_torque_Nm[0, 0]
@@ -232,7 +232,7 @@ def efficiencies(duty: Duty, gear: Gear, catalogue: Catalogue) -> tuple[FloatArr
 
 
 def leaves_curve(catalogue: Catalogue, gear: Gear, duty: Duty, index: int) -> bool:
-    """Whether a torque of application `index` lies beyond the ends of a gear's efficiency curve; one of 0 does not."""
+    """True where a torque of application `index` lies beyond the ends of a gear's efficiency curve, unless it is 0."""
     known, _ = catalogue.efficiency[gear.designation]
     torques = np.concatenate((duty.phases.peak_torque_Nm[index, 0], duty.phases.rms_torque_Nm[index, 0]))
     return bool(((torques > 0) & ((torques < known[0]) | (torques > known[-1]))).any())

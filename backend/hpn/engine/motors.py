@@ -1,4 +1,4 @@
-"""Which of the user's motors fit a gear, and which gears a motor fits."""
+"""Motors of the user's list that fit a gear, and gears that fit a motor."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -61,7 +61,7 @@ def motors_on(application: Application, gear: Gear, catalogue: Catalogue) -> lis
 
 
 def asks_inertia_ratio(application: Application) -> bool:
-    """Whether the motor's inertia has to be known, as the load's is limited to a multiple of it."""
+    """True where the load's inertia is limited to a multiple of the motor's, which then has to be known."""
     asked = application.requirements.motor
     return asked is not None and asked.inertia_ratio is not None
 

@@ -1,4 +1,4 @@
-"""What the reader of a result must know beyond its numbers: assumptions, standings, unlimited values.
+"""Notices on a result: assumptions behind its numbers, unpublished figures, unlimited values.
 
 A notice is a code and values; its sentence is one of NOTICES, and is put together where it is shown.
 """
@@ -190,7 +190,7 @@ def _ranges(places: Sequence[int]) -> str:
 
 
 def _is_unlimited(figure: FloatArray, index: int) -> bool:
-    """Whether a figure of an application is without a limit on any gear."""
+    """True where a figure of an application is unlimited on some gear."""
     return bool(np.isinf(figure[index if len(figure) > 1 else 0]).any())
 
 

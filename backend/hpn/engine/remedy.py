@@ -1,4 +1,4 @@
-"""What would make a rejected gear fit, and how far the drivers of each check may grow, in words.
+"""Changes that make a rejected gear fit, and the growth that each check leaves to its drivers, in words.
 
 Built on the reserve's powers (`hpn.engine.reserve.MOVES`) and on a candidate of the reply. Every bound in a sentence is
 rounded to the safe side, so that following the words passes.
@@ -46,9 +46,8 @@ class Way:
 def ways_of(candidate: Candidate, reserve_utilisation: float = 1.0) -> tuple[Way, ...]:
     """Ways to make every load check of a rejected gear pass; any one of them is enough.
 
-    None where nothing is exceeded, and where not every check can be judged.
-    Where a life fails beyond what the other checks ask for anyway there are two: less torque or load, or less speed.
-    `reserve_utilisation` is the user's u.
+    None where nothing is exceeded, or where not every check can be judged. Two where a life still fails after the
+    changes that the other checks need: less torque or load, or less speed. `reserve_utilisation` is the user's u.
     """
     if not candidate.is_judged:
         return ()
@@ -64,7 +63,7 @@ def ways_of(candidate: Candidate, reserve_utilisation: float = 1.0) -> tuple[Way
 
 
 def _needed(used: Mapping[str, float], u: float, driver: Driver, untold: bool) -> float:
-    """Factor on a driver that the checks ask for which no other driver moves."""
+    """Factor on a driver that those checks need which no other driver moves."""
     rooms = [
         u / used[code]
         for code in MOVES[driver]
@@ -75,17 +74,17 @@ def _needed(used: Mapping[str, float], u: float, driver: Driver, untold: bool) -
 
 
 def _is_untold(candidate: Candidate, driver: Driver) -> bool:
-    """Whether no closed form follows a driver of a judged gear: its reserve has no factor, yet a check of it is used.
+    """True for a driver that a judged gear has no closed form of: a check of it is used, but its reserve has no factor.
 
-    That is the torque where the motor's torques go by an efficiency curve, and torque and speed where they have a part
-    of the motor's own inertia, which goes by the motion.
+    That is the torque where motor torques follow an efficiency curve, and torque and speed where they have a part of
+    the motor's own inertia, which follows the motion.
     """
     used = (check.utilisation or 0.0 for check in candidate.checks if check.code in MOVES[driver])
     return getattr(candidate.reserve, f"{driver}_factor") is None and any(share > _LEAST for share in used)
 
 
 def _excess(relative: float) -> float:
-    """How far a utilisation lies above its bound, as a factor; 1 where it does not."""
+    """Factor by which a utilisation exceeds its bound; 1 where it does not."""
     return relative if relative > 1 + ROUNDING else 1.0
 
 
@@ -103,7 +102,7 @@ def _stop(candidate: Candidate, u: float) -> tuple[float | None, int | None]:
 
 @dataclass(frozen=True, slots=True)
 class Requirement:
-    """A limit of the user that has to change: the path of the input, its new value and the clause that says so."""
+    """Limit of the user that has to change: path of the input, its new value, and the clause on it."""
 
     path: str
     value: Quantity
@@ -121,8 +120,8 @@ class Alternative:
 def alternatives_of(candidate: Candidate, reserve_utilisation: float = 1.0) -> tuple[Alternative, ...]:
     """Alternatives that each make a rejected gear suitable.
 
-    None for one that is not rejected, where not every check can be judged, and where a driver has to change that no
-    closed form follows: what the motor has to give then is a matter of its curve, or of the motion.
+    None for a gear that is not rejected, where not every check can be judged, and where a driver without a closed form
+    would have to change: the motor's torque then depends on its curve, or on the motion.
     """
     if candidate.status != "unsuitable" or not candidate.is_judged:
         return ()
@@ -143,7 +142,7 @@ _AMBIENT = (N_("the ambient temperature drops to {value}"), N_("the ambient temp
 
 
 def _requirements(candidate: Candidate, u: float) -> Iterable[Requirement]:
-    """What has to be required instead, for the checks that no driver moves."""
+    """Requirements that would pass, for the failing checks that no driver moves."""
     for check in candidate.failing:
         known = BY_CODE[check.code]
         if known.asked is None or check.demand is None or check.limit is None:
@@ -164,7 +163,7 @@ def _requirements(candidate: Candidate, u: float) -> Iterable[Requirement]:
 def tried(application: Application, alternative: Alternative, catalogue: Catalogue) -> Application:
     """The application changed by an alternative, with its figures as the words print them.
 
-    Where a figure of a listed motor changes, its figures stand in place of its name.
+    A listed motor of which a figure changes is replaced by its figures.
     """
     changed = followed(application, alternative.way)
     figures = {f"requirements.motor.{name}" for name in LISTED_FIGURES}
@@ -185,7 +184,7 @@ def _with(model: Any, path: Sequence[str], value: float | None) -> Any:
 def followed(application: Application, way: Way) -> Application:
     """The application changed by a way, with its figures as the words print them.
 
-    Of a motion the phases that come out of it take its place where their torques or speeds change.
+    A motion is replaced by its phases where their torques or speeds change.
     """
     torque, speed, load = (_printed(factor, 3) for factor in (way.torque, way.speed, way.load))
     cycle, parts = application.duty_cycle, dict[str, Any]()
@@ -258,7 +257,7 @@ def _scaled(value: float | None, factor: float) -> float | None:
 BY_CURVE = N_("not in closed form: the efficiency follows your curve")
 BY_INERTIA = N_("not in closed form: the motor’s own inertia follows the motion")
 UNTOLD = N_("What would make it fit is {reason}.")
-"""Why something is not told."""
+"""Reasons for which a factor is not given."""
 
 _DRIVERS = {
     "torque": (N_("torques drop to {value}"), N_("torques to {value}")),
@@ -267,11 +266,11 @@ _DRIVERS = {
 }
 _STOP_TORQUE = (N_("T_k drops to {value}"), N_("T_k to {value}"))
 _STOP_COUNT = (N_("N_k drops to {value}"), N_("N_k to {value}"))
-"""What drops to which value, as the first clause of a sentence and as a later one."""
+"""Texts on what drops to a value, as the first clause of a sentence and as a later one."""
 
 
 def remedy_of(candidate: Candidate, reserve_utilisation: float = 1.0) -> Sentence | None:
-    """What makes a rejected gear fit, all alternatives in one sentence, or why no closed form tells it.
+    """Sentence on all alternatives that make a rejected gear fit, or on why no closed form gives one.
 
     None for a gear that is not rejected, and where not every check can be judged.
     """
@@ -334,9 +333,9 @@ DRIVER_NAMES = {
 
 @dataclass(frozen=True, slots=True)
 class Growth:
-    """How far one driver may grow until one check is at its limit, the rest unchanged.
+    """Factor on one driver with which one check is at its limit, the rest unchanged.
 
-    The factor is None without a limit, and where no closed form gives it: `untold` then says why.
+    It is None without a limit, and where no closed form gives it: `untold` then says why.
     """
 
     driver: str
@@ -357,11 +356,11 @@ class Growth:
 
 
 def growths_of(candidate: Candidate, reserve_utilisation: float = 1.0) -> dict[str, tuple[Growth, ...]]:
-    """For each check of a candidate, how far every driver of it may grow until that very check is at its limit.
+    """Growth of every driver by check of a candidate, until that check is at its limit.
 
-    Below 1 where the check fails. Empty for a check that no driver moves and for one that is not rated. Not told for
-    motor torques that go by an efficiency curve or by the motor's own inertia, which no closed form follows; empty for
-    motor torques of a gear that is not judged, whose reserve can't tell either.
+    Below 1 where the check fails. Empty for a check that no driver moves and for one that is not rated. Without a
+    factor for motor torques that follow an efficiency curve or the motor's own inertia, which have no closed form;
+    empty for motor torques of a gear that is not judged, whose reserve is unknown too.
     """
     untold = _untold(candidate)
     return {

@@ -1,4 +1,4 @@
-"""How far each driver of an application may grow, or must shrink, until a check that it moves meets its limit.
+"""Factors by which each driver of an application may grow, or must shrink, until a check that it moves is at its limit.
 
 In closed form, because every utilisation is a power of each driver: `moves` of a check gives the powers. The other
 inputs stay as they are. A factor below 1 is what a rejected gear needs; all factors below 1 together are the remedy.

@@ -49,7 +49,7 @@ class CheckResult(msgspec.Struct, frozen=True):
 
 
 class Reserve(msgspec.Struct, frozen=True):
-    """How far each driver may grow (above 1) or must shrink (below 1) on one candidate, the others as given."""
+    """Factors by which each driver may grow (above 1) or must shrink (below 1) on a candidate, the others as given."""
 
     torque_factor: float | None = None
     speed_factor: float | None = None
@@ -91,13 +91,13 @@ class Candidate(msgspec.Struct, frozen=True):
 
     @property
     def is_judged(self) -> bool:
-        """Whether every check could be judged. One that is unsuitable needs not be rated for that."""
+        """True where every check could be judged; an unsuitable candidate may still have one that could not."""
         return all(check.status != "not_rated" for check in self.checks)
 
     def is_unlimited(self, figure: str) -> bool:
-        """Whether a figure is empty because nothing limits it, and not because nobody asked or a rating lacks.
+        """True where a figure is empty because nothing limits it, not for want of an input or of a rating.
 
-        Its own status doesn't tell: a gear that fails a check is unsuitable, whether it is rated or not.
+        The candidate's status does not say: a gear that fails a check is unsuitable, rated or not.
         """
         asked, rated = _UNLIMITED_BY[figure]
         rating = self.check(rated)
@@ -110,8 +110,8 @@ _UNLIMITED_BY = {
     "momentary_peak_count": ("momentary_peak_torque", "repeated_peak_torque"),
     "bearing_life_L50_h": ("output_bearing_life", "output_bearing_life"),
 }
-"""Figures that may be without limit: the check that stands there where they are asked for, and the one that says
-whether the gear has the rating that they come from."""
+"""Figures that may be unlimited: the check that is present where they are asked for, and the check that is rated where
+the gear has the figure behind them."""
 
 
 class PhaseFigures(msgspec.Struct, frozen=True, omit_defaults=True):
@@ -128,7 +128,7 @@ class PhaseFigures(msgspec.Struct, frozen=True, omit_defaults=True):
 
 
 class DutyFigures(msgspec.Struct, frozen=True, omit_defaults=True):
-    """What the duty cycle comes to; phases and inertia where it is a motion."""
+    """Figures of the duty cycle; with phases and inertia for a motion."""
 
     average_torque_Nm: float
     average_output_speed_rpm: float
@@ -141,7 +141,7 @@ class DutyFigures(msgspec.Struct, frozen=True, omit_defaults=True):
 
 
 class CheckDefinition(msgspec.Struct, frozen=True):
-    """What is the same of a check for every candidate; `Check` says what its fields mean."""
+    """Properties of a check that are the same for every candidate; `Check` explains the fields."""
 
     title: Annotated[str, Meta(description="Name of the check.")]
     equation: Annotated[str | None, Meta(description="Number of the handbook’s equation, where it has one.")]
@@ -184,7 +184,7 @@ class Selection(msgspec.Struct, frozen=True):
 
     @property
     def turns_motor(self) -> bool:
-        """Whether the motor's own inertia counts in its torques, which a notice says."""
+        """True where the motor's own inertia counts in its torques, as a notice says."""
         return any(notice.code == "motor_inertia_included" for notice in self.notices)
 
     def candidate(self, designation: str) -> Candidate | None:
@@ -217,7 +217,7 @@ class Judged:
     index: int = 0
 
     def outcome(self) -> Outcome:
-        """The answer in brief."""
+        """Answer in brief."""
         evaluation, index = self.evaluation, self.index
         suitable = int((evaluation.verdict[index] == SUITABLE).sum())
         if not suitable:
@@ -254,7 +254,7 @@ def select(application: Application, catalogue: Catalogue, link: str = "") -> Se
 
 
 def judge(application: Application, catalogue: Catalogue) -> Judged:
-    """The same, before it is put together; raises as `select` does."""
+    """Evaluation of an application before the reply is put together; raises as `select` does."""
     gears, equipped = gears_for(application, catalogue), with_listed_motor(application, catalogue)
     return Judged(application, evaluate(Duty.of([equipped]), gears, catalogue))
 
@@ -357,11 +357,11 @@ REASONS = {
     "no_stop_allowed": N_("T_k is too high: no emergency stop is permitted (eq. 17.9)."),
     "unrated": N_("Not rated: figures of {name} that the checks need are not in this catalogue’s source."),
 }
-"""Why a candidate stands where it does: templates of sentences."""
+"""Templates of the sentence on a candidate's rank."""
 
 
 def reason_of(candidate: Candidate, utilisation: float) -> Sentence:
-    """Why a candidate stands where it does, for any language; `utilisation` is the user's u."""
+    """Sentence on a candidate's rank, for any language; `utilisation` is the user's u."""
     used, code, failed = candidate.utilisation, candidate.governing_check, len(candidate.failing)
     if used is None or code is None:
         key = "unrated" if candidate.status == "unrated" else "no_stop_allowed"
@@ -372,7 +372,7 @@ def reason_of(candidate: Candidate, utilisation: float) -> Sentence:
 
 
 def _reason(size: str, status: Status, used: float | None, code: str | None, failed: int, u: float) -> str:
-    """The same as the API gives it: in English, its number with every digit that is told."""
+    """The same sentence in English, as the API gives it, its number with every digit."""
     if used is None or code is None:
         return REASONS["unrated" if status == "unrated" else "no_stop_allowed"].format(name=f"HPN-{size}")
     percent = f"{_told_percent(used, code, u)!r} %"
@@ -384,6 +384,6 @@ def _key(status: Status, failed: int) -> str:
 
 
 def _told_percent(used: float, code: str, u: float) -> float:
-    """Utilisation in percent, with as many decimals as tell it from what is allowed."""
+    """Utilisation in percent, with enough decimals to tell it from the allowed one."""
     percent = 100 * used
     return round(percent, telling_decimals(percent, 100 * allowed(code, u), 1))

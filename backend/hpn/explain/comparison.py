@@ -1,4 +1,4 @@
-"""Candidates side by side: row by row what they are and do, which is best at it, and which none other outdoes."""
+"""Candidates side by side: their figures row by row, the best in each row, and those that no other outdoes."""
 
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -165,7 +165,7 @@ def _row(
     lowest: bool | None = None,
     kind: Kind = "figure",
 ) -> Row:
-    """Row of what `read` finds in every column; without `lowest` no column is better than another."""
+    """Row of the values that `read` gives for every column; without `lowest` no column is better than another."""
     values = tuple(map(read, columns))
     numbers = np.array([value if isinstance(value, float | int) else np.nan for value in values])
     known = ~np.isnan(numbers)

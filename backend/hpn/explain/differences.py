@@ -1,4 +1,4 @@
-"""What two replies to the same application say differently, field by field, verdicts first."""
+"""Differences between two replies to the same application, field by field, verdicts first."""
 
 import math
 from collections import Counter
@@ -13,18 +13,18 @@ from hpn.catalogue import Catalogue
 from hpn.engine.selection import Selection
 
 NAMED_BY = {"candidates": "designation", "checks": "code", "notices": "code"}
-"""Lists whose items are matched by a field of theirs: their order follows from what the items say."""
+"""Lists whose items are matched by a field of theirs: their order follows from their content."""
 
 BRIEFLY = {"candidates": "status", "checks": "status", "notices": "text", "check_definitions": "title"}
-"""The one field that stands for an item which only one reply has."""
+"""Field that represents an item which only one reply has."""
 
 VERDICTS = ("selected", "status", "governing_check", "rank")
 TEXTS = ("reason", "link", "notices", "check_definitions")
 NOT_COMPARED = ("engine_version", "catalogue_version", "values")
-"""The versions themselves, and the values of a notice, which its text shows."""
+"""Fields without a difference of their own: versions, and the values of a notice, which its text shows."""
 
 TOLERANCE = 1e-12
-"""Relative, in a list to its largest value; the same calculation on another processor may differ by less."""
+"""Relative tolerance, in a list to its largest value: other processors differ by less."""
 
 Name = tuple[str, ...]
 Change = Literal["changed", "added", "removed"]
@@ -69,7 +69,7 @@ class _Fields:
     items: set[Name] = field(default_factory=set)
 
     def add(self, value: Any, name: Name = (), pointer: str = "") -> None:
-        """Take in a value with all that is in it."""
+        """Add a value with everything inside it."""
         for key, part, item in _parts(value, name[-1] if name else ""):
             inner = (*name, key)
             if name and name[-1] in BRIEFLY:
@@ -203,7 +203,7 @@ def figure_differences(
 
 
 def _pairs(before: dict[str, Any], after: dict[str, Any]) -> list[tuple[str, Any, Any]]:
-    """Name and both values of what differs."""
+    """Names and both values of the entries that differ."""
     names = before | after if before and after else ["designation"]
     return [(name, before.get(name), after.get(name)) for name in names if before.get(name) != after.get(name)]
 

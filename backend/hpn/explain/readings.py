@@ -23,7 +23,7 @@ from hpn.words.quantities import CANDIDATE
 from hpn.words.wording import N_
 
 OTHERWISE = {"≤": ">", "≥": "<"}
-"""How a demand stands to its limit where it does not stand as it has to."""
+"""Sign between demand and limit of a failing check, by the sign of one that passes."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,12 +46,12 @@ class Reading:
 
     @property
     def has_unlimited_demand(self) -> bool:
-        """Whether the demand is above every number, such as the life without a torque."""
+        """True for a demand above every number, such as the life without a torque."""
         return self.is_unlimited and self.kind == "minimum"
 
     @property
     def has_unlimited_limit(self) -> bool:
-        """Whether the limit is above every number, such as that of stops below the repeated peak torque."""
+        """True for a limit above every number, such as that of stops below the repeated peak torque."""
         return self.is_unlimited and self.kind != "minimum"
 
     @property
@@ -63,11 +63,11 @@ class Reading:
 
     @property
     def sign(self) -> str:
-        """How the demand has to stand to the limit."""
+        """Sign between demand and limit that the check requires."""
         return "≥" if self.kind == "minimum" else "≤"
 
     def found(self, failed: bool) -> str:
-        """How the demand stands to the limit."""
+        """Sign between demand and limit as they are."""
         return OTHERWISE[self.sign] if failed else self.sign
 
 
@@ -83,7 +83,7 @@ class Life:
 def shortest_life(candidate: Candidate, application: Application | None) -> Life | None:
     """Life of a gear or of its output bearing, whichever has the shorter L10; None where none is known.
 
-    That of the bearing is on the basis on which it is judged.
+    The bearing's life is on the basis on which it is judged.
     """
     lives: list[tuple[float, Life]] = []
     if candidate.life_L10_h is not None or candidate.is_unlimited("life_L10_h"):
@@ -113,7 +113,7 @@ def figure_symbol(name: str, *, turns_motor: bool) -> str:
 
 
 def relation_of(code: str, *, turns_motor: bool) -> str:
-    """What a check compares, in symbols; blank for one that this version does not know."""
+    """Comparison of a check in symbols; blank for a check that this version does not know."""
     if turns_motor and code in _RELATIONS:
         return _RELATIONS[code]
     return BY_CODE[code].relation if code in BY_CODE else ""

@@ -18,7 +18,7 @@ from hpn.application import LEAST_MOTION, LISTED_FIGURES, MOST_WISHES, NUMBERS, 
 from hpn.application.phase import ROOM
 from hpn.catalogue import Catalogue, GearList, ListedMotor
 from hpn.engine.allowed import gears_allowed
-from hpn.engine.chunks import chunks_of
+from hpn.engine.batch import chunks_of
 from hpn.engine.duty import Asked, Duty, Phases, TextArray
 from hpn.fleet.columns import AXIS, COLUMNS, Column
 from hpn.physics.equations import FloatArray

@@ -15,16 +15,16 @@ from numpy.typing import ArrayLike, NDArray
 FloatArray = NDArray[np.float64]
 
 ROUNDING = 1e-12
-"""Relative room for floating point, so that a limit met exactly passes (see the contract of checks)."""
+"""Relative tolerance for floating point: a limit that is met exactly passes."""
 
 TORSION_REFERENCE = 0.15
-"""Share of the rated torque from which on the torsional stiffness K3 holds (glossary)."""
+"""Share of the rated torque above which the torsional stiffness K3 holds (glossary)."""
 
 P = ParamSpec("P")
 
 
 def equation(function: Callable[P, FloatArray]) -> Callable[P, FloatArray]:
-    """Give float64 arrays, 0-d for scalars in, without warnings: NaN and infinity are answers here."""
+    """Return float64 arrays, 0-d for scalars, without warnings: NaN and infinity are answers here."""
 
     @wraps(function)
     def computed(*arguments: P.args, **named: P.kwargs) -> FloatArray:
@@ -42,8 +42,8 @@ def over_phases(*series: ArrayLike) -> tuple[FloatArray, ...]:
 def total(values: FloatArray) -> FloatArray:
     """Sum over the last axis, in the order of the phases.
 
-    Phases of no duration at the end, by which shorter cycles are padded, so change no bit of it: numpy's own sum adds
-    in an order that depends on the length.
+    Shorter cycles are padded with phases of no duration, which so change no bit of it: numpy's own sum adds in an
+    order that depends on the length.
     """
     result: FloatArray = np.add.accumulate(values, axis=-1)[..., -1]
     return result
@@ -52,7 +52,7 @@ def total(values: FloatArray) -> FloatArray:
 def tied(values: FloatArray) -> FloatArray:
     """Places of values in their ascending order along the last axis; neighbours closer than ROUNDING share one.
 
-    What ties in real numbers ties on every processor, whatever its last bits. NaN shares the last place.
+    Values that tie in real numbers tie on every processor, whatever its last bits. NaN has the last place.
     """
     order = values.argsort(axis=-1)
     ascending = np.take_along_axis(values, order, -1)
@@ -183,8 +183,8 @@ def torsion(
 ) -> FloatArray:
     """Torsion of the output (T_max - 0.15 T_N) / K3 in arcmin, from 15 % of the rated torque up to T_max (glossary).
 
-    K3 holds above that reference torque alone, so up to it there is nothing to work out: 0. NaN where a figure is not
-    published. Backlash comes on top and is no part of it.
+    K3 holds above that reference torque only, so the torsion is 0 up to it. NaN where a figure is not published.
+    Backlash is not included.
     """
     above = np.maximum(np.asarray(maximum_torque_Nm) - TORSION_REFERENCE * np.asarray(rated_torque_Nm), 0.0)
     return np.degrees(above / torsional_stiffness_Nm_per_rad) * 60

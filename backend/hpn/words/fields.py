@@ -1,4 +1,4 @@
-"""What the fields of an input model may hold: kinds of numbers with their bounds, and the closed, frozen model.
+"""Kinds of numbers with their bounds for the fields of input models, and the closed, frozen model.
 
 Every field name ends in its unit. The bounds keep every power in chapter 4 far inside the range of a floating-point
 number.
@@ -19,7 +19,7 @@ LEAST = 1e-12
 
 
 def _above_zero(value: float) -> float:
-    """Refuse what is not above 0, and what is but so small that a quotient by it could overflow."""
+    """Refuse a number that is not above 0, or so small that a quotient by it could overflow."""
     if value <= 0:
         raise PydanticKnownError("greater_than", {"gt": 0})
     if value < LEAST:
@@ -28,7 +28,7 @@ def _above_zero(value: float) -> float:
 
 
 def at_most(most: int) -> BeforeValidator:
-    """Refuse a longer list before its items are looked at: each wrong one would leave its errors behind."""
+    """Refuse a longer list before its items are validated, which would collect an error for each."""
 
     def check(value: object) -> object:
         if isinstance(value, list | tuple) and len(value) > most:
@@ -43,9 +43,9 @@ PART = 500
 
 
 def in_parts(value: Any, validate: Callable[[Any], tuple[Any, ...]]) -> tuple[Any, ...]:
-    """Validate a long list part by part: other threads get their turn in between, and only one part has errors.
+    """Validate a long list part by part: other threads run in between, and only one part has errors.
 
-    What is validated stays in front, so that an error is told at its place in the whole.
+    Validated items stay in front, so that an error has its place in the whole list.
     """
     if not isinstance(value, list | tuple) or len(value) <= PART:
         return validate(value)
@@ -61,7 +61,7 @@ def _whole(value: object) -> object:
 
 
 WHOLE = BeforeValidator(_whole)
-"""Stands behind the bounds of an integer, which JSON Schema then tells."""
+"""Validator behind the bounds of an integer, so that JSON Schema has these."""
 
 Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
 Torque = Annotated[Number, Field(ge=-1e6, le=1e6)]

@@ -1,4 +1,4 @@
-"""Every public quantity: what it is called, the handbook's symbol for it, and what it is in one sentence.
+"""Every public quantity: its name, the handbook's symbol for it, and one sentence on it.
 
 A quantity is named by the place where it stands: an input by its path in the application, a figure by `duty`,
 `candidate`, `check`, `reserve` or `gear` before its field. Its unit is the suffix of the field. Page, report, workbook,
@@ -40,7 +40,7 @@ CheckCode = Literal[
 class Named:
     """Name of a quantity (an English msgid), its symbol, a sentence on it, and the handbook's equation that gives it.
 
-    `caveat` (a msgid too) is what its reader must know wherever it stands.
+    `caveat` (a msgid too) is a warning that belongs beside it everywhere.
 
     An index stands behind an underscore: `T_av`. Of an input the sentence stands in the application model.
     """
@@ -151,7 +151,7 @@ BODY: Mapping[str, Named] = {
     "height_mm": Named(N_("Height")),
     "distance_mm": Named(N_("Off the axis")),
 }
-"""Inputs of a body whose moment of inertia is worked out; none is part of an application."""
+"""Inputs of a body whose moment of inertia is calculated; none is part of an application."""
 
 BEARING_MODELS: Mapping[str, str] = {
     "linear": N_("straight line (safe)"),
@@ -168,7 +168,7 @@ ENVELOPE_BASIS: Mapping[str, str] = {
     ),
     "digitised": N_("Basis: curve points that you supplied; printed curve not available."),
 }
-"""Where the envelope of a model comes from."""
+"""Basis of the envelope by model."""
 
 LIFE_BASES: Mapping[str, str] = {"L50": N_("L50 (50 % survive)"), "L10": N_("L10 (90 % survive)")}
 """Bases of a bearing life."""

@@ -1,4 +1,4 @@
-"""Handbook symbols in a text, taken apart for whoever sets them: `T_av` is T with the index av."""
+"""Handbook symbols in a text, parsed for typesetting: `T_av` is T with the index av."""
 
 import re
 

@@ -1,4 +1,4 @@
-"""Units: what `_Nm` at the end of a field's name means, what a reader may see in place of it, and what people type.
+"""Units: the suffix of a field's name such as `_Nm`, the units for display, and the units that people type.
 
 Units are converted exactly, by pint.
 """
@@ -67,7 +67,7 @@ CHOICES = {
     "angle": {"arcmin": "arcmin", "mrad": "mrad"},
     "temperature": {"degC": "°C", "degF": "°F"},
 }
-"""What is measured -> codes of the units that it may be shown in, with their symbols; the first is the wire's."""
+"""Kind of quantity -> codes of its units for display, with their symbols; the first is the wire's."""
 
 NAMES = {
     "torque": N_("Torque"),
@@ -80,7 +80,7 @@ NAMES = {
 }
 
 PRESETS = {"SI": (), "US": ("lb_in", "lbf", "lb", "in", "degF")}
-"""Settings of all units at once."""
+"""Presets of all units."""
 
 CODES = tuple(code for units in CHOICES.values() for code in list(units)[1:])
 """Codes of the units that differ from the wire's, in the order in which a cookie gives them."""
@@ -152,7 +152,7 @@ FURTHER = {
         **{"lb_in2": "lb·in²", "lb_ft2": "lb·ft²", "oz_in2": "oz·in²", "lb_in_s2": "lb·in·s²", "oz_in_s2": "oz·in·s²"},
     },
 }
-"""Units that are read, beside those that are shown: what is measured -> codes with their symbols."""
+"""Further units that are only read: kind of quantity -> codes with their symbols."""
 
 _SUFFIXES = {symbol: suffix for suffix, symbol in SYMBOLS.items()}
 _OF_CODE = {code: next(iter(units)) for units in CHOICES.values() for code in units}
@@ -170,7 +170,7 @@ class Measure:
 
     @property
     def same(self) -> bool:
-        """Whether it is the wire's own."""
+        """True for the wire's own unit."""
         return self.factor == 1 and self.offset == 0
 
     def shown(self, value: float) -> float:
@@ -178,7 +178,7 @@ class Measure:
         return value if self.same else value * float(self.factor) + float(self.offset)
 
     def wire(self, text: str) -> float:
-        """A number as somebody writes it in this unit, in the wire's.
+        """Number typed in this unit, converted to the wire's.
 
         Twelve digits are kept, or all of them where more than thirteen are given, so that every float can be written.
         """
@@ -261,7 +261,7 @@ def codes_of(text: str) -> tuple[str, ...]:
 # --- Units that people type -------------------------------------------------------------------------------------------
 
 READ = {name: {**CHOICES.get(name, {}), **FURTHER.get(name, {})} for name in (*CHOICES, "time", "inertia")}
-"""What is measured -> codes of the units that it may be given in, with their symbols."""
+"""Kind of quantity -> codes of the units in which it may be given, with their symbols."""
 
 _SPELLED = {
     "rpm": "rpm r.p.m. 1/min /min U/min Umdr/min r/min rev/min revs/min Upm tr/min giri/min varv/min omw/min ot/min "
@@ -328,7 +328,7 @@ FREQUENCY = "Hz"
 """May count turns, or be the electrical frequency of a motor: so many times the turns as it has pairs of poles."""
 
 _SIGNS = " .·⋅∙•‧・*×"
-"""What stands for a product, beside a hyphen."""
+"""Signs of a product, besides a hyphen."""
 
 _PRODUCT = re.compile(rf"(?<=[A-Za-z])[{_SIGNS}_-]+(?=[A-Za-z])")
 _AS_TYPED = str.maketrans({**dict.fromkeys("\N{MINUS SIGN}\N{EN DASH}\N{HYPHEN}", "-"), "μ": "µ"})
@@ -375,7 +375,7 @@ _FOLDED = {
     and spelling != "d"
 }
 QUANTITY_OF = {code: name for name, codes in READ.items() for code in codes}
-"""Code of a unit -> what it measures."""
+"""Code of a unit -> kind of quantity."""
 
 
 def codes_for(text: str, quantity: str = "") -> tuple[str, ...]:
@@ -388,7 +388,7 @@ def codes_for(text: str, quantity: str = "") -> tuple[str, ...]:
 
 
 def quantity_of(suffix: str) -> str:
-    """What a unit of the wire measures, or blank for a pure number."""
+    """Kind of quantity of a unit of the wire; blank for a pure number."""
     whole = suffix.removesuffix("_per_rad")
     return QUANTITY_OF.get(whole, "")
 

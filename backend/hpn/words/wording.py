@@ -15,7 +15,7 @@ Rounding = Literal["nearest", "down", "up"]
 class Quantity:
     """A number with the suffix of its unit, rounded for reading where it is shown; a blank unit is a pure number.
 
-    A bound that somebody will follow is rounded towards the safe side, in whatever unit it is shown.
+    A bound is rounded to the safe side, in whatever unit it is shown.
     """
 
     value: float
@@ -36,7 +36,7 @@ def rounded(value: float, digits: int, rounding: Rounding = "nearest") -> str:
     text = f"{value:.{digits}g}"
     if rounding == "nearest" or not math.isfinite(value):
         return text
-    # What is off by an error of floating point alone is exact: 107 stays 107, up and down.
+    # A number that is off by an error of floating point only is exact: 107 stays 107, up and down.
     beyond = float(text) > value * (1 + 1e-14) if rounding == "down" else float(text) < value * (1 - 1e-14)
     if not beyond:
         return text

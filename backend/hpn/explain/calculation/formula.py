@@ -28,13 +28,13 @@ class Variable:
         return cls(letter, index)
 
     def of_phase(self, index: str) -> "Variable":
-        """The same of one phase."""
+        """Letter of one phase."""
         return Variable(self.letter, ",".join(filter(None, (self.index, index))))
 
 
 @dataclass(frozen=True, slots=True)
 class Term:
-    """A symbol and the value that stands for it; `unit` is a suffix such as `Nm`, blank for a pure number."""
+    """A symbol and its value; `unit` is a suffix such as `Nm`, blank for a pure number."""
 
     symbol: Variable
     value: float
@@ -83,7 +83,7 @@ class Series:
 
     @property
     def abbreviated(self) -> bool:
-        """Whether terms in the middle are left out."""
+        """True where terms in the middle are left out."""
         return self.count > len(self.terms)
 
 
@@ -129,7 +129,7 @@ class Root:
 
 @dataclass(frozen=True, slots=True)
 class Magnitude:
-    """Bars around what may be signed; the number in them is shown without its sign."""
+    """Magnitude, in bars; the number in them is shown without its sign."""
 
     body: "Formula"
 
@@ -147,7 +147,7 @@ TEN_THIRDS = Quotient(Constant(10), Constant(3), flat=True)
 
 
 def value_of(formula: Formula, instead: Mapping[Variable, float] | None = None) -> float:
-    """Value of a formula; raises what arithmetic raises, such as ZeroDivisionError.
+    """Value of a formula; raises the errors of arithmetic, such as ZeroDivisionError.
 
     `instead` gives some symbols another value, but for those in a series.
     """
@@ -206,7 +206,7 @@ def over_phases(make: Callable[..., Formula], *quantities: PhaseValues) -> Serie
 
 
 def leaves_out(formula: Formula) -> bool:
-    """Whether a series in a formula is abbreviated."""
+    """True where a series in a formula is abbreviated."""
     match formula:
         case Term() | Constant():
             return False

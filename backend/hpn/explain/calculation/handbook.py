@@ -1,4 +1,4 @@
-"""Equations 17.2 to 17.10 with the numbers of one gear, and what rounding in between would make of them."""
+"""Equations 17.2 to 17.10 with the numbers of one gear, and the effect of rounding in between."""
 
 import math
 from collections.abc import Iterable
@@ -29,7 +29,7 @@ VARYING = N_(
 PEAKS = N_("Where torque and speed vary in a phase, its peak counts here.")
 
 LARGEST_WORTH_ROUNDING = 1e6
-"""Beyond it nobody rounds to whole numbers by hand."""
+"""Largest number that is rounded to a whole number by hand."""
 
 
 def handbook_steps(sheet: Sheet) -> Iterable[Step]:
@@ -196,13 +196,13 @@ def _hand_life(sheet: Sheet, line: Line) -> tuple[Sentence, ...]:
 
 
 def _is_printed(sheet: Sheet) -> bool:
-    """Whether the handbook works this very example out."""
+    """True for the worked example of the handbook."""
     example = type(sheet.application).worked_example()
     return sheet.application.duty_cycle == example.duty_cycle and sheet.gear.designation == "HPN-20A-5"
 
 
 def _hand(value: float) -> float | None:
-    """A figure as somebody would round it by hand, as the worked example does: whole, or two digits where small."""
+    """Figure rounded as the worked example does by hand: whole, or two digits where small."""
     if not 0.01 <= value < LARGEST_WORTH_ROUNDING:
         return None
     return float(round(value)) if value >= 10 else float(f"{value:.2g}")

@@ -24,11 +24,11 @@ from hpn.words.reader import Reader
 from hpn.words.wording import Quantity
 
 DIGITS = 9
-"""Significant digits of a substituted number: enough to work out the next line by hand."""
+"""Significant digits of a substituted number: enough to calculate the next line by hand."""
 
 
 def number(reader: Reader, value: float, unit: str) -> str:
-    """A value as its reader sees it, without its unit."""
+    """Value as the reader sees it, without its unit."""
     return reader.number(Quantity(value, unit, DIGITS))
 
 
@@ -37,7 +37,7 @@ Part = tuple[Formula | Variable, bool] | str
 
 
 def mathml(reader: Reader, *parts: Part) -> str:
-    """An equation as a `math` element, with the same as a line of text for whoever can't see it."""
+    """An equation as a `math` element, and as a line of text for screen readers."""
     written = "".join(_operator(p) if isinstance(p, str) else _Writer(reader, p[1]).write(p[0]) for p in parts)
     text = " ".join(p if isinstance(p, str) else _Liner(reader, p[1]).write(p[0]) for p in parts)
     return f'<math display="block" alttext="{escape(text)}"><mrow>{written}</mrow></math>'
@@ -54,7 +54,7 @@ def with_numbers(reader: Reader, line: Line) -> str:
 
 
 def result(reader: Reader, line: Line) -> str:
-    """What the equation gives; a count is rounded down."""
+    """Result of the equation; a count is rounded down."""
     given = (Constant(line.result.value, line.result.unit), True)
     if line.rounded_down:
         return mathml(reader, "=", (Constant(value_of(line.formula)), True), "→", given)
@@ -62,7 +62,7 @@ def result(reader: Reader, line: Line) -> str:
 
 
 def compared(reader: Reader, comparison: Comparison) -> str:
-    """What is tested against its limit, which the user's own reserve may lower."""
+    """Comparison of demand and limit, which the user's own reserve may lower."""
     tested, u = comparison.tested, comparison.allowed
     parts: list[Part] = [(tested, False), "="]
     if not isinstance(tested, Term):
@@ -116,7 +116,7 @@ class _Writer:
                 return self.shaped(formula)
 
     def shaped(self, formula: Quotient | Power | Root) -> str:
-        """What does not stand in a row."""
+        """Formula that is not a row of operands, such as a fraction."""
         match formula:
             case Quotient(above, below, flat=True):
                 return self.row("/", (self.write(above), self.write(below)))
@@ -154,7 +154,7 @@ class _Writer:
         return f"<mrow><mi>{name}</mi><mo>(</mo>{_operator(';').join(arguments)}<mo>)</mo></mrow>"
 
     def terms(self, series: Series) -> list[str]:
-        """Terms of a series: in symbols the general ones, in numbers those that are kept."""
+        """Terms of a series: the general ones in symbols, the kept ones in numbers."""
         terms = [self.write(term) for term in (series.terms if self.numbers else series.pattern)]
         return [*terms[:-1], self.dots, terms[-1]] if series.abbreviated or not self.numbers else terms
 

@@ -36,7 +36,7 @@ BY_CURVE = N_("η of every phase from the efficiency curve that you supplied; be
 
 
 def motor_steps(sheet: Sheet) -> Iterable[Step]:
-    """Peak and RMS torque, loss-free where no efficiency is known; the inertia ratio where it is asked for."""
+    """Steps of peak and RMS torque, loss-free where no efficiency is known, and of the inertia ratio if asked for."""
     yield from _torques(sheet)
     yield from _inertia_ratio(sheet)
 
@@ -79,7 +79,7 @@ def _along_the_motion(sheet: Sheet, course: Course, inertia: Term) -> Iterable[S
 def _at_its_instant(
     sheet: Sheet, course: Course, inertia: Term, efficiency: FloatArray
 ) -> tuple[Formula, tuple[Sentence, ...]]:
-    """The largest torque as what the load takes and what the motor's inertia takes, and what is to be known of both."""
+    """Largest torque as the parts of the load and of the motor's inertia, with notes on both."""
     i = sheet.i.value
     instant = peak_instant(course, ratio=i, efficiency=efficiency, motor_inertia_kgm2=inertia.value)
     eta = Term(EFFICIENCY, efficiency.item(instant.phase))
@@ -113,7 +113,7 @@ def _efficiencies(sheet: Sheet, torque_Nm: FloatArray) -> FloatArray:
 
 
 def _on_efficiency(sheet: Sheet) -> tuple[Sentence]:
-    """Where the efficiency is from."""
+    """Source of the efficiency."""
     if sheet.given("requirements.efficiency") is not None:
         return (Sentence(STATED),)
     return (Sentence(BY_CURVE if sheet.gear.designation in sheet.catalogue.efficiency else LOSS_FREE),)

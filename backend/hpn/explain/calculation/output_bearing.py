@@ -48,7 +48,7 @@ def bearing_steps(sheet: Sheet) -> Iterable[Step]:
 
 
 def _largest(sheet: Sheet, load: OutputLoad, loads: PhaseValues, f_w: Term) -> Step:
-    """Equivalent load of each different load, and the largest one against the published maxima."""
+    """Step of the equivalent load of each different load, the largest one compared with the published maxima."""
     first: dict[tuple[float, float], int] = {}
     for place, pair in enumerate(zip(sheet.radial.values.tolist(), sheet.axial.values.tolist(), strict=True)):
         first.setdefault(pair, place)
@@ -81,7 +81,7 @@ def _equivalent_load(sheet: Sheet, model: str, place: int, P: Term) -> Line:
 
 
 def _mean(sheet: Sheet, load: OutputLoad, loads: PhaseValues, mean: Term, k: Term, f_w: Term) -> Step:
-    """Equivalent load of the cycle, and the load k that the required life allows."""
+    """Step of the cycle's equivalent load and of the load k that the required life allows."""
     speed, life = sheet.catalogue.bearing_reference
     damage = over_phases(lambda n, t, P: Product((n, t, Power(P, EXPONENT))), sheet.speed, sheet.time, loads)
     above = Product((Constant(speed, "rpm"), Constant(life, "h")))

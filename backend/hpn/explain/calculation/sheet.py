@@ -1,4 +1,4 @@
-"""What a calculation consists of, and the sheet of figures that its steps draw on."""
+"""Steps, equations and checks of a calculation, and the sheet of figures that they use."""
 
 import math
 from collections.abc import Mapping
@@ -34,21 +34,21 @@ from hpn.words.wording import Sentence
 
 @dataclass(frozen=True, slots=True)
 class Line:
-    """One equation: what it gives, and the formula; `rounded_down` where the result is a whole number."""
+    """One equation: its result and its formula; `rounded_down` where the result is a whole number."""
 
     result: Term
     formula: Formula
     rounded_down: bool = False
 
     def by_hand(self, rounded: Mapping[Variable, float]) -> float:
-        """What it would give with rounded values for some of its symbols."""
+        """Result with rounded values for some of its symbols."""
         value = value_of(self.formula, rounded)
         return float(math.floor(value * (1 + ROUNDING))) if self.rounded_down else value
 
 
 @dataclass(frozen=True, slots=True)
 class Comparison:
-    """A check: the tested formula and its value, the limit by its names, and where that comes from.
+    """A check: the tested formula and its value, the limit by its names, and the source of that.
 
     `source` is blank where the limit is the user's own; `allowed` is their u.
     """
@@ -85,7 +85,7 @@ class Step:
 
     @property
     def abbreviated(self) -> bool:
-        """Whether some of the phases are not written out."""
+        """True where some of the phases are not written out."""
         return any(leaves_out(line.formula) for line in self.lines)
 
 
@@ -97,19 +97,19 @@ def step_of_check(
     *,
     trivial: bool = False,
 ) -> Step:
-    """The step that works out a check; it has the check's title and equation."""
+    """Step that calculates a check; it has the check's title and equation."""
     check = BY_CODE[code]
     return Step(code, check.title, check.equation, lines, comparisons, notes, trivial)
 
 
 def known(term: Term | None) -> Term:
-    """A term of what is always there."""
+    """Term of a value that is always present."""
     assert term is not None
     return term
 
 
 class Sheet:
-    """What the steps of one gear draw on: the candidate's figures, the gear's, the duty's and the phases."""
+    """Figures for the steps of one gear: the candidate's, the gear's, the duty's and the phases."""
 
     def __init__(self, candidate: Candidate, gear: Gear, application: Application, catalogue: Catalogue) -> None:
         self.candidate, self.gear, self.application, self.catalogue = candidate, gear, application, catalogue
@@ -140,7 +140,7 @@ class Sheet:
 
     @property
     def varies(self) -> bool:
-        """Whether torque or speed vary in some phase."""
+        """True where torque or speed vary in some phase."""
         return self.peak_torque is not self.torque or self.rms_torque is not self.torque or self._outruns
 
     @cached_property
@@ -148,7 +148,7 @@ class Sheet:
         return bool((self.duty.phases.peak_speed_rpm != self.duty.phases.speed_rpm).any())
 
     def _varying(self, name: str, steady: PhaseValues) -> PhaseValues:
-        """A figure of phases that vary; what it is of a steady phase where none does."""
+        """Figure of phases that vary; of a steady phase where none varies."""
         varying = self._of_phases(name)
         return varying if (varying.values != steady.values).any() else steady
 
@@ -156,7 +156,7 @@ class Sheet:
         return _term(DUTY[name], name, getattr(self.duty, name).item())
 
     def figure(self, name: str) -> Term | None:
-        """A figure of the candidate; None where it has none."""
+        """Figure of the candidate, or None."""
         value: float | None = getattr(self.candidate, name)
         return None if value is None else _term(CANDIDATE[name], name, value)
 
@@ -166,13 +166,13 @@ class Sheet:
         return None if value is None else _term(GEAR[name], name, value)
 
     def given(self, place: str) -> Term | None:
-        """A number that the application gives, by magnitude; None where it doesn't."""
+        """Magnitude of an input; None where it is not given."""
         value = abs(self.duty.asked[place].item())
         return None if math.isnan(value) else _term(INPUTS[place], place, value)
 
     @cached_property
     def gears(self) -> GearList:
-        """The gear alone, as what works out figures takes it."""
+        """List of this gear alone, as the engine takes it."""
         return GearList([self.gear], [self.catalogue.curves.get(self.gear.size)])
 
     @cached_property
@@ -207,7 +207,7 @@ class Sheet:
         )
 
     def _source(self, check: Check) -> str:
-        """Where the limit of a check is printed; blank where it is the user's own, as what is required at least is."""
+        """Place where the limit of a check is printed; blank for the user's own, such as a required minimum."""
         figure = None if check.kind == "minimum" else check.limited_by
         return self.gear.sources.get(figure, "") if figure else ""
 
@@ -217,6 +217,6 @@ def _term(named: Named, name: str, value: float) -> Term:
 
 
 def _limit_names(check: Check) -> tuple[Variable, ...]:
-    """Symbols of a check's limit, as its relation writes them: `T_av ≤ T_A = T_N`; none where it is a number."""
+    """Symbols of a check's limit in its relation, such as `T_av ≤ T_A = T_N`; none where it is a number."""
     names = check.relation.replace("≥", "≤").partition(" ≤ ")[2].split(" = ")
     return tuple(Variable.of(name) for name in names if not name.isdigit())

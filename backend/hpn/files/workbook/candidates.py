@@ -1,4 +1,4 @@
-"""The sheet of all candidates: their published figures as cells, everything calculated from them as formulas."""
+"""The sheet of all candidates: published figures as numbers, calculated ones as formulas."""
 
 import json
 from typing import Any
@@ -47,7 +47,7 @@ class CandidatesSheet:
         self.converted = {name: unit for name, unit in units.items() if not book.shown.measure(unit).same}
 
     def write(self) -> range:
-        """Write the sheet; the rows of the candidates."""
+        """Rows of the candidates, once the sheet is written."""
         rows = range(FIRST_ROW, FIRST_ROW + len(self.book.export.selection.candidates))
         self._heads()
         for row, candidate in zip(rows, self.book.export.selection.candidates, strict=True):
@@ -113,7 +113,7 @@ class CandidatesSheet:
             self.book.converted(self.sheet, row, column, source, unit, figures[name])
 
     def _cell(self, row: int, column: int, formula: str | None, value: float | str, style: str) -> None:
-        """A formula with its value, or the value alone as it was saved."""
+        """Write a formula with its value, or the saved value alone."""
         if formula is None:
             self.book.put(self.sheet, row, column, value, style)
         else:
@@ -139,5 +139,5 @@ class CandidatesSheet:
 
 
 def _while_unchanged(name: str, saved: float | str, otherwise: str = "") -> str | None:
-    """A value as saved for as long as the inputs behind it are, then `otherwise`; None where nothing was saved."""
+    """Formula that gives a saved value while the inputs behind it are unchanged, else `otherwise`; None if blank."""
     return None if saved == "" else f'=IF({as_saved(name)},{json.dumps(saved, ensure_ascii=False)},"{otherwise}")'

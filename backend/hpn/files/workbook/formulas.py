@@ -1,6 +1,6 @@
-"""The calculation as spreadsheet formulas, each written once for the chosen gear and for the list of all.
+"""The calculation as spreadsheet formulas, each written once for the chosen gear and for the list of candidates.
 
-Names such as `T_av` are defined names of the workbook, made of the symbols. `{T_N}` stands for a figure of one gear: a
+Names such as `T_av` are defined names of the workbook, made from the symbols. `{T_N}` is a figure of one gear: a
 defined name where the chosen gear is calculated, a cell of its row in the list of candidates. A blank figure is not
 published. Blocks of the cycle are summed by SUMPRODUCT, which every spreadsheet program evaluates without array
 formulas.
@@ -18,7 +18,7 @@ from hpn.words.units import suffix_of
 from hpn.words.wording import N_
 
 UNLIMITED, NOT_RATED, NONE = N_("unlimited"), N_("not rated"), "–"
-"""What stands where a number would: no limit, figure not published, failed without a number."""
+"""Texts in place of a number: no limit, figure not published, failed without a number."""
 
 _NAMES = {
     "η": "eta",
@@ -32,7 +32,7 @@ _NAMES = {
     "f_w·P_max": "P_max",
     "f_w·P_m": "P_m",
 }
-"""Symbols that are no defined name, or that differ from another in their capitals alone, which a workbook ignores."""
+"""Names of symbols that are not allowed as a defined name, or that differ from another in capitals only."""
 
 
 def cell_name(symbol: str) -> str:
@@ -48,7 +48,7 @@ MOTOR_TORQUES = ("T_mot_peak", "T_mot_rms")
 
 @dataclass(frozen=True, slots=True)
 class CellTerm:
-    """A calculated quantity: what it is, the suffix of its unit, how it is calculated, and its field of a candidate."""
+    """A calculated quantity: its name and symbol, the suffix of its unit, its formula, and its field of a candidate."""
 
     named: Named
     unit: str
@@ -62,7 +62,7 @@ class CellTerm:
 
     @property
     def by_efficiency(self) -> bool:
-        """Whether it is a torque at the motor, a lower bound without an efficiency."""
+        """True for a torque at the motor, which is a lower bound without an efficiency."""
         return self.name in MOTOR_TORQUES
 
 
@@ -81,7 +81,7 @@ _CYCLE_TIME = "(SUM(duration_s)+pause_s)"
 
 
 def _varying(name: str, steady: str) -> str:
-    """A figure of the phases that vary; where a cell is empty, that of a steady phase."""
+    """Formula of a figure of phases that vary; of a steady phase where a cell is empty."""
     return f'(ABS({steady})*({name}="")+{name})'
 
 
@@ -110,7 +110,7 @@ CYCLE_TERMS = (
         '(bearing_speed*bearing_life/(n_out_av*L_b*IF(life_basis="L10",5,1)))^(1/3)',
     ),
 )
-"""What the cycle comes to, whatever the gear."""
+"""Figures of the cycle, the same for every gear."""
 
 
 # --- The gear ---------------------------------------------------------------------------------------------------------
@@ -145,7 +145,7 @@ GEAR_TERMS = (
     _result("motor_peak_torque_Nm", 'T_max/({i}*IF(eta="",1,eta))'),
     _result("motor_rated_torque_Nm", 'T_rms/({i}*IF(eta="",1,eta))'),
 )
-"""What a gear comes to under the cycle."""
+"""Figures of a gear under the cycle."""
 
 
 # --- Checks -----------------------------------------------------------------------------------------------------------
@@ -153,7 +153,7 @@ GEAR_TERMS = (
 
 @dataclass(frozen=True, slots=True)
 class SheetCheck:
-    """A check as formulas: when it is asked for, its value, its limit, and the utilisation of published figures."""
+    """A check as formulas: condition under which it is asked for, demand, limit, utilisation of published figures."""
 
     asked: str
     demand: str

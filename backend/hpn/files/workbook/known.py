@@ -1,4 +1,4 @@
-"""What a selection says of one candidate, by the names of the workbook's formulas."""
+"""Saved values of one candidate, by the names of the workbook's formulas."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -26,21 +26,21 @@ _LIMITS = {
 
 _FIELDS = {cell_name(CANDIDATE[field].symbol): field for field in FIGURES}
 DEMANDS = {"P_max": "output_bearing_load", "P_m": "output_bearing_life"}
-"""Where the values of the terms stand: a figure of the candidate, or the demand of a check."""
+"""Checks whose demand is the value of a term; the other terms are figures of the candidate."""
 
 _MAY_BE_UNLIMITED = ("N_k_max", "L_10", "L_b50")
 
 
 @dataclass(frozen=True)
 class Known:
-    """One candidate; `words` are those that stand where a number would."""
+    """One candidate; `words` are the texts in place of a number."""
 
     export: Export
     candidate: Candidate
     words: Mapping[str, str]
 
     def ratings(self) -> dict[str, float | None]:
-        """Published figures: from the catalogue of the selection, else as far as its checks name them as limits."""
+        """Published figures, from the catalogue of the selection; without it those that are limits of its checks."""
         gear = self.export.gear(self.candidate)
         if gear:
             return {name: getattr(gear, field) for name, field in RATINGS.items()}
@@ -49,7 +49,7 @@ class Known:
         return {name: known.get(name) for name in RATINGS}
 
     def fixed(self) -> set[str]:
-        """Terms that no formula of this workbook can give, and codes of such checks: they stand as saved."""
+        """Terms and codes of checks that no formula of this workbook can calculate: they keep their saved values."""
         fixed: set[str] = set()
         loads = self.export.application.loads
         if self.export.figures is None:
@@ -68,12 +68,12 @@ class Known:
         return fixed
 
     def formula(self, term: CellTerm) -> str:
-        """The formula of a term that is not fixed. Along a motion a motor's inertia adds what no formula gives."""
+        """Formula of a term that is not fixed; blank in a motion with a motor's inertia, which no formula covers."""
         moves = self.export.application.duty_cycle.motion is not None
         return f'IF(J_m="",{term.formula},"")' if moves and term.by_efficiency else term.formula
 
     def symbol(self, term: CellTerm) -> str:
-        """Symbol of a term, as the report has it."""
+        """Symbol of a term, the same as in the report."""
         turns = self.export.selection.turns_motor
         return figure_symbol(term.field, turns_motor=turns) if term.field else term.named.symbol
 

@@ -1,4 +1,4 @@
-"""The first sheet: what was asked as inputs, the chosen gear, and every check of it as a formula."""
+"""The first sheet: inputs, the chosen gear, and every check of it as formulas."""
 
 import json
 from dataclasses import replace
@@ -30,7 +30,7 @@ from hpn.words.wording import N_
 EFFICIENCY, MODEL = "requirements.efficiency", "output_load.model"
 NAMES = {path: name for name, path in ENTERED.items()}
 NEEDED = {"emergency_stop.torque_Nm": 'N_k<>""'}
-"""When an input may not be blank, though it may be left out."""
+"""Conditions under which an optional input must be filled."""
 
 ALONG_THE_MOTION = N_("as saved: along the motion, with the motor’s own inertia")
 OUTDATED = N_("not known here: inputs behind it were changed")
@@ -57,11 +57,11 @@ class Overview:
         self.known = Known(book.export, book.export.candidate, book.words)
         every = (Known(book.export, candidate, book.words) for candidate in book.export.selection.candidates)
         self.fixed = set().union(*(known.fixed() for known in every))
-        """What no formula gives of one of the gears."""
+        """Figures and checks that no formula gives for some gear."""
         self.text = book.reader.text
         self.row = 0
         self.remarks: list[str] = []
-        """Cells that say what would be right in an input."""
+        """Cells with a remark on a wrong input."""
 
     def write(self) -> None:
         """Write the sheet."""
@@ -112,7 +112,7 @@ class Overview:
         self.row += bool(heads)
 
     def _converted(self, unit: str, value: float | str | None) -> None:
-        """The value of a line in the reader's own unit, where that is another."""
+        """Write the value of a line in the reader's own unit too, where that is another."""
         if self.book.converted(self.sheet, self.row, 5, xl_rowcol_to_cell(self.row, 2), unit, value):
             self.sheet.write_string(self.row, 6, self.book.shown.unit(unit), self.book.style("unit"))
 
@@ -140,13 +140,13 @@ class Overview:
         self.row += 1
 
     def _looked_up(self, label: str, column: int, style: str, saved: float | str) -> None:
-        """A column of the list of candidates, for the chosen gear."""
+        """Write a line with a column of the list of candidates, for the chosen gear."""
         self._line(label, "", "")
         self.sheet.write_formula(self.row, 2, f"={self._of_candidate(column)}", self.book.style(style), saved)
         self.row += 1
 
     def _wrong(self) -> None:
-        """Count of the inputs that the service would refuse: while there is one, no gear is suitable."""
+        """Write the number of inputs that the service would refuse: above 0 no gear is suitable."""
         self._line(N_("Wrong inputs"), "", "")
         self.counted = (self.row, 2)
         self.book.name_cell(WRONG, self.sheet, *self.counted)
@@ -157,12 +157,12 @@ class Overview:
         self.row += 1
 
     def _of_candidate(self, column: int) -> str:
-        """What the list of candidates says of the chosen gear."""
+        """Formula for a column of the list of candidates, in the row of the chosen gear."""
         block = xl_range_abs(self.candidates[0], column, self.candidates[-1], column)
         return f"INDEX('{self.text(N_('Candidates'))}'!{block},MATCH(gear,candidates,0))"
 
     def _from_list(self, name: str) -> str:
-        """A figure or utilisation that no formula of this sheet gives, as a formula: blank where the list has none."""
+        """Formula that copies a figure or utilisation from the list of candidates; blank where it is blank there."""
         listed = self._of_candidate(COLUMNS[name])
         return f'=IF({listed}="","",{listed})'
 
@@ -199,8 +199,8 @@ class Overview:
         self.row += 1
 
     def _remark(self, term: CellTerm) -> None:
-        """Source of a figure, or that inputs behind it were changed; that a motor torque is a lower bound, for as long
-        as the reader states no efficiency.
+        """Write the source of a figure, or that inputs behind it were changed; that a motor torque is a lower bound
+        while no efficiency is stated.
         """
         source = equation(term.named.equation, self.book.reader)
         bound = self.text(LOSS_FREE) if self.book.export.is_lower_bound(self.known.candidate) else ""
@@ -214,7 +214,7 @@ class Overview:
             self.sheet.write_formula(self.row, 4, formula, self.book.style("quiet"), bound)
 
     def _while_known(self, column: int, said: str, name: str, cell: str) -> None:
-        """What is said of a figure that stands as saved, or that it is not known for the inputs as they are now."""
+        """Write a remark on a figure that keeps its saved value, or that it is unknown for the present inputs."""
         known = f'=IF(OR({as_saved(name)},{cell}<>""),"{said}","{self.text(OUTDATED)}")'
         self.sheet.write_formula(self.row, column, known, self.book.style("quiet"), said)
 
@@ -270,7 +270,7 @@ class Overview:
         self.row += 1
 
     def _formulas(self, check: Check) -> tuple[str, str, str]:
-        """Demand, limit and utilisation of a check; of one that no formula gives, the first two for the saved gear."""
+        """Formulas of a check's demand, limit and utilisation; saved demand and limit where no formula gives them."""
         own = CHECK_FORMULAS.get(check.code)
         if own and check.code not in self.fixed:
             return self._written(own.shown_demand), self._written(own.shown_limit), self._written(own.ratio)
@@ -317,7 +317,7 @@ class Overview:
         self.row += 1
 
     def _refuse(self, path: str) -> None:
-        """Say beside an input what would be right, while the service would refuse what stands in it."""
+        """Write the remark that appears beside an input while the service would refuse it."""
         field, cell = FIELDS[path], xl_rowcol_to_cell(self.row, 2)
         if path == MODEL:
             as_saved = not self.known.fixed().isdisjoint(DEMANDS)

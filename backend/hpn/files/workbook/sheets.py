@@ -1,4 +1,4 @@
-"""What the sheets of the workbook share, and the sheet of the duty cycle."""
+"""Styles and ways of writing that all sheets of the workbook use, and the sheet of the duty cycle."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -19,7 +19,7 @@ from hpn.words.wording import N_
 
 ACCENT = "#0B5394"
 FIGURE = "[>=10000000]0.00E+00;[>=10000]#,##0.00;#,##0.00##"
-"""Format of a number that has to fit its column, which shows hashes where it does not."""
+"""Number format that fits the column, which would show hashes otherwise."""
 
 STYLES: dict[str, dict[str, Any]] = {
     "title": {"bold": True, "font_size": 16},
@@ -69,17 +69,17 @@ MOST_BENEATH = 10_000
 
 PHASE = tuple(path.removeprefix("phase.") for path in INPUTS if path.startswith("phase."))
 VARYING = ("peak_torque_Nm", "peak_speed_rpm", "rms_torque_Nm")
-"""Columns that are folded away unless a phase has one of them."""
+"""Columns that are folded unless a phase has a value in one of them."""
 
 FOLDED = {"level": 1, "hidden": True}
 USED = {"radial_used": "radial_N", "axial_used": "axial_N"}
-"""Columns of a phase: what is given, and the loads that it has after all, by name and field."""
+"""Columns of the loads that apply in a phase: name and field."""
 
 
 @dataclass
 class Book:
-    """A workbook in the making. Its formulas compute in the units of the wire, as `reader` reads them; what `shown`
-    reads in another unit stands beside, converted by formula.
+    """A workbook while it is written. Its formulas compute in the units of the wire, those of `reader`; a value that
+    `shown` reads in another unit is converted by a formula in a cell beside it.
     """
 
     file: Any
@@ -109,7 +109,7 @@ class Book:
         return f"{text} [{self.reader.unit(unit)}]" if unit else text
 
     def converted(self, sheet: Any, row: int, column: int, source: str, unit: str, value: float | str | None) -> bool:
-        """Write what a cell says in the unit of whoever reads it; nothing, and False, where that is the wire's."""
+        """Write the value of a cell in the reader's unit; nothing, and False, where that is the wire's."""
         measure = self.shown.measure(unit)
         if measure.same:
             return False
@@ -119,7 +119,7 @@ class Book:
         return True
 
     def colour(self, sheet: Any, *block: int) -> None:
-        """Colour the verdicts of a block of cells, by the words that stand in them now."""
+        """Colour the verdicts of a block of cells by their present text."""
         for word, look in COLOURS.items():
             rule = {"type": "cell", "criteria": "==", "value": f'"{self.words[word]}"'}
             sheet.conditional_format(*block, rule | {"format": self.file.add_format(look)})
@@ -132,13 +132,13 @@ class Book:
         sheet.conditional_format(*block, {"type": "formula", "criteria": failed, "format": look})
 
     def refuse(self, sheet: Any, *block: int, wrong: str, validation: Mapping[str, Any]) -> None:
-        """Colour those cells of a block that are wrong by a formula on the first, and refuse what is typed wrong."""
+        """Colour the cells of a block that a formula on its first cell finds wrong, and refuse wrong entries."""
         rule = {"type": "formula", "criteria": f"=IFERROR({wrong},1)>0", "format": self.file.add_format(FAILED)}
         sheet.conditional_format(*block, rule)
         sheet.data_validation(*block, validation)
 
     def page(self, sheet: Any, *, across: int = 1, landscape: bool = True) -> None:
-        """Set a sheet on paper: everything written on so many pages across, its heads on each."""
+        """Set up a sheet for printing: everything on so many pages across, with heads on each."""
         if landscape:
             sheet.set_landscape()
         sheet.set_paper(PAPERS[paper(self.shown)])
@@ -164,12 +164,12 @@ class Book:
 
 
 def _plain(text: str) -> str:
-    """A text of a header, in which & begins a command."""
+    """Text of a header without commands, which begin with &."""
     return text.replace("&", "&&")
 
 
 class CycleSheet:
-    """Phases as inputs with room for more, and the loads that each phase has after all."""
+    """Phases as inputs with spare rows, and the loads that apply in each phase."""
 
     def __init__(self, book: Book, sheet: Any) -> None:
         self.book, self.sheet = book, sheet
@@ -202,11 +202,11 @@ class CycleSheet:
 
     @property
     def varies(self) -> bool:
-        """Whether a phase has a peak or an RMS of its own."""
+        """True where a phase has a peak or an RMS of its own."""
         return any(getattr(phase, name) is not None for phase in self.phases for name in VARYING)
 
     def _fold(self, start: int) -> None:
-        """Fold the columns of phases that vary; a reader opens them by the mark above the column behind."""
+        """Fold the columns of phases that vary; the mark above the next column opens them."""
         first, last = (1 + PHASE.index(VARYING[k]) for k in (0, -1))
         self.sheet.set_column(first, last, 15, None, FOLDED)
         self.sheet.set_column(last + 1, last + 1, 15, None, {"collapsed": True})
@@ -215,7 +215,7 @@ class CycleSheet:
                 self.sheet.set_column(column, column, 15, None, {"hidden": True})
 
     def _heads_converted(self, start: int) -> None:
-        """Heads of the columns in other units, behind all others."""
+        """Write the heads of the columns in other units, behind all others."""
         for column, name in enumerate(self.converted, start):
             symbol = self.book.shown.unit(symbol_of(name))
             head = f"{self.book.reader.text(INPUTS[f'phase.{name}'].name)} [{symbol}]"
@@ -223,7 +223,7 @@ class CycleSheet:
             self.sheet.set_column(column, column, 15)
 
     def _refuse(self) -> None:
-        """Mark what the service would refuse; name the rows beneath the last, in which nothing counts."""
+        """Mark values that the service would refuse, and name the rows beneath the last, which do not count."""
         cells = {name: xl_rowcol_to_cell(1, column, col_abs=True) for column, name in enumerate(PHASE, 1)}
         for column, name in enumerate(PHASE, 1):
             field, reader = PHASE_FIELDS[name], self.book.reader

@@ -1,4 +1,4 @@
-"""The hidden sheet that says of each figure that stands as saved whether the inputs behind it are still those saved.
+"""The hidden sheet that compares the inputs behind each saved figure with the inputs that were saved.
 
 No formula of the workbook gives digitised bearing loads, motor torques with the motor's own inertia or by an efficiency
 curve, and what takes figures of a catalogue that is not at hand.
@@ -18,26 +18,26 @@ _FORMULAS = {term.name: term.formula for term in (*CYCLE_TERMS, *GEAR_TERMS)} | 
     code: check.ratio for code, check in CHECK_FORMULAS.items()
 }
 _BY_CURVE = {"speed_rpm", "peak_speed_rpm"}
-"""What motor torques by an efficiency curve take besides what stands in their formula."""
+"""Inputs behind motor torques by an efficiency curve, besides those in their formula."""
 
 _ALONG_MOTION = {"J_m", "J_L"}
-"""What they take along a motion: the motor's own inertia, and that of the load."""
+"""Further inputs behind them in a motion: the inertias of motor and load."""
 
 
 def as_saved(name: str) -> str:
-    """Name of the cell that says whether the inputs behind a figure or check are those that were saved."""
+    """Name of the cell that is true while the inputs behind a figure or check are those that were saved."""
     return f"{name}_as_saved"
 
 
 def inputs_behind(name: str) -> set[str]:
-    """Inputs that a figure or check takes, through all formulas behind it, by their names in these."""
+    """Inputs behind a figure or check, through all formulas, by their names in these."""
     if name in PHASE or name in USED or name in ENTERED:
         return {name}
     return set().union(*map(inputs_behind, re.findall(r"\w+", _FORMULAS.get(name, ""))))
 
 
 def write_unchanged(book: Book, sheet: Any, fixed: Iterable[str]) -> None:
-    """Write the sheet: the inputs behind `fixed` as they were saved, and for each of these the cell that compares."""
+    """Write the sheet: the inputs behind `fixed` as saved, and a cell for each of `fixed` that compares them."""
     sheet.hide()
     behind = {name: inputs_behind(name) for name in fixed}
     along = book.export.application.duty_cycle.motion is not None

@@ -1,4 +1,4 @@
-"""Which inputs of the workbook the service would refuse, as formulas that are 1 for a wrong cell and 0 for a right one.
+"""Formulas that find inputs which the service would refuse: 1 for a wrong cell and 0 for a right one.
 
 A formula takes cells or whole columns of the duty cycle: it multiplies conditions, since SUMPRODUCT takes no AND or IF.
 """
@@ -27,7 +27,7 @@ _FITS: Mapping[str, str] = {
     "*(1-({speed_rpm}=0)*({peak_speed_rpm}>0))",
     "rms_torque_Nm": f"({{rms_torque_Nm}}<={_PEAK}*(1+{ROOM:G}))",
 }
-"""What a phase that varies has to hold besides the bounds of its fields."""
+"""Conditions on a phase that varies, besides the bounds of its fields."""
 
 _FITTING: Mapping[str, str] = {
     "peak_torque_Nm": N_("at least the phase’s own torque"),
@@ -36,7 +36,7 @@ _FITTING: Mapping[str, str] = {
 }
 
 _USED = "((" + "+".join(f'({{{name}}}<>"")' for name in PHASE_FIELDS) + ")>0)"
-"""Whether a row of the duty cycle is a phase."""
+"""Condition under which a row of the duty cycle is a phase."""
 
 WRONG_AS_A_WHOLE: Mapping[str, str] = {
     f"IFERROR(SUMPRODUCT(--(ABS(speed_rpm)*duration_s>{LEAST_MOTION:G}))=0,FALSE)": N_(
@@ -45,11 +45,11 @@ WRONG_AS_A_WHOLE: Mapping[str, str] = {
     f"COUNTA({BENEATH})>0": N_("below the bordered rows of the sheet Duty cycle no phase counts"),
     "COUNTBLANK(radial_used)>0": N_("copy the formulas of the sheet Duty cycle into the rows that were inserted there"),
 }
-"""What is wrong with no cell but with the duty cycle as a whole: condition, and what to do."""
+"""Faults of the duty cycle as a whole: condition and remedy."""
 
 
 def is_wrong(field: InputField, cell: str, needed: str = "") -> str:
-    """Whether a cell holds no value of a field; a blank one is wrong where `needed` is true, and where it counts.
+    """Formula on a cell without a valid value of a field; a blank cell is wrong where `needed` is true.
 
     A blank number counts as 0, so it may stand for a default of 0 alone.
     """
@@ -60,7 +60,7 @@ def is_wrong(field: InputField, cell: str, needed: str = "") -> str:
 
 
 def is_wrong_in_phase(name: str, cells: Mapping[str, str]) -> str:
-    """Whether a field of a phase is wrong; `cells` are those of the row, or the columns, by field."""
+    """Formula on a wrong field of a phase; `cells` are those of the row, or whole columns, by field."""
     field, cell = PHASE_FIELDS[name], f"{{{name}}}"
     asked = _USED if field.required else f'({cell}<>"")'
     right = "*".join(filter(None, (f"ISNUMBER({cell})", _within(field, cell), _FITS.get(name))))
@@ -84,7 +84,7 @@ def _chosen(field: InputField, cell: str) -> str:
 
 
 def advice(field: InputField, reader: Reader, name: str = "") -> str:
-    """What would be right in a cell, in words; `name` is the field of a phase."""
+    """Text on the valid values of a cell; `name` is the field of a phase."""
     if field.choices is not None:
         return reader.told(Sentence(N_("must be one of {expected}"), {"expected": ", ".join(field.choices)}))
     if field.above == 0 or field.least == LEAST:
@@ -98,7 +98,7 @@ def advice(field: InputField, reader: Reader, name: str = "") -> str:
 
 
 def validation(field: InputField, advised: str) -> dict[str, Any]:
-    """Rule by which a spreadsheet program refuses what is typed into a cell, for xlsxwriter's `data_validation`."""
+    """Rule for xlsxwriter's `data_validation`, by which a spreadsheet program refuses a wrong entry."""
     said = {"error_message": advised}
     if field.choices is not None:
         return {"validate": "list", "source": list(field.choices), **said}
@@ -112,4 +112,4 @@ WRONG_IN_CYCLE = (
     *(f"SUMPRODUCT({is_wrong_in_phase(name, {name: name for name in PHASE_FIELDS})})" for name in PHASE_FIELDS),
     *(f"({condition})" for condition in WRONG_AS_A_WHOLE),
 )
-"""Counts of what is wrong in the duty cycle, by its columns."""
+"""Formulas that count the faults in the duty cycle, over its columns."""
