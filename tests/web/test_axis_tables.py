@@ -10,6 +10,7 @@ from openpyxl import Workbook
 
 from hpn.tables.axes import AxisTable, read_axes
 from hpn.tables.columns import Choices
+from hpn.tables.reading import Choice
 from hpn.tables.sheets import grids_of
 from hpn.tables.workbooks import sheets_of
 from hpn.web.form.symbols import AXIS_INPUTS
@@ -30,11 +31,18 @@ def asked(table: AxisTable) -> list[str]:
     return [question.text for question in table.questions]
 
 
+def offered(table: AxisTable, name: str) -> Choice:
+    """A choice that a table leaves."""
+    choice = table.choice(name)
+    assert choice is not None
+    return choice
+
+
 def test_a_number_with_two_readings_is_asked() -> None:
     open_ = read(HEAD, "A;1.234;100;1", "B;2.500;100;1")
 
     assert asked(open_) == ["Which is the decimal mark?"] and not open_.axes
-    assert dict(open_.marks) == {".": "1.234", ",": "1234"}
+    assert offered(open_, "decimal").numbers == {".": "1.234", ",": "1234"}
     for mark, torque in ((".", 1.234), (",", 1234.0)):
         assert read(HEAD, "A;1.234;100;1", "B;2.500;100;1", decimal=mark).axes[0]["torque_Nm"] == [torque]
 
@@ -200,7 +208,7 @@ def test_one_axis_does_not_decide_what_the_times_of_the_others_are(other: str) -
     said = read(head, *GOING_ON, other, times="ends")
     assert [axis["duration_s"] for axis in said.axes[:2]] == [[1, 2], [2, 3]]
     falling = read(head, "A;1;10;3", "A;2;20;1", "B;1;10;2")
-    assert (falling.times, falling.asks_times) == ("durations", True)
+    assert offered(falling, "times").chosen == "durations"
 
 
 def test_two_decimal_marks_in_a_table_are_asked_and_what_no_longer_is_a_number_is_told() -> None:
@@ -424,7 +432,7 @@ def test_a_frequency_of_a_speed_is_asked() -> None:
 
 def test_a_number_that_a_workbook_shows_in_thousands_is_asked() -> None:
     table = sheet_of("0.0", "0.9")
-    assert table.scaled is None
+    assert table.choice("scales") is None
     book = Workbook()
     sheet: Any = book.active
     sheet.append(HEAD.split(";"))

@@ -16,7 +16,7 @@ from hpn.tables.columns import NO_CHOICES, Choices, Column, proposed, settled
 from hpn.tables.heads import REQUIRED, skipped
 from hpn.tables.inputs import AXIS, PHASE, PHASE_ROLES, Inputs
 from hpn.tables.numbers import known_units
-from hpn.tables.reading import Reading, Row, Table, durations_of, in_plain, unit_behind
+from hpn.tables.reading import Questions, Reading, Row, Table, durations_of, in_plain, unit_behind
 from hpn.tables.sheets import Grid, RefusedError
 from hpn.words import units
 from hpn.words.wording import N_, Sentence
@@ -46,7 +46,7 @@ def read_axes(grid: Grid, inputs: Inputs, choices: Choices = NO_CHOICES, assumed
         body = body_of(grid, choices.scales)
         body = _with_axes(body, columns_of(body))
         columns = columns_of(body)
-        return _AxesReading(_unmerged(body, columns), columns, choices).table()
+        return _AxesReading(_unmerged(body, columns), columns, Questions(choices)).table()
     except RefusedError as refused:
         return AxisTable(problem=refused.sentence)
 
@@ -103,10 +103,10 @@ class _AxesReading(Reading):
         self.read_numbers()
         self._note_unread()
         groups = self._groups()
-        times, asks_times = self.read_times([group.rows for group in groups])
+        times = self.read_times([group.rows for group in groups])
         self.ask_scale()
-        axes = () if self.questions else tuple(self._axis(group, times) for group in groups)
-        return AxisTable(**self.said, times=times, asks_times=asks_times, axes=axes)
+        axes = () if self.questions.open else tuple(self._axis(group, times) for group in groups)
+        return AxisTable(**self.said, axes=axes)
 
     def _note_unread(self) -> None:
         """Note cells that are rejected with their axes: no numbers, and those in a unit that their column has not."""

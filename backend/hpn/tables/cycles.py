@@ -13,17 +13,21 @@ from hpn.tables.headings import heading_over
 from hpn.tables.heads import REQUIRED, skipped
 from hpn.tables.inputs import CYCLE, PHASE_ROLES
 from hpn.tables.numbers import either, known_units
-from hpn.tables.reading import Reading, Row, Table, durations_of, in_plain, unit_behind
-from hpn.tables.sheets import Grid, RefusedError, grids_of, no_number
+from hpn.tables.reading import Choice, Questions, Reading, Row, Table, durations_of, in_plain, unit_behind
+from hpn.tables.sheets import SEPARATORS, Grid, RefusedError, grids_of, no_number
 from hpn.words import units
 from hpn.words.fields import MAXIMUM_PHASES
 from hpn.words.wording import N_, Sentence
 
-LAST = {"phase": N_("a phase"), "sum": N_("a sum: skip it")}
-TOTALS = {"phase": N_("phases"), "sum": N_("sums or other figures of the table: skip them")}
-PARTS = {"one": N_("one cycle"), "first": N_("several: take the first alone")}
-PHASE = {"row": N_("a row"), "column": N_("a column")}
-"""Meanings of the last row, of rows named like sums, of rows below a title in between, and of a row at all."""
+SEPARATOR = Choice("separator", N_("Between the columns stands"), SEPARATORS)
+PHASE = Choice("phase", N_("A phase is"), {"row": N_("a row"), "column": N_("a column")})
+PARTS = Choice("parts", N_("These phases are"), {"one": N_("one cycle"), "first": N_("several: take the first alone")})
+TOTALS = Choice(
+    "totals",
+    N_("These rows are"),
+    {"phase": N_("phases"), "sum": N_("sums or other figures of the table: skip them")},
+)
+LAST = Choice("last", N_("The last row is"), {"phase": N_("a phase"), "sum": N_("a sum: skip it")})
 
 BLANK = {
     "T": N_("row {row}: the torque is blank"),
@@ -49,18 +53,18 @@ class CycleTable(Table):
     """
 
     separator: str = ""
-    separators: tuple[str, ...] = ()
     turned: bool = False
-    phase: str = ""
-    asks_phase: bool = False
-    last: str = ""
-    asks_last: bool = False
-    totals: str = ""
-    asks_totals: bool = False
-    named: tuple[Labelled, ...] = ()
-    parts: str = ""
-    asks_parts: bool = False
     phases: tuple[tuple[str, ...], ...] = ()
+
+    @property
+    def asks_times(self) -> bool:
+        """True where there is a choice what the times are."""
+        return self.choice("times") is not None
+
+    @property
+    def asks_last(self) -> bool:
+        """True where there is a choice what the last row is."""
+        return self.choice("last") is not None
 
 
 def read_text(text: str, choices: Choices = NO_CHOICES, assumed: Collection[str] = tuple(CYCLE.units)) -> CycleTable:
@@ -83,14 +87,18 @@ def read_grids(
     distinct = list({_told_apart(table): table for table in reversed(readable)}.values())[::-1]
     if not distinct:
         return tables[0]
-    names = tuple(table.separator for table in distinct)
     if len(distinct) == 1:
         return distinct[0]
-    chosen = next((table for table in distinct if table.separator == choices.separator), None)
-    if chosen:
-        return replace(chosen, separators=names)
+    names = {table.separator: SEPARATORS[table.separator] for table in distinct}
+    asked = Questions(choices)
     question = Sentence(N_("Which mark stands between the columns?"))
-    return replace(distinct[0], separators=names, separator="", questions=(question,), phases=())
+    chosen = asked.choose(replace(SEPARATOR, options=names), question)
+    for table in distinct:
+        if table.separator == chosen:
+            return replace(table, choices=(*asked.choices, *table.choices))
+    return replace(
+        distinct[0], choices=(*asked.choices, *distinct[0].choices), separator="", questions=(question,), phases=()
+    )
 
 
 def _told_apart(table: CycleTable) -> tuple[object, ...]:
@@ -99,38 +107,53 @@ def _told_apart(table: CycleTable) -> tuple[object, ...]:
 
 
 def _read_grid(grid: Grid, choices: Choices, assumed: Collection[str]) -> CycleTable:
+    asked = Questions(choices)
     try:
         body = body_of(grid, choices.scales)
-        asks = _has_two_ways(body)
-        if asks and choices.phase == "column":
-            body = body_of(grid.transposed(), choices.scales)
-        parting = body.parting
-        if parting and choices.parts == "first":
-            body = body.above(parting[0].number)
+        if _has_two_ways(body):
+            way = asked.choose(PHASE, Sentence(N_("Is a phase a row or a column?")))
+            body = body_of(grid.transposed(), choices.scales) if way == "column" else body
+            if not way:
+                said = _CycleReading(body, _columns_of(body, choices, assumed), asked).said
+                return CycleTable(**said, separator=grid.separator)
+        body = _one_cycle(body, asked)
         if len(body.rows) > MAXIMUM_PHASES:
             raise RefusedError(N_("there are more than {most} rows"), most=MAXIMUM_PHASES)
         columns = _columns_of(body, choices, assumed)
-        if asks and choices.phase not in PHASE:
-            question = Sentence(N_("Is a phase a row or a column?"))
-            return CycleTable(
-                questions=(question,), separator=grid.separator, asks_phase=True, columns=columns, body=body
-            )
-        table = _CycleReading(body, columns, choices).table()
-        named = table.named
-        if named and choices.totals == "phase":
-            body = replace(body.including(named), totals=(), notes=table.notes)
-            table = _CycleReading(body, _columns_of(body, choices, assumed), choices).table()
-        return replace(
-            table,
-            phase=choices.phase,
-            asks_phase=asks,
-            totals=choices.totals,
-            asks_totals=bool(named),
-            parts=choices.parts,
-            asks_parts=bool(parting),
-        )
+        if body.totals:
+            body = _without_totals(body, columns, asked)
+            columns = _columns_of(body, choices, assumed)
+        return _CycleReading(body, columns, asked).table()
     except RefusedError as refused:
         return CycleTable(problem=refused.sentence, separator=grid.separator)
+
+
+def _one_cycle(body: Body, asked: Questions) -> Body:
+    """A table as far as its rows are one cycle: those below a title may be of another."""
+    for title in body.parting[:1]:
+        template = N_("Row {row}, “{text}”, stands between the phases. Are they one cycle?")
+        question = Sentence(template, {"row": title.number, "text": title.text[:40]})
+        if asked.choose(PARTS, question) == "first":
+            return body.above(title.number)
+    return body
+
+
+def _without_totals(body: Body, columns: tuple[Column, ...], asked: Questions) -> Body:
+    """A table without the rows that are totals; of those that are only named so it is asked."""
+    reading = _CycleReading(body, columns, Questions(asked.answers))
+    reading.read_numbers()
+    sure = _totals_of(body, reading.used, reading.decimal or DECIMALS[0])
+    open_ = [total for total in body.totals if total not in sure]
+    chosen = ""
+    if open_:
+        listed = ", ".join(f"{total.number} ({total.text[:40]})" for total in open_[:MOST_NAMED])
+        template = N_("Rows that may be phases, sums or other figures of the table: {rows}.")
+        chosen = asked.choose(TOTALS, Sentence(template, {"rows": listed}))
+    if chosen == "sum" and {total.number for total in body.totals}.issuperset(body.numbers):
+        raise RefusedError(N_("there is a header, but no row of numbers below it"))
+    left_out = body.totals if chosen == "sum" else sure
+    notes = (*body.notes, *(skipped(*total[::2]) for total in left_out))
+    return replace(body.including(open_ if chosen == "phase" else ()), totals=(), notes=notes)
 
 
 # --- Columns ----------------------------------------------------------------------------------------------------------
@@ -191,22 +214,11 @@ class _CycleReading(Reading):
         self.ask_columns()
         self.read_numbers()
         self.ask_scale()
-        self._ask_parts()
-        named = self._totals()
-        times, asks_times = self.read_times([self.rows])
-        rows, last, asks_last = self._last(times)
-        phases = () if self.questions else self._phases(rows, times)
-        return CycleTable(
-            **self.said,
-            separator=self.body.grid.separator,
-            turned=self.body.grid.turned,
-            times=times,
-            asks_times=asks_times,
-            last=last,
-            asks_last=asks_last,
-            named=named,
-            phases=phases,
-        )
+        times = self.read_times([self.rows])
+        rows = self._phase_rows(times)
+        phases = () if self.questions.open else self._phases(rows, times)
+        grid = self.body.grid
+        return CycleTable(**self.said, separator=grid.separator, turned=grid.turned, phases=phases)
 
     def is_missed(self, role: str, roles: Collection[str]) -> bool:
         """True unless another column is asked, which may be it."""
@@ -245,47 +257,21 @@ class _CycleReading(Reading):
             raise RefusedError(template, cell=said, name=column.called, units=taken)
         return code
 
-    def _ask_parts(self) -> None:
-        """Ask for rows below a title: they may belong to the cycle of those above."""
-        if (parting := self.body.parting) and self.choices.parts not in PARTS:
-            template = N_("Row {row}, “{text}”, stands between the phases. Are they one cycle?")
-            self.ask(template, row=parting[0].number, text=parting[0].text[:40])
-
-    def _totals(self) -> tuple[Labelled, ...]:
-        """Rows that are named like totals without being any, and asked for; those that are totals are skipped."""
-        totals, sure = self.body.totals, _totals_of(self.body, self.used, self.decimal or DECIMALS[0])
-        open_ = tuple(total for total in totals if total not in sure)
-        if open_ and self.choices.totals not in TOTALS:
-            listed = ", ".join(f"{total.number} ({total.text[:40]})" for total in open_[:MOST_NAMED])
-            self.ask(N_("Rows that may be phases, sums or other figures of the table: {rows}."), rows=listed)
-        if self.choices.totals == "sum" and {total.number for total in totals}.issuperset(self.body.numbers):
-            raise RefusedError(N_("there is a header, but no row of numbers below it"))
-        self.notes += [skipped(*each[::2]) for each in (totals if self.choices.totals == "sum" else sure)]
-        return open_
-
-    def _last(self, times: str) -> tuple[list[Row], str, bool]:
-        """Rows of phases, the meaning of the last one, and True where that is asked, as it may sum up the others."""
+    def _phase_rows(self, times: str) -> list[Row]:
+        """Rows of phases, each filled; the last one may be the sum of the others, or end the cycle."""
         rows = self.rows
-        if times == "starts":
-            self._require_filled(rows[:-1])
-            return rows, "", False
         bare = len(rows) > 1 and self._time_alone(rows[-1])
         sums = times == "durations" and self._sums()
-        self._require_filled(rows[:-1] if sums or (bare and not times) else rows)
+        is_open = times == "starts" or (bare and not times)
         if bare and sums:
             self.notes.append(skipped(self.body.numbers[-1], " ".join(filter(None, self.body.rows[-1]))))
-            return rows[:-1], "sum", False
-        if not sums:
-            return rows, "", False
-        if len(rows) == 2 and rows[0] != rows[1]:  # two phases that take equally long are no sign of a sum
-            self._require_filled(rows)
-            return rows, "", False
-        if self.choices.last in LAST:
-            rows = rows[:-1] if self.choices.last == "sum" else rows
-            self._require_filled(rows)
-            return rows, self.choices.last, True
-        self.ask(N_("The last row takes as long as all others together. What is it?"))
-        return rows, "", True
+            rows = rows[:-1]
+        elif sums and not (len(rows) == 2 and rows[0] != rows[1]):  # two that take equally long are no sign of a sum
+            question = Sentence(N_("The last row takes as long as all others together. What is it?"))
+            chosen = self.choose(LAST, question)
+            rows, is_open = rows[:-1] if chosen == "sum" else rows, not chosen
+        self._require_filled(rows[:-1] if is_open else rows)
+        return rows
 
     def _time_alone(self, row: Row) -> bool:
         """True where the last row has a time and nothing else."""

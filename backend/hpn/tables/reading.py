@@ -7,7 +7,7 @@ user is asked.
 
 import decimal as decimals
 from collections.abc import Collection, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from itertools import chain, pairwise
 from math import inf, isfinite
@@ -24,22 +24,12 @@ from hpn.tables.sheets import RefusedError
 from hpn.words import units
 from hpn.words.wording import N_, Sentence, Value
 
-TIMES = {
-    "durations": N_("how long each phase lasts"),
-    "ends": N_("when each phase ends"),
-    "starts": N_("when each phase starts; the last row ends the cycle"),
-}
-"""Meanings of the times of a table."""
-
 MISSING = {
     AXIS: N_("Which column names the axis?"),
     "T": N_("Which column is the torque?"),
     "n": N_("Which column is the speed?"),
     "t": N_("Which column is the duration?"),
 }
-
-SCALES = ("shown", "held")
-"""Which numbers count where a format of a workbook shows thousands of what its cells hold."""
 
 SHARES = ("u", "eta", "fw")
 """Inputs that may be written as percentages."""
@@ -50,21 +40,72 @@ MOSTLY = 0.75
 Row = tuple[Entry | None, ...]
 
 
+@dataclass(frozen=True, slots=True)
+class Choice:
+    """A choice of how a table is read: its label, its options, and the chosen one, blank while it is asked.
+
+    `numbers` shows beside an option what a number of the table is by it.
+    """
+
+    name: str
+    label: str
+    options: Mapping[str, str]
+    chosen: str = ""
+    numbers: Mapping[str, str] = field(default_factory=dict)
+
+
+DECIMAL = Choice("decimal", N_("The decimal mark is"), {".": N_("a point"), ",": N_("a comma")})
+SCALES = Choice(
+    "scales",
+    N_("The numbers count"),
+    {"shown": N_("as the workbook shows them"), "held": N_("as the cells hold them")},
+)
+TIMES = Choice(
+    "times",
+    N_("The times say"),
+    {
+        "durations": N_("how long each phase lasts"),
+        "ends": N_("when each phase ends"),
+        "starts": N_("when each phase starts; the last row ends the cycle"),
+    },
+)
+
+
+class Questions:
+    """Open questions about a table, and the choices that it leaves, by the answers to them."""
+
+    def __init__(self, answers: Choices) -> None:
+        self.answers = answers
+        self.open: list[Sentence] = []
+        self.choices: list[Choice] = []
+
+    def ask(self, template: str, **values: Value) -> None:
+        """Add a question."""
+        self.open.append(Sentence(template, dict(values)))
+
+    def choose(self, choice: Choice, question: Sentence, **more: Any) -> str:
+        """The option that somebody has chosen, else `chosen`, the usual one; blank, and asked, where there is none."""
+        answer: str = getattr(self.answers, choice.name)
+        if answer in choice.options:
+            more["chosen"] = answer
+        found = replace(choice, **more)
+        self.choices.append(found)
+        if not found.chosen:
+            self.open.append(question)
+        return found.chosen
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Table:
     """Reading of a table. It can be taken when there is no problem and no question."""
 
     problem: Sentence | None = None
     questions: tuple[Sentence, ...] = ()
+    choices: tuple[Choice, ...] = ()
     notes: tuple[Sentence, ...] = ()
     columns: tuple[Column, ...] = ()
     body: Body | None = None
     decimal: Decimal | None = None
-    marks: tuple[tuple[str, str], ...] = ()
-    times: str = ""
-    asks_times: bool = False
-    scales: str = ""
-    scaled: tuple[str, str] | None = None
 
     @property
     def whole(self) -> bool:
@@ -75,6 +116,10 @@ class Table:
     def unknown(self) -> int:
         """Number of columns below a header of which nothing is known: they can be skipped at once."""
         return sum(column.is_unknown for column in self.columns) if self.body and self.body.headed else 0
+
+    def choice(self, name: str) -> Choice | None:
+        """A choice by its name; None where the table leaves none."""
+        return next((choice for choice in self.choices if choice.name == name), None)
 
     def entries(self, cell: str, column: Column) -> set[Entry]:
         """Numbers that a cell of a column may be: none for a blank cell or a text, two where the mark is asked."""
@@ -92,32 +137,25 @@ class Reading:
     required: Sequence[str] = REQUIRED
     any_unit = False
 
-    def __init__(self, body: Body, columns: tuple[Column, ...], choices: Choices) -> None:
-        self.body, self.columns, self.choices = body, columns, choices
+    def __init__(self, body: Body, columns: tuple[Column, ...], questions: Questions) -> None:
+        self.body, self.columns, self.questions = body, columns, questions
+        self.ask, self.choose = questions.ask, questions.choose
         self.used = [column for column in columns if column.is_number]
-        self.questions: list[Sentence] = []
         self.notes = list(body.notes)
         self.decimal: Decimal | None = None
-        self.marks: tuple[tuple[str, str], ...] = ()
         self.rows: list[Row] = []
 
     @property
     def said(self) -> dict[str, Any]:
         """What every table says."""
         return {
-            "questions": tuple(self.questions),
+            "questions": tuple(self.questions.open),
+            "choices": tuple(self.questions.choices),
             "notes": (*self.body.grid.notes, *self.notes),
             "columns": self.columns,
             "body": self.body,
             "decimal": self.decimal,
-            "marks": self.marks,
-            "scales": self.choices.scales,
-            "scaled": self.scaled,
         }
-
-    def ask(self, template: str, **values: Value) -> None:
-        """Add a question."""
-        self.questions.append(Sentence(template, dict(values)))
 
     # --- Columns ------------------------------------------------------------------------------------------------------
 
@@ -127,7 +165,7 @@ class Reading:
             if not column.role:
                 self.ask(N_("What is column {name}?"), name=column.called)
             elif column.quantity and not column.unit:
-                self.questions.append(self._unit_question(column))
+                self.questions.open.append(self._unit_question(column))
             elif column.foreign:
                 template = N_("Column {name}: {unit} is not read there. Convert it to {wire}, or let it be not read.")
                 wire = units.SYMBOLS.get(column.unit, "1")
@@ -162,23 +200,19 @@ class Reading:
 
     # --- Numbers ------------------------------------------------------------------------------------------------------
 
-    @property
-    def scaled(self) -> tuple[str, str] | None:
-        """Number that a cell shows and the one that it holds, where a format leaves open which of the two counts."""
-        return next((self.body.scaled[column.place] for column in self.used if column.place in self.body.scaled), None)
-
     def ask_scale(self) -> None:
-        """Ask for numbers that a workbook shows in thousands without saying so."""
-        if self.scaled and self.choices.scales not in SCALES:
-            shown, held = self.scaled
+        """Ask which number counts where a workbook shows one in thousands of the one that a cell holds."""
+        scaled = [self.body.scaled[column.place] for column in self.used if column.place in self.body.scaled]
+        for shown, held in scaled[:1]:
             template = N_("The workbook shows {shown} where the cell holds {held}. Which number counts?")
-            self.ask(template, shown=shown, held=held)
+            numbers = {"shown": shown, "held": held}
+            self.choose(SCALES, Sentence(template, {**numbers}), numbers=numbers)
 
     def read_numbers(self) -> None:
         """Read the numbers of the used columns by their decimal mark, which is asked where it has two readings."""
         read = {mark: [self._row(row, mark) for row in self.body.rows] for mark in DECIMALS}
         self.require_numbers(read)
-        self.decimal, self.marks = self._mark(read)
+        self.decimal = self._mark(read)
         if self.decimal:
             self.rows = read[self.decimal]
         else:
@@ -192,25 +226,22 @@ class Reading:
     def require_numbers(self, read: Mapping[Decimal, Sequence[Row]]) -> None:
         """Raise RefusedError where a cell that is no number spoils the table."""
 
-    def _mark(self, read: Mapping[Decimal, Sequence[Row]]) -> tuple[Decimal | None, tuple[tuple[str, str], ...]]:
+    def _mark(self, read: Mapping[Decimal, Sequence[Row]]) -> Decimal | None:
         """The mark by which most cells are numbers; asked where two would give different ones, or both are written."""
         pairs = list(zip(*(chain.from_iterable(rows) for rows in read.values()), strict=True))
         counts = [sum(pair[k] is not None for pair in pairs) for k in (0, 1)]
         alone = [next((k for k, pair in enumerate(pairs) if pair[j] and not pair[1 - j]), None) for j in (0, 1)]
-        both = None not in alone
         differing = next((pair for pair in pairs if pair[0] != pair[1] and all(pair)), None)
-        if differing is None or (counts[0] != counts[1] and not both):
-            return DECIMALS[counts[1] > counts[0]], ()
-        marks = tuple((mark, cell.number) for mark, cell in zip(DECIMALS, differing, strict=True) if cell)
-        if self.choices.decimal in DECIMALS:
-            return next(mark for mark in DECIMALS if mark == self.choices.decimal), marks
-        if both:
+        if differing is None or (counts[0] != counts[1] and None in alone):
+            return DECIMALS[counts[1] > counts[0]]
+        question = Sentence(N_("Which is the decimal mark?"))
+        if None not in alone:
             one, other = (self._cell(place or 0)[:40] for place in alone)
             template = N_("Both decimal marks are written, as in {one} and {other}: which one counts?")
-            self.ask(template, one=one, other=other)
-        else:
-            self.ask(N_("Which is the decimal mark?"))
-        return None, marks
+            question = Sentence(template, {"one": one, "other": other})
+        numbers = {mark: cell.number for mark, cell in zip(DECIMALS, differing, strict=True) if cell}
+        chosen = self.choose(DECIMAL, question, numbers=numbers)
+        return next((mark for mark in DECIMALS if mark == chosen), None)
 
     def _cell(self, place: int) -> str:
         """Cell of the used columns by its number, row after row."""
@@ -245,37 +276,27 @@ class Reading:
                 return Fraction(cell.number) / units.entered("s", code).factor
         return None
 
-    def read_times(self, groups: Iterable[Sequence[Row]]) -> tuple[str, bool]:
-        """Meaning of the times, blank where it is asked, and True where there is a choice.
-
-        There is one where they go on in most axes, or are named as points in time.
-        """
+    def read_times(self, groups: Iterable[Sequence[Row]]) -> str:
+        """Meaning of the times, blank where it is asked: they go on in most axes, or are named as points in time."""
         columns = [column for column in self.columns if column.role == "t"]
         instant = any(column.instant for column in columns)
         series = [[self.seconds(row) for row in rows] for rows in groups]
         going_on = [_goes_on(times) for times in series if len(times) > 1 and None not in times]
-        few = sum(going_on) < MOSTLY * len(going_on)
         if any(column.lasting for column in columns) or not (instant or self.may_go_on(going_on)):
-            return "durations", False
-        if self.choices.times in TIMES:
-            self._require_moments([column.place for column in columns])
-            return self.choices.times, True
-        if few and not instant:
-            return "durations", True
-        self.ask(N_("Do the times say how long a phase lasts, or when it is?"))
-        return "", True
+            return "durations"
+        few = not instant and sum(going_on) < MOSTLY * len(going_on)
+        question = Sentence(N_("Do the times say how long a phase lasts, or when it is?"))
+        chosen = self.choose(TIMES, question, chosen="durations" if few else "")
+        dated = not self.body.dated.isdisjoint(column.place for column in columns)
+        if dated and chosen == "durations":
+            raise RefusedError(N_("dates say when a phase is, and not how long it lasts"))
+        if dated and chosen == "ends":
+            raise RefusedError(N_("dates of ends don’t say when the first phase starts: give the dates of starts"))
+        return chosen
 
     def may_go_on(self, going_on: Sequence[bool]) -> bool:
         """True where the times of axes leave a choice."""
         return bool(going_on)
-
-    def _require_moments(self, places: Iterable[int]) -> None:
-        """Raise RefusedError for dates taken as durations, or as ends where nothing says when the first began."""
-        dated = not self.body.dated.isdisjoint(places)
-        if dated and self.choices.times == "durations":
-            raise RefusedError(N_("dates say when a phase is, and not how long it lasts"))
-        if dated and self.choices.times == "ends":
-            raise RefusedError(N_("dates of ends don’t say when the first phase starts: give the dates of starts"))
 
 
 def _goes_on(times: Sequence[Fraction | None]) -> bool:

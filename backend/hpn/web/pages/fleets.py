@@ -24,7 +24,6 @@ from hpn.tables.axes import AxisTable
 from hpn.tables.cells import is_blank
 from hpn.tables.columns import CELLS, SKIP, Column
 from hpn.tables.files import Contents, Wanted, contents_of, packed, unpacked
-from hpn.tables.reading import TIMES
 from hpn.web.archive import RETRY_SECONDS
 from hpn.web.door.access import admit, key_needed
 from hpn.web.door.bodies import pairs_of, read_form
@@ -37,7 +36,7 @@ from hpn.web.fleets import Tables, size_fleet, workplace
 from hpn.web.form.labels import TITLE_BLOCK, faults_of
 from hpn.web.form.symbols import AXIS_INPUTS
 from hpn.web.pages.fleet_view import ROWS_ON_PAGE, SHOWN, Chosen, FleetPageView
-from hpn.web.pages.paste import DECIMALS, assumed, choices_of
+from hpn.web.pages.paste import assumed, choices_of
 from hpn.web.pages.refusals import reads_pages
 from hpn.web.pages.saved_list import changed_since, names_of, version_of
 from hpn.web.pages.templates import environment
@@ -472,8 +471,6 @@ _WORDS: dict[str, Any] = {
     "roles": {role: each.named for role, each in AXIS_INPUTS.by_role.items()},
     "skip": SKIP,
     "cells": CELLS,
-    "decimals": DECIMALS,
-    "times": TIMES,
 }
 
 router = APIRouter(include_in_schema=False, dependencies=[needs("fleet")])

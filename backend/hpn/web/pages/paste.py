@@ -21,10 +21,9 @@ from starlette.responses import HTMLResponse, RedirectResponse, Response
 from hpn.application import Application
 from hpn.application.faults import plain_message, pointer
 from hpn.tables.columns import CELLS, SKIP, Choices, Column
-from hpn.tables.cycles import LAST, PARTS, PHASE, TOTALS, CycleTable, read_grids
+from hpn.tables.cycles import CycleTable, read_grids
 from hpn.tables.files import Contents, Wanted, contents_of, contents_of_text, packed, tidied, unpacked
 from hpn.tables.inputs import CYCLE, PHASE_ROLES, Inputs
-from hpn.tables.reading import TIMES
 from hpn.tables.sheets import MAXIMUM_CHARACTERS, SEPARATORS, Grid
 from hpn.web.door.access import admit
 from hpn.web.door.bodies import pairs_of, parsed
@@ -46,7 +45,6 @@ from hpn.words.wording import N_, Sentence
 FIRST_ROWS, LAST_ROWS = 6, 2
 """Rows of a long table that the preview shows."""
 
-DECIMALS = {".": N_("a point"), ",": N_("a comma")}
 NOTHING = N_("there is nothing in the workbook")
 WANTED = Wanted(MAXIMUM_PHASES, MAXIMUM_CHARACTERS)
 SHORT_CHARACTERS = 8_000
@@ -336,12 +334,6 @@ _WORDS = {
     "skip": SKIP,
     "cells": CELLS,
     "separators": SEPARATORS,
-    "decimals": DECIMALS,
-    "phase": PHASE,
-    "times": TIMES,
-    "last": LAST,
-    "totals": TOTALS,
-    "parts": PARTS,
 }
 
 router = APIRouter(include_in_schema=False, dependencies=[admit("calculator")])
