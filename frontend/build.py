@@ -1,4 +1,5 @@
-"""Write the page's assets to frontend/dist under content-hashed names, each text file with its compressed forms.
+"""Write the page's assets to frontend/dist under content-hashed names, each text file with its compressed forms, and
+the fonts of the PDF to frontend/dist/noto.
 
 A name changes exactly when its content does, so the service may let browsers keep every file for ever.
 `manifest.json` maps the logical name a template asks for ("app.css") to the hashed one ("app.3f2a9c1b.css").
@@ -20,6 +21,9 @@ PACKAGES = {
     "htmx.min.js": FRONTEND / "node_modules/htmx.org/dist/htmx.min.js",
     "plotly-basic.min.js": FRONTEND / "node_modules/plotly.js-basic-dist-min/plotly-basic.min.js",
 }
+NOTO = FRONTEND / "node_modules/@expo-google-fonts"
+"""Packages of Noto fonts, one for each script: as Google publishes them, in nine weights."""
+
 TEXT_SUFFIXES = {".css", ".html", ".js", ".json", ".map", ".mjs", ".svg", ".txt", ".webmanifest", ".xml"}
 
 
@@ -56,9 +60,19 @@ def write(target: Path, content: bytes) -> None:
         target.with_name(target.name + ".gz").write_bytes(gzip.compress(content, mtime=0))
 
 
+def copy_fonts() -> None:
+    """Copy the regular weight of each Noto font, with the licence that goes along with it."""
+    (DIST / "noto").mkdir(parents=True)
+    for font in sorted(NOTO.glob("noto-*/400Regular/*.ttf")):
+        name = font.name.replace("_400Regular", "")
+        shutil.copyfile(font, DIST / "noto" / name)
+        shutil.copyfile(font.parents[1] / "LICENSE_FONT", DIST / "noto" / f"{name}.OFL.txt")
+
+
 def main() -> None:
     if DIST.exists():
         shutil.rmtree(DIST)
+    copy_fonts()
     manifest: dict[str, str] = {}
     for name, path in sources().items():
         content = sent(path)

@@ -13,7 +13,7 @@ EXTRAS = {
         *("aiosqlite", "alembic", "babel", "brotli", "fastapi", "httptools", "jinja2", "markupsafe", "openpyxl"),
         *("orjson", "prometheus_client", "sqlalchemy", "starlette", "structlog", "uvicorn", "xlsxwriter", "zstandard"),
     ),
-    "report": ("manimgx_fonts", "manimgx_fonts_cjk", "segno", "typst"),
+    "report": ("segno", "typst"),
     "aas": ("basyx", "pyecma376_2"),
     "fleet": ("pyarrow", "tqdm"),
     "cluster": ("dask", "distributed"),

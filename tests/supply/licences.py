@@ -68,7 +68,7 @@ INSIDE = """## What is inside packages
 | what | package | licence |
 |---|---|---|
 | fonts in the PDF: Libertinus Serif | typst | OFL-1.1 |
-| fonts in the PDF: Noto | manimgx-fonts, manimgx-fonts-cjk | OFL-1.1 |
+| fonts in the PDF: Noto, with licence files in `frontend/dist/noto` | @expo-google-fonts | OFL-1.1 |
 | fonts in the PDF: DejaVu Sans Mono | typst | Bitstream-Vera, changes in the public domain |
 | fonts not used: New Computer Modern | typst | LicenseRef-GUST-Font-License |
 | OpenBLAS, LAPACK | numpy | BSD-3-Clause |
@@ -117,7 +117,7 @@ def sections() -> dict[str, dict[Package, str]]:
     every = {Package(*package[:2]) for lock in locks.DEVELOPMENT_LOCKS for package in locks.python(lock)}
     return {
         "The service": {package: of_python(package.name) for package in run},
-        "The page, as browsers get it": of_page(development=False),
+        "The page, and the fonts of the PDF": of_page(development=False),
         "Development only, Python": {package: of_python(package.name) for package in every - run},
         "Development only, npm": of_page(development=True),
     }

@@ -7,17 +7,16 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-import manimgx_fonts
-import manimgx_fonts_cjk
 import typst
 
 from hpn.files.export import Export
 from hpn.files.report.content import content
+from hpn.installed import data_folder
 from hpn.words.reader import Reader
 
 TEMPLATE = Path(__file__).parent / "report.typ"
-FONT_FOLDERS = [Path(package.__path__[0]) for package in (manimgx_fonts, manimgx_fonts_cjk)]
-FIRST_FONTS = ("Libertinus Serif", "Noto Sans Arabic", "DejaVu Sans Mono", "Noto Sans", "Noto Sans CJK SC")
+FONTS = data_folder("frontend/dist/noto")
+FIRST_FONTS = ("Libertinus Serif", "Noto Sans Arabic", "DejaVu Sans Mono", "Noto Sans", "Noto Sans SC")
 """Fonts that are asked first for a character; then every other Noto font."""
 
 REPLACEMENT = "□"
@@ -63,8 +62,8 @@ def _compiled(data: Mapping[str, Any], title: str, seconds: int) -> bytes:
 
 @cache
 def _fonts() -> typst.Fonts:
-    """The fonts of the packages and of typst itself: the report looks the same on every machine."""
-    return typst.Fonts(include_system_fonts=False, font_paths=FONT_FOLDERS)
+    """Noto fonts of this installation and those of typst: the report looks the same on every machine."""
+    return typst.Fonts(include_system_fonts=False, font_paths=[FONTS])
 
 
 def _forget() -> None:
