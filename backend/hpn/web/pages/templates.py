@@ -46,6 +46,14 @@ TEMPLATES, COMPILED = data_folder("frontend/templates"), assets.DIST / "template
 
 
 class Compiled(FileSystemBytecodeCache):
+    """Compiled templates by their names, so that they are found again in a tree that has been moved."""
+
+    def get_cache_key(self, name: str, filename: str | None = None) -> str:
+        """Key of a template; the source that it was compiled from stands in the file itself."""
+        return super().get_cache_key(name)
+
+
+class ReadOnly(Compiled):
     """Templates as the build compiled them, which takes a third of a start; what has changed since is compiled anew."""
 
     def dump_bytecode(self, bucket: Bucket) -> None:
@@ -73,7 +81,7 @@ def environment(state: State) -> Environment:
 
 def environment_of(static: assets.Assets) -> Environment:
     """Templates as a service uses them."""
-    return _templates(static, Compiled(str(COMPILED)))
+    return _templates(static, ReadOnly(str(COMPILED)))
 
 
 def prepare(templates: Environment) -> None:
@@ -85,10 +93,10 @@ def prepare(templates: Environment) -> None:
 def compile_all() -> None:
     """Write what templates compile to, for services to load: a step of the build."""
     COMPILED.mkdir(exist_ok=True)
-    prepare(_templates(assets.Assets.load(), FileSystemBytecodeCache(str(COMPILED))))
+    prepare(_templates(assets.Assets.load(), Compiled(str(COMPILED))))
 
 
-def _templates(static: assets.Assets, compiled: FileSystemBytecodeCache) -> Environment:
+def _templates(static: assets.Assets, compiled: Compiled) -> Environment:
     """Templates for any reader. `_()` takes a format, the filter `t` a text of the domain that may hold a `%`."""
     templates = Environment(
         loader=Unindented(TEMPLATES),
