@@ -39,12 +39,10 @@ from hpn.web.door.metrics import CountedStore, Metrics
 from hpn.web.door.observation import Observation
 from hpn.web.door.pools import Pools
 from hpn.web.door.readers import Readers
-from hpn.web.pages import assets, compared, long_cycles, paste, refusals, saved_list, saving, transfer
+from hpn.web.pages import assets, compared, explanations, paste, saved_list, saving, transfer
 from hpn.web.pages import calculator as pages
 from hpn.web.pages import catalogue as catalogue_pages
-from hpn.web.pages import checks as check_pages
 from hpn.web.pages import fleets as fleet_pages
-from hpn.web.pages import kinds as kind_pages
 from hpn.web.pages import saved as selection_pages
 from hpn.web.settings import Settings
 
@@ -103,9 +101,7 @@ ROUTERS: tuple[APIRouter, ...] = (
     assets.router,
     readers.router,
     catalogue_pages.router,
-    check_pages.router,
-    kind_pages.router,
-    long_cycles.router,
+    explanations.router,
     paste.router,
     fleet_pages.router,
     transfer.router,
@@ -147,7 +143,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     app.state.disk = Disk(settings.maximum_spool_bytes)
     app.state.metrics = Metrics()
     app.state.store = CountedStore(app.state.metrics, **settings.database())
-    problems.install(app, refusals.page_of)
+    problems.install(app, explanations.page_of)
     app.add_exception_handler(StoreUnavailableError, archive.unavailable)
     for router in ROUTERS:
         app.include_router(router)

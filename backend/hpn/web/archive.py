@@ -19,9 +19,16 @@ from hpn.store import Draft, KeyReusedError, KeySpentError, SavedSelection
 from hpn.web.door.observation import note
 from hpn.web.door.pools import compute
 from hpn.web.door.problems import Problem
-from hpn.web.form.labels import CONTROLS, LONGEST_LABEL, NO_CONTROLS, faults_of, query_of
+from hpn.web.form.labels import (
+    CONTROLS,
+    LONGEST_LABEL,
+    NO_CONTROLS,
+    OrderingCode,
+    faults_of,
+    query_of,
+    read_ordering_code,
+)
 from hpn.web.form.link_writer import to_link
-from hpn.web.form.ordering import OrderingCode, read_ordering_code
 from hpn.words.fields import Model
 from hpn.words.wording import N_, Sentence
 

@@ -26,10 +26,10 @@ from hpn.web.door.bodies import parsed, read_body
 from hpn.web.door.conditions import etag_of, has_already
 from hpn.web.door.pools import pool_of, while_present
 from hpn.web.door.problems import Problem, needs
+from hpn.web.form.labels import ordering_code
 from hpn.web.form.labels import query_of as query_of_labels
 from hpn.web.form.link_writer import to_link
 from hpn.web.form.linked import linked, query_of
-from hpn.web.form.ordering import ordering_code
 from hpn.web.settings import Settings
 from hpn.words.reader import Reader
 

@@ -21,6 +21,7 @@ from hpn.web.form.bodies import BodyTable, body_table, with_inertia
 from hpn.web.form.given import REQUIRED, FieldProblem, Given, shown_columns
 from hpn.web.form.labels import LABELS, query_of
 from hpn.web.form.refusals import refusal_of
+from hpn.web.form.rows import TEXT, expanded
 from hpn.web.form.symbols import (
     BY_NAME,
     BY_PATH,
@@ -167,9 +168,10 @@ def address_of_empty(form: Form) -> str:
 
 def parse(pairs: Pairs) -> Form:
     """Read a query. Whatever it says, the form comes back with it and with a message beside each wrong field."""
-    pairs, written = in_wire_units(pairs)
+    typed = next((text for name, text in pairs if name == TEXT), None)
+    pairs, written = in_wire_units(expanded(pairs))
     pairs = with_inertia(switched(_own(pairs)))
-    form = _parsed(pairs, written)
+    form = replace(_parsed(pairs, written), typed=None if typed is None else typed.replace("\r\n", "\n"))
     if ("do", "take") in pairs and form.has_motion and form.application is not None:
         return _parsed(taken_over(pairs, form.application), written)
     return form

@@ -1,7 +1,8 @@
-"""A link as files are made of it, from the address or posted: its application, and the gear that is looked at."""
+"""Links that a request comes with: what files are made of, and the selection that is handed from page to page."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from urllib.parse import urlencode
 
 from starlette.requests import Request
 
@@ -9,7 +10,9 @@ from hpn.application import Application
 from hpn.web.door.bodies import pairs_of
 from hpn.web.door.problems import Problem
 from hpn.web.door.uploads import read_fields
+from hpn.web.door.visit import address
 from hpn.web.form import link_reader
+from hpn.web.form.link_reader import Pairs
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,3 +54,28 @@ def _unreadable(form: link_reader.Form) -> Problem:
     ]
     listed = "; ".join(f"{location[0]} {text}" for location, text in errors[:3])
     return Problem(422, listed or "the link has no application: give T, n and t for each phase", errors)
+
+
+# --- From page to page ------------------------------------------------------------------------------------------------
+
+OWN_NAMES = frozenset(
+    ("output", "motor", "find", "only_size", "only_i", "search", "reference", "cursor", "id", "a", "b", "back")
+)
+"""Parameters of the pages themselves; every other one belongs to that selection."""
+
+LONGEST_LINK = 4000
+"""Longest selection that is handed on."""
+
+
+def carried_pairs() -> Pairs:
+    """Parameters of that selection in the address of the request under way; none where it has no selection."""
+    _, _, query = address().partition("?")
+    pairs = [(name, text) for name, text in pairs_of(query) if name not in OWN_NAMES]
+    known = any(name == "T" for name, _ in pairs)
+    return pairs if known and len(urlencode(pairs)) <= LONGEST_LINK else []
+
+
+def onward(path: str, **more: str) -> str:
+    """Address of another page that keeps that selection; what is given here goes before the same of it."""
+    pairs = [pair for pair in carried_pairs() if pair[0] not in more] + [(n, t) for n, t in more.items() if t]
+    return f"{path}?{urlencode(pairs)}" if pairs else path

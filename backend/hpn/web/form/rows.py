@@ -1,6 +1,13 @@
-"""Rows of the tables of a form, and the buttons that edit them: phases, moves, bodies."""
+"""Rows of the tables of a form: phases, moves, bodies; the buttons that edit them, and phases as one text."""
 
+import re
 from collections.abc import Mapping, Sequence
+
+from hpn.web.form.symbols import PHASE_SYMBOLS
+from hpn.words.fields import MAXIMUM_PHASES
+
+TEXT = "phases"
+"""Field of the form that holds the phases as text, a phase on each line, where they are too many for a table."""
 
 
 class Rows:
@@ -50,3 +57,26 @@ class Rows:
             onward = do if 0 < to < len(self.placed) - 1 else "down" if to == 0 else "up"
             return f"{onward}-{to}"
         return None
+
+
+def expanded(pairs: Sequence[tuple[str, str]]) -> list[tuple[str, str]]:
+    """Pairs of a form with repeated T, n, t, and the others where used, in place of the text of the phases."""
+    plain = [pair for pair in pairs if pair[0] != TEXT]
+    for name, text in pairs:
+        if name == TEXT:
+            lines = text.rstrip().splitlines()[: MAXIMUM_PHASES + 1]
+            plain += _phase_pairs([_cells(line) for line in lines])
+    return plain
+
+
+def _cells(line: str) -> list[str]:
+    """Cells of a line, separated by tabs, semicolons or blanks; the last takes what is too much, and is refused."""
+    cells = re.split(r" *[;\t] *| +", line.strip(" "))
+    return cells[:7] + ([" ".join(cells[7:])] if len(cells) > 7 else [])
+
+
+def _phase_pairs(rows: Sequence[Sequence[str]]) -> list[tuple[str, str]]:
+    """Pairs of rows in the order T, n, t, FRi, FAi, Tpk, npk, Trms; what a short row lacks is blank."""
+    width = max([3, *map(len, rows)])
+    names = [symbol.name for symbol in PHASE_SYMBOLS[: 3 if width <= 3 else 5 if width <= 5 else 8]]
+    return [(name, row[k].strip() if k < len(row) else "") for row in rows for k, name in enumerate(names)]

@@ -15,15 +15,14 @@ from hpn.catalogue.gear import Gear
 from hpn.engine.selection import Candidate, Selection, select
 from hpn.tables.numbers import WRITTEN
 from hpn.web.door.access import admit
-from hpn.web.door.bodies import pairs_of
-from hpn.web.door.pools import worked
+from hpn.web.door.bodies import pairs_of, read_form
+from hpn.web.door.pools import compute, worked
 from hpn.web.door.visit import current
 from hpn.web.form import link_reader
 from hpn.web.form.given import FieldProblem
-from hpn.web.form.labels import query_of
+from hpn.web.form.labels import OrderingCode, ordering_code, query_of
 from hpn.web.form.link_reader import Form
 from hpn.web.form.link_writer import to_link
-from hpn.web.form.ordering import OrderingCode, ordering_code
 from hpn.web.form.ways import CYCLE_NAMES
 from hpn.web.pages.insight import Insight, checked_pins, tail_of
 from hpn.web.pages.result import Result
@@ -91,9 +90,13 @@ def show(request: Request) -> Response:
     return respond(request, read_query(request.scope["query_string"]))
 
 
-def too_long(request: Request) -> Response:
-    """The page of an address that is too long for any page."""
-    return _render(request, "too_long.html", 414, limit=link_reader.MAXIMUM_QUERY_BYTES)
+async def show_posted(request: Request) -> Response:
+    """The same of a form that is posted, since it may be too long for an address; nothing is kept."""
+    return await compute(request, "pages", _posted, request, await read_form(request))
+
+
+def _posted(request: Request, body: bytes) -> Response:
+    return respond(request, link_reader.parse(pairs_of(body)))
 
 
 def respond(request: Request, form: Form) -> Response:
@@ -238,3 +241,4 @@ def _address(answer: Answer | None, form: Form | None) -> str | None:
 
 router = APIRouter(include_in_schema=False, dependencies=[admit("calculator")])
 router.add_api_route("/", worked(show))
+router.add_api_route("/", show_posted, methods=["POST"])

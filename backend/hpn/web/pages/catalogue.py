@@ -16,9 +16,8 @@ from hpn.web.door.access import admit
 from hpn.web.door.bodies import pairs_of
 from hpn.web.door.pools import worked
 from hpn.web.door.visit import current
-from hpn.web.form.labels import query_of
-from hpn.web.form.ordering import OrderingCode, ordering_code
-from hpn.web.pages.carried import carried_pairs, onward
+from hpn.web.form.labels import OrderingCode, ordering_code, query_of
+from hpn.web.form.linked import carried_pairs, onward
 from hpn.web.pages.gear_figures import figures_of, neighbours, series_figures, supplements_for
 from hpn.web.pages.templates import environment
 from hpn.words.designations import canonical_designation, canonical_size
@@ -118,11 +117,6 @@ def _use(gear: Gear, order: OrderingCode) -> str:
 
 def _path(text: str) -> str:
     return quote(text[:60], safe="")
-
-
-def nowhere(request: Request) -> Response:
-    """404 for a reader who followed an address that leads nowhere."""
-    return _render(request, "nowhere.html", 404)
 
 
 def _render(request: Request, template: str, status: int, **context: Any) -> Response:

@@ -25,8 +25,8 @@ from hpn.web.door.access import admit
 from hpn.web.door.pools import compute
 from hpn.web.door.problems import Problem
 from hpn.web.door.visit import current
+from hpn.web.form.linked import onward
 from hpn.web.form.symbols import PHASE_SYMBOLS
-from hpn.web.pages.carried import onward
 from hpn.web.pages.gear_figures import Figure, figures_of
 from hpn.web.pages.result import Result
 from hpn.web.pages.saved import result_of

@@ -35,9 +35,9 @@ from hpn.web.door.uploads import read_parts
 from hpn.web.fleets import Tables, size_fleet, workplace
 from hpn.web.form.labels import TITLE_BLOCK, faults_of
 from hpn.web.form.symbols import AXIS_INPUTS
+from hpn.web.pages.explanations import reads_pages
 from hpn.web.pages.fleet_view import ROWS_ON_PAGE, SHOWN, Chosen, FleetPageView
 from hpn.web.pages.paste import assumed, choices_of
-from hpn.web.pages.refusals import reads_pages
 from hpn.web.pages.saved_list import changed_since, names_of, version_of
 from hpn.web.pages.templates import environment
 from hpn.words.reader import Reader

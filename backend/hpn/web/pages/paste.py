@@ -35,9 +35,10 @@ from hpn.web.form import link_reader
 from hpn.web.form.given import shown_columns
 from hpn.web.form.link_reader import Pairs
 from hpn.web.form.link_writer import to_link
+from hpn.web.form.rows import TEXT, expanded
 from hpn.web.form.symbols import LOADS, VARYING
 from hpn.web.form.ways import CYCLE_NAMES
-from hpn.web.pages import long_cycles
+from hpn.web.pages import calculator
 from hpn.web.pages.templates import environment
 from hpn.words.fields import MAXIMUM_PHASES
 from hpn.words.wording import N_, Sentence
@@ -248,7 +249,7 @@ def _draft(link: str, text: str = "", table: CycleTable | None = None, **more: A
         text,
         preview=_preview(table) if table and not table.problem else None,
         problems=(table.problem,) if table and table.problem else (),
-        has_phases=any(name in {*CYCLE_NAMES, "phases"} and value for name, value in pairs_of(link)),
+        has_phases=any(name in {*CYCLE_NAMES, TEXT} and value for name, value in pairs_of(link)),
         example=table is not None and is_example(link),
         **more,
     )
@@ -256,7 +257,7 @@ def _draft(link: str, text: str = "", table: CycleTable | None = None, **more: A
 
 def is_example(link: str) -> bool:
     """Whether a form says what the handbook's worked example says, and nothing else."""
-    application = link_reader.parse(long_cycles.expanded(pairs_of(link))).application if link else None
+    application = link_reader.parse(pairs_of(link)).application if link else None
     return application is not None and to_link(application) == to_link(Application.worked_example())
 
 
@@ -296,8 +297,8 @@ def taken(draft: PasteDraft, *, append: bool) -> list[tuple[str, str]]:
     In place of the worked example they begin without its pause, emergency stop and ratio.
     """
     assert draft.preview is not None
-    pairs, _ = link_reader.in_wire_units(long_cycles.expanded(pairs_of(draft.link)))
-    dropped = {*CYCLE_NAMES, "do", "phases"}
+    pairs, _ = link_reader.in_wire_units(expanded(pairs_of(draft.link)))
+    dropped = {*CYCLE_NAMES, "do", TEXT}
     if draft.example and not append:
         dropped |= {name for name, _ in pairs_of(to_link(Application.worked_example()).removeprefix("/?"))}
     rest = [(name, value) for name, value in pairs if value.strip() and name not in dropped]
@@ -314,7 +315,7 @@ def _proceed(request: Request, pairs: Pairs) -> Response:
     """On to the page: by its address, and where that would be too long, right here."""
     query = urlencode(pairs)
     if len(query) > link_reader.MAXIMUM_QUERY_BYTES:
-        return long_cycles.respond(request, pairs)
+        return calculator.respond(request, link_reader.parse(pairs))
     return RedirectResponse(f"/?{query}", 303)
 
 

@@ -25,7 +25,7 @@ from hpn.web.door.access import admit
 from hpn.web.door.problems import Problem
 from hpn.web.door.visit import current
 from hpn.web.form import link_reader
-from hpn.web.form.ordering import read_ordering_code
+from hpn.web.form.labels import read_ordering_code
 from hpn.web.pages import calculator
 from hpn.web.pages.gear_figures import Figure, figures_of
 from hpn.web.pages.result import Result

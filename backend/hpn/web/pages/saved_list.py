@@ -17,7 +17,7 @@ from hpn.web.door.pools import compute
 from hpn.web.door.problems import Problem
 from hpn.web.door.requests import require_same_origin
 from hpn.web.form.labels import TITLE_BLOCK, faults_of
-from hpn.web.pages.carried import onward
+from hpn.web.form.linked import onward
 from hpn.web.pages.saving import refused
 from hpn.web.pages.templates import environment
 from hpn.words.fields import Model

@@ -25,7 +25,6 @@ from hpn.web.form.labels import TITLE_BLOCK, query_of
 from hpn.web.form.link_reader import Form, Pairs
 from hpn.web.pages import calculator
 from hpn.web.pages.calculator import Answer
-from hpn.web.pages.long_cycles import expanded
 from hpn.web.pages.templates import environment
 from hpn.words.wording import N_
 
@@ -86,7 +85,7 @@ def _posted(body: bytes) -> Posted:
     given = {name for name, _ in own}
     linked = pairs_of(named.get("link", "").removeprefix("/").removeprefix("?"))
     pairs = [*own, *(pair for pair in linked if pair[0] not in given)]
-    return Posted(pairs, named.get("once", ""), link_reader.parse(expanded(pairs)))
+    return Posted(pairs, named.get("once", ""), link_reader.parse(pairs))
 
 
 def _draft(posted: Posted, catalogue: Catalogue, owner: str | None) -> Draft:

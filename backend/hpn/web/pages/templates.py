@@ -14,14 +14,14 @@ from starlette.datastructures import State
 from hpn.engine.checks import BY_CODE
 from hpn.engine.remedy import DRIVER_NAMES
 from hpn.engine.selection import Candidate, reason_of
-from hpn.explain.calculation import calculation_of
+from hpn.explain.calculation import calculation_of, mathml
 from hpn.explain.drawings.picture import beyond_limit
 from hpn.installed import data_folder
 from hpn.web.door.visit import address, current
 from hpn.web.form import symbols, ways
-from hpn.web.form.ordering import MOTOR_CODE, ordering_code
-from hpn.web.pages import assets, mathml, pictures
-from hpn.web.pages.carried import carried_pairs, onward
+from hpn.web.form.labels import MOTOR_CODE, ordering_code
+from hpn.web.form.linked import carried_pairs, onward
+from hpn.web.pages import assets, pictures
 from hpn.web.pages.fleet_reasons import reasons_of
 from hpn.web.pages.result import BEST
 from hpn.web.preview import preview_of
@@ -110,7 +110,7 @@ def _templates(static: assets.Assets, compiled: Compiled) -> Environment:
     templates.install_gettext_callables(  # type: ignore[attr-defined]
         _for_reader("text"), _for_reader("plural"), newstyle=True
     )
-    templates.filters |= FILTERS | pictures.FILTERS | mathml.FILTERS
+    templates.filters |= FILTERS | pictures.FILTERS
     templates.tests |= {"beyond_limit": beyond_limit}
     templates.globals |= GLOBALS | {"asset": static.url}
     return templates
@@ -125,6 +125,10 @@ def _for_reader(method: str) -> Callable[..., Any]:
         return getattr(current(), method)(*arguments)
 
     return pass_context(filtered)
+
+
+def _as_mathml(write: Callable[[Reader, Any], str]) -> Callable[..., Markup]:
+    return pass_context(lambda _, formula: Markup(write(current(), formula)))
 
 
 @lru_cache(maxsize=4096)
@@ -198,6 +202,10 @@ FILTERS: dict[str, Callable[..., Any]] = {
     "say": _say,
     "symbols": with_symbols,
     "t": _for_reader("text"),
+    **{
+        write.__name__: _as_mathml(write)
+        for write in (mathml.in_symbols, mathml.with_numbers, mathml.result, mathml.compared)
+    },
     **{
         name: _for_reader(name)
         for name in ("exact", "percent", "capped_percent", "unit", "told", "quantity", "source", "translated")
