@@ -101,7 +101,7 @@ class Export:
         return candidates
 
     def is_lower_bound(self, candidate: Json) -> bool:
-        """Whether the motor torques of a candidate are loss-free in some phase."""
+        """True where the motor torques of a candidate are loss-free in some phase."""
         return self.typed().is_lower_bound(candidate_of(candidate))
 
     def typed(self) -> export.Export:

@@ -38,7 +38,7 @@ MEANT = cycle(
     emergency_stop=STOP,
     requirements=ASKED,
 )
-"""What is saved, and what `changed` makes of it: no gear is left that passes."""
+"""Application that is saved, and the one that `changed` makes of it, in which no gear passes."""
 
 EXTREME = (phase(0.01, 1e-3, 12345.678, peak_torque_Nm=999_999.123, peak_speed_rpm=99_999.1234), phase(0.5, 0, 1e6))
 """Figures from far below 1 to a life of more hours than a column has room for."""
@@ -81,7 +81,7 @@ def assert_chosen_agrees(book: Workbook, chosen: Json, name: str) -> None:
 
 
 def shows(document: bytes, colour: tuple[int, int, int]) -> bool:
-    """Whether an area of the first page has a colour."""
+    """True where an area of the first page has a colour."""
     image = pypdfium2.PdfDocument(document)[0].render(rev_byteorder=True).to_numpy()[..., :3]
     return int(np.equal(image, colour).all(axis=-1).sum()) > 100
 

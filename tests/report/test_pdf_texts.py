@@ -209,6 +209,6 @@ def test_a_limit_above_every_number_is_a_word(code: str, word: str, catalogue: C
 
 
 def _check(title: str, case: Json, catalogue: Catalogue, code: str) -> dict[str, Any]:
-    """What the report says of a check."""
+    """Text of the report on a check."""
     reader = language(code)
     return {row["title"]: row for row in checks(typed_export_of(case, catalogue), reader)}[reader.text(title)]

@@ -1,4 +1,4 @@
-"""What a workbook holds as saved, since no formula gives it, once an input behind it is changed: it is not rated."""
+"""Saved figures of a workbook that no formula gives: not rated once an input behind them is changed."""
 
 from dataclasses import replace
 from io import BytesIO
@@ -33,7 +33,7 @@ PEAK, RMS = (f"{BY_CODE[code].title} [Nm]" for code in ("motor_peak_torque", "mo
 WEIGHT, AMBIENT = f"{BY_CODE['weight'].title} [kg]", f"{BY_CODE['ambient_temperature'].title} [°C]"
 
 Change = tuple[str, Any] | tuple[str, Any, int]
-"""What is written into which cell, or into which row of a column."""
+"""Values by the cell, or the column and row, that they are written into."""
 
 WITH_SUPPLEMENT: dict[str, tuple[list[Change], set[str]]] = {
     "as saved": ([], set()),

@@ -130,7 +130,7 @@ def test_article_number_and_order_code_say_what_they_are(catalogue: Catalogue) -
 
 
 def test_data_are_valid_from_the_day_they_were_saved(catalogue: Catalogue) -> None:
-    """What is not saved has no date."""
+    """A selection that is not saved has no date."""
     export = typed_export_of(EVERYTHING, catalogue)
     for created, shown in ((datetime(2026, 3, 1, 1, tzinfo=timezone(timedelta(hours=2))), "2026-02-28"), (None, None)):
         technical = read(package(replace(export, created=created), "3.1"))[0]["TechnicalData"]

@@ -48,7 +48,7 @@ def got(book: Workbook, name: str) -> Any:
 
 
 def beside(book: Workbook, name: str) -> Any:
-    """What the row of a defined name says of its source."""
+    """Source in the row of a defined name."""
     sheet, cell = next(iter(book.defined_names[name].destinations))
     return book[sheet][cell.replace("$", "")].offset(column=2).value
 
@@ -164,7 +164,7 @@ CHANGES: dict[str, tuple[Json, list[tuple[Any, ...]], Json]] = {
         ),
     ),
 }
-"""What is saved, what is written into which cell (and row of a block), and the application that this makes."""
+"""Saved application, values by cell (and row of a block), and the application that they make of it."""
 
 
 def test_changed_inputs_recalculate_to_what_the_service_says(catalogue: Catalogue, recalculate: Recalculate) -> None:

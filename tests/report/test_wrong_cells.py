@@ -54,7 +54,7 @@ WRONG: dict[str, tuple[Json, list[tuple[Any, ...]], str]] = {
         "",
     ),
 }
-"""What is saved, what is written into which cell (and row of a block), and what the row of an input then says."""
+"""Saved application, values by cell (and row of a block), and the remark in the row of the input then."""
 
 RIGHT: dict[str, tuple[Json, list[tuple[Any, ...]]]] = {
     "ends of the bounds": (LOADED, [("f_w", 3), ("u", 1), ("L_b", 1e9), ("pause_s", 0), ("T_k", -1e6), ("N_k", 0)]),
@@ -123,7 +123,7 @@ def test_wrong_cells_are_red_and_refused_as_they_are_typed(catalogue: Catalogue)
 
 
 def _remark(book: Workbook, name: str) -> str:
-    """What the row of an input says at its end."""
+    """Remark at the end of an input's row."""
     sheet, cell = next(iter(book.defined_names[name].destinations))
     return str(book[sheet][cell.replace("$", "")].offset(column=5).value)
 

@@ -222,7 +222,7 @@ def boxes(drawn: Shown) -> list[tuple[str, float, float, float, float]]:
 
 
 def _is_over(dot: Element | None, disc: Element | None) -> bool:
-    """Whether a dot that is drawn later lies on a disc, and so on its number."""
+    """True where a dot that is drawn later lies on a disc, and so on its number."""
     if dot is None or disc is None:
         return False
     left, top, width, height = (float(disc.get(name, "")) for name in ("x", "y", "width", "height"))

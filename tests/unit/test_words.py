@@ -34,7 +34,7 @@ ENGLISH = (
     r"out of reach|leads nowhere",
     r"[Bb]est compromise|^Keys$|adaption",
 )
-"""What the left column of the English list has, as patterns."""
+"""Patterns of the left column of the English list."""
 
 GERMAN = (
     r"\b[Ll]astfaktor",
