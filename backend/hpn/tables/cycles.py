@@ -4,7 +4,7 @@ from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import chain
-from math import isclose, nan
+from math import isclose, isfinite, nan
 
 from hpn.tables.bodies import DIVIDED, Body, Labelled, body_of
 from hpn.tables.cells import DECIMALS, TIME_PARTED, Decimal, Entry, entry, is_blank, is_number
@@ -55,6 +55,12 @@ class CycleTable(Table):
     separator: str = ""
     turned: bool = False
     phases: tuple[tuple[str, ...], ...] = ()
+
+    @property
+    def lasting_s(self) -> float | None:
+        """Seconds that all phases take; None where that is not known, or too long for a number."""
+        total = sum(float(phase[PHASE_ROLES.index("t")] or 0) for phase in self.phases)
+        return total if self.phases and isfinite(total) else None
 
     @property
     def asks_times(self) -> bool:

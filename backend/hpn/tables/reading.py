@@ -11,7 +11,7 @@ from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from itertools import chain, pairwise
 from math import inf, isfinite
-from typing import Any
+from typing import Any, Literal, NamedTuple
 
 from hpn.tables.bodies import Body
 from hpn.tables.cells import DECIMALS, LONGEST_CELL, PERCENT, Decimal, Entry, entry, is_blank, is_number, written
@@ -121,11 +121,40 @@ class Table:
         """A choice by its name; None where the table leaves none."""
         return next((choice for choice in self.choices if choice.name == name), None)
 
-    def entries(self, cell: str, column: Column) -> set[Entry]:
-        """Numbers that a cell of a column may be: none for a blank cell or a text, two where the mark is asked."""
-        marks = (self.decimal,) if self.decimal else DECIMALS
-        found = {entry(cell, mark, any_unit=True) for mark in marks if column.is_number and not is_blank(cell)}
-        return {each for each in found if each}
+    @property
+    def hidden(self) -> int:
+        """Number of rows of a long table that are not shown."""
+        count = len(self.body.rows) if self.body else 0
+        return count - FIRST_ROWS - LAST_ROWS if count > FIRST_ROWS + LAST_ROWS + 1 else 0
+
+    @property
+    def shown(self) -> list[tuple[int, list["Shown"]]]:
+        """The first and the last rows with their numbers, each cell as it is read."""
+        if self.body is None:
+            return []
+        rows = list(zip(self.body.numbers, self.body.rows, strict=True))
+        if self.hidden:
+            rows = rows[:FIRST_ROWS] + rows[-LAST_ROWS:]
+        return [(number, [self._shown(row[column.place], column) for column in self.columns]) for number, row in rows]
+
+    def _shown(self, cell: str, column: Column) -> "Shown":
+        if not column.is_number or is_blank(cell):
+            return Shown(cell, kind="text" if column.held else "unread")
+        found = {entry(cell, mark, any_unit=True) for mark in ((self.decimal,) if self.decimal else DECIMALS)} - {None}
+        read = found.pop() if len(found) == 1 else None
+        return Shown(*read, kind="number") if read else Shown(cell, kind="asked")
+
+
+FIRST_ROWS, LAST_ROWS = 6, 2
+"""Rows of a long table that are shown."""
+
+
+class Shown(NamedTuple):
+    """A cell of a preview: a number in plain notation with its unit, one with two readings or none, or a text."""
+
+    text: str
+    unit: str = ""
+    kind: Literal["number", "asked", "text", "unread"] = "unread"
 
 
 class Reading:

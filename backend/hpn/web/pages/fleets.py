@@ -21,8 +21,6 @@ from hpn.catalogue import Catalogue
 from hpn.store import FleetDraft, NoRoomError, SavedFleet, ShareSpentError, StoreUnavailableError
 from hpn.store.fleets import MOST_OF_CALLER
 from hpn.tables.axes import AxisTable
-from hpn.tables.cells import is_blank
-from hpn.tables.columns import CELLS, SKIP, Column
 from hpn.tables.files import Contents, Wanted, contents_of, packed, unpacked
 from hpn.web.archive import RETRY_SECONDS
 from hpn.web.door.access import admit, key_needed
@@ -51,7 +49,6 @@ MEDIA_TYPES = {
 }
 """Formats of the answers in the order in which they are offered: what keeps a text a text comes first."""
 
-ROWS_IN_PREVIEW = 8
 CHANGES_ON_PAGE = 100
 NO_ROOM_SECONDS = 3600
 WRITTEN = {"title": "title", "ref": "reference", "author": "author", "rev": "revision"}
@@ -85,26 +82,6 @@ class Draft:
     sheets: tuple[str, ...] = ()
     sheet: str = ""
     taken: tuple[bytes, str] | None = field(default=None, repr=False)
-
-    @property
-    def rows(self) -> list[tuple[int, list[tuple[str, bool, bool]]]]:
-        """The first rows: number, and of each cell its text, whether it is a number, and whether it is asked."""
-        body = self.table and self.table.body
-        if not body or not self.table:
-            return []
-        table = self.table
-        pairs = list(zip(body.numbers, body.rows, strict=True))[:ROWS_IN_PREVIEW]
-        return [
-            (number, [_cell(row[column.place], column, table) for column in table.columns]) for number, row in pairs
-        ]
-
-
-def _cell(cell: str, column: Column, table: AxisTable) -> tuple[str, bool, bool]:
-    found = table.entries(cell, column)
-    if len(found) != 1:
-        return cell, False, column.is_number and not is_blank(cell)
-    number, unit = found.pop()
-    return f"{number} {unit}".strip(), not unit, False
 
 
 # --- Uploading --------------------------------------------------------------------------------------------------------
@@ -468,9 +445,7 @@ def _render(request: Request, template: str, status: int, **shown: Any) -> Respo
 
 
 _WORDS: dict[str, Any] = {
-    "roles": {role: each.named for role, each in AXIS_INPUTS.by_role.items()},
-    "skip": SKIP,
-    "cells": CELLS,
+    "roles": AXIS_INPUTS.by_role,
 }
 
 router = APIRouter(include_in_schema=False, dependencies=[needs("fleet")])

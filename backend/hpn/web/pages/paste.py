@@ -9,7 +9,6 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
-from math import isfinite
 from typing import Any
 from urllib.parse import urlencode
 
@@ -20,7 +19,7 @@ from starlette.responses import HTMLResponse, RedirectResponse, Response
 
 from hpn.application import Application
 from hpn.application.faults import plain_message, pointer
-from hpn.tables.columns import CELLS, SKIP, Choices, Column
+from hpn.tables.columns import Choices
 from hpn.tables.cycles import CycleTable, read_grids
 from hpn.tables.files import Contents, Wanted, contents_of, contents_of_text, packed, tidied, unpacked
 from hpn.tables.inputs import CYCLE, PHASE_ROLES, Inputs
@@ -43,45 +42,12 @@ from hpn.web.pages.templates import environment
 from hpn.words.fields import MAXIMUM_PHASES
 from hpn.words.wording import N_, Sentence
 
-FIRST_ROWS, LAST_ROWS = 6, 2
-"""Rows of a long table that the preview shows."""
-
 NOTHING = N_("there is nothing in the workbook")
 WANTED = Wanted(MAXIMUM_PHASES, MAXIMUM_CHARACTERS)
 SHORT_CHARACTERS = 8_000
 """Texts up to which a worker reads at once: whatever they say, that takes some 50 ms."""
 
 _PLACE = re.compile(r"([ru])([0-9]{1,6})")
-
-
-@dataclass(frozen=True, slots=True)
-class TableRow:
-    """A row of a preview: its number in the table, and its cells."""
-
-    number: int
-    cells: tuple["TableCell", ...]
-
-
-@dataclass(frozen=True, slots=True)
-class TableCell:
-    """A number as it is read, in plain notation, or a text as it is written; `asked` where it has two readings."""
-
-    text: str
-    unit: str = ""
-    read: bool = False
-    asked: bool = False
-
-
-@dataclass(frozen=True, slots=True)
-class TablePreview:
-    """A table as the page shows it."""
-
-    table: CycleTable
-    count: int
-    hidden: int
-    first: tuple[TableRow, ...]
-    last: tuple[TableRow, ...]
-    total_s: float | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,7 +60,7 @@ class PasteDraft:
 
     link: str
     text: str = ""
-    preview: TablePreview | None = None
+    table: CycleTable | None = None
     application: Application | None = None
     problems: tuple[Sentence, ...] = ()
     has_phases: bool = False
@@ -205,7 +171,7 @@ def assumed(inputs: Inputs) -> tuple[str, ...]:
 
 def _taken_or_shown(request: Request, fields: Mapping[str, str], draft: PasteDraft) -> Response:
     mode = fields.get("take", "").partition(":")[0]
-    if mode in ("replace", "append") and draft.preview and draft.preview.table.whole:
+    if mode in ("replace", "append") and draft.table and draft.table.whole:
         return _proceed(request, taken(draft, append=mode == "append"))
     return _render(request, draft, 422 if draft.problems else 200)
 
@@ -239,7 +205,7 @@ def _opened(link: str, text: str) -> PasteDraft:
         return PasteDraft(link, text, problems=tuple(problems))
 
 
-# --- Drafts and previews ----------------------------------------------------------------------------------------------
+# --- Drafts -----------------------------------------------------------------------------------------------------------
 
 
 def _draft(link: str, text: str = "", table: CycleTable | None = None, **more: Any) -> PasteDraft:
@@ -247,7 +213,7 @@ def _draft(link: str, text: str = "", table: CycleTable | None = None, **more: A
     return PasteDraft(
         link,
         text,
-        preview=_preview(table) if table and not table.problem else None,
+        table=table if table and not table.problem else None,
         problems=(table.problem,) if table and table.problem else (),
         has_phases=any(name in {*CYCLE_NAMES, TEXT} and value for name, value in pairs_of(link)),
         example=table is not None and is_example(link),
@@ -261,48 +227,18 @@ def is_example(link: str) -> bool:
     return application is not None and to_link(application) == to_link(Application.worked_example())
 
 
-def _preview(table: CycleTable) -> TablePreview:
-    assert table.body is not None  # only a table with a problem has none
-    count = len(table.body.rows)
-    short = count <= FIRST_ROWS + LAST_ROWS + 1
-    first, last = (range(count), range(0)) if short else (range(FIRST_ROWS), range(count - LAST_ROWS, count))
-    total_s = sum(float(phase[PHASE_ROLES.index("t")] or 0) for phase in table.phases)
-    return TablePreview(
-        table=table,
-        count=len(table.phases),
-        hidden=count - len(first) - len(last),
-        first=tuple(_row(table, k) for k in first),
-        last=tuple(_row(table, k) for k in last),
-        total_s=total_s if table.phases and isfinite(total_s) else None,
-    )
-
-
-def _row(table: CycleTable, k: int) -> TableRow:
-    assert table.body is not None
-    row = table.body.rows[k]
-    return TableRow(table.body.numbers[k], tuple(_cell(table, column, row[column.place]) for column in table.columns))
-
-
-def _cell(table: CycleTable, column: Column, cell: str) -> TableCell:
-    found = table.entries(cell, column)
-    if len(found) != 1:
-        return TableCell(cell, asked=bool(found))
-    read = found.pop()
-    return TableCell(read.number, read.unit, read=True)
-
-
 def taken(draft: PasteDraft, *, append: bool) -> list[tuple[str, str]]:
     """Pairs of the form with the phases of a table, instead of its own or after them.
 
     In place of the worked example they begin without its pause, emergency stop and ratio.
     """
-    assert draft.preview is not None
+    assert draft.table is not None
     pairs, _ = link_reader.in_wire_units(expanded(pairs_of(draft.link)))
     dropped = {*CYCLE_NAMES, "do", TEXT}
     if draft.example and not append:
         dropped |= {name for name, _ in pairs_of(to_link(Application.worked_example()).removeprefix("/?"))}
     rest = [(name, value) for name, value in pairs if value.strip() and name not in dropped]
-    rows = [dict(zip(PHASE_ROLES, phase, strict=True)) for phase in draft.preview.table.phases]
+    rows = [dict(zip(PHASE_ROLES, phase, strict=True)) for phase in draft.table.phases]
     if append:
         given = link_reader.parse(pairs).rows
         rows = [dict(row) for row in given if any(text.strip() for text in row.values())] + rows
@@ -331,9 +267,7 @@ def _render(request: Request, draft: PasteDraft, status: int) -> Response:
 
 
 _WORDS = {
-    "columns": PHASE_ROLES,
-    "skip": SKIP,
-    "cells": CELLS,
+    "roles": CYCLE.by_role,
     "separators": SEPARATORS,
 }
 
