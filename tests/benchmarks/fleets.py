@@ -149,8 +149,8 @@ RATINGS = (
 def kernel(folder: Path) -> dict[str, Any]:
     """Microseconds per axis of all gears and six checks: numpy as the fleet does it, a plain loop, and C."""
     catalogue = load_catalogue()
-    axes = Axes(random_axes(np.random.default_rng(1), KERNEL_AXES))
-    few = Axes(axes.table.slice(0, LOOP_AXES))
+    table = random_axes(np.random.default_rng(1), KERNEL_AXES)
+    axes, few = Axes(table, catalogue), Axes(table.slice(0, LOOP_AXES), catalogue)
     runs: dict[str, Callable[[], Sized]] = {
         "numpy": lambda: by_numpy(axes, catalogue),
         "loop": lambda: by_loop(few, catalogue),
@@ -180,8 +180,8 @@ def _timed(run: Callable[[], Sized]) -> Callable[[int], float]:
 
 def by_numpy(axes: Axes, catalogue: Catalogue) -> Sized:
     """The engine, in the chunks of a fleet."""
-    selected, suitable = np.empty(axes.count, np.int32), np.empty(axes.count, np.int32)
-    for gears, rows in axes.gears(catalogue).chunks(axes.phase_counts):
+    selected, suitable = (np.empty(len(axes.counts), np.int32) for _ in range(2))
+    for gears, rows in axes.chunks():
         evaluation = evaluate(axes.duty(rows), gears, catalogue)
         suits = evaluation.verdict == SUITABLE
         suitable[rows] = suits.sum(axis=-1)
@@ -223,10 +223,10 @@ def compiled(compiler: str, folder: Path) -> Any:
 
 def by_c(size: Any, axes: Axes, catalogue: Catalogue) -> Sized:
     """The same, compiled."""
-    selected, suitable = np.empty(axes.count, np.int32), np.empty(axes.count, np.int32)
+    selected, suitable = (np.empty(len(axes.counts), np.int32) for _ in range(2))
     cycles, asked, gears = _arrays(axes, catalogue)
     size(
-        axes.count,
+        len(axes.counts),
         PHASES,
         cycles.ctypes,
         asked.ctypes,
@@ -242,7 +242,7 @@ def by_c(size: Any, axes: Axes, catalogue: Catalogue) -> Sized:
 
 def _arrays(axes: Axes, catalogue: Catalogue) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Phases by magnitude (axes, phases, 3), what is asked for (axes, 3), figures of the gears (gears, 7)."""
-    duty = axes.duty(np.arange(axes.count))
+    duty = axes.duty(np.arange(len(axes.counts)))
     series = (duty.phases.torque_Nm, duty.phases.speed_rpm, duty.phases.duration_s)
     columns = catalogue.restricted(None, None).columns
     return (

@@ -8,7 +8,7 @@ import pytest
 
 from hpn.catalogue import Catalogue
 from hpn.fleet.run import Order, size_fleet
-from tests.fleet.tables import Row, here, quiet, read, write
+from tests.fleet.tables import Row, read, write
 
 Size = Callable[..., list[Row]]
 
@@ -31,7 +31,7 @@ def size(catalogue: Catalogue, tmp_path: Path) -> Size:
             write(order.axes, rows)
         if beside is not None:
             order = replace(order, requirements=write(tmp_path / f"beside{suffix}", beside))
-        size_fleet(replace(order, candidates=candidates), catalogue, here, quiet)
+        size_fleet(replace(order, candidates=candidates), catalogue)
         return read(order.answers)
 
     return run

@@ -8,11 +8,11 @@ from hpn.fleet.listing import kept_listing_of
 from hpn.fleet.run import Order, size_fleet
 from hpn.store import FleetDraft
 from hpn.web.pages.fleet_result import draft_of
-from tests.fleet.tables import Row, here, quiet, write
+from tests.fleet.tables import Row, write
 
 
 def fleet_draft(rows: Sequence[Row], folder: Path, catalogue: Catalogue) -> FleetDraft:
     """What is kept of a fleet of rows."""
     axes, answers = write(folder / "axes.ndjson", rows), folder / "answers.parquet"
-    size_fleet(Order(axes, answers), catalogue, here, quiet)
+    size_fleet(Order(axes, answers), catalogue)
     return draft_of(kept_listing_of(axes, answers, catalogue), catalogue)

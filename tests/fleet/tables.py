@@ -4,7 +4,7 @@ import csv
 import json
 import math
 import sys
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -12,8 +12,6 @@ import pyarrow as pa
 import pyarrow.csv as pacsv
 import pyarrow.parquet as pq
 
-from hpn.fleet.grouping import Part
-from hpn.fleet.job import Job, compute
 from tests.build import Json
 
 PHASE = (
@@ -150,20 +148,6 @@ def _long_table(rows: Sequence[Row]) -> pa.Table:
 
 def _cell(value: Any) -> Any:
     return "" if value is None else json.dumps(value) if isinstance(value, list) else value
-
-
-# --- Sizing -----------------------------------------------------------------------------------------------------------
-
-
-def here(job: Job, parts: Mapping[int, Part]) -> Iterator[int]:
-    """Engine that works in this process: what is not about processes needs none."""
-    for number, part in parts.items():
-        compute(job, number, part)
-        yield number
-
-
-def quiet(done: int, total: int, counted: str) -> None:
-    """Shows no progress."""
 
 
 # --- Reading ----------------------------------------------------------------------------------------------------------

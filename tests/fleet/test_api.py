@@ -21,7 +21,7 @@ from hpn.web.app import create_app
 from hpn.web.door.pools import Pool
 from hpn.web.settings import Settings
 from tests.build import worked_example
-from tests.fleet.tables import Row, here, in_long_form, quiet, row_of, spoiled, table_of, write
+from tests.fleet.tables import Row, in_long_form, row_of, spoiled, table_of, write
 from tests.operations.service import Service, children_of, is_gone, serving, until
 from tests.property.draw import at_random
 from tests.state import state_of
@@ -95,7 +95,7 @@ def test_an_answer_is_what_the_command_writes_to_the_byte(
         table, axes = write(tmp_path / f"axes{suffix}", rows), None
         sent = {"content": table.read_bytes(), "headers": {"Content-Type": TYPES[suffix]}}
     order = Order(table, files["answers"], axes, candidates=files["candidates"], rejected=files["rejected"])
-    size_fleet(order, catalogue, here, quiet)
+    size_fleet(order, catalogue)
 
     answer = service.client.post(PATH, params={"give": give}, **sent)
 
@@ -317,7 +317,7 @@ def test_small_calculations_are_answered_beside_a_fleet_which_ends_when_its_clie
     with socket.create_connection(("127.0.0.1", service.port)) as connection:
         connection.sendall(f"{head}Content-Length: {len(long_work)}\r\n\r\n".encode() + long_work)
         (command,) = until(lambda: fleet_processes(service))
-        until(lambda: list((service.log.parent / "spool").glob("*/*.parts/plan.json")))
+        until(lambda: list((service.log.parent / "spool").glob("*/.unfinished.*.candidates")))
 
         for _ in range(20):
             assert service.client.post("/api/v1/select", json=worked_example()).status_code == 200
@@ -346,7 +346,7 @@ def test_a_fleet_ends_when_its_service_is_killed_and_the_next_one_cleans_up(long
         head = f"POST {PATH}?give=candidates HTTP/1.1\r\nHost: localhost\r\nContent-Type: {TYPES['.parquet']}\r\n"
         connection.sendall(f"{head}Content-Length: {len(long_work)}\r\n\r\n".encode() + long_work)
         (command,) = until(lambda: fleet_processes(first))
-        until(lambda: list((tmp_path / "spool").glob("*/*.parts/plan.json")))
+        until(lambda: list((tmp_path / "spool").glob("*/.unfinished.*.candidates")))
         first.process.kill()
         until(lambda: is_gone(command))
 

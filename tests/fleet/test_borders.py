@@ -1,17 +1,19 @@
-"""No end of a batch, a stretch, a slice or a part changes an answer: each kind of fault is moved over every border."""
+"""No end of a block, a batch or a slice changes an answer: each kind of fault is moved over every border."""
 
 import json
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 from hpn.catalogue import Catalogue
-from hpn.fleet import grouping, job, lines, tables
+from hpn.fleet import lines, run, tables
+from hpn.fleet.errors import FleetError
+from hpn.fleet.gathering import axes_of
 from hpn.fleet.opened import open_axes
 from hpn.fleet.run import Order, size_fleet
-from tests.fleet.tables import Row, here, quiet, read, write
+from tests.fleet.tables import Row, read, write
 
 AXES, PHASES = 5, 3
 ROWS = AXES * PHASES
@@ -58,6 +60,7 @@ OF_LINES: dict[str, Callable[[str], str]] = {
     "a line cut in its name": lambda line: line[:2],
     "a line cut behind its name": lambda line: line[: line.index("a") + 16],
     "a line without anything": lambda line: ",,",
+    "a quote that nothing closes": lambda line: line.replace("250", '"250', 1),
     "a line with more": lambda line: line + ",9",
     "an empty line": lambda line: "",
     "no number": lambda line: line.replace("250", "2 50"),
@@ -68,32 +71,28 @@ OF_LINES: dict[str, Callable[[str], str]] = {
 
 
 @pytest.fixture
-def cut(monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[[int], None]]:
-    """Makes batches, stretches, slices and parts as small as wanted."""
+def cut(monkeypatch: pytest.MonkeyPatch) -> Callable[[int], None]:
+    """Makes blocks, batches and slices as small as wanted."""
 
     def into(size: int) -> None:
-        job.opened.cache_clear()
-        for module, name in ((tables, "BATCH_ROWS"), (lines, "BATCH_ROWS"), (job, "SLICE_AXES")):
+        for module, name in ((tables, "BATCH_AXES"), (tables, "BATCH_PHASES"), (run, "SLICE_AXES")):
             monkeypatch.setattr(module, name, size)
-        for module, name in ((lines, "UNIT_BYTES"), (grouping, "PART_BYTES")):
-            monkeypatch.setattr(module, name, size * LINE_BYTES)
-        for name in ("PART_PHASES", "PART_AXES"):
-            monkeypatch.setattr(grouping, name, size)
+        monkeypatch.setattr(lines, "BLOCK_BYTES", size * LINE_BYTES)
 
-    yield into
-    job.opened.cache_clear()
+    return into
 
 
 def axes(path: Path) -> list[Any]:
-    """Axes of a file with their phases, and what is wrong with them."""
-    table = open_axes(path)
-    found = []
-    for part in grouping.parts_of(table):
-        for listed in grouping.axes_of(table, part):
-            reasons: list[Any] = [[] for _ in range(listed.rows.num_rows)]
-            for fault in listed.faults:
+    """Axes of a file with their phases, and what is wrong with them, or with the file."""
+    found = list[Any]()
+    try:
+        for batch in axes_of(open_axes(path)):
+            reasons: list[Any] = [[] for _ in range(batch.rows.num_rows)]
+            for fault in batch.faults:
                 reasons[fault.row].append((fault.column, fault.reason))
-            found += [(*row.values(), told) for row, told in zip(listed.rows.to_pylist(), reasons, strict=True)]
+            found += [(*row.values(), told) for row, told in zip(batch.rows.to_pylist(), reasons, strict=True)]
+    except FleetError as error:
+        return [str(error)]
     return found
 
 
@@ -103,7 +102,7 @@ def answers(tmp_path: Path, catalogue: Catalogue) -> Callable[..., Any]:
 
     def run(path: Path, beside: Path | None = None) -> Any:
         order = Order(path, tmp_path / "out.ndjson", beside, rejected=tmp_path / "rejected.ndjson")
-        size_fleet(order, catalogue, here, quiet)
+        size_fleet(order, catalogue)
         return read(order.answers), read(tmp_path / "rejected.ndjson")
 
     return run

@@ -13,11 +13,12 @@ from typing import Any
 import pytest
 
 from hpn.catalogue import Catalogue
-from hpn.fleet import grouping
+from hpn.fleet import run
 from hpn.fleet.cluster import dask
 from hpn.fleet.errors import FleetError
 from hpn.fleet.run import Order, size_fleet
-from tests.fleet.tables import here, quiet, row_of, write
+from hpn.fleet.tables import Progress
+from tests.fleet.tables import row_of, write
 from tests.property.draw import at_random
 
 distributed: Any = import_module("distributed")  # it has no types
@@ -35,20 +36,19 @@ def cluster() -> Iterator[Any]:
 def test_a_cluster_gives_the_same_bytes(
     cluster: Any, tmp_path: Path, catalogue: Catalogue, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(grouping, "PART_AXES", 100)
+    monkeypatch.setattr(run, "SLICE_AXES", 100)
     rows = [row_of(number, at_random(random.Random(number))) for number in range(3000)]
     path = write(tmp_path / "in.parquet", rows, unit_rows=100)
     killed: list[str] = []
 
-    def kill_one(done: int, total: int, counted: str) -> None:
-        if done and not killed:  # parts are done, others not yet
+    def kill_one(progress: Progress) -> None:
+        if not killed:  # some axes are done, others not yet
             with distributed.Client(cluster.scheduler_address, set_as_default=False) as client:
                 worker, _info = next(iter(client.scheduler_info(n_workers=-1)["workers"].items()))
                 killed.append(worker)
                 os.kill(next(w.pid for w in cluster.workers.values() if w.worker_address == worker), signal.SIGKILL)
-        assert done <= total
 
-    size_fleet(Order(path, tmp_path / "here.parquet"), catalogue, here, quiet)
+    size_fleet(Order(path, tmp_path / "here.parquet"), catalogue)
     size_fleet(Order(path, tmp_path / "cluster.parquet"), catalogue, dask(cluster.scheduler_address, 2), kill_one)
 
     assert killed
@@ -77,5 +77,5 @@ def test_the_command_starts_a_cluster_of_its_own(tmp_path: Path) -> None:
 def test_a_scheduler_that_is_not_there_is_said(address: str, tmp_path: Path, catalogue: Catalogue) -> None:
     path = write(tmp_path / "in.csv", [row_of("a", at_random(random.Random(1)))])
     with pytest.raises(FleetError, match=f"--scheduler {address}: "):
-        size_fleet(Order(path, tmp_path / "out.csv"), catalogue, dask(address, 1), quiet)
+        size_fleet(Order(path, tmp_path / "out.csv"), catalogue, dask(address, 1))
     assert list(tmp_path.iterdir()) == [path]

@@ -10,9 +10,9 @@ import pytest
 from hpn.application import Application, InputError
 from hpn.catalogue import Catalogue, load_catalogue
 from hpn.engine.selection import select
-from hpn.fleet.run import Order, processes, size_fleet
+from hpn.fleet.run import Order, here, size_fleet, threads
 from tests.build import Json
-from tests.fleet.tables import FAULTS, Row, here, in_long_form, quiet, read, row_of, spoiled, write
+from tests.fleet.tables import FAULTS, Row, in_long_form, read, row_of, spoiled, write
 from tests.property.draw import at_random
 
 SUPPLEMENT = {
@@ -100,7 +100,7 @@ def test_every_axis_gets_what_select_answers(suffix: str, form: str, fleet: Flee
     else:
         write(order.axes, fleet.rows)
 
-    size_fleet(order, fleet.catalogue, processes(2) if suffix == ".parquet" else here, quiet)
+    size_fleet(order, fleet.catalogue, threads(2) if suffix == ".parquet" else here)
 
     answers = read(order.answers)
     assert [row["axis"] for row in answers] == [row["axis"] for row in fleet.rows]
@@ -137,7 +137,7 @@ def test_a_motor_by_name_is_refused_as_select_refuses_it(wrong: Row, said: str, 
     named = row | {"requirements.motor.designation": "M 40"}
     order = Order(write(tmp_path / "in.ndjson", [named, named | wrong | {"axis": "b"}]), tmp_path / "out.ndjson")
 
-    size_fleet(order, fleet.catalogue, here, quiet)
+    size_fleet(order, fleet.catalogue)
 
     sound, refused = read(order.answers)
     assert sound["error"] is None

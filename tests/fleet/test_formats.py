@@ -14,12 +14,13 @@ from starlette.testclient import TestClient
 
 from hpn.catalogue import Catalogue
 from hpn.cli import main
-from hpn.fleet import lines, tables
+from hpn.fleet import lines
 from hpn.fleet.errors import FleetError
+from hpn.fleet.opened import open_axes
 from hpn.fleet.run import Order, size_fleet
 from hpn.web.app import create_app
 from hpn.web.settings import Settings
-from tests.fleet.tables import Row, here, quiet, read, table_of, write
+from tests.fleet.tables import Row, read, table_of, write
 
 
 @pytest.fixture
@@ -71,8 +72,8 @@ ANSWERED_IN = {
 def test_other_suffixes_and_streams_are_read(suffix: str, tmp_path: Path, catalogue: Catalogue) -> None:
     path = tmp_path / f"in{suffix}"
     path.write_bytes(content(suffix, tmp_path))
-    size_fleet(Order(write(tmp_path / "plain.ndjson", ROWS), tmp_path / "plain.out.ndjson"), catalogue, here, quiet)
-    size_fleet(Order(path, tmp_path / "out.ndjson"), catalogue, here, quiet)
+    size_fleet(Order(write(tmp_path / "plain.ndjson", ROWS), tmp_path / "plain.out.ndjson"), catalogue)
+    size_fleet(Order(path, tmp_path / "out.ndjson"), catalogue)
     assert read(tmp_path / "out.ndjson") == read(tmp_path / "plain.out.ndjson")
 
 
@@ -90,19 +91,15 @@ def test_rest_answers_in_the_format_that_is_written(suffix: str, client: TestCli
 def test_these_are_not_written(suffix: str, tmp_path: Path, catalogue: Catalogue) -> None:
     with pytest.raises(FleetError, match=r"the suffix must be one of \.parquet, \.arrow, \.csv, \.ndjson$"):
         order = Order(write(tmp_path / "in.ndjson", ROWS), tmp_path / f"out{suffix}")
-        size_fleet(order, catalogue, here, quiet)
+        size_fleet(order, catalogue)
 
 
-def test_what_unfolds_to_too_much_is_refused(
-    tmp_path: Path, catalogue: Catalogue, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(lines, "MOST_HELD_BYTES", 200)
-    monkeypatch.setattr(tables, "MOST_HELD_BYTES", 50)
-    for suffix, said in ((".csv.gz", "unfolds to more than 200 bytes"), (".arrows", "a stream|an Arrow stream may")):
-        path = tmp_path / f"in{suffix}"
-        path.write_bytes(content(suffix, tmp_path))
-        with pytest.raises(FleetError, match=said):
-            size_fleet(Order(path, tmp_path / "out.ndjson"), catalogue, here, quiet)
+@pytest.mark.parametrize("suffix", [".csv.gz", ".arrows"])
+def test_neither_gzip_nor_a_stream_is_held(suffix: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(lines, "BLOCK_BYTES", 100)
+    path = tmp_path / f"in{suffix}"
+    path.write_bytes(content(suffix, tmp_path))
+    assert [batch.rows.num_rows for batch in open_axes(path).batches()] in ([1] * 4, [2] * 2)
 
 
 @pytest.mark.parametrize(
@@ -111,7 +108,7 @@ def test_what_unfolds_to_too_much_is_refused(
 def test_damaged_gzip_is_refused_with_a_sentence(damaged: bytes, tmp_path: Path, catalogue: Catalogue) -> None:
     (tmp_path / "in.csv.gz").write_bytes(damaged)
     with pytest.raises(FleetError, match=r"in\.csv\.gz: "):
-        size_fleet(Order(tmp_path / "in.csv.gz", tmp_path / "out.csv"), catalogue, here, quiet)
+        size_fleet(Order(tmp_path / "in.csv.gz", tmp_path / "out.csv"), catalogue)
 
 
 # --- Columns that no application has ----------------------------------------------------------------------------------

@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 from hpn.catalogue import Catalogue
-from hpn.fleet import outcome
+from hpn.fleet import axes, outcome
 from hpn.fleet.errors import FleetError
 from hpn.fleet.run import Order, size_fleet
-from tests.fleet.tables import here, in_long_form, quiet, read, row_of, write
+from tests.fleet.tables import in_long_form, read, row_of, write
 from tests.fuzz.mutation import mutated
 from tests.property.draw import at_random
 
@@ -29,7 +29,7 @@ def test_a_broken_table_is_sized_or_refused(
         path.write_bytes(mutated(random.Random(seed), corpus, WORDS) or b"\n")
         order = Order(path, tmp_path / "out.ndjson", rejected=tmp_path / "rejected.csv")
         try:
-            size_fleet(order, catalogue, here, quiet)
+            size_fleet(order, catalogue)
             outcomes.add("sized")
         except FleetError as error:
             assert path.name in str(error), seed
@@ -40,9 +40,9 @@ def test_a_broken_table_is_sized_or_refused(
 def test_axis_that_only_the_rules_for_columns_refuse_is_rejected_and_ends_no_fleet(
     tmp_path: Path, catalogue: Catalogue, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(outcome, "have_sound_lists", lambda table: np.arange(table.num_rows) > 0)
+    monkeypatch.setattr(axes, "_have_sound_lists", lambda table: np.arange(table.num_rows) > 0)
     path = write(tmp_path / "in.ndjson", [row_of(f"a{seed}", at_random(random.Random(seed))) for seed in range(2)])
-    size_fleet(Order(path, tmp_path / "out.ndjson"), catalogue, here, quiet)
+    size_fleet(Order(path, tmp_path / "out.ndjson"), catalogue)
     refused, sized = read(tmp_path / "out.ndjson")
     assert refused["error"] == f"axis: {outcome.DISAGREED}"
     assert sized["error"] is None

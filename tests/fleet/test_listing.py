@@ -19,7 +19,7 @@ from hpn.fleet.summary import summary_of
 from hpn.web.form.link_writer import to_link
 from tests.build import Json, cycle, phase
 from tests.conftest import Supplement
-from tests.fleet.tables import FAULTS, Row, here, in_long_form, quiet, row_of, spoiled, write
+from tests.fleet.tables import FAULTS, Row, in_long_form, row_of, spoiled, write
 from tests.property.draw import at_random
 
 AXES = 160
@@ -52,9 +52,9 @@ def sized(rows: list[Row], suffix: str, form: str, folder: Path, catalogue: Cata
     if form == "long":
         rows, beside = in_long_form(rows)
         requirements = write(folder / f"beside{suffix}", beside)
-    axes, answers = write(folder / f"axes{suffix}", rows, unit_rows=40), folder / f"answers{suffix}"
-    size_fleet(Order(axes, answers, requirements), catalogue, here, quiet)
-    return listing_of(axes, requirements, answers, catalogue)
+    order = Order(write(folder / f"axes{suffix}", rows, unit_rows=40), folder / f"answers{suffix}", requirements)
+    size_fleet(order, catalogue)
+    return listing_of(order, order.answers, catalogue)
 
 
 @pytest.mark.parametrize(("suffix", "form"), [(".csv", "long"), (".parquet", "list"), (".ndjson", "long")])

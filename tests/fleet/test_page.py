@@ -37,7 +37,7 @@ from hpn.web.pages.fleet_upload import WANTED, best_reading
 from hpn.web.settings import Settings
 from hpn.words.reader import Reader
 from hpn.words.wording import Sentence
-from tests.fleet.tables import here, in_long_form, quiet, row_of, write
+from tests.fleet.tables import in_long_form, row_of, write
 from tests.fuzz.costly import made
 from tests.state import state_of
 from tests.store.test_fleets import MOST_BYTES
@@ -512,7 +512,7 @@ def test_what_a_fleet_was_asked_is_kept_up_to_a_size(
     tmp_path: Path, catalogue: Catalogue, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     axes, answers = write(tmp_path / "axes.ndjson", [row_of("one", HUB)]), tmp_path / "answers.parquet"
-    size_fleet(Order(axes, answers), catalogue, here, quiet)
+    size_fleet(Order(axes, answers), catalogue)
     assert fleet_result.draft_of(kept_listing_of(axes, answers, catalogue), catalogue).selected == 1
     monkeypatch.setattr(listing, "MOST_BYTES", 100)
     with pytest.raises(Problem) as refused:

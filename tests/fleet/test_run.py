@@ -1,4 +1,4 @@
-"""A run that is stopped, killed or resumed: its files appear whole or not at all, with the same bytes in any case."""
+"""A run that is stopped or killed: its files appear whole or not at all, with the same bytes in any case."""
 
 import os
 import random
@@ -9,7 +9,7 @@ import subprocess
 import sys
 import threading
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -18,154 +18,75 @@ import pytest
 
 from hpn.catalogue import Catalogue
 from hpn.cli import main
-from hpn.fleet import grouping
+from hpn.fleet import run as fleet_run
+from hpn.fleet.cluster import interrupts_held
 from hpn.fleet.errors import FleetError
-from hpn.fleet.grouping import Part
-from hpn.fleet.job import Job
-from hpn.fleet.run import Engine, Order, interrupts_held, processes, size_fleet
-from tests.fleet.tables import here, quiet, row_of, write
-from tests.operations.service import until
+from hpn.fleet.run import Order, Outcome, Size, here, size_fleet, threads
+from hpn.fleet.tables import Batch, Progress
+from tests.fleet.tables import row_of, write
 from tests.property.draw import at_random
 from tests.reliability.faults import as_user, full, small_disk
 
 
 @pytest.fixture(scope="module")
 def many(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A table of many parts."""
+    """A table of many row groups."""
     rows = [row_of(number, at_random(random.Random(number))) for number in range(400)]
     return write(tmp_path_factory.mktemp("many") / "in.parquet", rows, unit_rows=10)
 
 
-@pytest.fixture
-def small_parts(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Parts of 10 axes."""
-    monkeypatch.setattr(grouping, "PART_AXES", 10)
-
-
 def files(folder: Path) -> list[str]:
-    """What lies in a folder."""
+    """Names in a folder."""
     return sorted(path.name for path in folder.iterdir())
 
 
-class StoppedError(Exception):
-    """The run ends here."""
-
-
-def up_to(count: int) -> Engine:
-    """Engine that is stopped after so many parts."""
-
-    def run(job: Job, parts: Mapping[int, Part]) -> Iterator[int]:
-        yield from here(job, dict(list(parts.items())[:count]))
-        raise StoppedError
-
-    return run
-
-
 def test_the_same_input_gives_the_same_bytes_whatever_the_workers(
-    many: Path, small_parts: None, tmp_path: Path, catalogue: Catalogue
+    many: Path, tmp_path: Path, catalogue: Catalogue
 ) -> None:
-    for name, engine in (("one", processes(1)), ("two", processes(2)), ("here", here)):
-        size_fleet(
-            Order(many, tmp_path / f"{name}.parquet", rejected=tmp_path / f"{name}.csv"), catalogue, engine, quiet
-        )
+    for name, engine in (("one", threads(1)), ("three", threads(3)), ("here", here)):
+        size_fleet(Order(many, tmp_path / f"{name}.parquet", rejected=tmp_path / f"{name}.csv"), catalogue, engine)
     for suffix in ("parquet", "csv"):
-        one, two, alone = ((tmp_path / f"{name}.{suffix}").read_bytes() for name in ("one", "two", "here"))
-        assert one == two == alone
+        one, three, alone = ((tmp_path / f"{name}.{suffix}").read_bytes() for name in ("one", "three", "here"))
+        assert one == three == alone
     assert len(files(tmp_path)) == 6
 
 
-def test_a_stopped_run_is_gone_on_with(many: Path, small_parts: None, tmp_path: Path, catalogue: Catalogue) -> None:
-    size_fleet(Order(many, tmp_path / "whole.parquet"), catalogue, here, quiet)
-    order = Order(many, tmp_path / "out.parquet", resume=True)
-    done: list[int] = []
-
-    def counted(job: Job, parts: Mapping[int, Part]) -> Iterator[int]:
-        for number in here(job, parts):
-            done.append(number)
-            yield number
-
-    for count in (3, 0, 10):
-        with pytest.raises(StoppedError):
-            size_fleet(order, catalogue, up_to(count), quiet)
-        assert not order.answers.exists()
-    size_fleet(order, catalogue, counted, quiet)
-
-    assert done == list(range(13, 40))
-    assert order.answers.read_bytes() == (tmp_path / "whole.parquet").read_bytes()
-    assert files(tmp_path) == ["out.parquet", "whole.parquet"]
-
-
-def test_parts_of_another_input_are_refused_and_dropped_without_resume(
-    many: Path, small_parts: None, tmp_path: Path, catalogue: Catalogue
+@pytest.mark.parametrize("workers", [1, 3])
+def test_few_axes_are_read_ahead_of_what_is_written(
+    workers: int, many: Path, tmp_path: Path, catalogue: Catalogue, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    own = tmp_path / "in.parquet"
-    own.write_bytes(many.read_bytes())
-    order = Order(own, tmp_path / "out.parquet", resume=True)
-    with pytest.raises(StoppedError):
-        size_fleet(order, catalogue, up_to(3), quiet)
-    rows = [row_of(number, at_random(random.Random(number + 1))) for number in range(400)]
-    write(own, rows, unit_rows=10)
+    monkeypatch.setattr(fleet_run, "SLICE_AXES", 10)
+    noted: list[int] = []
 
-    with pytest.raises(FleetError, match="a table has changed; run without --resume"):
-        size_fleet(order, catalogue, here, quiet)
-    size_fleet(Order(own, order.answers), catalogue, here, quiet)
-    size_fleet(Order(own, tmp_path / "whole.parquet"), catalogue, here, quiet)
-    assert order.answers.read_bytes() == (tmp_path / "whole.parquet").read_bytes()
+    def note(progress: Progress) -> None:
+        noted.append(progress.done)
+
+    size_fleet(Order(many, tmp_path / "out.parquet"), catalogue, threads(workers), note)
+    assert len(noted) == 40
+    assert all(read <= 10 * (place + 2 * workers) for place, read in enumerate(noted, start=1))
 
 
-def test_parts_of_other_options_or_another_catalogue_are_refused(
-    many: Path, small_parts: None, tmp_path: Path, catalogue: Catalogue
-) -> None:
-    with pytest.raises(StoppedError):
-        size_fleet(Order(many, tmp_path / "out.parquet"), catalogue, up_to(1), quiet)
-    with pytest.raises(FleetError, match="of other options"):
-        wider = Order(many, tmp_path / "out.parquet", candidates=tmp_path / "all.csv", resume=True)
-        size_fleet(wider, catalogue, here, quiet)
-
-
-def test_two_runs_never_write_one_file(many: Path, small_parts: None, tmp_path: Path, catalogue: Catalogue) -> None:
+def test_two_runs_never_write_one_file(many: Path, tmp_path: Path, catalogue: Catalogue) -> None:
     order = Order(many, tmp_path / "out.parquet")
 
-    def meanwhile(job: Job, parts: Mapping[int, Part]) -> Iterator[int]:
+    def meanwhile(size: Size, batches: Iterator[Batch]) -> Iterator[Outcome]:
         with pytest.raises(FleetError, match="another run is writing it"):
-            size_fleet(order, catalogue, here, quiet)
-        yield from here(job, parts)
+            size_fleet(order, catalogue)
+        yield from here(size, batches)
 
-    size_fleet(order, catalogue, meanwhile, quiet)
+    assert size_fleet(order, catalogue, meanwhile) == {"answers": 400}
     assert files(tmp_path) == ["out.parquet"]
 
 
-@pytest.mark.parametrize("other", ["mine.txt", "sub/mine.txt", "0.answers"])
-@pytest.mark.parametrize("resume", [False, True])
-def test_a_folder_that_is_not_its_own_is_left_alone(
-    resume: bool, other: str, many: Path, tmp_path: Path, catalogue: Catalogue
-) -> None:
-    order = Order(many, tmp_path / "out.parquet", resume=resume)
-    mine = order.folder / other
-    mine.parent.mkdir(parents=True)
-    mine.write_text("mine", encoding="utf-8")
+def test_what_goes_wrong_midway_leaves_no_file(many: Path, tmp_path: Path, catalogue: Catalogue) -> None:
+    def fails(size: Size, batches: Iterator[Batch]) -> Iterator[Outcome]:
+        yield size(next(batches))
+        raise MemoryError
 
-    with pytest.raises(FleetError, match=str(order.folder / other.split("/")[0])):
-        size_fleet(order, catalogue, here, quiet)
-    assert files(order.folder) == [other.split("/")[0]]
-    assert mine.read_text(encoding="utf-8") == "mine"
-    mine.unlink()
-    if mine.parent != order.folder:
-        mine.parent.rmdir()
-    size_fleet(order, catalogue, here, quiet)
-    assert files(tmp_path) == ["out.parquet"]
-
-
-@pytest.mark.parametrize("resume", [False, True])
-def test_a_file_where_the_parts_belong_is_named_and_left_alone(resume: bool, many: Path, tmp_path: Path) -> None:
-    mine = tmp_path / "out.parquet.parts"
-    mine.write_text("mine", encoding="utf-8")
-    with started(many, tmp_path / "out.parquet", *["--resume"] * resume) as run:
-        said = run.communicate()[1]
-
-    assert run.returncode == 2
-    assert said == f"{mine}: is no folder, where the parts of the run belong; move it away\n"
-    assert mine.read_text(encoding="utf-8") == "mine"
+    order = Order(many, tmp_path / "out.csv", candidates=tmp_path / "all.csv", rejected=tmp_path / "bad.csv")
+    with pytest.raises(MemoryError):
+        size_fleet(order, catalogue, fails)
+    assert files(tmp_path) == []
 
 
 # --- The command ------------------------------------------------------------------------------------------------------
@@ -174,15 +95,15 @@ def test_a_file_where_the_parts_belong_is_named_and_left_alone(resume: bool, man
 SMALL = """
 import signal
 from hpn.cli import main
-from hpn.fleet import grouping
+from hpn.fleet import run
 
 signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell in the background has it ignored
-grouping.PART_AXES = 10
+run.SLICE_AXES = run.SLICE_WITH_CANDIDATES = 10
 if __name__ == "__main__":
     raise SystemExit(main())
 """
 COMMAND = [sys.executable, "-c", SMALL, "fleet"]
-"""The command, with parts of 10 axes."""
+"""The command, with 10 axes at a time."""
 
 SLOWLY = ("--workers", 2, "--candidates")
 """Options with which a run takes a while: every candidate of every axis is written."""
@@ -201,16 +122,11 @@ def started(*arguments: object) -> Iterator[subprocess.Popen[str]]:
         yield run
 
 
-def parts_done(folder: Path) -> int:
-    """How many parts of a run are whole."""
-    return len(list(folder.glob("*.answers")))
-
-
-def wait_for_parts(run: subprocess.Popen[str], folder: Path) -> None:
-    """Wait until the first part of a run is whole."""
-    while not parts_done(folder):
-        assert run.poll() is None, run.communicate()[1]
-        time.sleep(0.01)
+def wait_until_begun(run: subprocess.Popen[str], output: Path) -> None:
+    """Wait until the first candidates are set aside, or the command has ended."""
+    aside = output.with_name(f".unfinished.{output.name}.candidates")
+    while run.poll() is None and not (aside.exists() and aside.stat().st_size > 10_000):
+        time.sleep(0.005)
 
 
 def test_the_command_sizes_a_table_and_is_quiet(many: Path, tmp_path: Path) -> None:
@@ -292,43 +208,30 @@ def test_what_permissions_forbid_ends_with_2_and_its_name(
         (folder / "closed").chmod(0o755)
         assert not list((folder / "open").iterdir())
 
-    assert said in (error := capsys.readouterr().err)
-    assert "--resume" not in error
+    assert said in capsys.readouterr().err
 
 
-def test_what_is_stopped_before_it_has_begun_is_not_to_be_resumed(
+def test_a_file_that_can_not_be_written_stops_the_run(
     many: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     limits = resource.getrlimit(resource.RLIMIT_FSIZE)
-    resource.setrlimit(resource.RLIMIT_FSIZE, (0, limits[1]))  # as on a full disk, the plan can't be written
+    resource.setrlimit(resource.RLIMIT_FSIZE, (0, limits[1]))
     try:
         assert main(["fleet", str(many), str(tmp_path / "out.csv")]) == 1
     finally:
         resource.setrlimit(resource.RLIMIT_FSIZE, limits)
-    said = capsys.readouterr().err
-    assert said.startswith("stopped: ") and "--resume" not in said
+    assert capsys.readouterr().err.startswith("stopped: ")
+    assert files(tmp_path) == []
 
 
-def test_an_interrupt_keeps_the_parts_and_ends_with_1(many: Path, tmp_path: Path) -> None:
-    folder = tmp_path / "out.parquet.parts"
+def test_an_interrupt_leaves_nothing_and_ends_with_1(many: Path, tmp_path: Path) -> None:
     with started(many, tmp_path / "out.parquet", *SLOWLY, tmp_path / "all.csv") as run:
-        wait_for_parts(run, folder)
+        wait_until_begun(run, tmp_path / "out.parquet")
         os.killpg(run.pid, signal.SIGINT)
         said = run.communicate()[1]
 
-    assert run.returncode == 1
-    assert said == f"stopped; hpn fleet … --resume goes on with the parts in {folder}\n"
-    assert parts_done(folder) > 0
-    assert files(tmp_path) == ["out.parquet.parts"]
-
-
-def test_an_interrupt_while_the_workers_start_says_the_same(many: Path, tmp_path: Path) -> None:
-    folder = tmp_path / "out.parquet.parts"
-    with started(many, tmp_path / "out.parquet", "--workers", 6) as run:
-        until(lambda: len(members(run.pid)) > 6 or run.poll() is not None)
-        os.killpg(run.pid, signal.SIGINT)
-        assert run.communicate()[1] == f"stopped; hpn fleet … --resume goes on with the parts in {folder}\n"
-    assert run.returncode == 1
+    assert (run.returncode, said) == (1, "stopped\n")
+    assert files(tmp_path) == []
 
 
 def test_an_interrupt_that_another_thread_takes_waits_until_the_workers_have_started() -> None:
@@ -352,77 +255,36 @@ def test_an_interrupt_that_another_thread_takes_waits_until_the_workers_have_sta
     assert reached
 
 
-def test_a_run_killed_at_random_moments_is_resumed_to_the_same_bytes(many: Path, tmp_path: Path, soak: bool) -> None:
-    assert ended(many, tmp_path / "whole.parquet", *SLOWLY, tmp_path / "whole.csv").returncode == 0
-    out, parts = tmp_path / "out.parquet", tmp_path / "out.parquet.parts"
-    options = [*SLOWLY, tmp_path / "all.csv", "--resume", "--rejected", tmp_path / "bad.csv"]
-    chance, kills = random.Random(17), 20 if soak else 2
-    for _ in range(10 * kills):
-        before = parts_done(parts)
-        with started(many, out, *options) as run:
-            while parts_done(parts) == before and run.poll() is None:
-                time.sleep(0.01)
+def test_after_a_kill_at_any_moment_the_next_run_gives_the_same_bytes(many: Path, tmp_path: Path, soak: bool) -> None:
+    whole, out = tmp_path / "whole", tmp_path / "out"
+    for folder in (whole, out):
+        folder.mkdir()
+    assert ended(many, whole / "a.parquet", *SLOWLY, whole / "all.csv").returncode == 0
+    chance = random.Random(17)
+    for _ in range(20 if soak else 2):
+        with started(many, out / "a.parquet", *SLOWLY, out / "all.csv") as run:
+            wait_until_begun(run, out / "a.parquet")
             with suppress(subprocess.TimeoutExpired):
                 run.wait(chance.uniform(0, 0.3))
-            run.kill()  # its workers end with it
-        kills -= run.returncode == -signal.SIGKILL
-        if not kills:
-            break
-        if run.returncode == 0:
-            out.unlink()  # it was done before: once more
-    assert not kills, f"{kills} more were to be killed, but were done before"
-
-    assert ended(many, out, *options).returncode == 0
-    assert out.read_bytes() == (tmp_path / "whole.parquet").read_bytes()
-    assert (tmp_path / "all.csv").read_bytes() == (tmp_path / "whole.csv").read_bytes()
-    assert files(tmp_path) == ["all.csv", "bad.csv", "out.parquet", "whole.csv", "whole.parquet"]
+            run.kill()
+        assert run.returncode == 0 or not {"a.parquet", "all.csv"} & set(files(out))
+        assert ended(many, out / "a.parquet", *SLOWLY, out / "all.csv").returncode == 0
+        assert files(out) == files(whole) == ["a.parquet", "all.csv"]
+        for name in files(whole):
+            assert (out / name).read_bytes() == (whole / name).read_bytes()
+            (out / name).unlink()
 
 
-def test_workers_end_with_the_command(many: Path, tmp_path: Path) -> None:
-    with started(many, tmp_path / "out.parquet", *SLOWLY, tmp_path / "all.csv") as run:
-        wait_for_parts(run, tmp_path / "out.parquet.parts")
-        os.kill(run.pid, signal.SIGKILL)
-        run.wait()
-        for _ in range(600):
-            if not members(run.pid):
-                return
-            time.sleep(0.1)
-    raise AssertionError(f"processes {members(run.pid)} still run")
-
-
-def members(group: int) -> list[int]:
-    """Processes of a group that run."""
-    found = []
-    for entry in Path("/proc").glob("[0-9]*/stat"):
-        try:
-            fields = entry.read_text().rpartition(")")[2].split()
-        except OSError:
-            continue
-        if int(fields[2]) == group and fields[0] != "Z":
-            found.append(int(entry.parent.name))
-    return found
-
-
-def test_a_worker_that_is_killed_stops_the_run_with_its_parts(many: Path, tmp_path: Path) -> None:
-    with started(many, tmp_path / "out.parquet", *SLOWLY, tmp_path / "all.csv") as run:
-        wait_for_parts(run, tmp_path / "out.parquet.parts")
-        worker = next(pid for pid in members(run.pid) if b"spawn_main" in Path(f"/proc/{pid}/cmdline").read_bytes())
-        os.kill(worker, signal.SIGKILL)
-        said = run.communicate()[1]
-    assert run.returncode == 1
-    assert "a worker has died" in said
-    assert ended(many, tmp_path / "out.parquet", *SLOWLY, tmp_path / "all.csv", "--resume").returncode == 0
-
-
-def test_a_full_disk_is_said_and_the_run_can_go_on(many: Path, tmp_path: Path) -> None:
+def test_a_full_disk_is_said_and_leaves_nothing(many: Path, tmp_path: Path) -> None:
     disk = tmp_path / "disk"
     disk.mkdir()
     output = disk / "out.ndjson"
     with small_disk(disk):
         with full(disk):
-            run = ended(many, output, "--workers", 1, "--resume")
+            before = files(disk)
+            run = ended(many, output, "--workers", 1)
             assert run.returncode == 1
             assert "No space left on device" in run.stderr
-            assert not output.exists()
-        assert ended(many, output, "--resume").returncode == 0
+            assert files(disk) == before
+        assert ended(many, output).returncode == 0
         assert len(output.read_text().splitlines()) == 400

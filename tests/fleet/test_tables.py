@@ -11,12 +11,12 @@ import pytest
 from hpn.application import Application
 from hpn.catalogue import Catalogue
 from hpn.engine.selection import select
-from hpn.fleet import grouping, job, lines
+from hpn.fleet import lines, run
 from hpn.fleet.columns import COLUMNS
 from hpn.fleet.errors import FleetError
 from hpn.fleet.run import Order, size_fleet
 from tests.fleet.conftest import Size
-from tests.fleet.tables import Row, here, in_long_form, quiet, read, write
+from tests.fleet.tables import Row, in_long_form, read, write
 
 AXES = [
     {"axis": f"a{number}", "torque_Nm": [40.0, 20.0 + number], "speed_rpm": [250.0, 100.0], "duration_s": [0.5, 3.0]}
@@ -47,10 +47,10 @@ def test_an_axis_whose_rows_are_not_together_is_rejected_whole(suffix: str, size
     assert answers[0]["suitable"] is None
 
 
-def test_an_axis_torn_over_parts_has_one_row_where_it_comes_first(
+def test_an_axis_torn_over_batches_has_one_row_where_it_comes_first(
     size: Size, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(grouping, "PART_AXES", 2)
+    monkeypatch.setattr(run, "SLICE_WITH_CANDIDATES", 2)
     rows = [{**AXES[0], "axis": axis} for axis in (7, 1, 2, 7, 3, 4, 7)]
     write(tmp_path / "in.parquet", rows, unit_rows=2)
     answers = size(rows, ".parquet", candidates=tmp_path / "all.parquet")
@@ -78,20 +78,18 @@ def test_an_axis_out_of_the_order_of_the_phases_is_rejected(size: Size, tmp_path
     ]  # fmt: skip
 
 
-def test_axes_of_many_parts_find_their_rows_in_the_other_table(
+def test_axes_of_many_batches_find_their_rows_in_the_other_table(
     size: Size, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(grouping, "PART_BYTES", 200)
-    monkeypatch.setattr(lines, "UNIT_BYTES", 100)
+    monkeypatch.setattr(lines, "BLOCK_BYTES", 100)
     axes = [{**AXES[0], "axis": f"x{number}", "requirements.utilisation": 1 / (number + 1)} for number in range(40)]
     rows, beside = in_long_form(axes)
     del beside[17], rows[50:52]  # axis 25 has no phases, axis 17 nothing beside
-    in_parts = size(rows, ".csv", beside=beside)
+    in_pieces = size(rows, ".csv", beside=beside)
     monkeypatch.undo()
-    job.opened.cache_clear()  # the same files are cut into other parts
-    assert in_parts == size(rows, ".csv", beside=beside)
-    assert [row["axis"] for row in in_parts] == [f"x{number}" for number in range(40)]
-    assert {row["axis"] for row in in_parts if row["error"]} == {"x17", "x25"}
+    assert in_pieces == size(rows, ".csv", beside=beside)
+    assert [row["axis"] for row in in_pieces] == [f"x{number}" for number in range(40)]
+    assert {row["axis"] for row in in_pieces if row["error"]} == {"x17", "x25"}
 
 
 def test_cells_that_are_no_numbers_are_told_by_axis_and_column(size: Size, tmp_path: Path) -> None:
@@ -154,6 +152,26 @@ def test_an_axis_needs_a_name(size: Size, tmp_path: Path) -> None:
     assert faults(tmp_path) == [(None, "axis", "is required")] * 2
 
 
+# --- Quotes -----------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "behind", ["", "c,40,250,1\n", 'c,"40",250,1\n', '"c",40,250,1\n', 'c,"40",250,"1"\nd,40,250,1']
+)
+@pytest.mark.parametrize("broken", ['b,"40,250,1\n', 'b,40,250,"1\n', '"b,40,250,1\n', 'b,40,"25""0,1\n'])
+def test_a_quote_that_nothing_closes_is_named_by_its_line(
+    broken: str, behind: str, tmp_path: Path, catalogue: Catalogue
+) -> None:
+    (tmp_path / "in.csv").write_text(f'{HEAD}a,40,250,1\n"a",40,250,2\n{broken}{behind}')
+    said = refusal(Order(tmp_path / "in.csv", tmp_path / "out.csv"), catalogue)
+    assert said.endswith("in.csv: line 4 has a quote that nothing closes in its cell")
+
+
+def test_line_breaks_in_quotes_belong_to_a_name(size: Size) -> None:
+    answers = size(HEAD + '"a\nb",40,250,1\n"c ""d"" \n\n",40,250,1\ne,"40",250,1\n', ".csv")
+    assert [(row["axis"], row["error"]) for row in answers] == [("a\nb", None), ('c "d" \n\n', None), ("e", None)]
+
+
 # --- Types ------------------------------------------------------------------------------------------------------------
 
 
@@ -162,7 +180,7 @@ def test_an_axis_comes_back_in_its_type(kind: pa.DataType, tmp_path: Path, catal
     rows = [{**AXES[0], "axis": number} for number in range(3)]
     table = pa.table({name: [row[name] for row in rows] for name in rows[0]})
     pq.write_table(table.set_column(0, "axis", table["axis"].cast(kind)), tmp_path / "in.parquet")
-    size_fleet(Order(tmp_path / "in.parquet", tmp_path / "out.arrow"), catalogue, here, quiet)
+    size_fleet(Order(tmp_path / "in.parquet", tmp_path / "out.arrow"), catalogue)
     assert pa.ipc.open_file(str(tmp_path / "out.arrow")).schema.field("axis").type == kind
 
 
@@ -182,7 +200,7 @@ def test_axes_that_are_whole_floats_are_integers(
     else:
         with pa.ipc.new_file(str(tmp_path / "in.arrow"), table.schema) as file:
             file.write_table(table)
-    size_fleet(Order(tmp_path / f"in{suffix}", tmp_path / "out.parquet"), catalogue, here, quiet)
+    size_fleet(Order(tmp_path / f"in{suffix}", tmp_path / "out.parquet"), catalogue)
     answers = pq.read_table(tmp_path / "out.parquet")
     assert answers["axis"].type == pa.int64()
     assert answers["axis"].to_pylist() == [7, None, 12]
@@ -205,7 +223,7 @@ def test_an_axis_that_is_no_whole_number_is_rejected_alone(size: Size, tmp_path:
 def test_axes_of_csv_are_integers_if_every_one_is_written_as_one(tmp_path: Path, catalogue: Catalogue) -> None:
     for names, kind in ((("7", "12"), pa.int64()), (("7", "012"), pa.string())):
         (tmp_path / "in.csv").write_text(phases(*names))
-        size_fleet(Order(tmp_path / "in.csv", tmp_path / "out.parquet"), catalogue, here, quiet)
+        size_fleet(Order(tmp_path / "in.csv", tmp_path / "out.parquet"), catalogue)
         assert pq.read_schema(tmp_path / "out.parquet").field("axis").type == kind
 
 
@@ -222,7 +240,7 @@ def test_any_numeric_type_counts(kind: pa.DataType, size: Size, tmp_path: Path, 
             lists = pa.ListArray.from_arrays(pa.array(range(0, len(values) + 1, 2), pa.int32()), values)
             table = table.set_column(place, name, lists)
     pq.write_table(table, tmp_path / "other.parquet")
-    size_fleet(Order(tmp_path / "other.parquet", tmp_path / "out.parquet"), catalogue, here, quiet)
+    size_fleet(Order(tmp_path / "other.parquet", tmp_path / "out.parquet"), catalogue)
     assert read(tmp_path / "out.parquet") == wanted
 
 
@@ -238,7 +256,7 @@ def test_whole_floats_count_as_integers_and_nulls_as_not_given(size: Size) -> No
 def refusal(order: Order, catalogue: Catalogue) -> str:
     """What is said of a fleet that can't be sized."""
     with pytest.raises(FleetError) as refused:
-        size_fleet(order, catalogue, here, quiet)
+        size_fleet(order, catalogue)
     assert not order.answers.exists()
     return str(refused.value)
 
@@ -326,7 +344,7 @@ def test_no_rows_give_no_rows(suffix: str, tmp_path: Path, catalogue: Catalogue)
                 pass
     else:
         path.write_text(HEAD if suffix == ".csv" else "\n")
-    rows = size_fleet(Order(path, tmp_path / "out.arrow"), catalogue, here, quiet)
+    rows = size_fleet(Order(path, tmp_path / "out.arrow"), catalogue)
     assert rows == {"answers": 0}
     assert pa.ipc.open_file(str(tmp_path / "out.arrow")).read_all().num_rows == 0
 
@@ -334,7 +352,7 @@ def test_no_rows_give_no_rows(suffix: str, tmp_path: Path, catalogue: Catalogue)
 def test_a_file_is_never_written_over_what_is_read(tmp_path: Path, catalogue: Catalogue) -> None:
     path = write(tmp_path / "in.csv", in_long_form(AXES)[0])
     with pytest.raises(FleetError, match="is named twice"):
-        size_fleet(Order(path, path), catalogue, here, quiet)
+        size_fleet(Order(path, path), catalogue)
     assert "no folder" in refusal(Order(path, tmp_path / "none" / "out.csv"), catalogue)
     assert "suffix" in refusal(Order(path, tmp_path / "out.txt"), catalogue)
 

@@ -13,10 +13,10 @@ import pytest
 
 from hpn.catalogue import Catalogue
 from hpn.fleet.errors import FleetError
-from hpn.fleet.grouping import axes_of, parts_of
+from hpn.fleet.gathering import axes_of
 from hpn.fleet.opened import open_axes
 from hpn.fleet.run import Order, size_fleet
-from tests.fleet.tables import here, quiet, read
+from tests.fleet.tables import read
 
 NAMES = ("lift", "turn", "lift 2")
 ITEMS = [40.0, 20.0, 40.0, 20.0, 40.0, 32.0]
@@ -83,8 +83,8 @@ def test_every_kind_of_column_is_read(kind: str, tmp_path: Path, catalogue: Cata
     plain = Order(arrow(PLAIN, tmp_path / "plain.arrow"), tmp_path / "plain.ndjson")
     other = Order(arrow(PLAIN | {name: column}, tmp_path / "other.arrow"), tmp_path / "other.ndjson")
 
-    size_fleet(plain, catalogue, here, quiet)
-    size_fleet(other, catalogue, here, quiet)
+    size_fleet(plain, catalogue)
+    size_fleet(other, catalogue)
 
     assert read(other.answers) == read(plain.answers)
     assert not any(row["error"] for row in read(other.answers))
@@ -99,7 +99,7 @@ def test_a_kind_that_cant_be_read_is_refused_by_the_name_of_its_column(
 ) -> None:
     path = arrow(PLAIN | {name: pa.nulls(3, kind)}, tmp_path / "in.arrow")
     with pytest.raises(FleetError, match=rf"column {name} is .*, where .*{SAID[name]}"):
-        size_fleet(Order(path, tmp_path / "out.ndjson"), catalogue, here, quiet)
+        size_fleet(Order(path, tmp_path / "out.ndjson"), catalogue)
 
 
 # --- Decimals ---------------------------------------------------------------------------------------------------------
@@ -124,10 +124,7 @@ def test_decimals_are_read_by_their_digits(suffix: str, form: str, tmp_path: Pat
     table = open_axes(path)
 
     found = [
-        value
-        for part in parts_of(table)
-        for listed in axes_of(table, part)
-        for value in listed.rows["torque_Nm"].combine_chunks().flatten().to_pylist()
+        value for axes in axes_of(table) for value in axes.rows["torque_Nm"].combine_chunks().flatten().to_pylist()
     ]
 
     assert found == [float(text) for text in texts]

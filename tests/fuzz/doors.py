@@ -19,7 +19,6 @@ from hpn.fleet.errors import FleetError
 from hpn.fleet.run import Order, size_fleet
 from hpn.web.app import create_app
 from hpn.web.settings import Settings
-from tests.fleet.tables import here, quiet
 from tests.fuzz import corpus
 from tests.fuzz.caller import Caller, Header, Reply
 
@@ -191,7 +190,7 @@ async def _fleet(world: World, random: Random, content: bytes) -> str:
     answers, rejected = world.fleet / "answers.ndjson", world.fleet / "rejected.ndjson"
     order = Order(files[0], answers, files[1] if files[1:] else None, rejected=rejected)
     try:
-        size_fleet(order, world.app.state.catalogue, here, quiet)
+        size_fleet(order, world.app.state.catalogue)
     except FleetError as refusal:
         assert str(world.fleet) in str(refusal), f"names no file: {refusal}"
         return "refused"

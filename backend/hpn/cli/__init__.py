@@ -130,12 +130,9 @@ def _add_fleet(fleet: argparse.ArgumentParser) -> None:
     fleet.add_argument("--report", type=Path, metavar="FILE", help="write counts and the first 10,000 axes as HTML")
     fleet.add_argument("--lang", choices=("en", "de"), help="language of the report")
     fleet.add_argument("--service", metavar="URL", help="address of the service that its links lead to")
-    fleet.add_argument(
-        "--engine", choices=("local", "dask"), default="local", help="processes of this machine, or Dask"
-    )
+    fleet.add_argument("--engine", choices=("local", "dask"), default="local", help="threads of this machine, or Dask")
     fleet.add_argument("--scheduler", metavar="URL", help="address of a Dask cluster, such as tcp://host:8786")
-    fleet.add_argument("--workers", type=_workers, metavar="N", help="processes; as many as there are cores by default")
-    fleet.add_argument("--resume", action="store_true", help="go on with the parts of a run that was stopped")
+    fleet.add_argument("--workers", type=_workers, metavar="N", help="threads; as many as there are cores by default")
 
 
 def _workers(text: str) -> int:

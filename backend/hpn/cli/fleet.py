@@ -1,24 +1,27 @@
 """`hpn fleet`: gears for a table of axes."""
 
 import argparse
+import ctypes
 import os
 import signal
 import sys
-from concurrent.futures import BrokenExecutor
 from functools import partial
 from pathlib import Path
 
 from tqdm import tqdm
 
 from hpn.catalogue import Catalogue, load_catalogue
-from hpn.fleet.assemble import Use
 from hpn.fleet.errors import FleetError
 from hpn.fleet.listing import listing_of
-from hpn.fleet.run import Engine, Order, processes, require_writable, size_fleet
+from hpn.fleet.run import Engine, Order, Use, require_writable, size_fleet, threads
+from hpn.fleet.tables import Progress
 from hpn.installed import require
 from hpn.web.settings import Settings
 
 STOPPED = 1
+
+MEMORY = ((-1, 200_000_000), (-3, 30_000_000))
+"""glibc's M_TRIM_THRESHOLD and M_MMAP_THRESHOLD with bytes from which on memory goes back to the system."""
 
 
 def run(options: argparse.Namespace) -> int:
@@ -31,18 +34,17 @@ def run(options: argparse.Namespace) -> int:
         requirements=options.axes,
         candidates=options.candidates,
         rejected=options.rejected,
-        resume=options.resume,
         ignored=tuple(options.ignore),
     )
     _require_used(options)
     if options.report:
         _require_report(options.report)
     signal.signal(signal.SIGTERM, signal.default_int_handler)
+    keep_memory()
     try:
-        rows = _sized(order, catalogue, _engine(options), partial(_write_report, options, catalogue))
-    except (KeyboardInterrupt, BrokenExecutor, OSError) as error:
-        more = f"; hpn fleet … --resume goes on with the parts in {order.folder}" if order.is_begun else ""
-        print(f"{_reason(error)}{more}", file=sys.stderr)
+        rows = _sized(order, catalogue, _engine(options), partial(_write_report, options, order, catalogue))
+    except (KeyboardInterrupt, OSError) as error:
+        print(f"stopped: {str(error).splitlines()[0]}" if str(error) else "stopped", file=sys.stderr)
         return STOPPED
     if sys.stderr.isatty():
         print(f"{rows['answers']:,} axes are in {options.output}", file=sys.stderr)
@@ -53,26 +55,28 @@ def _sized(order: Order, catalogue: Catalogue, engine: Engine, use: Use) -> dict
     """Rows of the files by kind; a bar shows the progress on a terminal."""
     with tqdm(unit_scale=True, disable=None, file=sys.stderr) as bar:
 
-        def watch(done: int, total: int, counted: str) -> None:
-            bar.total, bar.unit = total, counted
-            bar.update(done - bar.n)
+        def watch(progress: Progress) -> None:
+            bar.total, bar.unit = progress.total, progress.counted
+            bar.update(progress.done - bar.n)
 
-        def tell(path: Path, name: str) -> None:
+        def note_ignored(path: Path, name: str) -> None:
             tqdm.write(f"{path}: column {name!r} is an index that pandas wrote, and ignored", file=sys.stderr)
 
-        return size_fleet(order, catalogue, engine, watch, use, tell)
+        return size_fleet(order, catalogue, engine, watch, use, note_ignored)
 
 
-def _reason(error: BaseException) -> str:
-    if isinstance(error, BrokenExecutor):
-        return "stopped: a worker has died, most likely for want of memory"
-    return f"stopped: {str(error).splitlines()[0]}" if str(error) else "stopped"
+def keep_memory() -> None:
+    """Keep the memory that arrays give back for the next ones: asking the system anew takes half of a chunk's time."""
+    library = ctypes.CDLL(None)
+    if hasattr(library, "mallopt"):  # of glibc; another C library does as it likes
+        for parameter, value in MEMORY:
+            library.mallopt(parameter, value)
 
 
 def _engine(options: argparse.Namespace) -> Engine:
     workers = options.workers or len(os.sched_getaffinity(0))
     if options.engine == "local":
-        return processes(workers)
+        return threads(workers)
     from hpn.fleet.cluster import dask
 
     return dask(options.scheduler, workers)
@@ -95,13 +99,13 @@ def _require_report(report: Path) -> None:
     require("serve")  # whose page it is
 
 
-def _write_report(options: argparse.Namespace, catalogue: Catalogue, answers: Path) -> None:
+def _write_report(options: argparse.Namespace, order: Order, catalogue: Catalogue, answers: Path) -> None:
     """Write the report, where one is wanted, whole under its name or not at all."""
     if options.report is None:
         return
     from hpn.web.pages.fleet_report import report_of  # a second of imports, which no fleet without a report waits for
 
-    listing = listing_of(options.input, options.axes, answers, catalogue, options.ignore)
+    listing = listing_of(order, answers, catalogue)
     written = options.report.with_name(f".{options.report.name}.{os.getpid()}")
     try:
         service: str = (options.service or "").rstrip("/")

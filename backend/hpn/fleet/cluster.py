@@ -1,48 +1,59 @@
-"""Sizing a fleet on a Dask cluster: the same function over the same parts; the extra `cluster` brings what it needs."""
+"""Sizing a fleet on a Dask cluster: the same function over the same axes; the extra `cluster` brings what it needs."""
 
 import logging
-from collections.abc import Iterator, Mapping
-from contextlib import ExitStack
+import signal
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager
 from importlib import import_module
+from multiprocessing.resource_tracker import ensure_running
 from typing import Any
 
 from hpn.fleet.errors import FleetError
-from hpn.fleet.grouping import Part
-from hpn.fleet.job import Job, compute
-from hpn.fleet.run import MEMORY, Engine, interrupts_held
+from hpn.fleet.run import Engine, Outcome, Size, in_order
+from hpn.fleet.tables import Batch
 from hpn.installed import require
 
 CONNECT_SECONDS = 10
 
+MEMORY = {"MALLOC_TRIM_THRESHOLD_": "200000000", "MALLOC_MMAP_THRESHOLD_": "30000000"}
+"""Memory that arrays give back is kept for the next ones: asking the system anew takes half of the time of a chunk."""
+
+
+class _Workers:
+    """Workers of a cluster, which have the function once for all batches."""
+
+    def __init__(self, client: Any, size: Size) -> None:
+        self._client, self._size = client, client.scatter(size, broadcast=True)
+
+    def submit(self, size: Size, batch: Batch) -> Any:
+        """Outcome of a batch that a worker works on; another one takes what a lost worker had."""
+        return self._client.submit(_sized, self._size, batch, pure=False)
+
+
+def _sized(size: Size, batch: Batch) -> Outcome:
+    return size(batch)
+
 
 def dask(scheduler: str | None, workers: int) -> Engine:
-    """Engine of the cluster at an address, or of one of processes of this machine, started for the run.
-
-    Parts are independent: nothing is exchanged between workers, and what a lost worker had is given to another.
-    """
+    """Engine of the cluster at an address, or of one of processes of this machine, started for the run."""
     require("cluster")
     distributed: Any = import_module("distributed")  # it has no types
 
-    def run(job: Job, parts: Mapping[int, Part]) -> Iterator[int]:
+    def run(size: Size, batches: Iterator[Batch]) -> Iterator[Outcome]:
         with ExitStack() as stack:
             address = scheduler or stack.enter_context(_of_this_machine(distributed, workers))
             try:
                 client = stack.enter_context(distributed.Client(address, timeout=CONNECT_SECONDS))
             except (OSError, ValueError) as error:
                 raise FleetError(f"--scheduler {scheduler}: {error}") from None
-            shared = client.scatter(job, broadcast=True)
-            futures = {
-                client.submit(compute, shared, number, part, pure=False): number for number, part in parts.items()
-            }
-            for future in distributed.as_completed(futures):
-                future.result()
-                yield futures[future]
+            count = max(workers, len(client.scheduler_info(n_workers=-1)["workers"]))
+            yield from in_order(_Workers(client, size), count, size, batches)
 
     return run
 
 
 def _of_this_machine(distributed: Any, workers: int) -> Any:
-    """A cluster of processes that keep memory as those of the local engine do."""
+    """A cluster of processes that keep memory as the command does."""
     with import_module("dask").config.set({"distributed.nanny.pre-spawn-environ": MEMORY}), interrupts_held():
         return distributed.LocalCluster(
             n_workers=workers,
@@ -51,3 +62,22 @@ def _of_this_machine(distributed: Any, workers: int) -> Any:
             dashboard_address="127.0.0.1:0",
             silence_logs=logging.ERROR,
         )
+
+
+@contextmanager
+def interrupts_held() -> Iterator[None]:
+    """Block interrupts: a process started here has them blocked from its first moment, this one gets them after.
+
+    The mask is that of the main thread; one that another thread takes is noted until then.
+    """
+    ensure_running()  # multiprocessing's own first process unblocks interrupts when it has started
+    noted: list[int] = []
+    handler = signal.signal(signal.SIGINT, lambda number, _: noted.append(number))
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+        signal.signal(signal.SIGINT, handler)
+        if noted:
+            signal.raise_signal(signal.SIGINT)

@@ -1,7 +1,7 @@
 """The axes that are shown one by one, in a page or a report: their answers, and what they were asked with."""
 
 import io
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal, NamedTuple
@@ -18,11 +18,11 @@ from hpn.catalogue import Catalogue
 from hpn.engine.evaluation import Evaluation, PlaceArray, evaluate
 from hpn.fleet.axes import Axes
 from hpn.fleet.columns import AXIS, COLUMNS
-from hpn.fleet.grouping import axes_of, parts_of, with_others
-from hpn.fleet.opened import format_of, open_axes, open_requirements
+from hpn.fleet.gathering import axes_of
+from hpn.fleet.opened import format_of
 from hpn.fleet.outcome import answer_fields
+from hpn.fleet.run import Order
 from hpn.fleet.summary import Summary, summary_of
-from hpn.fleet.tables import Table
 
 MOST_LISTED = 10_000
 """Axes that a page or a report shows one by one; more are in the files."""
@@ -72,14 +72,10 @@ NEAREST = pa.schema([("nearest", pa.string()), ("nearest_check", pa.string()), (
 """Columns beside those of the answers: the gear that comes nearest where none suits."""
 
 
-def listing_of(
-    axes: Path, requirements: Path | None, answers: Path, catalogue: Catalogue, ignored: Sequence[str] = ()
-) -> Listing:
-    """Listing of tables that were sized: of the axes as they were given, and of their answers."""
+def listing_of(order: Order, answers: Path, catalogue: Catalogue) -> Listing:
+    """Listing of an order that was sized: of the axes as they were given, and of their answers."""
     first = _first(read_answers(answers))
-    table = open_axes(axes, ignored)
-    others = None if requirements is None else open_requirements(requirements, table, ignored)
-    asked = _asked(table, others, first.filter(pc.is_null(first["error"]))[AXIS])
+    asked = _asked(order, first.filter(pc.is_null(first["error"]))[AXIS])
     lacking = asked.filter(pc.is_in(asked[AXIS], first.filter(pc.equal(first["suitable"], 0))[AXIS].combine_chunks()))
     misses, places = nearest_misses(lacking, catalogue), pc.index_in(first[AXIS], lacking[AXIS].combine_chunks())
     for field in NEAREST:
@@ -97,7 +93,7 @@ class KeptListing(NamedTuple):
 
 def kept_listing_of(axes: Path, answers: Path, catalogue: Catalogue) -> KeptListing | None:
     """The same to be kept; None where more was asked than a page can read."""
-    listing = listing_of(axes, None, answers, catalogue)
+    listing = listing_of(Order(axes, answers), answers, catalogue)
     if listing.axes.nbytes > MOST_BYTES:
         return None
     return KeptListing(listing.summary, as_parquet(listing.answers), as_parquet(listing.axes))
@@ -126,12 +122,11 @@ def _first(batches: Iterator[pa.RecordBatch]) -> pa.Table:
     return pa.concat_tables(pieces)
 
 
-def _asked(table: Table, others: Table | None, names: pa.ChunkedArray) -> pa.Table:
+def _asked(order: Order, names: pa.ChunkedArray) -> pa.Table:
     """Axes of these names in list form, their names as text."""
-    parts = parts_of(table) if others is None else with_others(table, parts_of(table), others)
     pieces, count, wanted = list[pa.Table](), 0, names.combine_chunks()
-    for listed in (listed for part in parts for listed in axes_of(table, part, others)):
-        rows = listed.rows.set_column(listed.rows.column_names.index(AXIS), AXIS, listed.rows[AXIS].cast(pa.string()))
+    for axes in axes_of(*order.opened()):
+        rows = axes.rows.set_column(axes.rows.column_names.index(AXIS), AXIS, axes.rows[AXIS].cast(pa.string()))
         pieces.append(rows.filter(pc.is_in(rows[AXIS], wanted)))
         count += pieces[-1].num_rows
         if count == len(wanted):
@@ -141,14 +136,14 @@ def _asked(table: Table, others: Table | None, names: pa.ChunkedArray) -> pa.Tab
 
 def nearest_misses(axes: pa.Table, catalogue: Catalogue) -> pa.Table:
     """The gear that `select` puts first for each of some sound axes that none suits, with what governs it."""
-    read = Axes(axes).equipped(catalogue)
+    read = Axes(axes, catalogue)
     found = dict[str, list[Any]]((name, [None] * axes.num_rows) for name in NEAREST.names)
-    for allowed, rows in read.gears(catalogue).chunks(read.phase_counts):
-        evaluation = evaluate(read.duty(rows), allowed, catalogue)
+    for gears, members in read.chunks():
+        evaluation = evaluate(read.duty(members), gears, catalogue)
         best = _foremost(evaluation)
         used = np.take_along_axis(evaluation.utilisation, best, -1)[:, 0]
         governing = evaluation.governing_of(best[:, 0])
-        for index, row in enumerate(rows.tolist()):
+        for index, row in enumerate(read.places[members].tolist()):
             found["nearest"][row] = evaluation.gears.rows[best[index, 0]].designation
             if not np.isnan(used[index]):
                 found["nearest_check"][row] = evaluation.checks[governing[index]].code

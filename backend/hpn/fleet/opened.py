@@ -9,8 +9,10 @@ from pathlib import Path
 
 from hpn.fleet.columns import AXIS, COLUMNS
 from hpn.fleet.errors import FleetError, wrong_encoding
-from hpn.fleet.lines import CsvTable, GzipCsvTable, LinesTable, NdjsonTable
-from hpn.fleet.tables import ArrowTable, ParquetTable, Table, TypedTable
+from hpn.fleet.lines import CsvTable, GzipCsvTable, LinesTable
+from hpn.fleet.ndjson import NdjsonTable
+from hpn.fleet.tables import Table
+from hpn.fleet.typed import ArrowTable, ParquetTable
 
 FORMATS: dict[str, type[Table]] = {
     ".parquet": ParquetTable,
@@ -86,7 +88,7 @@ def _opened(path: Path, ignored: Sequence[str]) -> Table:
     if not found.st_size:
         raise FleetError(f"{path}: is empty, where a table belongs")
     table = FORMATS[suffix](path, ignored)
-    if isinstance(table, LinesTable) and (said := wrong_encoding(table.start_of_file())):
+    if isinstance(table, LinesTable) and (said := wrong_encoding(table.head)):
         raise FleetError(f"{path}: {said}")
     known = (AXIS, *COLUMNS.all)
     table.ignored += tuple(name for name in table.indices if name not in known and name not in ignored)
@@ -99,7 +101,7 @@ def _require(table: Table, allowed: list[str], required: list[str]) -> None:
     unknown = [name for name in table.names if name not in allowed]
     others = [f"column {name} is missing" for name in required if name not in table.names]
     others += [f"column {name:.80} is there twice" for name, count in Counter(table.names).items() if count > 1]
-    if not others and isinstance(table, TypedTable):
+    if not others:
         others += table.wrong_types()
     if found := len(unknown) + len(others):
         problems = [*(_unknown(name, allowed) for name in unknown[:MOST_PROBLEMS]), *others][:MOST_PROBLEMS]
@@ -108,7 +110,7 @@ def _require(table: Table, allowed: list[str], required: list[str]) -> None:
 
 
 def _tells_its_form(table: Table) -> bool:
-    return FORM in table.names and not (isinstance(table, TypedTable) and table.wrong_type(FORM))
+    return FORM in table.names and not table.wrong_type(FORM)
 
 
 def _unknown(name: str, allowed: list[str]) -> str:

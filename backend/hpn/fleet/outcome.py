@@ -1,13 +1,10 @@
 """From a table of axes in list form to their answers: a row for each axis, and a row for each fault."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
-from itertools import pairwise
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 import pyarrow as pa
-import pyarrow.compute as pc
 from numpy.typing import NDArray
 from pydantic import ValidationError
 
@@ -18,8 +15,9 @@ from hpn.engine.allowed import gears_for, with_listed_motor
 from hpn.engine.checks import CHECKS
 from hpn.engine.evaluation import SUITABLE, Evaluation, evaluate
 from hpn.engine.selection import Candidate, Reserve, candidates_of
-from hpn.fleet.axes import Allowed, Axes, BoolArray, IntArray, have_sound_lists
-from hpn.fleet.columns import AXIS, COLUMNS, is_list
+from hpn.fleet.axes import Axes, BoolArray, IntArray, cells_of
+from hpn.fleet.columns import AXIS, COLUMNS
+from hpn.fleet.tables import Batch, Fault
 from hpn.physics.equations import FloatArray
 from hpn.words.wording import N_
 
@@ -30,29 +28,8 @@ DISAGREED = N_("is refused by the rules for columns and taken by those for one a
 """Reason of a row on which both disagree, a fault of the service that ends no fleet."""
 
 
-MOST_CELLS = 100_000
-"""Cells and items of lists that are objects at once, while it is found what is wrong with axes."""
-
-
-class Fault(NamedTuple):
-    """What is wrong with an axis: number `row` of its table."""
-
-    row: int
-    column: str
-    reason: str
-
-    def moved(self, rows: int) -> "Fault":
-        """The fault of a row that stands further down."""
-        return Fault(self.row + rows, self.column, self.reason)
-
-
-@dataclass(frozen=True)
-class Outcome:
-    """Answers, a row for each axis of a table; faults; and candidates, where they are wanted."""
-
-    answers: pa.Table
-    rejected: pa.Table
-    candidates: pa.Table | None
+ROW = "row"
+"""Column beside those of the faults and candidates: the row of their axis among the answers that they come with."""
 
 
 def answer_fields(axis: pa.DataType) -> pa.Schema:
@@ -73,34 +50,27 @@ def answer_fields(axis: pa.DataType) -> pa.Schema:
 
 
 def rejected_fields(axis: pa.DataType) -> pa.Schema:
-    """Columns of the faults."""
-    return pa.schema([(AXIS, axis), ("column", pa.string()), ("reason", pa.string())])
+    """Columns of the faults, with the row of their axis."""
+    return pa.schema([(ROW, pa.int64()), (AXIS, axis), ("column", pa.string()), ("reason", pa.string())])
 
 
-def outcome(
-    table: pa.Table, catalogue: Catalogue, faults: Sequence[Fault] = (), *, with_candidates: bool = False
-) -> Outcome:
-    """Answers to the axes of a table; `faults` are those that its reader has found."""
-    mask = have_sound_lists(table)
-    mask[[fault.row for fault in faults]] = False
-    axes = Axes(table if mask.all() else table.filter(pa.array(mask)))
-    gears = axes.gears(catalogue)
-    sound = axes.are_sound & gears.are_there & axes.have_motors(catalogue)
-    if not sound.all():
-        axes, gears = Axes(axes.table.filter(pa.array(sound))), Allowed(gears.lists, gears.which[sound])
-        mask[mask] = sound
-    axes = axes.equipped(catalogue)
-    answers, candidates, places = _Answers(table.num_rows), _Candidates(), np.flatnonzero(mask)
-    for allowed, rows in gears.chunks(axes.phase_counts):
-        evaluation = evaluate(axes.duty(rows), allowed, catalogue)
-        answers.add(evaluation, places[rows])
+def outcome(batch: Batch, catalogue: Catalogue, *, with_candidates: bool = False) -> dict[str, pa.Table]:
+    """Answers to axes, their faults, and their candidates where they are wanted, by kind."""
+    axis, count = batch.rows[AXIS], batch.rows.num_rows
+    is_faulty = np.zeros(count, np.bool_)
+    is_faulty[[fault.row for fault in batch.faults]] = True
+    axes = Axes(batch.rows, catalogue, is_faulty)
+    answers, candidates = _Answers(count), _Candidates()
+    for gears, members in axes.chunks():
+        evaluation, places = evaluate(axes.duty(members), gears, catalogue), axes.places[members]
+        answers.add(evaluation, places)
         if with_candidates:
-            candidates.add(evaluation, places[rows])
-    every = _all_faults(table, mask, faults, catalogue)
-    rejected = rejected_table(table[AXIS], every)
-    return Outcome(
-        answers.table(table[AXIS], every), rejected, candidates.table(table[AXIS]) if with_candidates else None
-    )
+            candidates.add(evaluation, places)
+    is_sound = np.zeros(count, np.bool_)
+    is_sound[axes.places] = True
+    faults = _all_faults(batch, is_sound, catalogue)
+    found = {"answers": answers.table(axis, faults), "rejected": _rejected(axis, faults)}
+    return found | ({"candidates": candidates.table(axis)} if with_candidates else {})
 
 
 # --- Answers ----------------------------------------------------------------------------------------------------------
@@ -169,15 +139,12 @@ def _finite(values: FloatArray) -> pa.Array:
 # --- Faults -----------------------------------------------------------------------------------------------------------
 
 
-def rejected_table(axis: pa.ChunkedArray, faults: Sequence[Fault]) -> pa.Table:
+def _rejected(axis: pa.ChunkedArray, faults: Sequence[Fault]) -> pa.Table:
     """A row for each fault."""
     rows = pa.array([fault.row for fault in faults], pa.int64())
-    columns = [axis.take(rows), [fault.column for fault in faults], [fault.reason for fault in faults]]
-    return pa.Table.from_arrays([columns[0], *map(_texts, columns[1:])], schema=rejected_fields(axis.type))
-
-
-def _texts(values: Sequence[str | None]) -> pa.Array:
-    return pa.array(values, pa.string())
+    texts = [[fault.column for fault in faults], [fault.reason for fault in faults]]
+    columns = [rows, axis.take(rows), *(pa.array(values, pa.string()) for values in texts)]
+    return pa.Table.from_arrays(columns, schema=rejected_fields(axis.type))
 
 
 def _errors(count: int, faults: Sequence[Fault]) -> pa.Array:
@@ -185,31 +152,17 @@ def _errors(count: int, faults: Sequence[Fault]) -> pa.Array:
     texts: list[list[str]] = [[] for _ in range(count)] if faults else []
     for fault in faults:
         texts[fault.row].append(f"{fault.column}: {fault.reason}")
-    return _texts(["; ".join(lines) or None for lines in texts]) if faults else pa.nulls(count, pa.string())
+    return pa.array(["; ".join(lines) or None for lines in texts] if faults else [None] * count, pa.string())
 
 
-def _all_faults(table: pa.Table, mask: BoolArray, faults: Sequence[Fault], catalogue: Catalogue) -> list[Fault]:
+def _all_faults(batch: Batch, is_sound: BoolArray, catalogue: Catalogue) -> list[Fault]:
     """Every fault in the order of the rows, the first of each axis alone where there are too many."""
-    known: dict[int, list[Fault]] = {row: [] for row in np.flatnonzero(~mask).tolist()}
-    for fault in faults:
+    known: dict[int, list[Fault]] = {row: [] for row in np.flatnonzero(~is_sound).tolist()}
+    for fault in batch.faults:
         known[fault.row].append(fault)
-    for row, cells in _cells_of(table, [row for row, found in known.items() if not found]):
+    for row, cells in cells_of(batch.rows, [row for row, found in known.items() if not found]):
         known[row] = _found(row, cells, catalogue)
     return [fault for found in known.values() for fault in found[:MOST_FAULTS]]
-
-
-def _cells_of(table: pa.Table, rows: Sequence[int]) -> Iterator[tuple[int, dict[str, Any]]]:
-    """Rows with those of their cells that may be given: columns that none of them fills are left out."""
-    wanted = table.take(pa.array(rows, pa.int64()))
-    wanted = wanted.select([name for name in wanted.column_names if wanted[name].null_count < len(rows)])
-    size = np.full(len(rows), max(wanted.num_columns, 1))
-    for column in wanted.columns:
-        if is_list(column.type):
-            size += np.asarray(pc.fill_null(pc.list_value_length(column), 0))
-    starts = np.unique(np.cumsum(size) // MOST_CELLS, return_index=True)[1].tolist()
-    for start, end in pairwise([*starts, len(rows)]):
-        some = wanted.slice(start, end - start).to_pylist() if wanted.num_columns else [{}] * (end - start)
-        yield from zip(rows[start:end], some, strict=True)
 
 
 def _found(row: int, cells: Mapping[str, Any], catalogue: Catalogue) -> list[Fault]:
@@ -249,9 +202,11 @@ WHOLE, TEXTS = ("ratio", "stages", "rank"), ("designation", "size", "status", "g
 
 
 def candidate_fields(axis: pa.DataType) -> pa.Schema:
-    """Columns of the candidates: those of the reply, without their checks."""
+    """Columns of the candidates, with the row of their axis: those of the reply, without their checks."""
     kinds = {**dict.fromkeys(WHOLE, pa.int64()), **dict.fromkeys(TEXTS, pa.string())}
-    return pa.schema([(AXIS, axis), *((name, kinds.get(name, pa.float64())) for name in (*PLAIN, *RESERVE))])
+    return pa.schema(
+        [(ROW, pa.int64()), (AXIS, axis), *((name, kinds.get(name, pa.float64())) for name in (*PLAIN, *RESERVE))]
+    )
 
 
 class _Candidates:
@@ -270,8 +225,12 @@ class _Candidates:
         places = sorted(self.of_axis)
         rows = [candidate for place in places for candidate in self.of_axis[place]]
         of = np.repeat(np.array(places, np.int64), [len(self.of_axis[place]) for place in places])
-        columns = [axis.take(pa.array(of)).combine_chunks()]
+        columns = [pa.array(of), axis.take(pa.array(of)).combine_chunks()]
         schema = candidate_fields(axis.type)
         columns += [pa.array([getattr(row, name) for row in rows], schema.field(name).type) for name in PLAIN]
         columns += [pa.array([getattr(row.reserve, name) for row in rows], pa.float64()) for name in RESERVE.values()]
         return pa.Table.from_arrays(columns, schema=schema)
+
+
+FIELDS = {"answers": answer_fields, "rejected": rejected_fields, "candidates": candidate_fields}
+"""Columns of the files by kind, for axes of a type."""

@@ -1,37 +1,41 @@
-"""Sizing a fleet: parts are worked on by processes of this machine or by a cluster; a stopped run can be resumed."""
+"""Sizing a fleet: tables are read once, their axes worked on by threads or a cluster, and the answers written."""
 
 import fcntl
-import hashlib
 import os
-import shutil
-import signal
 import stat
-import threading
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from concurrent.futures import Future, ProcessPoolExecutor, as_completed
-from contextlib import contextmanager
+from collections import deque
+from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
-from multiprocessing import get_context, parent_process
-from multiprocessing.resource_tracker import ensure_running
+from functools import partial
+from itertools import islice
 from pathlib import Path
+from typing import Any
 
-import msgspec
+import pyarrow as pa
 
-from hpn import ENGINE_VERSION
 from hpn.catalogue import Catalogue
-from hpn.catalogue.copy import copy_of
-from hpn.fleet.assemble import Use, assemble
 from hpn.fleet.errors import FleetError
-from hpn.fleet.grouping import Part, parts_of, with_others
-from hpn.fleet.job import Job, compute, is_own
-from hpn.fleet.opened import UNREADABLE, format_of, status_of
-from hpn.fleet.tables import Table
+from hpn.fleet.gathering import axes_of, slices
+from hpn.fleet.opened import UNREADABLE, format_of, open_axes, open_requirements, status_of
+from hpn.fleet.outcome import outcome
+from hpn.fleet.tables import Batch, Progress, Table
+from hpn.fleet.writing import Outcomes, unfinished
 
-Engine = Callable[[Job, Mapping[int, Part]], Iterator[int]]
-"""Computes parts of a job, and gives the number of each when it is done."""
+SLICE_AXES, SLICE_WITH_CANDIDATES = 16_384, 1_024
+"""Axes that are evaluated in one go."""
 
-Watch = Callable[[int, int, str], None]
-"""Is told what is done and what there is, and what that counts, whenever a part is done."""
+Outcome = dict[str, pa.Table]
+Size = Callable[[Batch], Outcome]
+Engine = Callable[[Size, Iterator[Batch]], Iterator[Outcome]]
+"""Sizes batches of axes, several at once, and gives what comes of them in their order; few are read ahead."""
+
+Watch = Callable[[Progress], None]
+"""Is given how much has been read, whenever some axes are done."""
+
+Use = Callable[[Path], None]
+"""Is given the answers when they are whole; what it raises keeps every file from its name."""
 
 
 @dataclass(frozen=True)
@@ -43,100 +47,124 @@ class Order:
     requirements: Path | None = None
     candidates: Path | None = None
     rejected: Path | None = None
-    resume: bool = False
     ignored: tuple[str, ...] = ()
     """Columns that are left out, whatever is in them."""
 
     @property
     def targets(self) -> dict[str, Path]:
-        """Files to write, by kind."""
-        named = {"answers": self.answers, "candidates": self.candidates, "rejected": self.rejected}
+        """Files to write, by kind; the answers are the last to get their name."""
+        named = {"candidates": self.candidates, "rejected": self.rejected, "answers": self.answers}
         return {kind: path for kind, path in named.items() if path is not None}
 
     @property
-    def folder(self) -> Path:
-        """Where the parts are kept until they are all done."""
-        return self.answers.with_name(f"{self.answers.name}.parts")
+    def tables(self) -> list[Path]:
+        """Files to read."""
+        return [path for path in (self.axes, self.requirements) if path is not None]
 
-    @property
-    def is_begun(self) -> bool:
-        """Whether there is something to resume."""
-        return (self.folder / PLAN).exists()
-
-
-PLAN = "plan.json"
+    def opened(self) -> tuple[Table, Table | None]:
+        """The table of axes, and the one beside it; raises FleetError."""
+        table = open_axes(self.axes, self.ignored)
+        beside = None if self.requirements is None else open_requirements(self.requirements, table, self.ignored)
+        return table, beside
 
 
-class Plan(msgspec.Struct, frozen=True):
-    """What parts belong to: they can be gone on with where nothing of it has changed."""
+# --- Engines ----------------------------------------------------------------------------------------------------------
 
-    engine_version: str
-    catalogue_version: str
-    fingerprints: tuple[str, ...]
-    with_candidates: bool
-    ignored: tuple[str, ...]
-    parts: tuple[Part, ...]
+
+def here(size: Size, batches: Iterator[Batch]) -> Iterator[Outcome]:
+    """Engine of the thread that reads."""
+    return map(size, batches)
+
+
+def threads(workers: int) -> Engine:
+    """Engine of so many threads, beside the one that reads and writes; a single one does all."""
+
+    def run(size: Size, batches: Iterator[Batch]) -> Iterator[Outcome]:
+        with ThreadPoolExecutor(workers) as pool:
+            yield from in_order(pool, workers, size, batches)
+
+    return here if workers == 1 else run
+
+
+def in_order(pool: Any, workers: int, size: Size, batches: Iterator[Batch]) -> Iterator[Outcome]:
+    """Outcomes of batches that a pool works on, in their order; two wait for each worker, so that memory is bounded."""
+    submitted = (pool.submit(size, batch) for batch in batches)
+    under_way = deque(islice(submitted, 2 * workers))
+    try:
+        while under_way:
+            yield under_way.popleft().result()
+            under_way.extend(islice(submitted, 1))
+    finally:
+        for future in under_way:
+            future.cancel()
+
+
+# --- A run ------------------------------------------------------------------------------------------------------------
 
 
 def size_fleet(
     order: Order,
     catalogue: Catalogue,
-    engine: Engine,
-    watch: Watch,
+    engine: Engine = here,
+    watch: Watch = lambda _: None,
     use: Use = lambda _: None,
-    tell: Callable[[Path, str], None] = lambda path, name: None,
+    note_ignored: Callable[[Path, str], None] = lambda path, name: None,
 ) -> dict[str, int]:
-    """Size all axes; gives the numbers of rows of the files by kind.
+    """Size all axes; gives the numbers of rows of the files by kind, which appear whole at the end or not at all.
 
-    `use` is given the answers before they have their name, for what has to be written along with them; `tell` is told
-    of columns that are ignored though nobody asked for that.
-    Raises FleetError for input that can't be used, and for parts that belong to another one.
+    `use` is given the answers before they have their name, for what has to be written along with them; `note_ignored`
+    gets the columns that are ignored though nobody asked for that. Raises FleetError for input that can't be used.
     """
     _require_usable(order)
-    read = [path for path in (order.axes, order.requirements) if path is not None]
-    job = Job(
-        order.axes,
-        order.requirements,
-        order.folder,
-        copy_of(catalogue),
-        order.candidates is not None,
-        tuple(_fingerprint(path) for path in read if path.is_file()),
-        order.ignored,
-    )
-    table, requirements = job.tables()
-    for each in filter(None, (table, requirements)):
+    table, beside = order.opened()
+    for each in filter(None, (table, beside)):
         for name in each.ignored[len(order.ignored) :]:
-            tell(each.path, name)
-    parts = parts_of(table)
-    if requirements is not None:
-        parts = with_others(table, parts, requirements)
-    plan = Plan(ENGINE_VERSION, catalogue.version, job.fingerprints, job.with_candidates, job.ignored, tuple(parts))
-    with _folder(order, plan):
-        _work(job, parts, table, engine, watch)
-        return assemble(job, len(parts), order.targets, use)
+            note_ignored(each.path, name)
+    most = SLICE_AXES if order.candidates is None else SLICE_WITH_CANDIDATES
+    batches = (batch for axes in axes_of(table, beside) for batch in slices(axes, most))
+    size = partial(outcome, catalogue=catalogue, with_candidates=order.candidates is not None)
+    with _alone(order.answers), ExitStack() as stack:
+        outcomes = Outcomes(order.answers, table.axis_type, list(order.targets))
+        stack.callback(outcomes.remove)
+        for found in engine(size, batches):
+            outcomes.add(found)
+            watch(table.progress)
+        outcomes.close()
+        axis = pa.int64() if table.has_untyped_axes and outcomes.are_whole else table.axis_type
+        rows, torn = {}, outcomes.torn()
+        for kind, target in order.targets.items():
+            stack.callback(unfinished(target).unlink, missing_ok=True)
+            rows[kind] = outcomes.write(unfinished(target), kind, axis, torn)
+        use(unfinished(order.answers))
+        for target in order.targets.values():
+            os.replace(unfinished(target), target)
+    return rows
 
 
-def _work(job: Job, parts: Sequence[Part], table: Table, engine: Engine, watch: Watch) -> None:
-    sizes = [sum(table.unit_sizes[part.first : part.end]) for part in parts]
-    left = {number: part for number, part in enumerate(parts) if not job.is_done(number)}
-    done = sum(sizes) - sum(sizes[number] for number in left)
-    watch(done, sum(sizes), table.measured_in)
-    for number in engine(job, left):
-        done += sizes[number]
-        watch(done, sum(sizes), table.measured_in)
+@contextmanager
+def _alone(answers: Path) -> Iterator[None]:
+    """Hold the unfinished answers for this run; FleetError where another run has them."""
+    with unfinished(answers).open("ab") as file:
+        try:
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            raise FleetError(f"{answers}: another run is writing it") from None
+        try:
+            yield
+        finally:
+            unfinished(answers).unlink(missing_ok=True)
 
 
 def _require_usable(order: Order) -> None:
     """Raise FleetError where a file would be written over, or could not be read or written."""
-    read = [path for path in (order.axes, order.requirements) if path is not None]
-    for path in read:
+    for path in order.tables:
         if status_of(path) is not None and not os.access(path, os.R_OK, effective_ids=True):
             raise FleetError(f"{path}: {UNREADABLE}")
     written = list(order.targets.values())
     for place, path in enumerate(written):
         format_of(path)
         require_writable(path)
-        if path.resolve() in [other.resolve() for other in (*read, *written[:place])]:
+        if path.resolve() in [other.resolve() for other in (*order.tables, *written[:place])]:
             raise FleetError(f"{path}: is named twice")
 
 
@@ -150,128 +178,3 @@ def require_writable(path: Path) -> None:
     found = status_of(path)
     if found is not None and stat.S_ISDIR(found.st_mode):
         raise FleetError(f"{path}: is a folder, where a file belongs")
-
-
-def _fingerprint(path: Path) -> str:
-    with path.open("rb") as file:
-        return hashlib.file_digest(file, "blake2b").hexdigest()
-
-
-@contextmanager
-def _folder(order: Order, plan: Plan) -> Iterator[None]:
-    """The folder of the parts, for this run alone; gone when all went well."""
-    folder, wanted = order.folder, msgspec.json.encode(plan)
-    try:
-        folder.mkdir(exist_ok=True)
-    except FileExistsError:
-        raise FleetError(f"{folder}: is no folder, where the parts of the run belong; move it away") from None
-    _require_own(folder)
-    with (folder / "lock").open("wb") as lock:
-        try:
-            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError:
-            raise FleetError(f"{order.answers}: another run is writing it") from None
-        known = folder / PLAN
-        if order.resume and known.exists() and known.read_bytes() != wanted:
-            raise FleetError(f"{folder}: its parts are {_difference(known.read_bytes(), plan)}; run without --resume")
-        if not (order.resume and known.exists()):
-            for file in folder.iterdir():
-                if file.name != "lock":
-                    file.unlink()
-            whole = folder / "plan"
-            whole.write_bytes(wanted)
-            whole.replace(known)
-        try:
-            yield
-        except FleetError:
-            if not any(folder.glob("*.answers")):  # nothing to go on with
-                shutil.rmtree(folder, ignore_errors=True)
-            raise
-        shutil.rmtree(folder)
-
-
-def _require_own(folder: Path) -> None:
-    """Raise FleetError where a folder holds what no run has left there: it is emptied before a run, and gone after."""
-    with os.scandir(folder) as entries:
-        for entry in entries:
-            if not is_own(entry.name) or not entry.is_file(follow_symlinks=False):
-                raise FleetError(
-                    f"{entry.path}: is not of hpn fleet, which keeps its parts in that folder; move it away"
-                )
-
-
-def _difference(known: bytes, plan: Plan) -> str:
-    try:
-        before = msgspec.json.decode(known, type=Plan)
-    except msgspec.MsgspecError:
-        return "of another version"
-    if before.engine_version != plan.engine_version:
-        return f"of engine {before.engine_version}, this is {plan.engine_version}"
-    if before.catalogue_version != plan.catalogue_version:
-        return "of another catalogue"
-    if before.fingerprints != plan.fingerprints:
-        return "of another input: a table has changed"
-    return "of other options"
-
-
-# --- Processes of this machine ----------------------------------------------------------------------------------------
-
-MEMORY = {"MALLOC_TRIM_THRESHOLD_": "200000000", "MALLOC_MMAP_THRESHOLD_": "100000000"}
-"""Memory that arrays give back is kept for the next ones: asking the system anew takes half of the time of a chunk."""
-
-
-def processes(workers: int) -> Engine:
-    """Engine of so many processes of this machine."""
-
-    def run(job: Job, parts: Mapping[int, Part]) -> Iterator[int]:
-        if len(parts) == 1:  # a process takes longer to start than one part to compute
-            ((number, part),) = parts.items()
-            compute(job, number, part)
-            yield number
-            return
-        for name, value in MEMORY.items():
-            os.environ.setdefault(name, value)
-        with ProcessPoolExecutor(workers, get_context("spawn"), _end_with_parent) as pool:
-            with interrupts_held():  # the workers start with the first part submitted
-                futures: dict[Future[int], int] = {
-                    pool.submit(compute, job, number, part): number for number, part in parts.items()
-                }
-            try:
-                for future in as_completed(futures):
-                    future.result()
-                    yield futures[future]
-            finally:
-                pool.shutdown(wait=True, cancel_futures=True)
-
-    return run
-
-
-@contextmanager
-def interrupts_held() -> Iterator[None]:
-    """Block interrupts: a process started here has them blocked from its first moment, this one gets them after.
-
-    The mask is that of the main thread; one that another thread takes is noted until then.
-    """
-    ensure_running()  # multiprocessing's own first process unblocks interrupts when it has started
-    noted: list[int] = []
-    handler = signal.signal(signal.SIGINT, lambda number, _: noted.append(number))
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
-    try:
-        yield
-    finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, before)
-        signal.signal(signal.SIGINT, handler)
-        if noted:
-            signal.raise_signal(signal.SIGINT)
-
-
-def _end_with_parent() -> None:
-    """End this process when the one that started it is gone."""
-    parent = parent_process()
-    assert parent is not None
-
-    def wait() -> None:
-        parent.join()
-        os._exit(1)
-
-    threading.Thread(target=wait, daemon=True).start()

@@ -193,7 +193,7 @@ class Settings(BaseSettings):
         gt=0,
         description="Longest time for the body of a fleet to arrive, and again for its turn and its sizing.",
     )
-    fleet_workers: int = Field(1, ge=1, le=64, description="Processes that size one fleet.")
+    fleet_workers: int = Field(1, ge=1, le=64, description="Threads that size one fleet.")
     fleet_processes: int = Field(
         1, ge=1, le=64, description="Fleets that one process of the service has sized at once; few more wait."
     )

@@ -1,0 +1,203 @@
+"""Tables of axes whose columns have types: Parquet and Arrow IPC."""
+
+import json
+from abc import abstractmethod
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.compute as pc
+import pyarrow.parquet as pq
+import pyarrow.types as kinds
+from numpy.typing import NDArray
+
+from hpn.fleet.columns import AXIS, COLUMNS, Column, is_list, is_text, plain_type
+from hpn.fleet.tables import INDEX, Batch, Fault, Progress, Table
+from hpn.words.wording import N_
+
+NOT_WHOLE = N_("must be text or a whole number")
+UNREADABLE = (pa.ArrowException, OSError, UnicodeDecodeError)
+"""Errors of Arrow for a file that it can't read."""
+
+FILE_MARK = b"ARROW1"
+"""Beginning of an Arrow file; a stream has another."""
+
+
+class TypedTable(Table):
+    """A table whose columns have types."""
+
+    @property
+    @abstractmethod
+    def given(self) -> pa.Schema:
+        """Columns with their types, as they stand."""
+
+    @property
+    def indices(self) -> Sequence[str]:
+        try:
+            told = json.loads((self.given.metadata or {}).get(b"pandas", b"{}"))["index_columns"]
+        except (ValueError, TypeError, KeyError, RecursionError):
+            told = []
+        named = [name for name in told if isinstance(name, str)] if isinstance(told, list) else []
+        return [name for name in self.all_names if name in named or INDEX.fullmatch(name)]
+
+    @property
+    def all_names(self) -> Sequence[str]:
+        try:
+            names: Sequence[str] = self.given.names
+        except UnicodeDecodeError as error:
+            raise self.unreadable(error) from None
+        return names
+
+    @property
+    def is_in_list_form(self) -> bool:
+        return "torque_Nm" in self.names and is_list(self.given.field("torque_Nm").type)
+
+    @property
+    def axis_type(self) -> pa.DataType:
+        given = plain_type(self.given.field(AXIS).type)
+        if _may_be_whole(given):
+            return pa.int64()
+        return pa.string() if kinds.is_null(given) else given
+
+    @contextmanager
+    def readable(self, where: str = "") -> Iterator[None]:
+        """Raise FleetError in place of Arrow's errors of a file, but for memory: that is of the machine."""
+        try:
+            yield
+        except MemoryError:
+            raise
+        except UNREADABLE as error:
+            raise self.unreadable(error, where) from None
+
+    def wrong_type(self, name: str) -> str:
+        if name != AXIS and name not in COLUMNS.all:
+            return ""
+        given = self.given.field(name).type
+        if name == AXIS:
+            is_right = is_text(self.axis_type) or kinds.is_integer(self.axis_type)
+            wanted = "text or integers"
+        else:
+            column = COLUMNS.all[name]
+            is_right = column.takes(given, self.type_of(name))
+            wanted = _words(column, self.type_of(name))
+        return "" if is_right else f"column {name} is {given!s:.80}, where {wanted} belong"
+
+    def batch(self, rows: pa.RecordBatch) -> Batch:
+        """Rows in the types that are read."""
+        columns, faults = [], list[Fault]()
+        for name in self.names:
+            column = _plain(rows.column(rows.schema.get_field_index(name)))
+            if name == AXIS and _may_be_whole(column.type):
+                column, wrong = _whole(column)
+                faults += (Fault(int(row), AXIS, NOT_WHOLE) for row in np.flatnonzero(wrong))
+            columns.append(_cast(column, self.type_of(name)))
+        return Batch(pa.Table.from_arrays(columns, names=list(self.names)), faults)
+
+
+def _words(column: Column, wanted: pa.DataType) -> str:
+    item = "texts" if column.kind == "string" else "numbers"
+    return f"lists of {item}" if is_list(wanted) else item
+
+
+def _plain(column: pa.Array) -> pa.Array:
+    """The values themselves, in the type that `plain_type` gives."""
+    given = column.type
+    if kinds.is_dictionary(given):
+        return _plain(column.dictionary).take(column.indices)
+    if kinds.is_run_end_encoded(given):
+        return _plain(pc.run_end_decode(column))
+    if is_list(given) and not given.equals(plain_type(given)):
+        lengths = pc.list_value_length(column)
+        ends = np.cumsum([0, *np.asarray(pc.fill_null(lengths, 0))])
+        items = _plain(pc.list_flatten(column))
+        return pa.ListArray.from_arrays(pa.array(ends, pa.int32()), items, mask=pc.is_null(lengths))
+    return column.cast(pa.string()) if kinds.is_string_view(given) else column
+
+
+def _cast(column: pa.Array, wanted: pa.DataType) -> pa.Array:
+    """The column in a type; decimals by their digits, which Arrow's own cast misses by a last bit in one of eight."""
+    given = column.type
+    if is_list(given) and kinds.is_decimal(given.value_type):
+        column = column.cast(pa.list_(pa.string()))
+    elif kinds.is_decimal(given) and kinds.is_floating(wanted):
+        column = column.cast(pa.string())
+    return column if column.type.equals(wanted) else column.cast(wanted, safe=False)
+
+
+def _may_be_whole(given: pa.DataType) -> bool:
+    """True for axes that can be integers though their type is none: floats, as pandas makes of integers with a gap."""
+    return bool(kinds.is_floating(given) or (kinds.is_decimal(given) and given.scale == 0))
+
+
+def _whole(column: pa.Array) -> tuple[pa.Array, NDArray[np.bool_]]:
+    """The column with null where a number is not whole, and which are not."""
+    values = column.cast(pa.float64(), safe=False).to_numpy(zero_copy_only=False)
+    wrong = np.asarray(column.is_valid()) & ~((values == np.floor(values)) & (np.abs(values) < 2.0**63))
+    return pc.if_else(pa.array(wrong), None, column), wrong
+
+
+class ParquetTable(TypedTable):
+    """A Parquet file."""
+
+    @cached_property
+    def _file(self) -> pq.ParquetFile:
+        with self.readable():
+            return pq.ParquetFile(self.path)
+
+    @cached_property
+    def _schema(self) -> pa.Schema:
+        return self._file.schema_arrow
+
+    @property
+    def given(self) -> pa.Schema:
+        return self._schema
+
+    def _batches(self) -> Iterator[Batch]:
+        done, total = 0, self._file.metadata.num_rows
+        for group in range(self._file.num_row_groups):
+            with self.readable(f"row group {group + 1} "):
+                for rows in self._file.iter_batches(self.batch_rows, [group], list(self.names)):
+                    done += rows.num_rows
+                    self.progress = Progress(done, total, "rows")
+                    rows.validate(full=True)  # Arrow takes texts as they stand, UTF-8 or not
+                    yield self.batch(rows)
+
+
+class ArrowTable(TypedTable):
+    """An Arrow file, or a stream."""
+
+    def _open(self) -> Any:
+        file = pa.OSFile(str(self.path))
+        is_stream = file.read(len(FILE_MARK)) != FILE_MARK
+        file.seek(0)
+        return pa.ipc.open_stream(file) if is_stream else pa.ipc.open_file(file)
+
+    @cached_property
+    def _schema(self) -> pa.Schema:
+        with self.readable(), self._open() as reader:
+            return reader.schema
+
+    @property
+    def given(self) -> pa.Schema:
+        return self._schema
+
+    def _batches(self) -> Iterator[Batch]:
+        with self._open() as reader:
+            is_stream, place = isinstance(reader, pa.RecordBatchStreamReader), 0
+            total = None if is_stream else reader.num_record_batches
+            while place != total:
+                with self.readable(f"record batch {place + 1} "):
+                    try:
+                        rows = reader.read_next_batch() if is_stream else reader.get_batch(place)
+                    except StopIteration:
+                        return
+                    rows.validate(full=True)
+                place += 1
+                self.progress = Progress(place, total, "batches")
+                for start in range(0, rows.num_rows, self.batch_rows):
+                    with self.readable(f"record batch {place} "):
+                        batch = self.batch(rows.slice(start, self.batch_rows))
+                    yield batch
