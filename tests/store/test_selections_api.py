@@ -104,6 +104,29 @@ def test_a_retry_with_its_key_is_answered_alike_and_saved_once(client: TestClien
     assert len(client.get(ADDRESS).json()["selections"]) == 1
 
 
+def test_a_save_answers_with_the_tag_of_what_is_saved_and_a_replay_says_that_it_is_one(client: TestClient) -> None:
+    body, key = {"application": worked_example(), "title": "t"}, {"Idempotency-Key": "k"}
+    first, again = (client.post(ADDRESS, json=body, headers=key) for _ in range(2))
+    address = first.headers["location"]
+
+    assert first.headers["etag"] == again.headers["etag"] == client.get(address).headers["etag"]
+    assert "idempotency-replayed" not in first.headers
+    assert again.headers["idempotency-replayed"] == "true"
+
+    renamed = client.patch(address, json={"title": "u"}, headers={"If-Match": first.headers["etag"]})
+    late = client.post(ADDRESS, json=body, headers=key | {"Prefer": "return=representation"})
+    assert late.headers["etag"] == renamed.headers["etag"] == client.get(address).headers["etag"]
+    assert late.headers["etag"] != first.headers["etag"]
+    assert client.delete(address, headers={"If-Match": first.headers["etag"]}).status_code == 412
+
+
+def test_a_save_without_a_key_is_no_replay(client: TestClient) -> None:
+    for _ in range(2):
+        answer = client.post(ADDRESS, json={"application": worked_example()})
+        assert "idempotency-replayed" not in answer.headers
+        assert answer.headers["etag"] == client.get(answer.headers["location"]).headers["etag"]
+
+
 def test_a_key_with_other_content_is_a_problem(client: TestClient) -> None:
     save(client, {"Idempotency-Key": "k"}, title="t")
 

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from typing import Any
 
 import pytest
+from fastapi import FastAPI
 from starlette.testclient import TestClient
 
 from hpn.web.api.samples import LIFTING, TURNING
@@ -368,6 +369,26 @@ def test_every_answer_is_in_the_document_with_each_of_its_headers(api: TestClien
             sent = {header for header in response.headers if header not in OF_HTTP}
             said = {header.lower() for header in entry["headers"]}
             assert sent <= said, (name, response.status_code)
+
+
+def test_refusals_that_any_address_may_give_are_in_the_document(service: FastAPI, document: Json) -> None:
+    client = TestClient(service, follow_redirects=False)
+    elsewhere = TestClient(create_app(Settings(allowed_hosts="hpn.example")))
+    for method, path, entry in operations(document):
+        address = path.format(size="20A", designation="HPN-20A-5", id="A" * 22)
+        found = [client.request("TRACE", address), client.request(method, f"{address}/")]
+        assert [answer.status_code for answer in found] == [405, 307], path
+        if path not in ("/healthz", "/readyz"):
+            found.append(elsewhere.request(method, address))
+            assert found[-1].status_code == 421
+            assert "503" in entry["responses"]
+        for answer in found:
+            said = entry["responses"][str(answer.status_code)]
+            media_type = answer.headers.get("content-type", "")
+            assert not answer.content or media_type in said["content"]
+            assert {name for name in answer.headers if name not in OF_HTTP} <= {
+                name.lower() for name in said["headers"]
+            }
 
 
 def with_keys() -> TestClient:

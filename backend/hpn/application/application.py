@@ -10,7 +10,6 @@ from typing import Annotated, Any, Literal, Self, Union, get_args, get_origin
 from pydantic import (
     BaseModel,
     BeforeValidator,
-    ConfigDict,
     Field,
     ValidationInfo,
     WrapValidator,
@@ -35,7 +34,6 @@ from hpn.words.fields import (
     Torque,
     at_most,
     in_parts,
-    name_units,
     refused,
 )
 from hpn.words.wording import Sentence
@@ -72,15 +70,8 @@ Size = Annotated[str, Field(max_length=20), BeforeValidator(canonical_size)]
 PHASES: Any = Field(min_length=1, max_length=MAXIMUM_PHASES)
 
 
-def _one_of_two(schema: dict[str, Any]) -> None:
-    name_units(schema)
-    schema["oneOf"] = [{"required": ["phases"]}, {"required": ["motion"]}]
-
-
 class DutyCycle(Model):
-    """Load phases, or the motion that they come from, and the pause t_p that follows them."""
-
-    model_config = ConfigDict(json_schema_extra=_one_of_two)
+    """Load phases or the motion that they come from, exactly one of both, and the pause t_p that follows them."""
 
     phases: Annotated[tuple[Phase, ...], PHASES, WrapValidator(in_parts), at_most(MAXIMUM_PHASES)] | None = Field(
         None, description="Load phases; at least one moves."

@@ -22,8 +22,9 @@ def _rehearsed(size: int) -> Draft:
 
 
 REHEARSED = (_rehearsed(64 * 1024), *[_rehearsed(1500)] * 12)
-"""What a rehearsal saves; nobody ever sees it. More than most selections take, as a small row still finds a place in a
-file of a full disk; in PostgreSQL of both files, as long results stand in one of their own, and rows in pages of 8 kB.
+"""Drafts of a rehearsal, each saved under a new id; nobody ever sees them. More than most selections take, as a small
+row still finds a place in a file of a full disk; in PostgreSQL of both files, as long results stand in one of their
+own, and rows in pages of 8 kB.
 """
 
 FLEET = FleetDraft(
@@ -50,6 +51,6 @@ async def rehearse(connection: AsyncConnection, catalogue: Catalogue | None = No
     first = replace(REHEARSED[0], idempotency_key=f"rehearsal {secrets.token_urlsafe(16)}")
     if catalogue is not None:
         first = replace(first, catalogue=catalogue, catalogue_version=catalogue.version)
-    ids = [await insert(connection, draft) for draft in (first, first, *REHEARSED[1:])]
+    ids = [await insert(connection, draft) for draft in map(replace, (first, first, *REHEARSED[1:]))]
     await connection.execute(delete(selections).where(selections.c.id.in_(ids)))
     await remove_fleet(connection, await insert_fleet(connection, FLEET, sys.maxsize))

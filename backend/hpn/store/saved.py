@@ -1,6 +1,7 @@
 """What the store keeps of a selection."""
 
 import hashlib
+import secrets
 from dataclasses import dataclass, field
 from datetime import datetime
 
@@ -14,7 +15,7 @@ class Draft:
     """A selection that is about to be saved: the application as it was given, and the reply it got, byte for byte.
 
     `designation` is the gear that its page shows first, with its status and utilisation. `owner` is the name of the API
-    key that saves it, None without one.
+    key that saves it, None without one. `id` is what it is saved under, unless its idempotency key has saved it before.
     `catalogue` is the one that was asked; the store keeps one copy of each version.
     """
 
@@ -34,6 +35,7 @@ class Draft:
     idempotency_key: str | None = None
     owner: str | None = None
     catalogue: Catalogue | None = field(default=None, repr=False)
+    id: str = field(init=False, default_factory=lambda: secrets.token_urlsafe(16))
 
     @property
     def digest(self) -> str:

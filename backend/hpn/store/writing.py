@@ -2,7 +2,6 @@
 
 import asyncio
 import hashlib
-import secrets
 from collections.abc import Mapping
 from datetime import UTC, datetime
 from types import SimpleNamespace
@@ -28,17 +27,16 @@ async def insert(connection: AsyncConnection, draft: Draft) -> str:
     """
     if draft.catalogue is not None:
         await _keep_catalogue(connection, draft.catalogue_version, draft.catalogue)
-    row = _row_of(draft)
-    await _insert_new(connection, selections, row)
+    await _insert_new(connection, selections, _row_of(draft))
     if draft.idempotency_key is None:
-        return str(row["id"])
+        return draft.id
     # After the insertion, which has waited for any other transaction that had this key in hand.
     return await _holder(connection, draft.idempotency_key, draft.digest)
 
 
 def _row_of(draft: Draft) -> dict[str, Any]:
     return {
-        "id": secrets.token_urlsafe(16),
+        "id": draft.id,
         "created": datetime.now(UTC),
         "title": draft.title,
         "reference": draft.reference,

@@ -62,6 +62,7 @@ CORS: dict[str, Any] = {
         "Accept-Encoding",
         "Content-Disposition",
         "ETag",
+        "Idempotency-Replayed",
         "Link",
         "Location",
         "Preference-Applied",

@@ -118,13 +118,14 @@ def _operations(document: dict[str, Any]) -> Iterator[tuple[str, str, dict[str, 
 
 
 def _say_keys(operation: dict[str, Any], group: RouteGroup | None, settings: Settings) -> None:
-    """Keys, rate limits and a longest query stand in front of every route that is not open to all."""
+    """Answers that any route may get; keys, rates, host and a longest query guard those that are not open to all."""
+    operation["responses"] |= schemas.ANYWHERE
     if group is None:
         operation["security"] = []
         return
     needed = bool(settings.api_keys) and group in settings.guarded
     operation["security"] = [*({name: []} for name in KEY_SCHEMES), *([] if needed else [{}])]
-    refusals = {str(status): entry for status, entry in schemas.problems(401, 414, 429).items()}
+    refusals = {str(status): entry for status, entry in schemas.problems(401, 414, 421, 429, 503).items()}
     operation["responses"] = dict(sorted((refusals | operation["responses"]).items()))
 
 

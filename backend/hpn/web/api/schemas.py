@@ -180,7 +180,9 @@ HEADERS = {
     "Accept-Encoding": "identity, where the body was refused because it is compressed.",
     "WWW-Authenticate": "Kind of key that is needed.",
     "ETag": "Tag of this state, for If-None-Match and If-Match.",
-    "Location": "Address of what was saved.",
+    "Allow": "Methods that there are at this address.",
+    "Location": "Address of what was saved, or where to ask instead.",
+    "Idempotency-Replayed": "true, where this answers for what the same Idempotency-Key saved before.",
     "Link": "Address of the part that follows, rel=next; none at the end.",
     "Preference-Applied": "Which preference of `Prefer` was followed.",
     "Content-Disposition": "File name for a download.",
@@ -205,6 +207,7 @@ def _text(description: str) -> dict[str, Any]:
 
 OF_STATUS = {
     401: headers("WWW-Authenticate"),
+    405: headers("Allow"),
     415: headers("Accept-Encoding"),
     429: headers("Retry-After"),
     503: headers("Retry-After"),
@@ -223,6 +226,12 @@ def problems(*statuses: int) -> dict[int | str, dict[str, Any]]:
         for status in statuses
     }
 
+
+ANYWHERE = {
+    "307": {"description": "The address without the slash at its end.", "headers": headers("Location")},
+    "405": problems(405)[405],
+}
+"""OpenAPI entries of what every address may answer."""
 
 HAS_IT_ALREADY: dict[int | str, dict[str, Any]] = {
     304: {"description": "The client has it already.", "headers": headers("ETag")}

@@ -14,7 +14,7 @@ from starlette.responses import Response
 from hpn import ENGINE_VERSION
 from hpn.application import InputError
 from hpn.catalogue import Catalogue
-from hpn.store import Draft, Store, Summary
+from hpn.store import Draft, SavedSelection, Store, Summary
 from hpn.web.api import schemas
 from hpn.web.api.replies import (
     DIFFERENCES_SHOWN,
@@ -39,6 +39,7 @@ from hpn.web.archive import (
     keep,
     not_found,
     url_of,
+    with_catalogue,
 )
 from hpn.web.door.access import admit
 from hpn.web.door.bodies import JSON, MERGE_PATCH, parsed, read_body
@@ -48,6 +49,7 @@ from hpn.web.door.pools import calculate
 from hpn.web.door.problems import Problem
 from hpn.web.settings import Settings
 
+REPLAYED = "Idempotency-Replayed"
 KEY = (
     "Makes a retry safe: the same key and content is saved once, other content is a 422. A key belongs to its caller, "
     "an API key or else an address, and lasts: once its selection is deleted it is answered with 410, so that a late "
@@ -85,7 +87,7 @@ router = APIRouter(prefix="/api/v1/selections", tags=["Saved selections"])
         "SavedReply",
         *(400, 408, 410, 413, 415, 422, 503),
         status=201,
-        headers=schemas.headers("Location", "Preference-Applied"),
+        headers=schemas.headers("Location", "ETag", REPLAYED, "Preference-Applied"),
         links=schemas.FROM_SAVED,
     ),
     response_class=JSONBytes,
@@ -96,15 +98,21 @@ async def save_selection(request: Request) -> Response:
     key = idempotency_key(request)
     body = await read_body(request, maximum_bytes=settings.maximum_body_bytes, seconds=settings.body_seconds)
     owner, catalogue = request.state.api_key, request.app.state.catalogue
-    id = await keep(request, await calculate(request, body, _draft, body, catalogue, key, owner))
+    draft = await calculate(request, body, _draft, body, catalogue, key, owner)
+    id = await keep(request, draft)
     headers = {"Location": f"/api/v1/selections/{id}"}
+    if id == draft.id:
+        headers["ETag"] = _tag(id, 1, catalogue.version, catalogue)
+    else:
+        headers |= {"ETag": _tag_of(*await with_catalogue(request.app.state, id), catalogue), REPLAYED: "true"}
     preferred = preferred_return(request)
     if preferred:
         headers["Preference-Applied"] = f"return={preferred}"
     if preferred == "minimal":
         return Response(status_code=201, headers=headers)
     if preferred == "representation":
-        return JSONBytes(await _representation(request, id), 201, headers)
+        whole, headers["ETag"] = await _representation(request, id)
+        return JSONBytes(whole, 201, headers)
     return json_response(SavedReply(id, url_of(id)), 201, headers)
 
 
@@ -132,7 +140,7 @@ def _draft(body: bytes, catalogue: Catalogue, key: str | None, owner: str | None
 )
 async def read_selection(request: Request, id: str) -> Response:
     """Input and result as saved, and what today's engine and catalogue say differently, verdicts first."""
-    return conditional(request, await _representation(request, id))
+    return conditional(request, *await _representation(request, id))
 
 
 @router.get(
@@ -200,8 +208,8 @@ async def rename_selection(request: Request, id: str) -> Response:
     if not await store.rename(id, names, version):
         raise not_found(id) if version is None else other_state()
     note(request, selection=id)
-    renamed = await _representation(request, id)
-    return JSONBytes(renamed, headers={"ETag": etag_of(renamed), "Cache-Control": "no-cache"})
+    renamed, etag = await _representation(request, id)
+    return JSONBytes(renamed, headers={"ETag": etag, "Cache-Control": "no-cache"})
 
 
 @router.delete(
@@ -234,21 +242,29 @@ async def _matched_version(request: Request, id: str) -> int | None:
     """
     if request.headers.get("if-match", "*").strip() == "*":  # any state, as long as there is one
         return None
-    represented = partial(_represented, catalogue=request.app.state.catalogue)
-    version, body = await found(request, id, lambda reopened: (reopened.saved.version, represented(reopened)))
-    require_match(request, body)
-    return version
+    saved, then = await with_catalogue(request.app.state, id)
+    require_match(request, _tag_of(saved, then, request.app.state.catalogue))
+    return saved.version
 
 
-async def _representation(request: Request, id: str) -> bytes:
-    """What `SavedSelectionReply` describes; application and result are the saved bytes."""
+def _tag_of(saved: SavedSelection, then: Catalogue | None, today: Catalogue) -> str:
+    return _tag(saved.id, saved.version, None if then is None else then.version, today)
+
+
+def _tag(id: str, version: int, then: str | None, today: Catalogue) -> str:
+    """Entity tag of a saved selection: everything that its representation is made of, by its versions."""
+    return etag_of(f"{id} {version} {then} {today.version} {ENGINE_VERSION}".encode())
+
+
+async def _representation(request: Request, id: str) -> tuple[bytes, str]:
+    """Saved selection as `SavedSelectionReply`, application and result as the saved bytes, and its entity tag."""
     return await found(request, id, partial(_represented, catalogue=request.app.state.catalogue))
 
 
-def _represented(reopened: Reopened, catalogue: Catalogue) -> bytes:
+def _represented(reopened: Reopened, catalogue: Catalogue) -> tuple[bytes, str]:
     saved, then = reopened.saved, reopened.then
     first = reopened.selection.foremost.designation
-    return encode_reply(
+    body = encode_reply(
         {
             **structs.asdict(_summary(saved)),
             "application": Raw(saved.application),
@@ -257,6 +273,7 @@ def _represented(reopened: Reopened, catalogue: Catalogue) -> bytes:
             "today": _today(reopened, catalogue),
         }
     )
+    return body, _tag_of(saved, then, catalogue)
 
 
 def _today(reopened: Reopened, catalogue: Catalogue) -> TodayReply:
