@@ -70,6 +70,8 @@ mutants: install
 check: $(ENVIRONMENT)
 	$(BIN)/ruff format --check
 	$(BIN)/ruff check
+	$(BIN)/djlint --quiet --check frontend/templates
+	$(BIN)/djlint --quiet --lint frontend/templates
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 

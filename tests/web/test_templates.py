@@ -42,3 +42,30 @@ def test_a_tree_that_has_been_moved_keeps_its_compiled_templates(
     assert made.bytecode_cache is not None and made.loader is not None
     source, path, _ = made.loader.get_source(made, "page.html")
     assert made.bytecode_cache.get_bucket(made, "page.html", path, source).code is not None
+
+
+def test_a_template_is_laid_out_in_lines_that_fit_beside_each_other() -> None:
+    wide = [
+        f"{path.name}:{number}"
+        for path in sorted(templates.TEMPLATES.glob("*.html"))
+        for number, line in enumerate(path.read_text().splitlines(), start=1)
+        if len(line) > 140
+    ]
+    assert wide == []
+
+
+def test_the_layout_of_a_template_is_none_of_the_page(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(templates, "TEMPLATES", tmp_path)
+    laid_out = (
+        '<td class="figure"\n    id="{{ 1\n    + 1 }}"{% if true %} title="a\n      b"{% endif %}\n    hidden>\n'
+        "  {{ 3 }}\n  <span>kept</span>\n  apart\n</td>\n<pre>\na  b</pre>"
+    )
+    (tmp_path / "page.html").write_text(laid_out)
+    made = templates.environment_of(assets.Assets.load())
+
+    assert made.loader is not None
+    source, _, _ = made.loader.get_source(made, "page.html")
+    assert source.count("\n") == laid_out.count("\n")
+    assert made.get_template("page.html").render() == (
+        '<td class="figure" id="2" title="a b" hidden>3\n<span>kept</span>\napart</td>\n<pre>\na  b</pre>'
+    )
