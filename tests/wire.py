@@ -58,8 +58,7 @@ def select(application: Application, catalogue: Catalogue) -> Selection:
 
 def select_fleet(applications: Sequence[Application], catalogue: Catalogue) -> list[Selection | InputError]:
     """Selections of many applications."""
-    judged = batch.judge_batch(applications, catalogue)
-    return [one if isinstance(one, InputError) else Selection(one) for one in judged]
+    return batch.judge_batch(applications, catalogue, Selection)
 
 
 def candidate_of(entry: Json) -> selection.Candidate:

@@ -8,7 +8,7 @@ from hpn.application import Application, ApplicationArea
 from hpn.catalogue import Catalogue, load_catalogue
 from hpn.engine.batch import judge_batch
 from hpn.engine.notices import AREAS
-from hpn.engine.selection import Judged, select
+from hpn.engine.selection import Judged, Selection, select
 from tests.build import Json, answer, candidate, check, cycle, notices, phase
 from tests.conftest import Supplement
 
@@ -175,11 +175,11 @@ def test_a_cycle_beside_longer_ones_has_the_same_notice_on_long_runs() -> None:
     phases = [phase(1, 350, 200), phase(1, 50, 600), phase(1, 350, 200)]
     short, long = (Application.model_validate(cycle(*one, requirements=asked)) for one in (phases, [*phases, *phases]))
     catalogue = load_catalogue()
-    judged = judge_batch([short, long], catalogue)[0]
+    selection = judge_batch([short, long], catalogue, Judged.selection)[0]
 
-    assert isinstance(judged, Judged)
-    assert judged.selection().notices == select(short, catalogue).notices
-    assert "speed_above_average" in [one.code for one in judged.selection().notices]
+    assert isinstance(selection, Selection)
+    assert selection.notices == select(short, catalogue).notices
+    assert "speed_above_average" in [one.code for one in selection.notices]
 
 
 def test_models_and_motor_torques_say_what_they_leave_out(catalogue: Catalogue) -> None:

@@ -1,11 +1,15 @@
 """Reasons, refusals and the answer in brief, by two limits of HPN-20A-5: T_N = 80 Nm and T_R = 149 Nm."""
 
+import weakref
+
 import msgspec
 import pytest
 
 from hpn.application import Application, InputError
 from hpn.catalogue import Catalogue
-from hpn.engine.selection import Candidate, CheckDefinition, Selection, judge, reason_of, select
+from hpn.engine.batch import judge_batch
+from hpn.engine.evaluation import Evaluation
+from hpn.engine.selection import Candidate, CheckDefinition, Judged, Selection, judge, reason_of, select
 from tests.build import Json, cycle, phase
 from tests.conftest import Supplement
 
@@ -180,3 +184,16 @@ def test_of_several_sizes_each_is_told_with_its_ratios(supplemented: Supplement)
 
     [(_, text)] = refused.value.problems
     assert text.endswith("there are 11A: 4, 5, 7, 10, 15, 20, 25, 30, 35, 40, 45, 50; 99A: 5")
+
+
+def test_a_batch_keeps_one_evaluation_at_a_time(catalogue: Catalogue) -> None:
+    """Those of ten thousand applications with every check would fill 250 MB."""
+    alive: weakref.WeakSet[Evaluation] = weakref.WeakSet()
+
+    def number_alive(judged: Judged) -> int:
+        alive.add(judged.evaluation)
+        return len(alive)
+
+    wishes = ({"ratios": [ratio]} for ratio in (4, 5, 10))
+    applications = [Application.model_validate(cycle(phase(10, 100), requirements=wish)) for wish in wishes]
+    assert judge_batch(applications, catalogue, number_alive) == [1, 1, 1]

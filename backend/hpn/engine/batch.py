@@ -1,7 +1,8 @@
 """Many applications at once, as a PLM system has them: evaluated in chunks of duty cycles of like length."""
 
 from collections import defaultdict
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -12,6 +13,8 @@ from hpn.engine.allowed import gears_for, with_listed_motor
 from hpn.engine.duty import Duty
 from hpn.engine.evaluation import evaluate
 from hpn.engine.selection import Judged
+
+Answer = TypeVar("Answer")
 
 CHUNK_CYCLES = 1024
 CHUNK_PHASES = 100_000
@@ -39,12 +42,15 @@ def chunks_of(counts: ArrayLike) -> Iterator[NDArray[np.intp]]:
         start = end
 
 
-def judge_batch(applications: Sequence[Application], catalogue: Catalogue) -> list[Judged | InputError]:
-    """Each application on its gears, or the reason why it has none, in their order.
+def judge_batch(
+    applications: Sequence[Application], catalogue: Catalogue, answer: Callable[[Judged], Answer]
+) -> list[Answer | InputError]:
+    """Answers to applications, or the errors for which they have none, in their order.
 
     Applications with the same candidates are evaluated together, in chunks that stay inside the processor's cache.
+    `answer` takes from an evaluation what is needed of it, since no more than one is kept.
     """
-    results: list[Judged | InputError | None] = [None] * len(applications)
+    results: list[Answer | InputError | None] = [None] * len(applications)
     equipped = list(applications)
     groups: dict[GearList, list[int]] = defaultdict(list)
     for index, application in enumerate(applications):
@@ -58,5 +64,5 @@ def judge_batch(applications: Sequence[Application], catalogue: Catalogue) -> li
             members = [indices[place] for place in chunk.tolist()]
             evaluation = evaluate(Duty.of([equipped[index] for index in members]), gears, catalogue)
             for place, index in enumerate(members):
-                results[index] = Judged(applications[index], evaluation, place)
+                results[index] = answer(Judged(applications[index], evaluation, place))
     return [result for result in results if result is not None]

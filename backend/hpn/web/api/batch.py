@@ -15,7 +15,7 @@ from starlette.responses import Response
 from hpn.application import BatchItem, InputError
 from hpn.catalogue import Catalogue
 from hpn.engine.batch import judge_batch
-from hpn.engine.selection import Judged
+from hpn.engine.selection import Judged, Outcome
 from hpn.web.api import schemas, streaming
 from hpn.web.api.items import Span, items_of
 from hpn.web.api.replies import BatchLine, JSONBytes, ProblemReply, encode
@@ -174,14 +174,18 @@ def batch_lines(items: Iterable[Any], catalogue: Catalogue) -> list[BatchLine]:
 def _lines_of(items: Iterable[_Item], catalogue: Catalogue) -> list[BatchLine]:
     """Result lines of items, in their order; each is validated on its own, before the next one is taken."""
     read = list(items)
-    judged = iter(judge_batch([item.asked for item in read if isinstance(item.asked, BatchItem)], catalogue))
+    judged = iter(judge_batch([item.asked for item in read if isinstance(item.asked, BatchItem)], catalogue, _brief))
     return [_line(item.reference, next(judged) if isinstance(item.asked, BatchItem) else item.asked) for item in read]
 
 
-def _line(reference: str | None, outcome: Judged | InputError | Problem) -> BatchLine:
-    if isinstance(outcome, Judged):
-        brief = outcome.outcome()
-        return BatchLine(reference, "ok", *brief, link=to_link(outcome.application))
+def _brief(judged: Judged) -> tuple[Outcome, str]:
+    return judged.outcome(), to_link(judged.application)
+
+
+def _line(reference: str | None, outcome: tuple[Outcome, str] | InputError | Problem) -> BatchLine:
+    if isinstance(outcome, tuple):
+        brief, link = outcome
+        return BatchLine(reference, "ok", *brief, link=link)
     problem = Problem.of(outcome) if isinstance(outcome, InputError) else outcome
     return BatchLine(reference, "error", problem=msgspec.convert(problem.body(), ProblemReply))
 
