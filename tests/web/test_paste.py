@@ -37,12 +37,12 @@ def query_of(location: str) -> dict[str, list[str]]:
 
 
 def cells(page: str) -> list[str]:
-    """What the rows of a preview say."""
+    """Cells of the rows of a preview."""
     return re.findall(r"<td>(?:<mark>)?([^<]+)(?:</mark>)?</td>", page)
 
 
 def chosen(page: str) -> dict[str, str]:
-    """What each select of a preview is set to; blank where it is asked."""
+    """Value of each select of a preview; blank where it is asked."""
     selects = re.findall(r'<select name="(\w+)".*?</select>', page, re.DOTALL)
     found = re.findall(r'<select name="(\w+)"[^>]*>.*?<option(?: value="([^"]*)")? selected', page, re.DOTALL)
     assert len(found) == len(selects)
@@ -50,7 +50,7 @@ def chosen(page: str) -> dict[str, str]:
 
 
 def of(page: str) -> str:
-    """What the choices of a preview are tied to."""
+    """Digest that the choices of a preview are tied to."""
     found = re.search(r'name="of" value="(\w+)"', page)
     assert found
     return found[1]

@@ -29,7 +29,7 @@ def client() -> Iterator[TestClient]:
 
 
 def outcome(client: TestClient, case: Case, chosen: dict[str, str]) -> tuple[str, str | list[str]]:
-    """What comes of a table: `becomes` with phases, `asks` with questions, or `refused` with the reason."""
+    """Outcome of a table: `becomes` with phases, `asks` with questions, or `refused` with the reason."""
     fields = {"take": "replace", **chosen}
     content = case["text"].encode(case["as"]) if "as" in case else b""
     files = {"file": ("cycle.csv", content)} if "as" in case else None
@@ -85,7 +85,7 @@ def test_choices_about_one_table_say_nothing_about_another(client: TestClient) -
 
 
 def of_table(client: TestClient, case: Case) -> str:
-    """What the choices about a table are tied to, as its preview says."""
+    """Digest that the choices about a table are tied to, from its preview."""
     reply = client.post(
         "/paste", data={"text": case["text"]}, headers={"Cookie": f"hpn_units={case.get('reader', '')}"}
     )

@@ -51,7 +51,7 @@ def read_folder(folder: Path, tables: Collection[str]) -> dict[str, bytes]:
 
 
 def _is_meant(name: str, tables: Collection[str]) -> bool:
-    """Whether a file seems to be a table: a CSV file of any name, or a sheet such as `ratings.xlsx`."""
+    """True for a file that seems to be a table: a CSV file of any name, or a sheet such as `ratings.xlsx`."""
     ending = PurePath(name.lower()).suffix
     return ending == ".csv" or (ending in SHEETS and f"{name.lower().partition('.')[0]}.csv" in tables)
 

@@ -17,7 +17,8 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationEr
 
 from hpn.catalogue.files import CatalogueError
 from hpn.catalogue.gear import Gear
-from hpn.tables.numbers import split_unit, unit_code
+from hpn.tables.cells import split_unit
+from hpn.tables.numbers import unit_code
 from hpn.words.designations import canonical_size
 from hpn.words.quantities import CheckCode
 from hpn.words.units import NUMBER, SYMBOLS, entered, quantity_of, suffix_of

@@ -19,10 +19,10 @@ LOAD_PATH, LOAD_INERTIA = "output_load.", "requirements.load_inertia_kgm2"
 _LOADING = ("duty_cycle.", "emergency_stop.", LOAD_PATH)
 
 LOADS = tuple(path for path in INPUTS if path.startswith(_LOADING))
-"""What loads the gear besides the phases, by its path in the application."""
+"""Loads of the gear besides the phases, by their paths in the application."""
 
 REQUIREMENTS = tuple(path for path in INPUTS if not path.startswith((*_LOADING, "phase.")))
-"""What is asked of the gear, likewise."""
+"""Requirements of the gear, likewise."""
 
 ENTERED: Mapping[str, str] = {
     cell_name(INPUTS[path].symbol) or path.removeprefix(LOAD_PATH): path
@@ -55,7 +55,7 @@ class InputLine:
 
 
 def value_of(application: Application, path: str) -> Value | None:
-    """What an application says at a path of INPUTS, or None; of the load, also the defaults that a phase's load has."""
+    """Value of an application at a path of INPUTS, or None; of the load, also the defaults that a phase's load has."""
     first, *rest = path.split(".")
     part: Any = application.loads if first == "output_load" else getattr(application, first)
     for step in rest:
@@ -65,7 +65,7 @@ def value_of(application: Application, path: str) -> Value | None:
 
 
 def entered(export: Export, path: str) -> Value | None:
-    """What stands in the workbook's cell of an input; of a load, its default too, should the reader add one."""
+    """Value in the workbook's cell of an input; of a load, its default too, should the reader add one."""
     value = value_of(export.equipped, path)
     if value is None and path == LOAD_INERTIA:
         return export.selection.duty.load_inertia_kgm2

@@ -46,7 +46,7 @@ class Body:
 
     @property
     def headed(self) -> bool:
-        """Whether anything stands above the numbers."""
+        """True where anything stands above the numbers."""
         return any(self.headings)
 
     @property
@@ -60,7 +60,7 @@ class Body:
         return replace(self, numbers=tuple(sorted(rows)), rows=tuple(rows[number] for number in sorted(rows)))
 
     def above(self, number: int) -> "Body":
-        """What stands above a row."""
+        """The rows above one."""
         count = sum(each < number for each in self.numbers)
         totals = tuple(total for total in self.totals if total.number < number)
         return replace(self, numbers=self.numbers[:count], rows=self.rows[:count], totals=totals)
@@ -101,7 +101,7 @@ def body_of(grid: Grid, scales: str = "") -> Body:
 
 
 def _no_numbers(grid: Grid) -> RefusedError:
-    """Why there is no row of numbers: by a cell that may be meant as one, where a row has several."""
+    """Error for no row of numbers: it names a cell that may be meant as one, where a row has several."""
     for number, row in zip(grid.numbers, grid.rows, strict=True):
         meant = [cell for cell in row if any(map(str.isdigit, cell)) and not heading_of(cell).kind]
         if len(meant) >= 2:

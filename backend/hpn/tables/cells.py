@@ -13,11 +13,13 @@ from fractions import Fraction
 from functools import lru_cache
 from typing import Literal, NamedTuple
 
-from hpn.tables.numbers import DASHES, split_unit
 from hpn.words.units import QUANTITY_OF, codes_for
 
 Decimal = Literal[".", ","]
 DECIMALS: tuple[Decimal, ...] = (".", ",")
+
+DASHES = str.maketrans(dict.fromkeys("\N{MINUS SIGN}\N{EN DASH}\N{NON-BREAKING HYPHEN}", "-"))
+"""Signs that stand for a minus in documents."""
 
 BLANKS = " \u00a0\u2007\u2008\u2009\u202f"
 """Blank, no-break, figure, punctuation, thin and narrow no-break space: each may stand between thousands."""
@@ -37,6 +39,12 @@ _NUMBER = {
     )
     for decimal, group, trailing in ((".", ",", r"\.?"), (",", ".", ""))
 }
+_WITH_UNIT = re.compile(
+    r"(?P<number>.*?[0-9][.,]?(?:[eE][+-]?[0-9]{1,3})?)"
+    r"(?:\s+(?P<per>1\s?/[^0-9]+)|\s*(?P<unit>(?![eE][+-]?[0-9])(?:[^\W\d_]|[°'/])[^0-9]*(?:\^?\(?(?:[-−–]1|2)\)?)?))"
+)
+"""A number and its unit: letters, or one divided by something."""
+
 THOUSANDS = "÷"
 """Stands before what a format divides a number by, where nothing says the unit of what it shows."""
 
@@ -44,7 +52,7 @@ PERCENT = "%"
 _OF_PHASES = ("torque", "speed", "time", "force")
 _NOTHING = ("", "-", "–", "—", "\N{MINUS SIGN}", "\N{NON-BREAKING HYPHEN}")
 _HELD_AS_TEXT = re.compile(r"=\"(?P<formula>[^\"]*)\"|'(?P<text>[-+\N{MINUS SIGN}]?(?!0[0-9])[0-9].*)")
-"""How spreadsheet programs write a number that they hold as a text: `="40"`, and `'40` but no `'040`."""
+"""A number that spreadsheet programs hold as a text: `="40"`, and `'40` but no `'040`."""
 
 _FULL_WIDTH = str.maketrans({chr(ord(sign) + 0xFEE0): sign for sign in "0123456789.,+-"})
 
@@ -91,6 +99,12 @@ def held_of(cell: str) -> tuple[str, str] | None:
     return f"{shown:f}", number
 
 
+def split_unit(text: str) -> tuple[str, str]:
+    """Number and unit of a text such as `40 Nm`; the unit is blank where there is none."""
+    match = _WITH_UNIT.fullmatch(text)
+    return (match["number"], (match["per"] or match["unit"]).strip()) if match else (text, "")
+
+
 def entry(cell: str, decimal: Decimal, *, any_unit: bool = False) -> Entry | None:
     """A cell as a number under a decimal mark; None where it is none.
 
@@ -106,7 +120,7 @@ def entry(cell: str, decimal: Decimal, *, any_unit: bool = False) -> Entry | Non
 def _entry(cell: str, decimal: Decimal, any_unit: bool) -> Entry | None:
     if not any(map(str.isdigit, cell)):
         return None
-    if (number := plain(cell, decimal)) is not None:
+    if (number := plain_number(cell, decimal)) is not None:
         return Entry(number, "")
     if (seconds := seconds_of(cell)) is not None:
         return Entry(seconds, "s")
@@ -114,11 +128,11 @@ def _entry(cell: str, decimal: Decimal, any_unit: bool) -> Entry | None:
     codes = codes_for(unit)
     known = unit == PERCENT or bool(codes) if any_unit else any(QUANTITY_OF[code] in _OF_PHASES for code in codes)
     # `1/min` is a unit, and no number of its own; `1'` is no phase's.
-    number = plain(written, decimal) if known and not codes_for(cell) else None
+    number = plain_number(written, decimal) if known and not codes_for(cell) else None
     return None if number is None else Entry(number, unit)
 
 
-def plain(text: str, decimal: Decimal) -> str | None:
+def plain_number(text: str, decimal: Decimal) -> str | None:
     """A number with a point as decimal mark and nothing between thousands; None where it is no number."""
     text = text.translate(DASHES)
     match = _NUMBER[decimal].fullmatch(text)

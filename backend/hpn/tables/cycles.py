@@ -90,7 +90,7 @@ def read_grids(
     if divided:
         return divided
     readable = [table for table in tables if table.problem is None]
-    distinct = list({_told_apart(table): table for table in reversed(readable)}.values())[::-1]
+    distinct = list({_difference(table): table for table in reversed(readable)}.values())[::-1]
     if not distinct:
         return tables[0]
     if len(distinct) == 1:
@@ -107,8 +107,8 @@ def read_grids(
     )
 
 
-def _told_apart(table: CycleTable) -> tuple[object, ...]:
-    """Two readings of one text are told apart by their phases, or by their rows."""
+def _difference(table: CycleTable) -> tuple[object, ...]:
+    """The phases, or the rows, in which two readings of one text differ."""
     return table.phases if table.whole or not table.body else table.body.rows
 
 

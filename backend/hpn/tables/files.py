@@ -29,7 +29,7 @@ MOST_CELLS_IN_ALL = 4 * MOST_CELLS
 
 @dataclass(frozen=True, slots=True)
 class Wanted:
-    """What a file is read for: its longest text, most rows of a text, and tables that are taken as they are.
+    """Bounds and uses of a file: its longest text, most rows of a text, and tables that are taken as they are.
 
     Objects of JSON are rows of a table where tables may be taken as they are, else one application.
     """
@@ -41,7 +41,7 @@ class Wanted:
 
 @dataclass(frozen=True, slots=True)
 class Contents:
-    """What is in a file: cells of each sheet by each way to part them, or why it has none that can be read.
+    """Contents of a file: cells of each sheet by each way to part them, or the reason why none can be read.
 
     Without sheets: `suffix` names the format of a table that is taken as it is, and `is_application` an object of JSON.
     """
@@ -54,7 +54,7 @@ class Contents:
 
 
 def contents_of(content: bytes, wanted: Wanted) -> Contents:
-    """What is in a file; raises nothing but MemoryError, `problem` says why it can't be read."""
+    """Contents of a file; raises nothing but MemoryError, `problem` says why it can't be read."""
     try:
         if content.startswith(OLD_MAGIC):
             raise RefusedError(OLD_WORKBOOK)

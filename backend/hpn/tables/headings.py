@@ -108,7 +108,7 @@ _BETWEEN = re.compile(r"\s+in\s+|\s*/\s*|\s*,\s*|[\s_]+")
 
 @dataclass(frozen=True, slots=True)
 class Heading:
-    """What a heading says: the quantity, an index, a sum, a unit alone, or nothing that is known (`kind` blank)."""
+    """Meaning of a heading: the quantity, an index, a sum, a unit alone, or nothing that is known (`kind` blank)."""
 
     kind: str
     unit: str = ""
@@ -118,7 +118,7 @@ class Heading:
 
 
 def heading_of(cell: str) -> Heading:
-    """What a cell says as a heading; one that is far too long for any is not even kept in mind."""
+    """Meaning of a cell as a heading; one that is far too long for any is not even cached."""
     return _heading_of(cell) if len(cell) <= LONGEST_WRITTEN else Heading("")
 
 
@@ -191,7 +191,7 @@ def _folded(name: str) -> str:
 
 @dataclass(frozen=True, slots=True)
 class Over:
-    """What all texts above a column say together. A unit outranks no name: beside a name it says the unit alone.
+    """Meaning of all texts above a column together. A unit outranks no name: beside a name it says the unit alone.
 
     `kind` is blank where nothing is known, or two things; `name` is what the column is called without its units.
     """
@@ -215,7 +215,7 @@ class Over:
 
 
 def heading_over(texts: Sequence[str]) -> Over:
-    """What the texts above a column say together: `Torque` over `max` is the largest torque, over `Nm` one in Nm."""
+    """Meaning of the texts above a column together: `Torque` over `max` is the largest torque, over `Nm` one in Nm."""
     said = [heading_of(text) for text in texts]
     measured = frozenset(each.unit for each in said) - {""}
     names = [text for text, each in zip(texts, said, strict=True) if each.kind != UNIT]
@@ -237,7 +237,7 @@ def heading_over(texts: Sequence[str]) -> Over:
 
 
 def _together(names: Sequence[str]) -> tuple[list[Heading], str]:
-    """What names above one another say: as they are read, or the other way round; and what they are called."""
+    """Headings that names above one another make, read downwards or upwards, and the name that they make."""
     bare = [parts_of(" ".join(name.split()))[0] for name in names]
     bare = [name for name in bare if _folded(name) not in OF_LOAD] or bare
     for name in (" ".join(bare), " ".join(reversed(bare))):
@@ -259,12 +259,12 @@ def is_of_motor(cell: str) -> bool:
 
 
 def quantities_of(unit: str) -> set[str]:
-    """What a unit may measure."""
+    """Quantities that a unit may measure."""
     return {units.QUANTITY_OF[code] for code in units.codes_for(unit)}
 
 
 def is_total(cell: str) -> bool:
-    """Whether a cell may label its row as a sum or another figure of the whole table."""
+    """True where a cell may label its row as a sum or another figure of the whole table."""
     if len(cell) > LONGEST:
         return False
     folded = _folded(cell.rstrip(":"))

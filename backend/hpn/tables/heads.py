@@ -114,7 +114,7 @@ def _notes(grid: Grid, places: Sequence[int]) -> tuple[Sentence, ...]:
 
 
 def _named(row: Sequence[str]) -> int:
-    """How many quantities a row names, by name or by unit."""
+    """Number of quantities that a row names, by name or by unit."""
     found = set()
     for cell in row[:MOST_COLUMNS]:
         heading = heading_of(cell)
@@ -127,7 +127,7 @@ def _named(row: Sequence[str]) -> int:
 
 
 def numbers_in(row: Sequence[str]) -> int:
-    """How many cells are numbers, or stand where numbers do."""
+    """Number of cells that are numbers, or stand where numbers do."""
     return sum(is_meant_as_number(cell) for cell in row)
 
 

@@ -43,18 +43,18 @@ class Section:
 
     @property
     def thousands(self) -> int:
-        """How many times a number is shown divided by a thousand."""
+        """Number of times that a number is shown divided by a thousand."""
         whole = self.number.rstrip(",")
         return len(self.number) - len(whole) if whole else 0
 
     def holds(self, value: float) -> bool:
-        """Whether its condition is met, if it has one."""
+        """True where its condition is met, or it has none."""
         found = _CONDITION.fullmatch(self.condition)
         return found is None or bool(_HOLDS[found[1]](value, float(found[2])))
 
 
 def section_of(number_format: str, value: float) -> Section | None:
-    """Section that shows a number, None where that can't be told, or some are shown in thousands and nothing says so.
+    """Section that shows a number, None where that is unknown, or some are shown in thousands and nothing says so.
 
     A zero may be shown as a dash.
     """

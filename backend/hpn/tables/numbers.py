@@ -1,4 +1,4 @@
-"""What people type: numbers in their own units and with their decimal mark, turned into the wire's and back.
+"""Numbers as people type them: in their own units and with their decimal mark, turned into the wire's and back.
 
 A form that shows something else than the wire's units in plain notation says so in its field `written`. Nothing is lost
 on the way: a number that is shown shorter than it is stands in the field `was`, and counts as long as nobody edits it.
@@ -13,6 +13,7 @@ from math import isfinite
 from typing import Literal, NamedTuple
 
 from hpn.tables.arithmetic import worked_out
+from hpn.tables.cells import DASHES, DECIMALS, plain_number, split_unit
 from hpn.words import units as measures
 from hpn.words.reader import Reader
 from hpn.words.units import NUMBER, SYMBOLS
@@ -27,18 +28,9 @@ DIGITS = 5
 """Digits that a number from elsewhere is shown with in another unit."""
 
 _GROUPED = re.compile(r"[+-]?[1-9][0-9]{0,2}(\.[0-9]{3})+")
-DASHES = str.maketrans(dict.fromkeys("\N{MINUS SIGN}\N{EN DASH}\N{NON-BREAKING HYPHEN}", "-"))
-"""What stands for a minus in documents."""
-
 LONGEST_TEXT = 100
 _LONGEST = 60
 """Characters of a text, such as the designation of a motor, and of a number."""
-
-_WITH_UNIT = re.compile(
-    r"(?P<number>.*?[0-9][.,]?(?:[eE][+-]?[0-9]{1,3})?)"
-    r"(?:\s+(?P<per>1\s?/[^0-9]+)|\s*(?P<unit>(?![eE][+-]?[0-9])(?:[^\W\d_]|[°'/])[^0-9]*(?:\^?\(?(?:[-−–]1|2)\)?)?))"
-)
-"""A number and its unit: letters, or one divided by something."""
 
 Units = Mapping[str, str]
 """Names of the fields that take numbers -> the suffix of their unit, blank for a pure number."""
@@ -71,12 +63,6 @@ def to_wire(pairs: Sequence[tuple[str, str]], units: Units) -> tuple[list[tuple[
     plain = [(name, text) for name, text in pairs if name not in (WRITTEN, WAS)]
     known = _Known(reader, given.get(WAS, ""))
     return [(name, known.entry(text, units[name]) if name in units else text) for name, text in plain], reader.marker
-
-
-def split_unit(text: str) -> tuple[str, str]:
-    """Number and unit of a text such as `40 Nm`; the unit is blank where there is none."""
-    match = _WITH_UNIT.fullmatch(text)
-    return (match["number"], (match["per"] or match["unit"]).strip()) if match else (text, "")
 
 
 class _Known:
@@ -126,7 +112,7 @@ class _Known:
 
 
 def _without_percent(number: str | Sentence | None) -> Sentence | None:
-    """What to write in place of a percentage."""
+    """Advice in place of a percentage."""
     if not isinstance(number, str):
         return None
     return Sentence(N_("write {number}"), {"number": f"{Decimal(number).scaleb(-2).normalize():f}"})
@@ -156,7 +142,7 @@ def known_units(quantity: str, per: str = "") -> str:
 
 
 def either(codes: Sequence[str], spelled: str) -> dict[str, Sentence]:
-    """What a spelling may mean, as values of a sentence: two units, or one and a frequency that counts no turns."""
+    """Meanings of a spelling, as values of a sentence: two units, or one and a frequency that counts no turns."""
     first, second = (Sentence(measures.symbol_of_code(code)) for code in codes[:2])
     return {"first": first, "second": Sentence(ELECTRICAL) if spelled.strip() == measures.FREQUENCY else second}
 
@@ -242,8 +228,6 @@ def _plain(value: float) -> str:
 ELECTRICAL = N_("an electrical frequency")
 NOT_WHOLE = N_("must be a whole number")
 _ANY_NUMBER = re.compile(r"[+-]?([0-9]+(\.[0-9]*)?|\.[0-9]+)([eE][+-]?[0-9]+)?")
-_COMMAS = re.compile(r"[+-]?[0-9]{1,3}(,[0-9]{3})+(?![0-9,])")
-
 
 _IN_GROUPS = re.compile(r"[+-]?[1-9][0-9]{0,2}\.[0-9]{2}0")
 """A number as nobody writes a whole one, unless the point is meant to stand between thousands."""
@@ -279,7 +263,7 @@ def _without_zeros(number: str) -> str:
 
 
 def _is_too_small(plain: str, value: float) -> bool:
-    """Whether a number in plain notation is another one than the zero that became of it."""
+    """True where a number in plain notation is another one than the zero that became of it."""
     return value == 0 and bool(re.search("[1-9]", re.split("[eE]", plain)[0]))
 
 
@@ -289,13 +273,13 @@ _APART = re.compile(r"[0-9][\s'’]+(?![0-9]{3}(?![0-9]))[0-9]")
 
 
 def _advice(text: str, unit: str = "", *, mostly_whole: bool = False) -> Sentence | None:
-    """What to write instead of a number with this unit, None where it can't be told."""
-    told = _not_a_number(text.strip().translate(DASHES), "number", unit, mostly_whole=mostly_whole)
-    return None if told.template == _SUCH_AS else told
+    """Advice in place of a number with this unit, None where there is none."""
+    advice = _not_a_number(text.strip().translate(DASHES), "number", unit, mostly_whole=mostly_whole)
+    return None if advice.template == _SUCH_AS else advice
 
 
 def _not_a_number(text: str, kind: Kind, unit: str = "", *, mostly_whole: bool = False) -> Sentence:
-    """What to write instead, where it can be told."""
+    """Advice for a text that is no number: the numbers that it may stand for."""
     tight = re.sub(r"[\s'’]", "", text)
     if len(tight) > _LONGEST:
         return Sentence(N_("is too long for a number"))
@@ -315,13 +299,6 @@ def _to_write(readings: Sequence[str]) -> Sentence:
 
 
 def _readings(text: str) -> list[str]:
-    """Numbers that a text with commas may stand for; `1,234` is either of two."""
-    if text.rfind(".") > text.rfind(",") or text.count(",") > 1:
-        return [text.replace(",", "")] if _COMMAS.match(text) else []
-    whole = text.partition(",")[0]
-    if "." in whole and not _GROUPED.fullmatch(whole):
-        return []
-    decimal = text.replace(".", "").replace(",", ".")
-    if re.fullmatch(r"[+-]?[1-9][0-9]{0,2},[0-9]{3}", text):
-        return [decimal, text.replace(",", "")]
-    return [decimal]
+    """Numbers that a text may stand for under either decimal mark; `1,234` is either of two."""
+    found = (plain_number(text.removesuffix(","), decimal) for decimal in reversed(DECIMALS))
+    return [number for number in dict.fromkeys(found) if number]

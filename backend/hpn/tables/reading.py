@@ -14,12 +14,23 @@ from math import inf, isfinite
 from typing import Any, Literal, NamedTuple
 
 from hpn.tables.bodies import Body
-from hpn.tables.cells import DECIMALS, LONGEST_CELL, PERCENT, Decimal, Entry, entry, is_blank, is_number, written
+from hpn.tables.cells import (
+    DECIMALS,
+    LONGEST_CELL,
+    PERCENT,
+    Decimal,
+    Entry,
+    entry,
+    is_blank,
+    is_number,
+    split_unit,
+    written,
+)
 from hpn.tables.columns import SKIP, Choices, Column
 from hpn.tables.headings import heading_over
 from hpn.tables.heads import REQUIRED
 from hpn.tables.inputs import AXIS
-from hpn.tables.numbers import either, known_units, split_unit
+from hpn.tables.numbers import either, known_units
 from hpn.tables.sheets import RefusedError
 from hpn.words import units
 from hpn.words.wording import N_, Sentence, Value
@@ -176,7 +187,7 @@ class Reading:
 
     @property
     def said(self) -> dict[str, Any]:
-        """What every table says."""
+        """Fields that every table has."""
         return {
             "questions": tuple(self.questions.open),
             "choices": tuple(self.questions.choices),

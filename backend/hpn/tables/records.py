@@ -33,7 +33,7 @@ Found = tuple[str, Grid | None]
 
 def parquet(content: bytes, takes: Takes | None) -> Found:
     """A table of Parquet; raises RefusedError."""
-    with _told():
+    with _read_errors():
         file = pq.ParquetFile(pa.BufferReader(content))
         if _is_taken(file.schema_arrow, takes):
             return ".parquet", None
@@ -45,7 +45,7 @@ def parquet(content: bytes, takes: Takes | None) -> Found:
 
 def arrow(content: bytes, takes: Takes | None) -> Found:
     """A table of Arrow; raises RefusedError."""
-    with _told():
+    with _read_errors():
         file = pa.ipc.open_file(pa.BufferReader(content))
         if _is_taken(file.schema, takes):
             return ".arrow", None
@@ -55,7 +55,7 @@ def arrow(content: bytes, takes: Takes | None) -> Found:
 
 
 @contextmanager
-def _told() -> Iterator[None]:
+def _read_errors() -> Iterator[None]:
     try:
         yield
     except (RefusedError, MemoryError):

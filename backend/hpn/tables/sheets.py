@@ -41,8 +41,7 @@ _HINT = re.compile(r"sep=(.)\r?\n", re.IGNORECASE)
 
 
 Takes = Callable[[Sequence[str], bool], bool]
-"""Says of the names of columns, and whether phases stand in lists, that a table needs no reading: it is taken as it is.
-"""
+"""Test of the names of columns, and of phases in lists, for a table that needs no reading: it is taken as it is."""
 
 
 class RefusedError(ValueError):
@@ -54,7 +53,7 @@ class RefusedError(ValueError):
 
 
 def too_many_cells() -> RefusedError:
-    """Why a table of very many cells is not read."""
+    """Error for a table of very many cells."""
     template = N_("there are more than {most} cells: leave out the columns that are not needed")
     return RefusedError(template, most=MOST_CELLS)
 
@@ -79,7 +78,7 @@ class Room:
 
 
 def no_number(row: int, cell: str) -> RefusedError:
-    """Why a cell of a row is no number, and what would be right where that can be told."""
+    """Error for a cell that is no number, with what would be right where that is known."""
     template = N_("row {row}: {cell} is not a number")
     if cell.startswith("="):
         template = N_("row {row}: {cell} has no calculated value; open and save the table in the spreadsheet program")
@@ -110,7 +109,7 @@ class Grid:
 
     @property
     def even(self) -> bool:
-        """Whether rows of different lengths are a sign of a wrong separator."""
+        """True where rows of different lengths are a sign of a wrong separator."""
         return self.separator in ("comma", "blanks", "blank")
 
     def transposed(self) -> "Grid":
@@ -174,13 +173,13 @@ def _begins(name: str, lines: Sequence[str]) -> set[int]:
 
 
 def _parts(name: str, lines: Sequence[str], begin: int) -> bool:
-    """Whether a mark is in most lines from one on, and in two of them below others."""
+    """True where a mark is in most lines from one on, and in two of them below others."""
     count = sum(_MARKS[name] in line for line in lines[begin:])
     return count * 2 > len(lines) - begin and (begin == 0 or count >= 2)
 
 
 def _barred(lines: Sequence[str]) -> bool:
-    """Whether bars make a table: each line has as many as the others, and two at least. One may be part of a cell."""
+    """True where bars make a table: each line has as many as the others, two at least. One may be part of a cell."""
     counts = {line.count("|") for line in lines if not _RULE.fullmatch(line.strip())}
     return len(counts) == 1 and counts.pop() >= 2
 

@@ -161,7 +161,7 @@ def _sheet(sheet: "Worksheet", room: Room) -> Sheet:
 
 
 def _placed(row: list[Any]) -> list[str]:
-    """What the cells of a row say, each in its column, up to the last that says something."""
+    """Texts of the cells of a row, each in its column, up to the last that has one."""
     said = {cell.column: text for cell in row if (text := _text(cell))}
     return [said.get(place, "") for place in range(1, max(said, default=0) + 1)]
 
@@ -204,7 +204,7 @@ def _stretches(places: Iterable[int], named: Callable[[int], str]) -> str:
 
 
 def _text(cell: Any) -> str:
-    """What a cell says. A number keeps all its digits, and the unit that its format shows with it."""
+    """Text of a cell. A number keeps all its digits, and the unit that its format shows with it."""
     value = cell.value
     if value is None:
         return ""

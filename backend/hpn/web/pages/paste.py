@@ -92,7 +92,7 @@ async def paste(request: Request) -> Response:
 
 @dataclass(frozen=True, slots=True)
 class Given:
-    """What was posted: the form that it came from, a text or a file, and what was chosen."""
+    """A post: the form that it came from, a text or a file, and the choices."""
 
     link: str = ""
     text: str = ""
@@ -149,7 +149,7 @@ def _digest(content: bytes) -> str:
 
 
 def choices_of(fields: Mapping[str, str], of: str) -> Choices:
-    """What was chosen for this very text; for another one, nothing is."""
+    """Choices for this very text; for another one there are none."""
     if fields.get("of") != of:
         return Choices()
     said: dict[str, dict[int, str]] = {"r": {}, "u": {}}
@@ -222,7 +222,7 @@ def _draft(link: str, text: str = "", table: CycleTable | None = None, **more: A
 
 
 def is_example(link: str) -> bool:
-    """Whether a form says what the handbook's worked example says, and nothing else."""
+    """True for a form that says what the handbook's worked example says, and nothing else."""
     application = link_reader.parse(pairs_of(link)).application if link else None
     return application is not None and to_link(application) == to_link(Application.worked_example())
 

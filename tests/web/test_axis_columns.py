@@ -1,0 +1,193 @@
+"""Columns of tables of axes: which input each holds, in which unit, and what is asked about them."""
+
+from itertools import product
+
+import pytest
+
+from hpn.web.form.symbols import AXIS_INPUTS
+from hpn.words import units
+from hpn.words.reader import LANGUAGES, Reader
+from tests.web.axes import HEAD, asked, read
+
+
+def test_units_are_those_of_headings_and_cells() -> None:
+    head = "Axis;Torque [lbf·in];Speed [rad/s];Duration;Required gear life [h];Weight"
+    table = read(head, "A;10;1;500 ms;20000;")
+
+    axis = table.axes[0]
+    assert axis["torque_Nm"] == [pytest.approx(1.12984829, rel=1e-8)]
+    assert axis["speed_rpm"] == [pytest.approx(9.54929659, rel=1e-8)]
+    assert (axis["duration_s"], axis["requirements.life_h"]) == ([0.5], 20000)
+
+
+def test_a_unit_that_nobody_says_is_asked_where_the_reader_sees_another() -> None:
+    table = read("Achse;Moment;Drehzahl [1/min];Dauer [s]", "A;1;10;1", assumed=())
+
+    assert asked(table) == ["Which unit is column “Moment” in?"]
+
+
+def test_the_unit_of_an_angular_velocity_is_asked_where_nothing_says_it() -> None:
+    assert asked(read("Achse;Moment;ω;Dauer", "A;1;10;1")) == ["Which unit is column “ω” in?"]
+    assert asked(read("Achse;Moment;ω [1/min];Dauer", "A;1;10;1")) == []
+
+
+@pytest.mark.parametrize("form", ["{} {}", "{} [{}]"])
+def test_a_unit_behind_a_name_is_never_taken_for_another(form: str) -> None:
+    wrong = []
+    for role, held in AXIS_INPUTS.by_role.items():
+        quantity = held.quantity
+        names = {Reader(language).text(held.named.name) for language in LANGUAGES} if quantity else ()
+        for name, spelling in product(names, units.SPELLINGS):
+            codes = units.codes_for(spelling, quantity)
+            _, column, *_ = read(f"Achse;{form.format(name, spelling)};Nr.;Pos.", "A;1;1;1").columns
+            if len(codes) == 1 and column.role == role and column.unit not in ("", codes[0]):
+                wrong.append(form.format(name, spelling))
+    assert wrong == []
+    columns = read("Achse;Moment kNm;Drehzahl;Dauer ms;Pause", ";;rad/s;;min", "A;1;1;1;1").columns
+    assert [column.unit for column in columns] == ["", "kNm", "rad_per_s", "ms", "min"]
+
+
+@pytest.mark.parametrize(
+    ("head", "said"),
+    [
+        ("Wert;Moment [Nm];Drehzahl [1/min];Dauer [s]", "Which column names the axis?"),
+        ("Achse;Moment [Nm];Drehzahl [1/min];Wert", "What is column “Wert”?"),
+        ("Achse;Moment [Nm];Drehzahl [1/min];Drehzahl motor;Dauer [s]", "What is column “Drehzahl motor”?"),
+        ("Achse;Moment [Nm];Drehzahl [1/min];Motormoment [Nm];Dauer [s]", "What is column “Motormoment [Nm]”?"),
+        ("Achse;Moment [Nm];Drehzahl [1/min];Lebensdauer [h];Dauer [s]", "What is column “Lebensdauer [h]”?"),
+        ("Axis;Torque [Nm];Speed [rpm];Emergency stop;Duration [s]", "What is column “Emergency stop”?"),
+        ("Axis;Torque [Nm];Speed [rpm];Duration [s];utilisation", "What is column “utilisation”?"),
+    ],
+)
+def test_a_column_that_nobody_knows_is_asked(head: str, said: str) -> None:
+    cells = ["A", *"1234"][: head.count(";") + 1]
+
+    assert said in asked(read(head, ";".join(cells)))
+
+
+@pytest.mark.parametrize(
+    ("heading", "cells", "counts"),
+    [
+        ("No.", "5 5 200", True),
+        ("Nr.", "1 2 1 4 3 2", True),
+        ("Nr.", "1,1 1,2 2,1", True),
+        ("Nr.", "1 2 3", False),
+        ("Nr.", "1. 1. 2. 3.", False),
+        ("Pos.", "0 1 0 1 2", False),
+        ("Step", "10 20 10 20 30", False),
+        ("Phase", "accel run accel", False),
+    ],
+)
+def test_a_column_under_a_name_of_an_index_is_one_where_its_numbers_go_on(
+    heading: str, cells: str, counts: bool
+) -> None:
+    rows = [f"A{k};12,5;100;1;{cell}" for k, cell in enumerate(cells.split())]
+    table = read(f"{HEAD};{heading}", *rows)
+
+    assert asked(table) == ([f"What is column “{heading}”?"] if counts else [])
+    assert read(f"{HEAD};{heading}", *rows, roles={4: "skip"}).whole
+    if cells == "5 5 200":
+        taken = read(f"{HEAD};{heading};Tk", *(f"{row};300" for row in rows), roles={4: "Nk", 5: "Tk"})
+        assert [axis["emergency_stop.count"] for axis in taken.axes] == [5, 5, 200]
+
+
+def test_every_input_of_an_axis_is_known_by_the_name_of_its_column() -> None:
+    names = {each.place: each.role for each in AXIS_INPUTS.by_role.values()}
+    table = read(";".join(names), ";".join(["A", *("1" for _ in names)][:-1]))
+
+    assert {column.heading: column.role for column in table.columns} == names
+
+
+@pytest.mark.parametrize(
+    ("heading", "foreign"),
+    [
+        ("Minimum torsional stiffness [Nm/arcmin]", "Nm/arcmin"),
+        ("Minimum torsional stiffness [Nm/rad]", ""),
+        ("requirements.torsional_stiffness_Nm_per_rad", ""),
+        ("Inertia of the load [kg cm²]", ""),
+        ("Inertia of the load [kg·m²]", ""),
+        ("Inertia of the load [kgm2]", ""),
+        ("Maximum utilisation [%]", "%"),
+        ("Expected emergency stops [1000]", "1000"),
+        ("Expected emergency stops [-]", ""),
+        ("Ratio (i)", ""),
+    ],
+)
+def test_a_unit_that_a_column_is_not_read_in_is_told(heading: str, foreign: str) -> None:
+    table = read(f"{HEAD};{heading}", "A;1;9;1;14")
+
+    assert table.columns[4].role
+    assert [foreign for question in asked(table) if f": {foreign} is not read there" in question] == [foreign] * bool(
+        foreign
+    )
+
+
+def test_a_unit_row_below_the_names_of_columns_is_asked_where_it_says_otherwise() -> None:
+    rows = "axis;torque_Nm;speed_rpm;duration_s", ";kNm;rpm;ms", "A;40;250;300"
+
+    assert asked(read(*rows)) == [
+        "Which unit is column “torque_Nm kNm” in?",
+        "Which unit is column “duration_s ms” in?",
+    ]
+
+
+def test_a_row_of_units_lets_no_name_vanish() -> None:
+    table = read("Axis;Duration;Motor speed;Torque", ";s;rpm;Nm", "A;1;2500;40")
+
+    assert asked(table) == ["What is column “Motor speed rpm”?", "Which column is the speed?"]
+    assert [column.role for column in table.columns] == ["axis", "t", "", "T"]
+
+
+@pytest.mark.parametrize(("unit", "factor"), [("d", 86_400), ("min", 60), ("ms", 0.001), ("[s]", 1)])
+def test_a_row_of_units_counts_for_axes_as_for_cycles(unit: str, factor: float) -> None:
+    (axis,) = read("Achse;Moment;Drehzahl;Zeit", f";Nm;rpm;{unit}", "A;40;250;2").axes
+
+    assert axis["duration_s"] == [2 * factor]
+
+
+def test_units_of_cells_count_where_each_has_one_and_are_asked_where_some_have_none() -> None:
+    head = "Achse;Moment;Drehzahl [1/min];Dauer [hh:mm:ss]"
+    table = read(head, "A;40 Nm;250;0:00:30", "A;0.3 kNm;250;0:01:00", assumed=())
+
+    assert [axis["torque_Nm"] for axis in table.axes] == [[40, 300]]
+    assert [axis["duration_s"] for axis in table.axes] == [[30, 60]]
+    assert asked(read(head, "A;40 Nm;250;0:00:30", "A;300;250;0:01:00")) == ["Which unit is column “Moment” in?"]
+
+
+def test_a_name_above_that_of_a_quantity_counts() -> None:
+    table = read("Achse;Motor;;Dauer", ";Drehmoment;Drehzahl;", "A;4;2500;1")
+
+    assert [column.role for column in table.columns] == ["axis", "", "", "t"]
+    assert "What is column “Motor Drehzahl”?" in asked(table)
+    joined = read("Achse;Drehmoment;;Drehzahl;Dauer", ";;max;;", "A;40;55;250;1", roles={1: "T"})
+    assert [column.role for column in joined.columns] == ["axis", "T", "Tpk", "n", "t"]
+
+
+def test_columns_that_nobody_knows_are_skipped_at_once() -> None:
+    table = f"{HEAD};Temp;Motormoment [Nm];Lebensdauer [h]", "A;40;250;1;20;4;9"
+
+    assert read(*table).unknown == 3
+    assert read(*table, rest="skip").whole
+    taken = read(*table, rest="skip", roles={6: "Lh"})
+    assert taken.axes[0]["requirements.life_h"] == 9
+
+
+@pytest.mark.parametrize("unit", ["kg·cm²", "kgcm2"])
+def test_an_inertia_is_read_in_the_unit_of_its_heading_or_cell(unit: str) -> None:
+    headed = read(f"{HEAD};Inertia of the load [{unit}]", "A;40;250;1;12")
+    in_cells = read(f"{HEAD};Inertia of the load", f"A;40;250;1;12 {unit}")
+
+    assert headed.axes == in_cells.axes
+    assert headed.axes[0]["requirements.load_inertia_kgm2"] == 0.0012
+
+
+def test_an_inertia_in_an_unknown_unit_names_those_that_are_known() -> None:
+    (said,) = asked(read(f"{HEAD};Inertia of the load [kgm]", "A;40;250;1;12"))
+
+    assert "kgm is none that is known; known are kg·m², kg·cm²" in said
+
+
+def test_a_frequency_of_a_speed_is_asked() -> None:
+    assert asked(read("Achse;Moment [Nm];Drehzahl [Hz];Dauer [s]", "A;40;50;1")) == [
+        "Which unit is column “Drehzahl [Hz]” in? It can be rev/s or an electrical frequency."
+    ]
