@@ -9,9 +9,9 @@ from hpn.catalogue.catalogue import (
     OutputVersion,
     SeriesFigure,
 )
-from hpn.catalogue.files import CatalogueError
 from hpn.catalogue.gear import GearColumns
 from hpn.catalogue.load import HANDBOOK_FOLDER, load_catalogue
+from hpn.catalogue.tables import CatalogueError
 
 __all__ = [
     "AVERAGING_S",

@@ -1,16 +1,33 @@
-"""The files of a catalogue folder: each is read once, within a bound; what can't be a table is refused by its name."""
+"""The files of a catalogue folder: each is read once, within a bound, cell by cell; what is no table is an error."""
 
+import codecs
+import csv
 import os
+import re
 import stat
-from collections.abc import Collection
+from collections.abc import Collection, Iterator
+from decimal import Decimal
 from pathlib import Path, PurePath
+from typing import Any
 
-from hpn.words.mendable import MendableError
+from pydantic import ValidationError
+
+from hpn.catalogue.tables import CatalogueError, Cell, Cells, Table, TableRow
+from hpn.tables.cells import split_unit
+from hpn.tables.numbers import unit_code
+from hpn.words.designations import canonical_size
+from hpn.words.units import NUMBER, entered, quantity_of, suffix_of
+from hpn.words.wording import Sentence
 
 MAXIMUM_FILE_BYTES = 4_000_000
 
 SHEETS = (".csv", ".tsv", ".txt", ".xls", ".xlsx", ".ods")
 """Endings of files that people keep tables in."""
+
+LONGEST_CELL = 1000
+
+UNPRINTABLE = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069\ufeff\ufffe\uffff]")
+"""Control characters, separators of lines that editors don't count, marks that turn the text around them."""
 
 KINDS = {
     stat.S_IFDIR: "a folder",
@@ -19,14 +36,6 @@ KINDS = {
     stat.S_IFCHR: "a device",
     stat.S_IFBLK: "a device",
 }
-
-
-class CatalogueError(MendableError, ValueError):
-    """A catalogue or supplement file that can't be used; the text names file, line and column."""
-
-    def __init__(self, file: Path | str, line: int | None, column: str | None, detail: str) -> None:
-        where = f"{file}" + (f", line {line}" if line else "") + (f", column {column}" if column else "")
-        super().__init__(f"{where}: {detail}")
 
 
 def read_folder(folder: Path, tables: Collection[str]) -> dict[str, bytes]:
@@ -72,3 +81,154 @@ def _content(path: Path) -> bytes:
     if len(content) > MAXIMUM_FILE_BYTES:
         raise CatalogueError(path, None, None, f"is larger than {MAXIMUM_FILE_BYTES} bytes")
     return content
+
+
+# --- Cells of a file --------------------------------------------------------------------------------------------------
+
+Key = tuple[str, ...]
+
+
+def read(path: Path, content: bytes, table: type[Table], *, supplied: bool) -> dict[Key, Cells]:
+    """Cells of one CSV file by key.
+
+    Raises CatalogueError for what is no text, a wrong header, no row or too many, a row of the wrong length, a blank or
+    repeated key.
+    """
+    rows: dict[Key, Cells] = {}
+    for line, row in _lines(path, _text(path, content), table):
+        texts = dict(zip(table.columns(), (text.strip() for text in row), strict=True))
+        cells = {column: Cell(text, texts["source"], str(path), line, supplied) for column, text in texts.items()}
+        for column in table.key:
+            if not cells[column].text:
+                raise CatalogueError(path, line, column, "is blank, but it identifies the row")
+        key = tuple(_key_text(column, cells[column].text) for column in table.key)
+        if key in rows:
+            first = next(iter(rows[key].values())).line
+            raise CatalogueError(path, line, table.key[0], f"repeats the row of line {first}")
+        if len(rows) == table.most_rows:
+            raise CatalogueError(path, line, None, f"the table has more than {table.most_rows} rows")
+        rows[key] = cells
+    if not rows and (supplied or not table.may_be_empty):
+        raise CatalogueError(path, 1, None, "there is a header, but no row below it")
+    return rows
+
+
+def merge(rows: dict[Key, Cells], supplement: dict[Key, Cells]) -> dict[Key, Cells]:
+    """Fill or correct cells of `rows` by those of a supplement; a blank cell keeps what was there."""
+    merged = dict(rows)
+    for key, cells in supplement.items():
+        kept = merged.get(key, {})
+        given = {column: cell for column, cell in cells.items() if cell.text or column not in kept}
+        merged[key] = kept | given
+    return merged
+
+
+def validated(table: type[TableRow], rows: dict[Key, Cells]) -> list[TableRow]:
+    """Typed rows; raises CatalogueError that names file, line and column of the first wrong cell."""
+    result = []
+    for cells in rows.values():
+        values: dict[str, Any] = {column: cell.text or None for column, cell in cells.items()}
+        try:
+            result.append(table.model_validate({**values, "cells": cells}))
+        except ValidationError as error:
+            first = error.errors()[0]
+            column = str(first["loc"][0])
+            cell = cells[column]
+            message = first["msg"].removeprefix("Value error, ").replace("Input should", "must")
+            detail = f"{message} (found {cell.text[:60]!r})"
+            raise CatalogueError(cell.file, cell.line, column, detail) from None
+    return result
+
+
+def _text(path: Path, content: bytes) -> str:
+    content = content.removeprefix(codecs.BOM_UTF8)
+    try:
+        text = content.decode()
+    except UnicodeDecodeError as error:
+        place = _place(content[: error.start].decode())
+        detail = f"byte {content[error.start]:#04x} is not UTF-8 text; save the file as UTF-8"
+        raise CatalogueError(path, *place, detail) from None
+    if found := UNPRINTABLE.search(text):
+        detail = f"the character U+{ord(found[0]):04X} does not belong in a table; save the file as UTF-8 text"
+        raise CatalogueError(path, *_place(text[: found.start()]), detail)
+    return text
+
+
+def _place(before: str) -> tuple[int, str | None]:
+    """Line and column of what follows a text."""
+    lines = (before + "?").splitlines()
+    try:
+        header, broken = next(csv.reader(lines)), next(csv.reader(lines[-1:]))
+    except csv.Error:  # the text is no table either
+        return len(lines), None
+    return len(lines), header[len(broken) - 1] if len(broken) <= len(header) and len(lines) > 1 else None
+
+
+def _lines(path: Path, text: str, table: type[Table]) -> Iterator[tuple[int, list[str]]]:
+    reader = csv.reader(text.splitlines(), strict=True)
+    columns = table.columns()
+    try:
+        written = next(reader, [])
+        header, codes = _header(path, written, columns)
+        if sorted(header) != sorted(columns):
+            wrong = [name[:40] for name in sorted(set(header) ^ set(columns)) or header]
+            detail = f"the header must have the columns {', '.join(columns)}; see {', '.join(wrong[:20])}"
+            raise CatalogueError(path, 1, None, detail)
+        order = [header.index(column) for column in columns]
+        for row in reader:
+            if not row:
+                continue
+            if len(row) != len(columns):
+                place = header[min(len(row), len(header) - 1)]  # the first column without a cell, else the last of all
+                detail = f"has {len(row)} cells where the header has {len(columns)} (a decimal comma splits a cell)"
+                raise CatalogueError(path, reader.line_num, place, f"the row {detail}")
+            if max(map(len, row)) > LONGEST_CELL:
+                place = next(column for column, cell in zip(header, row, strict=True) if len(cell) > LONGEST_CELL)
+                detail = f"the cell has more than {LONGEST_CELL} characters"
+                raise CatalogueError(path, reader.line_num, place, detail)
+            texts = [_in_wire(row[index], columns[k], codes[index]) for k, index in enumerate(order)]
+            for column, found in zip(columns, texts, strict=True):
+                if isinstance(found, Sentence):
+                    raise CatalogueError(path, reader.line_num, column, found.text)
+            yield reader.line_num, list(map(str, texts))
+    except csv.Error as error:
+        detail = {"unexpected end of data": "a quote is opened and not closed"}.get(str(error), str(error))
+        raise CatalogueError(path, reader.line_num, None, detail) from None
+
+
+def _header(path: Path, written: list[str], columns: list[str]) -> tuple[list[str], list[str]]:
+    """Columns by what a header calls them, and codes of their units: `inertia_kgcm2` is `inertia_kgm2` in kg·cm²."""
+    names, codes = list(written), [""] * len(written)
+    for place, name in enumerate(written):
+        for column in columns if name not in columns else ():
+            unit = suffix_of(column)
+            stem = column.removesuffix(unit or "").rstrip("_")
+            if unit and quantity_of(unit) and name.startswith((f"{stem}_", f"{stem} ")):
+                code = unit_code(name.removeprefix(stem).strip("_ []()"), unit)
+                if isinstance(code, Sentence):
+                    raise CatalogueError(path, 1, name[:40], code.text)
+                names[place], codes[place] = column, code
+    return names, codes
+
+
+def _in_wire(text: str, column: str, code: str) -> str | Sentence:
+    """A cell in the unit of its column; the unit that it says itself counts before that of the header."""
+    unit = suffix_of(column)
+    if not unit or not quantity_of(unit):
+        return text
+    number, own = split_unit(text.strip())
+    found = unit_code(own, unit) if own else code
+    if isinstance(found, Sentence):
+        return found
+    if not found or not NUMBER.fullmatch(number) or (measure := entered(unit, found)).same:
+        return number if own else text
+    return f"{Decimal(repr(measure.wire(number))):f}"
+
+
+def _key_text(column: str, text: str) -> str:
+    if column == "size":
+        return str(canonical_size(text))
+    try:
+        return repr(float(text))
+    except ValueError:
+        return text

@@ -8,12 +8,13 @@ from typing import Any, cast
 
 import numpy as np
 
-from hpn.catalogue import tables
+from hpn.catalogue import files, tables
 from hpn.catalogue.catalogue import AVERAGING_S, Catalogue, Fact, FlangeBolt, ListedMotor, OutputVersion, SeriesFigure
-from hpn.catalogue.files import CatalogueError, read_folder
 from hpn.catalogue.gear import ClampBolt, Gear, HousingBolts
 from hpn.catalogue.tables import (
     AccuracyTable,
+    CatalogueError,
+    Cells,
     ClampBoltTable,
     EfficiencyTable,
     EnvelopeTable,
@@ -72,7 +73,7 @@ def load_catalogue(
 
     Raises CatalogueError, which names file, line and column, for the first thing that is wrong.
     """
-    parts = [(part, read_folder(part, FILES)) for part in (folder, supplement) if part]
+    parts = [(part, files.read_folder(part, FILES)) for part in (folder, supplement) if part]
     for part, contents in parts:
         if not contents:
             raise CatalogueError(
@@ -80,7 +81,7 @@ def load_catalogue(
             )
     book = _Book()
     for table in tables.TABLES:
-        book[table] = tables.validated(table, _rows(table, parts))
+        book[table] = files.validated(table, _rows(table, parts))
     _check(book)
     return Catalogue(
         version=_version([contents for _, contents in parts]),
@@ -103,16 +104,16 @@ def load_catalogue(
     )
 
 
-def _rows(table: type[Table], parts: Sequence[tuple[Path, dict[str, bytes]]]) -> dict[tables.Key, tables.Cells]:
+def _rows(table: type[Table], parts: Sequence[tuple[Path, dict[str, bytes]]]) -> dict[files.Key, Cells]:
     """Rows of the catalogue's folder, and those of the supplement over them where it has this table."""
     (folder, contents), *supplements = parts
     if table.file not in contents:
         raise CatalogueError(folder / table.file, None, None, "is missing")
-    rows = tables.read(folder / table.file, contents[table.file], table, supplied=False)
-    for supplement, files in supplements:
-        if table.file in files:
-            over = tables.read(supplement / table.file, files[table.file], table, supplied=True)
-            rows = tables.merge(rows, over)
+    rows = files.read(folder / table.file, contents[table.file], table, supplied=False)
+    for supplement, supplied in supplements:
+        if table.file in supplied:
+            over = files.read(supplement / table.file, supplied[table.file], table, supplied=True)
+            rows = files.merge(rows, over)
     return rows
 
 
