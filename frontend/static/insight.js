@@ -58,12 +58,12 @@ document.addEventListener("htmx:after:swap", showState);
 
 // What a check tests comes from its own page when somebody asks for it.
 document.addEventListener("click", async (event) => {
-  const link = event.target.closest("a[data-explains]");
+  const link = event.target.closest("[data-explains]");
   if (!link || !plain(event)) return;
   event.preventDefault();
   const place = document.getElementById("about-check");
-  const reply = await fetch(link.href).catch(() => null);
-  if (!reply?.ok) return location.assign(link.href);
+  const reply = await fetch(link.formAction).catch(() => null);
+  if (!reply?.ok) return location.assign(link.formAction);
   const page = new DOMParser().parseFromString(await reply.text(), "text/html");
   const title = Object.assign(document.createElement("h3"), { id: "about-check-title", textContent: page.querySelector("#check h2").textContent });
   place.replaceChildren(title, page.querySelector("#check .explanation"));

@@ -16,13 +16,13 @@ def comparison(page: Page) -> Locator:
 def size_unfolded(page: Page, size: str) -> None:
     """Show the rejected gears of a size in the list of candidates."""
     open_section(page, "Candidates")
-    page.get_by_text(re.compile(f"{size}: one gear")).click()
+    page.get_by_text(re.compile(rf"{size}:\s+one gear")).click()
 
 
 def test_finding_why_HPN_14A_5_fails_and_making_it_fit_by_its_remedy(visitor: Visitor) -> None:
     page = visitor.open(EXAMPLE)
     size_unfolded(page, "14A")
-    page.get_by_role("link", name="HPN-14A-5", exact=True).click()
+    page.get_by_role("button", name="HPN-14A-5", exact=True).click()
     expect(selected(page)).to_contain_text("not suitable")
     open_section(page, "Overview")
     words = page.get_by_role("region", name="Overview").get_by_text(re.compile("Fits if torques drop to 90.5.% and"))
@@ -74,7 +74,7 @@ def test_trying_the_remedy_is_an_edit_that_undo_takes_back(visitor: Visitor) -> 
 def test_comparing_gears_by_pinning_them_from_the_list(visitor: Visitor) -> None:
     page = visitor.open(EXAMPLE)
     open_section(page, "Candidates")
-    page.get_by_role("link", name="Compare HPN-32A-5").click()
+    page.get_by_role("button", name="Compare HPN-32A-5").click()
     expect(page).to_have_url(re.compile("pin=HPN-32A-5"))
     open_section(page, "Compare")
     expect(comparison(page)).to_have_accessible_name("Comparison of HPN-20A-5, HPN-32A-5")
@@ -88,7 +88,7 @@ def test_comparing_gears_by_pinning_them_from_the_list(visitor: Visitor) -> None
     torque(page, 1).fill("41")
     expect(page).to_have_url(re.compile("T=41&.*&pin=HPN-32A-5#compare$"))
     expect(comparison(page)).to_have_accessible_name("Comparison of HPN-20A-5, HPN-32A-5")
-    page.get_by_role("link", name="Take HPN-32A-5 out of the comparison").first.click()
+    page.get_by_role("button", name="Take HPN-32A-5 out of the comparison").first.click()
     expect(comparison(page)).to_have_accessible_name("Comparison of HPN-20A-5, HPN-14A-5")
 
 
@@ -96,15 +96,15 @@ def test_pinning_by_key_keeps_the_focus_on_the_toggle(visitor: Visitor) -> None:
     page = visitor.open(EXAMPLE)
     open_section(page, "Candidates")
     candidates = page.get_by_role("region", name="Candidates")
-    candidates.get_by_role("link", name="Compare HPN-32A-5").press("Enter")
-    out = candidates.get_by_role("link", name="Take HPN-32A-5 out of the comparison")
+    candidates.get_by_role("button", name="Compare HPN-32A-5").press("Enter")
+    out = candidates.get_by_role("button", name="Take HPN-32A-5 out of the comparison")
     expect(out).to_be_focused()
     page.keyboard.press("Enter")
-    expect(candidates.get_by_role("link", name="Compare HPN-32A-5")).to_be_focused()
+    expect(candidates.get_by_role("button", name="Compare HPN-32A-5")).to_be_focused()
     page.keyboard.press("Enter")
     expect(out).to_be_focused()
     open_section(page, "Compare")
-    comparison(page).get_by_role("link", name="Take HPN-32A-5 out of the comparison").press("Enter")
+    comparison(page).get_by_role("button", name="Take HPN-32A-5 out of the comparison").press("Enter")
     expect(comparison(page)).to_have_accessible_name("Comparison of HPN-20A-5, HPN-14A-5")
 
 
@@ -113,7 +113,7 @@ def test_pinning_while_an_input_is_wrong_says_why_it_can_not_be(visitor: Visitor
     torque(page, 1).fill("9,3")
     expect(page.get_by_text("Not recalculated")).to_be_visible()
     open_section(page, "Candidates")
-    toggle = page.get_by_role("link", name="Compare HPN-32A-5")
+    toggle = page.get_by_role("button", name="Compare HPN-32A-5")
     toggle.press("Enter")
     reason = page.get_by_text("Not compared: first correct the marked inputs.")
     expect(reason).to_be_visible()
@@ -127,14 +127,14 @@ def test_pinning_while_an_input_is_wrong_says_why_it_can_not_be(visitor: Visitor
 
 def test_comparing_gears_without_script(visitor: Visitor) -> None:
     page = visitor.open(EXAMPLE, script=False)
-    page.get_by_role("link", name="Compare HPN-32A-5").click()
-    page.get_by_text(re.compile("11A: one gear")).click()
-    page.get_by_role("link", name="Compare HPN-11A-5").click()
+    page.get_by_role("button", name="Compare HPN-32A-5").click()
+    page.get_by_text(re.compile(r"11A:\s+one gear")).click()
+    page.get_by_role("button", name="Compare HPN-11A-5").click()
     expect(comparison(page)).to_have_accessible_name("Comparison of HPN-20A-5, HPN-32A-5, HPN-11A-5")
     page.get_by_role("button", name="Calculate").click()
     expect(page).to_have_url(re.compile("pin=HPN-32A-5&pin=HPN-11A-5&order"))
     expect(comparison(page)).to_have_accessible_name("Comparison of HPN-20A-5, HPN-32A-5, HPN-11A-5")
-    page.get_by_role("link", name="Take HPN-32A-5 out of the comparison").first.click()
+    page.get_by_role("button", name="Take HPN-32A-5 out of the comparison").first.click()
     expect(comparison(page)).to_have_accessible_name("Comparison of HPN-20A-5, HPN-11A-5")
 
 

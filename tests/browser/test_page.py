@@ -134,7 +134,7 @@ def test_choosing_a_candidate_shows_its_limits_and_goes_back(visitor: Visitor) -
     page = visitor.open(EXAMPLE)
     open_section(page, "Candidates")
     page.get_by_text("14A: one gear").click()
-    page.get_by_role("link", name="HPN-14A-5", exact=True).click()
+    page.get_by_role("button", name="HPN-14A-5", exact=True).click()
     expect(selected(page)).to_contain_text("HPN-14A-5")
     expect(selected(page)).to_contain_text("not suitable")
     open_section(page, "Overview")
@@ -207,7 +207,7 @@ def test_without_script_the_form_calculates_and_edits_rows(visitor: Visitor) -> 
     expect(torque(page, 3)).to_have_value("160")
     page.get_by_role("button", name="Remove phase 3").click()
     expect(selected(page)).to_contain_text("HPN-20A-5")
-    page.get_by_role("link", name=re.compile("^HPN-32A-5: suitable")).click()
+    page.get_by_role("button", name=re.compile("^HPN-32A-5: suitable")).click()
     expect(selected(page)).to_contain_text("HPN-32A-5")
     torque(page, 1).fill("9,3")
     torque(page, 1).press("Enter")
@@ -231,7 +231,7 @@ def test_without_script_what_is_typed_is_saved_although_it_was_not_calculated(vi
 
 def test_explanation_of_a_check_opens_and_closes_by_keyboard(visitor: Visitor) -> None:
     page = visitor.open("/")
-    opener = page.get_by_role("link", name="Repeated peak torque")
+    opener = page.get_by_role("button", name="Repeated peak torque")
     opener.focus()
     page.keyboard.press("Enter")
     dialog = page.get_by_role("dialog", name="Load limit 2: repeated peak torque")

@@ -138,7 +138,7 @@ def test_application_leaves_as_a_file_and_comes_back(visitor: Visitor, tmp_path:
     page = visitor.open(EXAMPLE)
     button(page, "Other files").click()
     with page.expect_download() as download:
-        page.get_by_role("link", name="Application as JSON").click()
+        page.get_by_role("button", name="Application as JSON").click()
     file = tmp_path / "application.json"
     download.value.save_as(file)
     page.goto(visitor.server + "/?T=&n=&t=")

@@ -137,8 +137,9 @@ def test_the_page_of_a_gear_has_the_same_drawing(client: TestClient) -> None:
     assert 'class="line' not in client.get("/catalogue/HPN-40A-5").text
 
 
-def test_a_cycle_too_long_for_a_link_brings_the_data_along(client: TestClient) -> None:
+def test_a_cycle_too_long_for_a_link_has_its_plots_too(client: TestClient) -> None:
     rows = "\n".join(f"1 {100 + k % 7} 1 {k % 900} 100" for k in range(3000))
     page = client.post("/", data={"phases": rows}).text
-    assert "data-figure" in section(page, "bearing")
+    asked = {"HX-Request": "true", "HX-Target": "details#bearing_figure"}
+    assert "data-figure" in client.post("/", data={"phases": rows}, headers=asked).text
     assert len(phases(section(page, "envelope"), "mark load")) == 200

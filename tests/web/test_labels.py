@@ -11,6 +11,7 @@ from hpn.catalogue import Catalogue
 from hpn.web.form.labels import LABELS
 from tests.build import worked_example
 from tests.state import state_of
+from tests.web.test_carried import Fields
 
 CYCLE = [("T", "40"), ("n", "250"), ("t", "0.3")]
 WRITTEN = {"title": "Rotary table <7> & Ä", "ref": "4711-07", "author": "M. Muster", "rev": "B"}
@@ -55,15 +56,20 @@ def test_what_says_nothing_stands_in_no_address(api: TestClient) -> None:
 
 
 def test_it_is_no_part_of_the_canonical_link(api: TestClient) -> None:
-    page = api.get(ADDRESS).text
-    assert 'href="/application.json?T=40&amp;n=250&amp;t=0.3"' in page
+    link = re.search(r'name="link" value="([^"]*)"', api.get(ADDRESS).text)
+    assert link and labels_in(html.unescape(link[1])) == WRITTEN | ORDERED
+    application = api.post("/application.json", data={"link": html.unescape(link[1])}).json()
+    assert api.post("/api/v1/select", json=application).json()["link"] == "/?" + urlencode(CYCLE)
 
 
-def test_every_link_of_the_page_to_another_of_its_states_keeps_it(api: TestClient) -> None:
-    page = api.get(ADDRESS + "&pin=HPN-32A-5").text
-    to_states = [link for link in map(html.unescape, re.findall(r'href="(/\?[^"]*)"', page)) if "T=40" in link]
-    assert len(to_states) > 60
-    assert [link for link in to_states if labels_in(link) != WRITTEN | ORDERED] == []
+def test_every_way_of_the_page_to_another_of_its_states_keeps_it(api: TestClient) -> None:
+    page = api.get(ADDRESS + "&pin=HPN-32A-5&Tm=0.1").text
+    tried = [link for link in map(html.unescape, re.findall(r'href="(/\?[^"]*)"', page)) if "T=" in link.split("&")[0]]
+    assert [link for link in tried if labels_in(link) not in ({}, WRITTEN | ORDERED)] == []
+    assert len(re.findall(r'<button[^>]* form="application"\s+name="(?:gear|pin|unpin)"', page)) > 120
+    fields = Fields()
+    fields.feed(page)
+    assert labels_in(edit(api, [*fields.pairs, ("gear", "HPN-14A-5")])) == WRITTEN | ORDERED
 
 
 def test_the_page_of_a_gear_gives_it_back(api: TestClient) -> None:

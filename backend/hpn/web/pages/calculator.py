@@ -4,6 +4,7 @@ import secrets
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any
+from zlib import crc32
 
 from fastapi import APIRouter
 from starlette.requests import Request
@@ -23,6 +24,7 @@ from hpn.web.form.given import FieldProblem
 from hpn.web.form.labels import OrderingCode, ordering_code, query_of
 from hpn.web.form.link_reader import Form
 from hpn.web.form.link_writer import to_link
+from hpn.web.form.linked import LONGEST_LINK
 from hpn.web.form.ways import CYCLE_NAMES
 from hpn.web.pages.insight import Insight, checked_pins, tail_of
 from hpn.web.pages.result import Result
@@ -59,7 +61,7 @@ class MapCell:
 class Answer(Result):
     """The result of the live page, with the gears beside the chosen one.
 
-    `link` is the application alone, `address` all that the form says; `label_tail` is its end that gives labels.
+    `link` is the application alone, `address` all that the form says.
     `own_cycle` is the address without what the worked example has left beside another cycle, else empty.
     """
 
@@ -67,12 +69,21 @@ class Answer(Result):
     catalogue: Catalogue
     link: str
     address: str
-    label_tail: str
     order: OrderingCode
     map: tuple[tuple[int, tuple[MapCell | None, ...]], ...]
     insight: Insight
     own_cycle: str
     live: bool = True
+
+    @property
+    def mark(self) -> str:
+        """Short mark of the answer, by which a part that comes later is known to belong to it."""
+        return f"{crc32(self.address.encode()):08x}"
+
+    @property
+    def carried(self) -> str:
+        """Query for the links to other pages, which hand the selection on; blank for one that is too long for that."""
+        return self.address[1:] if len(self.address) <= LONGEST_LINK else ""
 
     @property
     def too_long(self) -> bool:
@@ -110,6 +121,8 @@ def respond(request: Request, form: Form) -> Response:
     parts = _parts(request, form)
     if answer and "result" in parts:
         request.app.state.metrics.selections(["none" if answer.selection.selected is None else "selected"])
+    if answer is None and parts <= PARTS:
+        return Response(status_code=204)  # a form with faults has no parts to fetch: those of the answer before stay
     template = "_changes.html" if changes else "page.html"
     status = 422 if form.problems else 200
     shown = {"form": form, "answer": answer, "parts": parts, "catalogue": catalogue, "once": once_key()}
@@ -156,10 +169,8 @@ def _answer(application: Application, form: Form, catalogue: Catalogue) -> Answe
         link=link,
         example=application == Application.worked_example(),
         own_cycle=own + chosen + tail if (own := _own_cycle(link)) else "",
-        choosing=f"{link}&gear=",
         tail=tail,
         address=link + chosen + tail,
-        label_tail=labels,
         order=order,
         map=_map(selection, everything, catalogue),
         insight=Insight(application, selection, everything, everything[gear.designation], form.pins, catalogue),

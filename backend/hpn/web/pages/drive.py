@@ -12,6 +12,7 @@ from hpn.engine.motors import MotorUse, SizeWithMotor, asks_inertia_ratio, motor
 from hpn.engine.selection import Selection
 from hpn.explain.calculation.motor import BY_CURVE, LOSS_FREE, STATED
 from hpn.web.form.link_writer import to_link
+from hpn.web.form.linked import LONGEST_LINK
 from hpn.words.wording import N_, Sentence
 
 LISTED_AT_ONCE = 25
@@ -78,8 +79,9 @@ class Drive:
         return self.motor is not None and self.motor.designation == use.motor.designation
 
     def link(self, use: MotorUse) -> str:
-        """Link of the application with a motor of the list."""
-        return to_link(with_motor(self.application, use.motor))
+        """Link of the application with a motor of the list, blank for one that is too long to stand for each motor."""
+        link = to_link(with_motor(self.application, use.motor))
+        return link if len(link) <= LONGEST_LINK else ""
 
     @property
     def sizes(self) -> list[SizeWithMotor]:

@@ -72,14 +72,6 @@ class Insight:
             others.insert(0, self.selection.foremost)
         return next((other for other in others if other.designation != self.chosen.designation), None)
 
-    def with_pin(self, designation: str) -> str:
-        """Tail of a link that pins one more gear."""
-        return tail_of((*self.pins, designation))
-
-    def without_pin(self, designation: str) -> str:
-        """Tail of a link that takes one away."""
-        return tail_of([pin for pin in self.pins if pin != designation])
-
     @property
     def full(self) -> bool:
         """Whether no more can be pinned."""

@@ -26,9 +26,6 @@ BEST: Mapping[RankBy, str] = {
 }
 """Why the selected gear is selected, by what the candidates are ranked by."""
 
-LONGEST_REPEATED = 3000
-"""Length of a link up to which a page may carry it hundreds of times."""
-
 LISTED_AT_ONCE = 8
 """Suitable gears that the list shows before somebody unfolds the rest."""
 
@@ -67,7 +64,8 @@ class Result:
 
     `application` is None where it was saved by a version with other inputs. `catalogue` is the one that the selection
     was made from, None where that is not kept. `example` tells whether the application is the handbook's. `choosing`
-    and `tail` stand before and behind the designation in the address that looks at another candidate.
+    stands before the designation in the address of a saved selection that looks at another candidate, `tail` behind
+    the live page's links: pins and labels.
     """
 
     selection: Selection
@@ -75,7 +73,7 @@ class Result:
     chosen: Candidate
     asked: bool
     catalogue: Catalogue | None
-    choosing: str
+    choosing: str = ""
     tail: str = ""
     live: bool = False
     example: bool = False
@@ -168,11 +166,6 @@ class Result:
     def growths(self) -> Mapping[str, tuple[Growth, ...]]:
         """How far every driver of each check of the chosen candidate may grow until that check is at its limit."""
         return growths_of(self.chosen, self.utilisation)
-
-    @property
-    def linked(self) -> bool:
-        """Whether that address is short enough to stand once for each gear."""
-        return len(self.choosing) <= LONGEST_REPEATED
 
 
 def lighter_miss(selection: Selection, gears: Mapping[str, Gear]) -> Candidate | None:
