@@ -1,13 +1,18 @@
-"""A fleet that is sized as the command does it."""
+"""A fleet that is sized as the command does it, and the page of one."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from fastapi import FastAPI
+from starlette.testclient import TestClient
 
 from hpn.catalogue import Catalogue
 from hpn.fleet.run import Order, size_fleet
+from hpn.web.app import create_app
+from hpn.web.settings import Settings
+from tests.fleet.page import GERMAN, fields_of, post
 from tests.fleet.tables import Row, read, write
 
 Size = Callable[..., list[Row]]
@@ -35,3 +40,26 @@ def size(catalogue: Catalogue, tmp_path: Path) -> Size:
         return read(order.answers)
 
     return run
+
+
+@pytest.fixture(scope="module")
+def service(tmp_path_factory: pytest.TempPathFactory) -> FastAPI:
+    """A service with a store of its own."""
+    return create_app(Settings(database_url=f"sqlite:///{tmp_path_factory.mktemp('fleets') / 'fleets.sqlite3'}"))
+
+
+@pytest.fixture(scope="module")
+def client(service: FastAPI) -> Iterator[TestClient]:
+    """A browser that stays where a redirect leads from."""
+    with TestClient(service, follow_redirects=False) as client:
+        yield client
+
+
+@pytest.fixture(scope="module")
+def fleet(client: TestClient) -> str:
+    """Address of the fleet of the German table."""
+    read = post(client, GERMAN.encode("cp1252"))
+    assert read.status_code == 200, read.text
+    sized = post(client, fields={**fields_of(read.text), "size": "1"})
+    assert sized.status_code == 303, sized.text
+    return str(sized.headers["location"])

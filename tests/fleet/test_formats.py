@@ -171,3 +171,12 @@ def test_rest_ignores_by_its_query(client: TestClient) -> None:
     assert "column 'machine' is unknown" in refused.json()["detail"]
     assert taken.status_code == 200, taken.text
     assert [json.loads(line)["error"] for line in taken.text.splitlines()] == [None] * 4
+
+
+def test_rest_names_an_index_that_it_has_ignored(client: TestClient, tmp_path: Path) -> None:
+    with_index(".parquet", tmp_path / "in.parquet")
+    given = {"input": ("in.parquet", (tmp_path / "in.parquet").read_bytes())}
+    answer = client.post("/api/v1/fleet", files=given)
+    assert (answer.status_code, answer.headers["HPN-Ignored-Columns"]) == (200, '"__index_level_0__"')
+    plain = client.post("/api/v1/fleet", files={"input": ("in.csv", write(tmp_path / "in.csv", ROWS).read_bytes())})
+    assert (plain.status_code, "HPN-Ignored-Columns" in plain.headers) == (200, False)

@@ -1,18 +1,17 @@
 """The page of fleets without a browser: a table goes up, its columns are put right, and the result is kept."""
 
 import csv
-import hashlib
+import gzip
 import io
 import json
 import re
-from collections.abc import Iterator
 from html import unescape
 from pathlib import Path
-from typing import Any
 from urllib.parse import urlencode
 
 import openpyxl
 import pyarrow as pa
+import pyarrow.feather as feather
 import pyarrow.parquet as pq
 import pytest
 from fastapi import FastAPI
@@ -24,77 +23,19 @@ from hpn.engine.selection import select
 from hpn.fleet import listing
 from hpn.fleet.listing import as_parquet, kept_listing_of
 from hpn.fleet.run import Order, size_fleet
-from hpn.store import FleetDraft
-from hpn.store.fleets import MOST_OF_CALLER
 from hpn.tables.columns import NO_CHOICES
-from hpn.tables.files import Contents, contents_of
-from hpn.web.app import create_app
+from hpn.tables.files import NO_TEXT, Contents, contents_of
 from hpn.web.door.problems import Problem
 from hpn.web.form.link_writer import to_link
 from hpn.web.pages import fleet_result
 from hpn.web.pages.fleet_files import file_of
 from hpn.web.pages.fleet_upload import WANTED, best_reading
-from hpn.web.settings import Settings
 from hpn.words.reader import Reader
 from hpn.words.wording import Sentence
-from tests.fleet.tables import in_long_form, row_of, write
+from tests.fleet.page import GERMAN, HEAVY, HUB, fields_of, post
+from tests.fleet.tables import in_long_form, row_of, table_of, write
 from tests.fuzz.costly import made
 from tests.state import state_of
-from tests.store.test_fleets import MOST_BYTES
-
-GERMAN = """Maschine 7;;;;;
-Achse;Nr.;Drehmoment [Nm];Drehzahl [1/min];Dauer [ms];Lebensdauer Getriebe [h]
-Hub Ä;1;12,5;250;300;20000
-;2;8;500;2000,5;
-Band;1;9000;100;500;
-Greifer;1;abc;100;500;
-"""
-HUB = {
-    "duty_cycle": {
-        "phases": [
-            {"torque_Nm": 12.5, "speed_rpm": 250, "duration_s": 0.3},
-            {"torque_Nm": 8, "speed_rpm": 500, "duration_s": 2.0005},
-        ]
-    },
-    "requirements": {"life_h": 20000},
-}
-HEAVY = {"duty_cycle": {"phases": [{"torque_Nm": 9000, "speed_rpm": 100, "duration_s": 0.5}]}}
-
-
-@pytest.fixture(scope="module")
-def service(tmp_path_factory: pytest.TempPathFactory) -> FastAPI:
-    return create_app(Settings(database_url=f"sqlite:///{tmp_path_factory.mktemp('fleets') / 'fleets.sqlite3'}"))
-
-
-@pytest.fixture(scope="module")
-def client(service: FastAPI) -> Iterator[TestClient]:
-    with TestClient(service, follow_redirects=False) as client:
-        yield client
-
-
-def post(client: TestClient, content: bytes = b"", fields: dict[str, str] | None = None) -> Any:
-    """What the form answers."""
-    files = {"file": ("axes", content)} if content else {"file": ("", b"")}
-    return client.post("/fleets", data=fields or {}, files=files)
-
-
-def fields_of(page: str) -> dict[str, str]:
-    """What a form would send as it stands: hidden fields, and choices that are made."""
-    fields = dict(re.findall(r'<input type="hidden" name="(\w+)" value="([^"]*)"', page))
-    for name, options in re.findall(r'<select name="(\w+)"[^>]*>(.*?)</select>', page, re.DOTALL):
-        chosen = re.search(r'value="([^"]*)" selected', options)
-        fields[name] = chosen[1] if chosen else ""
-    return fields
-
-
-@pytest.fixture(scope="module")
-def fleet(client: TestClient) -> str:
-    """Address of the fleet of the German table."""
-    read = post(client, GERMAN.encode("cp1252"))
-    assert read.status_code == 200, read.text
-    sized = post(client, fields={**fields_of(read.text), "size": "1"})
-    assert sized.status_code == 303, sized.text
-    return str(sized.headers["location"])
 
 
 def test_german_headings_are_read_and_can_be_put_right(client: TestClient) -> None:
@@ -270,6 +211,68 @@ def test_tables_of_hpn_fleet_are_taken_as_they_are(tmp_path: Path, suffix: str, 
     assert contents_of(file.read_bytes(), WANTED) == Contents(suffix=suffix)
 
 
+def as_written_elsewhere(kind: str, folder: Path) -> bytes:
+    """A table of two axes as another tool writes it."""
+    rows = [row_of("one", HUB), row_of("two", HEAVY)]
+    table, path = table_of(rows), folder / "file"
+    if kind == ".feather":
+        feather.write_feather(table, str(path), compression="lz4")
+    elif kind == ".arrows":
+        with pa.ipc.new_stream(str(path), table.schema) as stream:
+            stream.write_table(table, max_chunksize=1)
+    elif kind == ".jsonl":
+        path.write_text("".join(json.dumps(row) + "\n" for row in rows))
+    elif kind == ".csv.gz":
+        path.write_bytes(gzip.compress(write(folder / "axes.csv", rows).read_bytes()))
+    elif kind == "CSV with an index":
+        write(folder / "axes.csv", [{"": number, **row} for number, row in enumerate(rows)]).rename(path)
+    else:
+        pq.write_table(table.append_column("__index_level_0__", pa.array([7, 8])), path)
+    return path.read_bytes()
+
+
+@pytest.mark.parametrize(
+    "kind", [".feather", ".arrows", ".jsonl", ".csv.gz", "CSV with an index", "Parquet with an index"]
+)
+def test_tables_that_other_tools_write_are_sized_at_once(kind: str, client: TestClient, tmp_path: Path) -> None:
+    sized = post(client, as_written_elsewhere(kind, tmp_path))
+
+    assert sized.status_code == 303, sized.text
+    page = unescape(client.get(sized.headers["location"]).text)
+    assert to_link(Application.model_validate(HUB)) in page and "two" in page
+
+
+@pytest.mark.parametrize("kind", [".csv.gz", ".arrows"])
+def test_gzip_and_streams_with_other_headings_are_read(kind: str, tmp_path: Path) -> None:
+    row = {"Antrieb": "A", "Moment Nm": 12.5, "Drehzahl rpm": 1234.567, "Zeitdauer s": 1e-3}
+    sink = io.BytesIO()
+    if kind == ".arrows":
+        table = pa.Table.from_pylist([row])
+        with pa.ipc.new_stream(sink, table.schema) as stream:
+            stream.write_table(table)
+    else:
+        sink.write(gzip.compress(f"{','.join(row)}\n{','.join(map(str, row.values()))}\n".encode()))
+
+    grids = contents_of(sink.getvalue(), WANTED).sheets[""]
+
+    assert not isinstance(grids, Sentence)
+    axes = best_reading(grids, NO_CHOICES, ()).axes
+    assert axes == ({"axis": "A", "torque_Nm": [12.5], "speed_rpm": [1234.567], "duration_s": [1e-3]},)
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        gzip.compress(b'{"axis": 1, "torque_Nm": [1]}\n'),
+        gzip.compress(gzip.compress(b"axis")),
+        b"\x1f\x8bno gzip at all",
+    ],
+    ids=["lines of JSON", "gzip in gzip", "no gzip"],
+)
+def test_gzip_without_a_table_is_said(content: bytes) -> None:
+    assert contents_of(content, WANTED).problem == Sentence(NO_TEXT)
+
+
 def test_a_table_of_hpn_fleet_is_sized_at_once(client: TestClient, tmp_path: Path) -> None:
     file = write(tmp_path / "axes.csv", [row_of("one", HUB), row_of("two", HEAVY)])
 
@@ -311,162 +314,6 @@ def test_what_can_not_be_read_is_said(client: TestClient, content: bytes, status
 
     assert answer.status_code == status
     assert said in unescape(answer.text) and 'role="alert"' in answer.text
-
-
-@pytest.fixture(scope="module")
-def kept(client: TestClient, service: FastAPI, fleet: str) -> FleetDraft:
-    """What was kept of the fleet of the German table."""
-    assert client.portal is not None
-    found = client.portal.call(service.state.store.find_fleet, fleet.rpartition("/")[2])
-    return FleetDraft(**{name: getattr(found, name) for name in FleetDraft.__dataclass_fields__ if name != "caller"})
-
-
-def keep(client: TestClient, service: FastAPI, draft: FleetDraft) -> str:
-    """Address of a fleet that is kept as if it had just been sized."""
-    assert client.portal is not None
-    return f"/fleets/{client.portal.call(service.state.store.keep_fleet, draft, MOST_BYTES)}"
-
-
-def test_a_fleet_is_saved_listed_and_never_changed(client: TestClient, service: FastAPI, kept: FleetDraft) -> None:
-    address = keep(client, service, kept)
-    assert "Save as a project" in client.get(address).text
-
-    wrong = client.post(address, data={"title": "x" * 300, "ref": "P-7"})
-    assert wrong.status_code == 422 and 'value="P-7"' in wrong.text and "at most 200" in unescape(wrong.text)
-    assert client.post(address, data={"title": "Line <4>", "ref": "P-7", "author": "", "rev": "B"}).status_code == 303
-    client.post(address, data={"title": "another"})
-
-    page = client.get(address).text
-    assert "Line &lt;4&gt;" in page and "Save as a project" not in page and "What differs today" not in page
-    assert f'<a href="{address}">Line &lt;4&gt;</a>' in client.get("/fleets/saved").text
-    assert client.post(f"{address}/delete").status_code == 303
-    assert client.get(address).status_code == 404
-
-
-def test_a_saved_fleet_is_renamed_on_its_page(client: TestClient, service: FastAPI, kept: FleetDraft) -> None:
-    address = keep(client, service, kept)
-    assert client.post(f"{address}/rename", data={"title": "early"}).status_code == 404
-    client.post(address, data={"title": "Line 4", "ref": "P-7", "author": "MM", "rev": "B"})
-    assert f'action="{address}/rename"' in client.get(address).text
-
-    wrong = client.post(f"{address}/rename", data={"title": "x" * 300})
-    assert wrong.status_code == 422 and "at most 200" in unescape(wrong.text)
-    renamed = client.post(f"{address}/rename", data={"title": "Line <5>", "ref": ""})
-
-    assert renamed.status_code == 303 and renamed.headers["location"] == address
-    page = client.get(address).text
-    assert "<h1>Line &lt;5&gt;</h1>" in page and "P-7" not in page and "MM" in page
-
-
-def test_names_of_fleets_that_look_like_others_are_refused(
-    client: TestClient, service: FastAPI, kept: FleetDraft
-) -> None:
-    address = keep(client, service, kept)
-    for name in ("title", "ref", "author", "rev"):
-        wrong = client.post(address, data={name: "Line\u200b 4"})
-        assert wrong.status_code == 422 and "U+200B ZERO WIDTH SPACE" in wrong.text
-    client.post(address, data={"title": "Line 4"})
-
-    wrong = client.post(f"{address}/rename", data={"title": "Line 4", "ref": "\U000e0041"})
-
-    assert wrong.status_code == 422 and "Reference: must not contain U+E0041" in unescape(wrong.text)
-
-
-def test_a_fleet_says_what_differs_today(client: TestClient, service: FastAPI, fleet: str, tmp_path: Path) -> None:
-    then = select(Application.model_validate(HUB), service.state.catalogue).candidates[0]
-    columns = "size,ratio,repeated_peak_torque_Nm,rated_torque_Nm,momentary_peak_torque_Nm,source\n"
-    (tmp_path / "ratings.csv").write_text(f"{columns}{then.size},{then.ratio},0.4,0.3,0.5,weaker\n")
-    url = service.state.settings.database_url
-    with TestClient(create_app(Settings(database_url=url, catalogue_supplement=tmp_path))) as later:
-        page = unescape(later.get(fleet).text)
-        now = select(Application.model_validate(HUB), state_of(later).catalogue).selected
-
-    assert "1 axis gets another answer." in page
-    changed = page[page.index("What differs today") : page.index('id="fleet-count"')]
-    assert changed.index(then.designation) < changed.index(str(now))
-    assert "What differs today" not in client.get(fleet).text
-
-
-def test_only_the_owner_s_key_renames_and_deletes_a_fleet(kept: FleetDraft, tmp_path: Path) -> None:
-    keys = {name: f"key of {name}" for name in ("anna", "bert")}
-    pairs = [f"{name}:{hashlib.sha256(key.encode()).hexdigest()}" for name, key in keys.items()]
-    settings = Settings.model_validate({"database_url": f"sqlite:///{tmp_path / 'db'}", "api_keys": " ".join(pairs)})
-    anna, bert = ({"X-API-Key": key} for key in keys.values())
-    service = create_app(settings)
-    with TestClient(service, follow_redirects=False) as client:
-        address = keep(client, service, kept)
-        for guarded in ("/fleets", address, f"{address}/delete"):
-            assert client.post(guarded, data={"text": "x"}).status_code == 401
-        client.headers |= anna
-        client.post(address, data={"title": "Line 4"})
-
-        assert client.post(f"{address}/delete", headers=bert).status_code == 403
-        assert client.post(f"{address}/rename", data={"title": "Bert’s"}, headers=bert).status_code == 403
-        assert client.post(f"{address}/delete", headers={"X-API-Key": ""}).status_code == 401
-        assert client.get(address).status_code == 200
-        assert client.post(f"{address}/delete").status_code == 303
-        assert client.get(address).status_code == 404
-
-
-@pytest.fixture
-def keyed(tmp_path: Path) -> Iterator[TestClient]:
-    """A service with keys."""
-    pairs = [f"{name}:{hashlib.sha256(name.encode()).hexdigest()}" for name in ("anna", "bert", "admin")]
-    settings = Settings.model_validate({"database_url": f"sqlite:///{tmp_path / 'db'}", "api_keys": " ".join(pairs)})
-    with TestClient(create_app(settings), follow_redirects=False) as client:
-        yield client
-
-
-def test_what_a_key_has_calculated_only_that_key_sees_and_saves(keyed: TestClient, tmp_path: Path) -> None:
-    anna, bert, admin = ({"X-API-Key": name} for name in ("anna", "bert", "admin"))
-    table = write(tmp_path / "axes.csv", [row_of("one", HUB)]).read_bytes()
-    sized = keyed.post("/fleets", files={"file": ("axes.csv", table)}, headers=anna)
-    assert sized.status_code == 303, sized.text
-    place = sized.headers["location"]
-
-    for other in (bert, admin):
-        for address in (place, f"{place}/axes.csv", f"{place}/delete"):
-            seen = keyed.get(address, headers=other)
-            assert seen.status_code == 403 and "one" not in seen.text
-        assert keyed.post(place, data={"title": "taken"}, headers=other).status_code == 403
-        assert keyed.post(f"{place}/delete", headers=other).status_code == 403
-    assert keyed.get(place).status_code == 401  # the browser asks for the key
-    assert "Only the key that calculated" in keyed.get(place, headers=bert | {"Accept": "text/html"}).text
-
-    assert keyed.get(place, headers=anna).status_code == 200
-    assert keyed.post(place, data={"title": "Line 4"}, headers=anna).status_code == 303
-    assert keyed.get(place, headers=bert).status_code == 200  # what is saved is there for all
-
-
-def test_a_caller_with_many_unsaved_fleets_is_told_what_to_do(keyed: TestClient, tmp_path: Path) -> None:
-    table = write(tmp_path / "axes.csv", [row_of("one", HUB)]).read_bytes()
-    sized = keyed.post("/fleets", files={"file": ("axes.csv", table)}, headers={"X-API-Key": "anna"})
-    store, place = state_of(keyed).store, sized.headers["location"]
-    assert keyed.portal is not None
-    found = keyed.portal.call(store.find_fleet, place.rpartition("/")[2])
-    caller = hashlib.sha256(b"key anna").hexdigest()
-    names = set(FleetDraft.__dataclass_fields__) - {"caller"}
-    draft = FleetDraft(**{name: getattr(found, name) for name in names}, caller=caller)
-    for _ in range(MOST_OF_CALLER - 1):
-        keyed.portal.call(store.keep_fleet, draft, MOST_BYTES)
-
-    refused = keyed.post("/fleets", files={"file": ("axes.csv", table)}, headers={"X-API-Key": "anna"})
-
-    assert (refused.status_code, int(refused.headers["retry-after"]) > 0) == (429, True)
-    assert "20 of them are yours" in refused.text
-    assert keyed.post("/fleets", files={"file": ("a.csv", table)}, headers={"X-API-Key": "bert"}).status_code == 303
-    assert keyed.post(f"{place}/delete", headers={"X-API-Key": "anna"}).status_code == 303
-    assert keyed.post("/fleets", files={"file": ("a.csv", table)}, headers={"X-API-Key": "anna"}).status_code == 303
-
-
-def test_where_unsaved_fleets_take_all_their_room_a_new_one_is_refused(tmp_path: Path) -> None:
-    table = write(tmp_path / "axes.csv", [row_of("one", HUB)]).read_bytes()
-    settings = Settings(database_url=f"sqlite:///{tmp_path / 'db'}", maximum_unsaved_fleet_bytes=1000)
-    with TestClient(create_app(settings), follow_redirects=False) as client:
-        refused = post(client, table)
-
-        assert refused.status_code == 503 and "take the room there is for them" in refused.text
-        assert client.post("/api/v1/fleet", content=table, headers={"Content-Type": "text/csv"}).status_code == 200
 
 
 def test_a_reader_who_changes_language_over_a_table_comes_back_to_the_page_of_tables(client: TestClient) -> None:

@@ -130,7 +130,7 @@ def test_the_end_of_the_service_ends_fleets_and_removes_their_folders(
 
         sending = threading.Thread(target=send)
         sending.start()
-        until(lambda: any(spool.rglob("messages")))  # the command runs
+        until(lambda: any(spool.rglob(".unfinished.*")))  # axes are sized
         every = _below(service.process.pid)
         service.terminate()
         service.process.wait(60)

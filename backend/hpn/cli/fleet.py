@@ -1,7 +1,6 @@
 """`hpn fleet`: gears for a table of axes."""
 
 import argparse
-import ctypes
 import os
 import signal
 import sys
@@ -13,15 +12,12 @@ from tqdm import tqdm
 from hpn.catalogue import Catalogue, load_catalogue
 from hpn.fleet.errors import FleetError
 from hpn.fleet.listing import listing_of
-from hpn.fleet.run import Engine, Order, Use, require_writable, size_fleet, threads
+from hpn.fleet.run import Engine, Order, Use, keep_memory, require_writable, size_fleet, threads
 from hpn.fleet.tables import Progress
 from hpn.installed import require
 from hpn.web.settings import Settings
 
 STOPPED = 1
-
-MEMORY = ((-1, 200_000_000), (-3, 30_000_000))
-"""glibc's M_TRIM_THRESHOLD and M_MMAP_THRESHOLD with bytes from which on memory goes back to the system."""
 
 
 def run(options: argparse.Namespace) -> int:
@@ -63,14 +59,6 @@ def _sized(order: Order, catalogue: Catalogue, engine: Engine, use: Use) -> dict
             tqdm.write(f"{path}: column {name!r} is an index that pandas wrote, and ignored", file=sys.stderr)
 
         return size_fleet(order, catalogue, engine, watch, use, note_ignored)
-
-
-def keep_memory() -> None:
-    """Keep the memory that arrays give back for the next ones: asking the system anew takes half of a chunk's time."""
-    library = ctypes.CDLL(None)
-    if hasattr(library, "mallopt"):  # of glibc; another C library does as it likes
-        for parameter, value in MEMORY:
-            library.mallopt(parameter, value)
 
 
 def _engine(options: argparse.Namespace) -> Engine:

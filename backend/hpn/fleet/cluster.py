@@ -9,14 +9,11 @@ from multiprocessing.resource_tracker import ensure_running
 from typing import Any
 
 from hpn.fleet.errors import FleetError
-from hpn.fleet.run import Engine, Outcome, Size, in_order
+from hpn.fleet.run import MEMORY, Engine, Outcome, Size, in_order
 from hpn.fleet.tables import Batch
 from hpn.installed import require
 
 CONNECT_SECONDS = 10
-
-MEMORY = {"MALLOC_TRIM_THRESHOLD_": "200000000", "MALLOC_MMAP_THRESHOLD_": "30000000"}
-"""Memory that arrays give back is kept for the next ones: asking the system anew takes half of the time of a chunk."""
 
 
 class _Workers:
@@ -54,7 +51,8 @@ def dask(scheduler: str | None, workers: int) -> Engine:
 
 def _of_this_machine(distributed: Any, workers: int) -> Any:
     """A cluster of processes that keep memory as the command does."""
-    with import_module("dask").config.set({"distributed.nanny.pre-spawn-environ": MEMORY}), interrupts_held():
+    environment = {name: str(value) for name, (_, value) in MEMORY.items()}
+    with import_module("dask").config.set({"distributed.nanny.pre-spawn-environ": environment}), interrupts_held():
         return distributed.LocalCluster(
             n_workers=workers,
             threads_per_worker=1,

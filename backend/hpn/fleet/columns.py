@@ -5,6 +5,7 @@ list with an item per phase. `pause_s` stands for `duty_cycle.pause_s`. Names, k
 models' JSON Schema, so that a new input needs no line here.
 """
 
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -148,7 +149,13 @@ COLUMNS = Columns(
 """Columns of the models."""
 
 
+INDEX = re.compile("__index_level_[0-9]+__")
+"""Name that pandas gives an index without one."""
+
+
 def are_taken(names: Sequence[str], is_in_list_form: bool) -> bool:
-    """True for columns that the command knows; a page makes list form of long form with other columns in it."""
+    """True for columns that the command knows, an index of pandas among them; a page makes list form of long form with
+    other columns in it."""
     known = {AXIS, *COLUMNS.phases, *(COLUMNS.others if is_in_list_form else ())}
-    return {AXIS, "torque_Nm"} <= set(names) <= known
+    given = {name for place, name in enumerate(names) if not INDEX.fullmatch(name) and (place or name)}
+    return {AXIS, "torque_Nm"} <= given <= known

@@ -16,9 +16,9 @@ import pyarrow.compute as pc
 import pyarrow.csv as pacsv
 from numpy.typing import NDArray
 
-from hpn.fleet.columns import AXIS, COLUMNS, Column, is_list
+from hpn.fleet.columns import AXIS, COLUMNS, INDEX, Column, is_list
 from hpn.fleet.errors import FleetError
-from hpn.fleet.tables import INDEX, Batch, Fault, Progress, Table
+from hpn.fleet.tables import Batch, Fault, Progress, Table
 from hpn.words.wording import N_
 
 BLOCK_BYTES = HEAD_BYTES = 8_000_000

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from difflib import get_close_matches
 from pathlib import Path
 
+from hpn.fleet.beside import ANSWERED_IN, suffix_of
 from hpn.fleet.columns import AXIS, COLUMNS
 from hpn.fleet.errors import FleetError, wrong_encoding
 from hpn.fleet.lines import CsvTable, GzipCsvTable, LinesTable
@@ -26,9 +27,6 @@ FORMATS: dict[str, type[Table]] = {
 }
 """Formats that are read, by suffix."""
 
-WRITTEN = {".arrows": ".arrow", ".feather": ".arrow", ".jsonl": ".ndjson", ".csv.gz": ".csv"}
-"""Formats that are read and not written, and which each is answered in."""
-
 FORM = "torque_Nm"
 """Column that tells the form of a table."""
 
@@ -37,16 +35,11 @@ MOST_PROBLEMS = 20
 """Columns that are told to be wrong."""
 
 
-def suffix_of(path: Path) -> str | None:
-    """Suffix of a file that is read."""
-    return next((suffix for suffix in FORMATS if path.name.endswith(suffix)), None)
-
-
 def format_of(path: Path) -> str:
     """Suffix of a file that is written, which says its format."""
     suffix = suffix_of(path)
-    if suffix is None or suffix in WRITTEN:
-        raise FleetError(f"{path}: the suffix must be one of {', '.join(s for s in FORMATS if s not in WRITTEN)}")
+    if suffix is None or ANSWERED_IN[suffix] != suffix:
+        raise FleetError(f"{path}: the suffix must be one of {', '.join(dict.fromkeys(ANSWERED_IN.values()))}")
     return suffix
 
 

@@ -4,7 +4,6 @@ What is read has the columns of `columns.py` in their types. A cell that can't b
 goes on.
 """
 
-import re
 from abc import ABC, abstractmethod
 from collections.abc import Iterator, Sequence
 from pathlib import Path
@@ -15,7 +14,7 @@ import pyarrow as pa
 import pyarrow.compute as pc
 from numpy.typing import NDArray
 
-from hpn.fleet.columns import AXIS, COLUMNS, is_list, is_text
+from hpn.fleet.columns import AXIS, COLUMNS, INDEX, is_list, is_text
 from hpn.fleet.errors import FleetError
 
 BATCH_AXES, BATCH_PHASES = 16_384, 131_072
@@ -25,7 +24,6 @@ LONGEST_TEXT = 1000
 """Characters of a text: axes come back in every file, and what is wrong in its reason."""
 
 TOO_LONG = f"must have at most {LONGEST_TEXT} characters"
-INDEX = re.compile("__index_level_[0-9]+__")
 
 
 class Fault(NamedTuple):

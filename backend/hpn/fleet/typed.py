@@ -14,8 +14,8 @@ import pyarrow.parquet as pq
 import pyarrow.types as kinds
 from numpy.typing import NDArray
 
-from hpn.fleet.columns import AXIS, COLUMNS, Column, is_list, is_text, plain_type
-from hpn.fleet.tables import INDEX, Batch, Fault, Progress, Table
+from hpn.fleet.columns import AXIS, COLUMNS, INDEX, Column, is_list, is_text, plain_type
+from hpn.fleet.tables import Batch, Fault, Progress, Table
 from hpn.words.wording import N_
 
 NOT_WHOLE = N_("must be text or a whole number")

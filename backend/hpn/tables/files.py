@@ -11,7 +11,7 @@ import io
 import zlib
 from collections.abc import Mapping
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from hpn.installed import ExtraMissingError, require
 from hpn.tables.sheets import MOST_CELLS, Grid, RefusedError, Takes, grids_of, too_many_cells
@@ -19,7 +19,7 @@ from hpn.tables.workbooks import MAGIC, OLD_MAGIC, sheets_of
 from hpn.words.wording import N_, Sentence
 
 OLD_WORKBOOK = N_("a workbook of this old format can’t be read: save it as XLSX or CSV")
-PARQUET, ARROW = b"PAR1", b"ARROW1"
+PARQUET, ARROW, STREAM, GZIP = b"PAR1", b"ARROW1", b"\xff\xff\xff\xff", b"\x1f\x8b"
 MOST_HEAD = 2_000_000
 """Characters in which the header and the first row of a text stand."""
 
@@ -60,16 +60,32 @@ def contents_of(content: bytes, wanted: Wanted) -> Contents:
             raise RefusedError(OLD_WORKBOOK)
         if content.startswith(MAGIC):
             return Contents(_sheets(content))
-        if content.startswith((PARQUET, ARROW)):
+        if content.startswith((PARQUET, ARROW, STREAM)):
             require("fleet")
             from hpn.tables import records  # Arrow takes half a second to import
 
-            read = records.parquet if content.startswith(PARQUET) else records.arrow
+            readers = {PARQUET: records.parquet, ARROW: records.arrow, STREAM: records.arrow_stream}
+            read = next(read for mark, read in readers.items() if content.startswith(mark))
             return _of_rows(*read(content, wanted.takes))
+        if content.startswith(GZIP):
+            return _of_gzip(content, wanted)
         text = tidied(text_of(content))
     except (RefusedError, ExtraMissingError) as refused:
         return Contents(problem=refused.sentence)
     return contents_of_text(text, wanted)
+
+
+def _of_gzip(content: bytes, wanted: Wanted) -> Contents:
+    """Contents of a CSV file in gzip: no more of it is unpacked than a table may have, which one taken as it is tells
+    by its first lines."""
+    try:
+        unpacked = zlib.decompressobj(zlib.MAX_WBITS | 16).decompress(content, 4 * wanted.most_characters + 4)
+    except zlib.error:
+        raise RefusedError(NO_TEXT) from None
+    found = contents_of_text(tidied(text_of(unpacked)), wanted)
+    if found.suffix not in ("", ".csv"):  # lines of JSON, which are read as they are alone
+        raise RefusedError(NO_TEXT)
+    return replace(found, suffix=".csv.gz") if found.suffix else found
 
 
 def contents_of_text(text: str, wanted: Wanted) -> Contents:

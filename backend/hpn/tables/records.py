@@ -54,6 +54,19 @@ def arrow(content: bytes, takes: Takes | None) -> Found:
         return "", _grid(file.read_all())
 
 
+def arrow_stream(content: bytes, takes: Takes | None) -> Found:
+    """A table of an Arrow stream; raises RefusedError."""
+    with _read_errors(), pa.ipc.open_stream(pa.BufferReader(content)) as stream:
+        if _is_taken(stream.schema, takes):
+            return ".arrows", None
+        batches, rows = list[pa.RecordBatch](), 0
+        for batch in stream:
+            rows += batch.num_rows
+            _require_few(rows, len(stream.schema.names))
+            batches.append(batch)
+        return "", _grid(pa.Table.from_batches(batches, stream.schema))
+
+
 @contextmanager
 def _read_errors() -> Iterator[None]:
     try:

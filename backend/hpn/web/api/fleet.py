@@ -1,12 +1,13 @@
 """`POST /api/v1/fleet`: a table of axes in a file, answered by a table in a file of the same format."""
 
 import os
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import ExitStack
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Annotated, BinaryIO
+from urllib.parse import quote
 
 from fastapi import APIRouter, Query
 from starlette.datastructures import State
@@ -14,6 +15,7 @@ from starlette.requests import Request
 from starlette.responses import Response, StreamingResponse
 from starlette.types import Receive, Scope, Send
 
+from hpn.fleet.beside import ANSWERED_IN, suffix_of
 from hpn.web.api import schemas, streaming
 from hpn.web.door.access import admit
 from hpn.web.door.bodies import content_type_of, pass_body, wrong_type
@@ -22,7 +24,7 @@ from hpn.web.door.pools import pool_of
 from hpn.web.door.problems import Problem, needs
 from hpn.web.door.requests import require_same_origin
 from hpn.web.door.uploads import MULTIPART, FormSplitter, PartHead, Write
-from hpn.web.fleets import ANSWERED_IN, Kind, Tables, size_fleet, suffix_of, workplace
+from hpn.web.fleets import Kind, Tables, size_fleet, workplace
 from hpn.web.settings import Settings
 
 MEDIA_TYPES = {
@@ -39,8 +41,9 @@ READ_TYPES = {".arrows": "application/vnd.apache.arrow.stream", ".csv.gz": "appl
 SUFFIXES = {media_type: suffix for suffix, media_type in (MEDIA_TYPES | READ_TYPES).items()} | dict.fromkeys(
     streaming.MEDIA_TYPES, ".ndjson"
 )
-NAMES = (*MEDIA_TYPES, *ANSWERED_IN)
-"""How the name of a table may end."""
+IGNORED = "HPN-Ignored-Columns"
+"""Header with the names of index columns that pandas wrote, each in quotes and percent-encoded."""
+
 PARTS = ("input", "axes")
 READ_BYTES = 64 * 1024
 MOST_IGNORED, MOST_NAME = 100, 200
@@ -75,7 +78,7 @@ async def size(
 
     As one table with a row for each axis, or as a form with a table of phases and one of what else is given of each
     axis. The answer is a table in the format of the input (Arrow’s file format for a stream, CSV for CSV in gzip), and
-    comes when it is complete.
+    comes when it is complete. Index columns that pandas wrote are ignored, and named in `HPN-Ignored-Columns`.
     """
     state: State = request.app.state
     if content_type_of(request) == MULTIPART:  # which a page of any site may send without asking
@@ -84,13 +87,13 @@ async def size(
         async with workplace(request) as folder:
             tables = replace(await _received(request, folder, share), ignored=tuple(ignore))
             files = await size_fleet(request, tables, candidates=give == "candidates")
-            return TableFile(files[give])
+            return TableFile(files.by_kind[give], files.ignored)
 
 
 class TableFile(StreamingResponse):
     """A table, read from its file, which may lose its name before it is sent."""
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: Path, ignored: Iterable[str]) -> None:
         self._file: BinaryIO = path.open("rb")
         pieces: Iterator[bytes] = iter(partial(self._file.read, READ_BYTES), b"")
         headers = {
@@ -98,6 +101,8 @@ class TableFile(StreamingResponse):
             "Content-Disposition": f'attachment; filename="{path.name}"',
             "Cache-Control": "no-store",
         }
+        if names := [f'"{quote(name)}"' for name in ignored]:
+            headers[IGNORED] = ", ".join(names)
         super().__init__(pieces, headers=headers, media_type=MEDIA_TYPES[path.suffix])
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
@@ -155,10 +160,9 @@ class _Form:
         """Open the file of a part."""
         if head.name not in PARTS or head.name in self._paths:
             raise Problem(422, f"the form may have one part input and one part axes; {head.name[:40]!r} is one more")
-        suffix = suffix_of(Path(head.file_name.lower()))
-        suffix = suffix if suffix in NAMES else SUFFIXES.get(head.content_type, "")
+        suffix = suffix_of(Path(head.file_name.lower())) or SUFFIXES.get(head.content_type, "")
         if not suffix:
-            text = f"needs a file name that ends in one of {', '.join(NAMES)}, or a content type of those"
+            text = f"needs a file name that ends in one of {', '.join(ANSWERED_IN)}, or a content type of those"
             raise Problem(415, f"the part {head.name} {text}")
         self._paths[head.name] = path = self._folder / f"{head.name}{suffix}"
         return self._stack.enter_context(path.open("wb")).write

@@ -187,6 +187,7 @@ HEADERS = {
     "Preference-Applied": "Which preference of `Prefer` was followed.",
     "Content-Disposition": "File name for a download.",
     "Content-Language": "Language of the file.",
+    "HPN-Ignored-Columns": "Index columns of pandas that were ignored, in quotes and percent-encoded; where there are.",
 }
 """Headers of responses, and what they say; components of the document."""
 
@@ -265,7 +266,7 @@ def fleet_answers(media_types: Iterable[str], *statuses: int) -> dict[int | str,
         200: {
             "description": "The table, in the format of the input.",
             "content": {media_type: {"schema": dict(table)} for media_type in media_types},
-            "headers": headers("Content-Disposition"),
+            "headers": headers("Content-Disposition", "HPN-Ignored-Columns"),
         },
         **problems(*statuses),
     }

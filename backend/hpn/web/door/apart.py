@@ -11,10 +11,11 @@ import signal
 import subprocess
 import sys
 import threading
+import time
 import traceback
 import weakref
-from collections.abc import Callable
-from contextlib import suppress
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import IO, Any, NamedTuple, TypeVar, cast
 
@@ -23,6 +24,9 @@ T = TypeVar("T")
 NICENESS = 10
 EXHAUSTED = 75
 """Exit code of a process whose work has met the bound of its memory."""
+
+PARENT_SECONDS = 0.5
+"""Time after which a process looks whether the one that started it is still there."""
 
 KEPT_SHARE = 0.4
 """Share of its bound up to which a process is kept for the next call: of more, much would lie idle in it."""
@@ -57,6 +61,16 @@ class Apart:
         self._calling = threading.Lock()  # whoever has it may use the pipes
         self._lock = threading.Lock()  # whoever has it may start and end the process
         self._process: subprocess.Popen[bytes] | None = None
+        self.is_taken = False
+
+    @contextmanager
+    def taken(self) -> Iterator[None]:
+        """Have others of a pool look for another one."""
+        self.is_taken = True
+        try:
+            yield
+        finally:
+            self.is_taken = False
 
     def call(self, work: Callable[[], T], given_up: threading.Event) -> T:
         """Result of work; EndedError, or RuntimeError with the traceback of what goes wrong there."""
@@ -141,6 +155,7 @@ def main(bounds: Bounds | None) -> None:
         Path("/proc/self/oom_score_adj").write_text("1000", encoding="utf-8")
     if bounds:
         _restrain(bounds)
+    threading.Thread(target=_end_with_parent, args=(os.getppid(),), daemon=True).start()
     calls, answers = os.fdopen(0, "rb"), os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)
     while calls.peek(1):
@@ -149,6 +164,13 @@ def main(bounds: Bounds | None) -> None:
         pickle.dump((*answer, bounds is not None and _peak_bytes() > KEPT_SHARE * bounds.memory_bytes), answers)
         answers.flush()
         signal.setitimer(signal.ITIMER_REAL, 0)
+
+
+def _end_with_parent(parent: int) -> None:
+    """End this process when the one that started it is gone, which work in hand would not notice."""
+    while os.getppid() == parent:
+        time.sleep(PARENT_SECONDS)
+    os._exit(1)
 
 
 def _answer(calls: IO[bytes], *, is_bounded: bool) -> tuple[bool, Any]:

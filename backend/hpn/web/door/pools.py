@@ -42,7 +42,7 @@ PLACES: Mapping[PoolName, Places] = {
     "fleets": Places(1, 3),
 }
 """Pages and long calculations; files that are made; files of strangers that are read; batches and streams, each for its
-whole time; what Prometheus asks; fleets, which are sized in processes of their own, and whose number is a setting.
+whole time; what Prometheus asks; fleets, which are sized in processes beside the service, whose number is a setting.
 """
 
 FILE_BOUNDS = Bounds(500_000_000, 30)
@@ -67,8 +67,9 @@ class Pool:
     """Workers for one kind of work, and few places to wait in; nginx bounds how many of them one address has."""
 
     def __init__(self, places: Places, bounds: Bounds | None = None) -> None:
-        self._executor = ThreadPoolExecutor(places.workers)
-        self.apart = Apart(bounds)
+        self._executor, self._callers = (ThreadPoolExecutor(places.workers) for _ in range(2))
+        self._aparts = [Apart(bounds) for _ in range(places.workers)]
+        self.apart = self._aparts[0]
         self.turn = asyncio.Semaphore(places.workers)  # of work that is done elsewhere: as many have one at once
         self._most = places.workers + places.waiting
         self.taken = 0
@@ -90,19 +91,26 @@ class Pool:
         context = contextvars.copy_context()
         return await asyncio.wrap_future(self._executor.submit(context.run, partial(work, *args, **kwargs)))
 
-    async def run_apart(self, work: Callable[[], T]) -> T:
+    async def call_apart(self, work: Callable[[], T]) -> T:
         """Result of work in a process beside this one, which is killed where the caller is cancelled meanwhile.
 
-        For what no thread can leave before its end, and for whoever has the pool's turn. Raises Problem 503 where the
-        process ends first, 413 where its work meets the pool's bounds.
+        For what no thread can leave before its end, and for a caller that has the pool's turn. Raises EndedError where
+        the process ends first.
         """
         given_up = threading.Event()
+        apart = next((each for each in self._aparts if not each.is_taken), self.apart)
+        with apart.taken():
+            try:
+                return await asyncio.wrap_future(self._callers.submit(apart.call, work, given_up))
+            except asyncio.CancelledError:
+                given_up.set()
+                apart.end()
+                raise
+
+    async def run_apart(self, work: Callable[[], T]) -> T:
+        """The same; raises Problem 503 where the process ends first, 413 where its work meets the pool's bounds."""
         try:
-            return await self.run(self.apart.call, work, given_up)
-        except asyncio.CancelledError:
-            given_up.set()
-            self.apart.end()
-            raise
+            return await self.call_apart(work)
         except EndedError as error:
             if error.is_excess:
                 logger.warning("a file took too much to read: %s", error)
@@ -111,13 +119,19 @@ class Pool:
             text = f"this can’t be made at the moment; try again in {RETRY_SECONDS} s"
             raise Problem(503, text, headers={"Retry-After": str(RETRY_SECONDS)}) from None
 
+    def close(self) -> None:
+        """End the processes."""
+        for apart in self._aparts:
+            apart.close()
+
 
 class Pools:
     """The pools of one process, at `app.state.pools`."""
 
-    def __init__(self, fleets: int = 1) -> None:
+    def __init__(self, fleets: int = 1, fleet_bounds: Bounds | None = None) -> None:
         places = {**PLACES, "fleets": PLACES["fleets"]._replace(workers=fleets)}
-        self._pools = {name: Pool(places, FILE_BOUNDS if name == "files" else None) for name, places in places.items()}
+        bounds = {"files": FILE_BOUNDS, "fleets": fleet_bounds}
+        self._pools = {name: Pool(places, bounds.get(name)) for name, places in places.items()}
 
     def __getitem__(self, name: PoolName) -> Pool:
         return self._pools[name]
@@ -125,7 +139,7 @@ class Pools:
     def close(self) -> None:
         """End the processes of the pools."""
         for pool in self._pools.values():
-            pool.apart.close()
+            pool.close()
 
 
 def pool_of(request: Request, name: PoolName) -> Pool:

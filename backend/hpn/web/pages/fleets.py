@@ -186,7 +186,7 @@ async def _calculated(request: Request, content: bytes, suffix: str) -> FleetDra
         axes = folder / f"axes{suffix}"
         await compute(request, "pages", axes.write_bytes, content)
         files = await size_fleet(request, Tables(axes, input_name="The table"), suffix=".parquet")
-        work = await compute(request, "pages", _listed, axes, files["answers"], request.app.state.catalogue)
+        work = await compute(request, "pages", _listed, axes, files.by_kind["answers"], request.app.state.catalogue)
         listing = await compute_apart(request, "files", work)
         draft: FleetDraft = await compute(request, "pages", _kept, listing, request.app.state.catalogue)
     return draft
@@ -283,7 +283,7 @@ async def _today(request: Request, saved: SavedFleet) -> tuple[list[Any] | None,
             axes = folder / "axes.parquet"
             await compute(request, "pages", axes.write_bytes, saved.asked)
             files = await size_fleet(request, Tables(axes))
-            return await compute(request, "exports", _changes, saved, files["answers"]), ""
+            return await compute(request, "exports", _changes, saved, files.by_kind["answers"]), ""
     except Problem as error:
         return None, error.detail
 
