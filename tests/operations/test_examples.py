@@ -1,4 +1,4 @@
-"""The README's client examples, run as they stand there against a service that asks for keys and one that is open."""
+"""The client examples of docs/rest.md, run as they stand there against a service that asks for keys and one that is open."""
 
 import json
 import os
@@ -14,7 +14,7 @@ import pytest
 from hpn.web.door.keys import new_key
 from tests.operations.service import Service, serving
 
-README = (Path(__file__).parents[2] / "README.md").read_text()
+PAGE = (Path(__file__).parents[2] / "docs/rest.md").read_text()
 KEY, PAIR = new_key("readme")
 
 
@@ -27,7 +27,7 @@ class Example:
 
     def block(self, language: str, folder: Path) -> Path:
         """File with the one example in this language, for this service instead of the usual one."""
-        (text,) = re.findall(rf"^```{language}\n(.*?)^```", README, re.M | re.S)
+        (text,) = re.findall(rf"^```{language}\n(.*?)^```", PAGE, re.M | re.S)
         assert "http://127.0.0.1:8000" in text
         file = folder / f"example.{language}"
         file.write_text(text.replace("http://127.0.0.1:8000", self.service.url))

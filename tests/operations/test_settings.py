@@ -1,4 +1,4 @@
-"""The settings, as the example file and the README list them."""
+"""The settings, as the example file and docs/settings.md list them."""
 
 import os
 import re
@@ -45,8 +45,8 @@ def test_the_compose_file_names_no_variable_of_the_service_that_is_no_setting() 
     assert named <= NAMES
 
 
-def test_the_readme_lists_every_setting() -> None:
-    listed = set(re.findall(r"^\| `(HPN_[A-Z_]+)` \|", (ROOT / "README.md").read_text(), re.M))
+def test_the_page_on_settings_lists_every_one() -> None:
+    listed = set(re.findall(r"^\| `(HPN_[A-Z_]+)` \|", (ROOT / "docs/settings.md").read_text(), re.M))
 
     assert listed == NAMES
 
