@@ -36,7 +36,10 @@ EXPLAINED: dict[str, str] = {
     "evaluation Evaluation.foremost: -1 -> (1) #2": LAST_OF_TWO,
     "evaluation Evaluation.foremost: -1 -> (1) #3": LAST_OF_TWO,
     "evaluation Evaluation.foremost: -1 -> (1) #4": LAST_OF_TWO,
-    "evaluation evaluate: used > bound -> (used) >= (bound)": ON_THE_BOUND,
-    "evaluation evaluate: 0 -> 1": FIRST_TWO,
-    "evaluation _verdicts: largest > bound -> (largest) >= (bound)": ON_THE_BOUND,
+    "evaluation Evaluation._first_that_reaches: used[loads:] > bound[loads:] -> (used[loads:]) >= (bound[loads:])": (
+        ON_THE_BOUND
+    ),
+    "evaluation _verdicts: largest > bound[0] -> (largest) >= (bound[0])": ON_THE_BOUND,
+    "evaluation _verdicts: property_used > bound[loads] -> (property_used) >= (bound[loads])": ON_THE_BOUND,
+    "evaluation _verdicts: 0 -> 1 #2": FIRST_TWO,
 }

@@ -33,7 +33,7 @@ def evaluation_of(chance: np.random.Generator, rank_by: NDArray[Any]) -> Evaluat
     figures = SimpleNamespace(life_L10_h=drawn(chance, axes, GEARS), motor_peak_torque_Nm=drawn(chance, axes, GEARS))
     case = SimpleNamespace(gears=gears, figures=figures, asked=SimpleNamespace(rank_by=rank_by))
     none = cast(Any, None)
-    return Evaluation(cast(Any, case), none, none, (), none, none, none, none, verdict, utilisation)
+    return Evaluation(cast(Any, case), none, none, (), none, none, none, verdict, utilisation)
 
 
 def last_if_missing(value: float) -> tuple[bool, float]:

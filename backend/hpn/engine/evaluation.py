@@ -43,9 +43,9 @@ class Evaluation:
     """N applications on G gears, by the C checks that one of them asks for.
 
     `asked` (C, N, 1). `used` (C, N, G) is the utilisation of each check, NaN where it is not rated or not asked for,
-    infinite where the check fails without a number; it passes up to `bound` (C, N, 1). `counted` (C, N, G) is the
-    utilisation that counts for a gear, NaN for a property check that passes. `verdict` (N, G) is a place in
-    STATUS; `utilisation` (N, G) the largest that counts, NaN for an unrated gear.
+    infinite where the check fails without a number; it passes up to `bound` (C, N, 1). `verdict` (N, G) is a place in
+    STATUS; `utilisation` (N, G) the largest of the load checks and of the property checks that fail, NaN for an unrated
+    gear.
     """
 
     case: Case
@@ -55,7 +55,6 @@ class Evaluation:
     asked: BoolArray
     used: FloatArray
     bound: FloatArray
-    counted: FloatArray
     verdict: NDArray[np.int8]
     utilisation: FloatArray
 
@@ -90,12 +89,19 @@ class Evaluation:
     @cached_property
     def governing(self) -> PlaceArray:
         """Place in `checks` of the first check that reaches a gear's utilisation within ROUNDING, shape (N, G)."""
-        return _first_that_reaches(self.utilisation, self.counted)
+        return self._first_that_reaches(self.utilisation, self.used, self.bound)
 
     def governing_of(self, gears: PlaceArray) -> PlaceArray:
         """The same for one gear of each application, by its place, shape (N,)."""
         rows = np.arange(len(gears))
-        return _first_that_reaches(self.utilisation[rows, gears], self.counted[:, rows, gears])
+        return self._first_that_reaches(self.utilisation[rows, gears], self.used[:, rows, gears], self.bound[..., 0])
+
+    def _first_that_reaches(self, utilisation: FloatArray, used: FloatArray, bound: FloatArray) -> PlaceArray:
+        loads = _load_checks(self.checks)
+        reached = used >= utilisation * (1 - ROUNDING)
+        reached[loads:] &= used[loads:] > bound[loads:]
+        places: PlaceArray = reached.argmax(axis=0)
+        return places
 
     @cached_property
     def order(self) -> PlaceArray:
@@ -151,14 +157,20 @@ def evaluate(duty: Duty, gears: GearList, catalogue: Catalogue) -> Evaluation:
     case = Case(duty, gears.columns, Figures(duty, gears, catalogue))
     checks, asked = _asked(case)
     used = np.empty((*asked.shape[:2], len(gears.rows)))
-    is_load = np.array([check.group == "load" for check in checks])[:, None, None]
-    bound = np.where(is_load, case.asked["requirements.utilisation"], 1.0) * (1 + ROUNDING)
+    bound = np.ones((*asked.shape[:2], 1))
+    loads = _load_checks(checks)
+    bound[:loads] = case.asked["requirements.utilisation"]
+    bound *= 1 + ROUNDING
     with np.errstate(all="ignore"):  # NaN and infinity are answers
         for place, check in enumerate(checks):
             used[place] = check.utilisation(case)
-        counted = used if is_load.all() else np.where(is_load | (used > bound), used, np.nan)
-        verdict, utilisation = _verdicts(asked, used, bound[0], counted)
-    return Evaluation(case, gears, catalogue, checks, asked, used, bound, counted, verdict, utilisation)
+        verdict, utilisation = _verdicts(asked, used, bound, loads)
+    return Evaluation(case, gears, catalogue, checks, asked, used, bound, verdict, utilisation)
+
+
+def _load_checks(checks: Iterable[Check]) -> int:
+    """Number of load checks, which stand in front of the property checks."""
+    return sum(check.group == "load" for check in checks)
 
 
 def _asked(case: Case) -> tuple[tuple[Check, ...], BoolArray]:
@@ -170,22 +182,18 @@ def _asked(case: Case) -> tuple[tuple[Check, ...], BoolArray]:
     return tuple(CHECKS[place] for place in places.tolist()), given[places, :, None]
 
 
-def _verdicts(
-    asked: BoolArray, used: FloatArray, bound: FloatArray, counted: FloatArray
-) -> tuple[NDArray[np.int8], FloatArray]:
-    """Verdict on each gear, and its utilisation; that of an unrated one is NaN. `bound` is that of the load checks.
-
-    A property check counts where it is above 1, and so above u: one comparison with the bound of the load checks finds
-    everything that fails.
-    """
-    largest = np.fmax.reduce(counted, axis=0)
-    fails = largest > bound
-    unrated = (asked & np.isnan(used)).any(axis=0) & ~fails
+def _verdicts(asked: BoolArray, used: FloatArray, bound: FloatArray, loads: int) -> tuple[NDArray[np.int8], FloatArray]:
+    """Verdict on each gear, and its utilisation; that of an unrated one is NaN. The first `loads` are load checks."""
+    largest = np.fmax.reduce(used[:loads], axis=0)
+    fails = largest > bound[0]
+    if loads < len(used):
+        property_used = np.fmax.reduce(used[loads:], axis=0)
+        missed = property_used > bound[loads]
+        fails |= missed
+        largest = np.where(missed, np.fmax(largest, property_used), largest)
+    unknown = np.isnan(used)
+    if not asked.all():
+        unknown &= asked
+    unrated = unknown.any(axis=0) & ~fails
     largest[unrated] = np.nan
     return np.int8(UNSUITABLE) * fails + np.int8(UNRATED) * unrated, largest  # neither: SUITABLE, which is 0
-
-
-def _first_that_reaches(utilisation: FloatArray, counted: FloatArray) -> PlaceArray:
-    """Place along the first axis of the first value that reaches a utilisation within ROUNDING."""
-    places: PlaceArray = (counted >= utilisation * (1 - ROUNDING)).argmax(axis=0)
-    return places
