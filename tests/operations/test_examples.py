@@ -1,4 +1,4 @@
-"""The client examples of docs/rest.md, run as they stand there: against a service with keys, and against an open one."""
+"""The client examples of docs/rest.md, run as they stand there against a service with keys and an open one."""
 
 import json
 import os
