@@ -31,7 +31,7 @@ class BodyTable:
 
     @property
     def given(self) -> bool:
-        """Whether anything is filled in."""
+        """True where anything is filled in."""
         return any(text.strip() for row in self.rows for text in row.values())
 
 

@@ -36,7 +36,7 @@ REQUIRED = ("T", "n", "t")
 
 @dataclass(frozen=True)
 class FieldProblem:
-    """What is wrong with one input: the query name and, for a repeated one, which of its values."""
+    """Fault of one input: its message, the query name and, for a repeated one, the place among its values."""
 
     name: str
     index: int | None
@@ -44,17 +44,17 @@ class FieldProblem:
 
     @property
     def of_phase(self) -> bool:
-        """Whether the input stands in the duty table."""
+        """True for an input of a phase."""
         return self.name in PHASE_BY_NAME
 
     @property
     def of_move(self) -> bool:
-        """Whether the input is one of a move."""
+        """True for an input of a move."""
         return self.name in MOVE_BY_NAME and not self.of_phase
 
     @property
     def of_row(self) -> bool:
-        """Whether the input stands in a row of the duty table, be it of phases or of moves."""
+        """True for an input in a row of the duty table, of phases or of moves."""
         return self.of_phase or self.of_move
 
     @property
@@ -107,7 +107,7 @@ class Given:
 
     @property
     def has_motion(self) -> bool:
-        """Whether anything of a motion is given, so that loads of rows are those of its moves."""
+        """True where anything of a motion is given: loads of rows are then those of its moves."""
         of_moves = (self.columns[name] for name in MOVE_BY_NAME if name in self.columns and name not in LOADS)
         return any(symbol.name in self.scalars for symbol in MECHANISM_SYMBOLS) or any(
             text.strip() for texts in of_moves for text in texts

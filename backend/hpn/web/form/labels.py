@@ -1,4 +1,4 @@
-"""What people write on a selection: its title block, and the parts of its ordering code that no catalogue knows.
+"""Labels of a selection: its title block, and the ordering code with the parts that no catalogue knows.
 
 They stand beside the application, in the address of its page as in its form; the canonical link has none of them.
 """
@@ -37,14 +37,14 @@ CONTROLS = re.compile(r"[\x00-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069\ufffe\ufff
 NO_CONTROLS = N_("must not contain control characters or line breaks")
 
 HIDDEN = re.compile("[\u200b\u2060\ufeff\U000e0000-\U000e007f]")
-"""What nobody sees and no word needs: with it two titles look alike. Joiners (U+200C, U+200D) are spelling."""
+"""Invisible characters that no word needs: with them two titles look alike. Joiners (U+200C, U+200D) are spelling."""
 
 MOST_MARKS = 4
 """Combining marks one after another that a letter has in any script."""
 
 
 def faults_of(text: str) -> Iterator[Sentence]:
-    """Why a text can't be a label."""
+    """Faults of a text as a label."""
     if CONTROLS.search(text):
         yield Sentence(NO_CONTROLS)
     if len(text.strip()) > LONGEST_LABEL:
@@ -99,7 +99,7 @@ class OrderingCode:
 
     @property
     def labels(self) -> Mapping[str, str]:
-        """What an address says of it: nothing of the version that stands there by itself."""
+        """Labels that an address gives of it; the default version is left out."""
         return {"order_output": "" if self.output == self.versions[0].code else self.output, "order_motor": self.motor}
 
 

@@ -58,7 +58,7 @@ _OF_TWO_PHASES = re.compile(r"([1-9][0-9]{1,4}),([1-9][0-9]{1,4})")
 _SEVERAL = re.compile(r"(?![0-9]+,0+$)[0-9]{1,5}([\s,;/]+[0-9]{1,5}){1,10}")
 """Several whole numbers in one text; `5,0` is one."""
 
-# Where an error of a whole part of the model is shown.
+# Inputs beside which an error of a whole part of the model is shown.
 _PARTS = {
     ("duty_cycle",): "T",
     ("duty_cycle", "phases"): "T",
@@ -100,22 +100,22 @@ class Form:
 
     @property
     def as_text(self) -> bool:
-        """Whether the duty cycle is edited as text instead of in a table."""
+        """True where the duty cycle is edited as text instead of in a table."""
         return len(self.rows) > ROWS_IN_TABLE
 
     @property
     def long(self) -> bool:
-        """Whether the form is posted, since it may be too long for an address."""
+        """True where the form is posted, since it may be too long for an address."""
         return self.as_text or self.moves_are_hidden or sum(map(len, self.asides)) > LONGEST_ASIDE
 
     @property
     def moves_are_hidden(self) -> bool:
-        """Whether there are more moves than the page has fields for."""
+        """True where there are more moves than the page has fields for."""
         return len(self.moves) > ROWS_IN_TABLE
 
     @property
     def has_both(self) -> bool:
-        """Whether phases are given beside a motion, which is refused."""
+        """True where phases are given beside a motion, which is refused."""
         return self.has_motion and any(map(_filled, self.rows))
 
     @property
@@ -154,7 +154,7 @@ class Form:
         return self.application is None and not self.problems
 
     def messages(self, name: str, index: int | None = None) -> list[Sentence]:
-        """What is wrong with one input."""
+        """Messages on one input."""
         return [problem.message for problem in self.problems if (problem.name, problem.index) == (name, index)]
 
 
@@ -167,7 +167,7 @@ def address_of_empty(form: Form) -> str:
 
 
 def parse(pairs: Pairs) -> Form:
-    """Read a query. Whatever it says, the form comes back with it and with a message beside each wrong field."""
+    """Form of a query, with everything that the query says and a message for each wrong field."""
     typed = next((text for name, text in pairs if name == TEXT), None)
     pairs, written = in_wire_units(expanded(pairs))
     pairs = with_inertia(switched(_own(pairs)))
@@ -301,7 +301,7 @@ def _document(
 
 
 def _with_two_phases(problem: FieldProblem, texts: Sequence[str]) -> FieldProblem:
-    """What is said of a number in the only phase, and what to do where it may be two."""
+    """Fault of a number in the only phase, with advice where it may be two numbers."""
     match = next(filter(None, (_OF_TWO_PHASES.fullmatch(text.strip()) for text in texts)), None)
     if match is None:
         return problem
@@ -357,7 +357,7 @@ def _validated(
         name, index = place_of(error["loc"], kept)
         if error["type"] == "no_motion":
             name = "n"
-        # What could not be read was left out of the model, which then misses it, or the whole that it belongs to.
+        # Unreadable values are left out of the model, which then misses them, or the part that they belong to.
         consequence = known and error["type"] in ("no_motion", "no_load")
         refused_phases = error["type"] == "too_short" and any(map(_filled, rows))
         if (name, index) not in places and not consequence and not refused_phases:

@@ -58,7 +58,7 @@ def _cycle(application: Application) -> str:
 
 
 def _mechanism(motion: Motion) -> Iterator[str]:
-    """What is not as it is by default of a mechanism, and where its motion starts."""
+    """Pairs of a mechanism and of the start of its motion, without defaults."""
     for symbol in MECHANISM_SYMBOLS:
         part = motion.mechanism if "mechanism" in symbol.path else motion
         field, fields = symbol.path[-1], type(part).model_fields

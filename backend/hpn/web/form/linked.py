@@ -17,7 +17,7 @@ from hpn.web.form.link_reader import Pairs
 
 @dataclass(frozen=True, slots=True)
 class Link:
-    """What a link says: an application, the gear that is looked at or none, labels, and what a file may choose."""
+    """Content of a link: an application, the gear that is looked at or none, labels, and options of a file."""
 
     application: Application
     gear: str
@@ -39,7 +39,7 @@ async def query_of(request: Request, *options: str) -> str:
 
 
 def linked(query: str, *options: str) -> Link:
-    """What the query of a link says; Problem 422 names each parameter that can't be read."""
+    """Content of the query of a link; Problem 422 names each parameter that can't be read."""
     pairs = pairs_of(query)
     form = link_reader.parse([pair for pair in pairs if pair[0] not in options])
     if form.application is None:

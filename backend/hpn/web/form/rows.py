@@ -31,7 +31,7 @@ class Rows:
 
     @property
     def origins(self) -> tuple[int | None, ...]:
-        """Where each row stood."""
+        """Place at which each row stood."""
         return tuple(origin for origin, _ in self.placed) or (None,)
 
     def show(self, names: Sequence[str]) -> None:

@@ -49,7 +49,7 @@ class Symbol:
         return ".".join(self.path if len(self.path) > 1 or self.path[0] in INPUTS else ("phase", *self.path))
 
     def is_offered(self, choice: str, catalogue: Catalogue) -> bool:
-        """Whether a choice is of use with a catalogue; a link that asks for it is read all the same."""
+        """True for a choice that is of use with a catalogue; a link that asks for another is read all the same."""
         return choice not in self.supplied or bool(getattr(catalogue, self.supplied[choice]))
 
     @property
@@ -228,7 +228,7 @@ def mechanism_symbols(mechanism: str) -> tuple[Symbol, ...]:
 
 
 _OF_A_MOVE = {"mj": f"{DEFAULT_JERK_SHARE:g}", "mx": "0"}
-"""What counts in a move where nothing is given."""
+"""Defaults of a move."""
 
 
 def _of_moves(way: str, speed: str, acceleration: str, external: str) -> tuple[Symbol, ...]:
@@ -338,7 +338,7 @@ LABELS = {
     "gear": CANDIDATE["designation"].name,
     **labels.LABELS,
 }
-"""What a list of errors calls the fields of the form."""
+"""Names of the fields of the form in a list of errors."""
 
 AXIS_INPUTS = Inputs(
     *(Input(each.name, each.place.removeprefix("duty_cycle."), each.named, each.kind, each.many) for each in SYMBOLS)

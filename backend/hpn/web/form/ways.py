@@ -1,4 +1,4 @@
-"""Ways to give a duty cycle: as phases, or as the motion of a mechanism. What was typed another way is kept aside.
+"""Ways to give a duty cycle: as phases, or as the motion of a mechanism. Inputs typed another way are kept aside.
 
 A form has the inputs of one way; those of each other stand in a field `aside` of its own, as the query that they make.
 """

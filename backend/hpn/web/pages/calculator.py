@@ -38,7 +38,7 @@ FIGURES = frozenset(("bearing_figure", "sizes_figure", "stops_figure"))
 """Plots, which come only when somebody unfolds them: without script there is no use for their data."""
 
 PARTS = FIGURES.union(SECTIONS[1:], ["cycle_wide"])
-"""What comes with an edit only where it is in sight, as the header HPN-Parts says, and else is asked for by itself."""
+"""Parts of the page that an edit brings only where they are in sight, by the header HPN-Parts; others are fetched."""
 
 
 @dataclass(frozen=True)
@@ -87,7 +87,7 @@ class Answer(Result):
 
     @property
     def too_long(self) -> bool:
-        """Whether the address is more than servers and proxies let through."""
+        """True for an address longer than servers and proxies let through."""
         return len(self.address) > link_reader.MAXIMUM_QUERY_BYTES
 
 
@@ -229,12 +229,12 @@ def _parts(request: Request, form: Form) -> frozenset[str]:
 
 def _render(request: Request, template: str, status: int, **context: Any) -> Response:
     address = _address(context.get("answer"), context.get("form"))
-    if "form" in context:
+    if "form" in context["parts"]:  # typing brings the result alone, and leaves the fields as they are
         context["form"] = link_reader.for_reader(context["form"], current())
     content = environment(request.app.state).get_template(template).render(**context)
     response = HTMLResponse(content, status)
     response.headers["Vary"] = "HX-Request, HX-Target, HPN-Parts"
-    if "hx-request" in request.headers and "parts" in context:
+    if "hx-request" in request.headers:
         if address and "result" in context["parts"]:
             response.headers["HX-Push-Url"] = address
         if "form" in context["parts"]:
@@ -243,10 +243,10 @@ def _render(request: Request, template: str, status: int, **context: Any) -> Res
 
 
 def _address(answer: Answer | None, form: Form | None) -> str | None:
-    """What is to stand in the address bar; None where there is something to correct."""
+    """Address for the address bar; None where there is something to correct."""
     if answer is None:
         return link_reader.address_of_empty(form) if form and form.empty else None
-    # What is too long for an address must not stand under somebody else's: reloading leads to where it came from.
+    # A page too long for an address must not stand under another's: reloading leads to where it came from.
     return "/paste" if answer.too_long else answer.address
 
 

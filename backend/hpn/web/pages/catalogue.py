@@ -127,7 +127,7 @@ def _render(request: Request, template: str, status: int, **context: Any) -> Res
 
 
 async def robots(request: Request) -> Response:
-    """What search engines may read: the calculator and the catalogue, not saved selections or the API."""
+    """Rules for search engines: they may read calculator and catalogue, not saved selections or the API."""
     return PlainTextResponse("User-agent: *\nDisallow: /selections\nDisallow: /api/\nDisallow: /paste\n")
 
 

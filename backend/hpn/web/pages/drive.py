@@ -29,7 +29,7 @@ INERTIA = {
         "which are not published."
     ),
 }
-"""What torques at the motor leave out."""
+"""Inertias and losses that torques at the motor leave out."""
 
 
 @dataclass(frozen=True)
@@ -49,7 +49,7 @@ class Drive:
 
     @property
     def is_told(self) -> bool:
-        """Whether there is a motor to draw torques for: one that is asked for, a motion, or a list to choose from."""
+        """True where torques are drawn: a motor is asked for, a motion given, or there is a list to choose from."""
         return bool(self.motor or self.application.duty_cycle.motion or self.catalogue.motors)
 
     @cached_property
@@ -75,7 +75,7 @@ class Drive:
         return sum(motor.inertia_kgm2 is None for motor in self.catalogue.motors)
 
     def is_chosen(self, use: MotorUse) -> bool:
-        """Whether a motor is the one that is asked for."""
+        """True for the motor that is asked for."""
         return self.motor is not None and self.motor.designation == use.motor.designation
 
     def link(self, use: MotorUse) -> str:
@@ -90,7 +90,7 @@ class Drive:
 
     @property
     def left_out(self) -> list[Sentence]:
-        """What torques at the motor on the gear go by, and what they leave out."""
+        """Notes on torques at the motor on the gear: their basis, and what they leave out."""
         return [self._efficiency(BY_CURVE, known=self.gear.designation in self.catalogue.efficiency), self._inertia]
 
     @property

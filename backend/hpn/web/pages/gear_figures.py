@@ -1,4 +1,4 @@
-"""What the page of a gear says: its figures in groups, which are missing, and how a supplement would give them."""
+"""Figures on the page of a gear, in groups; those that are missing, and how a supplement would give them."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -21,7 +21,7 @@ class Label:
 
     @property
     def named(self) -> Named:
-        """What it is called, and its symbol."""
+        """Name and symbol."""
         return Named(self.range) if self.range else GEAR[self.fields[0]]
 
 

@@ -1,4 +1,4 @@
-"""What the page adds to a verdict: reserves, the remedy to try out, and gears side by side."""
+"""Additions of the page to a verdict: reserves, the remedy to try out, and gears side by side."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -19,7 +19,7 @@ from hpn.words.wording import N_, Sentence
 
 @dataclass(frozen=True)
 class Insight:
-    """What belongs to the chosen gear, each worked out when a section asks for it.
+    """Reserves, remedy and neighbours of the chosen gear, each worked out when a section asks for it.
 
     `everything` holds every gear of the catalogue by designation; `pins` are the gears that the reader pinned.
     """
@@ -74,7 +74,7 @@ class Insight:
 
     @property
     def full(self) -> bool:
-        """Whether no more can be pinned."""
+        """True where no more gears can be pinned."""
         return len(self.pins) >= MOST_PINS
 
 

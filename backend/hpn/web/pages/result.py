@@ -1,4 +1,4 @@
-"""What a page shows of a selection, computed just now or saved: the partials of the templates read it."""
+"""Content of a page for a selection, computed just now or saved: the partials of the templates read it."""
 
 import itertools
 from collections.abc import Mapping, Sequence
@@ -24,7 +24,7 @@ BEST: Mapping[RankBy, str] = {
     "life": N_("The gear with the longest life among those that pass every check."),
     "stiffness": N_("The stiffest gear that passes every check."),
 }
-"""Why the selected gear is selected, by what the candidates are ranked by."""
+"""Reasons for the selected gear, by what the candidates are ranked by."""
 
 LISTED_AT_ONCE = 8
 """Suitable gears that the list shows before somebody unfolds the rest."""
@@ -124,7 +124,7 @@ class Result:
 
     @property
     def rank_by(self) -> RankBy:
-        """What the candidates are ranked by."""
+        """Order of the candidates."""
         return self.application.rank_by if self.application else "weight"
 
     @cached_property
@@ -156,7 +156,7 @@ class Result:
         )
 
     def remedy(self, designation: str) -> Sentence | None:
-        """What would make a candidate fit, as far as its catalogue figures are known."""
+        """Remedy that makes a candidate fit, as far as its catalogue figures are known."""
         gear, candidate = self.gears.get(designation), self.selection.candidate(designation)
         if designation == self.chosen.designation:
             candidate = self.chosen  # which may stand outside the ratios and sizes that were asked for
@@ -164,7 +164,7 @@ class Result:
 
     @property
     def growths(self) -> Mapping[str, tuple[Growth, ...]]:
-        """How far every driver of each check of the chosen candidate may grow until that check is at its limit."""
+        """Growth of every driver of each check of the chosen candidate at which that check is at its limit."""
         return growths_of(self.chosen, self.utilisation)
 
 

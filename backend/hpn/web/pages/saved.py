@@ -153,7 +153,7 @@ def result_of(
     then: Catalogue | None,
     designation: str = "",
 ) -> Result:
-    """What was saved as the templates read it, with the gear that is asked for or that its page shows first."""
+    """Saved result as the templates read it, with the gear that is asked for or that its page shows first."""
     chosen = selection.candidate(designation or saved.designation or "") or selection.foremost
     return Result(
         selection=selection,
@@ -204,7 +204,7 @@ def _figure_line(difference: FigureDifference) -> ChangedField:
 
 
 _BOLTS = {"number_of_bolts": "{} ×", "pitch_diameter_mm": "⌀ {}", "tightening_torque_Nm": "· {}"}
-"""How the figures of bolts are written beside the thread and its torque."""
+"""Formats of the figures of bolts, beside the thread and its torque."""
 
 
 def _figure_text(value: Any, unit: str) -> str:
@@ -221,7 +221,7 @@ def _figure_text(value: Any, unit: str) -> str:
 
 
 def _number(designation: str) -> list[int]:
-    """What gears are sorted by: size, then ratio."""
+    """Sort key of gears: size, then ratio."""
     return [int(digits) for digits in re.findall(r"\d+", designation)]
 
 

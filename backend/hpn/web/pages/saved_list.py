@@ -30,7 +30,7 @@ NO_SUCH_PART = N_("This part of the list can’t be found; its address is not wh
 
 
 class Wanted(Model):
-    """What the list is to show: those of a reference, or those with every word of a search."""
+    """Filter of the list: those of a reference, or those with every word of a search."""
 
     reference: Line | None = None
     search: Line | None = None
@@ -83,7 +83,7 @@ def version_of(fields: Mapping[str, str]) -> int | None:
 
 
 def changed_since() -> Problem:
-    """What a form was made for is no longer as it was then."""
+    """Problem for a form whose subject has changed since."""
     return Problem(412, CHANGED)
 
 
@@ -125,7 +125,7 @@ async def _delete(request: Request, saved: SavedSelection, fields: dict[str, str
 
 
 async def _changed(request: Request, change: Any) -> Response:
-    """Where to go after a change of a saved selection that the list has asked for."""
+    """Redirect after a change of a saved selection that the list has asked for."""
     try:
         require_same_origin(request)
         fields = dict(pairs_of(await read_form(request)))

@@ -33,7 +33,7 @@ ONCE = re.compile(r"[A-Za-z0-9_-]{22}")
 
 @dataclass(frozen=True, slots=True)
 class Posted:
-    """What a form that saves says, and the key by which it counts once however often it is sent."""
+    """Content of a form that saves, and the key by which it counts once however often it is sent."""
 
     pairs: Pairs
     once: str
@@ -107,7 +107,7 @@ def _code(form: Form, answer: Answer) -> str | None:
 
 
 def refused(request: Request, error: Problem | StoreUnavailableError, posted: Posted | None = None) -> Response:
-    """Page that says why, and still has what was typed."""
+    """Page with the reason, which still has what was typed."""
     if isinstance(error, StoreUnavailableError):
         error = Problem(503, str(error), headers={"Retry-After": str(RETRY_SECONDS)})
     spent = error.status_code == 410  # whoever saves it again means to

@@ -156,14 +156,14 @@ def _figure(_: Context, value: float | None, unit: str = "", beside: float | Non
 
 @pass_context
 def _say(_: Context, message: Sentence) -> str:
-    """What is wrong with an input, beside a field that shows its unit."""
+    """Message on an input, beside a field that shows its unit."""
     reader = current()
     return message.render(reader.text, reader.bound)
 
 
 @pass_context
 def _reason(_: Context, candidate: Candidate, utilisation: float) -> str:
-    """Why a candidate stands where it does; `utilisation` is the user's u."""
+    """Reason for the place of a candidate; `utilisation` is the user's u."""
     return current().told(reason_of(candidate, utilisation))
 
 
