@@ -1,4 +1,4 @@
-"""What somebody does while an answer is under way, or while there is none, neither loses nor mixes up anything."""
+"""Edits while an answer is under way, or while there is none, neither lose nor mix up anything."""
 
 import re
 from functools import partial

@@ -91,7 +91,7 @@ applications = st.fixed_dictionaries(
 
 
 def loaded(document: dict[str, Any]) -> bool:
-    """Whether an output load, where there is one, has a load."""
+    """True for an output load with a load, or none at all."""
     carriers = [document.get("output_load", {}), *document["duty_cycle"]["phases"]]
     return "output_load" not in document or any("radial_N" in c or "axial_N" in c for c in carriers)
 

@@ -1,4 +1,4 @@
-"""What the form does not show goes through every door and comes back the same: motions, phases that vary, motors."""
+"""Inputs that the form does not show pass every door and come back the same: motions, phases that vary, motors."""
 
 import json
 from html.parser import HTMLParser
@@ -41,7 +41,7 @@ def body_of(application: Application) -> dict[str, Any]:
 
 
 class Fields(HTMLParser):
-    """What the form of the page submits, as a browser gathers it, and how."""
+    """Fields that the form of the page submits, as a browser gathers them, and its method."""
 
     def __init__(self) -> None:
         super().__init__()

@@ -119,7 +119,7 @@ def test_calculation_stands_on_the_page_in_MathML(client: TestClient) -> None:
 
 
 def changes(client: TestClient, target: str, unfolded: str = "", query: str = EXAMPLE) -> Response:
-    """What a script gets that asks for a part of the page, with some parts of the result unfolded."""
+    """Reply to a script that asks for a part of the page, with some parts of the result unfolded."""
     return client.get(query, headers={**HTMX, "HX-Target": target, "HPN-Parts": unfolded})
 
 

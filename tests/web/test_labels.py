@@ -1,4 +1,4 @@
-"""What people write on a selection rides along: in the address, through every edit, and never in the canonical link."""
+"""Labels of a selection ride along: in the address, through every edit, and never in the canonical link."""
 
 import html
 import re

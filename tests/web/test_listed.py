@@ -11,7 +11,7 @@ EXAMPLE = "T=40&n=250&t=0.3&T=32&n=500&t=3&T=20&n=250&t=0.4&tp=4&Tk=200"
 
 
 def answer_to(query: str, catalogue: Catalogue) -> Answer:
-    """What the page answers to a link."""
+    """Page of a link."""
     form, answer = answered(parse(pairs_of(query)), catalogue)
     assert answer, form.problems
     return answer

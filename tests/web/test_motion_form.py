@@ -29,7 +29,7 @@ def read(query: str) -> Form:
 
 
 def fields_of(page: str) -> list[tuple[str, str]]:
-    """What the form of a page submits."""
+    """Fields that the form of a page submits."""
     fields = Fields()
     fields.feed(page)
     return fields.pairs

@@ -205,7 +205,7 @@ def test_first_view_stays_light(client: TestClient) -> None:
 
 
 def figure(html: str, name: str) -> str:
-    """What the verdict says of a figure."""
+    """Text of the verdict on a figure."""
     found = re.search(rf"<dt>{name}.*?</dt><dd>(.*?)</dd>", html, re.S)
     assert found, name
     return re.sub("<[^>]*>", "", found[1]).strip()

@@ -1,4 +1,4 @@
-"""What fails never reads like what passes: a percentage has the digits that tell it from what is allowed."""
+"""A failing check never reads like a passing one: a percentage has the digits that tell it from its limit."""
 
 import html
 import re

@@ -81,7 +81,7 @@ class Texts(HTMLParser):
             self.found += [str(given[name]) for name in SHOWN if given.get(name)]
 
     def handle_endtag(self, tag: str) -> None:
-        """What follows is to be read again."""
+        """Read what follows again."""
         if self.open and self.open[-1] == tag:
             self.open.pop()
 
