@@ -96,6 +96,9 @@ TABLES_OF_PHASES = (
     b"1.234\t2\t3\n1,234\t2\t3\n",
     b"Zyklus 7\nNr.;T;n;Zeit\n-;kNm;rad/s;ms\n1;0,04;10;300\n2;0,03;20;400\nSumme;;;700\n",
     b"T;n;t;T_max;Spitzendrehzahl;Effektivmoment [kNm]\n40;250;0,3;55;500;0,042\n",
+    b"T;n;Endzeit\n40;250;1\n32;500;1e309\n",
+    b"Time;T;n\n2026-03-01T08:00:00;40;250\n2026-03-01T08:00:05,5;20;100\nPart 2\n2026-03-01T08:00:09;20;100\n",
+    b"T;n;Dauer [hh:mm:ss]\n40 Nm;250;0:00:30\n0.3 kNm;250;PT1M\n",
     b"Torque:\t40 Nm\t32 Nm\nSpeed:\t250 rpm\t500 rpm\nDuration:\t300 ms\t3 s\n",
 )
 
@@ -104,6 +107,7 @@ TABLES_OF_AXES = (
     b"axis\ttorque_Nm\tspeed_rpm\tduration_s\tratios\tsizes\nA\t1.234\t2\t1\t4/5\t14A\nA\t2\t3\t4\t\t\n",
     "Achse;Moment kNm;Drehzahl;Dauer ms;Maximale Auslastung u;Umgebungstemperatur [°C];Untersetzung;K_3 [Nm/rad]\n"
     "A;0,04;250;300;80 %;25 °C;5:1, 10;5e3\n;8;500;2.5;9.5e1 %;25;i = 5;14 %\n".encode(),
+    b"Achse;Moment;Drehzahl;Endzeit\n;Nm;rpm;d\nA;1;2;3\nA;1;2;1e309\n;;;4\nB;1;2;0:00:30\n",
     b"Linie 4\nDrive,Torque (Nm),Speed (rpm),Duration (s),K_3,Load\nx,1,2,3,4,5\ny,1,2,3 ms,-,\n",
 )
 

@@ -17,7 +17,12 @@ from hpn.catalogue.tables import TABLES
 from hpn.engine.selection import encode, select
 from hpn.fleet.errors import FleetError
 from hpn.fleet.run import Order, size_fleet
+from hpn.tables.cycles import LAST, PARTS, PHASE, SEPARATOR, TOTALS
+from hpn.tables.files import tidied
+from hpn.tables.inputs import CYCLE, Inputs
+from hpn.tables.reading import DECIMAL, SCALES, TIMES
 from hpn.web.app import create_app
+from hpn.web.form.symbols import AXIS_INPUTS
 from hpn.web.settings import Settings
 from tests.fuzz import corpus
 from tests.fuzz.caller import Caller, Header, Reply
@@ -33,6 +38,9 @@ EDIT = ((b"hx-request", b"true"), (b"hx-target", b"section#result"))
 READERS: tuple[tuple[Header, ...], ...] = ((), ((b"cookie", b"hpn_language=de; hpn_units=lb_in.lbf"),))
 _ON_THE_WIRE = "".join(map(chr, range(0x21, 0x7F)))
 """Characters that a server lets through in an address; the rest is percent-encoded."""
+
+EVERY_CHOICE = (SEPARATOR, PHASE, DECIMAL, SCALES, TIMES, LAST, TOTALS, PARTS)
+"""Choices that a table may leave."""
 
 
 class World:
@@ -106,17 +114,31 @@ async def _form(world: World, random: Random, content: bytes) -> str:
 
 
 async def _paste(world: World, random: Random, content: bytes) -> str:
+    text = tidied(content.decode(errors="replace"))
     fields = {"text": content, "link": random.choice(corpus.LINKS[:2]), "take": random.choice(_TAKES)}
+    fields |= _answers(random, text, CYCLE) if random.random() < 0.7 else {}
     headers = [FORM, *random.choice(READERS), EDIT[0]]
     return judged(await world.call("POST", "/paste", headers=headers, body=urlencode(fields).encode()), api=False)
 
 
 async def _axes(world: World, random: Random, content: bytes) -> str:
-    chosen = {f"{mark}{place}": random.choice(_ROLES) for mark in "ru" for place in range(random.randrange(9))}
-    of = hashlib.sha256(content.decode(errors="replace").strip().encode()).hexdigest()[:16]
-    fields = {"text": content, "of": of, "decimal": random.choice((".", ",")), **chosen}
+    answers = _answers(random, content.decode(errors="replace").strip(), AXIS_INPUTS)
     headers = [FORM, *random.choice(READERS)]
-    return judged(await world.call("POST", "/fleets", headers=headers, body=urlencode(fields).encode()), api=False)
+    body = urlencode({"text": content, **answers}).encode()
+    return judged(await world.call("POST", "/fleets", headers=headers, body=body), api=False)
+
+
+def _answers(random: Random, text: str, inputs: Inputs) -> dict[str, str]:
+    """Answers to any question about a table, and what its columns are said to hold."""
+    roles, codes = ("", "skip", "nothing", *inputs.by_role), ("", "cells", "Nm", "ms", "kg", "nothing")
+    columns = range(random.choice((0, 0, random.randrange(9))))
+    return {
+        "of": hashlib.sha256(text.encode()).hexdigest()[:16],
+        "rest": random.choice(("", "skip")),
+        **{choice.name: random.choice(("", *choice.options)) for choice in EVERY_CHOICE},
+        **{f"r{place}": random.choice(roles) for place in columns if random.random() < 0.5},
+        **{f"u{place}": random.choice(codes) for place in columns if random.random() < 0.5},
+    }
 
 
 async def _upload(world: World, random: Random, content: bytes) -> str:
@@ -130,7 +152,6 @@ async def _upload(world: World, random: Random, content: bytes) -> str:
     return judged(reply, api=False)
 
 
-_ROLES = ("", "skip", "axis", "T", "n", "t", "FRi", "i", "size", "K3", "Nm", "ms", "u", "eta", "m", "kg", "nothing")
 _TAKES = ("", "", "", "", "", "", "append", "replace")
 
 
