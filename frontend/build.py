@@ -2,7 +2,7 @@
 the fonts of the PDF to frontend/dist/noto.
 
 A name changes exactly when its content does, so the service may let browsers keep every file for ever.
-`manifest.json` maps the logical name a template asks for ("app.css") to the hashed one ("app.3f2a9c1b.css").
+`manifest.json` maps the logical name a template asks for ("page.css") to the hashed one ("page.3f2a9c1b.css").
 """
 
 import gzip
@@ -17,20 +17,23 @@ import brotli
 FRONTEND = Path(__file__).parent
 STATIC = FRONTEND / "static"
 DIST = FRONTEND / "dist"
-PACKAGES = {
-    "htmx.min.js": FRONTEND / "node_modules/htmx.org/dist/htmx.min.js",
-    "plotly-basic.min.js": FRONTEND / "node_modules/plotly.js-basic-dist-min/plotly-basic.min.js",
+HTMX = FRONTEND / "node_modules/htmx.org/dist/htmx.min.js"
+PLOTLY = FRONTEND / "node_modules/plotly.js-basic-dist-min/plotly-basic.min.js"
+STYLES = {
+    "page.css": ("app", "tools", "workbench", "selection", "insight", "plots", "motion"),
+    "site.css": ("app", "tools", "saved", "selection", "insight", "plots", "fleet"),
+    "report.css": ("app", "tools", "fleet"),
 }
+"""Style sheets of the form with its result, of all other pages, and of a fleet’s report, which holds its own."""
+
+SCRIPTS = ("app", "sections", "connection", "insight", "plots", "tools")
+ALONE = ("favicon.svg", "fleet-report.js", "plots.js")
+"""Files that a page asks for by themselves; a fleet’s report holds its script."""
+
 NOTO = FRONTEND / "node_modules/@expo-google-fonts"
 """Packages of Noto fonts, one for each script: as Google publishes them, in nine weights."""
 
 TEXT_SUFFIXES = {".css", ".html", ".js", ".json", ".map", ".mjs", ".svg", ".txt", ".webmanifest", ".xml"}
-
-
-def sources() -> dict[str, Path]:
-    """Logical name, with forward slashes, to file."""
-    static = {path.relative_to(STATIC).as_posix(): path for path in sorted(STATIC.rglob("*")) if path.is_file()}
-    return static | PACKAGES
 
 
 COMMENTS = {
@@ -40,11 +43,28 @@ COMMENTS = {
 """Comments of our own files by suffix: in scripts those on lines of their own."""
 
 
-def sent(path: Path) -> bytes:
-    """Content of a file without the comments that only its authors read; packages keep theirs, with their licences."""
+def sent(name: str) -> bytes:
+    """Content of one of our own files without the comments that only its authors read."""
+    path = STATIC / name
     content = path.read_bytes()
-    comment = COMMENTS.get(path.suffix) if path.is_relative_to(STATIC) else None
-    return comment.sub(b"", content) if comment else content
+    return COMMENTS[path.suffix].sub(b"", content) if path.suffix in COMMENTS else content
+
+
+def script(*names: str) -> bytes:
+    """htmx, and scripts of ours after it: one file, in which each keeps its names to itself."""
+    parts = [b"{\n" + sent(f"{name}.js") + b"}\n" for name in names]
+    return HTMX.read_bytes() + b'\n(() => {\n"use strict";\n' + b"".join(parts) + b"})();\n"
+
+
+def files() -> dict[str, bytes]:
+    """Content of each file by its logical name; packages keep their comments, with their licences."""
+    return {
+        "plotly-basic.min.js": PLOTLY.read_bytes(),
+        "page.js": script(*SCRIPTS),
+        "gear.js": script("tools"),
+        **{name: b"".join(sent(f"{part}.css") for part in parts) for name, parts in STYLES.items()},
+        **{name: sent(name) for name in ALONE},
+    }
 
 
 def hashed_name(name: str, content: bytes) -> str:
@@ -74,8 +94,7 @@ def main() -> None:
         shutil.rmtree(DIST)
     copy_fonts()
     manifest: dict[str, str] = {}
-    for name, path in sources().items():
-        content = sent(path)
+    for name, content in files().items():
         manifest[name] = hashed_name(name, content)
         write(DIST / manifest[name], content)
     # Last, so that make sees an interrupted build as not done.

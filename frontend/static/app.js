@@ -359,5 +359,4 @@ const isTyped = (field) =>
   : /checkbox|radio/.test(field.type) ? field.checked !== field.defaultChecked
   : "defaultValue" in field && field.value !== field.defaultValue;
 const answerTyped = () => [...formOf().elements].some(isTyped) && formOf().requestSubmit();
-if (formOf().matches("[data-htmx-powered]")) answerTyped();
-else document.addEventListener("htmx:after:process", answerTyped, { once: true });
+document.addEventListener("htmx:after:process", answerTyped, { once: true });

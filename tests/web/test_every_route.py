@@ -70,7 +70,7 @@ class Address:
             "{size}": "20A",
             "{code}": "average_torque",
             "{name}": "not-found",
-            "{name:path}": Assets.load().url("app.css").removeprefix("/static/"),
+            "{name:path}": Assets.load().url("page.css").removeprefix("/static/"),
         }
 
     def __call__(self, path: str) -> str:

@@ -187,7 +187,7 @@ def test_assets_are_hashed_immutable_and_precompressed(client: TestClient) -> No
 
 
 @pytest.mark.parametrize(
-    "name", ["app.css", "manifest.json", "../static/app.css", "..%2f..%2fbuild.py", "%00", "x" * 5000]
+    "name", ["page.css", "manifest.json", "../static/app.css", "..%2f..%2fbuild.py", "%00", "x" * 5000]
 )
 def test_only_built_files_are_served(client: TestClient, name: str) -> None:
     assert client.get(f"/static/{name}").status_code == 404

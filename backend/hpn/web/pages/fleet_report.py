@@ -20,7 +20,7 @@ from hpn.web.pages.fleet_view import SHOWN, FleetView
 from hpn.web.pages.templates import environment
 from hpn.words.reader import Reader
 
-STYLES, SCRIPT = ("app.css", "tools.css", "fleet.css"), "fleet-report.js"
+STYLE, SCRIPT = "report.css", "fleet-report.js"
 
 
 def report_of(listing: Listing, name: str, catalogue: Catalogue, base: str = "", language: str = "en") -> str:
@@ -39,7 +39,7 @@ def _told(reader: Reader, **values: Any) -> str:
     return (
         _environment()
         .get_template("fleet_report.html")
-        .render(values, shown=SHOWN, style=_inlined(*STYLES), script=_inlined(SCRIPT), engine_version=ENGINE_VERSION)
+        .render(values, shown=SHOWN, style=_inlined(STYLE), script=_inlined(SCRIPT), engine_version=ENGINE_VERSION)
     )
 
 
@@ -59,6 +59,6 @@ def _environment() -> Environment:
     return environment(state)
 
 
-def _inlined(*names: str) -> Markup:
+def _inlined(name: str) -> Markup:
     assets = Assets.load()
-    return Markup("\n".join((assets.folder / assets.manifest[name]).read_text(encoding="utf-8") for name in names))
+    return Markup((assets.folder / assets.manifest[name]).read_text(encoding="utf-8"))
