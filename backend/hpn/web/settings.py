@@ -2,6 +2,7 @@
 
 import os
 import re
+import stat
 import warnings
 from difflib import get_close_matches
 from ipaddress import ip_network
@@ -129,7 +130,7 @@ class SecretFiles(SecretsSettingsSource):
         return super().__call__()
 
     def get_field_value(self, field: FieldInfo, field_name: str) -> tuple[Any, str, bool]:
-        """Content of a setting's file, if there is one."""
+        """Content of a setting's file, if there is one; SettingsError where it can't be read."""
         try:
             with warnings.catch_warnings(action="error"):  # a file that would be left out
                 return super().get_field_value(field, field_name)
@@ -138,8 +139,12 @@ class SecretFiles(SecretsSettingsSource):
 
 
 def _secrets_folder(named: str | Path | None) -> Path | None:
+    """Folder of secret files, if there is one; OSError where this user may not look, where Path.is_dir() may be False."""
     folder = Path(named or SECRETS)
-    return folder if folder.is_dir() else None
+    try:
+        return folder if stat.S_ISDIR(folder.stat().st_mode) else None
+    except (FileNotFoundError, NotADirectoryError):
+        return None
 
 
 def source_of(name: str) -> str:
