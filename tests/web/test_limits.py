@@ -123,12 +123,12 @@ def test_a_mistake_of_the_service_is_a_problem_without_a_trace(monkeypatch: pyte
     assert reply.headers["x-content-type-options"] == "nosniff"
 
 
-def test_requests_at_once_get_their_own_answers(api: TestClient) -> None:
-    """Many restrictions at once through threads: more than the lists of candidates that are kept."""
+def test_requests_at_once_get_their_own_answers(api: TestClient, soak: bool) -> None:
+    """Restrictions by the hundred through eight threads; each has candidates of its own."""
     from concurrent.futures import ThreadPoolExecutor
 
     ratios = [3, 4, 5, 7, 10, 15, 20, 25, 30, 35]
-    wishes = [[r for k, r in enumerate(ratios) if mask >> k & 1] for mask in range(1, 600)]
+    wishes = [[r for k, r in enumerate(ratios) if mask >> k & 1] for mask in range(1, 1024 if soak else 150)]
 
     def ask(wish: list[int]) -> set[int]:
         item = cycle(phase(1, 1), requirements={"ratios": wish})
