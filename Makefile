@@ -14,7 +14,7 @@ BUILD := PYTHONPATH="$(CURDIR)/$(TOOLS)" $(UV)
 MODULES := frontend/node_modules
 ASSETS := frontend/dist/manifest.json
 COMPILED := frontend/dist/templates/.all
-# What is installed: enough to run, or all of it. Once a tree has the tools, `make run` must not take them away again.
+# Enough to run is installed, or all of it. Once a tree has the tools, `make run` must not take them away again.
 FOR := $(if $(filter check test soak mutants bench screenshots browser messages licences sbom audit containers,$(MAKECMDGOALS))$(wildcard $(VENV)/.dev),dev,run)
 PAGE_FOR := $(if $(filter test soak,$(MAKECMDGOALS))$(wildcard $(MODULES)/.dev),dev,run)
 ENVIRONMENT := $(VENV)/.$(FOR)
@@ -57,15 +57,15 @@ else
 	$(BIN)/pytest $(BROWSERS)
 endif
 
-# What is long by nature, in its long form: hundreds of kills, examples by the thousand, Lighthouse over all pages.
-# Nothing runs beside what measures how long others wait. What fails keeps nothing else from running.
+# Tests that are long by nature, in their long form: hundreds of kills, examples by the thousand, Lighthouse over all pages.
+# Nothing runs beside tests of waiting times. A failure keeps nothing else from running.
 UNDER_LOAD := tests/reliability/test_load.py tests/reliability/test_loop.py tests/operations/test_peers.py
 soak: install browser office curl nginx pdfua
 	@failed=0; for part in "$(MEASURED)" "$(UNDER_LOAD)" "$(TOGETHER) $(addprefix --ignore ,$(UNDER_LOAD))" "$(BROWSERS)"; do \
 	    echo "$(BIN)/pytest --soak $$part"; $(BIN)/pytest --soak $$part || failed=1; \
 	done; for way in up down mixed; do $(ELSEWHERE)=$$way $(BIN)/pytest $(NUMERIC) || failed=1; done; exit $$failed
 
-# Each small change of the modules that decide has to make a test fail; what no test finds is explained or listed.
+# Each small change of the modules that decide has to make a test fail; one that no test finds is explained or listed.
 mutants: install
 	$(BIN)/python -m tests.mutants $(ONLY)
 
@@ -77,7 +77,7 @@ check: $(ENVIRONMENT)
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 
-# What a user feels, of this checkout and a plain service; with BESIDE=folder, of another installed checkout as well.
+# Times that a user feels, of this checkout and a plain service; with BESIDE=folder, of another installed checkout as well.
 bench: install browser
 	$(BIN)/python -m tests.benchmarks $(if $(BESIDE),--beside "$(BESIDE)") $(ONLY)
 
@@ -191,7 +191,7 @@ lock: $(UV) | $(NODE)
 licences: $(ENVIRONMENT)
 	$(BIN)/python -m tests.supply.licences
 
-# What an installed service consists of, as CycloneDX; the same locks give the same bytes.
+# Packages of an installed service, as CycloneDX; the same locks give the same bytes.
 sbom: $(ENVIRONMENT)
 	$(BIN)/python -m tests.supply.sbom sbom.cdx.json
 

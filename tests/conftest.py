@@ -1,4 +1,4 @@
-"""What the tests share: the catalogue as shipped, copies of it to spoil, and supplements over it."""
+"""Fixtures of all tests: the catalogue as shipped, copies of it to spoil, and supplements over it."""
 
 import os
 import shutil
@@ -80,7 +80,7 @@ def _has_short_form(item: pytest.Item) -> bool:
 
 
 def _has_long_form(item: pytest.Item) -> bool:
-    """Whether `make soak` makes it longer: it is marked, asks how long it may be, or draws examples."""
+    """True for a test with a long form: it is marked, takes the fixture `soak`, or draws examples."""
     asks = "soak" in getattr(item, "fixturenames", ())
     draws = getattr(getattr(item, "function", None), "is_hypothesis_test", False)
     return asks or draws or not _has_short_form(item) or item.path.name in BULK
@@ -97,7 +97,7 @@ def _place(item: pytest.Item) -> int:
 
 @pytest.fixture(scope="session")
 def soak(pytestconfig: pytest.Config) -> bool:
-    """Whether the long form is asked for: a test that is long by nature takes its numbers from this."""
+    """True for the long form: a test that is long by nature takes its numbers from this."""
     return bool(pytestconfig.getoption("--soak"))
 
 

@@ -1,4 +1,4 @@
-"""What a service holds, behind a client of it."""
+"""State of a service, behind a client of it."""
 
 from fastapi import FastAPI
 from starlette.datastructures import State

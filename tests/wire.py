@@ -42,12 +42,12 @@ class Selection:
 
     @property
     def evaluation(self) -> "Selection":
-        """What the answer comes from."""
+        """The selection behind the answer."""
         return self
 
     @property
     def duty(self) -> Application:
-        """What its duty comes from."""
+        """The application behind its duty."""
         return self.judged.application
 
 

@@ -1,4 +1,4 @@
-"""What this installation has beside its modules: the folders of data, and the packages of the extras."""
+"""Parts of this installation beside its modules: the folders of data, and the packages of the extras."""
 
 from functools import cache
 from importlib.resources import files

@@ -6,7 +6,7 @@ from typing import Any
 FIVE: dict[str, Any] = {"requirements": {"ratios": [5]}}
 EVERY: dict[str, Any] = {}
 CASES = {"5_gears": FIVE, "64_gears": EVERY}
-"""What restricts the list of candidates, by the name of the case."""
+"""Restrictions of the list of candidates, by the name of the case."""
 
 
 def select_body(number: int, restriction: dict[str, Any]) -> bytes:

@@ -87,7 +87,7 @@ def random_axes(chance: np.random.Generator, count: int, start: int = 0) -> pa.T
 
 
 class Run(NamedTuple):
-    """What a run took: the memory is that of its largest process."""
+    """Time and memory of a run; the memory is that of its largest process."""
 
     seconds: float
     peak_MB: float
@@ -190,7 +190,7 @@ def by_numpy(axes: Axes, catalogue: Catalogue) -> Sized:
 
 
 def by_loop(axes: Axes, catalogue: Catalogue) -> Sized:
-    """What one would write at first: a loop over axes, phases and gears."""
+    """The first version that anyone would write: a loop over axes, phases and gears."""
     cycles, asked, gears = (values.tolist() for values in _arrays(axes, catalogue))
     rated_speed, rated_life = catalogue.rated_input_speed_rpm, catalogue.life_at_rated_torque_h
     selected, suitable = [], []

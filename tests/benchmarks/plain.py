@@ -1,4 +1,4 @@
-"""What a user would write instead of the product: FastAPI, pydantic models in and out, numpy over the gears.
+"""The plain service that a user would write: FastAPI, pydantic models in and out, numpy over the gears.
 
 It answers what the benchmark asks and no more (no bearing, no requirements but ratios and sizes, no number formats), so
 it does less than the product for the same reply. Texts and ratings come from two replies that the benchmark has asked
@@ -26,7 +26,7 @@ ROUNDING = 1 + 1e-12
 
 
 class Duty(BaseModel):
-    """What the cycle comes to."""
+    """Figures of the cycle."""
 
     average_torque_Nm: float
     average_output_speed_rpm: float
@@ -78,7 +78,7 @@ class Candidate(BaseModel):
 
 
 class Definition(BaseModel):
-    """What a check tests, and why."""
+    """Purpose of a check, and the reason for it."""
 
     title: str
     equation: str | None
@@ -94,7 +94,7 @@ class Definition(BaseModel):
 
 
 class Notice(BaseModel):
-    """What the reader must know beyond the numbers."""
+    """Notes for the reader beyond the numbers."""
 
     code: str
     text: str

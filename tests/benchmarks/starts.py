@@ -40,7 +40,7 @@ def _seconds(command: Sequence[str], folder: Path) -> float:
 def first_starts(checkouts: Mapping[str, Checkout], folder: Path) -> dict[str, Any]:
     """Seconds of `hpn serve` in a fresh clone until its page answers, and megabytes of the clone's packages.
 
-    The clone is of the last commit. What an earlier start has kept beside its code is deleted; packages stay as they
+    The clone is of the last commit. Files that an earlier start left beside its code are deleted; packages stay as they
     were installed.
     """
     clones = {name: _installed_clone(checkout, folder / name) for name, checkout in checkouts.items()}

@@ -14,7 +14,7 @@ Measured = TypeVar("Measured")
 def in_turns(
     variants: Mapping[str, Callable[[int], Measured]], turns: int, *, warm_up: bool = True
 ) -> dict[str, list[Measured]]:
-    """What each variant measures in each turn, every other turn the other way round; one before warms up."""
+    """Measurements of each variant in each turn, every other turn in reverse order; one turn before warms up."""
     found: dict[str, list[Measured]] = {name: [] for name in variants}
     for turn in range(0 if warm_up else 1, turns + 1):
         names = list(variants)[:: 1 if turn % 2 else -1]
@@ -36,5 +36,5 @@ def ratios(values: Mapping[str, Sequence[float]]) -> dict[str, float]:
 
 
 def p95(values: Sequence[float]) -> float:
-    """What nineteen of twenty stay below."""
+    """95th percentile."""
     return statistics.quantiles(values, n=20)[-1]

@@ -1,4 +1,4 @@
-"""What is measured side by side: checkouts, each served from its own environment, and the plain service."""
+"""Variants measured side by side: checkouts, each served from its own environment, and the plain service."""
 
 import http.client
 import os
@@ -29,7 +29,7 @@ class Checkout:
         return str(self.folder / ".venv/bin/hpn")
 
     def commit(self) -> str:
-        """What is measured; a plus where files differ from it."""
+        """Commit that is measured; a plus where files differ from it."""
         return self._git("rev-parse", "--short", "HEAD") + ("+" if self._git("status", "--porcelain") else "")
 
     def _git(self, *arguments: str) -> str:
@@ -108,7 +108,7 @@ def _running(command: list[str], folder: Path, environment: Mapping[str, str]) -
         free.bind(("127.0.0.1", 0))
         port = free.getsockname()[1]
     words = [word.format(port=port) for word in command]
-    # What it logs costs it the writing, as in earnest, and is of no interest here.
+    # Its log is written as in earnest, and not read here.
     process = subprocess.Popen(words, cwd=folder, env=environment, stdout=subprocess.DEVNULL)
     try:
         _await_start(port, process)

@@ -17,7 +17,7 @@ from tests.containers.engine import Engine
 
 RECIPES = Path(__file__).parent / "recipes"
 PACKAGES = {"python": "python3", "nginx": "nginx", "postgres": "postgresql-{major}"}
-"""What tells which release of Debian has the version that a name asks for."""
+"""Package that shows which release of Debian has the version that a name asks for."""
 
 PULL_S = 180.0
 KEPT = "1GB"

@@ -1,4 +1,4 @@
-"""What answers on the published port, and how its containers are confined."""
+"""Answers on the published port, and the confinement of its containers."""
 
 import socket
 import ssl
@@ -128,7 +128,7 @@ def limits(stack: Stack) -> str:
 
 @trial("a program that takes all memory or processes is refused, and the service goes on")
 def greedy(stack: Stack) -> str:
-    """What ended the greedy ones."""
+    """Ends of the greedy processes."""
     before = {service: stack.inspect(service)["State"]["StartedAt"] for service in SERVICES}
     said = []
     for service in ("proxy", "db"):

@@ -88,7 +88,7 @@ class Stack:
         return self.compose("ps", "--all", "--quiet", service)
 
     def inspect(self, service: str) -> dict[str, Any]:
-        """What the engine knows of a container."""
+        """State of a container, as the engine has it."""
         found: list[dict[str, Any]] = json.loads(self.engine.docker("inspect", self.container(service)))
         return found[0]
 

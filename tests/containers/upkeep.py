@@ -41,7 +41,7 @@ def certificate(stack: Stack) -> str:
 
 @trial("a key that the proxy can't read is named in its log; make certificates mends it")
 def unreadable(stack: Stack) -> str:
-    """What the log says."""
+    """Text of the log."""
     key = stack.folder / "certificates/privkey.pem"
     key.chmod(0o600)
     os.chown(key, 0, 0)
@@ -88,7 +88,7 @@ def restore(stack: Stack) -> str:
 
 @trial("a broken backup changes nothing")
 def broken(stack: Stack) -> str:
-    """What the command says of it."""
+    """Output of the command."""
     kept = stack.save("here before the broken backup")
     name = stack.compose("run", "--rm", "backup").splitlines()[-1]
     stack.compose(
@@ -202,7 +202,7 @@ def _await_fleet(stack: Stack) -> None:
 
 @trial("another POSTGRES_PASSWORD is no healthy stack; ALTER USER makes it one")
 def password(stack: Stack) -> str:
-    """What `up --wait` says."""
+    """Output of `up --wait`."""
     stack.write_settings(POSTGRES_PASSWORD="another")
     up = stack.run("docker", "compose", "up", "--detach", "--wait", "--wait-timeout", "90")
     try:

@@ -14,7 +14,7 @@ CHUNK = 65_536
 
 
 class Reply(NamedTuple):
-    """What the application answered."""
+    """Answer of the application."""
 
     status: int
     media_type: str

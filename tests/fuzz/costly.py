@@ -359,5 +359,5 @@ def made(name: str) -> bytes:
 
 
 def name_of(name: str) -> str:
-    """What such a file is called."""
+    """Name of such a file."""
     return NAMES.get(name) or ("a.parquet" if name.startswith("Parquet") else "a.arrow")

@@ -44,7 +44,7 @@ EVERY_CHOICE = (SEPARATOR, PHASE, DECIMAL, SCALES, TIMES, LAST, TOTALS, PARTS)
 
 
 class World:
-    """What the inputs meet: the service on a database of its own, and a small catalogue to lay supplements over."""
+    """Targets of the inputs: the service on a database of its own, and a small catalogue to lay supplements over."""
 
     def __init__(self, folder: Path) -> None:
         self.app = create_app(

@@ -31,7 +31,7 @@ PART = 10_000
 
 @dataclass
 class Outcome:
-    """What some inputs of a door came to; `findings` names each failing input by its seed."""
+    """Outcome of some inputs of a door; `findings` names each failing input by its seed."""
 
     inputs: int = 0
     seconds: float = 0.0

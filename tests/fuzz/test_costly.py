@@ -34,7 +34,7 @@ LARGER = {"attributes", "a cell in the last column of each row", "a long text in
     *("Parquet of many columns", "Parquet of many groups of rows", "Arrow of columns", "columns", "header rows"),
 }
 SLOW = {"phonetic parts", "cells by the row", "inline texts", "formulas", "elements in one another", "attributes"}
-"""What takes some seconds within the bounds, and is left to the long form."""
+"""Files that take some seconds within the limits, left to the long form."""
 
 MOST_PICKLED = 20_000_000
 """Bytes that come back to the service at most."""

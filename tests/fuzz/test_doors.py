@@ -17,7 +17,7 @@ SHORT, LONG = 80, int(os.environ.get("HPN_TEST_FUZZ_INPUTS", "200000"))
 
 @pytest.fixture(scope="module")
 def attacked(soak: bool) -> Callable[[str], Outcome]:
-    """What a door's inputs came to: the same few each time, or very many others each time."""
+    """Outcome of a door's inputs: the same few each time, or very many others each time."""
     if soak:
         return lambda door: attack_in_parts(door, int(time.time()), LONG)
     outcomes = attack(DOORS, range(SHORT))

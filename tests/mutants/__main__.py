@@ -24,7 +24,7 @@ LIBRARIES = (
     "pydantic_settings",
     "starlette.testclient",
 )
-"""What the modules need is imported once, so that a forked process has it; the modules and tests themselves are not."""
+"""Libraries of the modules, imported once for all forked processes; the modules and tests themselves are not."""
 
 PACKAGE = Path(__file__).parents[2] / "backend" / "hpn"
 MODULES = {
@@ -75,7 +75,7 @@ FURTHER = (
         *("tests/web/test_openapi.py", "tests/web/test_openapi_truth.py"),
     ],
 )
-"""What a mutant that passes those is tried with, by cost."""
+"""Further tests of a mutant that passes those, by cost."""
 
 
 def mutants_in(module: str) -> list[Mutant]:

@@ -27,7 +27,7 @@ class _FewExamples:
 
 
 def survives(path: Path, source: str, tests: list[str]) -> bool:
-    """Whether every one of the tests passes with the module at `path` made of `source`."""
+    """True where every one of the tests passes with the module at `path` made of `source`."""
     child = os.fork()
     if child == 0:
         code = 1

@@ -22,7 +22,7 @@ OF_THE_ENGINE = ("USER", "EXPOSE", "VOLUME", "HEALTHCHECK", "CMD")
 
 @dataclass
 class Image:
-    """What was built."""
+    """Result of the build."""
 
     root: Path
     environment: dict[str, str] = field(default_factory=dict)
@@ -132,7 +132,7 @@ def _copy_from_context(source: Path, goal: Path, context: Path) -> None:
 
 
 def _ignored(path: Path, context: Path) -> bool:
-    """Whether .dockerignore keeps a file from the engine: its last matching line decides."""
+    """True where .dockerignore keeps a file from the engine: its last matching line decides."""
     relative = path.relative_to(context)
     parents = [str(relative), *map(str, relative.parents)][:-1]
     ignored = False

@@ -22,7 +22,7 @@ PARTS = ("LICENSE", "README.md", "pyproject.toml", ".gitignore", "backend", "cat
 
 
 def copy_of_checkout(folder: Path) -> Path:
-    """What a build reads of this checkout, the built assets included, in a folder without git."""
+    """Copy of all that a build reads, the built assets included, in a folder without git."""
     for name in PARTS:
         source, ignored = ROOT / name, shutil.ignore_patterns("node_modules", "__pycache__")
         if source.is_dir():

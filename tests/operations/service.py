@@ -35,7 +35,7 @@ class Service:
         return f"http://127.0.0.1:{self.port}"
 
     def events(self) -> list[dict[str, Any]]:
-        """What it has logged."""
+        """Its log so far."""
         return [orjson.loads(line) for line in self.log.read_bytes().split(b"\n")[:-1]]
 
     def event(self, *, count: int = 1, **fields: str) -> dict[str, Any]:
@@ -60,7 +60,7 @@ def children_of(process: int) -> list[int]:
 
 
 def until(holds: Callable[[], Any]) -> Any:
-    """What a condition gives as soon as it holds; AssertionError after a minute."""
+    """Value of a condition as soon as it holds; AssertionError after a minute."""
     end = time.monotonic() + 60
     while not (found := holds()):
         assert time.monotonic() < end
@@ -69,7 +69,7 @@ def until(holds: Callable[[], Any]) -> Any:
 
 
 def is_gone(pid: int) -> bool:
-    """Whether a process has ended."""
+    """True for a process that has ended."""
     with suppress(ProcessLookupError):
         os.kill(pid, 0)
         return False

@@ -34,7 +34,7 @@ class Example:
         return file
 
     def run(self, *command: str | Path, folder: Path) -> str:
-        """What an example prints."""
+        """Output of an example."""
         clean = {name: value for name, value in os.environ.items() if name != "HPN_KEY"}
         key = {} if self.key is None else {"HPN_KEY": self.key}
         environment = clean | key | {"no_proxy": "127.0.0.1"}

@@ -19,7 +19,7 @@ ROOT = Path(__file__).parents[2]
 
 @pytest.fixture(scope="module")
 def image(tmp_path_factory: pytest.TempPathFactory) -> Image:
-    """What the Dockerfile makes."""
+    """The image of the Dockerfile, built without an engine."""
     image = build(ROOT / "backend/Dockerfile", ROOT, tmp_path_factory.mktemp("image"))
     image.place("/data").mkdir()
     return image

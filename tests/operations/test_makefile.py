@@ -1,4 +1,4 @@
-"""What make would do."""
+"""Plans of make, which are not carried out."""
 
 import os
 import subprocess

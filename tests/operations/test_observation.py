@@ -1,4 +1,4 @@
-"""What operators see: one JSON line per request, its id, and Prometheus' counts."""
+"""Logs and metrics for operators: one JSON line per request, its id, and Prometheus' counts."""
 
 import json
 import re

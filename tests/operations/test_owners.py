@@ -1,4 +1,4 @@
-"""Who may delete what: keys own what they save, and the log says which selection it was."""
+"""Rights to delete: keys own what they save, and the log says which selection it was."""
 
 import orjson
 import pytest

@@ -33,7 +33,7 @@ GONE_S = {"alone": 60.0, "nginx": 120.0}
 
 @dataclass(frozen=True)
 class Front:
-    """What the peers connect to, and the service behind it."""
+    """Address that the peers connect to, and the service behind it."""
 
     name: str
     service: Service

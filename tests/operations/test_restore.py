@@ -52,7 +52,7 @@ esac
 
 @dataclass(frozen=True)
 class Stack:
-    """What compose would run: a database `hpn` and a folder of backups."""
+    """Stand-in for compose: a database `hpn` and a folder of backups."""
 
     folder: Path
     environment: dict[str, str]

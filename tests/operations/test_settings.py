@@ -133,7 +133,7 @@ SERVICE = {
     "HPN_PORT_8000_TCP_PORT": "8000",
     "HPN_PORT_8000_TCP_ADDR": "10.96.0.7",
 }
-"""What Kubernetes sets beside a service that is named hpn."""
+"""Variables that Kubernetes sets beside a service named hpn."""
 
 
 @pytest.mark.parametrize("service", ["HPN", "HPN_DB", "HPN_DATABASE", "HPN_SELECT", "HPN_WEB"])

@@ -237,7 +237,7 @@ class Peer:
 
     @property
     def complete(self) -> bool:
-        """Whether the answer has its end."""
+        """True once the answer has its end."""
         return bool(self.outgoing) and self.outgoing[-1].get("more_body") is False
 
 
@@ -253,7 +253,7 @@ def stream(evaluate: Callable[[Any], bytes] = echo, *, spool: int = 10_000_000, 
 
 
 def ends_with(peer: Peer, end: bytes) -> bool:
-    """Whether this came last."""
+    """True where this came last."""
     return peer.received.endswith(end)
 
 

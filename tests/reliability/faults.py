@@ -1,4 +1,4 @@
-"""What makes a database unusable for a while, and what a service answers meanwhile."""
+"""Faults that make a database unusable for a while, and the answers of a service meanwhile."""
 
 import os
 import sqlite3

@@ -93,7 +93,7 @@ def _fork(app: FastAPI, listener: socket.socket) -> Worker:
 
 
 def _input_closed(wait_s: float) -> bool:
-    """Whether standard input closes within this time."""
+    """True where standard input closes within this time."""
     return bool(select.select([sys.stdin], [], [], wait_s)[0])
 
 

@@ -36,7 +36,7 @@ REQUEST = (
 
 @dataclass
 class Outcome:
-    """What became of the requests; latencies in seconds of those that were answered with 200."""
+    """Answers by status; latencies in seconds of those with status 200."""
 
     seconds: float = 0.0
     statuses: dict[int, int] = field(default_factory=dict)

@@ -51,7 +51,7 @@ def fault(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[tuple[str,
 
 
 def save(client: TestClient, acknowledged: set[str]) -> bool:
-    """Whether it is acknowledged; else it is a 503 that says when to retry."""
+    """True for an acknowledged save; any other answer is a 503 that says when to retry."""
     response = client.post("/api/v1/selections", json=SAVE)
     if response.status_code == 201:
         acknowledged.add(response.json()["id"])

@@ -141,7 +141,7 @@ def test_many_files_at_once_are_read_one_by_one_and_the_rest_is_asked_to_come_ag
 
 
 def test_texts_and_objects_of_the_largest_size_keep_nobody_waiting(tmp_path: Path, soak: bool) -> None:
-    """What can't be packed costs as many bytes as it has: 2 MB of it, as much as a page takes."""
+    """Content that can't be packed costs its own size: 2 MB of it, as much as a page takes."""
     names = [*TEXTS, *OBJECTS] if soak else ["blanks", "rows of three readings", "phases without anything"]
     with serving(tmp_path, SETTINGS) as service, another_caller(service) as waits:
         for name in names:

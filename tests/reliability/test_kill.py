@@ -1,4 +1,4 @@
-"""What was acknowledged survives `kill -9` of the server at any moment."""
+"""An acknowledged save survives `kill -9` of the server at any moment."""
 
 import asyncio
 import http.client

@@ -25,7 +25,7 @@ wait for each other make it, and not how many ask.
 """
 
 NOISE = 20
-"""What other tests on the same two cores may add, as a factor: the short form finds a queue without end."""
+"""Factor for other tests on the same two cores: the short form finds a queue without end."""
 
 SPELLS, SPELL_SECONDS = 60, 2
 """How often capacity is measured, and for how long; the slowest counts: a shared machine keeps up no more than that."""

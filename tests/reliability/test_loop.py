@@ -18,7 +18,7 @@ from tests.build import cycle, phase
 from tests.operations.service import Service, serving
 
 HELD_S, BESIDE_OTHERS_S = 0.05, 0.25
-"""What the service is built for, and five times that where other tests take their part of the machine."""
+"""Longest wait that the service is built for, and five times that where other tests share the machine."""
 
 JSON = {"Content-Type": "application/json"}
 FORM = {"Content-Type": "application/x-www-form-urlencoded"}

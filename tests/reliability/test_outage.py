@@ -133,7 +133,7 @@ def test_what_has_to_be_refused_does_not_wait_behind_who_is_stuck(outage: tuple[
 
 
 def test_many_savers_wait_for_a_stuck_database_only_once(outage: tuple[str, Outage]) -> None:
-    """Who comes while one transaction is stuck is not put behind it, to wait as long again."""
+    """A request that comes while a transaction is stuck does not queue behind it, to wait as long again."""
     database, broken = outage
 
     async def main() -> tuple[list[object], float]:

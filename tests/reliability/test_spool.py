@@ -41,7 +41,7 @@ def client(spool: Path, tmp_path: Path) -> Iterator[TestClient]:
 
 
 def answers_of(client: TestClient, table: bytes = TABLE) -> tuple[Any, Any, Any]:
-    """What REST, the page and readiness answer."""
+    """Answers of REST, the page and readiness."""
     return (
         client.post("/api/v1/fleet", content=table, headers=NDJSON),
         client.post("/fleets", files={"file": ("axes.ndjson", table)}),

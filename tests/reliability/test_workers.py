@@ -35,7 +35,7 @@ def processes(service: Service) -> list[int]:
 
 
 def alive(process: int) -> bool:
-    """Whether it is there, and not only waiting to be buried."""
+    """True for a process that runs; one that only waits for its parent's wait() has ended."""
     try:
         return Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
     except OSError:

@@ -1,4 +1,4 @@
-"""What today's catalogue says otherwise of a saved selection, on its page and by REST, though the verdict stays."""
+"""Changed figures of a saved selection under today's catalogue, on its page and by REST, though the verdict stays."""
 
 import html
 import re
@@ -22,7 +22,7 @@ Edit = Callable[[str], str]
 
 @pytest.fixture
 def changed(folder: Path, tmp_path: Path) -> Callable[..., tuple[Json, str]]:
-    """What REST and the page say of a selection that was saved before a file of the catalogue was edited."""
+    """Answers of REST and the page on a selection saved before a file of the catalogue was edited."""
     (supplement := tmp_path / "supplement").mkdir()
     (supplement / "motors.csv").write_text(MOTORS, encoding="utf-8")
     settings = Settings(

@@ -1,4 +1,4 @@
-"""What two replies say differently, field by field."""
+"""Differences between two replies, field by field."""
 
 import copy
 from typing import Any

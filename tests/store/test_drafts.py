@@ -1,4 +1,4 @@
-"""What is saved of an application: the very reply that `select` gives it, and what was given, whoever saves beside."""
+"""Records of saved applications: the very reply of `select` and the inputs as given, whoever saves beside."""
 
 import random
 from collections.abc import Iterator

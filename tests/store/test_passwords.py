@@ -44,7 +44,7 @@ def password(request: pytest.FixtureRequest, address: str) -> str:
 
 
 async def answers(**settings: Any) -> bool:
-    """Whether the database answers a service with these settings."""
+    """True where the database answers a service with these settings."""
     store = Store(**Settings(**settings).database())
     try:
         await store.check()

@@ -55,7 +55,7 @@ def _text(cell: str) -> str:
 
 
 def _says(cell: str) -> bool:
-    """Whether a cell says something of the selection, and isn't there to do something with it."""
+    """True for a cell of data; False for one of buttons."""
     return 'class="pick"' not in cell and 'class="changes"' not in cell
 
 

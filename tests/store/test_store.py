@@ -413,7 +413,7 @@ TWICE = (
     "ALTER TABLE copies RENAME TO catalogues",
     "INSERT INTO catalogues SELECT * FROM catalogues",
 )
-"""What restoring a dump into tables that are in use may leave: a catalogue twice, and no key that forbids it."""
+"""Damage from a dump restored into tables in use: a catalogue twice, and no key that forbids it."""
 
 
 @pytest.mark.parametrize("statements", [TWICE, ("DROP INDEX selections_idempotency_key",)])

@@ -20,7 +20,7 @@ LOCKS = (locks.RUN_LOCK, *locks.DEVELOPMENT_LOCKS)
 
 
 class Answer(NamedTuple):
-    """What was learnt of some packages."""
+    """Findings on some packages."""
 
     packages: int
     unasked: Sequence[str]
@@ -70,7 +70,7 @@ def of_page() -> Answer:
 
 
 def _json(command: Sequence[str], folder: Path = locks.ROOT) -> dict[str, Any]:
-    """What a tool says, or under `error` the last line of its complaint."""
+    """Output of a tool, or under `error` the last line of its complaint."""
     run = subprocess.run(command, cwd=folder, capture_output=True, text=True)
     try:
         said: dict[str, Any] = json.loads(run.stdout)

@@ -20,7 +20,7 @@ AS_SPDX = {
     "MIT License": "MIT",
     "Mozilla Public License 2.0 (MPL 2.0)": "MPL-2.0",
 }
-"""What metadata says in words, as an SPDX expression."""
+"""SPDX expressions of licences that metadata names in words."""
 
 READ = {
     "aas-test-engines": "Apache-2.0",
@@ -56,7 +56,7 @@ TO_HEED = {
     "GPL-2": "Used under the other of the two, unchanged, and only for development.",
     UNKNOWN: "No metadata names it: read its licence file before handing it on.",
 }
-"""What a licence asks for that is more than a notice, and how it is met."""
+"""Duties of a licence beyond a notice, and how they are met."""
 
 HEAD = """# Licences of the dependencies
 Made by `make licences` from the locks and the packages' own metadata; a test fails when it no longer fits the locks.

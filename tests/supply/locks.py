@@ -1,4 +1,4 @@
-"""What the locks name."""
+"""Packages of the locks."""
 
 import json
 import re

@@ -32,7 +32,7 @@ DEVELOPMENT = {"Artistic-1.0-Perl", "GPL-2.0-or-later"}
 
 @pytest.fixture(scope="module")
 def found() -> Sections:
-    """What the locks and the packages themselves say."""
+    """Licences by the locks and the packages themselves."""
     return sections()
 
 

@@ -1,4 +1,4 @@
-"""What SECURITY.md and docs/resilience.md point at is there."""
+"""Files and tests that SECURITY.md and docs/resilience.md name exist."""
 
 import re
 from pathlib import Path

@@ -42,9 +42,9 @@ class OutputVersion:
 
 @dataclass(frozen=True, slots=True)
 class Fact:
-    """What the handbook says in words and holds for the whole series.
+    """A statement of the handbook that holds for the whole series.
 
-    `check` is the code of the one that it bears on. What has no topic stands beside its check alone.
+    `check` is the code of the check that it bears on. Without a topic it stands beside its check alone.
     """
 
     topic: str | None
@@ -158,7 +158,7 @@ class Catalogue:
         return GearList(chosen, [self.curves.get(gear.size) for gear in chosen])
 
     def facts_on(self, check: str) -> tuple[Fact, ...]:
-        """What bears on the check of a code."""
+        """Statements that bear on the check of a code."""
         return tuple(fact for fact in self.facts if fact.check == check)
 
     @cached_property

@@ -31,7 +31,7 @@ def copy_of(catalogue: Catalogue) -> bytes:
 
 
 def read_copy(content: bytes) -> Catalogue:
-    """The catalogue that was copied, exactly. What an earlier version did not know yet is not published in it.
+    """The catalogue that was copied, exactly. Figures that an earlier version did not know are not published in it.
 
     Raises UnreadableCopyError for the copy of a version whose catalogue has other fields.
     """

@@ -69,7 +69,7 @@ class Gear:
         return f"HPN-{self.size}"
 
     def is_supplied(self, figure: str) -> bool:
-        """Whether a figure comes from the user's supplement."""
+        """True for a figure from the user's supplement."""
         return is_supplied(self.sources.get(figure, ""))
 
 

@@ -37,7 +37,7 @@ def main(arguments: list[str] | None = None) -> int:
         result: int = _command(options.command).run(options)
         sys.stdout.flush()
         return result
-    except BrokenPipeError:  # whoever reads has seen enough, such as head
+    except BrokenPipeError:  # the reader has seen enough, such as head
         _discard_output()
         return 128 + signal.SIGPIPE
     except KeyboardInterrupt:
@@ -47,7 +47,7 @@ def main(arguments: list[str] | None = None) -> int:
 
 
 def _command(name: str) -> ModuleType:
-    """Module of a command. What it imports is never garbage: to search it while it grows takes a fifth of a start."""
+    """Module of a command. Its imports are never garbage: collecting while they load takes a fifth of a start."""
     if name in EXTRAS:
         require(EXTRAS[name])
     gc.disable()

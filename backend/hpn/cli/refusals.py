@@ -1,4 +1,4 @@
-"""What went wrong in lines that name the place and say what would be right, and whose mistake it is."""
+"""Errors in lines that name the place and say what would be right; the exit code says whose mistake it is."""
 
 import argparse
 

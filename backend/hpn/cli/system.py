@@ -1,4 +1,4 @@
-"""What the operating system refuses, in words; apart from the other refusals, because it needs no other module."""
+"""Errors of the operating system in words; a module of its own, because it needs no other."""
 
 import argparse
 import errno

@@ -1,4 +1,4 @@
-"""What can go wrong with the store."""
+"""Errors of the store."""
 
 from hpn.words.mendable import MendableError
 
@@ -24,7 +24,7 @@ class NoRoomError(StoreError):
 
 
 class KeySpentError(StoreError):
-    """What was saved under an idempotency key has been deleted since."""
+    """The selection saved under an idempotency key has been deleted since."""
 
 
 class KeyReusedError(StoreError):

@@ -1,4 +1,4 @@
-"""What the store keeps of a fleet, and what a transaction does to it.
+"""Records of fleets, and the statements of the transactions on them.
 
 A fleet is kept for a day when it is calculated, and for good when it is saved; it is then only renamed and deleted.
 """
@@ -25,7 +25,7 @@ LOCK = 0x48504F  # any number but that of the migrations: who adds a fleet on Po
 
 @dataclass(frozen=True, slots=True)
 class FleetCounts:
-    """What came out of a fleet, in numbers of axes, and with which engine and catalogue."""
+    """Outcome of a fleet in numbers of axes, with engine and catalogue."""
 
     axes: int
     selected: int

@@ -1,4 +1,4 @@
-"""What the store keeps of a selection."""
+"""Records of selections, as the store keeps them."""
 
 import hashlib
 import secrets
@@ -88,5 +88,5 @@ class Page:
 
 
 def search_text(*texts: str | None) -> str:
-    """What a search looks through: texts in one case, each on a line."""
+    """Text that a search looks through: labels in one case, each on a line."""
     return "\n".join(filter(None, texts)).casefold()

@@ -1,4 +1,4 @@
-"""What a transaction of saving, renaming or deleting does to the tables."""
+"""Statements of a transaction that saves, renames or deletes."""
 
 import asyncio
 import hashlib
@@ -59,7 +59,7 @@ def _row_of(draft: Draft) -> dict[str, Any]:
 
 
 def _search_text(named: Any) -> str:
-    """What finds a selection, by the names of its columns."""
+    """Columns by which a selection is found, by their names."""
     return search_text(named.title, named.reference, named.author, named.ordering_code, named.designation)
 
 

@@ -66,14 +66,14 @@ RETRY_SECONDS = 5
 
 
 class Names(Model):
-    """What a saved selection is called, and may be called otherwise later."""
+    """Title and reference of a saved selection, which may be changed later."""
 
     title: Label | None = Field(None, description="Title for people.", examples=["Rotary table, axis 7"])
     reference: Label | None = Field(None, description="Your own number, such as a part number.", examples=["4711-07"])
 
 
 class Labels(Names):
-    """What people write on a saved selection."""
+    """Labels that people give a saved selection."""
 
     author: Label | None = Field(None, description="Who made it.", examples=["M. Muster"])
     revision: Label | None = Field(None, description="Its revision in your own documents.", examples=["B"])
@@ -133,7 +133,7 @@ async def keep(request: Request, draft: Draft) -> str:
 def draft_of(
     catalogue: Catalogue, application: Application, labels: Labels, key: str | None, owner: str | None = None
 ) -> Draft:
-    """What is saved of an application: its own JSON, and the reply that `select` gives it; InputError as that."""
+    """Record of an application to be saved: its own JSON and the reply of `select`; InputError as there."""
     selection = select(application, catalogue, to_link(application))
     code = _ordered(catalogue, selection, labels.ordering_code)
     shown = selection.foremost if code is None else selection.candidate(code.gear.designation)
@@ -183,7 +183,7 @@ def _link(saved: SavedSelection, selection: Selection, catalogue: Catalogue) -> 
 
 
 async def found(request: Request, id: str, work: Callable[[Reopened], T]) -> T:
-    """What comes of a saved selection and what differs today, on a worker; Problem 404 where there is none."""
+    """A saved selection with its differences of today, computed on a worker; Problem 404 where there is none."""
     state: State = request.app.state
     saved, then = await with_catalogue(state, id)
     return await compute(request, "pages", lambda: work(reopen(saved, then, state.catalogue)))
@@ -233,7 +233,7 @@ def reopen(saved: SavedSelection, then: Catalogue | None, catalogue: Catalogue) 
 def _figures(
     before: Selection, application: Application | None, then: Catalogue | None, today: Catalogue
 ) -> list[FigureDifference] | None:
-    """What two catalogues publish differently of the candidates and the listed motor; None where one is not kept."""
+    """Differences between two catalogues in the candidates and the listed motor; None where one is not kept."""
     if then is None or then is today:
         return None if then is None else []
     motor = application.requirements.motor if application else None

@@ -139,7 +139,7 @@ class SecretFiles(SecretsSettingsSource):
 
 
 def _secrets_folder(named: str | Path | None) -> Path | None:
-    """Folder of secret files, if there is one; OSError where this user may not look, where Path.is_dir() may be False."""
+    """Folder of secret files, if there is one; OSError where this user may not look: is_dir() of Python 3.14 is False."""
     folder = Path(named or SECRETS)
     try:
         return folder if stat.S_ISDIR(folder.stat().st_mode) else None
@@ -274,11 +274,11 @@ class Settings(BaseSettings):
         dotenv_settings: PydanticBaseSettingsSource,
         file_secret_settings: PydanticBaseSettingsSource,
     ) -> tuple[PydanticBaseSettingsSource, ...]:
-        """What a caller gives goes before a variable, and that before a file."""
+        """Sources by precedence: arguments, variables, files."""
         return init_settings, env_settings, SecretFiles(settings_cls)
 
     def database(self) -> "DatabaseSettings":
-        """What a store is opened with."""
+        """Arguments that open the store."""
         password = self.database_password and self.database_password.get_secret_value()
         return {
             "address": self.database_url.get_secret_value(),

@@ -1,4 +1,4 @@
-"""Who reads a page or a file: the language, the units and the number format that everything is shown in.
+"""The reader of a page or a file: language, units and number format of everything shown.
 
 The one catalogue of translations behind page and files is compiled in memory when it is first needed. Babel comes with
 the extra `serve`, a third of what `hpn select` would take: it is imported where something is shown to a reader.

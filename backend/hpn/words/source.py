@@ -23,7 +23,7 @@ def supplied_source(name: str) -> str:
 
 
 def is_supplied(source: str) -> bool:
-    """Whether a figure is the user's own."""
+    """True for a figure of the user's own."""
     return source.startswith(_SUPPLIED)
 
 

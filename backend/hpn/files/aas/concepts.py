@@ -1,4 +1,4 @@
-"""What the properties of the submodels mean: names in both languages, units, and ids of our own.
+"""Concepts of the submodels' properties: names in both languages, units, and ids of our own.
 
 The ids are UUIDs made from names: they claim no number of ECLASS, IEC or the maker that we could not check.
 """
@@ -42,7 +42,7 @@ CONCEPTS: Mapping[str, Named] = {
     for name, named in table.items()
     if name not in _TEXTS_AND_PARTS
 }
-"""What the properties mean, by name."""
+"""Concepts by the name of the property."""
 
 
 def urn(*parts: str) -> str:

@@ -2,7 +2,7 @@
 
 `TechnicalData` follows IDTA 02003-1-2 (Generic Frame for Technical Data for Industrial Equipment in Manufacturing, 1.2)
 with its semantic ids. Article number and order code are the designation: the handbook prints no article number, and a
-full order code names output version and motor adapter too; their descriptions say so. What is not saved has no date,
+full order code names output version and motor adapter too; their descriptions say so. An unsaved selection has no date,
 hence no `ValidDate`. `SelectionResult` is ours; no registered template exists for it.
 
 The library writes metamodel 3.1, whose elements are those of 3.0 as far as they are used here: the namespace tells
@@ -267,7 +267,7 @@ def _numbered(name: str, items: Iterable[Mapping[str, Value]], count: int) -> It
 
 
 def _said(values: Mapping[str, Value]) -> list[model.Property]:
-    """What is said of a mechanism, a move or a phase, each with its name and unit in words."""
+    """Properties of a mechanism, a move or a phase, each with its name and unit in words."""
     return [
         model.Property(name, type(value), value, display_name=model.MultiLanguageNameType(_name_of(name)))
         for name, value in values.items()
@@ -336,7 +336,7 @@ def _properties_of(
 
 
 def _properties(export: Export) -> OPCCoreProperties:
-    """Who made it and what it is called; its time stands in the content, where no library chooses the prefix."""
+    """Author and title of the package; its time stands in the content, where no library chooses the prefix."""
     properties = OPCCoreProperties()  # type: ignore[no-untyped-call]
     properties.creator = "HPN Select"
     properties.title = export.heading.title or None

@@ -77,7 +77,7 @@ UNSAVED = {
     "shortened": N_("Not saved: the link is shortened in print, only a click opens it. Saving gives a short address."),
     "none": N_("Not saved. Saving gives a short address."),
 }
-"""What carries the inputs of a selection that is not saved, by what of its link is on paper."""
+"""Notes on where the inputs of an unsaved selection stand, by the part of its link that is on paper."""
 
 CAVEATS = (
     N_("Lives are hours of operation of the whole cycle, its pause included."),
@@ -86,7 +86,7 @@ CAVEATS = (
         "glossary describes the rated torque on a basis of 50 % failures; the handbook does not settle which holds."
     ),
 )
-"""What is to be known of the figures of cycle and gear, where they stand."""
+"""Notes on the figures of cycle and gear, by the place of the figure."""
 
 ON_MOTOR = (
     N_("Motor torques leave out the inertia of motor and gear, and losses where no efficiency is known."),
@@ -172,7 +172,7 @@ def _link(link: str) -> dict[str, Any]:
 
 
 def _carrier(link: str) -> str:
-    """What carries the inputs on paper, as a key of UNSAVED."""
+    """Carrier of the inputs on paper, as a key of UNSAVED."""
     if len(link) <= LONGEST_PRINTED_LINK:
         return "whole"
     if len(link) <= LONGEST_QR_LINK:

@@ -1,4 +1,4 @@
-"""What the report says of the gears: the verdict, every check of the reported gear, and the alternatives to it."""
+"""Verdict of the report, every check of the reported gear, and the alternatives to it."""
 
 from collections.abc import Iterable, Mapping
 from typing import Any
@@ -28,7 +28,7 @@ VERDICTS: Mapping[str, str] = {
         "No gear is suitable. {gear} can’t be judged: figures that the checks need are not in this catalogue’s source."
     ),
 }
-"""What is said of the reported gear where it is the selected one or none is suitable."""
+"""Notes on the reported gear where it is the selected one or none is suitable."""
 
 CHOSEN: Mapping[str, str] = {
     "unsuitable": N_("{gear} was chosen, but “{check}” fails at {percent}. {selected} would be suitable."),
@@ -41,7 +41,7 @@ CHOSEN: Mapping[str, str] = {
         "{selected} would be suitable."
     ),
 }
-"""What is said of a gear that does not pass and was chosen instead of a suitable one."""
+"""Notes on a gear that does not pass and was chosen in place of a suitable one."""
 
 BEST: Mapping[str, str] = {
     "weight": N_("It is the lightest of {count} suitable gears."),
@@ -170,7 +170,7 @@ HEADS = (
     N_("Utilisation"),
     N_("Governing check"),
 )
-"""What is said of each of them."""
+"""Columns of the alternatives."""
 
 
 def alternatives(export: Export, reader: Reader) -> dict[str, Any]:
@@ -213,7 +213,7 @@ def _published(value: float | None, unit: str, reader: Reader) -> str:
 
 
 def _missed(export: Export, candidate: Candidate, reader: Reader) -> str:
-    """What a rejected gear fails, and what makes it fit."""
+    """Failed checks of a rejected gear, and the ways to make it fit."""
     gear, name = export.gear(candidate), candidate.designation
     if gear and gear.weight_kg:
         name = f"{name} ({_published(gear.weight_kg, 'kg', reader)})"

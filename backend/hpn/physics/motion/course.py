@@ -20,7 +20,7 @@ GRADED = 0.3
 
 @dataclass(frozen=True, eq=False)
 class Course:
-    """What a motion comes to at the gear's output: its phases, and what the motor's torque is worked out from.
+    """A motion at the gear's output: its phases, and the data behind the motor's torque.
 
     Of each phase, shape (phases,): the place of its move, the mean torque that equation 17.2 weighs and the mean speed,
     both signed; peaks and RMS by magnitude; and the integrals of T² (Nm² s), T α (Nm rad/s) and α² (rad²/s³), signed at

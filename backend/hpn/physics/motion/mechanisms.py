@@ -56,7 +56,7 @@ class ShaftLoad:
 
 
 class Mechanism(Model):
-    """What every mechanism has."""
+    """Fields of every mechanism."""
 
     efficiency: Share = Field(1.0, description="Efficiency of the mechanism.", examples=[0.9])
     ratio: Positive = Field(

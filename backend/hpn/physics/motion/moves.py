@@ -57,7 +57,7 @@ class Timing:
 
 
 class Move(Model):
-    """What every move has. Its way, speed, acceleration and load have names of their own in each geometry."""
+    """Fields of every move. Its way, speed, acceleration and load have names of their own in each geometry."""
 
     WAY: ClassVar[str]
     SPEED: ClassVar[str]

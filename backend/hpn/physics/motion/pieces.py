@@ -2,7 +2,7 @@
 
 A piece is a stretch of a move in which the jerk is constant (ramps and runs) or goes by one sine (modified sine). Its
 instants t run from `start_s` to `end_s`, in a time of its own whose 0 is where the move starts or ends, so that nothing
-is left of a speed at rest but 0. What belongs to a piece has shape (pieces,); functions of time broadcast.
+is left of a speed at rest but 0. Data of a piece have shape (pieces,); functions of time broadcast.
 """
 
 import math

@@ -17,7 +17,7 @@ class Disk:
 
     @contextmanager
     def share(self) -> Iterator["Share"]:
-        """What one request sets aside, given back at the end."""
+        """Bytes that one request sets aside, given back at its end."""
         share = Share(self)
         try:
             yield share

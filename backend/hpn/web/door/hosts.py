@@ -11,7 +11,7 @@ from uvicorn.middleware.proxy_headers import ProxyHeadersMiddleware
 from hpn.web.door.problems import Problem
 
 ANY_HOST = frozenset({"/healthz", "/readyz"})
-"""What load balancers ask for by an address; no link stands in the answers."""
+"""Paths that load balancers ask for by an address; their answers hold no link."""
 
 LOCAL = frozenset({"localhost", "127.0.0.1", "::1"})
 """Names of this machine for itself."""

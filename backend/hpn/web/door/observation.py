@@ -1,4 +1,4 @@
-"""What every request passes first: it gets an id, headers for its response, a line in the log, a metric."""
+"""Outermost step of every request: an id, headers for its response, a line in the log, a metric."""
 
 import time
 from collections.abc import Mapping
@@ -50,19 +50,19 @@ UNUSED_FEATURES = (
     "usb",
     "xr-spatial-tracking",
 )
-"""What a page could ask the browser for; this one only writes to the clipboard."""
+"""Features of a browser, all off: a page of this service only writes to the clipboard."""
 
 SECURITY_HEADERS = {
     "Content-Security-Policy": f"default-src 'self'; style-src 'self' {' '.join(STYLES_OF_PLOTLY)}; "
     "img-src 'self' data: blob:; base-uri 'none'; form-action 'self'; frame-ancestors 'none'",
     "Cross-Origin-Opener-Policy": "same-origin",
-    # What a permitted origin asks for by CORS is not held to this.
+    # A request that CORS permits is not held to this.
     "Cross-Origin-Resource-Policy": "same-origin",
     "Permissions-Policy": ", ".join(f"{feature}=()" for feature in UNUSED_FEATURES),
     "Referrer-Policy": "same-origin",
     "X-Content-Type-Options": "nosniff",
 }
-"""What keeps a page to its own host, and any other content from being taken for a page; on every answer."""
+"""Headers of every answer: a page loads from its own host alone, and no other content is taken for a page."""
 
 
 def add_headers(request: Request, headers: Mapping[str, str]) -> None:
@@ -76,7 +76,7 @@ def note(request: Request, **fields: str) -> None:
 
 
 class Observation:
-    """Gives each request an id, and counts and logs it. What goes wrong is logged once, and answered as a problem."""
+    """Gives each request an id, and counts and logs it. An error is logged once, and answered as a problem."""
 
     def __init__(self, app: ASGIApp, logger: FilteringBoundLogger, metrics: Metrics) -> None:
         self.app = app

@@ -54,7 +54,7 @@ SMALL_BYTES = 16 * 1024
 """Phases up to this size are computed at once: a few milliseconds, about what a change of threads may take."""
 
 LONG_WORDS = (b"motion", b"\\")
-"""What the JSON of a motion has in it, however it is written: two thousand turns under gravity take half a second."""
+"""Text in the JSON of every motion, however it is written: two thousand turns under gravity take half a second."""
 
 RETRY_SECONDS = 2
 PATIENCE_SECONDS = 0.1
@@ -87,7 +87,7 @@ class Pool:
             self.taken -= 1
 
     async def run(self, work: Callable[P, T], *args: P.args, **kwargs: P.kwargs) -> T:
-        """Result of work on a worker. Who is cancelled while it waits gives up its place in the queue."""
+        """Result of work on a worker. A cancelled caller leaves the queue."""
         context = contextvars.copy_context()
         return await asyncio.wrap_future(self._executor.submit(context.run, partial(work, *args, **kwargs)))
 

@@ -38,7 +38,7 @@ class Counters:
 
 
 class Admission(NamedTuple):
-    """Whether a request may pass, and response headers that say how many more may."""
+    """True for a request that may pass, and response headers that say how many more may."""
 
     granted: bool
     headers: Mapping[str, str]
@@ -69,7 +69,7 @@ class Limiter:
 
 
 def subject_of(address: str) -> str:
-    """Who an address stands for: itself, or its /64 network with IPv6, where one customer has that many addresses."""
+    """Caller behind an address: the address itself, or with IPv6 its /64 network, as one customer has that many."""
     try:
         parsed = ipaddress.ip_address(address)
     except ValueError:

@@ -1,4 +1,4 @@
-"""What a form must prove before it changes anything."""
+"""Proof that a form must bring before it changes anything."""
 
 from starlette.requests import Request
 

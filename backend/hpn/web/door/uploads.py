@@ -44,7 +44,7 @@ END_OF_HEAD = b"\r\n\r\n"
 
 
 class PartHead(NamedTuple):
-    """What stands before the content of a part of a form."""
+    """Name and file name of a part of a form, read from the lines before its content."""
 
     name: str
     file_name: str

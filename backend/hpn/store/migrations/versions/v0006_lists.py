@@ -1,4 +1,4 @@
-"""What a list shows and finds stands in columns: labels, the gear that a page shows first, and the text of a search.
+"""Columns for what a list shows and finds: labels, the gear that a page shows first, and the text of a search.
 
 Replies saved before are read once for it, as far as they can be. Nothing here imports what later versions change.
 """
