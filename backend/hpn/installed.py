@@ -5,8 +5,7 @@ from importlib.resources import files
 from importlib.util import find_spec
 from pathlib import Path
 
-from hpn.words.mendable import MendableError
-from hpn.words.wording import N_, Sentence
+from hpn.words.wording import N_, MendableError, Sentence
 
 EXTRAS = {
     "serve": (

@@ -161,12 +161,12 @@ def test_a_name_of_a_fleet_that_was_saved_before_names_had_a_bound_is_cut_in_the
 
 def test_files_of_a_fleet_are_made_in_the_process_beside_the_service(client: TestClient, fleet: str) -> None:
     pool = state_of(client).pools["exports"]
-    pool.apart.close()
+    pool.beside.close()
 
     for suffix in ("xlsx", "csv", "parquet"):
         assert client.get(f"{fleet}/axes.{suffix}").status_code == 200
-        assert pool.apart._process is not None and pool.apart._process.poll() is None
-        pool.apart.close()
+        assert pool.beside._process is not None and pool.beside._process.poll() is None
+        pool.beside.close()
 
 
 def test_reasons_of_a_file_for_people_are_in_the_readers_language(client: TestClient, fleet: str) -> None:

@@ -17,7 +17,7 @@ from hpn.tables.columns import NO_CHOICES
 from hpn.tables.cycles import read_grids
 from hpn.tables.files import Contents, Wanted, contents_of
 from hpn.tables.sheets import MAXIMUM_CHARACTERS, Grid
-from hpn.web.door.apart import Apart, EndedError
+from hpn.web.door.beside import EndedError, ProcessBeside
 from hpn.web.door.pools import FILE_BOUNDS
 from hpn.web.pages.fleet_upload import WANTED as AXES
 from hpn.web.pages.fleet_upload import best_reading
@@ -52,34 +52,34 @@ CASES = [
 
 
 @pytest.fixture(scope="module")
-def apart() -> Iterator[Apart]:
+def beside() -> Iterator[ProcessBeside]:
     """A process like that of the service."""
-    apart = Apart(FILE_BOUNDS)
-    yield apart
-    apart.close()
+    beside = ProcessBeside(FILE_BOUNDS)
+    yield beside
+    beside.close()
 
 
-def peak_of(apart: Apart) -> int:
+def peak_of(beside: ProcessBeside) -> int:
     """Most memory that the process has had, in bytes; 0 where it has ended."""
-    process = apart._process
+    process = beside._process
     status = Path(f"/proc/{process.pid if process else 0}/status")
     return int(status.read_text().partition("VmHWM:")[2].split()[0]) * 1024 if status.exists() else 0
 
 
 @pytest.mark.parametrize(("name", "wanted"), CASES)
-def test_a_file_is_read_or_refused_within_its_bounds(apart: Apart, name: str, wanted: Wanted) -> None:
+def test_a_file_is_read_or_refused_within_its_bounds(beside: ProcessBeside, name: str, wanted: Wanted) -> None:
     content = made(name)
     assert len(content) <= SMALL_BYTES or name in LARGER
 
     start = time.monotonic()
     try:
-        contents = apart.call(partial(contents_of, content, wanted), threading.Event())
+        contents = beside.call(partial(contents_of, content, wanted), threading.Event())
     except EndedError as ended:
         assert ended.is_excess, ended
         contents = Contents(problem=Sentence("too large"))
 
     assert time.monotonic() - start < FILE_BOUNDS.seconds + 10
-    assert peak_of(apart) < FILE_BOUNDS.memory_bytes * 1.3  # code and what is mapped come on top
+    assert peak_of(beside) < FILE_BOUNDS.memory_bytes * 1.3  # code and what is mapped come on top
     assert len(pickle.dumps(contents)) < MOST_PICKLED
     start = time.process_time()
     for found in list(contents.sheets.values())[:2]:
@@ -139,11 +139,11 @@ def test_long_cells_are_not_kept_in_mind() -> None:
 
 
 @pytest.mark.parametrize("name", TEXTS)
-def test_text_of_the_largest_size_is_read_or_refused(apart: Apart, name: str) -> None:
+def test_text_of_the_largest_size_is_read_or_refused(beside: ProcessBeside, name: str) -> None:
     part = made(name)
     content = (part * (MAXIMUM_CHARACTERS // len(part) + 1))[:MAXIMUM_CHARACTERS]
 
-    contents = apart.call(partial(contents_of, content, PHASES), threading.Event())
+    contents = beside.call(partial(contents_of, content, PHASES), threading.Event())
 
     assert len(pickle.dumps(contents)) < MOST_PICKLED
     start = time.process_time()

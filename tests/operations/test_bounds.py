@@ -11,7 +11,7 @@ from typing import Any
 
 import pytest
 
-from hpn.web.door.apart import Bounds
+from hpn.web.door.beside import Bounds
 from hpn.web.door.pools import TOO_LARGE, Places, Pool
 from hpn.web.door.problems import Problem
 from tests.operations.service import is_gone
@@ -24,7 +24,7 @@ def free() -> Iterator[Pool]:
     """A pool whose process has no bounds."""
     pool = Pool(Places(1, 3))
     yield pool
-    pool.apart.close()
+    pool.beside.close()
 
 
 @pytest.fixture
@@ -32,7 +32,7 @@ def bounded() -> Iterator[Pool]:
     """A pool whose process may take little."""
     pool = Pool(Places(1, 3), SMALL)
     yield pool
-    pool.apart.close()
+    pool.beside.close()
 
 
 @pytest.mark.anyio
@@ -46,48 +46,48 @@ def bounded() -> Iterator[Pool]:
     ],
 )
 async def test_work_that_meets_a_bound_is_a_413_and_the_next_is_done(bounded: Pool, work: Any) -> None:
-    first = await bounded.run_apart(os.getpid)
+    first = await bounded.run_beside(os.getpid)
 
     start = time.monotonic()
     with pytest.raises(Problem) as ended:
-        await bounded.run_apart(work)
+        await bounded.run_beside(work)
 
     assert ended.value.status_code == 413
     assert [sentence.template for sentence in ended.value.sentences] == [TOO_LARGE]
     assert time.monotonic() - start < 10
     assert is_gone(first)
-    assert await bounded.run_apart(partial(sum, [1, 2])) == 3
+    assert await bounded.run_beside(partial(sum, [1, 2])) == 3
 
 
 @pytest.mark.anyio
 async def test_a_bounded_process_that_the_system_kills_is_a_503(bounded: Pool) -> None:
     with pytest.raises(Problem) as ended:
-        await bounded.run_apart(partial(signal.raise_signal, signal.SIGKILL))
+        await bounded.run_beside(partial(signal.raise_signal, signal.SIGKILL))
     assert ended.value.status_code == 503
 
 
 @pytest.mark.anyio
 async def test_a_bound_of_time_counts_for_each_call_alone(bounded: Pool) -> None:
-    own = await bounded.run_apart(os.getpid)
+    own = await bounded.run_beside(os.getpid)
     for _ in range(4):
-        await bounded.run_apart(partial(time.sleep, 0.2))
+        await bounded.run_beside(partial(time.sleep, 0.2))
     await asyncio.sleep(SMALL.seconds)
-    assert await bounded.run_apart(os.getpid) == own
+    assert await bounded.run_beside(os.getpid) == own
 
 
 @pytest.mark.anyio
 async def test_a_bounded_process_stands_back_and_others_have_no_bounds(free: Pool, bounded: Pool) -> None:
-    own = await bounded.run_apart(os.getpid)
+    own = await bounded.run_beside(os.getpid)
     assert os.getpriority(os.PRIO_PROCESS, own) >= 10
     assert resource.prlimit(own, resource.RLIMIT_DATA)[0] == SMALL.memory_bytes
-    assert resource.prlimit(await free.run_apart(os.getpid), resource.RLIMIT_DATA)[0] != SMALL.memory_bytes
+    assert resource.prlimit(await free.run_beside(os.getpid), resource.RLIMIT_DATA)[0] != SMALL.memory_bytes
 
 
 @pytest.mark.anyio
 async def test_a_bounded_process_that_has_grown_is_not_kept(bounded: Pool) -> None:
-    own = await bounded.run_apart(os.getpid)
-    assert await bounded.run_apart(partial(len, bytearray(1000))) == 1000
-    assert await bounded.run_apart(os.getpid) == own
-    assert await bounded.run_apart(partial(eval, "len(bytes(100_000_000).hex())")) == 200_000_000
+    own = await bounded.run_beside(os.getpid)
+    assert await bounded.run_beside(partial(len, bytearray(1000))) == 1000
+    assert await bounded.run_beside(os.getpid) == own
+    assert await bounded.run_beside(partial(eval, "len(bytes(100_000_000).hex())")) == 200_000_000
     assert is_gone(own)
-    assert await bounded.run_apart(os.getpid) != own
+    assert await bounded.run_beside(os.getpid) != own

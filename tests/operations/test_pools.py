@@ -102,7 +102,7 @@ def pool() -> Iterator[Pool]:
     """A pool whose process ends with the test."""
     pool = Pool(Places(1, 3))
     yield pool
-    pool.apart.close()
+    pool.beside.close()
 
 
 def beat(file: Path) -> None:
@@ -133,7 +133,7 @@ async def test_work_apart_is_killed_when_its_client_leaves_and_the_next_is_done(
         return {"type": "http.disconnect"}
 
     request = Request({"type": "http"}, receive)
-    work = asyncio.create_task(while_present(request, pool.run_apart(partial(beat, file))))
+    work = asyncio.create_task(while_present(request, pool.run_beside(partial(beat, file))))
     while not file.exists():
         await asyncio.sleep(0.01)
     leaves.set()
@@ -141,7 +141,7 @@ async def test_work_apart_is_killed_when_its_client_leaves_and_the_next_is_done(
         await work
 
     assert left.value.status_code == GONE
-    assert await pool.run_apart(partial(sum, [1, 2])) == 3
+    assert await pool.run_beside(partial(sum, [1, 2])) == 3
     assert is_gone(int(file.read_text()))
 
 
@@ -150,12 +150,12 @@ async def test_work_apart_is_killed_when_its_client_leaves_and_the_next_is_done(
 async def test_who_leaves_at_any_moment_of_the_start_leaves_no_process(pool: Pool, seconds: float) -> None:
     before = processes_apart()  # of services that other tests of this run have open
     for _ in range(3):
-        work = asyncio.create_task(pool.run_apart(partial(time.sleep, 60)))
+        work = asyncio.create_task(pool.run_beside(partial(time.sleep, 60)))
         await asyncio.sleep(seconds)
         work.cancel()
         with pytest.raises(asyncio.CancelledError):
             await work
-    own = await pool.run_apart(os.getpid)
+    own = await pool.run_beside(os.getpid)
 
     assert processes_apart() - before == {own}
 
@@ -164,25 +164,25 @@ async def test_who_leaves_at_any_moment_of_the_start_leaves_no_process(pool: Poo
 async def test_what_goes_wrong_apart_brings_its_traceback_and_what_ends_early_is_a_503(
     pool: Pool, caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    first = await pool.run_apart(os.getpid)
+    first = await pool.run_beside(os.getpid)
 
     with pytest.raises(RuntimeError, match="in fail_there"):
-        await pool.run_apart(fail_there)
-    assert await pool.run_apart(os.getpid) == first
+        await pool.run_beside(fail_there)
+    assert await pool.run_beside(os.getpid) == first
     with pytest.raises(Problem) as ended:
-        await pool.run_apart(partial(os._exit, 9))
+        await pool.run_beside(partial(os._exit, 9))
     assert ended.value.status_code == 503
     assert int((ended.value.headers or {})["Retry-After"]) > 0
     assert caplog.messages[-1].endswith("exit code 9")  # and nothing of the work
-    os.kill(second := await pool.run_apart(os.getpid), signal.SIGKILL)
+    os.kill(second := await pool.run_beside(os.getpid), signal.SIGKILL)
     while Path(f"/proc/{second}/stat").read_text().split()[2] != "Z":
         await asyncio.sleep(0.01)
-    assert await pool.run_apart(os.getpid) not in (first, second)
+    assert await pool.run_beside(os.getpid) not in (first, second)
 
-    pool.apart.close()
+    pool.beside.close()
     monkeypatch.setattr(sys, "executable", "/nowhere/python")
     with pytest.raises(Problem) as unable:
-        await pool.run_apart(os.getpid)
+        await pool.run_beside(os.getpid)
     assert unable.value.status_code == 503
 
 
@@ -201,10 +201,10 @@ async def test_a_service_that_ends_ends_work_apart_and_closes_nothing_that_is_re
         return load(pipe)
 
     monkeypatch.setattr(pickle, "load", load_late)
-    work = asyncio.create_task(pool.run_apart(partial(beat, file)))
+    work = asyncio.create_task(pool.run_beside(partial(beat, file)))
     while not file.exists():
         await asyncio.sleep(0.01)
-    pool.apart.close()
+    pool.beside.close()
 
     with pytest.raises(Problem):
         await work
@@ -217,9 +217,9 @@ async def test_work_apart_knows_no_secrets_and_what_it_prints_is_no_answer(
 ) -> None:
     monkeypatch.setenv("HPN_DATABASE_PASSWORD", "secret")
 
-    assert await pool.run_apart(partial(os.getenv, "HPN_DATABASE_PASSWORD")) is None
-    await pool.run_apart(partial(print, "something"))
-    assert await pool.run_apart(partial(os.system, "echo something")) == 0
+    assert await pool.run_beside(partial(os.getenv, "HPN_DATABASE_PASSWORD")) is None
+    await pool.run_beside(partial(print, "something"))
+    assert await pool.run_beside(partial(os.system, "echo something")) == 0
 
 
 # --- The pools of a service -------------------------------------------------------------------------------------------

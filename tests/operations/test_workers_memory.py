@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from hpn.web.door.memory import LIMITS, shortage
+from hpn.web.serve import LIMITS, shortage
 
 
 @pytest.mark.parametrize(

@@ -27,7 +27,7 @@ class _Head(msgspec.Struct):
 def copy_of(catalogue: Catalogue) -> bytes:
     """Everything in a catalogue as JSON; the same bytes for the same catalogue."""
     fields = {field.name: getattr(catalogue, field.name) for field in dataclasses.fields(catalogue)}
-    return msgspec.json.encode({"format": FORMAT, "catalogue": fields}, enc_hook=_plain)
+    return msgspec.json.encode({"format": FORMAT, "catalogue": fields}, enc_hook=_encodable)
 
 
 def read_copy(content: bytes) -> Catalogue:
@@ -46,7 +46,7 @@ def read_copy(content: bytes) -> Catalogue:
         raise UnreadableCopyError(f"the copy of the catalogue can’t be read: {error}") from None
 
 
-def _plain(value: Any) -> Any:
+def _encodable(value: Any) -> Any:
     if isinstance(value, np.ndarray):
         return value.tolist()
     raise NotImplementedError(type(value).__name__)

@@ -10,7 +10,7 @@ from hpn.application.faults import faults_of, plain_message, pointer, unreadable
 from hpn.cli.system import CALLERS, others
 from hpn.installed import ExtraMissingError
 from hpn.web.settings import Settings, source_of
-from hpn.words.mendable import MendableError
+from hpn.words.wording import MendableError
 
 MOST_LINES = 20
 

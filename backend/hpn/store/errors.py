@@ -1,6 +1,6 @@
 """Errors of the store."""
 
-from hpn.words.mendable import MendableError
+from hpn.words.wording import MendableError
 
 
 class StoreError(MendableError):

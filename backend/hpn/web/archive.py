@@ -35,7 +35,7 @@ from hpn.words.wording import N_, Sentence
 T = TypeVar("T")
 
 
-def _plain(text: str) -> str | None:
+def _line(text: str) -> str | None:
     if CONTROLS.search(text):
         raise PydanticCustomError("control_characters", NO_CONTROLS)
     return text or None
@@ -50,7 +50,7 @@ def _label(text: str) -> str | None:
 _SHORT = StringConstraints(strip_whitespace=True, max_length=LONGEST_LABEL)
 _CONTROLS = "\\u0000-\\u001f\\u007f-\\u009f\\u2028-\\u202e\\u2066-\\u2069\\ufffe\\uffff"
 
-Line = Annotated[str, _SHORT, AfterValidator(_plain), Field(json_schema_extra={"pattern": f"^[^{_CONTROLS}]*$"})]
+Line = Annotated[str, _SHORT, AfterValidator(_line), Field(json_schema_extra={"pattern": f"^[^{_CONTROLS}]*$"})]
 """One line of text that something is looked for by; an empty one counts as none."""
 
 Label = Annotated[

@@ -23,7 +23,7 @@ from starlette.requests import Request
 from hpn.fleet.beside import ANSWERED_IN, Sized, sized, suffix_of
 from hpn.fleet.errors import wrong_encoding
 from hpn.web import spool
-from hpn.web.door.apart import Bounds, EndedError
+from hpn.web.door.beside import Bounds, EndedError
 from hpn.web.door.pools import pool_of, while_present
 from hpn.web.door.problems import Problem
 from hpn.web.settings import Settings
@@ -163,7 +163,7 @@ async def _sized(request: Request, tables: Tables, files: Mapping[Kind, Path]) -
     order = {**given, **{str(kind): path for kind, path in files.items()}}
     pool = pool_of(request, "fleets")
     async with pool.turn:
-        call = pool.call_apart(partial(sized, order, request.app.state.catalogue, settings.fleet_workers))
+        call = pool.call_beside(partial(sized, order, request.app.state.catalogue, settings.fleet_workers))
         work = asyncio.create_task(call)
         try:
             while not work.done():

@@ -9,7 +9,9 @@ import tempfile
 import threading
 import time
 import traceback
+from collections.abc import Iterable
 from contextlib import suppress
+from pathlib import Path
 from typing import Any
 
 import uvicorn
@@ -20,7 +22,7 @@ from uvicorn.supervisors import Multiprocess
 from hpn.catalogue import CatalogueError
 from hpn.store import StoreError
 from hpn.web.app import create_app
-from hpn.web.door import logs, memory, metrics
+from hpn.web.door import logs, metrics
 from hpn.web.door.hosts import is_loopback
 from hpn.web.pages import templates
 from hpn.web.settings import GONE, Settings
@@ -28,6 +30,10 @@ from hpn.web.settings import GONE, Settings
 logger = logging.getLogger(__name__)
 RETRY_SECONDS = 2
 """Time after which a worker that could not start is tried again."""
+
+WORKER_BYTES = 768 << 20
+LIMITS = (Path("/sys/fs/cgroup/memory.max"), Path("/sys/fs/cgroup/memory/memory.limit_in_bytes"))
+"""Files with the limit of this container: of the second version of control groups, and of the first."""
 
 
 def served_app() -> FastAPI:
@@ -113,7 +119,7 @@ def _say_what_is_missed(settings: Settings) -> None:
 def run(settings: Settings) -> int:
     """Serve until a signal says otherwise; 1 where the workers could not start."""
     logs.configure(settings.log_level)
-    if short := memory.shortage(settings.workers, settings.fleet_processes * settings.fleet_memory_bytes):
+    if short := shortage(settings.workers, settings.fleet_processes * settings.fleet_memory_bytes):
         logger.warning(short)
     _say_what_is_missed(settings)
     if settings.workers == 1:
@@ -135,3 +141,20 @@ class Workers(Multiprocess):
         for listening in self.sockets:  # else the system would go on accepting, and nobody would answer
             listening.close()
         super().terminate_all()
+
+
+def shortage(workers: int, beside_bytes: int, limits: Iterable[Path] = LIMITS) -> str | None:
+    """Sentence for workers, each with so much beside it, that may take more than there is; None where it is enough."""
+    needed, given = workers * (WORKER_BYTES + beside_bytes), _limit(limits)
+    if given is None or needed <= given:
+        return None
+    return (
+        f"HPN_WORKERS is {workers}, which with fleets may take {needed / 1e9:.1f} GB, and this container has "
+        f"{given / 1e9:.1f} GB: give it more (WEB_MEMORY under compose), or fewer workers"
+    )
+
+
+def _limit(limits: Iterable[Path]) -> int | None:
+    """Smallest limit in bytes, None where there is none."""
+    texts = [file.read_text().strip() for file in limits if file.is_file()]
+    return min((int(text) for text in texts if text.isdigit()), default=None)

@@ -139,7 +139,7 @@ class SecretFiles(SecretsSettingsSource):
 
 
 def _secrets_folder(named: str | Path | None) -> Path | None:
-    """Folder of secret files, if there is one; OSError where this user may not look: is_dir() of Python 3.14 is False."""
+    """Folder of secret files, if there is one; OSError where this user may not look, which is_dir() takes for none."""
     folder = Path(named or SECRETS)
     try:
         return folder if stat.S_ISDIR(folder.stat().st_mode) else None

@@ -142,7 +142,7 @@ class Reader:
         other = None if beside is None else measure.shown(beside)
         return self.written(_told_apart(write, shown, other, digits))
 
-    def apart(self, value: float, other: float | None, unit: str) -> str:
+    def distinct(self, value: float, other: float | None, unit: str) -> str:
         """A number with as many digits as it takes to tell it from another one."""
         return "∞" if math.isinf(value) else self.figure(value, unit, other)
 

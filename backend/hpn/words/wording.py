@@ -11,6 +11,10 @@ from hpn.words.units import SYMBOLS
 Rounding = Literal["nearest", "down", "up"]
 
 
+class MendableError(Exception):
+    """Something that the caller or the operator can mend; the text names it and says what would be right."""
+
+
 @dataclass(frozen=True, slots=True)
 class Quantity:
     """A number with the suffix of its unit, rounded for reading where it is shown; a blank unit is a pure number.

@@ -171,9 +171,9 @@ def _bar(
     demand, sign, limit, unit = compared
     outside = beyond_limit(used, allowed)
     percent = reader.percent(used, allowed)
-    numbers = reader.apart(demand, limit, unit)
+    numbers = reader.distinct(demand, limit, unit)
     if allowed < 1:  # the bar has the whole limit at 100 %, and so has what stands beside it
         percent += f" {OTHERWISE['≤'] if outside else '≤'} {reader.percent(allowed, used)}"
     elif limit is not None:
-        numbers += f" {OTHERWISE[sign] if outside else sign} {reader.apart(limit, demand, unit)}"
+        numbers += f" {OTHERWISE[sign] if outside else sign} {reader.distinct(limit, demand, unit)}"
     return Bar(label, used, allowed, outside, f"{percent}\N{EN SPACE}{numbers} {reader.unit(unit)}")

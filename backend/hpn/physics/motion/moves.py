@@ -21,7 +21,7 @@ DEFAULT_JERK_SHARE = 0.5
 MODIFIED_SINE_SPEED = 4 * math.pi / (4 + math.pi)
 """Largest over mean speed of a modified sine, c_v."""
 
-ROOM = 1e-12
+ROUNDING = 1e-12
 """Relative room in which a bound counts as met, and below which a run counts as none."""
 
 
@@ -151,14 +151,14 @@ class Move(Model):
         return self._by_time_and_speed(D, T, V, k) if T else _by_speed_and_acceleration(D, V, a, k)
 
     def _by_time_and_speed(self, D: float, T: float, V: float, k: float) -> Timing:
-        if not D / T < V * (1 - ROOM):
+        if not D / T < V * (1 - ROUNDING):
             bound, triangle = D / T, 2 * D / T
             self._refuse(self.SPEED, "move_too_slow", bound=self._speed(bound), triangle=self._speed(triangle))
         return _ramped(D, T, min(T - D / V, T / 2), k)
 
     def _by_time_and_acceleration(self, D: float, T: float, a: float, k: float) -> Timing:
         least = 4 * D / T**2
-        if k * a < least * (1 - ROOM):
+        if k * a < least * (1 - ROUNDING):
             self._refuse(self.ACCELERATION, "move_too_gentle", bound=_said(least / k, self.ACCELERATION))
         above = 1 - least / (k * a)  # met exactly it is 0 but for rounding
         root = math.sqrt(above) if above > 8 * sys.float_info.epsilon else 0.0
@@ -183,7 +183,7 @@ def _said(value: float, field: str) -> str:
 def _ramped(D: float, T: float, ramp_s: float, k: float) -> Timing:
     """Way D in time T with ramps of a length; one that leaves next to no run is half the time."""
     run_s = T - 2 * ramp_s
-    is_cut = run_s <= ROOM * T
+    is_cut = run_s <= ROUNDING * T
     if is_cut:
         ramp_s, run_s = T / 2, 0.0
     V = D / (T - ramp_s)
@@ -197,7 +197,7 @@ def _triangle(D: float, T: float) -> Timing:
 def _by_speed_and_acceleration(D: float, V: float, a: float, k: float) -> Timing:
     ramp_s = V / (k * a)
     run_s = D / V - ramp_s
-    if run_s <= ROOM * ramp_s:  # the speed is not reached before the brake has to act
+    if run_s <= ROUNDING * ramp_s:  # the speed is not reached before the brake has to act
         ramp_s = math.sqrt(D / (k * a))
         return Timing(ramp_s, 0.0, D / ramp_s, D / (k * ramp_s**2), True)
     return Timing(ramp_s, run_s, V, a)

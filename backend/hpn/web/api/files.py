@@ -257,7 +257,7 @@ async def _answer(request: Request, file: File, lang: str | None, chosen: Option
     async def work() -> tuple[bytes, str]:
         async with pool.turn:
             export = await pool.run(make)
-            return await pool.run_apart(file.content(export, reader, chosen)), file.named(export)
+            return await pool.run_beside(file.content(export, reader, chosen)), file.named(export)
 
     with pool.place():
         content, name = await while_present(request, work())

@@ -20,9 +20,9 @@ from hpn.web.api import schemas, streaming
 from hpn.web.door.access import admit
 from hpn.web.door.bodies import content_type_of, pass_body, wrong_type
 from hpn.web.door.disk import Share
+from hpn.web.door.hosts import require_same_origin
 from hpn.web.door.pools import pool_of
 from hpn.web.door.problems import Problem, needs
-from hpn.web.door.requests import require_same_origin
 from hpn.web.door.uploads import MULTIPART, FormSplitter, PartHead, Write
 from hpn.web.fleets import Kind, Tables, size_fleet, workplace
 from hpn.web.settings import Settings

@@ -1,14 +1,17 @@
-"""Names under which the service answers: no link that it writes leads anywhere else, and no page elsewhere reads it."""
+"""Names under which the service answers, and pages that its forms come from: no link leads elsewhere, no page elsewhere
+reads or changes anything.
+"""
 
 from collections.abc import Collection
 from ipaddress import IPv6Address, ip_address
 from typing import Any
 
-from starlette.requests import HTTPConnection
+from starlette.requests import HTTPConnection, Request
 from starlette.types import ASGIApp, Receive, Scope, Send
 from uvicorn.middleware.proxy_headers import ProxyHeadersMiddleware
 
 from hpn.web.door.problems import Problem
+from hpn.words.wording import N_
 
 ANY_HOST = frozenset({"/healthz", "/readyz"})
 """Paths that load balancers ask for by an address; their answers hold no link."""
@@ -79,3 +82,18 @@ def _refusal(connection: HTTPConnection) -> Problem:
     return Problem(
         421, f"the service does not answer for the host {asked!r}; HPN_ALLOWED_HOSTS names those it answers for"
     )
+
+
+def require_same_origin(request: Request, *permitted: str) -> None:
+    """Raise Problem 403 for a form that a page of another site has sent, unless its origin is permitted, or any by `*`.
+
+    Programs send neither header.
+    """
+    site = request.headers.get("sec-fetch-site")
+    origin = request.headers.get("origin")
+    if site is not None:
+        same = site in ("same-origin", "none")
+    else:
+        same = origin is None or origin.partition("://")[2] == request.headers.get("host")
+    if not same and origin not in permitted and "*" not in permitted:
+        raise Problem(403, N_("this form was sent by a page of another site"))

@@ -16,7 +16,7 @@ from typing import Any, Literal, NamedTuple, ParamSpec, TypeVar
 from starlette.requests import Request
 from starlette.responses import Response
 
-from hpn.web.door.apart import Apart, Bounds, EndedError
+from hpn.web.door.beside import ProcessBeside, Bounds, EndedError
 from hpn.web.door.observation import GONE
 from hpn.web.door.problems import Problem
 from hpn.words.wording import N_, Sentence
@@ -68,8 +68,8 @@ class Pool:
 
     def __init__(self, places: Places, bounds: Bounds | None = None) -> None:
         self._executor, self._callers = (ThreadPoolExecutor(places.workers) for _ in range(2))
-        self._aparts = [Apart(bounds) for _ in range(places.workers)]
-        self.apart = self._aparts[0]
+        self._processes = [ProcessBeside(bounds) for _ in range(places.workers)]
+        self.beside = self._processes[0]
         self.turn = asyncio.Semaphore(places.workers)  # of work that is done elsewhere: as many have one at once
         self._most = places.workers + places.waiting
         self.taken = 0
@@ -91,26 +91,26 @@ class Pool:
         context = contextvars.copy_context()
         return await asyncio.wrap_future(self._executor.submit(context.run, partial(work, *args, **kwargs)))
 
-    async def call_apart(self, work: Callable[[], T]) -> T:
+    async def call_beside(self, work: Callable[[], T]) -> T:
         """Result of work in a process beside this one, which is killed where the caller is cancelled meanwhile.
 
         For what no thread can leave before its end, and for a caller that has the pool's turn. Raises EndedError where
         the process ends first.
         """
         given_up = threading.Event()
-        apart = next((each for each in self._aparts if not each.is_taken), self.apart)
-        with apart.taken():
+        process = next((each for each in self._processes if not each.is_taken), self.beside)
+        with process.taken():
             try:
-                return await asyncio.wrap_future(self._callers.submit(apart.call, work, given_up))
+                return await asyncio.wrap_future(self._callers.submit(process.call, work, given_up))
             except asyncio.CancelledError:
                 given_up.set()
-                apart.end()
+                process.end()
                 raise
 
-    async def run_apart(self, work: Callable[[], T]) -> T:
+    async def run_beside(self, work: Callable[[], T]) -> T:
         """The same; raises Problem 503 where the process ends first, 413 where its work meets the pool's bounds."""
         try:
-            return await self.call_apart(work)
+            return await self.call_beside(work)
         except EndedError as error:
             if error.is_excess:
                 logger.warning("a file took too much to read: %s", error)
@@ -121,8 +121,8 @@ class Pool:
 
     def close(self) -> None:
         """End the processes."""
-        for apart in self._aparts:
-            apart.close()
+        for process in self._processes:
+            process.close()
 
 
 class Pools:
@@ -155,13 +155,13 @@ async def compute(request: Request, name: PoolName, work: Callable[P, T], *args:
         return await while_present(request, pool.run(work, *args, **kwargs))
 
 
-async def compute_apart(request: Request, name: PoolName, work: Callable[[], T]) -> T:
-    """Result of work in the process of a pool, for a request whose body has been read; Problem as `run_apart` says."""
+async def compute_beside(request: Request, name: PoolName, work: Callable[[], T]) -> T:
+    """Result of work in the process of a pool, for a request whose body has been read; Problem as `run_beside` says."""
     pool = pool_of(request, name)
 
     async def in_turn() -> T:
         async with pool.turn:
-            return await pool.run_apart(work)
+            return await pool.run_beside(work)
 
     with pool.place():
         return await while_present(request, in_turn())

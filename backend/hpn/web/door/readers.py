@@ -14,7 +14,7 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from hpn.web.door.access import admit
 from hpn.web.door.bodies import pairs_of, read_body
-from hpn.web.door.requests import require_same_origin
+from hpn.web.door.hosts import require_same_origin
 from hpn.web.door.visit import VISIT, Visit, current
 from hpn.words import units
 from hpn.words.reader import LANGUAGES, Reader

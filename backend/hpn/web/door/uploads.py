@@ -31,7 +31,7 @@ async def read_parts(request: Request, maximum_bytes: int | None = None) -> dict
     body = await read_body(request, content_type, maximum_bytes=most, seconds=settings.body_seconds)
     if content_type == FORM:
         return {name: text.encode(errors="replace") for name, text in await compute(request, "pages", pairs_of, body)}
-    return dict(await compute(request, "pages", parts_of, request.headers["content-type"], body))
+    return dict(await compute(request, "pages", form_parts, request.headers["content-type"], body))
 
 
 _BOUNDARY = re.compile(r"""boundary="?([A-Za-z0-9'()+_,./:=? -]{1,70})""", re.IGNORECASE)
@@ -129,7 +129,7 @@ def _head_of(text: bytes) -> PartHead | None:
     return PartHead(name[1].decode(errors="replace"), file_name, content_type.lower())
 
 
-def parts_of(content_type: str, body: bytes) -> list[tuple[str, bytes]]:
+def form_parts(content_type: str, body: bytes) -> list[tuple[str, bytes]]:
     """Name and content of each part of a form; none where it isn't one."""
     parts: list[tuple[str, bytearray]] = []
 

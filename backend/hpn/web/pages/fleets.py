@@ -26,9 +26,9 @@ from hpn.web.archive import RETRY_SECONDS
 from hpn.web.door.access import admit, key_needed
 from hpn.web.door.bodies import pairs_of, read_form
 from hpn.web.door.observation import note
-from hpn.web.door.pools import compute, compute_apart, pool_of, while_present, worked
+from hpn.web.door.pools import compute, compute_beside, pool_of, while_present, worked
 from hpn.web.door.problems import Problem, needs
-from hpn.web.door.requests import require_same_origin
+from hpn.web.door.hosts import require_same_origin
 from hpn.web.door.uploads import read_parts
 from hpn.web.fleets import Tables, size_fleet, workplace
 from hpn.web.form.labels import TITLE_BLOCK, faults_of
@@ -122,7 +122,7 @@ async def _read(request: Request, parts: Mapping[str, bytes]) -> Draft:
     if not content.strip():
         return Draft(problems=(Sentence(NOTHING),))
     wanted = await compute(request, "pages", _wanted)
-    contents = await compute_apart(request, "files", partial(contents_of, content, wanted))
+    contents = await compute_beside(request, "files", partial(contents_of, content, wanted))
     if contents.suffix:
         return Draft(parts.get("text", b"").decode(errors="replace"), taken=(content, contents.suffix))
     return await compute(request, "pages", _draft_of, parts, content, contents)
@@ -187,7 +187,7 @@ async def _calculated(request: Request, content: bytes, suffix: str) -> FleetDra
         await compute(request, "pages", axes.write_bytes, content)
         files = await size_fleet(request, Tables(axes, input_name="The table"), suffix=".parquet")
         work = await compute(request, "pages", _listed, axes, files.by_kind["answers"], request.app.state.catalogue)
-        listing = await compute_apart(request, "files", work)
+        listing = await compute_beside(request, "files", work)
         draft: FleetDraft = await compute(request, "pages", _kept, listing, request.app.state.catalogue)
     return draft
 
@@ -324,7 +324,7 @@ async def download(request: Request) -> Response:
 
     async def work() -> bytes:
         async with pool.turn:
-            return await pool.run_apart(await pool.run(_file, saved, suffix, request.state.reader))
+            return await pool.run_beside(await pool.run(_file, saved, suffix, request.state.reader))
 
     with pool.place():
         content = await while_present(request, work())

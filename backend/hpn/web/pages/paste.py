@@ -26,7 +26,7 @@ from hpn.tables.inputs import CYCLE, PHASE_ROLES, Inputs
 from hpn.tables.sheets import MAXIMUM_CHARACTERS, SEPARATORS, Grid
 from hpn.web.door.access import admit
 from hpn.web.door.bodies import pairs_of, parsed
-from hpn.web.door.pools import compute, compute_apart, worked
+from hpn.web.door.pools import compute, compute_beside, worked
 from hpn.web.door.problems import Problem
 from hpn.web.door.uploads import decoded, read_parts
 from hpn.web.door.visit import current
@@ -114,9 +114,9 @@ def _given(parts: Mapping[str, bytes]) -> Given:
 async def _contents(request: Request, given: Given) -> Contents:
     """Cells of what was given: a short text is read here, a file in a process whose memory and time are bounded."""
     if given.file:
-        return await compute_apart(request, "files", partial(contents_of, given.file, WANTED))
+        return await compute_beside(request, "files", partial(contents_of, given.file, WANTED))
     if len(given.text) > SHORT_CHARACTERS:
-        return await compute_apart(request, "files", partial(contents_of_text, given.text, WANTED))
+        return await compute_beside(request, "files", partial(contents_of_text, given.text, WANTED))
     if not given.text.strip():
         return Contents()
     return await compute(request, "pages", contents_of_text, given.text, WANTED)

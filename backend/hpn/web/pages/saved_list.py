@@ -12,10 +12,10 @@ from hpn.store import SavedFleet, SavedSelection, Store, StoreUnavailableError
 from hpn.web.archive import Line, changeable, not_found
 from hpn.web.door.access import admit
 from hpn.web.door.bodies import pairs_of, read_form
+from hpn.web.door.hosts import require_same_origin
 from hpn.web.door.observation import note
 from hpn.web.door.pools import compute
 from hpn.web.door.problems import Problem
-from hpn.web.door.requests import require_same_origin
 from hpn.web.form.labels import TITLE_BLOCK, faults_of
 from hpn.web.form.linked import onward
 from hpn.web.pages.saving import refused

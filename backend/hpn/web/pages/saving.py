@@ -17,9 +17,9 @@ from hpn.store import Draft, StoreUnavailableError
 from hpn.web.archive import RETRY_SECONDS, Labels, draft_of, keep, url_of
 from hpn.web.door.access import admit
 from hpn.web.door.bodies import pairs_of, read_form
+from hpn.web.door.hosts import require_same_origin
 from hpn.web.door.pools import compute
 from hpn.web.door.problems import Problem
-from hpn.web.door.requests import require_same_origin
 from hpn.web.form import link_reader
 from hpn.web.form.labels import TITLE_BLOCK, query_of
 from hpn.web.form.link_reader import Form, Pairs

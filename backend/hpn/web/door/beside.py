@@ -53,7 +53,7 @@ class EndedError(Exception):
         self.is_excess = is_excess
 
 
-class Apart:
+class ProcessBeside:
     """At most one such process, for one caller at a time; with bounds, the system ends it where its work meets one."""
 
     def __init__(self, bounds: Bounds | None = None) -> None:
