@@ -113,10 +113,10 @@ def beat(file: Path) -> None:
         time.sleep(0.01)
 
 
-def processes_apart() -> set[int]:
+def processes_beside() -> set[int]:
     """Processes beside this one that make or read files."""
     children = children_of(os.getpid())
-    return {child for child in children if b"apart" in Path(f"/proc/{child}/cmdline").read_bytes()}
+    return {child for child in children if b"door.beside" in Path(f"/proc/{child}/cmdline").read_bytes()}
 
 
 def fail_there() -> None:
@@ -125,7 +125,7 @@ def fail_there() -> None:
 
 
 @pytest.mark.anyio
-async def test_work_apart_is_killed_when_its_client_leaves_and_the_next_is_done(pool: Pool, tmp_path: Path) -> None:
+async def test_work_beside_is_killed_when_its_client_leaves_and_the_next_is_done(pool: Pool, tmp_path: Path) -> None:
     file, leaves = tmp_path / "beats", asyncio.Event()
 
     async def receive() -> dict[str, Any]:
@@ -148,7 +148,7 @@ async def test_work_apart_is_killed_when_its_client_leaves_and_the_next_is_done(
 @pytest.mark.anyio
 @pytest.mark.parametrize("seconds", [0.0, 0.01, 0.05, 0.1, 0.2])
 async def test_who_leaves_at_any_moment_of_the_start_leaves_no_process(pool: Pool, seconds: float) -> None:
-    before = processes_apart()  # of services that other tests of this run have open
+    before = processes_beside()  # of services that other tests of this run have open
     for _ in range(3):
         work = asyncio.create_task(pool.run_beside(partial(time.sleep, 60)))
         await asyncio.sleep(seconds)
@@ -157,11 +157,11 @@ async def test_who_leaves_at_any_moment_of_the_start_leaves_no_process(pool: Poo
             await work
     own = await pool.run_beside(os.getpid)
 
-    assert processes_apart() - before == {own}
+    assert processes_beside() - before == {own}
 
 
 @pytest.mark.anyio
-async def test_what_goes_wrong_apart_brings_its_traceback_and_what_ends_early_is_a_503(
+async def test_what_goes_wrong_there_brings_its_traceback_and_what_ends_early_is_a_503(
     pool: Pool, caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     first = await pool.run_beside(os.getpid)
@@ -187,7 +187,7 @@ async def test_what_goes_wrong_apart_brings_its_traceback_and_what_ends_early_is
 
 
 @pytest.mark.anyio
-async def test_a_service_that_ends_ends_work_apart_and_closes_nothing_that_is_read(
+async def test_a_service_that_ends_ends_work_beside_and_closes_nothing_that_is_read(
     pool: Pool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The answer is read late, so that a pipe closed at once would be found closed."""
@@ -212,7 +212,7 @@ async def test_a_service_that_ends_ends_work_apart_and_closes_nothing_that_is_re
 
 
 @pytest.mark.anyio
-async def test_work_apart_knows_no_secrets_and_what_it_prints_is_no_answer(
+async def test_work_beside_knows_no_secrets_and_what_it_prints_is_no_answer(
     pool: Pool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("HPN_DATABASE_PASSWORD", "secret")

@@ -26,6 +26,7 @@ READ = {
     "aas-test-engines": "Apache-2.0",
     "colorama": "BSD-3-Clause",
     "defusedxml": "PSF-2.0",
+    "editorconfig": "BSD-2-Clause AND PSF-2.0",
     "flexcache": "BSD-3-Clause",
     "hatchling": "MIT",
     "httpx2-jsfetch": "BSD-3-Clause",
@@ -53,7 +54,9 @@ UNKNOWN = "unknown"
 TO_HEED = {
     "LGPL": "The library may be exchanged for another version: it is a package of its own, installed unchanged.",
     "MPL": "Changed files of the package itself have to be published; none is changed here.",
+    "GPL-3.0-or-later": "A tool of development, started as a command: nothing here is derived from it or contains it.",
     "GPL-2": "Used under the other of the two, unchanged, and only for development.",
+    "CNRI-Python": "Its notice is kept, and changes are described; none is made here, and it is only for development.",
     UNKNOWN: "No metadata names it: read its licence file before handing it on.",
 }
 """Duties of a licence beyond a notice, and how they are met."""

@@ -26,7 +26,7 @@ PERMISSIVE = {
 }
 BINDING_ITSELF = {"LGPL-3.0-only", "MPL-2.0"}
 """Licences with duties for the package itself, none for what uses it."""
-DEVELOPMENT = {"Artistic-1.0-Perl", "GPL-2.0-or-later"}
+DEVELOPMENT = {"Artistic-1.0-Perl", "CNRI-Python", "GPL-2.0-or-later", "GPL-3.0-or-later"}
 """Further licences of what is never handed on."""
 
 

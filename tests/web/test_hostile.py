@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 from starlette.testclient import TestClient
 
-from hpn.web.door.uploads import MOST_PARTS, FormSplitter, PartHead, Write, parts_of
+from hpn.web.door.uploads import MOST_PARTS, FormSplitter, PartHead, Write, form_parts
 from tests.build import cycle, phase, worked_example
 
 Json = dict[str, Any]
@@ -95,7 +95,7 @@ def test_a_form_that_no_browser_sends_is_no_mistake_of_the_service(
     reply = api.post("/paste", content=(body + "--x--\r\n").encode(), headers={"content-type": content_type})
 
     assert reply.status_code in (200, 413, 415, 422)
-    assert len(parts_of(content_type, body.encode())) <= MOST_PARTS
+    assert len(form_parts(content_type, body.encode())) <= MOST_PARTS
 
 
 def test_parts_of_a_form_are_read_as_browsers_write_them() -> None:
@@ -106,7 +106,7 @@ def test_parts_of_a_form_are_read_as_browsers_write_them() -> None:
     )
 
     parts = [("link", b"T=1"), ("file", b"1\r\n--y\r\n2")]
-    assert parts_of('multipart/form-data; boundary="x"', body) == parts
+    assert form_parts('multipart/form-data; boundary="x"', body) == parts
     for size in range(1, len(body)):  # however it is cut on its way
         found: list[tuple[str, bytearray]] = []
 

@@ -16,7 +16,7 @@ from typing import Any, Literal, NamedTuple, ParamSpec, TypeVar
 from starlette.requests import Request
 from starlette.responses import Response
 
-from hpn.web.door.beside import ProcessBeside, Bounds, EndedError
+from hpn.web.door.beside import Bounds, EndedError, ProcessBeside
 from hpn.web.door.observation import GONE
 from hpn.web.door.problems import Problem
 from hpn.words.wording import N_, Sentence

@@ -25,10 +25,10 @@ from hpn.tables.files import Contents, Wanted, contents_of, packed, unpacked
 from hpn.web.archive import RETRY_SECONDS
 from hpn.web.door.access import admit, key_needed
 from hpn.web.door.bodies import pairs_of, read_form
+from hpn.web.door.hosts import require_same_origin
 from hpn.web.door.observation import note
 from hpn.web.door.pools import compute, compute_beside, pool_of, while_present, worked
 from hpn.web.door.problems import Problem, needs
-from hpn.web.door.hosts import require_same_origin
 from hpn.web.door.uploads import read_parts
 from hpn.web.fleets import Tables, size_fleet, workplace
 from hpn.web.form.labels import TITLE_BLOCK, faults_of
