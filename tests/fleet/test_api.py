@@ -18,7 +18,7 @@ from hpn.catalogue import Catalogue
 from hpn.fleet.run import Order, size_fleet
 from hpn.web import fleets
 from hpn.web.app import create_app
-from hpn.web.door import apart
+from hpn.web.door import beside
 from hpn.web.door.pools import Pool
 from hpn.web.settings import Settings
 from tests.build import worked_example
@@ -325,7 +325,7 @@ def test_small_calculations_are_answered_beside_a_fleet_which_ends_when_its_clie
             assert service.client.post("/api/v1/select", json=worked_example()).status_code == 200
 
         assert fleet_processes(service) == [command]  # it has run all the time
-        assert os.getpriority(os.PRIO_PROCESS, command) >= apart.NICENESS
+        assert os.getpriority(os.PRIO_PROCESS, command) >= beside.NICENESS
         group = [int(pid) for pid in os.listdir("/proc") if pid.isdecimal() and _group_of(pid) == command]
     assert group
     until(lambda: all(is_gone(pid) for pid in group))

@@ -134,10 +134,10 @@ def test_a_report_under_way_is_finished_when_all_processes_are_told_to_end(
     long = cycle(*[phase(20 + k % 7, 500 + k % 11) for k in range(10_000)])
     with serving(tmp_path) as service, ThreadPoolExecutor() as pool:
         service.client.post(REPORT, json=worked_example()).raise_for_status()
-        (apart,), group = children_of(service.process.pid), os.getpgid(service.process.pid)
+        (beside,), group = children_of(service.process.pid), os.getpgid(service.process.pid)
         report = pool.submit(httpx.post, service.url + REPORT, json=long, timeout=60, trust_env=False)
-        idle = ticks(apart)
-        until(lambda: ticks(apart) >= idle + 10)
+        idle = ticks(beside)
+        until(lambda: ticks(beside) >= idle + 10)
         processes = (service.process.pid, *children_of(service.process.pid))
         if number == signal.SIGINT:  # of a terminal, which knows a group; a supervisor finds them all
             processes = tuple(process for process in processes if os.getpgid(process) == group)
@@ -146,24 +146,24 @@ def test_a_report_under_way_is_finished_when_all_processes_are_told_to_end(
 
         assert report.result().content.startswith(b"%PDF")
         assert service.process.wait(timeout=30) in (*ENDED, -number)
-        until(lambda: is_gone(apart))
+        until(lambda: is_gone(beside))
         assert not [event for event in service.events() if event["level"] == "error"]
 
 
 def test_a_report_whose_reader_leaves_is_given_up(service: Service) -> None:
     long = cycle(*[phase(20 + k % 7, 500 + k % 11) for k in range(10_000)])
     service.client.post(REPORT, json=worked_example()).raise_for_status()
-    (apart,) = children_of(service.process.pid)
-    idle = ticks(apart)
+    (beside,) = children_of(service.process.pid)
+    idle = ticks(beside)
     with socket.create_connection(("127.0.0.1", service.port), 20) as connection:
         body = orjson.dumps(long)
         head = f"POST {REPORT} HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\n"
         connection.sendall(f"{head}Content-Length: {len(body)}\r\n\r\n".encode() + body)
-        until(lambda: ticks(apart) >= idle + 10)
-    until(lambda: is_gone(apart))
+        until(lambda: ticks(beside) >= idle + 10)
+    until(lambda: is_gone(beside))
 
     service.client.post(REPORT, json=worked_example()).raise_for_status()
-    assert apart not in children_of(service.process.pid)
+    assert beside not in children_of(service.process.pid)
 
 
 def ticks(process: int) -> int:

@@ -12,9 +12,9 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, create_model
 
 from hpn.catalogue.gear import Gear
 from hpn.words.designations import canonical_size
-from hpn.words.wording import MendableError
 from hpn.words.quantities import CheckCode
 from hpn.words.units import SYMBOLS
+from hpn.words.wording import MendableError
 
 
 class CatalogueError(MendableError, ValueError):
