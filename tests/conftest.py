@@ -24,7 +24,8 @@ BULK = ("test_fuzz.py",)
 """Files of which `make test` draws a part (`tests/web/conftest.py`) and `make soak` everything."""
 
 LONGEST_FIRST = (
-    *("workbook", "api", "run", "contract", "pdf", "image", "serving", "fuzz", "invariances", "workers", "examples"),
+    *("stateful", "ties", "hostile", "fuzz", "package", "extremes", "motion_form", "envelope_pages"),
+    *("workbook", "api", "run", "contract", "pdf", "image", "serving", "invariances", "workers", "examples"),
     *("remedy", "loop", "selections_api", "load", "year_later", "outage"),
     *("tools", "reader", "page", "plots"),
 )

@@ -92,7 +92,7 @@ class DutyCycle(Model):
         return phases
 
     @model_validator(mode="after")
-    def _says_it_once(self) -> Self:
+    def _one_cycle(self) -> Self:
         if self.phases is None and self.motion is None:
             raise refused(self, (("phases",), PydanticCustomError("no_cycle", "give phases, or a motion")))
         if self.phases is not None and self.motion is not None:
