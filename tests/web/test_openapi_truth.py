@@ -10,14 +10,13 @@ import pytest
 from fastapi import FastAPI
 from starlette.testclient import TestClient
 
-from hpn.web.api.samples import LIFTING, TURNING
 from hpn.web.api.schemas import HEADERS
 from hpn.web.app import create_app
 from hpn.web.door.access import MAXIMUM_QUERY_BYTES
 from hpn.web.door.keys import new_key
 from hpn.web.door.observation import SECURITY_HEADERS
 from hpn.web.settings import Settings
-from tests.build import worked_example
+from tests.build import LIFTING, TURNING, worked_example
 from tests.web.test_openapi import FULL
 
 Json = dict[str, Any]
@@ -97,7 +96,8 @@ def test_every_link_leads_to_an_operation_with_such_a_parameter(document: Json) 
 
 def resolved(document: Json, schema: Json) -> Json:
     """A schema without its reference, and without that it may be null."""
-    options = [option for option in schema.get("anyOf", ()) if option.get("type") != "null"]
+    union = (*schema.get("anyOf", ()), *schema.get("oneOf", ()))
+    options = [option for option in union if option.get("type") != "null"]
     schema = options[0] if options else schema
     return document["components"]["schemas"][schema["$ref"].rpartition("/")[2]] if "$ref" in schema else schema
 

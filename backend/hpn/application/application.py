@@ -34,6 +34,7 @@ from hpn.words.fields import (
     Torque,
     at_most,
     in_parts,
+    one_of,
     refused,
 )
 from hpn.words.wording import Sentence
@@ -76,7 +77,9 @@ class DutyCycle(Model):
     phases: Annotated[tuple[Phase, ...], PHASES, WrapValidator(in_parts), at_most(MAXIMUM_PHASES)] | None = Field(
         None, description="Load phases; at least one moves."
     )
-    motion: Motion | None = Field(None, description="Motion of a mechanism, in place of the phases.")
+    motion: Motion | None = Field(
+        None, description="Motion of a mechanism, in place of the phases.", json_schema_extra=one_of
+    )
     pause_s: Annotated[Number, Field(ge=0, le=1e9)] = Field(
         0.0, description="Pause t_p: counts in the average speed (eq. 17.4), not in the average torque.", examples=[4.0]
     )

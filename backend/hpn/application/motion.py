@@ -16,7 +16,7 @@ from hpn.physics.motion.mechanisms import CLASSES, RPM, TYPES, LinearMechanism, 
 from hpn.physics.motion.moves import Move, Stroke, Turn
 from hpn.physics.motion.pieces import PlaceArray
 from hpn.physics.motion.refusals import refusal
-from hpn.words.fields import MAXIMUM_PHASES, Model, Number, at_most, in_parts, refused
+from hpn.words.fields import MAXIMUM_PHASES, Model, Number, at_most, in_parts, one_of, refused
 from hpn.words.wording import Quantity
 
 MAXIMUM_MOVES = 1000
@@ -152,7 +152,7 @@ class LinearMotion(_Motion):
     """Moves of a mass along a line."""
 
     mechanism: Annotated[LinearMechanism, BeforeValidator(_as_linear)] = Field(
-        description="What turns the gear’s rotation into a way."
+        description="What turns the gear’s rotation into a way.", json_schema_extra=one_of
     )
     moves: Annotated[tuple[Stroke, ...], WrapValidator(in_parts), at_most(MAXIMUM_MOVES)] = Field(
         min_length=1, max_length=MAXIMUM_MOVES, description="Moves in their order, each from rest to rest."

@@ -85,6 +85,11 @@ def name_units(schema: dict[str, Any]) -> None:
             entry["x-unit"] = symbol_of(name)
 
 
+def one_of(schema: dict[str, Any]) -> None:
+    """Name a union whose members exclude each other `oneOf`, which generators of clients read as a union of types."""
+    schema["oneOf"] = schema.pop("anyOf")
+
+
 class Model(BaseModel):
     """Frozen, and closed: an unknown field is an error, never ignored."""
 

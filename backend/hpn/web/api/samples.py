@@ -206,7 +206,7 @@ def _changes(selection: Selection, catalogue: Catalogue) -> Json:
 def _illustrate(schemas: Json, schema: Json, value: Any) -> None:
     if "$ref" in schema:
         _illustrate(schemas, schemas[schema["$ref"].rpartition("/")[2]], value)
-    for option in schema.get("anyOf", ()):
+    for option in (*schema.get("anyOf", ()), *schema.get("oneOf", ())):
         _illustrate(schemas, option, value)
     if isinstance(value, list):
         for item in value[:1]:

@@ -1,0 +1,40 @@
+"""A journey with the package `hpn_client` that openapi-generator makes: python openapi_generator.py ADDRESS."""
+
+import importlib
+import json
+import sys
+from typing import Any
+
+
+def journey(address: str, cycle: dict[str, Any], motion: dict[str, Any]) -> dict[str, Any]:
+    """Answers that its user sees."""
+    package: Any = importlib.import_module("hpn_client")
+    with package.ApiClient(package.Configuration(host=address)) as client:
+        selection, kept = package.SelectionApi(client), package.SavedSelectionsApi(client)
+
+        def refusal(call: Any, **arguments: Any) -> Any:
+            try:
+                call(**arguments)
+            except package.ApiException as error:
+                return error.data
+
+        application = package.Application(duty_cycle=package.DutyCycle.from_dict(cycle))
+        turning = package.Motion(package.RotaryMotion.from_dict(motion))
+        moved = package.Application(duty_cycle=package.DutyCycle(motion=turning))
+        request = package.SaveRequest(application=application, title="Axis 7", reference="python generator")
+        saved, again = (kept.save_selection(save_request=request, idempotency_key="python-generator") for _ in range(2))
+        listed = kept.list_selections(reference="python generator")
+        return {
+            "selected": selection.select(application).selected,
+            "phases": len(selection.select(moved).duty.phases),
+            "saved once": saved.id == again.id,
+            "listed": [line.title for line in listed.selections],
+            "renamed": kept.rename_selection(saved.id, package.Names(title="Axis 8")).title,
+            "read": kept.get_selection(saved.id).result.selected,
+            "deleted": kept.delete_selection_with_http_info(saved.id).status_code,
+            "missing": refusal(kept.get_selection, id=saved.id).status,
+            "refused": refusal(kept.list_selections, cursor="x").errors[0].pointer,
+        }
+
+
+print(json.dumps(journey(sys.argv[1], *map(json.loads, sys.argv[2:4]))))

@@ -1,0 +1,166 @@
+"""Clients that others' generators make of the OpenAPI document select, save, list, rename, read and delete."""
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from hpn.application import WORKED_EXAMPLE
+from tests.build import TURNING
+from tests.operations.service import Service, serving
+
+ROOT = Path(__file__).parents[2]
+JOURNEYS = Path(__file__).with_name("journeys")
+MODULES = ROOT / "frontend/node_modules"
+NODE = shutil.which("node", path=f"{ROOT / '.venv/node/bin'}{os.pathsep}{os.environ['PATH']}") or "node"
+SCRIPTS = Path(sys.executable).parent
+SECONDS = 300
+
+CYCLE = {**WORKED_EXAMPLE["duty_cycle"], "motion": None}
+"""The worked example with a null, which models, schema and generated classes have to take."""
+
+EXPECTED = {
+    "selected": "HPN-20A-4",
+    "phases": 8,
+    "saved once": True,
+    "listed": ["Axis 7"],
+    "renamed": "Axis 8",
+    "read": "HPN-20A-4",
+    "deleted": 204,
+    "missing": 404,
+    "refused": "/cursor",
+}
+
+BYTES = "application/octet-stream"
+PYTHON_CLIENT = {
+    "package_name_override": "hpn_client",
+    "post_hooks": [],
+    "content_type_overrides": {
+        "application/asset-administration-shell-package": BYTES,
+        "application/gzip": BYTES,
+        "application/pdf": BYTES,
+        "application/schema+json": "application/json",
+        "application/vnd.openxmlformats-officedocument.spreadsheetml.sheet": BYTES,
+        "application/vnd.apache.arrow.file": BYTES,
+        "application/vnd.apache.arrow.stream": BYTES,
+        "application/vnd.apache.parquet": BYTES,
+        "application/x-ndjson": BYTES,
+        "text/csv": BYTES,
+    },
+}
+"""Settings of openapi-python-client, which knows few media types: any other has to be named as bytes."""
+
+STRICT = {
+    "strict": True,
+    "target": "es2022",
+    "module": "nodenext",
+    "lib": ["es2022", "dom", "dom.iterable"],
+    "types": [],
+    "outDir": "built",
+}
+"""Settings of the TypeScript compiler."""
+
+
+LOST = {"by_typescript_generator": {"phases"}}
+"""Answers that a generator's own fault keeps away: typescript-fetch takes every motion for a linear one, by the names
+of its fields alone, and sends it without its mechanism, which the service refuses."""
+
+
+@pytest.fixture(scope="module")
+def service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Service]:
+    """A service with one process and the settings as shipped."""
+    with serving(tmp_path_factory.mktemp("service")) as running:
+        yield running
+
+
+@pytest.fixture
+def document(service: Service, tmp_path: Path) -> Path:
+    """The document as the service sends it."""
+    path = tmp_path / "openapi.json"
+    path.write_bytes(service.client.get("/openapi.json").raise_for_status().content)
+    return path
+
+
+def run(*command: object, folder: Path) -> str:
+    """Output of a command that has to succeed."""
+    environment = {**os.environ, "PYTHONPATH": str(folder)}
+    words = [str(word) for word in command]
+    done = subprocess.run(words, cwd=folder, env=environment, capture_output=True, text=True, timeout=SECONDS)
+    assert done.returncode == 0, done.stdout[-4000:] + done.stderr[-4000:]
+    return done.stdout
+
+
+def by_python_client(document: Path, folder: Path) -> list[object]:
+    """Command for the journey with openapi-python-client, which leaves nothing of the document out."""
+    config = folder / "generator.json"
+    config.write_text(json.dumps(PYTHON_CLIENT))
+    places = ("--path", document, "--config", config, "--output-path", folder / "hpn_client", "--meta", "none")
+    said = run(SCRIPTS / "openapi-python-client", "generate", *places, folder=folder)
+    assert "WARNING" not in said
+    return [sys.executable, JOURNEYS / "openapi_python_client.py"]
+
+
+def _generate(document: Path, folder: Path, language: str, *options: str) -> None:
+    common = ("-g", language, "-i", document, "-o", folder, *options)
+    run(SCRIPTS / "openapi-generator-cli", "generate", *common, folder=document.parent)
+
+
+def by_python_generator(document: Path, folder: Path) -> list[object]:
+    """Command for the journey with openapi-generator in Python."""
+    _generate(document, folder, "python", "--package-name", "hpn_client")
+    return [sys.executable, JOURNEYS / "openapi_generator.py"]
+
+
+def _compiled(folder: Path, journey: str) -> list[object]:
+    """Command for a journey in TypeScript, once the compiler finds nothing against it."""
+    shutil.copy(JOURNEYS / f"{journey}.ts", folder)
+    (folder / "package.json").write_text(json.dumps({"type": "module"}))
+    (folder / "tsconfig.json").write_text(json.dumps({"compilerOptions": STRICT, "files": [f"{journey}.ts"]}))
+    (folder / "node_modules").symlink_to(MODULES)
+    run(NODE, MODULES / "typescript/bin/tsc", "--project", folder, folder=folder)
+    return [NODE, folder / "built" / f"{journey}.js"]
+
+
+def by_typescript_generator(document: Path, folder: Path) -> list[object]:
+    """Command for the journey with openapi-generator in TypeScript; it leaves out models of forms unless told."""
+    _generate(
+        document,
+        folder / "hpn_client",
+        "typescript-fetch",
+        "--global-property",
+        "skipFormModel=false",
+        "--additional-properties",
+        "importFileExtension=.js",
+    )
+    return _compiled(folder, "openapi_generator")
+
+
+def by_typescript_types(document: Path, folder: Path) -> list[object]:
+    """Command for the journey with openapi-typescript; what has a default may be left out of a request."""
+    options = ("--default-non-nullable", "false", "--output", folder / "schema.d.ts")
+    run(NODE, MODULES / "openapi-typescript/bin/cli.js", document, *options, folder=folder)
+    return _compiled(folder, "openapi_typescript")
+
+
+Generate = Callable[[Path, Path], list[Any]]
+LONG: tuple[Generate, ...] = (by_python_generator, by_typescript_generator, by_typescript_types)
+
+
+@pytest.mark.parametrize("generate", [by_python_client, *(pytest.param(each, marks=pytest.mark.soak) for each in LONG)])
+def test_a_generated_client_selects_saves_lists_renames_reads_and_deletes(
+    service: Service, document: Path, tmp_path: Path, generate: Generate
+) -> None:
+    folder = tmp_path / "client"
+    folder.mkdir()
+
+    command = generate(document, folder)
+    found = run(*command, service.url, json.dumps(CYCLE), json.dumps(TURNING), folder=folder)
+
+    lost = LOST.get(generate.__name__, set())
+    assert json.loads(found) == {name: value for name, value in EXPECTED.items() if name not in lost}
