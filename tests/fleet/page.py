@@ -25,13 +25,13 @@ HEAVY = {"duty_cycle": {"phases": [{"torque_Nm": 9000, "speed_rpm": 100, "durati
 
 
 def post(client: TestClient, content: bytes = b"", fields: dict[str, str] | None = None) -> Any:
-    """What the form answers."""
+    """Answer to the form."""
     files = {"file": ("axes", content)} if content else {"file": ("", b"")}
     return client.post("/fleets", data=fields or {}, files=files)
 
 
 def fields_of(page: str) -> dict[str, str]:
-    """What a form would send as it stands: hidden fields, and choices that are made."""
+    """Fields that a form would send as it stands: hidden fields, and choices that are made."""
     fields = dict(re.findall(r'<input type="hidden" name="(\w+)" value="([^"]*)"', page))
     for name, options in re.findall(r'<select name="(\w+)"[^>]*>(.*?)</select>', page, re.DOTALL):
         chosen = re.search(r'value="([^"]*)" selected', options)

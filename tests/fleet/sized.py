@@ -12,7 +12,7 @@ from tests.fleet.tables import Row, write
 
 
 def fleet_draft(rows: Sequence[Row], folder: Path, catalogue: Catalogue) -> FleetDraft:
-    """What is kept of a fleet of rows."""
+    """Fleet of rows as it is kept."""
     axes, answers = write(folder / "axes.ndjson", rows), folder / "answers.parquet"
     size_fleet(Order(axes, answers), catalogue)
     return draft_of(kept_listing_of(axes, answers, catalogue), catalogue)

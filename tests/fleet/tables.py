@@ -24,6 +24,12 @@ TEXTS = ("output_load.life_basis", "output_load.model", "rank_by", "application_
 
 Row = dict[str, Any]
 
+AXES = [
+    {"axis": f"a{number}", "torque_Nm": [40.0, 20.0 + number], "speed_rpm": [250.0, 100.0], "duration_s": [0.5, 3.0]}
+    for number in range(6)
+]
+HEAD = "axis,torque_Nm,speed_rpm,duration_s\n"
+
 
 def row_of(axis: str | int, application: Json) -> Row:
     """An application as a row in list form; phases whose loads nobody gives have no such list."""
@@ -80,7 +86,7 @@ FAULTS: dict[str, Callable[[Row], None]] = {
         {"requirements.sizes": ["11A", "12"]}
     ),
 }
-"""What can be wrong with a row, by what is then said, and how it comes about."""
+"""Faults of a row by their reasons, and how each is made."""
 
 
 def spoiled(row: Row, fault: str) -> Row:
@@ -164,3 +170,13 @@ def read(path: Path) -> list[Row]:
     else:
         rows = [json.loads(line) for line in path.read_text().splitlines()]
     return rows
+
+
+def faults(folder: Path) -> list[tuple[Any, str, str]]:
+    """Rows of the rejected."""
+    return [(row["axis"], row["column"], row["reason"]) for row in read(folder / "rejected.ndjson")]
+
+
+def phases(*axes: str) -> str:
+    """CSV in long form, a line for each name."""
+    return HEAD + "".join(f"{axis},40,250,1\n" for axis in axes)

@@ -62,7 +62,7 @@ def spool_of(service: Service) -> list[Path]:
 
 
 def fleet_processes(service: Service) -> list[int]:
-    """Processes that size fleets for the service, oldest first: what they are bound to in time tells them apart."""
+    """Processes that size fleets for the service, oldest first: others have another bound in time."""
     seconds = f"\0{fleets.bounds_of(Settings()).seconds}\0".encode()
     children = children_of(service.process.pid)
     return [pid for pid in children if Path(f"/proc/{pid}/cmdline").read_bytes().endswith(seconds)]

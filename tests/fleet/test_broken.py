@@ -1,4 +1,4 @@
-"""Rows that are broken: each is rejected and told, in time that grows with their number alone, up to a stated bound."""
+"""Broken rows: each is rejected with its reason, in time that grows with their number alone, up to a stated bound."""
 
 import time
 from pathlib import Path

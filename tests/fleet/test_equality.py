@@ -37,7 +37,7 @@ MOTORS = ("M 40", "M 60", "?", "M 41")
 
 
 def expected(axis: object, application: Json, catalogue: Catalogue) -> Row:
-    """What `select` answers, as a row; where it refuses, the error alone."""
+    """Answer of `select` as a row; where it refuses, the error alone."""
     try:
         selection = select(Application.model_validate(application), catalogue)
     except InputError as error:

@@ -1,4 +1,4 @@
-"""What a page and a report show of a fleet: counts over all axes, and of the first ones what `select` says of each."""
+"""A fleet in a page and a report: counts over all axes, and the answer of `select` for each of the first ones."""
 
 import random
 from collections import Counter

@@ -1,4 +1,4 @@
-"""Reasons of rejected axes as sentences: read back from the answers, each is told in German, with its values."""
+"""Reasons of rejected axes as sentences: read back from the answers, each has a German text with its values."""
 
 import json
 from typing import Any

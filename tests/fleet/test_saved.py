@@ -23,7 +23,7 @@ from tests.store.test_fleets import MOST_BYTES
 
 @pytest.fixture(scope="module")
 def kept(client: TestClient, service: FastAPI, fleet: str) -> FleetDraft:
-    """What was kept of the fleet of the German table."""
+    """The fleet of the German table as it was kept."""
     assert client.portal is not None
     found = client.portal.call(service.state.store.find_fleet, fleet.rpartition("/")[2])
     return FleetDraft(**{name: getattr(found, name) for name in FleetDraft.__dataclass_fields__ if name != "caller"})

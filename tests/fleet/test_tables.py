@@ -1,7 +1,6 @@
-"""What tables may look like, and what is said of those that can't be used, as a whole or in a row."""
+"""Tables as they may look, and the words for those that can't be used, as a whole or in a row."""
 
 from pathlib import Path
-from typing import Any
 
 import msgspec
 import pyarrow as pa
@@ -16,24 +15,7 @@ from hpn.fleet.columns import COLUMNS
 from hpn.fleet.errors import FleetError
 from hpn.fleet.run import Order, size_fleet
 from tests.fleet.conftest import Size
-from tests.fleet.tables import Row, in_long_form, read, write
-
-AXES = [
-    {"axis": f"a{number}", "torque_Nm": [40.0, 20.0 + number], "speed_rpm": [250.0, 100.0], "duration_s": [0.5, 3.0]}
-    for number in range(6)
-]
-HEAD = "axis,torque_Nm,speed_rpm,duration_s\n"
-
-
-def faults(folder: Path) -> list[tuple[Any, str, str]]:
-    """Rows of the rejected."""
-    return [(row["axis"], row["column"], row["reason"]) for row in read(folder / "rejected.ndjson")]
-
-
-def phases(*axes: str) -> str:
-    """CSV in long form, a line for each name."""
-    return HEAD + "".join(f"{axis},40,250,1\n" for axis in axes)
-
+from tests.fleet.tables import AXES, HEAD, Row, faults, in_long_form, phases, read, write
 
 # --- Rows that are rejected -------------------------------------------------------------------------------------------
 
@@ -172,89 +154,11 @@ def test_line_breaks_in_quotes_belong_to_a_name(size: Size) -> None:
     assert [(row["axis"], row["error"]) for row in answers] == [("a\nb", None), ('c "d" \n\n', None), ("e", None)]
 
 
-# --- Types ------------------------------------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize("kind", [pa.int8(), pa.uint64(), pa.int64(), pa.string(), pa.large_string()])
-def test_an_axis_comes_back_in_its_type(kind: pa.DataType, tmp_path: Path, catalogue: Catalogue) -> None:
-    rows = [{**AXES[0], "axis": number} for number in range(3)]
-    table = pa.table({name: [row[name] for row in rows] for name in rows[0]})
-    pq.write_table(table.set_column(0, "axis", table["axis"].cast(kind)), tmp_path / "in.parquet")
-    size_fleet(Order(tmp_path / "in.parquet", tmp_path / "out.arrow"), catalogue)
-    assert pa.ipc.open_file(str(tmp_path / "out.arrow")).schema.field("axis").type == kind
-
-
-@pytest.mark.parametrize("suffix", [".parquet", ".arrow"])
-@pytest.mark.parametrize(
-    "kind", [pa.float16(), pa.float32(), pa.float64(), pa.decimal128(9, 0), pa.dictionary(pa.int8(), pa.float64())]
-)
-def test_axes_that_are_whole_floats_are_integers(
-    kind: pa.DataType, suffix: str, tmp_path: Path, catalogue: Catalogue
-) -> None:
-    table = pa.Table.from_pylist([{**AXES[0], "axis": axis} for axis in (7.0, None, 12.0)])
-    values = table["axis"].combine_chunks()
-    values = values.dictionary_encode() if pa.types.is_dictionary(kind) else values.cast(kind)
-    table = table.set_column(0, "axis", values)
-    if suffix == ".parquet":
-        pq.write_table(table, tmp_path / "in.parquet")
-    else:
-        with pa.ipc.new_file(str(tmp_path / "in.arrow"), table.schema) as file:
-            file.write_table(table)
-    size_fleet(Order(tmp_path / f"in{suffix}", tmp_path / "out.parquet"), catalogue)
-    answers = pq.read_table(tmp_path / "out.parquet")
-    assert answers["axis"].type == pa.int64()
-    assert answers["axis"].to_pylist() == [7, None, 12]
-    assert answers["error"].to_pylist() == [None, "axis: is required", None]
-
-
-def test_axes_of_ndjson_may_be_whole_floats_too(size: Size, tmp_path: Path) -> None:
-    answers = size([{**AXES[0], "axis": axis} for axis in (7.5, 7.0, 8, 1e3)])
-    assert [row["axis"] for row in answers] == [None, 7, 8, 1000]
-    assert all(isinstance(row["axis"], int) for row in answers[1:])
-    assert faults(tmp_path) == [(None, "axis", "must be an integer, as the first valid axis is, not 7.5")]
-
-
-def test_an_axis_that_is_no_whole_number_is_rejected_alone(size: Size, tmp_path: Path) -> None:
-    answers = size([{**AXES[0], "axis": axis} for axis in (7.0, 7.5, float("nan"), 1e300, 12.0)], ".parquet")
-    assert [row["axis"] for row in answers if not row["error"]] == [7, 12]
-    assert faults(tmp_path) == [(None, "axis", "must be text or a whole number")] * 3
-
-
-def test_axes_of_csv_are_integers_if_every_one_is_written_as_one(tmp_path: Path, catalogue: Catalogue) -> None:
-    for names, kind in ((("7", "12"), pa.int64()), (("7", "012"), pa.string())):
-        (tmp_path / "in.csv").write_text(phases(*names))
-        size_fleet(Order(tmp_path / "in.csv", tmp_path / "out.parquet"), catalogue)
-        assert pq.read_schema(tmp_path / "out.parquet").field("axis").type == kind
-
-
-@pytest.mark.parametrize(
-    "kind", [pa.float32(), pa.int16(), pa.decimal128(9, 3), pa.dictionary(pa.int8(), pa.float64())]
-)
-def test_any_numeric_type_counts(kind: pa.DataType, size: Size, tmp_path: Path, catalogue: Catalogue) -> None:
-    wanted = size(AXES, ".parquet")
-    table = pq.read_table(tmp_path / "in.parquet")
-    for place, name in enumerate(table.column_names):
-        if name in ("torque_Nm", "speed_rpm"):
-            values = pa.concat_arrays([pa.array(item, pa.float64()) for item in table[name].to_pylist()])
-            values = values.dictionary_encode() if pa.types.is_dictionary(kind) else values.cast(kind)
-            lists = pa.ListArray.from_arrays(pa.array(range(0, len(values) + 1, 2), pa.int32()), values)
-            table = table.set_column(place, name, lists)
-    pq.write_table(table, tmp_path / "other.parquet")
-    size_fleet(Order(tmp_path / "other.parquet", tmp_path / "out.parquet"), catalogue)
-    assert read(tmp_path / "out.parquet") == wanted
-
-
-def test_whole_floats_count_as_integers_and_nulls_as_not_given(size: Size) -> None:
-    plain = {**AXES[0], "emergency_stop.torque_Nm": 90.0, "emergency_stop.count": 1000, "requirements.ratios": [5]}
-    as_floats = plain | {"emergency_stop.count": 1000.0, "requirements.ratios": [5.0], "pause_s": None, "rank_by": None}
-    assert size([plain]) == size([as_floats])
-
-
 # --- Tables that can't be used ----------------------------------------------------------------------------------------
 
 
 def refusal(order: Order, catalogue: Catalogue) -> str:
-    """What is said of a fleet that can't be sized."""
+    """Words for a fleet that can't be sized."""
     with pytest.raises(FleetError) as refused:
         size_fleet(order, catalogue)
     assert not order.answers.exists()

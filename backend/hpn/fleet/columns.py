@@ -35,7 +35,7 @@ class Column(InputField):
         return pa.list_(item) if self.is_list else item
 
     def takes(self, given: pa.DataType, wanted: pa.DataType) -> bool:
-        """Whether a column of an Arrow type can be read as one of a wanted type."""
+        """True where a column of an Arrow type can be read as one of a wanted type."""
         given = plain_type(given)
         if kinds.is_null(given):
             return not self.required
@@ -52,7 +52,7 @@ class Column(InputField):
 
 
 def is_list(given: pa.DataType) -> bool:
-    """Whether an Arrow type is one of the kinds of lists."""
+    """True for an Arrow type of lists, of any kind."""
     return any(test(given) for test in LISTS)
 
 
@@ -69,7 +69,7 @@ def plain_type(given: pa.DataType) -> pa.DataType:
 
 
 def is_text(given: pa.DataType) -> bool:
-    """Whether an Arrow type is text."""
+    """True for an Arrow type of texts."""
     return bool(kinds.is_string(given) or kinds.is_large_string(given) or kinds.is_string_view(given))
 
 
@@ -107,7 +107,7 @@ class Columns:
         return application
 
     def column_at(self, location: tuple[str | int, ...]) -> tuple[str, str]:
-        """Column that a place in the application belongs to, and what is to be said of the place inside of it."""
+        """Column that a place in the application belongs to, and the words for the place inside of it."""
         if location[:2] == ("duty_cycle", "phases"):
             number = f"phase {location[2] + 1}" if len(location) > 2 and isinstance(location[2], int) else ""
             return (str(location[3]) if len(location) > 3 else "torque_Nm" if not number else "speed_rpm"), number

@@ -216,7 +216,7 @@ def _matched(axes: pa.Array, ahead: _Ahead) -> tuple[Places, Places]:
 
 
 def _places(axes: pa.Array, others: Iterator[str | None]) -> Iterator[int | None]:
-    """Where each axis stands in the other table behind the one before, up to WINDOW further on; None where it doesn't.
+    """Place of each axis in the other table behind the one before, up to WINDOW further on; None where there is none.
 
     One after another: the place of an axis depends on those before it alone.
     """

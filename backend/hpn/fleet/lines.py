@@ -301,7 +301,7 @@ def _parsed(texts: pa.Array, column: Column | None, wanted: pa.DataType) -> tupl
 
 
 def no_list(column: Column) -> str:
-    """What would be right in place of a cell that is no list."""
+    """Reason of a cell that is no list."""
     return NO_TEXTS if column.kind == "string" else NO_NUMBERS
 
 

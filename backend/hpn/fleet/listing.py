@@ -38,13 +38,13 @@ State = Literal["selected", "unsuitable", "rejected"]
 
 
 MOST_BYTES = 64_000_000
-"""What was asked of these axes, in memory: a page reads it anew each time."""
+"""Inputs of these axes in memory: a page reads them anew each time."""
 
 
 @dataclass(frozen=True)
 class Listing:
-    """What comes of all axes, and the first of them: `answers`, with the nearest miss where no gear suits, and `axes`
-    in list form with what was asked of those that were not rejected. Their names are text.
+    """Counts over all axes, and the first of them: `answers`, with the nearest miss where no gear suits, and `axes`
+    in list form with the inputs of those that were not rejected. Their names are text.
     """
 
     summary: Summary

@@ -21,7 +21,7 @@ NO_TEXT = N_("must be text")
 AXIS_IN_LINE = re.compile(rb'"axis"\s*:\s*("(?:[^"\\]|\\.)*"|-?[0-9]+(?=[\s,}]))')
 NAME_IN_LINE = re.compile(rb'"([^"\\]*)"\s*:')
 Integer = Annotated[int, msgspec.Meta(ge=-(2**63), le=2**63 - 1)]
-"""What Arrow holds in 64 bits."""
+"""Integers that Arrow holds in 64 bits."""
 
 READ_AS: dict[tuple[bool, bool], Any] = {
     (False, False): float,
@@ -29,7 +29,7 @@ READ_AS: dict[tuple[bool, bool], Any] = {
     (True, False): str,
     (True, True): list[str | None],
 }
-"""What msgspec reads a cell as: whether the column holds texts, and whether lists of them."""
+"""Types that msgspec reads cells as, by columns of texts or numbers, of lists or not."""
 
 
 class NdjsonTable(LinesTable):
@@ -77,7 +77,7 @@ class NdjsonTable(LinesTable):
 
     @cached_property
     def _kinds(self) -> dict[str, Any]:
-        """What msgspec reads a cell of each column as."""
+        """Types that msgspec reads the cells of each column as."""
         kinds: dict[str, Any] = {AXIS: Integer if pa.types.is_integer(self.axis_type) else str}
         for name in self.names:
             if name != AXIS:
@@ -145,7 +145,7 @@ class NdjsonTable(LinesTable):
         return cells, wrong
 
     def _right(self, name: str, value: Any) -> str:
-        """What would be right in place of a value."""
+        """Reason that a value is wrong, with the right kind."""
         if name == AXIS:
             expected = "an integer" if pa.types.is_integer(self.axis_type) else "text"
             return f"must be {expected}, as the first valid axis is, not {_shown(value)}"
@@ -160,7 +160,7 @@ class NdjsonTable(LinesTable):
 
 
 def _may_repeat_a_name(line: bytes) -> bool:
-    """Whether a row may have a name more than once: always where it has one, seldom where not."""
+    """True for a row that may have a name more than once: always where it has, seldom where not."""
     names = NAME_IN_LINE.findall(line)
     return len(set(names)) < len(names) or b"\\" in line
 

@@ -28,11 +28,11 @@ FORMATS: dict[str, type[Table]] = {
 """Formats that are read, by suffix."""
 
 FORM = "torque_Nm"
-"""Column that tells the form of a table."""
+"""Column that decides the form of a table."""
 
 UNREADABLE = "this user may not read it; see its permissions"
 MOST_PROBLEMS = 20
-"""Columns that are told to be wrong."""
+"""Wrong columns that an error names."""
 
 
 def format_of(path: Path) -> str:
@@ -89,7 +89,7 @@ def _opened(path: Path, ignored: Sequence[str]) -> Table:
 
 
 def _require(table: Table, allowed: list[str], required: list[str]) -> None:
-    if not _tells_its_form(table):  # nothing is known of where other columns belong
+    if not _has_a_form(table):  # nothing is known of where other columns belong
         allowed = [*allowed, *COLUMNS.others]
     unknown = [name for name in table.names if name not in allowed]
     others = [f"column {name} is missing" for name in required if name not in table.names]
@@ -102,7 +102,7 @@ def _require(table: Table, allowed: list[str], required: list[str]) -> None:
         raise FleetError(f"{table.path}: {'; '.join([*problems, *more])}")
 
 
-def _tells_its_form(table: Table) -> bool:
+def _has_a_form(table: Table) -> bool:
     return FORM in table.names and not table.wrong_type(FORM)
 
 

@@ -22,7 +22,7 @@ from hpn.physics.equations import FloatArray
 from hpn.words.wording import N_
 
 MOST_FAULTS = 20
-"""Faults of one axis that are told."""
+"""Faults that are listed of one axis."""
 
 DISAGREED = N_("is refused by the rules for columns and taken by those for one axis; please report it with this axis")
 """Reason of a row on which both disagree, a fault of the service that ends no fleet."""
@@ -148,7 +148,7 @@ def _rejected(axis: pa.ChunkedArray, faults: Sequence[Fault]) -> pa.Table:
 
 
 def _errors(count: int, faults: Sequence[Fault]) -> pa.Array:
-    """What is wrong with each axis in one text; null where nothing is."""
+    """Faults of each axis in one text; null where there are none."""
     texts: list[list[str]] = [[] for _ in range(count)] if faults else []
     for fault in faults:
         texts[fault.row].append(f"{fault.column}: {fault.reason}")
@@ -166,7 +166,7 @@ def _all_faults(batch: Batch, is_sound: BoolArray, catalogue: Catalogue) -> list
 
 
 def _found(row: int, cells: Mapping[str, Any], catalogue: Catalogue) -> list[Fault]:
-    """What the lists lack, or else what the models or the selection refuse."""
+    """Faults of the lists, or else those that the models or the selection find."""
     faults = [] if cells.get(AXIS) is not None else [Fault(row, AXIS, REQUIRED)]
     if found := faults + [Fault(row, *fault) for fault in _faults_of_lists(cells)]:
         return found

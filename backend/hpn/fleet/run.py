@@ -33,15 +33,15 @@ Engine = Callable[[Size, Iterator[Batch]], Iterator[Outcome]]
 """Sizes batches of axes, several at once, and gives what comes of them in their order; few are read ahead."""
 
 Watch = Callable[[Progress], None]
-"""Is given how much has been read, whenever some axes are done."""
+"""Takes how much has been read, whenever some axes are done."""
 
 Use = Callable[[Path], None]
-"""Is given the answers when they are whole; what it raises keeps every file from its name."""
+"""Takes the answers when they are whole; an error of it keeps every file from its name."""
 
 
 @dataclass(frozen=True)
 class Order:
-    """What is wanted: the tables to read, and the files to write."""
+    """The tables to read, and the files to write."""
 
     axes: Path
     answers: Path
@@ -125,8 +125,8 @@ def size_fleet(
 ) -> dict[str, int]:
     """Size all axes; gives the numbers of rows of the files by kind, which appear whole at the end or not at all.
 
-    `use` is given the answers before they have their name, for what has to be written along with them; `note_ignored`
-    gets the columns that are ignored though nobody asked for that. Raises FleetError for input that can't be used.
+    `use` takes the answers before they have their name, for files that are written along with them; `note_ignored`
+    takes the columns that are ignored though nobody asked for that. Raises FleetError for input that can't be used.
     """
     _require_usable(order)
     table, beside = order.opened()

@@ -1,4 +1,4 @@
-"""What the answers of a fleet come to: gears by count, what governs, how much is used, and axes without a gear."""
+"""Counts over the answers of a fleet: gears, governing checks, utilisation by tenths, and axes without a gear."""
 
 from collections import Counter
 from collections.abc import Iterable

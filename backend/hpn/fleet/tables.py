@@ -58,7 +58,7 @@ def joined(batches: Sequence[Batch]) -> Batch:
 
 
 class Progress(NamedTuple):
-    """How much of a table has been read, of how much where that is known, and what is counted."""
+    """Size of a table that has been read, its whole size where that is known, and the unit of both."""
 
     done: int
     total: int | None
@@ -85,7 +85,7 @@ class Table(ABC):
 
     @property
     def indices(self) -> Sequence[str]:
-        """Columns that pandas wrote of an index without a meaning, as far as the format tells."""
+        """Columns that pandas wrote of an index without a meaning, as far as the format names them."""
         return [name for name in self.all_names if INDEX.fullmatch(name)]
 
     @property
@@ -107,7 +107,7 @@ class Table(ABC):
         return BATCH_AXES if self.is_in_list_form else BATCH_PHASES
 
     def batches(self) -> Iterator[Batch]:
-        """The rows; a text that is too long is a fault, and of an axis its beginning stays."""
+        """The rows; a text that is too long is a fault; the name of an axis is cut."""
         return map(_with_short_texts, self._batches())
 
     @abstractmethod
@@ -126,7 +126,7 @@ class Table(ABC):
         return filter(None, map(self.wrong_type, self.names))
 
     def wrong_type(self, name: str) -> str:
-        """What is wrong with the type of a column, in words; nothing where it can be read."""
+        """Words for a column of a wrong type; nothing where it can be read."""
         return ""
 
     @property

@@ -37,10 +37,10 @@ class TypedTable(Table):
     @property
     def indices(self) -> Sequence[str]:
         try:
-            told = json.loads((self.given.metadata or {}).get(b"pandas", b"{}"))["index_columns"]
+            named = json.loads((self.given.metadata or {}).get(b"pandas", b"{}"))["index_columns"]
         except (ValueError, TypeError, KeyError, RecursionError):
-            told = []
-        named = [name for name in told if isinstance(name, str)] if isinstance(told, list) else []
+            named = []
+        named = named if isinstance(named, list) else []
         return [name for name in self.all_names if name in named or INDEX.fullmatch(name)]
 
     @property

@@ -1,6 +1,6 @@
 """From outcomes to the files of a fleet, each whole under its name at the end or not at all.
 
-What comes of the axes is set aside first: the type of axes in CSV, and whether a name is there twice, is known when all
+Outcomes are set aside first: the type of axes in CSV, and whether a name is there twice, is known when all
 have been read.
 """
 
@@ -59,7 +59,7 @@ WRITERS: dict[str, Callable[[str, pa.Schema], Any]] = {
 
 
 class Outcomes:
-    """What has come of the axes so far, by kind, in files beside the answers: a batch for each outcome."""
+    """Outcomes of the axes so far, by kind, in files beside the answers: a batch for each."""
 
     def __init__(self, answers: Path, axis: pa.DataType, kinds: Sequence[str]) -> None:
         self._paths = {kind: unfinished(answers, f".{kind}") for kind in dict.fromkeys(("answers", *kinds))}
@@ -70,7 +70,7 @@ class Outcomes:
         """True for axes that are all written as whole numbers."""
 
     def add(self, found: Mapping[str, pa.Table]) -> None:
-        """Take what has come of some axes."""
+        """Add the outcome of some axes."""
         axes = found["answers"][AXIS]
         self._hashes.append(np.fromiter(map(hash, axes.drop_null().to_pylist()), np.int64))
         if self.are_whole and is_text(axes.type):
@@ -148,7 +148,7 @@ class Torn:
         return bool(self.twice or self.elsewhere)
 
     def whole(self, kind: str, table: pa.Table, answers: pa.Table, seen: set[Any]) -> pa.Table:
-        """What has come of some axes, with one row for each torn one; those that were seen have had it."""
+        """Outcome of some axes, with one row for each torn one; those that were seen have had it."""
         is_twice = np.array([axis in self.twice for axis in answers[AXIS].to_pylist()], np.bool_)
         kept = np.array(self._kept(answers, seen), np.bool_)
         if kind == "answers":
@@ -163,7 +163,7 @@ class Torn:
         return pa.concat_tables([table, pa.Table.from_arrays(more, schema=table.schema)]).sort_by(ROW)
 
     def _kept(self, answers: pa.Table, seen: set[Any]) -> list[bool]:
-        """Which rows stay: one for each axis, where it came first."""
+        """True for the rows that stay: one for each axis, where it came first."""
         kept = []
         for axis, error in zip(answers[AXIS].to_pylist(), answers["error"].to_pylist(), strict=True):
             is_alone = ALONE in (error or "")

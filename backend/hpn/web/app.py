@@ -39,7 +39,7 @@ from hpn.web.door.metrics import CountedStore, Metrics
 from hpn.web.door.observation import Observation
 from hpn.web.door.pools import Pools
 from hpn.web.door.readers import Readers
-from hpn.web.pages import assets, compared, explanations, paste, saved_list, saving, transfer
+from hpn.web.pages import assets, compared, explanations, paste, saved_list, saving, sized_fleets, transfer
 from hpn.web.pages import calculator as pages
 from hpn.web.pages import catalogue as catalogue_pages
 from hpn.web.pages import fleets as fleet_pages
@@ -62,6 +62,7 @@ CORS: dict[str, Any] = {
         "Accept-Encoding",
         "Content-Disposition",
         "ETag",
+        "HPN-Ignored-Columns",
         "Idempotency-Replayed",
         "Link",
         "Location",
@@ -105,6 +106,7 @@ ROUTERS: tuple[APIRouter, ...] = (
     explanations.router,
     paste.router,
     fleet_pages.router,
+    sized_fleets.router,
     transfer.router,
     compared.router,
     saved_list.router,

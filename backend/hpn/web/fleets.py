@@ -1,7 +1,8 @@
 """Fleets of axes, sized in processes beside the service, which end with it: what one takes, and where it fails, is its
 own.
 
-Its files stand in a folder that is locked as long as the service holds it, so that what a killed one left can be told.
+Its files stand in a folder that is locked as long as the service holds it: the next service knows what a killed one
+has left.
 """
 
 import asyncio
@@ -33,10 +34,10 @@ Kind = Literal["answers", "rejected", "candidates"]
 MARKS = {".parquet": (b"PAR1", b"PAR1"), ".csv.gz": (b"\x1f\x8b", b"")} | dict.fromkeys(
     (".arrow", ".arrows", ".feather"), (b"ARROW1", b"ARROW1")
 )
-"""What files of a format begin and end with."""
+"""Beginning and end of files of a format."""
 
 STREAM = b"\xff\xff\xff\xff"
-"""What an Arrow stream begins with; it may end in any way."""
+"""Beginning of an Arrow stream; it may end in any way."""
 
 HEAD_BYTES = 2_000_000
 """Beginning of a text, in which its first axis has to stand."""
@@ -201,7 +202,7 @@ def _size_of(folder: Path) -> int:
 
 
 def _require_tables(tables: Tables) -> None:
-    """Raise Problem 422 for what a look shows to be no table of axes: no process is started for that."""
+    """Raise Problem 422 for a file that a look shows to be no table of axes: no process is started for it."""
     names = {tables.input: tables.input_name} | ({tables.axes: tables.axes_name} if tables.axes else {})
     for path, name in names.items():
         suffix = suffix_of(path) or ""

@@ -38,7 +38,7 @@ def require_few(answers: Path) -> None:
 
 
 def draft_of(listing: KeptListing | None, catalogue: Catalogue) -> FleetDraft:
-    """What is kept of tables that were sized; Problem 413 for more than a page can read."""
+    """Fleet to be kept of tables that were sized; Problem 413 for more than a page can read."""
     if listing is None:
         raise Problem.told(413, Sentence(TOO_LONG, {"most": MOST_BYTES // 1_000_000}))
     summary = listing.summary
@@ -62,13 +62,13 @@ class Kept(NamedTuple):
 
 
 def kept_of(saved: SavedFleet) -> Kept:
-    """What came of the axes of a fleet."""
+    """Counts and rows of a saved fleet."""
     answers = table_of(saved.answers)
     return Kept(summary_of(answers.to_batches()), rows_of(answers))
 
 
 def asked_of(saved: SavedFleet, names: list[str]) -> pa.Table:
-    """What some axes were asked with."""
+    """Inputs of some axes."""
     asked = table_of(saved.asked)
     return asked.filter(pc.is_in(asked[AXIS], pa.array(names, pa.string())))
 

@@ -1,4 +1,4 @@
-"""What the templates show of a fleet, in a page or in the file of a report."""
+"""A fleet as the templates show it, in a page or in the file of a report."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -17,7 +17,7 @@ SHOWN = {
     "unsuitable": N_("no gear suits"),
     "rejected": N_("rejected"),
 }
-"""Which axes are shown."""
+"""Filters of axes."""
 
 ROWS_ON_PAGE = 100
 
@@ -31,12 +31,12 @@ ORDERS: Mapping[str, Callable[["AxisRow"], Any]] = {
     "runner_up": lambda row: row.runner_up,
     "torque": lambda row: row.average_torque_Nm,
 }
-"""What axes are sorted by, by the names of an address."""
+"""Columns that axes are sorted by, by the names of an address."""
 
 
 @dataclass(frozen=True)
 class FleetView:
-    """What the templates show of a fleet. Nothing here is chosen or sorted by address; a page says how it is."""
+    """A fleet as the templates show it. Nothing here is chosen or sorted by address; a page says how it is."""
 
     summary: "Summary"
     rows: Sequence["AxisRow"]
@@ -51,13 +51,13 @@ class FleetView:
         return ""
 
     def order_of(self, key: str) -> str:
-        """How the axes are ordered by a column; blank where they are not."""
+        """Order of the axes by a column; blank where there is none."""
         return ""
 
 
 @dataclass(frozen=True)
 class Chosen:
-    """Which axes a page shows, and in which order, as its address says it."""
+    """Filter and order of the axes of a page, from its address."""
 
     show: str = ""
     gear: str = ""
@@ -68,7 +68,7 @@ class Chosen:
 
     @classmethod
     def of(cls, query: Mapping[str, str]) -> "Chosen":
-        """What an address chooses; what it says wrongly counts as not said."""
+        """Choice of an address; a wrong name in it counts as none."""
         given = {name: query.get(name, "")[:200] for name in ("show", "gear", "check", "search", "sort")}
         given["show"] = given["show"] if given["show"] in SHOWN else ""
         given["sort"] = given["sort"] if given["sort"].removeprefix("-") in ORDERS else ""
@@ -125,7 +125,7 @@ class FleetPageView(FleetView):
 
     @property
     def parts(self) -> int:
-        """How many parts the axes are shown in."""
+        """Number of parts in which the axes are shown."""
         return max(1, -(-self.count // ROWS_ON_PAGE))
 
     def part(self, number: int) -> str:

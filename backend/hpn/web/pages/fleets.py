@@ -1,12 +1,11 @@
 """Fleets on pages: a table of axes is uploaded, its columns are put right, all axes are sized, and the result is kept.
 
-`POST /fleets` answers with what each column is read as, or, once nothing is asked, leads to the page of the result.
-That is kept for a day, and for good once it is saved with its title block: the project of a machine. What imports
-Arrow is imported by the requests that need it.
+`POST /fleets` answers with what each column is read as, or, once nothing is asked, leads to the page of the result
+(`sized_fleets.py`). What imports Arrow is imported by the requests that need it.
 """
 
 import hashlib
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
@@ -14,44 +13,27 @@ from typing import Any
 
 from fastapi import APIRouter
 from starlette.requests import Request
-from starlette.responses import HTMLResponse, RedirectResponse, Response
+from starlette.responses import RedirectResponse, Response
 
-from hpn import ENGINE_VERSION
 from hpn.catalogue import Catalogue
-from hpn.store import FleetDraft, NoRoomError, SavedFleet, ShareSpentError, StoreUnavailableError
+from hpn.store import FleetDraft, NoRoomError, ShareSpentError, StoreUnavailableError
 from hpn.store.fleets import MOST_OF_CALLER
 from hpn.tables.axes import AxisTable
 from hpn.tables.files import Contents, Wanted, contents_of, packed, unpacked
 from hpn.web.archive import RETRY_SECONDS
-from hpn.web.door.access import admit, key_needed
-from hpn.web.door.bodies import pairs_of, read_form
+from hpn.web.door.access import admit
 from hpn.web.door.hosts import require_same_origin
 from hpn.web.door.observation import note
-from hpn.web.door.pools import compute, compute_beside, pool_of, while_present, worked
+from hpn.web.door.pools import compute, compute_beside, worked
 from hpn.web.door.problems import Problem, needs
 from hpn.web.door.uploads import read_parts
 from hpn.web.fleets import Tables, size_fleet, workplace
-from hpn.web.form.labels import TITLE_BLOCK, faults_of
 from hpn.web.form.symbols import AXIS_INPUTS
-from hpn.web.pages.explanations import reads_pages
-from hpn.web.pages.fleet_view import ROWS_ON_PAGE, SHOWN, Chosen, FleetPageView
 from hpn.web.pages.paste import assumed, choices_of
-from hpn.web.pages.saved_list import changed_since, names_of, version_of
-from hpn.web.pages.templates import environment
-from hpn.words.reader import Reader
+from hpn.web.pages.sized_fleets import ADDRESS, rendered
 from hpn.words.wording import N_, Sentence
 
-ADDRESS = "/fleets"
-MEDIA_TYPES = {
-    "xlsx": "application/vnd.openxmlformats-officedocument.spreadsheetml.sheet",
-    "csv": "text/csv; charset=utf-8",
-    "parquet": "application/vnd.apache.parquet",
-}
-"""Formats of the answers in the order in which they are offered: what keeps a text a text comes first."""
-
-CHANGES_ON_PAGE = 100
 NO_ROOM_SECONDS = 3600
-WRITTEN = {"title": "title", "ref": "reference", "author": "author", "rev": "revision"}
 NOTHING = N_("choose a file, or put cells into the field")
 LARGER = N_("Larger tables take the command hpn fleet and POST /api/v1/fleet, which have no such limit.")
 SHARE_SPENT = N_(
@@ -62,9 +44,6 @@ NO_ROOM = N_(
     "Fleets that nobody has saved are kept for a day, and those of all take the room there is for them. The command "
     "hpn fleet and POST /api/v1/fleet size this table; here there is room again as soon as others are saved or go."
 )
-NOT_YOURS = N_("Only the key that calculated this fleet may see it and save it.")
-SAVED_MEANWHILE = N_("This fleet was saved meanwhile, under other names. Open it again, then rename it.")
-GONE = N_("There is no such fleet. What nobody saves is kept for a day.")
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,11 +68,11 @@ class Draft:
 
 def start(request: Request) -> Response:
     """The page with an empty form."""
-    return _render(request, "fleets.html", 200, draft=Draft(), problems=(), **_WORDS)
+    return rendered(request, "fleets.html", 200, draft=Draft(), problems=(), **_WORDS)
 
 
 async def upload(request: Request) -> Response:
-    """Says what each column is read as, or sizes the axes and leads to their page."""
+    """Shows how each column is read, or sizes the axes and leads to their page."""
     draft, headers = Draft(), {}
     try:
         require_same_origin(request)
@@ -110,13 +89,13 @@ async def upload(request: Request) -> Response:
         status, problems = 503, (Sentence(N_("Fleets are temporarily unavailable: try again in a few seconds.")),)
         headers = {"Retry-After": str(RETRY_SECONDS)}
     shown = {"draft": draft, "problems": problems, **_WORDS}
-    response = await compute(request, "pages", lambda: _render(request, "fleets.html", status, **shown))
+    response = await compute(request, "pages", lambda: rendered(request, "fleets.html", status, **shown))
     response.headers.update(headers)
     return response
 
 
 async def _read(request: Request, parts: Mapping[str, bytes]) -> Draft:
-    """What was uploaded, or carried along, read beside the service; `taken` once nothing is left to be asked."""
+    """Upload, or table that is carried along, read beside the service; `taken` once nothing is left to be asked."""
     content = parts.get("file") or parts.get("text", b"").strip()
     content = content or await compute(request, "pages", unpacked, parts.get("table", b""))
     if not content.strip():
@@ -181,7 +160,7 @@ def _no_room(status: int, sentence: Sentence) -> Problem:
 
 
 async def _calculated(request: Request, content: bytes, suffix: str) -> FleetDraft:
-    """What comes of a table; raises Problem."""
+    """Fleet of a table; raises Problem."""
     async with workplace(request) as folder:
         axes = folder / f"axes{suffix}"
         await compute(request, "pages", axes.write_bytes, content)
@@ -207,255 +186,8 @@ def _kept(*arguments: Any) -> Any:
     return fleet_result.draft_of(*arguments)
 
 
-# --- The page of a result ---------------------------------------------------------------------------------------------
-
-
-@dataclass(frozen=True, slots=True)
-class TitleBlock:
-    """The title block of a form that saves, as it was filled in."""
-
-    labels: Mapping[str, str]
-
-    def messages(self, name: str, index: int | None = None) -> list[Sentence]:
-        """What is wrong with a field."""
-        return list(faults_of(self.labels[name]))
-
-    @property
-    def is_sound(self) -> bool:
-        """Whether nothing is."""
-        return not any(self.messages(name) for name in self.labels)
-
-
-EMPTY = TitleBlock(dict.fromkeys(TITLE_BLOCK, ""))
-
-
-async def show(request: Request) -> Response:
-    """What came of a fleet: counts, and its axes as the address chooses and sorts them."""
-    try:
-        saved = await _found(request)
-        return await _shown(request, saved, 200, EMPTY)
-    except (Problem, StoreUnavailableError) as error:
-        return await compute(request, "pages", _refused, request, error)
-
-
-async def _shown(request: Request, saved: SavedFleet, status: int, form: TitleBlock) -> Response:
-    today, problem = await _today(request, saved)
-    return await compute(request, "pages", _page, request, saved, status, form, today, problem)
-
-
-def _page(
-    request: Request, saved: SavedFleet, status: int, form: TitleBlock, today: list[Any] | None, problem: str
-) -> Response:
-    from hpn.web.pages import fleet_report, fleet_result
-
-    summary, rows = fleet_result.kept_of(saved)
-    chosen = Chosen.of(request.query_params)
-    found = chosen.out_of(rows)
-    part = found[(chosen.part - 1) * ROWS_ON_PAGE : chosen.part * ROWS_ON_PAGE]
-    links = fleet_report.links_of(fleet_result.asked_of(saved, [row.axis for row in part if row.state != "rejected"]))
-    view = FleetPageView(summary, part, links, f"{ADDRESS}/{saved.id}", chosen, len(found))
-    return _render(
-        request,
-        "fleet.html",
-        status,
-        saved=saved,
-        view=view,
-        form=form,
-        shown=SHOWN,
-        today=today,
-        problem=problem,
-        engine_version=ENGINE_VERSION,
-        catalogue_version=request.app.state.catalogue.version,
-        most_changes=CHANGES_ON_PAGE,
-        suffixes=tuple(MEDIA_TYPES),
-    )
-
-
-async def _today(request: Request, saved: SavedFleet) -> tuple[list[Any] | None, str]:
-    """Axes that today's engine and catalogue answer otherwise, None where these are the same; or why nobody knows."""
-    catalogue = request.app.state.catalogue
-    if (saved.engine_version, saved.catalogue_version) == (ENGINE_VERSION, catalogue.version):
-        return None, ""
-    if saved.axes == saved.rejected:
-        return [], ""
-    try:
-        async with workplace(request) as folder:
-            axes = folder / "axes.parquet"
-            await compute(request, "pages", axes.write_bytes, saved.asked)
-            files = await size_fleet(request, Tables(axes))
-            return await compute(request, "exports", _changes, saved, files.by_kind["answers"]), ""
-    except Problem as error:
-        return None, error.detail
-
-
-def _changes(*arguments: Any) -> Any:
-    from hpn.web.pages import fleet_result
-
-    return fleet_result.changes(*arguments)
-
-
-async def _found(request: Request) -> SavedFleet:
-    saved: SavedFleet | None = await request.app.state.store.find_fleet(request.path_params["fleet"])
-    if saved is None:
-        raise Problem(404, GONE)
-    if saved.saved is None and saved.owner is not None and request.app.state.gate.has_keys:
-        _require_key(request, saved.owner)
-    return saved
-
-
-def _require_key(request: Request, owner: str) -> None:
-    """Raise Problem 403 for another key than the one that calculated a fleet, 401 without any."""
-    if request.state.api_key is None:
-        raise key_needed(request.scope["path"])
-    if request.state.api_key != owner:
-        raise Problem(403, NOT_YOURS)
-
-
-async def download(request: Request) -> Response:
-    """The answers as a file."""
-    suffix = request.scope["path"].rpartition(".")[2]
-    try:
-        saved = await _found(request)
-    except (Problem, StoreUnavailableError) as error:
-        if reads_pages(request):
-            return await compute(request, "pages", _refused, request, error)
-        raise
-    pool = pool_of(request, "exports")
-
-    async def work() -> bytes:
-        async with pool.turn:
-            return await pool.run_beside(await pool.run(_file, saved, suffix, request.state.reader))
-
-    with pool.place():
-        content = await while_present(request, work())
-    headers = {"Content-Disposition": f'attachment; filename="axes.{suffix}"', "Vary": "Accept-Language, Cookie"}
-    return Response(content, 200, headers, MEDIA_TYPES[suffix])
-
-
-def _file(saved: SavedFleet, suffix: str, reader: Reader) -> Callable[[], bytes]:
-    """The call that makes a file."""
-    from hpn.web.pages.fleet_files import file_of
-
-    return partial(file_of, saved.answers, saved.created, suffix, reader)
-
-
-# --- Saving, listing, renaming, deleting ------------------------------------------------------------------------------
-
-
-async def save(request: Request) -> Response:
-    """Saves a fleet that was calculated, with its title block, and leads back to its page."""
-    try:
-        require_same_origin(request)
-        fields = dict(pairs_of(await read_form(request)))
-        form = TitleBlock({name: fields.get(name, "").strip() for name in TITLE_BLOCK})
-        saved = await _found(request)
-        if not form.is_sound:
-            return await _shown(request, saved, 422, form)
-        names = {WRITTEN[name]: text or None for name, text in form.labels.items()}
-        if not await request.app.state.store.save_fleet(saved.id, names, request.state.api_key):
-            await _require_same(request, names)
-    except (Problem, StoreUnavailableError) as error:
-        return await compute(request, "pages", _refused, request, error)
-    note(request, fleet=saved.id)
-    return RedirectResponse(f"{ADDRESS}/{saved.id}", 303)
-
-
-async def _require_same(request: Request, names: Mapping[str, str | None]) -> None:
-    """Raise Problem 412 unless a fleet is saved under these names: a form that is sent twice saves once."""
-    saved = await _found(request)
-    if any(getattr(saved, name) != text for name, text in names.items()):
-        raise Problem(412, SAVED_MEANWHILE)
-
-
-async def show_saved(request: Request) -> Response:
-    """Saved fleets, newest first."""
-    cursor = request.query_params.get("cursor") or None
-    try:
-        lines, following = await request.app.state.store.fleets(cursor)
-    except ValueError:
-        return RedirectResponse(f"{ADDRESS}/saved", 303)
-    except StoreUnavailableError as error:
-        return await compute(request, "pages", _refused, request, error)
-    shown = {"lines": lines, "following": following, "later": bool(cursor)}
-    return await compute(request, "pages", lambda: _render(request, "fleets_saved.html", 200, **shown))
-
-
-async def rename(request: Request) -> Response:
-    """Gives a saved fleet another title and reference, and leads back to its page."""
-    try:
-        require_same_origin(request)
-        fields = dict(pairs_of(await read_form(request)))
-        saved, version = await _own(request), version_of(fields)
-        names = names_of(fields, saved)
-        if not await request.app.state.store.rename_fleet(saved.id, names, version):
-            raise Problem(404, GONE) if version is None or saved.saved is None else changed_since()
-    except (Problem, StoreUnavailableError) as error:
-        return await compute(request, "pages", _refused, request, error)
-    note(request, fleet=saved.id)
-    return RedirectResponse(f"{ADDRESS}/{saved.id}", 303)
-
-
-async def ask_to_delete(request: Request) -> Response:
-    """The question whether a fleet is to go for good."""
-    try:
-        saved = await _own(request)
-    except (Problem, StoreUnavailableError) as error:
-        return await compute(request, "pages", _refused, request, error)
-    return await compute(request, "pages", lambda: _render(request, "fleet_delete.html", 200, saved=saved))
-
-
-async def delete(request: Request) -> Response:
-    """Deletes a fleet for good, and leads to the list."""
-    try:
-        require_same_origin(request)
-        given = "content-type" in request.headers  # a script may send no body
-        version = version_of(dict(pairs_of(await read_form(request)))) if given else None
-        saved = await _own(request)
-        if not await request.app.state.store.delete_fleet(saved.id, version):
-            raise Problem(404, GONE) if version is None else changed_since()
-    except (Problem, StoreUnavailableError) as error:
-        return await compute(request, "pages", _refused, request, error)
-    note(request, fleet=saved.id)
-    return RedirectResponse(f"{ADDRESS}/saved", 303)
-
-
-async def _own(request: Request) -> SavedFleet:
-    saved = await _found(request)
-    gate = request.app.state.gate
-    if gate.has_keys:
-        gate.require_owner(request, saved.owner)
-    return saved
-
-
-# --- Rendering --------------------------------------------------------------------------------------------------------
-
-
-def _refused(request: Request, error: Problem | StoreUnavailableError) -> Response:
-    """Page that says why there is nothing to show."""
-    if isinstance(error, StoreUnavailableError):
-        error = Problem(503, str(error), headers={"Retry-After": str(RETRY_SECONDS)})
-    response = _render(request, "fleet_refused.html", error.status_code, problem=error)
-    response.headers.update(error.headers or {})
-    return response
-
-
-def _render(request: Request, template: str, status: int, **shown: Any) -> Response:
-    content = environment(request.app.state).get_template(template).render(status=status, **shown)
-    return HTMLResponse(content, status, {"Cache-Control": "no-cache"})
-
-
-_WORDS: dict[str, Any] = {
-    "roles": AXIS_INPUTS.by_role,
-}
+_WORDS: dict[str, Any] = {"roles": AXIS_INPUTS.by_role}
 
 router = APIRouter(include_in_schema=False, dependencies=[needs("fleet")])
 router.add_api_route(ADDRESS, worked(start), dependencies=[admit("calculator")])
 router.add_api_route(ADDRESS, upload, methods=["POST"], dependencies=[admit("batch")])
-router.add_api_route(f"{ADDRESS}/saved", show_saved, dependencies=[admit("listing")])
-router.add_api_route(f"{ADDRESS}/{{fleet}}", show, dependencies=[admit("reading")])
-router.add_api_route(f"{ADDRESS}/{{fleet}}", save, methods=["POST"], dependencies=[admit("writing")])
-for suffix in MEDIA_TYPES:
-    router.add_api_route(f"{ADDRESS}/{{fleet}}/axes.{suffix}", download, dependencies=[admit("reading")])
-router.add_api_route(f"{ADDRESS}/{{fleet}}/rename", rename, methods=["POST"], dependencies=[admit("deleting")])
-router.add_api_route(f"{ADDRESS}/{{fleet}}/delete", ask_to_delete, dependencies=[admit("deleting")])
-router.add_api_route(f"{ADDRESS}/{{fleet}}/delete", delete, methods=["POST"], dependencies=[admit("deleting")])
