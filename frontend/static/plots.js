@@ -1,6 +1,6 @@
 // Plots: data come when somebody unfolds one, then the library. Colours are names of the page's theme.
 
-const CONFIG = { showSendToCloud: false, plotlyServerURL: "", displaylogo: false, displayModeBar: false, responsive: true };
+const CONFIG = { showSendToCloud: false, plotlyServerURL: "", displaylogo: false, displayModeBar: false, showTips: false, responsive: true };
 const drawn = new Map(); // place in the page -> the data that it shows
 
 // --- Theme ------------------------------------------------------------------------------------------------------------

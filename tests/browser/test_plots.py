@@ -52,7 +52,7 @@ def drawn(page: Page, name: str = "Loads in the envelope") -> Any:
 
 
 def once(page: Page, holds: Callable[[Any], bool]) -> Any:
-    """What is drawn, as soon as something holds of it."""
+    """Data and axes of a plot, as soon as a condition holds."""
     for _ in range(20 * PATIENCE_S):
         if holds(state := drawn(page)):
             return state

@@ -1,6 +1,7 @@
 """Pictures as data: every figure is valid for Plotly, shows what the checks compute, and says so in words."""
 
-from itertools import pairwise
+import re
+from itertools import combinations, pairwise
 
 import plotly.graph_objects as go
 import pytest
@@ -68,6 +69,39 @@ def test_figures_of_the_bearing_are_valid_in_every_model(
     assert drawn == {1.0, 1.2, 1.5, coefficient}
     published = {gear.size for gear in catalogue.gears if gear.dynamic_radial_load_N is not None}
     assert len(traces(sizes, "size")) == (1 if model == "digitised" else len(published))
+
+
+@pytest.mark.parametrize("life_h", [1000.0, 60_000.0])
+def test_each_curve_of_the_plot_has_the_drawings_name_on_it_and_no_legend(catalogue: Catalogue, life_h: float) -> None:
+    subject = example(catalogue, output_load=LOADS | {"life_h": life_h})
+    shown = picture(subject)
+
+    figure = plots.bearing_figure(shown)
+
+    assert figure["layout"]["showlegend"] is False
+    kinds = ("own", "life", "published", "equivalent")
+    names = [[name for name in trace["text"] if name] for kind in kinds for trace in traces(figure, kind)]
+    single = [["single load"]] if shown.life_factor < 1 else [[]]
+    life = [["f<sub>w</sub> 1"], ["f<sub>w</sub> 1.5"]]
+    assert sorted(names) == sorted([["limit now"], *life, *single, ["P<sub>m</sub>"]])
+    drawing = "".join(plots.envelope_drawing(shown).itertext())
+    assert all(re.sub("<.*?>", "", name) in drawing.replace("f_w", "fw") for one in names for name in one)
+
+
+def test_names_of_curves_stand_apart_where_a_load_lies_far_outside(catalogue: Catalogue) -> None:
+    subject = shown_on(cycle(phase(40, 250, 0.3, radial_N=9000, axial_N=300), phase(32, 500, 3)), catalogue)
+
+    figure = plots.bearing_figure(picture(subject))
+
+    axes = [figure["layout"][name]["range"][1] for name in ("xaxis", "yaxis")]
+    named = [(k, text, trace) for trace in figure["data"] for k, text in enumerate(trace.get("text", ()))]
+    places = [
+        (trace["x"][k] / axes[0], trace["y"][k] / axes[1])
+        for k, text, trace in named
+        if text and trace["meta"]["kind"] in ("own", "life", "published", "equivalent")
+    ]
+    assert len(places) > 3
+    assert all(abs(x - v) > 0.1 or abs(y - w) > 0.04 for (x, y), (v, w) in combinations(places, 2))
 
 
 @pytest.mark.parametrize("model", ["linear", "iso281", "digitised"])

@@ -10,13 +10,18 @@ from hpn.explain.drawings.axis import widened
 from hpn.explain.drawings.layout import Figure, layout, points
 from hpn.explain.drawings.picture import BearingPicture, NamedCurve, PhaseLoad
 from hpn.explain.drawings.sizes import SizeUse
-from hpn.explain.drawings.words import axis_title, said, share, shown
+from hpn.explain.drawings.words import axis_title, coefficient_name, indexed, said, share, shown
 from hpn.words.quantities import ENVELOPE_BASIS
 from hpn.words.reader import DEFAULT, Reader
 from hpn.words.wording import N_, Quantity, Sentence, Value
 
 LABELLED_LOADS = 40
 """Loads up to which each is named in the plot."""
+
+Place = tuple[float, float]
+
+NAME_HEIGHT, NAME_WIDTH = 0.06, 0.15
+"""Least distance of two names of curves on the axial and the radial axis, as shares of the axes."""
 
 HALO = ", ".join(f"{x}px {y}px 1px var(--card)" for x in (-1, 1) for y in (-1, 1))
 """Shadow that keeps a label apart from the lines behind it."""
@@ -51,7 +56,8 @@ def bearing_figure(picture: BearingPicture, reader: Reader = DEFAULT, governing:
     curves = sorted(
         picture.named_curves, key=lambda named: ("life", "own", "published", "equivalent").index(named.kind)
     )
-    data = [_named(named, reader) for named in curves]
+    ends = _ends(curves, _reach(picture.gear, picture.loads))
+    data = [_named(named, picture, end, reader) for named, end in zip(curves, ends, strict=True)]
     if picture.loads and picture.worst.published > 0:
         data.append(_distance(picture.worst, reader))
     data += [_points(picture.loads, reader), *_rings(picture.loads, governing, reader)]
@@ -65,7 +71,7 @@ def bearing_figure(picture: BearingPicture, reader: Reader = DEFAULT, governing:
 def sizes_figure(
     uses: Sequence[SizeUse], picture: BearingPicture, reader: Reader = DEFAULT, governing: Sequence[int] = ()
 ) -> Figure:
-    """What a constant load may be on each size, with the loads of the phases."""
+    """Permissible constant load of each size, with the loads of the phases."""
     drawn = [(use, use.curve) for use in uses if use.curve is not None]
     data = [
         _size(curve, use.gear, SIZE_STYLES[place % len(SIZE_STYLES)], reader)
@@ -86,21 +92,54 @@ def sizes_figure(
 
 def _size(curve: EnvelopeCurve, gear: Gear, style: tuple[str, str], reader: Reader) -> Figure:
     """Curve of a size, whose name stands where it starts on the axial axis."""
-    return _curve(curve, "size", Sentence("{gear}", {"gear": gear.name}), style, reader) | {
-        "text": [gear.size, *("" for _ in curve.radial_N[1:])],
+    figure = _curve(curve, "size", Sentence("{gear}", {"gear": gear.name}), style, reader)
+    return figure | _labelled(gear.size, len(curve.radial_N), 0)
+
+
+def _labelled(label: str, corners: int, place: int) -> Figure:
+    """Name of a curve on one of its corners: 0 on the axial axis, -1 on the radial one."""
+    return {
+        "text": [label if corner == place % corners else "" for corner in range(corners)],
         "mode": "lines+text",
         "textposition": "top right",
         "textfont": {"size": 11, "shadow": HALO},
     }
 
 
-def _named(named: NamedCurve, reader: Reader) -> Figure:
+def _ends(curves: Sequence[NamedCurve], reach: Place) -> list[int]:
+    """Corner of each curve for its name, 0 or -1: that with most room, up to what a name needs on each axis."""
+    needed = {0: NAME_HEIGHT * reach[1], -1: NAME_WIDTH * reach[0]}
+    taken: dict[int, list[float]] = {0: [], -1: []}
+    ends = []
+    for named in curves:
+        at = {0: named.curve.axial_N[0], -1: named.curve.radial_N[-1]}
+        room = {end: min((abs(at[end] - other) / needed[end] for other in taken[end]), default=1.0) for end in at}
+        end = max((-1, 0) if named.kind == "published" else (0, -1), key=lambda end: min(room[end], 1.0))
+        taken[end].append(at[end])
+        ends.append(end)
+    return ends
+
+
+def _named(named: NamedCurve, picture: BearingPicture, end: int, reader: Reader) -> Figure:
+    """Curve with its name in the drawing at one of its ends."""
     style = PRINTED_STYLES[named.curve.load_coefficient] if named.kind == "life" else STYLES[named.kind]
     figure = _curve(named.curve, named.kind, named.name, style, reader)
+    figure |= _labelled(_name(named, picture, reader), len(named.curve.radial_N), end)
     if named.kind != "own":
         return figure
     figure["line"]["width"] = 3
     return figure | {"fill": "tozeroy", "fillcolor": "var(--plot-own-soft)"}
+
+
+def _name(named: NamedCurve, picture: BearingPicture, reader: Reader) -> str:
+    """Name on a curve; none on the published one where it is the limit now."""
+    names = {
+        "own": reader.text(N_("limit now")),
+        "life": coefficient_name(named.curve.load_coefficient, reader),
+        "published": reader.text(N_("single load")) if picture.life_factor < 1 else "",
+        "equivalent": "P_m",
+    }
+    return indexed(names[named.kind])
 
 
 def _curve(curve: EnvelopeCurve, kind: str, name: Sentence, style: tuple[str, str], reader: Reader) -> Figure:
@@ -184,8 +223,6 @@ def _hover(load: PhaseLoad, reader: Reader, *, with_use: bool) -> str:
     return text
 
 
-Place = tuple[float, float]
-
 _SIDES = {"top right": (1, 1), "bottom right": (1, -1), "top left": (-1, 1), "bottom left": (-1, -1)}
 
 
@@ -220,8 +257,7 @@ def _room(place: Place, others: Sequence[Place]) -> float:
 def _layout(
     gear: Gear | None, loads: Sequence[PhaseLoad], heading: Sentence, load: OutputLoad, reader: Reader
 ) -> Figure:
-    radial = widened((gear and gear.dynamic_radial_load_N) or 1000.0, [load.radial_N for load in loads])
-    axial = widened((gear and gear.dynamic_axial_load_N) or 1000.0, [load.axial_N for load in loads])
+    radial, axial = _reach(gear, loads)
     figure = layout(
         reader,
         axis_title(N_("radial load"), "N", reader),
@@ -231,8 +267,13 @@ def _layout(
         revision=f"{gear and gear.size} {radial:g} {axial:g}",
     )
     measure = reader.measure("N")
-    figure["showlegend"] = True
-    figure["legend"] = {"x": 1, "y": 1, "xanchor": "right", "yanchor": "top", "font": {"size": 11}}
     figure["xaxis"]["range"] = [0, measure.shown(radial) * 1.08]
     figure["yaxis"]["range"] = [0, measure.shown(axial) * 1.08]
     return figure
+
+
+def _reach(gear: Gear | None, loads: Sequence[PhaseLoad]) -> Place:
+    """Ends of the radial and the axial axis in N."""
+    radial = widened((gear and gear.dynamic_radial_load_N) or 1000.0, [load.radial_N for load in loads])
+    axial = widened((gear and gear.dynamic_axial_load_N) or 1000.0, [load.axial_N for load in loads])
+    return radial, axial

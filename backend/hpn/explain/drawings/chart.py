@@ -42,7 +42,7 @@ ENDS = (0.12, 0.88, 0.16, 0.84, 0.2, 0.8, 0.08, 0.92, *ALONG)
 
 @dataclass(frozen=True, slots=True)
 class Axes:
-    """What is to the right and what upwards: name (an English msgid) and unit of each."""
+    """Quantities to the right and upwards: name (an English msgid) and unit of each."""
 
     across: str
     across_unit: str
@@ -253,7 +253,7 @@ def _size(mark: Mark) -> tuple[float, float]:
 
 
 def _excess(label: str) -> float:
-    """What a label is wider than two digits, which a disc is made for."""
+    """Width of a label beyond two digits, which a disc is made for."""
     return max(width_of(label) - width_of("00"), 0.0)
 
 

@@ -117,7 +117,7 @@ class Level:
 
 @dataclass(frozen=True)
 class Diagram:
-    """What a panel shows: the phases' values and levels, and its place in the drawing."""
+    """Content of a panel: the phases' values and levels, and its place in the drawing."""
 
     quantity: str
     unit: str
@@ -282,7 +282,7 @@ def placed(diagram: Diagram, reader: Reader) -> tuple[list[Mark], list[Mark]]:
     return marks, beyond[::-1]
 
 
-# --- What is compared -------------------------------------------------------------------------------------------------
+# --- Levels ---------------------------------------------------------------------------------------------------------
 
 
 def torque_levels(subject: Subject) -> list[Level]:

@@ -10,7 +10,7 @@ from hpn.engine.envelopes import EnvelopeCurve, EnvelopeQuery, has_envelope, lif
 from hpn.explain.drawings.chart import Bar, Line, Mark, chart
 from hpn.explain.drawings.picture import BearingPicture, PhaseLoad, beyond_limit
 from hpn.explain.drawings.sizes import SizeUse
-from hpn.explain.drawings.words import share
+from hpn.explain.drawings.words import coefficient_name, share
 from hpn.explain.readings import OTHERWISE
 from hpn.physics.bearing import PRINTED_LOAD_COEFFICIENTS
 from hpn.words.reader import DEFAULT, Reader
@@ -42,7 +42,7 @@ def envelope_drawing(picture: BearingPicture, reader: Reader = DEFAULT, governin
 def sizes_drawing(
     uses: Sequence[SizeUse], picture: BearingPicture, reader: Reader = DEFAULT, governing: Sequence[int] = ()
 ) -> Element:
-    """What a constant load may be on each size, with the loads of the phases; the gear's own size stands out."""
+    """Permissible constant load of each size, with the loads of the phases; the gear's own size stands out."""
     lines = []
     for place, use in enumerate(uses):
         if use.curve is not None:
@@ -88,7 +88,7 @@ def _of_coefficients(picture: BearingPicture, reader: Reader) -> list[Line]:
 
 
 def _coefficient(f_w: float, corners: list[tuple[float, float]], reader: Reader) -> Line:
-    return Line("coefficient", f"f_w {reader.exact(f_w)}", corners)
+    return Line("coefficient", coefficient_name(f_w, reader), corners)
 
 
 # --- Loads ------------------------------------------------------------------------------------------------------------

@@ -25,7 +25,6 @@ def layout(reader: Reader, x: str, y: str, *, title: str, note: str = "", revisi
         "xaxis": {**_AXIS, "title": {"text": x, "standoff": 10}},
         "yaxis": {**_AXIS, "title": {"text": y, "standoff": 12}, "automargin": True},
         "showlegend": False,
-        "legend": {"orientation": "h", "x": 0, "y": -0.16, "xanchor": "left", "yanchor": "top"},
         "margin": {"l": 68, "r": 18, "t": 22, "b": 52},
         "paper_bgcolor": "rgba(0,0,0,0)",
         "plot_bgcolor": "rgba(0,0,0,0)",

@@ -89,7 +89,7 @@ def motion_words(subject: Subject) -> list[Sentence]:
     return [*said, pause] if duty.pause_s else said
 
 
-# --- What is drawn ----------------------------------------------------------------------------------------------------
+# --- Diagrams ---------------------------------------------------------------------------------------------------------
 
 
 def _diagrams(subject: Subject, trace: Trace) -> Iterable[tuple[Diagram, FloatArray]]:

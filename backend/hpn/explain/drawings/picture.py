@@ -62,7 +62,7 @@ class PhaseLoad:
 
     @property
     def is_outside(self) -> bool:
-        """Whether it is more than a single load may be."""
+        """True for more than a single load may be."""
         return beyond_limit(self.published, self.allowed)
 
 
@@ -85,7 +85,7 @@ class NamedCurve:
 
 @dataclass(frozen=True, slots=True)
 class BearingPicture:
-    """What the output bearing of one gear may carry at the speed and life of an application, and what it does carry.
+    """Loads permitted on the output bearing of one gear at the speed and life of an application, and its own loads.
 
     `mean` is P_m without f_w, `life_factor` the k that speed and required life allow, `allowed` the user's u, which
     every curve but the equivalent load's is scaled by. `loads` are in the order of the phases, and `hidden` is the
@@ -134,7 +134,7 @@ class BearingPicture:
 
     @property
     def life_governs(self) -> bool:
-        """Whether the life of the cycle is nearer to its limit than the largest single load."""
+        """True where the life of the cycle is nearer to its limit than the largest single load."""
         return self.life_factor < 1 and self.life_utilisation >= self.worst.published
 
     @property
@@ -176,7 +176,7 @@ def _coefficient(curve: EnvelopeCurve) -> dict[str, Value]:
 
 
 def beyond_limit(utilisation: float, allowed: float) -> bool:
-    """Whether so much of a limit is more than is allowed, floating-point rounding apart."""
+    """True for a utilisation above the allowed one, floating-point rounding apart."""
     return utilisation > allowed * (1 + ROUNDING)
 
 

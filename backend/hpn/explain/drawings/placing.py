@@ -36,17 +36,17 @@ class Box:
         return (self.left + self.right) / 2, (self.top + self.bottom) / 2
 
     def meets(self, other: "Box") -> bool:
-        """Whether they have more than an edge in common."""
+        """True for boxes with more than an edge in common."""
         across = self.left < other.right and other.left < self.right
         return across and self.top < other.bottom and other.top < self.bottom
 
     def within(self, other: "Box") -> bool:
-        """Whether nothing of it is outside the other."""
+        """True for a box that is wholly inside the other."""
         across = other.left <= self.left and self.right <= other.right
         return across and other.top <= self.top and self.bottom <= other.bottom
 
     def is_crossed(self, start: Point, end: Point) -> bool:
-        """Whether a line from start to end has a part inside (Liang and Barsky)."""
+        """True for a line from start to end with a part inside (Liang and Barsky)."""
         if max(start[0], end[0]) <= self.left or min(start[0], end[0]) >= self.right:
             return False
         low, high = 0.0, 1.0
@@ -70,7 +70,7 @@ class Places:
         self.lines: list[list[Point]] = []
 
     def is_free(self, box: Box) -> bool:
-        """Whether a box lies inside the frame and over nothing that is taken."""
+        """True for a box that lies inside the frame and over nothing that is taken."""
         return box.within(self.frame) and all(not box.meets(other) for other in self.taken)
 
     def first(self, candidates: Iterable[Box]) -> Box | None:

@@ -62,7 +62,7 @@ class _Limits:
 
 @dataclass(frozen=True, eq=False)
 class _Cycle:
-    """What is drawn of a cycle: means and peaks of its phases, shape (phases,), and the curve of a motion."""
+    """Points of a cycle: means and peaks of its phases, shape (phases,), and the curve of a motion."""
 
     speed_rpm: FloatArray
     torque_Nm: FloatArray
@@ -201,7 +201,7 @@ def _lines(limits: _Limits, u: float, most: Point) -> Iterable[Line]:
 
 
 def _drawn_at(limit: _Limit, u: float, most: float) -> float:
-    """What a limit comes to; infinity where it is not known, or far beyond the cycle."""
+    """A limit in its unit, times u; infinity where it is not known, or far beyond the cycle."""
     return u * limit.value if limit.value is not None and u * limit.value <= OUT_OF_SCALE * most else inf
 
 

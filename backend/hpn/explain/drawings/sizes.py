@@ -1,4 +1,4 @@
-"""What the output bearing of each size may carry under an application, and how far its loads use it."""
+"""Loads permitted on the output bearing of each size under an application, and how far its loads use it."""
 
 import math
 from dataclasses import dataclass
@@ -24,7 +24,7 @@ class SizeUse:
 
     @property
     def carries(self) -> bool | None:
-        """Whether both questions are answered with yes; None where it is not rated."""
+        """True where both are within the allowed share; None where it is not rated."""
         if self.constant_load is None or self.published is None:
             return None
         return not beyond_limit(max(self.constant_load, self.published), self.allowed)

@@ -1,4 +1,4 @@
-"""What pictures are of: an application, and the gear that its reader looks at."""
+"""Subject of the pictures: an application, and the gear that its reader looks at."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -12,7 +12,7 @@ from hpn.engine.figures import Figures
 
 @dataclass(frozen=True)
 class Subject:
-    """An application and one gear; what its pictures share is worked out once, when the first of them asks for it."""
+    """An application and one gear; figures shared by its pictures are computed once, for the first that uses them."""
 
     application: Application
     gear: Gear
@@ -20,7 +20,7 @@ class Subject:
 
     @cached_property
     def duty(self) -> Duty:
-        """What the duty cycle comes to."""
+        """Figures of the duty cycle."""
         return Duty.of([self.application])
 
     @cached_property
@@ -33,7 +33,7 @@ class Subject:
 
     @cached_property
     def of_sizes(self) -> Figures:
-        """What the first gear of every size comes to."""
+        """Figures of the first gear of every size."""
         return Figures(self.duty, self.sizes, self.catalogue)
 
     @property

@@ -7,7 +7,7 @@ from hpn.words.wording import Quantity, Sentence, Value
 
 
 def carries(picture: BearingPicture) -> bool:
-    """Whether single loads and life stay within what is allowed."""
+    """True where single loads and life stay within what is allowed."""
     return not beyond_limit(_most_used(picture), picture.allowed)
 
 
@@ -16,7 +16,7 @@ def _most_used(picture: BearingPicture) -> float:
 
 
 def bearing_verdict(picture: BearingPicture) -> Sentence:
-    """Whether the bearing carries the loads; where only the user's u is exceeded, it says that."""
+    """Verdict on the loads; one that exceeds the user's u alone says so."""
     if picture.allowed == 1:
         if carries(picture):
             return Sentence("The output bearing carries these loads.")
@@ -33,7 +33,7 @@ def bearing_verdict(picture: BearingPicture) -> Sentence:
 
 
 def bearing_words(picture: BearingPicture) -> list[Sentence]:
-    """What governs, both utilisations, which loads are outside, and what the next printed f_w would come to."""
+    """The governing limit, both utilisations, which loads are outside, and what the next printed f_w would come to."""
     governs = (
         Sentence("Bearing life governs.") if picture.life_governs else Sentence("The largest single load governs.")
     )
@@ -67,7 +67,7 @@ def _outside(picture: BearingPicture) -> list[Sentence]:
 
 
 def _next_load_coefficient(picture: BearingPicture) -> list[Sentence]:
-    """What the next printed load coefficient would make of the equivalent load."""
+    """Equivalent load with the next printed load coefficient."""
     f_w, used = picture.load.load_coefficient, picture.constant_load_utilisation
     larger = next((printed for printed in bearing.PRINTED_LOAD_COEFFICIENTS if printed > f_w), None)
     if larger is None or used == 0:

@@ -1,4 +1,4 @@
-"""What pictures say: titles of axes, symbols with their index below, shares, and the numbers of phases."""
+"""Words of the pictures: titles of axes, symbols with their index below, shares, and the numbers of phases."""
 
 from collections.abc import Iterable, Sequence
 
@@ -9,7 +9,12 @@ from hpn.words.wording import N_, Quantity, Sentence, telling_decimals
 
 def said(sentence: Sentence, reader: Reader) -> str:
     """A sentence as Plotly sets it: the handbook's symbols with their index below."""
-    parts = parts_of(reader.told(sentence))
+    return indexed(reader.told(sentence))
+
+
+def indexed(text: str) -> str:
+    """A text as Plotly sets it."""
+    parts = parts_of(text)
     return "".join(part if isinstance(part, str) else f"{part[0]}<sub>{part[1]}</sub>" for part in parts)
 
 
@@ -28,6 +33,11 @@ def share(used: float) -> Quantity:
     """A utilisation in percent, with as many digits as it takes to tell it from 100 %."""
     decimals = telling_decimals(100 * used, 100.0, 0)
     return Quantity(100 * used, "percent", 3 + decimals if used > 1 else max(3, 2 + decimals))
+
+
+def coefficient_name(load_coefficient: float, reader: Reader) -> str:
+    """Name of a curve that holds for a load coefficient."""
+    return f"f_w {reader.exact(load_coefficient)}"
 
 
 def phase_numbers(places: Sequence[int]) -> str:

@@ -65,7 +65,7 @@ class Row:
 
     @property
     def differs(self) -> bool:
-        """Whether the two say different things."""
+        """True for two different values."""
         return bool(self.values[0] != self.values[1])
 
 
@@ -78,7 +78,7 @@ class CheckRow:
 
     @property
     def differs(self) -> bool:
-        """Whether the two came to something else."""
+        """True for two different results."""
         return self.sides[0] != self.sides[1]
 
 
@@ -150,7 +150,7 @@ def _inputs(a: Side, b: Side) -> Iterator[Row]:
 
 
 def _motions(a: Side, b: Side) -> Iterator[Row]:
-    """What differs of mechanism and moves."""
+    """Differences of mechanism and moves."""
     given = [side.result.application.duty_cycle.motion if side.result.application else None for side in (a, b)]
     said = [{(line.label, line.symbol): line.text for line in lines(one, current())} if one else {} for one in given]
     for label, symbol in said[0] | said[1]:

@@ -21,7 +21,7 @@ from hpn.words.wording import Sentence
 
 @dataclass(frozen=True)
 class Pictures:
-    """What the templates draw or hand to Plotly; each is made when a template asks for it.
+    """Pictures that the templates draw or hand to Plotly; each is made when a template asks for it.
 
     `chosen` is the candidate that is looked at, as it was judged just now or when it was saved.
     """
@@ -42,7 +42,7 @@ class Pictures:
 
     @cached_property
     def bearing(self) -> BearingPicture | None:
-        """What the output bearing may carry and does, or None where it is not rated."""
+        """Permitted and given loads of the output bearing, or None where it is not rated."""
         return drawings.bearing_picture(self.subject, self.chosen.check("output_bearing_life"))
 
     @cached_property
@@ -77,7 +77,7 @@ class Pictures:
 
     @property
     def carries(self) -> bool:
-        """Whether the bearing carries the loads, which must be given."""
+        """True where the bearing carries the loads, which must be given."""
         assert self.bearing is not None
         return drawings.carries(self.bearing)
 
@@ -89,7 +89,7 @@ class Pictures:
 
     @property
     def words(self) -> list[Sentence]:
-        """What the verdict goes by."""
+        """Grounds of the verdict."""
         assert self.bearing is not None
         return drawings.bearing_words(self.bearing)
 
