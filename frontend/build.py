@@ -18,6 +18,7 @@ FRONTEND = Path(__file__).parent
 STATIC = FRONTEND / "static"
 DIST = FRONTEND / "dist"
 HTMX = FRONTEND / "node_modules/htmx.org/dist/htmx.min.js"
+SWAGGER = FRONTEND / "node_modules/swagger-ui-dist"
 PLOTLY = FRONTEND / "node_modules/plotly.js-basic-dist-min/plotly-basic.min.js"
 STYLES = {
     "page.css": ("app", "tools", "workbench", "selection", "insight", "plots", "motion"),
@@ -27,7 +28,7 @@ STYLES = {
 """Style sheets of the form with its result, of all other pages, and of a fleet’s report, which holds its own."""
 
 SCRIPTS = ("app", "sections", "connection", "insight", "plots", "tools")
-ALONE = ("favicon.svg", "fleet-report.js", "plots.js")
+ALONE = ("docs.js", "favicon.svg", "fleet-report.js", "plots.js")
 """Files that a page asks for by themselves; a fleet’s report holds its script."""
 
 NOTO = FRONTEND / "node_modules/@expo-google-fonts"
@@ -60,6 +61,7 @@ def files() -> dict[str, bytes]:
     """Content of each file by its logical name; packages keep their comments, with their licences."""
     return {
         "plotly-basic.min.js": PLOTLY.read_bytes(),
+        **{name: (SWAGGER / name).read_bytes() for name in ("swagger-ui.css", "swagger-ui-bundle.js")},
         "page.js": script(*SCRIPTS),
         "gear.js": script("tools"),
         **{name: b"".join(sent(f"{part}.css") for part in parts) for name, parts in STYLES.items()},

@@ -268,3 +268,9 @@ def test_no_page_has_a_style_or_a_script_of_its_own(api: TestClient, answers: di
     assert len(pages) > 8
     for page in pages:
         assert not re.search(r"\sstyle=|<style|<script>|\son[a-z]+=", page)
+
+
+def test_a_file_of_the_page_is_there_before_any_page_was_asked_for() -> None:
+    name = Assets.load().manifest["page.js"]
+
+    assert TestClient(create_app()).get(f"/static/{name}").status_code == 200

@@ -101,6 +101,7 @@ ROUTERS: tuple[APIRouter, ...] = (
     embeds.router,
     pages.router,
     assets.router,
+    assets.docs_router,
     readers.router,
     catalogue_pages.router,
     explanations.router,

@@ -6,12 +6,13 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from fastapi import APIRouter
+from starlette.datastructures import State
 from starlette.exceptions import HTTPException
 from starlette.requests import Request
 from starlette.responses import FileResponse, Response
 
 from hpn.installed import data_folder
-from hpn.web.door.access import OPEN
+from hpn.web.door.access import OPEN, admit
 from hpn.web.door.codings import accepted_codings
 
 DIST = data_folder("frontend/dist")
@@ -50,9 +51,17 @@ class Assets:
         return self.folder / hashed_name if hashed_name in self.manifest.values() else None
 
 
+def assets_of(state: State) -> Assets:
+    """Assets of an application, read once."""
+    if not hasattr(state, "assets"):
+        state.assets = Assets.load()
+    found: Assets = state.assets
+    return found
+
+
 async def serve(request: Request) -> Response:
     """Send a file in the best coding that the client accepts."""
-    path = request.app.state.assets.file(request.path_params["name"])
+    path = assets_of(request.app.state).file(request.path_params["name"])
     if path is None:
         raise HTTPException(404)
     headers = {"Cache-Control": "public, max-age=31536000, immutable"}
@@ -67,3 +76,28 @@ async def serve(request: Request) -> Response:
 
 router = APIRouter(include_in_schema=False, dependencies=[OPEN])
 router.add_api_route("/static/{name:path}", serve)
+
+docs_router = APIRouter(include_in_schema=False, dependencies=[admit("calculator")])
+
+DOCS = """<!doctype html>
+<html lang="en">
+<meta charset="utf-8">
+<meta name="viewport" content="width=device-width, initial-scale=1">
+<title>REST: HPN Select</title>
+<link rel="icon" href="{icon}">
+<link rel="stylesheet" href="{style}">
+<main id="docs"></main>
+<script src="{library}"></script>
+<script src="{start}"></script>
+</html>
+"""
+
+
+@docs_router.get("/docs")
+async def docs(request: Request) -> Response:
+    """The OpenAPI document as a page that sends requests: Swagger UI from the service's own files."""
+    url = assets_of(request.app.state).url
+    page = DOCS.format(
+        icon=url("favicon.svg"), style=url("swagger-ui.css"), library=url("swagger-ui-bundle.js"), start=url("docs.js")
+    )
+    return Response(page, media_type="text/html", headers={"Cache-Control": "no-cache"})

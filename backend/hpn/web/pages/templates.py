@@ -83,10 +83,8 @@ class Compact(FileSystemLoader):
 
 def environment(state: State) -> Environment:
     """Templates of an application, with what they all use; made once per application."""
-    if not hasattr(state, "assets"):
-        state.assets = assets.Assets.load()
     if not hasattr(state, "templates"):
-        state.templates = environment_of(state.assets)
+        state.templates = environment_of(assets.assets_of(state))
     templates: Environment = state.templates
     return templates
 
