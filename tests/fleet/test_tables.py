@@ -149,6 +149,20 @@ def test_a_quote_that_nothing_closes_is_named_by_its_line(
     assert said.endswith("in.csv: line 4 has a quote that nothing closes in its cell")
 
 
+def test_a_quote_that_another_line_closes_is_named_where_lines_between_would_vanish(
+    tmp_path: Path, catalogue: Catalogue
+) -> None:
+    (tmp_path / "in.csv").write_text(f'{HEAD}a,40,"250,1\nb,40,250,1\nc,40,250",1\n')
+    said = refusal(Order(tmp_path / "in.csv", tmp_path / "out.csv"), catalogue)
+    assert said.endswith("in.csv: line 2 has a quote that nothing closes in its cell")
+
+
+def test_line_breaks_in_quotes_belong_to_a_list(size: Size) -> None:
+    cell = '"[40,\n32, 20, 10, 5,\n2]"'
+    answers = size(HEAD + f'a,{cell},{cell},{cell}\nb,"[40]","[250]","[1]"\n', ".csv")
+    assert [(row["axis"], row["error"]) for row in answers] == [("a", None), ("b", None)]
+
+
 def test_line_breaks_in_quotes_belong_to_a_name(size: Size) -> None:
     answers = size(HEAD + '"a\nb",40,250,1\n"c ""d"" \n\n",40,250,1\ne,"40",250,1\n', ".csv")
     assert [(row["axis"], row["error"]) for row in answers] == [("a\nb", None), ('c "d" \n\n', None), ("e", None)]

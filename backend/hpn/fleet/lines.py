@@ -163,18 +163,30 @@ class CsvTable(LinesTable):
             return super().end_of_lines(content, line)
         given = np.frombuffer(content, np.uint8)
         ends, marks = np.flatnonzero(given == ord("\n")), np.flatnonzero(given == ord('"'))
-        if _are_of_cells(given, marks) and not (is_whole and len(marks) % 2):
-            ends = ends[np.searchsorted(marks, ends) % 2 == 0]
+        inside = np.searchsorted(marks, ends) % 2 == 1
+        has_lines_in_cells = bool(inside[ends < marks[-1]].any()) or (is_whole and len(marks) % 2 == 1)
+        if _are_of_cells(given, marks) and not has_lines_in_cells:
+            ends = ends[~inside]
             return int(ends[-1]) + 1 if len(ends) else 0
         quoted = np.zeros(len(content), np.bool_)
         for found in QUOTED.finditer(content):
-            is_open = found[1] is not None and b"\n" in found[0]
-            if is_open and (is_whole or found.end() < len(content) or found.end() - found.start() > MOST_LINE_BYTES):
+            if self._is_broken(found, is_at_end=found.end() == len(content) and not is_whole):
                 number = line + content.count(b"\n", 0, found.start())
                 raise FleetError(f"{self.path}: line {number} has a quote that nothing closes in its cell")
             quoted[found.start() : found.end()] = True
         ends = ends[~quoted[ends]]
         return int(ends[-1]) + 1 if len(ends) else 0
+
+    def _is_broken(self, cell: re.Match[bytes], *, is_at_end: bool) -> bool:
+        """True for a cell that takes other lines along: nothing closes it, or a quote in one of those lines does.
+
+        At the end of what was read, more of a cell may follow.
+        """
+        lines = cell[0].split(b"\n")
+        if len(lines) == 1 or (cell[1] is not None and not is_at_end):
+            return len(lines) > 1
+        is_list = lines[0].startswith(b'"[')
+        return not is_list and any(line.count(b",") >= max(len(self.all_names) - 1, 1) for line in lines[1:-1])
 
     def _batches(self) -> Iterator[Batch]:
         for texts in self._texts(self.names):
