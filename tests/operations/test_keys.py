@@ -195,8 +195,6 @@ def test_every_route_belongs_to_the_group_that_its_method_and_address_suggest() 
             assert group == "metrics"
         elif path.endswith(("/select/batch", "/fleet")) or (path, method) == ("/fleets", "POST"):
             assert group == "batch"
-        elif path == "/oembed":
-            assert group == "reading"  # it tells of a saved selection
         elif path in ("/api/v1/selections", "/selections", "/fleets/saved") and method == "GET":
             assert group == "listing"
         elif "/selections" in path or "/fleets/" in path:

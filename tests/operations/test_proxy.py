@@ -92,14 +92,14 @@ def curl(proxy: Proxy, path: str, *options: str, body: bytes = b"") -> bytes:
 
 
 def test_the_service_learns_the_callers_address_host_and_id(proxy: Proxy, service: Service) -> None:
-    head = b"GET /oembed?url=https://localhost:%d/?T=40%%26n=250%%26t=1 HTTP/1.1\r\nHost: localhost:%d\r\n"
+    head = b"GET /catalogue HTTP/1.1\r\nHost: localhost:%d\r\n"
     said = b"X-Forwarded-For: 192.0.2.7\r\nX-Request-ID: through-nginx\r\nConnection: close\r\n\r\n"
     with proxy.connect(source="127.0.0.2") as connection:
-        connection.sendall(head % (proxy.https, proxy.https) + said)
+        connection.sendall(head % proxy.https + said)
         answer = b"".join(iter(lambda: connection.recv(65536), b""))
 
     assert b"x-request-id: through-nginx" in answer.lower()
-    assert b"https://localhost:%d/" % proxy.https in answer.partition(b"\r\n\r\n")[2]
+    assert b'rel="canonical" href="https://localhost:%d/catalogue"' % proxy.https in answer.partition(b"\r\n\r\n")[2]
     assert service.event(request_id="through-nginx")["client"] == "127.0.0.2"
 
 

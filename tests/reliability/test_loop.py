@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
-from urllib.parse import quote, urlencode
+from urllib.parse import urlencode
 
 import httpx
 import pytest
@@ -76,7 +76,6 @@ def hostile(saved: str, *, whole: bool) -> Iterator[Hostile]:
     yield Hostile("POST", "/api/v1/select/batch", b'{"applications": [' + b"[]," * 10_000_000 + b"1]}", JSON)
     for path in ("/", "/cycle.csv", "/application.json", "/paste"):
         yield Hostile("GET", f"{path}?{LINK}")
-    yield Hostile("GET", f"/oembed?url={quote('/?' + LINK[:30_000].rpartition('&T=')[0])}")
     yield Hostile("GET", f"/find?{urlencode({'link': '/?' + LINK[:30_000]})}&gear=HPN-20A-5")
     for path in ("/", "/paste", "/selections", "/cycle.csv", "/application.json"):
         yield Hostile("POST", path, PAIRS, FORM)
@@ -91,7 +90,6 @@ def hostile(saved: str, *, whole: bool) -> Iterator[Hostile]:
     for path in (one, f"/selections/{saved}", f"/selections/{saved}/copy", f"{one}/report.pdf", f"{one}/submodel.aasx"):
         yield Hostile("GET", path)
     yield Hostile("GET", f"/api/v1/selections/{'x' * 22}/report.xlsx")
-    yield Hostile("GET", f"/oembed?url=/selections/{saved}")
     yield Hostile("GET", "/selections?reference=" + "a" * 60_000)
     yield Hostile("GET", "/api/v1/selections?" + "&".join(f"k{k}=1" for k in range(8000)))
     yield Hostile("GET", "/api/v1/bearing-envelopes/20A?" + "&".join(f"k{k}=1" for k in range(8000)))
@@ -99,13 +97,14 @@ def hostile(saved: str, *, whole: bool) -> Iterator[Hostile]:
         yield Hostile("GET", path, b"", COOKIE)
     for path in (
         "/openapi.json",
+        "/docs",
         "/api/v1/catalogue",
         "/api/v1/catalogue/HPN-20A-5",
         "/api/v1/motors",
         "/api/v1/application.schema.json",
     ):
         yield Hostile("GET", path)
-    yield from (Hostile("GET", path) for path in ("/healthz", "/readyz", "/metrics", "/static/none"))
+    yield from (Hostile("GET", path) for path in ("/healthz", "/readyz", "/metrics", "/static/none", "/oembed"))
     yield Hostile("POST", "/api/v1/motors/HPN-20A-5", LONG_JSON, JSON)
     yield Hostile("GET", "/checks/" + "a" * 60_000)
     yield Hostile("GET", "/problems/" + "a" * 60_000)

@@ -1,4 +1,4 @@
-"""The files over HTTP, and what a pasted link unfolds into."""
+"""The files over HTTP, and the preview of a pasted link."""
 
 import html
 import json
@@ -230,31 +230,8 @@ def test_a_pasted_link_unfolds_into_gear_and_verdict(client: TestClient, saved: 
         document = client.get(path).text
         found = re.search(r'<meta property="og:title" content="([^"]*)"', document)
         assert found and html.unescape(found[1]) == title
-        link = re.search(r'application/json\+oembed" href="([^"]+)"', document)
-        assert link
-        answer = client.get(html.unescape(link[1]))
-        assert answer.status_code == 200
-        assert answer.json()["title"] == title
-        assert answer.json()["type"] == "link" and answer.json()["version"] == "1.0"
-        absolute = client.get("/oembed", params={"url": f"http://testserver{path}"})
-        assert absolute.json() == answer.json()
-
-
-@pytest.mark.parametrize(
-    "url",
-    [
-        "http://elsewhere.example/selections/x",
-        "http://testserver/selections/x",
-        "http://testserver/catalogue",
-        "http://[",
-    ],
-)
-def test_a_strange_link_unfolds_into_nothing(url: str, client: TestClient) -> None:
-    assert client.get("/oembed", params={"url": url}).status_code == 404
-
-
-def test_oembed_is_json_only(client: TestClient) -> None:
-    assert client.get("/oembed", params={"url": f"http://testserver/?{QUERY}", "format": "xml"}).status_code == 406
+        described = re.search(r'<meta property="og:description" content="([^"]*)"', document)
+        assert described and described[1].startswith("Average torque ") and ", HPN-20A-5: " in described[1]
 
 
 def test_templates_and_catalogues_are_part_of_the_package() -> None:
@@ -271,7 +248,7 @@ def test_guarded_reading_guards_files_and_previews_of_saved_selections(tmp_path:
     )
     with TestClient(create_app(settings)) as client:
         for path in (
-            "/oembed?url=/selections/x",
+            "/selections/0123456789abcdefghijkl",
             *(f"/api/v1/selections/0123456789abcdefghijkl/{name}" for name in FILES),
         ):
             assert client.get(path).status_code == 401

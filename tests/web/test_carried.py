@@ -4,7 +4,7 @@ import json
 from html.parser import HTMLParser
 from pathlib import Path
 from typing import Any
-from urllib.parse import parse_qsl, quote, urlencode
+from urllib.parse import parse_qsl, urlencode
 
 import pytest
 from starlette.testclient import TestClient
@@ -156,7 +156,6 @@ def test_files_of_a_link_are_of_its_application(api: TestClient, application: Ap
     assert Application.model_validate(api.get(f"/application.json?{query}").json()) == application
     for path in ("/report.pdf", "/report.xlsx", "/submodel.aasx"):
         assert api.get(f"{path}?{query}").status_code == 200
-    assert api.get(f"/oembed?url={quote(f'/?{query}')}").status_code == 200
 
 
 def test_the_csv_of_a_cycle_has_its_phases_with_peaks_and_rms(api: TestClient, application: Application) -> None:

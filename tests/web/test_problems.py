@@ -37,6 +37,23 @@ def test_each_error_of_an_input_has_a_code(api: TestClient) -> None:
     assert [error["code"] for error in lacking["errors"]] == ["not_available"]
 
 
+@pytest.mark.parametrize("query", ["", "?url=/selections/x", "?url=/?T=40%26n=250%26t=1&format=json"])
+def test_oembed_is_gone_and_the_problem_names_the_tags_that_replace_it(api: TestClient, query: str) -> None:
+    answer = api.get(f"/oembed{query}", headers={"Accept": "text/html,*/*"})
+
+    assert (answer.status_code, answer.headers["Content-Type"]) == (410, "application/problem+json")
+    assert answer.json()["type"] == f"{PATH}gone"
+    page = api.get("/?T=40&n=250&t=1").text
+    for tag in ("og:title", "og:description"):
+        assert tag in answer.json()["detail"]
+        assert f'property="{tag}"' in page
+
+
+def test_neither_page_nor_document_leads_to_oembed(api: TestClient) -> None:
+    assert "oembed" not in api.get("/?T=40&n=250&t=1").text.lower()
+    assert "oembed" not in api.get("/openapi.json").text.lower()
+
+
 def test_nginx_names_the_kinds_of_the_service() -> None:
     named = re.search(r"map \$status \$kind \{(.*?)\n    \}", (ROOT / "backend/nginx.conf").read_text(), re.DOTALL)
     assert named

@@ -17,7 +17,6 @@ from hpn.web import archive, fleets, spool
 from hpn.web.api import (
     batch,
     catalogue,
-    embeds,
     files,
     fleet,
     health,
@@ -98,7 +97,6 @@ ROUTERS: tuple[APIRouter, ...] = (
     files.saved_files,
     files.posted_files,
     files.linked_files,
-    embeds.router,
     pages.router,
     assets.router,
     assets.docs_router,

@@ -30,7 +30,7 @@ router = APIRouter(
     operation_id="getCatalogue",
     summary="Every gear",
     openapi_extra=schemas.IF_NONE_MATCH,
-    responses=schemas.answers("CatalogueReply", 406, headers=schemas.headers("ETag")) | schemas.HAS_IT_ALREADY,
+    responses=schemas.answers("CatalogueReply", headers=schemas.headers("ETag")) | schemas.HAS_IT_ALREADY,
 )
 async def catalogue(request: Request) -> Response:
     """Every gear of the series with every published figure and its source; null where not published."""

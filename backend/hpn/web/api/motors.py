@@ -31,7 +31,7 @@ router = APIRouter(
     operation_id="getMotors",
     summary="The user’s own motors",
     openapi_extra=schemas.IF_NONE_MATCH,
-    responses=schemas.answers("MotorsReply", 406, headers=schemas.headers("ETag")) | schemas.HAS_IT_ALREADY,
+    responses=schemas.answers("MotorsReply", headers=schemas.headers("ETag")) | schemas.HAS_IT_ALREADY,
 )
 async def motors(request: Request) -> Response:
     """Motors of a supplement’s motors.csv; none where there is no such file, null where a figure is blank."""

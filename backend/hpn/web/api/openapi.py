@@ -36,7 +36,7 @@ TAGS = [
     {"name": "Motors", "description": "The user’s own motors, and how far each is used on a gear."},
     {"name": "Saved selections", "description": "Selections that last: save, list, read with what differs, delete."},
     {"name": "Files", "description": "Report, workbook and Asset Administration Shell of a selection."},
-    {"name": "Service", "description": "State of the service, and what a pasted link unfolds into."},
+    {"name": "Service", "description": "State of the service."},
 ]
 
 SERVERS = [{"url": "/", "description": "The service that has sent this document."}]

@@ -18,7 +18,6 @@ from hpn.web.api.motors import motors_on_gear
 from hpn.web.api.replies import encode
 from hpn.web.door.problems import Problem
 from hpn.web.form.link_writer import to_link
-from hpn.web.preview import preview_of
 
 Json = dict[str, Any]
 
@@ -141,7 +140,6 @@ def _samples(catalogue: Catalogue) -> Json:
             "spool": "ok",
         },
         "Health": {"status": "ok"},
-        "OEmbedReply": plain(preview_of(selection, link)) | _PROVIDER,
     }
 
 
@@ -154,15 +152,6 @@ def _moving(motion: Json) -> Application:
 def plain(reply: Any) -> Any:
     """A reply as its reader gets it."""
     return msgspec.json.decode(encode(reply))
-
-
-_PROVIDER = {
-    "type": "link",
-    "version": "1.0",
-    "provider_name": "HPN Select",
-    "provider_url": "http://127.0.0.1:8000/",
-    "cache_age": 3600,
-}
 
 
 def one_gear(catalogue: Catalogue, gear: Json) -> Json:

@@ -49,12 +49,6 @@ KINDS: Mapping[str, Kind] = {
         N_("The address exists, but not with this method."),
         N_("Use a method of the header Allow."),
     ),
-    "not-acceptable": Kind(
-        406,
-        N_("Not acceptable"),
-        N_("The answer can’t be given in the format that was asked for."),
-        N_("Ask for JSON."),
-    ),
     "too-slow": Kind(
         408,
         N_("The request took too long to arrive"),

@@ -1,4 +1,4 @@
-"""Pages that explain: what a check tests, cause and remedy of a problem, why an address leads to no page."""
+"""Pages that explain: the test of a check, cause and remedy of a problem, addresses that lead to no page."""
 
 from typing import Any
 
@@ -25,6 +25,11 @@ def show_kind(request: Request) -> Response:
     """The page of a kind of problem by its name: `type` of a problem leads to it."""
     kind = KINDS.get(request.path_params["name"])
     return _nowhere(request) if kind is None else _page(request, "problem.html", kind=kind)
+
+
+async def show_oembed() -> Response:
+    """Problem 410: oEmbed has ended. The next version answers 404, as for any address that it doesn't know."""
+    raise Problem(410, "oEmbed has ended: read the Open Graph tags og:title and og:description of the page itself")
 
 
 def page_of(request: Request, error: HTTPException) -> Response | None:
@@ -54,3 +59,4 @@ def _page(request: Request, template: str, status: int = 200, **shown: Any) -> R
 router = APIRouter(include_in_schema=False, dependencies=[admit("calculator")])
 router.add_api_route("/checks/{code}", worked(show_check))
 router.add_api_route(PATH + "{name}", worked(show_kind))
+router.add_api_route("/oembed", show_oembed)

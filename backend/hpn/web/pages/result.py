@@ -12,8 +12,10 @@ from hpn.engine.checks import BY_CODE, allowed
 from hpn.engine.remedy import Growth, growths_of, remedy_of
 from hpn.engine.selection import Candidate, Selection
 from hpn.explain.readings import Life, Reading, readings_of, shortest_life
+from hpn.files.export import DIGITS
 from hpn.web.pages.drive import Drive
 from hpn.web.pages.pictures import Pictures, pictures_of
+from hpn.words.reader import Reader
 from hpn.words.wording import N_, Sentence
 
 BEST: Mapping[RankBy, str] = {
@@ -166,6 +168,30 @@ class Result:
     def growths(self) -> Mapping[str, tuple[Growth, ...]]:
         """Growth of every driver of each check of the chosen candidate at which that check is at its limit."""
         return growths_of(self.chosen, self.utilisation)
+
+
+@dataclass(frozen=True, slots=True)
+class Preview:
+    """Title and description that a chat shows for a link to a selection, in English."""
+
+    title: str
+    description: str
+
+
+def preview_of(selection: Selection, title: str | None = None) -> Preview:
+    """Gear and verdict of a selection, under the title that it was saved with."""
+    best, duty, english = selection.foremost, selection.duty, Reader(digits=DIGITS)
+    verdict = f"{selection.selected}, suitable" if selection.selected else "no suitable gear"
+    parts = [
+        f"Average torque {english.figure(duty.average_torque_Nm)} Nm",
+        f"largest torque {english.figure(duty.maximum_torque_Nm)} Nm",
+        f"average speed {english.figure(duty.average_output_speed_rpm)} rpm",
+    ]
+    if duty.load_inertia_kgm2 is not None:
+        inertia = english.figure(duty.load_inertia_kgm2)
+        parts.append(f"motion of {len(duty.phases)} load phases, load inertia {inertia} kg·m²")
+    parts.append(f"{best.designation}: {best.reason.removesuffix('.')}")
+    return Preview(f"{title or 'HPN Select'}: {verdict}", ", ".join(parts) + ".")
 
 
 def lighter_miss(selection: Selection, gears: Mapping[str, Gear]) -> Candidate | None:

@@ -23,8 +23,7 @@ from hpn.web.form.labels import MOTOR_CODE, ordering_code
 from hpn.web.form.linked import carried_pairs, onward
 from hpn.web.pages import assets, pictures
 from hpn.web.pages.fleet_reasons import reasons_of
-from hpn.web.pages.result import BEST
-from hpn.web.preview import preview_of
+from hpn.web.pages.result import BEST, preview_of
 from hpn.words import units
 from hpn.words.quantities import (
     BEARING_MODELS,
