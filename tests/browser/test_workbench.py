@@ -195,3 +195,29 @@ def test_another_section_in_the_address_of_an_open_page_is_shown(visitor: Visito
     page.evaluate("location.hash = '#bearing'")
     expect(page.get_by_role("link", name="Bearing", exact=True)).to_have_attribute("aria-current", "true")
     assert page.evaluate("scrollY") == 0
+
+
+FEET = """(cells) => cells.map((cell) => {
+  const range = document.createRange();
+  range.selectNodeContents(cell);
+  const lines = [...range.getClientRects()].filter(({ height }) => height > 0);
+  return Math.min(...lines.map(({ bottom }) => Math.round(bottom)));
+})"""
+"""Foot of the first line of text in each cell."""
+
+
+def test_figures_of_a_check_stand_beside_the_first_line_of_its_name(visitor: Visitor) -> None:
+    page = visitor.open(EXAMPLE)
+    for row in page.locator("#limits tbody tr").all():
+        name, demand = row.locator(".explain, .figure:nth-child(2) .quantity").evaluate_all(FEET)[:2]
+        assert abs(name - demand) <= 1
+
+
+def test_headings_of_a_comparison_stand_on_one_line_and_pins_have_no_ground_of_their_own(visitor: Visitor) -> None:
+    page = visitor.open(EXAMPLE + "&gear=HPN-20A-5&pin=HPN-32A-5#compare")
+    headings = page.locator("#comparison thead th")
+    expect(headings).to_have_count(2)
+    grounds = headings.locator(".pin").evaluate_all("pins => pins.map(pin => getComputedStyle(pin).backgroundColor)")
+
+    assert len(set(headings.evaluate_all(FEET))) == 1
+    assert set(grounds) == {"rgba(0, 0, 0, 0)"}
