@@ -5,7 +5,7 @@ import re
 import httpx
 from playwright.sync_api import expect
 
-from tests.browser.conftest import Visitor
+from tests.browser.conftest import Visitor, button
 from tests.build import worked_example
 
 
@@ -66,3 +66,22 @@ def test_two_are_marked_renamed_and_compared(visitor: Visitor, server: str) -> N
 
     expect(page.get_by_role("heading", level=1)).to_have_text("Two selections side by side")
     expect(page.get_by_text("None: both were asked the same.")).to_be_visible()
+
+
+SIGN_AND_LIMIT = """cells => cells.map(cell =>
+  [...cell.querySelectorAll(".sign, .quantity")].map(part => part.getBoundingClientRect().bottom))"""
+"""Feet of the sign and of the limit in each cell."""
+
+
+def test_limits_of_a_saved_selection_stand_beside_their_sign_and_names_of_figures_are_not_cut(
+    visitor: Visitor, server: str
+) -> None:
+    page = visitor.open(saved(server, title="Drehtisch"))
+    button(page, "Deutsch").click()
+    expect(page.locator("html")).to_have_attribute("lang", "de")
+    feet = page.locator("#limits tbody td:nth-child(3)").evaluate_all(SIGN_AND_LIMIT)
+    heights = page.locator(".figures dt").evaluate_all("names => names.map(name => name.offsetHeight)")
+
+    assert feet
+    assert all(abs(sign - limit) < 4 for sign, limit in feet)
+    assert max(heights) < 40  # two lines
