@@ -117,8 +117,9 @@ $(MODULES)/.run $(MODULES)/.dev: frontend/package.json frontend/package-lock.jso
 	cd frontend && npm ci --loglevel=error $(NPM_FLAGS)
 	@touch $@
 
-$(ASSETS): $(shell find frontend/static 2>/dev/null) frontend/build.py $(PACKAGES) | $(ENVIRONMENT)
-	$(BIN)/python frontend/build.py
+# fonttools stands beside the environment, too.
+$(ASSETS): $(shell find frontend/static 2>/dev/null) $(wildcard frontend/*.py) $(PACKAGES) | $(ENVIRONMENT)
+	PYTHONPATH="$(CURDIR)/$(TOOLS)" $(BIN)/python frontend/build.py
 
 # Bytecode of the templates; a checksum tells the service which of them has changed since.
 $(COMPILED): $(wildcard frontend/templates/* backend/hpn/web/pages/templates.py) $(ASSETS) | $(ENVIRONMENT)

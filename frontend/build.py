@@ -13,17 +13,19 @@ import shutil
 from pathlib import Path
 
 import brotli
+import fonts
 
 FRONTEND = Path(__file__).parent
 STATIC = FRONTEND / "static"
 DIST = FRONTEND / "dist"
 HTMX = FRONTEND / "node_modules/htmx.org/dist/htmx.min.js"
 SWAGGER = FRONTEND / "node_modules/swagger-ui-dist"
+TYPEFACE = FRONTEND / "node_modules/@ibm/plex-sans-variable"
 PLOTLY = FRONTEND / "node_modules/plotly.js-basic-dist-min/plotly-basic.min.js"
 STYLES = {
-    "page.css": ("app", "tools", "workbench", "selection", "insight", "plots", "motion"),
-    "site.css": ("app", "tools", "saved", "selection", "insight", "plots", "fleet"),
-    "report.css": ("app", "tools", "fleet"),
+    "page.css": ("fonts", "tokens", "app", "tools", "workbench", "selection", "insight", "plots", "motion"),
+    "site.css": ("fonts", "tokens", "app", "tools", "saved", "selection", "insight", "plots", "fleet"),
+    "report.css": ("tokens", "app", "tools", "fleet"),
 }
 """Style sheets of the form with its result, of all other pages, and of a fleet’s report, which holds its own."""
 
@@ -57,14 +59,23 @@ def script(*names: str) -> bytes:
     return HTMX.read_bytes() + b'\n(() => {\n"use strict";\n' + b"".join(parts) + b"})();\n"
 
 
+def style(faces: dict[str, bytes], *names: str) -> bytes:
+    """Style sheets of ours as one, which ask for the faces by their hashed names."""
+    text = b"".join(sent(f"{name}.css") for name in names).decode()
+    return re.sub(r"url\((hpn-[\w.-]+)\)", lambda url: f"url({hashed_name(url[1], faces[url[1]])})", text).encode()
+
+
 def files() -> dict[str, bytes]:
     """Content of each file by its logical name; packages keep their comments, with their licences."""
+    texts = [*FRONTEND.glob("templates/*.html"), *FRONTEND.parent.glob("backend/hpn/**/*.po")]
+    faces = fonts.faces(TYPEFACE, texts)
     return {
+        **faces,
         "plotly-basic.min.js": PLOTLY.read_bytes(),
         **{name: (SWAGGER / name).read_bytes() for name in ("swagger-ui.css", "swagger-ui-bundle.js")},
         "page.js": script(*SCRIPTS),
         "gear.js": script("tools"),
-        **{name: b"".join(sent(f"{part}.css") for part in parts) for name, parts in STYLES.items()},
+        **{name: style(faces, *parts) for name, parts in STYLES.items()},
         **{name: sent(name) for name in ALONE},
     }
 

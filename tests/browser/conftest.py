@@ -1,6 +1,7 @@
 """A real server and a real Chromium, started once for all browser tests."""
 
 import os
+import re
 import shutil
 import socket
 import subprocess
@@ -167,6 +168,17 @@ def button(page: Page, name: str) -> Locator:
 
 ASKED_FOR = {rule: {"enabled": True} for rule in ("target-size", "label-content-name-mismatch")}
 """WCAG 2.5.8 and 2.5.3: axe runs them where they are asked for."""
+
+
+def reader_menu(page: Page) -> Locator:
+    """Button of the menu of language and units."""
+    return page.get_by_role("button", name=re.compile("^(Language and units|Sprache und Einheiten)"))
+
+
+def in_german(page: Page) -> None:
+    """Turn a page into German."""
+    reader_menu(page).click()
+    page.get_by_role("button", name="Deutsch").click()
 
 
 def violations(page: Page) -> list[tuple[str, list[str]]]:

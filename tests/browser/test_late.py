@@ -8,7 +8,7 @@ from urllib.parse import parse_qs
 import pytest
 from playwright.sync_api import Download, Page, Request, Route, expect
 
-from tests.browser.conftest import Visitor, answer_held_back, button, open_section
+from tests.browser.conftest import Visitor, answer_held_back, button, in_german, open_section
 
 EXAMPLE = "/?T=40&n=250&t=0.3&T=32&n=500&t=3&T=20&n=250&t=0.4&tp=4&Tk=200&i=5"
 
@@ -73,7 +73,7 @@ def test_what_is_saved_is_what_the_form_says(visitor: Visitor) -> None:
 
 def test_what_is_saved_is_what_the_form_says_in_german_and_inches(visitor: Visitor) -> None:
     page = visitor.open(EXAMPLE)
-    page.get_by_role("button", name="Deutsch").click()
+    in_german(page)
     expect(page.get_by_role("button", name="Speichern", exact=True)).to_be_visible()
     page.locator("#T-0").fill("90,5")
     page.locator("form.save").evaluate("form => form.requestSubmit()")

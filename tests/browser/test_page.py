@@ -8,7 +8,7 @@ import pytest
 from playwright.sync_api import Page, expect
 from pypdf import PdfReader
 
-from tests.browser.conftest import Visitor, answer_held_back, open_section, violations
+from tests.browser.conftest import Visitor, answer_held_back, open_section, reader_menu, violations
 
 EXAMPLE = "/?T=40&n=250&t=0.3&T=32&n=500&t=3&T=20&n=250&t=0.4&tp=4&Tk=200&i=5"
 PHASES = (("40", "250", "0.3"), ("32", "500", "3"), ("20", "250", "0.4"))
@@ -310,7 +310,7 @@ def test_page_does_not_move_while_typing(visitor: Visitor) -> None:
 @pytest.mark.parametrize(("units", "size"), [("Metric (SI)", (595, 842)), ("US customary", (612, 792))])
 def test_answer_prints_on_one_page_of_the_readers_paper(visitor: Visitor, units: str, size: tuple[int, int]) -> None:
     page = visitor.open(EXAMPLE)
-    page.get_by_role("button", name=re.compile("^Units")).click()
+    reader_menu(page).click()
     with page.expect_navigation():
         page.get_by_role("button", name=units).click()
     (printed,) = PdfReader(io.BytesIO(page.pdf(prefer_css_page_size=True))).pages

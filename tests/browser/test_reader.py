@@ -5,14 +5,14 @@ import re
 import pytest
 from playwright.sync_api import Page, expect
 
-from tests.browser.conftest import Visitor, violations
+from tests.browser.conftest import Visitor, in_german, reader_menu, violations
 
 EXAMPLE = "/?T=40&n=250&t=0.3&T=32&n=500&t=3&T=20&n=250&t=0.4&tp=4&Tk=200&i=5"
 ODD = "/?T=40.123456789&n=33.3333333333333&t=0.1&tp=0.07&Tk=199.99&FR=512.34&fw=1.2&ta=21.7&bl=7.5&m=3.3&L=150.5"
 
 
 def set_units(page: Page, preset: str) -> None:
-    page.get_by_role("button", name=re.compile("^(Units|Einheiten)")).click()
+    reader_menu(page).click()
     with page.expect_navigation():
         page.get_by_role("button", name=preset).click()
 
@@ -37,12 +37,13 @@ def test_switching_to_lb_in_and_german_and_back_loses_nothing(visitor: Visitor, 
     before, first = address(page), torque.input_value()
     set_units(page, "US customary")
     expect(page.get_by_label("Torque, phase 1, in lb·in")).to_have_value(re.compile(r"^35[45]\.\d+$"))
-    page.get_by_role("button", name="Deutsch").click()
+    in_german(page)
     expect(page.get_by_label("Drehmoment, Phase 1, in lb·in")).to_have_value(re.compile(r"^35[45],\d+$"))
     if not script:
         page.get_by_role("button", name="Berechnen").click()
     expect(page.locator("html")).to_have_attribute("lang", "de")
     set_units(page, "Metrisch (SI)")
+    reader_menu(page).click()
     page.get_by_role("button", name="English").click()
     expect(page.get_by_label("Torque, phase 1, in Nm")).to_have_value(first)
     assert address(page) == before
@@ -61,7 +62,7 @@ def test_typing_in_a_readers_units_makes_the_link_of_everybody(visitor: Visitor)
 
 def test_a_decimal_comma_is_understood_in_a_german_form(visitor: Visitor) -> None:
     page = visitor.open(EXAMPLE)
-    page.get_by_role("button", name="Deutsch").click()
+    in_german(page)
     box = page.get_by_label("Drehmoment, Phase 2")
     box.fill("9,3")
     expect(page).to_have_url(re.compile("T=9.3&"))
@@ -89,7 +90,7 @@ def test_unfinished_input_survives_a_switch(visitor: Visitor) -> None:
     page.get_by_role("button", name="Add phase").click()
     expect(page.get_by_label("Torque, phase 4")).to_be_focused()
     page.keyboard.type("50")
-    page.get_by_role("button", name="Deutsch").click()
+    in_german(page)
     expect(page.get_by_label("Drehmoment, Phase 4")).to_have_value("50")
     expect(page.get_by_label("Drehzahl, Phase 4")).to_have_accessible_description("fehlt")
 
@@ -106,7 +107,7 @@ def test_language_follows_the_browser_and_no_link_changes_it(visitor: Visitor) -
 
 def test_units_are_chosen_by_keyboard_one_by_one(visitor: Visitor) -> None:
     page = visitor.open(EXAMPLE)
-    page.get_by_role("button", name=re.compile("^Units")).focus()
+    reader_menu(page).focus()
     page.keyboard.press("Enter")
     dialog = page.get_by_role("dialog", name="Units")
     expect(dialog).to_be_visible()
@@ -126,15 +127,15 @@ def test_units_are_chosen_by_keyboard_one_by_one(visitor: Visitor) -> None:
 def test_accessibility_check_finds_nothing_in_german_with_the_units_open(visitor: Visitor, path: str) -> None:
     page = visitor.open(path)
     with page.expect_navigation():
-        page.get_by_role("button", name="Deutsch").click()
+        in_german(page)
     set_units(page, "US-Einheiten")
-    page.get_by_role("button", name=re.compile("^Einheiten")).click()
+    reader_menu(page).click()
     assert violations(page) == []
 
 
 @pytest.mark.parametrize("width", [390, 1440, *(pytest.param(width, marks=pytest.mark.soak) for width in (768, 1024))])
 def test_nothing_makes_the_german_page_scroll_sideways(visitor: Visitor, width: int) -> None:
     page = visitor.open(EXAMPLE.replace("&i=5", "&FR=500&FRi=&FRi=&FRi=700"), width=width)
-    page.get_by_role("button", name="Deutsch").click()
+    in_german(page)
     expect(page.locator("html")).to_have_attribute("lang", "de")
     assert page.evaluate("document.documentElement.scrollWidth") == width

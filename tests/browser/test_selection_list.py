@@ -5,7 +5,7 @@ import re
 import httpx
 from playwright.sync_api import expect
 
-from tests.browser.conftest import Visitor, button
+from tests.browser.conftest import Visitor, in_german
 from tests.build import worked_example
 
 
@@ -77,7 +77,7 @@ def test_limits_of_a_saved_selection_stand_beside_their_sign_and_names_of_figure
     visitor: Visitor, server: str
 ) -> None:
     page = visitor.open(saved(server, title="Drehtisch"))
-    button(page, "Deutsch").click()
+    in_german(page)
     expect(page.locator("html")).to_have_attribute("lang", "de")
     feet = page.locator("#limits tbody td:nth-child(3)").evaluate_all(SIGN_AND_LIMIT)
     heights = page.locator(".figures dt").evaluate_all("names => names.map(name => name.offsetHeight)")

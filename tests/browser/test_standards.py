@@ -84,10 +84,3 @@ def test_axe_finds_nothing_on_any_page_with_these_rules_too(
 
     assert violations(page) == []
     assert width == 1440 or page.evaluate(TOO_SMALL, [MAIN, LEAST_PX, TOUCH_PX]) == []
-
-
-@pytest.mark.parametrize(("dark", "shade"), [(False, "rgba(23, 33, 43, 0.06)"), (True, "rgba(0, 0, 0, 0)")])
-def test_panels_have_a_shadow_in_the_light(visitor: Visitor, dark: bool, shade: str) -> None:
-    page = visitor.open("/paste", dark=dark)
-
-    assert page.locator(".panel").first.evaluate("panel => getComputedStyle(panel).boxShadow").startswith(shade)

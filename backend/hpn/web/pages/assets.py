@@ -22,6 +22,7 @@ ENCODINGS = {"br": ".br", "gzip": ".gz"}
 # Not every system's table knows these.
 mimetypes.add_type("text/javascript", ".js")
 mimetypes.add_type("text/javascript", ".mjs")
+mimetypes.add_type("font/woff2", ".woff2")
 mimetypes.add_type("image/svg+xml", ".svg")
 mimetypes.add_type("application/manifest+json", ".webmanifest")
 

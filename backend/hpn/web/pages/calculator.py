@@ -51,9 +51,10 @@ class MapCell:
 
     @property
     def level(self) -> str:
-        """Step of the colour scale: five for gears that pass, one each for those that fail and those not rated."""
+        """Step of the scale: reserve of a gear that passes, else one for failed and one for not rated."""
         if self.candidate.status == "suitable":
-            return f"l{min(int((self.candidate.utilisation or 0.0) * 5), 4)}"
+            used = self.candidate.utilisation or 0.0
+            return "most" if used <= 0.6 else "more" if used <= 0.85 else "some"
         return "over" if self.candidate.status == "unsuitable" else "unknown"
 
 

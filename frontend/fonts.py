@@ -1,0 +1,84 @@
+"""Cut the page's typeface from IBM Plex Sans: the width and weights that the page uses, and the characters it writes.
+
+The licence (SIL OFL 1.1) keeps the name Plex for the original, so that the result is called HPN Sans; its text goes
+along with the files.
+"""
+
+import io
+import unicodedata
+from collections.abc import Iterable
+from pathlib import Path
+
+from fontTools.subset import Options, Subsetter
+from fontTools.ttLib import TTFont
+from fontTools.varLib.instancer import instantiateVariableFont
+
+NAME = "HPN Sans"
+WIDTH = 94.0
+WEIGHTS = (400.0, 650.0)
+THIN = {0x2009: 0.2, 0x202F: 0.2}
+"""Widths of thin spaces in em: as drawn they are too narrow for groups of digits to be told apart."""
+
+UPRIGHT = ["kern", "mark", "mkmk", "ccmp", "locl", "subs", "sups"]
+ITALIC = ["ccmp", "locl"]
+"""Features of the layout; symbols of one or two letters need no kerning, which is half of the file."""
+
+LETTERS = {*range(0x20, 0x7F), *range(0xA0, 0x100)}
+"""Western European text."""
+
+SYMBOLS = {*map(ord, "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789 ,.()/αβγδηθμπρφωΔ·−′")}
+"""Characters of quantities' symbols and their indices, which stand in italics."""
+
+
+def faces(package: Path, texts: Iterable[Path]) -> dict[str, bytes]:
+    """Upright and italic face, and their licence, by the names that the style sheets ask for."""
+    originals = package / "fonts/complete/ttf"
+    upright = cut(originals / "IBM Plex Sans Var-Roman.ttf", LETTERS | written(texts), UPRIGHT, "Regular")
+    italic = cut(originals / "IBM Plex Sans Var-Italic.ttf", SYMBOLS, ITALIC, "Italic")
+    return {
+        "hpn-sans.woff2": woff2(upright),
+        "hpn-sans-italic.woff2": woff2(italic),
+        "hpn-sans.txt": (package / "LICENSE.txt").read_bytes(),
+    }
+
+
+def written(sources: Iterable[Path]) -> set[int]:
+    """Characters in texts, without line breaks and private ones."""
+    found = {character for path in sources for character in path.read_text(encoding="utf-8")}
+    return {ord(character) for character in found if unicodedata.category(character)[0] != "C"}
+
+
+def cut(source: Path, wanted: set[int], features: list[str], style: str) -> TTFont:
+    """Face with the wanted characters alone, at one width and a range of weights."""
+    font = TTFont(source)
+    options = Options()
+    options.layout_features, options.hinting, options.notdef_outline = features, False, True
+    options.name_IDs = [0, 1, 2, 3, 4, 5, 6, 13, 14]
+    subsetter = Subsetter(options)
+    subsetter.populate(unicodes=wanted)
+    subsetter.subset(font)
+    instantiateVariableFont(font, {"wdth": WIDTH, "wght": WEIGHTS}, inplace=True)
+    _rename(font, style)
+    units, mapping = font["head"].unitsPerEm, font.getBestCmap()
+    for code, em in THIN.items():
+        if code in mapping:
+            font["hmtx"][mapping[code]] = (round(em * units), 0)
+    return font
+
+
+def _rename(font: TTFont, style: str) -> None:
+    """Give a face its own name; copyright and licence stay."""
+    names = {1: NAME, 2: style, 3: f"{NAME} {style}", 4: f"{NAME} {style}", 6: f"{NAME}-{style}".replace(" ", "")}
+    for record in list(font["name"].names):
+        if record.nameID in names:
+            record.string = names[record.nameID]
+        elif record.nameID not in (0, 13, 14):
+            font["name"].removeNames(record.nameID)
+
+
+def woff2(font: TTFont) -> bytes:
+    """Face as browsers load it."""
+    font.flavor = "woff2"
+    content = io.BytesIO()
+    font.save(content, reorderTables=False)
+    return content.getvalue()
