@@ -188,7 +188,7 @@ class Selector:
 
     def _candidates(self, application: Application, cycle: Cycle, gears: Gears) -> list[Candidate]:
         stop = application.emergency_stop
-        T_k = math.nan if stop is None else abs(stop.torque_Nm)
+        T_k = math.nan if stop is None or stop.torque_Nm is None else abs(stop.torque_Nm)
         demands = {
             "average_torque": (np.full_like(gears.ratio, cycle.T_av), gears.T_N),
             "repeated_peak_torque": (np.full_like(gears.ratio, cycle.T_max), gears.T_R),
@@ -300,7 +300,7 @@ def link_of(application: Application) -> str:
     for phase in application.duty_cycle.load_phases:
         pairs += [("T", phase.torque_Nm), ("n", phase.speed_rpm), ("t", phase.duration_s)]
     pairs.append(("tp", application.duty_cycle.pause_s))
-    if application.emergency_stop is not None:
+    if application.emergency_stop is not None and application.emergency_stop.torque_Nm is not None:
         pairs.append(("Tk", application.emergency_stop.torque_Nm))
     pairs += [("i", ratio) for ratio in application.requirements.ratios or ()]
     return "/?" + urlencode([(name, repr(value).removesuffix(".0")) for name, value in pairs])

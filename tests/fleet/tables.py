@@ -110,6 +110,8 @@ def _type(name: str) -> pa.DataType | None:
         return None
     if name in PHASE:
         return pa.list_(pa.float64())
+    if name == "requirements.load_reverses":
+        return pa.bool_()
     return LISTS.get(name) or (pa.string() if name in TEXTS else pa.float64())
 
 

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from tests.build import Json, cycle, phase
 
-RANKS = ("weight", "utilisation", "length", "motor_torque", "life", "stiffness")
+RANKS = ("weight", "utilisation", "length", "motor_torque", "life", "stiffness", "position_error")
 
 signs = st.sampled_from([-1.0, 1.0])
 torques = st.one_of(st.just(0.0), st.sampled_from([9.0, 26.0, 80.0, 149.0, 256.0]), st.floats(0.01, 400))
@@ -96,7 +96,7 @@ def at_random(chance: random.Random, models: Sequence[str] = ("linear", "iso281"
             if maybe(0.7):
                 entry["axial_N"] = chance.choice([1, -1]) * some(0, 3000, 0, 640, 2200)
         phases[0].setdefault("axial_N", 0.0)
-    parts: dict[str, Any] = {"rank_by": chance.choice(RANKS)} if maybe(0.8) else {}
+    parts: dict[str, Any] = {"rank_by": chance.choice((*RANKS, "natural_frequency"))} if maybe(0.8) else {}
     if maybe(0.6):
         parts["emergency_stop"] = {"torque_Nm": chance.choice([1, -1]) * some(0, 900, 26, 40, 80, 149, 250, 256, 376)}
         if maybe():
@@ -113,6 +113,12 @@ def at_random(chance: random.Random, models: Sequence[str] = ("linear", "iso281"
             load["life_h"] = 10 ** chance.uniform(2, 6)
         if maybe():
             load["life_basis"] = chance.choice(["L50", "L10"])
+        if maybe(0.3):
+            load["radial_position_mm"] = some(-80, 80, 0, 21, 45)
+        if maybe(0.2):
+            load["axial_radius_mm"] = some(0, 80, 0, 40)
+        if maybe(0.8) and ("radial_position_mm" in load or "axial_radius_mm" in load):
+            load["shaft_centre_mm"] = some(10, 60, 21, 45)
         parts["output_load"] = load
     wishes: dict[str, Any] = {}
     if maybe(0.2):
@@ -145,6 +151,32 @@ def at_random(chance: random.Random, models: Sequence[str] = ("linear", "iso281"
         if maybe():
             wishes["motor"] |= {"inertia_kgm2": 10 ** chance.uniform(-5, -3), "inertia_ratio": some(1, 10, 3, 5)}
             wishes["load_inertia_kgm2"] = 10 ** chance.uniform(-3, 0)
+    if maybe(0.3):
+        wishes["load_inertia_kgm2"] = wishes.get("load_inertia_kgm2", 10 ** chance.uniform(-3, 1))
+        wishes["natural_frequency_Hz"] = some(5, 200, 25)
+    if maybe(0.3):
+        wishes["load_reverses"] = maybe()
+    if maybe(0.3):
+        wishes |= (
+            {"position_error_arcmin": some(10, 60, 15, 20)}
+            if maybe()
+            else {
+                "position_error_mm": some(0.2, 5, 1),
+                "position_radius_mm": some(50, 500, 250),
+            }
+        )
+    if "emergency_stop" in parts and maybe(0.3):
+        brake = {"torque_Nm": some(0.2, 40, 8)}
+        if maybe():
+            brake["rise_time_s"] = some(0, 0.05, 0, 0.005)
+        elif maybe(0.3):
+            brake["dynamic_factor"] = some(1, 2, 1, 2)
+        parts["emergency_stop"] = {"brake": brake} | {
+            name: count for name, count in parts["emergency_stop"].items() if name == "count"
+        }
+    rank = parts.get("rank_by")
+    if rank == "natural_frequency":
+        wishes.setdefault("load_inertia_kgm2", 10 ** chance.uniform(-3, 0))
     if wishes:
         parts["requirements"] = wishes
     return cycle(*phases, pause_s=some(0, 20, 0) if maybe() else 0.0, **parts)
@@ -159,7 +191,12 @@ times = st.floats(0.2, 5)
 def _moves(way: str, speed: str, unit: float, acceleration: str, external: str) -> st.SearchStrategy[Json]:
     """A possible move; what its ramps leave to say is said in each of the ways that there are."""
 
-    def of(profile: str, size: float, time: float, ramp: float, said: int, share: float, load: float | None) -> Json:
+    deceleration = acceleration.replace("acc", "dec")
+
+    def of(
+        profile: str, size: float, time: float, ramps: tuple[float, float], said: int, share: float, load: float | None
+    ) -> Json:
+        ramp = ramps[0]
         move: Json = {"profile": profile, "time_s": time}
         if load is not None:
             move[external] = load
@@ -168,6 +205,8 @@ def _moves(way: str, speed: str, unit: float, acceleration: str, external: str) 
         move[way] = size
         if profile in ("modified_sine", "triangular") or said == 0:
             return move
+        if said > 3:
+            return move | unequal(profile, abs(size), time, ramps, said, share)
         V = abs(size) / (time * (1 - ramp)) / unit
         a = abs(size) / (time * (1 - ramp)) / (time * ramp) / (1 - share / 2 if profile == "s_curve" else 1)
         if profile == "s_curve":
@@ -180,13 +219,30 @@ def _moves(way: str, speed: str, unit: float, acceleration: str, external: str) 
             del move["time_s"]
         return move
 
+    def unequal(profile: str, size: float, time: float, ramps: tuple[float, float], said: int, share: float) -> Json:
+        V, t = size / (time * (1 - sum(ramps) / 2)), [time * ramp for ramp in ramps]
+        k = 1 - share / 2 if profile == "s_curve" else 1
+        a = [V / (k * one) * (1 + 1e-6) for one in t]
+        fast, short = V / unit * (1 + 1e-6), [one * (1 - 1e-6) for one in t]
+        ways: dict[int, Json] = {
+            4: {"acceleration_time_s": short[0], "deceleration_time_s": short[1]},
+            5: {acceleration: a[0], deceleration: a[1]},
+            6: {acceleration: a[0], "deceleration_time_s": short[1]},
+            7: {"time_s": None, speed: fast, "acceleration_time_s": short[0], deceleration: a[1]},
+            8: {"time_s": None, speed: fast, acceleration: a[0], deceleration: a[1]},
+            9: {speed: fast, "acceleration_time_s": short[0]},
+            10: {speed: fast, deceleration: a[1]},
+        }
+        jerk = {"jerk_share": share} if profile == "s_curve" else {}
+        return ways[said] | jerk
+
     return st.builds(
-        of,
+        lambda *drawn: {name: value for name, value in of(*drawn).items() if value is not None},
         st.sampled_from(["trapezoidal", "triangular", "s_curve", "modified_sine", "dwell"]),
         ways,
         times,
-        st.floats(0.05, 0.5),
-        st.integers(0, 3),
+        st.tuples(st.floats(0.05, 0.49), st.floats(0.05, 0.49)),
+        st.integers(0, 10),
         st.sampled_from([0.1, 0.5, 1.0]),
         st.none() | st.floats(-40, 40),
     )

@@ -89,7 +89,7 @@ def test_thousands_of_random_applications_get_what_the_contract_says(catalogue: 
 
     # A comparison is worth as much as what it reaches: every check in every state, every way to rank and to govern.
     rated_by_input = {"motor_speed", "motor_peak_torque", "motor_rated_torque", "backlash", "torsional_stiffness"}
-    rated_by_input |= {"motor_rated_speed", "inertia_ratio"}
+    rated_by_input |= {"motor_rated_speed", "inertia_ratio", "natural_frequency", "position_error"}
     for code, explanation in EXPLANATIONS.items():
         states = {"pass", "fail"} | (set() if code in rated_by_input else {"not_rated"})
         assert all(reached[code, state] > 20 for state in states), code

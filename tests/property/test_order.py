@@ -30,7 +30,8 @@ def evaluation_of(chance: np.random.Generator, rank_by: NDArray[Any]) -> Evaluat
         length_max_mm=drawn(chance, GEARS),
         torsional_stiffness_Nm_per_rad=drawn(chance, GEARS),
     )
-    figures = SimpleNamespace(life_L10_h=drawn(chance, axes, GEARS), motor_peak_torque_Nm=drawn(chance, axes, GEARS))
+    ranked = ("life_L10_h", "motor_peak_torque_Nm", "natural_frequency_Hz", "position_error_arcmin")
+    figures = SimpleNamespace(**{name: drawn(chance, axes, GEARS) for name in ranked})
     case = SimpleNamespace(gears=gears, figures=figures, asked=SimpleNamespace(rank_by=rank_by))
     none = cast(Any, None)
     return Evaluation(cast(Any, case), none, none, (), none, none, none, verdict, utilisation)
@@ -50,6 +51,8 @@ def sorted_by_hand(evaluation: Evaluation, axis: int, rank_by: str) -> list[int]
         "length": gears.length_max_mm,
         "motor_torque": figures.motor_peak_torque_Nm[axis],
         "life": -figures.life_L10_h[axis],
+        "natural_frequency": -figures.natural_frequency_Hz[axis],
+        "position_error": figures.position_error_arcmin[axis],
         "stiffness": -gears.torsional_stiffness_Nm_per_rad,
     }
 

@@ -49,7 +49,10 @@ def varied(chance: random.Random, asked: Json) -> Json:
 def motored(chance: random.Random, asked: Json, *, moving: bool) -> Json:
     """The application with limits of a motor, stated or by the name of a listed one, and with its inertia."""
     wishes = asked["requirements"] = {**asked.get("requirements", {})}
-    wishes.pop("load_inertia_kgm2", None)
+    for name in ("load_inertia_kgm2", "natural_frequency_Hz"):
+        wishes.pop(name, None)
+    if asked.get("rank_by") == "natural_frequency":
+        del asked["rank_by"]
     listed = {"designation": chance.choice(["M 1", "M 8"])}
     stated = {
         "peak_torque_Nm": chance.uniform(1, 40),

@@ -46,6 +46,7 @@ class Gear:
     weight: float | None = None
     length: float | None = None
     backlash: float | None = None
+    accuracy: float | None = None
     K3: float | None = None
     F_R: float | None = None
     F_A: float | None = None
@@ -95,6 +96,7 @@ def printed_gears() -> list[Gear]:
             stages = book.STAGES[ratio]
             gear = Gear(size, ratio, stages)
             gear.backlash = book.BACKLASH_ARCMIN[size, stages]
+            gear.accuracy = book.TRANSMISSION_ACCURACY_ARCMIN[size, stages]
             gear.K3 = book.TORSIONAL_STIFFNESS_NM_PER_RAD[size, stages]
             if size in book.RATED_TORQUE_NM:
                 gear.T_R = book.REPEATED_PEAK_TORQUE_NM[size][place]
@@ -200,9 +202,9 @@ def _judge(
     at_most("repeated_peak_torque", duty.T_max, gear.T_R)
 
     allowed: float | None = None
-    stop = application.get("emergency_stop")
+    stop, T_k = application.get("emergency_stop"), None
     if stop is not None:
-        T_k = abs(stop["torque_Nm"])
+        T_k = abs(stop["torque_Nm"]) if "torque_Nm" in stop else _stop_torque(stop["brake"], wishes, gear)
         at_most("momentary_peak_torque", T_k, gear.T_M)
         if gear.T_R is not None:
             allowed = INFINITE
@@ -246,6 +248,16 @@ def _judge(
         at_most("backlash", gear.backlash, wishes["backlash_arcmin"], 1)
     if wishes.get("torsional_stiffness_Nm_per_rad") is not None:
         at_least("torsional_stiffness", gear.K3, wishes["torsional_stiffness_Nm_per_rad"], 1)
+    error, frequency = _position_error(application, wishes, gear), None
+    if gear.K3 is not None and wishes.get("load_inertia_kgm2") is not None:
+        frequency = (gear.K3 / wishes["load_inertia_kgm2"]) ** (by.number(1) / 2) / (2 * math.pi)
+    if wishes.get("natural_frequency_Hz") is not None:
+        at_least("natural_frequency", frequency, wishes["natural_frequency_Hz"], 1)
+    if wishes.get("position_error_arcmin") is not None:
+        at_most("position_error", error, wishes["position_error_arcmin"], 1)
+    elif wishes.get("position_error_mm") is not None:
+        angle = wishes["position_error_mm"] / wishes["position_radius_mm"] * 10800 / math.pi
+        at_most("position_error", error, angle, 1)
     if wishes.get("weight_kg") is not None:
         at_most("weight", gear.weight, wishes["weight_kg"], 1)
     if wishes.get("length_mm") is not None:
@@ -263,10 +275,48 @@ def _judge(
             "bearing_life_L10_h": None if bearing_life is None else bearing_life / 5,
             "motor_peak_torque_Nm": duty.T_max / loss,
             "motor_rated_torque_Nm": duty.T_rms / loss,
+            "stop_torque_Nm": T_k,
+            "natural_frequency_Hz": frequency,
+            "wind_up_arcmin": None if gear.K3 is None else duty.T_max / gear.K3 * 10800 / math.pi,
+            "position_error_arcmin": error,
         },
     )
     _conclude(result, load_checks)
     return result
+
+
+def _stop_torque(brake: Mapping[str, Any], wishes: Mapping[str, Any], gear: Gear) -> float:
+    """T_k of a stop by the brake, without a motion: nothing opposes it."""
+    J, J_m = wishes.get("load_inertia_kgm2"), (wishes.get("motor") or {}).get("inertia_kgm2")
+    i, eta, T_B = gear.ratio, wishes.get("efficiency") or 1.0, brake["torque_Nm"]
+    f = brake.get("dynamic_factor")
+    if f is None:
+        f, t_b = 2, brake.get("rise_time_s", 0)
+        if t_b and J is not None and J_m is not None and gear.K3 is not None:
+            turn = math.sqrt(gear.K3 * (1 / J + 1 / (i**2 * J_m))) / 2 * t_b  # π f₂ t_b
+            f = 1 + abs(math.sin(turn)) / turn
+    if J is None or J_m is None:
+        return float(f * i * T_B / eta)
+    return float(f * J * i * T_B / (i**2 * J_m + eta * J))
+
+
+def _position_error(application: Mapping[str, Any], wishes: Mapping[str, Any], gear: Gear) -> float | None:
+    if gear.accuracy is None or gear.K3 is None or gear.backlash is None:
+        return None
+    cycle = application["duty_cycle"]
+    torques = [
+        (1 if p["torque_Nm"] > 0 else -1 if p["torque_Nm"] < 0 else 0) * _peak(p, "torque_Nm") for p in cycle["phases"]
+    ]
+    reverses, largest = wishes.get("load_reverses"), max(_peak(p, "torque_Nm") for p in cycle["phases"])
+    if reverses is None:
+        reverses = not any(p["torque_Nm"] < 0 for p in cycle["phases"])
+    if reverses:
+        torques = [-largest, largest]
+    elif cycle.get("pause_s"):
+        torques.append(0)
+    low, high = min(torques), max(torques)
+    error: float = gear.accuracy + (high - low) / gear.K3 * 10800 / math.pi
+    return error + (gear.backlash if low <= 0 <= high else 0)
 
 
 def _bearing(application: Mapping[str, Any], duty: _Duty, gear: Gear, at_most: Any, by: Arithmetic) -> float | None:
@@ -285,7 +335,12 @@ def _bearing(application: Mapping[str, Any], duty: _Duty, gear: Gear, at_most: A
         )
         for p in phases
     ]
-    P = [_equivalent(given.get("model", "linear"), F_R, F_A, gear) for F_R, F_A in loads]
+    x, y, x_c = given.get("radial_position_mm"), given.get("axial_radius_mm", 0), given.get("shaft_centre_mm")
+    at_centre = [_at_centre(F_R, F_A, x, y, x_c) for F_R, F_A in loads]
+    P = [
+        None if F_R is None else _equivalent(given.get("model", "linear"), F_R, F_A, gear)
+        for F_R, (_, F_A) in zip(at_centre, loads, strict=True)
+    ]
     required = given.get("life_h", 20000) * (5 if given.get("life_basis") == "L10" else 1)
     k = (100 * 20000 / (duty.n_av * required)) ** (by.number(1) / 3)
     known = [p for p in P if p is not None]
@@ -298,6 +353,15 @@ def _bearing(application: Mapping[str, Any], duty: _Duty, gear: Gear, at_most: A
     at_most("output_bearing_load", f_w * max(known), 1.0)
     at_most("output_bearing_life", f_w * mean, k)
     return 20000 * (100 / duty.n_av) / (f_w * mean) ** 3 if mean > 0 else INFINITE
+
+
+def _at_centre(F_R: float, F_A: float, x: float | None, y: float, x_c: float | None) -> float | None:
+    """Radial load at the shaft's centre that stands for where both act; None where that is not known."""
+    if not x and not (y and F_A):
+        return F_R
+    if x_c is None:
+        return None
+    return F_R * (1 if x is None else max(1, abs(x) / x_c)) + F_A * y / x_c
 
 
 def _equivalent(model: str, F_R: float, F_A: float, gear: Gear) -> float | None:
@@ -364,6 +428,8 @@ def _ordered(candidates: list[Candidate], rank_by: str) -> list[Candidate]:
             "motor_torque": last(c.figures["motor_peak_torque_Nm"]),
             "life": last(c.figures["life_L10_h"], -1),
             "stiffness": last(c.gear.K3, -1),
+            "natural_frequency": last(c.figures["natural_frequency_Hz"], -1),
+            "position_error": last(c.figures["position_error_arcmin"]),
         }[rank_by]
 
     def ordered(status: str, first: Callable[[Candidate], float]) -> list[Candidate]:

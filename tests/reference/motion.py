@@ -9,6 +9,7 @@ from __future__ import annotations
 import itertools
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -36,7 +37,11 @@ def course(move: Json, way: Any, speed_unit: Any) -> Way:
     """Course of a move, in its own units per second."""
     T, D = (mpf(move["time_s"]) if "time_s" in move else None), abs(mpf(way))
     V = next((mpf(move[name]) * speed_unit for name in ("speed_rpm", "speed_mm_per_s") if name in move), None)
-    a = next((mpf(move[k]) for k in ("acceleration_deg_per_s2", "acceleration_mm_per_s2") if k in move), None)
+    a, b = (
+        next((mpf(move[k]) for k in (f"{which}_deg_per_s2", f"{which}_mm_per_s2") if k in move), None)
+        for which in ("acceleration", "deceleration")
+    )
+    t1, t2 = (mpf(move[k]) if k in move else None for k in ("acceleration_time_s", "deceleration_time_s"))
     if move["profile"] == "modified_sine":
         return modified_sine(T)
     share = mpf(move.get("jerk_share", "0.5")) if move["profile"] == "s_curve" else mpf(0)
@@ -44,6 +49,8 @@ def course(move: Json, way: Any, speed_unit: Any) -> Way:
         T = T or (2 * D / V if V else 2 * mp.sqrt(D / a))
         return ramped(T / 2, mpf(0), share)
     k = 1 - share / 2
+    if t1 or t2 or b or (T and V and a):
+        return unequal(D, T, V, (t1, a), (t2, b), k, share)
     if T and V:
         ramp = min(T - D / V, T / 2)
     elif T and a:
@@ -57,6 +64,53 @@ def course(move: Json, way: Any, speed_unit: Any) -> Way:
             V = D / ramp
         T = D / V + ramp
     return ramped(ramp, T - 2 * ramp, share)
+
+
+def unequal(D: Any, T: Any, V: Any, first: Any, last: Any, k: Any, share: Any) -> Way:
+    """Course with ramps of their own, each by (time, acceleration) as they are given; searches for the speed."""
+    both = [first if any(first) else last, last if any(last) else first]
+
+    def times(speed: Any) -> list[Any]:
+        return [t or speed / (k * a) for t, a in both]
+
+    if T and V:
+        own = 0 if any(first) else 1
+        ramps = times(V)
+        ramps[1 - own] = 2 * (T - D / V) - ramps[own]
+    elif T:
+        # Way of a course of this time grows with its speed up to that of the triangle.
+        V = bisected(lambda speed: speed * (T - sum(times(speed)) / 2) - D, mpf(0), 2 * D / T)
+        ramps = times(V)
+    else:
+        if V * sum(times(V)) / 2 > D:
+            V = bisected(lambda speed: speed * sum(times(speed)) / 2 - D, mpf(0), V)
+        ramps = times(V)
+        T = D / V + sum(ramps) / 2
+    run = T - sum(ramps)
+    halves = [ramped(ramp, mpf(0), share) for ramp in ramps]  # a triangle of each, of which half is taken
+    ways = [V * ramps[0] / (2 * D), V * run / D, V * ramps[1] / (2 * D)]
+
+    def part(t: Any, of: str) -> Any:
+        scale = V * ramps[0 if t <= ramps[0] else 1] / D
+        if t <= ramps[0]:
+            return scale * getattr(halves[0], of)(t)
+        if t < T - ramps[1]:
+            return {"place": ways[0] + V * (t - ramps[0]) / D, "speed": V / D, "acceleration": mpf(0)}[of]
+        value = scale * getattr(halves[1], of)(T - t)
+        return {"place": 1 - value, "speed": value, "acceleration": -value}[of]
+
+    rises = [ramp * share / 2 for ramp in ramps]
+    kinks = {0, rises[0], ramps[0] - rises[0], ramps[0], T - ramps[1], T - ramps[1] + rises[1], T - rises[1], T}
+    ends = [ramps[0], T] if run < mpf(10) ** -25 else [ramps[0], T - ramps[1], T]
+    return Way(sorted(kinks), ends, *(partial(part, of=of) for of in ("place", "speed", "acceleration")))
+
+
+def bisected(function: Callable[[Any], Any], low: Any, high: Any) -> Any:
+    """Zero of a function that grows between two arguments, to 30 digits."""
+    for _ in range(110):
+        middle = (low + high) / 2
+        low, high = (middle, high) if function(middle) < 0 else (low, middle)
+    return (low + high) / 2
 
 
 def ramped(ramp: Any, run: Any, share: Any) -> Way:
@@ -327,12 +381,15 @@ def _acceleration(move: Json, one: Way, duration: float, t: Any) -> Any:
     if move["profile"] == "modified_sine":
         x = t / duration
         return np.where((x > 1 / 8) & (x < 7 / 8), np.sin((np.pi + 4 * np.pi * x) / 3), np.sin(4 * np.pi * x))
-    ramp, run = float(one.parts[0]), float(one.parts[1] - one.parts[0])
     share = move.get("jerk_share", 0.5) if move["profile"] == "s_curve" else 0
-    u = np.minimum(t, duration - t)
-    rise = ramp * share / 2
-    shape = np.minimum(1, np.minimum(u, ramp - u) / rise) if rise else np.ones_like(t)
-    return np.where(u < ramp, shape, 0) * np.where(t < ramp + run / 2, 1, -1)
+    first, last = float(one.parts[0]), duration - float(one.parts[-2])
+
+    def ramp(u: Any, length: float) -> Any:
+        rise = length * share / 2
+        shape = np.minimum(1, np.minimum(u, length - u) / rise) if rise else np.ones_like(u)
+        return np.where(u < length, shape, 0) / length
+
+    return ramp(t, first) - ramp(duration - t, last)
 
 
 def _load_of_floats(m: Json, move: Json, per_rad: float, theta: Any, omega: Any, alpha: Any, sign: float) -> Any:

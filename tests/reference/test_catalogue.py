@@ -43,6 +43,7 @@ def typed_by_hand(size: str, ratio: int) -> dict[str, object]:
 
 ALL = [(size, ratio) for size, ratios in handbook.RATIOS.items() for ratio in ratios]
 ELSEWHERE = {"clamp_bolts", "housing_bolts", "note", "sources"}
+UNPUBLISHED = {"shaft_centre_mm": None, "inertia_kgm2": None, "no_load_torque_Nm": None}
 
 
 @pytest.mark.parametrize(("size", "ratio"), ALL, ids=[f"HPN-{size}-{ratio}" for size, ratio in ALL])
@@ -50,7 +51,7 @@ def test_every_figure_of_a_gear_is_the_printed_one(catalogue: Catalogue, size: s
     gear = catalogue.by_designation[f"HPN-{size}-{ratio}"]
     figures = {f.name: getattr(gear, f.name) for f in dataclasses.fields(Gear) if f.name not in ELSEWHERE}
 
-    assert figures == typed_by_hand(size, ratio)
+    assert figures == typed_by_hand(size, ratio) | UNPUBLISHED
 
 
 def test_the_catalogue_holds_the_64_printed_gears_and_no_other_in_the_order_of_size_and_ratio(

@@ -91,6 +91,21 @@ BELT: Json = {
     ],
 }
 
+UNEQUAL: Json = {
+    "mechanism": {"type": "rotary", "inertia_kgm2": 0.5, "friction_torque_Nm": 2, "efficiency": 0.9},
+    "moves": [
+        {"angle_deg": 90, "time_s": 0.8, "acceleration_time_s": 0.1, "deceleration_time_s": 0.4},
+        {"angle_deg": -120, "time_s": 1.0, "deceleration_time_s": 0.3},
+        {"angle_deg": 100, "time_s": 0.8, "acceleration_deg_per_s2": 2000, "deceleration_deg_per_s2": 600},
+        {"angle_deg": -100, "time_s": 0.8, "acceleration_time_s": 0.2, "deceleration_deg_per_s2": 700},
+        {"angle_deg": 80, "speed_rpm": 25, "acceleration_time_s": 0.2, "deceleration_time_s": 0.5},
+        {"angle_deg": 30, "speed_rpm": 60, "acceleration_time_s": 0.2, "deceleration_deg_per_s2": 400},
+        {"angle_deg": -80, "speed_rpm": 25, "deceleration_deg_per_s2": 900},
+        {"angle_deg": 90, "time_s": 1.0, "speed_rpm": 20, "acceleration_deg_per_s2": 600},
+        {"angle_deg": -90, "time_s": 1.0, "speed_rpm": 20, "deceleration_time_s": 0.15},
+    ],
+}
+
 
 def phases_of(motion: Json) -> list[Any]:
     """Phases that the application model gives."""
@@ -98,7 +113,14 @@ def phases_of(motion: Json) -> list[Any]:
     return list(application.duty_cycle.load_phases)
 
 
-@pytest.mark.parametrize("motion", [CONTRACT, PENDULUM, SCREW, VISCOUS, BELT])
+def with_profile(motion: Json, profile: str) -> Json:
+    return motion | {"moves": [{"profile": profile} | move for move in motion["moves"]]}
+
+
+@pytest.mark.parametrize(
+    "motion",
+    [CONTRACT, PENDULUM, SCREW, VISCOUS, BELT, with_profile(UNEQUAL, "trapezoidal"), with_profile(UNEQUAL, "s_curve")],
+)
 def test_phases_are_those_that_mpmath_integrates(motion: Json) -> None:
     expected, found = reference.phases(motion), phases_of(motion)
 

@@ -80,7 +80,8 @@ def test_a_motor_that_speeds_up_a_table_bears_its_own_inertia_and_brakes_with_th
 def test_without_its_inertia_the_motor_has_the_torque_over_ratio_and_efficiency_as_before(catalogue: Catalogue) -> None:
     asked = {"efficiency": 0.9, "motor": {"peak_torque_Nm": 50}}
     reply = answer({"duty_cycle": {"motion": CONTRACT}, "requirements": asked}, catalogue)
-    typed = answer({"duty_cycle": {"phases": reply["duty"]["phases"]}, "requirements": asked}, catalogue)
+    inertia = {"load_inertia_kgm2": reply["duty"]["load_inertia_kgm2"]}
+    typed = answer({"duty_cycle": {"phases": reply["duty"]["phases"]}, "requirements": asked | inertia}, catalogue)
 
     assert reply["candidates"] == typed["candidates"]
     assert "motor_torque_partial" in notices(reply)
@@ -92,7 +93,13 @@ def test_a_motors_inertia_without_a_motion_changes_no_torque(catalogue: Catalogu
     one = answer(phases | {"requirements": {"motor": motor}}, catalogue)
     other = answer(phases | {"requirements": {"motor": motor | {"inertia_kgm2": 0.5}}}, catalogue)
 
-    assert one == other
+    assert [stopped(gear) for gear in one["candidates"]] == [stopped(gear) for gear in other["candidates"]]
+    assert (one["notices"], one["duty"]) == (other["notices"], other["duty"])
+
+
+def stopped(gear: Json) -> Json:
+    """A candidate without the one figure that a motor's inertia alone gives."""
+    return {name: value for name, value in gear.items() if name != "end_stop_speed_rpm"}
 
 
 def test_an_efficiency_curve_is_read_phase_by_phase_with_the_motors_inertia_too(supplemented: Supplement) -> None:

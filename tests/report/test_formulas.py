@@ -52,6 +52,7 @@ def test_formulas_name_what_there_is() -> None:
     terms = (*CYCLE_TERMS, *GEAR_TERMS)
     ours = {*RATINGS, *(term.name for term in terms), *PHASE, *USED, *ENTERED, *SERIES, "unlimited", "iso281", "L10"}
     functions = {"IF", "OR", "AND", "NOT", "ABS", "COUNT", "SUM", "SUMPRODUCT", "MAX", "SQRT", "INT", "IFERROR", "TRUE"}
+    functions |= {"MIN", "SIGN", "PI", "reverses"}
     for text in (*(term.formula for term in terms), *(check.ratio for check in CHECK_FORMULAS.values())):
         names = set(re.findall(r"[A-Za-z]\w*", re.sub(r"\b[\d.]+(E[+-]?\d+)?\b", "", text)))
         assert names - functions - ours - {"not", "rated"} == set(), text

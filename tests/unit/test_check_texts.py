@@ -15,7 +15,8 @@ IN_ORDER = [
     *("average_torque", "repeated_peak_torque", "momentary_peak_torque", "momentary_peak_count"),
     *("average_input_speed", "maximum_input_speed", "life", "output_bearing_load", "output_bearing_life"),
     *("motor_speed", "motor_peak_torque", "motor_rated_torque", "motor_rated_speed", "inertia_ratio"),
-    *("ambient_temperature", "backlash", "torsional_stiffness", "weight", "length"),
+    *("ambient_temperature", "backlash", "torsional_stiffness", "natural_frequency", "position_error"),
+    *("weight", "length"),
 ]
 LOAD_CHECKS = IN_ORDER[:14]
 EVERYTHING = cycle(
@@ -25,6 +26,8 @@ EVERYTHING = cycle(
         "life_h": 1,
         "backlash_arcmin": 7,
         "torsional_stiffness_Nm_per_rad": 1,
+        "natural_frequency_Hz": 1,
+        "position_error_arcmin": 90,
         "weight_kg": 9,
         "length_mm": 200,
         "ambient_temperature_degC": 20,
@@ -75,7 +78,11 @@ def test_no_check_is_listed_twice() -> None:
 
 
 def test_a_minimum_is_a_minimum_and_units_are_those_of_the_demand() -> None:
-    assert {code for code, check in BY_CODE.items() if check.kind == "minimum"} == {"life", "torsional_stiffness"}
+    assert {code for code, check in BY_CODE.items() if check.kind == "minimum"} == {
+        "life",
+        "torsional_stiffness",
+        "natural_frequency",
+    }
     assert {code for code, check in BY_CODE.items() if check.kind == "range"} == {"ambient_temperature"}
     units = {
         "Nm": {"average_torque", "repeated_peak_torque", "momentary_peak_torque", "motor_peak_torque"}
@@ -84,7 +91,8 @@ def test_a_minimum_is_a_minimum_and_units_are_those_of_the_demand() -> None:
         "h": {"life"},
         "": {"momentary_peak_count", "output_bearing_load", "output_bearing_life", "inertia_ratio"},
         "°C": {"ambient_temperature"},
-        "arcmin": {"backlash"},
+        "arcmin": {"backlash", "position_error"},
+        "Hz": {"natural_frequency"},
         "Nm/rad": {"torsional_stiffness"},
         "kg": {"weight"},
         "mm": {"length"},
@@ -139,10 +147,12 @@ BOUNDS = {
     "motor_peak_torque": ("T_max / (i · η) ≤ T_mot", None),
     "motor_rated_torque": ("T_rms / (i · η) ≤ T_mot,N", None),
     "motor_rated_speed": ("n_in,av ≤ n_mot,N", None),
-    "inertia_ratio": ("J_L / (i² · J_m) ≤ r_J", None),
+    "inertia_ratio": ("(J_L / i² + J_g) / J_m ≤ r_J", None),
     "ambient_temperature": ("t_min ≤ t_amb ≤ t_max", "ambient_temperature_maximum_degC"),
     "backlash": ("j ≤ j_req", "backlash_arcmin"),
     "torsional_stiffness": ("K_3 ≥ K_3,req", "torsional_stiffness_Nm_per_rad"),
+    "natural_frequency": ("√(K_3 / J_L) / 2π ≥ f_req", "torsional_stiffness_Nm_per_rad"),
+    "position_error": ("φ_e ≤ φ_req", "torsional_stiffness_Nm_per_rad"),
     "weight": ("m ≤ m_req", "weight_kg"),
     "length": ("L_max ≤ L_req", "length_max_mm"),
 }

@@ -1,5 +1,6 @@
 """A limit that is met exactly passes, and so does what floating point may add; what lies beyond that fails."""
 
+import math
 from collections.abc import Callable
 
 import pytest
@@ -41,10 +42,18 @@ AT: dict[str, Callable[[float], Json]] = {
     "ambient_temperature": lambda x: with_wish(ambient_temperature_degC=20 - 20 * x),
     "backlash": lambda x: with_wish(backlash_arcmin=5 / x),
     "torsional_stiffness": lambda x: with_wish(torsional_stiffness_Nm_per_rad=26000 * x),
+    # An inertia of K3 / (2π · 10)² swings with 10 Hz
+    "natural_frequency": lambda x: with_wish(
+        load_inertia_kgm2=26000 / (2 * math.pi * 10) ** 2, natural_frequency_Hz=10 * x
+    ),
+    "position_error": lambda x: with_wish(position_error_arcmin=(8 + 2 / 26000 * 10800 / math.pi + 5) / x),
     "weight": lambda x: with_wish(weight_kg=2.6 / x),
     "length": lambda x: with_wish(length_mm=122 / x),
 }
-PROPERTIES = {"ambient_temperature", "backlash", "torsional_stiffness", "weight", "length"}
+PROPERTIES = {"ambient_temperature", "backlash", "torsional_stiffness", "weight", "length"} | {
+    "natural_frequency",
+    "position_error",
+}
 
 
 def test_every_check_is_tried_at_its_limit() -> None:
@@ -99,8 +108,8 @@ def test_the_expected_number_of_stops_may_be_the_allowed_number_and_no_more(cata
 
 
 def test_every_requirement_is_checked_or_enters_what_is_checked() -> None:
-    asked = {check.asked for check in CHECKS}
-    entering = {"utilisation", "efficiency", "load_inertia_kgm2", "motor.inertia_kgm2"}
+    asked = {check.asked for check in CHECKS} | {check.instead for check in CHECKS}
+    entering = {"utilisation", "efficiency", "load_inertia_kgm2", "motor.inertia_kgm2", "position_radius_mm"}
     wanted = {".".join(path) for path in NUMBERS if path[0] == "requirements"}
 
     assert wanted - asked == {f"requirements.{name}" for name in entering}

@@ -288,7 +288,8 @@ def test_each_error_of_the_model_stands_at_its_field() -> None:
         ("t", 0): "must be above 0 s",
         ("T", 1): "must be at most 1000000 Nm",
         ("u", None): "must be at most 1",
-        ("rank", None): "must be one of weight, utilisation, length, motor_torque, life, stiffness",
+        ("rank", None): "must be one of weight, utilisation, length, motor_torque, life, stiffness, "
+        "natural_frequency, position_error",
         ("K3", None): "must be above 0 Nm/rad",
         ("Nk", None): "must be a whole number",
     }
@@ -299,7 +300,7 @@ def test_cycle_without_motion_is_reported_at_the_speed() -> None:
 
 
 def test_count_without_a_torque_asks_for_the_torque() -> None:
-    assert found(PHASE + "&Nk=5") == {("Tk", None): "is missing"}
+    assert found(PHASE + "&Nk=5") == {("Tk", None): "is required, or a brake in its place"}
 
 
 def test_load_coefficient_without_a_load_asks_for_a_load() -> None:

@@ -12,7 +12,7 @@ from hpn.engine.selection import Judged, Selection, select
 from tests.build import Json, answer, candidate, check, cycle, notices, phase
 from tests.conftest import Supplement
 
-PLAIN = cycle(phase(10, 100), requirements={"sizes": ["20A"]})
+PLAIN = cycle(phase(10, 100), requirements={"sizes": ["20A"], "load_reverses": False})
 
 
 def codes(application: Json, catalogue: Catalogue) -> set[str]:
@@ -125,7 +125,7 @@ def test_a_bearing_without_load_has_an_unlimited_life_beside_its_notice(catalogu
 
 
 def test_a_motor_without_a_stated_efficiency_is_a_lower_bound(catalogue: Catalogue) -> None:
-    motor = {"motor": {"peak_torque_Nm": 20}, "sizes": ["20A"]}
+    motor = PLAIN["requirements"] | {"motor": {"peak_torque_Nm": 20}}
 
     assert "lower bound" in notices(answer(PLAIN | {"requirements": motor}, catalogue))["efficiency_unknown"]
     assert codes(PLAIN | {"rank_by": "motor_torque"}, catalogue) == {"efficiency_unknown", "motor_torque_partial"}
@@ -189,15 +189,6 @@ def test_models_and_motor_torques_say_what_they_leave_out(catalogue: Catalogue) 
     assert "bearing_iso281" not in codes(PLAIN | load, catalogue)
     assert "motor_torque_partial" in codes(PLAIN | {"rank_by": "motor_torque"}, catalogue)
     assert "motor_torque_partial" not in codes(PLAIN, catalogue)
-
-
-def test_an_inertia_of_the_load_that_nothing_asks_for_is_told(catalogue: Catalogue) -> None:
-    def with_motor(**motor: float) -> Json:
-        return PLAIN | {"requirements": {"load_inertia_kgm2": 0.8} | ({"motor": motor} if motor else {})}
-
-    assert "load_inertia_unused" in codes(with_motor(), catalogue)
-    assert "load_inertia_unused" in codes(with_motor(peak_torque_Nm=5.0, inertia_kgm2=1e-4), catalogue)
-    assert "load_inertia_unused" not in codes(with_motor(inertia_ratio=5.0, inertia_kgm2=1e-4), catalogue)
 
 
 @pytest.mark.parametrize(

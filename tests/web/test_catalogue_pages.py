@@ -104,7 +104,7 @@ def test_missing_figures_say_how_to_supply_them_and_what_is_supplied_is_marked(t
     page = TestClient(create_app()).get("/catalogue/HPN-40A-5").text
     assert page.count("not in this catalogue’s source") >= 9
     files = dict(re.findall(r"<strong>(\w+\.csv)</strong></p>\s*<pre[^>]*>([^<]*)</pre>", page))
-    assert set(files) == {"ratings.csv", "sizes.csv", "weights.csv", "lengths.csv"}
+    assert set(files) == {"gears.csv", "ratings.csv", "sizes.csv", "weights.csv", "lengths.csv"}
     header, row = files["ratings.csv"].strip().splitlines()
     assert header == "size,ratio,repeated_peak_torque_Nm,rated_torque_Nm,momentary_peak_torque_Nm,source"
     (tmp_path / "ratings.csv").write_text(f"{header}\n{row.replace('5,,,', '5,700,400,1300')}\n")

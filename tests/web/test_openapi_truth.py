@@ -162,7 +162,13 @@ def refusals(response: Any, pointer: str) -> list[str]:
 INERTIAS = {"inertia_kgm2": 0.001, "inertia_ratio": 5}
 WHOLE: Json = FULL | {
     "requirements": FULL["requirements"]
-    | {"ratios": [5], "sizes": ["20A"], "load_inertia_kgm2": 1, "motor": FULL["requirements"]["motor"] | INERTIAS},
+    | {
+        "ratios": [5],
+        "sizes": ["20A"],
+        "load_inertia_kgm2": 1,
+        "position_radius_mm": 9,
+        "motor": FULL["requirements"]["motor"] | INERTIAS,
+    },
     "duty_cycle": FULL["duty_cycle"]
     | {"phases": [phase | {"radial_N": 1, "axial_N": 1} for phase in FULL["duty_cycle"]["phases"]]},
 }
@@ -178,7 +184,7 @@ GRAVITY = ("gravity_mass_kg", "gravity_radius_mm")
 WEIGHTLESS: Json = TURNING | {
     "mechanism": {name: value for name, value in TURNING["mechanism"].items() if name not in GRAVITY}
 }
-TRIED_BY_THEMSELVES: tuple[Path, ...] = (("applications", 0), ("duty_cycle", "motion"))
+TRIED_BY_THEMSELVES: tuple[Path, ...] = (("applications", 0), ("duty_cycle", "motion"), ("emergency_stop", "brake"))
 
 
 @pytest.mark.parametrize("name", BODIES)
@@ -220,6 +226,21 @@ def test_each_bound_of_a_motion_is_the_one_that_is_applied(
             assert (refusals(response, pointer) == []) is allowed, (pointer, str(value)[:60], response.text[:300])
             tried += 1
     assert tried >= 12
+
+
+def test_each_bound_of_a_brake_is_the_one_that_is_applied(api: TestClient, document: Json) -> None:
+    tried, brake = (
+        0,
+        {"torque_Nm": 8.0, "rise_time_s": 0.01, "reaction_time_s": 0.02, "speed_rpm": 9.0, "dynamic_factor": 2.0},
+    )
+    for path, schema in leaves(document, document["components"]["schemas"]["Brake"]):
+        for value, allowed in tries(schema, at(brake, path)):
+            body = worked_example() | {"emergency_stop": {"brake": with_value(brake, path, value)}}
+            response = api.post("/api/v1/select", json=body)
+            pointer = "".join(f"/{step}" for step in ("emergency_stop", "brake", *path))
+            assert (refusals(response, pointer) == []) is allowed, (pointer, str(value)[:60], response.text[:300])
+            tried += 1
+    assert tried >= 8
 
 
 def test_each_bound_of_a_query_is_the_one_that_is_applied(api: TestClient, document: Json) -> None:

@@ -27,9 +27,11 @@ from hpn.words.fields import (
     Hours,
     Load,
     Model,
+    MovingSpeed,
     Number,
     Positive,
     Ratio,
+    Seconds,
     Share,
     Torque,
     at_most,
@@ -41,7 +43,9 @@ from hpn.words.wording import Sentence
 
 BearingModel = Literal["linear", "iso281", "digitised"]
 LifeBasis = Literal["L50", "L10"]
-RankBy = Literal["weight", "utilisation", "length", "motor_torque", "life", "stiffness"]
+RankBy = Literal[
+    "weight", "utilisation", "length", "motor_torque", "life", "stiffness", "natural_frequency", "position_error"
+]
 ApplicationArea = Literal[
     "aerospace",
     "explosive_area",
@@ -110,13 +114,45 @@ class DutyCycle(Model):
         return self.motion.phases if self.motion is not None else self.phases or ()
 
 
-class EmergencyStop(Model):
-    """Momentary peak torque T_k, and how often it is expected over the life."""
+class Brake(Model):
+    """Brake at the motor that stops the axis from uniform running."""
 
-    torque_Nm: Torque = Field(description="Emergency-stop torque T_k.", examples=[200.0])
+    torque_Nm: Positive = Field(description="Largest torque T_B of the brake, at the motor.", examples=[8.0])
+    rise_time_s: Seconds = Field(0.0, description="Time t_b in which the brake’s torque rises.", examples=[0.005])
+    reaction_time_s: Seconds = Field(
+        0.0, description="Time t_r from the command until the brake’s torque begins to rise.", examples=[0.02]
+    )
+    speed_rpm: MovingSpeed | None = Field(
+        None, description="Output speed n_b at the command; without it the largest of the cycle.", examples=[250.0]
+    )
+    dynamic_factor: Annotated[Number, Field(ge=1, le=10)] | None = Field(
+        None,
+        description="Peak over steady torque of the stop; without it 2, or less where the rise time and the inertias "
+        "say so.",
+        examples=[2.0],
+    )
+
+
+class EmergencyStop(Model):
+    """Momentary peak torque T_k, or the brake that causes it, and how often it is expected over the life."""
+
+    torque_Nm: Torque | None = Field(None, description="Emergency-stop torque T_k.", examples=[200.0])
+    brake: Brake | None = Field(
+        None, description="Brake at the motor, in place of the torque.", examples=[{"torque_Nm": 8.0}]
+    )
     count: Annotated[int, Field(strict=True, ge=0, le=10**15), WHOLE] | None = Field(
         None, description="Expected number of emergency stops over the life.", examples=[1000]
     )
+
+    @model_validator(mode="after")
+    def _one_cause(self) -> Self:
+        if self.torque_Nm is None and self.brake is None:
+            problem = PydanticCustomError("no_stop", "is required, or a brake in its place")
+            raise refused(self, (("torque_Nm",), problem))
+        if self.torque_Nm is not None and self.brake is not None:
+            problem = PydanticCustomError("stop_twice", "give either the torque of the stop or the brake, not both")
+            raise refused(self, (("brake",), problem))
+        return self
 
 
 BEARING_LIFE_H = 20_000.0
@@ -124,7 +160,7 @@ BEARING_LIFE_H = 20_000.0
 
 
 class OutputLoad(Model):
-    """Load on the output shaft, at the centre of the shaft and along its axis."""
+    """Load on the output shaft: where no position is given, at the centre of the shaft and along its axis."""
 
     radial_N: Load | None = Field(None, description="Radial load of the whole cycle.", examples=[500.0])
     axial_N: Load | None = Field(None, description="Axial load of the whole cycle.", examples=[200.0])
@@ -134,6 +170,21 @@ class OutputLoad(Model):
     life_h: Hours = Field(BEARING_LIFE_H, description="Required life of the output bearing.", examples=[20000.0])
     life_basis: LifeBasis = Field("L50", description="L50: 50 % of the bearings survive it. L10: 90 % do.")
     model: BearingModel = Field("linear", description="How the envelope runs between the two published limits.")
+    radial_position_mm: Annotated[Number, Field(ge=-1e6, le=1e6)] | None = Field(
+        None,
+        description="Where the radial load acts, x from the shaft’s shoulder, outwards positive; without it at the "
+        "shaft’s centre.",
+        examples=[45.0],
+    )
+    axial_radius_mm: Annotated[Number, Field(ge=0, le=1e6)] = Field(
+        0.0, description="Distance y of the axial load from the shaft’s axis.", examples=[40.0]
+    )
+    shaft_centre_mm: Positive | None = Field(
+        None,
+        description="Distance x_c from the shoulder to the shaft’s centre, at least; for sizes of which the catalogue "
+        "has none.",
+        examples=[21.0],
+    )
 
 
 LISTED_FIGURES = ("maximum_speed_rpm", "peak_torque_Nm", "rated_torque_Nm", "rated_speed_rpm", "inertia_kgm2")
@@ -200,6 +251,34 @@ class Requirements(Model):
     load_inertia_kgm2: Positive | None = Field(
         None, description="Moment of inertia of the load at the gear’s output; a motion has its own.", examples=[0.8]
     )
+    natural_frequency_Hz: Positive | None = Field(
+        None, description="Minimum natural frequency of the load on the gear, the motor held.", examples=[25.0]
+    )
+    position_error_arcmin: Positive | None = Field(
+        None, description="Maximum position error of the output as an angle.", examples=[20.0]
+    )
+    position_error_mm: Positive | None = Field(
+        None, description="Maximum position error as a length at the radius.", examples=[0.5]
+    )
+    position_radius_mm: Positive | None = Field(
+        None, description="Radius at which the position error is shown as a length.", examples=[250.0]
+    )
+    load_reverses: Annotated[bool, Field(strict=True)] | None = Field(
+        None,
+        description="True: the torque acts both ways. False: the signs of the torques hold as given. Without it, both "
+        "ways where no torque is negative and there is no motion.",
+        examples=[False],
+    )
+
+    @model_validator(mode="after")
+    def _asks_for_one_error(self) -> Self:
+        if self.position_error_mm is not None and self.position_error_arcmin is not None:
+            problem = PydanticCustomError("error_twice", "give the position error as an angle or as a length, not both")
+            raise refused(self, (("position_error_mm",), problem))
+        if self.position_error_mm is not None and self.position_radius_mm is None:
+            problem = PydanticCustomError("error_radius", "needs the radius, position_radius_mm")
+            raise refused(self, (("position_error_mm",), problem))
+        return self
 
 
 class Application(Model):
@@ -234,15 +313,26 @@ class Application(Model):
         if motion is not None and given:
             problem = PydanticCustomError("inertia_twice", "the motion has its own inertia of the load: leave it out")
             raise refused(asked, (("load_inertia_kgm2",), problem))
-        if motor.inertia_ratio is None or "duty_cycle" not in info.data:
+        if "duty_cycle" not in info.data:
             return asked
-        place = ("motor", "inertia_ratio")
-        if motor.inertia_kgm2 is None and motor.designation is None:
-            raise refused(asked, (place, PydanticCustomError("inertia_of_motor", "needs the motor’s inertia_kgm2")))
-        if motion is None and not given:
+        ratio = ("motor", "inertia_ratio")
+        if motor.inertia_ratio is not None and motor.inertia_kgm2 is None and motor.designation is None:
+            raise refused(asked, (ratio, PydanticCustomError("inertia_of_motor", "needs the motor’s inertia_kgm2")))
+        needing = {ratio: motor.inertia_ratio, ("natural_frequency_Hz",): asked.natural_frequency_Hz}
+        places = [place for place, value in needing.items() if value is not None]
+        if places and motion is None and not given:
             problem = PydanticCustomError("inertia_of_load", "needs a motion, or requirements.load_inertia_kgm2")
-            raise refused(asked, (place, problem))
+            raise refused(asked, *((place, problem) for place in places))
         return asked
+
+    @field_validator("rank_by")
+    @classmethod
+    def _has_what_it_ranks_by(cls, rank_by: RankBy, info: ValidationInfo) -> RankBy:
+        cycle, asked = info.data.get("duty_cycle"), info.data.get("requirements")
+        known = cycle is None or asked is None or cycle.motion is not None or asked.load_inertia_kgm2 is not None
+        if rank_by == "natural_frequency" and not known:
+            raise PydanticCustomError("inertia_of_load", "needs a motion, or requirements.load_inertia_kgm2")
+        return rank_by
 
     @property
     def loads(self) -> OutputLoad | None:

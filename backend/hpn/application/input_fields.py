@@ -8,7 +8,7 @@ from typing import Any, Literal
 from hpn.application import Application
 from hpn.application.phase import Phase
 
-Kind = Literal["number", "integer", "string"]
+Kind = Literal["number", "integer", "string", "boolean"]
 Json = dict[str, Any]
 
 

@@ -96,7 +96,7 @@ def read(path: Path, content: bytes, table: type[Table], *, supplied: bool) -> d
     """
     rows: dict[Key, Cells] = {}
     for line, row in _lines(path, _text(path, content), table):
-        texts = dict(zip(table.columns(), (text.strip() for text in row), strict=True))
+        texts = {column: text.strip() for column, text in row.items()}
         cells = {column: Cell(text, texts["source"], str(path), line, supplied) for column, text in texts.items()}
         for column in table.key:
             if not cells[column].text:
@@ -164,16 +164,22 @@ def _place(before: str) -> tuple[int, str | None]:
     return len(lines), header[len(broken) - 1] if len(broken) <= len(header) and len(lines) > 1 else None
 
 
-def _lines(path: Path, text: str, table: type[Table]) -> Iterator[tuple[int, list[str]]]:
+def _lines(path: Path, text: str, table: type[Table]) -> Iterator[tuple[int, dict[str, str]]]:
+    """Line and cells of every row by column; a column that the file may lack is blank.
+
+    Raises CatalogueError for a header that is not the table's and for a row that does not fit it.
+    """
     reader = csv.reader(text.splitlines(), strict=True)
     columns = table.columns()
     try:
         written = next(reader, [])
         header, codes = _header(path, written, columns)
-        if sorted(header) != sorted(columns):
-            wrong = [name[:40] for name in sorted(set(header) ^ set(columns)) or header]
+        lacking = [column for column in columns if column in table.optional and column not in header]
+        if sorted(header + lacking) != sorted(columns):
+            wrong = [name[:40] for name in sorted(set(header + lacking) ^ set(columns)) or header]
             detail = f"the header must have the columns {', '.join(columns)}; see {', '.join(wrong[:20])}"
             raise CatalogueError(path, 1, None, detail)
+        columns = [column for column in columns if column not in lacking]
         order = [header.index(column) for column in columns]
         for row in reader:
             if not row:
@@ -190,7 +196,7 @@ def _lines(path: Path, text: str, table: type[Table]) -> Iterator[tuple[int, lis
             for column, found in zip(columns, texts, strict=True):
                 if isinstance(found, Sentence):
                     raise CatalogueError(path, reader.line_num, column, found.text)
-            yield reader.line_num, list(map(str, texts))
+            yield reader.line_num, dict(zip(columns, map(str, texts), strict=True)) | dict.fromkeys(lacking, "")
     except csv.Error as error:
         detail = {"unexpected end of data": "a quote is opened and not closed"}.get(str(error), str(error))
         raise CatalogueError(path, reader.line_num, None, detail) from None

@@ -1,7 +1,7 @@
 """A gear of the series with every figure that is published of it and where each comes from; and columns of gears."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from typing import Any
 
 import numpy as np
@@ -35,6 +35,11 @@ def _published(file: str, *, signed: bool = False) -> Any:
     return field(default=None, metadata={"file": file, "signed": signed})
 
 
+def _supplied(file: str) -> Any:
+    """Field of a figure that the handbook does not publish: a column that the file may lack, for the user's own."""
+    return field(default=None, metadata={"file": file, "signed": False, "optional": True})
+
+
 @dataclass(frozen=True, slots=True)
 class Gear:
     """A size and ratio. None is a figure that is not published; it is never read as zero."""
@@ -58,10 +63,18 @@ class Gear:
     length_max_mm: float | None = _published("lengths.csv")
     dynamic_radial_load_N: float | None = _published("sizes.csv")
     dynamic_axial_load_N: float | None = _published("sizes.csv")
+    shaft_centre_mm: float | None = _supplied("sizes.csv")
+    inertia_kgm2: float | None = _supplied("gears.csv")
+    no_load_torque_Nm: float | None = _supplied("gears.csv")
     clamp_bolts: tuple[ClampBolt, ...] = ()
     housing_bolts: HousingBolts | None = None
     note: str | None = None
     sources: dict[str, str] = field(default_factory=dict, hash=False)
+
+    @classmethod
+    def unpublished(cls) -> frozenset[str]:
+        """Figures that the handbook gives of no gear: a supplement may."""
+        return frozenset(each.name for each in fields(cls) if each.metadata.get("optional"))
 
     @property
     def name(self) -> str:
@@ -91,6 +104,10 @@ class GearColumns:
     length_max_mm: FloatArray
     dynamic_radial_load_N: FloatArray
     dynamic_axial_load_N: FloatArray
+    shaft_centre_mm: FloatArray
+    inertia_kgm2: FloatArray
+    no_load_torque_Nm: FloatArray
+    transmission_accuracy_arcmin: FloatArray
 
     def __init__(self, gears: Sequence[Gear]) -> None:
         for name in self.__class__.__annotations__:

@@ -229,7 +229,7 @@ def _check_complete(book: _Book) -> None:
                 detail = f"{table.file} has no row of {key}, but {gear.size} is rated"
                 raise rated[gear.size].error("size", detail)
             for column in table.columns():
-                if column not in ("source", "note") and getattr(row, column) is None:
+                if column not in ("source", "note", *table.optional) and getattr(row, column) is None:
                     raise row.error(column, f"is blank, but {gear.size} is rated")
 
 
@@ -252,6 +252,7 @@ def _gears(book: _Book) -> tuple[Gear, ...]:
     gears = []
     for row in sorted(book.of(GearTable), key=lambda row: (int(row.size[:-1]), row.ratio)):
         parts: list[Table | None] = [
+            row,
             book.find(RatingTable, row.size, row.ratio),
             book.find(SizeTable, row.size),
             *(book.find(table, row.size, row.stages) for table in PER_STAGE),
@@ -260,7 +261,7 @@ def _gears(book: _Book) -> tuple[Gear, ...]:
         sources = {"ratio": book.source(row, "ratio"), "stages": book.source(row, "stages")}
         for part in filter(None, parts):
             for column in part.columns():
-                if column not in part.key and column != "source":
+                if column not in (*part.key, "stages", "source"):
                     values[column] = getattr(part, column)
                     if values[column] is not None:
                         sources[column] = book.source(part, column)

@@ -60,6 +60,8 @@ class Table(BaseModel):
     key: ClassVar[tuple[str, ...]]
     most_rows: ClassVar[int] = 1000
     may_be_empty: ClassVar[bool] = False
+    optional: ClassVar[frozenset[str]] = frozenset()
+    """Columns that a file may lack, as if they were blank."""
     source: str | None = Field(None, min_length=1)
     cells: Cells = Field(default_factory=dict, exclude=True)
 
@@ -85,20 +87,18 @@ class SourceTable(Table):
     title: str
 
 
-class GearTable(Table):
-    file = "gears.csv"
-    key = ("size", "ratio")
-    size: Size
-    ratio: Count
-    stages: Count
-
-
 class RatioRow(Table):
     """Row of a table of figures that each gear has of its own."""
 
     key = ("size", "ratio")
     size: Size
     ratio: Count
+
+
+class GearRow(RatioRow):
+    """Row of the list of gears."""
+
+    stages: Count
 
 
 class SizeRow(Table):
@@ -126,9 +126,11 @@ def _with_figures(file: str, base: type[TableRow]) -> type[TableRow]:
     }
     table: type[TableRow] = create_model(file, __base__=base, **figures)
     table.file = file
+    table.optional = Gear.unpublished() & figures.keys()
     return table
 
 
+GearTable = _with_figures("gears.csv", GearRow)
 RatingTable = _with_figures("ratings.csv", RatioRow)
 SizeTable = _with_figures("sizes.csv", SizeRow)
 WeightTable = _with_figures("weights.csv", StageRow)

@@ -57,7 +57,8 @@ class Sheet:
 class Check:
     """One check. Its texts are English msgids; `name` is how it stands inside a sentence.
 
-    `asked` is the input whose presence asks for it, None for a check that is always made. Utilisation is demand over
+    `asked` is the input whose presence asks for it, None for a check that is always made; `instead` is another input
+    that asks for it as well. Utilisation is demand over
     limit, limit over demand for a minimum, or what `share` gives. `sheet` is the same as formulas; None for a check
     that no workbook can calculate, which then stands there as saved. `limited_by` is the catalogue figure behind the
     limit, None where that is the user's own. `relation` is the check in the handbook's symbols. `moves` gives the power
@@ -82,6 +83,7 @@ class Check:
     sheet: Sheet | None
     relation: str
     asked: str | None = None
+    instead: str = ""
     share: Values | None = None
     equation: str | None = None
     limited_by: str | None = None

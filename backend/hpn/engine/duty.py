@@ -23,7 +23,7 @@ _UNLOADED = OutputLoad()
 
 @dataclass(frozen=True)
 class Phases:
-    """Phases of N cycles by magnitude, each of shape (N, 1, phases).
+    """Phases of N cycles by magnitude, and the signs of their torques, each of shape (N, 1, phases).
 
     Shorter cycles are padded at the end with phases of no duration, which have no weight in any equation. Each load is
     the phase's own, else the cycle's, else 0; peaks and RMS are those of a steady phase where none are given.
@@ -37,6 +37,7 @@ class Phases:
     peak_torque_Nm: FloatArray
     peak_speed_rpm: FloatArray
     rms_torque_Nm: FloatArray
+    torque_sign: FloatArray
 
     @classmethod
     def of(cls, applications: Sequence[Application]) -> "Phases":
@@ -46,7 +47,7 @@ class Phases:
         for place, application in enumerate(applications):
             rows = _rows(application)
             table[:, place, 0, : len(rows)] = np.array(rows).T
-        return cls(*np.abs(table))
+        return cls(*[*np.abs(table), np.sign(table[0])])
 
 
 def _rows(application: Application) -> list[tuple[float, ...]]:
@@ -72,13 +73,15 @@ class Asked:
     """Inputs of N applications besides their phases, each array of shape (N, 1).
 
     `numbers` holds every single number of the application model by its path with dots, such as `requirements.life_h`;
-    NaN where it is not given. Where no load is given, neither are the conditions of a load.
+    NaN where it is not given. Where no load is given, neither are the conditions of a load. `load_reverses` is NaN, 0
+    or 1.
     """
 
     numbers: Mapping[str, FloatArray]
     bearing_model: TextArray
     life_basis: TextArray
     rank_by: TextArray
+    load_reverses: FloatArray
 
     @classmethod
     def of(cls, applications: Sequence[Application]) -> "Asked":
@@ -90,6 +93,7 @@ class Asked:
             np.array([[load.model if load else ""] for load in loads]),
             np.array([[load.life_basis if load else ""] for load in loads]),
             np.array([[application.rank_by] for application in applications]),
+            np.array([[application.requirements.load_reverses] for application in applications], dtype=np.float64),
         )
 
     def __getitem__(self, path: str) -> FloatArray:
@@ -98,9 +102,11 @@ class Asked:
 
 def _numbers(application: Application) -> list[float | None]:
     """Numbers of one application in the order of NUMBERS; None where it is not given."""
+    stop = application.emergency_stop
     parts = {
         ("duty_cycle",): application.duty_cycle,
-        ("emergency_stop",): application.emergency_stop,
+        ("emergency_stop",): stop,
+        ("emergency_stop", "brake"): stop and stop.brake,
         ("output_load",): application.loads,
         ("requirements",): application.requirements,
         ("requirements", "motor"): application.requirements.motor,
@@ -152,9 +158,51 @@ class Duty:
         return equations.rms_torque(torque_Nm=T, duration_s=t, pause_s=self.asked["duty_cycle.pause_s"])
 
     @cached_property
-    def emergency_stop_torque_Nm(self) -> FloatArray:
-        """Torque T_k of an emergency stop in Nm."""
+    def brakes(self) -> NDArray[np.bool_] | None:
+        """True where a brake stops the axis, shape (N, 1); None where none does."""
+        given = ~np.isnan(self.asked["emergency_stop.brake.torque_Nm"])
+        return given if given.any() else None
+
+    @cached_property
+    def typed_stop_torque_Nm(self) -> FloatArray:
+        """Torque T_k of an emergency stop in Nm where it is given."""
         return np.abs(self.asked["emergency_stop.torque_Nm"])
+
+    @cached_property
+    def stop_speed_rpm(self) -> FloatArray:
+        """Output speed in rpm at which the brake is told to stop the axis: as it is given, else the largest."""
+        given = self.asked["emergency_stop.brake.speed_rpm"]
+        return np.where(np.isnan(given), self.maximum_output_speed_rpm, given)
+
+    @cached_property
+    def opposing_torque_Nm(self) -> tuple[FloatArray, FloatArray]:
+        """Smallest and largest torque in Nm at the gear that opposes the motion of a stop; 0 without a motion."""
+        lowest, highest = np.zeros_like(self.stop_speed_rpm), np.zeros_like(self.stop_speed_rpm)
+        for place, course in self.courses.items():
+            lowest[place], highest[place] = course.load.opposing_Nm(self.stop_speed_rpm.item(place))
+        return lowest, highest
+
+    @cached_property
+    def torque_both_ways(self) -> NDArray[np.bool_]:
+        """True where the torque is taken to act both ways: as asked, else where no sign says otherwise."""
+        asked = self.asked.load_reverses
+        unsigned: NDArray[np.bool_] = np.array((self.phases.torque_sign >= 0).all(axis=-1))
+        unsigned[list(self.courses)] = False
+        return np.where(np.isnan(asked), unsigned, asked == 1)
+
+    @cached_property
+    def torque_range_Nm(self) -> tuple[FloatArray, FloatArray]:
+        """Smallest and largest torque in Nm over the cycle, with its sign; a pause counts as 0."""
+        signed = self.phases.torque_sign * self.phases.peak_torque_Nm
+        signed = np.where(self.phases.duration_s > 0, signed, signed[..., :1])  # what a cycle is padded with is none
+        lowest, highest = signed.min(axis=-1), signed.max(axis=-1)
+        paused = self.asked["duty_cycle.pause_s"] > 0
+        lowest, highest = (
+            np.where(paused, np.minimum(lowest, 0), lowest),
+            np.where(paused, np.maximum(highest, 0), highest),
+        )
+        both = self.torque_both_ways
+        return np.where(both, -self.maximum_torque_Nm, lowest), np.where(both, self.maximum_torque_Nm, highest)
 
     @cached_property
     def required_bearing_life_L50_h(self) -> FloatArray:

@@ -34,6 +34,8 @@ RANKED_BY: Mapping[RankBy, Callable[[Case, FloatArray], FloatArray]] = {
     "motor_torque": lambda case, used: case.figures.motor_peak_torque_Nm,
     "life": lambda case, used: -case.figures.life_L10_h,
     "stiffness": lambda case, used: -case.gears.torsional_stiffness_Nm_per_rad,
+    "natural_frequency": lambda case, used: -case.figures.natural_frequency_Hz,
+    "position_error": lambda case, used: case.figures.position_error_arcmin,
 }
 """Keys by which suitable gears are ordered, ascending; `used` is their utilisation."""
 
@@ -178,6 +180,9 @@ def _asked(case: Case) -> tuple[tuple[Check, ...], BoolArray]:
     always = np.zeros((len(case.duty.average_torque_Nm), 1))
     inputs = [always if check.asked is None else case.asked[check.asked] for check in CHECKS]
     given = ~np.isnan(np.concatenate(inputs, axis=1)).T
+    for place, check in enumerate(CHECKS):
+        if check.instead:
+            given[place] |= ~np.isnan(case.asked[check.instead][:, 0])
     places = np.flatnonzero(given.any(axis=1))
     return tuple(CHECKS[place] for place in places.tolist()), given[places, :, None]
 

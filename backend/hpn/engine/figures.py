@@ -8,9 +8,11 @@ import numpy as np
 from hpn.catalogue import Catalogue, GearList
 from hpn.catalogue.gear import Gear
 from hpn.engine.duty import Duty
-from hpn.physics import bearing, equations
+from hpn.engine.stops import Stops
+from hpn.physics import bearing, equations, stiffness
 from hpn.physics.equations import FloatArray
 from hpn.physics.motion import Course, motor_torques
+from hpn.physics.stop import impact_speed
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,8 +55,118 @@ class Figures:
     def momentary_peak_count(self) -> FloatArray:
         """Permitted number N_k,max of emergency stops, equation 17.9; shape (N, G). [-]"""
         return equations.allowed_momentary_peaks(
-            emergency_stop_torque_Nm=self.duty.emergency_stop_torque_Nm,
+            emergency_stop_torque_Nm=self.stop_torque_Nm,
             repeated_peak_torque_Nm=self.gears.columns.repeated_peak_torque_Nm,
+        )
+
+    @cached_property
+    def _unasked(self) -> FloatArray:
+        """What stands for a figure that nobody asked for, shape (N, 1)."""
+        return np.full_like(self.duty.average_torque_Nm, np.nan)
+
+    @cached_property
+    def motor_inertia_kgm2(self) -> FloatArray:
+        """Inertia of the motor, and of the gear at its input where a supplement gives it, in kg m²; shape (N, G)."""
+        return self.duty.asked["requirements.motor.inertia_kgm2"] + np.nan_to_num(self.gears.columns.inertia_kgm2)
+
+    @cached_property
+    def natural_frequency_Hz(self) -> FloatArray:
+        """Natural frequency of the load on the gear in Hz, the motor held; shape (N, G)."""
+        if np.isnan(self.duty.load_inertia_kgm2).all():
+            return self._unasked
+        return stiffness.natural_frequency(
+            torsional_stiffness_Nm_per_rad=self.gears.columns.torsional_stiffness_Nm_per_rad,
+            load_inertia_kgm2=self.duty.load_inertia_kgm2,
+        )
+
+    @cached_property
+    def drive_resonance_Hz(self) -> FloatArray:
+        """Resonance of load and motor against each other in Hz, shape (N, G)."""
+        if np.isnan(self.duty.load_inertia_kgm2).all() or np.isnan(self.motor_inertia_kgm2).all():
+            return self._unasked
+        return stiffness.drive_resonance(
+            torsional_stiffness_Nm_per_rad=self.gears.columns.torsional_stiffness_Nm_per_rad,
+            load_inertia_kgm2=self.duty.load_inertia_kgm2,
+            ratio=self.gears.columns.ratio,
+            motor_inertia_kgm2=self.motor_inertia_kgm2,
+        )
+
+    @cached_property
+    def wind_up_arcmin(self) -> FloatArray:
+        """Wind-up of the gear under T_max in arcmin, shape (N, G)."""
+        return stiffness.wind_up(
+            torque_Nm=self.duty.maximum_torque_Nm,
+            torsional_stiffness_Nm_per_rad=self.gears.columns.torsional_stiffness_Nm_per_rad,
+        )
+
+    @cached_property
+    def position_error_arcmin(self) -> FloatArray:
+        """Position error of the output over the cycle in arcmin, shape (N, G)."""
+        lowest, highest = self.duty.torque_range_Nm
+        return stiffness.position_error(
+            smallest_torque_Nm=lowest,
+            largest_torque_Nm=highest,
+            torsional_stiffness_Nm_per_rad=self.gears.columns.torsional_stiffness_Nm_per_rad,
+            transmission_accuracy_arcmin=self.gears.columns.transmission_accuracy_arcmin,
+            backlash_arcmin=self.gears.columns.backlash_arcmin,
+        )
+
+    @cached_property
+    def position_error_mm(self) -> FloatArray:
+        """The same as a length in mm at the radius that is asked for, shape (N, G)."""
+        radius = self.duty.asked["requirements.position_radius_mm"]
+        return stiffness.arc_length(angle_arcmin=self.position_error_arcmin, radius_mm=radius)
+
+    @cached_property
+    def stops(self) -> Stops:
+        """Emergency stops by the brake."""
+        return Stops(self.duty, self.gears.columns, self.drive_resonance_Hz, self.motor_inertia_kgm2)
+
+    @cached_property
+    def stop_torque_Nm(self) -> FloatArray:
+        """Torque T_k of an emergency stop in Nm: as it is given, else that of the brake; shape (N, 1) or (N, G)."""
+        given = self.duty.typed_stop_torque_Nm
+        return given if self.duty.brakes is None else np.where(self.duty.brakes, self.stops.torque_Nm, given)
+
+    @cached_property
+    def stop_energy_J(self) -> FloatArray:
+        """Energy of one stop in J that the brake takes, shape (N, G)."""
+        return self._unasked if self.duty.brakes is None else self.stops.course.energy_J
+
+    @cached_property
+    def stopping_time_s(self) -> FloatArray:
+        """Time of a stop in s from the command to rest, shape (N, G)."""
+        return self._unasked if self.duty.brakes is None else self.stops.course.time_s
+
+    @cached_property
+    def stopping_angle_deg(self) -> FloatArray:
+        """Angle in degrees that the output turns in a stop, shape (N, G)."""
+        return self._unasked if self.duty.brakes is None else np.degrees(self.stops.course.angle_rad)
+
+    @cached_property
+    def stopping_distance_mm(self) -> FloatArray:
+        """The same as a length in mm at the radius that is asked for, shape (N, G)."""
+        radius = self.duty.asked["requirements.position_radius_mm"]
+        return self._unasked if self.duty.brakes is None else self.stops.course.angle_rad * radius
+
+    @cached_property
+    def end_stop_speed_rpm(self) -> FloatArray:
+        """Output speed in rpm from which an end stop that the load meets brings the gear to T_M, shape (N, G)."""
+        at_output = np.square(self.gears.columns.ratio) * self.motor_inertia_kgm2
+        return self._impact_speed_rpm(at_output)
+
+    @cached_property
+    def motor_lock_speed_rpm(self) -> FloatArray:
+        """Output speed in rpm from which a motor that locks brings the gear to T_M, shape (N, G)."""
+        return self._impact_speed_rpm(self.duty.load_inertia_kgm2)
+
+    def _impact_speed_rpm(self, inertia_kgm2: FloatArray) -> FloatArray:
+        if np.isnan(inertia_kgm2).all():
+            return self._unasked
+        return impact_speed(
+            momentary_peak_torque_Nm=self.gears.columns.momentary_peak_torque_Nm,
+            torsional_stiffness_Nm_per_rad=self.gears.columns.torsional_stiffness_Nm_per_rad,
+            inertia_kgm2=inertia_kgm2,
         )
 
     @cached_property
@@ -122,8 +234,9 @@ def phase_loads(duty: Duty, gears: GearList) -> FloatArray:
     NaN without a load, where the limits of a size are not published, and where the digitised model lacks its curve.
     """
     first, phases, model = gears.first_of_size, duty.phases, duty.asked.bearing_model[..., None]
+    radial = radial_at_centre(duty, gears)
     with np.errstate(all="ignore"):
-        r = phases.radial_N / gears.columns.dynamic_radial_load_N[first][:, None]
+        r = radial / gears.columns.dynamic_radial_load_N[first][:, None]
         a = phases.axial_N / gears.columns.dynamic_axial_load_N[first][:, None]
     P = np.where(model == "iso281", bearing.iso281_load(radial=r, axial=a), bearing.linear_load(radial=r, axial=a))
     along = np.flatnonzero(model == "digitised")
@@ -131,8 +244,28 @@ def phase_loads(duty: Duty, gears: GearList) -> FloatArray:
         P[along] = np.nan
         for place, gear in enumerate(first):
             if (curve := gears.curves[gear]) is not None:
-                P[along, place] = curve.equivalent_load(phases.radial_N[along, 0], phases.axial_N[along, 0])
+                own = np.broadcast_to(radial, P.shape)[along, place]
+                P[along, place] = curve.equivalent_load(own, phases.axial_N[along, 0])
     return P * duty.asked["output_load.load_coefficient"][..., None]
+
+
+def radial_at_centre(duty: Duty, gears: GearList) -> FloatArray:
+    """Radial load in N of every phase that stands for where it acts, on every size; shape (N, sizes or 1, phases).
+
+    NaN where a lever acts and the shaft's centre is not known; the load itself where none is given.
+    """
+    asked, phases = duty.asked, duty.phases
+    x, y = asked["output_load.radial_position_mm"], asked["output_load.axial_radius_mm"]
+    if np.isnan(x).all() and not (y > 0).any():
+        return phases.radial_N
+    own, given = gears.columns.shaft_centre_mm[gears.first_of_size], asked["output_load.shaft_centre_mm"]
+    return bearing.radial_load_at_centre(
+        radial_N=phases.radial_N,
+        axial_N=phases.axial_N,
+        radial_position_mm=x[..., None],
+        axial_radius_mm=np.where(np.isnan(y), 0.0, y)[..., None],
+        shaft_centre_mm=np.where(np.isnan(own), given, own)[..., None],
+    )
 
 
 def _bearing_loads(duty: Duty, gears: GearList) -> tuple[FloatArray, FloatArray]:
@@ -153,19 +286,26 @@ def _motor_torques(duty: Duty, gears: GearList, catalogue: Catalogue) -> tuple[F
 
     A stated efficiency has precedence over a supplied curve, which is read at a phase's peak for the peak and at its
     RMS for the RMS. In a motion with a known motor inertia the torque counts at every instant, that inertia included.
+    A gear's own inertia and no-load torque from a supplement count as well.
     """
     stated, ratio = duty.asked["requirements.efficiency"], gears.columns.ratio
     eta = np.where(np.isnan(stated), 1.0, stated)
     peak = equations.motor_torque(output_torque_Nm=duty.maximum_torque_Nm, ratio=ratio, efficiency=eta)
     rated = equations.motor_torque(output_torque_Nm=duty.rms_torque_Nm, ratio=ratio, efficiency=eta)
     peaks, squares, unstated = duty.phases.peak_torque_Nm[:, 0], duty.phases.rms_torque_Nm[:, 0], np.isnan(stated)[:, 0]
-    curved = [place for place, gear in enumerate(gears.rows) if gear.designation in catalogue.efficiency]
-    for place in curved if unstated.any() else ():
-        gear = gears.rows[place]
+    curved = {place for place, gear in enumerate(gears.rows) if gear.designation in catalogue.efficiency}
+    without_load = np.nan_to_num(gears.columns.no_load_torque_Nm)
+    for place in sorted((curved if unstated.any() else set()) | set(np.flatnonzero(without_load).tolist())):
+        gear, own = gears.rows[place], unstated & (place in curved)
+        moving = np.where(duty.phases.speed_rpm[:, 0] > 0, without_load[place], 0.0)
+        some = own | bool(without_load[place])
         at_peak, at_rms = (
             equations.motor_torque(
-                output_torque_Nm=T, ratio=gear.ratio, efficiency=efficiency_along(catalogue, gear, T)
+                output_torque_Nm=T,
+                ratio=gear.ratio,
+                efficiency=np.where(own[:, None], efficiency_along(catalogue, gear, T), eta) if own.any() else eta,
             )
+            + moving
             for T in (peaks, squares)
         )
         rms = equations.rms_torque(
@@ -173,7 +313,7 @@ def _motor_torques(duty: Duty, gears: GearList, catalogue: Catalogue) -> tuple[F
             duration_s=duty.phases.duration_s[:, 0],
             pause_s=duty.asked["duty_cycle.pause_s"][:, 0],
         )
-        peak[unstated, place], rated[unstated, place] = at_peak.max(axis=1)[unstated], rms[unstated]
+        peak[some, place], rated[some, place] = at_peak.max(axis=1)[some], rms[some]
     for index, course in duty.courses.items():
         inertia = duty.asked["requirements.motor.inertia_kgm2"].item(index)
         if not np.isnan(inertia):
@@ -186,24 +326,30 @@ def _with_own_inertia(
 ) -> tuple[FloatArray, FloatArray]:
     """Peak and RMS torque at the motor of application `index`, its own inertia included, shape (G,) each.
 
-    Gears of one ratio without a curve of their own have the same torques, which are computed once.
+    Gears of one ratio without figures of their own have the same torques, which are computed once.
     """
     stated = duty.asked["requirements.efficiency"].item(index)
     curved = [np.isnan(stated) and gear.designation in catalogue.efficiency for gear in gears.rows]
-    kinds = [gear.designation if own else str(gear.ratio) for gear, own in zip(gears.rows, curved, strict=True)]
+    alone = [own or gear.inertia_kgm2 or gear.no_load_torque_Nm for gear, own in zip(gears.rows, curved, strict=True)]
+    kinds = [gear.designation if own else str(gear.ratio) for gear, own in zip(gears.rows, alone, strict=True)]
     first = {kind: kinds.index(kind) for kind in kinds}
     eta = np.full((2, len(first), len(course.move)), 1.0 if np.isnan(stated) else stated)
     for row, place in enumerate(first.values()):
         if curved[place]:
             for at, T in enumerate((course.peak_torque_Nm, course.rms_torque_Nm)):
                 eta[at, row] = efficiency_along(catalogue, gears.rows[place], T)
+    some = list(first.values())
+    own_inertia, without_load = (
+        np.nan_to_num(column[some]) for column in (gears.columns.inertia_kgm2, gears.columns.no_load_torque_Nm)
+    )
     peak, rms = motor_torques(
         course,
-        ratio=gears.columns.ratio[list(first.values())],
+        ratio=gears.columns.ratio[some],
         efficiency_at_peak=eta[0],
         efficiency_at_rms=eta[1],
-        motor_inertia_kgm2=inertia_kgm2,
+        motor_inertia_kgm2=inertia_kgm2 + own_inertia,
         pause_s=duty.asked["duty_cycle.pause_s"].item(index),
+        no_load_torque_Nm=without_load,
     )
     rows = [list(first).index(kind) for kind in kinds]
     return peak[rows], rms[rows]

@@ -66,8 +66,15 @@ NOTICES: Mapping[str, str] = {
         "without. The straight line between the limits is the safe model."
     ),
     "bearing_load_position": N_(
-        "Loads act at the centre of the output shaft and along its axis; a load that acts elsewhere can’t be judged "
-        "from the published data."
+        "Loads act at the centre of the output shaft and along its axis; give their positions where they act elsewhere."
+    ),
+    "bearing_lever": N_(
+        "The loads act beside the shaft’s centre and count as the radial load F_R · max(1, |x| / x_c) + F_A · y / x_c "
+        "there: an upper bound for any distance of the bearings. The shaft beyond its shoulder is not judged."
+    ),
+    "bearing_centre_unknown": N_(
+        "The loads act beside the shaft’s centre, whose distance from the shoulder is not published for {names}: give "
+        "it, so that their bearings can be judged."
     ),
     "bearing_life_basis": N_(
         "Bearing life L10 = L50 / 5 is the relation of the maker’s other handbooks, not printed in this one; a Weibull "
@@ -93,8 +100,25 @@ NOTICES: Mapping[str, str] = {
         "Motor torques include the motor’s own inertia; they leave out that of the gear and losses without load, which "
         "are not published."
     ),
-    "load_inertia_unused": N_(
-        "The inertia of the load enters no check: it counts where the motor’s largest inertia ratio is given."
+    "motor_all_included": N_("Motor torques include the inertia of motor and gear and the gear’s torque without load."),
+    "torque_signs_not_given": N_(
+        "No torque has a sign, so the position error counts each of them in both directions. Say that the load does "
+        "not reverse, or give signs, where that is not so."
+    ),
+    "ramp_shorter_than_period": N_(
+        "A ramp of {ramp_s} is shorter than a period of {period_s} of the load’s natural frequency on {name}: the axis "
+        "will swing after the move."
+    ),
+    "brake_does_not_hold": N_(
+        "Gravity at rest asks for {torque_Nm}: with the ratios {ratios} the brake does not hold the load."
+    ),
+    "brake_uniform": N_(
+        "The emergency stop begins from uniform running: one during an acceleration adds (f − 1) · J · α. The motor’s "
+        "torque is taken to pass into the brake’s over its rise time."
+    ),
+    "brake_inertia_unknown": N_(
+        "Without the inertias of motor and load the whole torque of the brake counts, an upper bound; time and angle "
+        "of the stop stay unknown."
     ),
     "size_unrated": N_("{name} is not rated. {note}"),
     "gears_unrated": N_("{names} are not rated. {note}"),
@@ -161,6 +185,7 @@ def notices_of(application: Application, evaluation: Evaluation, index: int) -> 
         found.append(notice("application_area", area=AREAS[application.application_area]))
     found += _on_the_motion(application.duty_cycle)
     found += _on_stop_and_life(application, evaluation, index)
+    found += _on_stiffness(application, evaluation, index)
     found += _on_speed(evaluation, index)
     if application.loads is not None:
         found += _on_the_bearing(application.loads, evaluation, index)
@@ -196,15 +221,47 @@ def _is_unlimited(figure: FloatArray, index: int) -> bool:
 
 def _on_stop_and_life(application: Application, evaluation: Evaluation, index: int) -> Iterable[Notice]:
     figures, duty = evaluation.case.figures, evaluation.case.duty
-    stop, largest = duty.emergency_stop_torque_Nm.item(index), duty.maximum_torque_Nm.item(index)
+    stop, largest = duty.typed_stop_torque_Nm.item(index), duty.maximum_torque_Nm.item(index)
     if stop < largest * (1 - ROUNDING):
         yield notice("emergency_stop_below_maximum", stop_Nm=stop, largest_Nm=largest)
     if application.emergency_stop is not None and application.emergency_stop.count is None:
         yield notice("stops_not_counted")
+    if application.emergency_stop is not None and application.emergency_stop.brake is not None:
+        yield from _on_the_brake(evaluation, index)
     if _is_unlimited(figures.momentary_peak_count, index):
         yield notice("momentary_peak_count_unlimited")
     if _is_unlimited(figures.life_L10_h, index):
         yield notice("life_unlimited")
+
+
+def _on_the_brake(evaluation: Evaluation, index: int) -> Iterable[Notice]:
+    duty, ratio = evaluation.case.duty, evaluation.gears.columns.ratio
+    if (
+        np.isnan(duty.load_inertia_kgm2.item(index))
+        or np.isnan(evaluation.case.figures.motor_inertia_kgm2[index]).all()
+    ):
+        yield notice("brake_inertia_unknown")
+    yield notice("brake_uniform")
+    if (course := duty.courses.get(index)) is None:
+        return
+    weight = course.load.weight_Nm / course.load.ratio
+    held = duty.asked["emergency_stop.brake.torque_Nm"].item(index) * ratio * (1 + ROUNDING)
+    slips = sorted({i for i, torque in zip(ratio.tolist(), held.tolist(), strict=True) if torque < weight})
+    if slips:
+        yield notice("brake_does_not_hold", torque_Nm=weight, ratios=", ".join(f"{i:g}" for i in slips))
+
+
+def _on_stiffness(application: Application, evaluation: Evaluation, index: int) -> Iterable[Notice]:
+    duty, best = evaluation.case.duty, evaluation.order.item(index, 0)
+    if np.isnan(duty.asked.load_reverses.item(index)) and duty.torque_both_ways.item(index):
+        yield notice("torque_signs_not_given")
+    if (motion := application.duty_cycle.motion) is None:
+        return
+    frequency = np.broadcast_to(evaluation.case.figures.natural_frequency_Hz, evaluation.verdict.shape)[index, best]
+    ramps = [move.shortest_ramp_s for move in motion.moves if move.way]
+    if min(ramps) * frequency < 1 - ROUNDING:
+        name = evaluation.gears.rows[best].designation
+        yield notice("ramp_shorter_than_period", ramp_s=min(ramps), period_s=float(1 / frequency), name=name)
 
 
 def _on_speed(evaluation: Evaluation, index: int) -> Iterable[Notice]:
@@ -244,10 +301,20 @@ def _on_the_bearing(load: OutputLoad, evaluation: Evaluation, index: int) -> Ite
     asked_h = evaluation.case.asked["requirements.life_h"].item(index)
     if not np.isnan(asked_h) and (load.life_h, load.life_basis) == (BEARING_LIFE_H, "L50"):
         yield notice("bearing_life_at_default", gear_life_h=asked_h, bearing_life_h=load.life_h)
-    yield notice("bearing_load_position")
+    yield from _on_the_lever(load, evaluation)
     yield notice("bearing_life_basis")
     if _is_unlimited(evaluation.case.figures.bearing_life_L50_h, index):
         yield notice("bearing_life_unlimited")
+
+
+def _on_the_lever(load: OutputLoad, evaluation: Evaluation) -> Iterable[Notice]:
+    if load.radial_position_mm is None and not load.axial_radius_mm:
+        yield notice("bearing_load_position")
+        return
+    yield notice("bearing_lever")
+    lacking = {gear.name for gear in evaluation.gears.rows if gear.shaft_centre_mm is None}
+    if load.shaft_centre_mm is None and lacking and (load.radial_position_mm or load.axial_radius_mm):
+        yield notice("bearing_centre_unknown", names=", ".join(sorted(lacking)))
 
 
 def _on_the_motor(application: Application, evaluation: Evaluation, index: int) -> Iterable[Notice]:
@@ -263,9 +330,10 @@ def _on_the_motor(application: Application, evaluation: Evaluation, index: int) 
     if asked.motor is not None or application.rank_by == "motor_torque":
         included = not np.isnan(evaluation.case.asked["requirements.motor.inertia_kgm2"].item(index))
         moving = application.duty_cycle.motion is not None
-        yield notice("motor_inertia_included" if moving and included else "motor_torque_partial")
-    if asked.load_inertia_kgm2 is not None and (asked.motor is None or asked.motor.inertia_ratio is None):
-        yield notice("load_inertia_unused")
+        gears = evaluation.gears.columns
+        known = not np.isnan((gears.inertia_kgm2, gears.no_load_torque_Nm)).any()
+        whole = "motor_all_included" if known else "motor_inertia_included"
+        yield notice(whole if moving and included else "motor_torque_partial")
 
 
 @lru_cache(maxsize=256)

@@ -19,6 +19,7 @@ from hpn.engine.checks import BY_CODE
 from hpn.engine.reserve import MOVES
 from hpn.engine.selection import Candidate, CheckResult
 from hpn.physics.equations import ROUNDING
+from hpn.physics.stiffness import ARCMIN_PER_RAD
 from hpn.words.units import suffix_of
 from hpn.words.wording import N_, Quantity, Sentence, listed, rounded
 
@@ -33,7 +34,8 @@ MOTOR_TORQUE_CHECKS = ("motor_peak_torque", "motor_rated_torque")
 class Way:
     """Factors on the drivers with which every load check passes that they move; 1 where one may stay as it is.
 
-    The emergency stop has its largest torque, and as an alternative its largest number, where one is exceeded.
+    The emergency stop has its largest torque, or its brake's, and as an alternative its largest number, where one is
+    exceeded.
     """
 
     torque: float = 1.0
@@ -41,6 +43,7 @@ class Way:
     load: float = 1.0
     emergency_stop_torque_Nm: float | None = None
     emergency_stop_count: int | None = None
+    brake_torque_Nm: float | None = None
 
 
 def ways_of(candidate: Candidate, reserve_utilisation: float = 1.0) -> tuple[Way, ...]:
@@ -88,13 +91,15 @@ def _excess(relative: float) -> float:
     return relative if relative > 1 + ROUNDING else 1.0
 
 
-def _stop(candidate: Candidate, u: float) -> tuple[float | None, int | None]:
+def _stop(candidate: Candidate, u: float) -> tuple[float | None, int | None, float | None]:
+    """Largest torque of the stop, largest number and largest torque of its brake, where one is exceeded."""
     checks = {check.code: check for check in candidate.failing}
     torque, count = checks.get("momentary_peak_torque"), checks.get("momentary_peak_count")
     if not torque and not count:
-        return None, None
+        return None, None, None
     fewer = math.floor(u * (count.limit or 0) * (1 + ROUNDING)) if count and not torque else 0
-    return candidate.reserve.emergency_stop_torque_Nm, fewer or None
+    brake = candidate.reserve.brake_torque_Nm
+    return None if brake is not None else candidate.reserve.emergency_stop_torque_Nm, fewer or None, brake
 
 
 # --- Alternatives -----------------------------------------------------------------------------------------------------
@@ -128,16 +133,24 @@ def alternatives_of(candidate: Candidate, reserve_utilisation: float = 1.0) -> t
     ways, changed = ways_of(candidate, reserve_utilisation), tuple(_requirements(candidate, reserve_utilisation))
     if any(getattr(way, driver) < 1 for way in ways for driver in MOVES if _is_untold(candidate, driver)):
         return ()
+    if any(way.brake_torque_Nm == 0 for way in ways) or _never_stops(candidate):
+        return ()
     return tuple(Alternative(one, changed) for way in ways or (Way(),) for one in _by_stop(way))
+
+
+def _never_stops(candidate: Candidate) -> bool:
+    """True where the brake does not stop the load, which no smaller torque mends."""
+    return any(check.code == "momentary_peak_torque" and check.utilisation is None for check in candidate.failing)
 
 
 def _by_stop(way: Way) -> Iterable[Way]:
     """The way with a smaller emergency stop, and where that suffices with fewer of them."""
     yield replace(way, emergency_stop_count=None)
     if way.emergency_stop_count is not None:
-        yield replace(way, emergency_stop_torque_Nm=None)
+        yield replace(way, emergency_stop_torque_Nm=None, brake_torque_Nm=None)
 
 
+LESS_INERTIA = N_("the load’s inertia drops to {value}")
 _AMBIENT = (N_("the ambient temperature drops to {value}"), N_("the ambient temperature rises to {value}"))
 
 
@@ -145,6 +158,10 @@ def _requirements(candidate: Candidate, u: float) -> Iterable[Requirement]:
     """Requirements that would pass, for the failing checks that no driver moves."""
     for check in candidate.failing:
         known = BY_CODE[check.code]
+        inertia = candidate.reserve.load_inertia_kgm2
+        if check.code == "natural_frequency" and inertia is not None:
+            yield Requirement("requirements.load_inertia_kgm2", Quantity(inertia, "kgm2", 4, "down"), LESS_INERTIA)
+            continue
         if known.asked is None or check.demand is None or check.limit is None:
             continue
         if known.kind == "range":
@@ -170,10 +187,17 @@ def tried(application: Application, alternative: Alternative, catalogue: Catalog
     if any(requirement.path in figures for requirement in alternative.requirements):
         changed = with_listed_motor(changed, catalogue)
         changed = _with(changed, ("requirements", "motor", "designation"), None)
+    asked = application.requirements
     for requirement in alternative.requirements:
-        value = requirement.value
-        changed = _with(changed, requirement.path.split("."), float(rounded(value.value, value.digits, value.rounding)))
+        path, value = requirement.path, requirement.value
+        if path == POSITION_ERROR and asked.position_error_mm is not None:  # asked as a length: what it comes to there
+            length = value.value * (asked.position_radius_mm or 0.0) / ARCMIN_PER_RAD
+            path, value = "requirements.position_error_mm", Quantity(length, "mm", value.digits, value.rounding)
+        changed = _with(changed, path.split("."), float(rounded(value.value, value.digits, value.rounding)))
     return changed
+
+
+POSITION_ERROR = "requirements.position_error_arcmin"
 
 
 def _with(model: Any, path: Sequence[str], value: float | None) -> Any:
@@ -235,9 +259,12 @@ def _driven(cycle: DutyCycle, torque: float, speed: float, load: float) -> tuple
 
 def _stopped(stop: EmergencyStop, way: Way) -> EmergencyStop:
     """The emergency stop with its largest torque, else with its largest number, else as it is."""
+    if stop.brake is not None and way.brake_torque_Nm is not None:
+        brake = stop.brake.model_copy(update={"torque_Nm": _printed(way.brake_torque_Nm, 4)})
+        return stop.model_copy(update={"brake": brake})
     if way.emergency_stop_torque_Nm is not None:
         limit = _printed(way.emergency_stop_torque_Nm, 4)
-        return stop.model_copy(update={"torque_Nm": math.copysign(limit, stop.torque_Nm)})
+        return stop.model_copy(update={"torque_Nm": math.copysign(limit, stop.torque_Nm or 0.0)})
     return stop if way.emergency_stop_count is None else stop.model_copy(update={"count": way.emergency_stop_count})
 
 
@@ -265,6 +292,7 @@ _DRIVERS = {
     "load": (N_("output loads drop to {value}"), N_("output loads to {value}")),
 }
 _STOP_TORQUE = (N_("T_k drops to {value}"), N_("T_k to {value}"))
+_BRAKE = (N_("the brake’s torque drops to {value}"), N_("the brake’s torque to {value}"))
 _STOP_COUNT = (N_("N_k drops to {value}"), N_("N_k to {value}"))
 """Texts on what drops to a value, as the first clause of a sentence and as a later one."""
 
@@ -310,6 +338,8 @@ def _clauses(alternative: Alternative) -> list[Sentence]:
             changes.append((wording, _bound(100 * factor, "percent")))
     if way.emergency_stop_torque_Nm is not None:
         changes.append((_STOP_TORQUE, _bound(way.emergency_stop_torque_Nm, "Nm", 4)))
+    if way.brake_torque_Nm is not None:
+        changes.append((_BRAKE, _bound(way.brake_torque_Nm, "Nm", 4)))
     if way.emergency_stop_count is not None:
         changes.append((_STOP_COUNT, _bound(way.emergency_stop_count, "", 16)))
     drops = [Sentence(wording[place > 0], {"value": value}) for place, (wording, value) in enumerate(changes)]

@@ -25,11 +25,11 @@ MOTOR_TORQUE_INPUTS = ("requirements.motor.peak_torque_Nm", "requirements.motor.
 def reserves(evaluation: Evaluation, index: int) -> dict[str, FloatArray]:
     """Reserve of application `index` on every gear, shape (G,) each: infinite without a limit, NaN where not rated.
 
-    Factors on all torques of the duty cycle (not the emergency stop), on all speeds and on all loads, and the largest
-    permissible emergency-stop torque in Nm. A torque's mean, peak and RMS go together, and so do a speed's mean and
-    peak. NaN also where the application moves no such check, and where no closed form follows a motor torque: for the
-    torque factor where it goes by the gear's efficiency curve, for those of torque and speed where the motor's own
-    inertia has a part in it, which goes by the motion's acceleration.
+    Factors on all torques of the duty cycle (not the emergency stop), on all speeds and on all loads, the largest
+    permissible emergency-stop torque and brake torque in Nm and the largest load inertia in kg m². A torque's mean,
+    peak and RMS go together, and so do a speed's mean and peak. NaN also where the application moves no such check, and
+    where no closed form follows a motor torque: for the torque factor where it goes by the gear's efficiency curve, for
+    those of torque and speed where the motor's own inertia has a part in it, which goes by the motion's acceleration.
     """
     asked = evaluation.case.asked
     u = asked["requirements.utilisation"].item(index)
@@ -45,7 +45,7 @@ def reserves(evaluation: Evaluation, index: int) -> dict[str, FloatArray]:
         by_curve = follows_curve & ~np.bool_(stated)
         factors["torque_factor"] = np.where(by_curve | np.bool_(turns), np.nan, factors["torque_factor"])
         factors["speed_factor"] = np.where(np.bool_(turns), np.nan, factors["speed_factor"])
-    return {**factors, "emergency_stop_torque_Nm": _emergency_stop_torque(evaluation, index, u)}
+    return {**factors, **_of_stop(evaluation, index, u), "load_inertia_kgm2": _load_inertia(evaluation, index, u)}
 
 
 def _factor(evaluation: Evaluation, index: int, driver: Driver, u: float) -> FloatArray:
@@ -59,17 +59,25 @@ def _factor(evaluation: Evaluation, index: int, driver: Driver, u: float) -> Flo
     return np.minimum.reduce(rooms) if rooms else np.array(np.nan)
 
 
+def _of_stop(evaluation: Evaluation, index: int, u: float) -> dict[str, FloatArray]:
+    """Largest T_k, and largest torques of the brake with which a stop keeps to it and to T_R, shape (G,) each."""
+    nothing, duty, T_R = np.array(np.nan), evaluation.case.duty, evaluation.gears.columns.repeated_peak_torque_Nm
+    braked = duty.brakes is not None and bool(duty.brakes.item(index))
+    if not braked and np.isnan(duty.typed_stop_torque_Nm.item(index)):
+        return {name: nothing for name in ("emergency_stop_torque_Nm", "brake_torque_Nm", "brake_torque_repeated_Nm")}
+    T_k, stops = _emergency_stop_torque(evaluation, index, u), evaluation.case.figures.stops
+    brakes = [stops.largest_brake_torque_Nm(T)[index] if braked else nothing for T in (T_k, T_R)]
+    return {"emergency_stop_torque_Nm": T_k, "brake_torque_Nm": brakes[0], "brake_torque_repeated_Nm": brakes[1]}
+
+
 def _emergency_stop_torque(evaluation: Evaluation, index: int, u: float) -> FloatArray:
     """Largest T_k that equations 17.8 and 17.9 allow, shape (G,).
 
     The number that equation 17.9 has to allow is the expected one over u, rounded up, since it gives a count; a reserve
     next to 0 leaves no stop above T_R. Without an expected number T_M alone limits.
     """
-    asked, gears = evaluation.case.asked, evaluation.gears.columns
-    if np.isnan(asked["emergency_stop.torque_Nm"].item(index)):
-        return np.array(np.nan)
+    gears, count = evaluation.gears.columns, evaluation.case.asked["emergency_stop.count"].item(index)
     by_torque = u * gears.momentary_peak_torque_Nm
-    count = asked["emergency_stop.count"].item(index)
     if np.isnan(count):
         return by_torque
     needed = max(np.ceil(count / u * (1 - ROUNDING)), 1.0)
@@ -77,3 +85,23 @@ def _emergency_stop_torque(evaluation: Evaluation, index: int, u: float) -> Floa
         momentary_peak_count=needed, repeated_peak_torque_Nm=gears.repeated_peak_torque_Nm
     )
     return np.minimum(by_torque, by_count)
+
+
+def _load_inertia(evaluation: Evaluation, index: int, u: float) -> FloatArray:
+    """Largest inertia of the load in kg m² with which natural frequency and inertia ratio pass, shape (G,).
+
+    NaN where neither is asked for, and along a motion, whose torques go by the inertia too. The frequency goes by
+    1 / √J; what the gear's own inertia adds to the ratio stays.
+    """
+    case = evaluation.case
+    J, f, n = (case.asked[f"requirements.{name}"].item(index) for name in LOAD_INERTIA_INPUTS)
+    rooms = []
+    if not np.isnan(f):
+        rooms.append(case.gears.torsional_stiffness_Nm_per_rad / np.square(2 * np.pi * f))
+    if not np.isnan(n):
+        J_m = case.asked["requirements.motor.inertia_kgm2"].item(index)
+        rooms.append(np.square(case.gears.ratio) * (u * n * J_m - np.nan_to_num(case.gears.inertia_kgm2)))
+    return np.minimum.reduce(rooms) if rooms and not np.isnan(J) else np.array(np.nan)
+
+
+LOAD_INERTIA_INPUTS = ("load_inertia_kgm2", "natural_frequency_Hz", "motor.inertia_ratio")

@@ -55,6 +55,9 @@ class Reserve(msgspec.Struct, frozen=True):
     speed_factor: float | None = None
     load_factor: float | None = None
     emergency_stop_torque_Nm: float | None = None
+    brake_torque_Nm: float | None = None
+    brake_torque_repeated_Nm: float | None = None
+    load_inertia_kgm2: float | None = None
 
 
 class Candidate(msgspec.Struct, frozen=True):
@@ -77,6 +80,18 @@ class Candidate(msgspec.Struct, frozen=True):
     bearing_life_L10_h: float | None = None
     motor_peak_torque_Nm: float | None = None
     motor_rated_torque_Nm: float | None = None
+    natural_frequency_Hz: float | None = None
+    drive_resonance_Hz: float | None = None
+    wind_up_arcmin: float | None = None
+    position_error_arcmin: float | None = None
+    position_error_mm: float | None = None
+    stop_torque_Nm: float | None = None
+    stopping_time_s: float | None = None
+    stopping_angle_deg: float | None = None
+    stopping_distance_mm: float | None = None
+    stop_energy_J: float | None = None
+    end_stop_speed_rpm: float | None = None
+    motor_lock_speed_rpm: float | None = None
     reserve: Reserve = Reserve()
     checks: tuple[CheckResult, ...] = ()
 
@@ -184,8 +199,8 @@ class Selection(msgspec.Struct, frozen=True):
 
     @property
     def turns_motor(self) -> bool:
-        """True where the motor's own inertia counts in its torques, as a notice says."""
-        return any(notice.code == "motor_inertia_included" for notice in self.notices)
+        """Whether the motor's own inertia counts in its torques, which a notice says."""
+        return any(notice.code in ("motor_inertia_included", "motor_all_included") for notice in self.notices)
 
     def candidate(self, designation: str) -> Candidate | None:
         """The candidate of a designation, or None."""
@@ -335,6 +350,18 @@ FIGURES = (
     "bearing_life_L10_h",
     "motor_peak_torque_Nm",
     "motor_rated_torque_Nm",
+    "natural_frequency_Hz",
+    "drive_resonance_Hz",
+    "wind_up_arcmin",
+    "position_error_arcmin",
+    "position_error_mm",
+    "stop_torque_Nm",
+    "stopping_time_s",
+    "stopping_angle_deg",
+    "stopping_distance_mm",
+    "stop_energy_J",
+    "end_stop_speed_rpm",
+    "motor_lock_speed_rpm",
 )
 """Figures of a candidate, in the order of its fields."""
 
@@ -354,6 +381,7 @@ REASONS = {
     "suitable": N_("Every check passes; the closest is {check} at {percent} of its limit."),
     "unsuitable": N_("{check} is at {percent} of its limit."),
     "unsuitable_more": N_("{check} is at {percent} of its limit; checks that fail: {failed}."),
+    "never_stops": N_("The brake does not stop the load."),
     "no_stop_allowed": N_("T_k is too high: no emergency stop is permitted (eq. 17.9)."),
     "unrated": N_("Not rated: figures of {name} that the checks need are not in this catalogue’s source."),
 }
@@ -364,8 +392,7 @@ def reason_of(candidate: Candidate, utilisation: float) -> Sentence:
     """Sentence on a candidate's rank, for any language; `utilisation` is the user's u."""
     used, code, failed = candidate.utilisation, candidate.governing_check, len(candidate.failing)
     if used is None or code is None:
-        key = "unrated" if candidate.status == "unrated" else "no_stop_allowed"
-        return Sentence(REASONS[key], {"name": f"HPN-{candidate.size}"})
+        return Sentence(REASONS[_key_without_number(candidate.status, code)], {"name": f"HPN-{candidate.size}"})
     percent = Quantity(_told_percent(used, code, utilisation), "percent", 12)
     values: dict[str, Value] = {"check": BY_CODE[code].title, "percent": percent, "failed": failed}
     return Sentence(REASONS[_key(candidate.status, failed)], values, ("check",))
@@ -374,9 +401,15 @@ def reason_of(candidate: Candidate, utilisation: float) -> Sentence:
 def _reason(size: str, status: Status, used: float | None, code: str | None, failed: int, u: float) -> str:
     """The same sentence in English, as the API gives it, its number with every digit."""
     if used is None or code is None:
-        return REASONS["unrated" if status == "unrated" else "no_stop_allowed"].format(name=f"HPN-{size}")
+        return REASONS[_key_without_number(status, code)].format(name=f"HPN-{size}")
     percent = f"{_told_percent(used, code, u)!r} %"
     return REASONS[_key(status, failed)].format(check=BY_CODE[code].title, percent=percent, failed=failed)
+
+
+def _key_without_number(status: Status, code: str | None) -> str:
+    if status == "unrated":
+        return "unrated"
+    return "never_stops" if code == "momentary_peak_torque" else "no_stop_allowed"
 
 
 def _key(status: Status, failed: int) -> str:

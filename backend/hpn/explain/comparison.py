@@ -121,6 +121,11 @@ def _accuracies(columns: Sequence[Column], maximum_torque_Nm: float) -> Iterable
     yield _row(columns, "backlash", N_("Backlash, at most"), backlash, "j", "arcmin", lowest=True)
     yield _row(columns, "accuracy", N_("Transmission accuracy, at most"), accuracy, "", "arcmin", lowest=True)
     yield _row(columns, "stiffness", N_("Torsional stiffness"), stiffness, "K_3", "Nm_per_rad", lowest=False)
+    if any(column.candidate.natural_frequency_Hz is not None for column in columns):
+        held = _result("natural_frequency_Hz")
+        yield _row(columns, "frequency", N_("Natural frequency, at most"), held, "f_1", "Hz", lowest=False)
+    error = _result("position_error_arcmin")
+    yield _row(columns, "position_error", N_("Position error, about"), error, "φ_e", "arcmin", lowest=True)
 
 
 def torsion_of(gear: Gear, maximum_torque_Nm: float) -> float | None:

@@ -104,14 +104,31 @@ def differences(saved: Selection | Mapping[str, Any], today: Selection | Mapping
     before.add(saved)
     after.add(today)
     largest = _largest_of_lists(before, after)
+    unknown = LATER_FIGURES if _is_before_them(before) else frozenset[str]()
     found = [
         _difference(name, before.values.get(name), after.values.get(name))
         for name in before.values | after.values
-        if _differs(name, before, after, largest)
+        if not (name[0] == "candidates" and name[-1] in unknown) and _differs(name, before, after, largest)
     ]
     if not any(one.kind == "figure" or one.field == "status" for one in found):
         found = [structs.replace(one, cause="tie_rule") if one.kind == "verdict" else one for one in found]
     return sorted(found, key=_weight)
+
+
+LATER_FIGURES = frozenset(
+    (
+        *("natural_frequency_Hz", "drive_resonance_Hz", "wind_up_arcmin", "position_error_arcmin", "position_error_mm"),
+        *("stop_torque_Nm", "stopping_time_s", "stopping_angle_deg", "stopping_distance_mm", "stop_energy_J"),
+        *("end_stop_speed_rpm", "motor_lock_speed_rpm"),
+        *("brake_torque_Nm", "brake_torque_repeated_Nm", "load_inertia_kgm2"),
+    )
+)
+"""Figures that earlier versions did not give: a selection that they saved does not differ by having none."""
+
+
+def _is_before_them(saved: _Fields) -> bool:
+    """True for a reply without the figure among them that every rated gear has."""
+    return all(value is None for name, (_, value) in saved.values.items() if name[-1] == "wind_up_arcmin")
 
 
 def _list_of(name: Name) -> Name:

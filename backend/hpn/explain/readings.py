@@ -20,7 +20,7 @@ from hpn.engine.duty import Duty
 from hpn.engine.figures import phase_loads
 from hpn.engine.selection import Candidate, CheckResult, Selection
 from hpn.words.quantities import CANDIDATE
-from hpn.words.wording import N_
+from hpn.words.wording import N_, Quantity, Sentence, listed
 
 OTHERWISE = {"≤": ">", "≥": "<"}
 """Sign between demand and limit of a failing check, by the sign of one that passes."""
@@ -176,3 +176,17 @@ def _bearing_load(
     demand = load.load_coefficient * float(np.hypot(radial, axial))
     name = N_("maximum in this direction")
     return Reading(demand, demand / check.demand, "N", "maximum", name, "f_w · F ≤ F_max", u)
+
+
+def stiffness_of(candidate: Candidate) -> Sentence:
+    """Natural frequency and position error of a candidate, as far as they are known."""
+    f, error = candidate.natural_frequency_Hz, candidate.position_error_arcmin
+    known = [
+        Sentence(text, {"value": Quantity(value, unit)})
+        for text, value, unit in (
+            (N_("natural frequency {value}"), f, "Hz"),
+            (N_("position error {value}"), error, "arcmin"),
+        )
+        if value is not None
+    ]
+    return listed(known, "{first}, {rest}") if known else Sentence("")

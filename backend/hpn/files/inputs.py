@@ -13,9 +13,10 @@ from hpn.words.reader import Reader
 from hpn.words.units import suffix_of
 from hpn.words.wording import N_
 
-Value = float | str | tuple[str | int, ...]
+Value = float | str | bool | tuple[str | int, ...]
 
 LOAD_PATH, LOAD_INERTIA = "output_load.", "requirements.load_inertia_kgm2"
+LOAD_REVERSES = "requirements.load_reverses"
 _LOADING = ("duty_cycle.", "emergency_stop.", LOAD_PATH)
 
 LOADS = tuple(path for path in INPUTS if path.startswith(_LOADING))
@@ -40,6 +41,10 @@ WORDS: Mapping[str, str] = {
     "motor_torque": N_("motor torque"),
     "life": N_("life"),
     "stiffness": N_("stiffness"),
+    "natural_frequency": N_("natural frequency"),
+    "position_error": N_("position error"),
+    "True": N_("yes"),
+    "False": N_("no"),
     **{str(area): text for area, text in AREAS.items()},
 }
 """Values that are a code, in words."""
@@ -69,6 +74,8 @@ def entered(export: Export, path: str) -> Value | None:
     value = value_of(export.equipped, path)
     if value is None and path == LOAD_INERTIA:
         return export.selection.duty.load_inertia_kgm2
+    if value is None and path == LOAD_REVERSES and export.application.duty_cycle.motion is not None:
+        return False  # a motion has its signs
     if value is None and path.startswith(LOAD_PATH):
         default: Value | None = getattr(OutputLoad(), path.removeprefix(LOAD_PATH))
         return default
@@ -86,7 +93,7 @@ def given(application: Application, paths: Iterable[str], reader: Reader) -> Ite
 def _written(value: Value, path: str, reader: Reader) -> str:
     if isinstance(value, tuple):
         return ", ".join(map(str, value))
-    if isinstance(value, str):
-        return reader.text(WORDS.get(value, value))
+    if isinstance(value, str | bool):
+        return reader.text(WORDS.get(str(value), str(value)))
     unit = suffix_of(path) or ""
     return reader.with_unit(reader.exact(value, unit), unit)

@@ -33,7 +33,7 @@ LOADS = ("radial_N", "axial_N")
 STEADY = {"peak_torque_Nm": "torque_Nm", "peak_speed_rpm": "speed_rpm", "rms_torque_Nm": "torque_Nm"}
 """Figures of phases that vary, and what they are of a steady one."""
 
-PAUSE = "duty_cycle.pause_s"
+PAUSE, REVERSES = "duty_cycle.pause_s", "requirements.load_reverses"
 
 MOST_CELLS = 100_000
 """Cells and items of lists that are objects at once, while the models judge axes."""
@@ -174,7 +174,7 @@ class Axes:
         assert self._asked is not None
         numbers = {path: values[axes, None] for path, values in self._wanted.items()}
         texts = (getattr(self._asked, name)[self._pattern[axes]] for name in ("bearing_model", "life_basis", "rank_by"))
-        return Duty(Phases(*series), Asked(numbers, *texts))
+        return Duty(Phases(*series), Asked(numbers, *[*texts, self._numbers(REVERSES)[axes, None]]))
 
     @cached_property
     def _phases(self) -> dict[str, FloatArray]:
@@ -185,7 +185,7 @@ class Axes:
             values[name] = np.nan_to_num(np.where(np.isnan(values[name]), whole, values[name]))
         for name, steady in STEADY.items():
             values[name] = np.where(np.isnan(values[name]), values[steady], values[name])
-        return values
+        return values | {"torque_sign": np.sign(self._numbers("torque_Nm"))}
 
     @cached_property
     def _wanted(self) -> dict[str, FloatArray]:

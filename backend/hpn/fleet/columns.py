@@ -31,7 +31,7 @@ class Column(InputField):
     @property
     def type(self) -> pa.DataType:
         """Arrow type that its cells are read as."""
-        item = pa.string() if self.kind == "string" else pa.float64()
+        item = {"string": pa.string(), "boolean": pa.bool_()}.get(self.kind, pa.float64())
         return pa.list_(item) if self.is_list else item
 
     def takes(self, given: pa.DataType, wanted: pa.DataType) -> bool:
@@ -46,8 +46,8 @@ class Column(InputField):
     def _takes_item(self, given: pa.DataType) -> bool:
         if kinds.is_null(given):
             return True
-        if self.kind == "string":
-            return is_text(given)
+        if self.kind in ("string", "boolean"):
+            return is_text(given) if self.kind == "string" else bool(kinds.is_boolean(given))
         return bool(kinds.is_integer(given) or kinds.is_floating(given) or kinds.is_decimal(given))
 
 
@@ -132,7 +132,7 @@ def _phases(row: Mapping[str, Any], columns: Mapping[str, Column]) -> list[Json]
 
 def _plain(value: Any, column: Column) -> Any:
     """A cell as the models take it: any kind of number as a float."""
-    return value if column.kind == "string" or value is None else float(value)
+    return value if column.kind in ("string", "boolean") or value is None else float(value)
 
 
 def _column(name: str, field: InputField, *, is_list: bool) -> Column:

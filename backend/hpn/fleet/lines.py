@@ -35,6 +35,7 @@ OTHER_SEPARATORS = {";": "semicolons", "\t": "tabs"}
 BOM = b"\xef\xbb\xbf"
 NUMBER = r"^[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?$|^[+-]?(nan|inf|infinity)$"
 NO_NUMBER = N_("must be a number with a decimal point, such as 9.3")
+NO_FLAG = N_("must be true or false")
 NO_NUMBERS = N_("must be a JSON list of numbers, such as [40, 32.5]")
 NO_TEXTS = N_('must be a JSON list of texts, such as ["14A", "20A"]')
 NOT_UTF8 = N_("must be UTF-8")
@@ -305,6 +306,10 @@ def _parsed(texts: pa.Array, column: Column | None, wanted: pa.DataType) -> tupl
         kind = list[str | None] if column.kind == "string" else list[float | None]
         return _one_by_one(texts, msgspec.json.Decoder(kind).decode, wanted, no_list(column))
     texts = pc.ascii_trim_whitespace(texts)
+    if column.kind == "boolean":
+        is_flag = pc.match_substring_regex(texts, "^(true|false|0|1)$", ignore_case=True)
+        wrong = np.flatnonzero(np.asarray(pc.fill_null(pc.invert(is_flag), False)))
+        return pc.if_else(is_flag, texts, None).cast(wanted), [(int(row), NO_FLAG) for row in wrong]
     numbers = pc.match_substring_regex(texts, NUMBER, ignore_case=True)
     wrong = np.flatnonzero(np.asarray(pc.fill_null(pc.invert(numbers), False)))
     if len(wrong):

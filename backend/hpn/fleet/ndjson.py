@@ -13,11 +13,12 @@ import pyarrow as pa
 from hpn.application.faults import NOT_A_NUMBER
 from hpn.application.unique import RepeatedNameError, require_unique
 from hpn.fleet.columns import AXIS, COLUMNS, is_list
-from hpn.fleet.lines import BOM, MOST_BROKEN, LinesTable, cut, no_list
+from hpn.fleet.lines import BOM, MOST_BROKEN, NO_FLAG, LinesTable, cut, no_list
 from hpn.fleet.tables import Batch, Fault
 from hpn.words.wording import N_
 
 NO_TEXT = N_("must be text")
+RIGHT = {"string": (NO_TEXT, str), "boolean": (NO_FLAG, bool)}
 AXIS_IN_LINE = re.compile(rb'"axis"\s*:\s*("(?:[^"\\]|\\.)*"|-?[0-9]+(?=[\s,}]))')
 NAME_IN_LINE = re.compile(rb'"([^"\\]*)"\s*:')
 Integer = Annotated[int, msgspec.Meta(ge=-(2**63), le=2**63 - 1)]
@@ -81,7 +82,8 @@ class NdjsonTable(LinesTable):
         kinds: dict[str, Any] = {AXIS: Integer if pa.types.is_integer(self.axis_type) else str}
         for name in self.names:
             if name != AXIS:
-                kinds[name] = READ_AS[COLUMNS.all[name].kind == "string", is_list(self.type_of(name))]
+                kind, is_listed = COLUMNS.all[name].kind, is_list(self.type_of(name))
+                kinds[name] = bool if kind == "boolean" else READ_AS[kind == "string", is_listed]
         return kinds | dict.fromkeys(self.ignored, Any)
 
     @cached_property
@@ -150,7 +152,7 @@ class NdjsonTable(LinesTable):
             expected = "an integer" if pa.types.is_integer(self.axis_type) else "text"
             return f"must be {expected}, as the first valid axis is, not {_shown(value)}"
         column = COLUMNS.all[name]
-        right, kind = (NO_TEXT, str) if column.kind == "string" else (NOT_A_NUMBER, float)
+        right, kind = RIGHT.get(column.kind, (NOT_A_NUMBER, float))
         if not is_list(self.type_of(name)):
             return f"{right}, not {_shown(value)}"
         if not isinstance(value, list):

@@ -77,6 +77,29 @@ class CurveError(ValueError):
 
 
 @equation
+def radial_load_at_centre(
+    *,
+    radial_N: ArrayLike,
+    axial_N: ArrayLike,
+    radial_position_mm: ArrayLike,
+    axial_radius_mm: ArrayLike,
+    shaft_centre_mm: ArrayLike,
+) -> FloatArray:
+    """Radial load at the shaft's centre in N that loads the bearing no less: F_R max(1, |x| / x_c) + |F_A| y / x_c.
+
+    x and x_c are measured from the shaft's shoulder, y from its axis; x is NaN for a load at the centre. An upper bound
+    for any distance of the two bearings behind the shoulder. NaN where x_c is not known and a lever acts.
+    """
+    F_R, F_A, x, y, x_c = (
+        np.asarray(value)
+        for value in (np.abs(radial_N), np.abs(axial_N), radial_position_mm, axial_radius_mm, shaft_centre_mm)
+    )
+    at_centre, moment = np.isnan(x) | (x == 0), F_A * y
+    lever = np.where(at_centre, 1.0, np.maximum(np.abs(x) / x_c, np.where(np.isnan(x_c), np.nan, 1.0)))
+    return F_R * lever + np.where(moment == 0, 0.0, moment / x_c)
+
+
+@equation
 def linear_load(*, radial: ArrayLike, axial: ArrayLike) -> FloatArray:
     """Equivalent load P = r + a of normalised loads r, a: the straight line between the published points. [-]"""
     return np.add(radial, axial)

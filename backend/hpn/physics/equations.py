@@ -201,6 +201,13 @@ def rms_torque(*, torque_Nm: ArrayLike, duration_s: ArrayLike, pause_s: ArrayLik
 
 
 @equation
-def inertia_ratio(*, load_inertia_kgm2: ArrayLike, ratio: ArrayLike, motor_inertia_kgm2: ArrayLike) -> FloatArray:
-    """Inertia of the load at the motor over the motor's own, J_L / (i² J_m) [-]."""
-    return np.divide(load_inertia_kgm2, np.multiply(np.square(ratio), motor_inertia_kgm2))
+def inertia_ratio(
+    *,
+    load_inertia_kgm2: ArrayLike,
+    ratio: ArrayLike,
+    motor_inertia_kgm2: ArrayLike,
+    gear_inertia_kgm2: ArrayLike = 0.0,
+) -> FloatArray:
+    """Inertia of the load at the motor, with the gear's at its input, over the motor's: (J_L / i² + J_g) / J_m [-]."""
+    gear = np.divide(gear_inertia_kgm2, motor_inertia_kgm2)
+    return np.divide(load_inertia_kgm2, np.multiply(np.square(ratio), motor_inertia_kgm2)) + gear

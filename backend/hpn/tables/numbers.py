@@ -19,7 +19,7 @@ from hpn.words.reader import Reader
 from hpn.words.units import NUMBER, SYMBOLS
 from hpn.words.wording import N_, Sentence
 
-Kind = Literal["number", "whole", "text"]
+Kind = Literal["number", "whole", "text", "flag"]
 
 WRITTEN, WAS = "written", "was"
 """Fields that say how the others are written, and which exact numbers stand behind them."""
@@ -28,6 +28,9 @@ DIGITS = 5
 """Digits that a number from elsewhere is shown with in another unit."""
 
 _GROUPED = re.compile(r"[+-]?[1-9][0-9]{0,2}(\.[0-9]{3})+")
+FLAGS: Mapping[str, bool] = {"0": False, "1": True, "false": False, "true": True}
+"""How no and yes are written."""
+
 LONGEST_TEXT = 100
 _LONGEST = 60
 """Characters of a text, such as the designation of a motor, and of a number."""
@@ -240,6 +243,8 @@ def read_value(text: str, kind: Kind, *, mostly_whole: bool = False) -> float | 
     given, text = text, text.strip()
     if kind == "text":
         return text if len(text) <= LONGEST_TEXT else Sentence(N_("is too long"))
+    if kind == "flag":
+        return FLAGS.get(text.lower(), Sentence(N_("must be 0 or 1")))
     plain = text.translate(DASHES)
     if len(plain) > _LONGEST or not _ANY_NUMBER.fullmatch(plain):
         return _not_a_number(plain, kind, mostly_whole=mostly_whole)

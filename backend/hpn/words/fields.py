@@ -69,11 +69,13 @@ TorqueMagnitude = Annotated[Number, Field(ge=0, le=1e6)]
 Speed = Annotated[Number, Field(ge=-1e6, le=1e6)]
 SpeedMagnitude = Annotated[Number, Field(ge=0, le=1e6)]
 Duration = Annotated[Number, Field(gt=0, le=1e9)]
+Seconds = Annotated[Number, Field(ge=0, le=1e6)]
 Load = Annotated[Number, Field(ge=-1e9, le=1e9)]
 SAYS_LEAST: Any = Field(json_schema_extra={"minimum": LEAST})
 Hours = Annotated[Number, Field(le=1e9), AfterValidator(_above_zero), SAYS_LEAST]
 MoveTime = Annotated[Number, Field(le=1e9), AfterValidator(_above_zero), SAYS_LEAST]
 Positive = Annotated[Number, Field(le=1e12), AfterValidator(_above_zero), SAYS_LEAST]
+MovingSpeed = Annotated[Number, Field(le=1e6), AfterValidator(_above_zero), SAYS_LEAST]
 Share = Annotated[Number, Field(le=1), AfterValidator(_above_zero), SAYS_LEAST]
 Ratio = Annotated[int, Field(strict=True, ge=1, le=10_000), WHOLE]
 

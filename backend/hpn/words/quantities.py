@@ -30,6 +30,8 @@ CheckCode = Literal[
     "ambient_temperature",
     "backlash",
     "torsional_stiffness",
+    "natural_frequency",
+    "position_error",
     "weight",
     "length",
 ]
@@ -64,12 +66,20 @@ INPUTS: Mapping[str, Named] = {
     "duty_cycle.pause_s": Named(N_("Pause"), "t_p"),
     "emergency_stop.torque_Nm": Named(N_("Emergency-stop torque"), "T_k"),
     "emergency_stop.count": Named(N_("Expected emergency stops"), "N_k"),
+    "emergency_stop.brake.torque_Nm": Named(N_("Brake torque"), "T_B"),
+    "emergency_stop.brake.rise_time_s": Named(N_("Rise time of the brake"), "t_b"),
+    "emergency_stop.brake.reaction_time_s": Named(N_("Reaction time"), "t_r"),
+    "emergency_stop.brake.speed_rpm": Named(N_("Speed at the command"), "n_b"),
+    "emergency_stop.brake.dynamic_factor": Named(N_("Dynamic factor"), "f"),
     "output_load.radial_N": Named(N_("Radial load of the cycle"), "F_R"),
     "output_load.axial_N": Named(N_("Axial load of the cycle"), "F_A"),
     "output_load.load_coefficient": Named(N_("Load coefficient"), "f_w"),
     "output_load.life_h": Named(N_("Required bearing life"), "L_b"),
     "output_load.life_basis": Named(N_("Life basis")),
     "output_load.model": Named(N_("Model of the bearing envelope")),
+    "output_load.radial_position_mm": Named(N_("Radial load acts at"), "x"),
+    "output_load.axial_radius_mm": Named(N_("Axial load acts at"), "y"),
+    "output_load.shaft_centre_mm": Named(N_("Shaft’s centre at"), "x_c"),
     "requirements.life_h": Named(N_("Required gear life"), "L_10,req"),
     "requirements.utilisation": Named(N_("Maximum utilisation"), "u"),
     "requirements.efficiency": Named(N_("Assumed efficiency"), "η"),
@@ -81,6 +91,11 @@ INPUTS: Mapping[str, Named] = {
     "requirements.motor.inertia_ratio": Named(N_("Largest inertia ratio"), "r_J"),
     "requirements.motor.designation": Named(N_("Motor of your list")),
     "requirements.load_inertia_kgm2": Named(N_("Inertia of the load"), "J_L"),
+    "requirements.natural_frequency_Hz": Named(N_("Minimum natural frequency"), "f_req"),
+    "requirements.position_error_arcmin": Named(N_("Maximum position error"), "φ_req"),
+    "requirements.position_error_mm": Named(N_("Maximum position error as a length"), "s_req"),
+    "requirements.position_radius_mm": Named(N_("Radius of the position"), "r_p"),
+    "requirements.load_reverses": Named(N_("Torque acts both ways")),
     "requirements.ambient_temperature_degC": Named(N_("Ambient temperature"), "t_amb"),
     "requirements.backlash_arcmin": Named(N_("Maximum backlash"), "j_req"),
     "requirements.torsional_stiffness_Nm_per_rad": Named(N_("Minimum torsional stiffness"), "K_3,req"),
@@ -116,6 +131,10 @@ MOTION: Mapping[str, Named] = {
     "move.speed_mm_per_s": Named(N_("Largest speed"), "v"),
     "move.acceleration_deg_per_s2": Named(N_("Acceleration"), "α"),
     "move.acceleration_mm_per_s2": Named(N_("Acceleration"), "a"),
+    "move.acceleration_time_s": Named(N_("Acceleration time"), "t_1"),
+    "move.deceleration_time_s": Named(N_("Deceleration time"), "t_2"),
+    "move.deceleration_deg_per_s2": Named(N_("Deceleration"), "α_2"),
+    "move.deceleration_mm_per_s2": Named(N_("Deceleration"), "a_2"),
     "move.jerk_share": Named(N_("Jerk share")),
     "move.external_torque_Nm": Named(N_("External torque"), "T_ext"),
     "move.external_force_N": Named(N_("External force"), "F_ext"),
@@ -152,6 +171,16 @@ BODY: Mapping[str, Named] = {
     "distance_mm": Named(N_("Off the axis")),
 }
 """Inputs of a body whose moment of inertia is calculated; none is part of an application."""
+
+STRANDS: Mapping[str, Named] = {
+    "tight_strand_N": Named(N_("Tight strand"), "F_1"),
+    "slack_strand_N": Named(N_("Slack strand"), "F_2"),
+    "power_W": Named(N_("or power"), "P"),
+    "speed_m_per_s": Named(N_("Speed of the belt"), "v"),
+    "pretension_factor": Named(N_("Pretension factor"), "k_F"),
+    "wrap_deg": Named(N_("Wrap angle"), "β"),
+}
+"""Inputs of a belt whose radial load is worked out; none is part of an application."""
 
 BEARING_MODELS: Mapping[str, str] = {
     "linear": N_("straight line (safe)"),
@@ -262,6 +291,60 @@ CANDIDATE: Mapping[str, Named] = {
         "RMS torque at the motor, T/(i·η), over the cycle with pause; along a motion with the motor’s own inertia, "
         "where that is given. Where no efficiency is known η is 1, and the torque a lower bound.",
     ),
+    "natural_frequency_Hz": Named(
+        N_("Natural frequency"),
+        "f_1",
+        "Natural frequency of the load on the gear, the motor held: an upper bound. Null without the load’s inertia.",
+        caveat=N_("An upper bound: couplings and the gear’s own inertia lower it."),
+    ),
+    "drive_resonance_Hz": Named(
+        N_("Drive resonance"),
+        "f_2",
+        "Resonance of load and motor against each other; null without both inertias.",
+        caveat=N_("Load and motor free to turn; couplings lower it."),
+    ),
+    "wind_up_arcmin": Named(
+        N_("Wind-up at T_max"),
+        "φ_w",
+        "Wind-up of the output under the largest torque: a lower bound.",
+        caveat=N_("A lower bound: the gear is softer below 15 % of the rated torque."),
+    ),
+    "position_error_arcmin": Named(
+        N_("Position error"),
+        "φ_e",
+        "Transmission accuracy, wind-up over the cycle’s torques and, where the torque passes 0, backlash; added.",
+        caveat=N_("About: limits of a new gear, added arithmetically."),
+    ),
+    "position_error_mm": Named(
+        N_("Position error at the radius"),
+        "s_e",
+        "The same as a length at the radius that is asked for; null without one.",
+    ),
+    "stop_torque_Nm": Named(
+        N_("Torque of the emergency stop"),
+        "T_k",
+        "Torque of the gear in an emergency stop: as it is given, else that of the brake.",
+    ),
+    "stopping_time_s": Named(
+        N_("Stopping time"), "t_stop", "Time from the command to rest; null without both inertias, and without a brake."
+    ),
+    "stopping_angle_deg": Named(
+        N_("Stopping angle"), "φ_stop", "Angle that the output turns from the command to rest; null likewise."
+    ),
+    "stopping_distance_mm": Named(
+        N_("Stopping distance"), "s_stop", "The same as a length at the radius that is asked for; null without one."
+    ),
+    "stop_energy_J": Named(N_("Energy of one stop"), "E", "Energy that the brake takes in one stop; null likewise."),
+    "end_stop_speed_rpm": Named(
+        N_("Speed into an end stop"),
+        "n_end",
+        "Output speed from which a load that meets an end stop brings the gear to T_M; shown, not judged.",
+    ),
+    "motor_lock_speed_rpm": Named(
+        N_("Speed of a locked motor"),
+        "n_lock",
+        "Output speed from which a motor that locks brings the gear to T_M; shown, not judged.",
+    ),
     "reserve": Named(N_("Reserve"), "", "Reserve per driver, the other inputs as given."),
     "checks": Named(N_("Checks"), "", "Every check that was asked for, in a fixed order."),
 }
@@ -279,6 +362,21 @@ RESERVE: Mapping[str, Named] = {
     "speed_factor": Named(N_("All speeds"), "", "Factor on all speeds; null likewise."),
     "load_factor": Named(N_("All output loads"), "", "Factor on all output loads; null likewise."),
     "emergency_stop_torque_Nm": Named(N_("Emergency-stop torque"), "T_k", "Largest permissible emergency-stop torque."),
+    "brake_torque_Nm": Named(
+        N_("Largest brake torque, at T_M"),
+        "T_B",
+        "Largest brake torque that keeps the emergency stop at T_M; null without a brake.",
+    ),
+    "brake_torque_repeated_Nm": Named(
+        N_("Largest brake torque, at T_R"),
+        "T_B",
+        "Largest brake torque that keeps the emergency stop at T_R, where equation 17.9 sets no limit; null likewise.",
+    ),
+    "load_inertia_kgm2": Named(
+        N_("Largest inertia of the load"),
+        "J_L",
+        "Largest inertia of the load with which natural frequency and inertia ratio pass; null where neither is asked.",
+    ),
 }
 
 CHECK: Mapping[str, Named] = {
@@ -313,12 +411,23 @@ GEAR: Mapping[str, Named] = {
     "dynamic_axial_load_N": Named(
         N_("Axial load without radial load"), "F_A,dyn(max)", "Permissible axial load at L50 20000 h and 100 rpm."
     ),
+    "shaft_centre_mm": Named(
+        N_("Shoulder to shaft’s centre"),
+        "x_c",
+        "Distance from the shaft’s shoulder to its centre; from a supplement alone.",
+    ),
+    "inertia_kgm2": Named(
+        N_("Inertia at the input"), "J_g", "Moment of inertia of the gear at its input; from a supplement alone."
+    ),
+    "no_load_torque_Nm": Named(
+        N_("Torque without load"), "T_0", "Torque at the input without load; from a supplement alone."
+    ),
     "ambient_temperature_minimum_degC": Named(N_("Lowest ambient temperature"), "t_min", "Lowest ambient temperature."),
     "ambient_temperature_maximum_degC": Named(
         N_("Highest ambient temperature"), "t_max", "Highest ambient temperature."
     ),
     "backlash_arcmin": Named(N_("Backlash"), "j", "Largest backlash."),
-    "transmission_accuracy_arcmin": Named(N_("Transmission accuracy"), "", "Largest transmission error."),
+    "transmission_accuracy_arcmin": Named(N_("Transmission accuracy"), "φ_a", "Largest transmission error."),
     "torsional_stiffness_Nm_per_rad": Named(N_("Torsional stiffness"), "K_3", "Torsional stiffness K_3."),
     "weight_kg": Named(N_("Weight"), "m", "Net weight of the standard version."),
     "length_min_mm": Named(N_("Shortest length"), "L_min", "Shortest length L; it depends on the motor."),
@@ -373,6 +482,7 @@ QUANTITIES: Mapping[str, Named] = {
     **INPUTS,
     **{f"motion.{place}": named for place, named in MOTION.items()},
     **{f"body.{place}": named for place, named in BODY.items()},
+    **{f"strands.{place}": named for place, named in STRANDS.items()},
     **{
         f"{place}.{name}": named
         for place, table in (

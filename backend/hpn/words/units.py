@@ -38,6 +38,11 @@ SYMBOLS = {
     "kgm2": "kg·m²",
     "Nm_per_rpm": N_("Nm/rpm"),
     "g_per_cm3": "g/cm³",
+    "Hz": "Hz",
+    "rad_per_s": "rad/s",
+    "J": "J",
+    "W": "W",
+    "m_per_s": "m/s",
 }
 """Unit suffix of a field name -> the symbol a reader sees."""
 

@@ -14,6 +14,15 @@ def _share_of_stops(case: Case) -> FloatArray:
     return np.where((allowed == 0) & ~np.isnan(expected), np.inf, expected / allowed)
 
 
+def _share_of_peak(case: Case) -> FloatArray:
+    """T_k / T_M; infinite where the brake does not stop the load."""
+    share = equations.momentary_peak_torque_utilisation(
+        emergency_stop_torque_Nm=case.figures.stop_torque_Nm,
+        momentary_peak_torque_Nm=case.gears.momentary_peak_torque_Nm,
+    )
+    return share if case.duty.brakes is None else np.where(case.figures.stops.never_stops, np.inf, share)
+
+
 GEAR: tuple[Check, ...] = (
     Check(
         code="average_torque",
@@ -83,13 +92,11 @@ GEAR: tuple[Check, ...] = (
         basis=N_("Limit T_M of the rating table. Such a torque must not belong to the normal cycle."),
         remedy=N_("Limit the braking torque, or take a gear with a larger momentary peak torque."),
         asked="emergency_stop.torque_Nm",
-        demand=lambda c: c.duty.emergency_stop_torque_Nm,
+        instead="emergency_stop.brake.torque_Nm",
+        demand=lambda c: c.figures.stop_torque_Nm,
         limit=lambda c: c.gears.momentary_peak_torque_Nm,
         sheet=Sheet("ABS(T_k)", "{T_M}"),
-        share=lambda c: equations.momentary_peak_torque_utilisation(
-            emergency_stop_torque_Nm=c.duty.emergency_stop_torque_Nm,
-            momentary_peak_torque_Nm=c.gears.momentary_peak_torque_Nm,
-        ),
+        share=_share_of_peak,
         limited_by="momentary_peak_torque_Nm",
         relation="T_k ≤ T_M",
     ),

@@ -1,5 +1,7 @@
 """Checks of the motor, against the limits that the user states: speeds, torques and the inertia ratio."""
 
+import numpy as np
+
 from hpn.engine.check import Check, Sheet
 from hpn.physics import equations
 from hpn.words.wording import N_
@@ -119,17 +121,21 @@ MOTOR: tuple[Check, ...] = (
         source=N_("your input"),
         tests=N_("The inertia of the load, seen from the motor, over the motor’s own stays within your limit."),
         consequence=N_("The axis is hard to control: it swings, or follows slowly."),
-        basis=N_("J_L / (i² · J_m). The inertia of the gear is left out: it is not published in this handbook."),
+        basis=N_(
+            "(J_L / i² + J_g) / J_m. The inertia J_g of the gear at its input is not published in this handbook; it "
+            "counts where a supplement gives it."
+        ),
         remedy=N_("Take a larger ratio, a motor with more inertia, or a lighter load."),
         asked="requirements.motor.inertia_ratio",
         demand=lambda c: equations.inertia_ratio(
             load_inertia_kgm2=c.duty.load_inertia_kgm2,
             ratio=c.gears.ratio,
             motor_inertia_kgm2=c.asked["requirements.motor.inertia_kgm2"],
+            gear_inertia_kgm2=np.nan_to_num(c.gears.inertia_kgm2),
         ),
         limit=lambda c: c.asked["requirements.motor.inertia_ratio"],
         sheet=Sheet('IF(J_L="","",J_L/({i}^2*J_m))', "r_J"),
-        relation="J_L / (i² · J_m) ≤ r_J",
+        relation="(J_L / i² + J_g) / J_m ≤ r_J",
         accepted=N_("the permitted inertia ratio rises to {value}"),
     ),
 )

@@ -4,6 +4,7 @@ import numpy as np
 
 from hpn.engine.check import RATING_TABLES, Case, Check, Sheet
 from hpn.physics.equations import FloatArray
+from hpn.physics.stiffness import ARCMIN_PER_RAD
 from hpn.words.wording import N_
 
 
@@ -27,6 +28,14 @@ def _distance_from_middle(case: Case) -> FloatArray:
 
 
 _MIDDLE = "(({amb_min}+{amb_max})/2)"
+
+
+def _permitted_error(case: Case) -> FloatArray:
+    """Permitted position error in arcmin: as it is given, else from the length at its radius."""
+    angle, length = case.asked["requirements.position_error_arcmin"], case.asked["requirements.position_error_mm"]
+    by_length = length / case.asked["requirements.position_radius_mm"] * ARCMIN_PER_RAD
+    return np.where(np.isnan(angle), by_length, angle)
+
 
 PROPERTIES: tuple[Check, ...] = (
     Check(
@@ -101,6 +110,65 @@ PROPERTIES: tuple[Check, ...] = (
         limited_by="torsional_stiffness_Nm_per_rad",
         relation="K_3 ≥ K_3,req",
         accepted=N_("the required torsional stiffness drops to {value}"),
+    ),
+    Check(
+        code="natural_frequency",
+        name=N_("natural frequency"),
+        title=N_("Natural frequency"),
+        equation=None,
+        unit="Hz",
+        kind="minimum",
+        group="property",
+        limit_name=N_("your limit"),
+        source=N_("table 15.2"),
+        tests=N_("The load on the gear, the motor held, swings no slower than you require."),
+        consequence=N_("The axis rings after each move and can’t be controlled stiffly."),
+        basis=N_(
+            "√(K_3 / J_L) / 2π with the torsional stiffness of the gear alone: an upper bound, which couplings and the "
+            "gear’s own inertia lower. K_3 holds above 15 % of the rated torque (glossary)."
+        ),
+        remedy=N_("Take a larger size, or a load with less inertia."),
+        asked="requirements.natural_frequency_Hz",
+        demand=lambda c: c.figures.natural_frequency_Hz,
+        limit=lambda c: c.asked["requirements.natural_frequency_Hz"],
+        sheet=Sheet("{f_1}", "f_req"),
+        limited_by="torsional_stiffness_Nm_per_rad",
+        relation="√(K_3 / J_L) / 2π ≥ f_req",
+        accepted=N_("the required natural frequency drops to {value}"),
+    ),
+    Check(
+        code="position_error",
+        name=N_("position error"),
+        title=N_("Position error"),
+        equation=None,
+        unit="arcmin",
+        kind="maximum",
+        group="property",
+        limit_name=N_("your limit"),
+        source=N_("tables 15.1 and 15.2"),
+        tests=N_(
+            "Transmission accuracy, wind-up between the smallest and the largest torque of the cycle, and the backlash "
+            "where the torque passes 0, together stay within your limit."
+        ),
+        consequence=N_("The axis stands off its position by more than the work allows."),
+        basis=N_(
+            "Added arithmetically, from limits of a new gear: about. The wind-up is a lower bound, since the gear is "
+            "softer below 15 % of the rated torque (glossary)."
+        ),
+        remedy=N_("Take a larger size or a single-stage ratio, lower the torque, or measure behind the gear."),
+        asked="requirements.position_error_arcmin",
+        instead="requirements.position_error_mm",
+        demand=lambda c: c.figures.position_error_arcmin,
+        limit=_permitted_error,
+        sheet=Sheet(
+            "{phi_e}",
+            'IF(phi_req="",s_req/r_p*10800/PI(),phi_req)',
+            share='{phi_e}/IF(phi_req="",s_req/r_p*10800/PI(),phi_req)',
+            asked='OR(phi_req<>"",s_req<>"")',
+        ),
+        limited_by="torsional_stiffness_Nm_per_rad",
+        relation="φ_e ≤ φ_req",
+        accepted=N_("the permitted position error rises to {value}"),
     ),
     Check(
         code="weight",

@@ -12,6 +12,7 @@ from hpn.explain.calculation.handbook import handbook_steps
 from hpn.explain.calculation.motor import motor_steps
 from hpn.explain.calculation.output_bearing import bearing_steps
 from hpn.explain.calculation.sheet import Comparison, Line, Sheet, Step
+from hpn.explain.calculation.stiffness import stiffness_steps, stop_steps
 
 __all__ = ["Comparison", "Line", "Step", "calculation_of"]
 
@@ -19,10 +20,11 @@ __all__ = ["Comparison", "Line", "Step", "calculation_of"]
 def calculation_of(
     candidate: Candidate, gear: Gear, application: Application, catalogue: Catalogue
 ) -> tuple[Step, ...]:
-    """Every equation that applies to a gear, in the order of the handbook, then the motor and the output bearing.
+    """Every equation that applies to a gear, in the order of the handbook, then motor, output bearing and stiffness.
 
     `candidate` is what the gear comes to under the application. What a figure that is not published keeps from being
     worked out is left out.
     """
     sheet = Sheet(candidate, gear, with_listed_motor(application, catalogue), catalogue)
-    return (*handbook_steps(sheet), *motor_steps(sheet), *bearing_steps(sheet))
+    handbook, motor = (*stop_steps(sheet), *handbook_steps(sheet)), motor_steps(sheet)
+    return (*handbook, *motor, *bearing_steps(sheet), *stiffness_steps(sheet))

@@ -4,7 +4,7 @@ One tree serves all three, so that what a reader sees substituted is what the re
 """
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Self
 
@@ -207,14 +207,25 @@ def over_phases(make: Callable[..., Formula], *quantities: PhaseValues) -> Serie
 
 def leaves_out(formula: Formula) -> bool:
     """True where a series in a formula is abbreviated."""
+    return any(isinstance(one, Series) and one.abbreviated for one in inside(formula))
+
+
+def in_wire_units(formula: Formula) -> bool:
+    """True for a formula with an inertia or an acceleration, which hold together in the units of the wire alone."""
+    return any(isinstance(one, Term) and one.unit in ("kgm2", "rad_per_s2") for one in inside(formula))
+
+
+def inside(formula: Formula) -> Iterator[Formula]:
+    """The formula and every formula in it; a series counts as one."""
+    yield formula
     match formula:
-        case Term() | Constant():
-            return False
-        case Series():
-            return formula.abbreviated
         case Sum(parts) | Product(parts) | Largest(parts):
-            return any(map(leaves_out, parts))
+            inner: tuple[Formula, ...] = parts
         case Subtraction(first, second) | Quotient(first, second) | Power(first, second):
-            return leaves_out(first) or leaves_out(second)
+            inner = (first, second)
         case Root(body) | Magnitude(body):
-            return leaves_out(body)
+            inner = (body,)
+        case _:
+            inner = ()
+    for one in inner:
+        yield from inside(one)

@@ -1,6 +1,7 @@
 """Formulas as MathML for page and report, in symbols or with the numbers substituted, and as a line of text."""
 
 from collections.abc import Iterable
+from dataclasses import replace
 from html import escape
 
 from hpn.explain.calculation.formula import (
@@ -17,6 +18,7 @@ from hpn.explain.calculation.formula import (
     Sum,
     Term,
     Variable,
+    in_wire_units,
     value_of,
 )
 from hpn.explain.calculation.sheet import Comparison, Line
@@ -50,15 +52,26 @@ def in_symbols(reader: Reader, line: Line) -> str:
 
 def with_numbers(reader: Reader, line: Line) -> str:
     """The same equation with its numbers."""
-    return mathml(reader, (line.result.symbol, False), "=", (line.formula, True))
+    return mathml(_reader_of(reader, line), (line.result.symbol, False), "=", (line.formula, True))
+
+
+def substituted(reader: Reader, line: Line) -> str:
+    """Its numbers alone."""
+    return mathml(_reader_of(reader, line), "=", (line.formula, True))
 
 
 def result(reader: Reader, line: Line) -> str:
     """Result of the equation; a count is rounded down."""
+    reader = _reader_of(reader, line)
     given = (Constant(line.result.value, line.result.unit), True)
     if line.rounded_down:
         return mathml(reader, "=", (Constant(value_of(line.formula)), True), "→", given)
     return mathml(reader, "=", given)
+
+
+def _reader_of(reader: Reader, line: Line) -> Reader:
+    """The reader, in the units of the wire where the line holds in them alone."""
+    return replace(reader, units=()) if in_wire_units(line.formula) else reader
 
 
 def compared(reader: Reader, comparison: Comparison) -> str:

@@ -164,7 +164,9 @@ def _inertia_ratio(sheet: Sheet) -> Iterable[Step]:
     load, motor = sheet.load_inertia, sheet.given("requirements.motor.inertia_kgm2")
     if load is None or motor is None or sheet.given("requirements.motor.inertia_ratio") is None:
         return
-    formula = Quotient(load, Product((Power(sheet.i, SQUARED), motor)))
+    formula: Formula = Quotient(load, Product((Power(sheet.i, SQUARED), motor)))
+    if (own := sheet.rating("inertia_kgm2")) is not None:
+        formula = Sum((formula, Quotient(own, motor)))
     note = N_("J_L from what you give for the load.")
     if sheet.duty.courses:
         note = N_("J_L is the inertia of the motion’s load at the gear’s output.")

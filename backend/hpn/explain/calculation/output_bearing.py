@@ -1,13 +1,15 @@
 """The output bearing: equivalent load of each phase and of the cycle, the load that its life allows, and its life."""
 
+import math
 from collections.abc import Iterable
 
 from hpn.application import OutputLoad
-from hpn.engine.figures import phase_loads
+from hpn.engine.figures import phase_loads, radial_at_centre
 from hpn.explain.calculation.formula import (
     Constant,
     Formula,
     Largest,
+    Magnitude,
     PhaseValues,
     Power,
     Product,
@@ -59,7 +61,9 @@ def _largest(sheet: Sheet, load: OutputLoad, loads: PhaseValues, f_w: Term) -> S
     lines: list[Line] = []
     if load.model != "digitised":
         shown = sorted({*phases[: SHOWN_LOADS - 1], worst})
-        lines = [_equivalent_load(sheet, load.model, place, loads.term(index[place], place)) for place in shown]
+        for place in shown:
+            P_i = loads.term(index[place], place)
+            lines += [*_at_centre(sheet, P_i, place), _equivalent_load(sheet, load.model, place, P_i)]
         if len(shown) < len(phases):
             values = {"shown": len(shown), "all": len(phases)}
             text = N_("{shown} of {all} different loads are shown, the largest among them.")
@@ -68,8 +72,30 @@ def _largest(sheet: Sheet, load: OutputLoad, loads: PhaseValues, f_w: Term) -> S
     return step_of_check("output_bearing_load", tuple(lines), limit, tuple(notes))
 
 
+def _at_centre(sheet: Sheet, P: Term, place: int) -> Iterable[Line]:
+    """Radial load at the shaft's centre that stands for where the loads act, where that is given."""
+    x, y = sheet.duty.asked["output_load.radial_position_mm"].item(), sheet.given("output_load.axial_radius_mm")
+    x_c = sheet.rating("shaft_centre_mm") or sheet.given("output_load.shaft_centre_mm")
+    if x_c is None or y is None or (math.isnan(x) and not y.value):
+        return
+    F_R, F_A = (values.term(P.symbol.index, place) for values in (sheet.radial, sheet.axial))
+    formula: Formula = F_R
+    if abs(x) > x_c.value:
+        formula = Product((F_R, Quotient(Magnitude(Term(Variable("x"), x, "mm")), x_c)))
+    if y.value:
+        formula = Sum((formula, Product((F_A, Quotient(y, x_c)))))
+    yield Line(_equivalent_radial(sheet, P, place), formula)
+
+
+def _equivalent_radial(sheet: Sheet, P: Term, place: int) -> Term:
+    radial = radial_at_centre(sheet.duty, sheet.gears)
+    if radial is sheet.duty.phases.radial_N:
+        return sheet.radial.term(P.symbol.index, place)
+    return Term(Variable("F", "eq").of_phase(P.symbol.index), radial[0, 0].item(place), "N")
+
+
 def _equivalent_load(sheet: Sheet, model: str, place: int, P: Term) -> Line:
-    r = Quotient(sheet.radial.term(P.symbol.index, place), known(sheet.rating("dynamic_radial_load_N")))
+    r = Quotient(_equivalent_radial(sheet, P, place), known(sheet.rating("dynamic_radial_load_N")))
     a = Quotient(sheet.axial.term(P.symbol.index, place), known(sheet.rating("dynamic_axial_load_N")))
     formula: Formula = Sum((r, a))
     if model == "iso281":

@@ -126,7 +126,7 @@ class Sheet:
         self.i = known(self.rating("ratio"))
         self.n_in_av = known(self.figure("average_input_speed_rpm"))
         self.n_in_max = known(self.figure("maximum_input_speed_rpm"))
-        self.T_k = self.given("emergency_stop.torque_Nm")
+        self.T_k = self.figure("stop_torque_Nm") or self.given("emergency_stop.torque_Nm")
         self.load_inertia = self._load_inertia()
 
     def _of_phases(self, name: str) -> PhaseValues:

@@ -60,7 +60,7 @@ def bearing_figure(picture: BearingPicture, reader: Reader = DEFAULT, governing:
     data = [_named(named, picture, end, reader) for named, end in zip(curves, ends, strict=True)]
     if picture.loads and picture.worst.published > 0:
         data.append(_distance(picture.worst, reader))
-    data += [_points(picture.loads, reader), *_rings(picture.loads, governing, reader)]
+    data += [_points(picture.loads, reader), *_given(picture.loads, reader), *_rings(picture.loads, governing, reader)]
     heading = Sentence(
         "Output bearing of {gear}: {condition}, model {model}",
         {"gear": picture.gear.name, "condition": picture.condition, "model": picture.load.model},
@@ -212,6 +212,20 @@ def _rings(loads: Sequence[PhaseLoad], governing: Sequence[int], reader: Reader)
         "hoverinfo": "skip",
     }
     return [ring] if ringed else []
+
+
+def _given(loads: Sequence[PhaseLoad], reader: Reader) -> list[Figure]:
+    """Trace of hollow points of the loads as they act, none where all act at the shaft's centre."""
+    beside = [load for load in loads if load.has_lever]
+    hollow = points("given", size=9) | {
+        "mode": "markers",
+        "name": said(Sentence("Load where it acts"), reader),
+        "marker": {"size": 9, "symbol": "circle-open", "color": "var(--ink)", "line": {"width": 1.5}},
+        "x": shown((load.given_N for load in beside), "N", reader),
+        "y": shown((load.axial_N for load in beside), "N", reader),
+        "hoverinfo": "skip",
+    }
+    return [hollow] if beside else []
 
 
 def _hover(load: PhaseLoad, reader: Reader, *, with_use: bool) -> str:

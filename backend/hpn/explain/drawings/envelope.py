@@ -14,7 +14,7 @@ from hpn.explain.drawings.words import coefficient_name, share
 from hpn.explain.readings import OTHERWISE
 from hpn.physics.bearing import PRINTED_LOAD_COEFFICIENTS
 from hpn.words.reader import DEFAULT, Reader
-from hpn.words.wording import N_, Quantity, Sentence
+from hpn.words.wording import N_, Quantity, Sentence, Value
 
 LAST = -1.0
 """Use of a mark whose disc gives way to all others."""
@@ -102,6 +102,8 @@ def _marks(picture: BearingPicture, governing: Sequence[int], reader: Reader, *,
     for at, load in enumerate(picture.loads):
         place, outside = (load.radial_N, load.axial_N), judged and load.is_outside
         kind = "load governing" if set(governing) & set(load.places) else "load"
+        if load.has_lever:
+            marks.append(Mark("given", "", (load.given_N, load.axial_N), "", LAST))
         if at not in numbered:
             marks.append(Mark(kind, "", place, "", load.published, outside, load.marked))
         else:
@@ -115,18 +117,26 @@ def _label(load: PhaseLoad) -> str:
 
 
 def _told_of(load: PhaseLoad, outside: bool, reader: Reader) -> str:
-    told = reader.told(
-        Sentence(
-            "Phase {phases}: radial {radial}, axial {axial}, {used} of the published maximum",
-            {
-                "phases": load.phases,
-                "radial": Quantity(load.radial_N, "N", 4),
-                "axial": Quantity(load.axial_N, "N", 4),
-                "used": share(load.published),
-            },
+    values: dict[str, Value] = {
+        "phases": load.phases,
+        "radial": Quantity(load.radial_N, "N", 4),
+        "axial": Quantity(load.axial_N, "N", 4),
+        "used": share(load.published),
+    }
+    if load.has_lever:
+        given = {"given": Quantity(load.given_N, "N", 4)}
+        told = reader.told(Sentence(LEVER, values | given))
+    else:
+        told = reader.told(
+            Sentence("Phase {phases}: radial {radial}, axial {axial}, {used} of the published maximum", values)
         )
-    )
     return f"{told}, {reader.text(N_('outside the limit'))}" if outside else told
+
+
+LEVER = N_(
+    "Phase {phases}: radial {given} where it acts, {radial} at the shaft’s centre, axial {axial}, {used} of the "
+    "published maximum"
+)
 
 
 def _equivalent(picture: BearingPicture, reader: Reader) -> Mark:

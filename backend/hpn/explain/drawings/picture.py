@@ -9,7 +9,7 @@ from hpn.application import OutputLoad
 from hpn.catalogue.gear import Gear
 from hpn.engine.duty import Duty
 from hpn.engine.envelopes import EnvelopeCurve, envelope_curve, envelopes_for, has_envelope
-from hpn.engine.figures import phase_loads
+from hpn.engine.figures import phase_loads, radial_at_centre
 from hpn.engine.selection import CheckResult
 from hpn.explain.drawings.subject import Subject
 from hpn.explain.drawings.words import phase_numbers
@@ -27,13 +27,22 @@ MOST_MARKED = 100
 
 @dataclass(frozen=True, slots=True)
 class PhaseLoad:
-    """One load in N, the phases that have it, and its f_w P, which may be `allowed`; the published envelope is 1."""
+    """One load in N, the phases that have it, and its f_w P, which may be `allowed`; the published envelope is 1.
+
+    `radial_N` is that at the shaft's centre; `given_N` acts where it is said to.
+    """
 
     places: list[int]
     radial_N: float
     axial_N: float
     published: float
     allowed: float = 1.0
+    given_N: float = 0.0
+
+    @property
+    def has_lever(self) -> bool:
+        """Whether the load acts beside the shaft's centre and counts as another there."""
+        return self.given_N != self.radial_N
 
     @property
     def phases(self) -> str:
@@ -196,7 +205,9 @@ def bearing_picture(subject: Subject, life: CheckResult | None = None) -> Bearin
             return None
         mean, k = life.demand / load.load_coefficient, life.limit
         published = phase_loads(subject.duty, subject.sizes)[0, subject.place].tolist()
-        loads = different_loads(subject.duty, published, allowed)
+        radial = radial_at_centre(subject.duty, subject.sizes)[0]
+        own = radial[subject.place if len(radial) > 1 else 0].tolist()
+        loads = different_loads(subject.duty, own, published, allowed)
     return BearingPicture(
         gear=gear,
         load=load,
@@ -224,12 +235,18 @@ def _life_factor(subject: Subject, load: OutputLoad) -> float:
     return k.item()
 
 
-def different_loads(duty: Duty, published: Sequence[float], allowed: float) -> list[PhaseLoad]:
-    """Different loads of a cycle, in the order in which they first occur; `published` is f_w P of each phase."""
+def different_loads(
+    duty: Duty, radial_N: Sequence[float], published: Sequence[float], allowed: float
+) -> list[PhaseLoad]:
+    """Different loads of a cycle, in the order in which they first occur.
+
+    Of each phase `radial_N` is the radial load at the shaft's centre, and `published` its f_w P.
+    """
     found: dict[tuple[float, float], PhaseLoad] = {}
-    series = (duty.phases.radial_N[0, 0].tolist(), duty.phases.axial_N[0, 0].tolist(), published)
-    for place, (radial, axial, used) in enumerate(zip(*series, strict=True)):
-        found.setdefault((radial, axial), PhaseLoad([], radial, axial, used, allowed)).places.append(place)
+    series = (radial_N, duty.phases.axial_N[0, 0].tolist(), published, duty.phases.radial_N[0, 0].tolist())
+    for place, (radial, axial, used, given) in enumerate(zip(*series, strict=True)):
+        load = PhaseLoad([], radial, axial, used, allowed, given)
+        found.setdefault((given, axial), load).places.append(place)
     return list(found.values())
 
 

@@ -2,10 +2,12 @@
 
 from dataclasses import dataclass
 from functools import cached_property
+from math import isnan
 
 from hpn.application import Application
 from hpn.catalogue import Catalogue, GearList
 from hpn.catalogue.gear import Gear
+from hpn.engine.allowed import with_listed_motor
 from hpn.engine.duty import Duty
 from hpn.engine.figures import Figures
 
@@ -41,8 +43,11 @@ class Subject:
         """Place of the gear's own size in `sizes`."""
         return self.catalogue.sizes.index(self.gear.size)
 
-    @property
+    @cached_property
     def emergency_stop_torque_Nm(self) -> float | None:
-        """Torque of the emergency stop by magnitude, or None where there is none."""
-        stop = self.application.emergency_stop
-        return None if stop is None else abs(stop.torque_Nm)
+        """Torque of the emergency stop on the gear by magnitude, or None where there is none."""
+        if self.application.emergency_stop is None:
+            return None
+        duty = Duty.of([with_listed_motor(self.application, self.catalogue)])
+        T_k = Figures(duty, GearList([self.gear], [None]), self.catalogue).stop_torque_Nm.item()
+        return None if isnan(T_k) else T_k

@@ -4,7 +4,7 @@ from collections.abc import Iterable
 from typing import Any
 
 from hpn.explain.calculation import Step, calculation_of
-from hpn.explain.calculation.mathml import compared, in_symbols, mathml, result
+from hpn.explain.calculation.mathml import compared, in_symbols, result, substituted
 from hpn.files.export import Export
 from hpn.files.report.verdict import STATUS
 from hpn.files.words import used
@@ -29,7 +29,7 @@ def _step(step: Step, export: Export, reader: Reader) -> dict[str, Any]:
         "lines": [
             {
                 "symbols": in_symbols(reader, line),
-                "numbers": mathml(reader, "=", (line.formula, True)),
+                "numbers": substituted(reader, line),
                 "result": result(reader, line),
             }
             for line in step.lines

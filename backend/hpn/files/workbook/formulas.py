@@ -10,6 +10,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from string import Formatter
 
+from hpn.catalogue.gear import Gear
 from hpn.engine.check import Check
 from hpn.engine.checks import CHECKS
 from hpn.engine.checks.output_bearing import LOADED
@@ -19,6 +20,9 @@ from hpn.words.wording import N_
 
 UNLIMITED, NOT_RATED, NONE = N_("unlimited"), N_("not rated"), "–"
 """Texts in place of a number: no limit, figure not published, failed without a number."""
+
+REVERSES = "reverses"
+"""Name of the cell that says whether the torque acts both ways; blank where the signs of the torques say."""
 
 _NAMES = {
     "η": "eta",
@@ -31,6 +35,13 @@ _NAMES = {
     "T_rms/(i·η)": "T_mot_rms",
     "f_w·P_max": "P_max",
     "f_w·P_m": "P_m",
+    "t_b": "t_rise",
+    "t_r": "t_reaction",
+    "φ_a": "phi_a",
+    "φ_w": "phi_w",
+    "φ_e": "phi_e",
+    "φ_req": "phi_req",
+    "φ_stop": "phi_stop",
 }
 """Names of symbols that are not allowed as a defined name, or that differ from another in capitals only."""
 
@@ -40,7 +51,9 @@ def cell_name(symbol: str) -> str:
     return _NAMES.get(symbol) or symbol.replace("(max)", "_limit").replace(",", "_")
 
 
-RATINGS = {cell_name(named.symbol): field for field, named in GEAR.items() if named.symbol}
+RATINGS = {
+    cell_name(named.symbol): field for field, named in GEAR.items() if named.symbol and field not in Gear.unpublished()
+}
 """Published figures of a gear: name in formulas, field of the catalogue."""
 
 MOTOR_TORQUES = ("T_mot_peak", "T_mot_rms")
@@ -87,6 +100,11 @@ def _varying(name: str, steady: str) -> str:
 
 _PEAKS, _FASTEST = _varying("peak_torque_Nm", "torque_Nm"), _varying("peak_speed_rpm", "speed_rpm")
 _RMS = _varying("rms_torque_Nm", "torque_Nm")
+_SIGNED = f"SIGN(torque_Nm)*{_PEAKS}"
+_UNUSED = '(duration_s="")*1E+99'
+"""What keeps a spare row from being the largest."""
+
+_BOTH_WAYS = f'IF({REVERSES}="",SUMPRODUCT(--(torque_Nm<0))=0,{REVERSES})'
 _LARGEST = "SUMPRODUCT(MAX(ABS(torque_Nm)))"
 """Largest mean torque, by which powers are scaled."""
 
@@ -101,6 +119,16 @@ CYCLE_TERMS = (
         Named(N_("RMS torque"), "T_rms"),
         "Nm",
         f"IF(T_max=0,0,T_max*SQRT(SUMPRODUCT(({_RMS}/T_max)^2*duration_s)/{_CYCLE_TIME}))",
+    ),
+    CellTerm(
+        Named(N_("Smallest torque, signed"), "T_lo"),
+        "Nm",
+        f"IF({_BOTH_WAYS},-T_max,MIN(-SUMPRODUCT(MAX(-{_SIGNED}-{_UNUSED})),IF(pause_s>0,0,1E+99)))",
+    ),
+    CellTerm(
+        Named(N_("Largest torque, signed"), "T_hi"),
+        "Nm",
+        f"IF({_BOTH_WAYS},T_max,MAX(SUMPRODUCT(MAX({_SIGNED}-{_UNUSED})),IF(pause_s>0,0,-1E+99)))",
     ),
     _duty("maximum_output_speed_rpm", f"SUMPRODUCT(MAX({_FASTEST}))"),
     _duty("average_output_speed_rpm", f"{_WORK}/{_CYCLE_TIME}"),
@@ -143,6 +171,11 @@ GEAR_TERMS = (
     ),
     _result("bearing_life_L50_h", 'IF({P_m}="","",IFERROR(bearing_life*bearing_speed/n_out_av/{P_m}^3,"[unlimited]"))'),
     _result("motor_peak_torque_Nm", 'T_max/({i}*IF(eta="",1,eta))'),
+    _result("natural_frequency_Hz", 'IF(OR(J_L="",{K_3}=""),"",SQRT({K_3}/J_L)/2/PI())'),
+    _result(
+        "position_error_arcmin",
+        'IF(OR({phi_a}="",{j}="",{K_3}=""),"",{phi_a}+(T_hi-T_lo)/{K_3}*10800/PI()+IF(AND(T_lo<=0,T_hi>=0),{j},0))',
+    ),
     _result("motor_rated_torque_Nm", 'T_rms/({i}*IF(eta="",1,eta))'),
 )
 """Figures of a gear under the cycle."""

@@ -28,6 +28,9 @@ _FIELDS = {cell_name(CANDIDATE[field].symbol): field for field in FIGURES}
 DEMANDS = {"P_max": "output_bearing_load", "P_m": "output_bearing_life"}
 """Checks whose demand is the value of a term; the other terms are figures of the candidate."""
 
+BY_BRAKE = {cell_name("N_k,max"), "momentary_peak_torque", "momentary_peak_count"}
+"""What follows from a stop by the brake, which is another for each gear."""
+
 _MAY_BE_UNLIMITED = ("N_k_max", "L_10", "L_b50")
 
 
@@ -59,13 +62,27 @@ class Known:
             fixed |= {name for name, formula in formulas.items() if terms_of(formula) & unknown}
         elif loads and loads.model == "digitised":
             fixed |= DEMANDS.keys()
-        if self.export.follows_efficiency_curve(self.candidate):
+        if loads and (loads.radial_position_mm is not None or loads.axial_radius_mm):
+            fixed |= DEMANDS.keys()
+        if self.export.follows_efficiency_curve(self.candidate) or self.export.selection.turns_motor:
             fixed |= set(MOTOR_TORQUES)
-        if self.export.selection.turns_motor:
-            fixed |= set(MOTOR_TORQUES)
+        fixed |= self._by_supplement() | self._by_brake()
         if self.export.figures is None and self._has_listed_motor:
             fixed |= {check.code for check in MOTOR}
         return fixed
+
+    def _by_supplement(self) -> set[str]:
+        """What the inertia or the torque without load of the gear itself has a part in."""
+        gear = self.export.gear(self.candidate)
+        if gear is None:
+            supplied = any(notice.code == "catalogue_supplement" for notice in self.export.selection.notices)
+            return {*MOTOR_TORQUES, "inertia_ratio"} if supplied else set()
+        motor = MOTOR_TORQUES if gear.no_load_torque_Nm else ()
+        return {*motor, *(["inertia_ratio"] if gear.inertia_kgm2 else ())}
+
+    def _by_brake(self) -> set[str]:
+        stop = self.export.application.emergency_stop
+        return BY_BRAKE if stop is not None and stop.brake is not None else set()
 
     def formula(self, term: CellTerm) -> str:
         """Formula of a term that is not fixed; blank in a motion with a motor's inertia, which no formula covers."""

@@ -13,11 +13,20 @@ from hpn.engine.checks import CHECKS
 from hpn.engine.selection import CheckResult
 from hpn.explain.readings import relation_of
 from hpn.files.export import LOSS_FREE
-from hpn.files.inputs import ENTERED, LOAD_INERTIA, LOADS, REQUIREMENTS, entered
+from hpn.files.inputs import ENTERED, LOAD_INERTIA, LOAD_REVERSES, LOADS, REQUIREMENTS, entered
 from hpn.files.report.verdict import STATUS
 from hpn.files.words import equation, origin
 from hpn.files.workbook.candidates import COLUMNS, LOAD
-from hpn.files.workbook.formulas import CHECK_FORMULAS, CYCLE_TERMS, GEAR_TERMS, NONE, RATINGS, CellTerm, written
+from hpn.files.workbook.formulas import (
+    CHECK_FORMULAS,
+    CYCLE_TERMS,
+    GEAR_TERMS,
+    NONE,
+    RATINGS,
+    REVERSES,
+    CellTerm,
+    written,
+)
 from hpn.files.workbook.known import DEMANDS, Known, demand_of, limit_of
 from hpn.files.workbook.sheets import Book
 from hpn.files.workbook.unchanged import as_saved
@@ -29,7 +38,10 @@ from hpn.words.wording import N_
 
 EFFICIENCY, MODEL = "requirements.efficiency", "output_load.model"
 NAMES = {path: name for name, path in ENTERED.items()}
-NEEDED = {"emergency_stop.torque_Nm": 'N_k<>""'}
+NEEDED = {
+    "emergency_stop.torque_Nm": 'AND(N_k<>"",T_B="")',
+    "emergency_stop.brake.torque_Nm": 'OR(n_b<>"",f<>"")',
+}
 """Conditions under which an optional input must be filled."""
 
 ALONG_THE_MOTION = N_("as saved: along the motion, with the motor’s own inertia")
@@ -220,7 +232,7 @@ class Overview:
 
     def _cycle_values(self) -> dict[str, float | str]:
         duty, loads = self.book.export.selection.duty, self.book.export.application.loads or OutputLoad()
-        speed, life = self._series()[2:]
+        (speed, life), torques = self._series()[2:], self.book.export.duty.torque_range_Nm
         factor = bearing.life_factor(
             average_output_speed_rpm=duty.average_output_speed_rpm,
             required_life_L50_h=bearing.required_L50(life_h=loads.life_h, basis=loads.life_basis),
@@ -231,6 +243,8 @@ class Overview:
             "T_max": duty.maximum_torque_Nm,
             "T_av": duty.average_torque_Nm,
             "T_rms": self.book.export.duty.rms_torque_Nm.item(),
+            "T_lo": torques[0].item(),
+            "T_hi": torques[1].item(),
             "n_out_max": duty.maximum_output_speed_rpm,
             "n_out_av": duty.average_output_speed_rpm,
             "k_b": factor.item(),
@@ -307,8 +321,8 @@ class Overview:
             still = own or (path == EFFICIENCY and self.book.export.selection.turns_motor)
             self.book.put(self.sheet, self.row, 2, shown, "fixed" if still else "input" if name else "label")
             self._converted(suffix_of(path) or "", value if isinstance(value, float) else None)
-            if name:
-                self.book.name_cell(name, self.sheet, self.row, 2)
+            if name or path == LOAD_REVERSES:
+                self.book.name_cell(name or REVERSES, self.sheet, self.row, 2)
             if name and not still:
                 self._refuse(path)
             self.row += 1

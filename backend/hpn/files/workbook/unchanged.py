@@ -12,6 +12,7 @@ from xlsxwriter.utility import xl_range_abs
 
 from hpn.files.inputs import ENTERED, entered
 from hpn.files.workbook.formulas import CHECK_FORMULAS, CYCLE_TERMS, GEAR_TERMS, MOTOR_TORQUES
+from hpn.files.workbook.known import BY_BRAKE, DEMANDS
 from hpn.files.workbook.sheets import PHASE, SPARE_PHASES, USED, Book
 
 _FORMULAS = {term.name: term.formula for term in (*CYCLE_TERMS, *GEAR_TERMS)} | {
@@ -19,6 +20,12 @@ _FORMULAS = {term.name: term.formula for term in (*CYCLE_TERMS, *GEAR_TERMS)} | 
 }
 _BY_CURVE = {"speed_rpm", "peak_speed_rpm"}
 """Inputs behind motor torques by an efficiency curve, besides those in their formula."""
+
+_BEHIND_BRAKE = {"T_B", "t_rise", "t_reaction", "n_b", "f", "eta", "J_m", "J_L", "peak_speed_rpm", "speed_rpm"}
+"""Inputs behind the torque of a stop by the brake."""
+
+_BEHIND_LEVER = {"x", "y", "x_c", "radial_N", "axial_N"}
+"""Inputs behind a load beside the shaft's centre, besides those in the formulas of a load at it."""
 
 _ALONG_MOTION = {"J_m", "J_L"}
 """Further inputs behind them in a motion: the inertias of motor and load."""
@@ -43,6 +50,8 @@ def write_unchanged(book: Book, sheet: Any, fixed: Iterable[str]) -> None:
     along = book.export.application.duty_cycle.motion is not None
     turned = _BY_CURVE.union(*map(inputs_behind, MOTOR_TORQUES), _ALONG_MOTION if along else ())
     behind |= dict.fromkeys(behind.keys() & set(MOTOR_TORQUES), turned)
+    for names, further in ((BY_BRAKE, _BEHIND_BRAKE), (DEMANDS.keys(), _BEHIND_LEVER)):
+        behind |= {name: behind[name] | further for name in behind.keys() & names}
     for row, name in enumerate(sorted(behind)):
         equal = ",".join(f'SUMPRODUCT(--({cell}&""<>{cell}_saved&""))=0' for cell in sorted(behind[name]))
         sheet.write_formula(row, 0, f"=AND({equal})", None, True)

@@ -1,4 +1,7 @@
-"""Torque at the motor along a motion, its own inertia included: T / (i η) or T η / i, plus J_m i α."""
+"""Torque at the motor along a motion, its own inertia included: T / (i η) or T η / i, plus J_m i α + T_0 sgn ω.
+
+The inertia J_m is that of motor and gear at the input, T_0 the gear's torque without load, 0 at rest.
+"""
 
 from dataclasses import replace
 
@@ -23,51 +26,81 @@ def motor_torques(
     efficiency_at_rms: FloatArray,
     motor_inertia_kgm2: float | FloatArray,
     pause_s: float,
+    no_load_torque_Nm: float | FloatArray = 0.0,
 ) -> tuple[FloatArray, FloatArray]:
     """Peak and RMS torque in Nm of the motor over the cycle, on gears or of motors, shape (gears,) each.
 
-    `ratio` and `motor_inertia_kgm2` broadcast to (gears,), the efficiencies to (gears, phases). At least one gear.
+    `ratio`, `motor_inertia_kgm2` and `no_load_torque_Nm` broadcast to (gears,), the efficiencies to (gears, phases). At
+    least one gear.
     """
-    i, J = np.broadcast_arrays(ratio, motor_inertia_kgm2)
+    i, J, T_0 = np.broadcast_arrays(ratio, motor_inertia_kgm2, no_load_torque_Nm)
     shape = len(i), len(course.move)
     at_peak, at_rms = (np.broadcast_to(eta, shape) for eta in (efficiency_at_peak, efficiency_at_rms))
     step = max(1, PIECES_AT_ONCE // len(course.pieces))
     some = [slice(k, k + step) for k in range(0, len(i), step)]
-    peaks = [peak_torque(course, ratio=i[s], efficiency=at_peak[s], motor_inertia_kgm2=J[s]) for s in some]
-    rms = [rms_torque(course, ratio=i[s], efficiency=at_rms[s], motor_inertia_kgm2=J[s], pause_s=pause_s) for s in some]
+    own = [{"ratio": i[s], "motor_inertia_kgm2": J[s], "no_load_torque_Nm": T_0[s]} for s in some]
+    peaks = [peak_torque(course, efficiency=at_peak[s], **gears) for s, gears in zip(some, own, strict=True)]
+    rms = [
+        rms_torque(course, efficiency=at_rms[s], pause_s=pause_s, **gears) for s, gears in zip(some, own, strict=True)
+    ]
     return np.concatenate(peaks), np.concatenate(rms)
 
 
 def rms_torque(
-    course: Course, *, ratio: FloatArray, efficiency: FloatArray, motor_inertia_kgm2: float | FloatArray, pause_s: float
+    course: Course,
+    *,
+    ratio: FloatArray,
+    efficiency: FloatArray,
+    motor_inertia_kgm2: float | FloatArray,
+    pause_s: float,
+    no_load_torque_Nm: float | FloatArray = 0.0,
 ) -> FloatArray:
     """RMS torque in Nm of the motor over the cycle, its pause included, on gears, shape (gears,).
 
-    `efficiency` broadcasts to (gears, phases), `motor_inertia_kgm2` to (gears,). In a phase the motor's torque is
-    a T + b α with an a and b of its own.
+    `efficiency` broadcasts to (gears, phases), the others to (gears,). In a phase the motor's torque is a T + b α + c
+    with an a, b and c of its own.
     """
-    squares = square_torque(course, ratio=ratio, efficiency=efficiency, motor_inertia_kgm2=motor_inertia_kgm2)
+    squares = square_torque(
+        course,
+        ratio=ratio,
+        efficiency=efficiency,
+        motor_inertia_kgm2=motor_inertia_kgm2,
+        no_load_torque_Nm=no_load_torque_Nm,
+    )
     rms: FloatArray = np.sqrt(np.maximum(squares.sum(axis=1), 0.0) / (course.duration_s.sum() + pause_s))
     return rms
 
 
 def square_torque(
-    course: Course, *, ratio: FloatArray, efficiency: FloatArray, motor_inertia_kgm2: float | FloatArray
+    course: Course,
+    *,
+    ratio: FloatArray,
+    efficiency: FloatArray,
+    motor_inertia_kgm2: float | FloatArray,
+    no_load_torque_Nm: float | FloatArray = 0.0,
 ) -> FloatArray:
     """Integral of the square of the motor's torque over each phase in Nm² s, shape (gears, phases)."""
     a, b = share_of_torque(course, ratio, efficiency), (motor_inertia_kgm2 * ratio)[:, None]
+    c = np.broadcast_to(no_load_torque_Nm, ratio.shape)[:, None] * np.sign(course.speed_rpm)
     squares: FloatArray = (
         a**2 * course.square_torque + 2 * a * b * course.torque_acceleration + b**2 * course.square_acceleration
     )
+    if c.any():
+        squares = squares + 2 * c * (a * course.torque_time + b * course.speed_change) + c**2 * course.duration_s
     return squares
 
 
 def peak_torque(
-    course: Course, *, ratio: FloatArray, efficiency: FloatArray, motor_inertia_kgm2: float | FloatArray
+    course: Course,
+    *,
+    ratio: FloatArray,
+    efficiency: FloatArray,
+    motor_inertia_kgm2: float | FloatArray,
+    no_load_torque_Nm: float | FloatArray = 0.0,
 ) -> FloatArray:
     """Largest torque in Nm of the motor on gears, shape (gears,).
 
-    `efficiency` broadcasts to (gears, phases), `motor_inertia_kgm2` to (gears,).
+    `efficiency` broadcasts to (gears, phases), the others to (gears,).
 
     The ends of the pieces give it, unless it is larger in between: by no more than h² / 8 times the largest second
     derivative. The pieces where that matters are cut at the extremes of the motor's own torque.
@@ -75,8 +108,9 @@ def peak_torque(
     p, load = course.pieces, course.load
     a = share_of_torque(course, ratio, efficiency)[:, course.phase] * course.factor
     b = (motor_inertia_kgm2 * ratio * load.ratio)[:, None]
+    c = np.broadcast_to(no_load_torque_Nm, ratio.shape)[:, None] * p.sign
     torque = Torque(load.viscous_Nms, load.gravity_Nm)
-    larger = np.maximum(*(np.abs(a * torque.at(p, t) + b * p.acceleration_at(t)) for t in (p.start_s, p.end_s)))
+    larger = np.maximum(*(np.abs(a * torque.at(p, t) + b * p.acceleration_at(t) + c) for t in (p.start_s, p.end_s)))
     peak: FloatArray = larger.max(axis=1)
 
     most = larger + _bow(course, a, b)
@@ -90,7 +124,8 @@ def peak_torque(
         with_motor = some.inertia_kgm2 + b[row, 0] / own
         some = monotone(torque, replace(some, inertia_kgm2=with_motor, move=np.arange(len(row))))
         for t in (some.start_s, some.end_s):
-            np.maximum.at(peak, row[some.move], np.abs(torque.at(some, t)) * own[some.move])
+            ends = torque.at(some, t) * own[some.move] + c[row, place][some.move]
+            np.maximum.at(peak, row[some.move], np.abs(ends))
     return peak
 
 

@@ -1,18 +1,22 @@
 """Moves from rest to rest: what a person says of each, and how long its ramps take."""
 
 import math
-import sys
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import replace
 from functools import cached_property
 from typing import Annotated, ClassVar, Literal, NoReturn, Self
 
 from pydantic import AfterValidator, Field, model_validator
+from pydantic_core import PydanticCustomError
 
+from hpn.physics.equations import ROUNDING
+from hpn.physics.motion.ramps import Ramp, Timing, at_speed, at_triangle, equal_ramps, in_time, triangle
 from hpn.physics.motion.refusals import refusal
 from hpn.words.fields import LEAST, Load, Model, MoveTime, Number, Positive, Share, Torque, refused
 from hpn.words.units import suffix_of
-from hpn.words.wording import Quantity
+from hpn.words.wording import Quantity, Rounding
+
+Refusal = tuple[tuple[str, ...], PydanticCustomError]
 
 Profile = Literal["trapezoidal", "triangular", "s_curve", "modified_sine", "dwell"]
 
@@ -20,9 +24,6 @@ DEFAULT_JERK_SHARE = 0.5
 
 MODIFIED_SINE_SPEED = 4 * math.pi / (4 + math.pi)
 """Largest over mean speed of a modified sine, c_v."""
-
-ROUNDING = 1e-12
-"""Relative room in which a bound counts as met, and below which a run counts as none."""
 
 
 def _some_way(value: float) -> float:
@@ -36,32 +37,13 @@ def _some_way(value: float) -> float:
 Way = Annotated[Number, Field(ge=-1e9, le=1e9), AfterValidator(_some_way)]
 
 
-@dataclass(frozen=True, slots=True)
-class Timing:
-    """A symmetric move: two ramps of `ramp_s` with a run of `run_s` between, in units of way and seconds.
-
-    `peak_speed` is reached at the end of the ramp, `peak_acceleration` in its middle. `is_cut` says that the speed
-    asked for leaves no time to run, so that a triangle comes out that nobody asked for.
-    """
-
-    ramp_s: float
-    run_s: float
-    peak_speed: float
-    peak_acceleration: float
-    is_cut: bool = False
-
-    @property
-    def time_s(self) -> float:
-        """Time of the whole move."""
-        return 2 * self.ramp_s + self.run_s
-
-
 class Move(Model):
     """Fields of every move. Its way, speed, acceleration and load have names of their own in each geometry."""
 
     WAY: ClassVar[str]
     SPEED: ClassVar[str]
     ACCELERATION: ClassVar[str]
+    DECELERATION: ClassVar[str]
     EXTERNAL: ClassVar[str]
     SPEED_UNIT: ClassVar[float]
     """Units of way per second in one unit of speed."""
@@ -72,6 +54,12 @@ class Move(Model):
         None,
         description="Share of a ramp of an S-curve in which jerk acts, half of it at either end; 0.5 by default.",
         examples=[0.5],
+    )
+    acceleration_time_s: MoveTime | None = Field(
+        None, description="Time of the first ramp, in place of its acceleration.", examples=[0.2]
+    )
+    deceleration_time_s: MoveTime | None = Field(
+        None, description="Time of the last ramp; without it and its deceleration that of the first.", examples=[0.4]
     )
     radial_N: Load | None = Field(
         None, description="Radial load on the gear’s shaft in this move; without it the cycle’s.", examples=[500.0]
@@ -91,6 +79,11 @@ class Move(Model):
         if self.profile == "modified_sine":
             return MODIFIED_SINE_SPEED * abs(self.way) / (self.time_s or 1.0)
         return self.timing.peak_speed if self.way else 0.0
+
+    @property
+    def shortest_ramp_s(self) -> float:
+        """Time of its shorter ramp in s, half of a modified sine; of a move that moves."""
+        return (self.time_s or 0.0) / 2 if self.profile == "modified_sine" else min(self.timing.ramps_s)
 
     @property
     def external(self) -> float:
@@ -113,11 +106,13 @@ class Move(Model):
     def _check_fields(self) -> None:
         """Refuse fields that the profile has no use for, and the lack of one that it needs."""
         needed = {"dwell": ("time_s",), "modified_sine": (self.WAY, "time_s")}.get(self.profile, (self.WAY,))
-        idle = {
-            "dwell": (self.WAY, self.SPEED, self.ACCELERATION, "jerk_share"),
-            "modified_sine": (self.SPEED, self.ACCELERATION, "jerk_share"),
-            "s_curve": (),
-        }.get(self.profile, ("jerk_share",))
+        ramps, unequal = ("jerk_share",), ("acceleration_time_s", "deceleration_time_s", self.DECELERATION)
+        idle: Sequence[str] = {
+            "dwell": (self.WAY, self.SPEED, self.ACCELERATION, *ramps, *unequal),
+            "modified_sine": (self.SPEED, self.ACCELERATION, *ramps, *unequal),
+            "triangular": (*ramps, *unequal),
+            "trapezoidal": ramps,
+        }.get(self.profile, ())
         problems = [
             ((name,), refusal("move_has_no", profile=self.profile, field=name))
             for name in idle
@@ -133,80 +128,106 @@ class Move(Model):
     @cached_property
     def timing(self) -> Timing:
         """Ramps and run of a trapezoid, triangle or S-curve; raises ValidationError where there are none."""
-        names = ("time_s", self.SPEED, self.ACCELERATION)
-        T, speed, a = (getattr(self, name) for name in names)
-        given = [name for name, value in zip(names, (T, speed, a), strict=True) if value is not None]
+        T, speed, given = self.time_s, getattr(self, self.SPEED), self._given
         D, k = abs(self.way), self.ramp_mean
         V = None if speed is None else speed * self.SPEED_UNIT
         if self.profile == "triangular":
             if len(given) != 1:
-                self._refuse_count("move_takes_one", names, given)
-            return _triangle(D, T or (2 * D / V if V else 2 * math.sqrt(D / a)))
-        if len(given) == 1 and T is not None:
-            return _ramped(D, T, T / 3, k)
-        if len(given) != 2:
-            self._refuse_count("move_takes_two", names, given)
-        if V is None:
-            return self._by_time_and_acceleration(D, T, a, k)
-        return self._by_time_and_speed(D, T, V, k) if T else _by_speed_and_acceleration(D, V, a, k)
+                self._refuse_count("move_takes_one", given)
+            return triangle(D, T or (2 * D / V if V else 2 * math.sqrt(D / getattr(self, self.ACCELERATION))))
+        ramps = [self._ramp(place) for place in (0, 1)]
+        known = [ramp for ramp in ramps if ramp]
+        if (T is None and (V is None or not known)) or (T is not None and V is not None and len(known) == 2):
+            self._refuse_count("move_takes_two", given)
+        if T is not None and V is not None:
+            return self._by_time_and_speed(D, T, V, ramps)
+        if not known:
+            return equal_ramps(D, T or 0.0, (T or 0.0) / 3, k)
+        pair = [ramp or known[0] for ramp in ramps]
+        if T is None:
+            return at_speed(D, V or 0.0, pair, k)
+        return in_time(D, T, pair, k) or self._refuse_ramps(D, T, pair, 1 if ramps[0] is None else 0)
 
-    def _by_time_and_speed(self, D: float, T: float, V: float, k: float) -> Timing:
+    @property
+    def _ramp_fields(self) -> tuple[tuple[str, str], tuple[str, str]]:
+        """Fields of each ramp: its time and its acceleration."""
+        return ("acceleration_time_s", self.ACCELERATION), ("deceleration_time_s", self.DECELERATION)
+
+    @property
+    def _given(self) -> list[str]:
+        """Fields that are given of those that say how long the move takes."""
+        names = ("time_s", self.SPEED, *(name for fields in self._ramp_fields for name in reversed(fields)))
+        return [name for name in names if getattr(self, name) is not None]
+
+    def _ramp(self, place: int) -> Ramp | None:
+        time, acceleration = self._ramp_fields[place]
+        t, a = getattr(self, time), getattr(self, acceleration)
+        if t is not None and a is not None:
+            raise refused(self, ((time,), refusal("ramp_twice", field=acceleration)))
+        return None if t is None and a is None else Ramp(t, math.inf if a is None else a)
+
+    def _by_time_and_speed(self, D: float, T: float, V: float, ramps: Sequence[Ramp | None]) -> Timing:
+        """Equal ramps, or the other one as what the time leaves beside one: t2 = 2 (T - D / V) - t1."""
+        k, fastest = self.ramp_mean, 2 * D / T
         if not D / T < V * (1 - ROUNDING):
-            bound, triangle = D / T, 2 * D / T
-            self._refuse(self.SPEED, "move_too_slow", bound=self._speed(bound), triangle=self._speed(triangle))
-        return _ramped(D, T, min(T - D / V, T / 2), k)
+            said = (_said(speed / self.SPEED_UNIT, self.SPEED) for speed in (D / T, fastest))
+            self._refuse(self.SPEED, "move_too_slow", bound=next(said), triangle=next(said))
+        place = 0 if ramps[0] else 1
+        ramp = ramps[place]
+        if ramp is None:
+            return equal_ramps(D, T, min(T - D / V, T / 2), k)
+        if fastest * (1 + ROUNDING) < V:
+            self._refuse(self.SPEED, "move_too_fast", bound=_said(fastest / self.SPEED_UNIT, self.SPEED, "down"))
+        both, own = 2 * (T - D / V), ramp.time_at(V, k)
+        if not own < both * (1 - ROUNDING):
+            codes = "ramp_leaves_none", "ramp_too_gentle"
+            raise refused(self, self._too_slow(place, ramp, Ramp(both, V / (k * both)), *codes))
+        pair = Ramp(time_s=own), Ramp(time_s=both - own)
+        timing = in_time(D, T, pair if place == 0 else pair[::-1], k)
+        return replace(timing, is_cut=False) if timing else triangle(D, T)
 
-    def _by_time_and_acceleration(self, D: float, T: float, a: float, k: float) -> Timing:
-        least = 4 * D / T**2
-        if k * a < least * (1 - ROUNDING):
-            self._refuse(self.ACCELERATION, "move_too_gentle", bound=_said(least / k, self.ACCELERATION))
-        above = 1 - least / (k * a)  # met exactly it is 0 but for rounding
-        root = math.sqrt(above) if above > 8 * sys.float_info.epsilon else 0.0
-        return _ramped(D, T, 2 * D / (k * a) / (T * (1 + root)), k)
+    def _refuse_ramps(self, D: float, T: float, ramps: Sequence[Ramp], place: int) -> NoReturn:
+        """Refuse ramps that together take too long: the longer one, or both where the shorter is too long by itself.
 
-    def _speed(self, value: float) -> str:
-        return _said(value / self.SPEED_UNIT, self.SPEED)
+        `place` is that of the one that is given where they are the same.
+        """
+        k, times = self.ramp_mean, at_triangle(D, T, ramps, self.ramp_mean)
+        if ramps[0] is ramps[1]:
+            left = {place: T / 2}
+        elif min(times) < T:
+            left = {times.index(max(times)): T - min(times)}
+        else:
+            left = {0: T / 2, 1: T / 2}
+        bounds = {place: Ramp(time_s, 2 * D / (k * T * time_s)) for place, time_s in left.items()}
+        codes = "ramp_too_long", "move_too_gentle"
+        raise refused(self, *(self._too_slow(place, ramps[place], bound, *codes) for place, bound in bounds.items()))
+
+    def _too_slow(self, place: int, ramp: Ramp, bound: Ramp, by_time: str, by_acceleration: str) -> Refusal:
+        """Refusal of a ramp by the bound of the field that gives it."""
+        time, acceleration = self._ramp_fields[place]
+        if ramp.time_s is None:
+            return (acceleration,), refusal(by_acceleration, bound=_said(bound.acceleration, acceleration))
+        return (time,), refusal(by_time, bound=_said(bound.time_s or 0.0, time, "down"))
 
     def _refuse(self, field: str, code: str, **values: str) -> NoReturn:
         raise refused(self, ((field,), refusal(code, **values)))
 
-    def _refuse_count(self, code: str, names: Sequence[str], given: Sequence[str]) -> NoReturn:
+    def _refuse_count(self, code: str, given: Sequence[str]) -> NoReturn:
         said = ", ".join(given) or "none"
-        raise refused(self, ((), refusal(code, profile=self.profile, fields=", ".join(names), given=said)))
+        fields = ", ".join(("time_s", self.SPEED, self.ACCELERATION))
+        raise refused(self, ((), refusal(code, profile=self.profile, fields=fields, given=said)))
 
 
-def _said(value: float, field: str) -> str:
-    """A least value with its unit, rounded up, so that what is printed will do."""
-    return str(Quantity(value, suffix_of(field) or "", 6, "up"))
-
-
-def _ramped(D: float, T: float, ramp_s: float, k: float) -> Timing:
-    """Way D in time T with ramps of a length; one that leaves next to no run is half the time."""
-    run_s = T - 2 * ramp_s
-    is_cut = run_s <= ROUNDING * T
-    if is_cut:
-        ramp_s, run_s = T / 2, 0.0
-    V = D / (T - ramp_s)
-    return Timing(ramp_s, run_s, V, V / (k * ramp_s), is_cut)
-
-
-def _triangle(D: float, T: float) -> Timing:
-    return Timing(T / 2, 0.0, 2 * D / T, 4 * D / T**2)
-
-
-def _by_speed_and_acceleration(D: float, V: float, a: float, k: float) -> Timing:
-    ramp_s = V / (k * a)
-    run_s = D / V - ramp_s
-    if run_s <= ROUNDING * ramp_s:  # the speed is not reached before the brake has to act
-        ramp_s = math.sqrt(D / (k * a))
-        return Timing(ramp_s, 0.0, D / ramp_s, D / (k * ramp_s**2), True)
-    return Timing(ramp_s, run_s, V, a)
+def _said(value: float, field: str, rounding: Rounding = "up") -> str:
+    """A bound with its unit, rounded so that what is printed will do."""
+    return str(Quantity(value, suffix_of(field) or "", 6, rounding))
 
 
 class Turn(Move):
     """A move of a rotary mechanism."""
 
-    WAY, SPEED, ACCELERATION, EXTERNAL = "angle_deg", "speed_rpm", "acceleration_deg_per_s2", "external_torque_Nm"
+    WAY, SPEED, EXTERNAL = "angle_deg", "speed_rpm", "external_torque_Nm"
+    ACCELERATION, DECELERATION = "acceleration_deg_per_s2", "deceleration_deg_per_s2"
     SPEED_UNIT = 6.0
 
     angle_deg: Way | None = Field(
@@ -214,7 +235,10 @@ class Turn(Move):
     )
     speed_rpm: Positive | None = Field(None, description="Peak speed of the mechanism.", examples=[25.0])
     acceleration_deg_per_s2: Positive | None = Field(
-        None, description="Acceleration; of an S-curve its peak.", examples=[900.0]
+        None, description="Acceleration of the first ramp; of an S-curve its peak.", examples=[900.0]
+    )
+    deceleration_deg_per_s2: Positive | None = Field(
+        None, description="Deceleration of the last ramp; without it that of the first.", examples=[450.0]
     )
     external_torque_Nm: Torque = Field(
         0.0, description="External torque in this move; a positive one opposes positive motion.", examples=[30.0]
@@ -224,7 +248,8 @@ class Turn(Move):
 class Stroke(Move):
     """A move of a rack, belt or screw."""
 
-    WAY, SPEED, ACCELERATION, EXTERNAL = "distance_mm", "speed_mm_per_s", "acceleration_mm_per_s2", "external_force_N"
+    WAY, SPEED, EXTERNAL = "distance_mm", "speed_mm_per_s", "external_force_N"
+    ACCELERATION, DECELERATION = "acceleration_mm_per_s2", "deceleration_mm_per_s2"
     SPEED_UNIT = 1.0
 
     distance_mm: Way | None = Field(
@@ -232,7 +257,10 @@ class Stroke(Move):
     )
     speed_mm_per_s: Positive | None = Field(None, description="Peak speed of the mass.", examples=[500.0])
     acceleration_mm_per_s2: Positive | None = Field(
-        None, description="Acceleration; of an S-curve its peak.", examples=[2500.0]
+        None, description="Acceleration of the first ramp; of an S-curve its peak.", examples=[2500.0]
+    )
+    deceleration_mm_per_s2: Positive | None = Field(
+        None, description="Deceleration of the last ramp; without it that of the first.", examples=[1250.0]
     )
     external_force_N: Load = Field(
         0.0, description="External force in this move; a positive one opposes positive motion.", examples=[200.0]

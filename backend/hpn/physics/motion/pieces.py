@@ -145,12 +145,12 @@ def _rows(moves: Sequence[Move], start_deg: float, load: ShaftLoad) -> Iterator[
             yield (place, RUN, 0.0, move.time_s or 0.0, 0.0, *_coefficients(_Course(0.0, 0.0), 0.0), *bases[0])
             continue
         total = abs(move.way) / load.way_per_rad
-        half, run = _courses(move, total)
-        for one in half:
+        first, run, last = _courses(move, total)
+        for one in first:
             yield (place, RAMP, one.start, one.end, sign, *_coefficients(one, sign), *bases[0])
         if run:
             yield (place, RUN, run.start, run.end, sign, *_coefficients(run, sign), *bases[0])
-        for one in (_mirrored(one) for one in reversed(half)):
+        for one in (_mirrored(one) for one in reversed(last)):
             yield (place, BRAKE, one.start, one.end, sign, *_coefficients(one, sign), *bases[1])
         position = end
 
@@ -178,26 +178,33 @@ def _mirrored(one: _Course) -> _Course:
     )
 
 
-def _courses(move: Move, total: float) -> tuple[list[_Course], _Course | None]:
-    """Ramp of a move and the run behind it, for a way in rad."""
+def _courses(move: Move, total: float) -> tuple[list[_Course], _Course | None, list[_Course]]:
+    """First ramp of a move, the run behind it, and the last ramp backwards in time, for a way in rad."""
     if move.profile == "modified_sine":
-        return _modified_sine(total, move.time_s or 0.0), None
+        half = _modified_sine(total, move.time_s or 0.0)
+        return half, None, half
     timing = move.timing
     scale = total / abs(move.way)
-    ramp, V, a = timing.ramp_s, timing.peak_speed * scale, timing.peak_acceleration * scale
-    way = V * ramp / 2
-    run = _Course(0.0, timing.run_s, angle=way, speed=V) if timing.run_s else None
-    share = 2 * (1 - move.ramp_mean)
+    V, share = timing.peak_speed * scale, 2 * (1 - move.ramp_mean)
+    first, last = (
+        _ramp(ramp_s, V, a * scale, share) for ramp_s, a in zip(timing.ramps_s, timing.peak_accelerations, strict=True)
+    )
+    run = _Course(0.0, timing.run_s, angle=V * timing.ramps_s[0] / 2, speed=V) if timing.run_s else None
+    return first, run, last
+
+
+def _ramp(ramp_s: float, V: float, a: float, share: float) -> list[_Course]:
+    """Ramp from rest to the speed V with the peak acceleration a; jerk acts in `share` of it, half at either end."""
     if not share:
-        return [_Course(0.0, ramp, acceleration=a)], run
-    rise = ramp * share / 2
+        return [_Course(0.0, ramp_s, acceleration=a)]
+    rise = ramp_s * share / 2
     jerk, first = a / rise, a * rise / 2
     steps = [
         _Course(0.0, rise, jerk=jerk),
-        _Course(0.0, ramp - 2 * rise, angle=a * rise**2 / 6, speed=first, acceleration=a),
-        _Course(-rise, 0.0, angle=way, speed=V, jerk=-jerk),
+        _Course(0.0, ramp_s - 2 * rise, angle=a * rise**2 / 6, speed=first, acceleration=a),
+        _Course(-rise, 0.0, angle=V * ramp_s / 2, speed=V, jerk=-jerk),
     ]
-    return [step for step in steps if step.end - step.start > 1e-12 * ramp], run
+    return [step for step in steps if step.end - step.start > 1e-12 * ramp_s]
 
 
 def _modified_sine(total: float, time_s: float) -> list[_Course]:

@@ -11,10 +11,18 @@ REFUSALS: Mapping[str, str] = {
     "way_vanishing": N_("must be at least 1e-12 in magnitude"),
     "move_needs": N_("a move with the profile {profile} needs {field}"),
     "move_has_no": N_("a move with the profile {profile} has no {field}: leave it out"),
-    "move_takes_two": N_("a move with the profile {profile} takes two of {fields}, or time_s alone; given: {given}"),
+    "move_takes_two": N_(
+        "a move with the profile {profile} takes time_s, with or without ramps, a speed with a ramp or two, or both "
+        "with one ramp at most; given: {given}"
+    ),
     "move_takes_one": N_("a move with the profile {profile} takes one of {fields}; given: {given}"),
     "move_too_slow": N_("must be above {bound}, the way over the time; from {triangle} on the move is a triangle"),
     "move_too_gentle": N_("must be at least {bound} to cover the way in this time"),
+    "move_too_fast": N_("must be at most {bound}, at which the ramps leave no run"),
+    "ramp_too_long": N_("must be at most {bound} to cover the way in this time"),
+    "ramp_leaves_none": N_("must be below {bound}, so that time is left for the other ramp"),
+    "ramp_too_gentle": N_("must be above {bound}, so that time is left for the other ramp"),
+    "ramp_twice": N_("stands for {field}: give either"),
     "gravity_needs": N_("gravity needs {field} as well"),
     "gravity_inertia": N_("includes the gravity mass and must be at least {bound}, its mass times its radius squared"),
     "no_move": N_("no move moves: give at least one a profile other than dwell"),

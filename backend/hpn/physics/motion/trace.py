@@ -36,7 +36,7 @@ def trace_of(course: Course) -> Trace:
 
 
 def motor_trace(
-    course: Course, *, ratio: float, efficiency: FloatArray, motor_inertia_kgm2: float
+    course: Course, *, ratio: float, efficiency: FloatArray, motor_inertia_kgm2: float, no_load_torque_Nm: float = 0.0
 ) -> tuple[Trace, FloatArray]:
     """Trace, and torque in Nm of a motor along it, its own inertia included; `efficiency` broadcasts to (phases,).
 
@@ -51,7 +51,8 @@ def motor_trace(
     cut = monotone(Torque(load.viscous_Nms, load.gravity_Nm), with_motor)
     places = cut.move
     trace = _along(course, p.at(places).windows(cut.start_s, cut.end_s), course.phase[places], course.factor[places])
-    return trace, share[trace.phase][:, None] * trace.torque_Nm + inertia * trace.acceleration_rad_per_s2
+    without_load = no_load_torque_Nm * np.sign(course.speed_rpm)[trace.phase][:, None]
+    return trace, share[trace.phase][:, None] * trace.torque_Nm + inertia * trace.acceleration_rad_per_s2 + without_load
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,9 +68,17 @@ class Instant:
     is_driven: bool
 
 
-def peak_instant(course: Course, *, ratio: float, efficiency: FloatArray, motor_inertia_kgm2: float) -> Instant:
+def peak_instant(
+    course: Course, *, ratio: float, efficiency: FloatArray, motor_inertia_kgm2: float, no_load_torque_Nm: float = 0.0
+) -> Instant:
     """The instant at which the motor of one gear has its largest torque; `efficiency` has shape (phases,)."""
-    trace, torque = motor_trace(course, ratio=ratio, efficiency=efficiency, motor_inertia_kgm2=motor_inertia_kgm2)
+    trace, torque = motor_trace(
+        course,
+        ratio=ratio,
+        efficiency=efficiency,
+        motor_inertia_kgm2=motor_inertia_kgm2,
+        no_load_torque_Nm=no_load_torque_Nm,
+    )
     place = np.unravel_index(np.argmax(np.abs(torque)), torque.shape)
     phase = trace.phase.item(place[0])
     is_driven = bool(course.torque_Nm[phase] * course.speed_rpm[phase] >= 0)

@@ -12,6 +12,7 @@ from hpn.tables.numbers import WAS, WRITTEN
 from hpn.web.form.labels import LABELS, faults_of
 from hpn.web.form.rows import Rows
 from hpn.web.form.symbols import (
+    BELT_BY_NAME,
     BODY_BY_NAME,
     BY_NAME,
     LOADS,
@@ -20,6 +21,7 @@ from hpn.web.form.symbols import (
     MOVE_BY_NAME,
     PHASE_BY_NAME,
     PHASE_SYMBOLS,
+    RAMPS,
     SYMBOLS,
     VARYING,
 )
@@ -79,11 +81,15 @@ class Given:
         self.asides: list[str] = []
         self.with_loads = False
         self.varies = False
+        self.with_ramps = False
+        self.belt: dict[str, str] = {}
 
     def add(self, name: str, text: str) -> None:
         """Take one pair of the query."""
         if name in PHASE_BY_NAME or name in MOVE_BY_NAME or name in BODY_BY_NAME:
             self.columns.setdefault(name, []).append(text)
+        elif name in BELT_BY_NAME:
+            self.belt.setdefault(name, text)
         elif name == "do":
             self.presses.append(text)
         elif name == "pin":
@@ -115,7 +121,9 @@ class Given:
 
     def tables(self) -> tuple[Rows, Rows, Rows, str | None]:
         """Phases, moves and bodies after the buttons that were pressed, and the element to go on from."""
-        self.with_loads, self.varies = (any(name in self.columns for name in names) for names in (LOADS, VARYING))
+        self.with_loads, self.varies, self.with_ramps = (
+            any(name in self.columns for name in names) for names in (LOADS, VARYING, RAMPS)
+        )
         moving = self.has_motion
         phases = Rows(self._of_phases(), self._phase_columns(), MAXIMUM_PHASES)
         moves = Rows(self.columns if moving else {}, self._move_columns(), MAXIMUM_MOVES)
@@ -124,14 +132,17 @@ class Given:
         for press in self.presses[:50]:
             do, _, number = press.partition(":")
             k = int(number) - 1 if re.fullmatch(r"[0-9]{1,5}", number) else -1
-            if do in ("loads", "varying"):
+            if do in ("loads", "varying", "ramps"):
                 self.with_loads, self.varies = self.with_loads != (do == "loads"), self.varies != (do == "varying")
+                self.with_ramps = self.with_ramps != (do == "ramps")
                 phases.show(self._phase_columns())
                 moves.show(self._move_columns())
                 focus = do
+            elif do == "one_way":
+                self.scalars["lr"], focus = "0", "f-lr"
             elif do == "way":
                 focus = f"way-{number}"
-            elif do in ("inertia", "gravity"):
+            elif do in ("inertia", "gravity", "belt"):
                 focus = do
             elif do.endswith("_body"):
                 focus = bodies.press(do.removesuffix("_body"), k)
@@ -148,7 +159,8 @@ class Given:
         return shown_columns(with_loads=self.with_loads and not self.has_motion, varies=self.varies)
 
     def _move_columns(self) -> list[str]:
-        return [name for name in MOVE_BY_NAME if self.with_loads or name not in LOADS]
+        hidden = {*(() if self.with_loads else LOADS), *(() if self.with_ramps else RAMPS)}
+        return [name for name in MOVE_BY_NAME if name not in hidden]
 
     def pinned(self) -> tuple[str, ...]:
         """Pinned gears, without the one whose button takes it away."""

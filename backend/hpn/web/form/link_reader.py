@@ -17,6 +17,7 @@ from hpn.physics.motion.mechanisms import TYPES
 from hpn.tables import numbers
 from hpn.tables.numbers import read_value
 from hpn.web.door.access import MAXIMUM_QUERY_BYTES as MAXIMUM_QUERY_BYTES
+from hpn.web.form.belt import BeltInput, belt_of, with_belt
 from hpn.web.form.bodies import BodyTable, body_table, with_inertia
 from hpn.web.form.given import REQUIRED, FieldProblem, Given, shown_columns
 from hpn.web.form.labels import LABELS, query_of
@@ -32,6 +33,7 @@ from hpn.web.form.symbols import (
     PHASE_BY_LEAF,
     PHASE_BY_NAME,
     PHASE_SYMBOLS,
+    RAMPS,
     Symbol,
     mechanism_symbols,
     move_symbols,
@@ -66,6 +68,7 @@ _PARTS = {
     (*MOTION_PATH, "mechanism"): "mech",
     ("output_load",): "FR",
     ("emergency_stop",): "Tk",
+    ("emergency_stop", "brake"): "TB",
 }
 
 
@@ -85,9 +88,11 @@ class Form:
     moves: tuple[Mapping[str, str], ...] = ()
     has_motion: bool = False
     bodies: BodyTable = field(default_factory=BodyTable)
+    belt: BeltInput = field(default_factory=BeltInput)
     asides: tuple[str, ...] = ()
     with_loads: bool = False
     varies: bool = False
+    with_ramps: bool = False
     gear: str = ""
     pins: tuple[str, ...] = ()
     focus: str | None = None
@@ -139,7 +144,8 @@ class Form:
     @property
     def move_columns(self) -> list[Symbol]:
         """Columns of the table of moves."""
-        return [s for s in move_symbols(self.mechanism) if self.with_loads or s.name not in LOADS]
+        hidden = {*(() if self.with_loads else LOADS), *(() if self.with_ramps else RAMPS)}
+        return [symbol for symbol in move_symbols(self.mechanism) if symbol.name not in hidden]
 
     @property
     def text(self) -> str:
@@ -170,7 +176,7 @@ def parse(pairs: Pairs) -> Form:
     """Form of a query, with everything that the query says and a message for each wrong field."""
     typed = next((text for name, text in pairs if name == TEXT), None)
     pairs, written = in_wire_units(expanded(pairs))
-    pairs = with_inertia(switched(_own(pairs)))
+    pairs = with_belt(with_inertia(switched(_own(pairs))))
     form = replace(_parsed(pairs, written), typed=None if typed is None else typed.replace("\r\n", "\n"))
     if ("do", "take") in pairs and form.has_motion and form.application is not None:
         return _parsed(taken_over(pairs, form.application), written)
@@ -207,9 +213,11 @@ def _parsed(pairs: Pairs, written: str) -> Form:
         moves=tuple(moves),
         has_motion=given.has_motion,
         bodies=body_table(bodies.texts) if given.has_motion else BodyTable(),
+        belt=belt_of(given.belt),
         asides=tuple(given.asides),
         with_loads=given.with_loads,
         varies=given.varies,
+        with_ramps=given.with_ramps,
         gear=given.page.get("gear", "").strip(),
         pins=given.pinned(),
         focus=focus,
@@ -235,19 +243,20 @@ def in_wire_units(pairs: Pairs) -> tuple[Pairs, str]:
 def for_reader(form: Form, reader: Reader) -> Form:
     """The same form with what the reader's fields show: their units and decimal mark."""
     units = units_of(form.texts.get("mech", "").strip())
-    tables = (*form.rows, *form.moves, *form.bodies.rows, form.texts)
+    tables = (*form.rows, *form.moves, *form.bodies.rows, form.belt.texts, form.texts)
     cells = [(text, units[name]) for table in tables for name, text in table.items() if name in units]
     shown = numbers.to_fields(cells, reader, form.written)
     texts = iter(shown.texts)
-    rows, moves, bodies, (named,) = (
+    rows, moves, bodies, (belt, named) = (
         tuple({name: next(texts) if name in units else text for name, text in table.items()} for table in part)
-        for part in (form.rows, form.moves, form.bodies.rows, (form.texts,))
+        for part in (form.rows, form.moves, form.bodies.rows, (form.belt.texts, form.texts))
     )
     return replace(
         form,
         rows=rows,
         moves=moves,
         bodies=replace(form.bodies, rows=bodies),
+        belt=replace(form.belt, texts=belt),
         texts=named,
         written=reader.marker,
         was=shown.was,

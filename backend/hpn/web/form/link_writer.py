@@ -6,7 +6,7 @@ from urllib.parse import quote
 
 from pydantic import BaseModel
 
-from hpn.application import Application, DutyCycle, EmergencyStop, Motor, OutputLoad, Requirements
+from hpn.application import Application, Brake, DutyCycle, EmergencyStop, Motor, OutputLoad, Requirements
 from hpn.application.motion import Motion
 from hpn.web.form.symbols import MECHANISM_SYMBOLS, PHASE_SYMBOLS, SYMBOLS, move_symbols
 
@@ -15,7 +15,15 @@ _EMPTY_LOAD = OutputLoad()
 _WHERE_USED = PHASE_SYMBOLS[3:]
 """Columns of phases that a link has where one of them is given."""
 
-_MODELS: tuple[type[BaseModel], ...] = (DutyCycle, EmergencyStop, OutputLoad, Requirements, Application, Motor)
+_MODELS: tuple[type[BaseModel], ...] = (
+    DutyCycle,
+    EmergencyStop,
+    Brake,
+    OutputLoad,
+    Requirements,
+    Application,
+    Motor,
+)
 _FIELDS = [
     [(s.path[-1], s.name, model.model_fields[s.path[-1]].default, s.many) for s in symbols]
     for model, (_, symbols) in zip(_MODELS, groupby(SYMBOLS, lambda symbol: symbol.path[:-1]), strict=True)
@@ -81,14 +89,15 @@ def _moves(motion: Motion) -> Iterator[str]:
 
 def _parts(application: Application) -> tuple[BaseModel | None, ...]:
     asked, load = application.requirements, application.output_load
-    return application.duty_cycle, application.emergency_stop, load, asked, application, asked.motor
+    stop = application.emergency_stop
+    return application.duty_cycle, stop, stop and stop.brake, load, asked, application, asked.motor
 
 
 def _written(value: float | str) -> str:
     if isinstance(value, float):
         return _shortened(repr(value))
     if isinstance(value, int):
-        return str(value)
+        return str(int(value))
     return quote(value)
 
 

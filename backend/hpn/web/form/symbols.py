@@ -44,7 +44,7 @@ class Symbol:
         """Its place as `hpn.words.quantities` names it."""
         if self.path[:2] == MOTION_PATH:
             return ".".join(self.path[1:])
-        if self.path[0] == "body":
+        if self.path[0] in ("body", "strands"):
             return ".".join(self.path)
         return ".".join(self.path if len(self.path) > 1 or self.path[0] in INPUTS else ("phase", *self.path))
 
@@ -93,6 +93,20 @@ SYMBOLS = (
     Symbol("tp", ("duty_cycle", "pause_s")),
     Symbol("Tk", ("emergency_stop", "torque_Nm")),
     Symbol("Nk", ("emergency_stop", "count"), "whole"),
+    Symbol(
+        "TB", ("emergency_stop", "brake", "torque_Nm"), hint=N_("At the motor, the largest that the brake may give.")
+    ),
+    Symbol("tb", ("emergency_stop", "brake", "rise_time_s"), placeholder="0"),
+    Symbol("tr", ("emergency_stop", "brake", "reaction_time_s"), placeholder="0"),
+    Symbol(
+        "nb", ("emergency_stop", "brake", "speed_rpm"), hint=N_("At the output; without it the largest of the cycle.")
+    ),
+    Symbol(
+        "kd",
+        ("emergency_stop", "brake", "dynamic_factor"),
+        placeholder="2",
+        hint=N_("2 for a brake that closes at once; less by its rise time where both inertias are known."),
+    ),
     Symbol("FR", ("output_load", "radial_N")),
     Symbol("FA", ("output_load", "axial_N")),
     Symbol(
@@ -123,6 +137,17 @@ SYMBOLS = (
         ),
         supplied={"digitised": "curves"},
     ),
+    Symbol(
+        "xR",
+        ("output_load", "radial_position_mm"),
+        hint=N_("From the shaft’s shoulder, outwards positive; without it at the shaft’s centre."),
+    ),
+    Symbol("yA", ("output_load", "axial_radius_mm"), placeholder="0", hint=N_("From the shaft’s axis.")),
+    Symbol(
+        "xc",
+        ("output_load", "shaft_centre_mm"),
+        hint=N_("From the shoulder, at least: not published, so take it from the maker’s drawing."),
+    ),
     Symbol("i", ("requirements", "ratios"), "whole", many=True),
     Symbol("size", ("requirements", "sizes"), "text", many=True),
     Symbol("Lh", ("requirements", "life_h")),
@@ -145,6 +170,16 @@ SYMBOLS = (
         hint=N_("Your assumption, between 0 and 1. Without one the motor side is loss-free, a lower bound."),
     ),
     Symbol("JL", ("requirements", "load_inertia_kgm2")),
+    Symbol("fn", ("requirements", "natural_frequency_Hz"), hint=N_("Needs the load’s inertia, or a motion.")),
+    Symbol("pe", ("requirements", "position_error_arcmin")),
+    Symbol("pem", ("requirements", "position_error_mm"), hint=N_("At the radius below.")),
+    Symbol("pr", ("requirements", "position_radius_mm")),
+    Symbol(
+        "lr",
+        ("requirements", "load_reverses"),
+        "flag",
+        choices={"": N_("as the signs of the torques say"), "1": N_("both ways"), "0": N_("no torque reverses")},
+    ),
     Symbol(
         "aa",
         ("application_area",),
@@ -163,6 +198,8 @@ SYMBOLS = (
             "motor_torque": N_("lowest motor torque"),
             "life": N_("longest life"),
             "stiffness": N_("highest stiffness"),
+            "natural_frequency": N_("highest natural frequency"),
+            "position_error": N_("smallest position error"),
         },
     ),
     Symbol("nm", ("requirements", "motor", "maximum_speed_rpm")),
@@ -231,13 +268,18 @@ _OF_A_MOVE = {"mj": f"{DEFAULT_JERK_SHARE:g}", "mx": "0"}
 """Defaults of a move."""
 
 
+RAMPS = ("mta", "mtd", "md2")
+"""Columns of moves that appear where they are used."""
+
+
 def _of_moves(way: str, speed: str, acceleration: str, external: str) -> tuple[Symbol, ...]:
     fields = ("profile", way, "time_s", speed, acceleration, "jerk_share", external)
+    ramps = ("acceleration_time_s", "deceleration_time_s", acceleration.replace("acc", "dec"))
     return tuple(
         Symbol(
             name, ("motion", "move", field), "text" if name == "mv" else "number", placeholder=_OF_A_MOVE.get(name, "")
         )
-        for name, field in zip(("mv", "ms", "mt", "mn", "ma", "mj", "mx"), fields, strict=True)
+        for name, field in zip(("mv", "ms", "mt", "mn", "ma", "mj", "mx", *RAMPS), (*fields, *ramps), strict=True)
     ) + tuple(symbol for symbol in PHASE_SYMBOLS if symbol.name in LOADS)
 
 
@@ -248,9 +290,9 @@ STROKE_SYMBOLS = _of_moves("distance_mm", "speed_mm_per_s", "acceleration_mm_per
 _TIMED = ("ms", "mt", "mn", "ma")
 _EVERY_MOVE = ("mx", *LOADS)
 MOVE_COLUMNS: Mapping[str, tuple[str, ...]] = {
-    "trapezoidal": (*_TIMED, *_EVERY_MOVE),
+    "trapezoidal": (*_TIMED, *RAMPS, *_EVERY_MOVE),
     "triangular": (*_TIMED, *_EVERY_MOVE),
-    "s_curve": (*_TIMED, "mj", *_EVERY_MOVE),
+    "s_curve": (*_TIMED, *RAMPS, "mj", *_EVERY_MOVE),
     "modified_sine": ("ms", "mt", *_EVERY_MOVE),
     "dwell": ("mt", *_EVERY_MOVE),
 }
@@ -269,6 +311,16 @@ BODY_SYMBOLS = (
     Symbol("qn", ("body", "count"), "whole", placeholder="1"),
 )
 """Bodies of the form whose moment of inertia is worked out, repeated once per body; no link has them."""
+
+BELT_SYMBOLS = (
+    Symbol("bF1", ("strands", "tight_strand_N")),
+    Symbol("bF2", ("strands", "slack_strand_N")),
+    Symbol("bP", ("strands", "power_W")),
+    Symbol("bv", ("strands", "speed_m_per_s")),
+    Symbol("bk", ("strands", "pretension_factor")),
+    Symbol("bw", ("strands", "wrap_deg"), placeholder="180"),
+)
+"""A belt of the form whose radial load is worked out; no link has it."""
 
 _EVERY_BODY = ("qm", "qe", "qn")
 BODY_COLUMNS: Mapping[str, tuple[str, ...]] = {
@@ -296,6 +348,13 @@ def move_symbols(mechanism: str) -> tuple[Symbol, ...]:
 GROUPS = (
     FormGroup("stop", N_("Emergency stop"), ("Tk", "Nk"), folded=False),
     FormGroup(
+        "brake",
+        N_("Brake of the emergency stop"),
+        ("TB", "tb", "tr", "nb", "kd"),
+        hint=N_("In place of the emergency-stop torque, which then follows for each gear."),
+        short=N_("Brake"),
+    ),
+    FormGroup(
         "wishes",
         N_("Constraints"),
         ("i", "size", "Lh", "rank"),
@@ -305,14 +364,18 @@ GROUPS = (
     FormGroup(
         "load",
         N_("Load on the output shaft"),
-        ("FR", "FA", "fw", "Lb", "Lbb", "bm"),
-        hint=N_(
-            "Radial at the centre of the shaft, axial along its axis. A load elsewhere can’t be judged from the "
-            "published data."
-        ),
+        ("FR", "FA", "fw", "Lb", "Lbb", "bm", "xR", "yA", "xc"),
+        hint=N_("Radial at the centre of the shaft, axial along its axis, but for what is given below."),
         short=N_("Loads"),
     ),
     FormGroup("motor", N_("Motor"), ("nm", "Tm", "Tmn", "eta", "nmr", "Jm", "Jr", "JL", "md"), short=N_("Motor")),
+    FormGroup(
+        "stiffness",
+        N_("Stiffness and position"),
+        ("fn", "pe", "pem", "pr", "lr"),
+        hint=N_("Frequency: the motor held. Position error: accuracy, wind-up and backlash, added."),
+        short=N_("Stiffness"),
+    ),
     FormGroup(
         "limits",
         N_("Requirements and environment"),
@@ -325,6 +388,8 @@ GROUPS = (
 PHASE_BY_NAME = {symbol.name: symbol for symbol in PHASE_SYMBOLS}
 PHASE_BY_LEAF = {symbol.path[0]: symbol for symbol in PHASE_SYMBOLS}
 BODY_BY_NAME = {symbol.name: symbol for symbol in BODY_SYMBOLS}
+BELT_BY_NAME = {symbol.name: symbol for symbol in BELT_SYMBOLS}
+BELT_BY_LEAF = {symbol.path[-1]: symbol for symbol in BELT_SYMBOLS}
 BODY_BY_LEAF = {symbol.path[-1]: symbol for symbol in BODY_SYMBOLS}
 MOVE_BY_NAME = {symbol.name: symbol for symbol in TURN_SYMBOLS}
 MOVE_BY_LEAF = {symbol.path[-1]: symbol for symbol in (*TURN_SYMBOLS, *STROKE_SYMBOLS)}
@@ -332,7 +397,7 @@ BY_NAME = {symbol.name: symbol for symbol in (*SYMBOLS, *MECHANISM_SYMBOLS)}
 BY_PATH = {symbol.path: symbol for symbol in (*SYMBOLS, *MECHANISM_SYMBOLS)}
 _SINGLE = (*PHASE_SYMBOLS, *SYMBOLS, *MECHANISM_SYMBOLS)
 LABELS = {
-    **{symbol.name: symbol.named.name for symbol in (*TURN_SYMBOLS, *_SINGLE, *BODY_SYMBOLS)},
+    **{symbol.name: symbol.named.name for symbol in (*TURN_SYMBOLS, *_SINGLE, *BODY_SYMBOLS, *BELT_SYMBOLS)},
     "ms": N_("Angle or distance"),
     "mx": N_("External torque or force"),
     "gear": CANDIDATE["designation"].name,
@@ -348,5 +413,5 @@ AXIS_INPUTS = Inputs(
 
 def units_of(mechanism: str) -> Mapping[str, str]:
     """Names that take a number, and the suffix of its unit, which of a move depends on the mechanism."""
-    symbols = (*move_symbols(mechanism), *_SINGLE, *BODY_SYMBOLS)
-    return {symbol.name: symbol.unit for symbol in symbols if symbol.kind != "text" and not symbol.many}
+    symbols = (*move_symbols(mechanism), *_SINGLE, *BODY_SYMBOLS, *BELT_SYMBOLS)
+    return {symbol.name: symbol.unit for symbol in symbols if symbol.kind in ("number", "whole") and not symbol.many}

@@ -50,7 +50,11 @@ GROUPS: tuple[tuple[str, tuple[Label, ...]], ...] = (
         N_("Size and weight"),
         (Label(("length_min_mm", "length_max_mm"), N_("Length, depending on the motor")), Label(("weight_kg",))),
     ),
-    (N_("Output bearing"), (Label(("dynamic_radial_load_N",)), Label(("dynamic_axial_load_N",)))),
+    (
+        N_("Output bearing"),
+        (Label(("dynamic_radial_load_N",)), Label(("dynamic_axial_load_N",)), Label(("shaft_centre_mm",))),
+    ),
+    (N_("At the input"), (Label(("inertia_kgm2",)), Label(("no_load_torque_Nm",)))),
 )
 """Figures of a gear as its page groups them; None is shown as not published."""
 

@@ -16,6 +16,7 @@ from hpn.engine.remedy import DRIVER_NAMES
 from hpn.engine.selection import Candidate, reason_of
 from hpn.explain.calculation import calculation_of, mathml
 from hpn.explain.drawings.picture import beyond_limit
+from hpn.explain.readings import stiffness_of
 from hpn.installed import data_folder
 from hpn.web.door.visit import address, current
 from hpn.web.form import symbols, ways
@@ -200,6 +201,12 @@ def _set(part: Part) -> Markup:
     return Markup('<var class="symbol">{}{}</var>').format(letter, below)
 
 
+@pass_context
+def _stiffness(_: Context, candidate: Candidate) -> str:
+    """Natural frequency and position error of a candidate."""
+    return current().told(stiffness_of(candidate))
+
+
 FILTERS: dict[str, Callable[..., Any]] = {
     "as_read": _as_read,
     "as_typed": _as_typed,
@@ -209,6 +216,7 @@ FILTERS: dict[str, Callable[..., Any]] = {
     "reason": _reason,
     "reasons": reasons_of,
     "say": _say,
+    "stiffness": _stiffness,
     "symbols": with_symbols,
     "t": _for_reader("text"),
     **{

@@ -1,0 +1,175 @@
+"""Stiffness, position error and the emergency stop by the brake, as equations with their numbers."""
+
+import math
+from collections.abc import Iterable
+
+import numpy as np
+
+from hpn.engine.figures import Figures
+from hpn.engine.stops import Stops
+from hpn.explain.calculation.formula import (
+    Constant,
+    Formula,
+    Magnitude,
+    Power,
+    Product,
+    Quotient,
+    Root,
+    Subtraction,
+    Sum,
+    Term,
+    Variable,
+    value_of,
+)
+from hpn.explain.calculation.sheet import Line, Sheet, Step, known, step_of_check
+from hpn.physics import stop
+from hpn.words.quantities import CANDIDATE
+from hpn.words.wording import N_, Sentence
+
+PI = Term(Variable("π"), math.pi)
+ARCMIN = Quotient(Constant(10800, "arcmin"), PI)
+DEGREES = Quotient(Constant(180, "deg"), PI)
+UNIFORM = Sentence(N_("The stop begins from uniform running; the motor’s torque passes into the brake’s as it rises."))
+
+
+def stiffness_steps(sheet: Sheet) -> Iterable[Step]:
+    """Frequency, resonance, wind-up and position error, as far as the gear's figures are published."""
+    K_3, J = sheet.rating("torsional_stiffness_Nm_per_rad"), sheet.load_inertia
+    if K_3 is None:
+        return
+    held, free = sheet.figure("natural_frequency_Hz"), sheet.figure("drive_resonance_Hz")
+    if held is not None and J is not None:
+        lines = [Line(held, _frequency(Quotient(K_3, J)))]
+        if free is not None:
+            both = Sum((Quotient(Constant(1), J), Quotient(Constant(1), at_output(sheet))))
+            lines.append(Line(free, _frequency(Product((K_3, both)))))
+        note = Sentence(CANDIDATE["natural_frequency_Hz"].caveat)
+        yield step_of_check("natural_frequency", tuple(lines), sheet.compared("natural_frequency", held), (note,))
+    yield _position(sheet, K_3)
+
+
+def _frequency(square: Formula) -> Formula:
+    return Quotient(Root(square), Product((Constant(2), PI)))
+
+
+def at_output(sheet: Sheet) -> Formula:
+    """Inertia of the motor at the output, with the gear's own where it is known."""
+    J_m, J_g = known(sheet.given("requirements.motor.inertia_kgm2")), sheet.rating("inertia_kgm2")
+    return Product((Power(sheet.i, Constant(2)), J_m if J_g is None else Sum((J_m, J_g))))
+
+
+def _position(sheet: Sheet, K_3: Term) -> Step:
+    """Wind-up under T_max, and what adds up to the position error."""
+    wind_up, error = known(sheet.figure("wind_up_arcmin")), known(sheet.figure("position_error_arcmin"))
+    lowest, highest = (torque.item() for torque in sheet.duty.torque_range_Nm)
+    T_lo, T_hi = Term(Variable("T", "lo"), lowest, "Nm"), Term(Variable("T", "hi"), highest, "Nm")
+    span = Product((Quotient(Subtraction(T_hi, T_lo), K_3), ARCMIN))
+    parts: list[Formula] = [known(sheet.rating("transmission_accuracy_arcmin")), span]
+    if lowest <= 0 <= highest:
+        parts.append(known(sheet.rating("backlash_arcmin")))
+    lines = [Line(wind_up, Product((Quotient(sheet.T_max, K_3), ARCMIN))), Line(error, Sum(tuple(parts)))]
+    length, radius = sheet.figure("position_error_mm"), sheet.given("requirements.position_radius_mm")
+    if length is not None and radius is not None:
+        lines.append(Line(length, Product((Quotient(error, ARCMIN), radius))))
+    both_ways = N_("The torque is taken to act both ways: T_lo is −T_max and T_hi is T_max.")
+    notes = [Sentence(both_ways)] if sheet.duty.torque_both_ways.item() else []
+    notes.append(Sentence(CANDIDATE["position_error_arcmin"].caveat))
+    return step_of_check("position_error", tuple(lines), sheet.compared("position_error", error), tuple(notes))
+
+
+# --- Emergency stop by the brake --------------------------------------------------------------------------------------
+
+
+def stop_steps(sheet: Sheet) -> Iterable[Step]:
+    """The torque of a stop by the brake on the gear, and its course."""
+    T_B, T_k = sheet.given("emergency_stop.brake.torque_Nm"), sheet.figure("stop_torque_Nm")
+    if T_B is None or T_k is None:
+        return
+    stops = Figures(sheet.duty, sheet.gears, sheet.catalogue).stops
+    f = Term(Variable("f"), stops.dynamic_factor.item())
+    torques = [torque.item() for torque in stops.opposing_torques_Nm]
+    hardest = max(torques, key=lambda T: _torque(stops.brake, T, f.value))
+    T_opp, eta = (
+        Term(Variable("T", "opp"), hardest, "Nm"),
+        Term(Variable("η"), np.asarray(stops.brake.efficiency).item()),
+    )
+    T_r = Term(Variable("T", "r"), _at_rest(stops.brake, hardest), "Nm")
+    formula: Formula = Product((f, Magnitude(T_r)))
+    if hardest > 0:
+        formula = Sum((formula, Product((Subtraction(f, Constant(1)), T_opp))))
+    J, lines = sheet.load_inertia, list[Line]()
+    at_motor = Product((sheet.i, T_B))
+    if J is None or math.isnan(stops.course.time_s.item()):
+        lines.append(Line(T_r, Quotient(at_motor, eta)))
+    else:
+        loss: Formula = eta if T_r.value >= 0 else Quotient(Constant(1), eta)
+        a = Term(Variable("a"), _deceleration(stops.brake, hardest), "rad_per_s2")
+        below = Sum((at_output(sheet), Product((loss, J))))
+        lines.append(Line(a, Quotient(Sum((at_motor, Product((loss, T_opp)))), below)))
+        lines.append(Line(T_r, Subtraction(Product((J, a)), T_opp)))
+    lines.append(Line(T_k, formula))
+    yield Step("stop", BRAKE, None, tuple(lines), (), (UNIFORM, *_on_the_factor(sheet, f)))
+    if J is not None and sheet.figure("stopping_time_s") is not None:
+        yield _course(sheet, stops, J, at_motor, eta)
+
+
+BRAKE = N_("Emergency stop by the brake")
+
+
+def _torque(brake: stop.Brake, T_opp: float, f: float) -> float:
+    return stop.stop_torque(brake=brake, opposing_torque_Nm=T_opp, dynamic_factor=f).item()
+
+
+def _at_rest(brake: stop.Brake, T_opp: float) -> float:
+    return stop.stop_torque_at_rest(brake=brake, opposing_torque_Nm=T_opp).item()
+
+
+def _deceleration(brake: stop.Brake, T_opp: float) -> float:
+    return stop.deceleration(brake=brake, opposing_torque_Nm=T_opp).item()
+
+
+def _on_the_factor(sheet: Sheet, f: Term) -> tuple[Sentence, ...]:
+    if sheet.given("emergency_stop.brake.dynamic_factor") is not None:
+        return (Sentence(N_("f as you state it.")),)
+    if f.value == stop.STEP_FACTOR:
+        return (Sentence(N_("f = 2: the brake closes at once, or its rise time or an inertia is not known.")),)
+    return (Sentence(N_("f = 1 + |sin(π · f_2 · t_b)| / (π · f_2 · t_b), by the rise time and the drive resonance.")),)
+
+
+def _course(sheet: Sheet, stops: Stops, J: Term, at_motor: Formula, eta: Term) -> Step:
+    """Time, angle and energy of the stop at the smallest opposing torque."""
+    lowest, given = sheet.duty.opposing_torque_Nm[0].item(), sheet.given
+    t_r, t_b = known(given("emergency_stop.brake.reaction_time_s")), known(given("emergency_stop.brake.rise_time_s"))
+    T_opp = Term(Variable("T", "opp"), lowest, "Nm")
+    omega = Term(Variable("ω"), sheet.duty.stop_speed_rpm.item() * math.pi / 30, "rad_per_s")
+    inertia = Sum((J, at_output(sheet)))
+    c = Term(Variable("c"), lowest / value_of(inertia), "rad_per_s2")
+    t_d = Term(Variable("t", "d"), t_r.value + t_b.value / 2, "s")
+    slower = Term(Variable("ω", "1"), omega.value - c.value * t_d.value, "rad_per_s")
+    lines = [
+        Line(t_d, Sum((t_r, Quotient(t_b, Constant(2))))),
+        Line(c, Quotient(T_opp, inertia)),
+        Line(slower, Subtraction(omega, Product((c, t_d)))),
+    ]
+    time, angle = known(sheet.figure("stopping_time_s")), known(sheet.figure("stopping_angle_deg"))
+    energy, half = known(sheet.figure("stop_energy_J")), Constant(2)
+    if slower.value <= 0:
+        lines = [Line(c, Quotient(T_opp, inertia)), Line(time, Quotient(omega, c))]
+        lines.append(Line(angle, Product((Quotient(Power(omega, half), Product((half, c))), DEGREES))))
+        return Step("stop_course", STOPPING, None, tuple(lines), (), (Sentence(BY_ITSELF),))
+    a = Term(Variable("a"), _deceleration(stops.brake, lowest), "rad_per_s2")
+    below = Sum((at_output(sheet), Product((eta, J))))
+    running = Subtraction(Product((omega, t_d)), Quotient(Product((c, Power(t_d, half))), half))
+    turned = Sum((running, Quotient(Power(slower, half), Product((half, a)))))
+    lines += [
+        Line(a, Quotient(Sum((at_motor, Product((eta, T_opp)))), below)),
+        Line(time, Sum((t_d, Quotient(slower, a)))),
+        Line(angle, Product((turned, DEGREES))),
+        Line(energy, Quotient(Product((inertia, Power(slower, half))), half)),
+    ]
+    return Step("stop_course", STOPPING, None, tuple(lines), (), (Sentence(SMALLEST),))
+
+
+STOPPING = N_("Time, angle and energy of the stop")
+SMALLEST = N_("At the smallest torque that opposes the motion over the motion’s worst position.")
+BY_ITSELF = N_("The load stops by itself before the brake takes hold.")

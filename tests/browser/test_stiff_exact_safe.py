@@ -1,0 +1,74 @@
+"""Three journeys: a gear that is too soft, a pulley beside the shaft's centre, a brake that is too hard."""
+
+import json
+from urllib.request import Request, urlopen
+
+from playwright.sync_api import Locator, Page, expect
+
+from tests.browser.conftest import Visitor
+from tests.browser.test_page import selected
+
+AXIS = "/?T=40&n=60&t=0.5&T=-40&n=60&t=0.5&tp=1&i=5"
+
+
+def verdict(page: Page) -> Locator:
+    return page.locator(".verdict")
+
+
+def test_an_axis_that_is_too_soft_is_asked_for_25_hz_and_gets_the_next_gear_with_the_reason(visitor: Visitor) -> None:
+    page = visitor.open(f"{AXIS}&JL=1.2")
+    expect(selected(page)).to_contain_text("HPN-20A-5")
+    page.get_by_role("link", name="Drive").click()
+    expect(page.get_by_role("table", name="Will it be stiff enough?")).to_contain_text("23.4")
+
+    page.locator("#group-stiffness > summary").click()
+    page.get_by_label("Minimum natural frequency").fill("25")
+    expect(selected(page)).to_contain_text("HPN-32A-5")
+
+    page.get_by_role("link", name="Overview").click()
+    page.get_by_role("button", name="HPN-20A-5: not suitable").click()
+    expect(verdict(page)).to_contain_text("natural frequency")
+    expect(page.get_by_text("the load’s inertia drops to").first).to_be_visible()
+
+    # The same over REST, as a PLM system would ask.
+    asked = {"load_inertia_kgm2": 1.2, "natural_frequency_Hz": 25, "ratios": [5]}
+    phases = [{"torque_Nm": T, "speed_rpm": 60, "duration_s": 0.5} for T in (40, -40)]
+    body = json.dumps({"duty_cycle": {"phases": phases, "pause_s": 1}, "requirements": asked}).encode()
+    request = Request(f"{visitor.server}/api/v1/select", body, {"Content-Type": "application/json"})
+    with urlopen(request) as reply:
+        assert json.load(reply)["selected"] == "HPN-32A-5"
+
+
+def test_a_pulley_at_45_mm_is_judged_with_its_lever(visitor: Visitor) -> None:
+    page = visitor.open(f"{AXIS}&size=20A&FR=600&FA=200")
+    expect(selected(page)).to_contain_text("✓ suitable")
+
+    page.get_by_label("Radial load acts at").fill("45")
+    expect(selected(page)).to_contain_text("not rated")
+    page.get_by_label("Axial load acts at").fill("40")
+    page.get_by_label("Shaft’s centre at").fill("21")
+    expect(selected(page)).to_contain_text("not suitable")
+    expect(verdict(page)).to_contain_text("largest load on the output bearing (102")
+
+
+def test_a_belt_comes_to_a_radial_load(visitor: Visitor) -> None:
+    page = visitor.open(f"{AXIS}&size=20A&FR=1")
+    page.get_by_text("Radial load of a belt").click()
+    page.get_by_label("Tight strand").fill("450")
+    page.get_by_label("Slack strand").fill("150")
+    page.get_by_role("button", name="Use this load").click()
+    expect(page.get_by_label("Radial load of the cycle")).to_have_value("600")
+
+
+def test_a_brake_that_is_too_hard_says_how_hard_it_may_be(visitor: Visitor) -> None:
+    page = visitor.open(f"{AXIS}&size=20A&JL=0.8&Jm=0.0015")
+    page.locator("#group-brake > summary").click()
+    page.get_by_label("Brake torque").fill("30")
+    expect(selected(page)).to_contain_text("not suitable")
+    expect(verdict(page)).to_contain_text("momentary peak torque")
+    expect(page.get_by_text("the brake’s torque drops to").first).to_be_visible()
+
+    page.get_by_label("Brake torque").fill("8")
+    expect(selected(page)).to_contain_text("✓ suitable")
+    page.get_by_role("link", name="Drive").click()
+    expect(page.get_by_role("table", name="Stop by the brake")).to_contain_text("Stopping angle")

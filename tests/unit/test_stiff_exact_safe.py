@@ -1,0 +1,287 @@
+"""Stiffness, position error, stop by the brake and lever arm, as an application asks for them."""
+
+import math
+from typing import Any
+
+import pytest
+from pydantic import ValidationError
+
+from hpn.application import Application
+from hpn.catalogue import Catalogue
+from hpn.engine.remedy import alternatives_of, tried
+from hpn.engine.selection import select
+from tests.build import Json, answer, candidate, check, cycle, notices, phase
+from tests.conftest import Supplement
+
+GEAR = "HPN-20A-5"
+BOTH_WAYS = cycle(phase(60, 250), phase(-60, 250), requirements={"ratios": [5]})
+INERTIAS = {"load_inertia_kgm2": 0.8, "motor": {"inertia_kgm2": 0.0015}, "efficiency": 0.92, "ratios": [5]}
+
+
+def asking(**requirements: Any) -> Json:
+    return BOTH_WAYS | {"requirements": {"ratios": [5]} | requirements}
+
+
+def braking(brake: Json, **requirements: Any) -> Json:
+    return BOTH_WAYS | {"emergency_stop": {"brake": brake}, "requirements": INERTIAS | requirements}
+
+
+def refused(application: Json) -> dict[str, str]:
+    """Location of each error, with dots, and its text."""
+    with pytest.raises(ValidationError) as refusal:
+        Application.model_validate(application)
+    return {".".join(map(str, error["loc"])): error["msg"] for error in refusal.value.errors()}
+
+
+# --- Stiffness and position -------------------------------------------------------------------------------------------
+
+
+def test_every_candidate_has_its_frequencies_and_its_position_error(catalogue: Catalogue) -> None:
+    gear = candidate(answer(asking(**INERTIAS, position_radius_mm=250), catalogue), GEAR)
+
+    assert gear["natural_frequency_Hz"] == pytest.approx(28.692, abs=5e-4)
+    assert gear["drive_resonance_Hz"] == pytest.approx(135.593, abs=5e-4)
+    assert gear["wind_up_arcmin"] == pytest.approx(math.degrees(60 / 26_000) * 60, rel=1e-12)
+    assert gear["position_error_arcmin"] == pytest.approx(28.8665, abs=5e-5)
+    assert gear["position_error_mm"] == pytest.approx(2.0992, abs=5e-5)
+
+
+def test_without_an_inertia_of_the_load_no_frequency_is_invented(catalogue: Catalogue) -> None:
+    gear = candidate(answer(BOTH_WAYS, catalogue), GEAR)
+
+    assert [gear[name] for name in ("natural_frequency_Hz", "drive_resonance_Hz", "position_error_mm")] == [None] * 3
+
+
+@pytest.mark.parametrize(
+    ("phases", "pause_s", "reverses", "span_Nm", "backlash", "told"),
+    [
+        ([40, 20], 0, None, 80, True, True),  # magnitudes: either way
+        ([40, 20], 0, False, 20, False, False),
+        ([40, 20], 1, False, 40, True, False),  # the pause is a torque of 0
+        ([40, -20], 0, None, 60, True, False),
+        ([40, -20], 0, True, 80, True, False),
+        ([-40, -20], 0, None, 20, False, False),
+    ],
+)
+def test_the_position_error_goes_by_the_torques_between_which_the_gear_winds_up(
+    catalogue: Catalogue,
+    phases: list[float],
+    pause_s: float,
+    reverses: bool | None,
+    span_Nm: float,
+    backlash: bool,
+    told: bool,
+) -> None:
+    asked = {} if reverses is None else {"load_reverses": reverses}
+    reply = answer(cycle(*(phase(T, 100) for T in phases), pause_s=pause_s, requirements=asked), catalogue)
+    error = candidate(reply, GEAR)["position_error_arcmin"]
+
+    assert error == pytest.approx(8 + math.degrees(span_Nm / 26_000) * 60 + 5 * backlash, rel=1e-12)
+    assert ("torque_signs_not_given" in notices(reply)) == told
+
+
+def test_a_gear_that_is_too_soft_gives_way_to_the_next_and_says_which_inertia_it_would_bear(
+    catalogue: Catalogue,
+) -> None:
+    asked = asking(load_inertia_kgm2=0.8, natural_frequency_Hz=30)
+    reply = answer(asked, catalogue)
+    found = check(reply, GEAR, "natural_frequency")
+
+    assert (found["status"], found["limit"]) == ("fail", 30)
+    assert found["utilisation"] == pytest.approx(30 / 28.692, rel=1e-4)
+    assert reply["selected"] == "HPN-32A-5"
+    most = candidate(reply, GEAR)["reserve"]["load_inertia_kgm2"]
+    assert most == pytest.approx(26_000 / (2 * math.pi * 30) ** 2, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    "given", [{"position_error_arcmin": 20}, {"position_error_mm": 1.5, "position_radius_mm": 250}]
+)
+def test_a_position_error_is_judged_as_an_angle_and_its_remedy_holds(catalogue: Catalogue, given: Json) -> None:
+    application = Application.model_validate(asking(**given))
+    gear = select(application, catalogue).candidate(GEAR)
+    assert gear is not None
+    [found] = gear.failing
+    assert found.code == "position_error"
+    [alternative] = alternatives_of(gear)
+    mended = select(tried(application, alternative, catalogue), catalogue).candidate(GEAR)
+    assert mended is not None and mended.status == "suitable"
+
+
+def test_gears_are_ranked_by_frequency_and_by_position_error(catalogue: Catalogue) -> None:
+    for rank_by, figure, sign in (("natural_frequency", "natural_frequency_Hz", -1), ("position_error",) * 2 + (1,)):
+        name = figure if figure.endswith("Hz") else "position_error_arcmin"
+        reply = answer(asking(load_inertia_kgm2=0.8) | {"rank_by": rank_by}, catalogue)
+        ranked = [gear[name] for gear in reply["candidates"] if gear["rank"]]
+        assert ranked == sorted(ranked, reverse=sign < 0)
+
+
+# --- Stop by the brake ------------------------------------------------------------------------------------------------
+
+
+def test_a_brake_gives_each_gear_a_stop_of_its_own(catalogue: Catalogue) -> None:
+    reply = answer(braking({"torque_Nm": 8, "dynamic_factor": 2}, position_radius_mm=250), catalogue)
+    gear = candidate(reply, GEAR)
+    a = 5 * 8 / (25 * 0.0015 + 0.92 * 0.8)  # T_opp 0 without a motion
+    omega = 250 * math.pi / 30
+
+    assert gear["stop_torque_Nm"] == pytest.approx(2 * 0.8 * a, rel=1e-12)
+    assert check(reply, GEAR, "momentary_peak_torque")["demand"] == gear["stop_torque_Nm"]
+    assert gear["stopping_time_s"] == pytest.approx(omega / a, rel=1e-12)
+    assert gear["stopping_angle_deg"] == pytest.approx(math.degrees(omega**2 / (2 * a)), rel=1e-12)
+    assert gear["stopping_distance_mm"] == pytest.approx(250 * omega**2 / (2 * a), rel=1e-12)
+    assert gear["stop_energy_J"] == pytest.approx(0.8375 * omega**2 / 2, rel=1e-12)
+    assert gear["motor_lock_speed_rpm"] == pytest.approx(256 / math.sqrt(26_000 * 0.8) * 30 / math.pi, rel=1e-12)
+
+
+def test_the_largest_brake_torque_keeps_the_stop_at_the_momentary_peak_torque(catalogue: Catalogue) -> None:
+    for brake in ({"torque_Nm": 8}, {"torque_Nm": 8, "rise_time_s": 0.004}):
+        reserve = candidate(answer(braking(brake), catalogue), GEAR)["reserve"]
+        for name, torque_Nm in (("brake_torque_Nm", 256), ("brake_torque_repeated_Nm", 149)):
+            harder = answer(braking(brake | {"torque_Nm": reserve[name]}), catalogue)
+            assert candidate(harder, GEAR)["stop_torque_Nm"] == pytest.approx(torque_Nm, rel=1e-12)
+
+
+def test_a_brake_that_is_too_hard_fails_and_its_remedy_holds(catalogue: Catalogue) -> None:
+    application = Application.model_validate(braking({"torque_Nm": 30}))
+    gear = select(application, catalogue).candidate(GEAR)
+    assert gear is not None and gear.status == "unsuitable"
+    [alternative] = alternatives_of(gear)
+    mended = select(tried(application, alternative, catalogue), catalogue).candidate(GEAR)
+    assert mended is not None and mended.status == "suitable"
+
+
+CRANE: Json = {
+    "mechanism": {"type": "rotary", "inertia_kgm2": 1.0, "gravity_mass_kg": 12, "gravity_radius_mm": 250},
+    "moves": [{"profile": "trapezoidal", "angle_deg": 90, "time_s": 1}],
+}
+
+
+def test_gravity_opposes_or_drives_over_a_full_turn(catalogue: Catalogue) -> None:
+    """12 kg at 250 mm: ±29.42 Nm; it drives in the longest stop and opposes in the hardest."""
+    asked = {"ratios": [5], "motor": {"inertia_kgm2": 0.0015}}
+    stop = {"brake": {"torque_Nm": 12, "dynamic_factor": 2}}
+    reply = answer({"duty_cycle": {"motion": CRANE}, "emergency_stop": stop, "requirements": asked}, catalogue)
+    gear, weight, m = candidate(reply, GEAR), 12 * 9.80665 * 0.25, 25 * 0.0015
+    hardest = 2 * ((60 + weight) / (m + 1) - weight) + weight
+    omega, slowest = gear["maximum_input_speed_rpm"] / 5 * math.pi / 30, (60 - weight) / (m + 1)
+
+    assert gear["stop_torque_Nm"] == pytest.approx(hardest, rel=1e-12)
+    assert gear["stopping_time_s"] == pytest.approx(omega / slowest, rel=1e-12)
+
+
+def test_a_brake_that_does_not_stop_or_hold_the_load_is_told(catalogue: Catalogue) -> None:
+    asked = {"ratios": [5, 10], "motor": {"inertia_kgm2": 0.0015}}
+    stop = {"brake": {"torque_Nm": 4}}  # 20 Nm at the output against 29.4 Nm of gravity
+    application = {"duty_cycle": {"motion": CRANE}, "emergency_stop": stop, "requirements": asked}
+    reply = answer(application, catalogue)
+    found = check(reply, GEAR, "momentary_peak_torque")
+
+    assert (found["status"], found["utilisation"]) == ("fail", None)
+    assert candidate(reply, GEAR)["reason"].startswith("The brake does not stop the load")
+    assert candidate(reply, GEAR)["stopping_time_s"] is None
+    assert "ratios 5 " in notices(reply)["brake_does_not_hold"]
+    assert check(reply, "HPN-20A-10", "momentary_peak_torque")["status"] == "pass"
+    gear = select(Application.model_validate(application), catalogue).candidate(GEAR)
+    assert gear is not None and alternatives_of(gear) == ()
+
+
+def test_without_the_inertias_the_whole_brake_counts_and_no_time_is_invented(catalogue: Catalogue) -> None:
+    reply = answer(BOTH_WAYS | {"emergency_stop": {"brake": {"torque_Nm": 8}, "count": 100}}, catalogue)
+    gear = candidate(reply, GEAR)
+
+    assert gear["stop_torque_Nm"] == pytest.approx(2 * 5 * 8)
+    assert [gear[name] for name in ("stopping_time_s", "stopping_angle_deg", "stop_energy_J")] == [None] * 3
+    assert "brake_inertia_unknown" in notices(reply)
+
+
+# --- Lever arm --------------------------------------------------------------------------------------------------------
+
+LOADED = {"radial_N": 600, "axial_N": 200, "radial_position_mm": 45, "axial_radius_mm": 40}
+
+
+def test_a_load_beside_the_shafts_centre_counts_with_its_lever(catalogue: Catalogue) -> None:
+    reply = answer(BOTH_WAYS | {"output_load": LOADED | {"shaft_centre_mm": 21}}, catalogue)
+    found = check(reply, GEAR, "output_bearing_load")
+
+    assert (found["status"], found["demand"]) == ("fail", pytest.approx(1.0168, abs=5e-5))
+    assert "bearing_lever" in notices(reply) and "bearing_load_position" not in notices(reply)
+
+
+def test_without_the_shafts_centre_its_bearing_is_not_rated(catalogue: Catalogue) -> None:
+    reply = answer(BOTH_WAYS | {"output_load": LOADED}, catalogue)
+
+    assert check(reply, GEAR, "output_bearing_load")["status"] == "not_rated"
+    assert "HPN-20A" in notices(reply)["bearing_centre_unknown"]
+
+
+def test_a_shafts_centre_of_the_supplement_goes_before_the_one_that_is_given(supplemented: Supplement) -> None:
+    columns = "size,maximum_input_speed_rpm,average_input_speed_rpm,ambient_temperature_minimum_degC,"
+    columns += (
+        "ambient_temperature_maximum_degC,dynamic_radial_load_N,dynamic_axial_load_N,shaft_centre_mm,note,source\n"
+    )
+    catalogue = supplemented(sizes=columns + "20A,,,,,,,30,,drawing\n")
+    load = BOTH_WAYS | {"output_load": LOADED | {"shaft_centre_mm": 21}}
+    radial, axial = (
+        catalogue.by_designation[GEAR].dynamic_radial_load_N,
+        catalogue.by_designation[GEAR].dynamic_axial_load_N,
+    )
+    assert radial and axial
+
+    by_own = (600 * 45 / 30 + 200 * 40 / 30) / radial + 200 / axial
+    assert check(answer(load, catalogue), GEAR, "output_bearing_load")["demand"] == pytest.approx(by_own, rel=1e-12)
+
+
+# --- The gear's own inertia and torque without load -------------------------------------------------------------------
+
+
+def test_a_supplements_inertia_and_torque_without_load_enter_the_motors_figures(supplemented: Supplement) -> None:
+    columns = "size,ratio,stages,inertia_kgm2,no_load_torque_Nm,source\n"
+    catalogue = supplemented(gears=columns + "20A,5,1,0.0005,0.3,measured\n")
+    asked = asking(
+        load_inertia_kgm2=0.8,
+        motor={"inertia_kgm2": 0.0015, "inertia_ratio": 100, "peak_torque_Nm": 50, "rated_torque_Nm": 50},
+    )
+    reply = answer(asked, catalogue)
+    gear = candidate(reply, GEAR)
+
+    assert check(reply, GEAR, "inertia_ratio")["demand"] == pytest.approx((0.8 / 25 + 0.0005) / 0.0015, rel=1e-12)
+    assert gear["motor_peak_torque_Nm"] == pytest.approx(12.3, rel=1e-12)
+    assert gear["motor_rated_torque_Nm"] == pytest.approx(12.3, rel=1e-12)
+    m = 25 * 0.002
+    expected = math.sqrt(26_000 * (1 / 0.8 + 1 / m)) / (2 * math.pi)
+    assert gear["drive_resonance_Hz"] == pytest.approx(expected, rel=1e-12)
+
+
+# --- Bad input --------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("application", "place", "said"),
+    [
+        (asking(natural_frequency_Hz=25), "requirements.natural_frequency_Hz", "needs a motion"),
+        (asking() | {"rank_by": "natural_frequency"}, "rank_by", "needs a motion"),
+        (asking(position_error_mm=1), "requirements.position_error_mm", "needs the radius"),
+        (
+            asking(position_error_mm=1, position_error_arcmin=1, position_radius_mm=9),
+            "requirements.position_error_mm",
+            "not both",
+        ),
+        (asking(load_reverses=1), "requirements.load_reverses", "boolean"),
+        (BOTH_WAYS | {"emergency_stop": {"count": 3}}, "emergency_stop.torque_Nm", "brake"),
+        (
+            BOTH_WAYS | {"emergency_stop": {"torque_Nm": 9, "brake": {"torque_Nm": 8}}},
+            "emergency_stop.brake",
+            "not both",
+        ),
+        (BOTH_WAYS | {"emergency_stop": {"brake": {}}}, "emergency_stop.brake.torque_Nm", "required"),
+        (braking({"torque_Nm": 8, "rise_time_s": -1}), "emergency_stop.brake.rise_time_s", "0"),
+        (braking({"torque_Nm": 8, "dynamic_factor": 0.9}), "emergency_stop.brake.dynamic_factor", "1"),
+        (BOTH_WAYS | {"output_load": {"radial_N": 9, "axial_radius_mm": -1}}, "output_load.axial_radius_mm", "0"),
+        (BOTH_WAYS | {"output_load": {"radial_N": 9, "shaft_centre_mm": 0}}, "output_load.shaft_centre_mm", "0"),
+    ],
+)
+def test_what_can_not_be_answered_is_refused_at_its_field(application: Json, place: str, said: str) -> None:
+    errors = refused(application)
+    assert place in errors, errors
+    assert said in errors[place]
