@@ -264,7 +264,7 @@ def test_ten_people_who_open_the_page_at_once_get_all_of_it(proxy: Proxy) -> Non
         with httpx.Client(base_url=proxy.url, transport=source, timeout=60) as browser, ThreadPoolExecutor(6) as six:
             page = browser.get("/")
             parts = re.findall(r'(?:href|src)="(/static/[^"]+)"', page.text)
-            assert len(parts) >= 13
+            assert len(parts) >= 3
             return Counter(answer.status_code for answer in [page, *six.map(browser.get, parts)])
 
     with ThreadPoolExecutor(10) as people:

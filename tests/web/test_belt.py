@@ -48,14 +48,16 @@ def test_the_page_shows_the_sum_and_takes_it_as_the_radial_load(client: TestClie
 @pytest.mark.parametrize(
     ("query", "place", "said"),
     [
-        ("&bF1=450", "e-bF2", "is missing"),
-        ("&bF1=-1&bF2=3", "e-bF1", "at least 0"),
-        ("&bF1=9&bF2=3&bP=7", "e-bP", "give either"),
-        ("&bP=7&bv=2", "e-bk", "is missing"),
-        ("&bF1=9&bF2=3&bw=400", "e-bw", "at most 360"),
-        ("&bF1=much&bF2=3", "e-bF1", "number"),
+        ("&bF1=450", "f-bF2", "is missing"),
+        ("&bF1=-1&bF2=3", "f-bF1", "at least 0"),
+        ("&bF1=9&bF2=3&bP=7", "f-bP", "give either"),
+        ("&bP=7&bv=2", "f-bk", "is missing"),
+        ("&bF1=9&bF2=3&bw=400", "f-bw", "at most 360"),
+        ("&bF1=much&bF2=3", "f-bF1", "number"),
     ],
 )
-def test_what_gives_no_load_says_why_at_its_field(client: TestClient, query: str, place: str, said: str) -> None:
-    found = re.search(rf'<p class="error" id="{place}">(.*?)</p>', page(client, query), re.DOTALL)
+def test_what_gives_no_load_says_why_and_leads_to_its_field(
+    client: TestClient, query: str, place: str, said: str
+) -> None:
+    found = re.search(rf'<a href="#{place}">[^<]*</a>: <span>(.*?)</span>', page(client, query), re.DOTALL)
     assert found and said in found[1]

@@ -104,7 +104,8 @@ def derived(export: Export, reader: Reader) -> list[dict[str, Any]]:
     figures = [(name, DUTY[name], getattr(duty, name)) for name in DUTY]
     if duty.load_inertia_kgm2 is not None:
         figures.append(("load_inertia_kgm2", INPUTS["requirements.load_inertia_kgm2"], duty.load_inertia_kgm2))
-    figures += [(name, CANDIDATE[name], getattr(candidate, name)) for name in FIGURES]
+    typed = ("stop_torque_Nm",) if candidate.stopping_time_s is None else ()  # stands with the inputs
+    figures += [(name, CANDIDATE[name], getattr(candidate, name)) for name in FIGURES if name not in typed]
     lower_bound = export.is_lower_bound(candidate)
     loss_free = lower_bound and not export.follows_efficiency_curve(candidate)
     turns = export.selection.turns_motor

@@ -25,6 +25,11 @@ class BeltInput:
     problems: tuple[FieldProblem, ...] = ()
     radial_N: float | None = None
 
+    @property
+    def given(self) -> bool:
+        """True where anything is filled in."""
+        return any(text.strip() for text in self.texts.values())
+
     def messages(self, name: str) -> list[Sentence]:
         """What is wrong with one input."""
         return [problem.message for problem in self.problems if problem.name == name]

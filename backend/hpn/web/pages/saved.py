@@ -40,8 +40,8 @@ DIFFERENCES_ON_PAGE = 100
 NAMES: Mapping[str, str] = {
     "selected": N_("Selected gear"),
     "text": N_("Notice"),
-    "load_inertia_kgm2": N_("Inertia of the load"),
     **{field: named.name for table in (PHASE, DUTY, RESERVE, CHECK, CANDIDATE) for field, named in table.items()},
+    "load_inertia_kgm2": N_("Inertia of the load"),
 }
 """Fields of a reply in words; any other stands with its own name."""
 
