@@ -26,6 +26,7 @@ def test_an_axis_that_is_too_soft_is_asked_for_25_hz_and_gets_the_next_gear_with
     expect(selected(page)).to_contain_text("HPN-32A-5")
 
     page.get_by_role("link", name="Overview").click()
+    expect(page.locator("#check-natural_frequency th")).to_contain_text("your limit · table 15.2")
     page.get_by_role("button", name="HPN-20A-5: not suitable").click()
     expect(verdict(page)).to_contain_text("natural frequency")
     expect(page.get_by_text("the load’s inertia drops to").first).to_be_visible()
@@ -43,6 +44,7 @@ def test_a_pulley_at_45_mm_is_judged_with_its_lever(visitor: Visitor) -> None:
     page = visitor.open(f"{AXIS}&size=20A&FR=600&FA=200")
     expect(selected(page)).to_contain_text("✓ suitable")
 
+    expect(page.get_by_role("img", name="Shaft from the side")).to_be_visible()
     page.get_by_label("Radial load acts at").fill("45")
     expect(selected(page)).to_contain_text("not rated")
     page.get_by_label("Axial load acts at").fill("40")
