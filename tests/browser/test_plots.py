@@ -122,7 +122,7 @@ def test_verdict_changes_where_the_constant_load_crosses_the_drawn_curve(
 
     for share, carries in ((0.9, True), (1 - 1e-6, True), (1 + 1e-6, False), (1.1, False)):
         load = f"{share * crossing:.6f}"
-        page.get_by_label("Radial load").fill(load)
+        page.get_by_label("Radial load of the cycle").fill(load)
         expect(page).to_have_url(re.compile(f"FR={re.escape(load.rstrip('0'))}"))
         assert ("The output bearing carries" in section(page).inner_text()) == carries, share
 
@@ -131,9 +131,9 @@ def test_typing_a_load_moves_its_point_and_no_axis(visitor: Visitor) -> None:
     page = visitor.open(CONSTANT.format(FR=100, FA=200, bm=""))
     before = drawn(page)
     frame = plot(page).bounding_box()
-    page.get_by_label("Radial load").fill("600")
+    page.get_by_label("Radial load of the cycle").fill("600")
     expect(page).to_have_url(re.compile("FR=600&"))
-    page.wait_for_function("document.querySelector('#plot-bearing > div').data.at(-1).x[0] === 600")
+    page.wait_for_function("() => document.querySelector('#plot-bearing > div').data.at(-1).x[0] === 600")
     after = drawn(page)
     assert after["ranges"] == before["ranges"]
     assert after["data"][-1]["x"] == [600]
@@ -227,10 +227,10 @@ def test_plot_follows_the_switch_to_dark_and_prints_on_white(visitor: Visitor) -
 def test_going_back_brings_the_plot_of_the_earlier_load(visitor: Visitor) -> None:
     page = visitor.open(CONSTANT.format(FR=100, FA=200, bm=""))
     plot(page)
-    page.get_by_label("Radial load").fill("700")
+    page.get_by_label("Radial load of the cycle").fill("700")
     expect(page).to_have_url(re.compile("FR=700&"))
     page.go_back()
-    expect(page.get_by_label("Radial load")).to_have_value("100")
+    expect(page.get_by_label("Radial load of the cycle")).to_have_value("100")
     assert drawn(page)["data"][-1]["x"] == [100]
 
 
@@ -263,7 +263,7 @@ def test_without_loads_the_drawing_leads_to_the_field(visitor: Visitor) -> None:
     drawing = page.get_by_role("figure", name="Load on the output shaft")
     expect(drawing.locator(".line.limit")).to_be_in_viewport()
     drawing.get_by_role("link", name="Add a load").click()
-    expect(page.get_by_label("Radial load")).to_be_focused()
+    expect(page.get_by_label("Radial load of the cycle")).to_be_focused()
 
 
 def test_picture_of_the_cycle_follows_the_form_and_outlives_an_error(visitor: Visitor) -> None:

@@ -125,7 +125,7 @@ def test_verdict_stays_in_sight_wherever_somebody_types_or_reads(visitor: Visito
     open_section(page, "Calculation")
     page.mouse.move(900, 600)
     page.mouse.wheel(0, 2000)
-    page.wait_for_function("scrollY > 300")
+    page.wait_for_function("() => scrollY > 300")
     page.get_by_label("Expected emergency stops").fill("100")
     expect(page).to_have_url(re.compile("Nk=100"))
 

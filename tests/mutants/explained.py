@@ -17,10 +17,6 @@ EXPLAINED: dict[str, str] = {
     "checks CHECKS[repeated_peak_torque]: share=lambda c: equations.repeated_peak_torque_utilisation( "
     "maximum_torque_Nm=c.duty.maximum_torque_Nm, repeated_peak_torque_Nm=c.gears.repeated_peak_torque_Nm ) "
     "-> nothing": "demand over limit is the same quotient; the equation stands there by its name",
-    "checks CHECKS[momentary_peak_torque]: share=lambda c: equations.momentary_peak_torque_utilisation( "
-    "emergency_stop_torque_Nm=c.duty.emergency_stop_torque_Nm, "
-    "momentary_peak_torque_Nm=c.gears.momentary_peak_torque_Nm, ) "
-    "-> nothing": "demand over limit is the same quotient; the equation stands there by its name",
     "selection gears_for: \"\" -> 'X'": "any text that names no model says that no curve is asked for",
     'selection module: "Address of the page that shows this application. The page opens up to 60,000 bytes: save a '
     'longer application and " "share the address of the saved selection." -> \'Address of the page that shows this '

@@ -175,8 +175,7 @@ async def test_what_goes_wrong_there_brings_its_traceback_and_what_ends_early_is
     assert int((ended.value.headers or {})["Retry-After"]) > 0
     assert caplog.messages[-1].endswith("exit code 9")  # and nothing of the work
     os.kill(second := await pool.run_beside(os.getpid), signal.SIGKILL)
-    while Path(f"/proc/{second}/stat").read_text().split()[2] != "Z":
-        await asyncio.sleep(0.01)
+    os.waitid(os.P_PID, second, os.WEXITED | os.WNOWAIT)  # its last thread has gone too, and the pool can see it
     assert await pool.run_beside(os.getpid) not in (first, second)
 
     pool.beside.close()
