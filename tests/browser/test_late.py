@@ -263,13 +263,13 @@ def test_without_a_phase_the_address_keeps_all_else(visitor: Visitor) -> None:
 
 def test_what_an_undo_brings_back_is_not_folded_away(visitor: Visitor) -> None:
     page = visitor.open(EXAMPLE)
-    section = page.locator("#application details", has=page.locator("#f-FR"))
-    section.locator("summary").click()
+    section = page.locator("#group-load")
+    section.locator("> summary").click()
     page.locator("#f-FR").fill("900")
     expect(page).to_have_url(re.compile("FR=900"))
     page.get_by_role("button", name="Undo").click()
     expect(page).not_to_have_url(re.compile("FR=900"))
-    section.locator("summary").click()
+    section.locator("> summary").click()
     page.get_by_role("button", name="Redo").click()
     expect(page).to_have_url(re.compile("FR=900"))
     expect(page.locator("#f-FR")).to_be_visible()
