@@ -1,4 +1,4 @@
-// What the page adds to htmx. Typing asks for the result alone, so that nothing typed is ever overwritten; row buttons, Back
+// Additions of the page to htmx. Typing asks for the result alone, so that nothing typed is ever overwritten; row buttons, Back
 // and files bring another form. Everything hangs on the document, because the form may be replaced.
 
 const formOf = () => document.getElementById("application");
@@ -99,7 +99,7 @@ document.addEventListener("htmx:after:swap", (event) => {
   for (const press of pending) if (press.row) press.row = placeOf(press.row) ?? "gone";
 });
 
-// Who types, or edits rows by key, stays in the cell, wherever its row goes; where it is removed, in the one after it.
+// The focus follows its cell while somebody types or edits rows by key; from a removed row it goes to the next.
 function keepPlace({ id, row, range }) {
   const place = document.getElementById(moved(id, row));
   if (place) {
@@ -319,7 +319,7 @@ document.addEventListener(
 
 // --- Saving, and another language or other units ----------------------------------------------------------------------
 
-// What is saved is what the form says, although its answer may still be under way.
+// The form as it stands is saved, although its answer may still be under way.
 document.addEventListener("submit", (event) => {
   const form = formOf();
   if (!event.target.matches("form.save") || event.submitter?.hasAttribute("formaction")) return; // a file is of the answer
@@ -353,7 +353,7 @@ document.addEventListener("submit", async (event) => {
 history.replaceState({ at, content: contentOf(formOf()) }, "");
 showSteps();
 
-// What somebody has typed or chosen before htmx had taken the form is answered now.
+// Inputs that were typed or chosen before htmx took over the form are answered now.
 const isTyped = (field) =>
   field.options ? [...field.options].some((option) => option.selected !== option.defaultSelected)
   : /checkbox|radio/.test(field.type) ? field.checked !== field.defaultChecked

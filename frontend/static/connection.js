@@ -1,4 +1,4 @@
-// What is seen while an answer is on its way or doesn't come: busy after a moment, then a message; nothing typed is lost.
+// Signs of an answer that is on its way or doesn't come: busy after a moment, then a message; nothing typed is lost.
 
 const BUSY_AFTER = 300;
 const SLOW_AFTER = 3000;

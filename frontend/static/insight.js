@@ -56,7 +56,7 @@ document.addEventListener("htmx:after:swap", (event) => {
 document.addEventListener("toggle", showState, true);
 document.addEventListener("htmx:after:swap", showState);
 
-// What a check tests comes from its own page when somebody asks for it.
+// The explanation of a check is fetched from its own page when somebody opens it.
 document.addEventListener("click", async (event) => {
   const link = event.target.closest("[data-explains]");
   if (!link || !plain(event)) return;

@@ -1,5 +1,5 @@
-// Sections of the result: one at a time on a wide screen, one below the other on a narrow one. What is not in sight is left out
-// of an answer and asked for when it comes into sight.
+// Sections of the result: one at a time on a wide screen, one below the other on a narrow one. Those out of sight are
+// left out of an answer and requested when they come into sight.
 
 const wide = matchMedia("(min-width: 1024px)");
 const AHEAD = 400; // pixels below the edge of the window that count as in sight
@@ -27,7 +27,7 @@ function mark() {
   }
 }
 
-// A link within the page is no edit, and takes no entry of the history. What it leads to is shown: its section, its fold. The
+// A link within the page is no edit, and takes no entry of the history. Its target is shown: the section, the fold. The
 // address keeps a section, so that a reload comes back to it.
 document.addEventListener("click", (event) => {
   const link = event.target.closest('a[href^="#"]');
@@ -82,7 +82,7 @@ document.addEventListener("htmx:after:swap", () => {
 });
 watch();
 
-// What a part was asked for belongs to one answer: beside a later one it would be wrong, and is asked for once more.
+// A part belongs to the answer that it was requested for: beside a later one it would be wrong, and is requested again.
 const isOutdated = (ctx) => ctx.partOf !== undefined && ctx.partOf !== addressOf(ctx.sourceElement);
 
 document.addEventListener("htmx:before:swap", (event) => isOutdated(event.detail.ctx) && event.preventDefault());

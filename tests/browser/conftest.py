@@ -88,7 +88,7 @@ def chromium(playwright_driver: Playwright, soak: bool) -> Iterator[Browser]:
 
 
 class Watch:
-    """What a page reported while it was used."""
+    """Errors and warnings that a page logged, and its requests to other hosts."""
 
     def __init__(self, page: Page, server: str) -> None:
         self.console: list[str] = []
@@ -182,7 +182,7 @@ def in_german(page: Page) -> None:
 
 
 def violations(page: Page) -> list[tuple[str, list[str]]]:
-    """What axe finds on a page in both themes; only contrast depends on them."""
+    """Rule and elements of each violation that axe finds in both themes; only contrast depends on the theme."""
     page.evaluate(AXE.read_text())
     # The bar at the foot covers whatever is scrolled under it, by chance a field in part.
     page.evaluate("document.querySelectorAll('.jump').forEach(bar => { bar.style.position = 'static' })")
@@ -204,7 +204,7 @@ HOLD = """() => {
 
 @contextmanager
 def answer_held_back(page: Page, after: Callable[[], None], address: str = "**/?*") -> Iterator[None]:
-    """What a page asks the server for in consequence is under way and not answered before the block ends."""
+    """Hold the answer to the request that `after` leads to until the block ends."""
     page.evaluate(HOLD)
     with page.expect_request(address):
         after()

@@ -1,4 +1,4 @@
-"""What the headers keep out, and what they let a page do, in a real browser."""
+"""Access that the headers deny and permit in a real browser."""
 
 from playwright.sync_api import Browser, expect
 

@@ -15,7 +15,7 @@ LIGHTHOUSE = Path(__file__).parents[2] / "frontend/node_modules/lighthouse/cli/i
 NODE = Path(__file__).parents[2] / ".venv/node/bin"
 PERFORMANCE = {"desktop": 100, "mobile": 95}
 SHORT = {("/", "mobile")}
-"""What `make test` audits: the start page as the slower of the two. `make soak` audits all pages with both."""
+"""Audit of `make test`: the start page with the slower of both presets. `make soak` audits all pages with both."""
 
 PAGES = ("/", "/catalogue", "/catalogue/HPN-20A-5")
 """Pages for search engines; the others ask not to be indexed, which Lighthouse counts as a fault."""

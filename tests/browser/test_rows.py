@@ -79,7 +79,7 @@ def test_keys_edit_rows_and_are_listed(visitor: Visitor) -> None:
 
 
 def shown(page: Page) -> list[list[str]]:
-    """What the duty table's fields say, row by row."""
+    """Texts in the fields of the duty table, row by row."""
     rows = page.get_by_role("table", name="Load phases").get_by_role("row")
     return [
         [field.input_value() for field in fields] for row in rows.all() if (fields := row.get_by_role("textbox").all())

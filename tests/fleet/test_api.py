@@ -159,7 +159,7 @@ REFUSED: list[tuple[str, bytes, dict[str, str], int, str]] = [
     ("form with two inputs", part("input", ONE_AXIS) * 2 + END, FORM, 422, "'input' is one more"),
     ("form with a workbook", part("input", b"x", "axes.xlsx") + END, FORM, 415, "part input needs a file name"),
     ("form whose axes are none", part("input", ONE_AXIS) + part("axes", b"x") + END, FORM, 422, "axes: column axis is"),
-    # What only the command can tell
+    # Errors that only the command finds
     (
         "unknown column",
         b"torqe_Nm," + ONE_AXIS,

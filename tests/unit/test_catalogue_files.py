@@ -51,7 +51,7 @@ def to_itself(folder: Path) -> None:
     (folder / "ratings.csv").symlink_to("ratings.csv")
 
 
-# What is in the supplement; file, line and column that the message begins with; words of the message.
+# Change to the supplement; file, line and column that the message begins with; words of the message.
 WRONG: dict[str, tuple[Callable[[Path], None], str, str]] = {
     "a dangling link": (
         lambda folder: (folder / "ratings.csv").symlink_to("none.csv"),

@@ -1,4 +1,4 @@
-"""What the handbook says in words: each sentence has its page, and stands where it bears on something."""
+"""Facts of the handbook in words: each has its page, and is shown with the gear or check that it is about."""
 
 import csv
 import re

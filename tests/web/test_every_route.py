@@ -1,4 +1,4 @@
-"""What holds for every route: HEAD like GET, links of a bounded length, compressed JSON, headers of one host."""
+"""Promises of every route: HEAD like GET, a limit on the length of links, compressed JSON, headers of one host."""
 
 import gzip
 import re
@@ -27,7 +27,7 @@ QUERIES = {
     "/find": "gear=HPN-20A-5",
     "/selections/compare": "a={id}&b={id}",
 }
-"""What routes need in their query, those that need any."""
+"""Query of each route that needs one."""
 
 ALL = list(iter_route_contexts(create_app().routes))
 ROUTES = [route for route in ALL if "GET" in (route.methods or ())]
@@ -85,7 +85,7 @@ class Address:
 
 @pytest.fixture(scope="module")
 def answers(api: TestClient, saved: str, fleet: str) -> dict[str, Any]:
-    """What each route answers, by its path."""
+    """Answer of each route, by its path."""
     address = Address(saved, fleet)
     return {path: api.get(address(path), headers=coding(path), follow_redirects=False) for path in PATHS}
 

@@ -1,4 +1,4 @@
-"""What the OpenAPI document says is what the service does: names, bounds, examples, headers, links."""
+"""Agreement of the service with its OpenAPI document: names, bounds, examples, headers, links."""
 
 import copy
 import math
@@ -152,7 +152,7 @@ def at(body: Json, path: Path) -> Any:
 
 
 def refusals(response: Any, pointer: str) -> list[str]:
-    """What the models refuse at a place; that the catalogue or the list has no such thing is no bound."""
+    """Errors of the models at a place; that the catalogue or the list has no such entry is no bound."""
     assert response.status_code in (200, 201, 404, 413, 422), response.text
     errors = response.json().get("errors", []) if response.status_code in (413, 422) else []
     found = [error["detail"] for error in errors if error["pointer"] == pointer]

@@ -1,4 +1,4 @@
-"""What the user asks: the one set of input models behind form, link, REST, batch, command line and file.
+"""Input models of an application: the one set behind form, link, REST, batch, command line and file.
 
 Torque, speed and load may be signed; the equations take their magnitudes.
 """
@@ -192,7 +192,7 @@ LISTED_FIGURES = ("maximum_speed_rpm", "peak_torque_Nm", "rated_torque_Nm", "rat
 
 
 class Motor(Model):
-    """What the motor can do, at its shaft."""
+    """Ratings and inertia of the motor, at its shaft."""
 
     maximum_speed_rpm: Positive | None = Field(None, description="Maximum motor speed.", examples=[4000.0])
     peak_torque_Nm: Positive | None = Field(None, description="Peak motor torque.", examples=[20.0])

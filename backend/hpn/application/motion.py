@@ -32,7 +32,7 @@ OF_ONE_TURN = 1e-9
 
 
 class _Motion(Model):
-    """What every motion comes to."""
+    """Base of both motions: the bounds that their moves keep, and the course and load phases that follow from them."""
 
     mechanism: Mechanism
     moves: tuple[Move, ...]
@@ -68,7 +68,7 @@ class _Motion(Model):
 
     @cached_property
     def course(self) -> Course:
-        """What it comes to at the gear's output."""
+        """Torque and speed of the moves over time, at the gear's output."""
         return course_of(self.moves, getattr(self, "start_deg", 0.0), self.mechanism.load)
 
     @cached_property

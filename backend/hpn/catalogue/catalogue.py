@@ -69,8 +69,8 @@ class ListedMotor:
 class GearList:
     """Some gears of the catalogue in its order, once as rows and once as columns.
 
-    What belongs to a size, as its output bearing does, is worked out once for each: `of_size` (gears,) tells which of
-    the sizes a gear has, `first_of_size` (sizes,) is a gear of each.
+    Properties of a size, such as its output bearing, are worked out once per size: `of_size` (gears,) is the place of
+    each gear's size, `first_of_size` (sizes,) the first gear of each.
     """
 
     def __init__(self, gears: Sequence[Gear], curves: Sequence[Curve | None]) -> None:

@@ -61,7 +61,7 @@ class Figures:
 
     @cached_property
     def _unasked(self) -> FloatArray:
-        """What stands for a figure that nobody asked for, shape (N, 1)."""
+        """NaN in place of a figure that nobody asked for, shape (N, 1)."""
         return np.full_like(self.duty.average_torque_Nm, np.nan)
 
     @cached_property

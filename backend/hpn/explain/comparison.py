@@ -210,8 +210,8 @@ def _clamp_bolts(column: Column) -> Sentence | None:
 def undominated(candidates: Sequence[Candidate], catalogue: Catalogue) -> frozenset[str]:
     """Designations of the suitable gears that no other suitable one outdoes (Pareto).
 
-    One outdoes another that is nowhere worse and somewhere better: in weight, utilisation, torsional stiffness, largest
-    length and peak torque at the motor. What is not published counts as worst.
+    A gear outdoes another if it is nowhere worse and somewhere better: in weight, utilisation, torsional stiffness,
+    largest length and peak torque at the motor. An unpublished figure counts as worst.
     """
     suitable = [candidate for candidate in candidates if candidate.status == "suitable"]
     if not suitable:

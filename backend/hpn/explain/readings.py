@@ -1,8 +1,8 @@
 """Demand and limit of each check as an engineer reads them.
 
-The two checks of the output bearing compare pure numbers (f_w P with 1 and k). What is read instead is the load in N
-beside the published maximum in its own direction, and the life beside the required one, both on the basis asked for:
-the same comparisons, since P grows in proportion with a load along its direction and the life with its power -3.
+The two checks of the output bearing compare pure numbers (f_w P with 1 and k). Shown instead are the load in N beside
+the published maximum in its own direction, and the life beside the required one, both on the basis asked for: the same
+comparisons, since P grows in proportion with a load along its direction and the life with its power -3.
 """
 
 import math

@@ -25,7 +25,7 @@ DIGITS = 4
 
 LOSS_FREE = N_("η = 1 where no efficiency is known: a lower bound")
 LOWER_BOUND = N_("lower bound where η = 1")
-"""What is to be known of motor torques, in full and where there is little room."""
+"""Note on motor torques without an efficiency, in full and for a narrow place."""
 
 
 _NO_XML = re.compile("[^\t\n\r\x20-\x7e\xa0-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")

@@ -18,7 +18,7 @@ WORDS: Mapping[str, str] = {**MECHANISMS, **PROFILES}
 MOVES = {name.removeprefix("move."): named for name, named in MOTION.items() if name.startswith("move.")} | {
     name: INPUTS[f"phase.{name}"] for name in LOADS
 }
-"""What may be said of a move."""
+"""Names of the fields that a move may have."""
 
 PHASES_TITLE, MOTION_TITLE, MOVES_TITLE = N_("Load phases of the motion"), N_("Motion"), N_("Moves")
 
@@ -33,7 +33,7 @@ def mechanism_of(motion: Motion) -> Iterator[tuple[str, Named, Value]]:
 
 
 def moves_of(motion: Motion) -> dict[str, Sequence[Value | None]]:
-    """What is said of each move by field, None where nothing; fields that no move has are left out."""
+    """Values of the moves by field, None at the default; a field that no move sets is left out."""
     said = {name: [getattr(move, name) if _is_said(move, name) else None for move in motion.moves] for name in MOVES}
     return {name: values for name, values in said.items() if any(value is not None for value in values)}
 

@@ -1,6 +1,6 @@
 """Tables of axes in files, read once from the first row to the last, some rows at a time.
 
-What is read has the columns of `columns.py` in their types. A cell that can't be read is null and a fault; the file
+The rows have the columns of `columns.py` in their types. A cell that can't be read is null and a fault, and reading
 goes on.
 """
 

@@ -52,7 +52,7 @@ SUMMARY = [selections.c[name] for name in Summary.__dataclass_fields__]
 
 
 class Store:
-    """Saved selections. What `save` has returned is durable; of it only title and reference can be changed.
+    """Saved selections. A selection is durable once `save` has returned; only its title and reference can be changed.
 
     Every function raises StoreUnavailableError where the database can't be reached or takes longer than `seconds`, and
     works again as soon as it can. Nothing is connected before it is needed.
@@ -85,7 +85,7 @@ class Store:
         return self._opening.cancelled() or self._opening.exception() is not None
 
     async def close(self) -> None:
-        """Close the connections; the next call opens new ones. What SQLite is writing is finished first."""
+        """Close the connections; the next call opens new ones. SQLite finishes its current write first."""
         for task in (self._opening, self._trial):
             if task is not None:
                 task.cancel()
@@ -121,8 +121,8 @@ class Store:
     async def save(self, draft: Draft) -> str:
         """Id of the saved selection: a new one, or the one that the same idempotency key has saved before.
 
-        Raises KeyReusedError where the key came with other content, and KeySpentError where what it saved was deleted.
-        Who stops waiting does not know whether it is saved; the same key finds that out.
+        Raises KeyReusedError where the key came with other content, and KeySpentError where its selection was deleted.
+        A caller that stops waiting does not know whether it is saved; the same key finds that out.
         """
         return await self._write(lambda connection: insert(connection, draft))
 
@@ -248,9 +248,9 @@ class Store:
     async def _write(self, work: Callable[[AsyncConnection], Awaitable[T]]) -> T:
         """Result of the work, once its transaction is on disk; it is rolled back where the work raises.
 
-        Who stops waiting for PostgreSQL breaks the transaction off. SQLite has one writer at a time: those of this
-        process take turns, and wait in SQLite only for other processes. There a transaction that has begun runs to its
-        end, whoever has stopped waiting for it: broken off, the driver may leave the lock of the database behind.
+        On PostgreSQL a caller that stops waiting cancels the transaction. SQLite has one writer at a time: those of
+        this process take turns, and wait in SQLite only for other processes. There a transaction that has begun runs to
+        its end even if nobody waits for it any more: if it is cancelled, the driver may leave the database locked.
         """
         async with self._reachable():
             if self._engine.dialect.name != "sqlite":

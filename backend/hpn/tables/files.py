@@ -1,7 +1,7 @@
 """From the bytes of a file to the cells of its sheets: the one way in for tables of phases and of axes.
 
-A file of kilobytes may stand for gigabytes: a service calls this in a process whose memory and time are bounded. What
-a file says about itself is looked at before it is read, so that most of those get a sentence.
+A file of kilobytes may expand to gigabytes: a service calls this in a process with limited memory and time. The sizes
+that a file states are checked before it is read, so that most such files get an error message.
 """
 
 import base64

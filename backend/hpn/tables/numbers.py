@@ -174,8 +174,8 @@ def _with_point(text: str) -> str:
 def to_fields(entries: Iterable[tuple[str, str]], reader: Reader, written: str) -> Shown:
     """Texts of the wire, with their units, as the reader's form shows them; `written` marks how they came in.
 
-    What the reader has typed stands there as typed. What comes from elsewhere is shown to five digits in another unit,
-    or to all where two numbers would look alike, and is remembered where that is not all of it.
+    The reader's own entries stay as typed. Numbers from elsewhere are shown to five digits in another unit, or to all
+    digits where two numbers would look alike; the full number is remembered where the shown one is rounded.
     """
     listed = [_Field(text, unit, reader, own=reader.marker == written) for text, unit in entries]
     alike = Counter(short for short, _ in {(field.short, field.value) for field in listed if field.value is not None})

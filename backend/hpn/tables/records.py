@@ -1,6 +1,6 @@
 """From Parquet, Arrow and NDJSON to the cells of a table. Arrow is imported by this module.
 
-What is read is bounded by what the file claims, and then by what has come of it: claims may be wrong.
+The size of a table is checked as the file states it, and again as it was read: the file may be wrong.
 """
 
 from collections.abc import Iterable, Iterator, Sequence

@@ -26,7 +26,7 @@ class Span:
 class Worksheet:
     """A sheet of a workbook that was opened for reading alone, parsed once.
 
-    What is merged and what is hidden is known once all rows are read.
+    Merged cells, hidden rows and hidden columns are known once all rows are read.
     """
 
     def __init__(self, sheet: Any) -> None:

@@ -73,7 +73,7 @@ CORS: dict[str, Any] = {
     ],
     "max_age": 3600,
 }
-"""What scripts of the permitted origins may send and read."""
+"""Methods and headers that scripts of the permitted origins may send and read."""
 
 
 UNPACKED = (
@@ -155,7 +155,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
 
 
 def _add_middleware(app: FastAPI, settings: Settings) -> None:
-    """What every request passes, from the inside out."""
+    """Add the middleware that every request passes, from the inside out."""
     app.add_middleware(Readers)
     # Nothing secret stands beside what a page repeats of its query, so its length after compression tells nothing.
     app.add_middleware(Packing, compresslevel=4, exclude_content_types=UNPACKED)

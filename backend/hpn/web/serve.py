@@ -48,9 +48,9 @@ def served_app() -> FastAPI:
 
 
 def worker_app() -> FastAPI:
-    """The application in one of several processes, which the others outlive.
+    """Application for one of several worker processes; the others go on when it ends.
 
-    What keeps a new one from starting, such as a catalogue that was spoilt since, is a line of the log.
+    An error that keeps a new one from starting, such as a catalogue damaged since, is a line of the log.
     """
     try:
         app = served_app()

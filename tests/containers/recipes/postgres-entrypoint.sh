@@ -1,4 +1,4 @@
-# What the compose file needs of the real image's start: a new, empty volume becomes a database with user and password.
+# The part of the real image's start that the compose file needs: an empty volume becomes a database with user and password.
 set -eu
 if [ "$1" = postgres ] && [ ! -s "$PGDATA/PG_VERSION" ]; then
     : "${POSTGRES_PASSWORD:?}"

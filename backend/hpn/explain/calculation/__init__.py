@@ -22,8 +22,8 @@ def calculation_of(
 ) -> tuple[Step, ...]:
     """Every equation that applies to a gear, in the order of the handbook, then motor, output bearing and stiffness.
 
-    `candidate` is what the gear comes to under the application. What a figure that is not published keeps from being
-    worked out is left out.
+    `candidate` is the result for the gear under the application. Equations that need an unpublished figure are left
+    out.
     """
     sheet = Sheet(candidate, gear, with_listed_motor(application, catalogue), catalogue)
     handbook, motor = (*stop_steps(sheet), *handbook_steps(sheet)), motor_steps(sheet)

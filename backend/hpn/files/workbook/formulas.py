@@ -102,7 +102,7 @@ _PEAKS, _FASTEST = _varying("peak_torque_Nm", "torque_Nm"), _varying("peak_speed
 _RMS = _varying("rms_torque_Nm", "torque_Nm")
 _SIGNED = f"SIGN(torque_Nm)*{_PEAKS}"
 _UNUSED = '(duration_s="")*1E+99'
-"""What keeps a spare row from being the largest."""
+"""Term that keeps a spare row from being the largest."""
 
 _BOTH_WAYS = f'IF({REVERSES}="",SUMPRODUCT(--(torque_Nm<0))=0,{REVERSES})'
 _LARGEST = "SUMPRODUCT(MAX(ABS(torque_Nm)))"

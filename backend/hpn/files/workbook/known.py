@@ -29,7 +29,7 @@ DEMANDS = {"P_max": "output_bearing_load", "P_m": "output_bearing_life"}
 """Checks whose demand is the value of a term; the other terms are figures of the candidate."""
 
 BY_BRAKE = {cell_name("N_k,max"), "momentary_peak_torque", "momentary_peak_count"}
-"""What follows from a stop by the brake, which is another for each gear."""
+"""Terms and checks of a stop by the brake, which differs for each gear."""
 
 _MAY_BE_UNLIMITED = ("N_k_max", "L_10", "L_b50")
 
@@ -72,7 +72,7 @@ class Known:
         return fixed
 
     def _by_supplement(self) -> set[str]:
-        """What the inertia or the torque without load of the gear itself has a part in."""
+        """Terms and checks that depend on the gear's own inertia or no-load torque."""
         gear = self.export.gear(self.candidate)
         if gear is None:
             supplied = any(notice.code == "catalogue_supplement" for notice in self.export.selection.notices)

@@ -61,7 +61,7 @@ async def gear(request: Request, designation: str) -> Response:
     responses=schemas.answers("EnvelopeReply", 404, 422, headers=schemas.headers("ETag")) | schemas.HAS_IT_ALREADY,
 )
 async def bearing_envelopes(request: Request, size: str, query: Annotated[EnvelopeQuery, Query()]) -> Response:
-    """What a constant load may be at this speed and life: one curve per load coefficient, from axial to radial axis."""
+    """Permitted constant load at this speed and life: one curve per load coefficient, from axial to radial axis."""
     book: Catalogue = request.app.state.catalogue
     gear = book.find_size(size)
     if gear is None:

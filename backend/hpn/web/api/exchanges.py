@@ -20,7 +20,7 @@ SUMMARIES = {
     "first_gear": "The smallest gear",
     "first_size": "The smallest size at the published condition",
 }
-"""What an example shows, by its name."""
+"""Summary of each example, by its name."""
 
 
 class Exchange(NamedTuple):

@@ -40,7 +40,7 @@ Make = Callable[[], Export]
 
 
 Options = dict[str, Any]
-"""What a caller may choose of a kind of file beside its language, by the names of the function that makes it."""
+"""Options of a kind of file beside its language, by parameter of the function that makes it."""
 
 
 def _nothing() -> Options:
@@ -181,7 +181,7 @@ def _schema() -> bytes:
 
 
 def _of_saved(saved: SavedSelection, catalogue: Catalogue | None, request: Request) -> Export:
-    """What was saved, as it was saved; nothing is computed again."""
+    """Export of a saved selection as it was saved; nothing is computed again."""
     try:
         application = Application.model_validate_json(saved.application)
     except ValidationError:
@@ -213,7 +213,7 @@ def _computed(application: Application, request: Request) -> Export:
 
 
 def _linked(query: str, request: Request) -> Export:
-    """What the live page shows of a link: its labels, and the gear that is chosen there."""
+    """Export of a link as the live page shows it, with its labels and its chosen gear."""
     link, catalogue = linked(query, "lang", "aas"), request.app.state.catalogue
     export = _computed(link.application, request)
     if link.gear and catalogue.find(link.gear) is None:

@@ -50,6 +50,6 @@ async def readyz(request: Request) -> Readiness:
     "/metrics", operation_id="getMetrics", summary="Metrics for Prometheus", response_class=PlainTextResponse
 )
 async def metrics(request: Request) -> Response:
-    """What Prometheus counts: requests, selections by verdict, operations of the store."""
+    """Counters for Prometheus: requests, selections by verdict, operations of the store."""
     text = await compute(request, "metrics", request.app.state.metrics.exposition)
     return Response(text, media_type=CONTENT_TYPE)

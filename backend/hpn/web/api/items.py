@@ -118,7 +118,7 @@ class _Cutter:
         return taken
 
     def _next(self) -> bytes:
-        """What comes after the blanks."""
+        """Next byte after the blanks, none at the end; moves the position there."""
         found = BLANK.match(self._body, self._at)
         self._at = found.end() if found else self._at
         return self._body[self._at : self._at + 1]

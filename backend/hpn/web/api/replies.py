@@ -1,4 +1,4 @@
-"""What the API answers besides a selection, typed; encoded as JSON here and nowhere else."""
+"""Replies of the API besides a selection, typed; encoded as JSON here and nowhere else."""
 
 from collections.abc import Mapping
 from typing import Annotated, Any, Literal
@@ -35,7 +35,7 @@ def json_response(reply: Any, status: int = 200, headers: Mapping[str, str] | No
 
 
 class FieldError(Struct):
-    """What is wrong with one field."""
+    """Error in one field."""
 
     pointer: Annotated[str, Meta(description="JSON pointer to the field.")]
     code: Annotated[str, Meta(description="Kind of the fault, for programs.")]
@@ -68,7 +68,7 @@ class BatchLine(Struct):
 
     @property
     def verdict(self) -> str:
-        """What the metrics count it as."""
+        """Label of the line in the metrics: refused, selected or none."""
         return "refused" if self.status == "error" else "selected" if self.selected else "none"
 
 
@@ -182,7 +182,7 @@ class SelectionListReply(Struct):
 
 
 class TodayReply(Struct):
-    """What today's engine and catalogue say to the saved application."""
+    """Versions of today's engine and catalogue, and how their result differs from the saved one."""
 
     engine_version: Annotated[str, Meta(description="Version of the calculation today.")]
     catalogue_version: Annotated[str, Meta(description="Hash of the catalogue’s content today.")]

@@ -177,7 +177,7 @@ def envelopes(catalogue: Catalogue, size: str) -> Json:
 
 
 def _changes(selection: Selection, catalogue: Catalogue) -> Json:
-    """What has changed since, had the cycle been a tenth heavier then, and were the best gear's weight new."""
+    """Example of differences: torques a tenth higher when saved, and no weight published for the best gear then."""
     phases = [phase | {"torque_Nm": 1.1 * phase["torque_Nm"]} for phase in FULL["duty_cycle"]["phases"]]
     heavier = Application.model_validate(FULL | {"duty_cycle": {"phases": phases}})
     found = differences(select(heavier, catalogue, to_link(heavier)), selection)

@@ -193,10 +193,10 @@ async def list_selections(
     response_class=JSONBytes,
 )
 async def rename_selection(request: Request, id: str) -> Response:
-    """Gives a saved selection another title or reference; null takes one away, and what is left out stays.
+    """Changes title or reference of a saved selection; null removes one, and a field that is left out stays.
 
-    The body is a JSON merge patch (RFC 7396). What was calculated is never rewritten. Where the service has API keys, a
-    key renames what it has saved, and the one named `admin` renames any.
+    The body is a JSON merge patch (RFC 7396). Calculated figures are never rewritten. Where the service has API keys, a
+    key renames the selections that it saved, and the key named `admin` renames any.
     """
     settings: Settings = request.app.state.settings
     store: Store = request.app.state.store

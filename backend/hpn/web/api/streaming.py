@@ -125,8 +125,8 @@ class Spool:
 class LineStream(Response):
     """Answers each line of the request's body with one line, while the body still arrives if its length is unknown.
 
-    What arrives is read first, and answered once the client pauses, or sends so little that reading it takes no time:
-    most clients send all before they read, and nginx passes no more of a body on where it has had to wait for a
+    Arrived lines are read first, and answered once the client pauses, or sends so little that reading it takes no time:
+    most clients send everything before they read, and nginx stops passing a body on where it has had to wait for a
     service whose answer has begun.
 
     A client that neither sends a line nor reads for `seconds` is told so in a last line, and the stream ends.

@@ -1,4 +1,4 @@
-"""Who may do what, how often: every route declares its group, and a dependency of the route holds it to keys and rates.
+"""Access by keys and rates: every route declares its group, and a dependency of the route checks key and rate.
 
 FastAPI runs dependencies for the route that the router has matched, so another spelling of a path changes nothing.
 """

@@ -21,7 +21,7 @@ M = TypeVar("M", bound=BaseModel)
 JSON, MERGE_PATCH = "application/json", "application/merge-patch+json"
 
 MOST_OBJECTS, MOST_NAMES, MOST_LISTS = MAXIMUM_PHASES + 100, 8 * MAXIMUM_PHASES + 1000, 10_000
-"""What the JSON of the longest application stays below."""
+"""Most objects, names and lists in the JSON of an application; the longest one stays below."""
 
 PIECE_BYTES = 256_000
 """Size of the pieces that a long body is handed on in."""

@@ -41,7 +41,7 @@ def require_match(request: Request, etag: str) -> None:
 
 
 def other_state() -> Problem:
-    """What `If-Match` names is not, or is no longer, the state that there is."""
+    """Problem 412 for an `If-Match` that names another state than the current one."""
     return Problem(412, "If-Match names another state of this selection; read it again")
 
 
@@ -64,6 +64,6 @@ def idempotency_key(request: Request) -> str | None:
 
 
 def preferred_return(request: Request) -> str | None:
-    """What `Prefer: return=…` asks for: minimal, representation, or None."""
+    """Value of `Prefer: return=…`: minimal, representation, or None."""
     match = PREFERRED_RETURN.search(request.headers.get("prefer", ""))
     return match[1].lower() if match else None

@@ -113,7 +113,7 @@ def needs(extra: str) -> Any:
 
 
 def mistake() -> Problem:
-    """What is answered when the service itself goes wrong."""
+    """Problem 500 for an error of the service itself."""
     return Problem(500, "the service made a mistake; it is in the log")
 
 

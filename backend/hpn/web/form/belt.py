@@ -31,7 +31,7 @@ class BeltInput:
         return any(text.strip() for text in self.texts.values())
 
     def messages(self, name: str) -> list[Sentence]:
-        """What is wrong with one input."""
+        """Error messages of one input."""
         return [problem.message for problem in self.problems if problem.name == name]
 
 

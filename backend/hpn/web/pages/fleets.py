@@ -1,7 +1,7 @@
 """Fleets on pages: a table of axes is uploaded, its columns are put right, all axes are sized, and the result is kept.
 
-`POST /fleets` answers with what each column is read as, or, once nothing is asked, leads to the page of the result
-(`sized_fleets.py`). What imports Arrow is imported by the requests that need it.
+`POST /fleets` answers with what each column is read as, or, once no question is open, leads to the page of the result
+(`sized_fleets.py`). Modules that need Arrow are imported within the requests that use them.
 """
 
 import hashlib
