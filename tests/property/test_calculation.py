@@ -98,7 +98,7 @@ def sides(markup: str) -> list[list[Element]]:
 
 
 def shown(line: Line, reader: Reader) -> tuple[float, float]:
-    """What the substituted numbers of a line give, and what the page says that they give."""
+    """Value of the substituted numbers of a line, and the value that the page shows for them."""
     (_, [formula]), (_, [first], *_) = sides(with_numbers(reader, line)), sides(result(reader, line))
     return worked_out(formula, reader), worked_out(first, reader)
 

@@ -1,4 +1,4 @@
-"""What must hold for every application, whatever its numbers."""
+"""Invariances of every application, whatever its numbers."""
 
 import copy
 import math

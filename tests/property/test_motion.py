@@ -1,4 +1,4 @@
-"""What must hold for every motion: samples, splits, energy, turned signs, and advice that works."""
+"""Properties of every motion: samples, splits, energy, turned signs, and advice that works."""
 
 import copy
 import math
@@ -153,7 +153,7 @@ def refusals(motion: Json) -> list[Json]:
 
 
 def at(document: Any, pointer: str) -> Any:
-    """What a JSON pointer leads to; KeyError or IndexError where it leads nowhere."""
+    """Value at a JSON pointer; KeyError or IndexError where there is none."""
     for step in pointer.split("/")[1:]:
         document = document[int(step) if isinstance(document, list) else step]
     return document

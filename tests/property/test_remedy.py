@@ -120,7 +120,7 @@ def followed(application: Json, way: Way) -> list[Json]:
 @example(BOTH_LIVES)
 @example(STOPS)
 def test_following_a_way_for_the_reader_passes_every_load_check(application: Json) -> None:
-    """What the page offers as a link: the first way applied to the application itself."""
+    """The link of the page: the first way applied to the application itself."""
     u = reserve_utilisation(application)
     reply = answer(application, CATALOGUE)
     for designation in GEARS:

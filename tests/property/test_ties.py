@@ -1,4 +1,4 @@
-"""What ties in real numbers ties in the product: figures as people type them, against exact arithmetic.
+"""Ties in real numbers are ties in the product: figures as people type them, against exact arithmetic.
 
 The contract's plain reading (tests/reference/contract.py) is worked out with mpmath in 40 digits from the decimals as
 they are written; the product's verdicts, order, governing checks and counts must be the same, also where cube roots,
@@ -87,7 +87,7 @@ Decided = list[tuple[str, str, str | None, int | None, float | None]]
 
 
 def decided(reply: Json) -> Decided:
-    """What a reply decides: order, verdicts, governing checks, ranks and counts of stops."""
+    """Decisions of a reply: order, verdicts, governing checks, ranks and counts of stops."""
     names = ("designation", "status", "governing_check", "rank", "momentary_peak_count")
     return [tuple(candidate[name] for name in names) for candidate in reply["candidates"]]
 

@@ -50,7 +50,7 @@ def test_each_alternative_of_each_rejected_gear_alone_makes_it_pass(catalogue: C
 
 
 def read_back(application: Application, alternative: Alternative, catalogue: Catalogue) -> Application:
-    """What a reader gets who opens the link."""
+    """Application that opens with the link."""
     query = to_link(tried(application, alternative, catalogue)).partition("?")[2]
     form = parse(parse_qsl(query, keep_blank_values=True))
     assert form.application is not None, form.problems

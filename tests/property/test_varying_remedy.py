@@ -80,7 +80,7 @@ def moved(chance: random.Random, motion: Json) -> Json:
 
 
 def followed(asked: Json, catalogue: Catalogue, chance: random.Random) -> Iterator[tuple[Application, Candidate]]:
-    """What a reader gets who opens the link to each alternative of some gears, and the gear as it was."""
+    """Application that opens with the link to each alternative of some gears, and the gear as it was."""
     application = Application.model_validate(asked)
     rejected = [
         one for one in select(application, catalogue).candidates if one.status == "unsuitable" and one.is_judged
@@ -129,7 +129,7 @@ def test_what_would_make_a_gear_fit_does_under_a_motion(motion: Json, seed: int)
 
 
 def digits_lost(formula: Formula) -> float:
-    """What the ninth digits of both sides of a subtraction amount to, of which it may leave few."""
+    """Error by the ninth digit of both sides of a subtraction, which may cancel most of the others; 0 otherwise."""
     if not isinstance(formula, Subtraction):
         return 0.0
     return 1e-8 * (abs(value_of(formula.left)) + abs(value_of(formula.right)))

@@ -32,7 +32,7 @@ FLOATS = Arithmetic()
 
 @dataclass
 class Gear:
-    """What is known of a gear; None is not published."""
+    """Figures of a gear; None is not published."""
 
     size: str
     ratio: int

@@ -286,7 +286,7 @@ def _zeros(function: Callable[[Any], Any], kinks: list[Any]) -> list[Any]:
 
 
 def phases(motion: Json) -> list[dict[str, float]]:
-    """What the contract calls the phases of a motion, with the six fields that vary."""
+    """Phases of a motion as the contract defines them, with the six fields that vary."""
     return [_phase(one) for one in stretches(motion)]
 
 

@@ -12,7 +12,7 @@ RATED_SIZES = ("11A", "14A", "20A", "32A")
 
 
 def typed_by_hand(size: str, ratio: int) -> dict[str, object]:
-    """What the handbook prints of a gear, by the name of the catalogue's field; None where its text has nothing."""
+    """Printed figures of a gear, by the name of the catalogue's field; None where the handbook's text has none."""
     stages = handbook.STAGES[ratio]
     place = handbook.RATIOS[size].index(ratio)
     rated = size in handbook.RATED_TORQUE_NM
