@@ -57,9 +57,9 @@ class Sheet:
 class Check:
     """One check. Its texts are English msgids; `name` is how it stands inside a sentence.
 
-    `asked` is the input whose presence asks for it, None for a check that is always made; `instead` is another input
-    that asks for it as well. Utilisation is demand over
-    limit, limit over demand for a minimum, or what `share` gives. `sheet` is the same as formulas; None for a check
+    `asked` is the input whose presence asks for it, blank for a check that is always made; `instead` is another input
+    that asks for it as well. Without a `limit` that input is the limit. Utilisation is demand over limit, limit over
+    demand for a minimum, or what `share` gives. `sheet` is the same as formulas; None for a check
     that no workbook can calculate, which then stands there as saved. `limited_by` is the catalogue figure behind the
     limit, None where that is the user's own. `relation` is the check in the handbook's symbols. `moves` gives the power
     with which the utilisation grows with each driver; `accepted` says which {value} of the input `asked` lets it pass
@@ -79,22 +79,26 @@ class Check:
     basis: str
     remedy: str
     demand: Values
-    limit: Values
     sheet: Sheet | None
     relation: str
-    asked: str | None = None
+    asked: str = ""
     instead: str = ""
+    limit: Values | None = None
     share: Values | None = None
     equation: str | None = None
     limited_by: str | None = None
     moves: Mapping[Driver, float] = field(default_factory=dict)
     accepted: str = ""
 
+    def limit_of(self, case: Case) -> FloatArray:
+        """Limit in the unit of the check; broadcasts to (N, G), NaN where it is not published or not asked."""
+        return self.limit(case) if self.limit else case.asked[self.asked]
+
     def utilisation(self, case: Case) -> FloatArray:
         """Share of the limit that is used, [-]; broadcasts to (N, G), infinite where a check fails without a number."""
         if self.share is not None:
             return self.share(case)
-        demand, limit = self.demand(case), self.limit(case)
+        demand, limit = self.demand(case), self.limit_of(case)
         return limit / demand if self.kind == "minimum" else demand / limit
 
     def allowed(self, utilisation: float) -> float:

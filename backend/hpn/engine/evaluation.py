@@ -73,7 +73,7 @@ class Evaluation:
     @cached_property
     def limit(self) -> FloatArray:
         """Bounds of these values, shape (C, N, G)."""
-        return self._table(check.limit for check in self.checks)
+        return self._table(check.limit_of for check in self.checks)
 
     def _table(self, columns: Iterable[Values]) -> FloatArray:
         table = np.empty(self.used.shape)
@@ -178,7 +178,7 @@ def _load_checks(checks: Iterable[Check]) -> int:
 def _asked(case: Case) -> tuple[tuple[Check, ...], BoolArray]:
     """Checks that some application asks for, and a mask of those that do, shape (C, N, 1)."""
     always = np.zeros((len(case.duty.average_torque_Nm), 1))
-    inputs = [always if check.asked is None else case.asked[check.asked] for check in CHECKS]
+    inputs = [case.asked[check.asked] if check.asked else always for check in CHECKS]
     given = ~np.isnan(np.concatenate(inputs, axis=1)).T
     for place, check in enumerate(CHECKS):
         if check.instead:

@@ -162,7 +162,7 @@ def _requirements(candidate: Candidate, u: float) -> Iterable[Requirement]:
         if check.code == "natural_frequency" and inertia is not None:
             yield Requirement("requirements.load_inertia_kgm2", Quantity(inertia, "kgm2", 4, "down"), LESS_INERTIA)
             continue
-        if known.asked is None or check.demand is None or check.limit is None:
+        if not known.asked or check.demand is None or check.limit is None:
             continue
         if known.kind == "range":
             rises = check.demand < check.limit

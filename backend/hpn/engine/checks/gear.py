@@ -201,7 +201,6 @@ GEAR: tuple[Check, ...] = (
         remedy=N_("Lower the torque (life grows with the power 10/3), the speed or the duty, or take a larger gear."),
         asked="requirements.life_h",
         demand=lambda c: c.figures.life_L10_h,
-        limit=lambda c: c.asked["requirements.life_h"],
         sheet=Sheet("{L_10}", "L_10_req", share='IF({L_10}="[unlimited]",0,L_10_req/{L_10})'),
         limited_by="rated_torque_Nm",
         relation="L_10 ≥ L_10,req",

@@ -23,7 +23,6 @@ MOTOR: tuple[Check, ...] = (
         remedy=N_("Take a smaller ratio, a faster motor, or a lower top speed."),
         asked="requirements.motor.maximum_speed_rpm",
         demand=lambda c: c.figures.maximum_input_speed_rpm,
-        limit=lambda c: c.asked["requirements.motor.maximum_speed_rpm"],
         sheet=Sheet("{n_in_max}", "n_mot"),
         relation="n_in,max ≤ n_mot",
         moves={"speed": 1.0},
@@ -32,7 +31,6 @@ MOTOR: tuple[Check, ...] = (
         code="motor_peak_torque",
         name=N_("motor peak torque"),
         title=N_("Motor peak torque"),
-        equation=None,
         unit="Nm",
         kind="maximum",
         group="load",
@@ -46,13 +44,12 @@ MOTOR: tuple[Check, ...] = (
         basis=N_(
             "T_max / (i · η) with the efficiency that you state or a supplement gives; without one loss-free, a "
             "lower bound. With a motion and the motor’s inertia J_m the largest T / (i · η) + J_m · i · α, "
-            "or T · η / i where the load drives. The inertia of the gear and losses without load are left out, "
-            "and so is that of a motor for which none is given."
+            "or T · η / i where the load drives. The gear’s inertia counts beside J_m, and its torque "
+            "without load always, where a supplement gives them; else they are left out."
         ),
         remedy=N_("Take a larger ratio, a stronger motor, or accelerate more gently."),
         asked="requirements.motor.peak_torque_Nm",
         demand=lambda c: c.figures.motor_peak_torque_Nm,
-        limit=lambda c: c.asked["requirements.motor.peak_torque_Nm"],
         sheet=Sheet("{T_mot_peak}", "T_mot"),
         relation="T_max / (i · η) ≤ T_mot",
         moves={"torque": 1.0},
@@ -62,7 +59,6 @@ MOTOR: tuple[Check, ...] = (
         code="motor_rated_torque",
         name=N_("motor rated torque"),
         title=N_("Motor rated torque"),
-        equation=None,
         unit="Nm",
         kind="maximum",
         group="load",
@@ -76,13 +72,12 @@ MOTOR: tuple[Check, ...] = (
         basis=N_(
             "RMS of T / (i · η) with the efficiency that you state or a supplement gives; without one loss-free, a "
             "lower bound. With a motion and the motor’s inertia J_m that of T / (i · η) + J_m · i · α, or T · η / i "
-            "where the load drives. The inertia of the gear and losses without load are left out, "
-            "and so is that of a motor for which none is given."
+            "where the load drives. The gear’s inertia counts beside J_m, and its torque "
+            "without load always, where a supplement gives them; else they are left out."
         ),
         remedy=N_("Take a larger ratio, a stronger motor, or add pause."),
         asked="requirements.motor.rated_torque_Nm",
         demand=lambda c: c.figures.motor_rated_torque_Nm,
-        limit=lambda c: c.asked["requirements.motor.rated_torque_Nm"],
         sheet=Sheet("{T_mot_rms}", "T_mot_N"),
         relation="T_rms / (i · η) ≤ T_mot,N",
         moves={"torque": 1.0},
@@ -104,7 +99,6 @@ MOTOR: tuple[Check, ...] = (
         remedy=N_("Take a smaller ratio, a faster motor, or add pause."),
         asked="requirements.motor.rated_speed_rpm",
         demand=lambda c: c.figures.average_input_speed_rpm,
-        limit=lambda c: c.asked["requirements.motor.rated_speed_rpm"],
         sheet=Sheet("{n_in_av}", "n_mot_N"),
         relation="n_in,av ≤ n_mot,N",
         moves={"speed": 1.0},
@@ -113,7 +107,6 @@ MOTOR: tuple[Check, ...] = (
         code="inertia_ratio",
         name=N_("inertia ratio"),
         title=N_("Inertia ratio"),
-        equation=None,
         unit="",
         kind="maximum",
         group="load",
@@ -133,7 +126,6 @@ MOTOR: tuple[Check, ...] = (
             motor_inertia_kgm2=c.asked["requirements.motor.inertia_kgm2"],
             gear_inertia_kgm2=np.nan_to_num(c.gears.inertia_kgm2),
         ),
-        limit=lambda c: c.asked["requirements.motor.inertia_ratio"],
         sheet=Sheet('IF(J_L="","",J_L/({i}^2*J_m))', "r_J"),
         relation="(J_L / i² + J_g) / J_m ≤ r_J",
         accepted=N_("the permitted inertia ratio rises to {value}"),
