@@ -8,6 +8,7 @@ from pydantic import ValidationError
 
 from hpn.application import Application
 from hpn.catalogue import Catalogue
+from hpn.engine.notices import ON_MOTOR_TORQUES, on_motor_torques
 from hpn.engine.remedy import alternatives_of, tried
 from hpn.engine.selection import select
 from tests.build import Json, answer, candidate, check, cycle, notices, phase
@@ -251,6 +252,25 @@ def test_a_supplements_inertia_and_torque_without_load_enter_the_motors_figures(
     m = 25 * 0.002
     expected = math.sqrt(26_000 * (1 / 0.8 + 1 / m)) / (2 * math.pi)
     assert gear["drive_resonance_Hz"] == pytest.approx(expected, rel=1e-12)
+
+
+def test_notice_and_report_say_what_of_a_supplement_the_motor_torques_include(supplemented: Supplement) -> None:
+    move = {"profile": "triangular", "angle_deg": 90.0, "time_s": 0.5}
+    motion = {"mechanism": {"type": "rotary", "inertia_kgm2": 0.8}, "moves": [move]}
+    motor = {"motor": {"inertia_kgm2": 0.0015, "peak_torque_Nm": 50}, "sizes": ["20A"], "ratios": [5]}
+    moving = {"duty_cycle": {"motion": motion}, "requirements": motor}
+    for cells, still, turning in (
+        ("0.0005,0.3", "motor_losses_included", "motor_all_included"),
+        (",0.3", "motor_losses_included", "motor_inertia_included"),
+        ("0.0005,", "motor_torque_partial", "motor_inertia_included"),
+    ):
+        rows = f"size,ratio,stages,inertia_kgm2,no_load_torque_Nm,source\n20A,5,1,{cells},measured\n"
+        catalogue = supplemented(gears=rows)
+        for application, code in ((asking(**motor), still), (moving, turning)):
+            selection = select(Application.model_validate(application), catalogue)
+            said = [one for one in selection.notices if one.code in ON_MOTOR_TORQUES]
+            assert [one.code for one in said] == [code]
+            assert on_motor_torques(selection.notices) == said[0].sentence
 
 
 # --- Bad input --------------------------------------------------------------------------------------------------------

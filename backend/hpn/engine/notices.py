@@ -95,10 +95,15 @@ NOTICES: Mapping[str, str] = {
         "Motor torques are loss-free, a lower bound: the handbook’s efficiency curves were not available and no "
         "efficiency is stated."
     ),
-    "motor_torque_partial": N_("Motor torques leave out the inertia of motor and gear and losses without load."),
+    "motor_torque_partial": N_(
+        "Motor torques leave out the inertia of motor and gear, and losses without load where no supplement gives them."
+    ),
+    "motor_losses_included": N_(
+        "Motor torques include the gear’s torque without load; they leave out the inertia of motor and gear."
+    ),
     "motor_inertia_included": N_(
-        "Motor torques include the motor’s own inertia; they leave out that of the gear and losses without load, which "
-        "are not published."
+        "Motor torques include the motor’s own inertia; the gear’s inertia and losses without load are not published, "
+        "and left out where no supplement gives them."
     ),
     "motor_all_included": N_("Motor torques include the inertia of motor and gear and the gear’s torque without load."),
     "torque_signs_not_given": N_(
@@ -192,6 +197,16 @@ def notices_of(application: Application, evaluation: Evaluation, index: int) -> 
     found += _on_the_motor(application, evaluation, index)
     found += _unrated(evaluation.gears, evaluation.catalogue)
     return (*found, *([notice("catalogue_supplement")] if evaluation.catalogue.supplement else ()))
+
+
+ON_MOTOR_TORQUES = frozenset(code for code in NOTICES if code.startswith("motor_"))
+"""Codes of the notices on what the motor torques include; a selection that asks about a motor has one of them."""
+
+
+def on_motor_torques(notices: Iterable[Notice]) -> Sentence:
+    """Sentence on what the motor torques of a selection include, which holds without a notice on them too."""
+    found = (one for one in notices if one.code in ON_MOTOR_TORQUES)
+    return next(found, notice("motor_torque_partial")).sentence
 
 
 def _on_the_motion(cycle: DutyCycle) -> Iterable[Notice]:
@@ -331,9 +346,13 @@ def _on_the_motor(application: Application, evaluation: Evaluation, index: int) 
         included = not np.isnan(evaluation.case.asked["requirements.motor.inertia_kgm2"].item(index))
         moving = application.duty_cycle.motion is not None
         gears = evaluation.gears.columns
-        known = not np.isnan((gears.inertia_kgm2, gears.no_load_torque_Nm)).any()
-        whole = "motor_all_included" if known else "motor_inertia_included"
-        yield notice(whole if moving and included else "motor_torque_partial")
+        has_inertia, has_losses = (
+            not np.isnan(column).any() for column in (gears.inertia_kgm2, gears.no_load_torque_Nm)
+        )
+        if moving and included:
+            yield notice("motor_all_included" if has_inertia and has_losses else "motor_inertia_included")
+        else:
+            yield notice("motor_losses_included" if has_losses else "motor_torque_partial")
 
 
 @lru_cache(maxsize=256)

@@ -6,6 +6,7 @@ from typing import Any
 
 import segno
 
+from hpn.engine.notices import on_motor_torques
 from hpn.files.export import Export
 from hpn.files.inputs import LOADS, REQUIREMENTS
 from hpn.files.motion import MOTION_TITLE, MOVES_TITLE, PHASES_TITLE
@@ -88,21 +89,12 @@ CAVEATS = (
 )
 """Notes on the figures of cycle and gear, by the place of the figure."""
 
-ON_MOTOR = (
-    N_("Motor torques leave out the inertia of motor and gear, and losses where no efficiency is known."),
-    N_(
-        "Motor torques count the motor’s own inertia; they leave out that of the gear, and losses where no efficiency "
-        "is known."
-    ),
-)
-"""The same of the motor's torques, without its own inertia and with it."""
-
 
 def content(export: Export, reader: Reader) -> dict[str, Any]:
     """Everything that the template sets, as JSON-ready data."""
     text, selection = reader.text, export.selection
     labels = {key: text(label) for key, label in LABELS.items()}
-    named, on_motor = ("checks", "ratings", "calculation"), text(ON_MOTOR[export.selection.turns_motor])
+    named, on_motor = ("checks", "ratings", "calculation"), reader.told(on_motor_torques(selection.notices))
     labels |= {key: labels[key].format(gear=export.candidate.designation) for key in named}
     labels["unsaved"] = text(UNSAVED[_carrier(export.link)])
     return {
