@@ -8,8 +8,9 @@ from hpn.application import NUMBERS, Application, OutputLoad
 from hpn.engine.notices import AREAS
 from hpn.files.export import Export
 from hpn.files.workbook.formulas import cell_name
-from hpn.words.quantities import BEARING_MODELS, INPUTS, LIFE_BASES
+from hpn.words.quantities import INPUTS
 from hpn.words.reader import Reader
+from hpn.words.terms import BEARING_MODELS, LIFE_BASES
 from hpn.words.units import suffix_of
 from hpn.words.wording import N_
 

@@ -5,10 +5,12 @@ from typing import Any
 
 from hpn.application.motion import Motion
 from hpn.files.inputs import InputLine
-from hpn.words.quantities import INPUTS, MECHANISMS, MOTION, PROFILES, Named
+from hpn.words.motion import MOTION
+from hpn.words.quantities import INPUTS
 from hpn.words.reader import Reader
+from hpn.words.terms import MECHANISMS, PROFILES
 from hpn.words.units import suffix_of
-from hpn.words.wording import N_
+from hpn.words.wording import N_, Named
 
 Value = float | str
 

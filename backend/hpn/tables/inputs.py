@@ -11,9 +11,8 @@ from functools import cached_property
 from hpn.tables.headings import LONGEST, UNIT, Over, heading_of, parts_of
 from hpn.tables.numbers import Kind
 from hpn.words import quantities, units
-from hpn.words.quantities import Named
 from hpn.words.reader import LANGUAGES, Reader
-from hpn.words.wording import N_
+from hpn.words.wording import N_, Named
 
 AXIS = "axis"
 

@@ -6,11 +6,11 @@ Asset Administration Shell, comparison, differences and the OpenAPI document all
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import Literal
 
+from hpn.words.motion import BODY, MOTION, STRANDS
 from hpn.words.units import symbol_of
-from hpn.words.wording import N_
+from hpn.words.wording import N_, Named
 
 CheckCode = Literal[
     "average_torque",
@@ -36,22 +36,6 @@ CheckCode = Literal[
     "length",
 ]
 """Codes of the checks, in the order of the contract."""
-
-
-@dataclass(frozen=True, slots=True)
-class Named:
-    """Name of a quantity (an English msgid), its symbol, a sentence on it, and the handbook's equation that gives it.
-
-    `caveat` (a msgid too) is a warning that belongs beside it everywhere.
-
-    An index stands behind an underscore: `T_av`. Of an input the sentence stands in the application model.
-    """
-
-    name: str
-    symbol: str = ""
-    sentence: str = ""
-    equation: str = ""
-    caveat: str = ""
 
 
 INPUTS: Mapping[str, Named] = {
@@ -107,109 +91,6 @@ INPUTS: Mapping[str, Named] = {
     "rank_by": Named(N_("Rank by")),
 }
 """Inputs, in the order in which a file lists them."""
-
-MOTION: Mapping[str, Named] = {
-    "mechanism.type": Named(N_("Mechanism")),
-    "mechanism.inertia_kgm2": Named(N_("Moment of inertia"), "J"),
-    "mechanism.gravity_mass_kg": Named(N_("Mass off the shaft"), "m"),
-    "mechanism.gravity_radius_mm": Named(N_("Its distance from the shaft"), "r"),
-    "mechanism.friction_torque_Nm": Named(N_("Friction torque"), "T_f"),
-    "mechanism.viscous_friction_Nm_per_rpm": Named(N_("Viscous friction"), "b"),
-    "mechanism.efficiency": Named(N_("Efficiency of the mechanism"), "η_m"),
-    "mechanism.ratio": Named(N_("Ratio of a stage between"), "i_m"),
-    "start_deg": Named(N_("Angle at the start"), "θ_0"),
-    "mechanism.diameter_mm": Named(N_("Pitch diameter"), "d"),
-    "mechanism.lead_mm": Named(N_("Lead"), "h"),
-    "mechanism.mass_kg": Named(N_("Moved mass"), "m"),
-    "mechanism.incline_deg": Named(N_("Incline"), "β"),
-    "mechanism.friction_coefficient": Named(N_("Coefficient of friction"), "μ"),
-    "move.profile": Named(N_("Profile")),
-    "move.angle_deg": Named(N_("Angle"), "φ"),
-    "move.distance_mm": Named(N_("Distance"), "s"),
-    "move.time_s": Named(N_("Time"), "t"),
-    "move.speed_rpm": Named(N_("Peak speed"), "n"),
-    "move.speed_mm_per_s": Named(N_("Largest speed"), "v"),
-    "move.acceleration_deg_per_s2": Named(N_("Acceleration"), "α"),
-    "move.acceleration_mm_per_s2": Named(N_("Acceleration"), "a"),
-    "move.acceleration_time_s": Named(N_("Acceleration time"), "t_1"),
-    "move.deceleration_time_s": Named(N_("Deceleration time"), "t_2"),
-    "move.deceleration_deg_per_s2": Named(N_("Deceleration"), "α_2"),
-    "move.deceleration_mm_per_s2": Named(N_("Deceleration"), "a_2"),
-    "move.jerk_share": Named(N_("Jerk share")),
-    "move.external_torque_Nm": Named(N_("External torque"), "T_ext"),
-    "move.external_force_N": Named(N_("External force"), "F_ext"),
-}
-"""Inputs of a motion: of its mechanism, and of each move."""
-
-MECHANISMS: Mapping[str, str] = {
-    "rotary": N_("Rotary"),
-    "rack_and_pinion": N_("Rack and pinion"),
-    "belt": N_("Belt"),
-    "ball_screw": N_("Ball screw"),
-}
-"""Kinds of mechanisms."""
-
-PROFILES: Mapping[str, str] = {
-    "trapezoidal": N_("Trapezoidal"),
-    "triangular": N_("Triangular"),
-    "s_curve": N_("S-curve"),
-    "modified_sine": N_("Modified sine"),
-    "dwell": N_("Dwell"),
-}
-"""Profiles of a move."""
-
-BODY: Mapping[str, Named] = {
-    "shape": Named(N_("Shape")),
-    "count": Named(N_("Number")),
-    "mass_kg": Named(N_("Mass")),
-    "density_g_per_cm3": Named(N_("or density")),
-    "diameter_mm": Named(N_("Diameter")),
-    "inner_diameter_mm": Named(N_("Inner diameter")),
-    "length_mm": Named(N_("Length")),
-    "width_mm": Named(N_("Width")),
-    "height_mm": Named(N_("Height")),
-    "distance_mm": Named(N_("Off the axis")),
-}
-"""Inputs of a body whose moment of inertia is calculated; none is part of an application."""
-
-STRANDS: Mapping[str, Named] = {
-    "tight_strand_N": Named(N_("Tight strand"), "F_1"),
-    "slack_strand_N": Named(N_("Slack strand"), "F_2"),
-    "power_W": Named(N_("or power"), "P"),
-    "speed_m_per_s": Named(N_("Speed of the belt"), "v"),
-    "pretension_factor": Named(N_("Pretension factor"), "k_F"),
-    "wrap_deg": Named(N_("Wrap angle"), "β"),
-}
-"""Inputs of a belt whose radial load is worked out; none is part of an application."""
-
-BEARING_MODELS: Mapping[str, str] = {
-    "linear": N_("straight line (safe)"),
-    "iso281": N_("ISO 281"),
-    "digitised": N_("digitised graph"),
-}
-"""Models of the bearing envelope."""
-
-ENVELOPE_BASIS: Mapping[str, str] = {
-    "linear": N_("Basis: interpolated between the two published limits; printed curve not available."),
-    "iso281": N_(
-        "Basis: equivalent load of ISO 281 with a constant Y, set by the published axial limit; printed curve not "
-        "available."
-    ),
-    "digitised": N_("Basis: curve points that you supplied; printed curve not available."),
-}
-"""Basis of the envelope by model."""
-
-LIFE_BASES: Mapping[str, str] = {"L50": N_("L50 (50 % survive)"), "L10": N_("L10 (90 % survive)")}
-"""Bases of a bearing life."""
-
-SHAPES: Mapping[str, str] = {
-    "disc": N_("Disc"),
-    "ring": N_("Ring"),
-    "bar": N_("Bar"),
-    "block": N_("Block"),
-    "point_mass": N_("Point mass"),
-}
-"""Shapes of bodies."""
 
 DUTY: Mapping[str, Named] = {
     "average_torque_Nm": Named(N_("Average torque"), "T_av", "Average output torque T_av.", "17.2"),
@@ -467,16 +348,6 @@ ENVELOPE: Mapping[str, Named] = {
     "radial_N": Named(N_("Radial load"), "F_R", "Radial loads, from the axial to the radial axis."),
     "axial_N": Named(N_("Axial load"), "F_A", "Axial loads, likewise."),
 }
-
-VERDICTS: Mapping[str, str] = {
-    "suitable": N_("suitable"),
-    "unsuitable": N_("not suitable"),
-    "unrated": N_("not rated"),
-    "pass": N_("passes"),
-    "fail": N_("fails"),
-    "not_rated": N_("not rated"),
-}
-"""Verdicts on candidates and on their checks, in words."""
 
 QUANTITIES: Mapping[str, Named] = {
     **INPUTS,

@@ -111,3 +111,19 @@ def listed(parts: Sequence[Sentence], template: str = "{first}, {rest}") -> Sent
     for part in reversed(early):
         joined = Sentence(template, {"first": part, "rest": joined})
     return joined
+
+
+@dataclass(frozen=True, slots=True)
+class Named:
+    """Name of a quantity (an English msgid), its symbol, a sentence on it, and the handbook's equation that gives it.
+
+    `caveat` (a msgid too) is a warning that belongs beside it everywhere.
+
+    An index stands behind an underscore: `T_av`. Of an input the sentence stands in the application model.
+    """
+
+    name: str
+    symbol: str = ""
+    sentence: str = ""
+    equation: str = ""
+    caveat: str = ""

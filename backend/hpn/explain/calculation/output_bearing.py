@@ -22,7 +22,8 @@ from hpn.explain.calculation.formula import (
 )
 from hpn.explain.calculation.sheet import Line, Sheet, Step, known, step_of_check
 from hpn.physics import bearing
-from hpn.words.quantities import CANDIDATE, ENVELOPE_BASIS
+from hpn.words.quantities import CANDIDATE
+from hpn.words.terms import ENVELOPE_BASIS
 from hpn.words.wording import N_, Sentence
 
 SHOWN_LOADS = 6

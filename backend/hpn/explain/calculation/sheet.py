@@ -27,9 +27,9 @@ from hpn.explain.calculation.formula import (
     value_of,
 )
 from hpn.physics.equations import ROUNDING, FloatArray
-from hpn.words.quantities import CANDIDATE, DUTY, GEAR, INPUTS, Named
+from hpn.words.quantities import CANDIDATE, DUTY, GEAR, INPUTS
 from hpn.words.units import suffix_of
-from hpn.words.wording import Sentence
+from hpn.words.wording import Named, Sentence
 
 
 @dataclass(frozen=True, slots=True)

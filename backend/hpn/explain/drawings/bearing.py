@@ -11,8 +11,8 @@ from hpn.explain.drawings.layout import Figure, layout, points
 from hpn.explain.drawings.picture import BearingPicture, NamedCurve, PhaseLoad
 from hpn.explain.drawings.sizes import SizeUse
 from hpn.explain.drawings.words import axis_title, coefficient_name, indexed, said, share, shown
-from hpn.words.quantities import ENVELOPE_BASIS
 from hpn.words.reader import DEFAULT, Reader
+from hpn.words.terms import ENVELOPE_BASIS
 from hpn.words.wording import N_, Quantity, Sentence, Value
 
 LABELLED_LOADS = 40

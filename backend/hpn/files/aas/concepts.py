@@ -10,10 +10,10 @@ from basyx.aas import model
 from basyx.aas.model.concept import ConceptDescription
 
 from hpn.files.export import DIGITS
-from hpn.words.quantities import CANDIDATE, CHECK, DUTY, GEAR, INPUTS, Named
+from hpn.words.quantities import CANDIDATE, CHECK, DUTY, GEAR, INPUTS
 from hpn.words.reader import LANGUAGES, Reader
 from hpn.words.units import symbol_of
-from hpn.words.wording import Sentence
+from hpn.words.wording import Named, Sentence
 
 IEC61360 = "https://admin-shell.io/DataSpecificationTemplates/DataSpecificationIec61360/3"
 

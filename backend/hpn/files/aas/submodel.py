@@ -26,7 +26,8 @@ from hpn.files.motion import mechanism_of, moves_of
 from hpn.files.workbook.formulas import RATINGS
 from hpn.files.workbook.known import Known
 from hpn.files.workbook.sheets import VARYING
-from hpn.words.quantities import DUTY, GEAR, INPUTS, MOTION
+from hpn.words.motion import MOTION
+from hpn.words.quantities import DUTY, GEAR, INPUTS
 from hpn.words.source import source_sentence
 from hpn.words.units import symbol_of
 from hpn.words.wording import Sentence

@@ -6,10 +6,10 @@ from typing import Any
 from hpn.explain.calculation import Step, calculation_of
 from hpn.explain.calculation.mathml import compared, in_symbols, result, substituted
 from hpn.files.export import Export
-from hpn.files.report.verdict import STATUS
 from hpn.files.words import used
 from hpn.words.reader import Reader
 from hpn.words.symbols import sentence
+from hpn.words.terms import VERDICTS
 from hpn.words.wording import N_, Sentence
 
 
@@ -35,7 +35,7 @@ def _step(step: Step, export: Export, reader: Reader) -> dict[str, Any]:
             for line in step.lines
         ],
         "limits": [
-            {"formula": compared(reader, one), "status": one.status, "word": reader.text(STATUS[one.status])}
+            {"formula": compared(reader, one), "status": one.status, "word": reader.text(VERDICTS[one.status])}
             for one in step.comparisons
         ],
         "source": " ".join(reader.told(told) for told in _sources(step, export, reader)),

@@ -10,6 +10,7 @@ from hpn.files.export import Export
 from hpn.files.words import bound_of, exact_percent, measured, origin, title_of, used
 from hpn.words.reader import Reader
 from hpn.words.symbols import formula, sentence
+from hpn.words.terms import VERDICTS
 from hpn.words.wording import N_, Sentence
 
 WORD: Mapping[str, str] = {
@@ -17,8 +18,7 @@ WORD: Mapping[str, str] = {
     "unsuitable": N_("not suitable"),
     "unrated": N_("not rated"),
 }
-STATUS: Mapping[str, str] = {"pass": N_("passes"), "fail": N_("fails"), "not_rated": N_("not rated")}
-VERDICTS: Mapping[str, str] = {
+REASONS: Mapping[str, str] = {
     "suitable": N_("{gear} passes every check. “{check}” governs, at {percent} of its limit."),
     "unsuitable": N_("No gear is suitable. {gear} comes closest; “{check}” fails at {percent}."),
     "unlimited": N_(
@@ -84,7 +84,7 @@ def _said(export: Export, reader: Reader) -> Iterable[Sentence]:
         "check": title_of(export, code, reader) if code else "",
         "percent": used(export, code, candidate.utilisation, reader),
     }
-    yield Sentence(CHOSEN[key] if selected and status != "suitable" else VERDICTS[key], values)
+    yield Sentence(CHOSEN[key] if selected and status != "suitable" else REASONS[key], values)
     if status == "suitable":
         yield _place(export)
     elif remedy := remedy_of(candidate, export.application.requirements.utilisation):
@@ -130,7 +130,7 @@ def _check(export: Export, check: CheckResult, read: Reading, reader: Reader) ->
         "share": _share(check),
         "bound": bound,
         "status": check.status,
-        "word": reader.text(STATUS[check.status]),
+        "word": reader.text(VERDICTS[check.status]),
         "where": origin(export, check.code, reader),
         "basis": sentence(reader.text(definition.basis)),
     }

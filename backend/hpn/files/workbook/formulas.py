@@ -14,9 +14,9 @@ from hpn.catalogue.gear import Gear
 from hpn.engine.check import Check
 from hpn.engine.checks import CHECKS
 from hpn.engine.checks.output_bearing import LOADED
-from hpn.words.quantities import CANDIDATE, DUTY, GEAR, INPUTS, Named
+from hpn.words.quantities import CANDIDATE, DUTY, GEAR, INPUTS
 from hpn.words.units import suffix_of
-from hpn.words.wording import N_
+from hpn.words.wording import N_, Named
 
 UNLIMITED, NOT_RATED, NONE = N_("unlimited"), N_("not rated"), "–"
 """Texts in place of a number: no limit, figure not published, failed without a number."""

@@ -14,7 +14,6 @@ from hpn.engine.selection import CheckResult
 from hpn.explain.readings import relation_of
 from hpn.files.export import LOSS_FREE
 from hpn.files.inputs import ENTERED, LOAD_INERTIA, LOAD_REVERSES, LOADS, REQUIREMENTS, entered
-from hpn.files.report.verdict import STATUS
 from hpn.files.words import equation, origin
 from hpn.files.workbook.candidates import COLUMNS, LOAD
 from hpn.files.workbook.formulas import (
@@ -33,6 +32,7 @@ from hpn.files.workbook.unchanged import as_saved
 from hpn.files.workbook.wrong import WRONG, WRONG_AS_A_WHOLE, WRONG_IN_CYCLE, advice, is_wrong, validation
 from hpn.physics import bearing
 from hpn.words.quantities import GEAR, INPUTS
+from hpn.words.terms import VERDICTS
 from hpn.words.units import suffix_of
 from hpn.words.wording import N_
 
@@ -305,7 +305,7 @@ class Overview:
             f'IF({used}="{NONE}","{words["fails"]}",'
             f'IF(ISTEXT({used}),{used},IF({used}<={bound},"{words["passes"]}","{words["fails"]}"))))))'
         )
-        word = words[STATUS[saved.status]] if saved else ""
+        word = words[VERDICTS[saved.status]] if saved else ""
         self.sheet.write_formula(self.row, 5, formula, self.book.style("verdict"), word)
 
     # --- Inputs -------------------------------------------------------------------------------------------------------

@@ -15,7 +15,8 @@ from hpn.web.api import replies
 from hpn.web.door.bodies import JSON
 from hpn.web.door.problems import MAXIMUM_ERRORS, MEDIA_TYPE, TITLES
 from hpn.words.fields import Model, name_units
-from hpn.words.quantities import BOLT, CANDIDATE, CHECK, DUTY, ENVELOPE, GEAR, MOTOR, PHASE, RESERVE, SERIES, Named
+from hpn.words.quantities import BOLT, CANDIDATE, CHECK, DUTY, ENVELOPE, GEAR, MOTOR, PHASE, RESERVE, SERIES
+from hpn.words.wording import Named
 
 DESCRIBED: Mapping[str, Mapping[str, Named]] = {
     "DutyFigures": DUTY,

@@ -6,7 +6,7 @@ from typing import Any
 
 from hpn.physics.motion.refusals import REFUSALS
 from hpn.web.form.symbols import BODY_BY_LEAF, MECHANISM_SYMBOLS, STROKE_SYMBOLS, TURN_SYMBOLS, Symbol
-from hpn.words.quantities import PROFILES
+from hpn.words.terms import PROFILES
 from hpn.words.units import suffix_of
 from hpn.words.wording import N_, Quantity, Sentence, listed
 

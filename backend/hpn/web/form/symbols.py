@@ -15,9 +15,10 @@ from hpn.physics.motion.moves import DEFAULT_JERK_SHARE
 from hpn.tables.inputs import PHASE, Input, Inputs
 from hpn.tables.numbers import Kind
 from hpn.web.form import labels
-from hpn.words.quantities import BEARING_MODELS, CANDIDATE, INPUTS, LIFE_BASES, QUANTITIES, Named
+from hpn.words.quantities import CANDIDATE, INPUTS, QUANTITIES
+from hpn.words.terms import BEARING_MODELS, LIFE_BASES
 from hpn.words.units import suffix_of
-from hpn.words.wording import N_
+from hpn.words.wording import N_, Named
 
 
 @dataclass(frozen=True, slots=True)

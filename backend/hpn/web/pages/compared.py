@@ -32,8 +32,8 @@ from hpn.web.pages.result import Result
 from hpn.web.pages.saved import result_of
 from hpn.web.pages.saving import refused
 from hpn.web.pages.templates import environment
-from hpn.words.quantities import CANDIDATE, DUTY, INPUTS, Named, unit_of
-from hpn.words.wording import N_
+from hpn.words.quantities import CANDIDATE, DUTY, INPUTS, unit_of
+from hpn.words.wording import N_, Named
 
 PHASES_SHOWN = 50
 """Phases that differ of which so many are shown."""

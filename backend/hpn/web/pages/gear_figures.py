@@ -6,9 +6,9 @@ from dataclasses import dataclass
 from hpn.catalogue import Catalogue
 from hpn.catalogue.gear import Gear
 from hpn.catalogue.tables import TABLES
-from hpn.words.quantities import GEAR, Named
+from hpn.words.quantities import GEAR
 from hpn.words.units import suffix_of
-from hpn.words.wording import N_
+from hpn.words.wording import N_, Named
 
 
 @dataclass(frozen=True, slots=True)

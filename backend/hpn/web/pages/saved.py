@@ -31,7 +31,8 @@ from hpn.web.pages.gear_figures import Figure, figures_of
 from hpn.web.pages.result import Result
 from hpn.web.pages.saving import refused
 from hpn.web.pages.templates import environment
-from hpn.words.quantities import CANDIDATE, CHECK, DUTY, GEAR, MOTOR, PHASE, RESERVE, VERDICTS
+from hpn.words.quantities import CANDIDATE, CHECK, DUTY, GEAR, MOTOR, PHASE, RESERVE
+from hpn.words.terms import VERDICTS
 from hpn.words.units import symbol_of
 from hpn.words.wording import N_, Sentence
 

@@ -26,20 +26,10 @@ from hpn.web.pages import assets, pictures
 from hpn.web.pages.fleet_reasons import reasons_of
 from hpn.web.pages.result import BEST, preview_of
 from hpn.words import units
-from hpn.words.quantities import (
-    BEARING_MODELS,
-    ENVELOPE_BASIS,
-    GEAR,
-    LISTED,
-    MECHANISMS,
-    PROFILES,
-    QUANTITIES,
-    SHAPES,
-    VERDICTS,
-    unit_of,
-)
+from hpn.words.quantities import GEAR, LISTED, QUANTITIES, unit_of
 from hpn.words.reader import GROUP, LANGUAGE_NAMES, Reader
 from hpn.words.symbols import Part, formula, sentence
+from hpn.words.terms import BEARING_MODELS, ENVELOPE_BASIS, MECHANISMS, PROFILES, SHAPES, VERDICTS
 from hpn.words.wording import Sentence
 
 TEMPLATES, COMPILED = data_folder("frontend/templates"), assets.DIST / "templates"
