@@ -287,11 +287,11 @@ class Application(Model):
     duty_cycle: DutyCycle = Field(description="Load phases and pause of the axis.")
     emergency_stop: EmergencyStop | None = Field(None, description="Emergency stop, where there is one.")
     output_load: OutputLoad | None = Field(None, description="Load on the output shaft and what its bearing must last.")
-    requirements: Requirements = Field(default_factory=Requirements, description="What is required of the gear.")
+    requirements: Requirements = Field(default_factory=Requirements, description="Requirements on the gear.")
     application_area: ApplicationArea | None = Field(
         None, description="An area of use that needs the maker’s risk assessment and approval (handbook 2.4)."
     )
-    rank_by: RankBy = Field("weight", description="What the suitable gears are ordered by.")
+    rank_by: RankBy = Field("weight", description="Order of the suitable gears.")
 
     @field_validator("output_load")
     @classmethod

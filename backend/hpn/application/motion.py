@@ -139,7 +139,7 @@ def _as_linear(value: Any) -> Any:
 class RotaryMotion(_Motion):
     """Moves of a mass that turns."""
 
-    mechanism: Rotary = Field(description="What turns.")
+    mechanism: Rotary = Field(description="Turning load.")
     start_deg: Annotated[Number, Field(ge=-1e6, le=1e6)] = Field(
         0.0, description="Angle of the gravity mass from the horizontal at the start.", examples=[0.0]
     )
@@ -152,7 +152,7 @@ class LinearMotion(_Motion):
     """Moves of a mass along a line."""
 
     mechanism: Annotated[LinearMechanism, BeforeValidator(_as_linear)] = Field(
-        description="What turns the gear’s rotation into a way.", json_schema_extra=one_of
+        description="Mechanism that turns the gear’s rotation into a way.", json_schema_extra=one_of
     )
     moves: Annotated[tuple[Stroke, ...], WrapValidator(in_parts), at_most(MAXIMUM_MOVES)] = Field(
         min_length=1, max_length=MAXIMUM_MOVES, description="Moves in their order, each from rest to rest."

@@ -168,10 +168,10 @@ class CheckDefinition(msgspec.Struct, frozen=True):
     ]
     limit_name: Annotated[str, Meta(description="Symbol of the limit.")] = ""
     source: Annotated[str, Meta(description="Where the limit comes from.")] = ""
-    tests: Annotated[str, Meta(description="What is checked.")] = ""
-    consequence: Annotated[str, Meta(description="What happens if the limit is exceeded.")] = ""
+    tests: Annotated[str, Meta(description="Condition that is checked.")] = ""
+    consequence: Annotated[str, Meta(description="Consequence of exceeding the limit.")] = ""
     basis: Annotated[str, Meta(description="On which basis it stands.")] = ""
-    remedy: Annotated[str, Meta(description="What to change.")] = ""
+    remedy: Annotated[str, Meta(description="Change that helps.")] = ""
 
 
 LINK = (

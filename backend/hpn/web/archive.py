@@ -75,7 +75,7 @@ class Names(Model):
 class Labels(Names):
     """Labels that people give a saved selection."""
 
-    author: Label | None = Field(None, description="Who made it.", examples=["M. Muster"])
+    author: Label | None = Field(None, description="Author.", examples=["M. Muster"])
     revision: Label | None = Field(None, description="Its revision in your own documents.", examples=["B"])
     ordering_code: Line | None = Field(
         None,

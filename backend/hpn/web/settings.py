@@ -237,7 +237,7 @@ class Settings(BaseSettings):
     )
     guarded: Annotated[frozenset[RouteGroup], NoDecode, BeforeValidator(_split)] = Field(
         frozenset({"batch", "writing", "listing", "deleting"}),
-        description="What needs a key where there are keys, out of calculator, batch, writing, listing, deleting, "
+        description="Groups that need a key where there are keys, out of calculator, batch, writing, listing, deleting, "
         "reading and metrics.",
     )
     calculator_rate: Rate = Field(

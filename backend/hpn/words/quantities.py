@@ -315,7 +315,7 @@ GEAR: Mapping[str, Named] = {
     "length_max_mm": Named(N_("Longest length"), "L_max", "Longest length L; it depends on the motor."),
     "clamp_bolts": Named(N_("Motor coupling bolt"), "", "Bolts of the motor coupling."),
     "housing_bolts": Named(N_("Housing bolts"), "", "Bolts of the housing flange."),
-    "note": Named(N_("Note"), "", "What is particular about the size."),
+    "note": Named(N_("Note"), "", "Peculiarity of the size."),
     "sources": Named(N_("Source"), "", "Where each figure comes from, by field name."),
 }
 

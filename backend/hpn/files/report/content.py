@@ -38,7 +38,7 @@ LABELS = {
     "phases_of_motion": PHASES_TITLE,
     "motion": MOTION_TITLE,
     "moves": MOVES_TITLE,
-    "derived": N_("What the cycle and the gear come to"),
+    "derived": N_("Figures of the cycle and the gear"),
     "cycle": N_("Torque and speed over one cycle"),
     "bearing": N_("Load on the output bearing"),
     "checks": N_("Checks of {gear}"),

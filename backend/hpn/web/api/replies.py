@@ -39,7 +39,7 @@ class FieldError(Struct):
 
     pointer: Annotated[str, Meta(description="JSON pointer to the field.")]
     code: Annotated[str, Meta(description="Kind of the fault, for programs.")]
-    detail: Annotated[str, Meta(description="What would be right.")]
+    detail: Annotated[str, Meta(description="Value or form that would be right.")]
 
 
 class ProblemReply(Struct, omit_defaults=True):
@@ -48,7 +48,7 @@ class ProblemReply(Struct, omit_defaults=True):
     type: Annotated[str, Meta(description="Kind of problem: address of a page with its cause and remedy.")]
     title: Annotated[str, Meta(description="Name of the kind.")]
     status: Annotated[int, Meta(description="HTTP status.")]
-    detail: Annotated[str, Meta(description="What was wrong and what would be right.")]
+    detail: Annotated[str, Meta(description="Error, and the value or form that would be right.")]
     errors: Annotated[list[FieldError] | UnsetType, Meta(description="The fields it is about.")] = UNSET
 
 
@@ -155,7 +155,7 @@ class SummaryReply(Struct):
     created: Annotated[str, Meta(description="When it was saved, UTC, ISO 8601.")]
     title: Annotated[str | None, Meta(description="Title for people.")]
     reference: Annotated[str | None, Meta(description="The caller’s own number.")]
-    author: Annotated[str | None, Meta(description="Who made it.")]
+    author: Annotated[str | None, Meta(description="Author.")]
     revision: Annotated[str | None, Meta(description="Its revision in the caller’s documents.")]
     ordering_code: Annotated[
         str | None, Meta(description="Gear, output version and motor adapter as ordered, as far as they were given.")
@@ -215,4 +215,4 @@ class SavedSelectionReply(SummaryReply):
         ),
     ]
     result: Annotated[Selection, Meta(description="The reply it got, whole.")]
-    today: Annotated[TodayReply, Meta(description="What differs today.")]
+    today: Annotated[TodayReply, Meta(description="Differences today.")]

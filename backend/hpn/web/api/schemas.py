@@ -175,7 +175,7 @@ def fleet_body(media_types: Iterable[str]) -> dict[str, Any]:
 
 HEADERS = {
     "X-Request-ID": "Id of the request, as in the log of the service.",
-    "RateLimit": "What is left of the rate, and when it begins anew; where there is a rate.",
+    "RateLimit": "Rest of the rate, and when it begins anew; where there is a rate.",
     "RateLimit-Policy": "How many requests are allowed in how many seconds; where there is a rate.",
     "Retry-After": "Seconds after which to come again.",
     "Accept-Encoding": "identity, where the body was refused because it is compressed.",
