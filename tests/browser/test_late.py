@@ -123,7 +123,7 @@ def test_verdict_says_in_full_strength_and_in_any_section_that_an_input_is_wrong
 def test_foot_of_a_phone_says_that_its_gear_is_not_of_these_inputs(visitor: Visitor) -> None:
     page = visitor.open(EXAMPLE, width=390)
     foot = page.locator("#jump")
-    expect(foot).to_have_text(re.compile("HPN-20A-5.*see why"), use_inner_text=True)
+    expect(foot).to_have_text(re.compile("HPN-20A-5.*78.%.momentary peak torque"), use_inner_text=True)
     height = foot.bounding_box()
     torque(page, 1).fill("")
     expect(foot).to_have_text(re.compile("^HPN-20A-5 Not of these inputs"), use_inner_text=True)

@@ -359,5 +359,5 @@ def test_page_works_by_touch_on_a_phone(visitor: Visitor) -> None:
     page.get_by_role("checkbox", name="7", exact=True).tap()
     page.get_by_role("checkbox", name="5", exact=True).tap()
     expect(selected(page)).to_contain_text("HPN-20A-7")
-    page.get_by_role("link", name="see why").tap()
+    page.get_by_role("link", name=re.compile("78.% momentary peak torque")).tap()
     expect(selected(page)).to_be_in_viewport()
