@@ -54,7 +54,7 @@ def test_a_motion_is_drawn_with_its_phases_and_both_planes_at_once(client: TestC
     assert part.count("<svg") == 3
     assert set(re.findall(r'class="phase-step[^"]*"[^>]* data-phase="(\d+)"', part)) >= {"0", "1", "2"}
     assert "Motion over time" in part
-    assert "Left out: the motor’s own inertia, which is not given" in words(part)
+    assert "for which a motion and the motor’s inertia are needed" in words(part)
 
 
 def test_typed_phases_without_a_motor_have_the_plane_of_the_gear_and_a_line_on_motors(client: TestClient) -> None:

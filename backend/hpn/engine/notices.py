@@ -96,7 +96,8 @@ NOTICES: Mapping[str, str] = {
         "efficiency is stated."
     ),
     "motor_torque_partial": N_(
-        "Motor torques leave out the inertia of motor and gear, and losses without load where no supplement gives them."
+        "Motor torques leave out the inertia of motor and gear, for which a motion and the motor’s inertia are needed, "
+        "and losses without load where no supplement gives them."
     ),
     "motor_losses_included": N_(
         "Motor torques include the gear’s torque without load; they leave out the inertia of motor and gear."

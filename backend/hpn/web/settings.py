@@ -237,8 +237,8 @@ class Settings(BaseSettings):
     )
     guarded: Annotated[frozenset[RouteGroup], NoDecode, BeforeValidator(_split)] = Field(
         frozenset({"batch", "writing", "listing", "deleting"}),
-        description="Groups that need a key where there are keys, out of calculator, batch, writing, listing, deleting, "
-        "reading and metrics.",
+        description="Groups that need a key where there are keys, out of calculator, batch, writing, listing, "
+        "deleting, reading and metrics.",
     )
     calculator_rate: Rate = Field(
         "120000/minute",

@@ -9,6 +9,7 @@ from hpn.catalogue import Catalogue
 from hpn.catalogue.gear import Gear
 from hpn.engine.allowed import with_listed_motor
 from hpn.engine.motors import MotorUse, SizeWithMotor, asks_inertia_ratio, motors_on, ratios_with_motor, with_motor
+from hpn.engine.notices import on_motor_torques
 from hpn.engine.selection import Selection
 from hpn.explain.calculation.motor import BY_CURVE, LOSS_FREE, STATED
 from hpn.web.form.link_writer import to_link
@@ -17,19 +18,6 @@ from hpn.words.wording import N_, Sentence
 
 LISTED_AT_ONCE = 25
 """Motors that fit of which the page shows the use."""
-
-INERTIA = {
-    "counted": N_("The motor’s own inertia counts. Left out, as not published: the gear’s inertia and no-load losses."),
-    "unknown": N_(
-        "Left out: the motor’s own inertia, which is not given, and the gear’s inertia and no-load losses, which are "
-        "not published."
-    ),
-    "phases": N_(
-        "Left out: the motor’s own inertia, which only a motion lets count, and the gear’s inertia and no-load losses, "
-        "which are not published."
-    ),
-}
-"""Inertias and losses that torques at the motor leave out."""
 
 
 @dataclass(frozen=True)
@@ -91,21 +79,21 @@ class Drive:
     @property
     def left_out(self) -> list[Sentence]:
         """Notes on torques at the motor on the gear: their basis, and what they leave out."""
-        return [self._efficiency(BY_CURVE, known=self.gear.designation in self.catalogue.efficiency), self._inertia]
+        return [
+            self._efficiency(BY_CURVE, known=self.gear.designation in self.catalogue.efficiency),
+            on_motor_torques(self.selection.notices),
+        ]
 
     @property
     def left_out_of_all(self) -> list[Sentence]:
         """The same of every gear."""
         curves = N_("η from your efficiency curves; 1 for a gear that has none, a lower bound.")
-        return [self._efficiency(curves, known=bool(self.catalogue.efficiency)), self._inertia]
+        return [
+            self._efficiency(curves, known=bool(self.catalogue.efficiency)),
+            on_motor_torques(self.selection.notices),
+        ]
 
     def _efficiency(self, curve: str, *, known: bool) -> Sentence:
         if self.application.requirements.efficiency is not None:
             return Sentence(STATED)
         return Sentence(curve if known else LOSS_FREE)
-
-    @property
-    def _inertia(self) -> Sentence:
-        if self.application.duty_cycle.motion is None:
-            return Sentence(INERTIA["phases"])
-        return Sentence(INERTIA["counted" if self.motor and self.motor.inertia_kgm2 is not None else "unknown"])
