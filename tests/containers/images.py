@@ -84,7 +84,7 @@ class Images:
         return True
 
     def _stand_in(self, name: str) -> str:
-        kind, tag = re.match(r"(\w+):([\w.-]+)", name).groups()  # type: ignore[union-attr]
+        kind, tag = re.findall(r"^(\w+):([\w.-]+)", name)[0]
         version, slim = tag.split("-")[0], "slim" in tag
         recipe = (RECIPES / f"{kind}{'-slim' if slim else ''}.dockerfile").read_text()
         recipe = recipe.replace("{major}", version.partition(".")[0])

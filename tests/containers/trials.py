@@ -5,6 +5,7 @@ import time
 import traceback
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import partial
 
 from tests.containers.stack import Stack
 
@@ -35,7 +36,7 @@ class Trials:
         """Try those of a module whose names a pattern finds, each from a healthy stack."""
         for name, body in self.bodies.items():
             if body.__module__ == kind and re.search(wanted, name):
-                self.try_one(name, lambda body=body: _from_healthy(stack, body))  # type: ignore[misc]
+                self.try_one(name, partial(_from_healthy, stack, body))
 
     def try_one(self, name: str, body: Callable[[], str | None]) -> bool:
         """Try one, and print a line; True if it holds."""

@@ -13,7 +13,8 @@ from hpn.engine.checks import BY_CODE
 from hpn.files.export import LOSS_FREE
 from hpn.files.workbook import workbook as sheets
 from hpn.files.workbook.formulas import MOTOR_TORQUES
-from tests.build import TURNING, Json, answer, cycle, phase
+from hpn.web.api.samples import TURNING
+from tests.build import Json, answer, cycle, phase
 from tests.conftest import Supplement
 from tests.property.test_varying_remedy import MOTORS
 from tests.report.cases import CASES, MOTOR, MOVING, language, typed_export_of

@@ -11,8 +11,9 @@ from hpn.catalogue import Catalogue
 from hpn.engine.selection import CheckResult, select
 from hpn.explain import drawings as plots
 from hpn.explain.drawings import Subject
+from hpn.web.api.samples import TURNING
 from hpn.words.reader import Reader
-from tests.build import TURNING, Json, cycle, phase
+from tests.build import Json, cycle, phase
 from tests.conftest import Supplement
 
 CURVES = (

@@ -83,7 +83,7 @@ def test_motors_that_fit_are_listed_each_with_a_link_that_chooses_it(supplied: T
     assert [unescape(name) for _, name in links] == ["M & 1", "M 2"]
     chosen = drive(supplied.get(unescape(links[0][0])).text)
     assert "Torque and speed at the motor M & 1" in words(chosen)
-    assert "The motor’s own inertia counts." in words(chosen)
+    assert "Motor torques include the motor’s own inertia" in words(chosen)
     assert "Gears that fit with M & 1" in words(chosen)
     assert 'data-label="Ratios that fit"' in chosen
     assert re.search(r'<tr class="chosen">\s*<th scope="row">M &amp; 1</th>', chosen)

@@ -9,11 +9,12 @@ import pytest
 from schemathesis.specs.openapi.definitions import OPENAPI_31
 from starlette.testclient import TestClient
 
+from hpn.web.api.samples import TURNING
 from hpn.web.app import create_app
 from hpn.web.door.keys import new_key
 from hpn.web.settings import Settings
 from hpn.words.units import suffix_of, symbol_of
-from tests.build import TURNING, cycle, phase, worked_example
+from tests.build import cycle, phase, worked_example
 
 Json = dict[str, Any]
 FULL = worked_example(

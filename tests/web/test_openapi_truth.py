@@ -10,13 +10,14 @@ import pytest
 from fastapi import FastAPI
 from starlette.testclient import TestClient
 
+from hpn.web.api.samples import LIFTING, TURNING
 from hpn.web.api.schemas import HEADERS
 from hpn.web.app import create_app
 from hpn.web.door.access import MAXIMUM_QUERY_BYTES
 from hpn.web.door.keys import new_key
 from hpn.web.door.observation import SECURITY_HEADERS
 from hpn.web.settings import Settings
-from tests.build import LIFTING, TURNING, worked_example
+from tests.build import worked_example
 from tests.web.test_openapi import FULL
 
 Json = dict[str, Any]

@@ -49,8 +49,10 @@ REPLACED = "\ufffd"
 class LinesTable(Table):
     """A table in lines."""
 
-    first_byte = 0
-    """Place in the file where the rows begin."""
+    @property
+    def first_byte(self) -> int:
+        """Place in the file where the rows begin."""
+        return 0
 
     def open(self) -> BinaryIO:
         """The file, to be read from its start."""
@@ -142,7 +144,7 @@ class CsvTable(LinesTable):
         return self._header[0]
 
     @property
-    def first_byte(self) -> int:  # type: ignore[override]
+    def first_byte(self) -> int:
         return self._header[1]
 
     @cached_property

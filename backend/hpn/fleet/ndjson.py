@@ -55,7 +55,7 @@ class NdjsonTable(LinesTable):
         return list(dict.fromkeys((AXIS, *phases, *others, *self._first)))
 
     @property
-    def first_byte(self) -> int:  # type: ignore[override]
+    def first_byte(self) -> int:
         return len(BOM) if self.head.startswith(BOM) else 0
 
     @cached_property

@@ -202,30 +202,29 @@ def _points(loads: Sequence[PhaseLoad], reader: Reader, *, with_use: bool = True
 def _rings(loads: Sequence[PhaseLoad], governing: Sequence[int], reader: Reader) -> list[Figure]:
     """Trace of rings around the loads of the phases that govern, none where there is no such load."""
     places = set(governing)
-    ringed = [load for load in loads if not places.isdisjoint(load.places)]
-    ring = points("governing", size=18) | {
-        "mode": "markers",
-        "name": said(Sentence("Governing phase"), reader),
-        "marker": {"size": 18, "symbol": "diamond-open", "color": "var(--governing)", "line": {"width": 2}},
-        "x": shown((load.radial_N for load in ringed), "N", reader),
-        "y": shown((load.axial_N for load in ringed), "N", reader),
-        "hoverinfo": "skip",
-    }
-    return [ring] if ringed else []
+    at = [(load.radial_N, load.axial_N) for load in loads if not places.isdisjoint(load.places)]
+    marker = {"size": 18, "symbol": "diamond-open", "color": "var(--governing)", "line": {"width": 2}}
+    return _marks("governing", said(Sentence("Governing phase"), reader), marker, at, reader)
 
 
 def _given(loads: Sequence[PhaseLoad], reader: Reader) -> list[Figure]:
     """Trace of hollow points of the loads as they act, none where all act at the shaft's centre."""
-    beside = [load for load in loads if load.has_lever]
-    hollow = points("given", size=9) | {
+    at = [(load.given_N, load.axial_N) for load in loads if load.has_lever]
+    marker = {"size": 9, "symbol": "circle-open", "color": "var(--ink)", "line": {"width": 1.5}}
+    return _marks("given", said(Sentence("Load where it acts"), reader), marker, at, reader)
+
+
+def _marks(kind: str, name: str, marker: Figure, at: Sequence[tuple[float, float]], reader: Reader) -> list[Figure]:
+    """Trace of open marks at radial and axial loads in N, none where there is no load."""
+    trace = points(kind, size=marker["size"]) | {
         "mode": "markers",
-        "name": said(Sentence("Load where it acts"), reader),
-        "marker": {"size": 9, "symbol": "circle-open", "color": "var(--ink)", "line": {"width": 1.5}},
-        "x": shown((load.given_N for load in beside), "N", reader),
-        "y": shown((load.axial_N for load in beside), "N", reader),
+        "name": name,
+        "marker": marker,
+        "x": shown((radial for radial, _ in at), "N", reader),
+        "y": shown((axial for _, axial in at), "N", reader),
         "hoverinfo": "skip",
     }
-    return [hollow] if beside else []
+    return [trace] if at else []
 
 
 def _hover(load: PhaseLoad, reader: Reader, *, with_use: bool) -> str:
