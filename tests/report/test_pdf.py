@@ -256,5 +256,5 @@ def test_nothing_leaves_the_type_area_or_runs_into_the_footer(case: str, made: M
 
 def test_a_figure_never_stands_on_another(made: Make) -> None:
     """Long German labels once pushed symbols and numbers of a table over each other."""
-    page = text(made("everything", GERMAN), GERMAN, 1)
+    page = text(made("everything", GERMAN), GERMAN)
     assert re.search(r"Lagerlebensdauer L50\s+Lb,50\s+84\s*437 h", page)
