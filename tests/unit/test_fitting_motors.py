@@ -49,13 +49,17 @@ def application_of(load: Json, asked: Json) -> Application:
     return Application.model_validate(load | {"requirements": asked | more})
 
 
+OWN = "size,ratio,stages,inertia_kgm2,no_load_torque_Nm,source\n20A,5,1,0.002,0.5,\n"
+
+
+@pytest.mark.parametrize("own", [{}, {"gears": OWN}], ids=["", "own inertia"])
 @pytest.mark.parametrize("asked", ASKED)
 @pytest.mark.parametrize("load", LOADS.values(), ids=LOADS)
 @pytest.mark.parametrize("designation", ["HPN-20A-5", "HPN-20A-15"])
 def test_use_of_a_motor_is_what_select_finds_with_it(
-    supplemented: Supplement, load: Json, asked: Json, designation: str
+    supplemented: Supplement, load: Json, asked: Json, designation: str, own: dict[str, str]
 ) -> None:
-    catalogue = supplemented(motors=MOTORS, efficiency=CURVE)
+    catalogue = supplemented(motors=MOTORS, efficiency=CURVE, **own)
     application = application_of(load, asked)
     uses = motors_on(application, catalogue.by_designation[designation], catalogue)
 

@@ -5,7 +5,7 @@ from functools import cached_property
 
 import numpy as np
 
-from hpn.catalogue import Catalogue, GearList
+from hpn.catalogue import Catalogue, GearColumns, GearList
 from hpn.catalogue.gear import Gear
 from hpn.engine.duty import Duty
 from hpn.engine.stops import Stops
@@ -338,21 +338,56 @@ def _with_own_inertia(
         if curved[place]:
             for at, T in enumerate((course.peak_torque_Nm, course.rms_torque_Nm)):
                 eta[at, row] = efficiency_along(catalogue, gears.rows[place], T)
-    some = list(first.values())
-    own_inertia, without_load = (
-        np.nan_to_num(column[some]) for column in (gears.columns.inertia_kgm2, gears.columns.no_load_torque_Nm)
-    )
-    peak, rms = motor_torques(
+    peak, rms = torques_along(
         course,
-        ratio=gears.columns.ratio[some],
+        gears.columns,
+        list(first.values()),
         efficiency_at_peak=eta[0],
         efficiency_at_rms=eta[1],
-        motor_inertia_kgm2=inertia_kgm2 + own_inertia,
+        inertia_kgm2=inertia_kgm2,
         pause_s=duty.asked["duty_cycle.pause_s"].item(index),
-        no_load_torque_Nm=without_load,
     )
     rows = [list(first).index(kind) for kind in kinds]
     return peak[rows], rms[rows]
+
+
+def torques_along(
+    course: Course,
+    gears: GearColumns,
+    places: list[int],
+    *,
+    efficiency_at_peak: FloatArray,
+    efficiency_at_rms: FloatArray,
+    inertia_kgm2: float | FloatArray,
+    pause_s: float,
+) -> tuple[FloatArray, FloatArray]:
+    """Peak and RMS torque in Nm of motors with an inertia of their own along a motion, on the gears at some places.
+
+    Of one motor on many gears, or of many motors on one gear; shape (gears,) or (motors,). The gear's own inertia and
+    torque without load count where they are known.
+    """
+    own_inertia, without_load = (
+        np.nan_to_num(column[places]) for column in (gears.inertia_kgm2, gears.no_load_torque_Nm)
+    )
+    return motor_torques(
+        course,
+        ratio=gears.ratio[places],
+        efficiency_at_peak=efficiency_at_peak,
+        efficiency_at_rms=efficiency_at_rms,
+        motor_inertia_kgm2=inertia_kgm2 + own_inertia,
+        pause_s=pause_s,
+        no_load_torque_Nm=without_load,
+    )
+
+
+def inertia_ratio(duty: Duty, gears: GearColumns, motor_inertia_kgm2: FloatArray) -> FloatArray:
+    """Inertia of the load at the motor, with the gear's own where it is known, over the motor's; broadcasts. [-]"""
+    return equations.inertia_ratio(
+        load_inertia_kgm2=duty.load_inertia_kgm2,
+        ratio=gears.ratio,
+        motor_inertia_kgm2=motor_inertia_kgm2,
+        gear_inertia_kgm2=np.nan_to_num(gears.inertia_kgm2),
+    )
 
 
 def efficiency_along(catalogue: Catalogue, gear: Gear, torque_Nm: FloatArray) -> FloatArray:

@@ -10,11 +10,9 @@ from hpn.catalogue import Catalogue, GearList, ListedMotor
 from hpn.catalogue.gear import Gear
 from hpn.engine.checks.motor import MOTOR
 from hpn.engine.duty import Duty
-from hpn.engine.figures import Figures, efficiencies
+from hpn.engine.figures import Figures, efficiencies, inertia_ratio, torques_along
 from hpn.engine.selection import Candidate, CheckResult, Selection
-from hpn.physics import equations
 from hpn.physics.equations import ROUNDING, FloatArray
-from hpn.physics.motion import Course, motor_torques
 
 MOTOR_CHECKS = tuple(check.code for check in MOTOR)
 """Codes of the checks of the motor."""
@@ -88,35 +86,26 @@ def _utilisations(
     )
     heavy = np.flatnonzero(~np.isnan(own["inertia_kgm2"]))
     if duty.courses and heavy.size:
-        pause_s = application.duty_cycle.pause_s
-        peak[heavy], rms[heavy] = _along(duty.courses[0], duty, gear, catalogue, own["inertia_kgm2"][heavy], pause_s)
-    inertia_ratio = equations.inertia_ratio(
-        load_inertia_kgm2=duty.load_inertia_kgm2.item(), ratio=gear.ratio, motor_inertia_kgm2=own["inertia_kgm2"]
-    )
+        at_peak, at_rms = efficiencies(duty, gear, catalogue)
+        peak[heavy], rms[heavy] = torques_along(
+            duty.courses[0],
+            figures.gears.columns,
+            [0],
+            efficiency_at_peak=at_peak,
+            efficiency_at_rms=at_rms,
+            inertia_kgm2=own["inertia_kgm2"][heavy],
+            pause_s=application.duty_cycle.pause_s,
+        )
+    ratios = inertia_ratio(duty, figures.gears.columns, own["inertia_kgm2"])[0]
     most = _known(asked.inertia_ratio if asked else None)
     used = {
         "motor_speed": figures.maximum_input_speed_rpm.item() / own["maximum_speed_rpm"],
         "motor_peak_torque": peak / own["peak_torque_Nm"],
         "motor_rated_torque": rms / own["rated_torque_Nm"],
         "motor_rated_speed": figures.average_input_speed_rpm.item() / own["rated_speed_rpm"],
-        "inertia_ratio": inertia_ratio / most,
+        "inertia_ratio": ratios / most,
     }
-    return used, inertia_ratio
-
-
-def _along(
-    course: Course, duty: Duty, gear: Gear, catalogue: Catalogue, inertia_kgm2: FloatArray, pause_s: float
-) -> tuple[FloatArray, FloatArray]:
-    """Peak and RMS torque of motors along a motion, their own inertia included."""
-    at_peak, at_rms = efficiencies(duty, gear, catalogue)
-    return motor_torques(
-        course,
-        ratio=np.array([gear.ratio], float),
-        efficiency_at_peak=at_peak,
-        efficiency_at_rms=at_rms,
-        motor_inertia_kgm2=inertia_kgm2,
-        pause_s=pause_s,
-    )
+    return used, ratios
 
 
 def _without_motor(application: Application) -> Application:

@@ -1,9 +1,7 @@
 """Checks of the motor, against the limits that the user states: speeds, torques and the inertia ratio."""
 
-import numpy as np
-
 from hpn.engine.check import Check, Sheet
-from hpn.physics import equations
+from hpn.engine.figures import inertia_ratio
 from hpn.words.wording import N_
 
 MOTOR: tuple[Check, ...] = (
@@ -120,12 +118,7 @@ MOTOR: tuple[Check, ...] = (
         ),
         remedy=N_("Take a larger ratio, a motor with more inertia, or a lighter load."),
         asked="requirements.motor.inertia_ratio",
-        demand=lambda c: equations.inertia_ratio(
-            load_inertia_kgm2=c.duty.load_inertia_kgm2,
-            ratio=c.gears.ratio,
-            motor_inertia_kgm2=c.asked["requirements.motor.inertia_kgm2"],
-            gear_inertia_kgm2=np.nan_to_num(c.gears.inertia_kgm2),
-        ),
+        demand=lambda c: inertia_ratio(c.duty, c.gears, c.asked["requirements.motor.inertia_kgm2"]),
         sheet=Sheet('IF(J_L="","",J_L/({i}^2*J_m))', "r_J"),
         relation="(J_L / i² + J_g) / J_m ≤ r_J",
         accepted=N_("the permitted inertia ratio rises to {value}"),
