@@ -128,18 +128,20 @@ def test_the_gear_loses_in_the_sense_of_the_power_as_worked_out_by_hand() -> Non
     assert float(T_k) == pytest.approx(93.58, abs=5e-3)
 
 
+@pytest.mark.parametrize("motor_inertia_kgm2", [0.0015, 1.5])
 @pytest.mark.parametrize("opposing_Nm", [-20.0, 0.0, 15.0, 100.0, 400.0])
-def test_power_balances_in_the_gear_whichever_side_drives(opposing_Nm: float) -> None:
+def test_power_balances_in_the_gear_whichever_side_drives(opposing_Nm: float, motor_inertia_kgm2: float) -> None:
     # Motor: i T_B + S = m a, load: T_opp - T = -J a, and the driven side gets η of what the driving one gives.
-    eta, brake = 0.8, Brake(**EXAMPLE, efficiency=0.8)
+    eta, brake = 0.8, Brake(**EXAMPLE | {"motor_inertia_kgm2": motor_inertia_kgm2}, efficiency=0.8)
     a = float(stop.deceleration(brake=brake, opposing_torque_Nm=opposing_Nm))
     T_r = float(stop.stop_torque_at_rest(brake=brake, opposing_torque_Nm=opposing_Nm))
-    m = EXAMPLE["ratio"] ** 2 * EXAMPLE["motor_inertia_kgm2"]
+    m = EXAMPLE["ratio"] ** 2 * motor_inertia_kgm2
     at_motor = (
         m * a - EXAMPLE["ratio"] * EXAMPLE["torque_Nm"]
     )  # in the sense of the motion, as T_r keeps the load going
     assert T_r == pytest.approx(0.8 * a - opposing_Nm, rel=1e-12)
     assert -at_motor == pytest.approx(T_r * eta if T_r >= 0 else T_r / eta, rel=1e-9)
+    assert (T_r < 0) == (motor_inertia_kgm2 > 1 and opposing_Nm >= 15)
 
 
 def test_without_an_inertia_the_whole_torque_of_the_brake_counts() -> None:
@@ -201,6 +203,21 @@ def test_the_largest_brake_torque_is_that_at_which_the_stop_torque_is_just_permi
             asked = Brake(most, 5, brake.motor_inertia_kgm2, 0.8, eta)
             T_k = stop.stop_torque(brake=asked, opposing_torque_Nm=T_opp, dynamic_factor=f)
             assert float(T_k) == pytest.approx(156, rel=1e-11)
+
+
+def test_no_torque_of_the_brake_is_left_where_the_load_takes_it_all() -> None:
+    """f = 2 and T_opp = 200 Nm: T_k is 200 Nm and more, above the 156 Nm that are permissible."""
+    most = stop.largest_brake_torque(
+        brake=Brake(**EXAMPLE), opposing_torque_Nm=200.0, dynamic_factor=2.0, permissible_torque_Nm=156.0
+    )
+    assert float(most) == 0
+
+
+def test_a_load_that_pushes_a_heavy_motor_on_still_winds_the_gear_up() -> None:
+    """m = 37.5, J = 0.8 kgm², T_opp = 100 Nm: T_r = 0.8 · 140 / 38.3 - 100 = -97.1 Nm, and T_k = 2 · 97.1 + 100."""
+    heavy = Brake(**EXAMPLE | {"motor_inertia_kgm2": 1.5})
+    T_k = float(stop.stop_torque(brake=heavy, opposing_torque_Nm=100.0, dynamic_factor=2.0))
+    assert T_k == pytest.approx(2 * (100 - 0.8 * 140 / 38.3) + 100, rel=1e-12)
 
 
 def test_what_the_gear_alone_catches_winds_it_up_to_its_momentary_peak_torque() -> None:

@@ -187,6 +187,61 @@ def test_a_brake_that_does_not_stop_or_hold_the_load_is_told(catalogue: Catalogu
     assert gear is not None and alternatives_of(gear) == ()
 
 
+def hanging(mass_kg: float, brake: Json, **requirements: Any) -> Json:
+    """A mass at 250 mm that turns over the top, and the brake that stops it."""
+    mechanism = {"type": "rotary", "inertia_kgm2": mass_kg * 0.07} | {"gravity_mass_kg": mass_kg}
+    moves = [{"profile": "trapezoidal", "angle_deg": 90, "time_s": 2}]
+    motion = {"mechanism": mechanism | {"gravity_radius_mm": 250}, "moves": moves}
+    return {
+        "duty_cycle": {"motion": motion},
+        "emergency_stop": {"brake": brake},
+        "requirements": {"ratios": [5]} | requirements,
+    }
+
+
+@pytest.mark.parametrize("motor", [{}, {"motor": {"inertia_kgm2": 0.0015}}])
+def test_a_brake_below_gravity_fails_whether_the_inertia_of_the_motor_is_known_or_not(
+    catalogue: Catalogue, motor: Json
+) -> None:
+    """36 kg at 250 mm: 88.3 Nm, against 50 Nm of the brake at the output, with which T_k is below T_M."""
+    reply = answer(hanging(36, {"torque_Nm": 10}, **motor), catalogue)
+    found = check(reply, GEAR, "momentary_peak_torque")
+
+    assert found["demand"] < found["limit"]
+    assert (found["status"], found["utilisation"]) == ("fail", None)
+
+
+@pytest.mark.parametrize("motor", [{}, {"motor": {"inertia_kgm2": 0.0015}}])
+def test_no_brake_is_offered_that_would_not_stop_the_load(catalogue: Catalogue, motor: Json) -> None:
+    """At T_M the brake could have 87 Nm at the output, at T_R 32 Nm: gravity has 88.3 Nm."""
+    reserve = candidate(answer(hanging(36, {"torque_Nm": 40}, **motor), catalogue), GEAR)["reserve"]
+
+    assert (reserve["brake_torque_Nm"], reserve["brake_torque_repeated_Nm"]) == (0, 0)
+
+
+def test_no_brake_is_offered_where_the_load_alone_exceeds_the_torque_in_every_stop(catalogue: Catalogue) -> None:
+    """Friction of 130 Nm on a light load that a heavy motor drives on: T_k is above T_R of 149 Nm at every brake.
+
+    What lets T_k fall with the friction raises it without: 2 · i T_B J / (J + i² J_m) is 149 Nm at the most.
+    """
+    mechanism = {"type": "rotary", "inertia_kgm2": 0.005, "friction_torque_Nm": 130}
+    motion = {"mechanism": mechanism, "moves": [{"profile": "trapezoidal", "angle_deg": 90, "time_s": 2}]}
+    asked = {"ratios": [5], "motor": {"inertia_kgm2": 0.01}}
+    stop = {"brake": {"torque_Nm": 8}}
+    reply = answer({"duty_cycle": {"motion": motion}, "emergency_stop": stop, "requirements": asked}, catalogue)
+    gear = candidate(reply, GEAR)
+
+    a = (40 + 130) / (0.25 + 0.005)
+    assert gear["stop_torque_Nm"] == pytest.approx(2 * abs(0.005 * a - 130) + 130, rel=1e-12)
+    assert gear["reserve"]["brake_torque_repeated_Nm"] == 0
+
+
+def test_a_gear_that_is_not_rated_has_no_largest_brake_torque(catalogue: Catalogue) -> None:
+    reserve = candidate(answer(braking({"torque_Nm": 8}), catalogue), "HPN-40A-5")["reserve"]
+
+    assert (reserve["brake_torque_Nm"], reserve["brake_torque_repeated_Nm"]) == (None, None)
+
+
 def test_without_the_inertias_the_whole_brake_counts_and_no_time_is_invented(catalogue: Catalogue) -> None:
     reply = answer(BOTH_WAYS | {"emergency_stop": {"brake": {"torque_Nm": 8}, "count": 100}}, catalogue)
     gear = candidate(reply, GEAR)

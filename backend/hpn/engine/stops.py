@@ -1,6 +1,6 @@
 """Emergency stops by the brake on gears: torque, time, angle and energy, and how hard the brake may be."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -10,6 +10,9 @@ from hpn.catalogue import GearColumns
 from hpn.engine.duty import Duty
 from hpn.physics import stop
 from hpn.physics.equations import FloatArray
+
+SOLVED = 1e-9
+"""Relative room of a torque that was solved for and is put back into its equation."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,8 +56,11 @@ class Stops:
     @cached_property
     def torque_Nm(self) -> FloatArray:
         """Largest torque T_k of the gear in Nm."""
+        return self._torque_of(self.brake)
+
+    def _torque_of(self, brake: stop.Brake) -> FloatArray:
         torques = [
-            stop.stop_torque(brake=self.brake, opposing_torque_Nm=T_opp, dynamic_factor=self.dynamic_factor)
+            stop.stop_torque(brake=brake, opposing_torque_Nm=T_opp, dynamic_factor=self.dynamic_factor)
             for T_opp in self.opposing_torques_Nm
         ]
         T_k: FloatArray = np.maximum.reduce(torques)
@@ -74,11 +80,15 @@ class Stops:
 
     @cached_property
     def never_stops(self) -> NDArray[np.bool_]:
-        """True where the brake does not stop the load, shape (N, G)."""
-        return stop.deceleration(brake=self.brake, opposing_torque_Nm=self.duty.opposing_torque_Nm[0]) <= 0
+        """True where the brake does not stop the load, shape (N, G); False without a brake."""
+        given = ~np.isnan(self.brake.torque_Nm)
+        return given & ~stop.is_stopped(brake=self.brake, opposing_torque_Nm=self.duty.opposing_torque_Nm[0])
 
     def largest_brake_torque_Nm(self, permissible_torque_Nm: FloatArray) -> FloatArray:
-        """Largest torque T_B of the brake in Nm at which no stop exceeds a permissible torque of the gear."""
+        """Largest torque T_B of the brake in Nm at which no stop exceeds a permissible torque of the gear.
+
+        0 where none both keeps to it and stops the load; NaN where the torque is not published.
+        """
         torques = [
             stop.largest_brake_torque(
                 brake=self.brake,
@@ -89,4 +99,7 @@ class Stops:
             for T_opp in self.opposing_torques_Nm
         ]
         T_B: FloatArray = np.minimum.reduce(torques)
-        return T_B
+        brake = replace(self.brake, torque_Nm=T_B)
+        keeps = self._torque_of(brake) <= permissible_torque_Nm * (1 + SOLVED)
+        stops = stop.is_stopped(brake=brake, opposing_torque_Nm=self.duty.opposing_torque_Nm[0])
+        return np.where(np.isnan(T_B) | (keeps & stops), T_B, 0.0)

@@ -7,8 +7,9 @@ and friction of the load, negative where the load drives. Arguments broadcast; N
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
-from hpn.physics.equations import FloatArray, equation
+from hpn.physics.equations import ROUNDING, FloatArray, equation
 
 Figure = FloatArray | float
 
@@ -58,6 +59,13 @@ def _deceleration(brake: Brake, T_opp: Figure, eta: Figure) -> FloatArray:
     return np.asarray((np.multiply(brake.ratio, brake.torque_Nm) + np.multiply(eta, T_opp)) / inertia)
 
 
+def is_stopped(*, brake: Brake, opposing_torque_Nm: Figure) -> NDArray[np.bool_]:
+    """True where the brake decelerates the load, i T_B + η T_opp > 0, whatever the inertias are."""
+    driving = -np.multiply(brake.efficiency, opposing_torque_Nm)
+    stopped: NDArray[np.bool_] = np.multiply(brake.ratio, brake.torque_Nm) > driving * (1 + ROUNDING)
+    return stopped
+
+
 @equation
 def stop_torque_at_rest(*, brake: Brake, opposing_torque_Nm: Figure) -> FloatArray:
     """Torque T_r = J a - T_opp in Nm that the gear bears while both ends slow down as one body.
@@ -96,7 +104,7 @@ def largest_brake_torque(
     inertia = np.square(brake.ratio) * brake.motor_inertia_kgm2 + eta * brake.load_inertia_kgm2
     rigid = (a * inertia - eta * T_opp) / brake.ratio
     largest = np.where(np.isnan(rigid), T_r * eta / brake.ratio, rigid)
-    return np.where(T_r >= 0, np.maximum(largest, 0.0), 0.0)
+    return np.where(T_r < 0, 0.0, np.maximum(largest, 0.0))
 
 
 @dataclass(frozen=True, eq=False)
@@ -131,7 +139,7 @@ def course_of_stop(
         c = T_opp / inertia
         a = deceleration(brake=brake, opposing_torque_Nm=T_opp)
         slower = omega - c * dead
-        alone, stops = slower <= 0, a > 0
+        alone, stops = slower <= 0, is_stopped(brake=brake, opposing_torque_Nm=T_opp)
         time = np.where(alone, omega / c, np.where(stops, dead + slower / a, np.inf))
         angle = omega * dead - c * dead**2 / 2 + slower**2 / (2 * a)
         angle = np.where(alone, omega**2 / (2 * c), np.where(stops, angle, np.inf))
