@@ -80,17 +80,10 @@ def test_splitting_a_move_at_any_instant_changes_nothing(motion: Json, shares: l
 @given(motions())
 def test_the_phases_can_be_typed_and_give_the_same_reply(motion: Json) -> None:
     moving = answer({"duty_cycle": {"motion": motion, "pause_s": 1.5}}, CATALOGUE)
-    phases, inertia = moving["duty"]["phases"], {"load_inertia_kgm2": moving["duty"]["load_inertia_kgm2"]}
-    typed = answer({"duty_cycle": {"phases": phases, "pause_s": 1.5}, "requirements": inertia}, CATALOGUE)
+    phases, asked = moving["duty"]["phases"], {"load_inertia_kgm2": moving["duty"]["load_inertia_kgm2"]}
+    asked["load_reverses"] = False  # no sign is missing
+    typed = answer({"duty_cycle": {"phases": phases, "pause_s": 1.5}, "requirements": asked}, CATALOGUE)
 
-    for reply in (moving, typed):
-        for candidate in reply["candidates"]:
-            del candidate["position_error_mm"]  # a linear mechanism has the radius, which typed phases lack
-    errors = (
-        [candidate.pop("position_error_arcmin") for candidate in reply["candidates"]] for reply in (moving, typed)
-    )
-    for signed, both_ways in zip(*errors, strict=True):  # the peak of a phase has no sign of its own
-        assert signed is both_ways is None or signed <= both_ways * (1 + CLOSE)
     assert moving["candidates"] == typed["candidates"]
     assert {name: moving["duty"][name] for name in FIGURES} == typed["duty"]
 
