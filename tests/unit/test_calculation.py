@@ -6,8 +6,9 @@ from hpn.application import Application
 from hpn.catalogue import Catalogue
 from hpn.engine.selection import select
 from hpn.explain.calculation import Step, calculation_of
-from hpn.explain.calculation.formula import Constant, Term, Variable
+from hpn.explain.calculation.formula import Constant, Term, Variable, value_of
 from hpn.explain.calculation.mathml import mathml, with_numbers
+from hpn.web.api.samples import LIFTING, TURNING
 from hpn.words.reader import Reader
 from tests.build import Json, cycle, phase, worked_example
 from tests.conftest import Supplement
@@ -81,6 +82,33 @@ def test_efficiency_curve_of_a_supplement_enters_phase_by_phase(supplemented: Su
     line = steps["motor_peak_torque"].lines[0]
     assert line.result.value == pytest.approx(40 / (5 * 0.875), rel=1e-12)
     assert "curve that you supplied" in steps["motor_rated_torque"].notes[0].text
+
+
+OWN = "size,ratio,stages,inertia_kgm2,no_load_torque_Nm,source\n20A,5,1,0.002,0.5,own\n"
+CURVE = "size,ratio,torque_Nm,efficiency,source\n20A,5,10,0.7,own\n20A,5,30,0.9,own\n"
+LIMITS = {"peak_torque_Nm": 50.0, "rated_torque_Nm": 30.0}
+
+
+@pytest.mark.parametrize("curve", [{}, {"efficiency": CURVE}], ids=["", "curve"])
+@pytest.mark.parametrize("eta", [{}, {"efficiency": 0.85}], ids=["", "stated"])
+@pytest.mark.parametrize("inertia", [{}, {"inertia_kgm2": 0.0004}], ids=["", "inertia"])
+@pytest.mark.parametrize(
+    "cycle_of", [worked_example()["duty_cycle"], {"motion": TURNING}, {"motion": LIFTING}], ids=range(3)
+)
+def test_a_motor_s_torques_are_those_of_its_checks_where_the_gear_has_inertia_and_losses(
+    supplemented: Supplement, cycle_of: Json, inertia: Json, eta: Json, curve: dict[str, str]
+) -> None:
+    """Two ways: the formula as it is written out, and the kernel's arrays."""
+    catalogue = supplemented(gears=OWN, **curve)
+    document = {"duty_cycle": cycle_of, "requirements": {"motor": LIMITS | inertia, "ratios": [5]} | eta}
+    steps = steps_of(document, "HPN-20A-5", catalogue)
+    found = select(Application.model_validate(document), catalogue).candidate("HPN-20A-5")
+
+    assert found is not None
+    for code in ("motor_peak_torque", "motor_rated_torque"):
+        demand = next(check.demand for check in found.checks if check.code == code)
+        assert steps[code].lines[0].result.value == pytest.approx(demand, rel=1e-12)
+        assert value_of(steps[code].lines[0].formula) == pytest.approx(demand, rel=1e-12)
 
 
 def test_texts_in_a_formula_are_escaped() -> None:

@@ -1,6 +1,7 @@
 """The motor: peak torque without the emergency stop, RMS over the cycle with its pause, inertia ratio. Not printed."""
 
-from collections.abc import Iterable
+import math
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -31,6 +32,7 @@ SQUARED = Constant(2)
 EFFICIENCY = Variable.of(INPUTS["requirements.efficiency"].symbol)
 MOTOR_PEAK, MOTOR_RMS = Variable("T", "in,max"), Variable("T", "in,rms")
 STATED = N_("η as you state it.")
+OWN = N_("The gear’s own inertia and torque without load count as you supplied them; at rest the latter is 0.")
 LOSS_FREE = N_("η = 1, since no efficiency is known: loss-free, a lower bound.")
 BY_CURVE = N_("η of every phase from the efficiency curve that you supplied; beyond its ends that of the nearer end.")
 
@@ -46,8 +48,8 @@ def _torques(sheet: Sheet) -> Iterable[Step]:
     if course is not None and inertia is not None:
         return _along_the_motion(sheet, course, inertia)
     stated = sheet.given("requirements.efficiency")
-    if stated is None and sheet.gear.designation in sheet.catalogue.efficiency:
-        return _by_curve(sheet)
+    if (stated is None and sheet.gear.designation in sheet.catalogue.efficiency) or sheet.gear.no_load_torque_Nm:
+        return _by_phase(sheet)
     eta = stated or Term(EFFICIENCY, 1.0)
     shaft = Product((sheet.i, eta))
     squares = over_phases(lambda T, t: Product((Power(T, SQUARED), t)), sheet.rms_torque, sheet.time)
@@ -60,20 +62,36 @@ def _torques(sheet: Sheet) -> Iterable[Step]:
 
 def _along_the_motion(sheet: Sheet, course: Course, inertia: Term) -> Iterable[Step]:
     """Torques with the motor's own inertia: the peak at its instant, the RMS from that of each phase."""
-    common = Sentence(
-        N_("From T / (i · η) + J_m · i · α at every instant of the motion; T · η / i where the load drives.")
-    )
+    inertia, T_0 = _own_inertia(sheet, inertia), _without_load(sheet)
+    text = N_("From T / (i · η) + J_m · i · α at every instant of the motion; T · η / i where the load drives.")
+    own = [Sentence(OWN)] if sheet.gear.inertia_kgm2 or T_0 else []
+    common = (Sentence(text), *own)
     at_peak, at_rms = (_efficiencies(sheet, torque) for torque in (course.peak_torque_Nm, course.rms_torque_Nm))
     squares = square_torque(
-        course, ratio=np.array([sheet.i.value]), efficiency=at_rms[None], motor_inertia_kgm2=inertia.value
+        course,
+        ratio=np.array([sheet.i.value]),
+        efficiency=at_rms[None],
+        motor_inertia_kgm2=inertia.value,
+        no_load_torque_Nm=T_0,
     )[0]
     of_phases = PhaseValues(MOTOR_RMS, np.sqrt(np.maximum(squares, 0.0) / course.duration_s), "Nm")
     series = over_phases(lambda T, t: Product((Power(T, SQUARED), t)), of_phases, sheet.time)
     peak, notes = _at_its_instant(sheet, course, inertia, at_peak)
-    yield _step(sheet, "motor_peak_torque", MOTOR_PEAK, peak, common, *notes)
+    yield _step(sheet, "motor_peak_torque", MOTOR_PEAK, peak, *common, *notes)
     rated = Root(Quotient(series, sheet.cycle_time))
     of_each = Sentence(N_("T_in,rms of a phase is the RMS of the motor’s torque over the course of that phase."))
-    yield _step(sheet, "motor_rated_torque", MOTOR_RMS, rated, common, of_each)
+    yield _step(sheet, "motor_rated_torque", MOTOR_RMS, rated, *common, of_each)
+
+
+def _own_inertia(sheet: Sheet, motor: Term) -> Term:
+    """Inertia at the input: the motor's, with the gear's own where it is known."""
+    own = sheet.gear.inertia_kgm2
+    return replace(motor, value=motor.value + own) if own else motor
+
+
+def _without_load(sheet: Sheet) -> float:
+    """Torque of the gear without load in Nm; 0 where it is not known."""
+    return sheet.gear.no_load_torque_Nm or 0.0
 
 
 def _at_its_instant(
@@ -81,16 +99,21 @@ def _at_its_instant(
 ) -> tuple[Formula, tuple[Sentence, ...]]:
     """Largest torque as the parts of the load and of the motor's inertia, with notes on both."""
     i = sheet.i.value
-    instant = peak_instant(course, ratio=i, efficiency=efficiency, motor_inertia_kgm2=inertia.value)
+    T_0 = _without_load(sheet)
+    instant = peak_instant(
+        course, ratio=i, efficiency=efficiency, motor_inertia_kgm2=inertia.value, no_load_torque_Nm=T_0
+    )
     eta = Term(EFFICIENCY, efficiency.item(instant.phase))
     T, own = instant.torque_Nm, inertia.value * i * instant.acceleration_rad_per_s2
     at_motor = T / (i * eta.value) if instant.is_driven else T * eta.value / i
     load = Term(Variable("T"), abs(T), "Nm")
     borne = Quotient(load, Product((sheet.i, eta))) if instant.is_driven else Quotient(Product((load, eta)), sheet.i)
     accelerated = Term(Variable("T", "J"), abs(own), "Nm")
-    formula: Formula = Sum((borne, accelerated))
-    if at_motor * own < 0:
-        formula = Subtraction(*((borne, accelerated) if abs(at_motor) > abs(own) else (accelerated, borne)))
+    parts: list[tuple[float, Formula]] = [(at_motor, borne), (own, accelerated)]
+    if T_0:
+        without_load = T_0 * np.sign(course.speed_rpm.item(instant.phase))
+        parts.append((without_load, Term(Variable("T", "0"), T_0, "Nm")))
+    formula = _magnitude_of(parts)
     values: dict[str, Value] = {
         "phase": instant.phase + 1,
         "inertia": Quantity(inertia.value, "kgm2", 6),
@@ -102,6 +125,16 @@ def _at_its_instant(
         "T_J = J_m · i · α = {torque}."
     )
     return formula, (Sentence(text, values), *_on_efficiency(sheet))
+
+
+def _magnitude_of(parts: Sequence[tuple[float, Formula]]) -> Formula:
+    """Magnitude of a sum of signed values, each with the formula of its magnitude."""
+    sense = math.fsum(value for value, _ in parts) >= 0
+    formula: Formula = Sum(tuple(part for value, part in parts if (value >= 0) == sense))
+    for value, part in parts:
+        if (value >= 0) != sense:
+            formula = Subtraction(formula, part)
+    return formula
 
 
 def _efficiencies(sheet: Sheet, torque_Nm: FloatArray) -> FloatArray:
@@ -122,30 +155,32 @@ def _on_efficiency(sheet: Sheet) -> tuple[Sentence]:
 # --- Phase by phase ---------------------------------------------------------------------------------------------------
 
 
-def _by_curve(sheet: Sheet) -> Iterable[Step]:
+def _by_phase(sheet: Sheet) -> Iterable[Step]:
     """Motor torques phase by phase, the efficiency read at the peak for the peak and at the RMS for the RMS."""
     eta, eta_rms = (
-        PhaseValues(EFFICIENCY, efficiency_along(sheet.catalogue, sheet.gear, torque.values))
-        for torque in (sheet.peak_torque, sheet.rms_torque)
+        PhaseValues(EFFICIENCY, _efficiencies(sheet, torque.values)) for torque in (sheet.peak_torque, sheet.rms_torque)
     )
+    T_0 = PhaseValues(Variable("T", "0"), np.where(sheet.speed.values > 0, _without_load(sheet), 0.0), "Nm")
 
-    def at_motor(T: Formula, eta: Formula) -> Formula:
-        return Quotient(T, Product((sheet.i, eta)))
+    def at_motor(T: Formula, eta: Formula, T_0: Formula) -> Formula:
+        driven = Quotient(T, Product((sheet.i, eta)))
+        return Sum((driven, T_0)) if _without_load(sheet) else driven
 
     def of_phase(index: str, place: int) -> Formula:
-        return at_motor(sheet.peak_torque.term(index, place), eta.term(index, place))
+        return at_motor(*(quantity.term(index, place) for quantity in (sheet.peak_torque, eta, T_0)))
 
-    every = {quantity.symbol.of_phase("n"): quantity.values for quantity in (sheet.peak_torque, eta)}
+    every = {quantity.symbol.of_phase("n"): quantity.values for quantity in (sheet.peak_torque, eta, T_0)}
     largest = int(values_of(of_phase("n", 0), every).argmax())
     squares = over_phases(
-        lambda T, eta, t: Product((Power(at_motor(T, eta), SQUARED), t)), sheet.rms_torque, eta_rms, sheet.time
+        lambda T, eta, T_0, t: Product((Power(at_motor(T, eta, T_0), SQUARED), t)),
+        *(sheet.rms_torque, eta_rms, T_0, sheet.time),
     )
     rated = Root(Quotient(squares, sheet.cycle_time))
     return _steps(sheet, of_phase(str(largest + 1), largest), rated)
 
 
 def _steps(sheet: Sheet, peak: Formula, rated: Formula) -> Iterable[Step]:
-    notes = _on_efficiency(sheet)
+    notes = (*_on_efficiency(sheet), *([Sentence(OWN)] if _without_load(sheet) else []))
     yield _step(sheet, "motor_peak_torque", MOTOR_PEAK, peak, *notes)
     yield _step(sheet, "motor_rated_torque", MOTOR_RMS, rated, *notes)
 

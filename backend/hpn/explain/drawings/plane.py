@@ -139,17 +139,21 @@ def _at_motor(subject: Subject, motor: Motor) -> _Cycle:
     """Phases at the motor: RMS torque at the mean speed, and peaks; of a motion the torque at every instant."""
     duty, i, phases = subject.duty, subject.gear.ratio, subject.duty.phases
     at_peak, at_rms = of_gear.efficiencies(duty, subject.gear, subject.catalogue)
-    peaks = phases.peak_torque_Nm[0, 0] / (i * at_peak)
+    gear = subject.gear
+    own, T_0 = gear.inertia_kgm2 or 0.0, gear.no_load_torque_Nm or 0.0
+    moving = np.where(phases.speed_rpm[0, 0] > 0, T_0, 0.0)
+    peaks = phases.peak_torque_Nm[0, 0] / (i * at_peak) + moving
     course, curves = duty.courses.get(0), {}
     if course is not None and motor.inertia_kgm2 is not None:
-        trace, torque = motor_trace(course, ratio=i, efficiency=at_peak, motor_inertia_kgm2=motor.inertia_kgm2)
+        J = motor.inertia_kgm2 + own
+        trace, torque = motor_trace(course, ratio=i, efficiency=at_peak, motor_inertia_kgm2=J, no_load_torque_Nm=T_0)
         curves = _curves(trace, np.abs(trace.speed_rpm) * i, np.abs(torque))
         peaks = np.maximum.reduceat(np.abs(torque).max(axis=1), np.unique(trace.phase, return_index=True)[1])
     elif course is not None:
         trace = trace_of(course)
-        torque = np.abs(trace.torque_Nm) / (i * at_peak[trace.phase])[:, None]
+        torque = np.abs(trace.torque_Nm) / (i * at_peak[trace.phase])[:, None] + moving[trace.phase][:, None]
         curves = _curves(trace, np.abs(trace.speed_rpm) * i, torque)
-    means = phases.rms_torque_Nm[0, 0] / (i * at_rms)
+    means = phases.rms_torque_Nm[0, 0] / (i * at_rms) + moving
     return _Cycle(phases.speed_rpm[0, 0] * i, means, phases.peak_speed_rpm[0, 0] * i, peaks, curves)
 
 
