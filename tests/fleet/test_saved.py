@@ -45,7 +45,7 @@ def test_a_fleet_is_saved_listed_and_never_changed(client: TestClient, service: 
     client.post(address, data={"title": "another"})
 
     page = client.get(address).text
-    assert "Line &lt;4&gt;" in page and "Save as a project" not in page and "What differs today" not in page
+    assert "Line &lt;4&gt;" in page and "Save as a project" not in page and "Differences today" not in page
     assert f'<a href="{address}">Line &lt;4&gt;</a>' in client.get("/fleets/saved").text
     assert client.post(f"{address}/delete").status_code == 303
     assert client.get(address).status_code == 404
@@ -90,9 +90,9 @@ def test_a_fleet_says_what_differs_today(client: TestClient, service: FastAPI, f
         now = select(Application.model_validate(HUB), state_of(later).catalogue).selected
 
     assert "1 axis gets another answer." in page
-    changed = page[page.index("What differs today") : page.index('id="fleet-count"')]
+    changed = page[page.index("Differences today") : page.index('id="fleet-count"')]
     assert changed.index(then.designation) < changed.index(str(now))
-    assert "What differs today" not in client.get(fleet).text
+    assert "Differences today" not in client.get(fleet).text
 
 
 def test_only_the_owner_s_key_renames_and_deletes_a_fleet(kept: FleetDraft, tmp_path: Path) -> None:

@@ -175,7 +175,7 @@ def test_what_today_says_differently_stands_beside_what_was_saved(client: TestCl
 
     page = client.get(address)
 
-    assert "What today says differently" in page.text
+    assert "Differences today" in page.text
     assert page.text.index("Selected gear</th>") < page.text.index("Load limit 1: average torque: Utilisation")
     assert re.search(r'HPN-20A-5\s*<span class="status suitable">', page.text)
 

@@ -70,7 +70,7 @@ HPN Select itself is under Apache-2.0 (`LICENSE`). Nothing below is part of the 
 registries. An image that is built and handed on contains the service and the page, each package with its licence file.
 """
 
-INSIDE = """## What is inside packages
+INSIDE = """## Works inside packages
 | what | package | licence |
 |---|---|---|
 | typeface of the page: IBM Plex Sans, cut and renamed, with its licence beside it | @ibm/plex-sans-variable | OFL-1.1 |
@@ -152,7 +152,7 @@ def text() -> str:
         table(title, "| package | version | licence |", ((*package[:2], of[package]) for package in sorted(of)))
         for title, of in found.items()
     ]
-    heed = table("What asks for more than a notice", "| package | licence | how it is met |", heeded(found))
+    heed = table("Licences that ask for more than a notice", "| package | licence | how it is met |", heeded(found))
     return "\n".join([HEAD, heed, service, page, INSIDE, *development])
 
 

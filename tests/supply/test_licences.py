@@ -87,7 +87,7 @@ def test_whatever_asks_for_more_than_a_notice_says_how_it_is_met(found: Sections
         for package, licence in listed(title).items()
         if not names(licence) <= PERMISSIVE
     }
-    section = TEXT.partition("## What asks for more than a notice\n")[2].partition("\n## ")[0]
+    section = TEXT.partition("## Licences that ask for more than a notice\n")[2].partition("\n## ")[0]
 
     assert "psycopg" in asking
     assert asking == set(re.findall(r"^\| (\S+) \| .+ \| .+\. \|$", section, re.M))

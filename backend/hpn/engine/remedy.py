@@ -283,7 +283,7 @@ def _scaled(value: float | None, factor: float) -> float | None:
 
 BY_CURVE = N_("not in closed form: the efficiency follows your curve")
 BY_INERTIA = N_("not in closed form: the motor’s own inertia follows the motion")
-UNTOLD = N_("What would make it fit is {reason}.")
+UNTOLD = N_("The change that would make it fit is {reason}.")
 """Reasons for which a factor is not given."""
 
 _DRIVERS = {

@@ -84,7 +84,7 @@ async def _holder(connection: AsyncConnection, key: str, digest: str) -> str:
     held = None if is_spent else (await connection.execute(holding)).one_or_none()
     if held is None:  # deleted, if not before then by another transaction a moment ago
         raise KeySpentError(
-            "what was saved under this idempotency key has been deleted; take a new key to save it anew"
+            "the selection saved under this idempotency key has been deleted; take a new key to save it anew"
         )
     if held.digest != digest:
         raise KeyReusedError(

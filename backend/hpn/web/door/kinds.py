@@ -58,7 +58,7 @@ KINDS: Mapping[str, Kind] = {
     "conflict": Kind(
         409,
         N_("In conflict with the present state"),
-        N_("What was asked does not go with the present state."),
+        N_("The request does not fit the present state."),
         N_("Read the present state and decide again."),
     ),
     "gone": Kind(
@@ -70,7 +70,7 @@ KINDS: Mapping[str, Kind] = {
     "idempotency-key-spent": Kind(
         410,
         N_("The idempotency key is spent"),
-        N_("What was saved under this Idempotency-Key has been deleted."),
+        N_("The selection saved under this Idempotency-Key has been deleted."),
         N_("Send another key to save it anew."),
     ),
     "other-state": Kind(

@@ -42,7 +42,7 @@ CHANGES_ON_PAGE = 100
 WRITTEN = {"title": "title", "ref": "reference", "author": "author", "rev": "revision"}
 NOT_YOURS = N_("Only the key that calculated this fleet may see it and save it.")
 SAVED_MEANWHILE = N_("This fleet was saved meanwhile, under other names. Open it again, then rename it.")
-GONE = N_("There is no such fleet. What nobody saves is kept for a day.")
+GONE = N_("There is no such fleet. A fleet that is not saved is kept for a day.")
 
 
 # --- The page of a result ---------------------------------------------------------------------------------------------
