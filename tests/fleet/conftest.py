@@ -9,7 +9,8 @@ from fastapi import FastAPI
 from starlette.testclient import TestClient
 
 from hpn.catalogue import Catalogue
-from hpn.fleet.run import Order, size_fleet
+from hpn.fleet.order import Order
+from hpn.fleet.run import size_fleet
 from hpn.web.app import create_app
 from hpn.web.settings import Settings
 from tests.fleet.page import GERMAN, fields_of, post

@@ -5,7 +5,8 @@ from pathlib import Path
 
 from hpn.catalogue import Catalogue
 from hpn.fleet.listing import kept_listing_of
-from hpn.fleet.run import Order, size_fleet
+from hpn.fleet.order import Order
+from hpn.fleet.run import size_fleet
 from hpn.store import FleetDraft
 from hpn.web.pages.fleet_result import draft_of
 from tests.fleet.tables import Row, write

@@ -15,7 +15,8 @@ import pytest
 from starlette.testclient import TestClient
 
 from hpn.catalogue import Catalogue
-from hpn.fleet.run import Order, size_fleet
+from hpn.fleet.order import Order
+from hpn.fleet.run import size_fleet
 from hpn.web import fleets
 from hpn.web.app import create_app
 from hpn.web.door import beside

@@ -9,10 +9,10 @@ import pytest
 
 from hpn.catalogue import Catalogue
 from hpn.fleet import lines, run, tables
-from hpn.fleet.errors import FleetError
 from hpn.fleet.gathering import axes_of
 from hpn.fleet.opened import open_axes
-from hpn.fleet.run import Order, size_fleet
+from hpn.fleet.order import FleetError, Order
+from hpn.fleet.run import size_fleet
 from tests.fleet.tables import Row, read, write
 
 AXES, PHASES = 5, 3

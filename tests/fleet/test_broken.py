@@ -5,8 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from hpn.fleet.errors import FleetError
 from hpn.fleet.lines import MOST_BROKEN
+from hpn.fleet.order import FleetError
 from tests.fleet.conftest import Size
 from tests.fleet.tables import read
 

@@ -15,8 +15,8 @@ import pytest
 from hpn.catalogue import Catalogue
 from hpn.fleet import run
 from hpn.fleet.cluster import dask
-from hpn.fleet.errors import FleetError
-from hpn.fleet.run import Order, size_fleet
+from hpn.fleet.order import FleetError, Order
+from hpn.fleet.run import size_fleet
 from hpn.fleet.tables import Progress
 from tests.fleet.tables import row_of, write
 from tests.property.draw import at_random

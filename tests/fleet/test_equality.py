@@ -10,7 +10,8 @@ import pytest
 from hpn.application import Application, InputError
 from hpn.catalogue import Catalogue, load_catalogue
 from hpn.engine.selection import select
-from hpn.fleet.run import Order, here, size_fleet, threads
+from hpn.fleet.order import Order
+from hpn.fleet.run import here, size_fleet, threads
 from tests.build import Json
 from tests.fleet.tables import FAULTS, Row, in_long_form, read, row_of, spoiled, write
 from tests.property.draw import at_random

@@ -15,9 +15,9 @@ from starlette.testclient import TestClient
 from hpn.catalogue import Catalogue
 from hpn.cli import main
 from hpn.fleet import lines
-from hpn.fleet.errors import FleetError
 from hpn.fleet.opened import open_axes
-from hpn.fleet.run import Order, size_fleet
+from hpn.fleet.order import FleetError, Order
+from hpn.fleet.run import size_fleet
 from hpn.web.app import create_app
 from hpn.web.settings import Settings
 from tests.fleet.tables import Row, read, table_of, write

@@ -8,8 +8,8 @@ import pytest
 
 from hpn.catalogue import Catalogue
 from hpn.fleet import axes, outcome
-from hpn.fleet.errors import FleetError
-from hpn.fleet.run import Order, size_fleet
+from hpn.fleet.order import FleetError, Order
+from hpn.fleet.run import size_fleet
 from tests.fleet.tables import in_long_form, read, row_of, write
 from tests.fuzz.mutation import mutated
 from tests.property.draw import at_random

@@ -13,8 +13,9 @@ from hpn.application import Application, InputError
 from hpn.catalogue import Catalogue, load_catalogue
 from hpn.engine.selection import Selection, select
 from hpn.fleet.listing import AxisRow, Listing, applications_of, listing_of, rows_of
+from hpn.fleet.order import Order
 from hpn.fleet.outcome import answer_fields
-from hpn.fleet.run import Order, size_fleet
+from hpn.fleet.run import size_fleet
 from hpn.fleet.summary import summary_of
 from hpn.web.form.link_writer import to_link
 from tests.build import Json, cycle, phase

@@ -22,7 +22,8 @@ from hpn.catalogue import Catalogue
 from hpn.engine.selection import select
 from hpn.fleet import listing
 from hpn.fleet.listing import as_parquet, kept_listing_of
-from hpn.fleet.run import Order, size_fleet
+from hpn.fleet.order import Order
+from hpn.fleet.run import size_fleet
 from hpn.tables.columns import NO_CHOICES
 from hpn.tables.files import NO_TEXT, Contents, contents_of
 from hpn.web.door.problems import Problem

@@ -20,8 +20,8 @@ from hpn.catalogue import Catalogue
 from hpn.cli import main
 from hpn.fleet import run as fleet_run
 from hpn.fleet.cluster import interrupts_held
-from hpn.fleet.errors import FleetError
-from hpn.fleet.run import Order, Outcome, Size, here, size_fleet, threads
+from hpn.fleet.order import FleetError, Order
+from hpn.fleet.run import Outcome, Size, here, size_fleet, threads
 from hpn.fleet.tables import Batch, Progress
 from tests.fleet.tables import row_of, write
 from tests.property.draw import at_random

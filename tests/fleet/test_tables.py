@@ -12,8 +12,8 @@ from hpn.catalogue import Catalogue
 from hpn.engine.selection import select
 from hpn.fleet import lines, run
 from hpn.fleet.columns import COLUMNS
-from hpn.fleet.errors import FleetError
-from hpn.fleet.run import Order, size_fleet
+from hpn.fleet.order import FleetError, Order
+from hpn.fleet.run import size_fleet
 from tests.fleet.conftest import Size
 from tests.fleet.tables import AXES, HEAD, Row, faults, in_long_form, phases, read, write
 

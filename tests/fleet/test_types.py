@@ -12,10 +12,10 @@ import pyarrow.parquet as pq
 import pytest
 
 from hpn.catalogue import Catalogue
-from hpn.fleet.errors import FleetError
 from hpn.fleet.gathering import axes_of
 from hpn.fleet.opened import open_axes
-from hpn.fleet.run import Order, size_fleet
+from hpn.fleet.order import FleetError, Order
+from hpn.fleet.run import size_fleet
 from tests.fleet.conftest import Size
 from tests.fleet.tables import AXES, faults, phases, read
 

@@ -15,8 +15,8 @@ from hpn.application import Application, InputError
 from hpn.catalogue import CatalogueError, load_catalogue
 from hpn.catalogue.tables import TABLES
 from hpn.engine.selection import encode, select
-from hpn.fleet.errors import FleetError
-from hpn.fleet.run import Order, size_fleet
+from hpn.fleet.order import FleetError, Order
+from hpn.fleet.run import size_fleet
 from hpn.tables.cycles import LAST, PARTS, PHASE, SEPARATOR, TOTALS
 from hpn.tables.files import tidied
 from hpn.tables.inputs import CYCLE, Inputs

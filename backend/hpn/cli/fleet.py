@@ -10,9 +10,9 @@ from pathlib import Path
 from tqdm import tqdm
 
 from hpn.catalogue import Catalogue, load_catalogue
-from hpn.fleet.errors import FleetError
 from hpn.fleet.listing import listing_of
-from hpn.fleet.run import Engine, Order, Use, keep_memory, require_writable, size_fleet, threads
+from hpn.fleet.order import FleetError, Order, require_writable
+from hpn.fleet.run import Engine, Use, keep_memory, size_fleet, threads
 from hpn.fleet.tables import Progress
 from hpn.installed import require
 from hpn.web.settings import Settings

@@ -8,7 +8,7 @@ from importlib import import_module
 from multiprocessing.resource_tracker import ensure_running
 from typing import Any
 
-from hpn.fleet.errors import FleetError
+from hpn.fleet.order import FleetError
 from hpn.fleet.run import MEMORY, Engine, Outcome, Size, in_order
 from hpn.fleet.tables import Batch
 from hpn.installed import require

@@ -17,7 +17,7 @@ import pyarrow.csv as pacsv
 from numpy.typing import NDArray
 
 from hpn.fleet.columns import AXIS, COLUMNS, INDEX, Column, is_list
-from hpn.fleet.errors import FleetError
+from hpn.fleet.order import FleetError
 from hpn.fleet.tables import Batch, Fault, Progress, Table
 from hpn.words.wording import N_
 

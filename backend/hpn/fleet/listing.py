@@ -19,9 +19,9 @@ from hpn.engine.evaluation import Evaluation, PlaceArray, evaluate
 from hpn.fleet.axes import Axes
 from hpn.fleet.columns import AXIS, COLUMNS
 from hpn.fleet.gathering import axes_of
-from hpn.fleet.opened import format_of
+from hpn.fleet.opened import open_tables
+from hpn.fleet.order import Order, format_of
 from hpn.fleet.outcome import answer_fields
-from hpn.fleet.run import Order
 from hpn.fleet.summary import Summary, summary_of
 
 MOST_LISTED = 10_000
@@ -125,7 +125,7 @@ def _first(batches: Iterator[pa.RecordBatch]) -> pa.Table:
 def _asked(order: Order, names: pa.ChunkedArray) -> pa.Table:
     """Axes of these names in list form, their names as text."""
     pieces, count, wanted = list[pa.Table](), 0, names.combine_chunks()
-    for axes in axes_of(*order.opened()):
+    for axes in axes_of(*open_tables(order)):
         rows = axes.rows.set_column(axes.rows.column_names.index(AXIS), AXIS, axes.rows[AXIS].cast(pa.string()))
         pieces.append(rows.filter(pc.is_in(rows[AXIS], wanted)))
         count += pieces[-1].num_rows

@@ -1,17 +1,15 @@
 """Opening the tables of a fleet: their formats by suffix, and the columns that must and may be there."""
 
-import os
 import stat
 from collections import Counter
 from collections.abc import Sequence
 from difflib import get_close_matches
 from pathlib import Path
 
-from hpn.fleet.beside import ANSWERED_IN, suffix_of
 from hpn.fleet.columns import AXIS, COLUMNS
-from hpn.fleet.errors import FleetError, wrong_encoding
 from hpn.fleet.lines import CsvTable, GzipCsvTable, LinesTable
 from hpn.fleet.ndjson import NdjsonTable
+from hpn.fleet.order import FleetError, Order, status_of, suffix_of, wrong_encoding
 from hpn.fleet.tables import Table
 from hpn.fleet.typed import ArrowTable, ParquetTable
 
@@ -30,27 +28,16 @@ FORMATS: dict[str, type[Table]] = {
 FORM = "torque_Nm"
 """Column that decides the form of a table."""
 
-UNREADABLE = "this user may not read it; see its permissions"
 MOST_PROBLEMS = 20
 """Wrong columns that an error names."""
 
 
-def format_of(path: Path) -> str:
-    """Suffix of a file that is written, which says its format."""
-    suffix = suffix_of(path)
-    if suffix is None or ANSWERED_IN[suffix] != suffix:
-        raise FleetError(f"{path}: the suffix must be one of {', '.join(dict.fromkeys(ANSWERED_IN.values()))}")
-    return suffix
-
-
-def status_of(path: Path) -> os.stat_result | None:
-    """Status of what stands at a path, or None; FleetError where this user may not look, which is another thing."""
-    try:
-        return path.stat()
-    except (FileNotFoundError, NotADirectoryError):
-        return None
-    except PermissionError:
-        raise FleetError(f"{path}: {UNREADABLE}") from None
+def open_tables(order: Order) -> tuple[Table, Table | None]:
+    """The table of axes of an order, and the one beside it; raises FleetError."""
+    table = open_axes(order.axes, order.ignored)
+    if order.requirements is None:
+        return table, None
+    return table, open_requirements(order.requirements, table, order.ignored)
 
 
 def open_axes(path: Path, ignored: Sequence[str] = ()) -> Table:

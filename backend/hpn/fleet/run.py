@@ -3,12 +3,10 @@
 import ctypes
 import fcntl
 import os
-import stat
 from collections import deque
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack, contextmanager
-from dataclasses import dataclass
 from functools import partial
 from itertools import islice
 from pathlib import Path
@@ -17,11 +15,11 @@ from typing import Any
 import pyarrow as pa
 
 from hpn.catalogue import Catalogue
-from hpn.fleet.errors import FleetError
 from hpn.fleet.gathering import axes_of, slices
-from hpn.fleet.opened import UNREADABLE, format_of, open_axes, open_requirements, status_of
+from hpn.fleet.opened import open_tables
+from hpn.fleet.order import FleetError, Order
 from hpn.fleet.outcome import outcome
-from hpn.fleet.tables import Batch, Progress, Table
+from hpn.fleet.tables import Batch, Progress
 from hpn.fleet.writing import Outcomes, unfinished
 
 SLICE_AXES, SLICE_WITH_CANDIDATES = 16_384, 1_024
@@ -37,36 +35,6 @@ Watch = Callable[[Progress], None]
 
 Use = Callable[[Path], None]
 """Takes the answers when they are whole; an error of it keeps every file from its name."""
-
-
-@dataclass(frozen=True)
-class Order:
-    """The tables to read, and the files to write."""
-
-    axes: Path
-    answers: Path
-    requirements: Path | None = None
-    candidates: Path | None = None
-    rejected: Path | None = None
-    ignored: tuple[str, ...] = ()
-    """Columns that are left out, whatever is in them."""
-
-    @property
-    def targets(self) -> dict[str, Path]:
-        """Files to write, by kind; the answers are the last to get their name."""
-        named = {"candidates": self.candidates, "rejected": self.rejected, "answers": self.answers}
-        return {kind: path for kind, path in named.items() if path is not None}
-
-    @property
-    def tables(self) -> list[Path]:
-        """Files to read."""
-        return [path for path in (self.axes, self.requirements) if path is not None]
-
-    def opened(self) -> tuple[Table, Table | None]:
-        """The table of axes, and the one beside it; raises FleetError."""
-        table = open_axes(self.axes, self.ignored)
-        beside = None if self.requirements is None else open_requirements(self.requirements, table, self.ignored)
-        return table, beside
 
 
 # --- Engines ----------------------------------------------------------------------------------------------------------
@@ -128,8 +96,8 @@ def size_fleet(
     `use` takes the answers before they have their name, for files that are written along with them; `note_ignored`
     takes the columns that are ignored though nobody asked for that. Raises FleetError for input that can't be used.
     """
-    _require_usable(order)
-    table, beside = order.opened()
+    order.require_usable()
+    table, beside = open_tables(order)
     for each in filter(None, (table, beside)):
         for name in each.ignored[len(order.ignored) :]:
             note_ignored(each.path, name)
@@ -166,28 +134,3 @@ def _alone(answers: Path) -> Iterator[None]:
             yield
         finally:
             unfinished(answers).unlink(missing_ok=True)
-
-
-def _require_usable(order: Order) -> None:
-    """Raise FleetError where a file would be written over, or could not be read or written."""
-    for path in order.tables:
-        if status_of(path) is not None and not os.access(path, os.R_OK, effective_ids=True):
-            raise FleetError(f"{path}: {UNREADABLE}")
-    written = list(order.targets.values())
-    for place, path in enumerate(written):
-        format_of(path)
-        require_writable(path)
-        if path.resolve() in [other.resolve() for other in (*order.tables, *written[:place])]:
-            raise FleetError(f"{path}: is named twice")
-
-
-def require_writable(path: Path) -> None:
-    """Raise FleetError where no file can be written."""
-    folder = status_of(path.parent)
-    if folder is None or not stat.S_ISDIR(folder.st_mode):
-        raise FleetError(f"{path}: there is no folder {path.parent}")
-    if not os.access(path.parent, os.W_OK | os.X_OK, effective_ids=True):
-        raise FleetError(f"{path}: this user may not write into {path.parent}")
-    found = status_of(path)
-    if found is not None and stat.S_ISDIR(found.st_mode):
-        raise FleetError(f"{path}: is a folder, where a file belongs")

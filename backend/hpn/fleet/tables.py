@@ -15,7 +15,7 @@ import pyarrow.compute as pc
 from numpy.typing import NDArray
 
 from hpn.fleet.columns import AXIS, COLUMNS, INDEX, is_list, is_text
-from hpn.fleet.errors import FleetError
+from hpn.fleet.order import FleetError
 
 BATCH_AXES, BATCH_PHASES = 16_384, 131_072
 """Rows that are read at once, in list and in long form."""

@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 
 from hpn.fleet.columns import AXIS, is_text
 from hpn.fleet.gathering import NO_PHASES, NOT_BESIDE
-from hpn.fleet.opened import format_of
+from hpn.fleet.order import format_of
 from hpn.fleet.outcome import FIELDS, ROW
 from hpn.words.wording import N_
 

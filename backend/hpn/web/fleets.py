@@ -21,8 +21,8 @@ from typing import Literal, NamedTuple
 from starlette.datastructures import State
 from starlette.requests import Request
 
-from hpn.fleet.beside import ANSWERED_IN, Sized, sized, suffix_of
-from hpn.fleet.errors import wrong_encoding
+from hpn.fleet.beside import Sized, sized
+from hpn.fleet.order import ANSWERED_IN, Order, suffix_of, wrong_encoding
 from hpn.web import spool
 from hpn.web.door.beside import Bounds, EndedError
 from hpn.web.door.pools import pool_of, while_present
@@ -160,8 +160,8 @@ async def size_fleet(request: Request, tables: Tables, *, candidates: bool = Fal
 async def _sized(request: Request, tables: Tables, files: Mapping[Kind, Path]) -> Sized:
     """End of a fleet; Problem 413 where it takes too much memory or its files too much of the disk."""
     settings: Settings = request.app.state.settings
-    given = {"axes": tables.input, "requirements": tables.axes, "ignored": tables.ignored}
-    order = {**given, **{str(kind): path for kind, path in files.items()}}
+    written = {str(kind): path for kind, path in files.items()}
+    order = Order(tables.input, requirements=tables.axes, ignored=tables.ignored, **written)
     pool = pool_of(request, "fleets")
     async with pool.turn:
         call = pool.call_beside(partial(sized, order, request.app.state.catalogue, settings.fleet_workers))

@@ -15,7 +15,7 @@ from starlette.requests import Request
 from starlette.responses import Response, StreamingResponse
 from starlette.types import Receive, Scope, Send
 
-from hpn.fleet.beside import ANSWERED_IN, suffix_of
+from hpn.fleet.order import ANSWERED_IN, suffix_of
 from hpn.web.api import schemas, streaming
 from hpn.web.door.access import admit
 from hpn.web.door.bodies import content_type_of, pass_body, wrong_type

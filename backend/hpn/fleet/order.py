@@ -1,0 +1,109 @@
+"""Order of a fleet: the tables to read and the files to write, and whether their paths can be used.
+
+Nothing of Arrow is imported by this module: a service makes orders, and a process beside it carries them out.
+"""
+
+import codecs
+import os
+import stat
+from dataclasses import dataclass
+from pathlib import Path
+
+from hpn.words.wording import MendableError
+
+ANSWERED_IN = {
+    ".parquet": ".parquet",
+    ".arrow": ".arrow",
+    ".csv": ".csv",
+    ".ndjson": ".ndjson",
+    ".arrows": ".arrow",
+    ".feather": ".arrow",
+    ".jsonl": ".ndjson",
+    ".csv.gz": ".csv",
+}
+"""Suffixes of tables that are read, and of the files that they are answered in, which are those that are written."""
+
+UTF16_MARKS = (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
+UNREADABLE = "this user may not read it; see its permissions"
+
+
+class FleetError(MendableError):
+    """Input that can't be used as a whole; the text names the file and what would be right."""
+
+
+@dataclass(frozen=True)
+class Order:
+    """The tables to read, and the files to write."""
+
+    axes: Path
+    answers: Path
+    requirements: Path | None = None
+    candidates: Path | None = None
+    rejected: Path | None = None
+    ignored: tuple[str, ...] = ()
+    """Columns that are left out, whatever is in them."""
+
+    @property
+    def targets(self) -> dict[str, Path]:
+        """Files to write, by kind; the answers are the last to get their name."""
+        named = {"candidates": self.candidates, "rejected": self.rejected, "answers": self.answers}
+        return {kind: path for kind, path in named.items() if path is not None}
+
+    @property
+    def tables(self) -> list[Path]:
+        """Files to read."""
+        return [path for path in (self.axes, self.requirements) if path is not None]
+
+    def require_usable(self) -> None:
+        """Raise FleetError where a file would be written over, or could not be read or written."""
+        for path in self.tables:
+            if status_of(path) is not None and not os.access(path, os.R_OK, effective_ids=True):
+                raise FleetError(f"{path}: {UNREADABLE}")
+        written = list(self.targets.values())
+        for place, path in enumerate(written):
+            format_of(path)
+            require_writable(path)
+            if path.resolve() in [other.resolve() for other in (*self.tables, *written[:place])]:
+                raise FleetError(f"{path}: is named twice")
+
+
+def suffix_of(path: Path) -> str | None:
+    """Suffix of a table that is read."""
+    return next((suffix for suffix in ANSWERED_IN if path.name.endswith(suffix)), None)
+
+
+def format_of(path: Path) -> str:
+    """Suffix of a file that is written, which says its format."""
+    suffix = suffix_of(path)
+    if suffix is None or ANSWERED_IN[suffix] != suffix:
+        raise FleetError(f"{path}: the suffix must be one of {', '.join(dict.fromkeys(ANSWERED_IN.values()))}")
+    return suffix
+
+
+def status_of(path: Path) -> os.stat_result | None:
+    """Status of what stands at a path, or None; FleetError where this user may not look, which is another thing."""
+    try:
+        return path.stat()
+    except (FileNotFoundError, NotADirectoryError):
+        return None
+    except PermissionError:
+        raise FleetError(f"{path}: {UNREADABLE}") from None
+
+
+def require_writable(path: Path) -> None:
+    """Raise FleetError where no file can be written."""
+    folder = status_of(path.parent)
+    if folder is None or not stat.S_ISDIR(folder.st_mode):
+        raise FleetError(f"{path}: there is no folder {path.parent}")
+    if not os.access(path.parent, os.W_OK | os.X_OK, effective_ids=True):
+        raise FleetError(f"{path}: this user may not write into {path.parent}")
+    found = status_of(path)
+    if found is not None and stat.S_ISDIR(found.st_mode):
+        raise FleetError(f"{path}: is a folder, where a file belongs")
+
+
+def wrong_encoding(head: bytes) -> str | None:
+    """Words for a table in lines that begins with the mark of UTF-16; None for any other."""
+    if not head.startswith(UTF16_MARKS):
+        return None
+    return "is UTF-16, where UTF-8 belongs: in Excel “CSV UTF-8”; the page /fleets reads such files as they are"
