@@ -4,10 +4,8 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from hpn.application import NUMBERS, Application, OutputLoad
+from hpn.application import Application
 from hpn.engine.notices import AREAS
-from hpn.files.export import Export
-from hpn.files.workbook.formulas import cell_name
 from hpn.words.quantities import INPUTS
 from hpn.words.reader import Reader
 from hpn.words.terms import BEARING_MODELS, LIFE_BASES
@@ -25,13 +23,6 @@ LOADS = tuple(path for path in INPUTS if path.startswith(_LOADING))
 
 REQUIREMENTS = tuple(path for path in INPUTS if not path.startswith((*_LOADING, "phase.")))
 """Requirements of the gear, likewise."""
-
-ENTERED: Mapping[str, str] = {
-    cell_name(INPUTS[path].symbol) or path.removeprefix(LOAD_PATH): path
-    for path in (*LOADS, *REQUIREMENTS)
-    if tuple(path.split(".")) in NUMBERS or path.startswith(LOAD_PATH)
-}
-"""Inputs that the formulas of the workbook take, besides the phases: name in formulas, path in the application."""
 
 WORDS: Mapping[str, str] = {
     **BEARING_MODELS,
@@ -67,19 +58,6 @@ def value_of(application: Application, path: str) -> Value | None:
     for step in rest:
         part = getattr(part, step, None)
     value: Value | None = part
-    return value
-
-
-def entered(export: Export, path: str) -> Value | None:
-    """Value in the workbook's cell of an input; of a load, its default too, should the reader add one."""
-    value = value_of(export.equipped, path)
-    if value is None and path == LOAD_INERTIA:
-        return export.selection.duty.load_inertia_kgm2
-    if value is None and path == LOAD_REVERSES and export.application.duty_cycle.motion is not None:
-        return False  # a motion has its signs
-    if value is None and path.startswith(LOAD_PATH):
-        default: Value | None = getattr(OutputLoad(), path.removeprefix(LOAD_PATH))
-        return default
     return value
 
 

@@ -4,6 +4,7 @@ import os
 import re
 import stat
 import warnings
+from dataclasses import dataclass
 from difflib import get_close_matches
 from ipaddress import ip_network
 from pathlib import Path
@@ -22,10 +23,28 @@ from pydantic_settings import (
 )
 
 from hpn.catalogue import AVERAGING_S, HANDBOOK_FOLDER
-from hpn.web.door.keys import ApiKey
 
 RouteGroup = Literal["calculator", "batch", "writing", "listing", "deleting", "reading", "metrics"]
 """Kinds of requests that keys and rate limits tell apart; each route declares its own."""
+
+
+KEY_PAIR = re.compile(r"([A-Za-z0-9._-]{1,64}):([0-9a-fA-F]{64})")
+
+
+@dataclass(frozen=True, slots=True)
+class ApiKey:
+    """One key: its name, and the SHA-256 of the key itself, which has 192 random bits and so needs no slow hash."""
+
+    name: str
+    digest: bytes
+
+    @classmethod
+    def parse(cls, pair: str) -> "ApiKey":
+        """Key of a `name:sha256` pair; ValueError for anything else, which may be a secret and is not repeated."""
+        match = KEY_PAIR.fullmatch(pair)
+        if match is None:
+            raise ValueError("must be name:sha256 pairs, as `hpn key NAME` prints them")
+        return cls(match[1], bytes.fromhex(match[2]))
 
 
 def _split(text: object) -> object:

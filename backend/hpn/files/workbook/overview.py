@@ -13,7 +13,7 @@ from hpn.engine.checks import CHECKS
 from hpn.engine.selection import CheckResult
 from hpn.explain.readings import relation_of
 from hpn.files.export import LOSS_FREE
-from hpn.files.inputs import ENTERED, LOAD_INERTIA, LOAD_REVERSES, LOADS, REQUIREMENTS, entered
+from hpn.files.inputs import LOAD_INERTIA, LOAD_REVERSES, LOADS, REQUIREMENTS
 from hpn.files.words import equation, origin
 from hpn.files.workbook.candidates import COLUMNS, LOAD
 from hpn.files.workbook.formulas import (
@@ -28,7 +28,7 @@ from hpn.files.workbook.formulas import (
 )
 from hpn.files.workbook.known import DEMANDS, Known, demand_of, limit_of
 from hpn.files.workbook.sheets import Book
-from hpn.files.workbook.unchanged import as_saved
+from hpn.files.workbook.unchanged import ENTERED, as_saved, entered
 from hpn.files.workbook.wrong import WRONG, WRONG_AS_A_WHOLE, WRONG_IN_CYCLE, advice, is_wrong, validation
 from hpn.physics import bearing
 from hpn.words.quantities import GEAR, INPUTS

@@ -5,15 +5,25 @@ curve, and what takes figures of a catalogue that is not at hand.
 """
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 from xlsxwriter.utility import xl_range_abs
 
-from hpn.files.inputs import ENTERED, entered
-from hpn.files.workbook.formulas import CHECK_FORMULAS, CYCLE_TERMS, GEAR_TERMS, MOTOR_TORQUES
+from hpn.application import NUMBERS, OutputLoad
+from hpn.files.export import Export
+from hpn.files.inputs import LOAD_INERTIA, LOAD_PATH, LOAD_REVERSES, LOADS, REQUIREMENTS, Value, value_of
+from hpn.files.workbook.formulas import CHECK_FORMULAS, CYCLE_TERMS, GEAR_TERMS, MOTOR_TORQUES, cell_name
 from hpn.files.workbook.known import BY_BRAKE, DEMANDS
 from hpn.files.workbook.sheets import PHASE, SPARE_PHASES, USED, Book
+from hpn.words.quantities import INPUTS
+
+ENTERED: Mapping[str, str] = {
+    cell_name(INPUTS[path].symbol) or path.removeprefix(LOAD_PATH): path
+    for path in (*LOADS, *REQUIREMENTS)
+    if tuple(path.split(".")) in NUMBERS or path.startswith(LOAD_PATH)
+}
+"""Inputs that the formulas of the workbook take, besides the phases: name in formulas, path in the application."""
 
 _FORMULAS = {term.name: term.formula for term in (*CYCLE_TERMS, *GEAR_TERMS)} | {
     code: check.ratio for code, check in CHECK_FORMULAS.items()
@@ -29,6 +39,19 @@ _BEHIND_LEVER = {"x", "y", "x_c", "radial_N", "axial_N"}
 
 _ALONG_MOTION = {"J_m", "J_L"}
 """Further inputs behind them in a motion: the inertias of motor and load."""
+
+
+def entered(export: Export, path: str) -> Value | None:
+    """Value in the workbook's cell of an input; of a load, its default too, should the reader add one."""
+    value = value_of(export.equipped, path)
+    if value is None and path == LOAD_INERTIA:
+        return export.selection.duty.load_inertia_kgm2
+    if value is None and path == LOAD_REVERSES and export.application.duty_cycle.motion is not None:
+        return False  # a motion has its signs
+    if value is None and path.startswith(LOAD_PATH):
+        default: Value | None = getattr(OutputLoad(), path.removeprefix(LOAD_PATH))
+        return default
+    return value
 
 
 def as_saved(name: str) -> str:

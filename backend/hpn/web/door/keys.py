@@ -4,38 +4,21 @@ import base64
 import binascii
 import hashlib
 import hmac
-import re
 import secrets
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+
+from hpn.web.settings import KEY_PAIR, ApiKey
 
 KEY_PREFIX = "hpn_"
-PAIR = re.compile(r"([A-Za-z0-9._-]{1,64}):([0-9a-fA-F]{64})")
 
 Headers = Iterable[tuple[bytes, bytes]]
-
-
-@dataclass(frozen=True, slots=True)
-class ApiKey:
-    """One key: its name, and the SHA-256 of the key itself, which has 192 random bits and so needs no slow hash."""
-
-    name: str
-    digest: bytes
-
-    @classmethod
-    def parse(cls, pair: str) -> "ApiKey":
-        """Key of a `name:sha256` pair; ValueError for anything else, which may be a secret and is not repeated."""
-        match = PAIR.fullmatch(pair)
-        if match is None:
-            raise ValueError("must be name:sha256 pairs, as `hpn key NAME` prints them")
-        return cls(match[1], bytes.fromhex(match[2]))
 
 
 def new_key(name: str) -> tuple[str, str]:
     """A fresh key, and its pair for the settings; ValueError for a name that a pair can't hold."""
     key = KEY_PREFIX + secrets.token_urlsafe(24)
     pair = f"{name}:{hashlib.sha256(key.encode()).hexdigest()}"
-    if PAIR.fullmatch(pair) is None:
+    if KEY_PAIR.fullmatch(pair) is None:
         raise ValueError("a key’s name has 1 to 64 letters, digits, dots, dashes or underscores")
     return key, pair
 

@@ -6,26 +6,17 @@ the client library's multiprocess mode, for which `serve.py` sets PROMETHEUS_MUL
 
 import os
 from collections import Counter as Counts
-from collections.abc import Iterable, Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Awaitable, Callable, Iterable
+from types import MethodType
+from typing import ParamSpec, TypeVar
 
 from prometheus_client import CollectorRegistry, Counter, Histogram, ProcessCollector, generate_latest
 from prometheus_client.multiprocess import MultiProcessCollector
 
-from hpn.catalogue import Catalogue
-from hpn.store import (
-    Draft,
-    FleetDraft,
-    FleetSummary,
-    KeyReusedError,
-    KeySpentError,
-    NoRoomError,
-    Page,
-    SavedFleet,
-    SavedSelection,
-    ShareSpentError,
-    Store,
-)
+from hpn.store import KeyReusedError, KeySpentError, NoRoomError, ShareSpentError, Store
+
+P = ParamSpec("P")
+T = TypeVar("T")
 
 CONTENT_TYPE = "text/plain; version=0.0.4; charset=utf-8"
 FOLDER = "PROMETHEUS_MULTIPROC_DIR"
@@ -89,94 +80,31 @@ class Metrics:
 
 CALLERS_MISTAKES = (KeyReusedError, KeySpentError, ShareSpentError, NoRoomError, ValueError)
 
+NOT_COUNTED = frozenset({"open", "close", "require_complete"})
+"""Functions of the store that are no operation of a request."""
+
 
 class CountedStore(Store):
-    """A store whose operations are counted."""
+    """A store whose operations are counted: every public function but those of NOT_COUNTED, and of later ones, too."""
 
     def __init__(self, metrics: Metrics, address: str, *, seconds: float, password: str | None) -> None:
         super().__init__(address, seconds=seconds, password=password)
-        self._metrics = metrics
+        for name, function in vars(Store).items():
+            if not name.startswith("_") and name not in NOT_COUNTED:
+                setattr(self, name, _counted(metrics, name, MethodType(function, self)))
 
-    async def check(self, catalogue: Catalogue | None = None) -> None:
-        """See Store."""
-        with self._counted("check"):
-            await super().check(catalogue)
 
-    async def save(self, draft: Draft) -> str:
-        """See Store."""
-        with self._counted("save"):
-            return await super().save(draft)
-
-    async def find(self, id: str) -> SavedSelection | None:
-        """See Store."""
-        with self._counted("find"):
-            return await super().find(id)
-
-    async def catalogue(self, version: str) -> Catalogue | None:
-        """See Store."""
-        with self._counted("catalogue"):
-            return await super().catalogue(version)
-
-    async def page(
-        self, *, reference: str | None = None, search: str | None = None, cursor: str | None = None, limit: int = 50
-    ) -> Page:
-        """See Store."""
-        with self._counted("page"):
-            return await super().page(reference=reference, search=search, cursor=cursor, limit=limit)
-
-    async def rename(self, id: str, names: Mapping[str, str | None], version: int | None = None) -> bool:
-        """See Store."""
-        with self._counted("rename"):
-            return await super().rename(id, names, version)
-
-    async def delete(self, id: str, version: int | None = None) -> bool:
-        """See Store."""
-        with self._counted("delete"):
-            return await super().delete(id, version)
-
-    async def require_room(self, caller: str, most_bytes: int) -> None:
-        """See Store."""
-        with self._counted("require_room"):
-            await super().require_room(caller, most_bytes)
-
-    async def keep_fleet(self, draft: FleetDraft, most_bytes: int) -> str:
-        """See Store."""
-        with self._counted("keep_fleet"):
-            return await super().keep_fleet(draft, most_bytes)
-
-    async def save_fleet(self, id: str, names: Mapping[str, str | None], owner: str | None) -> bool:
-        """See Store."""
-        with self._counted("save_fleet"):
-            return await super().save_fleet(id, names, owner)
-
-    async def rename_fleet(self, id: str, names: Mapping[str, str | None], version: int | None = None) -> bool:
-        """See Store."""
-        with self._counted("rename_fleet"):
-            return await super().rename_fleet(id, names, version)
-
-    async def find_fleet(self, id: str) -> SavedFleet | None:
-        """See Store."""
-        with self._counted("find_fleet"):
-            return await super().find_fleet(id)
-
-    async def fleets(self, cursor: str | None = None, limit: int = 50) -> tuple[list[FleetSummary], str | None]:
-        """See Store."""
-        with self._counted("fleets"):
-            return await super().fleets(cursor, limit)
-
-    async def delete_fleet(self, id: str, version: int | None = None) -> bool:
-        """See Store."""
-        with self._counted("delete_fleet"):
-            return await super().delete_fleet(id, version)
-
-    @contextmanager
-    def _counted(self, operation: str) -> Iterator[None]:
+def _counted(metrics: Metrics, operation: str, function: Callable[P, Awaitable[T]]) -> Callable[P, Awaitable[T]]:
+    async def counted(*args: P.args, **kwargs: P.kwargs) -> T:
+        outcome = "failed"
         try:
-            yield
+            result = await function(*args, **kwargs)
+            outcome = "ok"
         except CALLERS_MISTAKES:
-            self._metrics.store_operation(operation, "refused")
+            outcome = "refused"
             raise
-        except BaseException:
-            self._metrics.store_operation(operation, "failed")
-            raise
-        self._metrics.store_operation(operation, "ok")
+        finally:
+            metrics.store_operation(operation, outcome)
+        return result
+
+    return counted
