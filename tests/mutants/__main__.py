@@ -30,6 +30,10 @@ PACKAGE = Path(__file__).parents[2] / "backend" / "hpn"
 MODULES = {
     "equations": "physics",
     "bearing": "physics",
+    "stop": "physics",
+    "stiffness": "physics",
+    "strands": "physics",
+    "stops": "engine",
     "checks": "engine",
     "evaluation": "engine",
     "selection": "engine",
@@ -42,6 +46,10 @@ BESIDE = {"selection": ("allowed",)}
 NEAREST = {
     "equations": ["tests/reference/test_edges.py", "tests/reference/test_equations.py"],
     "bearing": ["tests/reference/test_edges.py", "tests/reference/test_bearing.py"],
+    "stop": ["tests/property/test_stiffness.py", "tests/unit/test_stiff_exact_safe.py"],
+    "stiffness": ["tests/property/test_stiffness.py", "tests/unit/test_stiff_exact_safe.py"],
+    "strands": ["tests/property/test_stiffness.py", "tests/web/test_belt.py"],
+    "stops": ["tests/unit/test_stiff_exact_safe.py", "tests/property/test_stiffness.py"],
     "checks": ["tests/unit/test_check_texts.py", "tests/unit/test_checks.py"],
     "evaluation": [
         "tests/property/test_order.py",
