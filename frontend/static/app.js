@@ -117,21 +117,17 @@ function keepPlace({ id, row, range }) {
 let at = history.state?.at ?? 0; // number of the entry that the page shows
 let last = at;
 let restoring = null; // what the form said in the entry that somebody has gone to
-let visit = 0; // counts the times that a field was entered
-let edit = 0; // the visit that the latest change belongs to
-let noted = -1; // the edit that has its entry already
+let settled = true; // the next change is a new edit; what is typed in one visit of a field is one
 let addressed = contentOf(formOf()); // what the form said when the address came to be
 
-document.addEventListener("focusin", () => visit++);
-document.addEventListener("input", () => (edit = visit), true); // before the request that it leads to
-const startEdit = () => (edit = ++visit);
+document.addEventListener("focusin", () => (settled = true));
 
 function note(own = false) {
   const content = contentOf(formOf());
   if (content === history.state?.content) return;
-  if (edit === noted && !own) history.replaceState({ at, content }, "");
-  else history.pushState({ at: (last = ++at), content }, "");
-  noted = own ? -1 : edit;
+  if (settled || own) history.pushState({ at: (last = ++at), content }, "");
+  else history.replaceState({ at, content }, "");
+  settled = own;
   showSteps();
 }
 
@@ -148,7 +144,7 @@ const bodyOf = (content) => {
 
 function restore(content) {
   const form = formOf();
-  noted = -1;
+  settled = true;
   pending.length = 0;
   restoring = { content, before: fieldsOf(form) };
   form.setAttribute("hx-method", content.length > 8000 || new URLSearchParams(content).has("phases") ? "post" : "get");
@@ -277,12 +273,17 @@ document.addEventListener("focusout", (event) => {
 
 // --- Inputs that stand in the result ----------------------------------------------------------------------------------
 
+// A button that chooses a gear or pins one changes an input at once, so that it is no less of the next request.
 document.addEventListener("click", (event) => {
-  const chooser = event.target.closest("[data-gear]");
-  if (!chooser || !isPlain(event)) return;
+  const button = event.target.closest('#result button[form="application"]:is([name="gear"], [name="pin"], [name="unpin"])');
+  if (!button || !isPlain(event)) return;
   event.preventDefault();
-  document.getElementById("chosen-gear").value = chooser.dataset.gear;
-  startEdit();
+  const chosen = document.getElementById("chosen-gear");
+  const pinned = document.getElementById(`pinned-${button.value}`);
+  if (button.name === "gear") chosen.value = button.value;
+  else if (pinned) pinned.remove();
+  else [chosen, ...document.querySelectorAll('[id^="pinned-"]')].at(-1).after(Object.assign(chosen.cloneNode(), { id: `pinned-${button.value}`, name: "pin", value: button.value }));
+  settled = true;
   formOf().requestSubmit();
 });
 

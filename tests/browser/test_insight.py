@@ -221,3 +221,17 @@ def test_remedy_calculation_and_comparison_are_accessible_in_both_themes(visitor
     page = visitor.open(EXAMPLE + "&gear=HPN-14A-5&pin=HPN-20A-5&FR=300", width=1000)
     page.get_by_role("switch", name="Open the trivial steps too").click()
     assert violations(page) == []
+
+
+def test_name_of_a_check_shows_its_explanation_and_gets_the_focus_back(visitor: Visitor) -> None:
+    page = visitor.open(EXAMPLE)
+    name = page.get_by_role("table", name="Load limits").get_by_role("button", name="Average torque", exact=True)
+    name.press("Enter")
+    explanation = page.get_by_role("dialog", name="Load limit 1: average torque")
+    expect(explanation).to_be_focused()
+    expect(explanation.get_by_role("term")).to_contain_text(["What is checked", "If exceeded", "What to change"])
+    assert violations(page) == []
+    page.keyboard.press("Escape")
+    expect(explanation).to_be_hidden()
+    expect(name).to_be_focused()
+    expect(page).to_have_url(re.compile(re.escape(EXAMPLE) + "$"))
