@@ -23,7 +23,7 @@ def table() -> str:
 def test_a_table_of_axes_becomes_a_project(visitor: Visitor, tmp_path: Path) -> None:
     file = tmp_path / "achsen.csv"
     file.write_bytes(table().encode("cp1252"))
-    page = visitor.open("/fleets")
+    page = visitor.open("/machines")
 
     page.get_by_label("File", exact=False).first.set_input_files(file)
     page.get_by_role("button", name="Read table").click()
@@ -52,7 +52,7 @@ def test_a_table_of_axes_becomes_a_project(visitor: Visitor, tmp_path: Path) -> 
     page.get_by_label("Title").fill("Line 4")
     page.get_by_label("Reference").fill("P-77")
     page.get_by_role("button", name="Save", exact=True).click()
-    page.get_by_role("link", name="Saved fleets").click()
+    page.get_by_role("link", name="Saved machines").click()
     page.get_by_role("link", name="Line 4").click()
     expect(page.get_by_role("heading", level=1)).to_have_text("Line 4")
     expect(page.get_by_text("P-77")).to_be_visible()

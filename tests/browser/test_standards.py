@@ -33,8 +33,8 @@ PAGES = (
     "SAVED/delete",
     "/selections/compare?a=ID&b=ID",
     "/checks/average_torque",
-    "/fleets",
-    "/fleets/saved",
+    "/machines",
+    "/machines/saved",
 )
 SHORT = (FULL, "/paste", "/catalogue?size=20A", "/catalogue/HPN-20A-5", "/selections", "/nowhere")
 

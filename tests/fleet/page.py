@@ -27,7 +27,7 @@ HEAVY = {"duty_cycle": {"phases": [{"torque_Nm": 9000, "speed_rpm": 100, "durati
 def post(client: TestClient, content: bytes = b"", fields: dict[str, str] | None = None) -> Any:
     """Answer to the form."""
     files = {"file": ("axes", content)} if content else {"file": ("", b"")}
-    return client.post("/fleets", data=fields or {}, files=files)
+    return client.post("/machines", data=fields or {}, files=files)
 
 
 def fields_of(page: str) -> dict[str, str]:

@@ -42,7 +42,7 @@ from tests.state import state_of
 def test_german_headings_are_read_and_can_be_put_right(client: TestClient) -> None:
     first = post(client, GERMAN.replace("Drehzahl [1/min]", "Wert").encode())
     assert "What is column “Wert”?" in unescape(first.text)
-    german = client.post("/fleets", data=fields_of(first.text), headers={"Accept-Language": "de"})
+    german = client.post("/machines", data=fields_of(first.text), headers={"Accept-Language": "de"})
     assert "Was ist Spalte „Wert“?" in unescape(german.text)
 
     second = post(client, fields={**fields_of(first.text), "r3": "n", "u3": "rev_per_s"})
@@ -195,12 +195,27 @@ def test_reasons_of_a_file_for_people_are_in_the_readers_language(client: TestCl
 def test_a_browser_gets_the_page_of_a_fleet_that_is_gone_for_its_files_too(client: TestClient, suffix: str) -> None:
     browser = {"Accept": "text/html,application/xhtml+xml,*/*;q=0.8"}
 
-    page = client.get(f"/fleets/nowhere/axes.{suffix}", headers=browser)
-    problem = client.get(f"/fleets/nowhere/axes.{suffix}")
+    page = client.get(f"/machines/nowhere/axes.{suffix}", headers=browser)
+    problem = client.get(f"/machines/nowhere/axes.{suffix}")
 
     assert page.status_code == problem.status_code == 404
-    assert "There is no such fleet." in page.text and page.headers["content-type"].startswith("text/html")
+    assert "There is no such machine." in page.text and page.headers["content-type"].startswith("text/html")
     assert problem.headers["content-type"] == "application/problem+json"
+
+
+@pytest.mark.parametrize("method", ["GET", "POST"])
+@pytest.mark.parametrize("rest", ["", "/saved?cursor=a%2Fb&T=1", "/id/axes.csv", "/id/rename", "/%3Fa//b?c=%22"])
+def test_the_address_of_older_links_leads_to_the_same_place(client: TestClient, method: str, rest: str) -> None:
+    answer = client.request(method, f"/fleets{rest}", follow_redirects=False)
+
+    assert (answer.status_code, answer.headers["Location"]) == (308, f"/machines{rest}")
+
+
+def test_a_table_that_is_sent_to_the_older_address_arrives_whole(client: TestClient) -> None:
+    answer = client.post("/fleets", files={"file": ("axes", GERMAN.encode("cp1252"))}, follow_redirects=True)
+
+    assert [past.status_code for past in answer.history] == [308]
+    assert answer.status_code == 200 and "Read as" in answer.text
 
 
 @pytest.mark.parametrize("form", ["list", "long"])
@@ -320,7 +335,7 @@ def test_what_can_not_be_read_is_said(client: TestClient, content: bytes, status
 def test_a_reader_who_changes_language_over_a_table_comes_back_to_the_page_of_tables(client: TestClient) -> None:
     page = post(client, GERMAN.encode()).text
 
-    assert re.findall(r'name="back" value="([^"]*)"', page) == ["/fleets"]
+    assert re.findall(r'name="back" value="([^"]*)"', page) == ["/machines"]
 
 
 def test_a_table_that_is_too_large_for_the_page_is_told_where_there_is_room(client: TestClient) -> None:
@@ -335,7 +350,7 @@ def test_a_table_that_is_too_large_for_the_page_is_told_where_there_is_room(clie
 def test_a_file_that_stands_for_too_much_is_a_413_and_what_was_typed_is_kept(client: TestClient) -> None:
     files = {"file": ("a.arrow", made("Arrow with a long text"))}
 
-    answer = client.post("/fleets", data={"text": "typed before"}, files=files)
+    answer = client.post("/machines", data={"text": "typed before"}, files=files)
 
     assert answer.status_code == 413
     assert "too much memory or time" in answer.text and "typed before" in answer.text

@@ -32,7 +32,7 @@ def kept(client: TestClient, service: FastAPI, fleet: str) -> FleetDraft:
 def keep(client: TestClient, service: FastAPI, draft: FleetDraft) -> str:
     """Address of a fleet that is kept as if it had just been sized."""
     assert client.portal is not None
-    return f"/fleets/{client.portal.call(service.state.store.keep_fleet, draft, MOST_BYTES)}"
+    return f"/machines/{client.portal.call(service.state.store.keep_fleet, draft, MOST_BYTES)}"
 
 
 def test_a_fleet_is_saved_listed_and_never_changed(client: TestClient, service: FastAPI, kept: FleetDraft) -> None:
@@ -46,7 +46,7 @@ def test_a_fleet_is_saved_listed_and_never_changed(client: TestClient, service: 
 
     page = client.get(address).text
     assert "Line &lt;4&gt;" in page and "Save as a project" not in page and "Differences today" not in page
-    assert f'<a href="{address}">Line &lt;4&gt;</a>' in client.get("/fleets/saved").text
+    assert f'<a href="{address}">Line &lt;4&gt;</a>' in client.get("/machines/saved").text
     assert client.post(f"{address}/delete").status_code == 303
     assert client.get(address).status_code == 404
 
@@ -103,7 +103,7 @@ def test_only_the_owner_s_key_renames_and_deletes_a_fleet(kept: FleetDraft, tmp_
     service = create_app(settings)
     with TestClient(service, follow_redirects=False) as client:
         address = keep(client, service, kept)
-        for guarded in ("/fleets", address, f"{address}/delete"):
+        for guarded in ("/machines", address, f"{address}/delete"):
             assert client.post(guarded, data={"text": "x"}).status_code == 401
         client.headers |= anna
         client.post(address, data={"title": "Line 4"})
@@ -128,7 +128,7 @@ def keyed(tmp_path: Path) -> Iterator[TestClient]:
 def test_what_a_key_has_calculated_only_that_key_sees_and_saves(keyed: TestClient, tmp_path: Path) -> None:
     anna, bert, admin = ({"X-API-Key": name} for name in ("anna", "bert", "admin"))
     table = write(tmp_path / "axes.csv", [row_of("one", HUB)]).read_bytes()
-    sized = keyed.post("/fleets", files={"file": ("axes.csv", table)}, headers=anna)
+    sized = keyed.post("/machines", files={"file": ("axes.csv", table)}, headers=anna)
     assert sized.status_code == 303, sized.text
     place = sized.headers["location"]
 
@@ -148,7 +148,7 @@ def test_what_a_key_has_calculated_only_that_key_sees_and_saves(keyed: TestClien
 
 def test_a_caller_with_many_unsaved_fleets_is_told_what_to_do(keyed: TestClient, tmp_path: Path) -> None:
     table = write(tmp_path / "axes.csv", [row_of("one", HUB)]).read_bytes()
-    sized = keyed.post("/fleets", files={"file": ("axes.csv", table)}, headers={"X-API-Key": "anna"})
+    sized = keyed.post("/machines", files={"file": ("axes.csv", table)}, headers={"X-API-Key": "anna"})
     store, place = state_of(keyed).store, sized.headers["location"]
     assert keyed.portal is not None
     found = keyed.portal.call(store.find_fleet, place.rpartition("/")[2])
@@ -158,13 +158,13 @@ def test_a_caller_with_many_unsaved_fleets_is_told_what_to_do(keyed: TestClient,
     for _ in range(MOST_OF_CALLER - 1):
         keyed.portal.call(store.keep_fleet, draft, MOST_BYTES)
 
-    refused = keyed.post("/fleets", files={"file": ("axes.csv", table)}, headers={"X-API-Key": "anna"})
+    refused = keyed.post("/machines", files={"file": ("axes.csv", table)}, headers={"X-API-Key": "anna"})
 
     assert (refused.status_code, int(refused.headers["retry-after"]) > 0) == (429, True)
     assert "20 of them are yours" in refused.text
-    assert keyed.post("/fleets", files={"file": ("a.csv", table)}, headers={"X-API-Key": "bert"}).status_code == 303
+    assert keyed.post("/machines", files={"file": ("a.csv", table)}, headers={"X-API-Key": "bert"}).status_code == 303
     assert keyed.post(f"{place}/delete", headers={"X-API-Key": "anna"}).status_code == 303
-    assert keyed.post("/fleets", files={"file": ("a.csv", table)}, headers={"X-API-Key": "anna"}).status_code == 303
+    assert keyed.post("/machines", files={"file": ("a.csv", table)}, headers={"X-API-Key": "anna"}).status_code == 303
 
 
 def test_where_unsaved_fleets_take_all_their_room_a_new_one_is_refused(tmp_path: Path) -> None:
@@ -173,5 +173,5 @@ def test_where_unsaved_fleets_take_all_their_room_a_new_one_is_refused(tmp_path:
     with TestClient(create_app(settings), follow_redirects=False) as client:
         refused = post(client, table)
 
-        assert refused.status_code == 503 and "take the room there is for them" in refused.text
+        assert refused.status_code == 503 and "they fill the room there is for them" in refused.text
         assert client.post("/api/v1/fleet", content=table, headers={"Content-Type": "text/csv"}).status_code == 200

@@ -123,7 +123,7 @@ async def _axes(world: World, random: Random, content: bytes) -> str:
     answers = _answers(random, content.decode(errors="replace").strip(), AXIS_INPUTS)
     headers = [FORM, *random.choice(READERS)]
     body = urlencode({"text": content, **answers}).encode()
-    return judged(await world.call("POST", "/fleets", headers=headers, body=body), api=False)
+    return judged(await world.call("POST", "/machines", headers=headers, body=body), api=False)
 
 
 def _answers(random: Random, text: str, inputs: Inputs) -> dict[str, str]:

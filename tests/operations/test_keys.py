@@ -193,11 +193,11 @@ def test_every_route_belongs_to_the_group_that_its_method_and_address_suggest() 
             assert group is None, path
         elif path == "/metrics":
             assert group == "metrics"
-        elif path.endswith(("/select/batch", "/fleet")) or (path, method) == ("/fleets", "POST"):
+        elif path.endswith(("/select/batch", "/fleet")) or (path, method) == ("/machines", "POST"):
             assert group == "batch"
-        elif path in ("/api/v1/selections", "/selections", "/fleets/saved") and method == "GET":
+        elif path in ("/api/v1/selections", "/selections", "/machines/saved") and method == "GET":
             assert group == "listing"
-        elif "/selections" in path or "/fleets/" in path:
+        elif "/selections" in path or "/machines/" in path:
             expected = {"GET": "reading", "POST": "writing", "PATCH": "deleting", "DELETE": "deleting"}
             changes = path.endswith(("/rename", "/delete"))
             assert group == ("deleting" if changes else expected[method]), path

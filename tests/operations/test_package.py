@@ -189,18 +189,18 @@ def test_the_page_has_its_styles_and_a_selection_is_saved_and_printed(service: S
     assert (saved.status_code, service.client.get(address).status_code) == (201, 200)
     for name, mark in {"report.pdf": b"%PDF", "report.xlsx": b"PK", "submodel.aasx": b"PK"}.items():
         assert service.client.get(f"{address}/{name}").content.startswith(mark)
-    assert service.client.get("/fleets").status_code == 200
+    assert service.client.get("/machines").status_code == 200
 
 
 @pytest.mark.parametrize(
     ("path", "extra"),
-    [("report.pdf", "report"), ("submodel.aasx", "aas"), ("fleets", "fleet")],
+    [("report.pdf", "report"), ("submodel.aasx", "aas"), ("machines", "fleet")],
 )
 def test_a_route_without_its_extra_names_it(lean_service: Service, path: str, extra: str) -> None:
     files = {"file": ("axes.csv", PHASES, "text/csv")}
     answer = (
-        lean_service.client.post("/fleets", files=files)
-        if path == "fleets"
+        lean_service.client.post("/machines", files=files)
+        if path == "machines"
         else lean_service.client.get(f"/{path}?T=40&n=250&t=1&tp=1")
     )
 

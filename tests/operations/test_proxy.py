@@ -145,11 +145,15 @@ def test_a_body_of_unknown_length_that_is_too_large_is_refused_as_a_problem(
     assert b"content-type: application/problem+json" in answer.lower()
 
 
-def test_a_table_on_the_page_may_be_as_large_as_the_service_takes_it(client: httpx.Client) -> None:
+@pytest.mark.parametrize("path", ["/machines", "/fleets"])
+def test_a_table_on_the_page_may_be_as_large_as_the_service_takes_it(path: str, client: httpx.Client) -> None:
     rows = b"axis;T;n;t\n" + b"x;40;250;1\n" * 250_000
     answers = [
         client.post(
-            "/fleets", files={"file": ("axes.csv", content, "text/csv")}, headers={"Origin": str(client.base_url)}
+            path,
+            files={"file": ("axes.csv", content, "text/csv")},
+            headers={"Origin": str(client.base_url)},
+            follow_redirects=True,
         )
         for content in (rows, rows * 13)
     ]

@@ -66,7 +66,7 @@ def sent(name: str, content: bytes) -> Iterator[tuple[str, dict[str, Any]]]:
     """Path and arguments of each request that a file is sent with."""
     file = {"files": {"file": (name_of(name), content)}}
     yield "/paste", file
-    yield "/fleets", file
+    yield "/machines", file
     if name not in WORKBOOKS:
         yield "/api/v1/fleet", {"content": content, "headers": {"Content-Type": TYPES[Path(name_of(name)).suffix]}}
 
@@ -100,7 +100,7 @@ def test_no_file_keeps_another_caller_waiting_or_ends_the_service(
     assert errors == []
 
 
-@pytest.mark.parametrize("path", ["/paste", "/fleets"])
+@pytest.mark.parametrize("path", ["/paste", "/machines"])
 def test_callers_who_leave_leave_no_process_at_work(path: str, tmp_path: Path) -> None:
     content = made("elements in one another")  # ten seconds of work
     with serving(tmp_path, SETTINGS) as service, another_caller(service) as waits:
@@ -147,7 +147,7 @@ def test_texts_and_objects_of_the_largest_size_keep_nobody_waiting(tmp_path: Pat
         for name in names:
             content = made(name)
             text = (content * (1_900_000 // len(content))).decode(errors="replace")
-            for path in ("/paste", "/fleets"):
+            for path in ("/paste", "/machines"):
                 reply = service.client.post(path, data={"text": text}, timeout=400)
                 assert reply.status_code in (200, 303, 413, 422), (name, path)
         assert peak_MB(service) * 2**20 < LIMIT_BYTES

@@ -113,14 +113,17 @@ def hostile(saved: str, *, whole: bool) -> Iterator[Hostile]:
     yield Hostile("POST", f"/selections/{saved}/rename", PAIRS, FORM)
     yield Hostile("POST", f"/selections/{'x' * 22}/delete", PAIRS, FORM)
     yield Hostile("POST", "/api/v1/fleet", LONG_JSON, LINES)
-    yield Hostile("GET", "/fleets")
-    yield Hostile("GET", "/fleets/saved?cursor=" + "a" * 10_000)
-    yield Hostile("POST", "/fleets", urlencode({"text": TABLE}).encode(), FORM)
-    yield Hostile("POST", "/fleets", urlencode({"table": "A" * 1_000_000}).encode(), FORM)
+    yield Hostile("GET", "/machines")
+    for method in ("GET", "POST"):
+        yield Hostile(method, "/fleets?" + "a=%2F&" * 9_000)
+        yield Hostile(method, "/fleets/" + "%2F" * 10_000)
+    yield Hostile("GET", "/machines/saved?cursor=" + "a" * 10_000)
+    yield Hostile("POST", "/machines", urlencode({"text": TABLE}).encode(), FORM)
+    yield Hostile("POST", "/machines", urlencode({"table": "A" * 1_000_000}).encode(), FORM)
     for path in ("", "/axes.parquet", "/axes.csv", "/axes.xlsx", "/delete"):
-        yield Hostile("GET", f"/fleets/{'x' * 22}{path}?search={'a' * 10_000}")
+        yield Hostile("GET", f"/machines/{'x' * 22}{path}?search={'a' * 10_000}")
     for path in ("", "/rename", "/delete"):
-        yield Hostile("POST", f"/fleets/{'x' * 22}{path}", PAIRS, FORM)
+        yield Hostile("POST", f"/machines/{'x' * 22}{path}", PAIRS, FORM)
     yield Hostile("PATCH", one, UNKNOWN, JSON)
     yield Hostile("DELETE", one)
 

@@ -44,7 +44,7 @@ def answers_of(client: TestClient, table: bytes = TABLE) -> tuple[Any, Any, Any]
     """Answers of REST, the page and readiness."""
     return (
         client.post("/api/v1/fleet", content=table, headers=NDJSON),
-        client.post("/fleets", files={"file": ("axes.ndjson", table)}),
+        client.post("/machines", files={"file": ("axes.ndjson", table)}),
         client.get("/readyz"),
     )
 

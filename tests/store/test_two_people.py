@@ -83,8 +83,8 @@ def kept(client: TestClient) -> str:
     assert client.portal is not None
     store = state_of(client).store
     id: str = client.portal.call(store.keep_fleet, fleet_draft(), MOST_BYTES)
-    assert client.post(f"/fleets/{id}", data={"title": "Line"}).status_code == 303
-    return f"/fleets/{id}"
+    assert client.post(f"/machines/{id}", data={"title": "Line"}).status_code == 303
+    return f"/machines/{id}"
 
 
 @pytest.mark.parametrize("kind_of_thing", ["selection", "fleet"])
@@ -120,9 +120,9 @@ def test_a_page_says_that_somebody_was_faster(client: TestClient) -> None:
 def test_a_fleet_that_two_save_at_once_has_the_names_of_one_and_the_other_learns_it(client: TestClient) -> None:
     assert client.portal is not None
     for _ in range(ROUNDS):
-        place = f"/fleets/{client.portal.call(state_of(client).store.keep_fleet, fleet_draft(), MOST_BYTES)}"
+        place = f"/machines/{client.portal.call(state_of(client).store.keep_fleet, fleet_draft(), MOST_BYTES)}"
         found = at_once([partial(client.post, place, data={"title": f"of {n}"}) for n in range(3)])
 
         assert sorted(found) == [303, 412, 412]
-        assert f"of {found.index(303)}" in client.get("/fleets/saved").text
+        assert f"of {found.index(303)}" in client.get("/machines/saved").text
         assert client.post(place, data={"title": f"of {found.index(303)}"}).status_code == 303  # sent once more

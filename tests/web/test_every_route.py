@@ -70,6 +70,7 @@ class Address:
             "{designation}": "HPN-20A-5",
             "{size}": "20A",
             "{code}": "average_torque",
+            "{rest:path}": fleet,
             "{name}": "not-found",
             "{name:path}": Assets.load().url("page.css").removeprefix("/static/"),
         }
@@ -158,8 +159,10 @@ def test_posted_json_and_problems_are_compressed_and_lines_are_not(api: TestClie
     assert [answer.headers.get("Content-Encoding") for answer in (*answers, lines)] == ["gzip"] * 3 + [None]
 
 
-WITHOUT_BODY = "/fleets/{fleet}/delete"
-FORMS = {str(route.path) for route in ALL if "POST" in (route.methods or ())} - {WITHOUT_BODY}
+WITHOUT_BODY = {"/machines/{fleet}/delete", "/fleets", "/fleets/{rest:path}"}
+"""Routes that answer before a body is read, or without one."""
+
+FORMS = {str(route.path) for route in ALL if "POST" in (route.methods or ())} - WITHOUT_BODY
 BODIES = [
     *(("POST", path, "application/x-www-form-urlencoded") for path in sorted(FORMS) if not path.startswith("/api/")),
     ("POST", "/api/v1/select", "application/json"),

@@ -27,7 +27,7 @@ PAGES = (
     "/selections/compare",
     "/selections/compare?a=none&b=none",
     "/checks/average_torque",
-    "/fleets",
+    "/machines",
     "/paste",
     "/nowhere",
 )
@@ -70,7 +70,7 @@ def test_every_way_keeps_the_selection(client: TestClient, address: str) -> None
     answer = client.get(f"{address}{'&' if '?' in address else '?'}{LINK}", headers={"Accept": "text/html"})
     ways = Ways(answer.text).found
 
-    led = [(path, names) for path, names in ways if path in ("/", "/selections", "/fleets") or "/catalogue" in path]
+    led = [(path, names) for path, names in ways if path in ("/", "/selections", "/machines") or "/catalogue" in path]
     assert len(led) >= 4, answer.text
     assert [path for path, names in led if "T" not in names] == []
 

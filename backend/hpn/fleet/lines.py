@@ -135,7 +135,7 @@ class CsvTable(LinesTable):
         if len(names) == 1 and (used := next((mark for mark in OTHER_SEPARATORS if mark in names[0]), None)):
             raise FleetError(
                 f"{self.path}: its columns are separated by {OTHER_SEPARATORS[used]}, where commas belong, with a "
-                "point as decimal mark; the page /fleets reads such files as they are"
+                "point as decimal mark; the page /machines reads such files as they are"
             )
         return names, len(self.head) - len(content) + len(line) + 1
 

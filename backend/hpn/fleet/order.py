@@ -106,4 +106,4 @@ def wrong_encoding(head: bytes) -> str | None:
     """Words for a table in lines that begins with the mark of UTF-16; None for any other."""
     if not head.startswith(UTF16_MARKS):
         return None
-    return "is UTF-16, where UTF-8 belongs: in Excel “CSV UTF-8”; the page /fleets reads such files as they are"
+    return "is UTF-16, where UTF-8 belongs: in Excel “CSV UTF-8”; the page /machines reads such files as they are"

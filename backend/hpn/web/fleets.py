@@ -84,7 +84,7 @@ def _under_way(state: State) -> Iterator[None]:
     try:
         yield
     except asyncio.CancelledError:  # nothing but the end of the service cancels a request
-        text = "the service ends before the fleet is sized; send it again"
+        text = "the service ends before the table is sized; send it again"
         raise Problem(503, text, headers={"Retry-After": str(RETRY_SECONDS)}) from None
     finally:
         state.fleets_under_way.discard(task)
@@ -148,7 +148,7 @@ async def size_fleet(request: Request, tables: Tables, *, candidates: bool = Fal
             async with asyncio.timeout(settings.fleet_seconds):
                 found = await while_present(request, _sized(request, tables, files))
     except TimeoutError:
-        text = f"the fleet was not sized within {settings.fleet_seconds:g} s; send fewer axes at once"
+        text = f"the table was not sized within {settings.fleet_seconds:g} s; send fewer axes at once"
         raise Problem(503, text, headers={"Retry-After": str(RETRY_SECONDS)}) from None
     if found.refusal:
         raise Problem(422, _in_words_of_the_caller(found.refusal, tables))
@@ -181,9 +181,9 @@ async def _sized(request: Request, tables: Tables, files: Mapping[Kind, Path]) -
 
 def _too_much(error: EndedError, settings: Settings) -> Problem:
     if error.is_excess:
-        return Problem(413, f"the fleet takes more than {settings.fleet_memory_bytes} bytes of memory; send fewer axes")
+        return Problem(413, f"the table takes more than {settings.fleet_memory_bytes} bytes of memory; send fewer axes")
     logger.error("a fleet was not sized: %s", error)
-    return Problem(503, "fleets can’t be sized at the moment", headers={"Retry-After": str(RETRY_SECONDS)})
+    return Problem(503, "tables of axes can’t be sized at the moment", headers={"Retry-After": str(RETRY_SECONDS)})
 
 
 def _in_words_of_the_caller(text: str, tables: Tables) -> str:

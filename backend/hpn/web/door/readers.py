@@ -22,7 +22,7 @@ from hpn.words.reader import LANGUAGES, Reader
 LANGUAGE, UNITS = "hpn_language", "hpn_units"
 """Cookies; what they hold is no secret and names nobody."""
 
-POSTED_TO_ITSELF = ("/fleets", "/paste")
+POSTED_TO_ITSELF = ("/machines", "/paste")
 """Pages whose form is posted to their own address."""
 
 YEAR_S = 365 * 24 * 3600

@@ -1,6 +1,6 @@
 """Fleets on pages: a table of axes is uploaded, its columns are put right, all axes are sized, and the result is kept.
 
-`POST /fleets` answers with what each column is read as, or, once no question is open, leads to the page of the result
+`POST /machines` answers with what each column is read as, or, once no question is open, leads to the page of the result
 (`sized_fleets.py`). Modules that need Arrow are imported within the requests that use them.
 """
 
@@ -37,12 +37,12 @@ NO_ROOM_SECONDS = 3600
 NOTHING = N_("choose a file, or put cells into the field")
 LARGER = N_("Larger tables take the command hpn fleet and POST /api/v1/fleet, which have no such limit.")
 SHARE_SPENT = N_(
-    "Fleets that nobody has saved are kept for a day, and {most} of them are yours. Save one on its page or delete it "
+    "Machines that are not saved are kept for a day, and {most} of them are yours. Save one on its page or delete it "
     "there, then size this table again."
 )
 NO_ROOM = N_(
-    "Fleets that nobody has saved are kept for a day, and those of all take the room there is for them. The command "
-    "hpn fleet and POST /api/v1/fleet size this table; here there is room again as soon as others are saved or go."
+    "Machines that are not saved are kept for a day, and together they fill the room there is for them. The command "
+    "hpn fleet and POST /api/v1/fleet size this table; here there is room again as soon as others are saved or expire."
 )
 
 
@@ -86,7 +86,7 @@ async def upload(request: Request) -> Response:
         status, problems = problem.status_code, problem.sentences or (Sentence("{text}", {"text": problem.detail}),)
         headers = dict(problem.headers or {})
     except StoreUnavailableError:
-        status, problems = 503, (Sentence(N_("Fleets are temporarily unavailable: try again in a few seconds.")),)
+        status, problems = 503, (Sentence(N_("Machines are temporarily unavailable: try again in a few seconds.")),)
         headers = {"Retry-After": str(RETRY_SECONDS)}
     shown = {"draft": draft, "problems": problems, **_WORDS}
     response = await compute(request, "pages", lambda: rendered(request, "fleets.html", status, **shown))

@@ -6,7 +6,9 @@ It is kept for a day, and for good once it is saved with its title block: the pr
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import partial
+from string import punctuation
 from typing import Any
+from urllib.parse import quote
 
 from fastapi import APIRouter
 from starlette.requests import Request
@@ -30,7 +32,8 @@ from hpn.web.pages.templates import environment
 from hpn.words.reader import Reader
 from hpn.words.wording import N_, Sentence
 
-ADDRESS = "/fleets"
+ADDRESS = "/machines"
+OLDER_ADDRESS = "/fleets"
 MEDIA_TYPES = {
     "xlsx": "application/vnd.openxmlformats-officedocument.spreadsheetml.sheet",
     "csv": "text/csv; charset=utf-8",
@@ -40,9 +43,9 @@ MEDIA_TYPES = {
 
 CHANGES_ON_PAGE = 100
 WRITTEN = {"title": "title", "ref": "reference", "author": "author", "rev": "revision"}
-NOT_YOURS = N_("Only the key that calculated this fleet may see it and save it.")
-SAVED_MEANWHILE = N_("This fleet was saved meanwhile, under other names. Open it again, then rename it.")
-GONE = N_("There is no such fleet. A fleet that is not saved is kept for a day.")
+NOT_YOURS = N_("Only the key that calculated this machine may see it and save it.")
+SAVED_MEANWHILE = N_("This machine was saved meanwhile, under other names. Open it again, then rename it.")
+GONE = N_("There is no such machine. A machine that is not saved is kept for a day.")
 
 
 # --- The page of a result ---------------------------------------------------------------------------------------------
@@ -265,6 +268,13 @@ async def _own(request: Request) -> SavedFleet:
     return saved
 
 
+async def lead_on(request: Request) -> Response:
+    """Leads from the address of an older link to today's; method, body and query stay."""
+    path, query = request.scope["path"].removeprefix(OLDER_ADDRESS), request.scope["query_string"]
+    address = ADDRESS + quote(path) + (f"?{quote(query, safe=punctuation)}" if query else "")
+    return RedirectResponse(address, 308)
+
+
 # --- Rendering --------------------------------------------------------------------------------------------------------
 
 
@@ -292,3 +302,5 @@ for suffix in MEDIA_TYPES:
 router.add_api_route(f"{ADDRESS}/{{fleet}}/rename", rename, methods=["POST"], dependencies=[admit("deleting")])
 router.add_api_route(f"{ADDRESS}/{{fleet}}/delete", ask_to_delete, dependencies=[admit("deleting")])
 router.add_api_route(f"{ADDRESS}/{{fleet}}/delete", delete, methods=["POST"], dependencies=[admit("deleting")])
+for older in (OLDER_ADDRESS, f"{OLDER_ADDRESS}/{{rest:path}}"):
+    router.add_api_route(older, lead_on, methods=["GET", "POST"], dependencies=[admit("calculator")])
