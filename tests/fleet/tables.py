@@ -17,6 +17,7 @@ from tests.build import Json
 PHASE = (
     *("torque_Nm", "speed_rpm", "duration_s", "radial_N", "axial_N"),
     *("peak_torque_Nm", "peak_speed_rpm", "rms_torque_Nm"),
+    "name",
 )
 REQUIRED = PHASE[:3]
 LISTS = {"requirements.ratios": pa.list_(pa.int64()), "requirements.sizes": pa.list_(pa.string())}
@@ -58,6 +59,10 @@ def _unequal(row: Row) -> None:
     row["speed_rpm"] = [*row["speed_rpm"], 1.0]
 
 
+def _named(row: Row, first: str) -> list[str | None]:
+    return [first, *[None] * (len(row["torque_Nm"]) - 1)]
+
+
 FAULTS: dict[str, Callable[[Row], None]] = {
     "torque_Nm: phase 1: must be less than or equal to 1000000": lambda row: row["torque_Nm"].__setitem__(0, 2e6),
     "torque_Nm: phase 1: must be a finite number": lambda row: row["torque_Nm"].__setitem__(0, math.nan),
@@ -67,6 +72,8 @@ FAULTS: dict[str, Callable[[Row], None]] = {
         peak_torque_Nm=[sys.float_info.max] + [None] * (len(row["torque_Nm"]) - 1)
     ),
     "speed_rpm: has": _unequal,
+    "name: phase 1: must not contain U+200B": lambda row: row.update(name=_named(row, "a\u200bb")),
+    "name: phase 1: must have at most 40 characters": lambda row: row.update(name=_named(row, "x" * 41)),
     "no phase moves": lambda row: row.update(
         speed_rpm=[0.0] * len(row["speed_rpm"]), peak_speed_rpm=[None] * len(row["speed_rpm"])
     ),
@@ -109,7 +116,7 @@ def _type(name: str) -> pa.DataType | None:
     if name == "axis":
         return None
     if name in PHASE:
-        return pa.list_(pa.float64())
+        return pa.list_(pa.string() if name == "name" else pa.float64())
     if name == "requirements.load_reverses":
         return pa.bool_()
     return LISTS.get(name) or (pa.string() if name in TEXTS else pa.float64())
@@ -150,7 +157,7 @@ def write(path: Path, rows: Sequence[Row], *, unit_rows: int = 1000) -> Path:
 
 def _long_table(rows: Sequence[Row]) -> pa.Table:
     names = list(dict.fromkeys(name for row in rows for name in row))
-    kinds = {name: pa.float64() for name in PHASE}
+    kinds = {name: pa.string() if name == "name" else pa.float64() for name in PHASE}
     return pa.table({name: pa.array([row.get(name) for row in rows], kinds.get(name) or _type(name)) for name in names})
 
 

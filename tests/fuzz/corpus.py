@@ -54,7 +54,10 @@ APPLICATIONS: tuple[Json, ...] = (
     cycle(phase(-40, 250, 0.5, radial_N=50), phase(0, -1e3, 2.5, axial_N=7), pause_s=4.0, output_load={}),
     cycle(phase(9.3, 0), phase(1e-3, 1e4, 1e-3), requirements={"ratios": [5]}, rank_by="motor_torque"),
     cycle(*(phase(k, 100 + k, 0.1) for k in range(1, 40)), pause_s=1.5),
-    cycle(phase(40, 250, 1, peak_torque_Nm=60, peak_speed_rpm=400, rms_torque_Nm=45), requirements=INERTIAS),
+    cycle(
+        phase(40, 250, 1, peak_torque_Nm=60, peak_speed_rpm=400, rms_torque_Nm=45) | {"name": "lift"},
+        requirements=INERTIAS,
+    ),
     {"duty_cycle": {"motion": TURNING, "pause_s": 0.5}, "requirements": {"motor": MOTOR}},
     {"duty_cycle": {"motion": LIFTING}, "rank_by": "motor_torque"},
 )

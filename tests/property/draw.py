@@ -15,6 +15,8 @@ torques = st.one_of(st.just(0.0), st.sampled_from([9.0, 26.0, 80.0, 149.0, 256.0
 speeds = st.one_of(st.sampled_from([100.0, 120.0, 600.0, 1200.0]), st.floats(0.1, 1500))
 durations = st.floats(0.01, 100)
 loads = st.one_of(st.just(0.0), st.floats(0.1, 5000))
+NAMES = ("lift", "1.0", "2e+05", "Rück & ab; =?#%", "T_av", '"a", b', "=1+1")
+"""Names of phases and moves, of which some look like a figure, or like something that means more in a file."""
 
 
 def _wishes() -> st.SearchStrategy[Json]:
@@ -49,6 +51,7 @@ def applications(draw: st.DrawFn, wishes: bool = True) -> Json:
         phase(draw(signs) * draw(torques), draw(signs) * (draw(speeds) if k == 0 else draw(st.just(0.0) | speeds)), t)
         for k, t in enumerate(draw(st.lists(durations, min_size=1, max_size=6)))
     ]
+    phases = [entry | draw(st.just({}) | st.fixed_dictionaries({"name": st.sampled_from(NAMES)})) for entry in phases]
     parts: Json = {"rank_by": draw(st.sampled_from(RANKS))}
     if draw(st.booleans()):
         parts["emergency_stop"] = {"torque_Nm": draw(signs) * draw(st.floats(0, 700))}
@@ -179,7 +182,10 @@ def at_random(chance: random.Random, models: Sequence[str] = ("linear", "iso281"
         wishes.setdefault("load_inertia_kgm2", 10 ** chance.uniform(-3, 0))
     if wishes:
         parts["requirements"] = wishes
-    return cycle(*phases, pause_s=some(0, 20, 0) if maybe() else 0.0, **parts)
+    pause_s = some(0, 20, 0) if maybe() else 0.0
+    if maybe(0.3):
+        phases = [entry | ({"name": chance.choice(NAMES)} if maybe(0.7) else {}) for entry in phases]
+    return cycle(*phases, pause_s=pause_s, **parts)
 
 
 # --- Motions ----------------------------------------------------------------------------------------------------------
@@ -198,6 +204,8 @@ def _moves(way: str, speed: str, unit: float, acceleration: str, external: str) 
     ) -> Json:
         ramp = ramps[0]
         move: Json = {"profile": profile, "time_s": time}
+        if load is not None and load > 0:
+            move["name"] = NAMES[said % len(NAMES)]
         if load is not None:
             move[external] = load
         if profile == "dwell":

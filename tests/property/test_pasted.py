@@ -12,13 +12,15 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hpn.application import DutyCycle
+from hpn.application.input_fields import PHASE_FIGURES
 from hpn.application.phase import Phase
-from hpn.tables.cells import DECIMALS
+from hpn.tables.cells import DECIMALS, harmless
 from hpn.tables.cells import Decimal as Mark
 from hpn.tables.columns import Choices
 from hpn.tables.cycles import CycleTable as Table
 from hpn.tables.cycles import read_text
 from hpn.web.pages.transfer import write_table
+from tests.property.draw import NAMES
 
 NUMBERS = st.floats(-1e6, 1e6, allow_subnormal=False).map(lambda value: round(value, 4))
 PEAKS = st.none() | st.floats(1e5, 1e6).map(lambda value: round(value, 4))
@@ -32,9 +34,9 @@ PHASES = st.builds(
     peak_torque_Nm=PEAKS,
     peak_speed_rpm=PEAKS,
     rms_torque_Nm=st.none() | st.just(0.0),
+    name=st.none() | st.sampled_from(NAMES),
 )
 CYCLES = st.lists(PHASES, min_size=1, max_size=8).map(lambda phases: DutyCycle(phases=tuple(phases)))
-FIELDS = tuple(Phase.model_fields)
 
 
 @given(CYCLES, st.sampled_from(DECIMALS))
@@ -42,8 +44,10 @@ def test_a_written_table_reads_back_once_what_it_leaves_open_is_said(cycle: Duty
     text = write_table(cycle, decimal)
     table = read_text(text, Choices(decimal=decimal, last="phase"))
     assert not table.questions
-    wanted = [tuple(getattr(phase, name) for name in FIELDS) for phase in cycle.load_phases]
+    wanted = [tuple(getattr(phase, name) for name in PHASE_FIGURES) for phase in cycle.load_phases]
     assert phases_of(table) == wanted
+    names = [harmless(phase.name) or "" for phase in cycle.load_phases]
+    assert table.names == (tuple(names) if any(names) else ())
 
 
 def phases_of(table: Table) -> list[tuple[float | None, ...]]:

@@ -5,12 +5,13 @@ from dataclasses import replace
 
 import pytest
 
+from hpn.application.input_fields import PHASE_FIGURES
 from hpn.engine.check import Sheet
 from hpn.engine.checks import BY_CODE
 from hpn.files.inputs import LOADS, REQUIREMENTS
 from hpn.files.workbook.formulas import CHECK_FORMULAS, CYCLE_TERMS, GEAR_TERMS, RATINGS, cell_name, formulas_of
 from hpn.files.workbook.overview import REFERENCES
-from hpn.files.workbook.sheets import PHASE, USED
+from hpn.files.workbook.sheets import USED
 from hpn.files.workbook.unchanged import ENTERED
 from hpn.words.quantities import INPUTS
 
@@ -51,7 +52,17 @@ def test_a_check_without_formulas_stands_as_saved() -> None:
 
 def test_formulas_name_what_there_is() -> None:
     terms = (*CYCLE_TERMS, *GEAR_TERMS)
-    ours = {*RATINGS, *(term.name for term in terms), *PHASE, *USED, *ENTERED, *SERIES, "unlimited", "iso281", "L10"}
+    ours = {
+        *RATINGS,
+        *(term.name for term in terms),
+        *PHASE_FIGURES,
+        *USED,
+        *ENTERED,
+        *SERIES,
+        "unlimited",
+        "iso281",
+        "L10",
+    }
     functions = {"IF", "OR", "AND", "NOT", "ABS", "COUNT", "SUM", "SUMPRODUCT", "MAX", "SQRT", "INT", "IFERROR", "TRUE"}
     functions |= {"MIN", "SIGN", "PI", "reverses"}
     for text in (*(term.formula for term in terms), *(check.ratio for check in CHECK_FORMULAS.values())):

@@ -40,10 +40,10 @@ def test_peaks_and_RMS_have_columns_where_a_phase_has_them(catalogue: Catalogue)
 
 def test_a_motion_is_printed_as_given_with_the_phases_that_come_out(catalogue: Catalogue) -> None:
     first = pages(pdf(typed_export_of(MOVING["rotary table"], catalogue), GERMAN))[0]
-    for line in ("Mechanismus Drehachse", "0,8 kg·m²", "250 mm", "1 Trapez 90 0,8 900", "3 S-Kurve −90 1 25 0,5"):
+    for line in ("Mechanismus Drehachse", "0,8 kg·m²", "250 mm", "1 turn Trapez 90 0,8 900", "3 S-Kurve −90 1 25 0,5"):
         assert line in re.sub(r"[\u2009\u202f\xa0]", " ", first), line
     assert "Lastphasen der Bewegung" in first
-    rows = re.findall(r"^(\d) (\S+) (\S+) (\S+) (\S+) (\S+) (\S+)$", first, re.M)
+    rows = re.findall(r"^(\d)(?: turn)? (\S+) (\S+) (\S+) (\S+) (\S+) (\S+)$", first, re.M)
     assert len(rows) == 8
     assert rows[0][1:3] == ("48,12", "11,63")
 

@@ -30,12 +30,14 @@ def test_a_motion_stands_in_the_shell_with_its_phases(catalogue: Catalogue) -> N
         "angle_deg": 90,
         "time_s": 0.8,
         "acceleration_deg_per_s2": 900,
+        "name": "turn",
     }
     assert values(elements["Duty"])["load_inertia_kgm2"] == 0.8
     phases = {one.id_short: one for one in elements["Phases"].value}
     assert phases["Count"].value == 8
     names = {one.id_short: one.display_name["de"] for one in phases["Phase_1"].value}
     assert names["peak_torque_Nm"].endswith("[Nm]")
+    assert [values(phases[f"Phase_{k}"]).get("name") for k in (1, 3, 4)] == ["turn", "turn", None]
 
 
 def test_phases_that_vary_stand_there_and_steady_ones_as_before(catalogue: Catalogue) -> None:

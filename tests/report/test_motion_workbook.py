@@ -104,7 +104,7 @@ def test_a_motion_has_a_sheet_of_its_own_in_every_language_and_unit(catalogue: C
     rows = [[cell for cell in row if cell is not None] for row in book["Bewegung"].iter_rows(values_only=True)]
     assert ["Mechanismus", "Drehachse"] in [[cell for cell in row if cell][:2] for row in rows]
     assert ["Trägheitsmoment", "J", 0.8, "kg·m²"] in rows
-    assert [1, "Trapez", 90, 0.8, 900] in rows
+    assert ["1 turn", "Trapez", 90, 0.8, 900] in rows
 
 
 def test_columns_of_phases_that_vary_are_folded_unless_used(catalogue: Catalogue) -> None:

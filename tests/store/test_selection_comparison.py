@@ -54,7 +54,8 @@ def compared(client: TestClient, a: str, b: str, **headers: str) -> str:
 
 
 def test_what_differs_in_input_verdict_checks_and_figures_stands_side_by_side(client: TestClient) -> None:
-    phases = [phase(44, 250, 0.3), *LOADED["duty_cycle"]["phases"][1:]]
+    _, second, third = LOADED["duty_cycle"]["phases"]
+    phases = [phase(44, 250, 0.3), second | {"name": "<lift>"}, third]
     heavier = LOADED | cycle(*phases, pause_s=LOADED["duty_cycle"]["pause_s"])
     a = saved(client, LOADED, title="Axis <1>", author="M. Muster")
     b = saved(client, heavier | {"requirements": {"ratios": [7]}}, title="Axis 2", revision="B")
@@ -64,7 +65,8 @@ def test_what_differs_in_input_verdict_checks_and_figures_stands_side_by_side(cl
     assert f'<a href="/selections/{a}">Axis &lt;1&gt;</a>' in page
     inputs = rows(page, "inputs")
     assert inputs["Phase 1"] == ["40 Nm · 250 rpm · 0.3 s", "44 Nm · 250 rpm · 0.3 s", "differs"]
-    assert not {"Phase 2", "Phase 3", "Pause"} & {head.partition(" t")[0] for head in inputs}
+    assert inputs["Phase 2"] == ["32 Nm · 500 rpm · 3 s", "32 Nm · 500 rpm · 3 s · <lift>", "differs"]
+    assert not {"Phase 3", "Pause"} & {head.partition(" t")[0] for head in inputs}
     assert ["5", "7", "differs"] in inputs.values()
     assert ["30 000 h", "–", "differs"] in inputs.values()
     assert rows(page, "verdicts")["Gear"] == ["HPN-20A-5", "HPN-20A-7", "differs"]

@@ -12,6 +12,7 @@ from pydantic import BaseModel
 from hpn.application import Application
 from hpn.web.form import link_reader, symbols
 from hpn.web.form.link_writer import to_link
+from tests.property.draw import NAMES
 
 EXAMPLE = "/?T=40&n=250&t=0.3&T=32&n=500&t=3&T=20&n=250&t=0.4&tp=4&Tk=200&i=5"
 PHASE = "T=40&n=250&t=0.3"
@@ -27,6 +28,7 @@ def some(**fields: st.SearchStrategy[Any]) -> st.SearchStrategy[dict[str, Any]]:
 amounts = st.floats(1e-6, 1e6)
 signed = st.floats(-1e6, 1e6)
 shares = st.floats(0, 1)
+names = st.sampled_from(NAMES) | st.text(st.characters(categories=["L", "N", "P", "S"]), min_size=1, max_size=40)
 
 
 def varying(phase: dict[str, Any], torque: float | None, speed: float | None, rms: float | None) -> dict[str, Any]:
@@ -46,7 +48,7 @@ phases = st.tuples(
         st.fixed_dictionaries({"torque_Nm": signed, "speed_rpm": amounts, "duration_s": amounts}),
         *(st.none() | shares for _ in range(3)),
     ),
-    some(radial_N=signed, axial_N=signed),
+    some(radial_N=signed, axial_N=signed, name=names),
 ).map(lambda parts: parts[0] | parts[1])
 requirements = some(
     ratios=st.lists(st.integers(1, 10_000), min_size=1, max_size=4),
@@ -133,7 +135,7 @@ def test_no_query_breaks_the_reader_and_all_of_it_comes_back(pairs: list[tuple[s
     assert form.application is None or not form.problems
     assert all(problem.message.text for problem in form.problems)
     given_rows = [UNSEEN.sub("", text) for name, text in pairs if name == "T"]
-    if not form.with_loads and not any(name == "do" for name, _ in pairs):
+    if "loads" not in form.shown and not any(name == "do" for name, _ in pairs):
         assert [row["T"] for row in form.rows][: len(given_rows)] == given_rows
 
 
@@ -244,6 +246,32 @@ def test_minus_sign_of_a_word_processor_is_a_minus() -> None:
 )
 def test_a_comma_in_the_only_phase_may_stand_between_two_values(link: str, said: str) -> None:
     assert list(found(link).values()) == [said]
+
+
+@pytest.mark.parametrize(
+    ("query", "said"),
+    [
+        ("pn=a%E2%80%8Bb", "must not contain U+200B ZERO WIDTH SPACE, which nobody sees"),
+        ("pn=a%0Ab", "must not contain control characters or line breaks"),
+        (f"pn={'x' * 41}", "takes at most 40 characters"),
+        ("T=1&n=2&t=3&pn=a", "missing: the link gives 1 × pn, but 2 × T"),
+    ],
+)
+@pytest.mark.parametrize("row", [PHASE, "mech=rotary&J=1&ms=9&mt=1&mv=triangular"])
+def test_a_name_keeps_the_rules_of_titles_and_stands_beside_each_row(row: str, query: str, said: str) -> None:
+    if row == PHASE:
+        assert found(f"{row}&{query}")["pn", int("T=1" in query)] == said
+    elif "T=1" not in query:
+        assert found(f"{row}&{query}") == {("pn", 0): said}
+
+
+def test_a_name_is_written_as_it_is_and_blank_where_a_phase_has_none() -> None:
+    link = "T=40&n=250&t=0.3&pn=1.0%20%26%202e%2B05&T=32&n=500&t=3&pn=&tp=4"
+    form = read(link)
+    assert form.application is not None
+    assert [phase.name for phase in form.application.duty_cycle.load_phases] == ["1.0 & 2e+05", None]
+    assert to_link(form.application) == f"/?{link}"
+    assert read(f"{PHASE}&pn=%20&T=3&n=1&t=1&pn=").application == read(f"{PHASE}&T=3&n=1&t=1").application
 
 
 def test_unequal_lists_are_reported_where_the_value_is_missing() -> None:

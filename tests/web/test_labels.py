@@ -124,6 +124,24 @@ def test_what_is_spelling_stays(api: TestClient, text: str) -> None:
 LOOK_ALIKE = ["Axis\u200b 7", "Axis\u2060 7", "Axis 7\ufeff.", "Axis 7\U000e0037", "Axis 7\u0301" + "\u0335" * 4]
 
 
+@pytest.mark.parametrize("text", [*LOOK_ALIKE, "a\nb", "x" * 41])
+def test_rest_refuses_such_names_of_phases_and_moves(api: TestClient, text: str) -> None:
+    phase, move = {"torque_Nm": 1, "speed_rpm": 1, "duration_s": 1}, {"profile": "dwell", "time_s": 1}
+    motion = {"mechanism": {"type": "rotary", "inertia_kgm2": 1}, "moves": [move | {"name": text}]}
+    for cycle, place in (({"phases": [phase | {"name": text}]}, "phases/0"), ({"motion": motion}, "motion/moves/0")):
+        answer = api.post("/api/v1/select", json={"duty_cycle": cycle})
+        assert answer.status_code == 422
+        assert answer.json()["errors"][0]["pointer"] == f"/duty_cycle/{place}/name"
+
+
+@pytest.mark.parametrize("text", SPELT)
+def test_spelling_stays_in_the_name_of_a_phase(api: TestClient, text: str) -> None:
+    page = api.get("/?" + urlencode([*CYCLE, ("pn", text)]))
+    assert f'value="{text}"' in page.text
+    link = edit(api, [*CYCLE, ("pn", text)])
+    assert parse_qsl(link.partition("?")[2])[-1] == ("pn", text)
+
+
 @pytest.mark.parametrize("text", LOOK_ALIKE)
 @pytest.mark.parametrize("name", ["title", "reference", "author", "revision"])
 def test_rest_refuses_names_that_look_like_others(api: TestClient, name: str, text: str) -> None:

@@ -317,13 +317,23 @@ def test_application_goes_out_as_a_file_and_comes_back_as_the_same_link(client: 
 
 @pytest.mark.parametrize("decimal", [".", ","])
 def test_cycle_goes_out_as_csv_and_comes_back(client: TestClient, decimal: str) -> None:
-    table = client.get(f"/cycle.csv?T=40.5&n=250&t=0.3&FRi=500&decimal={decimal}")
+    named = "&pn=%22a%22%2C+b%3B+c&T=3&n=1&t=1&FRi=&pn=1.0"
+    table = client.get(f"/cycle.csv?T=40.5&n=250&t=0.3&FRi=500{named}&decimal={decimal}")
     assert table.headers["content-type"].startswith("text/csv")
     assert f"40{decimal}5" in table.text
     back = client.post("/paste", data={"text": table.text, "take": "replace"})
-    assert query_of(back.headers["location"]) == {"T": ["40.5"], "n": ["250"], "t": ["0.3"], "FRi": ["500"]} | {
-        name: values for name, values in query_of(back.headers["location"]).items() if name == "FAi"
+    assert query_of(back.headers["location"]) == {
+        "T": ["40.5", "3"],
+        "n": ["250", "1"],
+        "t": ["0.3", "1"],
+        "FRi": ["500"],
+        "pn": ['"a", b; c', "1.0"],
     }
+
+
+def test_a_name_is_no_formula_of_a_spreadsheet(client: TestClient) -> None:
+    table = client.get("/cycle.csv?T=40&n=250&t=0.3&pn=%3DHYPERLINK(1)").text
+    assert table.splitlines()[1].endswith(",'=HYPERLINK(1)")
 
 
 @pytest.mark.parametrize(

@@ -51,7 +51,8 @@ def outcome(client: TestClient, case: Case, chosen: dict[str, str]) -> tuple[str
 def phases(location: str) -> str:
     given = parse_qs(urlsplit(location).query, keep_blank_values=True)
     rows = zip(*(given[name] for name in SYMBOLS if name in given), strict=True)
-    return "; ".join(" ".join(cell or "-" for cell in row) for row in rows)
+    figures = "; ".join(" ".join(cell or "-" for cell in row) for row in rows)
+    return f"{figures} named {'; '.join(given['pn'])}" if "pn" in given else figures
 
 
 def judge(found: tuple[str, str | list[str]], wanted: dict[str, str]) -> None:

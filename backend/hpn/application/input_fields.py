@@ -82,5 +82,8 @@ def _of_application() -> Iterator[InputField]:
 PHASE_FIELDS: Mapping[str, InputField] = {field.path[0]: field for field in _of_phase()}
 """Fields of a phase by name."""
 
+PHASE_FIGURES = tuple(name for name, field in PHASE_FIELDS.items() if field.kind == "number")
+"""Those that are numbers: all but its name."""
+
 FIELDS: Mapping[str, InputField] = {".".join(field.path): field for field in _of_application()}
 """Fields outside of the phases and the motion by their path: `requirements.life_h`."""

@@ -95,6 +95,7 @@ class _Motion(Model):
                 peak_torque_Nm=peak,
                 peak_speed_rpm=fastest,
                 rms_torque_Nm=rms,
+                name=self.moves[move].name,
             )
             for move, T, n, t, peak, fastest, rms in columns
         )

@@ -4,6 +4,7 @@ from pydantic import Field, ValidationInfo, field_validator
 from pydantic_core import PydanticCustomError, PydanticKnownError
 
 from hpn.words.fields import Duration, Load, Model, Speed, SpeedMagnitude, Torque, TorqueMagnitude
+from hpn.words.titles import Name
 
 ROOM = 1e-9
 """Relative room in which a peak counts as reached: peaks, means and RMS are rounded by whoever hands them over."""
@@ -34,6 +35,7 @@ class Phase(Model):
     rms_torque_Nm: TorqueMagnitude | None = Field(
         None, description="RMS of the torque over the phase; without it the phase’s own torque.", examples=[42.0]
     )
+    name: Name | None = Field(None, description="Your name for the phase.", examples=["lift"])
 
     @field_validator("peak_torque_Nm", "peak_speed_rpm")
     @classmethod

@@ -17,10 +17,11 @@ Value = float | str
 LOADS = ("radial_N", "axial_N")
 WORDS: Mapping[str, str] = {**MECHANISMS, **PROFILES}
 
-MOVES = {name.removeprefix("move."): named for name, named in MOTION.items() if name.startswith("move.")} | {
+_OF_MOVE = {name.removeprefix("move."): named for name, named in MOTION.items() if name.startswith("move.")}
+MOVES = {name: named for name, named in _OF_MOVE.items() if name != "name"} | {
     name: INPUTS[f"phase.{name}"] for name in LOADS
 }
-"""Names of the fields that a move may have."""
+"""Names of the fields that a move may have; its own name stands beside its number."""
 
 PHASES_TITLE, MOTION_TITLE, MOVES_TITLE = N_("Load phases of the motion"), N_("Motion"), N_("Moves")
 
@@ -63,4 +64,5 @@ def move_line(motion: Motion, place: int, reader: Reader) -> str:
     """One move in one line, figures with their units."""
     move = motion.moves[place]
     said = ((name, getattr(move, name)) for name in MOVES if _is_said(move, name))
-    return " · ".join(reader.with_unit(written(value, name, reader), suffix_of(name) or "") for name, value in said)
+    told = (reader.with_unit(written(value, name, reader), suffix_of(name) or "") for name, value in said)
+    return " · ".join([move.name, *told] if move.name else told)

@@ -25,6 +25,7 @@ from hpn.engine.duty import Asked, Duty, Phases
 from hpn.fleet.columns import AXIS, COLUMNS, Column, is_list
 from hpn.physics.equations import FloatArray
 from hpn.words.fields import MAXIMUM_PHASES
+from hpn.words.titles import LONGEST_NAME, is_title
 
 BoolArray = NDArray[np.bool_]
 IntArray = NDArray[np.intp]
@@ -52,7 +53,7 @@ class Axes:
             mask &= ~is_excluded
         self._take(table if mask.all() else table.filter(pa.array(mask)), np.flatnonzero(mask))
         with np.errstate(all="ignore"):  # what is out of its bounds is rejected for that
-            self._keep(self._in_bounds() & self._have_sound_phases())
+            self._keep(self._in_bounds() & self._have_sound_phases() & self._have_sound_names())
         self._judge()
 
     def _take(self, table: pa.Table, places: IntArray) -> None:
@@ -110,6 +111,19 @@ class Axes:
             mask &= ~self._any_phase(wrong | (rms > np.where(np.isnan(peak_T), T, peak_T) * (1 + ROOM)))
         return mask
 
+    def _have_sound_names(self) -> BoolArray:
+        """True where each phase has a name that the models take, or none."""
+        mask = np.ones(len(self.counts), np.bool_)
+        for name in (name for name in COLUMNS.phases if not _is_number(name) and self._is_given(name)):
+            texts = pc.list_flatten(self._table[name]).combine_chunks().dictionary_encode()
+            sound = np.array([is_title(text, LONGEST_NAME) for text in texts.dictionary.to_pylist()], np.bool_)
+            found = np.ones(self.counts.sum(), np.bool_)
+            given = np.repeat(np.asarray(pc.is_valid(self._table[name])), self.counts)
+            places = np.asarray(pc.fill_null(texts.indices, -1))
+            found[given] = np.append(sound, True)[places]  # the last one is that of no name
+            mask &= ~self._any_phase(~found)
+        return mask
+
     def _judge(self) -> None:
         """Keep the axes whose pattern the models take; each has the gears and the defaults of its pattern."""
         first, pattern = self._patterns()
@@ -125,7 +139,8 @@ class Axes:
         """The first axis of each pattern, and the pattern of each axis."""
         pattern = np.zeros(len(self.counts), np.intp)
         for name, column in COLUMNS.all.items():
-            if column.required or not self._is_given(name):
+            is_name = name in COLUMNS.phases and not _is_number(name)
+            if column.required or is_name or not self._is_given(name):
                 continue
             codes = self._codes(name)
             pattern = np.unique(pattern * (codes.max() + 1) + codes, return_inverse=True)[1]

@@ -14,7 +14,7 @@ from hpn.tables.bodies import Body, body_of
 from hpn.tables.cells import Decimal, Entry, Merged, entry, is_blank, is_number
 from hpn.tables.columns import NO_CHOICES, Choices, Column, proposed, settled
 from hpn.tables.heads import REQUIRED, skipped
-from hpn.tables.inputs import AXIS, PHASE, PHASE_ROLES, Inputs
+from hpn.tables.inputs import AXIS, NAME, PHASE, PHASE_ROLES, Inputs
 from hpn.tables.numbers import known_units
 from hpn.tables.reading import Questions, Reading, Row, Table, durations_of, in_plain, unit_behind
 from hpn.tables.sheets import Grid, RefusedError
@@ -40,7 +40,7 @@ def read_axes(grid: Grid, inputs: Inputs, choices: Choices = NO_CHOICES, assumed
     """Reading of a table of cells; raises nothing, `problem` says why there is none."""
 
     def columns_of(body: Body) -> tuple[Column, ...]:
-        return settled(proposed(body, inputs), body, inputs, choices, assumed)
+        return settled(_named_apart(proposed(body, inputs)), body, inputs, choices, assumed)
 
     try:
         body = body_of(grid, choices.scales)
@@ -51,10 +51,19 @@ def read_axes(grid: Grid, inputs: Inputs, choices: Choices = NO_CHOICES, assumed
         return AxisTable(problem=refused.sentence)
 
 
+def _named_apart(columns: list[Column]) -> list[Column]:
+    """Columns of which one headed `name` names the phases, where another names the axis."""
+    names = [column for column in columns if column.role == AXIS]
+    own = [column for column in names if column.heading.casefold() == NAME.place]
+    if len(names) != 2 or len(own) != 1:
+        return columns
+    return [replace(column, role=NAME.role) if column in own else column for column in columns]
+
+
 def _unmerged(body: Body, columns: Sequence[Column]) -> Body:
     """A table in which an axis has its name, and each input that is merged, in its first row alone."""
     axis = next((column.place for column in columns if column.role == AXIS), None)
-    once = {column.place for column in columns if column.role not in PHASE_ROLES}
+    once = {column.place for column in columns if column.role not in (*PHASE_ROLES, NAME.role)}
     rows: list[tuple[str, ...]] = []
     known = ""
     for row in body.rows:
@@ -190,7 +199,9 @@ class _AxesReading(Reading):
                 continue
             cells = [row[column.place] for row in group.cells]
             found = numbers.get(column.place, (None,) * len(cells))
-            if column.role in PHASE_ROLES:
+            if column.role == NAME.role:
+                values[NAME.place] = [None if is_blank(cell) else str(cell) for cell in cells]
+            elif column.role in PHASE_ROLES:
                 listed = [self._number(*each, column) for each in zip(cells, found, strict=True)]
                 if column.role in REQUIRED or any(value is not None for value in listed):
                     values[column.held.place] = listed
@@ -231,7 +242,7 @@ class _AxesReading(Reading):
         return {name: value[: len(durations)] if name in _OF_PHASE else value for name, value in values.items()}
 
 
-_OF_PHASE = frozenset(each.place for each in PHASE)
+_OF_PHASE = frozenset(each.place for each in (*PHASE, NAME))
 _DURATION = "duration_s"
 
 

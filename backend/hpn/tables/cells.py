@@ -213,3 +213,14 @@ def seconds_between(moments: Sequence[Fraction | None], moment: Fraction) -> str
     nanoseconds = round((moment - first) * 10**9)
     sign, (whole, rest) = "-" if nanoseconds < 0 else "", divmod(abs(nanoseconds), 10**9)
     return sign + _with_fraction(whole, f"{rest:09d}".rstrip("0"))
+
+
+BEGINS_A_FORMULA = ("=", "+", "-", "@", "\t", "\r")
+_PLAIN_NUMBER = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?")
+
+
+def harmless(cell: str | None) -> str | None:
+    """A text with an apostrophe before it where it would begin a formula; a number stays one."""
+    if cell is None or not cell.startswith(BEGINS_A_FORMULA) or _PLAIN_NUMBER.fullmatch(cell):
+        return cell
+    return f"'{cell}"

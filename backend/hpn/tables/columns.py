@@ -12,7 +12,7 @@ from hpn.tables.bodies import Body
 from hpn.tables.cells import DECIMALS, TIME_FORMAT, entry, is_blank, is_number
 from hpn.tables.headings import INDEX, LONGEST, QUANTITIES, SUM, heading_of, heading_over, parts_of, quantities_of
 from hpn.tables.heads import REQUIRED
-from hpn.tables.inputs import Input, Inputs
+from hpn.tables.inputs import NAME, Input, Inputs
 from hpn.words import units
 from hpn.words.wording import N_, Sentence, Value
 
@@ -177,8 +177,8 @@ def settled(
 def _answered(column: Column, roles: Collection[str], choices: Choices) -> Column:
     if column.doubled:
         column = replace(column, role="")
-    role = "" if column.text else choices.roles.get(column.place, "")
-    if role == SKIP or role in roles:
+    role = choices.roles.get(column.place, "")
+    if role == SKIP or (role in roles and (role == NAME.role or not column.text)):
         return replace(column, role=role, skipped=column.skipped if role == SKIP else None)
     if column.is_unknown and choices.rest == SKIP:
         return replace(column, role=SKIP, skipped=Sentence(UNKNOWN))

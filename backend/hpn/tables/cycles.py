@@ -7,16 +7,17 @@ from itertools import chain
 from math import isclose, isfinite, nan
 
 from hpn.tables.bodies import DIVIDED, Body, Labelled, body_of
-from hpn.tables.cells import DECIMALS, TIME_PARTED, Decimal, Entry, entry, is_blank, is_number
+from hpn.tables.cells import DECIMALS, TIME_PARTED, Decimal, Entry, entry, is_blank, is_number, moment_of
 from hpn.tables.columns import CELLS, NO_CHOICES, Choices, Column, by_units, counts, proposed, settled, units_in
-from hpn.tables.headings import heading_over
+from hpn.tables.headings import heading_over, is_name, is_remark
 from hpn.tables.heads import REQUIRED, skipped
-from hpn.tables.inputs import CYCLE, PHASE_ROLES
+from hpn.tables.inputs import CYCLE, NAME, PHASE_ROLES
 from hpn.tables.numbers import either, known_units
 from hpn.tables.reading import Choice, Questions, Reading, Row, Table, durations_of, in_plain, unit_behind
 from hpn.tables.sheets import SEPARATORS, Grid, RefusedError, grids_of, no_number
 from hpn.words import units
 from hpn.words.fields import MAXIMUM_PHASES
+from hpn.words.titles import LONGEST_NAME, is_title
 from hpn.words.wording import N_, Sentence
 
 SEPARATOR = Choice("separator", N_("Between the columns stands"), SEPARATORS)
@@ -50,11 +51,13 @@ class CycleTable(Table):
     """Reading of a table as one cycle.
 
     `phases` are plain numbers in units of the wire, in the order of PHASE_ROLES, blank where a phase has no load.
+    `names` are those of the phases, none where no column is read as that.
     """
 
     separator: str = ""
     turned: bool = False
     phases: tuple[tuple[str, ...], ...] = ()
+    names: tuple[str, ...] = ()
 
     @property
     def lasting_s(self) -> float | None:
@@ -103,13 +106,18 @@ def read_grids(
         if table.separator == chosen:
             return replace(table, choices=(*asked.choices, *table.choices))
     return replace(
-        distinct[0], choices=(*asked.choices, *distinct[0].choices), separator="", questions=(question,), phases=()
+        distinct[0],
+        choices=(*asked.choices, *distinct[0].choices),
+        separator="",
+        questions=(question,),
+        phases=(),
+        names=(),
     )
 
 
 def _difference(table: CycleTable) -> tuple[object, ...]:
     """The phases, or the rows, in which two readings of one text differ."""
-    return table.phases if table.whole or not table.body else table.body.rows
+    return (*table.phases, table.names) if table.whole or not table.body else table.body.rows
 
 
 def _read_grid(grid: Grid, choices: Choices, assumed: Collection[str]) -> CycleTable:
@@ -172,7 +180,26 @@ def _columns_of(body: Body, choices: Choices, assumed: Collection[str]) -> tuple
     if not body.headed:
         roles = _by_place(body, found)
         found = [replace(column, role=roles.get(column.place, column.role)) for column in found]
+    if named := _column_of_names(found, body):
+        found = [replace(c, role=NAME.role, skipped=None) if c is named else c for c in found]
     return settled(found, body, CYCLE, choices, assumed)
+
+
+def _column_of_names(columns: Sequence[Column], body: Body) -> Column | None:
+    """Column that names the phases unless somebody says otherwise: the one that this service writes so, one of texts
+    with a heading that says so, else the first of texts; most rows have one that may be a name, and not all the same.
+    """
+    found = []
+    for column in columns:
+        if column.heading == NAME.place:
+            return column
+        cells = [row[column.place] for row in body.rows]
+        filled = [cell for cell in cells if not is_blank(cell)]
+        tells_apart = 2 * len(filled) >= len(cells) and len(set(filled)) >= min(len(cells), 2)
+        is_other = is_remark(column.heading) or any(map(moment_of, filled))
+        if column.text and tells_apart and not is_other and all(is_title(cell, LONGEST_NAME) for cell in cells):
+            found.append(column)
+    return min(found, key=lambda column: not is_name(column.heading), default=None)
 
 
 def _too_few(body: Body, columns: Sequence[Column]) -> RefusedError:
@@ -223,8 +250,10 @@ class _CycleReading(Reading):
         times = self.read_times([self.rows])
         rows = self._phase_rows(times)
         phases = () if self.questions.open else self._phases(rows, times)
+        names = next((column.place for column in self.columns if column.role == NAME.role), None)
+        texts = () if names is None else tuple(row[names].strip() for row in self.body.rows[: len(phases)])
         grid = self.body.grid
-        return CycleTable(**self.said, separator=grid.separator, turned=grid.turned, phases=phases)
+        return CycleTable(**self.said, separator=grid.separator, turned=grid.turned, phases=phases, names=texts)
 
     def is_missed(self, role: str, roles: Collection[str]) -> bool:
         """True unless another column is asked, which may be it."""

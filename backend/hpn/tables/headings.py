@@ -81,6 +81,12 @@ QUALIFIERS = {
 }
 """Names below that of a quantity, which say what of it a column holds."""
 
+OF_NAMES = {"name", "phase name", "bezeichnung", "benennung", "phasenname", "nom", "nome", "nombre", "namn", "naam"}
+"""Names of a column that names the phases, as any that numbers them may do."""
+
+OF_REMARKS = {"remark", "remarks", "comment", "note", "notes", "bemerkung", "bemerkungen", "anmerkung", "kommentar"}
+"""Names of a column of texts that names nothing."""
+
 OF_LOAD = {"load", "last", "load cycle", "lastzyklus", "duty cycle", "cycle", "zyklus"}
 """Names above that of a quantity that change nothing of it."""
 
@@ -251,6 +257,16 @@ def _together(names: Sequence[str]) -> tuple[list[Heading], str]:
 def is_qualifier(cell: str) -> bool:
     """True for a word that says of a quantity above it which figure of it a column holds."""
     return len(cell) <= LONGEST and _folded(cell.strip("[]()")) in QUALIFIERS
+
+
+def is_name(cell: str) -> bool:
+    """True for a heading of names: of texts that say what each row is."""
+    return len(cell) <= LONGEST and (_folded(cell) in OF_NAMES or heading_of(cell).kind == INDEX)
+
+
+def is_remark(cell: str) -> bool:
+    """True for a heading of remarks."""
+    return len(cell) <= LONGEST and _folded(cell) in OF_REMARKS
 
 
 def is_of_motor(cell: str) -> bool:

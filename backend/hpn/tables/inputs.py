@@ -18,6 +18,7 @@ AXIS = "axis"
 
 FURTHER = {
     AXIS: "axis name, achse, achsname, achsbezeichnung, achse nr, antrieb, drive, joint, gelenk, bezeichnung, name",
+    "pn": "phase name, name of the phase, phasenname, phasenbezeichnung",
     "tp": "pause, pausenzeit, dwell",
     "Tk": "not-halt-moment, nothaltmoment, not-halt-drehmoment",
     "Nk": "emergency stops, not-halt-vorgänge, anzahl not-halt",
@@ -67,13 +68,15 @@ _OF_PHASE = {
 }
 PHASE = tuple(Input(role, place, quantities.INPUTS[f"phase.{place}"]) for role, place in _OF_PHASE.items())
 PHASE_ROLES = tuple(_OF_PHASE)
+NAME = Input("pn", "name", quantities.INPUTS["phase.name"], "text")
+"""Name of a phase."""
 
 
 class Inputs:
     """Inputs by role, and the names of those that are none of a phase."""
 
     def __init__(self, *further: Input) -> None:
-        named = (Input(AXIS, AXIS, Named(N_("Axis")), "text"), *PHASE, *further) if further else PHASE
+        named = (Input(AXIS, AXIS, Named(N_("Axis")), "text"), *PHASE, NAME, *further) if further else (*PHASE, NAME)
         self.by_role: Mapping[str, Input] = {each.role: each for each in named}
         self.has_axes = bool(further)
 

@@ -19,17 +19,10 @@ from hpn.store import Draft, KeyReusedError, KeySpentError, SavedSelection
 from hpn.web.door.observation import note
 from hpn.web.door.pools import compute
 from hpn.web.door.problems import Problem
-from hpn.web.form.labels import (
-    CONTROLS,
-    LONGEST_LABEL,
-    NO_CONTROLS,
-    OrderingCode,
-    faults_of,
-    query_of,
-    read_ordering_code,
-)
+from hpn.web.form.labels import OrderingCode, query_of, read_ordering_code
 from hpn.web.form.link_writer import to_link
 from hpn.words.fields import Model
+from hpn.words.titles import CONTROLS, LONGEST_TITLE, NO_CONTROLS, SCHEMA_CONTROLS, Title
 from hpn.words.wording import N_, Sentence
 
 T = TypeVar("T")
@@ -41,25 +34,13 @@ def _line(text: str) -> str | None:
     return text or None
 
 
-def _label(text: str) -> str | None:
-    for fault in faults_of(text):
-        raise PydanticCustomError("label", "{text}", {"text": fault.text})
-    return text or None
-
-
-_SHORT = StringConstraints(strip_whitespace=True, max_length=LONGEST_LABEL)
-_CONTROLS = "\\u0000-\\u001f\\u007f-\\u009f\\u2028-\\u202e\\u2066-\\u2069\\ufffe\\uffff"
-
-Line = Annotated[str, _SHORT, AfterValidator(_line), Field(json_schema_extra={"pattern": f"^[^{_CONTROLS}]*$"})]
-"""One line of text that something is looked for by; an empty one counts as none."""
-
-Label = Annotated[
+Line = Annotated[
     str,
-    _SHORT,
-    AfterValidator(_label),
-    Field(json_schema_extra={"pattern": f"^[^{_CONTROLS}\\u200b\\u2060\\ufeff]*$"}),
+    StringConstraints(strip_whitespace=True, max_length=LONGEST_TITLE),
+    AfterValidator(_line),
+    Field(json_schema_extra={"pattern": f"^[^{SCHEMA_CONTROLS}]*$"}),
 ]
-"""One line of text that something is called by: it has nothing in it that nobody sees. An empty one counts as none."""
+"""One line of text that something is looked for by; an empty one counts as none."""
 
 RETRY_SECONDS = 5
 """Time after which to try a store that is out of reach again."""
@@ -68,15 +49,15 @@ RETRY_SECONDS = 5
 class Names(Model):
     """Title and reference of a saved selection, which may be changed later."""
 
-    title: Label | None = Field(None, description="Title for people.", examples=["Rotary table, axis 7"])
-    reference: Label | None = Field(None, description="Your own number, such as a part number.", examples=["4711-07"])
+    title: Title | None = Field(None, description="Title for people.", examples=["Rotary table, axis 7"])
+    reference: Title | None = Field(None, description="Your own number, such as a part number.", examples=["4711-07"])
 
 
 class Labels(Names):
     """Labels that people give a saved selection."""
 
-    author: Label | None = Field(None, description="Author.", examples=["M. Muster"])
-    revision: Label | None = Field(None, description="Its revision in your own documents.", examples=["B"])
+    author: Title | None = Field(None, description="Author.", examples=["M. Muster"])
+    revision: Title | None = Field(None, description="Its revision in your own documents.", examples=["B"])
     ordering_code: Line | None = Field(
         None,
         description="Gear, output version and motor adapter as ordered, as far as they are known. The gear has to be "

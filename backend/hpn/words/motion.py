@@ -37,6 +37,7 @@ MOTION: Mapping[str, Named] = {
     "move.jerk_share": Named(N_("Jerk share")),
     "move.external_torque_Nm": Named(N_("External torque"), "T_ext"),
     "move.external_force_N": Named(N_("External force"), "F_ext"),
+    "move.name": Named(N_("Name")),
 }
 """Inputs of a motion: of its mechanism, and of each move."""
 

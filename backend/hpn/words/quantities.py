@@ -47,6 +47,7 @@ INPUTS: Mapping[str, Named] = {
     "phase.peak_torque_Nm": Named(N_("Peak torque"), "T_pk"),
     "phase.peak_speed_rpm": Named(N_("Peak speed"), "n_pk"),
     "phase.rms_torque_Nm": Named(N_("RMS torque"), "T_rms"),
+    "phase.name": Named(N_("Name")),
     "duty_cycle.pause_s": Named(N_("Pause"), "t_p"),
     "emergency_stop.torque_Nm": Named(N_("Emergency-stop torque"), "T_k"),
     "emergency_stop.count": Named(N_("Expected emergency stops"), "N_k"),
@@ -116,6 +117,7 @@ PHASE: Mapping[str, Named] = {
             "Largest torque in the phase.",
             "Largest speed in the phase.",
             "RMS of the torque over the phase.",
+            "Name of the move that it belongs to; left out where it has none.",
         ),
         strict=False,
     )

@@ -26,6 +26,7 @@ from hpn.explain.calculation.sheet import Line, Sheet, Step, known, step_of_chec
 from hpn.physics.equations import FloatArray
 from hpn.physics.motion import Course, peak_instant, square_torque
 from hpn.words.quantities import INPUTS
+from hpn.words.titles import numbered
 from hpn.words.wording import N_, Quantity, Sentence, Value
 
 SQUARED = Constant(2)
@@ -115,7 +116,7 @@ def _at_its_instant(
         parts.append((without_load, Term(Variable("T", "0"), T_0, "Nm")))
     formula = _magnitude_of(parts)
     values: dict[str, Value] = {
-        "phase": instant.phase + 1,
+        "phase": numbered(instant.phase, sheet.application.duty_cycle.load_phases[instant.phase].name),
         "inertia": Quantity(inertia.value, "kgm2", 6),
         "acceleration": Quantity(abs(instant.acceleration_rad_per_s2), "rad_per_s2", 6),
         "torque": Quantity(abs(own), "Nm", 6),

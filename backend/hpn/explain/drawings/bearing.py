@@ -1,6 +1,7 @@
 """Plots of the output bearing to zoom, hover and export; axes fixed per size, radial load to the right."""
 
 from collections.abc import Sequence
+from html import escape
 from math import hypot
 
 from hpn.application import OutputLoad
@@ -228,7 +229,7 @@ def _marks(kind: str, name: str, marker: Figure, at: Sequence[tuple[float, float
 
 
 def _hover(load: PhaseLoad, reader: Reader, *, with_use: bool) -> str:
-    text = said(Sentence("phase {phases}", {"phases": load.phases}), reader) + "<br>"
+    text = said(Sentence("phase {phases}", {"phases": escape(load.spoken)}), reader) + "<br>"
     text += _spelt(load.radial_N, load.axial_N, reader)
     if with_use:
         used: dict[str, Value] = {"used": share(load.published)}

@@ -118,7 +118,7 @@ def _label(load: PhaseLoad) -> str:
 
 def _told_of(load: PhaseLoad, outside: bool, reader: Reader) -> str:
     values: dict[str, Value] = {
-        "phases": load.phases,
+        "phases": load.spoken,
         "radial": Quantity(load.radial_N, "N", 4),
         "axial": Quantity(load.axial_N, "N", 4),
         "used": share(load.published),

@@ -15,6 +15,7 @@ from hpn.explain.drawings.subject import Subject
 from hpn.explain.drawings.words import phase_numbers
 from hpn.physics import bearing
 from hpn.physics.equations import ROUNDING
+from hpn.words.titles import numbered
 from hpn.words.wording import Quantity, Sentence, Value
 
 MOST_LOADS = 200
@@ -38,6 +39,7 @@ class PhaseLoad:
     published: float
     allowed: float = 1.0
     given_N: float = 0.0
+    name: str | None = None
 
     @property
     def has_lever(self) -> bool:
@@ -48,6 +50,11 @@ class PhaseLoad:
     def phases(self) -> str:
         """Numbers of the phases as a reader counts them."""
         return phase_numbers(self.places)
+
+    @property
+    def spoken(self) -> str:
+        """The same in a sentence: of one phase with its name."""
+        return self.phases if len(self.places) > 1 else numbered(self.places[0], self.name)
 
     @property
     def marked(self) -> list[int]:
@@ -207,7 +214,8 @@ def bearing_picture(subject: Subject, life: CheckResult | None = None) -> Bearin
         published = phase_loads(subject.duty, subject.sizes)[0, subject.place].tolist()
         radial = radial_at_centre(subject.duty, subject.sizes)[0]
         own = radial[subject.place if len(radial) > 1 else 0].tolist()
-        loads = different_loads(subject.duty, own, published, allowed)
+        names = [phase.name for phase in application.duty_cycle.load_phases]
+        loads = different_loads(subject.duty, own, published, allowed, names)
     return BearingPicture(
         gear=gear,
         load=load,
@@ -236,7 +244,11 @@ def _life_factor(subject: Subject, load: OutputLoad) -> float:
 
 
 def different_loads(
-    duty: Duty, radial_N: Sequence[float], published: Sequence[float], allowed: float
+    duty: Duty,
+    radial_N: Sequence[float],
+    published: Sequence[float],
+    allowed: float,
+    names: Sequence[str | None],
 ) -> list[PhaseLoad]:
     """Different loads of a cycle, in the order in which they first occur.
 
@@ -245,7 +257,7 @@ def different_loads(
     found: dict[tuple[float, float], PhaseLoad] = {}
     series = (radial_N, duty.phases.axial_N[0, 0].tolist(), published, duty.phases.radial_N[0, 0].tolist())
     for place, (radial, axial, used, given) in enumerate(zip(*series, strict=True)):
-        load = PhaseLoad([], radial, axial, used, allowed, given)
+        load = PhaseLoad([], radial, axial, used, allowed, given, names[place])
         found.setdefault((given, axial), load).places.append(place)
     return list(found.values())
 

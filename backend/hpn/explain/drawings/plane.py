@@ -22,6 +22,7 @@ from hpn.physics.equations import FloatArray
 from hpn.physics.motion import Trace, motor_trace, trace_of
 from hpn.words.quantities import DUTY, GEAR, INPUTS
 from hpn.words.reader import DEFAULT, Reader
+from hpn.words.titles import numbered
 from hpn.words.wording import N_, Quantity, Sentence, Value
 
 OUTPUT = Axes(N_("output speed"), "rpm", N_("output torque"), "Nm")
@@ -69,6 +70,7 @@ class _Cycle:
     peak_speed_rpm: FloatArray
     peak_torque_Nm: FloatArray
     curves: dict[int, list[Point]]
+    names: Sequence[str | None]
 
 
 def gear_plane(subject: Subject, reader: Reader = DEFAULT, governing: Sequence[int] = ()) -> Plane:
@@ -92,7 +94,7 @@ def gear_plane(subject: Subject, reader: Reader = DEFAULT, governing: Sequence[i
         trace = trace_of(course)
         curves = _curves(trace, np.abs(trace.speed_rpm), np.abs(trace.torque_Nm))
     n, T, fastest, largest = phases.speed_rpm, phases.torque_Nm, phases.peak_speed_rpm, phases.peak_torque_Nm
-    cycle = _Cycle(n[0, 0], T[0, 0], fastest[0, 0], largest[0, 0], curves)
+    cycle = _Cycle(n[0, 0], T[0, 0], fastest[0, 0], largest[0, 0], curves, _names(subject))
     words = [
         _compared(N_("Largest torque {torque}, largest speed {speed}."), limits[0], subject),
         _compared(N_("Average torque {torque}, average speed {speed}."), limits[1], subject),
@@ -154,7 +156,11 @@ def _at_motor(subject: Subject, motor: Motor) -> _Cycle:
         torque = np.abs(trace.torque_Nm) / (i * at_peak[trace.phase])[:, None] + moving[trace.phase][:, None]
         curves = _curves(trace, np.abs(trace.speed_rpm) * i, torque)
     means = phases.rms_torque_Nm[0, 0] / (i * at_rms) + moving
-    return _Cycle(phases.speed_rpm[0, 0] * i, means, phases.peak_speed_rpm[0, 0] * i, peaks, curves)
+    return _Cycle(phases.speed_rpm[0, 0] * i, means, phases.peak_speed_rpm[0, 0] * i, peaks, curves, _names(subject))
+
+
+def _names(subject: Subject) -> Sequence[str | None]:
+    return [phase.name for phase in subject.application.duty_cycle.load_phases]
 
 
 def _curves(trace: Trace, speed: FloatArray, torque: FloatArray) -> dict[int, list[Point]]:
@@ -259,7 +265,7 @@ def _phases(cycle: _Cycle, limits: _Limits, u: float, governing: Sequence[int], 
 
 def _told(cycle: _Cycle, k: int, places: Sequence[int]) -> Sentence:
     values: dict[str, Value] = {
-        "phases": phase_numbers(places),
+        "phases": phase_numbers(places) if len(places) > 1 else numbered(k, cycle.names[k]),
         "torque": Quantity(cycle.peak_torque_Nm.item(k), "Nm"),
         "speed": Quantity(cycle.peak_speed_rpm.item(k), "rpm"),
     }

@@ -55,7 +55,7 @@ def _largest(picture: BearingPicture) -> Sentence:
         return Sentence("Single load: {used} of the published maximum.", used)
     return Sentence(
         "Largest single load: {used} of the published maximum (phase {phases}).",
-        used | {"phases": picture.worst.phases},
+        used | {"phases": picture.worst.spoken},
     )
 
 

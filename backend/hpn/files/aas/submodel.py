@@ -242,18 +242,19 @@ def _duty(export: Export) -> list[model.Property]:
 
 
 def _cycle(export: Export) -> Iterable[model.SubmodelElementCollection]:
-    """A motion as it was given, and the phases where torque or speed vary in them."""
+    """A motion as it was given, and the phases where torque or speed vary in them, or where they have names."""
     cycle = export.application.duty_cycle
     if cycle.motion is not None:
         mechanism = {name: value for name, _, value in mechanism_of(cycle.motion)}
         columns = moves_of(cycle.motion)
-        moves = ({name: values[k] for name, values in columns.items()} for k in range(len(cycle.motion.moves)))
+        names = {"name": [move.name for move in cycle.motion.moves]}
+        moves = ({n: values[k] for n, values in (columns | names).items()} for k in range(len(cycle.motion.moves)))
         parts: list[model.SubmodelElement] = [
             model.SubmodelElementCollection("Mechanism", _said(mechanism)),
             *_numbered("Move", moves, len(cycle.motion.moves)),
         ]
         yield model.SubmodelElementCollection("Motion", parts)
-    elif not any(getattr(phase, name) is not None for phase in cycle.load_phases for name in VARYING):
+    elif not any(getattr(phase, name) is not None for phase in cycle.load_phases for name in (*VARYING, "name")):
         return
     phases = (phase.model_dump(exclude_none=True) for phase in cycle.load_phases)
     yield model.SubmodelElementCollection("Phases", [*_numbered("Phase", phases, len(cycle.load_phases))])

@@ -10,6 +10,7 @@ from hpn.files.motion import MOVES, moves_of, written
 from hpn.files.report.tables import MOST_PHASES, columns, number_of
 from hpn.words.quantities import INPUTS
 from hpn.words.reader import Reader
+from hpn.words.titles import row_label
 from hpn.words.units import suffix_of
 from hpn.words.wording import N_
 
@@ -26,7 +27,7 @@ def listing(export: Export, reader: Reader) -> dict[str, Any] | None:
     phases, number = cycle.load_phases, number_of(cycle, reader)
     if len(phases) <= MOST_PHASES:
         return None
-    table = [[reader.text(N_("Phase")), *(str(number) for number in range(1, len(phases) + 1))]]
+    table = [[reader.text(N_("Phase")), *(row_label(k, phase.name) for k, phase in enumerate(phases))]]
     for name, values in columns(phases).items():
         unit = suffix_of(name) or ""
         head = f"{INPUTS[f'phase.{name}'].symbol} [{reader.unit(unit)}]"
@@ -39,7 +40,7 @@ def moves(export: Export, reader: Reader) -> dict[str, Any] | None:
     motion = export.application.duty_cycle.motion
     if motion is None or len(motion.moves) <= MOST_PHASES:
         return None
-    table = [[reader.text(N_("Move")), *(str(number) for number in range(1, len(motion.moves) + 1))]]
+    table = [[reader.text(N_("Move")), *(row_label(k, move.name) for k, move in enumerate(motion.moves))]]
     for name, values in moves_of(motion).items():
         unit = reader.unit(suffix_of(name) or "")
         symbol = MOVES[name].symbol or reader.text(MOVES[name].name)

@@ -14,6 +14,7 @@ from hpn.files.words import equation, measured
 from hpn.words.quantities import CANDIDATE, DUTY, GEAR, INPUTS
 from hpn.words.reader import Reader
 from hpn.words.symbols import formula
+from hpn.words.titles import row_label
 from hpn.words.units import suffix_of
 from hpn.words.wording import N_, Sentence
 
@@ -41,7 +42,7 @@ def phases(export: Export, reader: Reader) -> dict[str, Any]:
         cells = [
             ["" if value is None else number(value, _unit(name)) for value in column] for name, column in given.items()
         ]
-        rows, note = [[str(k), *row] for k, row in enumerate(zip(*cells, strict=True), 1)], ""
+        rows, note = [[row_label(k, listed[k].name), *row] for k, row in enumerate(zip(*cells, strict=True))], ""
     else:
         rows = _summary(given, reader)
         text = N_("{count} phases, summarised here; each stands on the last pages.")
@@ -77,7 +78,7 @@ def motion(export: Export, reader: Reader) -> dict[str, Any] | None:
     rows, note = [], ""
     if len(given.moves) <= MOST_PHASES:
         cells = [[written(value, name, reader) for value in column] for name, column in columns.items()]
-        rows = [[str(k), *row] for k, row in enumerate(zip(*cells, strict=True), 1)]
+        rows = [[row_label(k, given.moves[k].name), *row] for k, row in enumerate(zip(*cells, strict=True))]
     else:
         text = N_("{count} moves; each stands on the last pages.")
         note = reader.told(Sentence(text, {"count": reader.exact(len(given.moves))}))

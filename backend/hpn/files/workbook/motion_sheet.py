@@ -50,9 +50,9 @@ def _moves(book: Book, sheet: Any, motion: Motion, row: int) -> None:
     for column, head in enumerate((book.reader.text(N_("Move")), *heads)):
         sheet.write_string(row + 1, column, head, book.style("head"))
     sheet.set_row(row + 1, 48)
-    for place in range(len(motion.moves)):
+    for place, move in enumerate(motion.moves):
         own = row + 2 + place
-        sheet.write_number(own, 0, place + 1, book.style("quiet"))
+        book.number(sheet, own, place, move.name)
         for column, (name, values) in enumerate(columns.items(), 1):
             _cell(book, sheet, own, column, name, values[place])
         for column, name in enumerate(converted, 1 + len(columns)):

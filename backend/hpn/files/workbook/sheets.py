@@ -6,7 +6,7 @@ from typing import Any
 
 from xlsxwriter.utility import xl_range_abs, xl_rowcol_to_cell
 
-from hpn.application.input_fields import PHASE_FIELDS
+from hpn.application.input_fields import PHASE_FIELDS, PHASE_FIGURES
 from hpn.files.export import Export
 from hpn.files.words import Paper, paper
 from hpn.files.workbook import EveryDigit
@@ -14,6 +14,7 @@ from hpn.files.workbook.formulas import NONE, cell_name
 from hpn.files.workbook.wrong import BENEATH, advice, is_wrong_in_phase, validation
 from hpn.words.quantities import INPUTS
 from hpn.words.reader import Reader
+from hpn.words.titles import row_label
 from hpn.words.units import symbol_of
 from hpn.words.wording import N_
 
@@ -67,7 +68,6 @@ SPARE_PHASES = 20
 MOST_BENEATH = 10_000
 """Rows beneath the last spare one in which no phase may stand."""
 
-PHASE = tuple(path.removeprefix("phase.") for path in INPUTS if path.startswith("phase."))
 VARYING = ("peak_torque_Nm", "peak_speed_rpm", "rms_torque_Nm")
 """Columns that are folded unless a phase has a value in one of them."""
 
@@ -103,6 +103,10 @@ class Book:
             sheet.write_string(row, column, value, self.style(style))
         else:
             sheet.write_number(row, column, EveryDigit(value), self.style(style))
+
+    def number(self, sheet: Any, row: int, place: int, name: str | None) -> None:
+        """Write the number of a phase or a move into the first cell of its row, with its name where it has one."""
+        self.put(sheet, row, 0, row_label(place, name) if name else float(place + 1), "quiet")
 
     def head(self, text: str, unit: str) -> str:
         """Head of a column: a text or symbol, with a unit if there is one."""
@@ -175,12 +179,12 @@ class CycleSheet:
         self.book, self.sheet = book, sheet
         self.phases = book.export.application.duty_cycle.load_phases
         self.last = len(self.phases) + SPARE_PHASES
-        self.converted = [name for name in PHASE if not book.shown.measure(symbol_of(name)).same]
+        self.converted = [name for name in PHASE_FIGURES if not book.shown.measure(symbol_of(name)).same]
         self.loads = {name: getattr(book.export.duty.phases, name)[0, 0] for name in USED.values()}
 
     def write(self) -> None:
         """Write the sheet and name its columns."""
-        heads = [(N_("Phase"), ""), *((INPUTS[f"phase.{name}"].name, symbol_of(name)) for name in PHASE)]
+        heads = [(N_("Phase"), ""), *((INPUTS[f"phase.{name}"].name, symbol_of(name)) for name in PHASE_FIGURES)]
         heads += [(N_("Radial load that counts"), "N"), (N_("Axial load that counts"), "N")]
         for column, (head, unit) in enumerate(heads):
             self.sheet.write_string(
@@ -190,7 +194,7 @@ class CycleSheet:
         self.sheet.set_column(0, len(heads) - 1, 15)
         self.sheet.freeze_panes(1, 0)
         self._heads_converted(len(heads))
-        for column, name in enumerate((*PHASE, *USED), 1):
+        for column, name in enumerate((*PHASE_FIGURES, *USED), 1):
             self.book.name(name, self.sheet, xl_range_abs(1, column, self.last, column))
         for row in range(1, self.last + 1):
             self._phase(row)
@@ -207,7 +211,7 @@ class CycleSheet:
 
     def _fold(self, start: int) -> None:
         """Fold the columns of phases that vary; the mark above the next column opens them."""
-        first, last = (1 + PHASE.index(VARYING[k]) for k in (0, -1))
+        first, last = (1 + PHASE_FIGURES.index(VARYING[k]) for k in (0, -1))
         self.sheet.set_column(first, last, 15, None, FOLDED)
         self.sheet.set_column(last + 1, last + 1, 15, None, {"collapsed": True})
         for column, name in enumerate(self.converted, start):
@@ -224,25 +228,28 @@ class CycleSheet:
 
     def _refuse(self) -> None:
         """Mark values that the service would refuse, and name the rows beneath the last, which do not count."""
-        cells = {name: xl_rowcol_to_cell(1, column, col_abs=True) for column, name in enumerate(PHASE, 1)}
-        for column, name in enumerate(PHASE, 1):
+        cells = {name: xl_rowcol_to_cell(1, column, col_abs=True) for column, name in enumerate(PHASE_FIGURES, 1)}
+        for column, name in enumerate(PHASE_FIGURES, 1):
             field, reader = PHASE_FIELDS[name], self.book.reader
             rule = validation(field, advice(field, reader, name))
             wrong = is_wrong_in_phase(name, cells)
             self.book.refuse(self.sheet, 1, column, self.last, column, wrong=wrong, validation=rule)
-        beneath = (self.last + 1, 1, self.last + MOST_BENEATH, len(PHASE))
+        beneath = (self.last + 1, 1, self.last + MOST_BENEATH, len(PHASE_FIGURES))
         self.book.name(BENEATH, self.sheet, xl_range_abs(*beneath))
 
     def _phase(self, row: int) -> None:
         phase = self.phases[row - 1] if row <= len(self.phases) else None
-        self.sheet.write_number(row, 0, row, self.book.style("quiet"))
-        for column, name in enumerate(PHASE, 1):
+        self.book.number(self.sheet, row, row - 1, phase.name if phase else None)
+        for column, name in enumerate(PHASE_FIGURES, 1):
             self.book.put(self.sheet, row, column, getattr(phase, name, None), "input")
-        for column, name in enumerate(self.converted, 1 + len(PHASE) + len(USED)):
-            source = xl_rowcol_to_cell(row, 1 + PHASE.index(name))
+        for column, name in enumerate(self.converted, 1 + len(PHASE_FIGURES) + len(USED)):
+            source = xl_rowcol_to_cell(row, 1 + PHASE_FIGURES.index(name))
             self.book.converted(self.sheet, row, column, source, symbol_of(name), getattr(phase, name, None))
-        duration = xl_rowcol_to_cell(row, 1 + PHASE.index("duration_s"))
-        for column, (name, loads) in enumerate(self.loads.items(), 1 + len(PHASE)):
-            own, whole = xl_rowcol_to_cell(row, 1 + PHASE.index(name)), cell_name(INPUTS[f"output_load.{name}"].symbol)
+        duration = xl_rowcol_to_cell(row, 1 + PHASE_FIGURES.index("duration_s"))
+        for column, (name, loads) in enumerate(self.loads.items(), 1 + len(PHASE_FIGURES)):
+            own, whole = (
+                xl_rowcol_to_cell(row, 1 + PHASE_FIGURES.index(name)),
+                cell_name(INPUTS[f"output_load.{name}"].symbol),
+            )
             formula = f'=IF({duration}="",0,ABS(IF({own}="",IF({whole}="",0,{whole}),{own})))'
             self.sheet.write_formula(row, column, formula, None, loads[row - 1].item() if phase else 0.0)

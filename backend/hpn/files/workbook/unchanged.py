@@ -11,11 +11,12 @@ from typing import Any
 from xlsxwriter.utility import xl_range_abs
 
 from hpn.application import NUMBERS, OutputLoad
+from hpn.application.input_fields import PHASE_FIGURES
 from hpn.files.export import Export
 from hpn.files.inputs import LOAD_INERTIA, LOAD_PATH, LOAD_REVERSES, LOADS, REQUIREMENTS, Value, value_of
 from hpn.files.workbook.formulas import CHECK_FORMULAS, CYCLE_TERMS, GEAR_TERMS, MOTOR_TORQUES, cell_name
 from hpn.files.workbook.known import BY_BRAKE, DEMANDS
-from hpn.files.workbook.sheets import PHASE, SPARE_PHASES, USED, Book
+from hpn.files.workbook.sheets import SPARE_PHASES, USED, Book
 from hpn.words.quantities import INPUTS
 
 ENTERED: Mapping[str, str] = {
@@ -61,7 +62,7 @@ def as_saved(name: str) -> str:
 
 def inputs_behind(name: str) -> set[str]:
     """Inputs behind a figure or check, through all formulas, by their names in these."""
-    if name in PHASE or name in USED or name in ENTERED:
+    if name in PHASE_FIGURES or name in USED or name in ENTERED:
         return {name}
     return set().union(*map(inputs_behind, re.findall(r"\w+", _FORMULAS.get(name, ""))))
 

@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from hpn.application import LEAST_MOTION
-from hpn.application.input_fields import PHASE_FIELDS, InputField
+from hpn.application.input_fields import PHASE_FIELDS, PHASE_FIGURES, InputField
 from hpn.application.phase import ROOM
 from hpn.words.fields import LEAST
 from hpn.words.reader import Reader
@@ -35,7 +35,7 @@ _FITTING: Mapping[str, str] = {
     "rms_torque_Nm": N_("at most the peak torque"),
 }
 
-_USED = "((" + "+".join(f'({{{name}}}<>"")' for name in PHASE_FIELDS) + ")>0)"
+_USED = "((" + "+".join(f'({{{name}}}<>"")' for name in PHASE_FIGURES) + ")>0)"
 """Condition under which a row of the duty cycle is a phase."""
 
 WRONG_AS_A_WHOLE: Mapping[str, str] = {
@@ -110,7 +110,7 @@ def validation(field: InputField, advised: str) -> dict[str, Any]:
 
 
 WRONG_IN_CYCLE = (
-    *(f"SUMPRODUCT({is_wrong_in_phase(name, {name: name for name in PHASE_FIELDS})})" for name in PHASE_FIELDS),
+    *(f"SUMPRODUCT({is_wrong_in_phase(name, {name: name for name in PHASE_FIGURES})})" for name in PHASE_FIGURES),
     *(f"({condition})" for condition in WRONG_AS_A_WHOLE),
 )
 """Formulas that count the faults in the duty cycle, over its columns."""

@@ -13,6 +13,7 @@ from hpn.physics.equations import ROUNDING
 from hpn.physics.motion.ramps import Ramp, Timing, at_speed, at_triangle, equal_ramps, in_time, triangle
 from hpn.physics.motion.refusals import refusal
 from hpn.words.fields import LEAST, Load, Model, MoveTime, Number, Positive, Share, Torque, refused
+from hpn.words.titles import Name
 from hpn.words.units import suffix_of
 from hpn.words.wording import Quantity, Rounding
 
@@ -67,6 +68,7 @@ class Move(Model):
     axial_N: Load | None = Field(
         None, description="Axial load on the gear’s shaft in this move; without it the cycle’s.", examples=[200.0]
     )
+    name: Name | None = Field(None, description="Your name for the move.", examples=["lift"])
 
     @property
     def way(self) -> float:

@@ -18,7 +18,12 @@ from hpn.web.door.conditions import conditional
 from hpn.web.door.pools import compute
 from hpn.web.settings import Settings
 
-router = APIRouter(prefix="/api/v1", tags=["Motors"], dependencies=[admit("calculator")])
+router = APIRouter(
+    prefix="/api/v1",
+    tags=["Motors"],
+    dependencies=[admit("calculator")],
+    default_response_class=JSONBytes,
+)
 
 
 @router.get(
@@ -26,8 +31,7 @@ router = APIRouter(prefix="/api/v1", tags=["Motors"], dependencies=[admit("calcu
     operation_id="getMotors",
     summary="The user’s own motors",
     openapi_extra=schemas.IF_NONE_MATCH,
-    response_model=MotorsReply,
-    responses=schemas.answers(headers=schemas.headers("ETag")) | schemas.HAS_IT_ALREADY,
+    responses=schemas.answers("MotorsReply", headers=schemas.headers("ETag")) | schemas.HAS_IT_ALREADY,
 )
 async def motors(request: Request) -> Response:
     """Motors of a supplement’s motors.csv; none where there is no such file, null where a figure is blank."""
@@ -40,8 +44,7 @@ async def motors(request: Request) -> Response:
     operation_id="fitMotors",
     summary="The user’s own motors on a gear",
     openapi_extra=schemas.request_body(Application),
-    response_model=MotorsOnGearReply,
-    responses=schemas.answers(400, 404, 408, 413, 415, 422),
+    responses=schemas.answers("MotorsOnGearReply", 400, 404, 408, 413, 415, 422),
 )
 async def motors_of_gear(request: Request, designation: str) -> Response:
     """How far each motor of motors.csv is used on a gear under an application, in place of the application’s own."""

@@ -14,7 +14,6 @@ from hpn.engine.envelopes import EnvelopeQuery, life_envelopes
 from hpn.engine.selection import Selection, select
 from hpn.explain.differences import FigureDifference, differences
 from hpn.web.api.batch import batch_lines
-from hpn.web.api.catalogue import one_gear
 from hpn.web.api.motors import motors_on_gear
 from hpn.web.api.replies import encode
 from hpn.web.door.problems import Problem
@@ -46,7 +45,7 @@ TURNING: Json = {
     },
     "start_deg": 0.0,
     "moves": [
-        {"profile": "trapezoidal", "angle_deg": 90.0, "time_s": 0.8, "acceleration_deg_per_s2": 900.0},
+        {"profile": "trapezoidal", "angle_deg": 90.0, "time_s": 0.8, "acceleration_deg_per_s2": 900.0, "name": "turn"},
         {"profile": "dwell", "time_s": 0.4, "external_torque_Nm": 30.0},
         {"profile": "s_curve", "angle_deg": -90.0, "time_s": 1.0, "speed_rpm": 25.0, "jerk_share": 0.5},
     ],
@@ -120,7 +119,7 @@ def _samples(catalogue: Catalogue) -> Json:
             "catalogue_version": catalogue.version,
             "series": plain(catalogue.series),
         },
-        "OneGearReply": plain(one_gear(catalogue.by_designation[best], catalogue)),
+        "OneGearReply": one_gear(catalogue, gear),
         "MotorsReply": {"catalogue_version": catalogue.version, "motors": [MOTOR]},
         "MotorsOnGearReply": plain(motors_on_gear(application, catalogue.by_designation[best], listed)),
         "EnvelopeReply": envelopes(catalogue, gear["size"]),
@@ -153,6 +152,11 @@ def _moving(motion: Json) -> Application:
 def plain(reply: Any) -> Any:
     """A reply as its reader gets it."""
     return msgspec.json.decode(encode(reply))
+
+
+def one_gear(catalogue: Catalogue, gear: Json) -> Json:
+    """A gear by itself and as the list has it."""
+    return {"catalogue_version": catalogue.version, **gear, "gears": [gear]}
 
 
 def refusal() -> Problem:

@@ -9,24 +9,26 @@ from hpn.application import MOST_WISHES
 from hpn.application.motion import MAXIMUM_MOVES
 from hpn.physics.motion.bodies import MOST_BODIES
 from hpn.tables.numbers import WAS, WRITTEN
-from hpn.web.form.labels import LABELS, faults_of
+from hpn.web.form.labels import LABELS
 from hpn.web.form.rows import Rows
 from hpn.web.form.symbols import (
     BELT_BY_NAME,
     BODY_BY_NAME,
     BY_NAME,
-    LOADS,
     MECHANISM_SYMBOLS,
     MOVE_BY_LEAF,
     MOVE_BY_NAME,
+    OF_ANY_ROW,
+    OPTIONAL,
     PHASE_BY_NAME,
     PHASE_SYMBOLS,
-    RAMPS,
+    SHARED,
     SYMBOLS,
-    VARYING,
+    shown_columns,
 )
 from hpn.web.form.ways import ASIDE
 from hpn.words.fields import MAXIMUM_PHASES
+from hpn.words.titles import faults_of
 from hpn.words.wording import N_, Sentence
 
 PAGE_NAMES = ("gear", "pin", "unpin", "do", ASIDE, WRITTEN, WAS)
@@ -79,9 +81,7 @@ class Given:
         self.pins: list[str] = []
         self.unknown: list[str] = []
         self.asides: list[str] = []
-        self.with_loads = False
-        self.varies = False
-        self.with_ramps = False
+        self.shown = set[str]()
         self.belt: dict[str, str] = {}
 
     def add(self, name: str, text: str) -> None:
@@ -114,16 +114,14 @@ class Given:
     @property
     def has_motion(self) -> bool:
         """True where anything of a motion is given: loads of rows are then those of its moves."""
-        of_moves = (self.columns[name] for name in MOVE_BY_NAME if name in self.columns and name not in LOADS)
+        of_moves = (self.columns[name] for name in MOVE_BY_NAME if name in self.columns and name not in OF_ANY_ROW)
         return any(symbol.name in self.scalars for symbol in MECHANISM_SYMBOLS) or any(
             text.strip() for texts in of_moves for text in texts
         )
 
     def tables(self) -> tuple[Rows, Rows, Rows, str | None]:
         """Phases, moves and bodies after the buttons that were pressed, and the element to go on from."""
-        self.with_loads, self.varies, self.with_ramps = (
-            any(name in self.columns for name in names) for names in (LOADS, VARYING, RAMPS)
-        )
+        self.shown = {group for group, names in OPTIONAL.items() if not self.columns.keys().isdisjoint(names)}
         moving = self.has_motion
         phases = Rows(self._of_phases(), self._phase_columns(), MAXIMUM_PHASES)
         moves = Rows(self.columns if moving else {}, self._move_columns(), MAXIMUM_MOVES)
@@ -132,9 +130,8 @@ class Given:
         for press in self.presses[:50]:
             do, _, number = press.partition(":")
             k = int(number) - 1 if re.fullmatch(r"[0-9]{1,5}", number) else -1
-            if do in ("loads", "varying", "ramps"):
-                self.with_loads, self.varies = self.with_loads != (do == "loads"), self.varies != (do == "varying")
-                self.with_ramps = self.with_ramps != (do == "ramps")
+            if do in OPTIONAL:
+                self.shown ^= {do}
                 phases.show(self._phase_columns())
                 moves.show(self._move_columns())
                 focus = do
@@ -152,15 +149,14 @@ class Given:
 
     def _of_phases(self) -> Mapping[str, list[str]]:
         """Columns of the table of phases."""
-        apart = LOADS if self.has_motion else ()
+        apart = OF_ANY_ROW if self.has_motion else ()
         return {name: texts for name, texts in self.columns.items() if name in PHASE_BY_NAME and name not in apart}
 
     def _phase_columns(self) -> list[str]:
-        return shown_columns(with_loads=self.with_loads and not self.has_motion, varies=self.varies)
+        return shown_columns(PHASE_BY_NAME, self.shown - {*(SHARED if self.has_motion else ())})
 
     def _move_columns(self) -> list[str]:
-        hidden = {*(() if self.with_loads else LOADS), *(() if self.with_ramps else RAMPS)}
-        return [name for name in MOVE_BY_NAME if name not in hidden]
+        return shown_columns(MOVE_BY_NAME, self.shown)
 
     def pinned(self) -> tuple[str, ...]:
         """Pinned gears, without the one whose button takes it away."""
@@ -200,12 +196,6 @@ def _beside_motion(columns: Mapping[str, list[str]]) -> Iterable[FieldProblem]:
         if filled := [k for k, text in enumerate(texts) if text.strip()]:
             yield FieldProblem(name, filled[0], Sentence(N_("stands beside a motion: give either phases or a motion")))
             return
-
-
-def shown_columns(*, with_loads: bool, varies: bool) -> list[str]:
-    """Columns of the duty table, with those that appear where they are used."""
-    shown = {*REQUIRED, *(LOADS if with_loads else ()), *(VARYING if varies else ())}
-    return [name for name in PHASE_BY_NAME if name in shown]
 
 
 def unknown_name(name: str) -> Sentence:

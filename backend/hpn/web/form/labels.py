@@ -4,17 +4,13 @@ They stand beside the application, in the address of its page as in its form; th
 """
 
 import re
-import unicodedata
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from urllib.parse import urlencode
 
 from hpn.catalogue import Catalogue, OutputVersion
 from hpn.catalogue.gear import Gear
 from hpn.words.wording import N_, Sentence
-
-LONGEST_LABEL = 200
-"""Characters of a label."""
 
 TITLE_BLOCK: Mapping[str, str] = {
     "title": N_("Title"),
@@ -30,45 +26,6 @@ LABELS: Mapping[str, str] = {
     "order_motor": N_("Motor adapter"),
 }
 """All labels: those of the title block, and what the ordering code is put together from."""
-
-CONTROLS = re.compile(r"[\x00-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069\ufffe\uffff]")
-"""Control characters, line separators, marks that turn the direction of the text around them, and no characters."""
-
-NO_CONTROLS = N_("must not contain control characters or line breaks")
-
-HIDDEN = re.compile("[\u200b\u2060\ufeff\U000e0000-\U000e007f]")
-"""Invisible characters that no word needs: with them two titles look alike. Joiners (U+200C, U+200D) are spelling."""
-
-MOST_MARKS = 4
-"""Combining marks one after another that a letter has in any script."""
-
-
-def faults_of(text: str) -> Iterator[Sentence]:
-    """Faults of a text as a label."""
-    if CONTROLS.search(text):
-        yield Sentence(NO_CONTROLS)
-    if len(text.strip()) > LONGEST_LABEL:
-        yield Sentence(N_("takes at most {most} characters"), {"most": str(LONGEST_LABEL)})
-    else:  # to compose a long text can take long
-        yield from _hidden_in(text.strip())
-
-
-def _hidden_in(text: str) -> Iterator[Sentence]:
-    """Characters by which a text looks like another."""
-    if found := HIDDEN.search(text):
-        yield Sentence(N_("must not contain {character}, which nobody sees"), {"character": _named(found[0])})
-    count = 0
-    for character in unicodedata.normalize("NFC", text):
-        count = count + 1 if unicodedata.category(character).startswith("M") else 0
-        if count > MOST_MARKS:
-            values = {"most": str(MOST_MARKS), "character": _named(character)}
-            yield Sentence(N_("takes at most {most} combining marks in a row, {character} is one more"), values)
-            return
-
-
-def _named(character: str) -> str:
-    """Code and name of a character that can't be shown by itself: U+200B ZERO WIDTH SPACE."""
-    return f"U+{ord(character):04X} {unicodedata.name(character, '')}".rstrip()
 
 
 def query_of(labels: Mapping[str, str]) -> str:

@@ -15,32 +15,33 @@ from pydantic import ValidationError
 from hpn.application import Application
 from hpn.physics.motion.mechanisms import TYPES
 from hpn.tables import numbers
+from hpn.tables.inputs import NAME
 from hpn.tables.numbers import read_value
 from hpn.web.door.access import MAXIMUM_QUERY_BYTES as MAXIMUM_QUERY_BYTES
 from hpn.web.form.belt import BeltInput, belt_of, with_belt
 from hpn.web.form.bodies import BodyTable, body_table, with_inertia
-from hpn.web.form.given import REQUIRED, FieldProblem, Given, shown_columns
+from hpn.web.form.given import REQUIRED, FieldProblem, Given
 from hpn.web.form.labels import LABELS, query_of
 from hpn.web.form.refusals import refusal_of
-from hpn.web.form.rows import TEXT, expanded
+from hpn.web.form.rows import TEXT, WIDTHS, expanded
 from hpn.web.form.symbols import (
     BY_NAME,
     BY_PATH,
-    LOADS,
     MECHANISM_SYMBOLS,
     MOTION_PATH,
     MOVE_BY_LEAF,
     PHASE_BY_LEAF,
     PHASE_BY_NAME,
     PHASE_SYMBOLS,
-    RAMPS,
     Symbol,
     mechanism_symbols,
     move_symbols,
+    table_columns,
     units_of,
 )
 from hpn.web.form.ways import CYCLE_NAMES, START, switched, taken_over
 from hpn.words.reader import Reader
+from hpn.words.titles import LONGEST_NAME, faults_of, numbered
 from hpn.words.wording import N_, Sentence
 
 Pairs = Sequence[tuple[str, str]]
@@ -90,9 +91,7 @@ class Form:
     bodies: BodyTable = field(default_factory=BodyTable)
     belt: BeltInput = field(default_factory=BeltInput)
     asides: tuple[str, ...] = ()
-    with_loads: bool = False
-    varies: bool = False
-    with_ramps: bool = False
+    shown: frozenset[str] = frozenset()
     gear: str = ""
     pins: tuple[str, ...] = ()
     focus: str | None = None
@@ -139,18 +138,23 @@ class Form:
     @property
     def columns(self) -> list[Symbol]:
         """Columns of the table of phases."""
-        return [PHASE_BY_NAME[name] for name in shown_columns(with_loads=self.with_loads, varies=self.varies)]
+        return table_columns(PHASE_SYMBOLS, self.shown)
 
     @property
     def move_columns(self) -> list[Symbol]:
         """Columns of the table of moves."""
-        hidden = {*(() if self.with_loads else LOADS), *(() if self.with_ramps else RAMPS)}
-        return [symbol for symbol in move_symbols(self.mechanism) if symbol.name not in hidden]
+        return table_columns(move_symbols(self.mechanism), self.shown)
+
+    def row(self, problem: FieldProblem) -> str:
+        """Number of the row that a problem is in, with its name where it has one."""
+        at = problem.index or 0
+        rows = self.moves if self.has_motion and not self.has_both else self.rows
+        return numbered(at, rows[at].get(NAME.role, "").strip() if at < len(rows) else "")
 
     @property
     def text(self) -> str:
         """The duty cycle as text, one phase per line: as typed, if it was."""
-        columns = PHASE_SYMBOLS[: 8 if self.varies else 5 if self.with_loads else 3]
+        columns = PHASE_SYMBOLS[: next((width for group, width in WIDTHS.items() if group in self.shown), 3)]
         lines = ("\t".join(row.get(symbol.name, "") for symbol in columns) for row in self.rows)
         return "\n".join(lines) if self.typed is None else self.typed
 
@@ -215,9 +219,7 @@ def _parsed(pairs: Pairs, written: str) -> Form:
         bodies=body_table(bodies.texts) if given.has_motion else BodyTable(),
         belt=belt_of(given.belt),
         asides=tuple(given.asides),
-        with_loads=given.with_loads,
-        varies=given.varies,
-        with_ramps=given.with_ramps,
+        shown=frozenset(given.shown),
         gear=given.page.get("gear", "").strip(),
         pins=given.pinned(),
         focus=focus,
@@ -236,7 +238,7 @@ def visible(text: str) -> str:
 def in_wire_units(pairs: Pairs) -> tuple[Pairs, str]:
     """Pairs of a form as a link has them, and the marker of what they were written in: see `numbers`."""
     # In the texts of people such characters join emoji and letters.
-    seen = [(visible(name), text if name in LABELS else visible(text)) for name, text in pairs]
+    seen = [(visible(name), text if name in (*LABELS, NAME.role) else visible(text)) for name, text in pairs]
     return numbers.to_wire(seen, units_of(dict(seen).get("mech", "").strip()))
 
 
@@ -344,8 +346,11 @@ def _put(
     if not text.strip():
         return
     value = read_value(text, symbol.kind, mostly_whole=symbol.unit == "h")
-    if isinstance(value, Sentence):
-        problems.append(FieldProblem(place.name, place.index, value))
+    faults = [value] if isinstance(value, Sentence) else []
+    if symbol.name == NAME.role:
+        faults = list(faults_of(text, LONGEST_NAME))
+    if faults:
+        problems += (FieldProblem(place.name, place.index, fault) for fault in faults)
         return
     for step in path[:-1]:
         document = document.setdefault(step, {})

@@ -12,8 +12,8 @@ from hpn.web.form.symbols import MECHANISM_SYMBOLS, PHASE_SYMBOLS, SYMBOLS, move
 
 _EMPTY_LOAD = OutputLoad()
 
-_WHERE_USED = PHASE_SYMBOLS[3:]
-"""Columns of phases that a link has where one of them is given."""
+_WHERE_USED = PHASE_SYMBOLS[3:-1]
+"""Figures of phases that a link has where one of them is given."""
 
 _MODELS: tuple[type[BaseModel], ...] = (
     DutyCycle,
@@ -54,7 +54,7 @@ def to_link(application: Application) -> str:
 def _cycle(application: Application) -> str:
     motion = application.duty_cycle.motion
     if motion is not None:
-        return _shortened("&".join((*_mechanism(motion), *_moves(motion))))
+        return "&".join((*_mechanism(motion), *_moves(motion)))
     phases = application.duty_cycle.load_phases
     pairs = [f"T={phase.torque_Nm!r}&n={phase.speed_rpm!r}&t={phase.duration_s!r}" for phase in phases]
     for symbol in _WHERE_USED:
@@ -62,6 +62,8 @@ def _cycle(application: Application) -> str:
         if any(value is not None for value in values):
             written = ["" if value is None else repr(value) for value in values]
             pairs = [f"{pair}&{symbol.name}={value}" for pair, value in zip(pairs, written, strict=True)]
+    if any(phase.name for phase in phases):
+        return "&".join(f"{_shortened(pair)}&pn={quote(p.name or '')}" for pair, p in zip(pairs, phases, strict=True))
     return _shortened("&".join(pairs))
 
 
@@ -71,7 +73,7 @@ def _mechanism(motion: Motion) -> Iterator[str]:
         part = motion.mechanism if "mechanism" in symbol.path else motion
         field, fields = symbol.path[-1], type(part).model_fields
         if field in fields and (value := getattr(part, field)) != fields[field].default:
-            yield f"{symbol.name}={value}"
+            yield f"{symbol.name}={_written(value)}"
 
 
 def _moves(motion: Motion) -> Iterator[str]:
@@ -82,7 +84,7 @@ def _moves(motion: Motion) -> Iterator[str]:
         field = symbol.path[-1]
         values = [None if (v := getattr(move, field)) == fields[field].default else v for move in motion.moves]
         if any(value is not None for value in values):
-            columns.append([f"{symbol.name}={'' if value is None else value}" for value in values])
+            columns.append([f"{symbol.name}={'' if value is None else _written(value)}" for value in values])
     for move in zip(*columns, strict=True):
         yield from move
 

@@ -3,11 +3,14 @@
 import re
 from collections.abc import Mapping, Sequence
 
-from hpn.web.form.symbols import PHASE_SYMBOLS
+from hpn.web.form.symbols import OPTIONAL, PHASE_SYMBOLS, shown_columns
 from hpn.words.fields import MAXIMUM_PHASES
 
 TEXT = "phases"
 """Field of the form that holds the phases as text, a phase on each line, where they are too many for a table."""
+
+WIDTHS = {"names": 9, "varying": 8, "loads": 5}
+"""Cells of a line of that text by what the phases have."""
 
 
 class Rows:
@@ -70,13 +73,13 @@ def expanded(pairs: Sequence[tuple[str, str]]) -> list[tuple[str, str]]:
 
 
 def _cells(line: str) -> list[str]:
-    """Cells of a line, separated by tabs, semicolons or blanks; the last takes what is too much, and is refused."""
-    cells = re.split(r" *[;\t] *| +", line.strip(" "))
-    return cells[:7] + ([" ".join(cells[7:])] if len(cells) > 7 else [])
+    """Cells of a line, separated by tabs, semicolons or blanks; a ninth is the name, with all that follows."""
+    return re.split(r" *[;\t] *| +", line.strip(" "), maxsplit=len(PHASE_SYMBOLS) - 1)
 
 
 def _phase_pairs(rows: Sequence[Sequence[str]]) -> list[tuple[str, str]]:
-    """Pairs of rows in the order T, n, t, FRi, FAi, Tpk, npk, Trms; what a short row lacks is blank."""
-    width = max([3, *map(len, rows)])
-    names = [symbol.name for symbol in PHASE_SYMBOLS[: 3 if width <= 3 else 5 if width <= 5 else 8]]
-    return [(name, row[k].strip() if k < len(row) else "") for row in rows for k, name in enumerate(names)]
+    """Pairs of rows in the order T, n, t, FRi, FAi, Tpk, npk, Trms, pn; what a short row lacks is blank."""
+    columns = {symbol.name: [row[k] if k < len(row) else "" for row in rows] for k, symbol in enumerate(PHASE_SYMBOLS)}
+    used = {group for group, names in OPTIONAL.items() if any(any(columns.get(name, ())) for name in names)}
+    names = shown_columns(columns, used)
+    return [(name, columns[name][k].strip()) for k in range(len(rows)) for name in names]

@@ -3,7 +3,7 @@
 Form, link writer and link reader are loops over it. An input's name and sign stand in `hpn.words.quantities`.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cache
 
@@ -12,7 +12,7 @@ from hpn.catalogue import Catalogue
 from hpn.engine.notices import AREAS
 from hpn.physics.motion.mechanisms import CLASSES, Rotary
 from hpn.physics.motion.moves import DEFAULT_JERK_SHARE
-from hpn.tables.inputs import PHASE, Input, Inputs
+from hpn.tables.inputs import NAME, PHASE, Input, Inputs
 from hpn.tables.numbers import Kind
 from hpn.web.form import labels
 from hpn.words.quantities import CANDIDATE, INPUTS, QUANTITIES
@@ -84,11 +84,22 @@ class FormGroup:
         return tuple(BY_NAME[name] for name in self.names)
 
 
-PHASE_SYMBOLS = tuple(Symbol(each.role, (each.place,)) for each in PHASE)
+PHASE_SYMBOLS = tuple(Symbol(each.role, (each.place,), each.kind) for each in (*PHASE, NAME))
 """Repeated once per phase, all of equal length."""
 
-LOADS, VARYING = ("FRi", "FAi"), ("Tpk", "npk", "Trms")
-"""Columns of the duty table that appear where they are used."""
+LOADS = ("FRi", "FAi")
+OPTIONAL: Mapping[str, tuple[str, ...]] = {
+    "names": (NAME.role,),
+    "loads": LOADS,
+    "varying": ("Tpk", "npk", "Trms"),
+    "ramps": ("mta", "mtd", "md2"),
+}
+"""Columns of phases and moves that appear where they are used, by the button that shows them."""
+
+SHARED = ("names", "loads")
+"""Those that phases and moves have by the same names."""
+
+OF_ANY_ROW = (NAME.role, *LOADS)
 
 SYMBOLS = (
     Symbol("tp", ("duty_cycle", "pause_s")),
@@ -269,10 +280,6 @@ _OF_A_MOVE = {"mj": f"{DEFAULT_JERK_SHARE:g}", "mx": "0"}
 """Defaults of a move."""
 
 
-RAMPS = ("mta", "mtd", "md2")
-"""Columns of moves that appear where they are used."""
-
-
 def _of_moves(way: str, speed: str, acceleration: str, external: str) -> tuple[Symbol, ...]:
     fields = ("profile", way, "time_s", speed, acceleration, "jerk_share", external)
     ramps = ("acceleration_time_s", "deceleration_time_s", acceleration.replace("acc", "dec"))
@@ -280,20 +287,22 @@ def _of_moves(way: str, speed: str, acceleration: str, external: str) -> tuple[S
         Symbol(
             name, ("motion", "move", field), "text" if name == "mv" else "number", placeholder=_OF_A_MOVE.get(name, "")
         )
-        for name, field in zip(("mv", "ms", "mt", "mn", "ma", "mj", "mx", *RAMPS), (*fields, *ramps), strict=True)
-    ) + tuple(symbol for symbol in PHASE_SYMBOLS if symbol.name in LOADS)
+        for name, field in zip(
+            ("mv", "ms", "mt", "mn", "ma", "mj", "mx", *OPTIONAL["ramps"]), (*fields, *ramps), strict=True
+        )
+    ) + tuple(symbol for symbol in PHASE_SYMBOLS if symbol.name in OF_ANY_ROW)
 
 
 TURN_SYMBOLS = _of_moves("angle_deg", "speed_rpm", "acceleration_deg_per_s2", "external_torque_Nm")
 STROKE_SYMBOLS = _of_moves("distance_mm", "speed_mm_per_s", "acceleration_mm_per_s2", "external_force_N")
-"""Repeated once per move, all of equal length; a move carries loads by the names of a phase's."""
+"""Repeated once per move, all of equal length; a move carries loads and its name as a phase does."""
 
 _TIMED = ("ms", "mt", "mn", "ma")
-_EVERY_MOVE = ("mx", *LOADS)
+_EVERY_MOVE = ("mx", *OF_ANY_ROW)
 MOVE_COLUMNS: Mapping[str, tuple[str, ...]] = {
-    "trapezoidal": (*_TIMED, *RAMPS, *_EVERY_MOVE),
+    "trapezoidal": (*_TIMED, *OPTIONAL["ramps"], *_EVERY_MOVE),
     "triangular": (*_TIMED, *_EVERY_MOVE),
-    "s_curve": (*_TIMED, *RAMPS, "mj", *_EVERY_MOVE),
+    "s_curve": (*_TIMED, *OPTIONAL["ramps"], "mj", *_EVERY_MOVE),
     "modified_sine": ("ms", "mt", *_EVERY_MOVE),
     "dwell": ("mt", *_EVERY_MOVE),
 }
@@ -334,11 +343,23 @@ BODY_COLUMNS: Mapping[str, tuple[str, ...]] = {
 """Columns that a body of a shape has."""
 
 
+def shown_columns(names: Iterable[str], groups: Collection[str]) -> list[str]:
+    """Columns of phases or moves, of the optional ones those of some groups alone."""
+    hidden = {name for group, columns in OPTIONAL.items() if group not in groups for name in columns}
+    return [name for name in names if name not in hidden]
+
+
+def table_columns(symbols: Iterable[Symbol], groups: Collection[str]) -> list[Symbol]:
+    """Columns of phases or moves that a table has, the name first."""
+    by_name = {symbol.name: symbol for symbol in symbols}
+    return sorted((by_name[name] for name in shown_columns(by_name, groups)), key=lambda one: one.name != NAME.role)
+
+
 def columns_used(phases: Sequence[Phase]) -> tuple[Symbol, ...]:
     """Columns of a table of phases: torque, speed and duration, and of loads and what varies the groups in use."""
     used = {s.name for s in PHASE_SYMBOLS if any(getattr(phase, s.path[0]) is not None for phase in phases)}
-    groups = (names for names in (("T", "n", "t"), LOADS, VARYING) if not used.isdisjoint(names))
-    return tuple(PHASE_BY_NAME[name] for names in groups for name in names)
+    groups = {group for group, names in OPTIONAL.items() if not used.isdisjoint(names)}
+    return tuple(PHASE_BY_NAME[name] for name in shown_columns(PHASE_BY_NAME, groups))
 
 
 def move_symbols(mechanism: str) -> tuple[Symbol, ...]:

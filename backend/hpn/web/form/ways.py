@@ -11,7 +11,7 @@ from hpn.application.phase import Phase
 from hpn.physics.motion.mechanisms import CLASSES, TYPES
 from hpn.tables.numbers import Entry
 from hpn.web.form.link_writer import to_link
-from hpn.web.form.symbols import LOADS, MECHANISM_SYMBOLS, PHASE_SYMBOLS, TURN_SYMBOLS, mechanism_symbols
+from hpn.web.form.symbols import MECHANISM_SYMBOLS, OF_ANY_ROW, PHASE_SYMBOLS, TURN_SYMBOLS, mechanism_symbols
 from hpn.words.wording import N_
 
 Pairs = Sequence[tuple[str, str]]
@@ -20,7 +20,7 @@ ASIDE, PHASES, MOTION = "aside", "phases", "motion"
 CYCLE_NAMES = {symbol.name for symbol in (*PHASE_SYMBOLS, *TURN_SYMBOLS, *MECHANISM_SYMBOLS)}
 """Names of a link that make its duty cycle, as phases or as a motion."""
 
-_OF_PHASES_ALONE = {symbol.name for symbol in PHASE_SYMBOLS} - {*LOADS}
+_OF_PHASES_ALONE = {symbol.name for symbol in PHASE_SYMBOLS} - {*OF_ANY_ROW}
 
 MOST_FIELDS = 20_000
 DIGITS = 6

@@ -82,8 +82,8 @@ class CheckRow:
         return self.sides[0] != self.sides[1]
 
 
-Cells = list[tuple[float, str]]
-"""Figures of a phase, each with the suffix of its unit."""
+Cells = list[tuple[float | str, str]]
+"""Figures of a phase, each with the suffix of its unit, and its name."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -175,9 +175,9 @@ def _phases(a: Side, b: Side) -> Iterator[PhaseRow]:
             yield PhaseRow(number, _pair(list(_cells(phase)) for phase in phases))
 
 
-def _cells(phase: Phase | None) -> Iterator[tuple[float, str]]:
+def _cells(phase: Phase | None) -> Iterator[tuple[float | str, str]]:
     for symbol in PHASE_SYMBOLS if phase else ():
-        value: float | None = getattr(phase, symbol.path[0])
+        value: float | str | None = getattr(phase, symbol.path[0])
         if value is not None:
             yield value, symbol.unit
 

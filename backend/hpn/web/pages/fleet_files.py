@@ -4,7 +4,6 @@ They are made in a process beside the service, which imports this module and non
 """
 
 import io
-import re
 from datetime import datetime
 from typing import Any
 
@@ -16,11 +15,10 @@ import xlsxwriter
 
 from hpn.files.workbook import EveryDigit
 from hpn.fleet.listing import NEAREST, as_parquet
+from hpn.tables.cells import harmless
 from hpn.web.pages.fleet_reasons import reasons_of
 from hpn.words.reader import Reader
 
-BEGINS_A_FORMULA = ("=", "+", "-", "@", "\t", "\r")
-NUMBER = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?")
 LONGEST_CELL = 32_767
 """Characters that a cell of XLSX holds."""
 
@@ -54,19 +52,12 @@ def _reasons_in(error: str, reader: Reader) -> str:
 def _csv(table: pa.Table) -> bytes:
     """Lines for a table calculator: no cell of them is read as a formula there, quoted or not."""
     columns = [
-        pa.array(map(_harmless, column.to_pylist()), pa.string()) if kinds.is_string(column.type) else column
+        pa.array(map(harmless, column.to_pylist()), pa.string()) if kinds.is_string(column.type) else column
         for column in table.columns
     ]
     sink = io.BytesIO()
     pacsv.write_csv(pa.Table.from_arrays(columns, names=table.column_names), sink)
     return sink.getvalue()
-
-
-def _harmless(cell: str | None) -> str | None:
-    """A text with an apostrophe before it where it would begin a formula; a number stays one."""
-    if cell is None or not cell.startswith(BEGINS_A_FORMULA) or NUMBER.fullmatch(cell):
-        return cell
-    return f"'{cell}"
 
 
 def _workbook(table: pa.Table, moment: datetime) -> bytes:

@@ -13,12 +13,13 @@ from hpn.catalogue import Catalogue
 from hpn.fleet.listing import Listing, applications_of, rows_of
 from hpn.web.door.visit import VISIT, Visit
 from hpn.web.form import link_reader
-from hpn.web.form.labels import faults_of, query_of
+from hpn.web.form.labels import query_of
 from hpn.web.form.link_writer import to_link
 from hpn.web.pages.assets import DIST, Assets
 from hpn.web.pages.fleet_view import SHOWN, FleetView
 from hpn.web.pages.templates import environment
 from hpn.words.reader import Reader
+from hpn.words.titles import faults_of
 
 STYLE, SCRIPT = "report.css", "fleet-report.js"
 

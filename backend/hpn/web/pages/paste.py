@@ -22,7 +22,7 @@ from hpn.application.faults import plain_message, pointer
 from hpn.tables.columns import Choices
 from hpn.tables.cycles import CycleTable, read_grids
 from hpn.tables.files import Contents, Wanted, contents_of, contents_of_text, packed, tidied, unpacked
-from hpn.tables.inputs import CYCLE, PHASE_ROLES, Inputs
+from hpn.tables.inputs import CYCLE, NAME, PHASE_ROLES, Inputs
 from hpn.tables.sheets import MAXIMUM_CHARACTERS, SEPARATORS, Grid
 from hpn.web.door.access import admit
 from hpn.web.door.bodies import pairs_of, parsed
@@ -31,11 +31,10 @@ from hpn.web.door.problems import Problem
 from hpn.web.door.uploads import decoded, read_parts
 from hpn.web.door.visit import current
 from hpn.web.form import link_reader
-from hpn.web.form.given import shown_columns
 from hpn.web.form.link_reader import Pairs
 from hpn.web.form.link_writer import to_link
 from hpn.web.form.rows import TEXT, expanded
-from hpn.web.form.symbols import LOADS, VARYING
+from hpn.web.form.symbols import OPTIONAL, PHASE_BY_NAME, shown_columns
 from hpn.web.form.ways import CYCLE_NAMES
 from hpn.web.pages import calculator
 from hpn.web.pages.templates import environment
@@ -238,13 +237,14 @@ def taken(draft: PasteDraft, *, append: bool) -> list[tuple[str, str]]:
     if draft.example and not append:
         dropped |= {name for name, _ in pairs_of(to_link(Application.worked_example()).removeprefix("/?"))}
     rest = [(name, value) for name, value in pairs if value.strip() and name not in dropped]
-    rows = [dict(zip(PHASE_ROLES, phase, strict=True)) for phase in draft.table.phases]
+    names = draft.table.names or ("",) * len(draft.table.phases)
+    named = zip(names, draft.table.phases, strict=True)
+    rows = [{NAME.role: name, **dict(zip(PHASE_ROLES, phase, strict=True))} for name, phase in named]
     if append:
         given = link_reader.parse(pairs).rows
         rows = [dict(row) for row in given if any(text.strip() for text in row.values())] + rows
-    with_loads, varies = (any(row.get(name) for row in rows for name in group) for group in (LOADS, VARYING))
-    names = shown_columns(with_loads=with_loads, varies=varies)
-    return [(name, row.get(name, "")) for row in rows for name in names] + rest
+    used = {group for group, columns in OPTIONAL.items() if any(row.get(name) for row in rows for name in columns)}
+    return [(name, row.get(name, "")) for row in rows for name in shown_columns(PHASE_BY_NAME, used)] + rest
 
 
 def _proceed(request: Request, pairs: Pairs) -> Response:
@@ -268,6 +268,7 @@ def _render(request: Request, draft: PasteDraft, status: int) -> Response:
 
 _WORDS = {
     "roles": CYCLE.by_role,
+    "text_roles": {NAME.role: NAME},
     "separators": SEPARATORS,
 }
 

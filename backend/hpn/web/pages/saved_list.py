@@ -16,11 +16,12 @@ from hpn.web.door.hosts import require_same_origin
 from hpn.web.door.observation import note
 from hpn.web.door.pools import compute
 from hpn.web.door.problems import Problem
-from hpn.web.form.labels import TITLE_BLOCK, faults_of
+from hpn.web.form.labels import TITLE_BLOCK
 from hpn.web.form.linked import onward
 from hpn.web.pages.saving import refused
 from hpn.web.pages.templates import environment
 from hpn.words.fields import Model
+from hpn.words.titles import faults_of
 from hpn.words.wording import N_, Sentence
 
 ADDRESS = "/selections"

@@ -24,12 +24,13 @@ from hpn.web.door.observation import note
 from hpn.web.door.pools import compute, pool_of, while_present
 from hpn.web.door.problems import Problem, needs
 from hpn.web.fleets import Tables, size_fleet, workplace
-from hpn.web.form.labels import TITLE_BLOCK, faults_of
+from hpn.web.form.labels import TITLE_BLOCK
 from hpn.web.pages.explanations import reads_pages
 from hpn.web.pages.fleet_view import ROWS_ON_PAGE, SHOWN, Chosen, FleetPageView
 from hpn.web.pages.saved_list import changed_since, names_of, version_of
 from hpn.web.pages.templates import environment
 from hpn.words.reader import Reader
+from hpn.words.titles import faults_of
 from hpn.words.wording import N_, Sentence
 
 ADDRESS = "/machines"

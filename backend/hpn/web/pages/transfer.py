@@ -1,5 +1,7 @@
 """The application as files: JSON as the API takes it, and the duty cycle as CSV for a spreadsheet."""
 
+import csv
+import io
 from typing import cast
 
 from fastapi import APIRouter
@@ -7,7 +9,7 @@ from starlette.requests import Request
 from starlette.responses import Response
 
 from hpn.application import Application, DutyCycle
-from hpn.tables.cells import Decimal, written
+from hpn.tables.cells import Decimal, harmless, written
 from hpn.web.door.access import admit
 from hpn.web.door.pools import compute
 from hpn.web.door.problems import Problem
@@ -36,15 +38,21 @@ def _csv_of(query: str) -> Response:
 
 
 def write_table(cycle: DutyCycle, decimal: Decimal = ".") -> str:
-    """Phases as CSV that the page and a spreadsheet of that language read back exactly; also those of a motion."""
-    separator = ";" if decimal == "," else ","
+    """Phases as CSV that the page and a spreadsheet of that language read back exactly; also those of a motion.
+
+    A name that would be a formula there has an apostrophe before it.
+    """
     fields = [symbol.path[0] for symbol in columns_used(cycle.load_phases)]
-    lines = [separator.join(fields)]
+    content = io.StringIO()
+    lines = csv.writer(content, delimiter=";" if decimal == "," else ",", lineterminator="\n")
+    lines.writerow(fields)
     for phase in cycle.load_phases:
-        values = [getattr(phase, name) for name in fields]
-        cells = ["" if v is None else written(v).replace(".", decimal) for v in values]
-        lines.append(separator.join(cells))
-    return "\n".join(lines) + "\n"
+        lines.writerow(_cell(getattr(phase, name), decimal) for name in fields)
+    return content.getvalue()
+
+
+def _cell(value: float | str | None, decimal: Decimal) -> str | None:
+    return harmless(value) if value is None or isinstance(value, str) else written(value).replace(".", decimal)
 
 
 def _read(query: str) -> tuple[Application, Decimal]:

@@ -1,0 +1,96 @@
+"""Rules of the texts by which something is called: titles, references, names of phases and moves."""
+
+import re
+import unicodedata
+from collections.abc import Iterator
+from typing import Annotated
+
+from pydantic import AfterValidator, Field, StringConstraints
+from pydantic_core import PydanticCustomError
+
+from hpn.words.wording import N_, Sentence
+
+LONGEST_TITLE, LONGEST_NAME = 200, 40
+"""Characters of a title, and of the name of a phase or a move."""
+
+CONTROLS = re.compile(r"[\x00-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069\ufffe\uffff]")
+"""Control characters, line separators, marks that turn the direction of the text around them, and no characters."""
+
+NO_CONTROLS = N_("must not contain control characters or line breaks")
+
+HIDDEN = re.compile("[\u200b\u2060\ufeff\U000e0000-\U000e007f]")
+"""Invisible characters that no word needs: with them two titles look alike. Joiners (U+200C, U+200D) are spelling."""
+
+MOST_MARKS = 4
+"""Combining marks one after another that a letter has in any script."""
+
+SCHEMA_CONTROLS = "\\u0000-\\u001f\\u007f-\\u009f\\u2028-\\u202e\\u2066-\\u2069\\ufffe\\uffff"
+"""`CONTROLS` between the brackets of a pattern in JSON Schema."""
+
+
+def faults_of(text: str, longest: int = LONGEST_TITLE) -> Iterator[Sentence]:
+    """Faults of a text as a title of so many characters."""
+    if CONTROLS.search(text):
+        yield Sentence(NO_CONTROLS)
+    if len(text.strip()) > longest:
+        yield Sentence(N_("takes at most {most} characters"), {"most": str(longest)})
+    else:  # to compose a long text can take long
+        yield from _hidden_in(text.strip())
+
+
+def _hidden_in(text: str) -> Iterator[Sentence]:
+    """Characters by which a text looks like another."""
+    if found := HIDDEN.search(text):
+        yield Sentence(N_("must not contain {character}, which nobody sees"), {"character": _named(found[0])})
+    count = 0
+    for character in unicodedata.normalize("NFC", text):
+        count = count + 1 if unicodedata.category(character).startswith("M") else 0
+        if count > MOST_MARKS:
+            values = {"most": str(MOST_MARKS), "character": _named(character)}
+            yield Sentence(N_("takes at most {most} combining marks in a row, {character} is one more"), values)
+            return
+
+
+def _named(character: str) -> str:
+    """Code and name of a character that can't be shown by itself: U+200B ZERO WIDTH SPACE."""
+    return f"U+{ord(character):04X} {unicodedata.name(character, '')}".rstrip()
+
+
+def _valid(text: str) -> str | None:
+    for fault in faults_of(text):
+        raise PydanticCustomError("label", "{text}", {"text": fault.text})
+    return text or None
+
+
+_VISIBLE = Field(json_schema_extra={"pattern": f"^[^{SCHEMA_CONTROLS}\\u200b\\u2060\\ufeff]*$"})
+
+Title = Annotated[
+    str,
+    StringConstraints(strip_whitespace=True, max_length=LONGEST_TITLE),
+    AfterValidator(_valid),
+    _VISIBLE,
+]
+"""One line of text by which something is called: it has nothing in it that nobody sees. An empty one counts as none."""
+
+Name = Annotated[
+    str,
+    StringConstraints(strip_whitespace=True, max_length=LONGEST_NAME),
+    AfterValidator(_valid),
+    _VISIBLE,
+]
+"""A title that is short enough for a cell of a table."""
+
+
+def is_title(text: str, longest: int = LONGEST_TITLE) -> bool:
+    """True for a text without a fault."""
+    return next(faults_of(text, longest), None) is None
+
+
+def row_label(place: int, name: str | None) -> str:
+    """Label of a row of a table of phases or moves: its number, and its name where it has one, `3 lift`."""
+    return f"{place + 1} {name}" if name else str(place + 1)
+
+
+def numbered(place: int, name: str | None) -> str:
+    """Number of a phase or a move in a sentence, with its name where it has one: `3 (lift)`."""
+    return f"{place + 1} ({name})" if name else str(place + 1)
