@@ -1,5 +1,5 @@
-// Sections of the result: one at a time on a wide screen, one below the other on a narrow one. Those out of sight are
-// left out of an answer and requested when they come into sight.
+// Sections of the result, one at a time. Those out of sight are left out of an answer and requested when they come into
+// sight.
 
 const wide = matchMedia("(min-width: 1024px)");
 const AHEAD = 400; // pixels below the edge of the window that count as in sight
@@ -22,7 +22,7 @@ function show(id) {
 function mark() {
   const { section } = document.querySelector("main").dataset;
   for (const tab of document.querySelectorAll(".tabs a")) {
-    if (wide.matches && tab.hash === `#${section}`) tab.setAttribute("aria-current", "true");
+    if (tab.hash === `#${section}`) tab.setAttribute("aria-current", "true");
     else tab.removeAttribute("aria-current");
   }
 }
@@ -48,7 +48,6 @@ document.addEventListener("click", (event) => {
 const showAddressed = () => show(sectionOf(document.getElementById(location.hash.slice(1))) ?? "overview");
 const toTop = () => wide.matches && location.hash && scrollTo({ top: 0 });
 
-wide.addEventListener("change", mark);
 showAddressed();
 addEventListener("load", toTop);
 addEventListener("hashchange", () => {

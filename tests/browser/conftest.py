@@ -151,6 +151,14 @@ def open_section(page: Page, name: str) -> None:
     page.get_by_role("navigation", name="Sections of the result").get_by_role("link", name=name).click()
 
 
+def show_all_sections(page: Page) -> None:
+    """Show the sections of the result one below the other, as without script, each with its content."""
+    page.evaluate("delete document.querySelector('main').dataset.section")
+    page.wait_for_function(
+        "[...document.querySelectorAll('section[data-part]')].every(part => part.childElementCount > 1)"
+    )
+
+
 def torque(page: Page, phase: int) -> Locator:
     """Field of the torque of a phase, counted from 1."""
     return page.get_by_label(f"Torque, phase {phase}")

@@ -5,7 +5,7 @@ import re
 import pytest
 from playwright.sync_api import Locator, Page, expect
 
-from tests.browser.conftest import Visitor, open_section, violations
+from tests.browser.conftest import Visitor, open_section, show_all_sections, violations
 from tests.browser.test_page import EXAMPLE, selected, torque
 
 
@@ -209,6 +209,7 @@ def test_calculation_opens_without_script(visitor: Visitor) -> None:
 def test_calculation_and_comparison_scroll_in_their_own_boxes_on_a_phone(visitor: Visitor) -> None:
     pins = "&pin=HPN-14A-5&pin=HPN-32A-5&pin=HPN-11A-5&FR=300&FA=100"
     page = visitor.open(EXAMPLE + pins, width=390, touch=True)
+    show_all_sections(page)
     assert page.evaluate("document.documentElement.scrollWidth") <= 390
     box = page.get_by_role("group", name="Table of the comparison")
     box.evaluate("box => box.scrollLeft = 200")

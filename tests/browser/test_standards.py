@@ -4,7 +4,7 @@ import httpx
 import pytest
 from playwright.sync_api import Page
 
-from tests.browser.conftest import Visitor, violations
+from tests.browser.conftest import Visitor, show_all_sections, violations
 from tests.build import worked_example
 
 FULL = (
@@ -55,6 +55,8 @@ def saved(server: str) -> str:
 def unfolded(visitor: Visitor, path: str, width: int, *, dark: bool = False, touch: bool = False) -> Page:
     """A page with everything open that can be."""
     page = visitor.open(path, width, dark=dark, touch=touch)
+    if width < 600:
+        show_all_sections(page)
     page.evaluate("document.querySelectorAll('details').forEach(part => { part.open = true })")
     page.wait_for_load_state("networkidle")
     for watch in visitor.watches:  # the browser says of a page that is refused or not found that it is

@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 from playwright.sync_api import Page, expect
 
-from tests.browser.conftest import Visitor, in_german, open_section
+from tests.browser.conftest import Visitor, in_german, open_section, show_all_sections
 from tests.browser.test_page import EXAMPLE, selected, torque
 
 SEVEN = (
@@ -113,11 +113,36 @@ def test_no_text_lies_over_another_or_beyond_the_page(visitor: Visitor, state: s
     page = visitor.open(STATES[state], width)
     if language == "de":
         read_german(page)
+    if width < 1024 and state != "nothing":
+        show_all_sections(page)
 
     assert page.evaluate(CLASHES) == []
     assert page.evaluate(CUT) == []
     assert page.evaluate(SMALL) == []
     assert page.evaluate("document.documentElement.scrollWidth") == width
+
+
+@pytest.mark.parametrize("width", [390, ZOOMED])
+def test_narrow_screen_shows_one_section_at_a_time_and_its_tabs_stay_in_sight(visitor: Visitor, width: int) -> None:
+    page = visitor.open(STATES["all gears"], width, touch=True)
+    tabs = page.get_by_role("navigation", name="Sections of the result")
+    assert page.evaluate("document.documentElement.scrollHeight") <= 5000
+    expect(page.get_by_role("table", name="Load limits")).to_be_visible()
+
+    open_section(page, "Candidates")
+    expect(page.get_by_role("table", name="Suitable").first).to_be_visible()
+    expect(page.get_by_role("table", name="Load limits")).to_be_hidden()
+    page.get_by_text("Independent of the maker.").scroll_into_view_if_needed()
+    expect(tabs).to_be_in_viewport()
+
+    open_section(page, "Bearing")
+    expect(page.get_by_role("heading", name="Output bearing")).to_be_in_viewport()
+
+
+def test_sections_follow_one_another_on_a_phone_without_script(visitor: Visitor) -> None:
+    page = visitor.open(EXAMPLE, 390, script=False)
+    for name in ("Load limits", "Suitable"):
+        expect(page.get_by_role("table", name=name).first).to_be_visible()
 
 
 def test_verdict_stays_in_sight_wherever_somebody_types_or_reads(visitor: Visitor) -> None:

@@ -209,6 +209,14 @@ def test_other_replies_are_valid_by_their_schemas_to_the_last_field(api: TestCli
     validator(document, "CatalogueReply").validate(api.get("/api/v1/catalogue").json())
     validator(document, "OneGearReply").validate(api.get("/api/v1/catalogue/HPN-40A-5").json())
     validator(document, "EnvelopeReply").validate(api.get("/api/v1/bearing-envelopes/20A").json())
+    own = api.post("/api/v1/selections", json={"application": FULL, "title": "t"}, headers={"Prefer": "return=minimal"})
+    saved = own.headers["location"]
+    validator(document, "SavedSelectionReply").validate(api.get(saved).json())
+    validator(document, "SavedSelectionReply").validate(api.patch(saved, json={"reference": "r"}).json())
+    validator(document, "SelectionListReply").validate(api.get("/api/v1/selections?reference=r").json())
+    validator(document, "SavedReply").validate(api.post("/api/v1/selections", json={"application": FULL}).json())
+    validator(document, "MotorsReply").validate(api.get("/api/v1/motors").json())
+    validator(document, "MotorsOnGearReply").validate(api.post("/api/v1/motors/HPN-20A-5", json=FULL).json())
     validator(document, "Health").validate(api.get("/healthz").json())
     validator(document, "Readiness").validate(api.get("/readyz").json())
     for problem in (

@@ -10,11 +10,15 @@ from hpn.catalogue.gear import Gear, GearColumns
 from hpn.physics.bearing import Curve
 from hpn.physics.equations import FloatArray
 from hpn.words.designations import canonical_designation, canonical_size
+from hpn.words.quantities import MOTOR, SERIES
+from hpn.words.reply import described
 
 
 @dataclass(frozen=True, slots=True)
 class SeriesFigure:
     """A figure or text that holds for the whole series, with its unit and source."""
+
+    __pydantic_config__ = described(SERIES)
 
     value: float | str
     unit: str | None
@@ -56,6 +60,8 @@ class Fact:
 @dataclass(frozen=True, slots=True)
 class ListedMotor:
     """A motor of the user; None is a figure that is not known."""
+
+    __pydantic_config__ = described(MOTOR)
 
     designation: str
     maximum_speed_rpm: float | None

@@ -7,12 +7,16 @@ from typing import Any
 import numpy as np
 
 from hpn.physics.equations import FloatArray
+from hpn.words.quantities import BOLT, GEAR
+from hpn.words.reply import described
 from hpn.words.source import is_supplied
 
 
 @dataclass(frozen=True, slots=True)
 class ClampBolt:
     """Bolt of the motor coupling (table 26.2); which one depends on the coupling."""
+
+    __pydantic_config__ = described(BOLT)
 
     bolt_size: str
     tightening_torque_Nm: float | None
@@ -22,6 +26,8 @@ class ClampBolt:
 @dataclass(frozen=True, slots=True)
 class HousingBolts:
     """Bolts of the housing flange (table 27.1)."""
+
+    __pydantic_config__ = described(BOLT)
 
     number_of_bolts: int | None
     bolt_size: str | None
@@ -43,6 +49,8 @@ def _supplied(file: str) -> Any:
 @dataclass(frozen=True, slots=True)
 class Gear:
     """A size and ratio. None is a figure that is not published; it is never read as zero."""
+
+    __pydantic_config__ = described(GEAR) | {"json_schema_serialization_defaults_required": True}
 
     designation: str
     size: str

@@ -10,6 +10,8 @@ from hpn.catalogue import Catalogue
 from hpn.catalogue.gear import Gear
 from hpn.physics import bearing
 from hpn.words.fields import Model
+from hpn.words.quantities import ENVELOPE
+from hpn.words.reply import described
 from hpn.words.wording import Sentence
 
 
@@ -32,9 +34,11 @@ class EnvelopeQuery(Model):
 class EnvelopeCurve:
     """Corner points of one envelope, from the axial to the radial axis."""
 
+    __pydantic_config__ = described(ENVELOPE)
+
     load_coefficient: float
-    radial_N: list[float]
-    axial_N: list[float]
+    radial_N: Annotated[list[float], Field(min_length=2)]
+    axial_N: Annotated[list[float], Field(min_length=2)]
 
 
 def life_envelopes(catalogue: Catalogue, gear: Gear, query: EnvelopeQuery) -> list[EnvelopeCurve]:

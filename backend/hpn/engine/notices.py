@@ -8,10 +8,10 @@ from functools import lru_cache
 from string import Formatter
 from typing import Annotated
 
-import msgspec
 import numpy as np
-from msgspec import Meta
+from msgspec import field
 from numpy.typing import NDArray
+from pydantic import Field
 
 from hpn.application import BEARING_LIFE_H, Application, DutyCycle, OutputLoad
 from hpn.catalogue import Catalogue, GearList
@@ -19,6 +19,7 @@ from hpn.catalogue.gear import Gear
 from hpn.engine.evaluation import SUITABLE, Evaluation
 from hpn.engine.figures import leaves_curve
 from hpn.physics.equations import ROUNDING, FloatArray
+from hpn.words.reply import Reply
 from hpn.words.units import suffix_of
 from hpn.words.wording import N_, Quantity, Sentence
 
@@ -151,12 +152,14 @@ AREAS: Mapping[str, str] = {
 Value = float | str
 
 
-class Notice(msgspec.Struct, frozen=True):
+class Notice(Reply, frozen=True):
     """A note on the result: a code for programs, its sentence in English, and the values in it."""
 
-    code: Annotated[str, Meta(description="Code of the notice.")]
-    text: Annotated[str, Meta(description="The notice.")]
-    values: Annotated[dict[str, Value], Meta(description="The values in the notice, each with its unit.")] = {}
+    code: Annotated[str, Field(description="Code of the notice.")]
+    text: Annotated[str, Field(description="The notice.")]
+    values: Annotated[dict[str, Value], Field(description="The values in the notice, each with its unit.")] = field(
+        default_factory=dict
+    )
 
     @property
     def sentence(self) -> Sentence:

@@ -11,7 +11,7 @@ from typing import Annotated, NamedTuple
 
 import msgspec
 import numpy as np
-from msgspec import Meta
+from pydantic import Field
 
 from hpn import ENGINE_VERSION
 from hpn.application import Application
@@ -34,12 +34,15 @@ from hpn.engine.evaluation import (
 from hpn.engine.notices import Notice, notices_of
 from hpn.engine.reserve import reserves
 from hpn.physics.equations import FloatArray
-from hpn.words.quantities import DUTY
+from hpn.words.quantities import CANDIDATE, CHECK, DUTY, PHASE, RESERVE
+from hpn.words.reply import Reply, described
 from hpn.words.wording import N_, Quantity, Sentence, Value, telling_decimals
 
 
-class CheckResult(msgspec.Struct, frozen=True):
+class CheckResult(Reply, frozen=True):
     """One check of one candidate."""
+
+    __pydantic_config__ = described(CHECK)
 
     code: str
     demand: float | None
@@ -48,8 +51,10 @@ class CheckResult(msgspec.Struct, frozen=True):
     status: CheckStatus
 
 
-class Reserve(msgspec.Struct, frozen=True):
+class Reserve(Reply, frozen=True):
     """Factors by which each driver may grow (above 1) or must shrink (below 1) on a candidate, the others as given."""
+
+    __pydantic_config__ = described(RESERVE)
 
     torque_factor: float | None = None
     speed_factor: float | None = None
@@ -60,8 +65,10 @@ class Reserve(msgspec.Struct, frozen=True):
     load_inertia_kgm2: float | None = None
 
 
-class Candidate(msgspec.Struct, frozen=True):
+class Candidate(Reply, frozen=True):
     """One gear, its verdict and why."""
+
+    __pydantic_config__ = described(CANDIDATE)
 
     designation: str
     size: str
@@ -93,7 +100,7 @@ class Candidate(msgspec.Struct, frozen=True):
     end_stop_speed_rpm: float | None = None
     motor_lock_speed_rpm: float | None = None
     reserve: Reserve = Reserve()
-    checks: tuple[CheckResult, ...] = ()
+    checks: Annotated[tuple[CheckResult, ...], Field(min_length=1)] = ()
 
     def check(self, code: str) -> CheckResult | None:
         """The check of a code, or None where it was not asked for."""
@@ -129,8 +136,10 @@ _UNLIMITED_BY = {
 the gear has the figure behind them."""
 
 
-class PhaseFigures(msgspec.Struct, frozen=True, omit_defaults=True):
+class PhaseFigures(Reply, frozen=True, omit_defaults=True):
     """A load phase that comes out of a motion, as one is typed."""
+
+    __pydantic_config__ = described(PHASE)
 
     torque_Nm: float
     speed_rpm: float
@@ -143,36 +152,38 @@ class PhaseFigures(msgspec.Struct, frozen=True, omit_defaults=True):
     name: str | None = None
 
 
-class DutyFigures(msgspec.Struct, frozen=True, omit_defaults=True):
+class DutyFigures(Reply, frozen=True, omit_defaults=True):
     """Figures of the duty cycle; with phases and inertia for a motion."""
+
+    __pydantic_config__ = described(DUTY)
 
     average_torque_Nm: float
     average_output_speed_rpm: float
     maximum_torque_Nm: float
     maximum_output_speed_rpm: float
-    phases: Annotated[tuple[PhaseFigures, ...], Meta(description="Load phases that the motion comes to.")] = ()
+    phases: Annotated[tuple[PhaseFigures, ...], Field(description="Load phases that the motion comes to.")] = ()
     load_inertia_kgm2: Annotated[
-        float | None, Meta(description="Moment of inertia of the motion’s load at the gear’s output.")
+        float | None, Field(description="Moment of inertia of the motion’s load at the gear’s output.")
     ] = None
 
 
-class CheckDefinition(msgspec.Struct, frozen=True):
+class CheckDefinition(Reply, frozen=True):
     """Properties of a check that are the same for every candidate; `Check` explains the fields."""
 
-    title: Annotated[str, Meta(description="Name of the check.")]
-    equation: Annotated[str | None, Meta(description="Number of the handbook’s equation, where it has one.")]
-    unit: Annotated[str, Meta(description="Unit of demand and limit; empty for a pure number.")]
-    kind: Annotated[Kind, Meta(description="Which way the limit bounds the demand.")]
+    title: Annotated[str, Field(description="Name of the check.")]
+    equation: Annotated[str | None, Field(description="Number of the handbook’s equation, where it has one.")]
+    unit: Annotated[str, Field(description="Unit of demand and limit; empty for a pure number.")]
+    kind: Annotated[Kind, Field(description="Which way the limit bounds the demand.")]
     group: Annotated[
         Group,
-        Meta(description="Load checks count in the candidate’s utilisation; property checks only where they fail."),
+        Field(description="Load checks count in the candidate’s utilisation; property checks only where they fail."),
     ]
-    limit_name: Annotated[str, Meta(description="Symbol of the limit.")] = ""
-    source: Annotated[str, Meta(description="Where the limit comes from.")] = ""
-    tests: Annotated[str, Meta(description="Condition that is checked.")] = ""
-    consequence: Annotated[str, Meta(description="Consequence of exceeding the limit.")] = ""
-    basis: Annotated[str, Meta(description="On which basis it stands.")] = ""
-    remedy: Annotated[str, Meta(description="Change that helps.")] = ""
+    limit_name: Annotated[str, Field(description="Symbol of the limit.")] = ""
+    source: Annotated[str, Field(description="Where the limit comes from.")] = ""
+    tests: Annotated[str, Field(description="Condition that is checked.")] = ""
+    consequence: Annotated[str, Field(description="Consequence of exceeding the limit.")] = ""
+    basis: Annotated[str, Field(description="On which basis it stands.")] = ""
+    remedy: Annotated[str, Field(description="Change that helps.")] = ""
 
 
 LINK = (
@@ -181,17 +192,17 @@ LINK = (
 )
 
 
-class Selection(msgspec.Struct, frozen=True):
+class Selection(Reply, frozen=True):
     """The answer to one application. `link` is the address of the page that shows the application."""
 
-    engine_version: Annotated[str, Meta(description="Version of the calculation.")]
-    catalogue_version: Annotated[str, Meta(description="Hash of the catalogue’s content, supplement included.")]
-    link: Annotated[str, Meta(description=LINK)]
-    duty: Annotated[DutyFigures, Meta(description="The duty cycle’s own figures.")]
-    selected: Annotated[str | None, Meta(description="Designation of the first suitable candidate, or null.")]
-    candidates: Annotated[tuple[Candidate, ...], Meta(description="Every gear considered, best first.")]
-    check_definitions: Annotated[dict[str, CheckDefinition], Meta(description="Definitions by check code.")]
-    notices: Annotated[tuple[Notice, ...], Meta(description="Assumptions and standings.")]
+    engine_version: Annotated[str, Field(description="Version of the calculation.")]
+    catalogue_version: Annotated[str, Field(description="Hash of the catalogue’s content, supplement included.")]
+    link: Annotated[str, Field(description=LINK)]
+    duty: Annotated[DutyFigures, Field(description="The duty cycle’s own figures.")]
+    selected: Annotated[str | None, Field(description="Designation of the first suitable candidate, or null.")]
+    candidates: Annotated[tuple[Candidate, ...], Field(min_length=1, description="Every gear considered, best first.")]
+    check_definitions: Annotated[dict[str, CheckDefinition], Field(description="Definitions by check code.")]
+    notices: Annotated[tuple[Notice, ...], Field(description="Assumptions and standings.")]
 
     @property
     def foremost(self) -> Candidate:

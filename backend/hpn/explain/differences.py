@@ -7,10 +7,12 @@ from dataclasses import dataclass, field, fields
 from itertools import chain
 from typing import Annotated, Any, Literal
 
-from msgspec import Meta, Struct, structs
+from msgspec import Struct, structs
+from pydantic import Field
 
 from hpn.catalogue import Catalogue
 from hpn.engine.selection import Selection
+from hpn.words.reply import Reply
 
 NAMED_BY = {"candidates": "designation", "checks": "code", "notices": "code"}
 """Lists whose items are matched by a field of theirs: their order follows from their content."""
@@ -31,7 +33,7 @@ Change = Literal["changed", "added", "removed"]
 Kind = Literal["verdict", "figure", "text"]
 
 
-class Difference(Struct, frozen=True):
+class Difference(Reply, frozen=True):
     """One field that two replies give differently.
 
     `pointer` is its JSON pointer in the saved reply, or in today's where the saved one lacks it. Of a candidate, check
@@ -40,21 +42,21 @@ class Difference(Struct, frozen=True):
 
     pointer: Annotated[
         str,
-        Meta(
+        Field(
             description="JSON pointer into the saved result; into today’s where change is added, since the saved "
             "lacks it."
         ),
     ]
-    kind: Annotated[Kind, Meta(description="Verdicts come first, then figures, then texts.")]
-    change: Annotated[Change, Meta(description="Whether both have the field, or only one.")]
-    candidate: Annotated[str | None, Meta(description="Designation of the candidate it belongs to.")]
-    check: Annotated[str | None, Meta(description="Code of the check it belongs to.")]
-    field: Annotated[str, Meta(description="Name of the field.")]
-    saved: Annotated[Any, Meta(description="Value as saved.")]
-    today: Annotated[Any, Meta(description="Value today.")]
+    kind: Annotated[Kind, Field(description="Verdicts come first, then figures, then texts.")]
+    change: Annotated[Change, Field(description="Whether both have the field, or only one.")]
+    candidate: Annotated[str | None, Field(description="Designation of the candidate it belongs to.")]
+    check: Annotated[str | None, Field(description="Code of the check it belongs to.")]
+    field: Annotated[str, Field(description="Name of the field.")]
+    saved: Annotated[Any, Field(description="Value as saved.")]
+    today: Annotated[Any, Field(description="Value today.")]
     cause: Annotated[
         Literal["tie_rule"] | None,
-        Meta(
+        Field(
             description="Why a verdict differs though no figure does: gears or checks tie, and an earlier version let "
             "the last bit of a number decide."
         ),
@@ -189,7 +191,7 @@ def _weight(difference: Difference) -> int:
 NOT_FIGURES = ("designation", "size", "ratio", "sources", "source")
 
 
-class FigureDifference(Struct, frozen=True):
+class FigureDifference(Reply, frozen=True):
     """A published figure of a gear, or one of a listed motor, that two catalogues give differently; None where one has
     none.
 
@@ -197,13 +199,13 @@ class FigureDifference(Struct, frozen=True):
     objects.
     """
 
-    candidate: Annotated[str | None, Meta(description="Designation of the gear; null for a figure of a motor.")]
-    motor: Annotated[str | None, Meta(description="Designation of the motor; null for a figure of a gear.")]
+    candidate: Annotated[str | None, Field(description="Designation of the gear; null for a figure of a motor.")]
+    motor: Annotated[str | None, Field(description="Designation of the motor; null for a figure of a gear.")]
     field: Annotated[
-        str, Meta(description="Name of the figure in the catalogue; designation where only one has the gear or motor.")
+        str, Field(description="Name of the figure in the catalogue; designation where only one has the gear or motor.")
     ]
-    saved: Annotated[Any, Meta(description="Figure in the catalogue of then; null where it was not published.")]
-    today: Annotated[Any, Meta(description="Figure in today’s catalogue; null where it is not published.")]
+    saved: Annotated[Any, Field(description="Figure in the catalogue of then; null where it was not published.")]
+    today: Annotated[Any, Field(description="Figure in today’s catalogue; null where it is not published.")]
 
 
 def figure_differences(

@@ -6,6 +6,7 @@ from typing import Any, NamedTuple
 
 import msgspec
 from fastapi import APIRouter
+from msgspec.structs import replace
 from pydantic import ValidationError
 from pydantic_core import from_json, to_json
 from starlette.datastructures import State
@@ -18,7 +19,7 @@ from hpn.engine.batch import judge_batch
 from hpn.engine.selection import Judged, Outcome
 from hpn.web.api import schemas, streaming
 from hpn.web.api.items import Span, items_of
-from hpn.web.api.replies import BatchLine, JSONBytes, ProblemReply, encode
+from hpn.web.api.replies import BatchLine, BatchReply, JSONBytes, ProblemReply, encode
 from hpn.web.api.streaming import Line
 from hpn.web.door.access import admit
 from hpn.web.door.bodies import (
@@ -49,8 +50,8 @@ router = APIRouter(prefix="/api/v1", tags=["Selection"], dependencies=[admit("ba
     operation_id="selectBatch",
     summary="Select gears for many applications",
     openapi_extra=schemas.batch_body(),
+    response_model=BatchReply,
     responses=schemas.batch_answers(400, 408, 413, 415, 422, 503),
-    response_class=JSONBytes,
 )
 async def select_batch(request: Request) -> Response:
     """One line per application; one with errors never fails its neighbours.
@@ -190,6 +191,13 @@ def _line(reference: str | None, outcome: tuple[Outcome, str] | InputError | Pro
     return BatchLine(reference, "error", problem=msgspec.convert(problem.body(), ProblemReply))
 
 
+def _placed(line: Line, result: BatchLine) -> BatchLine:
+    """Result of a line, whose problem names the line where the line gives no reference."""
+    if not result.problem or result.reference is not None:
+        return result
+    return replace(result, problem=replace(result.problem, detail=f"line {line.number}: {result.problem.detail}"))
+
+
 # --- Lines ------------------------------------------------------------------------------------------------------------
 
 
@@ -223,9 +231,6 @@ def line_evaluator(catalogue: Catalogue, metrics: Metrics, maximum_line_bytes: i
 
     def evaluate(lines: Sequence[Line]) -> tuple[bytes, int]:
         results = _results(map(read, lines), catalogue, metrics)
-        for line, result in zip(lines, results, strict=False):
-            if result.problem and result.reference is None:
-                result.problem.detail = f"line {line.number}: {result.problem.detail}"
-        return _encoded(results), len(results)
+        return _encoded(map(_placed, lines, results)), len(results)
 
     return evaluate

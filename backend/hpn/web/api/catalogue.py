@@ -11,18 +11,13 @@ from hpn.catalogue import Catalogue
 from hpn.catalogue.gear import Gear
 from hpn.engine.envelopes import EnvelopeQuery, life_envelopes
 from hpn.web.api import schemas
-from hpn.web.api.replies import CatalogueReply, EnvelopeReply, JSONBytes, encode
+from hpn.web.api.replies import CatalogueReply, EnvelopeReply, OneGearReply, encode
 from hpn.web.door.access import admit
 from hpn.web.door.conditions import conditional
 from hpn.web.door.problems import Problem
 from hpn.words.source import supplied_source
 
-router = APIRouter(
-    prefix="/api/v1",
-    tags=["Catalogue"],
-    dependencies=[admit("calculator")],
-    default_response_class=JSONBytes,
-)
+router = APIRouter(prefix="/api/v1", tags=["Catalogue"], dependencies=[admit("calculator")])
 
 
 @router.get(
@@ -30,7 +25,8 @@ router = APIRouter(
     operation_id="getCatalogue",
     summary="Every gear",
     openapi_extra=schemas.IF_NONE_MATCH,
-    responses=schemas.answers("CatalogueReply", headers=schemas.headers("ETag")) | schemas.HAS_IT_ALREADY,
+    response_model=CatalogueReply,
+    responses=schemas.answers(headers=schemas.headers("ETag")) | schemas.HAS_IT_ALREADY,
 )
 async def catalogue(request: Request) -> Response:
     """Every gear of the series with every published figure and its source; null where not published."""
@@ -43,14 +39,14 @@ async def catalogue(request: Request) -> Response:
     operation_id="getGear",
     summary="One gear",
     openapi_extra=schemas.IF_NONE_MATCH,
-    responses=schemas.answers(schemas.ONE_GEAR, 404, headers=schemas.headers("ETag")) | schemas.HAS_IT_ALREADY,
+    response_model=OneGearReply,
+    responses=schemas.answers(404, headers=schemas.headers("ETag")) | schemas.HAS_IT_ALREADY,
 )
 async def gear(request: Request, designation: str) -> Response:
     """One gear, by its designation in any of the printed spellings: by itself, and as the list has it."""
     book: Catalogue = request.app.state.catalogue
     found = gear_named(designation, book)
-    fields = {field.name: getattr(found, field.name) for field in dataclasses.fields(found)}
-    return conditional(request, encode({"catalogue_version": book.version, **fields, "gears": [found]}))
+    return conditional(request, encode(one_gear(found, book)))
 
 
 @router.get(
@@ -58,7 +54,8 @@ async def gear(request: Request, designation: str) -> Response:
     operation_id="getBearingEnvelopes",
     summary="Life envelopes of a size’s output bearing",
     openapi_extra=schemas.IF_NONE_MATCH,
-    responses=schemas.answers("EnvelopeReply", 404, 422, headers=schemas.headers("ETag")) | schemas.HAS_IT_ALREADY,
+    response_model=EnvelopeReply,
+    responses=schemas.answers(404, 422, headers=schemas.headers("ETag")) | schemas.HAS_IT_ALREADY,
 )
 async def bearing_envelopes(request: Request, size: str, query: Annotated[EnvelopeQuery, Query()]) -> Response:
     """Permitted constant load at this speed and life: one curve per load coefficient, from axial to radial axis."""
@@ -73,6 +70,12 @@ async def bearing_envelopes(request: Request, size: str, query: Annotated[Envelo
         else {name: gear.sources[name] for name in ("dynamic_radial_load_N", "dynamic_axial_load_N")}
     )
     return conditional(request, encode(EnvelopeReply(gear.size, query.model, curves, sources)))
+
+
+def one_gear(gear: Gear, catalogue: Catalogue) -> OneGearReply:
+    """A gear by itself, and as the list has it."""
+    own = {field.name: getattr(gear, field.name) for field in dataclasses.fields(gear)}
+    return OneGearReply(**own, catalogue_version=catalogue.version, gears=(gear,))
 
 
 def gear_named(designation: str, catalogue: Catalogue) -> Gear:

@@ -7,8 +7,9 @@ from hpn.application import WORKED_EXAMPLE, Application, InputError
 from hpn.catalogue import Catalogue
 from hpn.engine.selection import select
 from hpn.web.api.batch import batch_lines
+from hpn.web.api.catalogue import one_gear
 from hpn.web.api.replies import BatchReply, encode
-from hpn.web.api.samples import WHOLE, Json, envelopes, one_gear, plain, refusal
+from hpn.web.api.samples import WHOLE, Json, envelopes, plain, refusal
 from hpn.web.api.schemas import LINES
 from hpn.web.door.problems import MEDIA_TYPE
 from hpn.web.form.link_writer import to_link
@@ -47,7 +48,7 @@ def exchanges(catalogue: Catalogue) -> dict[str, list[Exchange]]:
             Exchange("two_lines", _lines(answered), media_type=LINES, lines=_lines(axes)),
         ],
         "getGear": [
-            Exchange("first_gear", one_gear(catalogue, plain(gear)), parameters={"designation": gear.designation})
+            Exchange("first_gear", plain(one_gear(gear, catalogue)), parameters={"designation": gear.designation})
         ],
         "getBearingEnvelopes": [Exchange("first_size", published, parameters={"size": gear.size})]
         if published["curves"]

@@ -18,12 +18,7 @@ from hpn.web.door.conditions import conditional
 from hpn.web.door.pools import compute
 from hpn.web.settings import Settings
 
-router = APIRouter(
-    prefix="/api/v1",
-    tags=["Motors"],
-    dependencies=[admit("calculator")],
-    default_response_class=JSONBytes,
-)
+router = APIRouter(prefix="/api/v1", tags=["Motors"], dependencies=[admit("calculator")])
 
 
 @router.get(
@@ -31,7 +26,8 @@ router = APIRouter(
     operation_id="getMotors",
     summary="The user’s own motors",
     openapi_extra=schemas.IF_NONE_MATCH,
-    responses=schemas.answers("MotorsReply", headers=schemas.headers("ETag")) | schemas.HAS_IT_ALREADY,
+    response_model=MotorsReply,
+    responses=schemas.answers(headers=schemas.headers("ETag")) | schemas.HAS_IT_ALREADY,
 )
 async def motors(request: Request) -> Response:
     """Motors of a supplement’s motors.csv; none where there is no such file, null where a figure is blank."""
@@ -44,7 +40,8 @@ async def motors(request: Request) -> Response:
     operation_id="fitMotors",
     summary="The user’s own motors on a gear",
     openapi_extra=schemas.request_body(Application),
-    responses=schemas.answers("MotorsOnGearReply", 400, 404, 408, 413, 415, 422),
+    response_model=MotorsOnGearReply,
+    responses=schemas.answers(400, 404, 408, 413, 415, 422),
 )
 async def motors_of_gear(request: Request, designation: str) -> Response:
     """How far each motor of motors.csv is used on a gear under an application, in place of the application’s own."""

@@ -95,14 +95,13 @@ def complete(
     components["securitySchemes"] = KEY_SCHEMES
     components["headers"] = schemas.header_components()
     named = components.setdefault("schemas", {})
-    named.update(definitions["$defs"] | schemas.components())
+    named.update(definitions["$defs"])
     shown = exchanges(catalogue)
     for method, path, operation in _operations(document):
         _say_problems(operation, path)
         _give_examples(operation, shown.get(operation["operationId"], ()))
         _say_keys(operation, groups[method, path], settings)
         _say_headers(operation)
-        _mend_replies(operation)
         for parameter in operation.get("parameters", ()):
             _describe(parameter)
     for name in FRAMEWORK:
@@ -162,14 +161,6 @@ def _say_problems(operation: dict[str, Any], path: str) -> None:
     schema = response.get("content", {}).get("application/json", {}).get("schema", {})
     if path.startswith(API) or schema.get("$ref", "").endswith("/HTTPValidationError"):
         operation["responses"] |= {str(status): entry for status, entry in schemas.problems(422).items()}
-
-
-def _mend_replies(operation: dict[str, Any]) -> None:
-    """FastAPI takes a reply that it doesn't encode itself for a text, and says so beside the model."""
-    for response in operation["responses"].values():
-        for content in response.get("content", {}).values():
-            if "$ref" in content.get("schema", {}):
-                content["schema"].pop("type", None)
 
 
 def _describe(parameter: dict[str, Any]) -> None:

@@ -14,6 +14,7 @@ from hpn.engine.envelopes import EnvelopeQuery, life_envelopes
 from hpn.engine.selection import Selection, select
 from hpn.explain.differences import FigureDifference, differences
 from hpn.web.api.batch import batch_lines
+from hpn.web.api.catalogue import one_gear
 from hpn.web.api.motors import motors_on_gear
 from hpn.web.api.replies import encode
 from hpn.web.door.problems import Problem
@@ -119,7 +120,7 @@ def _samples(catalogue: Catalogue) -> Json:
             "catalogue_version": catalogue.version,
             "series": plain(catalogue.series),
         },
-        "OneGearReply": one_gear(catalogue, gear),
+        "OneGearReply": plain(one_gear(catalogue.by_designation[best], catalogue)),
         "MotorsReply": {"catalogue_version": catalogue.version, "motors": [MOTOR]},
         "MotorsOnGearReply": plain(motors_on_gear(application, catalogue.by_designation[best], listed)),
         "EnvelopeReply": envelopes(catalogue, gear["size"]),
@@ -152,11 +153,6 @@ def _moving(motion: Json) -> Application:
 def plain(reply: Any) -> Any:
     """A reply as its reader gets it."""
     return msgspec.json.decode(encode(reply))
-
-
-def one_gear(catalogue: Catalogue, gear: Json) -> Json:
-    """A gear by itself and as the list has it."""
-    return {"catalogue_version": catalogue.version, **gear, "gears": [gear]}
 
 
 def refusal() -> Problem:

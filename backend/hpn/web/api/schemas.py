@@ -1,130 +1,23 @@
-"""Entries of the OpenAPI document: the schemas of the typed replies, and what routes take and answer.
+"""Entries of the OpenAPI document on routes: bodies that they read themselves, headers, problems and links."""
 
-Names, sentences and units of quantities come from `hpn.words.quantities`; the rest stands beside the replies' fields.
-"""
-
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from typing import Any
 
-import msgspec
 from pydantic import BaseModel, Field
 
 from hpn.application import BatchItem
-from hpn.engine.selection import Selection
-from hpn.web.api import replies
+from hpn.web.api.replies import MOST_AT_ONCE
 from hpn.web.door.bodies import JSON
-from hpn.web.door.problems import MAXIMUM_ERRORS, MEDIA_TYPE, TITLES
-from hpn.words.fields import Model, name_units
-from hpn.words.quantities import BOLT, CANDIDATE, CHECK, DUTY, ENVELOPE, GEAR, MOTOR, PHASE, RESERVE, SERIES
-from hpn.words.wording import Named
+from hpn.web.door.problems import MEDIA_TYPE, TITLES
+from hpn.words.fields import Model
 
-DESCRIBED: Mapping[str, Mapping[str, Named]] = {
-    "DutyFigures": DUTY,
-    "PhaseFigures": PHASE,
-    "Candidate": CANDIDATE,
-    "CheckResult": CHECK,
-    "Reserve": RESERVE,
-    "Gear": GEAR,
-    "ClampBolt": BOLT,
-    "HousingBolts": BOLT,
-    "SeriesFigure": SERIES,
-    "EnvelopeCurve": ENVELOPE,
-    "ListedMotor": MOTOR,
-}
-"""Replies whose fields are quantities."""
-
-SPARSE = ("DutyFigures", "PhaseFigures")
-"""Replies that leave out what they do not have."""
-
-REPLIES: tuple[type, ...] = (
-    Selection,
-    replies.BatchReply,
-    replies.CatalogueReply,
-    replies.EnvelopeReply,
-    replies.MotorsReply,
-    replies.MotorsOnGearReply,
-    replies.SavedReply,
-    replies.SavedSelectionReply,
-    replies.SelectionListReply,
-    replies.ProblemReply,
-)
-
-ONE_GEAR = "OneGearReply"
 LINES = "application/x-ndjson"
-MOST_AT_ONCE = 10_000
-"""Applications of a batch as one JSON object."""
-
-ITEMS: Mapping[tuple[str, str], tuple[int, int | None]] = {
-    ("Selection", "candidates"): (1, None),
-    ("Candidate", "checks"): (1, None),
-    ("BatchReply", "results"): (0, MOST_AT_ONCE),
-    ("ProblemReply", "errors"): (1, MAXIMUM_ERRORS),
-    ("CatalogueReply", "gears"): (1, None),
-    ("OneGearReply", "gears"): (1, 1),
-    ("EnvelopeReply", "curves"): (3, 4),
-    ("EnvelopeCurve", "radial_N"): (2, None),
-    ("EnvelopeCurve", "axial_N"): (2, None),
-    ("SelectionListReply", "selections"): (0, replies.SELECTIONS_LISTED),
-    ("TodayReply", "differences"): (0, replies.DIFFERENCES_SHOWN),
-    ("TodayReply", "figure_differences"): (0, replies.DIFFERENCES_SHOWN),
-}
-"""Least and most items of a reply's lists, where they are bounded."""
 
 
 class Batch(Model):
     """Applications to select gears for."""
 
     applications: tuple[BatchItem, ...] = Field(max_length=MOST_AT_ONCE, description="Up to 10000 applications.")
-
-
-def components() -> dict[str, Any]:
-    """Schemas of every reply by name, with a sentence and a unit on every field."""
-    _, found = msgspec.json.schema_components(REPLIES, ref_template="#/components/schemas/{name}")
-    for name, schema in found.items():
-        _complete(schema, DESCRIBED.get(name, {}))
-    found[ONE_GEAR] = _one_gear(found["Gear"])
-    for (name, field), bounds in ITEMS.items():
-        _bound(found[name]["properties"][field], *bounds)
-    return found
-
-
-def _bound(entry: dict[str, Any], least: int, most: int | None) -> None:
-    """Say how many items a list has; one that may be null says it of the list."""
-    lists = [option for option in (entry, *entry.get("anyOf", ())) if option.get("type") == "array"]
-    for option in lists:
-        option |= {"minItems": least} if least else {}
-        option |= {} if most is None else {"maxItems": most}
-
-
-def _complete(schema: dict[str, Any], named: Mapping[str, Named]) -> None:
-    """Describe quantities, and say that a reply always has what only an old saved one may lack."""
-    for field, entry in schema.get("properties", {}).items():
-        if field in named:
-            equation = f" Equation {named[field].equation}." if named[field].equation else ""
-            entry["description"] = named[field].sentence + equation
-        if schema["title"] not in SPARSE and field not in schema["required"] and ("default" in entry or field in named):
-            schema["required"].append(field)
-        entry.pop("default", None)
-    name_units(schema)
-
-
-def _one_gear(gear: dict[str, Any]) -> dict[str, Any]:
-    """One gear by itself, and once more in the form of the whole catalogue, so that one reader serves both."""
-    own = {
-        "catalogue_version": {"type": "string", "description": "Hash of the catalogue’s content, supplement included."},
-        "gears": {
-            "type": "array",
-            "items": {"$ref": "#/components/schemas/Gear"},
-            "description": "The gear, as the list of all gears has it.",
-        },
-    }
-    return {
-        **gear,
-        "title": ONE_GEAR,
-        "description": _one_gear.__doc__,
-        "properties": {**gear["properties"], **own},
-        "required": [*gear["required"], *own],
-    }
 
 
 def request_body(model: type[BaseModel], *media_types: str) -> dict[str, Any]:
@@ -241,23 +134,19 @@ HAS_IT_ALREADY: dict[int | str, dict[str, Any]] = {
 DELETED: dict[int | str, dict[str, Any]] = {204: {"description": "It is deleted."}}
 
 
-def answers(reply: str, *statuses: int, status: int = 200, **more: Any) -> dict[int | str, dict[str, Any]]:
-    """OpenAPI entries of a route's answer, by the name of its schema, and of its problems."""
-    content = {"application/json": {"schema": {"$ref": f"#/components/schemas/{reply}"}}}
-    return {status: {"description": "The answer.", "content": content, **more}, **problems(*statuses)}
+def answers(*statuses: int, status: int = 200, **more: Any) -> dict[int | str, dict[str, Any]]:
+    """OpenAPI entries of a route's answer, beside its model, and of its problems."""
+    return {status: {"description": "The answer.", **more}, **problems(*statuses)}
 
 
 def batch_answers(*statuses: int) -> dict[int | str, dict[str, Any]]:
     """OpenAPI entries of a batch's answer, which comes in the form of its body."""
-    entries = answers("BatchReply", *statuses)
-    entries[200]["content"][LINES] = {
-        "schema": {
-            "type": "string",
-            "description": "Lines that end in a line feed, each a JSON object as the schema BatchLine says: the answer "
-            "to one line, in their order, sent while others still arrive.",
-        }
+    lines = {
+        "type": "string",
+        "description": "Lines that end in a line feed, each a JSON object as the schema BatchLine says: the answer to "
+        "one line, in their order, sent while others still arrive.",
     }
-    return entries
+    return answers(*statuses, content={LINES: {"schema": lines}})
 
 
 def fleet_answers(media_types: Iterable[str], *statuses: int) -> dict[int | str, dict[str, Any]]:

@@ -6,7 +6,7 @@ from starlette.requests import Request
 from starlette.responses import Response
 
 from hpn.application import Application
-from hpn.engine.selection import encode, select
+from hpn.engine.selection import Selection, encode, select
 from hpn.web.api import schemas
 from hpn.web.api.replies import JSONBytes
 from hpn.web.door.access import admit
@@ -23,8 +23,8 @@ router = APIRouter(prefix="/api/v1", tags=["Selection"], dependencies=[admit("ca
     operation_id="select",
     summary="Select a gear for one application",
     openapi_extra=schemas.request_body(Application),
-    responses=schemas.answers("Selection", 400, 408, 413, 415, 422),
-    response_class=JSONBytes,
+    response_model=Selection,
+    responses=schemas.answers(400, 408, 413, 415, 422),
 )
 async def select_one(request: Request) -> Response:
     """Evaluates every size and ratio, ranks the candidates, and says why each stands where it does."""

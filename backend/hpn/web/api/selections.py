@@ -22,6 +22,7 @@ from hpn.web.api.replies import (
     JSONBytes,
     ProblemReply,
     SavedReply,
+    SavedSelectionReply,
     SelectionListReply,
     SummaryReply,
     TodayReply,
@@ -83,14 +84,13 @@ router = APIRouter(prefix="/api/v1/selections", tags=["Saved selections"])
             schemas.header("Prefer", "return=minimal: no body; return=representation: the whole saved selection."),
         ]
     },
+    response_model=SavedReply,
     responses=schemas.answers(
-        "SavedReply",
         *(400, 408, 410, 413, 415, 422, 503),
         status=201,
         headers=schemas.headers("Location", "ETag", REPLAYED, "Preference-Applied"),
         links=schemas.FROM_SAVED,
     ),
-    response_class=JSONBytes,
 )
 async def save_selection(request: Request) -> Response:
     """Saves an application with its result; once answered with 201 it is durable."""
@@ -132,11 +132,9 @@ def _draft(body: bytes, catalogue: Catalogue, key: str | None, owner: str | None
     operation_id="getSelection",
     summary="Read a saved selection",
     openapi_extra=schemas.IF_NONE_MATCH,
-    responses=schemas.answers(
-        "SavedSelectionReply", 404, 503, headers=schemas.headers("ETag"), links=schemas.FROM_SELECTION
-    )
+    response_model=SavedSelectionReply,
+    responses=schemas.answers(404, 503, headers=schemas.headers("ETag"), links=schemas.FROM_SELECTION)
     | schemas.HAS_IT_ALREADY,
-    response_class=JSONBytes,
 )
 async def read_selection(request: Request, id: str) -> Response:
     """Input and result as saved, and what today's engine and catalogue say differently, verdicts first."""
@@ -149,11 +147,9 @@ async def read_selection(request: Request, id: str) -> Response:
     operation_id="listSelections",
     summary="List saved selections",
     openapi_extra=schemas.IF_NONE_MATCH,
-    responses=schemas.answers(
-        "SelectionListReply", 422, 503, headers=schemas.headers("ETag", "Link"), links=schemas.FROM_LIST
-    )
+    response_model=SelectionListReply,
+    responses=schemas.answers(422, 503, headers=schemas.headers("ETag", "Link"), links=schemas.FROM_LIST)
     | schemas.HAS_IT_ALREADY,
-    response_class=JSONBytes,
 )
 async def list_selections(
     request: Request,
@@ -187,10 +183,8 @@ async def list_selections(
     summary="Rename a saved selection",
     openapi_extra=schemas.request_body(Names, JSON, MERGE_PATCH)
     | {"parameters": [schemas.header("If-Match", "Rename only this state of it.")]},
-    responses=schemas.answers(
-        "SavedSelectionReply", *(400, 403, 404, 408, 412, 413, 415, 422, 503), headers=schemas.headers("ETag")
-    ),
-    response_class=JSONBytes,
+    response_model=SavedSelectionReply,
+    responses=schemas.answers(*(400, 403, 404, 408, 412, 413, 415, 422, 503), headers=schemas.headers("ETag")),
 )
 async def rename_selection(request: Request, id: str) -> Response:
     """Changes title or reference of a saved selection; null removes one, and a field that is left out stays.

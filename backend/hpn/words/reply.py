@@ -1,0 +1,55 @@
+"""Base of a typed reply: encoded by msgspec, described by pydantic, and so in the document that FastAPI writes."""
+
+from collections.abc import Mapping
+from typing import Any, get_args, get_type_hints
+
+from msgspec import UNSET, Struct, UnsetType, structs
+from pydantic import ConfigDict, GetCoreSchemaHandler
+from pydantic_core import CoreSchema, core_schema
+
+from hpn.words.fields import name_units
+from hpn.words.wording import Named
+
+
+def described(named: Mapping[str, Named]) -> ConfigDict:
+    """Settings of a class whose fields are quantities: their sentences and units stand in its JSON Schema."""
+
+    def describe(schema: dict[str, Any]) -> None:
+        for field, entry in schema["properties"].items():
+            for superfluous in ("title", "default"):
+                entry.pop(superfluous, None)
+            if field in named:
+                equation = f" Equation {named[field].equation}." if named[field].equation else ""
+                entry["description"] = named[field].sentence + equation
+        name_units(schema)
+
+    return ConfigDict(json_schema_extra=describe)
+
+
+class Reply(Struct, frozen=True):
+    """A reply or part of one. Its class describes fields by `Field` in their types, or by `described` quantities.
+
+    A default is what an old saved reply lacks, but where defaults are left out: a reply of today has every field.
+    """
+
+    __pydantic_config__ = described({})
+
+    @classmethod
+    def __get_pydantic_core_schema__(cls, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
+        """Schema of an object: fields that are always sent, and those that may be left out."""
+        kinds, sparse = get_type_hints(cls, include_extras=True), cls.__struct_config__.omit_defaults
+        fields = {
+            field.name: core_schema.typed_dict_field(
+                handler.generate_schema(_sent(kinds[field.name])),
+                required=field.required or not (sparse or field.default is UNSET),
+            )
+            for field in structs.fields(cls)
+        }
+        ref = f"{cls.__module__}.{cls.__qualname__}:{id(cls)}"
+        return core_schema.typed_dict_schema(fields, cls=cls, ref=ref)
+
+
+def _sent(kind: Any) -> Any:
+    """Type of a field where it is sent: the first option of one that may be unset."""
+    options = get_args(kind)
+    return options[0] if UnsetType in options else kind
