@@ -63,7 +63,7 @@ def test_a_saved_fleet_is_renamed_on_its_page(client: TestClient, service: FastA
 
     assert renamed.status_code == 303 and renamed.headers["location"] == address
     page = client.get(address).text
-    assert "<h1>Line &lt;5&gt;</h1>" in page and "P-7" not in page and "MM" in page
+    assert '<h1 id="machine-name">Line &lt;5&gt;</h1>' in page and "P-7" not in page and "MM" in page
 
 
 def test_names_of_fleets_that_look_like_others_are_refused(
@@ -90,7 +90,7 @@ def test_a_fleet_says_what_differs_today(client: TestClient, service: FastAPI, f
         now = select(Application.model_validate(HUB), state_of(later).catalogue).selected
 
     assert "1 axis gets another answer." in page
-    changed = page[page.index("Differences today") : page.index('id="fleet-count"')]
+    changed = page[page.index("Differences today") : page.index('class="fleet-grid"')]
     assert changed.index(then.designation) < changed.index(str(now))
     assert "Differences today" not in client.get(fleet).text
 

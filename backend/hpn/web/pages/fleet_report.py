@@ -10,17 +10,19 @@ from starlette.datastructures import State
 
 from hpn import ENGINE_VERSION
 from hpn.catalogue import Catalogue
+from hpn.fleet.columns import AXIS
 from hpn.fleet.listing import Listing, applications_of, rows_of
 from hpn.web.door.visit import VISIT, Visit
 from hpn.web.form import link_reader
 from hpn.web.form.labels import query_of
 from hpn.web.form.link_writer import to_link
 from hpn.web.pages.assets import DIST, Assets
-from hpn.web.pages.fleet_view import SHOWN, FleetView
+from hpn.web.pages.fleet_view import SHOWN, FleetView, by_need, foremost
 from hpn.web.pages.templates import environment
 from hpn.words.reader import Reader
 from hpn.words.titles import faults_of
 
+ALLOWED = "requirements.utilisation"
 STYLE, SCRIPT = "report.css", "fleet-report.js"
 
 
@@ -29,7 +31,9 @@ def report_of(listing: Listing, name: str, catalogue: Catalogue, base: str = "",
 
     `base` is the address of the service that its links lead to, blank where none is known.
     """
-    view = FleetView(listing.summary, rows_of(listing.answers), links_of(listing.axes, base))
+    rows, summary = rows_of(listing.answers), listing.summary
+    top = foremost(rows) if len(rows) == summary.axes else None
+    view = FleetView(summary, by_need(rows), links_of(listing.axes, base), allowed_of(listing.axes), top)
     return copy_context().run(
         _told, Reader(language), view=view, name=name, base=base, catalogue_version=catalogue.version
     )
@@ -48,6 +52,14 @@ def links_of(axes: pa.Table, base: str = "") -> dict[str, str]:
     """Link of each axis with its name as title, where that can be one; one that is too long for an address has none."""
     found = ((axis, to_link(application) + _titled(axis)) for axis, application in applications_of(axes))
     return {axis: base + link for axis, link in found if len(link) <= link_reader.MAXIMUM_QUERY_BYTES}
+
+
+def allowed_of(axes: pa.Table) -> dict[str, float]:
+    """Utilisation that an axis may reach, for those that ask for less than 1."""
+    if ALLOWED not in axes.column_names:
+        return {}
+    pairs = zip(axes[AXIS].to_pylist(), axes[ALLOWED].to_pylist(), strict=True)
+    return {axis: allowed for axis, allowed in pairs if allowed is not None and allowed < 1}
 
 
 def _titled(axis: str) -> str:

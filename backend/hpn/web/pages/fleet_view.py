@@ -1,6 +1,6 @@
 """A fleet as the templates show it, in a page or in the file of a report."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 from urllib.parse import urlencode
@@ -22,6 +22,7 @@ SHOWN = {
 ROWS_ON_PAGE = 100
 
 ORDERS: Mapping[str, Callable[["AxisRow"], Any]] = {
+    "place": lambda row: row.place,
     "axis": lambda row: row.axis.casefold(),
     "gear": lambda row: row.gear,
     "utilisation": lambda row: row.utilisation,
@@ -33,6 +34,28 @@ ORDERS: Mapping[str, Callable[["AxisRow"], Any]] = {
 }
 """Columns that axes are sorted by, by the names of an address."""
 
+SORTINGS = {
+    "": N_("utilisation"),
+    "place": N_("number"),
+    "axis": N_("axis"),
+    "gear": N_("gear"),
+    "check": N_("governing check"),
+    "life": N_("shortest life"),
+}
+"""Orders that are offered by name, where the headings of a table don’t stand beside."""
+
+
+def by_need(rows: Iterable["AxisRow"]) -> list["AxisRow"]:
+    """Rows without a gear first, the worst of them before all, then the others by falling utilisation."""
+    states = ("unsuitable", "rejected", "selected")
+    return sorted(rows, key=lambda row: (states.index(row.state), -(row.utilisation or 0)))
+
+
+def foremost(rows: Iterable["AxisRow"]) -> "AxisRow | None":
+    """The axis with a gear whose utilisation is the largest."""
+    judged = [row for row in rows if row.state == "selected" and row.utilisation is not None]
+    return max(judged, key=lambda row: row.utilisation or 0, default=None)
+
 
 @dataclass(frozen=True)
 class FleetView:
@@ -41,6 +64,11 @@ class FleetView:
     summary: "Summary"
     rows: Sequence["AxisRow"]
     links: Mapping[str, str] = field(default_factory=dict)
+    allowed: Mapping[str, float] = field(default_factory=dict)
+    """Utilisation that an axis may reach, where it is below 1."""
+
+    top: "AxisRow | None" = None
+    """The axis with a gear that is used most, out of all."""
 
     def choose(self, name: str, value: str) -> str:
         """Address of the axes that a count counts."""
@@ -88,7 +116,7 @@ class Chosen:
             and search in row.axis.casefold()
         ]
         if not self.sort:
-            return found
+            return by_need(found)
         key = ORDERS[self.sort.removeprefix("-")]
         valued = [row for row in found if row.state != "rejected" and key(row) is not None]
         valued.sort(key=key, reverse=self.sort.startswith("-"))
@@ -121,7 +149,7 @@ class FleetPageView(FleetView):
 
     def order_of(self, key: str) -> str:
         """See FleetView."""
-        return {key: "ascending", f"-{key}": "descending"}.get(self.chosen.sort, "")
+        return {key: "ascending", f"-{key}": "descending"}.get(self.chosen.sort or "-utilisation", "")
 
     @property
     def parts(self) -> int:

@@ -26,7 +26,7 @@ from hpn.web.door.problems import Problem, needs
 from hpn.web.fleets import Tables, size_fleet, workplace
 from hpn.web.form.labels import TITLE_BLOCK
 from hpn.web.pages.explanations import reads_pages
-from hpn.web.pages.fleet_view import ROWS_ON_PAGE, SHOWN, Chosen, FleetPageView
+from hpn.web.pages.fleet_view import ROWS_ON_PAGE, SHOWN, SORTINGS, Chosen, FleetPageView, foremost
 from hpn.web.pages.saved_list import changed_since, names_of, version_of
 from hpn.web.pages.templates import environment
 from hpn.words.reader import Reader
@@ -94,8 +94,11 @@ def _page(
     chosen = Chosen.of(request.query_params)
     found = chosen.out_of(rows)
     part = found[(chosen.part - 1) * ROWS_ON_PAGE : chosen.part * ROWS_ON_PAGE]
-    links = fleet_report.links_of(fleet_result.asked_of(saved, [row.axis for row in part if row.state != "rejected"]))
-    view = FleetPageView(summary, part, links, f"{ADDRESS}/{saved.id}", chosen, len(found))
+    top = foremost(rows)
+    shown = {row.axis for row in part if row.state != "rejected"} | ({top.axis} if top else set())
+    asked = fleet_result.asked_of(saved, list(shown))
+    links, allowed = fleet_report.links_of(asked), fleet_report.allowed_of(asked)
+    view = FleetPageView(summary, part, links, allowed, top, f"{ADDRESS}/{saved.id}", chosen, len(found))
     return rendered(
         request,
         "fleet.html",
@@ -104,6 +107,7 @@ def _page(
         view=view,
         form=form,
         shown=SHOWN,
+        sortings=SORTINGS,
         today=today,
         problem=problem,
         engine_version=ENGINE_VERSION,
