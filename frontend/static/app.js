@@ -233,12 +233,13 @@ function mark() {
     const id = `e-${field.id.replace(/^f-/, "")}`;
     const ofCell = field.closest("#duty");
     const message = Object.assign(document.createElement("p"), { className: "error" });
-    message.append(...(ofCell || field.id === "phases" ? item : item.querySelector("span")).cloneNode(true).childNodes);
+    const whole = ofCell || field.id === "phases";
+    message.append(...[...item.cloneNode(true).childNodes].filter((part) => whole || part.matches?.("span, .offer")));
     if (ofCell) document.getElementById("duty-errors").append(message);
     else if (field.matches("fieldset")) field.append(message);
     else (field.closest(".control") ?? field).after(message);
     if (!first) continue;
-    (ofCell ? message.querySelector("span") : message).id = id;
+    message.querySelector("span").id = id;
     field.setAttribute("aria-invalid", "true");
     describe(field, () => true, id);
   }
@@ -347,7 +348,7 @@ document.addEventListener("submit", async (event) => {
   if (form.method === "post") return form.submit(); // a cycle too long for an address is posted again
   note();
   const content = contentOf(form);
-  if (content !== addressed) history.replaceState(history.state, "", `/?${content}${form.elements.written ? "" : "&written=en"}`);
+  if (content !== addressed) history.replaceState(history.state, "", `/?${content}`);
   location.reload();
 });
 

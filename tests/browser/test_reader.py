@@ -71,6 +71,34 @@ def test_a_decimal_comma_is_understood_in_a_german_form(visitor: Visitor) -> Non
     expect(box).to_have_accessible_description("1,234 oder 1234 schreiben")
 
 
+@pytest.mark.parametrize("script", [True, False])
+def test_number_that_may_be_two_is_offered_in_plain_digits_and_taken_with_one_press(
+    visitor: Visitor, script: bool
+) -> None:
+    page = visitor.open(f"{EXAMPLE}&FR=500", script=script)
+    in_german(page)
+    life = page.locator("#f-Lb")
+    life.fill("20.000")
+    if not script:
+        page.get_by_role("button", name="Berechnen").click()
+    expect(life).to_have_accessible_description(re.compile("20 oder 20000 schreiben"))
+    life.locator("xpath=../..").get_by_role("button", name="20000").click()
+    expect(life).to_have_value("20000")
+    expect(life).not_to_have_attribute("aria-invalid", "true")
+    expect(page.get_by_text("Nicht neu berechnet", exact=False).first).to_be_hidden()
+
+
+@pytest.mark.parametrize("script", [True, False])
+def test_number_is_typed_as_the_page_prints_it(visitor: Visitor, script: bool) -> None:
+    page = visitor.open(f"{EXAMPLE}&FR=500", script=script)
+    life = page.locator("#f-Lb")
+    life.fill("30\u202f000")
+    if not script:
+        page.get_by_role("button", name="Calculate").click()
+    expect(page).to_have_url(re.compile("&Lb=30000(&|$)"))
+    expect(life).to_have_value("30\u202f000" if script else "30000")
+
+
 def test_undo_goes_back_across_a_switch_to_the_same_torque(visitor: Visitor) -> None:
     page = visitor.open(EXAMPLE)
     page.get_by_label("Torque, phase 1, in Nm").fill("60")

@@ -5,8 +5,10 @@ from fractions import Fraction
 import pytest
 
 from hpn.application import Application
+from hpn.tables.numbers import read_decimal
 from hpn.web.form import link_reader
 from hpn.web.form.link_writer import to_link
+from hpn.web.form.offers import beside_fields
 from hpn.words import units
 from hpn.words.reader import Reader
 
@@ -107,8 +109,106 @@ def test_what_is_wrong_with_a_unit_or_a_sum_is_said(name: str, text: str, proble
 
 
 def test_ambiguous_number_with_a_unit_is_asked_about() -> None:
-    assert typed("T", "1.234 Nm", "de") == "write 1,234 or 1234"
+    assert typed("T", "1.234 Nm", "de") == "write 1,234 Nm or 1234 Nm"
     assert typed("T", "=1.234*2", "de") == "write 1,234 or 1234"
+
+
+PRINTED = [
+    ("en", "20 000", 20000),
+    ("en", "20\u00a0000", 20000),
+    ("en", "20\u2007000", 20000),
+    ("en", "20\u2009000", 20000),
+    ("en", "20\u202f000", 20000),
+    ("en", "20'000", 20000),
+    ("en", "20’000", 20000),
+    ("en", "1\u202f167\u202f276", 1167276),
+    ("en", "1,167,276.5", 1167276.5),
+    ("en", "−1\u202f486.786", -1486.786),
+    ("en", "1.5·10⁻³", 0.0015),
+    ("en", "1.5·10⁴ Nm", 15000),
+    ("en", "20 000 Nm", 20000),
+    ("de", "−486,786", -486.786),
+    ("de", "1.167.276", 1167276),
+    ("de", "1.167.276,5", 1167276.5),
+    ("de", "20 000", 20000),
+    ("de", "20’000,5", 20000.5),
+    ("de", "1,5·10⁻³", 0.0015),
+]
+
+
+@pytest.mark.parametrize(("written", "text", "torque"), PRINTED)
+def test_number_as_pages_print_it_may_be_typed(written: str, text: str, torque: float) -> None:
+    assert float(link_reader.in_wire_units([("T", text), ("written", written)])[0][0][1]) == torque
+
+
+@pytest.mark.parametrize("text", [text for _, text, _ in PRINTED])
+def test_link_takes_no_number_as_pages_print_it(text: str) -> None:
+    assert isinstance(typed("T", text), str)
+
+
+@pytest.mark.parametrize("value", [0.0015, 0.00001234, 9.3, 40.0, 486.786, 1167275.9, 90642.0, -20500.0, 2e10])
+@pytest.mark.parametrize("language", ["en", "de"])
+def test_every_figure_that_a_page_prints_is_read_as_that_figure_or_asked_about(value: float, language: str) -> None:
+    reader = Reader(language)
+    for printed in (reader.figure(value), reader.exact(value)):
+        read = read_decimal(printed, reader.decimal)
+        if read is None:
+            assert language == "de" and printed.count(".") == 1
+            assert str(typed("Lh", printed, language)).startswith("write ")
+        else:
+            assert float(read) == pytest.approx(value, rel=5e-3)
+
+
+@pytest.mark.parametrize(
+    ("written", "name", "text", "offers"),
+    [
+        ("de", "Lh", "20.000", ("20", "20000")),
+        ("de", "T", "20.000", ("20,000", "20000")),
+        ("de", "T", "20.000 Nm", ("20,000 Nm", "20000 Nm")),
+        ("de", "T", "1,234.5", ("1234,5",)),
+        ("de", "Nk", "2.500", ("2500",)),
+        ("en", "Lh", "20,000", ("20", "20000")),
+        ("en", "T", "20,000", ("20.000", "20000")),
+        ("en", "T", "9,3", ("9.3",)),
+        ("en", "fw", "120 %", ("1.2",)),
+        ("en", "T", "=20,000*2", ()),
+        ("de", "T", "=20.000*2", ()),
+        ("en", "T", "x", ()),
+    ],
+)
+def test_each_reading_of_a_number_is_offered_and_taken_with_one_press(
+    written: str, name: str, text: str, offers: tuple[str, ...]
+) -> None:
+    given = [(key, text if key == name else value) for key, value in {"T": "40", "n": "250", "t": "0.3"}.items()]
+    given += [("written", written), ("FR", "5"), ("Tk", "9"), *([] if name == "T" else [(name, text)])]
+    (problem,) = link_reader.parse(given).problems
+    assert problem.message.offers == offers
+    for offer in offers:
+        form = link_reader.parse([*given, ("do", f"take:{problem.place}:{offer}")])
+        assert form.focus == problem.place
+        if not offer.endswith(",000"):  # three decimals are asked about again
+            assert form.application is not None, form.problems
+
+
+def test_offer_is_taken_in_the_row_that_it_stands_in() -> None:
+    rows = [("T", "40"), ("n", "250"), ("t", "1"), ("T", "20,000"), ("n", "250"), ("t", "1"), ("written", "en")]
+    form = link_reader.parse([*rows, ("do", "take:T-1:20000")])
+    assert [row["T"] for row in form.rows] == ["40", "20000"]
+    assert form.application is not None
+
+
+@pytest.mark.parametrize("press", ["take:", "take:T-9:1", "take:f-x:1", "take:T-99999999:1", "take:T--1:1", "take:f-T"])
+def test_press_that_offers_nothing_changes_nothing(press: str) -> None:
+    pairs = [("T", "40"), ("n", "250"), ("t", "1"), ("written", "en")]
+    assert link_reader.parse([*pairs, ("do", press)]).application == link_reader.parse(pairs).application
+
+
+def test_message_on_a_link_shows_both_notations_beside_german_fields() -> None:
+    form = link_reader.parse([("T", "0,3"), ("n", "250"), ("t", "1")])
+    (problem,) = beside_fields(form.problems, form.written, Reader("de"))
+    assert problem.message.text == "a link takes 0.3, this field 0,3"
+    assert problem.message.offers == ("0,3",)
+    assert beside_fields(form.problems, form.written, Reader()) == form.problems
 
 
 def test_every_unit_is_read_by_its_own_symbol() -> None:

@@ -1,8 +1,9 @@
 """Numbers as people type them: in their own units and with their decimal mark, turned into the wire's and back.
 
-A form that shows something else than the wire's units in plain notation says so in its field `written`. Nothing is lost
-on the way: a number that is shown shorter than it is stands in the field `was`, and counts as long as nobody edits it.
-A number may carry a unit of its own, `40 Nm`, or be a sum, `=40*2`: the wire has the plain number.
+A form says in its field `written` whose language and units it is in. It takes numbers as pages print them: `20 000`,
+`1.5·10⁻³`, and `1.167.276` in German. A link without that field takes plain numbers alone. Nothing is lost on the way:
+a number that is shown shorter than it is stands in the field `was`, and counts as long as nobody edits it. A number may
+carry a unit of its own, `40 Nm`, or be a sum, `=40*2`: the wire has the plain number.
 """
 
 import re
@@ -17,7 +18,7 @@ from hpn.tables.cells import DASHES, DECIMALS, plain_number, split_unit
 from hpn.words import units as measures
 from hpn.words.reader import Reader
 from hpn.words.units import NUMBER, SYMBOLS
-from hpn.words.wording import N_, Sentence
+from hpn.words.wording import N_, Sentence, Typed
 
 Kind = Literal["number", "whole", "text", "flag"]
 
@@ -27,7 +28,13 @@ WRITTEN, WAS = "written", "was"
 DIGITS = 5
 """Digits that a number from elsewhere is shown with in another unit."""
 
-_GROUPED = re.compile(r"[+-]?[1-9][0-9]{0,2}(\.[0-9]{3})+")
+_ASKED = {
+    decimal: re.compile(rf"[+-]?[1-9][0-9]{{0,2}}[{group}][0-9]{{3}}") for decimal, group in ((".", ","), (",", "."))
+}
+"""Numbers whose mark may stand between thousands or be a decimal mark of another language."""
+
+_POWER = re.compile(r"\s?[·×]\s?10([⁺⁻]?[⁰¹²³⁴⁵⁶⁷⁸⁹]{1,3})")
+_RAISED = str.maketrans("⁺⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "+-0123456789")
 FLAGS: Mapping[str, bool] = {"0": False, "1": True, "false": False, "true": True}
 """How no and yes are written."""
 
@@ -59,20 +66,22 @@ class Shown(NamedTuple):
     was: str
 
 
-def to_wire(pairs: Sequence[tuple[str, str]], units: Units) -> tuple[list[tuple[str, str]], str]:
-    """Pairs of a form in the wire's units and notation, and the marker of what they were written in."""
+def to_wire(pairs: Sequence[tuple[str, str]], units: Units) -> tuple[list[tuple[str, str]], str | None]:
+    """Pairs in the wire's units and notation, and the marker of what a form was written in; None for a link."""
     given = dict(reversed(pairs))
-    reader = Reader.of_marker(given.get(WRITTEN, ""))
+    marker = given.get(WRITTEN, "")
+    reader = Reader.of_marker(marker)
     plain = [(name, text) for name, text in pairs if name not in (WRITTEN, WAS)]
-    known = _Known(reader, given.get(WAS, ""))
-    return [(name, known.entry(text, units[name]) if name in units else text) for name, text in plain], reader.marker
+    known = _Known(reader, given.get(WAS, ""), as_printed=bool(marker))
+    entries = [(name, known.entry(text, units[name]) if name in units else text) for name, text in plain]
+    return entries, reader.marker if marker else None
 
 
 class _Known:
-    """Numbers that a form was rendered from, and reading of what its reader writes."""
+    """Numbers that a form was rendered from, and reading of what its reader writes, perhaps as pages print it."""
 
-    def __init__(self, reader: Reader, was: str) -> None:
-        self.reader = reader
+    def __init__(self, reader: Reader, was: str, *, as_printed: bool) -> None:
+        self.reader, self.decimal = reader, reader.decimal if as_printed else ""
         self.was: dict[tuple[str, str], float] = {}
         for token in was.split():
             unit, _, text = token.partition(":")
@@ -87,7 +96,7 @@ class _Known:
         if isinstance(plain, Sentence):
             return Entry(f"{text}?", text, plain)
         if plain is None:
-            return text
+            return Entry(self._asked(text), text) if self._asked(text) != text else text
         if measure.same:
             return Entry(plain, text) if self.reader.marker or plain != text.strip() else text
         own = measure is self.reader.measure(unit)
@@ -96,29 +105,37 @@ class _Known:
 
     def _number(self, text: str, unit: str) -> tuple[str | Sentence | None, measures.Measure]:
         """Number in plain notation and the unit that it is in; None where it is none, a message for what is wrong."""
-        own, decimal = self.reader.measure(unit), self.reader.decimal
+        own, decimal = self.reader.measure(unit), self.decimal
         if text.lstrip().startswith("="):
-            return worked_out(text.strip(), lambda number: read_decimal(number, decimal) or _advice(number)), own
+            return worked_out(text.strip(), self._in_sum), own
         plain = read_decimal(text, decimal)
         if plain is not None or len(text) > _LONGEST:
             return plain, own
         if not unit and text.rstrip().endswith("%"):
             return _without_percent(read_decimal(text.rstrip()[:-1], decimal)), own
-        number, spelled = split_unit(text.strip())
-        plain = (
-            (read_decimal(number, decimal) or _advice(number, spelled, mostly_whole=unit == "h")) if spelled else None
-        )
-        if not isinstance(plain, str):
-            return plain, own
+        number, spelled = split_unit((_without_power(text) if decimal else text).strip())
+        if not spelled:
+            return None, own
+        plain = read_decimal(number, decimal)
+        if plain is None:
+            return _advice(self._asked(number), spelled, mostly_whole=unit == "h"), own
         code = unit_code(spelled, unit)
         return (code, own) if isinstance(code, Sentence) else (plain, measures.entered(unit, code))
 
+    def _in_sum(self, number: str) -> str | Sentence | None:
+        """Number of a sum in plain notation, or advice in the reader's: it takes the place of a part of the text."""
+        plain = read_decimal(number, self.decimal)
+        advice = None if plain else _advice(self._asked(number), whole=False)
+        return advice.marked(self.reader.decimal) if advice else plain
 
-def _without_percent(number: str | Sentence | None) -> Sentence | None:
+    def _asked(self, text: str) -> str:
+        """A text as a link would have it, in which a comma is asked about and a point is not."""
+        return text.replace(".", ",") if self.decimal == "," and _ASKED[","].fullmatch(_tidy(text)) else text
+
+
+def _without_percent(number: str | None) -> Sentence | None:
     """Advice in place of a percentage."""
-    if not isinstance(number, str):
-        return None
-    return Sentence(N_("write {number}"), {"number": f"{Decimal(number).scaleb(-2).normalize():f}"})
+    return _to_write([f"{Decimal(number).scaleb(-2).normalize():f}"]) if number else None
 
 
 def unit_code(spelled: str, unit: str) -> str | Sentence:
@@ -150,34 +167,37 @@ def either(codes: Sequence[str], spelled: str) -> dict[str, Sentence]:
     return {"first": first, "second": Sentence(ELECTRICAL) if spelled.strip() == measures.FREQUENCY else second}
 
 
-def read_decimal(text: str, decimal: str) -> str | Sentence | None:
-    """A number in plain notation; None where it is none, a message where it could be two."""
-    plain = text.strip().translate(DASHES)
-    if len(plain) > _LONGEST:
+def read_decimal(text: str, decimal: str) -> str | None:
+    """A number as a page prints it, in plain notation; None where it is none or could be two.
+
+    Without a decimal mark none but plain notation is read.
+    """
+    plain = _tidy(text)
+    if len(plain) > _LONGEST or (decimal and _ASKED[decimal].fullmatch(plain)):
         return None
-    if decimal == ",":
-        if _GROUPED.fullmatch(plain) and plain.count(".") == 1:
-            values = {"first": plain.replace(".", ","), "second": plain.replace(".", "")}
-            return Sentence(N_("write {first} or {second}"), values)
-        plain = _with_point(plain)
-    return plain if NUMBER.fullmatch(plain) else None
+    if NUMBER.fullmatch(plain):
+        return plain
+    if not decimal:
+        return None
+    return plain_number(_without_power(plain), "," if decimal == "," else ".")
 
 
-def _with_point(text: str) -> str:
-    """A text with a decimal comma, perhaps with points between thousands, in plain notation."""
-    if text.count(",") == 1:
-        whole, _, fraction = text.partition(",")
-        return f"{whole.replace('.', '') if _GROUPED.fullmatch(whole) else whole}.{fraction}"
-    return text.replace(".", "") if _GROUPED.fullmatch(text) else text
+def _without_power(text: str) -> str:
+    """A text with `e-3` in place of `·10⁻³`."""
+    return _POWER.sub(lambda power: f"e{power[1].translate(_RAISED)}", text)
 
 
-def to_fields(entries: Iterable[tuple[str, str]], reader: Reader, written: str) -> Shown:
+def _tidy(text: str) -> str:
+    return text.strip().translate(DASHES)
+
+
+def to_fields(entries: Iterable[tuple[str, str]], reader: Reader, written: str | None) -> Shown:
     """Texts of the wire, with their units, as the reader's form shows them; `written` marks how they came in.
 
     The reader's own entries stay as typed. Numbers from elsewhere are shown to five digits in another unit, or to all
     digits where two numbers would look alike; the full number is remembered where the shown one is rounded.
     """
-    listed = [_Field(text, unit, reader, own=reader.marker == written) for text, unit in entries]
+    listed = [_Field(text, unit, reader, own=reader.marker == (written or "")) for text, unit in entries]
     alike = Counter(short for short, _ in {(field.short, field.value) for field in listed if field.value is not None})
     texts, was = [], []
     for field in listed:
@@ -192,7 +212,7 @@ class _Field:
 
     def __init__(self, wire: str, unit: str, reader: Reader, *, own: bool) -> None:
         self.unit, self.reader, self.measure = unit, reader, reader.measure(unit)
-        plain = wire.strip().translate(DASHES)
+        plain = _tidy(wire)
         number = bool(NUMBER.fullmatch(plain))
         self.value = float(plain) if number and not self.measure.same and isfinite(float(plain)) else None
         self.short = "" if self.value is None else self.measure.written(self.value, DIGITS), unit
@@ -216,7 +236,7 @@ class _Field:
     def read(self, text: str) -> float | None:
         """Number of the wire that a text would be read as, without memory."""
         plain = read_decimal(text, self.reader.decimal)
-        return self.measure.wire(plain) if isinstance(plain, str) else None
+        return None if plain is None else self.measure.wire(plain)
 
     def _marked(self, number: str) -> str:
         return number.replace(".", self.reader.decimal)
@@ -245,7 +265,7 @@ def read_value(text: str, kind: Kind, *, mostly_whole: bool = False) -> float | 
         return text if len(text) <= LONGEST_TEXT else Sentence(N_("is too long"))
     if kind == "flag":
         return FLAGS.get(text.lower(), Sentence(N_("must be 0 or 1")))
-    plain = text.translate(DASHES)
+    plain = _tidy(text)
     if len(plain) > _LONGEST or not _ANY_NUMBER.fullmatch(plain):
         return _not_a_number(plain, kind, mostly_whole=mostly_whole)
     value = float(plain)
@@ -272,18 +292,19 @@ def _is_too_small(plain: str, value: float) -> bool:
     return value == 0 and bool(re.search("[1-9]", re.split("[eE]", plain)[0]))
 
 
+ONE_READING = N_("write {number}")
 _SUCH_AS = N_("is not a number; write one such as 9.3")
 _APART = re.compile(r"[0-9][\s'’]+(?![0-9]{3}(?![0-9]))[0-9]")
 """Digits with a blank between them where no thousands end: two numbers, or a point that was missed."""
 
 
-def _advice(text: str, unit: str = "", *, mostly_whole: bool = False) -> Sentence | None:
+def _advice(text: str, unit: str = "", *, mostly_whole: bool = False, whole: bool = True) -> Sentence | None:
     """Advice in place of a number with this unit, None where there is none."""
-    advice = _not_a_number(text.strip().translate(DASHES), "number", unit, mostly_whole=mostly_whole)
+    advice = _not_a_number(_tidy(text), "number", unit, mostly_whole=mostly_whole, whole=whole)
     return None if advice.template == _SUCH_AS else advice
 
 
-def _not_a_number(text: str, kind: Kind, unit: str = "", *, mostly_whole: bool = False) -> Sentence:
+def _not_a_number(text: str, kind: Kind, unit: str = "", *, mostly_whole: bool = False, whole: bool = True) -> Sentence:
     """Advice for a text that is no number: the numbers that it may stand for."""
     tight = re.sub(r"[\s'’]", "", text)
     if len(tight) > _LONGEST:
@@ -294,13 +315,14 @@ def _not_a_number(text: str, kind: Kind, unit: str = "", *, mostly_whole: bool =
         return Sentence(NOT_WHOLE)
     if mostly_whole or kind == "whole":
         readings = [_without_zeros(reading) for reading in readings]
-    return _to_write([f"{reading} {unit}".strip() for reading in readings]) if readings else Sentence(_SUCH_AS)
+    return _to_write(readings, unit, whole=whole) if readings else Sentence(_SUCH_AS)
 
 
-def _to_write(readings: Sequence[str]) -> Sentence:
-    if len(readings) > 1:
-        return Sentence(N_("write {first} or {second}"), {"first": readings[0], "second": readings[1]})
-    return Sentence(N_("write {number}"), {"number": readings[0]})
+def _to_write(readings: Sequence[str], unit: str = "", *, whole: bool = True) -> Sentence:
+    typed = [Typed(reading, unit, whole) for reading in readings]
+    if len(typed) > 1:
+        return Sentence(N_("write {first} or {second}"), {"first": typed[0], "second": typed[1]})
+    return Sentence(ONE_READING, {"number": typed[0]})
 
 
 def _readings(text: str) -> list[str]:

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Literal, Union
 
 from hpn.words.units import N_ as N_
@@ -71,7 +71,24 @@ def _side(value: float, bound: float) -> int:
 
 _ROOM = 1e-12
 
-Value = Union[Quantity, str, int, "Sentence"]
+
+@dataclass(frozen=True, slots=True)
+class Typed:
+    """A number to type in place of another text, with the unit behind it; a form offers one that is `whole`.
+
+    It is in plain notation until the page that shows it gives it its reader's decimal mark. One that is not whole
+    belongs to a part of the text, such as a number in a sum.
+    """
+
+    number: str
+    unit: str = ""
+    whole: bool = True
+
+    def __str__(self) -> str:
+        return f"{self.number} {self.unit}".rstrip()
+
+
+Value = Union[Quantity, Typed, str, int, "Sentence"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,6 +120,23 @@ class Sentence:
             for name, value in self.values.items()
         }
         return translate(self.template).format(**values)
+
+    @property
+    def offers(self) -> tuple[str, ...]:
+        """Texts that a field may take in place of what stands in it."""
+        of_parts = (value.offers for value in self.values.values() if isinstance(value, Sentence))
+        own = (str(value) for value in self.values.values() if isinstance(value, Typed) and value.whole)
+        return (*own, *(offer for offers in of_parts for offer in offers))
+
+    def marked(self, decimal: str) -> "Sentence":
+        """The sentence with a decimal mark in the numbers to type."""
+        return replace(self, values={name: _marked(value, decimal) for name, value in self.values.items()})
+
+
+def _marked(value: Value, decimal: str) -> Value:
+    if isinstance(value, Typed):
+        return replace(value, number=value.number.replace(".", decimal))
+    return value.marked(decimal) if isinstance(value, Sentence) else value
 
 
 def listed(parts: Sequence[Sentence], template: str = "{first}, {rest}") -> Sentence:

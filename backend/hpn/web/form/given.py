@@ -139,6 +139,8 @@ class Given:
                 self.scalars["lr"], focus = "0", "f-lr"
             elif do == "way":
                 focus = f"way-{number}"
+            elif do == "take":
+                focus = number.partition(":")[0]
             elif do in ("inertia", "gravity", "belt"):
                 focus = do
             elif do.endswith("_body"):

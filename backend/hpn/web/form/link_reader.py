@@ -22,6 +22,7 @@ from hpn.web.form.belt import BeltInput, belt_of, with_belt
 from hpn.web.form.bodies import BodyTable, body_table, with_inertia
 from hpn.web.form.given import REQUIRED, FieldProblem, Given
 from hpn.web.form.labels import LABELS, query_of
+from hpn.web.form.offers import with_offers
 from hpn.web.form.refusals import refusal_of
 from hpn.web.form.rows import TEXT, WIDTHS, expanded
 from hpn.web.form.symbols import (
@@ -79,7 +80,8 @@ class Form:
 
     `origins` are the places at which the rows of the duty table stood before the buttons that edit it. Of a motion the
     mechanism stands in `texts`, and `moves` has a row per move; `bodies` are what its moment of inertia may be worked
-    out from. `asides` are the inputs of other ways to give the cycle.
+    out from. `asides` are the inputs of other ways to give the cycle. `written` is the marker of the language and units
+    in which a form was filled in; None for a link.
     """
 
     rows: tuple[Mapping[str, str], ...]
@@ -97,7 +99,7 @@ class Form:
     focus: str | None = None
     problems: tuple[FieldProblem, ...] = ()
     application: Application | None = None
-    written: str = ""
+    written: str | None = None
     was: str = ""
     typed: str | None = None
     labels: Mapping[str, str] = field(default_factory=lambda: dict.fromkeys(LABELS, ""))
@@ -179,7 +181,9 @@ def address_of_empty(form: Form) -> str:
 def parse(pairs: Pairs) -> Form:
     """Form of a query, with everything that the query says and a message for each wrong field."""
     typed = next((text for name, text in pairs if name == TEXT), None)
-    pairs, written = in_wire_units(expanded(pairs))
+    before = expanded(pairs)
+    pairs, written = in_wire_units(taken := with_offers(before))
+    typed = typed if taken == before else None
     pairs = with_belt(with_inertia(switched(_own(pairs))))
     form = replace(_parsed(pairs, written), typed=None if typed is None else typed.replace("\r\n", "\n"))
     if ("do", "take") in pairs and form.has_motion and form.application is not None:
@@ -190,12 +194,13 @@ def parse(pairs: Pairs) -> Form:
 def _own(pairs: Pairs) -> Pairs:
     """Pairs before another way is chosen: of the worked example its phases alone, since nobody has given the rest."""
     buttons = [(name, text) for name, text in pairs if name == "do" and text.startswith("way:")]
-    if buttons and _parsed([pair for pair in pairs if pair[0] != "do"], "").application == Application.worked_example():
+    before = [pair for pair in pairs if pair[0] != "do"]
+    if buttons and _parsed(before, None).application == Application.worked_example():
         return [*((name, text) for name, text in pairs if name in LABELS or name in CYCLE_NAMES), *buttons]
     return pairs
 
 
-def _parsed(pairs: Pairs, written: str) -> Form:
+def _parsed(pairs: Pairs, written: str | None) -> Form:
     """Form of pairs in the wire's units."""
     given = Given()
     for name, text in pairs:
@@ -209,6 +214,7 @@ def _parsed(pairs: Pairs, written: str) -> Form:
         problems += found
         application, refused = _validated(document, moves or rows, problems)
         problems += refused
+    decimal = Reader.of_marker(written or "").decimal
     return Form(
         rows=tuple(rows),
         origins=(moved if given.has_motion else phases).origins,
@@ -223,7 +229,7 @@ def _parsed(pairs: Pairs, written: str) -> Form:
         gear=given.page.get("gear", "").strip(),
         pins=given.pinned(),
         focus=focus,
-        problems=tuple(problems),
+        problems=tuple(replace(problem, message=problem.message.marked(decimal)) for problem in problems),
         application=None if problems else application,
         written=written,
         labels={name: given.labels.get(name, [""])[0] for name in LABELS},
@@ -235,7 +241,7 @@ def visible(text: str) -> str:
     return _UNSEEN.sub("", text)
 
 
-def in_wire_units(pairs: Pairs) -> tuple[Pairs, str]:
+def in_wire_units(pairs: Pairs) -> tuple[Pairs, str | None]:
     """Pairs of a form as a link has them, and the marker of what they were written in: see `numbers`."""
     # In the texts of people such characters join emoji and letters.
     seen = [(visible(name), text if name in (*LABELS, NAME.role) else visible(text)) for name, text in pairs]

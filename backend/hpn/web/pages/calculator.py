@@ -25,6 +25,7 @@ from hpn.web.form.labels import OrderingCode, ordering_code, query_of
 from hpn.web.form.link_reader import Form
 from hpn.web.form.link_writer import to_link
 from hpn.web.form.linked import LONGEST_LINK
+from hpn.web.form.offers import beside_fields
 from hpn.web.form.ways import CYCLE_NAMES
 from hpn.web.pages.insight import Insight, checked_pins, tail_of
 from hpn.web.pages.result import Result
@@ -229,9 +230,12 @@ def _parts(request: Request, form: Form) -> frozenset[str]:
 
 
 def _render(request: Request, template: str, status: int, **context: Any) -> Response:
-    address = _address(context.get("answer"), context.get("form"))
+    form: Form = context["form"]
+    address = _address(context["answer"], form)
+    form = replace(form, problems=beside_fields(form.problems, form.written, current()))
     if "form" in context["parts"]:  # typing brings the result alone, and leaves the fields as they are
-        context["form"] = link_reader.for_reader(context["form"], current())
+        form = link_reader.for_reader(form, current())
+    context["form"] = form
     content = environment(request.app.state).get_template(template).render(**context)
     response = HTMLResponse(content, status)
     response.headers["Vary"] = "HX-Request, HX-Target, HPN-Parts"
@@ -243,10 +247,10 @@ def _render(request: Request, template: str, status: int, **context: Any) -> Res
     return response
 
 
-def _address(answer: Answer | None, form: Form | None) -> str | None:
+def _address(answer: Answer | None, form: Form) -> str | None:
     """Address for the address bar; None where there is something to correct."""
     if answer is None:
-        return link_reader.address_of_empty(form) if form and form.empty else None
+        return link_reader.address_of_empty(form) if form.empty else None
     # A page too long for an address must not stand under another's: reloading leads to where it came from.
     return "/paste" if answer.too_long else answer.address
 
