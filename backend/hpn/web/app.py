@@ -129,6 +129,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
         docs_url=None,
         redoc_url=None,
         openapi_url=None,
+        responses=schemas.ANYWHERE,
         openapi_tags=openapi.TAGS,
         servers=openapi.SERVERS,
         license_info={"name": "Apache-2.0", "identifier": "Apache-2.0"},
@@ -148,7 +149,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     problems.install(app, explanations.page_of)
     app.add_exception_handler(StoreUnavailableError, archive.unavailable)
     for router in ROUTERS:
-        app.include_router(router)
+        app.include_router(router, responses={} if router is health.router else schemas.GUARDED)
     openapi.install(app, Application, schemas.Batch, archive.SaveRequest, archive.Names)
     _add_middleware(app, settings)
     return app

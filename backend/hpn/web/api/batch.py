@@ -51,7 +51,7 @@ router = APIRouter(prefix="/api/v1", tags=["Selection"], dependencies=[admit("ba
     summary="Select gears for many applications",
     openapi_extra=schemas.batch_body(),
     response_model=BatchReply,
-    responses=schemas.batch_answers(400, 408, 413, 415, 422, 503),
+    responses=schemas.batch_answers(400, 408, 413, 415, 422),
 )
 async def select_batch(request: Request) -> Response:
     """One line per application; one with errors never fails its neighbours.
@@ -64,7 +64,7 @@ async def select_batch(request: Request) -> Response:
         return _stream(request)
     if content_type_of(request) != JSON:
         raise wrong_type(request, f"{JSON} or {streaming.MEDIA_TYPES[0]}")
-    body = await read_body(request, maximum_bytes=settings.maximum_batch_body_bytes, seconds=settings.body_seconds)
+    body = await read_body(request, maximum_bytes=settings.maximum_batch_body_bytes)
     pool = pool_of(request, "batches")
     with pool.place():
         lines = await while_present(request, _answered(body, state, pool))

@@ -26,7 +26,7 @@ router = APIRouter(prefix="/api/v1", tags=["Catalogue"], dependencies=[admit("ca
     summary="Every gear",
     openapi_extra=schemas.IF_NONE_MATCH,
     response_model=CatalogueReply,
-    responses=schemas.answers(headers=schemas.headers("ETag")) | schemas.HAS_IT_ALREADY,
+    responses=schemas.answers(422, headers=schemas.headers("ETag")) | schemas.HAS_IT_ALREADY,
 )
 async def catalogue(request: Request) -> Response:
     """Every gear of the series with every published figure and its source; null where not published."""
@@ -40,9 +40,9 @@ async def catalogue(request: Request) -> Response:
     summary="One gear",
     openapi_extra=schemas.IF_NONE_MATCH,
     response_model=OneGearReply,
-    responses=schemas.answers(404, headers=schemas.headers("ETag")) | schemas.HAS_IT_ALREADY,
+    responses=schemas.answers(404, 422, headers=schemas.headers("ETag")) | schemas.HAS_IT_ALREADY,
 )
-async def gear(request: Request, designation: str) -> Response:
+async def gear(request: Request, designation: schemas.Designation) -> Response:
     """One gear, by its designation in any of the printed spellings: by itself, and as the list has it."""
     book: Catalogue = request.app.state.catalogue
     found = gear_named(designation, book)
@@ -57,7 +57,7 @@ async def gear(request: Request, designation: str) -> Response:
     response_model=EnvelopeReply,
     responses=schemas.answers(404, 422, headers=schemas.headers("ETag")) | schemas.HAS_IT_ALREADY,
 )
-async def bearing_envelopes(request: Request, size: str, query: Annotated[EnvelopeQuery, Query()]) -> Response:
+async def bearing_envelopes(request: Request, size: schemas.Size, query: Annotated[EnvelopeQuery, Query()]) -> Response:
     """Permitted constant load at this speed and life: one curve per load coefficient, from axial to radial axis."""
     book: Catalogue = request.app.state.catalogue
     gear = book.find_size(size)

@@ -30,7 +30,6 @@ from hpn.web.form.labels import ordering_code
 from hpn.web.form.labels import query_of as query_of_labels
 from hpn.web.form.link_writer import to_link
 from hpn.web.form.linked import linked, query_of
-from hpn.web.settings import Settings
 from hpn.words.reader import Reader
 
 SCHEMA_TYPE = "application/schema+json"
@@ -116,13 +115,12 @@ def _route(file: File) -> None:
 
     Chosen = Annotated[Options, Depends(file.options)]
 
-    async def of_saved(request: Request, id: str, chosen: Chosen, lang: Lang = None) -> Response:
+    async def of_saved(request: Request, id: schemas.Id, chosen: Chosen, lang: Lang = None) -> Response:
         saved, catalogue = await with_catalogue(request.app.state, id)
         return await _answer(request, file, lang, chosen, lambda: _of_saved(saved, catalogue, request))
 
     async def of_posted(request: Request, chosen: Chosen, lang: Lang = None) -> Response:
-        settings: Settings = request.app.state.settings
-        body = await read_body(request, maximum_bytes=settings.maximum_body_bytes, seconds=settings.body_seconds)
+        body = await read_body(request)
         return await _answer(request, file, lang, chosen, lambda: _computed(parsed(Application, body), request))
 
     async def of_link(request: Request, chosen: Chosen, lang: Lang = None) -> Response:
@@ -140,7 +138,7 @@ def _route(file: File) -> None:
         operation_id=f"getSelection{file.noun}",
         **shared,
         description=f"{file.summary} of a saved selection, as it was saved.",
-        responses=content | schemas.HAS_IT_ALREADY | schemas.problems(404, 409, 422, 501, 503),
+        responses=content | schemas.HAS_IT_ALREADY | schemas.problems(404, 409, 422, 501),
     )
     posted_files.add_api_route(
         f"/{file.name}",
@@ -149,7 +147,7 @@ def _route(file: File) -> None:
         methods=["POST"],
         description=f"{file.summary} of an application, computed now; nothing is saved.",
         openapi_extra=schemas.request_body(Application),
-        responses=content | schemas.problems(400, 408, 413, 415, 422, 501, 503),
+        responses=content | schemas.problems(400, 408, 413, 415, 422, 501),
         **shared,
     )
     linked_files.add_api_route(f"/{file.name}", of_link, methods=["GET", "POST"], **shared)
@@ -163,7 +161,8 @@ for _file in FILES:
     "/application.schema.json",
     operation_id="getApplicationSchema",
     summary="JSON Schema of an application",
-    responses={200: {"description": "The schema.", "content": {SCHEMA_TYPE: {"schema": {"type": "object"}}}}},
+    responses=schemas.problems(422)
+    | {200: {"description": "The schema.", "content": {SCHEMA_TYPE: {"schema": {"type": "object"}}}}},
     response_class=Response,
 )
 async def application_schema() -> Response:

@@ -57,7 +57,7 @@ router = APIRouter(prefix="/api/v1", tags=["Selection"], dependencies=[admit("ba
     operation_id="sizeFleet",
     summary="Select gears for a table of axes",
     openapi_extra=schemas.fleet_body((*MEDIA_TYPES.values(), *READ_TYPES.values())),
-    responses=schemas.fleet_answers(MEDIA_TYPES.values(), 400, 408, 413, 415, 422, 501, 503),
+    responses=schemas.fleet_answers(MEDIA_TYPES.values(), 400, 408, 413, 415, 422, 501),
     response_class=Response,
 )
 async def size(

@@ -17,16 +17,16 @@ metrics_router = APIRouter(tags=["Service"], dependencies=[admit("metrics")])
 class Health(BaseModel):
     """State of the service."""
 
-    status: str = Field(description="ok while the service answers.")
+    status: str = Field(description="ok while the service answers.", examples=["ok"])
 
 
 class Readiness(Health):
     """State of the service and of what it needs."""
 
-    catalogue_version: str = Field(description="Hash of the loaded catalogue’s content.")
-    gears: int = Field(description="Number of gears in the catalogue.")
-    store: str = Field(description="ok while selections can be saved.")
-    spool: str = Field(description="ok while files of fleets and streamed batches can be set aside.")
+    catalogue_version: str = Field(description="Hash of the loaded catalogue’s content.", examples=["53ef277c50b29b46"])
+    gears: int = Field(description="Number of gears in the catalogue.", examples=[64])
+    store: str = Field(description="ok while selections can be saved.", examples=["ok"])
+    spool: str = Field(description="ok while files of fleets and streamed batches can be kept.", examples=["ok"])
 
 
 @router.get("/healthz", operation_id="getHealth", summary="Is the process alive")

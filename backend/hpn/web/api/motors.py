@@ -16,7 +16,6 @@ from hpn.web.door.access import admit
 from hpn.web.door.bodies import parsed, read_body
 from hpn.web.door.conditions import conditional
 from hpn.web.door.pools import compute
-from hpn.web.settings import Settings
 
 router = APIRouter(prefix="/api/v1", tags=["Motors"], dependencies=[admit("calculator")])
 
@@ -27,7 +26,7 @@ router = APIRouter(prefix="/api/v1", tags=["Motors"], dependencies=[admit("calcu
     summary="The user’s own motors",
     openapi_extra=schemas.IF_NONE_MATCH,
     response_model=MotorsReply,
-    responses=schemas.answers(headers=schemas.headers("ETag")) | schemas.HAS_IT_ALREADY,
+    responses=schemas.answers(422, headers=schemas.headers("ETag")) | schemas.HAS_IT_ALREADY,
 )
 async def motors(request: Request) -> Response:
     """Motors of a supplement’s motors.csv; none where there is no such file, null where a figure is blank."""
@@ -43,12 +42,11 @@ async def motors(request: Request) -> Response:
     response_model=MotorsOnGearReply,
     responses=schemas.answers(400, 404, 408, 413, 415, 422),
 )
-async def motors_of_gear(request: Request, designation: str) -> Response:
+async def motors_of_gear(request: Request, designation: schemas.Designation) -> Response:
     """How far each motor of motors.csv is used on a gear under an application, in place of the application’s own."""
     state: State = request.app.state
-    settings: Settings = state.settings
     gear = gear_named(designation, state.catalogue)
-    body = await read_body(request, maximum_bytes=settings.maximum_body_bytes, seconds=settings.body_seconds)
+    body = await read_body(request)
     return JSONBytes(await compute(request, "pages", _reply, body, gear, state.catalogue))
 
 

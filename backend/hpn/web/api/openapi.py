@@ -1,6 +1,6 @@
 """The OpenAPI document: what FastAPI finds by itself, and what the direct routes know better."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from functools import cache
 from typing import Any
 
@@ -16,19 +16,11 @@ from hpn.catalogue import Catalogue
 from hpn.web.api import samples, schemas
 from hpn.web.api.exchanges import SUMMARIES, Exchange, exchanges
 from hpn.web.api.replies import encode
-from hpn.web.door.access import API, admit, group_of
+from hpn.web.door.access import admit, group_of
 from hpn.web.door.conditions import conditional
 from hpn.web.door.pools import compute
 from hpn.web.settings import RouteGroup, Settings
 from hpn.words.units import suffix_of, symbol_of
-
-PATH_PARAMETERS = {
-    "designation": "Designation in any of the printed spellings, such as HPN-20A-5.",
-    "size": "Size, such as 20A.",
-    "id": "Identifier that saving answered with.",
-}
-
-FRAMEWORK = ("HTTPValidationError", "ValidationError")
 
 TAGS = [
     {"name": "Selection", "description": "Which gear fits an application, for one or for many."},
@@ -68,64 +60,49 @@ def install(app: FastAPI, *bodies: type[BaseModel]) -> None:
 
     @cache
     def openapi() -> dict[str, Any]:
-        groups = {
-            (method, route.path or ""): group_of(route)
-            for route in iter_route_contexts(app.routes)
-            for method in route.methods or ()
-        }
-        return complete(found(), groups, app.state.catalogue, app.state.settings, bodies)
+        document, catalogue = found(), app.state.catalogue
+        models: list[Any] = [(model, "validation") for model in bodies]
+        _, definitions = models_json_schema(models, ref_template="#/components/schemas/{model}")
+        components = document["components"]
+        components |= {"securitySchemes": KEY_SCHEMES, "headers": schemas.header_components()}
+        components["schemas"] |= definitions["$defs"]
+        _complete(document, _groups(app), catalogue, app.state.settings)
+        samples.illustrate(components["schemas"], catalogue)
+        return document
 
     app.openapi = openapi  # type: ignore[method-assign]
 
 
-def complete(
+def _groups(app: FastAPI) -> dict[tuple[str, str], RouteGroup | None]:
+    """Group of every route by method and path."""
+    routes = iter_route_contexts(app.routes)
+    return {(method, route.path or ""): group_of(route) for route in routes for method in route.methods or ()}
+
+
+def _complete(
     document: dict[str, Any],
     groups: Mapping[tuple[str, str], RouteGroup | None],
     catalogue: Catalogue,
     settings: Settings,
-    bodies: Sequence[type[BaseModel]],
-) -> dict[str, Any]:
-    """Add schemas of the request bodies, examples, the one form of every problem, keys, and texts of parameters.
-
-    `groups` tells by method and path who may use a route.
-    """
-    models: list[Any] = [(model, "validation") for model in bodies]
-    _, definitions = models_json_schema(models, ref_template="#/components/schemas/{model}")
-    components = document.setdefault("components", {})
-    components["securitySchemes"] = KEY_SCHEMES
-    components["headers"] = schemas.header_components()
-    named = components.setdefault("schemas", {})
-    named.update(definitions["$defs"])
+) -> None:
+    """Add examples, keys, headers, and texts of parameters to every operation."""
     shown = exchanges(catalogue)
-    for method, path, operation in _operations(document):
-        _say_problems(operation, path)
-        _give_examples(operation, shown.get(operation["operationId"], ()))
-        _say_keys(operation, groups[method, path], settings)
-        _say_headers(operation)
-        for parameter in operation.get("parameters", ()):
-            _describe(parameter)
-    for name in FRAMEWORK:
-        named.pop(name, None)
-    samples.illustrate(named, catalogue)
-    return document
-
-
-def _operations(document: dict[str, Any]) -> Iterator[tuple[str, str, dict[str, Any]]]:
     for path, operations in document["paths"].items():
         for method, operation in operations.items():
-            yield method.upper(), path, operation
+            _give_examples(operation, shown.get(operation["operationId"], ()))
+            _say_keys(operation, groups[method.upper(), path], settings)
+            _say_headers(operation)
+            for parameter in operation.get("parameters", ()):
+                _describe(parameter)
 
 
 def _say_keys(operation: dict[str, Any], group: RouteGroup | None, settings: Settings) -> None:
-    """Answers that any route may get; keys, rates, host and a longest query guard those that are not open to all."""
-    operation["responses"] |= schemas.ANYWHERE
+    """Keys that a route takes, and whether it can do without."""
     if group is None:
         operation["security"] = []
         return
     needed = bool(settings.api_keys) and group in settings.guarded
     operation["security"] = [*({name: []} for name in KEY_SCHEMES), *([] if needed else [{}])]
-    refusals = {str(status): entry for status, entry in schemas.problems(401, 414, 421, 429, 503).items()}
-    operation["responses"] = dict(sorted((refusals | operation["responses"]).items()))
 
 
 def _say_headers(operation: dict[str, Any]) -> None:
@@ -155,17 +132,7 @@ def _example(name: str, value: Any) -> dict[str, Any]:
     return {name: {"summary": SUMMARIES[name], "value": value}}
 
 
-def _say_problems(operation: dict[str, Any], path: str) -> None:
-    """FastAPI announces its own form of a 422; the service answers problems alone, and to unknown parameters, too."""
-    response = operation["responses"].get("422", {})
-    schema = response.get("content", {}).get("application/json", {}).get("schema", {})
-    if path.startswith(API) or schema.get("$ref", "").endswith("/HTTPValidationError"):
-        operation["responses"] |= {str(status): entry for status, entry in schemas.problems(422).items()}
-
-
 def _describe(parameter: dict[str, Any]) -> None:
-    if parameter["in"] == "path":
-        parameter.setdefault("description", PATH_PARAMETERS[parameter["name"]])
     if parameter["in"] == "query":
         _leave_out_null(parameter["schema"])
         if parameter["schema"].get("type") == "array":

@@ -133,14 +133,6 @@ def _samples(catalogue: Catalogue) -> Json:
             "result": reply,
             "today": versions | _changes(selection, catalogue),
         },
-        "Readiness": {
-            "status": "ok",
-            "catalogue_version": catalogue.version,
-            "gears": len(catalogue.gears),
-            "store": "ok",
-            "spool": "ok",
-        },
-        "Health": {"status": "ok"},
     }
 
 

@@ -1,8 +1,9 @@
 """Entries of the OpenAPI document on routes: bodies that they read themselves, headers, problems and links."""
 
 from collections.abc import Iterable
-from typing import Any
+from typing import Annotated, Any
 
+from fastapi import Path
 from pydantic import BaseModel, Field
 
 from hpn.application import BatchItem
@@ -122,11 +123,14 @@ def problems(*statuses: int) -> dict[int | str, dict[str, Any]]:
     }
 
 
-ANYWHERE = {
-    "307": {"description": "The address without the slash at its end.", "headers": headers("Location")},
-    "405": problems(405)[405],
+ANYWHERE: dict[int | str, dict[str, Any]] = {
+    307: {"description": "The address without the slash at its end.", "headers": headers("Location")},
+    **problems(405),
 }
 """OpenAPI entries of what every address may answer."""
+
+GUARDED = problems(401, 414, 421, 429, 503)
+"""OpenAPI entries of what a route that is not open to all may answer for its keys, query, host, rate and service."""
 
 HAS_IT_ALREADY: dict[int | str, dict[str, Any]] = {
     304: {"description": "The client has it already.", "headers": headers("ETag")}
@@ -190,6 +194,11 @@ FROM_LIST = {
 
 
 # --- Requests ---------------------------------------------------------------------------------------------------------
+
+
+Id = Annotated[str, Path(description="Identifier that saving answered with.")]
+Designation = Annotated[str, Path(description="Designation in any of the printed spellings, such as HPN-20A-5.")]
+Size = Annotated[str, Path(description="Size, such as 20A.")]
 
 
 def header(name: str, description: str) -> dict[str, Any]:

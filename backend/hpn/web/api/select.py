@@ -13,7 +13,6 @@ from hpn.web.door.access import admit
 from hpn.web.door.bodies import parsed, read_body
 from hpn.web.door.pools import calculate
 from hpn.web.form.link_writer import to_link
-from hpn.web.settings import Settings
 
 router = APIRouter(prefix="/api/v1", tags=["Selection"], dependencies=[admit("calculator")])
 
@@ -29,8 +28,7 @@ router = APIRouter(prefix="/api/v1", tags=["Selection"], dependencies=[admit("ca
 async def select_one(request: Request) -> Response:
     """Evaluates every size and ratio, ranks the candidates, and says why each stands where it does."""
     state: State = request.app.state
-    settings: Settings = state.settings
-    body = await read_body(request, maximum_bytes=settings.maximum_body_bytes, seconds=settings.body_seconds)
+    body = await read_body(request)
     selected, reply = await calculate(request, body, _reply, body, state)
     state.metrics.selections(["none" if selected is None else "selected"])
     return JSONBytes(reply)

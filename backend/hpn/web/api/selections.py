@@ -48,7 +48,6 @@ from hpn.web.door.conditions import conditional, etag_of, idempotency_key, other
 from hpn.web.door.observation import note
 from hpn.web.door.pools import calculate
 from hpn.web.door.problems import Problem
-from hpn.web.settings import Settings
 
 REPLAYED = "Idempotency-Replayed"
 KEY = (
@@ -86,7 +85,7 @@ router = APIRouter(prefix="/api/v1/selections", tags=["Saved selections"])
     },
     response_model=SavedReply,
     responses=schemas.answers(
-        *(400, 408, 410, 413, 415, 422, 503),
+        *(400, 408, 410, 413, 415, 422),
         status=201,
         headers=schemas.headers("Location", "ETag", REPLAYED, "Preference-Applied"),
         links=schemas.FROM_SAVED,
@@ -94,9 +93,8 @@ router = APIRouter(prefix="/api/v1/selections", tags=["Saved selections"])
 )
 async def save_selection(request: Request) -> Response:
     """Saves an application with its result; once answered with 201 it is durable."""
-    settings: Settings = request.app.state.settings
     key = idempotency_key(request)
-    body = await read_body(request, maximum_bytes=settings.maximum_body_bytes, seconds=settings.body_seconds)
+    body = await read_body(request)
     owner, catalogue = request.state.api_key, request.app.state.catalogue
     draft = await calculate(request, body, _draft, body, catalogue, key, owner)
     id = await keep(request, draft)
@@ -133,10 +131,10 @@ def _draft(body: bytes, catalogue: Catalogue, key: str | None, owner: str | None
     summary="Read a saved selection",
     openapi_extra=schemas.IF_NONE_MATCH,
     response_model=SavedSelectionReply,
-    responses=schemas.answers(404, 503, headers=schemas.headers("ETag"), links=schemas.FROM_SELECTION)
+    responses=schemas.answers(404, 422, headers=schemas.headers("ETag"), links=schemas.FROM_SELECTION)
     | schemas.HAS_IT_ALREADY,
 )
-async def read_selection(request: Request, id: str) -> Response:
+async def read_selection(request: Request, id: schemas.Id) -> Response:
     """Input and result as saved, and what today's engine and catalogue say differently, verdicts first."""
     return conditional(request, *await _representation(request, id))
 
@@ -148,7 +146,7 @@ async def read_selection(request: Request, id: str) -> Response:
     summary="List saved selections",
     openapi_extra=schemas.IF_NONE_MATCH,
     response_model=SelectionListReply,
-    responses=schemas.answers(422, 503, headers=schemas.headers("ETag", "Link"), links=schemas.FROM_LIST)
+    responses=schemas.answers(422, headers=schemas.headers("ETag", "Link"), links=schemas.FROM_LIST)
     | schemas.HAS_IT_ALREADY,
 )
 async def list_selections(
@@ -184,18 +182,16 @@ async def list_selections(
     openapi_extra=schemas.request_body(Names, JSON, MERGE_PATCH)
     | {"parameters": [schemas.header("If-Match", "Rename only this state of it.")]},
     response_model=SavedSelectionReply,
-    responses=schemas.answers(*(400, 403, 404, 408, 412, 413, 415, 422, 503), headers=schemas.headers("ETag")),
+    responses=schemas.answers(*(400, 403, 404, 408, 412, 413, 415, 422), headers=schemas.headers("ETag")),
 )
-async def rename_selection(request: Request, id: str) -> Response:
+async def rename_selection(request: Request, id: schemas.Id) -> Response:
     """Changes title or reference of a saved selection; null removes one, and a field that is left out stays.
 
     The body is a JSON merge patch (RFC 7396). Calculated figures are never rewritten. Where the service has API keys, a
     key renames the selections that it saved, and the key named `admin` renames any.
     """
-    settings: Settings = request.app.state.settings
     store: Store = request.app.state.store
-    limits: dict[str, Any] = {"maximum_bytes": settings.maximum_body_bytes, "seconds": settings.body_seconds}
-    body = await read_body(request, JSON, MERGE_PATCH, **limits)
+    body = await read_body(request, JSON, MERGE_PATCH)
     names = (await calculate(request, body, parsed, Names, body)).model_dump(exclude_unset=True)
     await changeable(request, id)
     version = await _matched_version(request, id)
@@ -212,10 +208,10 @@ async def rename_selection(request: Request, id: str) -> Response:
     operation_id="deleteSelection",
     summary="Delete a saved selection",
     status_code=204,
-    responses=schemas.DELETED | schemas.problems(403, 404, 412, 503),
+    responses=schemas.DELETED | schemas.problems(403, 404, 412, 422),
     openapi_extra={"parameters": [schemas.header("If-Match", "Delete only this state of it.")]},
 )
-async def delete_selection(request: Request, id: str) -> Response:
+async def delete_selection(request: Request, id: schemas.Id) -> Response:
     """Deletes a saved selection for good. A retry of saving it, with its Idempotency-Key, is then answered with 410.
 
     Where the service has API keys, a key deletes what it has saved, and the one named `admin` deletes any.

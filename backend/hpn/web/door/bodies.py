@@ -18,7 +18,7 @@ from hpn.words.fields import MAXIMUM_PHASES
 
 M = TypeVar("M", bound=BaseModel)
 
-JSON, MERGE_PATCH = "application/json", "application/merge-patch+json"
+JSON, MERGE_PATCH, FORM = "application/json", "application/merge-patch+json", "application/x-www-form-urlencoded"
 
 MOST_OBJECTS, MOST_NAMES, MOST_LISTS = MAXIMUM_PHASES + 100, 8 * MAXIMUM_PHASES + 1000, 10_000
 """Most objects, names and lists in the JSON of an application; the longest one stays below."""
@@ -30,26 +30,27 @@ MOST_PAIRS = MOST_NAMES
 """Parameters of the longest form."""
 
 
-async def read_body(request: Request, *content_types: str, maximum_bytes: int, seconds: float) -> bytes:
+async def read_body(request: Request, *content_types: str, maximum_bytes: int = 0) -> bytes:
     """Body of a request, JSON where no content types are named; without a byte order mark before it (RFC 8259, 8.1).
 
-    Raises Problem 415 for any other content type and for a compressed body, 413 above `maximum_bytes`, 408 when it has
-    not arrived in `seconds`.
+    Raises Problem 415 for any other content type and for a compressed body, 413 above `maximum_bytes`, by default those
+    of the settings, 408 when it has not arrived in the seconds of the settings.
     """
     require_plain(request)
-    wanted = content_types or (JSON,)
+    settings: Settings = request.app.state.settings
+    wanted, most = content_types or (JSON,), maximum_bytes or settings.maximum_body_bytes
     if content_type_of(request) not in wanted:
         raise wrong_type(request, " or ".join(wanted))
-    too_large = _too_large(request, maximum_bytes)
+    too_large = _too_large(request, most)
     body = bytearray()
     try:
-        async with asyncio.timeout(seconds):
+        async with asyncio.timeout(settings.body_seconds):
             async for part in request.stream():
                 body += part
-                if len(body) > maximum_bytes:
+                if len(body) > most:
                     raise too_large
     except TimeoutError:
-        raise late(seconds) from None
+        raise late(settings.body_seconds) from None
     except ClientDisconnect:
         raise _broken_off() from None
     return bytes(body).removeprefix(codecs.BOM_UTF8 if JSON in wanted else b"")
@@ -177,10 +178,4 @@ def content_type_of(request: Request) -> str:
 
 async def read_form(request: Request) -> bytes:
     """Body of a posted form, within the limits of the settings; raises Problem as `read_body` does."""
-    settings: Settings = request.app.state.settings
-    return await read_body(
-        request,
-        "application/x-www-form-urlencoded",
-        maximum_bytes=settings.maximum_body_bytes,
-        seconds=settings.body_seconds,
-    )
+    return await read_body(request, FORM)

@@ -13,7 +13,7 @@ from starlette.responses import RedirectResponse, Response
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from hpn.web.door.access import admit
-from hpn.web.door.bodies import pairs_of, read_body
+from hpn.web.door.bodies import FORM, pairs_of, read_body
 from hpn.web.door.hosts import require_same_origin
 from hpn.web.door.visit import VISIT, Visit, current
 from hpn.words import units
@@ -102,7 +102,7 @@ def _address(scope: Scope) -> str:
 async def change(request: Request) -> Response:
     """Keep a language, units or both, and go back to where the reader was."""
     require_same_origin(request)
-    body = await read_body(request, "application/x-www-form-urlencoded", maximum_bytes=MAXIMUM_BYTES, seconds=10)
+    body = await read_body(request, FORM, maximum_bytes=MAXIMUM_BYTES)
     given = dict(pairs_of(body))
     response = RedirectResponse(_own(given.get("back", "")), 303, {"Cache-Control": "no-store"})
     if (language := given.get("language", "")) in LANGUAGES:

@@ -8,12 +8,11 @@ from starlette.requests import Request
 
 from hpn.tables.files import text_of
 from hpn.tables.sheets import RefusedError
-from hpn.web.door.bodies import content_type_of, pairs_of, read_body
+from hpn.web.door.bodies import FORM, content_type_of, pairs_of, read_body
 from hpn.web.door.pools import compute
 from hpn.web.door.problems import Problem
-from hpn.web.settings import Settings
 
-FORM, MULTIPART = "application/x-www-form-urlencoded", "multipart/form-data"
+MULTIPART = "multipart/form-data"
 
 
 async def read_fields(request: Request) -> dict[str, str]:
@@ -23,12 +22,10 @@ async def read_fields(request: Request) -> dict[str, str]:
     return {name: decoded(content) for name, content in (await read_parts(request)).items()}
 
 
-async def read_parts(request: Request, maximum_bytes: int | None = None) -> dict[str, bytes]:
+async def read_parts(request: Request, maximum_bytes: int = 0) -> dict[str, bytes]:
     """Fields and files of a posted form as they were sent, the last of a name. Raises Problem as `read_body` does."""
-    settings: Settings = request.app.state.settings
     content_type = MULTIPART if content_type_of(request) == MULTIPART else FORM
-    most = maximum_bytes or settings.maximum_body_bytes
-    body = await read_body(request, content_type, maximum_bytes=most, seconds=settings.body_seconds)
+    body = await read_body(request, content_type, maximum_bytes=maximum_bytes)
     if content_type == FORM:
         return {name: text.encode(errors="replace") for name, text in await compute(request, "pages", pairs_of, body)}
     return dict(await compute(request, "pages", form_parts, request.headers["content-type"], body))
