@@ -248,3 +248,28 @@ def test_length_is_ranked_and_checked_by_L_max(supplemented: Supplement) -> None
 
     assert [c["designation"] for c in ranked["candidates"]] == ["HPN-11A-5", "HPN-14A-5"]
     assert suitable(limited) == {"HPN-11A-5"}
+
+
+@pytest.mark.parametrize("lacking", ["backlash_arcmin", "transmission_accuracy_arcmin"])
+def test_a_file_written_before_a_published_figure_came_still_loads_and_corrects_the_others(
+    lacking: str, supplemented: Supplement, catalogue: Catalogue
+) -> None:
+    columns = ["size", "stages", "backlash_arcmin", "transmission_accuracy_arcmin", "source"]
+    cells = dict(zip(columns, ["20A", "1", "2.5", "3.5", "measured"], strict=True))
+    del cells[lacking]
+    filled = supplemented(accuracy=f"{','.join(cells)}\n{','.join(cells.values())}\n")
+
+    gear, printed = filled.by_designation["HPN-20A-5"], catalogue.by_designation["HPN-20A-5"]
+    given = next(name for name in columns[2:4] if name != lacking)
+    assert getattr(gear, given) == float(cells[given])
+    assert gear.sources[given] == "supplied by the user: measured"
+    assert getattr(gear, lacking) == getattr(printed, lacking)
+    assert gear.sources[lacking] == printed.sources[lacking]
+
+
+@pytest.mark.parametrize("lacking", ["size", "stages", "source"])
+def test_no_file_may_lack_what_names_a_row_or_its_source(lacking: str, supplemented: Supplement) -> None:
+    cells = {"size": "20A", "stages": "1", "weight_kg": "2.7", "source": "measured"}
+    del cells[lacking]
+    with pytest.raises(CatalogueError, match=rf"weights\.csv, line 1: the header must have .*see {lacking}$"):
+        supplemented(weights=f"{','.join(cells)}\n{','.join(cells.values())}\n")

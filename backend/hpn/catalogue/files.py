@@ -95,7 +95,7 @@ def read(path: Path, content: bytes, table: type[Table], *, supplied: bool) -> d
     repeated key.
     """
     rows: dict[Key, Cells] = {}
-    for line, row in _lines(path, _text(path, content), table):
+    for line, row in _lines(path, _text(path, content), table, table.figures if supplied else table.optional):
         texts = {column: text.strip() for column, text in row.items()}
         cells = {column: Cell(text, texts["source"], str(path), line, supplied) for column, text in texts.items()}
         for column in table.key:
@@ -164,7 +164,7 @@ def _place(before: str) -> tuple[int, str | None]:
     return len(lines), header[len(broken) - 1] if len(broken) <= len(header) and len(lines) > 1 else None
 
 
-def _lines(path: Path, text: str, table: type[Table]) -> Iterator[tuple[int, dict[str, str]]]:
+def _lines(path: Path, text: str, table: type[Table], may_lack: frozenset[str]) -> Iterator[tuple[int, dict[str, str]]]:
     """Line and cells of every row by column; a column that the file may lack is blank.
 
     Raises CatalogueError for a header that is not the table's and for a row that does not fit it.
@@ -174,7 +174,7 @@ def _lines(path: Path, text: str, table: type[Table]) -> Iterator[tuple[int, dic
     try:
         written = next(reader, [])
         header, codes = _header(path, written, columns)
-        lacking = [column for column in columns if column in table.optional and column not in header]
+        lacking = [column for column in columns if column in may_lack and column not in header]
         if sorted(header + lacking) != sorted(columns):
             wrong = [name[:40] for name in sorted(set(header + lacking) ^ set(columns)) or header]
             detail = f"the header must have the columns {', '.join(columns)}; see {', '.join(wrong[:20])}"

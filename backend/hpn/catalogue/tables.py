@@ -62,6 +62,8 @@ class Table(BaseModel):
     may_be_empty: ClassVar[bool] = False
     optional: ClassVar[frozenset[str]] = frozenset()
     """Columns that a file may lack, as if they were blank."""
+    figures: ClassVar[frozenset[str]] = frozenset()
+    """Columns that the file of a supplement may lack: it was written before they came, or corrects others."""
     source: str | None = Field(None, min_length=1)
     cells: Cells = Field(default_factory=dict, exclude=True)
 
@@ -126,7 +128,8 @@ def _with_figures(file: str, base: type[TableRow]) -> type[TableRow]:
     }
     table: type[TableRow] = create_model(file, __base__=base, **figures)
     table.file = file
-    table.optional = Gear.unpublished() & figures.keys()
+    table.figures = frozenset(figures)
+    table.optional = Gear.unpublished() & table.figures
     return table
 
 
