@@ -16,7 +16,7 @@ from sqlalchemy import Connection, event, text
 from hpn.catalogue import Catalogue
 from hpn.store import KeyReusedError, KeySpentError, Store, StoreError, StoreUnavailableError, writing
 from hpn.store.engine import WRITES
-from hpn.store.packing import unpacked
+from hpn.store.saved import unpacked
 from hpn.store.store import TRIAL_SECONDS
 from tests.store.drafts import change, draft
 

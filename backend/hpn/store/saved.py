@@ -5,7 +5,9 @@ import secrets
 from dataclasses import dataclass, field
 from datetime import datetime
 
+import brotli
 import orjson
+import zstandard
 
 from hpn.catalogue import Catalogue
 
@@ -90,3 +92,19 @@ class Page:
 def search_text(*texts: str | None) -> str:
     """Text that a search looks through: labels in one case, each on a line."""
     return "\n".join(filter(None, texts)).casefold()
+
+
+# --- Replies are some 80 kB of repetitive JSON, of which a tenth is kept -------------------------------------------
+
+
+def packed(content: bytes) -> bytes:
+    """A zstd frame of the content."""
+    return zstandard.compress(content)
+
+
+def unpacked(content: bytes) -> bytes:
+    """Content of a zstd frame, or of a brotli stream as earlier versions wrote, which never begins like a frame."""
+    if content.startswith(zstandard.FRAME_HEADER):
+        return zstandard.decompress(content)
+    stream: bytes = brotli.decompress(content)
+    return stream

@@ -32,9 +32,8 @@ from hpn.store.fleets import (
     rename_fleet,
     require_room,
 )
-from hpn.store.packing import unpacked
 from hpn.store.rehearsal import rehearse
-from hpn.store.saved import Draft, Page, SavedSelection, Summary, search_text
+from hpn.store.saved import Draft, Page, SavedSelection, Summary, search_text, unpacked
 from hpn.store.tables import catalogues, selections
 from hpn.store.upgrade import bring_up_to_date, missing_parts
 from hpn.store.writing import insert, remove, rename

@@ -15,8 +15,7 @@ from sqlalchemy.ext.asyncio import AsyncConnection
 from hpn.catalogue import Catalogue
 from hpn.catalogue.copy import copy_of
 from hpn.store.errors import KeyReusedError, KeySpentError
-from hpn.store.packing import packed
-from hpn.store.saved import Draft, search_text
+from hpn.store.saved import Draft, packed, search_text
 from hpn.store.tables import catalogues, selections, spent_keys
 
 
