@@ -1,5 +1,5 @@
 """Write the page's assets to frontend/dist under content-hashed names, each text file with its compressed forms, and
-the fonts of the PDF to frontend/dist/noto.
+the fonts of the PDF to frontend/dist/paper.
 
 A name changes exactly when its content does, so the service may let browsers keep every file for ever.
 `manifest.json` maps the logical name a template asks for ("page.css") to the hashed one ("page.3f2a9c1b.css").
@@ -94,12 +94,14 @@ def write(target: Path, content: bytes) -> None:
 
 
 def copy_fonts() -> None:
-    """Copy the regular weight of each Noto font, with the licence that goes along with it."""
-    (DIST / "noto").mkdir(parents=True)
+    """Write the faces of the PDF and the regular weight of each Noto font, each with the licence that goes along."""
+    (DIST / "paper").mkdir(parents=True)
+    for name, content in fonts.paper_faces(TYPEFACE).items():
+        (DIST / "paper" / name).write_bytes(content)
     for font in sorted(NOTO.glob("noto-*/400Regular/*.ttf")):
         name = font.name.replace("_400Regular", "")
-        shutil.copyfile(font, DIST / "noto" / name)
-        shutil.copyfile(font.parents[1] / "LICENSE_FONT", DIST / "noto" / f"{name}.OFL.txt")
+        shutil.copyfile(font, DIST / "paper" / name)
+        shutil.copyfile(font.parents[1] / "LICENSE_FONT", DIST / "paper" / f"{name}.OFL.txt")
 
 
 def main() -> None:

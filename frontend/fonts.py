@@ -1,4 +1,5 @@
-"""Cut the page's typeface from IBM Plex Sans: the width and weights that the page uses, and the characters it writes.
+"""Cut the typeface of page and PDF from IBM Plex Sans: the width and weights they use, and for the page only the
+characters it writes.
 
 The licence (SIL OFL 1.1) keeps the name Plex for the original, so that the result is called HPN Sans; its text goes
 along with the files.
@@ -16,6 +17,9 @@ from fontTools.varLib.instancer import instantiateVariableFont
 NAME = "HPN Sans"
 WIDTH = 94.0
 WEIGHTS = (400.0, 650.0)
+BOLD = 620.0
+"""Weight of headings, as `--strong` of the page."""
+
 THIN = {0x2009: 0.2, 0x202F: 0.2}
 """Widths of thin spaces in em: as drawn they are too narrow for groups of digits to be told apart."""
 
@@ -30,16 +34,34 @@ SYMBOLS = {*map(ord, "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz012345
 """Characters of quantities' symbols and their indices, which stand in italics."""
 
 
+ON_PAPER = {*range(0x20, 0x590), *range(0x1E00, 0x2C00)}
+"""Latin, Greek and Cyrillic text, and signs: other scripts of a title have fonts of their own."""
+
+ROMAN, SLANTED = "IBM Plex Sans Var-Roman.ttf", "IBM Plex Sans Var-Italic.ttf"
+
+
 def faces(package: Path, texts: Iterable[Path]) -> dict[str, bytes]:
     """Upright and italic face, and their licence, by the names that the style sheets ask for."""
     originals = package / "fonts/complete/ttf"
-    upright = cut(originals / "IBM Plex Sans Var-Roman.ttf", LETTERS | written(texts), UPRIGHT, "Regular")
-    italic = cut(originals / "IBM Plex Sans Var-Italic.ttf", SYMBOLS, ITALIC, "Italic")
+    upright = cut(originals / ROMAN, LETTERS | written(texts), UPRIGHT, "Regular")
+    italic = cut(originals / SLANTED, SYMBOLS, ITALIC, "Italic")
     return {
-        "hpn-sans.woff2": woff2(upright),
-        "hpn-sans-italic.woff2": woff2(italic),
+        "hpn-sans.woff2": saved(upright, "woff2"),
+        "hpn-sans-italic.woff2": saved(italic, "woff2"),
         "hpn-sans.txt": (package / "LICENSE.txt").read_bytes(),
     }
+
+
+def paper_faces(package: Path) -> dict[str, bytes]:
+    """Faces of one weight each, as typst takes them, each with its licence."""
+    originals = package / "fonts/complete/ttf"
+    cuts = {
+        "HPNSans.ttf": cut(originals / ROMAN, ON_PAPER, UPRIGHT, "Regular", WEIGHTS[0]),
+        "HPNSans-Bold.ttf": cut(originals / ROMAN, ON_PAPER, UPRIGHT, "Bold", BOLD),
+        "HPNSans-Italic.ttf": cut(originals / SLANTED, SYMBOLS, ITALIC, "Italic", WEIGHTS[0]),
+    }
+    licence = (package / "LICENSE.txt").read_bytes()
+    return {name: saved(font) for name, font in cuts.items()} | {f"{name}.OFL.txt": licence for name in cuts}
 
 
 def written(sources: Iterable[Path]) -> set[int]:
@@ -48,16 +70,16 @@ def written(sources: Iterable[Path]) -> set[int]:
     return {ord(character) for character in found if unicodedata.category(character)[0] != "C"}
 
 
-def cut(source: Path, wanted: set[int], features: list[str], style: str) -> TTFont:
-    """Face with the wanted characters alone, at one width and a range of weights."""
-    font = TTFont(source)
+def cut(source: Path, wanted: set[int], features: list[str], style: str, weight: float | None = None) -> TTFont:
+    """Face with the wanted characters alone, at one width and one weight, else a range of weights."""
+    font = TTFont(source, recalcTimestamp=False)
     options = Options()
     options.layout_features, options.hinting, options.notdef_outline = features, False, True
     options.name_IDs = [0, 1, 2, 3, 4, 5, 6, 13, 14]
     subsetter = Subsetter(options)
     subsetter.populate(unicodes=wanted)
     subsetter.subset(font)
-    instantiateVariableFont(font, {"wdth": WIDTH, "wght": WEIGHTS}, inplace=True)
+    instantiateVariableFont(font, {"wdth": WIDTH, "wght": weight or WEIGHTS}, inplace=True)
     _rename(font, style)
     units, mapping = font["head"].unitsPerEm, font.getBestCmap()
     for code, em in THIN.items():
@@ -76,9 +98,9 @@ def _rename(font: TTFont, style: str) -> None:
             font["name"].removeNames(record.nameID)
 
 
-def woff2(font: TTFont) -> bytes:
-    """Face as browsers load it."""
-    font.flavor = "woff2"
+def saved(font: TTFont, flavor: str | None = None) -> bytes:
+    """Face as a file: plain, or compressed as browsers load it."""
+    font.flavor = flavor
     content = io.BytesIO()
     font.save(content, reorderTables=False)
     return content.getvalue()

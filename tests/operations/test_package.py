@@ -84,9 +84,9 @@ def test_a_wheel_holds_catalogue_templates_and_assets_as_they_stand_in_the_check
     assert {path.relative_to(ROOT).as_posix() for path in (ROOT / "frontend/templates").iterdir()} <= found.keys()
     for name in json.loads((ROOT / "frontend/dist/manifest.json").read_text()).values():
         assert f"frontend/dist/{name}" in found
-    fonts = {name.removeprefix("frontend/dist/noto/") for name in found if name.startswith("frontend/dist/noto/")}
+    fonts = {name.removeprefix("frontend/dist/paper/") for name in found if name.startswith("frontend/dist/paper/")}
     scripts = {name.removesuffix(".ttf") for name in fonts if name.endswith(".ttf")}
-    assert {"NotoSans", "NotoSansSC", "NotoSansKR", "NotoEmoji"} <= scripts
+    assert {"HPNSans", "HPNSans-Bold", "HPNSans-Italic", "NotoSans", "NotoSansSC", "NotoSansKR", "NotoEmoji"} <= scripts
     assert fonts == {f"{script}{ending}" for script in scripts for ending in (".ttf", ".ttf.OFL.txt")}
     assert not [name for name in found if "dist/templates" in name]
     assert "hpn/py.typed" in packed

@@ -73,11 +73,11 @@ registries. An image that is built and handed on contains the service and the pa
 INSIDE = """## Works inside packages
 | what | package | licence |
 |---|---|---|
-| typeface of the page: IBM Plex Sans, cut and renamed, with its licence beside it | @ibm/plex-sans-variable | OFL-1.1 |
-| fonts in the PDF: Libertinus Serif | typst | OFL-1.1 |
-| fonts in the PDF: Noto, with licence files in `frontend/dist/noto` | @expo-google-fonts | OFL-1.1 |
+| typeface of page and PDF: IBM Plex Sans, cut, renamed, with its licence | @ibm/plex-sans-variable | OFL-1.1 |
+| fonts in the PDF: Noto, with licence files in `frontend/dist/paper` | @expo-google-fonts | OFL-1.1 |
 | fonts in the PDF: DejaVu Sans Mono | typst | Bitstream-Vera, changes in the public domain |
-| fonts not used: New Computer Modern | typst | LicenseRef-GUST-Font-License |
+| formulas in the PDF: New Computer Modern | typst | LicenseRef-GUST-Font-License |
+| fonts not used: Libertinus Serif | typst | OFL-1.1 |
 | OpenBLAS, LAPACK | numpy | BSD-3-Clause |
 | runtime libraries of GCC | numpy | GPL-3.0-or-later WITH GCC-exception-3.1, LGPL-2.1-or-later (libquadmath) |
 | libpq; OpenSSL; Kerberos, LDAP, SASL | psycopg-binary | PostgreSQL; Apache-2.0; as its SBOM lists |

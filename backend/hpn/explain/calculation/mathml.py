@@ -74,10 +74,10 @@ def _reader_of(reader: Reader, line: Line) -> Reader:
     return replace(reader, units=()) if in_wire_units(line.formula) else reader
 
 
-def compared(reader: Reader, comparison: Comparison) -> str:
-    """Comparison of demand and limit, which the user's own reserve may lower."""
+def compared(reader: Reader, comparison: Comparison, *, continued: bool = False) -> str:
+    """Comparison of demand and limit, which the user's own reserve may lower; `continued` behind its equation."""
     tested, u = comparison.tested, comparison.allowed
-    parts: list[Part] = [(tested, False), "="]
+    parts: list[Part] = ["="] if continued else [(tested, False), "="]
     if not isinstance(tested, Term):
         parts += [(tested, True), "="]
     parts += [(Constant(comparison.value, comparison.unit), True), comparison.relation]

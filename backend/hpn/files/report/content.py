@@ -11,19 +11,18 @@ from hpn.files.export import Export
 from hpn.files.inputs import LOADS, REQUIREMENTS
 from hpn.files.motion import MOTION_TITLE, MOVES_TITLE, PHASES_TITLE
 from hpn.files.report import plots, tables
+from hpn.files.report.checks import bases, checks
 from hpn.files.report.listing import listing, moves
-from hpn.files.report.steps import steps
-from hpn.files.report.verdict import alternatives, checks, verdict
+from hpn.files.report.verdict import alternatives, verdict
 from hpn.files.words import catalogue_version, paper
 from hpn.words.reader import NOTHING, Reader
 from hpn.words.symbols import sentence
 from hpn.words.wording import N_
 
-LONGEST_TITLE = 160
+LONGEST_TITLE, LONGEST_HEAD = 160, 60
 LONGEST_QR_LINK = 600
-LONGEST_PRINTED_LINK = 240
 LONGEST_LINK = 2000
-"""Readers open no longer address from a document."""
+"""Readers open no longer address from a document, and nobody types one."""
 
 _TURNING = re.compile("[\u202a-\u202e\u2066-\u2069]")
 """Characters that turn the direction of whatever follows them."""
@@ -32,8 +31,13 @@ LABELS = {
     "product": N_("HPN Select"),
     "heading": N_("Gear selection report"),
     "untitled": N_("Untitled selection"),
-    "loads": N_("Pause, emergency stop and loads"),
-    "requirements": N_("Requirements"),
+    "title": N_("Title"),
+    "checked": N_("Checked"),
+    "approved": N_("Approved"),
+    "sign": N_("name, date, signature"),
+    "largest": N_("Largest utilisation"),
+    "governs": N_("governs"),
+    "given": N_("Loads and requirements"),
     "phases": N_("Duty cycle"),
     "phases_of_motion": PHASES_TITLE,
     "motion": MOTION_TITLE,
@@ -43,69 +47,52 @@ LABELS = {
     "bearing": N_("Load on the output bearing"),
     "checks": N_("Checks of {gear}"),
     "ratings": N_("Published figures of {gear}"),
-    "alternatives": N_("Alternatives"),
-    "notices": N_("Assumptions and notes"),
-    "basis": N_("Basis"),
-    "versions": N_("Versions"),
-    "check": N_("Check"),
-    "relation": N_("Relation"),
-    "demand": N_("Demand"),
-    "limit": N_("Limit"),
+    "alternatives": N_("Candidates"),
+    "basis": N_("Assumptions"),
+    "notices": N_("Notices"),
+    "equation": N_("Eq."),
+    "bars": N_("0 to 150 %"),
     "utilisation": N_("Utilisation"),
-    "verdict": N_("Verdict"),
-    "source": N_("Source"),
     "open": N_("Open"),
     "page": N_("Page {page} of {pages}"),
-    "bars": N_("A bar’s full width is 150 %; the stroke marks what is acceptable."),
     "disclaimer": N_(
         "Made by an independent tool from the maker’s engineering data. Check the selection with the maker before you "
         "order."
     ),
     "too_long_link": N_("The link is too long to print; it carries every phase."),
     "unprintable": N_("□ stands for characters that the report’s fonts lack: {codes}."),
-    "calculation": N_("Calculation of {gear}"),
-    "digits": N_(
-        "Numbers to nine digits, so that each line can be checked from the one before; this tool rounds nothing in "
-        "between."
-    ),
+    "digits": N_("Page 17 of the handbook, with nine digits; nothing is rounded in between"),
     "each_phase": N_("Each phase of the duty cycle"),
     "each_move": N_("Each move of the motion"),
 }
 
-UNSAVED = {
-    "whole": N_("Not saved: the link carries every input."),
-    "code": N_("Not saved: the link is shortened in print; the code carries every input."),
-    "shortened": N_("Not saved: the link is shortened in print, only a click opens it. Saving gives a short address."),
-    "none": N_("Not saved. Saving gives a short address."),
+LINK = {
+    "saved": N_("This selection as it was saved"),
+    "whole": N_("This selection, to open and to change"),
+    "too long": N_("Not saved, and the link is too long to print. Save the selection to get a short address."),
 }
-"""Notes on where the inputs of an unsaved selection stand, by the part of its link that is on paper."""
+CARRIED = N_("Not saved: the link carries every input.")
 
-CAVEATS = (
-    N_("Lives are hours of operation of the whole cycle, its pause included."),
-    N_(
-        "L10: 90 % survive; L50: 50 % survive. Equation 17.10 calls its result L10, while the "
-        "glossary describes the rated torque on a basis of 50 % failures; the handbook does not settle which holds."
-    ),
-)
-"""Notes on the figures of cycle and gear, by the place of the figure."""
+LIVES = N_("Hours of operation of the whole cycle, its pause included. L10: 90 % survive; L50: 50 % survive.")
 
 
 def content(export: Export, reader: Reader) -> dict[str, Any]:
     """Everything that the template sets, as JSON-ready data."""
     text, selection = reader.text, export.selection
     labels = {key: text(label) for key, label in LABELS.items()}
-    named, on_motor = ("checks", "ratings", "calculation"), reader.told(on_motor_torques(selection.notices))
-    labels |= {key: labels[key].format(gear=export.candidate.designation) for key in named}
-    labels["unsaved"] = text(UNSAVED[_carrier(export.link)])
+    labels |= {key: labels[key].format(gear=export.candidate.designation) for key in ("checks", "ratings")}
+    on_motor = reader.told(on_motor_torques(selection.notices))
+    title = _shortened(export.heading.title.strip() or labels["untitled"], LONGEST_TITLE)
     return {
         "lang": reader.language,
         "paper": paper(reader),
         "labels": labels,
-        "title": _shortened(export.heading.title.strip() or labels["untitled"], LONGEST_TITLE),
+        "title": title,
+        "head": [_shortened(title, LONGEST_HEAD), _head(export, reader)],
         "author": export.heading.author.strip(),
         "block": _block(export, reader),
         "saved": export.created is not None,
-        **_link(export.link),
+        **_link(export, reader),
         "verdict": verdict(export, reader),
         "loads": tables.given(export, LOADS, reader),
         "requirements": tables.given(export, REQUIREMENTS, reader),
@@ -113,8 +100,7 @@ def content(export: Export, reader: Reader) -> dict[str, Any]:
         "phases": tables.phases(export, reader),
         "move_listing": moves(export, reader),
         "listing": listing(export, reader),
-        "derived": tables.derived(export, reader),
-        "caveats": [*(sentence(text(caveat)) for caveat in CAVEATS), sentence(on_motor)],
+        "derived": [*tables.of_cycle(export, reader), *tables.of_gear(export, reader)],
         "cycle": {"panels": plots.cycle(export, reader), "alt": text(N_("Torque and speed of the cycle over time"))},
         "course": plots.motion(export, reader),
         "planes": plots.planes(export, reader, on_motor),
@@ -123,29 +109,43 @@ def content(export: Export, reader: Reader) -> dict[str, Any]:
         "checks": checks(export, reader),
         "ratings": tables.ratings(export, reader),
         "alternatives": alternatives(export, reader),
-        "steps": steps(export, reader),
+        "basis": _basis(export, reader, on_motor),
         "notices": [sentence(reader.told(notice.sentence)) for notice in selection.notices],
-        "versions": [
-            [text(N_("Engine")), selection.engine_version],
-            [text(N_("Catalogue")), catalogue_version(export, reader)],
-        ],
     }
 
 
-def _block(export: Export, reader: Reader) -> list[list[str]]:
-    """Fields of the title block below the title; one that nobody filled in has a dash."""
+def _basis(export: Export, reader: Reader, on_motor: str) -> list[tuple[str, Any]]:
+    """Assumptions by their subjects: bases of the checks, and what holds for lives and motor torques."""
+    text = reader.text
+    lives, torques = (text(N_("Lives")), sentence(text(LIVES))), (text(N_("Motor torques")), sentence(on_motor))
+    return [*bases(export, reader), lives, torques]
+
+
+def _head(export: Export, reader: Reader) -> str:
+    """Running head beside the title: reference and revision, and the versions behind every figure."""
+    heading, text = export.heading, reader.text
+    revision = f"{text(N_('Revision'))} {heading.revision.strip()}" if heading.revision.strip() else ""
+    own = ", ".join(filter(None, (heading.reference.strip(), revision)))
+    versions = f"{text(N_('Engine'))} {export.selection.engine_version}, " + (
+        f"{text(N_('Catalogue'))} {catalogue_version(export, reader)}"
+    )
+    return " · ".join(filter(None, (_shortened(own, LONGEST_HEAD), versions)))
+
+
+def _block(export: Export, reader: Reader) -> dict[str, list[str]]:
+    """Fields of the title block: label and text; one that nobody filled in has a dash."""
     heading, made = export.heading, export.made
     dated = reader.date(export.created) if export.created else reader.day(made) if made else ""
     fields = {
-        N_("Reference"): heading.reference,
-        N_("Revision"): heading.revision,
-        N_("Author"): heading.author,
-        N_("Saved") if export.created else N_("Date"): dated,
-        N_("Ordering code"): heading.ordering_code,
+        "reference": (N_("Reference"), heading.reference),
+        "revision": (N_("Revision"), heading.revision),
+        "author": (N_("Author"), heading.author),
+        "date": (N_("Saved") if export.created else N_("Date"), dated),
     }
-    return [
-        [reader.text(label), _shortened(value.strip(), LONGEST_TITLE) or NOTHING] for label, value in fields.items()
-    ]
+    return {
+        name: [reader.text(label), _shortened(value.strip(), LONGEST_TITLE) or NOTHING]
+        for name, (label, value) in fields.items()
+    }
 
 
 def _shortened(text: str, most: int) -> str:
@@ -153,23 +153,16 @@ def _shortened(text: str, most: int) -> str:
     return plain if len(plain) <= most else plain[: most - 1] + "…"
 
 
-def _link(link: str) -> dict[str, Any]:
-    shown = link if len(link) <= LONGEST_PRINTED_LINK else link[: LONGEST_PRINTED_LINK - 1] + "…"
-    target = link if len(link) <= LONGEST_LINK else ""
+def _link(export: Export, reader: Reader) -> dict[str, Any]:
+    """Link and its code, as far as paper carries them whole, and a note on both."""
+    link = export.link
+    carrier = "too long" if len(link) > LONGEST_LINK else "saved" if export.created else "whole"
     return {
-        "link": target,
-        "link_text": shown if target else "",
+        "link": "" if carrier == "too long" else link,
+        "link_note": reader.text(LINK[carrier]),
+        "link_hint": reader.text(CARRIED) if carrier == "whole" else "",
         "qr": _qr(link) if len(link) <= LONGEST_QR_LINK else "",
     }
-
-
-def _carrier(link: str) -> str:
-    """Carrier of the inputs on paper, as a key of UNSAVED."""
-    if len(link) <= LONGEST_PRINTED_LINK:
-        return "whole"
-    if len(link) <= LONGEST_QR_LINK:
-        return "code"
-    return "shortened" if len(link) <= LONGEST_LINK else "none"
 
 
 def _qr(link: str) -> str:

@@ -7,7 +7,7 @@ from typing import Any
 
 from hpn.files.export import Export
 from hpn.files.motion import MOVES, moves_of, written
-from hpn.files.report.tables import MOST_PHASES, columns, number_of
+from hpn.files.report.tables import MOST_PHASES, columns, number_of, numbers
 from hpn.words.quantities import INPUTS
 from hpn.words.reader import Reader
 from hpn.words.titles import row_label
@@ -27,7 +27,7 @@ def listing(export: Export, reader: Reader) -> dict[str, Any] | None:
     phases, number = cycle.load_phases, number_of(cycle, reader)
     if len(phases) <= MOST_PHASES:
         return None
-    table = [[reader.text(N_("Phase")), *(row_label(k, phase.name) for k, phase in enumerate(phases))]]
+    table = [[head, *texts] for head, texts in numbers(cycle, reader).items()]
     for name, values in columns(phases).items():
         unit = suffix_of(name) or ""
         head = f"{INPUTS[f'phase.{name}'].symbol} [{reader.unit(unit)}]"

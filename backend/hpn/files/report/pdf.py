@@ -1,4 +1,4 @@
-"""The PDF report: two tagged pages (PDF/UA-1) and the phases of a long cycle, the same bytes for the same selection."""
+"""The PDF report: tagged pages (PDF/UA-1) with every phase of a long cycle, the same bytes for the same selection."""
 
 import json
 import re
@@ -15,8 +15,8 @@ from hpn.installed import data_folder
 from hpn.words.reader import Reader
 
 TEMPLATE = Path(__file__).parent / "report.typ"
-FONTS = data_folder("frontend/dist/noto")
-FIRST_FONTS = ("Libertinus Serif", "Noto Sans Arabic", "DejaVu Sans Mono", "Noto Sans", "Noto Sans SC")
+FONTS = data_folder("frontend/dist/paper")
+FIRST_FONTS = ("HPN Sans", "Noto Sans Arabic", "DejaVu Sans Mono", "Noto Sans", "Noto Sans SC")
 """Fonts that are asked first for a character; then every other Noto font."""
 
 REPLACEMENT = "□"

@@ -39,7 +39,7 @@ MOST_SPACES = 7
 LIFE = "output_bearing_life"
 
 ON_PAPER = """
-text { font-size: 13px; font-family: "Libertinus Serif"; fill: #5b6875 }
+text { font-size: 13px; font-family: "HPN Sans"; fill: #5b6875 }
 .line, .grid, .axis, .ray, .leader, .cross, .allowed, .ring { fill: none }
 .grid { stroke: #d5dbe1; stroke-width: .6 }
 .axis { stroke: #16202b }

@@ -1,4 +1,4 @@
-"""Tables of the report: duty cycle, what it and the gear come to, and the gear's published figures."""
+"""Tables of the report: duty cycle, figures of cycle and gear, and the gear's published figures."""
 
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
@@ -10,10 +10,10 @@ from hpn.explain.readings import figure_symbol
 from hpn.files import inputs
 from hpn.files.export import Export
 from hpn.files.motion import MOVES, lines, moves_of, written
-from hpn.files.words import equation, measured
+from hpn.files.words import measured
 from hpn.words.quantities import CANDIDATE, DUTY, GEAR, INPUTS
 from hpn.words.reader import Reader
-from hpn.words.symbols import formula
+from hpn.words.symbols import formula, sentence
 from hpn.words.titles import row_label
 from hpn.words.units import suffix_of
 from hpn.words.wording import N_, Sentence
@@ -37,18 +37,30 @@ def phases(export: Export, reader: Reader) -> dict[str, Any]:
     """The duty cycle: each phase, or of a long cycle least, largest and sum."""
     cycle = export.application.duty_cycle
     listed, number = cycle.load_phases, number_of(cycle, reader)
-    given = columns(listed)
+    given, places = columns(listed), numbers(cycle, reader)
     if len(listed) <= MOST_PHASES:
         cells = [
             ["" if value is None else number(value, _unit(name)) for value in column] for name, column in given.items()
         ]
-        rows, note = [[row_label(k, listed[k].name), *row] for k, row in enumerate(zip(*cells, strict=True))], ""
+        rows, note = [[*row] for row in zip(*places.values(), *cells, strict=True)], ""
     else:
-        rows = _summary(given, reader)
+        rows = [[label, *[""] * (len(places) - 1), *row] for label, *row in _summary(given, reader)]
         text = N_("{count} phases, summarised here; each stands on the last pages.")
         note = reader.told(Sentence(text, {"count": reader.exact(len(listed))}))
     heads = [[formula(INPUTS[f"phase.{name}"].symbol), reader.unit(_unit(name))] for name in given]
-    return {"header": [[[], ""], *heads], "rows": rows, "note": note}
+    header = [*([[], name] for name in places), *heads]
+    return {"header": header, "rows": rows, "note": note, "words": len(places)}
+
+
+def numbers(cycle: DutyCycle, reader: Reader) -> dict[str, list[str]]:
+    """Number and name of each phase, in a motion of the move it is a part of, by the heads of their columns."""
+    phases, motion = cycle.load_phases, cycle.motion
+    if motion is None:
+        return {reader.text(N_("Phase")): [row_label(place, phase.name) for place, phase in enumerate(phases)]}
+    return {
+        reader.text(N_("Phase")): [str(place) for place, _ in enumerate(phases, 1)],
+        reader.text(N_("Move")): [row_label(move, motion.moves[move].name) for move in motion.course.move.tolist()],
+    }
 
 
 def number_of(cycle: DutyCycle, reader: Reader) -> Callable[[float, str], str]:
@@ -82,7 +94,8 @@ def motion(export: Export, reader: Reader) -> dict[str, Any] | None:
     else:
         text = N_("{count} moves; each stands on the last pages.")
         note = reader.told(Sentence(text, {"count": reader.exact(len(given.moves))}))
-    return {"mechanism": mechanism, "moves": {"header": [[[], ""], *heads], "rows": rows, "note": note}}
+    header = [[[], reader.text(N_("Move"))], *heads]
+    return {"mechanism": mechanism, "moves": {"header": header, "rows": rows, "note": note, "words": 2}}
 
 
 def _summary(given: Mapping[str, Column], reader: Reader) -> list[list[str]]:
@@ -99,31 +112,36 @@ def _unit(name: str) -> str:
     return suffix_of(name) or ""
 
 
-def derived(export: Export, reader: Reader) -> list[dict[str, Any]]:
-    """Figures of the cycle and of the reported gear."""
-    duty, candidate = export.selection.duty, export.candidate
-    figures = [(name, DUTY[name], getattr(duty, name)) for name in DUTY]
-    if duty.load_inertia_kgm2 is not None:
-        figures.append(("load_inertia_kgm2", INPUTS["requirements.load_inertia_kgm2"], duty.load_inertia_kgm2))
+def of_cycle(export: Export, reader: Reader) -> list[dict[str, Any]]:
+    """Figures of the cycle."""
+    duty = export.selection.duty
+    figures = [(DUTY[name], name, getattr(duty, name)) for name in DUTY]
+    figures.append((INPUTS["requirements.load_inertia_kgm2"], "load_inertia_kgm2", duty.load_inertia_kgm2))
+    return [_line(named.name, named.symbol, name, value, reader) for named, name, value in figures if value is not None]
+
+
+def of_gear(export: Export, reader: Reader) -> list[dict[str, Any]]:
+    """Figures of the reported gear under the cycle."""
+    candidate, turns = export.candidate, export.selection.turns_motor
     typed = ("stop_torque_Nm",) if candidate.stopping_time_s is None else ()  # stands with the inputs
-    figures += [(name, CANDIDATE[name], getattr(candidate, name)) for name in FIGURES if name not in typed]
-    lower_bound = export.is_lower_bound(candidate)
-    loss_free = lower_bound and not export.follows_efficiency_curve(candidate)
-    turns = export.selection.turns_motor
-    rows = []
-    for name, named, value in figures:
-        if value is not None:
-            at_motor = name.startswith("motor_")
-            bound = f", {reader.text(N_('lower bound'))}" if lower_bound and at_motor else ""
-            rows.append(
-                {
-                    "label": reader.text(named.name) + bound,
-                    "symbol": formula(figure_symbol(name, turns_motor=turns) if name in CANDIDATE else named.symbol),
-                    "text": measured(value, suffix_of(name) or "", reader),
-                    "where": "η = 1" if loss_free and at_motor else equation(named.equation, reader),
-                }
-            )
-    return rows
+    bound = f", {reader.text(N_('lower bound'))}" if export.is_lower_bound(candidate) else ""
+    return [
+        _line(
+            CANDIDATE[name].name,
+            figure_symbol(name, turns_motor=turns),
+            name,
+            value,
+            reader,
+            bound if name.startswith("motor_") else "",
+        )
+        for name in FIGURES
+        if name not in typed and (value := getattr(candidate, name)) is not None
+    ]
+
+
+def _line(label: str, symbol: str, name: str, value: float, reader: Reader, note: str = "") -> dict[str, Any]:
+    text = measured(value, suffix_of(name) or "", reader)
+    return {"label": sentence(reader.text(label) + note), "symbol": formula(symbol), "text": text}
 
 
 def ratings(export: Export, reader: Reader) -> list[dict[str, Any]]:

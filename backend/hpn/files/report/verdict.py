@@ -1,17 +1,19 @@
-"""Verdict of the report, every check of the reported gear, and the alternatives to it."""
+"""Verdict of the report, its figures at a glance, and the alternatives to the reported gear."""
 
 from collections.abc import Iterable, Mapping
 from typing import Any
 
+from hpn.catalogue.gear import Gear
+from hpn.engine.checks import BY_CODE
 from hpn.engine.remedy import remedy_of
-from hpn.engine.selection import Candidate, CheckResult
-from hpn.explain.readings import Reading, readings_of, shortest_life
+from hpn.engine.selection import Candidate
 from hpn.files.export import Export
-from hpn.files.words import bound_of, exact_percent, measured, origin, title_of, used
-from hpn.words.reader import Reader
-from hpn.words.symbols import formula, sentence
-from hpn.words.terms import VERDICTS
-from hpn.words.wording import N_, Sentence
+from hpn.files.report.checks import bar, failures
+from hpn.files.words import bound_of, exact_percent, measured, title_of, used
+from hpn.words.quantities import GEAR
+from hpn.words.reader import NOTHING, Reader
+from hpn.words.symbols import sentence
+from hpn.words.wording import N_, Quantity, Sentence
 
 WORD: Mapping[str, str] = {
     "suitable": N_("suitable"),
@@ -19,7 +21,6 @@ WORD: Mapping[str, str] = {
     "unrated": N_("not rated"),
 }
 REASONS: Mapping[str, str] = {
-    "suitable": N_("{gear} passes every check. “{check}” governs, at {percent} of its limit."),
     "unsuitable": N_("No gear is suitable. {gear} comes closest; “{check}” fails at {percent}."),
     "unlimited": N_(
         "No gear is suitable. {gear} comes closest, but T_k is too high: no emergency stop is permitted (eq. 17.9)."
@@ -28,7 +29,7 @@ REASONS: Mapping[str, str] = {
         "No gear is suitable. {gear} can’t be judged: figures that the checks need are not in this catalogue’s source."
     ),
 }
-"""Notes on the reported gear where it is the selected one or none is suitable."""
+"""Notes on the reported gear where none is suitable."""
 
 CHOSEN: Mapping[str, str] = {
     "unsuitable": N_("{gear} was chosen, but “{check}” fails at {percent}. {selected} would be suitable."),
@@ -54,24 +55,63 @@ BEST: Mapping[str, str] = {
 ONLY = N_("It is the only suitable gear.")
 RANKED = N_("It was chosen; {selected} ranks first of {count} suitable gears.")
 
-LIVES: Mapping[tuple[str, str], str] = {
-    ("life", "L10"): N_("gear, L10"),
-    ("output_bearing_life", "L10"): N_("output bearing, L10"),
-    ("output_bearing_life", "L50"): N_("output bearing, L50"),
-}
-"""Lives of which the shortest counts, as both are on the same basis."""
+PLACE = N_("rank {rank} of {count} suitable out of {all}")
+NO_PLACE = N_("{count} of {all} gears are suitable")
 
 
 def verdict(export: Export, reader: Reader) -> dict[str, Any]:
-    """The verdict in sentences, and its parts."""
-    candidate = export.candidate
+    """The verdict: gear, status and rank, a sentence, and the check that governs."""
+    candidate, code = export.candidate, export.candidate.governing_check
     said = [reader.told(sentence) for sentence in _said(export, reader)]
     return {
-        "status": candidate.status,
         "gear": candidate.designation,
-        "text": sentence(" ".join(said)),
         "word": reader.text(WORD[candidate.status]),
+        "rank": reader.told(_rank(export)),
+        "text": sentence(" ".join(said)),
+        **bar(candidate.utilisation, bound_of(export, code), candidate.status, reader),
+        "governing": reader.text(BY_CODE[code].name) if code else "",
+        "allowed": exact_percent(export.application.requirements.utilisation, reader),
+        "facts": [[sentence(label), text] for label, text in _facts(export, reader) if text],
     }
+
+
+def _rank(export: Export) -> Sentence:
+    candidates = export.selection.candidates
+    count = sum(candidate.status == "suitable" for candidate in candidates)
+    values = {"rank": export.candidate.rank or 0, "count": count, "all": len(candidates)}
+    return Sentence(PLACE if export.candidate.rank else NO_PLACE, values)
+
+
+def _facts(export: Export, reader: Reader) -> Iterable[tuple[str, str]]:
+    """Ordering code, lives, weight and length: label and text, blank where there is none."""
+    candidate, gear, load = export.candidate, export.gear(export.candidate), export.application.loads
+    yield reader.text(N_("Ordering code")), export.heading.ordering_code.strip()
+    if load and (check := candidate.check("output_bearing_life")) and check.status != "not_rated":
+        asked = Sentence(
+            N_("Bearing life {basis}, asked {life}"), {"basis": load.life_basis, "life": Quantity(load.life_h, "h", 6)}
+        )
+        life = candidate.bearing_life_L10_h if load.life_basis == "L10" else candidate.bearing_life_L50_h
+        yield reader.told(asked), _life(life, life is None, reader)
+    yield reader.text(N_("Gear life L_10")), _gear_life(candidate, reader)
+    if gear:
+        yield reader.text(GEAR["weight_kg"].name), _published(gear.weight_kg, "kg", reader)
+        yield reader.text(N_("Length")), _length(gear, reader)
+
+
+def _gear_life(candidate: Candidate, reader: Reader) -> str:
+    return _life(candidate.life_L10_h, candidate.is_unlimited("life_L10_h"), reader)
+
+
+def _life(life_h: float | None, is_unlimited: bool, reader: Reader) -> str:
+    return reader.text(N_("unlimited")) if is_unlimited else measured(life_h, "h", reader)
+
+
+def _length(gear: Gear | None, reader: Reader) -> str:
+    if gear is None or gear.length_max_mm is None:
+        return NOTHING
+    shortest, longest = (reader.exact(value, "mm") for value in (gear.length_min_mm, gear.length_max_mm))
+    both = longest if shortest in (longest, NOTHING) else f"{shortest}–{longest}"
+    return reader.with_unit(both, "mm")
 
 
 def _said(export: Export, reader: Reader) -> Iterable[Sentence]:
@@ -84,17 +124,12 @@ def _said(export: Export, reader: Reader) -> Iterable[Sentence]:
         "check": title_of(export, code, reader) if code else "",
         "percent": used(export, code, candidate.utilisation, reader),
     }
-    yield Sentence(CHOSEN[key] if selected and status != "suitable" else REASONS[key], values)
     if status == "suitable":
         yield _place(export)
-    elif remedy := remedy_of(candidate, export.application.requirements.utilisation):
+        return
+    yield Sentence(CHOSEN[key] if selected else REASONS[key], values)
+    if remedy := remedy_of(candidate, export.application.requirements.utilisation):
         yield remedy
-    life = shortest_life(candidate, export.application)
-    if life is not None and life.life_h is not None:
-        part = reader.text(LIVES[life.check, life.basis])
-        yield Sentence(
-            N_("Shortest life: {life} ({part})."), {"life": measured(life.life_h, "h", reader), "part": part}
-        )
 
 
 def _place(export: Export) -> Sentence:
@@ -106,75 +141,25 @@ def _place(export: Export) -> Sentence:
     return Sentence(BEST[export.application.rank_by] if count > 1 else ONLY, {"count": count})
 
 
-# --- Checks -----------------------------------------------------------------------------------------------------------
-
-
-def checks(export: Export, reader: Reader) -> list[dict[str, Any]]:
-    """Every check of the reported gear."""
-    readings = _readings(export, export.candidate)
-    return [_check(export, check, readings[check.code], reader) for check in export.candidate.checks]
-
-
-def _readings(export: Export, candidate: Candidate) -> dict[str, Reading]:
-    return readings_of(candidate, export.selection, export.application, export.figures)
-
-
-def _check(export: Export, check: CheckResult, read: Reading, reader: Reader) -> dict[str, Any]:
-    definition, bound = export.selection.check_definitions[check.code], bound_of(export, check.code)
-    return {
-        "title": title_of(export, check.code, reader),
-        "relation": formula(read.relation),
-        "demand": _demand(read, reader),
-        "limit": _limit(read, reader),
-        "utilisation": reader.percent(check.utilisation, bound),
-        "share": _share(check),
-        "bound": bound,
-        "status": check.status,
-        "word": reader.text(VERDICTS[check.status]),
-        "where": origin(export, check.code, reader),
-        "basis": sentence(reader.text(definition.basis)),
-    }
-
-
-def _limit(read: Reading, reader: Reader) -> str:
-    """Limit of a check, and the share of it that the user's own u leaves."""
-    if read.has_unlimited_limit:
-        return reader.text(N_("unlimited"))
-    part = f" {'÷' if read.kind == 'minimum' else '×'} {exact_percent(read.part, reader)}" if read.part < 1 else ""
-    return measured(read.limit, read.unit, reader, read.demand) + part
-
-
-def _demand(read: Reading, reader: Reader) -> str:
-    if read.has_unlimited_demand:
-        return reader.text(N_("unlimited"))
-    return measured(read.demand, read.unit, reader, read.bound)
-
-
-def _share(check: CheckResult) -> float:
-    """Length of a check's bar: none where it is not rated, all of it where it fails without a number."""
-    if check.utilisation is None:
-        return 2.0 if check.status == "fail" else 0.0
-    return check.utilisation
-
-
 # --- Alternatives -----------------------------------------------------------------------------------------------------
 
-MOST_OTHERS = 4
-"""Suitable gears that are listed beside the reported one."""
+MOST_SUITABLE = 6
+"""Suitable gears that are listed, best first; the reported one stands among them wherever it ranks."""
 
 HEADS = (
-    N_("Next suitable"),
-    N_("Weight"),
-    N_("Longest length"),
-    N_("Gear life L10"),
+    N_("Rank"),
+    N_("Gear"),
     N_("Utilisation"),
     N_("Governing check"),
+    N_("Weight"),
+    N_("Length"),
+    N_("Gear life L_10"),
 )
-"""Columns of the alternatives."""
+"""Columns of the candidates."""
 
 
 def alternatives(export: Export, reader: Reader) -> dict[str, Any]:
-    """How many gears were considered, the next suitable ones, and what keeps a lighter one or the next from fitting."""
+    """How many gears were considered, the best suitable ones, and what keeps a lighter one or the next from fitting."""
     counts = dict.fromkeys(("suitable", "unsuitable", "unrated"), 0)
     for candidate in export.selection.candidates:
         counts[candidate.status] += 1
@@ -182,10 +167,14 @@ def alternatives(export: Export, reader: Reader) -> dict[str, Any]:
         N_("{total} gears considered: {suitable} suitable, {unsuitable} not suitable, {unrated} not rated."),
         {"total": len(export.selection.candidates), **counts},
     )
+    suitable = [candidate for candidate in export.selection.candidates if candidate.status == "suitable"]
+    listed = [c for k, c in enumerate(suitable) if k < MOST_SUITABLE or c.designation == export.candidate.designation]
+    rest = ", ".join(candidate.designation for candidate in suitable if candidate not in listed)
     return {
         "overview": reader.told(overview),
-        "heads": [reader.text(head) for head in HEADS],
-        "others": [_row(export, candidate, reader) for candidate in export.others[:MOST_OTHERS]],
+        "heads": [sentence(reader.text(head)) for head in HEADS],
+        "rows": [_row(export, candidate, reader) for candidate in listed],
+        "rest": reader.told(Sentence(N_("and {gears}"), {"gears": rest})) if rest else "",
         "misses": [
             [reader.text(N_("Nearest miss")), sentence(_missed(export, candidate, reader))]
             for candidate in export.misses
@@ -193,19 +182,21 @@ def alternatives(export: Export, reader: Reader) -> dict[str, Any]:
     }
 
 
-def _row(export: Export, candidate: Candidate, reader: Reader) -> list[str]:
+def _row(export: Export, candidate: Candidate, reader: Reader) -> dict[str, Any]:
     """A suitable gear as the cells of a table."""
     gear, code = export.gear(candidate), candidate.governing_check
-    life = candidate.life_L10_h
-    unlimited = candidate.is_unlimited("life_L10_h")
-    return [
-        candidate.designation,
-        _published(gear.weight_kg if gear else None, "kg", reader),
-        _published(gear.length_max_mm if gear else None, "mm", reader),
-        reader.text(N_("unlimited")) if unlimited else "–" if life is None else measured(life, "h", reader),
-        reader.percent(candidate.utilisation, bound_of(export, code)),
-        title_of(export, code, reader) if code else "",
-    ]
+    return {
+        "rank": reader.exact(candidate.rank),
+        "gear": candidate.designation,
+        "is_reported": candidate.designation == export.candidate.designation,
+        **bar(candidate.utilisation, bound_of(export, code), candidate.status, reader),
+        "governing": reader.text(BY_CODE[code].name) if code else "",
+        "figures": [
+            _published(gear.weight_kg if gear else None, "kg", reader),
+            _length(gear, reader),
+            _gear_life(candidate, reader),
+        ],
+    }
 
 
 def _published(value: float | None, unit: str, reader: Reader) -> str:
@@ -217,18 +208,7 @@ def _missed(export: Export, candidate: Candidate, reader: Reader) -> str:
     gear, name = export.gear(candidate), candidate.designation
     if gear and gear.weight_kg:
         name = f"{name} ({_published(gear.weight_kg, 'kg', reader)})"
-    read = _readings(export, candidate)
-    failures = "; ".join(_failure(export, check, read[check.code], reader) for check in candidate.failing)
-    failed = reader.told(Sentence(N_("{gear} fails: {failures}."), {"gear": name, "failures": failures}))
+    failed = failures(export, candidate.designation, candidate.failing, reader)
+    told = reader.told(Sentence(N_("{gear} fails: {failures}."), {"gear": name, "failures": failed}))
     remedy = remedy_of(candidate, export.application.requirements.utilisation)
-    return f"{failed} {reader.told(remedy)}" if remedy else failed
-
-
-def _failure(export: Export, check: CheckResult, read: Reading, reader: Reader) -> str:
-    values = {
-        "check": title_of(export, check.code, reader),
-        "demand": _demand(read, reader),
-        "limit": _limit(read, reader),
-        "percent": reader.percent(check.utilisation, bound_of(export, check.code)),
-    }
-    return reader.told(Sentence(N_("{check} {demand} against {limit} ({percent})"), values))
+    return f"{told} {reader.told(remedy)}" if remedy else told

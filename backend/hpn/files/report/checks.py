@@ -1,0 +1,161 @@
+"""Checks of the reported gear and the equations behind them: symbols, numbers, limits and sources."""
+
+from collections.abc import Iterable, Iterator
+from typing import Any
+
+from hpn.engine.checks import CHECKS
+from hpn.engine.selection import CheckResult
+from hpn.explain.calculation import Comparison, Step, calculation_of
+from hpn.explain.calculation.mathml import compared, in_symbols, result, substituted
+from hpn.explain.readings import Reading, readings_of
+from hpn.files.export import Export
+from hpn.files.words import bound_of, exact_percent, measured, title_of
+from hpn.words.reader import Reader
+from hpn.words.symbols import formula, sentence
+from hpn.words.terms import VERDICTS
+from hpn.words.wording import N_, Sentence
+
+Row = dict[str, Any]
+
+ORDER = {check.code: place for place, check in enumerate(CHECKS)}
+TOLD = frozenset({"average_torque", "life", "output_bearing_life"})
+"""Checks whose equation carries their basis as a note."""
+
+AS_LIMITED = frozenset({"repeated_peak_torque", "motor_speed", "motor_rated_speed"})
+"""Checks whose basis is their limit's source and nothing more."""
+
+
+def checks(export: Export, reader: Reader) -> list[Row]:
+    """Every check and every equation of the gear, in the order of the checks; without its figures no equations."""
+    steps, last, rows = _steps(export), -1, list[tuple[int, Row]]()
+    for step in steps:
+        last = ORDER.get(step.code, last)
+        rows.append((last, _of_step(step, export, reader)))
+    shown = {step.code for step in steps}
+    limits = {limit.code: limit for step in steps for limit in step.comparisons}
+    for check in export.candidate.checks:
+        if check.code not in shown:
+            rows.append((ORDER[check.code], _of_check(check, limits.get(check.code), export, reader)))
+    return [row for _, row in sorted(rows, key=lambda row: row[0])]
+
+
+def bases(export: Export, reader: Reader) -> list[tuple[str, Any]]:
+    """Title and basis of each check, but for what stands beside its equation or limit."""
+    told = AS_LIMITED | (TOLD & {step.code for step in _steps(export)})
+    definitions, codes = export.selection.check_definitions, [check.code for check in export.candidate.checks]
+    return [
+        (title_of(export, code, reader), sentence(reader.text(definitions[code].basis)))
+        for code in codes
+        if code not in told
+    ]
+
+
+def _steps(export: Export) -> tuple[Step, ...]:
+    gear = export.gear(export.candidate)
+    if gear is None or export.figures is None:
+        return ()
+    return calculation_of(export.candidate, gear, export.application, export.figures)
+
+
+def _of_step(step: Step, export: Export, reader: Reader) -> Row:
+    check = export.candidate.check(step.code)
+    limit = next((limit for limit in step.comparisons if limit.code == step.code), None)
+    lines = [
+        {"symbols": in_symbols(reader, line), "numbers": substituted(reader, line), "result": result(reader, line)}
+        for line in step.lines
+    ]
+    row = _of_check(check, limit, export, reader) if check else _row(step.code)
+    if limit and step.lines and limit.tested == step.lines[-1].result:
+        lines[-1]["result"], row["limit_formula"] = compared(reader, limit, continued=True), ""
+    return row | {
+        "number": step.equation or "",
+        "title": sentence(reader.text(step.title)),
+        "lines": lines,
+        "where": row["where"] or ("" if step.equation else reader.text(N_("Not printed in the handbook."))),
+        "notes": [sentence(reader.told(note)) for note in (*step.notes, *_left_out(step, export, reader))],
+    }
+
+
+def _left_out(step: Step, export: Export, reader: Reader) -> Iterator[Sentence]:
+    if step.abbreviated:
+        count = len(export.application.duty_cycle.load_phases)
+        text = N_("Only some of the {count} phases are written out; the result counts them all.")
+        yield Sentence(text, {"count": reader.exact(count)})
+
+
+def _row(code: str) -> Row:
+    blank: Row = dict.fromkeys(("number", "limit_formula", "demand", "sign", "limit", "where"), "")
+    return blank | {"code": code, "relation": [], "lines": [], "notes": [], "check": None}
+
+
+def _of_check(check: CheckResult, limit: Comparison | None, export: Export, reader: Reader) -> Row:
+    """Row of a check: its limit as an equation, figures that the equation lacks, and its bar."""
+    code, bound = check.code, bound_of(export, check.code)
+    source = (limit.source or "your input") if limit else export.source(code)
+    row = _row(code) | {
+        "number": export.selection.check_definitions[code].equation or "",
+        "title": sentence(title_of(export, code, reader)),
+        "where": reader.source(source),
+        "check": {
+            **bar(check.utilisation, bound, check.status, reader),
+            "word": reader.text(VERDICTS[check.status]),
+            "governs": code == export.candidate.governing_check,
+        },
+    }
+    read = readings(export)[code]
+    if limit:
+        row["limit_formula"] = compared(reader, limit)
+        if read.demand == limit.value:
+            return row
+    told = {"demand": demand(read, reader), "sign": read.sign, "limit": bounds(read, reader)}
+    return row | {"relation": formula(read.relation), **told}
+
+
+def bar(utilisation: float | None, bound: float, status: str, reader: Reader) -> Row:
+    """Utilisation as a bar and as a number; all of the bar where a check fails without a number."""
+    share = utilisation if utilisation is not None else 2.0 if status in ("fail", "unsuitable") else 0.0
+    return {"share": share, "bound": bound, "status": status, "utilisation": reader.percent(utilisation, bound)}
+
+
+# --- Demand and limit in words ----------------------------------------------------------------------------------------
+
+
+def readings(export: Export, designation: str = "") -> dict[str, Reading]:
+    """Checks of a candidate, else of the reported one, as their reader finds them."""
+    candidate = export.selection.candidate(designation) or export.candidate
+    return readings_of(candidate, export.selection, export.application, export.figures)
+
+
+def bounds(read: Reading, reader: Reader) -> str:
+    """Limit of a check, and the share of it that the user's own u leaves."""
+    if read.has_unlimited_limit:
+        return reader.text(N_("unlimited"))
+    part = f" {'÷' if read.kind == 'minimum' else '×'} {exact_percent(read.part, reader)}" if read.part < 1 else ""
+    return measured(read.limit, read.unit, reader, read.demand) + part
+
+
+def demand(read: Reading, reader: Reader) -> str:
+    """Value that a check tests."""
+    if read.has_unlimited_demand:
+        return reader.text(N_("unlimited"))
+    return measured(read.demand, read.unit, reader, read.bound)
+
+
+def failures(export: Export, designation: str, failing: Iterable[CheckResult], reader: Reader) -> str:
+    """Failed checks of a candidate in one sentence's middle."""
+    read = readings(export, designation)
+    text = N_("{check} {demand} against {limit} ({percent})")
+    return "; ".join(
+        reader.told(
+            Sentence(
+                text,
+                {
+                    "check": title_of(export, check.code, reader),
+                    "demand": demand(read[check.code], reader),
+                    "limit": bounds(read[check.code], reader),
+                    "percent": reader.percent(check.utilisation, bound_of(export, check.code)),
+                },
+            )
+        )
+        for check in failing
+    )
