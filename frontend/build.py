@@ -24,7 +24,19 @@ TYPEFACE = FRONTEND / "node_modules/@ibm/plex-sans-variable"
 PLOTLY = FRONTEND / "node_modules/plotly.js-basic-dist-min/plotly-basic.min.js"
 STYLES = {
     "page.css": ("fonts", "tokens", "app", "tools", "workbench", "selection", "insight", "plots", "motion", "phone"),
-    "site.css": ("fonts", "tokens", "app", "tools", "saved", "selection", "insight", "plots", "fleet", "phone"),
+    "site.css": (
+        "fonts",
+        "tokens",
+        "app",
+        "tools",
+        "catalogue",
+        "saved",
+        "selection",
+        "insight",
+        "plots",
+        "fleet",
+        "phone",
+    ),
     "report.css": ("tokens", "app", "tools", "fleet", "phone"),
 }
 """Style sheets of the form with its result, of all other pages, and of a fleet’s report, which holds its own."""

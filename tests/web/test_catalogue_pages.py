@@ -3,6 +3,7 @@
 import dataclasses
 import gzip
 import re
+from html import unescape
 from pathlib import Path
 
 import pytest
@@ -11,6 +12,7 @@ from starlette.testclient import TestClient
 from hpn.catalogue import Catalogue
 from hpn.catalogue.gear import Gear
 from hpn.web.app import create_app
+from hpn.web.pages.catalogue import COLUMNS
 from hpn.web.pages.gear_figures import GROUPS
 from hpn.web.settings import Settings
 
@@ -92,6 +94,35 @@ def test_filters_are_links_that_narrow_the_table(client: TestClient, catalogue: 
         page = client.get(f"/catalogue?{query}")
         assert len(set(re.findall(r'<th scope="row"><a href="/catalogue/([^"]+)"', page.text))) == count
         assert page.status_code == (200 if count else 404)
+
+
+LISTED = re.compile(r'<th scope="row"><a href="/catalogue/([^"?]+)')
+
+
+@pytest.mark.parametrize("field", COLUMNS)
+def test_the_table_is_sorted_by_any_figure_and_a_gear_without_it_comes_last(
+    client: TestClient, catalogue: Catalogue, field: str
+) -> None:
+    values = {gear.designation: getattr(gear, field) for gear in catalogue.gears}
+    lacking = [name for name, value in values.items() if value is None]
+    for sort, order in ((field, "ascending"), (f"-{field}", "descending")):
+        page = client.get(f"/catalogue?sort={sort}").text
+        names = LISTED.findall(page)
+        listed = [values[name] for name in names if values[name] is not None]
+        assert sorted(names) == sorted(values)
+        assert listed == sorted(listed, reverse=sort != field)
+        assert names[len(listed) :] == lacking
+        assert page.count("aria-sort") == 1 and f'aria-sort="{order}"' in page
+
+
+def test_sorting_keeps_filters_and_a_filter_the_order(client: TestClient) -> None:
+    page = unescape(client.get("/catalogue?size=20A&sort=-gear").text)
+
+    assert LISTED.findall(page)[0] == "HPN-20A-50"
+    assert 'href="/catalogue?size=20A&sort=weight_kg"' in page
+    assert 'href="/catalogue?size=20A&i=5&sort=-gear"' in page
+    assert 'href="/catalogue?size=20A&sort=gear"' in page
+    assert LISTED.findall(client.get("/catalogue?sort=sources").text) == LISTED.findall(client.get("/catalogue").text)
 
 
 def test_finding_keeps_the_selection(client: TestClient) -> None:

@@ -59,7 +59,7 @@ def _unreadable(form: link_reader.Form) -> Problem:
 # --- From page to page ------------------------------------------------------------------------------------------------
 
 OWN_NAMES = frozenset(
-    ("output", "motor", "find", "only_size", "only_i", "search", "reference", "cursor", "id", "a", "b", "back")
+    ("output", "motor", "find", "only_size", "only_i", "sort", "search", "reference", "cursor", "id", "a", "b", "back")
 )
 """Parameters of the pages themselves; every other one belongs to that selection."""
 

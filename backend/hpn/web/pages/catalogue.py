@@ -1,7 +1,8 @@
 """The catalogue to read: one page for all gears, one for each, and the way to a gear by any spelling of its name."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from itertools import groupby
 from typing import Any
 from urllib.parse import quote, urlencode
 
@@ -21,6 +22,34 @@ from hpn.web.form.linked import carried_pairs, onward
 from hpn.web.pages.gear_figures import figures_of, neighbours, series_figures, supplements_for
 from hpn.web.pages.templates import environment
 from hpn.words.designations import canonical_designation, canonical_size
+
+COLUMNS = (
+    "rated_torque_Nm",
+    "repeated_peak_torque_Nm",
+    "momentary_peak_torque_Nm",
+    "maximum_input_speed_rpm",
+    "average_input_speed_rpm",
+    "backlash_arcmin",
+    "transmission_accuracy_arcmin",
+    "torsional_stiffness_Nm_per_rad",
+    "weight_kg",
+    "length_max_mm",
+    "dynamic_radial_load_N",
+    "dynamic_axial_load_N",
+)
+"""Figures of the table of all gears."""
+
+GEAR = "gear"
+"""Column that the table is sorted by at first."""
+
+
+@dataclass(frozen=True, slots=True)
+class Head:
+    """Head of a column: its figure, the address that sorts by it, and how it is sorted now, blank for not."""
+
+    field: str
+    address: str
+    order: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,22 +71,42 @@ def show_catalogue(request: Request) -> Response:
     size, ratio = (request.query_params.get(name, "") for name in names)
     size = canonical_size(size)
     gears = [gear for gear in catalogue.gears if size in ("", gear.size) and ratio in ("", str(gear.ratio))]
+    sort = request.query_params.get("sort", "")
+    sort = sort if sort.removeprefix("-") in (GEAR, *COLUMNS) else ""
+    kept = {names[0]: size, names[1]: ratio, "sort": sort}
     return _render(
         request,
         "catalogue.html",
         200 if gears else 404,
-        gears=gears,
-        sizes=[_filter(one, size == one, names, "" if size == one else one, ratio) for one in catalogue.sizes],
-        ratios=[
-            _filter(one, ratio == one, names, size, "" if ratio == one else one) for one in map(str, catalogue.ratios)
-        ],
+        groups=_groups(gears, sort),
+        count=len(gears),
+        heads=[_head(field, sort, kept) for field in (GEAR, *COLUMNS)],
+        sizes=[_filter(one, size == one, kept, names[0]) for one in catalogue.sizes],
+        ratios=[_filter(one, ratio == one, kept, names[1]) for one in map(str, catalogue.ratios)],
         filtered=bool(size or ratio),
         canonical=f"{str(request.base_url).rstrip('/')}/catalogue",
     )
 
 
-def _filter(text: str, active: bool, names: Sequence[str], *wanted: str) -> Filter:
-    return Filter(text, onward("/catalogue", **dict(zip(names, wanted, strict=True))), active)
+def _groups(gears: Sequence[Gear], sort: str) -> list[list[Gear]]:
+    """Gears size by size, else all of them in the order of a column; a gear without its figure comes last."""
+    field, falls = sort.removeprefix("-"), sort.startswith("-")
+    if field in COLUMNS:
+        valued = [gear for gear in gears if getattr(gear, field) is not None]
+        valued.sort(key=lambda gear: getattr(gear, field), reverse=falls)
+        return [valued + [gear for gear in gears if getattr(gear, field) is None]] if gears else []
+    by_size = [list(group) for _, group in groupby(gears, key=lambda gear: gear.size)]
+    return [group[::-1] for group in reversed(by_size)] if falls else by_size
+
+
+def _head(field: str, sort: str, kept: Mapping[str, str]) -> Head:
+    now = sort or GEAR
+    order = {field: "ascending", f"-{field}": "descending"}.get(now, "")
+    return Head(field, onward("/catalogue", **{**kept, "sort": f"-{field}" if now == field else field}), order)
+
+
+def _filter(text: str, active: bool, kept: Mapping[str, str], name: str) -> Filter:
+    return Filter(text, onward("/catalogue", **{**kept, name: "" if active else text}), active)
 
 
 def show_gear(request: Request) -> Response:
