@@ -25,7 +25,7 @@ def test_the_list_is_searched_and_a_selection_opened_by_keyboard_without_script(
     page.keyboard.type("keys-2")
     page.keyboard.press("Enter")
     rows = page.get_by_role("region", name="Saved selections").get_by_role("rowheader")
-    expect(rows).to_have_text(["Axis keys-2"])
+    expect(rows.get_by_role("link")).to_have_text(["Axis keys-2"])
     for _ in range(20):
         if page.evaluate("document.activeElement.innerText") == "Axis keys-2":
             break
