@@ -60,7 +60,7 @@ def test_result_is_said_to_be_of_other_inputs_while_its_answer_is_late(visitor: 
     expect(outdated).to_be_hidden()
 
 
-def test_what_is_saved_is_what_the_form_says(visitor: Visitor) -> None:
+def test_a_save_takes_what_the_form_says(visitor: Visitor) -> None:
     page = visitor.open(EXAMPLE)
     page.evaluate(
         "() => { const field = document.getElementById('T-0'); field.value = '90';"
@@ -71,7 +71,7 @@ def test_what_is_saved_is_what_the_form_says(visitor: Visitor) -> None:
     expect(page.get_by_role("table", name="Load phases").get_by_role("row").nth(1)).to_contain_text("90")
 
 
-def test_what_is_saved_is_what_the_form_says_in_german_and_inches(visitor: Visitor) -> None:
+def test_a_save_takes_what_the_form_says_in_german_and_inches(visitor: Visitor) -> None:
     page = visitor.open(EXAMPLE)
     in_german(page)
     expect(page.get_by_role("button", name="Speichern", exact=True)).to_be_visible()
@@ -81,7 +81,7 @@ def test_what_is_saved_is_what_the_form_says_in_german_and_inches(visitor: Visit
     expect(page.locator("table.phases tbody tr").first).to_contain_text("90,5")
 
 
-def test_what_is_wrong_is_not_saved(visitor: Visitor) -> None:
+def test_wrong_inputs_are_not_saved(visitor: Visitor) -> None:
     page = visitor.open(EXAMPLE)
     torque(page, 1).fill("abc")
     expect(torque(page, 1)).to_have_attribute("aria-invalid", "true")
@@ -261,7 +261,7 @@ def test_without_a_phase_the_address_keeps_all_else(visitor: Visitor) -> None:
     expect(page.get_by_text("Enter a duty cycle")).to_be_visible()
 
 
-def test_what_an_undo_brings_back_is_not_folded_away(visitor: Visitor) -> None:
+def test_an_input_that_an_undo_brings_back_is_not_folded_away(visitor: Visitor) -> None:
     page = visitor.open(EXAMPLE)
     section = page.locator("#group-load")
     section.locator("> summary").click()
@@ -276,7 +276,7 @@ def test_what_an_undo_brings_back_is_not_folded_away(visitor: Visitor) -> None:
 
 
 @pytest.mark.parametrize("late", ["htmx", "script"])
-def test_what_is_given_before_the_scripts_are_ready_is_answered(visitor: Visitor, late: str) -> None:
+def test_inputs_given_before_the_scripts_are_ready_are_answered(visitor: Visitor, late: str) -> None:
     """Given before htmx takes the form, which it does in a timer after the script has run, or before the script."""
     page = visitor.open("/catalogue")
     held: list[Route] = []

@@ -36,7 +36,7 @@ def test_the_list_is_searched_and_a_selection_opened_by_keyboard_without_script(
     expect(page.get_by_role("heading", name="Axis keys-2")).to_be_visible()
 
 
-def test_what_is_written_on_a_selection_survives_reload_saving_and_a_copy(visitor: Visitor) -> None:
+def test_labels_of_a_selection_survive_reload_saving_and_a_copy(visitor: Visitor) -> None:
     written = "&title=Journey+1&ref=4711-J&author=M.+Muster&rev=B&order_output=J8&order_motor=BH-AF1"
     page = visitor.open("/?T=40&n=250&t=0.3&i=5" + written)
     page.reload()

@@ -65,7 +65,7 @@ def unfolded(visitor: Visitor, path: str, width: int, *, dark: bool = False, tou
 
 
 @pytest.mark.parametrize("path", SHORT)
-def test_what_a_finger_has_to_hit_is_big_enough_and_called_what_it_shows(
+def test_every_target_of_a_finger_is_big_enough_and_called_what_it_shows(
     visitor: Visitor, saved: str, path: str
 ) -> None:
     page = unfolded(visitor, path, 390, touch=True)

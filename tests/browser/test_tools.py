@@ -109,7 +109,7 @@ def test_columns_that_nobody_knows_are_skipped_by_one_button(visitor: Visitor) -
     expect(page).to_have_url(re.compile(r"\?T=9&n=1250&t=0\.0003&T=12&n=500&t=0\.0002$"))
 
 
-def test_what_can_not_be_read_is_said_and_nothing_is_taken(visitor: Visitor) -> None:
+def test_a_table_that_can_not_be_read_says_so_and_nothing_is_taken(visitor: Visitor) -> None:
     page = visitor.open(EXAMPLE)
     paste(page, "40\tabc\t3")
     expect(page.get_by_role("alert")).to_contain_text("row 1: abc is not a number")
@@ -222,7 +222,7 @@ class TestWithoutServer:
         expect(page).to_have_url(re.compile("tp=7"))
         expect(message).to_be_hidden()
 
-    def test_what_nobody_has_answered_is_not_left_behind(self, page: Page) -> None:
+    def test_inputs_that_nobody_has_answered_are_not_left_behind(self, page: Page) -> None:
         asked = list[str]()
 
         def stay(dialog: Dialog) -> None:

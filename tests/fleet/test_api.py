@@ -188,7 +188,7 @@ IN_SOAK = ("wrong type", "list form with axes")
     ("content", "headers", "status", "words"),
     [pytest.param(*case, id=name, marks=[pytest.mark.soak] * (name in IN_SOAK)) for name, *case in REFUSED],
 )
-def test_what_is_no_table_of_axes_is_refused_in_words_without_a_path(
+def test_a_file_that_is_no_table_of_axes_is_refused_in_words_without_a_path(
     content: bytes, headers: dict[str, str], status: int, words: str, service: Service
 ) -> None:
     answer = service.client.post(PATH, content=content, headers=headers)
@@ -253,7 +253,7 @@ def test_a_body_that_is_too_large_is_a_413(sent: str, bounded: Callable[..., Tes
     [({"fleet_seconds": 0.2}, 503, "within 0.2 s"), ({"maximum_spool_bytes": 100}, 413, "more than 100 bytes")],
     ids=["time", "disk"],
 )
-def test_what_takes_too_much_is_refused_and_leaves_nothing(
+def test_a_fleet_that_takes_too_much_is_refused_and_leaves_nothing(
     setting: dict[str, Any], status: int, words: str, bounded: Callable[..., TestClient], tmp_path: Path
 ) -> None:
     answer = bounded(**setting).post(PATH, content=ONE_AXIS, headers=CSV)
@@ -357,7 +357,7 @@ def test_a_fleet_ends_when_its_service_is_killed_and_the_next_one_cleans_up(long
         assert spool_of(stack.enter_context(serving(tmp_path, settings))) == []
 
 
-def test_what_a_killed_service_left_is_removed_at_the_next_start_and_nothing_else(
+def test_leftovers_of_a_killed_service_are_removed_at_the_next_start_and_nothing_else(
     bounded: Callable[..., TestClient], tmp_path: Path
 ) -> None:
     spool = tmp_path / "spool"

@@ -173,7 +173,7 @@ BESIDE: dict[str, Change] = {
 
 @pytest.mark.parametrize("suffix", [".csv", ".parquet"])
 @pytest.mark.parametrize("fault", BESIDE)
-def test_what_is_wrong_beside_the_phases_is_told_alike_wherever_both_are_cut(
+def test_a_fault_beside_the_phases_is_told_alike_wherever_both_are_cut(
     fault: str, suffix: str, cut: Callable[[int], None], answers: Callable[..., Any], tmp_path: Path
 ) -> None:
     other, path = tmp_path / f"beside{suffix}", tmp_path / f"in{suffix}"

@@ -332,7 +332,7 @@ def test_typed_tables_with_other_headings_are_read_with_every_digit(tmp_path: Pa
         (b"hello", 422, ""),
     ],
 )
-def test_what_can_not_be_read_is_said(client: TestClient, content: bytes, status: int, said: str) -> None:
+def test_a_file_that_can_not_be_read_says_so(client: TestClient, content: bytes, status: int, said: str) -> None:
     answer = post(client, content)
 
     assert answer.status_code == status
@@ -378,7 +378,7 @@ def test_an_axis_whose_name_is_too_long_is_a_rejected_one(client: TestClient) ->
     assert second["error"] is None
 
 
-def test_what_a_fleet_was_asked_is_kept_up_to_a_size(
+def test_inputs_of_a_fleet_are_kept_up_to_a_size(
     tmp_path: Path, catalogue: Catalogue, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     axes, answers = write(tmp_path / "axes.ndjson", [row_of("one", HUB)]), tmp_path / "answers.parquet"

@@ -57,7 +57,7 @@ def test_every_reason_has_a_german_text(size: Size) -> None:
             assert Reader("de").told(reason) != reason.text
 
 
-def test_what_a_reason_quotes_is_no_reason_of_its_own() -> None:
+def test_a_quotation_in_a_reason_is_no_reason_of_its_own() -> None:
     (first, second) = reasons_of('n: phase 2: must be a number, such as 9.3, not "a: b"; duration_s: is required')
 
     assert [first[0], second[0]] == ["n", "duration_s"]

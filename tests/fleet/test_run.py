@@ -78,7 +78,7 @@ def test_two_runs_never_write_one_file(many: Path, tmp_path: Path, catalogue: Ca
     assert files(tmp_path) == ["out.parquet"]
 
 
-def test_what_goes_wrong_midway_leaves_no_file(many: Path, tmp_path: Path, catalogue: Catalogue) -> None:
+def test_an_error_midway_leaves_no_file(many: Path, tmp_path: Path, catalogue: Catalogue) -> None:
     def fails(size: Size, batches: Iterator[Batch]) -> Iterator[Outcome]:
         yield size(next(batches))
         raise MemoryError
@@ -182,7 +182,7 @@ def test_an_option_that_says_nothing_without_another_is_refused(
     ],
 )
 @pytest.mark.parametrize("python", ["this", "3.14"])
-def test_what_permissions_forbid_ends_with_2_and_its_name(
+def test_a_file_that_permissions_forbid_ends_with_2_and_its_name(
     capsys: pytest.CaptureFixture[str],
     monkeypatch: pytest.MonkeyPatch,
     source: str,

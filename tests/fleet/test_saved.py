@@ -125,7 +125,7 @@ def keyed(tmp_path: Path) -> Iterator[TestClient]:
         yield client
 
 
-def test_what_a_key_has_calculated_only_that_key_sees_and_saves(keyed: TestClient, tmp_path: Path) -> None:
+def test_a_fleet_that_a_key_has_calculated_only_that_key_sees_and_saves(keyed: TestClient, tmp_path: Path) -> None:
     anna, bert, admin = ({"X-API-Key": name} for name in ("anna", "bert", "admin"))
     table = write(tmp_path / "axes.csv", [row_of("one", HUB)]).read_bytes()
     sized = keyed.post("/machines", files={"file": ("axes.csv", table)}, headers=anna)

@@ -23,7 +23,7 @@ def test_every_mutant_is_another_program_under_a_name_of_its_own(module: str) ->
         ast.parse(mutant.source)
 
 
-def test_what_is_explained_is_a_mutant() -> None:
+def test_every_explanation_is_of_a_mutant() -> None:
     there = {mutant.name for mutants in MUTANTS.values() for mutant in mutants}
 
     assert EXPLAINED.keys() - there == set()

@@ -38,7 +38,7 @@ def test_callers_whose_bodies_drip_shut_fleets_for_nobody(service: Service) -> N
     assert (answer.status_code, answer.text.count("\n")) == (200, 2)
 
 
-def test_what_arrives_is_bounded_for_all_together_and_given_back(make_client: MakeClient) -> None:
+def test_arriving_bytes_are_bounded_for_all_together_and_given_back(make_client: MakeClient) -> None:
     client = make_client(maximum_spool_bytes=1_000_000)
     disk: Disk = state_of(client).disk
     with disk.share() as others:

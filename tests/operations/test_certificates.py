@@ -76,7 +76,7 @@ def test_the_files_of_a_live_folder_become_readable_for_the_proxy_and_for_it_alo
     assert started(folder).returncode == 0, started(folder).stderr
 
 
-def test_what_stands_in_the_folder_already_is_put_right_there(folder: Path) -> None:
+def test_files_that_stand_in_the_folder_already_are_put_right_there(folder: Path) -> None:
     (folder / "certificates").mkdir()
     for file in FILES:
         (folder / "certificates" / file).symlink_to(f"../archive/{file}")
@@ -127,7 +127,7 @@ def expired(live: Path) -> None:
         (expired, "live/fullchain.pem has expired: notAfter="),
     ],
 )
-def test_what_is_wrong_is_said_in_a_sentence_and_not_copied(
+def test_a_wrong_certificate_is_named_in_a_sentence_and_not_copied(
     folder: Path, spoil: Callable[[Path], None], words: str
 ) -> None:
     spoil(folder / "live")

@@ -73,7 +73,7 @@ def test_the_service_waits_for_a_healthy_database_and_has_time_to_end() -> None:
     assert int(web["stop_grace_period"].removesuffix("s")) > Settings().shutdown_seconds
 
 
-def test_what_compose_sets_are_settings() -> None:
+def test_every_variable_that_compose_sets_is_a_setting() -> None:
     given = {name for name in SERVICES["web"]["environment"] if name.startswith("HPN_")}
 
     assert given <= {f"HPN_{name.upper()}" for name in Settings.model_fields}

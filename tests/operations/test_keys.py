@@ -93,7 +93,7 @@ def test_no_other_spelling_of_a_path_walks_past_the_key(group: str, spelling: st
     assert response.status_code in (307, 401, 404, 405), response.text
 
 
-def test_what_needs_a_key_by_default_is_writing_listing_deleting_and_batch() -> None:
+def test_a_key_is_needed_by_default_for_writing_listing_deleting_and_batch() -> None:
     assert Settings().guarded == {"writing", "listing", "deleting", "batch"}
 
 
@@ -167,7 +167,7 @@ def test_every_key_is_compared_even_after_one_has_matched(monkeypatch: pytest.Mo
 
 
 @pytest.mark.parametrize("pairs", ["secret", "plm:secret", f"a b:{'0' * 64}", f":{'0' * 64}"])
-def test_what_is_no_pair_stops_the_start_and_is_not_repeated(pairs: str) -> None:
+def test_a_text_that_is_no_pair_stops_the_start_and_is_not_repeated(pairs: str) -> None:
     with pytest.raises(ValidationError, match="hpn key NAME") as refused:
         Settings(api_keys=pairs)
 

@@ -125,7 +125,7 @@ def test_every_answer_has_an_id_of_its_own(make_client: MakeClient) -> None:
     assert len({client.get(path).headers["X-Request-ID"] for path in paths}) == len(paths)
 
 
-def test_what_is_asked_every_few_seconds_is_not_logged(
+def test_routes_asked_every_few_seconds_are_not_logged(
     make_client: MakeClient, capsys: pytest.CaptureFixture[str]
 ) -> None:
     client = make_client()

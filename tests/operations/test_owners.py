@@ -68,7 +68,7 @@ def test_a_form_that_a_browser_sends_with_a_key_is_that_keys_own(make_client: Ma
     assert client.delete(place, headers=key("erp")).status_code == 204
 
 
-def test_who_may_not_delete_learns_nothing_of_its_state(make_client: MakeClient) -> None:
+def test_a_caller_that_may_not_delete_learns_nothing_of_its_state(make_client: MakeClient) -> None:
     client = make_client(api_keys=PAIRS)
     place = saved(client, "plm")
 

@@ -56,7 +56,7 @@ def request_of(*messages: str) -> Request:
 
 
 @pytest.mark.anyio
-async def test_who_leaves_while_waiting_gives_up_the_place_and_nothing_is_computed() -> None:
+async def test_a_client_that_leaves_while_waiting_gives_up_the_place_and_nothing_is_computed() -> None:
     pool, busy = Pool(Places(1, 3)), threading.Event()
     done: list[int] = []
     first = asyncio.create_task(pool.run(busy.wait, 20))
@@ -90,7 +90,7 @@ async def test_work_in_slices_ends_when_its_client_leaves() -> None:
 
 
 @pytest.mark.anyio
-async def test_who_stays_gets_the_result() -> None:
+async def test_a_client_that_stays_gets_the_result() -> None:
     assert await while_present(request_of(), Pool(Places(1, 0)).run(sum, [1, 2])) == 3
 
 
@@ -147,7 +147,7 @@ async def test_work_beside_is_killed_when_its_client_leaves_and_the_next_is_done
 
 @pytest.mark.anyio
 @pytest.mark.parametrize("seconds", [0.0, 0.01, 0.05, 0.1, 0.2])
-async def test_who_leaves_at_any_moment_of_the_start_leaves_no_process(pool: Pool, seconds: float) -> None:
+async def test_a_client_that_leaves_at_any_moment_of_the_start_leaves_no_process(pool: Pool, seconds: float) -> None:
     before = processes_beside()  # of services that other tests of this run have open
     for _ in range(3):
         work = asyncio.create_task(pool.run_beside(partial(time.sleep, 60)))
@@ -161,7 +161,7 @@ async def test_who_leaves_at_any_moment_of_the_start_leaves_no_process(pool: Poo
 
 
 @pytest.mark.anyio
-async def test_what_goes_wrong_there_brings_its_traceback_and_what_ends_early_is_a_503(
+async def test_an_error_there_brings_its_traceback_and_an_early_end_is_a_503(
     pool: Pool, caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     first = await pool.run_beside(os.getpid)

@@ -239,9 +239,7 @@ def test_one_address_has_a_hundred_requests_at_once(proxy: Proxy) -> None:
         ("/api/v1/report.pdf", "application/json", 4),
     ],
 )
-def test_what_one_address_has_of_long_requests_leaves_room_for_others(
-    proxy: Proxy, path: str, kind: str, most: int
-) -> None:
+def test_long_requests_of_one_address_leave_room_for_others(proxy: Proxy, path: str, kind: str, most: int) -> None:
     head = f"POST {path} HTTP/1.1\r\nHost: localhost\r\nContent-Type: {kind}\r\nContent-Length: ".encode()
     with ExitStack() as held:
         for _ in range(most):
@@ -359,7 +357,7 @@ def test_behind_a_load_balancer_callers_are_who_it_says_and_nobody_else_is_belie
     assert service.event(request_id="by-stranger")["client"] == "127.0.0.3"
 
 
-def test_what_is_asked_is_in_no_line_of_the_log(client: httpx.Client, proxy: Proxy) -> None:
+def test_no_line_of_the_log_holds_what_was_asked(client: httpx.Client, proxy: Proxy) -> None:
     client.get("/", params={"T": "987654"})
 
     assert "987654" not in (proxy.folder / "log").read_text()

@@ -279,7 +279,7 @@ def test_nothing_is_restored_while_anything_else_uses_the_database(stack: Stack)
     assert stack.databases() == {"hpn"}
 
 
-def test_who_uses_the_database_at_the_last_moment_keeps_it(stack: Stack) -> None:
+def test_a_user_of_the_database_at_the_last_moment_keeps_it(stack: Stack) -> None:
     saved(stack)
     name = stack.backup()
     unpacked, service = (["docker", "compose", "run", "--rm", "backup", "sh", "/backup.sh", word] for word in STEPS)

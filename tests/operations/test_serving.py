@@ -71,7 +71,7 @@ def batch_under_way(service: Service) -> Iterator[tuple[http.client.HTTPConnecti
 
 
 @pytest.mark.parametrize("workers", ["1", "2"])
-def test_what_runs_is_finished_before_the_end_and_nothing_more_is_taken(tmp_path: Path, workers: str) -> None:
+def test_running_requests_finish_before_the_end_and_nothing_more_is_taken(tmp_path: Path, workers: str) -> None:
     with serving(tmp_path, {"HPN_WORKERS": workers}) as service, batch_under_way(service) as (connection, response):
         service.terminate()
         wait_until_closed(service)

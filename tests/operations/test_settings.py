@@ -104,7 +104,7 @@ def test_a_setting_that_would_do_nothing_is_refused_and_told_what_would_be_right
         ("batch_rate", "1200 per 2 hours"),
     ],
 )
-def test_what_is_right_is_taken(name: str, value: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_right_values_are_taken(name: str, value: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv(f"HPN_{name.upper()}", value)
 
     assert getattr(Settings(), name)
@@ -137,7 +137,9 @@ SERVICE = {
 
 
 @pytest.mark.parametrize("service", ["HPN", "HPN_DB", "HPN_DATABASE", "HPN_SELECT", "HPN_WEB"])
-def test_what_kubernetes_sets_beside_a_service_changes_nothing(service: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_variables_that_kubernetes_sets_beside_a_service_change_nothing(
+    service: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
     before = Settings()
     for name, value in SERVICE.items():
         monkeypatch.setenv(name.replace("HPN", service), value)

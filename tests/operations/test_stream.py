@@ -319,7 +319,7 @@ async def test_beyond_the_spool_nothing_more_is_read_until_the_client_reads() ->
 
 
 @pytest.mark.anyio
-async def test_what_arrives_without_a_pause_is_set_aside_before_any_of_it_is_answered() -> None:
+async def test_lines_that_arrive_without_a_pause_are_set_aside_before_any_is_answered() -> None:
     """nginx passes no more of a body on where it has had to wait for a service whose answer has begun."""
     peer, line = Peer(), b"x" * 50_000 + b"\n"
     task = running(stream(), peer)

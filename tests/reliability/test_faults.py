@@ -80,7 +80,7 @@ async def found(database: str) -> list[str]:
             return ids
 
 
-def test_what_is_acknowledged_around_a_fault_is_found_and_readiness_tells_of_it(
+def test_a_save_acknowledged_around_a_fault_is_found_and_readiness_tells_of_it(
     fault: tuple[str, Outage], soak: bool, request: pytest.FixtureRequest
 ) -> None:
     database, broken = fault

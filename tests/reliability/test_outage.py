@@ -116,7 +116,7 @@ def test_a_file_that_cannot_be_opened_keeps_only_the_store_from_working(tmp_path
 
 
 @pytest.mark.parametrize("phases", [1, SMALL_BYTES // 40])
-def test_what_has_to_be_refused_does_not_wait_behind_who_is_stuck(outage: tuple[str, Outage], phases: int) -> None:
+def test_a_refusal_does_not_wait_behind_a_stuck_caller(outage: tuple[str, Outage], phases: int) -> None:
     database, broken = outage
     wrong = cycle(*[phase(1, 1)] * phases, requirements={"ratios": [6]})
     with client_of(database) as client:

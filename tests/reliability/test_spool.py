@@ -92,7 +92,7 @@ def test_a_disk_that_is_full_while_a_fleet_is_sized_is_said(client: TestClient, 
 
 
 @pytest.mark.parametrize("make", [os.mkfifo, Path.touch, lambda path: path.symlink_to("/etc")])
-def test_what_is_no_folder_of_ours_neither_holds_up_the_start_nor_is_touched(
+def test_a_folder_that_is_not_ours_neither_holds_up_the_start_nor_is_touched(
     spool: Path, tmp_path: Path, make: Any
 ) -> None:
     make(spool / "hpn-fleet-x")

@@ -133,7 +133,7 @@ def test_service_and_workbook_agree_on_drawn_applications(
         assert_chosen_agrees(fresh[name], next(c for c in reply["candidates"] if c["designation"] == designation), name)
 
 
-def test_what_passed_and_now_fails_turns_from_green_to_red(printed: dict[str, bytes]) -> None:
+def test_a_check_that_passed_and_now_fails_turns_from_green_to_red(printed: dict[str, bytes]) -> None:
     assert shows(printed["saved"], GREEN) and not shows(printed["saved"], RED)
     assert shows(printed["changed"], RED)
 

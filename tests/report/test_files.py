@@ -148,7 +148,7 @@ def test_a_report_is_in_the_language_and_units_of_its_reader(client: TestClient,
 
 
 @pytest.mark.parametrize("name", FILES)
-def test_what_is_refused(name: str, client: TestClient, saved: str) -> None:
+def test_files_are_refused_with_their_reason(name: str, client: TestClient, saved: str) -> None:
     problems = {
         404: client.get(f"/api/v1/selections/0123456789abcdefghijkl/{name}"),
         422: client.get(f"{saved}/{name}?lang=fr"),

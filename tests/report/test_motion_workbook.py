@@ -198,7 +198,7 @@ def test_motor_torques_are_unknown_once_an_input_behind_them_is_changed(
             assert not [row for row in candidates(book).values() if row["Verdict"] == "suitable"], name
 
 
-def test_what_nothing_follows_from_is_no_input(catalogue: Catalogue) -> None:
+def test_a_cell_that_nothing_follows_from_is_no_input(catalogue: Catalogue) -> None:
     yellow = {
         name: {cell: colour(opened(case, catalogue), cell) == "FFFFF8DC" for cell in ("eta", "J_L", "J_m")}
         for name, case in (("lifted", LIFTED), ("steady", CASES["example"]))

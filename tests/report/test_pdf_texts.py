@@ -79,7 +79,7 @@ def test_a_title_of_any_script_is_shown_and_kept_in_the_metadata(catalogue: Cata
     assert information is not None and information.title == title
 
 
-def test_what_no_font_has_is_replaced_named_and_kept_in_the_metadata(catalogue: Catalogue) -> None:
+def test_a_character_that_no_font_has_is_replaced_named_and_kept_in_the_metadata(catalogue: Catalogue) -> None:
     title = "axis བོ 𒀀 \u0378 \uf8ff end"
     document = pdf(typed_export_of(CASES["example"], catalogue, title=title), ENGLISH)
     assert "axis □□ □ □ □ end" in by_pdfium(document, 0)

@@ -110,7 +110,7 @@ def test_digitised_loads_and_torques_by_a_curve_are_not_rated_once_inputs_behind
             assert (not got(book, cell)) == (title in unknown), (name, cell)
 
 
-def test_what_takes_figures_of_a_lost_catalogue_is_not_rated_once_inputs_behind_it_change(
+def test_a_check_by_figures_of_a_lost_catalogue_is_not_rated_once_inputs_behind_it_change(
     catalogue: Catalogue, recalculate: Recalculate
 ) -> None:
     books = {name: changed(aged(case, catalogue), cells) for name, (case, cells, _) in WITHOUT_CATALOGUE.items()}

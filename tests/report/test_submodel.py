@@ -138,7 +138,7 @@ def test_data_are_valid_from_the_day_they_were_saved(catalogue: Catalogue) -> No
         assert (day and str(day)) == shown
 
 
-def test_what_is_not_published_is_left_out(catalogue: Catalogue) -> None:
+def test_a_figure_that_is_not_published_is_left_out(catalogue: Catalogue) -> None:
     submodels, _ = read(package(typed_export_of(CASES["standing loads"], catalogue), "3.1"))
     figures = values(submodels["SelectionResult"].get_referable("Figures"))
     assert "life_L10_h" not in figures  # unlimited

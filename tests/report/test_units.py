@@ -29,7 +29,7 @@ def sheets(file: bytes, *, values: bool = False) -> list[Any]:
     return openpyxl.load_workbook(BytesIO(file), data_only=values).worksheets
 
 
-def test_what_is_computed_is_the_same_whoever_reads_it(files: tuple[bytes, bytes]) -> None:
+def test_computed_figures_are_the_same_for_every_reader(files: tuple[bytes, bytes]) -> None:
     for own, other in zip(*map(sheets, files), strict=True):
         if own.title == "Notes":
             continue

@@ -218,7 +218,7 @@ def test_german_workbook_writes_units_as_the_page_does(catalogue: Catalogue) -> 
     assert not [shown for shown in texts if not shown.startswith("=") and re.search(r"\brpm\b", shown)]
 
 
-def test_what_no_formula_gives_stands_as_saved(supplemented: Supplement, recalculate: Recalculate) -> None:
+def test_a_figure_that_no_formula_gives_stands_as_saved(supplemented: Supplement, recalculate: Recalculate) -> None:
     curve = "size,load_coefficient,axial_N,radial_N,source\n20A,1,2200,0,p\n20A,1,1500,900,p\n20A,1,0,1800,p\n"
     efficiency = "size,ratio,torque_Nm,efficiency,source\n20A,5,10,0.9,p\n20A,5,80,0.95,p\n"
     catalogue = supplemented(bearing_envelopes=curve, efficiency=efficiency)
@@ -293,7 +293,7 @@ def test_RMS_torque_is_that_of_the_output_under_an_efficiency_curve(
     assert same(saved, math.sqrt((40**2 * 1 + 20**2 * 9) / 10))
 
 
-def test_what_is_not_rated_is_saved_blank_as_its_formula_gives_it(supplemented: Supplement) -> None:
+def test_a_check_that_is_not_rated_is_saved_blank_as_its_formula_gives_it(supplemented: Supplement) -> None:
     columns = "size,ratio,repeated_peak_torque_Nm,rated_torque_Nm,momentary_peak_torque_Nm,source"
     catalogue = supplemented(ratings=f"{columns}\n40A,5,752,,,p\n")
     asked = cycle(phase(10, 90), emergency_stop={"torque_Nm": 700}, requirements={"sizes": ["40A"], "ratios": [5]})

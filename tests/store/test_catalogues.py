@@ -85,7 +85,7 @@ def test_fields_of_this_format_stay_as_they_are(catalogue: Catalogue) -> None:
     }
 
 
-def test_what_a_version_did_not_know_yet_is_not_published_in_its_copy(catalogue: Catalogue) -> None:
+def test_a_figure_that_a_version_did_not_know_yet_is_not_published_in_its_copy(catalogue: Catalogue) -> None:
     document = orjson.loads(copy_of(catalogue))
     for gear in document["catalogue"]["gears"]:
         del gear["torsional_stiffness_Nm_per_rad"]

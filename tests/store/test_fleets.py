@@ -71,7 +71,7 @@ async def test_a_saved_fleet_is_renamed_and_nothing_else_of_it_changes(store: St
     assert await store.find_fleet(id) == replace(before, title="Line 5", reference=None, version=before.version + 1)
 
 
-async def test_what_nobody_saves_goes_after_a_day(store: Store) -> None:
+async def test_a_fleet_that_nobody_saves_goes_after_a_day(store: Store) -> None:
     kept, left = await store.keep_fleet(draft(), MOST_BYTES), await store.keep_fleet(draft(), MOST_BYTES)
     await store.save_fleet(kept, NAMES, None)
     for id in (kept, left):
@@ -83,7 +83,7 @@ async def test_what_nobody_saves_goes_after_a_day(store: Store) -> None:
     assert not await store.delete_fleet(left)
 
 
-async def test_what_others_calculate_takes_nothing_away_that_is_younger_than_a_day(store: Store) -> None:
+async def test_fleets_of_others_take_nothing_away_that_is_younger_than_a_day(store: Store) -> None:
     first = await store.keep_fleet(draft(caller="anna"), MOST_BYTES)
     await age(store, first, timedelta(hours=23))
 
@@ -109,7 +109,7 @@ async def test_a_caller_has_so_many_unsaved_and_room_again_once_one_is_saved_or_
     await store.keep_fleet(draft(caller="anna"), MOST_BYTES)
 
 
-async def test_what_all_have_unsaved_is_bounded_in_bytes_and_a_new_one_gives_way(store: Store) -> None:
+async def test_unsaved_fleets_of_all_are_bounded_in_bytes_and_a_new_one_gives_way(store: Store) -> None:
     size = len(draft().asked) + len(draft().answers)
     first = await store.keep_fleet(draft(), 2 * size)
     saved = await store.keep_fleet(draft(), 2 * size)

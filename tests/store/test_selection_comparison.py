@@ -53,7 +53,7 @@ def compared(client: TestClient, a: str, b: str, **headers: str) -> str:
     return page.text
 
 
-def test_what_differs_in_input_verdict_checks_and_figures_stands_side_by_side(client: TestClient) -> None:
+def test_differences_in_input_verdict_checks_and_figures_stand_side_by_side(client: TestClient) -> None:
     _, second, third = LOADED["duty_cycle"]["phases"]
     phases = [phase(44, 250, 0.3), second | {"name": "<lift>"}, third]
     heavier = LOADED | cycle(*phases, pause_s=LOADED["duty_cycle"]["pause_s"])

@@ -156,7 +156,7 @@ def test_an_empty_list_says_so(client: TestClient, query: str, text: str) -> Non
         ("?reference=" + "a" * 201, 'id="e-reference">'),
     ],
 )
-def test_what_no_list_has_is_refused_on_the_page(client: TestClient, query: str, text: str) -> None:
+def test_a_parameter_that_no_list_has_is_refused_on_the_page(client: TestClient, query: str, text: str) -> None:
     page = client.get(f"/selections{query}")
 
     assert page.status_code == 422

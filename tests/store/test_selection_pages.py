@@ -130,7 +130,7 @@ def test_a_label_that_cannot_be_comes_back_with_what_was_typed_and_a_message(cli
 @pytest.mark.parametrize(
     "fields", [{}, {"link": ""}, {"link": "/?T=x&n=1&t=1"}, {"link": "/?T=1&n=1&t=1&i=6"}, {"link": "/?no=1"}]
 )
-def test_what_is_no_application_is_not_saved(client: TestClient, fields: Json) -> None:
+def test_a_link_that_is_no_application_is_not_saved(client: TestClient, fields: Json) -> None:
     response = client.post("/selections", data=fields | {"title": "t"})
 
     assert response.status_code == 422
@@ -168,7 +168,7 @@ def test_life_is_unlimited_only_where_the_gear_is_rated(client: TestClient, size
     assert life and re.sub("<[^>]*>", "", life[1]) == shown
 
 
-def test_what_today_says_differently_stands_beside_what_was_saved(client: TestClient, supplemented: Supplement) -> None:
+def test_a_result_that_differs_today_stands_beside_the_saved_one(client: TestClient, supplemented: Supplement) -> None:
     address = sent(client)
     catalogue = supplemented(ratings=WEAKER)
     state_of(client).catalogue = catalogue

@@ -88,7 +88,9 @@ def test_the_application_comes_back_as_it_was_given(client: TestClient) -> None:
         ({"owner": "me"}, "/owner"),
     ],
 )
-def test_what_cannot_be_saved_is_refused_with_its_place(client: TestClient, change: Json, pointer: str) -> None:
+def test_an_application_that_can_not_be_saved_is_refused_with_its_place(
+    client: TestClient, change: Json, pointer: str
+) -> None:
     response = client.post(ADDRESS, json={"application": worked_example()} | change)
 
     assert response.status_code == 422
@@ -182,7 +184,7 @@ def test_a_client_can_prefer_no_body_or_the_whole(client: TestClient) -> None:
     assert whole.json() == client.get(whole.headers["location"]).json()
 
 
-def test_what_is_known_already_is_not_sent_again(client: TestClient) -> None:
+def test_a_selection_that_is_known_already_is_not_sent_again(client: TestClient) -> None:
     address = f"{ADDRESS}/{save(client)}"
     etag = client.get(address).headers["etag"]
 
@@ -269,7 +271,7 @@ def test_deleting_asks_for_the_state_that_is_meant(client: TestClient) -> None:
 
 
 @pytest.mark.parametrize("id", ["x", "A" * 22, "%00", "..%2f..%2fetc"])
-def test_what_is_not_there_is_not_found(client: TestClient, id: str) -> None:
+def test_a_selection_that_is_not_there_is_not_found(client: TestClient, id: str) -> None:
     assert client.get(f"{ADDRESS}/{id}").status_code == 404
     assert client.get(f"/selections/{id}").status_code == 404
 
@@ -291,7 +293,7 @@ def test_title_block_and_ordering_code_are_kept_and_listed(client: TestClient) -
         assert (saved["selected"], saved["designation"], saved["status"]) == ("HPN-20A-4", "HPN-32A-5", "suitable")
 
 
-def test_what_was_saved_without_them_has_none(client: TestClient) -> None:
+def test_a_selection_saved_without_labels_has_none(client: TestClient) -> None:
     saved = client.get(f"{ADDRESS}/{save(client)}").json()
 
     assert {name: saved[name] for name in WRITTEN} == dict.fromkeys(WRITTEN)
@@ -422,7 +424,7 @@ def test_a_selection_is_renamed_by_a_merge_patch(client: TestClient) -> None:
         ([], 422, ""),
     ],
 )
-def test_what_is_no_name_changes_nothing(client: TestClient, body: Any, status: int, pointer: str) -> None:
+def test_a_body_without_a_name_changes_nothing(client: TestClient, body: Any, status: int, pointer: str) -> None:
     address = f"{ADDRESS}/{save(client, title='t')}"
 
     answer = client.patch(address, json=body)

@@ -77,7 +77,7 @@ FAST = zstandard.ZstdCompressionParameters.from_level(-1, min_match=7, hash_log=
         zstandard.ZstdCompressor(compression_params=FAST).compress(b"xyz"),
     ],
 )
-def test_what_earlier_versions_packed_is_read(stream: bytes) -> None:
+def test_replies_packed_by_earlier_versions_are_read(stream: bytes) -> None:
     assert unpacked(stream) == b"xyz"
 
 
@@ -92,7 +92,7 @@ async def test_a_reply_of_any_length_comes_back(store: Store, size: int) -> None
 
 
 @pytest.mark.parametrize("id", ["", "x", "A" * 22, "A" * 23, "é" * 22, "A" * 21 + "\0", "' OR 1=1 --"])
-async def test_what_was_never_saved_is_not_found(store: Store, id: str) -> None:
+async def test_an_id_that_was_never_saved_is_not_found(store: Store, id: str) -> None:
     assert await store.find(id) is None
     assert await store.delete(id) is False
 

@@ -57,7 +57,7 @@ def test_of_those_who_rename_one_state_at_once_one_succeeds(client: TestClient) 
         assert client.get(place).json()["title"] == f"by {found.index(200)}"
 
 
-def test_who_renames_and_who_deletes_one_state_at_once_do_not_both_succeed(client: TestClient) -> None:
+def test_a_rename_and_a_delete_of_one_state_at_once_do_not_both_succeed(client: TestClient) -> None:
     for _ in range(ROUNDS):
         place, seen = saved(client)
         renamed, deleted = at_once(

@@ -189,7 +189,7 @@ def _as_before(connection: Connection) -> None:
 HEAVY = cycle(phase(9000, 100))
 
 
-async def test_what_earlier_versions_saved_is_listed_and_found_as_it_was(database: str) -> None:
+async def test_selections_of_earlier_versions_are_listed_and_found_as_they_were(database: str) -> None:
     store = Store(database)
     await change(store, _as_before)
 

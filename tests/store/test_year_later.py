@@ -130,7 +130,7 @@ def test_after_a_change_of_the_catalogue_every_file_is_the_same_byte_for_byte(
     assert_agrees(book, saved["result"])
 
 
-def test_what_was_saved_before_catalogues_were_kept_says_so(database: str, folder: Path, tmp_path: Path) -> None:
+def test_a_selection_saved_before_catalogues_were_kept_says_so(database: str, folder: Path, tmp_path: Path) -> None:
     with serving(database, catalogue_folder=folder) as client:
         address = save(client)
         whole = words(client.get(f"{address}/report.pdf").content)

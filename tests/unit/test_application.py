@@ -209,7 +209,7 @@ def test_every_printed_spelling_of_a_designation_is_read(catalogue: Catalogue, t
 
 
 @pytest.mark.parametrize("text", ["", "HPN", "HPN-20A", "HPN-20B-5", "HPN-20A-6", "HPN-20A-5J6", "x" * 5000, "20A5"])
-def test_what_is_no_designation_is_not_found(catalogue: Catalogue, text: str) -> None:
+def test_a_text_that_is_no_designation_is_not_found(catalogue: Catalogue, text: str) -> None:
     assert catalogue.find(text) is None
 
 

@@ -103,7 +103,9 @@ def test_bodies_are_summed_and_those_off_the_axis_are_one_mass_at_its_mean_dista
         ({"mass_kg": 1}, {"shape"}),
     ],
 )
-def test_what_a_body_lacks_or_has_too_much_stands_at_its_field(body: dict[str, Any], fields: set[str]) -> None:
+def test_a_fault_of_a_body_that_lacks_or_has_too_much_stands_at_its_field(
+    body: dict[str, Any], fields: set[str]
+) -> None:
     with pytest.raises(ValidationError) as refused:
         Body.model_validate(body)
     assert {error["loc"][0] for error in refused.value.errors()} == fields

@@ -131,7 +131,7 @@ def test_where_not_one_stop_is_allowed_even_none_expected_fails_without_a_utilis
         assert candidate(reply, last)["utilisation"] is None  # null stands last among the unsuitable
 
 
-def test_what_is_known_of_an_unrated_gear_is_judged(catalogue: Catalogue) -> None:
+def test_known_figures_of_an_unrated_gear_are_judged(catalogue: Catalogue) -> None:
     stiff = cycle(phase(1, 1), requirements={"sizes": ["40A"], "torsional_stiffness_Nm_per_rad": 143_001})
     fast = cycle(phase(1, 100), requirements={"sizes": ["40A"], "motor": {"maximum_speed_rpm": 1000}})
 

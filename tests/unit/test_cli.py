@@ -221,7 +221,7 @@ SHELL = {
 
 
 @pytest.mark.parametrize("case", SHELL, ids=list(SHELL))
-def test_what_a_shell_may_take_away_is_a_line_at_most(case: str) -> None:
+def test_a_stream_that_a_shell_takes_away_is_a_line_at_most(case: str) -> None:
     command, code, error = SHELL[case]
     path = f"{Path(sys.executable).parent}:/usr/bin:/bin"
     environment = {"PATH": path, "INPUT": orjson.dumps(worked_example()).decode()}
@@ -308,7 +308,7 @@ def test_a_supplement_is_used_and_a_wrong_setting_is_a_sentence(
         ),
     ],
 )
-def test_what_pydantic_finds_is_said_in_plain_words(wrong: Json, said: str, file: Path, capsys: Output) -> None:
+def test_faults_that_pydantic_finds_are_said_in_plain_words(wrong: Json, said: str, file: Path, capsys: Output) -> None:
     assert main(["select", write(file, wrong)]) == 2
     assert capsys.readouterr().err == f"{said}\n"
 

@@ -95,7 +95,7 @@ def test_best_compromises_are_those_that_no_other_suitable_gear_outdoes(catalogu
     assert 0 < len(expected) < len(suitable)
 
 
-def test_what_is_not_rated_is_not_unlimited_though_it_fails_a_property_check(catalogue: Catalogue) -> None:
+def test_an_unrated_gear_is_not_unlimited_though_it_fails_a_property_check(catalogue: Catalogue) -> None:
     """HPN-40A has a published backlash above 4 arcmin and no ratings: unsuitable, not unrated."""
     asked = cycle(phase(100, 10), emergency_stop={"torque_Nm": 160}, requirements={"backlash_arcmin": 4})
     selection = selected(asked, catalogue)

@@ -62,7 +62,7 @@ def test_the_page_of_a_gear_says_it_with_its_source(said: str) -> None:
     assert "section 4.3, p. 24" in plain
 
 
-def test_what_bears_on_a_check_stands_beside_it() -> None:
+def test_a_fact_that_bears_on_a_check_stands_beside_it() -> None:
     with TestClient(create_app()) as client:
         speed, ambient = client.get("/checks/maximum_input_speed").text, client.get("/checks/ambient_temperature").text
     assert "for short periods, as often as desired" in speed

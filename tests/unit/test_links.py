@@ -209,7 +209,7 @@ def test_whole_number_that_may_have_thousands_in_it_is_asked(name: str, text: st
 
 @pytest.mark.parametrize("name", ["Nk", "Lh", "Lb", "T", "tp"])
 @pytest.mark.parametrize("text", ["1,000", "2,500", "20,000", "1.000", "1,234.0", "20,000 h", "2.500 h"])
-def test_what_is_advised_in_place_of_a_number_is_taken(name: str, text: str) -> None:
+def test_a_spelling_advised_in_place_of_a_number_is_taken(name: str, text: str) -> None:
     if text.endswith("h") and not name.startswith("L"):
         text = text.removesuffix(" h")
     link = f"n=250&t=0.3&FR=5&Tk=9&{'' if name == 'T' else 'T=40&'}"
@@ -297,7 +297,7 @@ def test_repeated_scalar_is_reported_and_kept() -> None:
         ("Tk=200&Nk=1,000", "Nk", "write 1 or 1000"),
     ],
 )
-def test_what_is_to_be_written_in_place_of_several_or_broken_whole_numbers_is_taken(
+def test_a_spelling_advised_in_place_of_several_or_broken_whole_numbers_is_taken(
     query: str, name: str, said: str
 ) -> None:
     assert found(f"{PHASE}&{query}") == {(name, 0 if name == "i" else None): said}

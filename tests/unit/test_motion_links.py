@@ -131,7 +131,7 @@ def test_every_motion_survives_its_link(motion: dict[str, Any], document: dict[s
         (f"{PHASE}&md=M&nm=3000", ("md", None), "stands for the figures of a motor"),
     ],
 )
-def test_what_is_wrong_stands_at_its_parameter(query: str, place: tuple[str, int | None], said: str) -> None:
+def test_a_fault_stands_at_its_parameter(query: str, place: tuple[str, int | None], said: str) -> None:
     assert said in found(query)[place]
 
 

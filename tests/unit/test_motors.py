@@ -44,7 +44,7 @@ def test_a_motor_of_the_list_stands_for_its_figures(supplemented: Supplement) ->
     ]
 
 
-def test_what_is_blank_in_the_list_is_not_checked(supplemented: Supplement) -> None:
+def test_a_figure_that_is_blank_in_the_list_is_not_checked(supplemented: Supplement) -> None:
     reply = answer(asking({"designation": "M 60"}), supplemented(motors=MOTORS))
 
     codes = [check["code"] for check in reply["candidates"][0]["checks"]]

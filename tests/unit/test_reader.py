@@ -96,7 +96,7 @@ def test_numbers_that_would_look_alike_are_told_apart() -> None:
     assert first != second
 
 
-def test_what_is_typed_stays_as_typed_and_is_converted_exactly() -> None:
+def test_a_typed_number_stays_as_typed_and_is_converted_exactly() -> None:
     form = form_of(written="lb_in", T="354.0", n="1", t="1")
     assert form.application is not None
     assert form.application.duty_cycle.load_phases[0].torque_Nm == pytest.approx(354 * 0.1129848290276167, rel=1e-11)

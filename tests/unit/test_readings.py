@@ -84,7 +84,7 @@ def test_a_motor_that_is_turned_along_has_torques_of_its_own(catalogue: Catalogu
         assert read["motor_rated_torque"].relation == f"{rated} ≤ T_mot,N"
 
 
-def test_what_is_read_compares_as_the_check_does(catalogue: Catalogue) -> None:
+def test_a_reading_compares_as_its_check_does(catalogue: Catalogue) -> None:
     """On gears at random: u times the limit, or the limit over its part, is passed exactly where the check fails."""
     chance = random.Random(18)
     seen: set[tuple[str, str]] = set()
@@ -113,7 +113,7 @@ def test_without_application_or_catalogue_the_pure_numbers_stand(catalogue: Cata
     assert (read["output_bearing_load"].demand, read["output_bearing_load"].unit) == (check.demand, "")
 
 
-def test_what_nothing_limits_is_unlimited_on_its_own_side(catalogue: Catalogue) -> None:
+def test_a_figure_that_nothing_limits_is_unlimited_on_its_own_side(catalogue: Catalogue) -> None:
     """A stop below T_R may come any number of times (17.9); without a torque the life (17.10) has no end."""
     idle = readings(cycle(phase(0.0, 100.0), requirements={"life_h": 1e4}), "HPN-20A-5", catalogue)["life"]
     stops = readings(LIGHT_STOPS, "HPN-20A-5", catalogue)["momentary_peak_count"]

@@ -136,7 +136,7 @@ def test_bounds_are_rounded_to_the_safe_side(value: float, digits: int, down: st
     assert rounded(value, digits, "up") == up
 
 
-def test_what_is_tried_out_passes_to_the_last_digit(catalogue: Catalogue) -> None:
+def test_a_remedy_that_is_tried_out_passes_to_the_last_digit(catalogue: Catalogue) -> None:
     """0.8 of this speed has more than twelve digits: rounded to the nearest it would be too much by a part in 1e12."""
     wishes = {"ratios": [35], "sizes": ["14A"], "utilisation": 0.8}
     asked = Application.model_validate(cycle(phase(1, 171.42857142857142), pause_s=3, requirements=wishes))

@@ -356,7 +356,7 @@ def test_notice_and_report_say_what_of_a_supplement_the_motor_torques_include(su
         (BOTH_WAYS | {"output_load": {"radial_N": 9, "shaft_centre_mm": 0}}, "output_load.shaft_centre_mm", "0"),
     ],
 )
-def test_what_can_not_be_answered_is_refused_at_its_field(application: Json, place: str, said: str) -> None:
+def test_a_question_that_can_not_be_answered_is_refused_at_its_field(application: Json, place: str, said: str) -> None:
     errors = refused(application)
     assert place in errors, errors
     assert said in errors[place]

@@ -47,9 +47,7 @@ def test_one_gear_of_40a_is_rated_and_its_neighbours_stay_unrated(
     assert states["HPN-40A-50"] == "unsuitable"
 
 
-def test_what_the_user_supplied_says_so_and_what_was_there_stays(
-    supplemented: Supplement, catalogue: Catalogue
-) -> None:
+def test_a_supplied_figure_says_so_and_the_others_stay(supplemented: Supplement, catalogue: Catalogue) -> None:
     filled = supplemented(ratings=RATINGS + "20A,5,,82,,measured\n", weights=WEIGHTS + "20A,1,2.7,\n")
     gear, printed = filled.by_designation["HPN-20A-5"], catalogue.by_designation["HPN-20A-5"]
 

@@ -69,7 +69,7 @@ def test_page_and_report_set_a_symbol_that_stands_alone_alike(symbol: str) -> No
     assert bool(parts) == bool(symbol)
 
 
-def test_what_stands_around_a_symbol_is_text() -> None:
+def test_characters_around_a_symbol_are_text() -> None:
     assert with_symbols("<b> T_k & η_m") == (
         '&lt;b&gt; <var class="symbol">T<sub>k</sub></var> &amp; <var class="symbol">η<sub>m</sub></var>'
     )

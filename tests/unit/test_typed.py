@@ -104,7 +104,7 @@ def test_unit_of_its_own_counts_before_the_readers_and_a_sum_is_in_the_readers(t
         ("Nk", "=1/3", "must be a whole number"),
     ],
 )
-def test_what_is_wrong_with_a_unit_or_a_sum_is_said(name: str, text: str, problem: str) -> None:
+def test_a_fault_of_a_unit_or_a_sum_is_said(name: str, text: str, problem: str) -> None:
     assert problem in str(typed(name, text))
 
 
@@ -272,7 +272,7 @@ def test_kilogram_force_in_a_field_is_converted(text: str, link: str) -> None:
 
 
 @pytest.mark.parametrize("spelling", ["mN", "MN", "MNm", "nN", "", "-1", "Pa", "x" * 300])
-def test_what_is_no_known_unit_is_none(spelling: str) -> None:
+def test_an_unknown_unit_is_none(spelling: str) -> None:
     assert units.codes_for(spelling) == ()
 
 

@@ -66,7 +66,7 @@ def test_figures_of_a_steady_phase_that_are_given_change_not_a_bit(catalogue: Ca
         ({"peak_speed_rpm": "250"}, "peak_speed_rpm", "number"),
     ],
 )
-def test_what_contradicts_itself_is_refused_where_it_stands(changes: Json, field: str, said: str) -> None:
+def test_a_contradiction_is_refused_where_it_stands(changes: Json, field: str, said: str) -> None:
     errors = refused(cycle(phase(1, 1), phase(-40, 250) | changes))
     assert list(errors) == [("duty_cycle", "phases", 1, field)]
     assert said in errors["duty_cycle", "phases", 1, field]

@@ -150,7 +150,7 @@ def test_a_sum_below_the_phases_of_an_axis_is_skipped_where_it_has_a_time_alone_
     assert asked(read(head, *rows, ";Summe;20,5;200;3", "B;1;9;100;3")) == [f"Row 4 {SUM}"]
 
 
-def test_what_an_axis_says_twice_is_compared_as_numbers_and_spoils_that_axis_alone() -> None:
+def test_a_figure_that_an_axis_gives_twice_is_compared_as_a_number_and_spoils_that_axis_alone() -> None:
     table = read(f"{HEAD};Pause [s];Übersetzung", "A;1;9;1;2;5", "A;1;9;2;2,0;5", "B;1;9;1;2;5", "B;1;9;2;3;10")
 
     assert [axis["pause_s"] for axis in table.axes] == [2.0, "2 / 3"]

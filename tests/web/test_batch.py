@@ -125,7 +125,7 @@ def test_another_shape_is_refused_with_the_right_one(api: TestClient, body: Any)
 
 
 @pytest.mark.parametrize("content", [b"", b"{", b"\xff", b'{"applications": [nan]}', b"[" * 100_000])
-def test_what_is_no_json_is_a_400(api: TestClient, content: bytes) -> None:
+def test_a_body_that_is_no_json_is_a_400(api: TestClient, content: bytes) -> None:
     reply = api.post(PATH, content=content, headers={"content-type": "application/json"})
 
     assert reply.status_code == 400
@@ -235,7 +235,7 @@ def test_a_number_that_is_none_is_a_mistake_of_its_item_alone(api: TestClient, n
         assert results[0]["problem"]["errors"][0]["pointer"] == "/duty_cycle/phases/0/torque_Nm"
 
 
-def test_what_is_no_object_and_what_is_no_field_are_told_so(api: TestClient) -> None:
+def test_items_that_are_no_object_and_names_of_no_field_are_told_so(api: TestClient) -> None:
     [line] = send(api, 5)
     unknown = api.post(PATH, json={"applications": [], "foo": 1})
 

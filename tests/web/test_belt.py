@@ -56,7 +56,7 @@ def test_the_page_shows_the_sum_and_takes_it_as_the_radial_load(client: TestClie
         ("&bF1=much&bF2=3", "f-bF1", "number"),
     ],
 )
-def test_what_gives_no_load_says_why_and_leads_to_its_field(
+def test_a_belt_that_gives_no_load_says_why_and_leads_to_its_field(
     client: TestClient, query: str, place: str, said: str
 ) -> None:
     found = re.search(rf'<a href="#{place}">[^<]*</a>: <span>(.*?)</span>', page(client, query), re.DOTALL)

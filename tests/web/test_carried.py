@@ -107,7 +107,7 @@ def test_the_form_of_a_link_submits_what_the_link_says(api: TestClient, applicat
     assert again.headers["HX-Push-Url"] == to_link(application)
 
 
-def test_what_is_typed_beside_a_motion_changes_nothing_else(api: TestClient) -> None:
+def test_typing_beside_a_motion_changes_nothing_else(api: TestClient) -> None:
     application = Application.model_validate(APPLICATIONS["rotary"])
     _, _, pairs = opened(api, application)
 

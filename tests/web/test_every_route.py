@@ -227,14 +227,14 @@ def test_every_answer_keeps_to_this_host(api: TestClient, answers: dict[str, Any
 
 
 @pytest.mark.parametrize("path", PATHS)
-def test_what_tells_of_saved_selections_is_private_and_the_rest_is_not(answers: dict[str, Any], path: str) -> None:
+def test_answers_about_saved_selections_are_private_and_the_rest_are_not(answers: dict[str, Any], path: str) -> None:
     kept = answers[path].headers.get("Cache-Control", "")
 
     assert (kept == "private, no-cache") == (PATHS[path] in ("reading", "listing", "deleting"))
     assert ("private" in kept) == (kept == "private, no-cache")
 
 
-def test_what_is_saved_deleted_or_missing_is_private_too(api: TestClient, saved: str) -> None:
+def test_answers_about_a_deleted_or_missing_selection_are_private_too(api: TestClient, saved: str) -> None:
     place = f"/api/v1/selections/{saved}"
     tag = api.get(place).headers["ETag"]
     answers = [
@@ -252,7 +252,7 @@ def test_what_is_saved_deleted_or_missing_is_private_too(api: TestClient, saved:
 
 
 @pytest.mark.parametrize("path", ["/api/v1/catalogue", "/api/v1/catalogue/HPN-20A-5", "/api/v1/bearing-envelopes/20A"])
-def test_what_is_published_is_asked_for_once(api: TestClient, path: str) -> None:
+def test_published_content_is_asked_for_once(api: TestClient, path: str) -> None:
     first = api.get(path)
     again = api.get(path, headers={"If-None-Match": first.headers["ETag"]})
     other = api.get(path, headers={"If-None-Match": '"another"'})

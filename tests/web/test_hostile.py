@@ -218,6 +218,6 @@ def test_a_wrong_wish_is_told_once(api: TestClient) -> None:
     assert [error["pointer"] for error in reply.json()["errors"]] == ["/requirements/ratios/0"]
 
 
-def test_what_is_not_allowed_here_says_what_is(api: TestClient) -> None:
+def test_a_method_that_is_not_allowed_here_says_which_are(api: TestClient) -> None:
     assert set(api.put("/api/v1/selections").headers["allow"].split(", ")) == {"GET", "HEAD", "POST"}
     assert set(api.put("/api/v1/selections/x").headers["allow"].split(", ")) == {"GET", "HEAD", "PATCH", "DELETE"}

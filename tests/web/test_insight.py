@@ -135,7 +135,7 @@ def test_typing_brings_neither_the_form_nor_what_is_folded_away(client: TestClie
     assert html.count('name="link" value="/?T=40&amp;') == 1  # what files are made of follows all the same
 
 
-def test_what_is_unfolded_comes_alone_or_with_the_result(client: TestClient) -> None:
+def test_an_unfolded_part_comes_alone_or_with_the_result(client: TestClient) -> None:
     alone = changes(client, "details#calculation")
     assert "<math" in alone.text
     assert "<table" not in alone.text
@@ -157,7 +157,7 @@ def test_typing_something_wrong_brings_a_list_that_names_its_fields_and_nothing_
 @pytest.mark.parametrize(
     ("target", "query"), [(RESULT, "&do=add"), ("form#application", ""), ("div#paste-preview", "")]
 )
-def test_what_takes_the_place_of_inputs_brings_the_form(client: TestClient, target: str, query: str) -> None:
+def test_an_edit_that_takes_the_place_of_inputs_brings_the_form(client: TestClient, target: str, query: str) -> None:
     response = changes(client, target, query=EXAMPLE + query)
     assert response.text.lstrip().startswith('<form id="application"')
     assert response.headers["HX-Retarget"] == "#application"

@@ -50,7 +50,7 @@ def test_a_form_without_a_phase_keeps_it_too(api: TestClient) -> None:
     assert labels_in(edit(api, [*blank, *WRITTEN.items()])) == WRITTEN
 
 
-def test_what_says_nothing_stands_in_no_address(api: TestClient) -> None:
+def test_a_blank_label_stands_in_no_address(api: TestClient) -> None:
     blank = {name: " " for name in LABELS} | {"order_output": "J6"}
     assert edit(api, [*CYCLE, *blank.items()]) == "/?T=40&n=250&t=0.3"
 
@@ -94,13 +94,13 @@ def test_the_page_of_a_gear_gives_it_back(api: TestClient) -> None:
         ("a" + "\u0301\u0323\u0330\u0331\u0332\u0333", "takes at most 4 combining marks in a row"),
     ],
 )
-def test_what_cannot_be_written_on_it_is_named(api: TestClient, name: str, text: str, message: str) -> None:
+def test_a_label_that_can_not_be_taken_is_named(api: TestClient, name: str, text: str, message: str) -> None:
     reply = api.get("/?" + urlencode([*CYCLE, (name, text)]))
     assert reply.status_code == 422
     assert re.search(rf'href="#f-{name}">{LABELS[name]}</a>: <span>{message}', reply.text)
 
 
-def test_what_is_written_twice_is_asked_for_once(api: TestClient) -> None:
+def test_a_label_given_twice_is_asked_for_once(api: TestClient) -> None:
     reply = api.get("/?" + urlencode([*CYCLE, ("title", "a"), ("title", "b")]))
     assert reply.status_code == 422
     assert "takes one value, given were a, b" in reply.text
@@ -115,7 +115,7 @@ SPELT = [
 
 
 @pytest.mark.parametrize("text", SPELT)
-def test_what_is_spelling_stays(api: TestClient, text: str) -> None:
+def test_characters_of_spelling_stay(api: TestClient, text: str) -> None:
     assert labels_in(edit(api, [*CYCLE, ("title", text)])) == {"title": text}
     saved = api.post("/api/v1/selections", json={"application": worked_example(), "title": text})
     assert api.get(saved.headers["Location"]).json()["title"] == text
@@ -169,7 +169,7 @@ def test_forms_refuse_names_that_look_like_others(api: TestClient, text: str) ->
 
 
 @pytest.mark.parametrize("text", LOOK_ALIKE)
-def test_what_was_saved_before_opens_is_found_and_may_be_renamed(api: TestClient, text: str) -> None:
+def test_a_selection_saved_before_opens_is_found_and_may_be_renamed(api: TestClient, text: str) -> None:
     old = {"title": text, "reference": text}
     saved = api.post("/selections", data={"link": "/?T=40&n=250&t=0.3"}, follow_redirects=False)
     place = saved.headers["Location"]

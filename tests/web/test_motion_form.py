@@ -110,7 +110,7 @@ def test_another_linear_mechanism_keeps_what_it_has_too(api: TestClient) -> None
     assert ("h", "10") in given(back, "h")
 
 
-def test_what_is_given_of_another_geometry_is_never_taken_for_this_one(api: TestClient) -> None:
+def test_figures_of_another_geometry_are_never_taken_for_this_one(api: TestClient) -> None:
     page = pressed(api, TURN, "way:ball_screw")
     assert given(page, "J", "ms", "mt", "mv", "Tf") == []
 
@@ -211,7 +211,7 @@ def test_bodies_are_read_in_the_units_of_the_reader(api: TestClient) -> None:
     assert float(dict(given(page, "J"))["J"]) == pytest.approx(10 * 0.45359237 * 0.508**2 / 8, rel=1e-5)
 
 
-def test_what_a_body_lacks_is_said_and_the_selection_goes_on(api: TestClient) -> None:
+def test_a_figure_that_a_body_lacks_is_named_and_the_selection_goes_on(api: TestClient) -> None:
     page = api.get(f"/?{TURN}&{bodies({'qs': 'ring', 'qm': 5, 'qd': 'x'}, {'qs': 'disc', 'qm': 3})}")
     assert page.status_code == 200
     assert re.search(r'<a href="#qd-0">Diameter, body 1</a>: <span>is not a number', page.text)

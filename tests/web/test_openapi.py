@@ -135,7 +135,7 @@ def test_every_field_has_an_example(document: Json) -> None:
     assert missing == []
 
 
-def test_what_is_not_open_to_all_says_which_keys_it_takes_and_that_it_may_refuse(document: Json) -> None:
+def test_an_operation_not_open_to_all_says_which_keys_it_takes_and_that_it_may_refuse(document: Json) -> None:
     for path, operations in document["paths"].items():
         for method, operation in operations.items():
             is_open = path in ("/healthz", "/readyz")

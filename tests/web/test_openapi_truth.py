@@ -302,7 +302,7 @@ def test_no_list_is_bounded_as_a_text(document: Json) -> None:
 # --- Examples ---------------------------------------------------------------------------------------------------------
 
 
-def test_what_stands_as_an_example_gives_the_answer_that_stands_beside_it(api: TestClient, document: Json) -> None:
+def test_an_example_gives_the_answer_that_stands_beside_it(api: TestClient, document: Json) -> None:
     compared = []
     for method, path, operation in operations(document):
         address = path.format(**{entry["name"]: entry.get("example", "") for entry in operation.get("parameters", ())})

@@ -159,7 +159,7 @@ def test_adding_puts_the_phases_behind_those_there(client: TestClient) -> None:
 @pytest.mark.parametrize(
     "text", ["40\tx\t3", "40\t250", "T\tn\tt", "{", '{"duty_cycle": {"phases": [{"torque_Nm": "a"}]}}']
 )
-def test_what_can_not_be_taken_is_422_and_says_why(client: TestClient, text: str) -> None:
+def test_a_table_that_can_not_be_taken_is_a_422_that_says_why(client: TestClient, text: str) -> None:
     page = client.post("/paste", data={"link": LINK, "text": text, "take": "replace"})
     assert page.status_code == 422
     assert 'class="error"' in page.text

@@ -162,7 +162,7 @@ def test_unit_of_a_format_that_is_none_of_its_column_is_refused(client: TestClie
         (clock(0, 0, 3), "3 s"),
     ],
 )
-def test_what_a_format_may_mean_otherwise_is_refused(client: TestClient, cell: Cell, shown: str) -> None:
+def test_a_format_that_may_mean_something_else_is_refused(client: TestClient, cell: Cell, shown: str) -> None:
     reply = answer(client, content(book(["T", "n", "Dauer"], [cell, 250, 3])))
     assert reply.status_code == 422
     assert f"{shown}: this unit does not belong" in said(reply)

@@ -60,7 +60,7 @@ def test_a_value_beside_its_bound_is_written_beside_it(allowed: float, distance:
         assert under < at < over or (distance * allowed < 1e-11 and under <= at <= over)
 
 
-def test_what_is_infinite_or_unknown_needs_no_digits() -> None:
+def test_an_infinite_or_unknown_share_needs_no_digits() -> None:
     assert telling_decimals(float("inf"), 100.0, 1) == 1
     assert telling_decimals(float("nan"), 100.0, 1) == 1
     assert telling_decimals(100.0, 100.0, 0) == 0
@@ -77,7 +77,9 @@ def test_a_sentence_tells_a_use_from_the_whole_limit(distance: float) -> None:
     ("query", "code", "column"),
     [("T=40&n=250&t=1&Tk=5&Nk=10&u=0.93", "momentary_peak_count", 1), ("T=0&n=250&t=1&Lh=10000", "life", 0)],
 )
-def test_what_nothing_limits_is_a_word_beside_its_check(api: TestClient, query: str, code: str, column: int) -> None:
+def test_a_figure_that_nothing_limits_is_a_word_beside_its_check(
+    api: TestClient, query: str, code: str, column: int
+) -> None:
     row = re.search(f'id="check-{code}".*?</tr>', api.get(f"/?{query}").text, re.DOTALL)
     assert row
     cell = re.findall(r'<td class="figure">(.*?)</td>', row[0], re.DOTALL)[column]

@@ -197,7 +197,7 @@ def test_json_that_is_no_object_is_a_422(api: TestClient, body: Any) -> None:
         b'{"duty_cycle":' * 5000 + b"1" + b"}" * 5000,
     ],
 )
-def test_what_is_no_json_or_no_finite_number_is_a_4xx(api: TestClient, content: bytes) -> None:
+def test_a_body_that_is_no_json_or_has_no_finite_number_is_a_4xx(api: TestClient, content: bytes) -> None:
     reply = api.post(PATH, content=content, headers={"content-type": "application/json"})
 
     assert reply.status_code in (400, 422)
