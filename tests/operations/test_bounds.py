@@ -7,6 +7,7 @@ import signal
 import time
 from collections.abc import Iterator
 from functools import partial
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -87,8 +88,18 @@ async def test_a_bound_of_time_counts_for_each_call_alone(bounded: Pool) -> None
 async def test_a_bounded_process_stands_back_and_others_have_no_bounds(free: Pool, bounded: Pool) -> None:
     own = await bounded.run_beside(os.getpid)
     assert os.getpriority(os.PRIO_PROCESS, own) >= 10
+    assert resource.prlimit(own, resource.RLIMIT_CORE)[0] == 0
     assert resource.prlimit(own, resource.RLIMIT_DATA)[0] == SMALL.memory_bytes
     assert resource.prlimit(await free.run_beside(os.getpid), resource.RLIMIT_DATA)[0] != SMALL.memory_bytes
+
+
+@pytest.mark.anyio
+async def test_a_process_beside_is_the_first_to_go_where_memory_runs_out_and_no_terminal_interrupts_it(
+    free: Pool,
+) -> None:
+    own = await free.run_beside(os.getpid)
+    assert Path(f"/proc/{own}/oom_score_adj").read_text(encoding="ascii").strip() == "1000"
+    assert os.getpgid(own) != os.getpgid(0)  # Ctrl+C reaches the group of the service, which finishes what runs
 
 
 @pytest.mark.anyio

@@ -198,6 +198,8 @@ def test_a_speed_that_has_to_drop_promises_nothing_where_the_motor_turns_its_own
         assert candidate.failing and candidate.is_judged
         ways[inertia], remedy = alternatives_of(candidate), remedy_of(candidate)
         assert remedy is not None
-        assert ("What would make it fit is not in closed form: the motor’s own inertia" in remedy.text) == bool(inertia)
+        assert (
+            "The change that would make it fit is not in closed form: the motor’s own inertia" in remedy.text
+        ) == bool(inertia)
     assert ways[1e-6] == ()
     assert [(alternative.way.torque, alternative.way.speed < 1) for alternative in ways[None]] == [(1.0, True)]

@@ -154,7 +154,7 @@ def test_a_motor_at_a_smaller_torque_is_promised_nothing_where_a_curve_says_what
     both = cycle(phase(26, 30), requirements={"ratios": [5], "utilisation": 0.8586, "motor": motor})
     alone = cycle(phase(20, 30), requirements={"ratios": [5], "utilisation": 0.8586, "motor": motor})
 
-    why = "What would make it fit is not in closed form: the efficiency follows your curve."
+    why = "The change that would make it fit is not in closed form: the efficiency follows your curve."
     assert words(both, "HPN-14A-5", book) == why
     assert words(alone, "HPN-14A-5", book) == "Fits if the motor’s peak torque rises to 5.824 Nm."
 
