@@ -22,8 +22,11 @@ HTMX = FRONTEND / "node_modules/htmx.org/dist/htmx.min.js"
 SWAGGER = FRONTEND / "node_modules/swagger-ui-dist"
 TYPEFACE = FRONTEND / "node_modules/@ibm/plex-sans-variable"
 PLOTLY = FRONTEND / "node_modules/plotly.js-basic-dist-min/plotly-basic.min.js"
+DRAWN = ("../../backend/hpn/explain/drawings/drawings", "plots")
+"""Style sheets of drawings, which the report uses too, and of plots."""
+
 STYLES = {
-    "page.css": ("fonts", "tokens", "app", "tools", "workbench", "selection", "insight", "plots", "motion", "phone"),
+    "page.css": ("fonts", "tokens", "app", "tools", "workbench", "selection", "insight", *DRAWN, "motion", "phone"),
     "site.css": (
         "fonts",
         "tokens",
@@ -33,7 +36,7 @@ STYLES = {
         "saved",
         "selection",
         "insight",
-        "plots",
+        *DRAWN,
         "fleet",
         "phone",
     ),

@@ -14,7 +14,7 @@ from hpn.application import Application
 from hpn.catalogue import load_catalogue
 from hpn.engine.selection import select
 from hpn.explain.drawings import Subject, bearing_picture, envelope_drawing
-from hpn.explain.drawings.svg import markup
+from hpn.explain.drawings.svg import STYLE, markup
 from hpn.words.reader import Reader
 from tests.browser.conftest import PATIENCE_S, Visitor, open_section, violations
 from tests.build import cycle, phase
@@ -386,7 +386,7 @@ def test_no_text_lies_over_another_as_a_browser_sets_them_and_none_is_smaller_th
         assert picture is not None
         drawn += [markup(envelope_drawing(picture, reader)) for reader in (Reader(), Reader("de", ("lbf",)))]
     page = chromium.new_page()
-    styles = "".join((STATIC / name).read_text() for name in ("app.css", "plots.css"))
+    styles = "".join(path.read_text() for path in (STATIC / "app.css", STYLE, STATIC / "plots.css"))
     for width in (346, 395, 410, 440, 640):
         figures = "".join(f'<figure class="envelope" style="width: {width}px">{svg}</figure>' for svg in drawn)
         page.set_content(f"<style>{styles}</style><main>{figures}</main>")

@@ -4,6 +4,7 @@ import math
 import re
 from dataclasses import replace
 from io import BytesIO
+from xml.etree.ElementTree import fromstring
 
 import pypdfium2
 import pytest
@@ -92,11 +93,13 @@ def test_every_move_of_many_is_printed_under_heads(reader: Reader, catalogue: Ca
 
 def test_a_motion_is_drawn_over_time_and_phases_as_steps(catalogue: Catalogue) -> None:
     drawn = {
-        name: content(typed_export_of((CASES | MOVING)[name], catalogue), ENGLISH)["course"]
+        name: content(typed_export_of((CASES | MOVING)[name], catalogue), ENGLISH)["cycle"]
         for name in ("ball screw", "example")
     }
-    assert "<svg" in drawn["ball screw"]
-    assert drawn["example"] == ""
+    assert "Distance in mm" in "".join(fromstring(drawn["ball screw"]["drawing"]).itertext())
+    assert drawn["ball screw"]["alt"].startswith("Motion of ")
+    assert "3 phases." in drawn["example"]["alt"]
+    assert "Short phases" in drawn["example"]["note"]
 
 
 def test_torque_is_drawn_against_speed_where_a_motion_or_a_motor_is_given(catalogue: Catalogue) -> None:

@@ -1,9 +1,6 @@
 """Drawings of motions and of torques at their speeds: what is read off their axes is what the figures say."""
 
 import itertools
-import math
-import re
-from xml.etree.ElementTree import Element, fromstring
 
 import numpy as np
 import pytest
@@ -19,7 +16,7 @@ from hpn.words.reader import Reader
 from tests.build import Json, cycle, phase
 from tests.conftest import Supplement
 from tests.reference.test_motion import CONTRACT, SCREW
-from tests.unit.test_envelope import SVG, Point, Shown
+from tests.unit.test_envelope import Point, Shown
 
 CATALOGUE: Catalogue = load_catalogue()
 TYPED = cycle(
@@ -162,97 +159,3 @@ def test_planes_say_in_words_what_they_show() -> None:
     motor = " ".join(map(german.told, drawings.motor_plane(subject, german).words))
     assert gear.startswith("Größtes Drehmoment 60\u202fNm von 149\u202fNm, größte Drehzahl 660")
     assert motor.startswith("Größtes Drehmoment 15\u202fNm von 14\u202fNm, größte Drehzahl 3.300")
-
-
-# --- The motion over time ---------------------------------------------------------------------------------------------
-
-
-class Diagrams:
-    """The drawing of a motion as a reader sees it: each curve by the numbers on its own axis."""
-
-    def __init__(self, drawing: Element) -> None:
-        self.root = fromstring(markup(drawing))
-        self.curves = [self.read(place) for place in range(4)]
-
-    def of(self, name: str, kind: str) -> list[Element]:
-        return [each for each in self.root.iter(SVG + name) if kind in each.get("class", "").split()]
-
-    def read(self, place: int) -> list[float]:
-        """Values of a curve, from the top the `place`th."""
-        children = list(self.root)
-        start = [k for k, each in enumerate(children) if each.get("class") == "title"][place]
-        steps = next(k for k in range(start, len(children)) if children[k].get("class") == "steps")
-        ticks = [each for each in children[start:steps] if each.get("class") == "tick"]
-        (y0, v0), (y1, v1) = ((float(t.get("y", "")), self.number(t)) for t in (ticks[0], ticks[-1]))
-        heights = [float(y) + 4 for _, y in re.findall(r"(-?[\d.]+) (-?[\d.]+)", children[steps].get("d", ""))]
-        return [v0 + (y - y0) * (v1 - v0) / (y1 - y0) for y in heights]
-
-    @staticmethod
-    def number(text: Element) -> float:
-        return float("".join(text.itertext()).replace("\u202f", "").replace("\N{MINUS SIGN}", "-"))
-
-
-def drawn(document: Json, reader: Reader | None = None) -> Diagrams:
-    drawing = drawings.motion_drawing(subject_of(document), reader or Reader())
-    assert drawing is not None
-    return Diagrams(drawing)
-
-
-@pytest.mark.parametrize("document", [TURNING, LIFTING])
-def test_the_curves_of_a_motion_reach_from_its_least_to_its_largest_values(document: Json) -> None:
-    motion = subject_of(document).application.duty_cycle.motion
-    assert motion is not None
-    trace, load = trace_of(motion.course), motion.mechanism.load
-    way = load.way_per_rad / load.ratio if document is LIFTING else math.degrees(1)
-
-    values = (trace.angle_rad * way, trace.speed_rpm, trace.acceleration_rad_per_s2 * way, trace.torque_Nm)
-    for curve, expected in zip(drawn(document).curves, values, strict=True):
-        span = expected.max() - expected.min()
-        assert min(curve) == pytest.approx(expected.min(), abs=0.005 * span)
-        assert max(curve) == pytest.approx(expected.max(), abs=0.005 * span)
-
-
-def test_phases_are_marked_where_they_begin_and_the_pause_behind_them() -> None:
-    diagrams = drawn(TURNING)
-    phases = [float(step.get("x", "")) for step in diagrams.of("rect", "phase-step")]
-    [pause] = diagrams.of("rect", "pause")
-    motion = subject_of(TURNING).application.duty_cycle.motion
-    assert motion is not None
-    begun = np.concatenate(([0.0], np.cumsum(motion.course.duration_s)))
-
-    left, right = phases[0], float(pause.get("x", ""))
-    assert [*phases, right] == pytest.approx(left + begun / begun[-1] * (right - left), abs=0.01)
-    assert [step.get("data-phase") for step in diagrams.of("rect", "phase-step")] == [
-        str(k) for k in range(len(motion.phases))
-    ]
-
-
-def test_typed_phases_have_no_drawing_of_a_motion() -> None:
-    assert drawings.motion_drawing(subject_of(TYPED)) is None
-    assert drawings.motion_words(subject_of(TYPED)) == []
-
-
-@pytest.mark.parametrize("gravity", [{}, {"gravity_mass_kg": 3, "gravity_radius_mm": 100}])
-def test_a_thousand_moves_make_a_small_drawing_that_misses_no_peak(gravity: Json) -> None:
-    moves = [{"profile": "s_curve", "angle_deg": (90 + k) * (-1) ** k, "time_s": 1} for k in range(600)]
-    document: Json = {
-        "duty_cycle": {"motion": {"mechanism": {"type": "rotary", "inertia_kgm2": 1} | gravity, "moves": moves}}
-    }
-    subject = subject_of(document)
-    drawing = drawings.motion_drawing(subject)
-    assert drawing is not None
-
-    assert len(markup(drawing)) < 200_000
-    peak = max(map(abs, Diagrams(drawing).curves[3]))
-    assert peak == pytest.approx(subject.duty.maximum_torque_Nm.item(), rel=0.01)
-
-
-def test_a_motion_is_told_in_the_readers_language_and_units() -> None:
-    reader = Reader(language="de", units=("lb_in",))
-    words = " ".join(map(reader.told, drawings.motion_words(subject_of(LIFTING))))
-
-    assert words.startswith("Bewegung von ")
-    assert "lb·in" in words
-    assert "Weg und Beschleunigung gelten für die Last" in words
-    titles = {"".join(t.itertext()) for t in drawn(TURNING, Reader(language="de")).of("text", "title")}
-    assert titles == {"Winkel in °", "Drehzahl in min⁻¹", "Beschleunigung in °/s²", "Drehmoment in Nm", "Zeit in s"}

@@ -1,7 +1,7 @@
 """Pictures as data: every figure is valid for Plotly, shows what the checks compute, and says so in words."""
 
 import re
-from itertools import combinations, pairwise
+from itertools import combinations
 
 import plotly.graph_objects as go
 import pytest
@@ -11,7 +11,6 @@ from hpn.catalogue import Catalogue
 from hpn.engine.selection import CheckResult, select
 from hpn.explain import drawings as plots
 from hpn.explain.drawings import Subject
-from hpn.web.api.samples import TURNING
 from hpn.words.reader import Reader
 from tests.build import Json, cycle, phase
 from tests.conftest import Supplement
@@ -259,59 +258,6 @@ def test_emergency_stops_of_an_unrated_gear_have_words_but_no_plot(catalogue: Ca
     subject = example(catalogue, "HPN-40A-5")
     assert plots.emergency_stop_figure(subject) is None
     assert "not in this catalogue’s source" in plots.emergency_stop_words(subject)[0].text
-
-
-# --- The cycle over time ----------------------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize("count", [1, 3, 24, 25, 50, 10_000])
-def test_the_cycle_is_drawn_within_its_frame(catalogue: Catalogue, count: int) -> None:
-    phases = [phase((-1) ** k * 10.0 * (k % 7), 100.0, 1e-3 if k % 2 else 5.0) for k in range(count)]
-    subject = shown_on(cycle(*phases, pause_s=3.0), catalogue)
-
-    shown = plots.cycle_picture(subject)
-
-    assert shown.names[-1].symbol == "t_p"
-    assert len(shown.discs) == {1: 1, 3: 3}.get(count, len(shown.discs))
-    assert (len(shown.discs) > 0) == (count <= 24)
-    places = [*(disc.x for disc in shown.discs), shown.names[-1].x]
-    gaps = [after - before for before, after in pairwise(places)]
-    assert min(gaps, default=18) >= 18  # a disc, and a little more
-    for panel in (shown.torque, shown.speed):
-        assert panel.top <= panel.zero <= panel.bottom
-        assert len(panel.outline) + len(panel.area) < 30_000
-        assert all(panel.top <= mark.line <= panel.bottom for mark in panel.lines if mark.line is not None)
-
-
-def test_a_negative_torque_lies_below_zero(catalogue: Catalogue) -> None:
-    document = cycle(phase(30, 100), phase(-20, 100))
-    shown = plots.cycle_picture(shown_on(document, catalogue))
-    heights = [float(part.split("H")[0]) for part in shown.torque.outline.split("V")[1:]]
-    assert heights[0] < shown.torque.zero < heights[1]
-
-
-def test_the_cycle_in_words_reaches_from_peak_to_peak(catalogue: Catalogue) -> None:
-    typed = cycle(phase(30.123, 100, peak_torque_Nm=45), phase(-20, -80, peak_torque_Nm=33, peak_speed_rpm=120))
-    words = [sentence.text for sentence in plots.cycle_picture(shown_on(typed, catalogue)).words]
-    assert words[1:] == ["Torque from -33 Nm to 45 Nm.", "Speed from -120 rpm to 100 rpm."]
-    turned = plots.cycle_picture(shown_on({"duty_cycle": {"motion": TURNING}}, catalogue)).words[1]
-    course = Application.model_validate({"duty_cycle": {"motion": TURNING}}).duty_cycle.load_phases
-    highest = max(phase.peak_torque_Nm or 0 for phase in course if phase.torque_Nm > 0)
-    assert f"to {highest:.3g} Nm." in turned.text
-
-
-def test_limits_far_above_the_cycle_are_named_beyond_the_scale(catalogue: Catalogue) -> None:
-    subject = example(catalogue, emergency_stop={"torque_Nm": 200.0})
-    torque = plots.cycle_picture(subject).torque
-    assert {mark.symbol for mark in torque.lines} == {"T_av", "T_N"}
-    assert [(mark.symbol, mark.value) for mark in torque.beyond] == [("T_R", "149"), ("T_k", "200")]
-
-
-def test_extreme_durations_stay_in_the_frame_and_say_that_they_are_not_to_scale(catalogue: Catalogue) -> None:
-    document = cycle(phase(1e6, 1e6, 1e9), phase(1e-300, 1e-6, 1e-300), pause_s=1e9)
-    shown = plots.cycle_picture(shown_on(document, catalogue, "HPN-11A-4"))
-    assert not shown.to_scale
-    assert "nan" not in shown.torque.outline + shown.speed.outline
 
 
 def test_a_reader_of_other_units_sees_other_numbers(catalogue: Catalogue) -> None:

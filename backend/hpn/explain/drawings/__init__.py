@@ -9,7 +9,6 @@ from hpn.explain.drawings.cycle import CyclePicture, cycle_picture
 from hpn.explain.drawings.envelope import GearEnvelope, envelope_drawing, gear_envelope, sizes_drawing
 from hpn.explain.drawings.governing import governing_phases
 from hpn.explain.drawings.layout import Figure
-from hpn.explain.drawings.motion import motion_drawing, motion_words
 from hpn.explain.drawings.picture import BearingPicture, NamedCurve, bearing_picture
 from hpn.explain.drawings.plane import Plane, gear_plane, motor_plane
 from hpn.explain.drawings.sizes import SizeUse, size_uses
@@ -38,8 +37,6 @@ __all__ = [
     "gear_envelope",
     "gear_plane",
     "governing_phases",
-    "motion_drawing",
-    "motion_words",
     "motor_plane",
     "size_uses",
     "sizes_drawing",

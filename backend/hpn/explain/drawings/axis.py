@@ -1,8 +1,8 @@
-"""Round numbers along an axis, ranges of axes, and steps of cycles that are too long to draw each."""
+"""Round numbers along an axis, and ranges of axes."""
 
 import math
 import sys
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 
 WIDENED = (1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0)
 """Axes widen by these factors where a value lies outside, so that a plot doesn't jump while somebody types."""
@@ -29,14 +29,3 @@ def widened(limit: float, values: Iterable[float]) -> float:
     """The limit times the smallest of WIDENED that holds all values; beyond the last just what holds them."""
     largest = max(values, default=0.0)
     return next((limit * step for step in WIDENED if largest <= limit * step), largest)
-
-
-def slices(edges: Sequence[float], values: Sequence[float]) -> dict[int, tuple[float, float]]:
-    """Least and largest value in each slice of width 1; value k holds from edge k to the next, 0 or more."""
-    found: dict[int, tuple[float, float]] = {}
-    for k, value in enumerate(values):
-        first = int(edges[k])
-        for place in range(first, max(math.ceil(edges[k + 1]), first + 1)):
-            low, high = found.get(place, (value, value))
-            found[place] = min(low, value), max(high, value)
-    return found

@@ -129,7 +129,7 @@ def _named(named: NamedCurve, picture: BearingPicture, end: int, reader: Reader)
     if named.kind != "own":
         return figure
     figure["line"]["width"] = 3
-    return figure | {"fill": "tozeroy", "fillcolor": "var(--plot-own-soft)"}
+    return figure | {"fill": "tozeroy", "fillcolor": "var(--area)"}
 
 
 def _name(named: NamedCurve, picture: BearingPicture, reader: Reader) -> str:

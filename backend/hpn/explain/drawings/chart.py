@@ -137,7 +137,7 @@ def chart(
     """
     points = [*(corner for line in lines for corner in line.corners), *(mark.place for mark in marks)]
     frame = _frame(points, axes, reader)
-    drawing = canvas(WIDTH, HEIGHT + ROW * (len(bars) + len(beyond)))
+    drawing = canvas("plane", WIDTH, HEIGHT + ROW * (len(bars) + len(beyond)))
     still = add(drawing, "g", "still", aria_hidden="true")
     _axes(still, frame, reader)
     places = Places(frame.room)

@@ -13,7 +13,7 @@ from hpn.engine import figures as of_gear
 from hpn.engine.allowed import with_listed_motor
 from hpn.engine.figures import Figures
 from hpn.explain.drawings.chart import Axes, Line, Mark, chart
-from hpn.explain.drawings.cycle import OUT_OF_SCALE
+from hpn.explain.drawings.panels import OUT_OF_SCALE
 from hpn.explain.drawings.picture import beyond_limit
 from hpn.explain.drawings.subject import Subject
 from hpn.explain.drawings.svg import Point

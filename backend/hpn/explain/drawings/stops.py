@@ -80,7 +80,7 @@ def _line(torque: FloatArray, number: FloatArray, reader: Reader, *, named_below
         "y": number.tolist(),
         "line": {"color": "var(--plot-own)", "width": 3},
         "fill": "tozeroy",
-        "fillcolor": "var(--plot-own-soft)",
+        "fillcolor": "var(--area)",
         "hovertext": [
             said(
                 Sentence("{torque}: {number} stops", {"torque": Quantity(T, "Nm"), "number": Quantity(int(N), "", 7)}),
@@ -181,7 +181,7 @@ def _free(x: float) -> Figure:
         "y1": 1,
         "yref": "paper",
         "layer": "below",
-        "fillcolor": "var(--plot-own-soft)",
+        "fillcolor": "var(--area)",
         "line": {"width": 0},
     }
 

@@ -1,6 +1,7 @@
 """Elements of an SVG drawing, with the handbook's symbols set as such; a style sheet gives colours and letter sizes."""
 
 from collections.abc import Iterable
+from pathlib import Path
 from xml.etree.ElementTree import Element, SubElement, tostring
 
 from hpn.words.symbols import sentence
@@ -10,14 +11,17 @@ Point = tuple[float, float]
 LETTER = 14.0
 """Size of a letter, in units of a drawing, that texts have room for; a style sheet may only set smaller ones."""
 
+STYLE = Path(__file__).with_name("drawings.css")
+"""Style sheet of all drawings, in the colours of the page's tokens."""
+
 WIDE = 0.64
 """Width of a character in letter sizes: that of a digit in DejaVu Sans, the widest of the usual fonts."""
 
 
-def canvas(width: float, height: float) -> Element:
-    """An empty drawing."""
+def canvas(kind: str, width: float, height: float) -> Element:
+    """An empty drawing of a kind that the style sheet knows."""
     box = f"0 0 {written(width)} {written(height)}"
-    return Element("svg", {"xmlns": "http://www.w3.org/2000/svg", "viewBox": box})
+    return Element("svg", {"xmlns": "http://www.w3.org/2000/svg", "class": f"drawing {kind}", "viewBox": box})
 
 
 def add(parent: Element, name: str, kind: str, **attributes: float | str) -> Element:
@@ -29,6 +33,18 @@ def add(parent: Element, name: str, kind: str, **attributes: float | str) -> Ele
 def text(parent: Element, kind: str, at: Point, content: str, anchor: str = "start") -> Element:
     """Add a text, its symbols in italics with their index below."""
     element = add(parent, "text", kind, x=at[0], y=at[1], text_anchor=anchor)
+    _fill(element, content)
+    return element
+
+
+def runs(parent: Element, kind: str, at: Point, parts: Iterable[tuple[str, str]], anchor: str) -> None:
+    """Add a text of several parts of their own kinds, a space between two."""
+    element = add(parent, "text", kind, x=at[0], y=at[1], text_anchor=anchor)
+    for place, (own, content) in enumerate(parts):
+        _fill(SubElement(element, "tspan", {"class": own}), "\N{EN SPACE}" * (place > 0) + content)
+
+
+def _fill(element: Element, content: str) -> None:
     lowered = False
     for part in sentence(content):
         back = -3 if lowered else 0
@@ -38,7 +54,6 @@ def text(parent: Element, kind: str, at: Point, content: str, anchor: str = "sta
         else:
             _run(element, "letter", part[0], back)
             _run(element, "index", part[1], 3)
-    return element
 
 
 def _run(element: Element, kind: str, content: str, shift: float) -> None:

@@ -32,8 +32,9 @@ class Pictures:
 
     @cached_property
     def cycle(self) -> CyclePicture:
-        """Steps of the duty cycle."""
-        return drawings.cycle_picture(self.subject, self.reader)
+        """Duty cycle or motion over time."""
+        subject, check = self.subject, self.chosen.governing_check
+        return drawings.cycle_picture(subject.application, subject, self.reader, self.governing, check)
 
     @cached_property
     def governing(self) -> tuple[int, ...]:
@@ -92,16 +93,6 @@ class Pictures:
         """Grounds of the verdict."""
         assert self.bearing is not None
         return drawings.bearing_words(self.bearing)
-
-    @cached_property
-    def motion(self) -> Element | None:
-        """Drawing of a motion over time, or None where phases were typed."""
-        return drawings.motion_drawing(self.subject, self.reader, self.governing)
-
-    @property
-    def motion_words(self) -> list[Sentence]:
-        """The motion in words."""
-        return drawings.motion_words(self.subject)
 
     @cached_property
     def gear_plane(self) -> Plane:

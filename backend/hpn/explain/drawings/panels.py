@@ -1,0 +1,301 @@
+"""Values over time as one drawing: panels above each other on one time axis, limits named at the right."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import pairwise
+from xml.etree.ElementTree import Element, SubElement
+
+import numpy as np
+
+from hpn.explain.drawings.axis import round_numbers
+from hpn.explain.drawings.svg import Point, add, canvas, path, runs, text, width_of
+from hpn.explain.drawings.words import axis_title
+from hpn.physics.equations import FloatArray
+from hpn.words.reader import Reader
+
+WIDTH, RIGHT = 344.0, 234.0
+"""Width of the drawing, and the end of its time axis: names of limits stand to the right of it."""
+
+LETTER, TITLE, ROW, BETWEEN = 13.0, 19.0, 25.0, 8.0
+"""Least distance of two texts below each other, and heights of a title, of the numbers of phases, and of a gap."""
+
+RADIUS, APART = 8.5, 18.0
+"""Radius of the number of a phase, and the least distance of two."""
+
+NAMED_LETTERS = 14.8
+"""Letters of a limit and its value that have room at the right; those of an index count four fifths."""
+
+SMALLER = 0.82
+"""Size of the letters here, as a share of those that `width_of` has room for."""
+
+HEADROOM, OUT_OF_SCALE = 1.08, 2.2
+"""Reach of an axis beyond its values, and multiple of them beyond which a limit is only named, with an arrow."""
+
+MOST_BOUNDARIES = 24
+"""Stretches of time up to which each has its number, and a line where it begins."""
+
+STRAIGHT = 0.05
+"""Units of the drawing by which a piece may leave the line between its ends and still be drawn as that line."""
+
+
+@dataclass(frozen=True, slots=True)
+class Level:
+    """A limit or an average to compare a curve with; `kind` is what the style sheet calls it."""
+
+    symbol: str
+    value: float
+    kind: str
+
+
+@dataclass(frozen=True, eq=False)
+class Panel:
+    """One diagram: a curve of values, shape (pieces, instants), with the peaks that each piece reaches beyond them."""
+
+    quantity: str
+    unit: str
+    height: float
+    values: FloatArray
+    levels: Sequence[Level] = ()
+    peaks: FloatArray | None = None
+
+    @cached_property
+    def range(self) -> Point:
+        """From the smallest to the largest value, 0 and the levels that are near them included."""
+        known = self.values if self.peaks is None else np.concatenate((self.values.ravel(), self.peaks.ravel()))
+        low, high = min(known.min().item(), 0.0), max(known.max().item(), 0.0)
+        reach = max(-low, high) * OUT_OF_SCALE
+        high = max(high, *(level.value for level in self.levels if level.value <= reach), 0.0)
+        return (low, high) if high > low else (0.0, 1.0)
+
+    def is_beyond(self, level: Level) -> bool:
+        """True for a level beyond the scale."""
+        return level.value > self.range[1] * (1 + 1e-9)
+
+
+@dataclass(frozen=True, slots=True)
+class Stretch:
+    """A part of the time axis in units of the drawing, the phases that it holds, and their name where there is one."""
+
+    start: float
+    end: float
+    phases: Sequence[int]
+    name: str = ""
+
+    @property
+    def middle(self) -> float:
+        """Place of its number."""
+        return (self.start + self.end) / 2
+
+
+@dataclass(frozen=True, eq=False)
+class TimeAxis:
+    """The time axis: places of all instants, stretches of phases, stretches with a number, and the pause.
+
+    `times` are numbers along the axis by their places; `row` is the panel that the numbers stand below.
+    """
+
+    x: FloatArray
+    phases: Sequence[Stretch]
+    numbered: Sequence[Stretch]
+    pause: Stretch | None
+    row: int
+    times: Sequence[tuple[float, str]] = ()
+
+
+def axis_left(panels: Sequence[Panel], reader: Reader) -> float:
+    """Left end of the time axis, so that the numbers of all panels have room beside it."""
+    return 8 + SMALLER * max(width_of(label) for panel in panels for _, label in _ticks(panel, reader))
+
+
+def over_time(panels: Sequence[Panel], axis: TimeAxis, reader: Reader, governing: Sequence[int] = ()) -> Element:
+    """Drawing of panels on one time axis; the phases that govern stand out."""
+    left = axis.x.item(0)
+    tops = _tops(panels, axis, reader)
+    bottom = tops[-1] + panels[-1].height
+    drawing = canvas("over-time", WIDTH, bottom + (ROW if axis.row == len(panels) - 1 else 0.0) + 5)
+    _stretches(drawing, axis, (tops[0], bottom), governing)
+    for top, panel in zip(tops, panels, strict=True):
+        _panel(drawing, panel, top, left, axis.x, reader)
+    _numbers(drawing, axis, tops[axis.row] + panels[axis.row].height + ROW / 2, governing)
+    return drawing
+
+
+def _tops(panels: Sequence[Panel], axis: TimeAxis, reader: Reader) -> list[float]:
+    """Upper end of each panel, below its title and the row of what is beyond its scale."""
+    tops, y = [], 0.0
+    for place, panel in enumerate(panels):
+        y += TITLE + (LETTER if _is_crowded(panel, reader) else 0.0)
+        tops.append(y)
+        y += panel.height + (ROW if place == axis.row else BETWEEN)
+    return tops
+
+
+def _is_crowded(panel: Panel, reader: Reader) -> bool:
+    """True where the title leaves what is beyond the scale no room beside it."""
+    names = "  ".join(f"↑ {_named(level, panel, reader)}" for level in panel.levels if panel.is_beyond(level))
+    return bool(names) and SMALLER * width_of(axis_title(panel.quantity, panel.unit, reader) + names) > WIDTH
+
+
+def _stretches(drawing: Element, axis: TimeAxis, span: Point, governing: Sequence[int]) -> None:
+    """The pause and the phases across all panels, and lines where what has a number begins."""
+    top, height = span[0], span[1] - span[0]
+    if axis.pause:
+        across = {"x": axis.pause.start, "width": axis.pause.end - axis.pause.start}
+        add(drawing, "rect", "pause", y=top, height=height, **across)
+    for stretch in axis.phases:
+        state = " governing" if set(stretch.phases) & set(governing) else ""
+        across = {"x": stretch.start, "width": stretch.end - stretch.start}
+        step = add(drawing, "rect", f"phase-step{state}", data_phase=_of(stretch), y=top, height=height, **across)
+        if stretch.name:
+            SubElement(step, "title").text = stretch.name
+    for stretch in axis.numbered[1:] if len(axis.numbered) <= MOST_BOUNDARIES else ():
+        add(drawing, "path", "boundary", d=path([(stretch.start, top), (stretch.start, span[1])]))
+
+
+def _of(stretch: Stretch) -> str:
+    return " ".join(map(str, stretch.phases))
+
+
+# --- One panel --------------------------------------------------------------------------------------------------------
+
+
+def _panel(drawing: Element, panel: Panel, top: float, left: float, x: FloatArray, reader: Reader) -> None:
+    title = axis_title(panel.quantity, panel.unit, reader)
+    text(drawing, "title", (0.0, top - 6 - (LETTER if _is_crowded(panel, reader) else 0.0)), title)
+    values, labels = zip(*_ticks(panel, reader), strict=True)
+    for at, label in zip(_heights(panel, top, np.array(values)).tolist(), labels, strict=True):
+        add(drawing, "path", "axis", d=path([(left - 3, at), (left, at)]))
+        text(drawing, "tick", (left - 6, at + 4.0), label, "end")
+    zero = _heights(panel, top, np.zeros(1)).item()
+    points = _thinned(x, _heights(panel, top, panel.values))
+    outline = [(left, zero), *points, (points[-1][0], zero)]
+    add(drawing, "path", "area", d=path(outline, closed=True))
+    add(drawing, "path", "zero", d=path([(left, zero), (RIGHT, zero)]))
+    if panel.peaks is not None:
+        add(drawing, "path", "peaks", d=path(_thinned(x, _heights(panel, top, panel.peaks))))
+    add(drawing, "path", "steps", d=path(outline))
+    _levels(drawing, panel, top, left, reader)
+
+
+def _heights(panel: Panel, top: float, values: FloatArray) -> FloatArray:
+    """Places of values in a panel whose upper end is at `top`."""
+    low, high = (HEADROOM * end for end in panel.range)
+    return top + panel.height * ((high - values) / (high - low))
+
+
+def _ticks(panel: Panel, reader: Reader) -> list[tuple[float, str]]:
+    """Round numbers of the reader's unit, as many as have room: each in the unit of the wire, and as it is written."""
+    low, high = panel.range
+    start, end = (reader.measure(panel.unit).shown(value) for value in (low, high))
+    spaces = int(panel.height // (1.4 * LETTER))
+    numbers = round_numbers(start, end, spaces)
+    if len(numbers) < 2:
+        numbers = round_numbers(start, end, spaces + 2) or [0.0]
+    return [(low + (number - start) / (end - start) * (high - low), reader.tick(number)) for number in numbers]
+
+
+def _named(level: Level, panel: Panel, reader: Reader) -> str:
+    return f"{level.symbol} {reader.figure(level.value, panel.unit)}"
+
+
+def _levels(drawing: Element, panel: Panel, top: float, left: float, reader: Reader) -> None:
+    """Levels as lines with their names at the right, none over another; those beyond the scale in the title's line."""
+    levels = sorted(panel.levels, key=lambda level: -level.value)
+    shown = [level for level in levels if not panel.is_beyond(level)]
+    lines = _heights(panel, top, np.array([level.value for level in shown])).tolist()
+    beyond = [(level.kind, f"↑ {_named(level, panel, reader)}") for level in levels if panel.is_beyond(level)]
+    first = top + (9 if beyond else 0)
+    for level, line, place in zip(shown, lines, _spread(lines, first, top + panel.height + 4), strict=True):
+        add(drawing, "path", f"level {level.kind}", d=path([(left, line), (RIGHT + 4, line)]))
+        name = _named(level, panel, reader)
+        index = len(level.symbol.partition("_")[2].partition("/")[0])
+        fits = len(name) - (index and 1 + 0.2 * index) <= NAMED_LETTERS
+        text(drawing, f"name {level.kind}", (RIGHT + 8, place), name if fits else level.symbol)
+    if beyond:
+        runs(drawing, "beyond", (WIDTH, top - 6), beyond[::-1], "end")
+
+
+def _spread(lines: Sequence[float], first: float, last: float) -> list[float]:
+    """Baselines of names as near to their lines as their letters allow, between the first and the last that may be."""
+    places: list[float] = []
+    for line in lines:
+        places.append(max(line + 4, places[-1] + LETTER if places else first))
+    for k in reversed(range(len(places))):
+        places[k] = last = min(places[k], last)
+        last -= LETTER
+    return places
+
+
+def _thinned(x: FloatArray, y: FloatArray) -> list[Point]:
+    """Points of a curve: both ends of every piece, and what is between them where it is not straight."""
+    share = (x - x[:, :1]) / np.where(x[:, -1:] > x[:, :1], x[:, -1:] - x[:, :1], 1.0)
+    bent = (np.abs(y[:, :1] + share * (y[:, -1:] - y[:, :1]) - y) > STRAIGHT).any(axis=1)
+    kept = np.zeros(x.shape, np.bool_)
+    kept[:, (0, -1)] = True
+    kept[bent] = True
+    if kept.sum() > 4 * WIDTH:
+        kept &= _extremes(x, y)
+    points = list(zip(x[kept].tolist(), y[kept].tolist(), strict=True))
+    return [point for place, point in enumerate(points) if not place or point != points[place - 1]]
+
+
+def _extremes(x: FloatArray, y: FloatArray) -> np.ndarray:
+    """True for the first, last, lowest and highest point in each slice of width 1: a line shows no others."""
+    slices, heights = x.ravel().astype(np.intp), y.ravel()
+    kept = np.zeros(len(heights), np.bool_)
+    starts = np.flatnonzero(np.diff(slices, prepend=-1))
+    order = np.lexsort((heights, slices))  # slices ascend, so that each keeps its place
+    ends = np.append(starts[1:], len(heights)) - 1
+    kept[starts] = kept[ends] = kept[order[starts]] = kept[order[ends]] = True
+    return kept.reshape(x.shape)
+
+
+# --- Numbers of phases and times --------------------------------------------------------------------------------------
+
+
+def _numbers(drawing: Element, axis: TimeAxis, y: float, governing: Sequence[int]) -> None:
+    """Numbers of what has one, the pause's name, and times: none over another, the first of these going first."""
+    taken: list[Point] = []
+
+    def first_free(half: float, *places: float) -> float | None:
+        free = (x for x in places if all(end <= x - half or x + half <= start for start, end in taken))
+        if (found := next(free, None)) is not None:
+            taken.append((found - half, found + half))
+        return found
+
+    def put(kind: str, label: str, half: float, *places: float) -> None:
+        if (x := first_free(half, *places)) is not None:
+            text(drawing, kind, (x, y + 4.2), label, "middle")
+
+    if len(axis.numbered) > MOST_BOUNDARIES:
+        middle = (axis.numbered[0].start + axis.numbered[-1].end) / 2
+        put("phase", f"1 … {len(axis.numbered)}", width_of("1 … 10000") / 2, middle)
+    else:
+        for number, stretch in enumerate(axis.numbered, 1):
+            if first_free(APART / 2, stretch.middle) is not None:
+                _number(drawing, stretch, number, y, governing)
+    times = [(x, label, SMALLER / 2 * width_of(label) + 1) for x, label in axis.times]
+    for x, label, half in times[-1:]:
+        put("tick", label, half, x, x + half)
+    if axis.pause:
+        put("phase", "t_p", APART / 2, axis.pause.middle, axis.pause.end + APART / 2, axis.pause.end + APART)
+    for x, label, half in times[:-1]:
+        put("tick", label, half, x)
+
+
+def _number(drawing: Element, stretch: Stretch, number: int, y: float, governing: Sequence[int]) -> None:
+    """Number of a stretch in a disc, with its name beside it where both have room."""
+    state = " governing" if set(stretch.phases) & set(governing) else ""
+    group = add(drawing, "g", f"mark{state}", data_phase=_of(stretch))
+    needed = 2 * RADIUS + 4 + SMALLER * width_of(stretch.name)
+    x = stretch.middle - (needed / 2 - RADIUS if stretch.name and needed + 4 <= stretch.end - stretch.start else 0.0)
+    add(group, "circle", "disc", cx=x, cy=y, r=RADIUS)
+    text(group, "number", (x, y + 4.2), str(number), "middle")
+    if x < stretch.middle:
+        text(group, "phase-name", (x + RADIUS + 4, y + 4.2), stretch.name)
+
+
+def stretches(edges: Sequence[float], names: Sequence[str] = ()) -> list[Stretch]:
+    """A stretch of one phase from each edge to the next."""
+    return [Stretch(*ends, (k,), names[k] if names else "") for k, ends in enumerate(pairwise(edges))]
