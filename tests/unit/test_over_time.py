@@ -144,10 +144,11 @@ def test_the_cycle_in_words_reaches_from_peak_to_peak() -> None:
 
 
 def test_the_name_of_a_phase_is_the_title_of_its_step_and_stands_beside_its_number_where_there_is_room() -> None:
-    phases = (phase(40, 250, 0.3, name="lift"), phase(32, 500, 3, name="go back"), phase(20, 50, 3, name="wait " * 8))
-    shown = drawn(cycle(*phases))
+    names = ["lift", "go back", "wait as long as the press is open"]
+    phases = (phase(40, 250, 0.3), phase(32, 500, 3), phase(20, 50, 3))
+    shown = drawn(cycle(*(one | {"name": name} for one, name in zip(phases, names, strict=True))))
 
-    assert [step.findtext(SVG + "title") for step in shown.of("rect", "phase-step")] == [one["name"] for one in phases]
+    assert [step.findtext(SVG + "title") for step in shown.of("rect", "phase-step")] == names
     assert shown.said("phase-name") == ["go back"]
     assert sorted(shown.said("number")) == ["1", "2", "3"]
 
