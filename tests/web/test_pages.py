@@ -256,7 +256,7 @@ def test_where_a_life_stands_its_basis_stands_too(client: TestClient, section: s
 
 def test_sentences_below_the_cycle_stand_apart(api: TestClient) -> None:
     page = api.get("/?T=40&n=250&t=0.3&T=32&n=500&t=3&tp=4&Tk=200").text
-    assert "Short phases are drawn wider than they are. Arrows: beyond the scale." in page
+    assert re.search(r"Pause 4.s\.\s+</span>Short phases are drawn wider than they are\.\s*</figcaption>", page)
 
 
 @pytest.mark.parametrize("language", ["en", "de"])
