@@ -73,7 +73,9 @@ def texts(shown: Shown, letter: float = 6.8) -> Iterator[tuple[str, float, float
     """Text, left, right, top and bottom of every text, by the mean width of the page's letters; an index is smaller."""
     for text in shown.root.iter(SVG + "text"):
         said = "".join(text.itertext())
-        index = sum(len("".join(part.itertext())) for part in text.iter(SVG + "tspan") if part.get("class") == "index")
+        index = sum(
+            len("".join(part.itertext())) for part in text.iter(SVG + "tspan") if "index" in part.get("class", "")
+        )
         width = letter * (len(said) - 0.2 * index)
         x, y = float(text.get("x", "")), float(text.get("y", ""))
         left = x - {"start": 0.0, "middle": 0.5, "end": 1.0}[text.get("text-anchor", "")] * width
@@ -166,18 +168,18 @@ def test_limits_far_above_the_cycle_are_named_beyond_the_scale() -> None:
 @pytest.mark.parametrize(
     ("check", "accented"),
     [
-        ("average_torque", ["TN 80"]),
-        ("repeated_peak_torque", ["↑ TR 149"]),
-        ("momentary_peak_torque", ["\u2002↑ Tk 200"]),
-        ("maximum_input_speed", ["↑ nin(max)/i 1\u202f200"]),
-        ("output_bearing_life", []),
-        (None, []),
+        ("average_torque", "TN 80"),
+        ("repeated_peak_torque", "↑ TR 149"),
+        ("momentary_peak_torque", "↑ Tk 200"),
+        ("maximum_input_speed", "↑ nin(max)/i 1\u202f200"),
+        ("output_bearing_life", ""),
+        (None, ""),
     ],
 )
-def test_the_limit_of_the_check_that_governs_alone_takes_the_accent(check: str | None, accented: list[str]) -> None:
+def test_the_limit_of_the_check_that_governs_alone_takes_the_accent(check: str | None, accented: str) -> None:
     shown = drawn(cycle(*EXAMPLE, emergency_stop={"torque_Nm": 200.0}), Reader(), (), check)
     found = [*shown.of("text", "governing"), *shown.of("tspan", "governing")]
-    assert ["".join(text.itertext()) for text in found] == accented
+    assert "".join(text for each in found for text in each.itertext()).strip() == accented
 
 
 def test_phases_that_govern_stand_out_in_the_steps_and_in_their_numbers() -> None:

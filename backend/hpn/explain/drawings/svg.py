@@ -32,32 +32,27 @@ def add(parent: Element, name: str, kind: str, **attributes: float | str) -> Ele
 
 def text(parent: Element, kind: str, at: Point, content: str, anchor: str = "start") -> Element:
     """Add a text, its symbols in italics with their index below."""
+    return runs(parent, kind, at, [("", content)], anchor)
+
+
+def runs(parent: Element, kind: str, at: Point, parts: Iterable[tuple[str, str]], anchor: str = "start") -> Element:
+    """Add a text of several parts, each of a kind of its own, a space between two."""
     element = add(parent, "text", kind, x=at[0], y=at[1], text_anchor=anchor)
-    _fill(element, content)
+    lowered = False
+    for place, (own, content) in enumerate(parts):
+        for part in sentence("\N{EN SPACE}" * (place > 0) + content):
+            back = -3 if lowered else 0
+            lowered = not isinstance(part, str)
+            if isinstance(part, str):
+                _run(element, own, part, back)
+            else:
+                _run(element, f"{own} letter", part[0], back)
+                _run(element, f"{own} index", part[1], 3)
     return element
 
 
-def runs(parent: Element, kind: str, at: Point, parts: Iterable[tuple[str, str]], anchor: str) -> None:
-    """Add a text of several parts of their own kinds, a space between two."""
-    element = add(parent, "text", kind, x=at[0], y=at[1], text_anchor=anchor)
-    for place, (own, content) in enumerate(parts):
-        _fill(SubElement(element, "tspan", {"class": own}), "\N{EN SPACE}" * (place > 0) + content)
-
-
-def _fill(element: Element, content: str) -> None:
-    lowered = False
-    for part in sentence(content):
-        back = -3 if lowered else 0
-        lowered = not isinstance(part, str)
-        if isinstance(part, str):
-            _run(element, "", part, back)
-        else:
-            _run(element, "letter", part[0], back)
-            _run(element, "index", part[1], 3)
-
-
 def _run(element: Element, kind: str, content: str, shift: float) -> None:
-    attributes = ({"class": kind} if kind else {}) | ({"dy": written(shift)} if shift else {})
+    attributes = ({"class": kind.strip()} if kind else {}) | ({"dy": written(shift)} if shift else {})
     SubElement(element, "tspan", attributes).text = content
 
 
