@@ -25,21 +25,10 @@ PLOTLY = FRONTEND / "node_modules/plotly.js-basic-dist-min/plotly-basic.min.js"
 DRAWN = ("../../backend/hpn/explain/drawings/drawings", "plots")
 """Style sheets of drawings, which the report uses too, and of plots."""
 
+COMMON = ("fonts", "tokens", "app", "form", "tools")
 STYLES = {
-    "page.css": ("fonts", "tokens", "app", "tools", "workbench", "selection", "insight", *DRAWN, "motion", "phone"),
-    "site.css": (
-        "fonts",
-        "tokens",
-        "app",
-        "tools",
-        "catalogue",
-        "saved",
-        "selection",
-        "insight",
-        *DRAWN,
-        "fleet",
-        "phone",
-    ),
+    "page.css": (*COMMON, "workbench", "selection", "insight", *DRAWN, "motion", "phone"),
+    "site.css": (*COMMON, "catalogue", "saved", "selection", "insight", *DRAWN, "fleet", "phone"),
     "report.css": ("tokens", "app", "tools", "fleet", "phone"),
 }
 """Style sheets of the form with its result, of all other pages, and of a fleet’s report, which holds its own."""

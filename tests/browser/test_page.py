@@ -244,7 +244,7 @@ def test_explanation_of_a_check_opens_and_closes_by_keyboard(visitor: Visitor) -
 
 def test_opened_sections_stay_open_while_typing(visitor: Visitor) -> None:
     page = visitor.open(EXAMPLE)
-    page.get_by_text("Requirements and environment").click()
+    page.get_by_text("Properties and environment").click()
     page.get_by_label("Maximum utilisation").fill("0.7")
     expect(selected(page)).to_contain_text("HPN-32A-5")
     expect(page.get_by_label("Maximum utilisation")).to_be_visible()

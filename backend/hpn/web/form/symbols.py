@@ -173,7 +173,7 @@ SYMBOLS = (
         ("requirements", "utilisation"),
         placeholder="1",
         offered=(0.7, 0.8, 0.9, 1),
-        hint=N_("Your own reserve: 0.8 keeps every load at or below 80 % of its limit."),
+        hint=N_("Your own reserve: 0.8 keeps every load at or below 80\u202f% of its limit."),
     ),
     Symbol(
         "eta",
@@ -368,42 +368,35 @@ def move_symbols(mechanism: str) -> tuple[Symbol, ...]:
 
 
 GROUPS = (
-    FormGroup("stop", N_("Emergency stop"), ("Tk", "Nk"), folded=False),
+    FormGroup("load", N_("Loads"), ("FR", "FA", "fw", "Tk", "Nk"), folded=False, short=N_("Loads")),
+    FormGroup(
+        "wishes",
+        N_("Requirements"),
+        ("i", "size", "u", "rank", "Lh", "Lb", "Lbb"),
+        folded=False,
+        hint=N_("ratios i and sizes: none selected = all"),
+        short=N_("Requirements"),
+    ),
+    FormGroup("motor", N_("Motor"), ("nm", "Tm", "Tmn", "eta", "nmr", "Jm", "Jr", "JL", "md"), short=N_("Motor")),
     FormGroup(
         "brake",
         N_("Brake of the emergency stop"),
         ("TB", "tb", "tr", "nb", "kd"),
         hint=N_("In place of the emergency-stop torque, which then follows for each gear."),
-        short=N_("Brake"),
     ),
     FormGroup(
-        "wishes",
-        N_("Constraints"),
-        ("i", "size", "Lh", "rank"),
-        folded=False,
-        hint=N_("none selected = all"),
-    ),
-    FormGroup(
-        "load",
-        N_("Load on the output shaft"),
-        ("FR", "FA", "fw", "Lb", "Lbb", "bm", "xR", "yA", "xc"),
+        "lever",
+        N_("Place of the loads, belt"),
+        ("xR", "yA", "xc"),
         hint=N_("Radial at the centre of the shaft, axial along its axis, but for what is given below."),
-        short=N_("Loads"),
     ),
-    FormGroup("motor", N_("Motor"), ("nm", "Tm", "Tmn", "eta", "nmr", "Jm", "Jr", "JL", "md"), short=N_("Motor")),
     FormGroup(
         "stiffness",
         N_("Stiffness and position"),
         ("fn", "pe", "pem", "pr", "lr"),
         hint=N_("Frequency: the motor held. Position error: accuracy, wind-up and backlash, added."),
-        short=N_("Stiffness"),
     ),
-    FormGroup(
-        "limits",
-        N_("Requirements and environment"),
-        ("u", "bl", "K3", "m", "L", "ta", "aa"),
-        short=N_("Requirements"),
-    ),
+    FormGroup("limits", N_("Properties and environment"), ("bm", "bl", "K3", "m", "L", "ta", "aa")),
 )
 """The form below its duty cycle, which the pause belongs to."""
 
