@@ -263,16 +263,16 @@ def test_without_a_phase_the_address_keeps_all_else(visitor: Visitor) -> None:
 
 def test_an_input_that_an_undo_brings_back_is_not_folded_away(visitor: Visitor) -> None:
     page = visitor.open(EXAMPLE)
-    section = page.locator("#group-load")
+    section = page.locator("#group-motor")
     section.locator("> summary").click()
-    page.locator("#f-FR").fill("900")
-    expect(page).to_have_url(re.compile("FR=900"))
+    page.locator("#f-nm").fill("900")
+    expect(page).to_have_url(re.compile("nm=900"))
     page.get_by_role("button", name="Undo").click()
-    expect(page).not_to_have_url(re.compile("FR=900"))
+    expect(page).not_to_have_url(re.compile("nm=900"))
     section.locator("> summary").click()
     page.get_by_role("button", name="Redo").click()
-    expect(page).to_have_url(re.compile("FR=900"))
-    expect(page.locator("#f-FR")).to_be_visible()
+    expect(page).to_have_url(re.compile("nm=900"))
+    expect(page.locator("#f-nm")).to_be_visible()
 
 
 @pytest.mark.parametrize("late", ["htmx", "script"])

@@ -44,6 +44,7 @@ def test_a_pulley_at_45_mm_is_judged_with_its_lever(visitor: Visitor) -> None:
     page = visitor.open(f"{AXIS}&size=20A&FR=600&FA=200")
     expect(selected(page)).to_contain_text("✓ suitable")
 
+    page.locator("#group-lever > summary").click()
     expect(page.get_by_role("img", name="Shaft from the side")).to_be_visible()
     page.get_by_label("Radial load acts at").fill("45")
     expect(selected(page)).to_contain_text("not rated")
@@ -55,6 +56,7 @@ def test_a_pulley_at_45_mm_is_judged_with_its_lever(visitor: Visitor) -> None:
 
 def test_a_belt_comes_to_a_radial_load(visitor: Visitor) -> None:
     page = visitor.open(f"{AXIS}&size=20A&FR=1")
+    page.locator("#group-lever > summary").click()
     page.get_by_text("Radial load of a belt").click()
     page.get_by_label("Tight strand").fill("450")
     page.get_by_label("Slack strand").fill("150")

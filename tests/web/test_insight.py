@@ -6,10 +6,18 @@ from urllib.parse import quote
 
 import pytest
 from httpx2 import Response
+from msgspec import structs
 from starlette.testclient import TestClient
 
+from hpn.application import Application
+from hpn.catalogue import Catalogue, GearList, load_catalogue
+from hpn.engine import selection
+from hpn.engine.duty import Duty
+from hpn.engine.evaluation import Evaluation, evaluate
 from hpn.web.app import create_app
 from tests.web.test_pages import EXAMPLE, HTMX
+
+CATALOGUE = load_catalogue()
 
 
 @pytest.fixture(scope="module")
@@ -33,6 +41,34 @@ def test_without_pins_the_nearest_smaller_miss_stands_beside_the_selected_gear(c
     html = client.get(EXAMPLE).text
     assert compared(html) == ["HPN-20A-5", "HPN-14A-5"]
     assert pins(html) == []
+
+
+@pytest.mark.parametrize("link", [EXAMPLE, f"{EXAMPLE}&i=4&size=20A&gear=HPN-11A-35", EXAMPLE.replace("&i=5", "")])
+@pytest.mark.parametrize("headers", [{}, HTMX])
+def test_page_judges_each_gear_of_the_catalogue_once(
+    client: TestClient, monkeypatch: pytest.MonkeyPatch, link: str, headers: dict[str, str]
+) -> None:
+    judged: list[str] = []
+
+    def counted(duty: Duty, gears: GearList, catalogue: Catalogue) -> Evaluation:
+        judged.extend(gear.designation for gear in gears.rows)
+        return evaluate(duty, gears, catalogue)
+
+    monkeypatch.setattr(selection, "evaluate", counted)
+    assert client.get(link, headers=headers).status_code == 200
+    assert sorted(judged) == sorted(gear.designation for gear in CATALOGUE.gears)
+
+
+def test_gear_that_ratios_leave_out_is_judged_as_without_them() -> None:
+    application = Application.worked_example()
+    free = application.requirements.model_copy(update={"ratios": None})
+    every = selection.select(application.model_copy(update={"requirements": free}), CATALOGUE)
+    unranked = {candidate.designation: structs.replace(candidate, rank=None) for candidate in every.candidates}
+    judged = selection.judge(application, CATALOGUE)
+    left_out = judged.left_out()
+    allowed = {candidate.designation for candidate in judged.selection().candidates}
+    assert {candidate.designation for candidate in left_out} == unranked.keys() - allowed
+    assert all(candidate == unranked[candidate.designation] for candidate in left_out)
 
 
 def test_pins_stand_beside_the_chosen_gear_in_their_order_and_each_once(client: TestClient) -> None:

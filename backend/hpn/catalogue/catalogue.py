@@ -1,6 +1,6 @@
 """The catalogue as it is asked: every gear of the series, what holds for all of them, and columns of figures."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, fields
 from functools import cached_property
 
@@ -156,11 +156,15 @@ class Catalogue:
 
     def restricted(self, sizes: tuple[str, ...] | None, ratios: tuple[int, ...] | None) -> GearList:
         """Gears of the given sizes and ratios (None: of all), in catalogue order; maybe none."""
-        chosen = [
+        return self.listed(
             gear
             for gear in self.gears
             if (sizes is None or gear.size in sizes) and (ratios is None or gear.ratio in ratios)
-        ]
+        )
+
+    def listed(self, gears: Iterable[Gear]) -> GearList:
+        """Some gears with their curves."""
+        chosen = tuple(gears)
         return GearList(chosen, [self.curves.get(gear.size) for gear in chosen])
 
     def facts_on(self, check: str) -> tuple[Fact, ...]:

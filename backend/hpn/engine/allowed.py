@@ -58,6 +58,13 @@ def _restricted(catalogue: Catalogue, sizes: tuple[str, ...] | None, ratios: tup
     return gears
 
 
+@lru_cache(maxsize=256)
+def gears_left_out(gears: GearList, catalogue: Catalogue) -> GearList:
+    """Gears of the catalogue that are not among some, in its order; maybe none."""
+    allowed = {gear.designation for gear in gears.rows}
+    return catalogue.listed(gear for gear in catalogue.gears if gear.designation not in allowed)
+
+
 def _not_there(sizes: Sequence[str], ratios: Sequence[int], catalogue: Catalogue) -> InputError:
     problems: list[tuple[Location, Sentence]] = [
         (

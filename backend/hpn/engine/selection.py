@@ -16,7 +16,7 @@ from pydantic import Field
 from hpn import ENGINE_VERSION
 from hpn.application import Application
 from hpn.catalogue import Catalogue
-from hpn.engine.allowed import gears_for, with_listed_motor
+from hpn.engine.allowed import gears_for, gears_left_out, with_listed_motor
 from hpn.engine.check import Check, Group, Kind
 from hpn.engine.checks import BY_CODE, allowed
 from hpn.engine.duty import Duty
@@ -269,6 +269,16 @@ class Judged:
             check_definitions=dict(_definitions(checks)),
             notices=notices_of(self.application, evaluation, index),
         )
+
+    def left_out(self) -> tuple[Candidate, ...]:
+        """Candidates that the ratios and sizes asked for leave out, judged alike and without rank.
+
+        They are of an application that is judged alone.
+        """
+        catalogue, duty = self.evaluation.catalogue, self.evaluation.case.duty
+        gears = gears_left_out(self.evaluation.gears, catalogue)
+        found = candidates_of(evaluate(duty, gears, catalogue), 0) if gears.rows else ()
+        return tuple(msgspec.structs.replace(candidate, rank=None) for candidate in found)
 
 
 def select(application: Application, catalogue: Catalogue, link: str = "") -> Selection:

@@ -15,7 +15,7 @@ from starlette.responses import Response
 
 from hpn.application import Application
 from hpn.catalogue import Catalogue
-from hpn.engine.selection import decode, select
+from hpn.engine.selection import decode, judge, select
 from hpn.files.aas import Metamodel
 from hpn.files.export import DIGITS, Export, Heading, made_by
 from hpn.store import SavedSelection
@@ -230,12 +230,9 @@ def _of_gear(export: Export, designation: str) -> Export:
     selection, application = export.selection, export.application
     if selection.candidate(designation) is None:
         assert export.catalogue is not None
-        free = application.requirements.model_copy(update={"ratios": None, "sizes": None})
-        every = select(application.model_copy(update={"requirements": free}), export.catalogue)
-        chosen = every.candidate(designation)
-        assert chosen is not None  # nothing is asked of its size and ratio
-        beyond = structs.replace(chosen, rank=None)
-        selection = structs.replace(selection, candidates=(*selection.candidates, beyond))
+        left_out = judge(application, export.catalogue).left_out()
+        beyond = [candidate for candidate in left_out if candidate.designation == designation]
+        selection = structs.replace(selection, candidates=(*selection.candidates, *beyond))
     link = f"{export.link}&gear={designation}"
     return replace(export, selection=selection, link=link, chosen=designation)
 

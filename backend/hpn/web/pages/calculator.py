@@ -13,7 +13,7 @@ from starlette.responses import HTMLResponse, RedirectResponse, Response
 from hpn.application import Application, InputError
 from hpn.catalogue import Catalogue
 from hpn.catalogue.gear import Gear
-from hpn.engine.selection import Candidate, Selection, select
+from hpn.engine.selection import Candidate, Selection, judge
 from hpn.tables.numbers import WRITTEN
 from hpn.web.door.access import admit
 from hpn.web.door.bodies import pairs_of, read_form
@@ -154,8 +154,9 @@ def answered(form: Form, catalogue: Catalogue) -> tuple[Form, Answer | None]:
 
 def _answer(application: Application, form: Form, catalogue: Catalogue) -> Answer:
     link = to_link(application)
-    selection = select(application, catalogue, link)
-    everything = _unrestricted(application, selection, catalogue)
+    judged = judge(application, catalogue)
+    selection = judged.selection(link)
+    everything = {candidate.designation: candidate for candidate in (*selection.candidates, *judged.left_out())}
     gear = catalogue.find(form.gear or selection.foremost.designation)
     assert gear is not None  # `answered` refuses what the catalogue lacks
     order = ordering_code(catalogue, gear, form.labels["order_output"], form.labels["order_motor"])
@@ -191,15 +192,6 @@ def _parted(link: str) -> tuple[list[str], list[str]]:
     for pair in link.removeprefix("/?").split("&"):
         (own if pair.partition("=")[0] in CYCLE_NAMES else beside).append(pair)
     return own, beside
-
-
-def _unrestricted(application: Application, selection: Selection, catalogue: Catalogue) -> dict[str, Candidate]:
-    """Every gear of the catalogue by designation, whatever ratios and sizes were asked for."""
-    asked = application.requirements
-    if asked.ratios or asked.sizes:
-        free = asked.model_copy(update={"ratios": None, "sizes": None})
-        selection = select(application.model_copy(update={"requirements": free}), catalogue)
-    return {candidate.designation: candidate for candidate in selection.candidates}
 
 
 def _map(
