@@ -25,7 +25,7 @@ PLOTLY = FRONTEND / "node_modules/plotly.js-basic-dist-min/plotly-basic.min.js"
 DRAWN = ("../../backend/hpn/explain/drawings/drawings", "plots")
 """Style sheets of drawings, which the report uses too, and of plots."""
 
-COMMON = ("fonts", "tokens", "app", "form", "tools")
+COMMON = ("fonts", "tokens", "app", "form", "tools", "import")
 STYLES = {
     "page.css": (*COMMON, "workbench", "selection", "insight", *DRAWN, "motion", "phone"),
     "site.css": (*COMMON, "catalogue", "saved", "selection", "insight", *DRAWN, "fleet", "phone"),

@@ -54,11 +54,11 @@ document.addEventListener("input", (event) => {
   if (form?.matches("#paste-form, #ordering-form")) form.dispatchEvent(new Event("htmx:abort"));
 });
 
-// The preview is exchanged whole, so that each select shows what the server read; who answers keeps the place.
+// The preview is exchanged whole, so that each choice shows what the server read; who answers keeps the place.
 let answered = null;
 
 document.addEventListener("htmx:before:swap", (event) => {
-  if (event.detail.ctx?.sourceElement.id === "paste-form") answered = document.activeElement.closest("#paste-preview select")?.id;
+  if (event.detail.ctx?.sourceElement.id === "paste-form") answered = document.activeElement.closest("#paste-preview :is(select, input)")?.id;
 });
 
 document.addEventListener("htmx:after:swap", (event) => {
@@ -70,7 +70,7 @@ document.addEventListener("htmx:after:swap", (event) => {
   } else if (answered) {
     document.getElementById(answered)?.focus();
   } else if (ctx.sourceEvent.type === "submit") {
-    document.querySelector("#paste-preview select.asked, #paste-preview .take button")?.focus({ preventScroll: false });
+    document.querySelector("#paste-preview :is(select.asked, .asked input, .take button)")?.focus({ preventScroll: false });
   }
 });
 

@@ -55,15 +55,18 @@ def test_ambiguous_table_is_asked_about_by_keyboard(visitor: Visitor) -> None:
     page = visitor.open(EXAMPLE)
     paste(page, "1.234\t250\t3")
     expect(page.get_by_text("Which is the decimal mark?")).to_be_visible()
-    mark = page.get_by_label("The decimal mark is")
-    expect(mark).to_be_focused()
+    mark = page.get_by_role("group", name="The decimal mark is")
+    point, comma = mark.get_by_role("radio", name="a point"), mark.get_by_role("radio", name="a comma")
+    expect(point).to_be_focused()
+    expect(point).not_to_be_checked()
     expect(button(page, "Replace phases")).to_be_disabled()
-    page.keyboard.press("ArrowDown")
-    expect(mark).to_have_value(".")
+    page.keyboard.press("Space")
+    expect(page.get_by_role("cell", name="1.234", exact=True)).to_be_visible()
+    expect(point).to_be_focused()  # the answer takes nobody's place away
     page.keyboard.press("ArrowDown")
     expect(page.get_by_role("cell", name="1\u202f234", exact=True)).to_be_visible()
-    expect(mark).to_be_focused()  # the answer takes nobody's place away
-    expect(mark).to_have_value(",")
+    expect(comma).to_be_focused()
+    expect(comma).to_be_checked()
     for _ in range(12):
         if button(page, "Replace phases").evaluate("b => b === document.activeElement"):
             break
@@ -76,12 +79,12 @@ def test_choice_made_while_the_answer_to_the_one_before_is_under_way_counts(visi
     """The table is asked for 150 ms after a choice: an answer that came in between showed the choice before it."""
     page = visitor.open(EXAMPLE)
     paste(page, "1.234\t250\t3")
-    mark = page.get_by_label("The decimal mark is")
-    expect(mark).to_be_focused()
-    with answer_held_back(page, partial(page.keyboard.press, "ArrowDown"), "**/paste"):
+    mark = page.get_by_role("group", name="The decimal mark is")
+    expect(mark.get_by_role("radio", name="a point")).to_be_focused()
+    with answer_held_back(page, partial(page.keyboard.press, "Space"), "**/paste"):
         page.keyboard.press("ArrowDown")
     expect(page.get_by_role("cell", name="1\u202f234", exact=True)).to_be_visible()
-    expect(mark).to_have_value(",")
+    expect(mark.get_by_role("radio", name="a comma")).to_be_checked()
 
 
 def test_column_is_corrected_and_taken(visitor: Visitor) -> None:
@@ -164,7 +167,7 @@ def test_table_and_file_are_taken_without_script(visitor: Visitor, tmp_path: Pat
     button(page, "Paste table").click()
     page.get_by_label("Cells copied from a spreadsheet").fill("1.234;250;3\n2.345;100;1")
     button(page, "Show what is read").click()
-    page.get_by_label("The decimal mark is").select_option("a point: 1.234")
+    page.get_by_role("radio", name="a point: 1.234").check()
     button(page, "Show what is read").click()
     button(page, "Replace phases").click()
     expect(torque(page, 2)).to_have_value("2.345")

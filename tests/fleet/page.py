@@ -36,4 +36,4 @@ def fields_of(page: str) -> dict[str, str]:
     for name, options in re.findall(r'<select name="(\w+)"[^>]*>(.*?)</select>', page, re.DOTALL):
         chosen = re.search(r'value="([^"]*)" selected', options)
         fields[name] = chosen[1] if chosen else ""
-    return fields
+    return fields | dict(re.findall(r'<input type="radio"\s+name="(\w+)"\s+id="[^"]*"\s+value="([^"]*)" checked', page))

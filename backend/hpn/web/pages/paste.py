@@ -9,6 +9,7 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
+from math import isfinite
 from typing import Any
 from urllib.parse import urlencode
 
@@ -39,12 +40,17 @@ from hpn.web.form.ways import CYCLE_NAMES
 from hpn.web.pages import calculator
 from hpn.web.pages.templates import environment
 from hpn.words.fields import MAXIMUM_PHASES
-from hpn.words.wording import N_, Sentence
+from hpn.words.wording import N_, Quantity, Sentence
 
 NOTHING = N_("there is nothing in the workbook")
 WANTED = Wanted(MAXIMUM_PHASES, MAXIMUM_CHARACTERS)
 SHORT_CHARACTERS = 8_000
 """Texts up to which a worker reads at once: whatever they say, that takes some 50 ms."""
+
+MOST_ROWS_TRIED, MOST_OPTIONS_TRIED = 100, 6
+"""Rows of a table, and options of its choices, that are read once more to show what comes of each."""
+
+OUTCOME = N_("speeds {lowest} to {highest}, cycle {time}")
 
 _PLACE = re.compile(r"([ru])([0-9]{1,6})")
 
@@ -68,6 +74,8 @@ class PasteDraft:
     sheets: tuple[str, ...] = ()
     sheet: str = ""
     book: str = ""
+    outcomes: Mapping[tuple[str, str], Sentence] = field(default_factory=dict)
+    """Outcome of each option of a choice."""
 
 
 def start(request: Request) -> Response:
@@ -131,8 +139,10 @@ def _answer(request: Request, given: Given, contents: Contents) -> Response:
     sheets, fields = contents.sheets, given.fields
     chosen = fields.get("sheet", "") if fields.get("of") == of else ""
     sheet = chosen if chosen in sheets else next(iter(sheets)) if len(sheets) == 1 else ""
-    table = _table(sheets[sheet], choices_of(fields, of)) if sheet in sheets else None
-    draft = _draft(given.link, text, table, of=of)
+    choices = choices_of(fields, of)
+    table = _table(sheets[sheet], choices) if sheet in sheets else None
+    outcomes = _outcomes(sheets[sheet], choices, table) if table else {}
+    draft = _draft(given.link, text, table, of=of, outcomes=outcomes)
     if given.file and not text:
         carried = "" if "hx-request" in request.headers else packed(given.file)
         draft = replace(draft, sheets=tuple(sheets), sheet=sheet, book=carried)
@@ -141,6 +151,26 @@ def _answer(request: Request, given: Given, contents: Contents) -> Response:
 
 def _table(found: Sequence[Grid] | Sentence, choices: Choices) -> CycleTable:
     return CycleTable(problem=found) if isinstance(found, Sentence) else read_grids(found, choices, assumed(CYCLE))
+
+
+def _outcomes(found: Sequence[Grid] | Sentence, choices: Choices, table: CycleTable) -> dict[tuple[str, str], Sentence]:
+    """Speeds and time of the cycle by each option of the choices that a short table leaves, if nothing else is open."""
+    if not table.body or len(table.body.rows) > MOST_ROWS_TRIED:
+        return {}
+    options = [(choice.name, code) for choice in table.choices for code in choice.options][:MOST_OPTIONS_TRIED]
+    tried: list[tuple[tuple[str, str], Sentence | None]] = []
+    for name, code in options:
+        answer: dict[str, Any] = {name: code}
+        tried.append(((name, code), _outcome(_table(found, replace(choices, **answer)))))
+    return {option: outcome for option, outcome in tried if outcome}
+
+
+def _outcome(table: CycleTable) -> Sentence | None:
+    speeds = [abs(float(phase[PHASE_ROLES.index("n")] or 0)) for phase in table.phases]
+    if not table.whole or table.lasting_s is None or not isfinite(max(speeds)):
+        return None
+    ends = {"lowest": Quantity(min(speeds), "rpm"), "highest": Quantity(max(speeds), "rpm")}
+    return Sentence(OUTCOME, {**ends, "time": Quantity(table.lasting_s, "s")})
 
 
 def _digest(content: bytes) -> str:
