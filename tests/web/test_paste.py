@@ -65,6 +65,19 @@ def test_preview_names_separator_columns_and_every_number(client: TestClient) ->
     assert cells(page.text) == ["9.3", "1\u202f250", "0.3", "\N{MINUS SIGN}12.5", "500", "1.25"]
 
 
+def test_an_open_question_shows_what_each_answer_makes_of_the_table(client: TestClient) -> None:
+    page = client.post("/paste", data={"link": LINK, "text": "12\t1,250\t2\n-4\t2,500\t1\n"}, headers=HTMX).text
+    tiles = re.findall(
+        r'type="radio"\s+name="decimal".*?value="(.)"( checked)?>\s*<b>([^<]*)</b>\s*<small>([^<]*)', page
+    )
+
+    assert tiles == [
+        (".", "", "a point: 1\u202f250", "speeds 1\u202f250\u202frpm to 2\u202f500\u202frpm, cycle 3\u202fs"),
+        (",", "", "a comma: 1.250", "speeds 1.25\u202frpm to 2.5\u202frpm, cycle 3\u202fs"),
+    ]
+    assert "disabled" in page
+
+
 @pytest.mark.parametrize("headers", [HTMX, {}], ids=["with script", "without"])
 def test_each_column_can_be_read_as_something_else(client: TestClient, headers: dict[str, str]) -> None:
     page = client.post("/paste", data={"link": LINK, "text": GERMAN}, headers=headers)
