@@ -134,7 +134,7 @@ def _item(text: bytes) -> _Item:
         value = from_json(text)
         given = value.get("reference") if isinstance(value, dict) else None
         reference = given if isinstance(given, str) else None
-        asked = BatchItem.model_validate_json(text)
+        asked = BatchItem.model_validate(value)
         require_unique(text, value)
     except ValidationError as error:
         return _Item(reference, Problem.of(error))

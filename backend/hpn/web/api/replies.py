@@ -19,6 +19,7 @@ from hpn.web.door.problems import MAXIMUM_ERRORS
 from hpn.words.reply import Reply
 
 encode = msgspec.json.Encoder().encode
+"""JSON of a reply; NaN and infinity become null."""
 
 DIFFERENCES_SHOWN = 500
 MOST: Any = Field(max_length=DIFFERENCES_SHOWN)
@@ -36,11 +37,6 @@ class JSONBytes(Response):
     """JSON that is already encoded."""
 
     media_type = "application/json"
-
-
-def json_response(reply: Any, status: int = 200, headers: Mapping[str, str] | None = None) -> Response:
-    """A reply as JSON; NaN and infinity become null."""
-    return JSONBytes(encode(reply), status, headers)
 
 
 class FieldError(Reply, frozen=True):

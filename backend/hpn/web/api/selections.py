@@ -26,7 +26,6 @@ from hpn.web.api.replies import (
     SelectionListReply,
     SummaryReply,
     TodayReply,
-    json_response,
 )
 from hpn.web.api.replies import encode as encode_reply
 from hpn.web.archive import (
@@ -111,7 +110,7 @@ async def save_selection(request: Request) -> Response:
     if preferred == "representation":
         whole, headers["ETag"] = await _representation(request, id)
         return JSONBytes(whole, 201, headers)
-    return json_response(SavedReply(id, url_of(id)), 201, headers)
+    return JSONBytes(encode_reply(SavedReply(id, url_of(id))), 201, headers)
 
 
 def _draft(body: bytes, catalogue: Catalogue, key: str | None, owner: str | None) -> Draft:
