@@ -13,7 +13,7 @@ from playwright.sync_api import Browser, Page, Playwright, expect
 from hpn.application import Application
 from hpn.catalogue import load_catalogue
 from hpn.engine.selection import select
-from hpn.explain.drawings import Subject, bearing_picture, envelope_drawing
+from hpn.explain.drawings import LARGE, SMALL, Subject, bearing_picture, envelope_drawing
 from hpn.explain.drawings.svg import STYLE, markup
 from hpn.words.reader import Reader
 from tests.browser.conftest import PATIENCE_S, Visitor, open_section, violations
@@ -143,7 +143,7 @@ def test_typing_a_load_moves_its_point_and_no_axis(visitor: Visitor) -> None:
 
 def test_data_and_library_of_a_plot_come_when_somebody_unfolds_it(visitor: Visitor) -> None:
     page = visitor.open(PHASES + "#bearing")
-    expect(section(page).locator("svg .line.limit").first).to_be_visible()
+    expect(section(page).locator("svg .line.limit").locator("visible=true").first).to_be_visible()
     assert page.locator("[data-figure]").count() == 0
     assert not page.evaluate("performance.getEntriesByType('resource').some(entry => /plotly/.test(entry.name))")
     plot(page)
@@ -156,7 +156,7 @@ def test_all_sizes_are_a_second_view_by_keyboard_that_stays_while_typing(visitor
     page.get_by_role("radio", name="This size").focus()
     page.keyboard.press("ArrowRight")
     drawing = page.get_by_role("figure", name=re.compile("on each size"))
-    expect(drawing.locator("text.name")).to_have_count(4)
+    expect(drawing.locator("text.name").locator("visible=true")).to_have_count(4)
     assert len([t for t in drawn(page, "of each size")["data"] if t["meta"]["kind"] == "size"]) == 4
     table = page.get_by_role("table", name="Which size carries the load")
     expect(table.get_by_role("row", name=re.compile("14A"))).to_contain_text("does not carry it")
@@ -261,7 +261,7 @@ def test_a_candidate_outside_the_wishes_has_its_pictures_too(visitor: Visitor) -
 def test_without_loads_the_drawing_leads_to_the_field(visitor: Visitor) -> None:
     page = visitor.open(EXAMPLE)
     drawing = page.get_by_role("figure", name="Load on the output shaft")
-    expect(drawing.locator(".line.limit")).to_be_in_viewport()
+    expect(drawing.locator(".line.limit").locator("visible=true")).to_be_in_viewport()
     drawing.get_by_role("link", name="Add a load").click()
     expect(page.get_by_label("Radial load of the cycle")).to_be_focused()
 
@@ -300,14 +300,22 @@ def marked(page: Page) -> dict[str, list[str]]:
     """Phases that are marked in the table, the chart of the cycle and the drawing."""
     places = "each => each.dataset.phase ?? each.id.split('-')[1]"
     kinds = {"row": "#duty tr.marked", "step": "#cycle .phase-step.marked", "load": "#envelope .mark.marked"}
-    return {kind: page.locator(path).evaluate_all(f"all => all.map({places})") for kind, path in kinds.items()}
+    return {
+        kind: page.locator(path).locator("visible=true").evaluate_all(f"all => all.map({places})")
+        for kind, path in kinds.items()
+    }
+
+
+def seen(page: Page, path: str) -> Any:
+    """Part of the one of the two drawings of the envelope that has room."""
+    return page.locator(f"#envelope {path}").locator("visible=true")
 
 
 def test_row_step_and_load_of_a_phase_are_marked_together_by_pointer_and_by_focus(visitor: Visitor) -> None:
     page = visitor.open(PHASES)
     second = {"row": ["1"], "step": ["1"], "load": ["1"]}
 
-    page.locator('#envelope [data-phase="1"] .number').hover()
+    seen(page, '[data-phase="1"] .number').hover()
     assert marked(page) == second
     page.mouse.move(700, 880)
     assert marked(page) == {"row": [], "step": [], "load": []}
@@ -317,12 +325,12 @@ def test_row_step_and_load_of_a_phase_are_marked_together_by_pointer_and_by_focu
     page.keyboard.press("End")
     page.keyboard.type("0")
     expect(page).to_have_url(re.compile("n=5000"))
-    expect(page.locator("#envelope .mark.marked")).to_have_count(1)
+    expect(page.locator("#envelope .mark.marked").locator("visible=true")).to_have_count(1)
     assert marked(page) == second
 
-    page.locator('#envelope [data-phase="2"]').focus()
+    seen(page, '[data-phase="2"]').focus()
     assert marked(page) == {"row": ["2"], "step": ["2"], "load": ["2"]}
-    assert page.locator('#envelope [data-phase="2"]').evaluate("each => each.matches(':focus-visible')")
+    assert seen(page, '[data-phase="2"]').evaluate("each => each.matches(':focus-visible')")
 
 
 def test_a_move_is_marked_together_with_all_its_phases(visitor: Visitor) -> None:
@@ -344,35 +352,44 @@ def test_each_phase_of_a_long_table_has_its_step(visitor: Visitor) -> None:
 @pytest.mark.parametrize(("width", "room"), [(1440, (348, 400)), (1920, (640, 480))])
 def test_the_drawing_fits_its_place_on_the_overview(visitor: Visitor, width: int, room: tuple[int, int]) -> None:
     page = visitor.open(PHASES, width=width)
-    box = page.locator("#envelope").bounding_box()
+    box = seen(page, "svg").bounding_box()
     assert box
     assert room[0] * 0.85 <= box["width"] <= room[0]
-    assert box["height"] <= room[1]
+    assert box["height"] <= room[1] + 1
 
 
 OVERLAPS = """(least) => [...document.querySelectorAll("svg")].flatMap((svg) => {
+  if (!svg.getClientRects().length) return [];
   const frame = svg.getBoundingClientRect();
   const found = [];
   const scale = svg.getScreenCTM().a;
-  const sizeOf = (part) => parseFloat(getComputedStyle(part).fontSize);
-  const sizes = (text) => [text, ...text.querySelectorAll("tspan")].map(sizeOf);
-  const texts = [...svg.querySelectorAll("text")].map((text) => ({
-    said: text.textContent, box: text.getBoundingClientRect(), size: scale * Math.min(...sizes(text)) }));
-  texts.forEach(({ said, box, size }, k) => {
-    if (size < least) found.push([said, "small"]);
-    const inside = box.left > frame.left - 1 && box.right < frame.right + 1 && box.bottom < frame.bottom + 1;
+  // A text may be turned: its letters are boxes about their middles.
+  const lettersOf = (text, size) => [...Array(text.getNumberOfChars()).keys()].map((k) => {
+    const [start, end] = [text.getStartPositionOfChar(k), text.getEndPositionOfChar(k)];
+    const lifted = new DOMPoint((start.x + end.x) / 2, (start.y + end.y) / 2 - size / scale / 3);
+    const { x, y } = lifted.matrixTransform(text.getScreenCTM());
+    return { x, y, half: Math.max(end.x - start.x, 1) * scale / 2 };
+  });
+  const texts = [...svg.querySelectorAll("text")].map((text) => {
+    const size = scale * parseFloat(getComputedStyle(text).fontSize);
+    return { said: text.textContent, letters: lettersOf(text, size), size };
+  });
+  texts.forEach(({ said, letters, size }, k) => {
+    if (size < least) found.push([said, "small", size]);
+    const inside = letters.every(({ x, y, half }) =>
+      x - half > frame.left - 1 && x + half < frame.right + 1 && y + size / 3 < frame.bottom + 1);
     if (!inside) found.push([said, "outside"]);
     for (const other of texts.slice(k + 1)) {
-      const across = Math.min(box.right, other.box.right) - Math.max(box.left, other.box.left);
-      const down = Math.min(box.bottom, other.box.bottom) - Math.max(box.top, other.box.top);
-      if (across > 0.5 && down > 0.35 * Math.min(box.height, other.box.height)) found.push([said, other.said]);
+      const over = letters.some((one) => other.letters.some((two) =>
+        Math.abs(one.x - two.x) < (one.half + two.half) * 0.9 && Math.abs(one.y - two.y) < 0.6 * size));
+      if (over) found.push([said, other.said]);
     }
   });
   return found;
 })"""
 
 
-def test_no_text_lies_over_another_as_a_browser_sets_them_and_none_is_smaller_than_11_pixels(chromium: Browser) -> None:
+def test_no_text_lies_over_another_as_a_browser_sets_them_and_none_is_smaller_than_12_pixels(chromium: Browser) -> None:
     catalogue, chance = load_catalogue(), Random(16)
     gears = [catalogue.by_designation[name] for name in ("HPN-11A-5", "HPN-20A-5", "HPN-32A-25")]
     drawn = []
@@ -384,11 +401,12 @@ def test_no_text_lies_over_another_as_a_browser_sets_them_and_none_is_smaller_th
         assert candidate is not None
         picture = bearing_picture(subject, candidate.check("output_bearing_life"))
         assert picture is not None
-        drawn += [markup(envelope_drawing(picture, reader)) for reader in (Reader(), Reader("de", ("lbf",)))]
+        for reader in (Reader(), Reader("de", ("lbf",))):
+            drawn.append("".join(markup(envelope_drawing(picture, reader, (), None, size)) for size in (SMALL, LARGE)))
     page = chromium.new_page()
     styles = "".join(path.read_text() for path in (STATIC / "app.css", STYLE, STATIC / "plots.css"))
-    for width in (346, 395, 410, 440, 640):
+    for width in (330, 348, 370, 395, 410, 440, 470, 500, 515, 560, 600, 640):
         figures = "".join(f'<figure class="envelope" style="width: {width}px">{svg}</figure>' for svg in drawn)
         page.set_content(f"<style>{styles}</style><main>{figures}</main>")
-        assert page.evaluate(OVERLAPS, 10.95) == [], width
+        assert page.evaluate(OVERLAPS, 11.95) == [], width
     page.close()

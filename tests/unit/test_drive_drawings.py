@@ -74,7 +74,7 @@ def test_a_limit_far_beyond_the_cycle_is_named_with_an_arrow_and_leaves_the_scal
     gear = CATALOGUE.by_designation["HPN-20A-5"]
     assert named[0].startswith(f"↑ T_R {gear.repeated_peak_torque_Nm:g}".replace("T_R", "TR"))
     assert "→" in named[0]
-    assert shown.load((440 - 16, 8))[0] == pytest.approx(1.15 * 20, rel=1e-3)
+    assert shown.load((400 - 12, 26))[0] == pytest.approx(1.15 * 20, rel=1e-3)
 
 
 def test_with_a_reserve_of_their_own_limits_are_drawn_where_it_puts_them() -> None:
@@ -135,8 +135,8 @@ def test_no_disc_lies_over_another_or_outside_the_axes(document: Json) -> None:
         for x, y, width, height in boxes:
             assert x >= 0
             assert y >= 0
-            assert x + width <= 440
-            assert y + height <= 250
+            assert x + width <= 400
+            assert y + height <= 260
         for (x1, y1, w1, h1), (x2, y2, w2, h2) in itertools.combinations(boxes, 2):
             assert x1 + w1 <= x2 or x2 + w2 <= x1 or y1 + h1 <= y2 or y2 + h2 <= y1
 

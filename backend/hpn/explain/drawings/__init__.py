@@ -5,6 +5,7 @@ the browser fills in.
 """
 
 from hpn.explain.drawings.bearing import bearing_figure, sizes_figure
+from hpn.explain.drawings.chart import LARGE, SMALL
 from hpn.explain.drawings.cycle import CyclePicture, cycle_picture
 from hpn.explain.drawings.envelope import GearEnvelope, envelope_drawing, gear_envelope, sizes_drawing
 from hpn.explain.drawings.governing import governing_phases
@@ -17,6 +18,8 @@ from hpn.explain.drawings.subject import Subject
 from hpn.explain.drawings.verdict import bearing_verdict, bearing_words, carries
 
 __all__ = [
+    "LARGE",
+    "SMALL",
     "BearingPicture",
     "CyclePicture",
     "Figure",

@@ -1,4 +1,4 @@
-"""The drawing of points within limits: loads in their envelopes, torques at their speeds, bars of how far they go.
+"""The drawing of points within limits: loads in their envelopes, torques at their speeds.
 
 One description for every page and for the report: `chart` makes it, a style sheet gives it its colours.
 """
@@ -6,20 +6,24 @@ One description for every page and for the report: `chart` makes it, a style she
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from math import isfinite
+from math import atan2, degrees, hypot, isfinite
 from xml.etree.ElementTree import Element, SubElement
 
 from hpn.explain.drawings.axis import round_numbers
-from hpn.explain.drawings.placing import LETTERS, Box, Places, around
+from hpn.explain.drawings.placing import Box, Places, Spot, around
 from hpn.explain.drawings.svg import LETTER, Point, add, canvas, path, text, width_of
 from hpn.explain.drawings.words import axis_title
 from hpn.words.reader import Reader
 from hpn.words.wording import N_
 
-WIDTH, HEIGHT = 440.0, 250.0
-"""Size of the drawing; each bar below it adds ROW to its height."""
+SMALL, LARGE, PLANE, PAPER = (348.0, 400.0), (560.0, 420.0), (400.0, 260.0), (400.0, 300.0)
+"""Sizes of a drawing: in a narrow and in a wide place, of one of two beside each other, and on paper."""
 
-TOP, RIGHT, BOTTOM, ROW = 8.0, 16.0, 40.0, 22.0
+KINDS = {SMALL: "plane small", LARGE: "plane large", PLANE: "plane beside", PAPER: "plane"}
+
+TOP, RIGHT, BOTTOM, ROW = 26.0, 12.0, 38.0, 20.0
+"""Room above, beside and below the axes, and of a row of limits beyond them."""
+
 ROOM = 1.15
 """Axes reach this far beyond the largest value."""
 
@@ -30,11 +34,11 @@ RADIUS, DOT, RING = 10.5, 2.5, 13.5
 MARGIN = 3.5
 SAME, REACH = 0.1, 130.0
 """Loads nearer than the first are one to the eye; those beyond the second are out of reach of a disc."""
-BAR_END = 1.5
-"""Utilisation at which a bar ends."""
 
-LEAST_BAR = 24.0
-TICK, CROSS = "M0 5l3 4l5 -9", "M0 0l8 8m0 -8l-8 8"
+ASIDE = 10.0
+"""Distance of the middle of a name from its line."""
+
+CROSS = "M0 0l8 8m0 -8l-8 8"
 ALONG = (0.5, 0.42, 0.58, 0.34, 0.66, 0.26, 0.74, 0.18, 0.82)
 ENDS = (0.12, 0.88, 0.16, 0.84, 0.2, 0.8, 0.08, 0.92, *ALONG)
 """Shares of the way along a line at which its name may stand, the best first."""
@@ -85,21 +89,11 @@ class Mark:
 
 
 @dataclass(frozen=True, slots=True)
-class Bar:
-    """How far a limit is used, and how far it may be."""
-
-    label: str
-    used: float
-    allowed: float
-    outside: bool
-    told: str
-
-
-@dataclass(frozen=True, slots=True)
 class Frame:
-    """Where points stand in the drawing, whose axes end at `across` and `up`."""
+    """Where points stand in a drawing of a size, whose axes end at `across` and `up`."""
 
     axes: Axes
+    size: Point
     left: float
     across: float
     up: float
@@ -107,7 +101,7 @@ class Frame:
     @property
     def box(self) -> Box:
         """The part of the drawing between the axes."""
-        return Box(self.left, TOP, WIDTH - RIGHT, HEIGHT - BOTTOM)
+        return Box(self.left, TOP, self.size[0] - RIGHT, self.size[1] - BOTTOM)
 
     @property
     def room(self) -> Box:
@@ -125,46 +119,54 @@ class Frame:
 def chart(
     lines: Sequence[Line],
     marks: Sequence[Mark],
-    bars: Sequence[Bar],
     reader: Reader,
-    ray: Point | None = None,
+    ray: tuple[Point, Point] | None = None,
     axes: Axes = LOADS,
     beyond: Sequence[str] = (),
+    size: Point = SMALL,
 ) -> Element:
-    """Limits, points and bars. `ray` is a point whose direction from the origin is drawn.
+    """Limits and points. `ray` is a point, drawn to from the origin, and the limit in its direction.
 
     `beyond` are rows that name limits outside of what is drawn; a corner at infinity is at the end of its axis.
     """
     points = [*(corner for line in lines for corner in line.corners), *(mark.place for mark in marks)]
-    frame = _frame(points, axes, reader)
-    drawing = canvas("plane", WIDTH, HEIGHT + ROW * (len(bars) + len(beyond)))
+    bold = [corner for line in lines if line.strong and line.label for corner in (line.corners[0], line.corners[-1])]
+    frame = _frame(points, bold, axes, size, reader)
+    drawing = canvas(KINDS[size], size[0], size[1] + ROW * len(beyond))
     still = add(drawing, "g", "still", aria_hidden="true")
-    _axes(still, frame, reader)
     places = Places(frame.room)
     for line in lines:
         corners = [frame.at(corner) for corner in line.corners]
         if line.strong:
             add(still, "path", "area", d=path([frame.at((0, 0)), *corners], closed=True))
         places.lines.append(corners)
+    _axes(still, frame, bold, reader)
     for line in sorted(lines, key=lambda line: line.strong):
         add(still, "path", f"line {line.kind}", d=path(frame.at(corner) for corner in line.corners))
     if ray:
-        add(still, "path", "ray", d=path([frame.at((0, 0)), frame.at(ray)]))
+        add(still, "path", "ray", d=path([frame.at((0, 0)), frame.at(ray[0])]))
+        add(still, "path", "ray rest", d=path([frame.at(ray[0]), frame.at(_within(frame, ray[1]))]))
     _marks(drawing, frame, marks, places)
     _labels(drawing, frame, lines, places)
-    _bars(drawing, bars)
-    for row, names in enumerate(beyond, len(bars)):
-        text(still, "beyond", (WIDTH - RIGHT, HEIGHT + ROW * row + 14), names, "end")
+    for row, names in enumerate(beyond):
+        text(still, "beyond", (size[0] - RIGHT, size[1] + ROW * row + 12), names, "end")
     return drawing
+
+
+def _within(frame: Frame, point: Point) -> Point:
+    """A point, or where its direction leaves the axes."""
+    factor = max(1.0, point[0] / frame.across, point[1] / frame.up)
+    return point[0] / factor, point[1] / factor
 
 
 # --- Axes -------------------------------------------------------------------------------------------------------------
 
 
-def _frame(points: Sequence[Point], axes: Axes, reader: Reader) -> Frame:
+def _frame(points: Sequence[Point], bold: Sequence[Point], axes: Axes, size: Point, reader: Reader) -> Frame:
     across, up = (ROOM * max(filter(isfinite, values)) or 1.0 for values in zip(*points, strict=True))
-    numbers = _numbers(up, axes.up_unit, MOST_SPACES - 1, reader)
-    return Frame(axes, LETTER + 12 + max(width_of(label) for _, label in numbers), across, up)
+    labels = [label for _, label in _numbers(up, axes.up_unit, MOST_SPACES, reader)]
+    labels += [reader.figure(corner[1], axes.up_unit) for corner in bold]
+    return Frame(axes, size, 12 + max(map(width_of, labels)), across, up)
 
 
 def _numbers(largest: float, unit: str, spaces: int, reader: Reader) -> list[tuple[float, str]]:
@@ -173,22 +175,42 @@ def _numbers(largest: float, unit: str, spaces: int, reader: Reader) -> list[tup
     return [(largest * number / end, reader.tick(number)) for number in round_numbers(0.0, end, spaces)] or [(0.0, "0")]
 
 
-def _axes(drawing: Element, frame: Frame, reader: Reader) -> None:
-    box = frame.box
-    axes = frame.axes
-    for value, label in _numbers(frame.up, axes.up_unit, MOST_SPACES - 1, reader):
-        _, y = frame.at((0.0, value))
-        add(drawing, "path", "grid", d=path([(box.left, y), (box.right, y)]))
-        text(drawing, "tick", (box.left - 5, y + 4.5), label, "end")
-    for value, label in _spread(frame, reader):
-        x, _ = frame.at((value, 0.0))
-        add(drawing, "path", "grid", d=path([(x, box.top), (x, box.bottom)]))
-        text(drawing, "tick", (min(x, WIDTH - width_of(label) / 2), box.bottom + 16), label, "middle")
+def _axes(drawing: Element, frame: Frame, bold: Sequence[Point], reader: Reader) -> None:
+    """Both axes with titles and round numbers, and in bold the values at which the corners of a limit meet them."""
+    box, axes = frame.box, frame.axes
     add(drawing, "path", "axis", d=path([(box.left, box.top), (box.left, box.bottom), (box.right, box.bottom)]))
-    middle = (box.left + box.right) / 2, HEIGHT - 7
-    text(drawing, "title", middle, axis_title(axes.across, axes.across_unit, reader), "middle")
-    title = text(drawing, "title", (0, 0), axis_title(axes.up, axes.up_unit, reader), "middle")
-    title.set("transform", f"translate({LETTER - 1:g} {(box.top + box.bottom) / 2:g}) rotate(-90)")
+    own = [(corner[1], reader.figure(corner[1], axes.up_unit)) for corner in bold if corner[0] == 0]
+    taken: list[Point] = []
+    for kind, numbers in (("tick own", own), ("tick", _numbers(frame.up, axes.up_unit, MOST_SPACES, reader))):
+        for value, label in numbers:
+            _, y = frame.at((0.0, value))
+            if _is_free(taken, y, LETTER / 2):
+                add(drawing, "path", "axis", d=path([(box.left - 4, y), (box.left, y)]))
+                text(drawing, kind, (box.left - 7, y + 4.5), label, "end")
+    own = [(corner[0], reader.figure(corner[0], axes.across_unit)) for corner in bold if corner[1] == 0]
+    taken = []
+    for kind, numbers in (("tick own", own), ("tick", _spread(frame, reader))):
+        for value, label in numbers:
+            x, half = frame.at((value, 0.0))[0], width_of(label) / 2
+            if _is_free(taken, x, half + GAP / 2):
+                add(drawing, "path", "axis", d=path([(x, box.bottom), (x, box.bottom + 4)]))
+                text(drawing, kind, (min(x, frame.size[0] - half), box.bottom + 17), label, "middle")
+    text(drawing, "title", (0.0, 11.0), axis_title(axes.up, axes.up_unit, reader))
+    text(
+        drawing,
+        "title",
+        (frame.size[0] - 2, frame.size[1] - 4),
+        axis_title(axes.across, axes.across_unit, reader),
+        "end",
+    )
+
+
+def _is_free(taken: list[Point], at: float, half: float) -> bool:
+    """True for a stretch about a place that is not taken yet, which it takes."""
+    if any(start < at + half and at - half < end for start, end in taken):
+        return False
+    taken.append((at - half, at + half))
+    return True
 
 
 def _spread(frame: Frame, reader: Reader) -> list[tuple[float, str]]:
@@ -275,62 +297,40 @@ def _disc(group: Element, leaders: Element, mark: Mark, dot: Point, spot: Box) -
 
 
 def _labels(drawing: Element, frame: Frame, lines: Sequence[Line], places: Places) -> None:
-    """Each line has its name on it, where the fewest lines cross it: a strong one in its middle, others at an end."""
+    """Each line has its name along it, where the fewest lines cross: a strong one in its middle, others at an end."""
     group = add(drawing, "g", "still", aria_hidden="true")
     for line in sorted((line for line in lines if line.label), key=lambda line: not line.strong):
         corners = [frame.at(corner) for corner in line.corners]
-        size = width_of(line.label) + 4, LETTER + 2
-        shares = ALONG if line.strong else ENDS
-        boxes = [Box.around(_along(corners, share), *size) for share in shares]
-        spot = places.clearest(boxes) or places.clearest(_shifted(box, places.frame) for box in boxes)
-        if spot:
-            _name(group, line, spot)
+        shares = [(share, side) for share in (ALONG if line.strong else ENDS) for side in (1, -1)]
+        spots = (_beside(corners, share, side, line, turned) for turned in (True, False) for share, side in shares)
+        if spot := places.clearest(spots):
+            at = f"translate({spot.at[0]:.1f} {spot.at[1]:.1f}) rotate({spot.turn:.1f})"
+            text(group, f"name {line.kind}", (0.0, 4.5), line.label, "middle").set("transform", at)
 
 
-def _shifted(box: Box, room: Box) -> Box:
-    """A box that stands beside its line, at the edge of the room, where it has none on the line."""
-    width = box.right - box.left
-    left = max(min(box.left, room.right - width), room.left)
-    return Box(left, box.top, left + width, box.bottom)
+def _beside(corners: Sequence[Point], share: float, side: int, line: Line, turned: bool) -> Spot:
+    """Place of a line's name at a share of the way along it, turned with it above or below, or level beside it."""
+    (x, y), (across, down) = _along(corners, share)
+    length, half = hypot(across, down) or 1.0, width_of(line.label) / 2
+    across, down = across / length, down / length
+    if turned:
+        at = x + side * ASIDE * down, y - side * ASIDE * across
+    else:
+        at, (across, down) = (x + side * (half + ASIDE / 2), y), (1.0, 0.0)
+    count = max(round(2 * half / LETTER), 1)
+    steps = [half * (2 * k + 1 - count) / count for k in range(count)]
+    boxes = [Box.around((at[0] + step * across, at[1] + step * down), LETTER, LETTER) for step in steps]
+    return Spot(at, degrees(atan2(down, across)), boxes)
 
 
-def _name(group: Element, line: Line, spot: Box) -> None:
-    width, height = LETTERS * (spot.right - spot.left), spot.bottom - spot.top - 2
-    back = Box.around(spot.centre, width, height)
-    add(group, "rect", "back", x=back.left, y=back.top, width=width, height=height)
-    text(group, f"name {line.kind}", (spot.centre[0], spot.bottom - 4), line.label, "middle")
-
-
-def _along(corners: Sequence[Point], share: float) -> Point:
-    """Point at a share of the way along a line, by its extent across and down."""
+def _along(corners: Sequence[Point], share: float) -> tuple[Point, Point]:
+    """Point at a share of the way along a line, by its extent across and down, and the direction there."""
     lengths = [abs(x1 - x0) + abs(y1 - y0) for (x0, y0), (x1, y1) in pairwise(corners)]
     rest = share * sum(lengths)
     for length, (start, end) in zip(lengths, pairwise(corners), strict=True):
-        if rest <= length:
-            part = rest / length if length else 0.0
-            return start[0] + part * (end[0] - start[0]), start[1] + part * (end[1] - start[1])
+        step = end[0] - start[0], end[1] - start[1]
+        if rest <= length or end is corners[-1]:
+            part = min(rest / length, 1.0) if length else 0.0
+            return (start[0] + part * step[0], start[1] + part * step[1]), step
         rest -= length
-    return corners[-1]
-
-
-# --- Bars -------------------------------------------------------------------------------------------------------------
-
-
-def _bars(drawing: Element, bars: Sequence[Bar]) -> None:
-    """Name, bar on a scale to BAR_END with a tick at what is allowed, and the numbers."""
-    if not bars:
-        return
-    left = 16 + max(width_of(bar.label) for bar in bars)
-    right = max(WIDTH - 26 - max(width_of(bar.told) for bar in bars), left + LEAST_BAR)
-    unit = (right - left) / BAR_END
-    for place, bar in enumerate(bars):
-        top = HEIGHT + 4 + ROW * place
-        outside = bar.outside
-        group = add(drawing, "g", "gauge outside" if outside else "gauge")
-        text(group, "name", (8, top + 12), bar.label)
-        add(group, "rect", "track", x=left, y=top + 1, width=right - left, height=13)
-        add(group, "rect", "used", x=left, y=top + 1, width=unit * min(bar.used, BAR_END), height=13)
-        tick = left + unit * bar.allowed
-        add(group, "path", "allowed", d=path([(tick, top - 2), (tick, top + 17)]))
-        add(group, "path", "sign", d=CROSS if outside else TICK, transform=f"translate({right + 8:.1f} {top + 3:.1f})")
-        text(group, "told", (right + 22, top + 12), bar.told)
+    raise ValueError("a line has two corners")

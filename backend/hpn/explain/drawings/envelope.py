@@ -7,12 +7,11 @@ from xml.etree.ElementTree import Element
 from hpn.catalogue import Catalogue
 from hpn.catalogue.gear import Gear
 from hpn.engine.envelopes import EnvelopeCurve, EnvelopeQuery, has_envelope, life_envelopes
-from hpn.explain.drawings.chart import Bar, Line, Mark, chart
+from hpn.explain.drawings.chart import SMALL, Line, Mark, chart
 from hpn.explain.drawings.picture import BearingPicture, PhaseLoad, beyond_limit
 from hpn.explain.drawings.sizes import SizeUse
+from hpn.explain.drawings.svg import Point
 from hpn.explain.drawings.words import coefficient_name, share
-from hpn.explain.readings import OTHERWISE
-from hpn.physics.bearing import PRINTED_LOAD_COEFFICIENTS
 from hpn.words.reader import DEFAULT, Reader
 from hpn.words.wording import N_, Quantity, Sentence, Value
 
@@ -23,24 +22,43 @@ MOST_NUMBERS = 24
 """Loads that have a numbered disc, those nearest to their limit; others are dots."""
 
 
-def envelope_drawing(picture: BearingPicture, reader: Reader = DEFAULT, governing: Sequence[int] = ()) -> Element:
-    """Envelopes and loads of one gear, and how far life and single loads use them; `governing` phases stand out."""
-    lines = [Line("limit", reader.text(N_("limit now")), _corners(picture, "own"), strong=True)]
-    lines += _of_coefficients(picture, reader)
+def envelope_drawing(
+    picture: BearingPicture,
+    reader: Reader = DEFAULT,
+    governing: Sequence[int] = (),
+    check: str | None = None,
+    size: Point = SMALL,
+) -> Element:
+    """Envelopes and loads of one gear; the `governing` phases and the limit of the governing check stand out."""
+    f_w = picture.load.load_coefficient
+    accent = {check: " governing"}
+    name = f"{reader.text(N_('limit now'))}, {coefficient_name(f_w, reader)}"
+    kind = "limit" + accent.get("output_bearing_life", "")
+    lines = [Line(kind, name, _corners(picture, "own"), strong=True)]
+    lines += [
+        _coefficient(named.curve.load_coefficient, named.corners, reader)
+        for named in picture.named_curves
+        if named.kind == "life"
+    ]
     if picture.life_factor < 1 and picture.loads:
-        lines.append(Line("single", reader.text(N_("single load")), _corners(picture, "published")))
+        kind = "single" + accent.get("output_bearing_load", "")
+        lines.append(Line(kind, reader.text(N_("single load")), _corners(picture, "published")))
     if not picture.loads:
-        return chart(lines, [], [], reader)
-    marks = _marks(picture, governing, reader, judged=True)
-    ray = None
+        return chart(lines, [], reader, size=size)
+    marks, worst, ray = _marks(picture, governing, reader, judged=True), picture.worst, None
     if picture.mean > 0:
         marks.append(_equivalent(picture, reader))
-        ray = max(picture.equivalent_N, (picture.worst.radial_N, picture.worst.axial_N))
-    return chart(lines, marks, bearing_bars(picture, reader), reader, ray)
+        edge = min(worst.allowed / worst.published, 1e6)
+        ray = (worst.radial_N, worst.axial_N), (edge * worst.radial_N, edge * worst.axial_N)
+    return chart(lines, marks, reader, ray, size=size)
 
 
 def sizes_drawing(
-    uses: Sequence[SizeUse], picture: BearingPicture, reader: Reader = DEFAULT, governing: Sequence[int] = ()
+    uses: Sequence[SizeUse],
+    picture: BearingPicture,
+    reader: Reader = DEFAULT,
+    governing: Sequence[int] = (),
+    size: Point = SMALL,
 ) -> Element:
     """Permissible constant load of each size, with the loads of the phases; the gear's own size stands out."""
     lines = []
@@ -49,7 +67,7 @@ def sizes_drawing(
             corners = list(zip(use.curve.radial_N, use.curve.axial_N, strict=True))
             own = use.gear.size == picture.gear.size
             lines.append(Line("limit" if own else f"size s{place % 4}", use.gear.size, corners, strong=own))
-    return chart(lines, _marks(picture, governing, reader, judged=False), [], reader)
+    return chart(lines, _marks(picture, governing, reader, judged=False), reader, size=size)
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,7 +89,7 @@ def gear_envelope(catalogue: Catalogue, gear: Gear, reader: Reader = DEFAULT) ->
     corners = [list(zip(curve.radial_N, curve.axial_N, strict=True)) for curve in curves]
     lines = [_coefficient(c.load_coefficient, along, reader) for c, along in zip(curves, corners, strict=True)]
     limit = Line("limit", reader.text(N_("published")), corners[0], strong=True)
-    return GearEnvelope(curves, supplied, chart([limit, *lines], [], [], reader))
+    return GearEnvelope(curves, supplied, chart([limit, *lines], [], reader))
 
 
 # --- Lines ------------------------------------------------------------------------------------------------------------
@@ -79,12 +97,6 @@ def gear_envelope(catalogue: Catalogue, gear: Gear, reader: Reader = DEFAULT) ->
 
 def _corners(picture: BearingPicture, kind: str) -> list[tuple[float, float]]:
     return next(named.corners for named in picture.named_curves if named.kind == kind)
-
-
-def _of_coefficients(picture: BearingPicture, reader: Reader) -> list[Line]:
-    named = [named for named in picture.named_curves if named.kind in ("own", "life")]
-    by_coefficient = {one.curve.load_coefficient: one.corners for one in named}
-    return [_coefficient(f_w, by_coefficient[f_w], reader) for f_w in PRINTED_LOAD_COEFFICIENTS]
 
 
 def _coefficient(f_w: float, corners: list[tuple[float, float]], reader: Reader) -> Line:
@@ -150,40 +162,3 @@ def _equivalent(picture: BearingPicture, reader: Reader) -> Mark:
     if outside:
         told += ", " + reader.text(N_("outside the limit"))
     return Mark("equivalent", "P_m", picture.equivalent_N, told, LAST, outside)
-
-
-# --- Bars -------------------------------------------------------------------------------------------------------------
-
-
-def bearing_bars(picture: BearingPicture, reader: Reader) -> list[Bar]:
-    """Largest single load and life: the share, demand and limit that the checks say, f_w counted as load.
-
-    Where u leaves a part of the limits, that part stands in place of the limit.
-    """
-    worst, load, u = picture.worst, picture.load, picture.allowed
-    f_w = load.load_coefficient
-    limit = None if worst.limit_N is None else f_w * worst.limit_N
-    return [
-        _bar(reader.text(N_("Single load")), worst.published, u, (f_w * worst.magnitude_N, "≤", limit, "N"), reader),
-        _bar(
-            f"{reader.text(N_('Life'))} {load.life_basis}",
-            picture.life_utilisation,
-            u,
-            (picture.life_h, "≥", load.life_h, "h"),
-            reader,
-        ),
-    ]
-
-
-def _bar(
-    label: str, used: float, allowed: float, compared: tuple[float, str, float | None, str], reader: Reader
-) -> Bar:
-    demand, sign, limit, unit = compared
-    outside = beyond_limit(used, allowed)
-    percent = reader.percent(used, allowed)
-    numbers = reader.distinct(demand, limit, unit)
-    if allowed < 1:  # the bar has the whole limit at 100 %, and so has what stands beside it
-        percent += f" {OTHERWISE['≤'] if outside else '≤'} {reader.percent(allowed, used)}"
-    elif limit is not None:
-        numbers += f" {OTHERWISE[sign] if outside else sign} {reader.distinct(limit, demand, unit)}"
-    return Bar(label, used, allowed, outside, f"{percent}\N{EN SPACE}{numbers} {reader.unit(unit)}")

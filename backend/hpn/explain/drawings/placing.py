@@ -61,6 +61,15 @@ class Box:
         return low < high
 
 
+@dataclass(frozen=True, slots=True)
+class Spot:
+    """Place of a text along a line: its middle, its turn in degrees, and boxes that hold its letters."""
+
+    at: Point
+    turn: float
+    boxes: list[Box]
+
+
 class Places:
     """Room inside a frame: what is taken, and the lines that a label had better not lie on."""
 
@@ -77,16 +86,19 @@ class Places:
         """Take the first free one of some boxes; None where there is none."""
         return self._take(next(filter(self.is_free, candidates), None))
 
-    def clearest(self, candidates: Iterable[Box]) -> Box | None:
-        """Take the first of the free boxes that the fewest lines cross; None where none is free."""
+    def clearest(self, spots: Iterable[Spot]) -> Spot | None:
+        """Take the first of the free spots that the fewest lines cross; None where none is free."""
         best, least = None, inf
-        for box in filter(self.is_free, candidates):
-            crossings = self._crossings(box)
+        for spot in spots:
+            if not all(map(self.is_free, spot.boxes)):
+                continue
+            crossings = sum(map(self._crossings, spot.boxes))
             if crossings < least:
-                best, least = box, crossings
+                best, least = spot, crossings
             if least == 0:
                 break
-        return self._take(best)
+        self.taken += best.boxes if best else []
+        return best
 
     def _take(self, box: Box | None) -> Box | None:
         if box is not None:

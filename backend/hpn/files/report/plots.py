@@ -13,6 +13,7 @@ from hpn.explain.drawings import (
     governing_phases,
     motor_plane,
 )
+from hpn.explain.drawings.chart import PAPER
 from hpn.explain.drawings.svg import STYLE, markup
 from hpn.files.export import Export
 from hpn.words.reader import Reader
@@ -103,8 +104,9 @@ def envelope(export: Export, reader: Reader) -> dict[str, Any] | None:
     picture = bearing_picture(subject, export.candidate.check(LIFE))
     if picture is None:
         return None
-    governing = governing_phases(subject, export.candidate.governing_check, picture)
+    check = export.candidate.governing_check
+    governing = governing_phases(subject, check, picture)
     return {
-        "drawing": markup(envelope_drawing(picture, reader, governing), ON_PAPER),
+        "drawing": markup(envelope_drawing(picture, reader, governing, check, PAPER), ON_PAPER),
         "condition": sentence(reader.told(picture.condition)),
     }

@@ -47,10 +47,11 @@ class Pictures:
         return drawings.bearing_picture(self.subject, self.chosen.check("output_bearing_life"))
 
     @cached_property
-    def envelope(self) -> Element:
-        """Drawing of `bearing`, which must be there."""
+    def envelope(self) -> list[Element]:
+        """Drawings of `bearing`, which must be there, for a narrow and for a wide place."""
         assert self.bearing is not None
-        return drawings.envelope_drawing(self.bearing, self.reader, self.governing)
+        given = self.bearing, self.reader, self.governing, self.chosen.governing_check
+        return [drawings.envelope_drawing(*given, size) for size in (drawings.SMALL, drawings.LARGE)]
 
     @cached_property
     def bearing_figure(self) -> Figure:
@@ -65,10 +66,11 @@ class Pictures:
         return drawings.size_uses(self.subject, self.bearing)
 
     @property
-    def sizes_drawing(self) -> Element:
-        """Drawing of all sizes."""
+    def sizes_drawing(self) -> list[Element]:
+        """Drawings of all sizes, likewise."""
         assert self.bearing is not None
-        return drawings.sizes_drawing(self.sizes, self.bearing, self.reader, self.governing)
+        given = self.sizes, self.bearing, self.reader, self.governing
+        return [drawings.sizes_drawing(*given, size) for size in (drawings.SMALL, drawings.LARGE)]
 
     @property
     def sizes_figure(self) -> Figure:
@@ -120,9 +122,9 @@ def pictures_of(application: Application, gear: Gear, chosen: Candidate, catalog
     return Pictures(Subject(application, gear, catalogue), chosen, current())
 
 
-def inline(drawing: Element) -> Markup:
-    """A drawing as part of a page; an XML library made it, which escapes what it writes."""
-    return Markup(markup(drawing))
+def inline(drawing: Element | list[Element]) -> Markup:
+    """A drawing, or one for each kind of place, as part of a page; an XML library made it, which escapes its texts."""
+    return Markup("".join(map(markup, drawing if isinstance(drawing, list) else [drawing])))
 
 
 def as_attribute(figure: Figure) -> Markup:
