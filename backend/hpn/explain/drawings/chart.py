@@ -194,7 +194,7 @@ def _axes(drawing: Element, frame: Frame, bold: Sequence[Point], reader: Reader)
             x, half = frame.at((value, 0.0))[0], width_of(label) / 2
             if _is_free(taken, x, half + GAP / 2):
                 add(drawing, "path", "axis", d=path([(x, box.bottom), (x, box.bottom + 4)]))
-                text(drawing, kind, (min(x, frame.size[0] - half), box.bottom + 17), label, "middle")
+                text(drawing, kind, (min(x, frame.size[0] - half), box.bottom + 18.5), label, "middle")
     text(drawing, "title", (0.0, 11.0), axis_title(axes.up, axes.up_unit, reader))
     text(
         drawing,
