@@ -88,6 +88,7 @@ document.addEventListener("htmx:after:swap", (event) => {
   for (const id of open) document.getElementById(id)?.setAttribute("open", "");
   if (ctx.restores) settle();
   else note(true);
+  if (ctx.restores?.says) markChanged(ctx.restores);
   showAddress(ctx);
   for (const { id, row, value } of typed) {
     const field = document.getElementById(moved(id, row));
@@ -142,11 +143,11 @@ const bodyOf = (content) => {
   return body;
 };
 
-function restore(content) {
+function restore(content, says = "") {
   const form = formOf();
   settled = true;
   pending.length = 0;
-  restoring = { content, before: fieldsOf(form) };
+  restoring = { content, before: fieldsOf(form), says };
   form.setAttribute("hx-method", content.length > 8000 || new URLSearchParams(content).has("phases") ? "post" : "get");
   form.requestSubmit();
   showSteps();
@@ -166,8 +167,25 @@ document.addEventListener("click", (event) => {
   note();
   const content = link.search.slice(1);
   history.pushState({ at: (last = ++at), content }, "");
-  restore(content);
+  restore(content, link.dataset.tries);
   document.getElementById("result").focus({ preventScroll: true });
+});
+
+// What it has changed is marked until the next edit, with what the field said before.
+function markChanged({ before, says }) {
+  for (const field of formOf().elements) {
+    const was = before.get(field.id);
+    if (was === undefined || was === valueOf(field)) continue;
+    field.classList.add("changed");
+    field.title = says.replace("{}", was || "–");
+  }
+}
+
+document.addEventListener("input", () => {
+  for (const field of document.querySelectorAll(".changed")) {
+    field.classList.remove("changed");
+    field.removeAttribute("title");
+  }
 });
 
 function step(direction) {
@@ -274,14 +292,14 @@ document.addEventListener("focusout", (event) => {
 
 // --- Inputs that stand in the result ----------------------------------------------------------------------------------
 
-// A button that chooses a gear or pins one changes an input at once, so that it is no less of the next request.
+// A link or button that chooses a gear, or pins one, changes an input at once, so that it is no less of the next request.
 document.addEventListener("click", (event) => {
-  const button = event.target.closest('#result button[form="application"]:is([name="gear"], [name="pin"], [name="unpin"])');
+  const button = event.target.closest('#result :is(a[data-gear], button[form="application"]:is([name="gear"], [name="pin"], [name="unpin"]))');
   if (!button || !isPlain(event)) return;
   event.preventDefault();
   const chosen = document.getElementById("chosen-gear");
   const pinned = document.getElementById(`pinned-${button.value}`);
-  if (button.name === "gear") chosen.value = button.value;
+  if (button.dataset.gear || button.name === "gear") chosen.value = button.dataset.gear ?? button.value;
   else if (pinned) pinned.remove();
   else [chosen, ...document.querySelectorAll('[id^="pinned-"]')].at(-1).after(Object.assign(chosen.cloneNode(), { id: `pinned-${button.value}`, name: "pin", value: button.value }));
   settled = true;
@@ -308,9 +326,9 @@ document.addEventListener("htmx:finally:request", (event) => {
 document.addEventListener(
   "click",
   (event) => {
-    const button = event.target.closest("[data-copies-address], #files :is(a, [formaction]), .pin, #try-out");
+    const button = event.target.closest("[data-copies-address], #files :is(a, [formaction]), .pin, [data-tries]");
     const waits = asked && !button?.matches(".pin");
-    if (!button || (!waits && (isAnswered() || button.id === "try-out"))) return;
+    if (!button || (!waits && (isAnswered() || button.matches("[data-tries]")))) return;
     event.preventDefault();
     event.stopPropagation();
     if (waits) wanted = button;

@@ -188,7 +188,7 @@ def test_undo_takes_back_the_gear_that_was_chosen_just_now_and_no_more(visitor: 
     torque(page, 1).fill("50")
     expect(page).to_have_url(re.compile("T=50&"))
     open_section(page, "Candidates")
-    row = page.get_by_role("table", name="Suitable").get_by_role("button", name="HPN-32A-5", exact=True)
+    row = page.get_by_role("table", name="Suitable").get_by_role("link", name="HPN-32A-5", exact=True)
     expect(row).to_be_visible()
     with answer_held_back(page, row.click):
         page.get_by_role("button", name="Undo").click()
@@ -258,7 +258,7 @@ def test_without_a_phase_the_address_keeps_all_else(visitor: Visitor) -> None:
     expect(page).to_have_url(re.compile("Tk=300"))
     page.reload()
     expect(page.get_by_label("Torque Tk")).to_have_value("300")
-    expect(page.get_by_text("Enter a duty cycle")).to_be_visible()
+    expect(page.get_by_role("link", name="Type the first phase")).to_be_visible()
 
 
 def test_an_input_that_an_undo_brings_back_is_not_folded_away(visitor: Visitor) -> None:

@@ -48,7 +48,7 @@ def test_first_visit_shows_the_worked_example_and_its_answer(visitor: Visitor) -
 
 def test_worked_example_typed_by_keyboard_alone_into_an_empty_cycle_selects_HPN_20A_5(visitor: Visitor) -> None:
     page = visitor.open("/?T=&n=&t=")
-    expect(page.get_by_text("Enter a duty cycle")).to_be_visible()
+    expect(page.get_by_role("link", name="Type the first phase")).to_be_visible()
     tab_to(page, "textbox", "Torque, phase 1, in Nm")
     for k, phase in enumerate(PHASES, start=1):
         for value in phase:
@@ -134,7 +134,7 @@ def test_choosing_a_candidate_shows_its_limits_and_goes_back(visitor: Visitor) -
     page = visitor.open(EXAMPLE)
     open_section(page, "Candidates")
     page.get_by_text("14A: one gear").click()
-    page.get_by_role("button", name="HPN-14A-5", exact=True).click()
+    page.get_by_role("link", name="HPN-14A-5", exact=True).click()
     expect(selected(page)).to_contain_text("HPN-14A-5")
     expect(selected(page)).to_contain_text("not suitable")
     open_section(page, "Overview")

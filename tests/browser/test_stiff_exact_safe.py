@@ -50,7 +50,7 @@ def test_a_pulley_at_45_mm_is_judged_with_its_lever(visitor: Visitor) -> None:
     expect(selected(page)).to_contain_text("not rated")
     page.get_by_label("Axial load acts at").fill("40")
     page.get_by_label("Shaft’s centre at").fill("21")
-    expect(selected(page)).to_contain_text("not suitable")
+    expect(selected(page)).to_contain_text("No gear is suitable")
     expect(verdict(page)).to_contain_text("largest load on the output bearing (102")
 
 
@@ -68,7 +68,7 @@ def test_a_brake_that_is_too_hard_says_how_hard_it_may_be(visitor: Visitor) -> N
     page = visitor.open(f"{AXIS}&size=20A&JL=0.8&Jm=0.0015")
     page.locator("#group-brake > summary").click()
     page.get_by_label("Brake torque").fill("30")
-    expect(selected(page)).to_contain_text("not suitable")
+    expect(selected(page)).to_contain_text("No gear is suitable")
     expect(verdict(page)).to_contain_text("momentary peak torque")
     expect(page.get_by_text("the brake’s torque drops to").first).to_be_visible()
 

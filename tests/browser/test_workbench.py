@@ -122,11 +122,17 @@ def test_no_text_lies_over_another_or_beyond_the_page(visitor: Visitor, state: s
     assert page.evaluate("document.documentElement.scrollWidth") == width
 
 
+@pytest.mark.parametrize("state", ["all gears", "seven"])
+def test_page_of_a_phone_is_at_most_5000_px_long(visitor: Visitor, state: str) -> None:
+    page = visitor.open(STATES[state], 390, touch=True)
+    assert page.evaluate("document.documentElement.scrollHeight") <= 5000
+    assert page.evaluate("document.documentElement.scrollWidth") == page.evaluate("innerWidth") == 390
+
+
 @pytest.mark.parametrize("width", [390, ZOOMED])
 def test_narrow_screen_shows_one_section_at_a_time_and_its_tabs_stay_in_sight(visitor: Visitor, width: int) -> None:
     page = visitor.open(STATES["all gears"], width, touch=True)
     tabs = page.get_by_role("navigation", name="Sections of the result")
-    assert page.evaluate("document.documentElement.scrollHeight") <= 5000
     expect(page.get_by_role("table", name="Load limits")).to_be_visible()
 
     open_section(page, "Candidates")
@@ -183,13 +189,17 @@ def test_a_cell_that_is_blanked_leaves_no_result_as_if_it_were_valid(visitor: Vi
     page.get_by_label("Speed, phase 2").fill("")
     expect(page.get_by_text("Complete the phase to recalculate.")).to_be_visible()
     shown = [
-        page.locator(name) for name in (".headline", ".tabs", "#jump strong", "#cycle svg")
-    ]  # the third is the verdict on a phone
+        page.locator(name) for name in (".tabs", "#jump strong", "#cycle svg", "#overview")
+    ]  # the second is the verdict on a phone
+    muted = page.evaluate("getComputedStyle(document.querySelector('.hint')).color")
     for part in shown:
         expect(part).to_have_css("opacity", "0.55")
+    for part in (selected(page), page.locator(".largest .percent")):
+        expect(part).to_have_css("color", muted)
     page.get_by_label("Speed, phase 2").fill("500")
     for part in shown:
         expect(part).to_have_css("opacity", "1")
+    expect(selected(page)).not_to_have_css("color", muted)
 
 
 def test_the_link_is_copied_from_the_bar(visitor: Visitor) -> None:

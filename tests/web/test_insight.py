@@ -130,10 +130,38 @@ def test_rejected_gear_leads_with_its_remedy_and_offers_to_try_it(client: TestCl
     html = client.get(EXAMPLE + "&gear=HPN-14A-5").text
     text = re.sub(r"<[^>]*>", "", html).replace("\u202f", " ")
     assert text.count("Fits if torques drop to 90.5 % and Tk to 107 Nm.") >= 2
-    link = re.search(r'href="([^"]*)" id="try-out">Try it', html)
-    assert link
-    tried = client.get(link[1].replace("&amp;", "&")).text
-    assert re.search(r'<h2 class="designation"[^>]*>\s*HPN-14A-5\s*<span class="status suitable"', tried)
+    assert verdict(client.get(*tries(html)).text) == ("HPN-14A-5", "suitable")
+
+
+def tries(html: str) -> list[str]:
+    """Addresses behind each "Try it"."""
+    return [link.replace("&amp;", "&") for link in re.findall(r'data-tries="[^"]*" href="([^"]*)">Try it', html)]
+
+
+def verdict(html: str) -> tuple[str, str]:
+    """Gear and status in the head of the result."""
+    found = re.search(r'<h2 class="designation".*?>(HPN-\w+-\d+)<.*?<span class="status (\w+)"', html, re.DOTALL)
+    assert found
+    return found[1], found[2]
+
+
+def test_each_change_of_a_remedy_has_its_own_link_that_makes_the_gear_fit(client: TestClient) -> None:
+    html = client.get(EXAMPLE + "&Lh=2000000&gear=HPN-20A-5").text
+    assert len(tries(html)) == 2
+    for link in tries(html):
+        assert verdict(client.get(link).text) == ("HPN-20A-5", "suitable")
+
+
+def test_nearest_lighter_gear_offers_each_change_that_makes_it_fit(client: TestClient) -> None:
+    html = client.get(EXAMPLE + "&FR=500&FA=200").text
+    assert verdict(html) == ("HPN-20A-5", "suitable")
+    assert len(tries(html)) == 2
+    for link in tries(html):
+        assert verdict(client.get(link).text) == ("HPN-14A-5", "suitable")
+
+
+def test_only_the_chosen_gear_pinned_still_has_another_beside_it(client: TestClient) -> None:
+    assert compared(client.get(EXAMPLE + "&pin=HPN-20A-5").text) == ["HPN-20A-5", "HPN-14A-5"]
 
 
 def test_area_of_use_is_a_note_in_the_result(client: TestClient) -> None:

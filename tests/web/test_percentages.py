@@ -38,7 +38,7 @@ def test_reply_and_page_say_it_alike_in_both_languages(api: TestClient, torque: 
     assert f" at {shown} % of its limit" in gear["reason"]
     short = shown.removesuffix(".0")
     english, german = (words(api, page, language) for language in ("en", "de"))
-    assert re.search(rf"(Largest utilisation|average torque \(){re.escape(short)}\u202f%", english)
+    assert re.search(rf"(Largest utilisation ?|average torque \(){re.escape(short)}\u202f%", english)
     assert f"{short.replace('.', ',')}\u202f%" in german
 
 

@@ -31,11 +31,10 @@ class Insight:
     pins: tuple[str, ...]
     catalogue: Catalogue
 
-    @property
-    def try_out(self) -> str | None:
-        """Link that follows the first alternative of the chosen gear's remedy; None where it has none."""
-        alternatives = alternatives_of(self.chosen, self.application.requirements.utilisation)
-        return to_link(tried(self.application, alternatives[0], self.catalogue)) if alternatives else None
+    def tries(self, designation: str) -> tuple[str, ...]:
+        """Links that follow the alternatives of a gear's remedy, one each."""
+        alternatives = alternatives_of(self.everything[designation], self.application.requirements.utilisation)
+        return tuple(to_link(tried(self.application, one, self.catalogue)) for one in alternatives)
 
     @property
     def same_life(self) -> str:
@@ -46,9 +45,9 @@ class Insight:
 
     @cached_property
     def columns(self) -> tuple[Column, ...]:
-        """The gears side by side: the chosen one, and those pinned or else the one that comes next."""
+        """The gears side by side: the chosen one, and the others that are pinned or else the one that comes next."""
         shown = [self.chosen, *(self.everything[pin] for pin in self.pins if pin != self.chosen.designation)]
-        if not self.pins and (second := self._second()):
+        if len(shown) == 1 and (second := self._second()):
             shown.append(second)
         return tuple(Column(entry, self.catalogue.by_designation[entry.designation]) for entry in shown)
 
@@ -64,7 +63,7 @@ class Insight:
         return undominated(self.selection.candidates, self.catalogue)
 
     def _second(self) -> Candidate | None:
-        """The gear to compare with where none is pinned: the nearest smaller miss, else the next in line."""
+        """The gear to compare with where no other is pinned: the nearest smaller miss, else the next in line."""
         lighter = lighter_miss(self.selection, self.catalogue.by_designation)
         others = [lighter] if lighter else []
         others += [candidate for candidate in self.selection.candidates if candidate.status != "unrated"]

@@ -9,7 +9,7 @@ from hpn.application import Application, RankBy
 from hpn.catalogue import Catalogue
 from hpn.catalogue.gear import Gear
 from hpn.engine.checks import BY_CODE, allowed
-from hpn.engine.remedy import Growth, growths_of, remedy_of
+from hpn.engine.remedy import Growth, alternatives_of, condition_of, growths_of, remedy_of
 from hpn.engine.selection import Candidate, Selection
 from hpn.explain.readings import Life, Reading, readings_of, shortest_life
 from hpn.files.export import DIGITS
@@ -95,7 +95,7 @@ class Result:
         """Largest utilisation with which each check passes, by code; 1 where none governs."""
         return {code: allowed(code, self.utilisation) for code in (None, *self.selection.check_definitions)}
 
-    @property
+    @cached_property
     def readings(self) -> Mapping[str, Reading]:
         """Demand and limit of the chosen candidate's checks as an engineer reads them, by code."""
         return readings_of(self.chosen, self.selection, self.application, self.catalogue)
@@ -159,10 +159,19 @@ class Result:
 
     def remedy(self, designation: str) -> Sentence | None:
         """Remedy that makes a candidate fit, as far as its catalogue figures are known."""
-        gear, candidate = self.gears.get(designation), self.selection.candidate(designation)
-        if designation == self.chosen.designation:
-            candidate = self.chosen  # which may stand outside the ratios and sizes that were asked for
-        return remedy_of(candidate, self.utilisation) if gear and candidate else None
+        candidate = self._judged(designation)
+        return remedy_of(candidate, self.utilisation) if candidate else None
+
+    def conditions(self, designation: str) -> tuple[Sentence, ...]:
+        """Changes that each alone make a candidate fit, as far as its catalogue figures are known."""
+        candidate = self._judged(designation)
+        return tuple(map(condition_of, alternatives_of(candidate, self.utilisation))) if candidate else ()
+
+    def _judged(self, designation: str) -> Candidate | None:
+        """A candidate with known catalogue figures; the chosen one may stand outside the ratios and sizes asked for."""
+        chosen = self.chosen.designation == designation
+        candidate = self.chosen if chosen else self.selection.candidate(designation)
+        return candidate if designation in self.gears else None
 
     @property
     def growths(self) -> Mapping[str, tuple[Growth, ...]]:
