@@ -148,6 +148,14 @@ def test_missing_figures_say_how_to_supply_them_and_what_is_supplied_is_marked(t
         assert "The rating table and the lengths of HPN-40A are not in" in unrated
 
 
+def test_a_gear_that_lacks_a_figure_no_check_needs_is_not_said_to_be_unrated(client: TestClient) -> None:
+    rated, unrated = (unescape(client.get(f"/catalogue/{gear}").text) for gear in ("HPN-20A-5", "HPN-40A-5"))
+
+    assert "it is rated without them" in rated and "can’t be rated" not in rated
+    assert "can’t be rated" in unrated
+    assert '<details class="panel missing">' in rated and '<details class="panel missing" open>' in unrated
+
+
 def test_a_gear_of_a_supplement_may_have_any_number_of_stages(tmp_path: Path) -> None:
     (tmp_path / "gears.csv").write_text("size,ratio,stages,source\n40A,125,3,mine\n")
     page = TestClient(create_app(Settings(catalogue_supplement=tmp_path))).get("/catalogue/HPN-40A-125")
