@@ -128,27 +128,24 @@ function whole(plot) {
   window.Plotly.relayout(placeIn(plot), { "xaxis.range": layout.xaxis.range, "yaxis.range": layout.yaxis.range });
 }
 
-// A picture leaves the page that explains it, so it takes title, legend and standing along; always on white.
+// A picture leaves the page that explains it, so it takes title and note along; always on white.
 async function save(plot, format) {
   await load(plot.dataset.bundle);
   const { data, layout } = themed(JSON.parse(plot.dataset.figure), "light");
   const { title, note } = layout.meta;
-  const rows = data.filter((trace) => trace.name).length;
   Object.assign(layout, {
     title: { text: title, font: { size: 15 }, x: 0.02, xanchor: "left" },
-    showlegend: true,
-    legend: { orientation: "v", x: 0, y: -0.17, xanchor: "left", yanchor: "top" },
-    margin: { l: 76, r: 28, t: 56, b: 110 + 20 * rows },
+    margin: { l: 76, r: 28, t: 56, b: 110 },
     paper_bgcolor: "#fff",
     plot_bgcolor: "#fff",
     width: 900,
-    height: 640 + 20 * rows,
+    height: 640,
   });
   layout.annotations = [
     ...(layout.annotations ?? []),
-    { text: note, xref: "paper", yref: "paper", x: 0, y: 0, yshift: -(96 + 20 * rows), xanchor: "left", yanchor: "top", showarrow: false, font: { size: 11 } },
+    { text: note, xref: "paper", yref: "paper", x: 0, y: 0, yshift: -70, xanchor: "left", yanchor: "top", showarrow: false, font: { size: 11 } },
   ];
-  await window.Plotly.downloadImage({ data, layout, config: CONFIG }, { format, width: 900, height: 640 + 20 * rows, scale: format === "png" ? 2 : 1, filename: plot.dataset.file });
+  await window.Plotly.downloadImage({ data, layout, config: CONFIG }, { format, width: 900, height: 640, scale: format === "png" ? 2 : 1, filename: plot.dataset.file });
 }
 
 // --- One phase: its row, its step and its load are marked together ---------------------------------------------------

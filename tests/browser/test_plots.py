@@ -13,7 +13,7 @@ from playwright.sync_api import Browser, Page, Playwright, expect
 from hpn.application import Application
 from hpn.catalogue import load_catalogue
 from hpn.engine.selection import select
-from hpn.explain.drawings import LARGE, SMALL, Subject, bearing_picture, envelope_drawing
+from hpn.explain.drawings import LARGE, SMALL, Subject, bearing_picture, chart, envelope_scene
 from hpn.explain.drawings.svg import STYLE, markup
 from hpn.words.reader import Reader
 from tests.browser.conftest import PATIENCE_S, Visitor, open_section, violations
@@ -63,7 +63,7 @@ def once(page: Page, holds: Callable[[Any], bool]) -> Any:
 
 def curves(data: Any) -> dict[float, tuple[list[float], list[float]]]:
     """Life envelopes of a plot by load coefficient."""
-    kept = [trace for trace in data if trace["meta"]["kind"] in ("own", "life")]
+    kept = [trace for trace in data if trace["meta"]["kind"] in ("limit", "coefficient")]
     return {trace["meta"]["load_coefficient"]: (trace["x"], trace["y"]) for trace in kept}
 
 
@@ -157,7 +157,7 @@ def test_all_sizes_are_a_second_view_by_keyboard_that_stays_while_typing(visitor
     page.keyboard.press("ArrowRight")
     drawing = page.get_by_role("figure", name=re.compile("on each size"))
     expect(drawing.locator("text.name").locator("visible=true")).to_have_count(4)
-    assert len([t for t in drawn(page, "of each size")["data"] if t["meta"]["kind"] == "size"]) == 4
+    assert len([t for t in drawn(page, "of each size")["data"] if t["meta"]["kind"] in ("size", "limit")]) == 4
     table = page.get_by_role("table", name="Which size carries the load")
     expect(table.get_by_role("row", name=re.compile("14A"))).to_contain_text("does not carry it")
     expect(table.get_by_role("row", name=re.compile("20A"))).to_contain_text("carries the load")
@@ -254,7 +254,7 @@ def test_a_size_without_published_limits_says_why_it_has_no_envelope(visitor: Vi
 
 def test_a_candidate_outside_the_wishes_has_its_pictures_too(visitor: Visitor) -> None:
     page = visitor.open(PHASES + "&gear=HPN-32A-10#bearing")
-    (loads,) = [trace for trace in drawn(page)["data"] if trace["meta"]["kind"] == "phases"]
+    (loads,) = [trace for trace in drawn(page)["data"] if trace["meta"]["kind"] == "load"]
     assert loads["text"] == ["phase 1", "phase 2", "phase 3"]
 
 
@@ -402,7 +402,9 @@ def test_no_text_lies_over_another_as_a_browser_sets_them_and_none_is_smaller_th
         picture = bearing_picture(subject, candidate.check("output_bearing_life"))
         assert picture is not None
         for reader in (Reader(), Reader("de", ("lbf",))):
-            drawn.append("".join(markup(envelope_drawing(picture, reader, (), None, size)) for size in (SMALL, LARGE)))
+            drawn.append(
+                "".join(markup(chart(envelope_scene(picture, reader), reader, size)) for size in (SMALL, LARGE))
+            )
     page = chromium.new_page()
     styles = "".join(path.read_text() for path in (STATIC / "app.css", STYLE, STATIC / "plots.css"))
     for width in (330, 348, 370, 395, 410, 440, 470, 500, 515, 560, 600, 640):

@@ -16,7 +16,7 @@ from hpn.engine.selection import select
 from hpn.explain import drawings
 from hpn.explain.drawings import Subject
 from hpn.explain.drawings.svg import LETTER, markup
-from hpn.words.reader import Reader
+from hpn.words.reader import DEFAULT, Reader
 from tests.build import Json, cycle, phase
 from tests.conftest import Supplement
 
@@ -96,10 +96,19 @@ def picture_of(subject: Subject) -> drawings.BearingPicture:
     return found
 
 
+def drawing_of(
+    picture: drawings.BearingPicture,
+    reader: Reader = DEFAULT,
+    check: str | None = None,
+    size: Point = drawings.SMALL,
+) -> Element:
+    return drawings.chart(drawings.envelope_scene(picture, reader, (), check), reader, size)
+
+
 def shown(document: Json, reader: Reader | None = None, catalogue: Catalogue = CATALOGUE) -> Shown:
     reader = reader or Reader()
     picture = picture_of(subject_of(document, catalogue=catalogue))
-    return Shown(drawings.envelope_drawing(picture, reader), reader.decimal)
+    return Shown(drawing_of(picture, reader), reader.decimal)
 
 
 def near(points: list[Point]) -> object:
@@ -181,7 +190,7 @@ def test_the_limit_has_its_two_values_on_the_axes() -> None:
 def test_the_limit_that_governs_alone_takes_the_accent(check: str | None, kinds: list[str]) -> None:
     picture = picture_of(subject_of(cycle(*THREE)))
     for size in (drawings.SMALL, drawings.LARGE):
-        drawn = Shown(drawings.envelope_drawing(picture, Reader(), (), check, size))
+        drawn = Shown(drawing_of(picture, Reader(), check, size))
         assert [line.get("class", "").split()[1] for line in drawn.of("path", "governing")] == kinds
         assert [name.get("class", "").split()[1] for name in drawn.of("text", "governing")] == kinds
 
@@ -258,7 +267,7 @@ def test_no_text_lies_over_another_and_each_stays_inside(
     document = cycle(*phases, output_load={"load_coefficient": f_w, "model": model}, requirements={"utilisation": u})
     picture = picture_of(subject_of(document, gear))
 
-    drawing = drawings.envelope_drawing(picture, reader)
+    drawing = drawing_of(picture, reader)
     drawn = Shown(drawing, reader.decimal)
 
     texts = boxes(drawn)
@@ -273,14 +282,14 @@ def test_no_text_lies_over_another_and_each_stays_inside(
     assert all(bottom <= height for *_, bottom in texts)
     groups = [(group.find(f"{SVG}rect[@class='disc']"), group.find(SVG + "circle")) for group in drawn.of("g", "mark")]
     assert [dot for (disc, _), (_, dot) in combinations(groups, 2) if _is_over(dot, disc)] == []
-    assert markup(drawing) == markup(drawings.envelope_drawing(picture, reader))
+    assert markup(drawing) == markup(drawing_of(picture, reader))
 
 
 @pytest.mark.parametrize("count", [1, 7, 24])
 def test_loads_apart_from_each_other_all_have_their_number(count: int) -> None:
     phases = [phase(1, 100, radial_N=60 + 65.0 * (k % 24), axial_N=200.0 * (1 + k % 3)) for k in range(count)]
     picture = picture_of(subject_of(cycle(*phases)))
-    drawn = Shown(drawings.envelope_drawing(picture, size=drawings.LARGE))
+    drawn = Shown(drawing_of(picture, size=drawings.LARGE))
     assert [Shown.said(text) for text in drawn.of("text", "number")][:-1] == [str(k + 1) for k in range(count)]
 
 
@@ -298,7 +307,7 @@ def test_of_more_than_24_loads_those_nearest_to_their_limit_have_a_number() -> N
 def test_every_size_is_a_line_and_the_gears_own_is_the_strong_one() -> None:
     subject = subject_of(cycle(phase(10, 100), output_load={"radial_N": 300.0}))
     picture = picture_of(subject)
-    drawn = Shown(drawings.sizes_drawing(drawings.size_uses(subject, picture), picture))
+    drawn = Shown(drawings.chart(drawings.sizes_scene(drawings.size_uses(subject, picture), picture), DEFAULT))
 
     limits = [(gear.dynamic_radial_load_N, gear.dynamic_axial_load_N) for gear in subject.sizes.rows]
     lines = [*drawn.line("limit"), *drawn.line("size")]
@@ -319,7 +328,7 @@ def test_a_gear_in_the_catalogue_shows_its_published_limits() -> None:
 @pytest.mark.parametrize(("radial", "axial"), [(0.0, 0.0), (1e-300, 0.0), (1e9, 1e9), (0.0, 1e-12)])
 def test_extreme_loads_have_a_drawing(radial: float, axial: float) -> None:
     picture = picture_of(subject_of(cycle(phase(1, 100), output_load={"radial_N": radial, "axial_N": axial})))
-    text = markup(drawings.envelope_drawing(picture))
+    text = markup(drawing_of(picture))
     assert "nan" not in text.lower().replace("governing", "")
     assert "inf" not in text
 

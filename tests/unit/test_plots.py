@@ -1,6 +1,7 @@
 """Pictures as data: every figure is valid for Plotly, shows what the checks compute, and says so in words."""
 
 import re
+from collections.abc import Sequence
 from itertools import combinations
 
 import plotly.graph_objects as go
@@ -11,7 +12,7 @@ from hpn.catalogue import Catalogue
 from hpn.engine.selection import CheckResult, select
 from hpn.explain import drawings as plots
 from hpn.explain.drawings import Subject
-from hpn.words.reader import Reader
+from hpn.words.reader import DEFAULT, Reader
 from tests.build import Json, cycle, phase
 from tests.conftest import Supplement
 
@@ -39,6 +40,10 @@ def picture(subject: Subject) -> plots.BearingPicture:
     return found
 
 
+def figure_of(shown: plots.BearingPicture, reader: Reader = DEFAULT, governing: Sequence[int] = ()) -> plots.Figure:
+    return plots.bearing_figure(plots.envelope_scene(shown, reader, governing), shown, reader)
+
+
 def check(subject: Subject, designation: str, code: str) -> CheckResult:
     candidate = select(subject.application, subject.catalogue).candidate(designation)
     assert candidate is not None
@@ -60,15 +65,16 @@ def test_figures_of_the_bearing_are_valid_in_every_model(
     subject = example(catalogue, output_load=LOADS | {"model": model, "load_coefficient": coefficient})
     shown = picture(subject)
 
-    figure = plots.bearing_figure(shown)
+    figure = figure_of(shown)
 
     go.Figure(figure)
-    sizes = plots.sizes_figure(plots.size_uses(subject, shown), shown)
+    uses = plots.size_uses(subject, shown)
+    sizes = plots.sizes_figure(plots.sizes_scene(uses, shown), uses, shown)
     go.Figure(sizes)
-    drawn = {trace["meta"]["load_coefficient"] for trace in traces(figure, "own") + traces(figure, "life")}
+    drawn = {trace["meta"]["load_coefficient"] for trace in traces(figure, "limit") + traces(figure, "coefficient")}
     assert drawn == {1.0, 1.2, 1.5, coefficient}
     published = {gear.size for gear in catalogue.gears if gear.dynamic_radial_load_N is not None}
-    assert len(traces(sizes, "size")) == (1 if model == "digitised" else len(published))
+    assert len(traces(sizes, "size") + traces(sizes, "limit")) == (1 if model == "digitised" else len(published))
 
 
 @pytest.mark.parametrize("life_h", [1000.0, 60_000.0])
@@ -76,29 +82,29 @@ def test_each_curve_of_the_plot_has_the_drawings_name_on_it_and_no_legend(catalo
     subject = example(catalogue, output_load=LOADS | {"life_h": life_h})
     shown = picture(subject)
 
-    figure = plots.bearing_figure(shown)
+    figure = figure_of(shown)
 
     assert figure["layout"]["showlegend"] is False
-    kinds = ("own", "life", "published", "equivalent")
+    kinds = ("limit", "coefficient", "single", "equivalent")
     names = [[name for name in trace["text"] if name] for kind in kinds for trace in traces(figure, kind)]
-    single = [["single load"]] if shown.life_factor < 1 else [[]]
+    single = [["single load"]] if shown.life_factor < 1 else []
     life = [["f<sub>w</sub> 1"], ["f<sub>w</sub> 1.5"]]
-    assert sorted(names) == sorted([["limit now"], *life, *single, ["P<sub>m</sub>"]])
-    drawing = "".join(plots.envelope_drawing(shown).itertext())
+    assert sorted(names) == sorted([["limit now, f<sub>w</sub> 1.2"], *life, *single, ["P<sub>m</sub>"]])
+    drawing = "".join(plots.chart(plots.envelope_scene(shown), DEFAULT).itertext())
     assert all(re.sub("<.*?>", "", name) in drawing.replace("f_w", "fw") for one in names for name in one)
 
 
 def test_names_of_curves_stand_apart_where_a_load_lies_far_outside(catalogue: Catalogue) -> None:
     subject = shown_on(cycle(phase(40, 250, 0.3, radial_N=9000, axial_N=300), phase(32, 500, 3)), catalogue)
 
-    figure = plots.bearing_figure(picture(subject))
+    figure = figure_of(picture(subject))
 
     axes = [figure["layout"][name]["range"][1] for name in ("xaxis", "yaxis")]
     named = [(k, text, trace) for trace in figure["data"] for k, text in enumerate(trace.get("text", ()))]
     places = [
         (trace["x"][k] / axes[0], trace["y"][k] / axes[1])
         for k, text, trace in named
-        if text and trace["meta"]["kind"] in ("own", "life", "published", "equivalent")
+        if text and trace["meta"]["kind"] in ("limit", "coefficient", "single")
     ]
     assert len(places) > 3
     assert all(abs(x - v) > 0.1 or abs(y - w) > 0.04 for (x, y), (v, w) in combinations(places, 2))
@@ -120,7 +126,7 @@ def test_the_picture_uses_what_the_checks_say(supplemented: Supplement, model: s
 
 def test_distance_leads_from_the_worst_load_to_the_published_curve(catalogue: Catalogue) -> None:
     shown = picture(example(catalogue, output_load=LOADS))
-    line = traces(plots.bearing_figure(shown), "distance")[0]
+    line = traces(figure_of(shown), "distance")[0]
 
     radial, axial = line["x"][1], line["y"][1]
     assert 1.2 * (radial / 1800 + axial / 2200) == pytest.approx(1, rel=1e-12)
@@ -133,14 +139,14 @@ def test_phases_with_one_load_are_one_point(catalogue: Catalogue) -> None:
     phases = [phase(10, 100, 1.0, radial_N=300)] * 3 + [phase(10, 100, 1.0, radial_N=100)]
     subject = shown_on(cycle(*phases), catalogue)
 
-    figure = plots.bearing_figure(picture(subject), governing=(1,))
-    points = traces(figure, "phases")[0]
+    shown = picture(subject)
+    figure = figure_of(shown, governing=(1,))
+    points = traces(figure, "load")[0]
 
     assert points["text"] == ["phase 1–3", "phase 4"]
     assert points["x"] == [300, 100]
-    (ring,) = traces(figure, "governing")
-    assert (ring["x"], ring["y"]) == ([300], [0])
-    assert not traces(plots.bearing_figure(picture(subject)), "governing")
+    assert points["marker"]["color"] == ["var(--governing)", "var(--ink)"]
+    assert set(traces(figure_of(shown), "load")[0]["marker"]["color"]) == {"var(--ink)"}
     go.Figure(figure)
 
 
@@ -152,14 +158,14 @@ def test_of_very_many_loads_the_worst_are_shown_and_the_rest_counted(catalogue: 
     assert len(shown.loads) == 200
     assert shown.hidden == 800
     assert shown.worst.phases == "1000"
-    go.Figure(plots.bearing_figure(shown))
+    go.Figure(figure_of(shown))
 
 
 def test_axes_stay_for_any_load_within_the_limits_and_widen_beyond(catalogue: Catalogue) -> None:
     def ranges(radial: float) -> tuple[list[float], list[float]]:
-        layout = plots.bearing_figure(
-            picture(shown_on(cycle(phase(1, 100), output_load={"radial_N": radial}), catalogue))
-        )["layout"]
+        layout = figure_of(picture(shown_on(cycle(phase(1, 100), output_load={"radial_N": radial}), catalogue)))[
+            "layout"
+        ]
         return layout["xaxis"]["range"], layout["yaxis"]["range"]
 
     assert ranges(1.0) == ranges(900.0) == ranges(1800.0)
@@ -262,7 +268,7 @@ def test_emergency_stops_of_an_unrated_gear_have_words_but_no_plot(catalogue: Ca
 
 def test_a_reader_of_other_units_sees_other_numbers(catalogue: Catalogue) -> None:
     shown = picture(example(catalogue, output_load=LOADS))
-    figure, plain = plots.bearing_figure(shown, Reader(units=("lbf",))), plots.bearing_figure(shown)
+    figure, plain = figure_of(shown, Reader(units=("lbf",))), figure_of(shown)
     pairs = [
         (figure["data"][0]["x"], plain["data"][0]["x"]),
         (figure["layout"]["xaxis"]["range"], plain["layout"]["xaxis"]["range"]),

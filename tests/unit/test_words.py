@@ -12,7 +12,7 @@ from hpn.application import Application
 from hpn.catalogue import Catalogue as Gears
 from hpn.engine.selection import select
 from hpn.explain.calculation import calculation_of
-from hpn.explain.drawings import Subject, bearing_figure, bearing_picture
+from hpn.explain.drawings import Subject, bearing_figure, bearing_picture, envelope_scene
 from hpn.files.inputs import WORDS
 from hpn.web.form.symbols import BY_NAME
 from hpn.words.reader import Reader, catalogue
@@ -105,7 +105,7 @@ def test_the_plot_and_the_calculation_state_one_basis(model: str, catalogue: Gea
     picture = bearing_picture(Subject(application, gear, catalogue), candidate.check("output_bearing_life"))
     assert picture is not None
 
-    drawn = str(bearing_figure(picture, reader=Reader()))
+    drawn = str(bearing_figure(envelope_scene(picture), picture, Reader()))
     notes = [note.text for step in calculation_of(candidate, gear, application, catalogue) for note in step.notes]
 
     assert sum(note in drawn for note in notes) == 1

@@ -1,13 +1,13 @@
 """Pictures of a selection as plain data: SVG drawings, Plotly figures, and what they say in words.
 
-Data and axes are made here. Colours are those of a style sheet, or names of the page's theme (`var(--plot-own)`), which
+Data and axes are made here. Colours are those of a style sheet, or names of the page's theme (`var(--ink)`), which
 the browser fills in.
 """
 
 from hpn.explain.drawings.bearing import bearing_figure, sizes_figure
-from hpn.explain.drawings.chart import LARGE, SMALL
+from hpn.explain.drawings.chart import LARGE, SMALL, Scene, chart
 from hpn.explain.drawings.cycle import CyclePicture, cycle_picture
-from hpn.explain.drawings.envelope import GearEnvelope, envelope_drawing, gear_envelope, sizes_drawing
+from hpn.explain.drawings.envelope import GearEnvelope, envelope_scene, gear_envelope, sizes_scene
 from hpn.explain.drawings.governing import governing_phases
 from hpn.explain.drawings.layout import Figure
 from hpn.explain.drawings.picture import BearingPicture, NamedCurve, bearing_picture
@@ -26,6 +26,7 @@ __all__ = [
     "GearEnvelope",
     "NamedCurve",
     "Plane",
+    "Scene",
     "SizeUse",
     "Subject",
     "bearing_figure",
@@ -33,15 +34,16 @@ __all__ = [
     "bearing_verdict",
     "bearing_words",
     "carries",
+    "chart",
     "cycle_picture",
     "emergency_stop_figure",
     "emergency_stop_words",
-    "envelope_drawing",
+    "envelope_scene",
     "gear_envelope",
     "gear_plane",
     "governing_phases",
     "motor_plane",
     "size_uses",
-    "sizes_drawing",
     "sizes_figure",
+    "sizes_scene",
 ]

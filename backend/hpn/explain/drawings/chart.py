@@ -61,14 +61,16 @@ LOADS = Axes(N_("radial load"), "N", N_("axial load"), "N")
 class Line:
     """A limit by its corners (across, up), from one axis to the other, or a curve.
 
-    A strong one has its label on it and an area below it, others their label at their end; `kind` is what the style
-    sheet calls it.
+    A strong one has its label in its middle and an area below it, others their label at their end; `kind` is what the
+    style sheet calls it, `told` its name in full, and `load_coefficient` that for which it holds.
     """
 
     kind: str
     label: str
     corners: Sequence[Point]
     strong: bool = False
+    told: str = ""
+    load_coefficient: float | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,6 +88,21 @@ class Mark:
     used: float = 0.0
     outside: bool = False
     phases: Sequence[int] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Scene:
+    """Content of a plane: limits, points, and a ray.
+
+    The ray leads from the origin to its first point, and on to the limit in its direction. `beyond` are rows that name
+    limits outside of what is drawn; a corner at infinity is at the end of its axis.
+    """
+
+    lines: Sequence[Line]
+    marks: Sequence[Mark]
+    ray: tuple[Point, Point] | None = None
+    axes: Axes = LOADS
+    beyond: Sequence[str] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -116,23 +133,13 @@ class Frame:
         return x, box.bottom - min(point[1] / self.up, 1.0) * (box.bottom - box.top)
 
 
-def chart(
-    lines: Sequence[Line],
-    marks: Sequence[Mark],
-    reader: Reader,
-    ray: tuple[Point, Point] | None = None,
-    axes: Axes = LOADS,
-    beyond: Sequence[str] = (),
-    size: Point = SMALL,
-) -> Element:
-    """Limits and points. `ray` is a point, drawn to from the origin, and the limit in its direction.
-
-    `beyond` are rows that name limits outside of what is drawn; a corner at infinity is at the end of its axis.
-    """
+def chart(scene: Scene, reader: Reader, size: Point = SMALL) -> Element:
+    """A scene as an SVG drawing."""
+    lines, marks, ray, axes = scene.lines, scene.marks, scene.ray, scene.axes
     points = [*(corner for line in lines for corner in line.corners), *(mark.place for mark in marks)]
     bold = [corner for line in lines if line.strong and line.label for corner in (line.corners[0], line.corners[-1])]
     frame = _frame(points, bold, axes, size, reader)
-    drawing = canvas(KINDS[size], size[0], size[1] + ROW * len(beyond))
+    drawing = canvas(KINDS[size], size[0], size[1] + ROW * len(scene.beyond))
     still = add(drawing, "g", "still", aria_hidden="true")
     places = Places(frame.room)
     for line in lines:
@@ -148,7 +155,7 @@ def chart(
         add(still, "path", "ray rest", d=path([frame.at(ray[0]), frame.at(_within(frame, ray[1]))]))
     _marks(drawing, frame, marks, places)
     _labels(drawing, frame, lines, places)
-    for row, names in enumerate(beyond):
+    for row, names in enumerate(scene.beyond):
         text(still, "beyond", (size[0] - RIGHT, size[1] + ROW * row + 12), names, "end")
     return drawing
 
@@ -262,7 +269,7 @@ def _apart(one: Box, other: Box) -> float:
 def _group(drawing: Element, mark: Mark) -> Element:
     state = " outside" if mark.outside else ""
     group = add(drawing, "g", f"mark {mark.kind}{state}", data_phase=" ".join(map(str, mark.phases)))
-    if mark.told:
+    if mark.label and mark.told:
         group.set("role", "img")
         SubElement(group, "title").text = mark.told
     return group

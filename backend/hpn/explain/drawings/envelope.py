@@ -7,10 +7,9 @@ from xml.etree.ElementTree import Element
 from hpn.catalogue import Catalogue
 from hpn.catalogue.gear import Gear
 from hpn.engine.envelopes import EnvelopeCurve, EnvelopeQuery, has_envelope, life_envelopes
-from hpn.explain.drawings.chart import SMALL, Line, Mark, chart
+from hpn.explain.drawings.chart import Line, Mark, Scene, chart
 from hpn.explain.drawings.picture import BearingPicture, PhaseLoad, beyond_limit
 from hpn.explain.drawings.sizes import SizeUse
-from hpn.explain.drawings.svg import Point
 from hpn.explain.drawings.words import coefficient_name, share
 from hpn.words.reader import DEFAULT, Reader
 from hpn.words.wording import N_, Quantity, Sentence, Value
@@ -22,52 +21,47 @@ MOST_NUMBERS = 24
 """Loads that have a numbered disc, those nearest to their limit; others are dots."""
 
 
-def envelope_drawing(
-    picture: BearingPicture,
-    reader: Reader = DEFAULT,
-    governing: Sequence[int] = (),
-    check: str | None = None,
-    size: Point = SMALL,
-) -> Element:
+def envelope_scene(
+    picture: BearingPicture, reader: Reader = DEFAULT, governing: Sequence[int] = (), check: str | None = None
+) -> Scene:
     """Envelopes and loads of one gear; the `governing` phases and the limit of the governing check stand out."""
-    f_w = picture.load.load_coefficient
     accent = {check: " governing"}
-    name = f"{reader.text(N_('limit now'))}, {coefficient_name(f_w, reader)}"
-    kind = "limit" + accent.get("output_bearing_life", "")
-    lines = [Line(kind, name, _corners(picture, "own"), strong=True)]
-    lines += [
-        _coefficient(named.curve.load_coefficient, named.corners, reader)
-        for named in picture.named_curves
-        if named.kind == "life"
-    ]
-    if picture.life_factor < 1 and picture.loads:
-        kind = "single" + accent.get("output_bearing_load", "")
-        lines.append(Line(kind, reader.text(N_("single load")), _corners(picture, "published")))
+    lines = []
+    for named in picture.named_curves:
+        f_w = coefficient_name(named.curve.load_coefficient, reader)
+        kind, label = {
+            "own": ("limit" + accent.get("output_bearing_life", ""), f"{reader.text(N_('limit now'))}, {f_w}"),
+            "life": ("coefficient", f_w),
+            "published": ("single" + accent.get("output_bearing_load", ""), reader.text(N_("single load"))),
+            "equivalent": ("", ""),
+        }[named.kind]
+        if named.kind == "published" and not (picture.life_factor < 1 and picture.loads):
+            continue
+        if kind:
+            told, strong = reader.told(named.name), named.kind == "own"
+            lines.append(Line(kind, label, named.corners, strong, told, named.curve.load_coefficient))
     if not picture.loads:
-        return chart(lines, [], reader, size=size)
+        return Scene(lines, [])
     marks, worst, ray = _marks(picture, governing, reader, judged=True), picture.worst, None
     if picture.mean > 0:
         marks.append(_equivalent(picture, reader))
         edge = min(worst.allowed / worst.published, 1e6)
         ray = (worst.radial_N, worst.axial_N), (edge * worst.radial_N, edge * worst.axial_N)
-    return chart(lines, marks, reader, ray, size=size)
+    return Scene(lines, marks, ray)
 
 
-def sizes_drawing(
-    uses: Sequence[SizeUse],
-    picture: BearingPicture,
-    reader: Reader = DEFAULT,
-    governing: Sequence[int] = (),
-    size: Point = SMALL,
-) -> Element:
+def sizes_scene(
+    uses: Sequence[SizeUse], picture: BearingPicture, reader: Reader = DEFAULT, governing: Sequence[int] = ()
+) -> Scene:
     """Permissible constant load of each size, with the loads of the phases; the gear's own size stands out."""
     lines = []
     for place, use in enumerate(uses):
         if use.curve is not None:
             corners = list(zip(use.curve.radial_N, use.curve.axial_N, strict=True))
             own = use.gear.size == picture.gear.size
-            lines.append(Line("limit" if own else f"size s{place % 4}", use.gear.size, corners, strong=own))
-    return chart(lines, _marks(picture, governing, reader, judged=False), reader, size=size)
+            kind = "limit" if own else f"size s{place % 4}"
+            lines.append(Line(kind, use.gear.size, corners, own, use.gear.name, use.curve.load_coefficient))
+    return Scene(lines, _marks(picture, governing, reader, judged=False))
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,14 +83,10 @@ def gear_envelope(catalogue: Catalogue, gear: Gear, reader: Reader = DEFAULT) ->
     corners = [list(zip(curve.radial_N, curve.axial_N, strict=True)) for curve in curves]
     lines = [_coefficient(c.load_coefficient, along, reader) for c, along in zip(curves, corners, strict=True)]
     limit = Line("limit", reader.text(N_("published")), corners[0], strong=True)
-    return GearEnvelope(curves, supplied, chart([limit, *lines], [], reader))
+    return GearEnvelope(curves, supplied, chart(Scene([limit, *lines], []), reader))
 
 
 # --- Lines ------------------------------------------------------------------------------------------------------------
-
-
-def _corners(picture: BearingPicture, kind: str) -> list[tuple[float, float]]:
-    return next(named.corners for named in picture.named_curves if named.kind == kind)
 
 
 def _coefficient(f_w: float, corners: list[tuple[float, float]], reader: Reader) -> Line:
@@ -116,11 +106,8 @@ def _marks(picture: BearingPicture, governing: Sequence[int], reader: Reader, *,
         kind = "load governing" if set(governing) & set(load.places) else "load"
         if load.has_lever:
             marks.append(Mark("given", "", (load.given_N, load.axial_N), "", LAST))
-        if at not in numbered:
-            marks.append(Mark(kind, "", place, "", load.published, outside, load.marked))
-        else:
-            told = _told_of(load, outside, reader)
-            marks.append(Mark(kind, _label(load), place, told, load.published, outside, load.marked))
+        label, told = _label(load) if at in numbered else "", _told_of(load, outside, reader)
+        marks.append(Mark(kind, label, place, told, load.published, outside, load.marked))
     return marks
 
 

@@ -37,7 +37,7 @@ def layout(reader: Reader, x: str, y: str, *, title: str, note: str = "", revisi
     }
 
 
-def points(kind: str, *, size: int, colour: str = "var(--plot-load)") -> Figure:
+def points(kind: str, *, size: int, colour: str = "var(--ink)") -> Figure:
     """Trace of points as diamonds, to which their places and texts are added."""
     return {
         "type": "scatter",

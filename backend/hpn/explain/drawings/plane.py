@@ -12,7 +12,7 @@ from hpn.catalogue import GearList
 from hpn.engine import figures as of_gear
 from hpn.engine.allowed import with_listed_motor
 from hpn.engine.figures import Figures
-from hpn.explain.drawings.chart import PLANE, Axes, Line, Mark, chart
+from hpn.explain.drawings.chart import PLANE, Axes, Line, Mark, Scene, chart
 from hpn.explain.drawings.panels import OUT_OF_SCALE
 from hpn.explain.drawings.picture import beyond_limit
 from hpn.explain.drawings.subject import Subject
@@ -196,7 +196,7 @@ def _drawn(
         if limit.value
     )
     marks.append(Mark("equivalent", mean, limits[1].demand, told, LAST, outside))
-    return chart(lines, marks, reader, axes=axes, beyond=list(_beyond(limits, u, most, reader)), size=PLANE)
+    return chart(Scene(lines, marks, None, axes, list(_beyond(limits, u, most, reader))), reader, PLANE)
 
 
 def _lines(limits: _Limits, u: float, most: Point) -> Iterable[Line]:

@@ -78,7 +78,7 @@ def _line(torque: FloatArray, number: FloatArray, reader: Reader, *, named_below
         "textfont": {"color": "var(--ink)", "size": 12},
         "x": shown(torque.tolist(), "Nm", reader),
         "y": number.tolist(),
-        "line": {"color": "var(--plot-own)", "width": 3},
+        "line": {"color": "var(--ink)", "width": 3},
         "fill": "tozeroy",
         "fillcolor": "var(--area)",
         "hovertext": [

@@ -7,8 +7,9 @@ from hpn.explain.drawings import (
     Plane,
     Subject,
     bearing_picture,
+    chart,
     cycle_picture,
-    envelope_drawing,
+    envelope_scene,
     gear_plane,
     governing_phases,
     motor_plane,
@@ -107,6 +108,6 @@ def envelope(export: Export, reader: Reader) -> dict[str, Any] | None:
     check = export.candidate.governing_check
     governing = governing_phases(subject, check, picture)
     return {
-        "drawing": markup(envelope_drawing(picture, reader, governing, check, PAPER), ON_PAPER),
+        "drawing": markup(chart(envelope_scene(picture, reader, governing, check), reader, PAPER), ON_PAPER),
         "condition": sentence(reader.told(picture.condition)),
     }

@@ -12,7 +12,7 @@ from hpn.catalogue import Catalogue
 from hpn.catalogue.gear import Gear
 from hpn.engine.selection import Candidate
 from hpn.explain import drawings
-from hpn.explain.drawings import BearingPicture, CyclePicture, Figure, Plane, SizeUse, Subject
+from hpn.explain.drawings import BearingPicture, CyclePicture, Figure, Plane, Scene, SizeUse, Subject
 from hpn.explain.drawings.svg import markup
 from hpn.web.door.visit import current
 from hpn.words.reader import Reader
@@ -47,17 +47,23 @@ class Pictures:
         return drawings.bearing_picture(self.subject, self.chosen.check("output_bearing_life"))
 
     @cached_property
-    def envelope(self) -> list[Element]:
-        """Drawings of `bearing`, which must be there, for a narrow and for a wide place."""
+    def _envelope(self) -> Scene:
         assert self.bearing is not None
-        given = self.bearing, self.reader, self.governing, self.chosen.governing_check
-        return [drawings.envelope_drawing(*given, size) for size in (drawings.SMALL, drawings.LARGE)]
+        return drawings.envelope_scene(self.bearing, self.reader, self.governing, self.chosen.governing_check)
 
     @cached_property
+    def envelope(self) -> list[Element]:
+        """Drawings of `bearing`, which must be there, for a narrow and for a wide place."""
+        return self._drawn(self._envelope)
+
+    @property
     def bearing_figure(self) -> Figure:
         """Plotly figure of `bearing`, which must be there."""
         assert self.bearing is not None
-        return drawings.bearing_figure(self.bearing, self.reader, self.governing)
+        return drawings.bearing_figure(self._envelope, self.bearing, self.reader)
+
+    def _drawn(self, scene: Scene) -> list[Element]:
+        return [drawings.chart(scene, self.reader, size) for size in (drawings.SMALL, drawings.LARGE)]
 
     @cached_property
     def sizes(self) -> list[SizeUse]:
@@ -68,15 +74,18 @@ class Pictures:
     @property
     def sizes_drawing(self) -> list[Element]:
         """Drawings of all sizes, likewise."""
-        assert self.bearing is not None
-        given = self.sizes, self.bearing, self.reader, self.governing
-        return [drawings.sizes_drawing(*given, size) for size in (drawings.SMALL, drawings.LARGE)]
+        return self._drawn(self._all_sizes)
 
     @property
     def sizes_figure(self) -> Figure:
         """Plotly figure of all sizes."""
         assert self.bearing is not None
-        return drawings.sizes_figure(self.sizes, self.bearing, self.reader, self.governing)
+        return drawings.sizes_figure(self._all_sizes, self.sizes, self.bearing, self.reader)
+
+    @cached_property
+    def _all_sizes(self) -> Scene:
+        assert self.bearing is not None
+        return drawings.sizes_scene(self.sizes, self.bearing, self.reader, self.governing)
 
     @property
     def carries(self) -> bool:
