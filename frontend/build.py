@@ -27,9 +27,9 @@ DRAWN = ("../../backend/hpn/explain/drawings/drawings", "plots")
 
 COMMON = ("fonts", "tokens", "app", "form", "tools", "import")
 STYLES = {
-    "page.css": (*COMMON, "workbench", "selection", "insight", *DRAWN, "motion", "verdict", "phone"),
-    "site.css": (*COMMON, "catalogue", "saved", "selection", "insight", *DRAWN, "fleet", "verdict", "phone"),
-    "report.css": ("tokens", "app", "tools", "fleet", "phone"),
+    "page.css": (*COMMON, "workbench", "selection", "insight", *DRAWN, "motion", "verdict", "phone", "print"),
+    "site.css": (*COMMON, "catalogue", "saved", "selection", "insight", *DRAWN, "fleet", "verdict", "phone", "print"),
+    "report.css": ("tokens", "app", "tools", "fleet", "phone", "print"),
 }
 """Style sheets of the form with its result, of all other pages, and of a fleet’s report, which holds its own."""
 

@@ -4,6 +4,7 @@ import io
 import re
 from typing import Any, Literal
 
+import pypdfium2
 import pytest
 from playwright.sync_api import Page, expect
 from pypdf import PdfReader
@@ -313,8 +314,14 @@ def test_answer_prints_on_one_page_of_the_readers_paper(visitor: Visitor, units:
     reader_menu(page).click()
     with page.expect_navigation():
         page.get_by_role("button", name=units).click()
-    (printed,) = PdfReader(io.BytesIO(page.pdf(prefer_css_page_size=True))).pages
-    assert (round(printed.mediabox.width), round(printed.mediabox.height)) == size
+    (sheet,) = PdfReader(io.BytesIO(page.pdf(prefer_css_page_size=True))).pages
+    assert (round(sheet.mediabox.width), round(sheet.mediabox.height)) == size
+
+
+def printed(page: Page) -> list[str]:
+    """Texts of the sheets of a page, as Chromium prints them."""
+    sheets = pypdfium2.PdfDocument(page.pdf(prefer_css_page_size=True))
+    return [" ".join(sheet.get_textpage().get_text_range().split()) for sheet in sheets]
 
 
 def test_saved_selection_prints_its_candidates(visitor: Visitor) -> None:
@@ -324,10 +331,31 @@ def test_saved_selection_prints_its_candidates(visitor: Visitor) -> None:
     page.emulate_media(media="print")
     candidates = page.get_by_role("table", name="Suitable")
     expect(candidates.get_by_role("row", name=re.compile("HPN-20A-5"))).to_be_visible()
-    printed = PdfReader(io.BytesIO(page.pdf(prefer_css_page_size=True))).pages
-    text = "\n".join(sheet.extract_text() for sheet in printed)
+    text = "\n".join(printed(page))
     listed = text[text.index("Candidates") :]
     assert listed.index("HPN-32A-5") < listed.index("HPN-14A-5")
+
+
+@pytest.mark.parametrize("units", ["Metric (SI)", "US customary"])
+@pytest.mark.parametrize("ratio", ["&i=5", ""], ids=["one ratio", "every ratio"])
+def test_the_worked_example_as_saved_takes_three_sheets_with_running_heads(
+    visitor: Visitor, units: str, ratio: str
+) -> None:
+    page = visitor.open(EXAMPLE.replace("&i=5", ratio))
+    page.get_by_text("Title block").click()
+    page.get_by_label("Title", exact=True).fill('Infeed "turret" \\ C')
+    page.get_by_role("button", name="Save", exact=True).click()
+    expect(page).to_have_url(re.compile("/selections/"))
+    reader_menu(page).click()
+    with page.expect_navigation():
+        page.get_by_role("button", name=units).click()
+    texts = [text.replace(" ", "") for text in printed(page)]  # letters that are kerned read as if apart
+    assert len(texts) <= 3
+    for number, text in enumerate(texts, 1):
+        assert text.startswith(f'Infeed"turret"\\C{number}/{len(texts)}')
+    whole = "".join(texts)
+    assert whole.count("axialloadin") == 1, "the envelope stands once"
+    assert "Checked" in texts[0] and "Approved" in texts[0] and page.url in whole
 
 
 @pytest.mark.parametrize("width", [390, 768, 1024, 1440, 1920])

@@ -77,7 +77,8 @@ async def show_selection(request: Request) -> Response:
 
 def _shown(request: Request, reopened: Reopened) -> Response:
     page = _page(reopened, request.query_params.get("gear", ""), request.app.state.catalogue)
-    return _render(request, "selection.html", 200, **page)
+    address = f"{str(request.base_url).rstrip('/')}/selections/{reopened.saved.id}"
+    return _render(request, "selection.html", 200, address=address, **page)
 
 
 async def copy_selection(request: Request) -> Response:
