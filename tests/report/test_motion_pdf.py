@@ -4,6 +4,7 @@ import math
 import re
 from dataclasses import replace
 from io import BytesIO
+from pathlib import Path
 from xml.etree.ElementTree import fromstring
 
 import pypdfium2
@@ -13,6 +14,7 @@ from pypdf import PdfReader
 from hpn.catalogue import Catalogue
 from hpn.files.report.content import content
 from hpn.files.report.pdf import pdf
+from hpn.files.report.plots import COLOURS, ON_PAPER
 from hpn.words.reader import Reader
 from hpn.words.symbols import formula
 from tests.conftest import Supplement
@@ -120,3 +122,12 @@ def test_torque_is_drawn_against_speed_where_a_motion_or_a_motor_is_given(catalo
     assert "include the motor’s own inertia; the gear’s inertia and losses without load are not published" in "".join(
         map(str, motor["words"])
     )
+
+
+def test_drawings_on_paper_have_the_colours_of_the_pages_light_theme() -> None:
+    tokens = Path("frontend/static/tokens.css").read_text()
+    light = dict(re.findall(r"--([\w-]+): light-dark\((#\w{6}),", tokens))
+    shared = COLOURS.keys() & light.keys() - {"card"}  # paper is white
+    assert {name: COLOURS[name] for name in shared} == {name: light[name] for name in shared}
+    assert shared >= {"ink", "muted", "line", "edge", "governing", "fail"}
+    assert "var(--" not in ON_PAPER
