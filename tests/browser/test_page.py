@@ -395,3 +395,13 @@ def test_page_works_by_touch_on_a_phone(visitor: Visitor) -> None:
     expect(selected(page)).to_be_in_viewport()
     page.get_by_role("link", name="Input", exact=True).tap()
     expect(page.get_by_role("heading", name="Duty cycle at")).to_be_in_viewport()
+
+
+def test_message_on_a_result_of_before_names_the_field_and_leads_to_it(visitor: Visitor) -> None:
+    page = visitor.open(EXAMPLE)
+    page.get_by_label("Speed, phase 2, in rpm").fill("x")
+    named = page.locator("#result .verdict").get_by_role("link", name="Speed, phase 2")
+    expect(named).to_be_visible()
+    page.get_by_label("Pause").focus()
+    named.click()
+    expect(page.get_by_label("Speed, phase 2, in rpm")).to_be_focused()

@@ -37,6 +37,12 @@ def test_power_speed_and_pretension_give_the_strands() -> None:
     assert belt.radial_N == pytest.approx(600)  # 300 N turn, 450 and 150 N in the strands
 
 
+def test_page_without_script_keeps_the_belt_beside_its_sum(client: TestClient) -> None:
+    answer = client.get(f"{CYCLE}&bF1=450&bF2=150&written=en", follow_redirects=False)
+    assert answer.status_code == 200
+    assert 'value="450"' in answer.text and "Sum of the strands" in answer.text
+
+
 def test_the_page_shows_the_sum_and_takes_it_as_the_radial_load(client: TestClient) -> None:
     shown = page(client, "&bF1=450&bF2=150")
     assert re.search(r"Sum of the strands.*?600", shown, re.DOTALL)

@@ -18,9 +18,8 @@ from hpn.tables import numbers
 from hpn.tables.inputs import NAME
 from hpn.tables.numbers import read_value
 from hpn.web.door.access import MAXIMUM_QUERY_BYTES as MAXIMUM_QUERY_BYTES
-from hpn.web.form.belt import BeltInput, belt_of, with_belt
-from hpn.web.form.bodies import BodyTable, body_table, with_inertia
 from hpn.web.form.given import REQUIRED, FieldProblem, Given
+from hpn.web.form.helpers import BeltInput, BodyTable, belt_of, body_table, with_figures
 from hpn.web.form.labels import LABELS, query_of
 from hpn.web.form.offers import with_offers
 from hpn.web.form.refusals import refusal_of
@@ -184,7 +183,7 @@ def parse(pairs: Pairs) -> Form:
     before = expanded(pairs)
     pairs, written = in_wire_units(taken := with_offers(before))
     typed = typed if taken == before else None
-    pairs = with_belt(with_inertia(switched(_own(pairs))))
+    pairs = with_figures(switched(_own(pairs)))
     form = replace(_parsed(pairs, written), typed=None if typed is None else typed.replace("\r\n", "\n"))
     if ("do", "take") in pairs and form.has_motion and form.application is not None:
         return _parsed(taken_over(pairs, form.application), written)

@@ -404,7 +404,6 @@ PHASE_BY_NAME = {symbol.name: symbol for symbol in PHASE_SYMBOLS}
 PHASE_BY_LEAF = {symbol.path[0]: symbol for symbol in PHASE_SYMBOLS}
 BODY_BY_NAME = {symbol.name: symbol for symbol in BODY_SYMBOLS}
 BELT_BY_NAME = {symbol.name: symbol for symbol in BELT_SYMBOLS}
-BELT_BY_LEAF = {symbol.path[-1]: symbol for symbol in BELT_SYMBOLS}
 BODY_BY_LEAF = {symbol.path[-1]: symbol for symbol in BODY_SYMBOLS}
 MOVE_BY_NAME = {symbol.name: symbol for symbol in TURN_SYMBOLS}
 MOVE_BY_LEAF = {symbol.path[-1]: symbol for symbol in (*TURN_SYMBOLS, *STROKE_SYMBOLS)}
