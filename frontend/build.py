@@ -27,7 +27,7 @@ DRAWN = ("../../backend/hpn/explain/drawings/drawings", "plots")
 
 COMMON = ("fonts", "tokens", "app", "form", "tools", "import")
 STYLES = {
-    "page.css": (*COMMON, "workbench", "selection", "insight", *DRAWN, "motion", "verdict", "phone", "print"),
+    "page.css": (*COMMON, "workbench", "selection", "insight", *DRAWN, "motion", "verdict", "sheet", "phone", "print"),
     "site.css": (*COMMON, "catalogue", "saved", "selection", "insight", *DRAWN, "fleet", "verdict", "phone", "print"),
     "report.css": ("tokens", "app", "tools", "fleet", "phone", "print"),
 }

@@ -281,7 +281,7 @@ function unfinishedRow() {
   if (!row || row.querySelector('[aria-invalid="true"]')) return null;
   const given = (name) => row.querySelector(`[name="${name}"]`)?.value.trim();
   const filled = (row.querySelector("select") ? [["mv"], ["mt", "ma"]] : [["T"], ["n"], ["t"]]).map((names) => names.some(given));
-  return filled.includes(true) && filled.includes(false) ? row : null;
+  return (given("pn") || filled.includes(true)) && filled.includes(false) ? row : null;
 }
 
 document.addEventListener("focusout", (event) => {

@@ -84,6 +84,7 @@ function keyInForm(event) {
   if (event.altKey && event.key === "Enter") return press("add");
   const row = event.target.closest("#duty tbody tr");
   const name = ROW_KEYS[event.key];
+  if (event.key === "Enter" && !event.ctrlKey && row && event.target.matches("input")) return below(event.target);
   if (event.altKey && name && row) return press(`${name}-${row.id.split("-")[1]}`);
   if (event.ctrlKey && event.key === "Enter") {
     const result = document.getElementById("result");
@@ -94,17 +95,37 @@ function keyInForm(event) {
   return false;
 }
 
+// As in a spreadsheet: down the column, and behind the last row a new one.
+function below({ id, name }) {
+  const column = [...document.querySelectorAll(`#duty tbody input[name="${name}"]`)];
+  const next = column.slice(column.findIndex((cell) => cell.id === id) + 1).find((cell) => cell.checkVisibility({ visibilityProperty: true }));
+  next?.select();
+  return Boolean(next) || press("add");
+}
+
+function openMenu(row) {
+  const number = row.id.split("-")[1];
+  document.querySelector(`[popovertarget="row-${number}"]`).click();
+  document.getElementById(`up-${number}`).focus();
+  return true;
+}
+
 function press(id) {
   const button = document.getElementById(id);
   button?.click();
   return Boolean(button);
 }
 
+const asksMenu = ({ key, shiftKey, target }) => (key === "ContextMenu" || (key === "F10" && shiftKey)) && target.closest("#duty tbody tr");
+
+document.addEventListener("keyup", (event) => event.key === "ContextMenu" && asksMenu(event) && event.preventDefault());
+
 document.addEventListener("keydown", (event) => {
   if (document.querySelector("dialog[open]")) return;
   const plain = !event.ctrlKey && !event.metaKey && !event.altKey;
   if (plain && event.key === "?" && !isText(event.target)) document.getElementById("shortcuts")?.showModal();
   else if (plain && event.key === "Escape" && event.target.id === "result" && cameFrom) document.getElementById(cameFrom)?.focus();
+  else if (asksMenu(event) && openMenu(event.target.closest("#duty tbody tr"))) event.preventDefault();
   else if (!event.shiftKey && formOf()?.contains(event.target) && keyInForm(event)) event.preventDefault();
 });
 

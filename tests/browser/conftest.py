@@ -169,6 +169,13 @@ def pause(page: Page) -> Locator:
     return page.get_by_role("textbox", name="Pause")
 
 
+def edit_row(page: Page, number: int, does: str, row: str = "Phase") -> None:
+    """Press a button in the menu of a row, counted from 1: Move up, Move down or Remove."""
+    menu = page.get_by_role("button", name=f"{row} {number}:")
+    menu.click()
+    page.get_by_role("group", name=f"{row} {number}:").get_by_role("button", name=does).click()
+
+
 def button(page: Page, name: str) -> Locator:
     """Button of exactly this name."""
     return page.get_by_role("button", name=name, exact=True)

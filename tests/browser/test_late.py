@@ -8,7 +8,7 @@ from urllib.parse import parse_qs
 import pytest
 from playwright.sync_api import Download, Page, Request, Route, expect
 
-from tests.browser.conftest import Visitor, answer_held_back, button, in_german, open_section
+from tests.browser.conftest import Visitor, answer_held_back, button, edit_row, in_german, open_section
 
 EXAMPLE = "/?T=40&n=250&t=0.3&T=32&n=500&t=3&T=20&n=250&t=0.4&tp=4&Tk=200&i=5"
 
@@ -173,7 +173,7 @@ def test_undo_takes_back_the_row_edit_that_is_under_way_and_no_more(visitor: Vis
     page = visitor.open(EXAMPLE)
     torque(page, 1).fill("50")
     expect(page).to_have_url(re.compile("T=50&"))
-    with answer_held_back(page, page.get_by_role("button", name="Remove phase 2").click):
+    with answer_held_back(page, lambda: edit_row(page, 2, "Remove")):
         page.get_by_role("button", name="Undo").click()
     expect(torque(page, 3)).to_have_value("20")
     expect(page.get_by_role("button", name="Redo")).to_have_attribute("aria-disabled", "false")
@@ -214,7 +214,7 @@ def test_a_form_that_has_just_been_put_in_place_is_answered_in_the_page(visitor:
     page = visitor.open(EXAMPLE)
     page.evaluate(AT_ONCE)
     with page.expect_request(lambda request: "T=20" in request.url and "T=32" not in request.url) as sent:
-        page.get_by_role("button", name="Remove phase 2").click()
+        edit_row(page, 2, "Remove")
     assert "hx-request" in sent.value.headers  # else the browser loads the page
     sent.value.response()
     expect(torque(page, 3)).to_have_count(0)

@@ -349,9 +349,19 @@ def test_each_phase_of_a_long_table_has_its_step(visitor: Visitor) -> None:
     assert marked(page) == {"row": ["40"], "step": ["40"], "load": []}
 
 
-@pytest.mark.parametrize(("width", "room"), [(1440, (348, 400)), (1920, (640, 480))])
-def test_the_drawing_fits_its_place_on_the_overview(visitor: Visitor, width: int, room: tuple[int, int]) -> None:
-    page = visitor.open(PHASES, width=width)
+@pytest.mark.parametrize(
+    ("link", "width", "room"),
+    [
+        (f"{EXAMPLE}&FR=500&FA=200", 1440, (348, 400)),
+        (f"{EXAMPLE}&FR=500&FA=200", 1920, (640, 480)),
+        (PHASES, 1440, (348, 400)),  # a table with loads takes room of the result
+        (PHASES, 1920, (348, 400)),
+    ],
+)
+def test_the_drawing_fits_its_place_on_the_overview(
+    visitor: Visitor, link: str, width: int, room: tuple[int, int]
+) -> None:
+    page = visitor.open(link, width=width)
     box = seen(page, "svg").bounding_box()
     assert box
     assert room[0] * 0.85 <= box["width"] <= room[0]

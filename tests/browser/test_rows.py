@@ -6,7 +6,7 @@ from urllib.parse import parse_qs, urlsplit
 import pytest
 from playwright.sync_api import Page, expect
 
-from tests.browser.conftest import Visitor, answer_held_back, button, pause, torque
+from tests.browser.conftest import Visitor, answer_held_back, button, edit_row, pause, torque
 
 EXAMPLE = "/?T=40&n=250&t=0.3&T=32&n=500&t=3&T=20&n=250&t=0.4&tp=4&Tk=200&i=5"
 
@@ -17,7 +17,7 @@ def test_every_edit_can_be_undone_and_done_again(visitor: Visitor) -> None:
     expect(undo).to_have_attribute("aria-disabled", "true")
     torque(page, 1).press_sequentially("5")
     expect(page).to_have_url(re.compile("T=540&"))
-    button(page, "Remove phase 2").click()
+    edit_row(page, 2, "Remove")
     expect(torque(page, 3)).to_have_count(0)
     page.get_by_role("checkbox", name="7", exact=True).check(force=True)
     expect(page).to_have_url(re.compile("i=7"))
@@ -44,7 +44,7 @@ def test_every_edit_can_be_undone_and_done_again(visitor: Visitor) -> None:
 
 def test_undo_key_in_a_text_field_stays_the_browsers(visitor: Visitor) -> None:
     page = visitor.open(EXAMPLE)
-    button(page, "Remove phase 3").click()
+    edit_row(page, 3, "Remove")
     expect(torque(page, 3)).to_have_count(0)
     torque(page, 1).focus()
     page.keyboard.press("Control+z")
@@ -80,7 +80,7 @@ def test_keys_edit_rows_and_are_listed(visitor: Visitor) -> None:
 
 def shown(page: Page) -> list[list[str]]:
     """Texts in the fields of the duty table, row by row."""
-    rows = page.get_by_role("table", name="Load phases").get_by_role("row")
+    rows = page.locator("#duty tbody").get_by_role("row")
     return [
         [field.input_value() for field in fields] for row in rows.all() if (fields := row.get_by_role("textbox").all())
     ]
@@ -152,7 +152,7 @@ def test_row_moved_by_key_twice_in_quick_succession_goes_two_places(visitor: Vis
 
 def test_typing_while_a_row_edit_is_under_way_keeps_both_and_the_place(visitor: Visitor) -> None:
     page = visitor.open(EXAMPLE)
-    with answer_held_back(page, button(page, "Remove phase 1").click):
+    with answer_held_back(page, lambda: edit_row(page, 1, "Remove")):
         torque(page, 3).fill("205")
     expect(torque(page, 3)).to_have_count(0)
     expect(torque(page, 2)).to_have_value("205")
@@ -165,3 +165,50 @@ def test_rows_added_in_quick_succession_all_come(visitor: Visitor) -> None:
     with answer_held_back(page, button(page, "+ Add phase").click):
         button(page, "+ Add phase").click()
     expect(torque(page, 5)).to_be_visible()
+
+
+def test_enter_goes_down_a_column_and_adds_a_row_at_its_end(visitor: Visitor) -> None:
+    page = visitor.open("/?T=&n=&t=")
+    torque(page, 1).focus()
+    for k, row in enumerate(ROWS, start=1):
+        expect(torque(page, k)).to_be_focused()
+        for value in row:
+            page.keyboard.type(value)
+            page.keyboard.press("Tab" if value != row[-1] else "Enter")
+    expect(torque(page, 4)).to_be_focused()
+    assert shown(page)[:3] == ROWS
+    speed = page.get_by_label("Speed, phase 1,")
+    speed.focus()
+    page.keyboard.press("Enter")
+    expect(page.get_by_label("Speed, phase 2,")).to_be_focused()
+    expect(page).to_have_url(re.compile("T=20&n=250&t=0.4"))
+
+
+def test_a_row_has_its_menu_by_key_and_tab_goes_through_values_alone(visitor: Visitor) -> None:
+    page = visitor.open(EXAMPLE)
+    torque(page, 1).focus()
+    for name in ("Speed, phase 1", "Duration, phase 1", "Torque, phase 2"):
+        page.keyboard.press("Tab")
+        expect(page.get_by_label(f"{name},")).to_be_focused()
+    page.keyboard.press("Shift+F10")
+    menu = page.get_by_role("group", name="Phase 2:")
+    expect(menu.get_by_role("button", name="Move up")).to_be_focused()
+    page.keyboard.press("Escape")
+    expect(menu).to_be_hidden()
+    expect(torque(page, 2)).to_be_focused()
+    page.keyboard.press("ContextMenu")
+    page.keyboard.press("Enter")
+    expect(torque(page, 1)).to_have_value("32")
+    expect(torque(page, 1)).to_be_focused()
+
+
+def test_a_phase_is_named_in_its_row_and_where_an_input_is_wrong(visitor: Visitor) -> None:
+    page = visitor.open(EXAMPLE)
+    button(page, "name").click()
+    page.get_by_label("Name, phase 2").fill("lift")
+    expect(page).to_have_url(re.compile("pn=lift"))
+    torque(page, 2).fill("x")
+    expect(page.locator("#duty-errors")).to_contain_text("phase 2 (lift)")
+    button(page, "+ Add phase").click()
+    page.get_by_label("Name, phase 4").fill("brake")
+    expect(page.get_by_text("Complete the phase to recalculate.")).to_be_visible()

@@ -56,9 +56,7 @@ class Rows:
         if do in ("up", "down"):
             to = min(max(k + (1 if do == "down" else -1), 0), len(self.placed) - 1)
             self.placed.insert(to, self.placed.pop(k))
-            # At either end the way on is back.
-            onward = do if 0 < to < len(self.placed) - 1 else "down" if to == 0 else "up"
-            return f"{onward}-{to}"
+            return f"{first}-{to}"
         return None
 
 
