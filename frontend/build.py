@@ -64,8 +64,8 @@ def script(*names: str) -> bytes:
 
 
 def style(faces: dict[str, bytes], *names: str) -> bytes:
-    """Style sheets of ours as one, which ask for the faces by their hashed names."""
-    text = b"".join(sent(f"{name}.css") for name in names).decode()
+    """Style sheets of ours as one on one line, which ask for the faces by their hashed names."""
+    text = " ".join(b"".join(sent(f"{name}.css") for name in names).decode().split())
     return re.sub(r"url\((hpn-[\w.-]+)\)", lambda url: f"url({hashed_name(url[1], faces[url[1]])})", text).encode()
 
 

@@ -38,7 +38,7 @@ SECTIONS = ("overview", "bearing", "drive", "candidates", "compare", "calculatio
 FIGURES = frozenset(("bearing_figure", "sizes_figure", "stops_figure"))
 """Plots, which come only when somebody unfolds them: without script there is no use for their data."""
 
-PARTS = FIGURES.union(SECTIONS[1:], ["cycle_wide"])
+PARTS = FIGURES.union(SECTIONS[1:])
 """Parts of the page that an edit brings only where they are in sight, by the header HPN-Parts; others are fetched."""
 
 
