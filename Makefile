@@ -118,7 +118,7 @@ $(MODULES)/.run $(MODULES)/.dev: frontend/package.json frontend/package-lock.jso
 	@touch $@
 
 # fonttools stands beside the environment, too.
-$(ASSETS): $(shell find frontend/static 2>/dev/null) $(wildcard frontend/*.py) $(PACKAGES) | $(ENVIRONMENT)
+$(ASSETS): $(shell find frontend/static 2>/dev/null) $(wildcard frontend/*.py backend/hpn/explain/drawings/*.css) $(PACKAGES) | $(ENVIRONMENT)
 	PYTHONPATH="$(CURDIR)/$(TOOLS)" $(BIN)/python frontend/build.py
 
 # Bytecode of the templates; a checksum tells the service which of them has changed since.

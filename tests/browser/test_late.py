@@ -105,7 +105,7 @@ def test_verdict_says_in_full_strength_and_in_any_section_that_an_input_is_wrong
     page = visitor.open(EXAMPLE)
     open_section(page, "Calculation")
     torque(page, 1).fill("abc")
-    message = page.get_by_text("Not recalculated: one input needs correction.")
+    message = page.locator(".verdict").get_by_role("link", name="Torque, phase 1")
     expect(message).to_be_visible()
     page.mouse.move(800, 500)
     page.mouse.wheel(0, 1500)

@@ -68,7 +68,7 @@ def test_a_rotary_table_known_by_its_dimensions_becomes_a_saved_selection(visito
     page = visitor.open("/?T=&n=&t=", width)
     page.get_by_role("button", name="Motion", exact=True).click()
     expect(page.get_by_role("button", name="Rotary", exact=True)).to_have_attribute("aria-pressed", "true")
-    expect(result(page)).to_contain_text("A mechanism and one move are enough")
+    expect(result(page)).to_contain_text("Moves, each from rest to rest")
     page.get_by_text("Inertia from dimensions").click()
     add_body(page, 1, "Disc", Mass="60", Diameter="500")
     add_body(page, 2, "Point mass", Mass="5", Off_the_axis="180", Number="4")

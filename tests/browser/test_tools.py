@@ -303,7 +303,8 @@ def test_envelope_of_a_gear_has_its_axes_as_the_plots_of_a_selection(visitor: Vi
     drawing = page.get_by_role("figure", name="Permissible axial load against radial load of HPN-20A")
     radial, axial = (drawing.get_by_text(f"{name} load in N").bounding_box() for name in ("radial", "axial"))
     assert radial and axial
-    assert radial["width"] > radial["height"] and axial["height"] > axial["width"]
+    assert radial["width"] > radial["height"] and axial["width"] > axial["height"]  # each at the end of its axis
+    assert axial["y"] < radial["y"] and axial["x"] < radial["x"]
     corners = page.get_by_role("table", name="Corner points")
     expect(corners.get_by_role("columnheader")).to_have_text(["fw", "Radial N", "Axial N"])
 

@@ -192,7 +192,8 @@ def test_the_links_of_every_page_lead_back_to_the_whole_selection(api: TestClien
     page = api.get(f"{path}?{query}").text
 
     for name, place in (("Selection", "/"), ("Catalogue", "/catalogue"), ("Saved", "/selections")):
-        assert f'<a href="{place}?{html.escape(query)}">{name}</a>' in page
+        current = ' aria-current="page"' if path.startswith(place.rstrip("/") or "-") else ""
+        assert f'<a href="{place}?{html.escape(query)}"{current}>{name}</a>' in page
 
 
 def test_the_catalogue_shows_all_gears_whatever_the_selection_asks_for_and_filters_beside_it(

@@ -113,7 +113,7 @@ def over_time(panels: Sequence[Panel], axis: TimeAxis, reader: Reader, governing
     left = axis.x.item(0)
     tops = _tops(panels, axis, reader)
     bottom = tops[-1] + panels[-1].height
-    drawing = canvas("over-time", WIDTH, bottom + (ROW if axis.row == len(panels) - 1 else 0.0) + 5)
+    drawing = canvas("over-time", WIDTH, bottom + (ROW if axis.row == len(panels) - 1 else 0.0) + 8)
     _stretches(drawing, axis, (tops[0], bottom), governing)
     for top, panel in zip(tops, panels, strict=True):
         _panel(drawing, panel, top, left, axis.x, reader)
