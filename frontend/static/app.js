@@ -171,7 +171,7 @@ document.addEventListener("click", (event) => {
   document.getElementById("result").focus({ preventScroll: true });
 });
 
-// What it has changed is marked until the next edit, with what the field said before.
+// Changed fields are marked until the next edit, with their value from before.
 function markChanged({ before, says }) {
   for (const field of formOf().elements) {
     const was = before.get(field.id);

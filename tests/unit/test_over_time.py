@@ -2,7 +2,7 @@
 
 import math
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from itertools import combinations, pairwise
 from xml.etree.ElementTree import Element, fromstring
 
@@ -15,7 +15,7 @@ from hpn.explain import drawings
 from hpn.explain.drawings import CyclePicture, Subject
 from hpn.explain.drawings.svg import markup
 from hpn.physics.motion import trace_of
-from hpn.words.reader import Reader
+from hpn.words.reader import DEFAULT, Reader
 from tests.build import Json, cycle, phase
 from tests.reference.test_motion import CONTRACT, SCREW
 from tests.unit.test_envelope import SVG
@@ -60,13 +60,20 @@ def subject_of(document: Json, designation: str = "HPN-20A-5") -> Subject:
     return Subject(Application.model_validate(document), CATALOGUE.by_designation[designation], CATALOGUE)
 
 
-def picture_of(document: Json, *given: object, designation: str = "HPN-20A-5") -> CyclePicture:
+def picture_of(
+    document: Json,
+    reader: Reader = DEFAULT,
+    governing: Sequence[int] = (),
+    check: str | None = None,
+    *,
+    designation: str = "HPN-20A-5",
+) -> CyclePicture:
     subject = subject_of(document, designation)
-    return drawings.cycle_picture(subject.application, subject, *given)  # type: ignore[arg-type]
+    return drawings.cycle_picture(subject.application, subject, reader, governing, check)
 
 
-def drawn(document: Json, *given: object, designation: str = "HPN-20A-5") -> Shown:
-    return Shown(picture_of(document, *given, designation=designation).drawing)
+def drawn(document: Json, reader: Reader = DEFAULT, governing: Sequence[int] = (), check: str | None = None) -> Shown:
+    return Shown(picture_of(document, reader, governing, check).drawing)
 
 
 def texts(shown: Shown, letter: float = 6.8) -> Iterator[tuple[str, float, float, float, float]]:

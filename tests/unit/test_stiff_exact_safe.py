@@ -222,7 +222,7 @@ def test_no_brake_is_offered_that_would_not_stop_the_load(catalogue: Catalogue, 
 def test_no_brake_is_offered_where_the_load_alone_exceeds_the_torque_in_every_stop(catalogue: Catalogue) -> None:
     """Friction of 130 Nm on a light load that a heavy motor drives on: T_k is above T_R of 149 Nm at every brake.
 
-    What lets T_k fall with the friction raises it without: 2 · i T_B J / (J + i² J_m) is 149 Nm at the most.
+    Without the friction 2 · i T_B J / (J + i² J_m) is 149 Nm at the most.
     """
     mechanism = {"type": "rotary", "inertia_kgm2": 0.005, "friction_torque_Nm": 130}
     motion = {"mechanism": mechanism, "moves": [{"profile": "trapezoidal", "angle_deg": 90, "time_s": 2}]}

@@ -25,6 +25,14 @@ def api(service: FastAPI) -> Iterator[TestClient]:
         yield client
 
 
+@pytest.fixture(scope="module")
+def client() -> Iterator[TestClient]:
+    """A client that follows no redirect."""
+    app = create_app()
+    yield TestClient(app, follow_redirects=False)
+    app.state.pools.close()  # files are read in a process
+
+
 @pytest.fixture(scope="session")
 def document(service: FastAPI) -> dict[str, Any]:
     """The OpenAPI document."""

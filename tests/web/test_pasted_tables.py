@@ -2,7 +2,6 @@
 
 import re
 import tomllib
-from collections.abc import Iterator
 from html import unescape
 from pathlib import Path
 from typing import Any
@@ -11,21 +10,12 @@ from urllib.parse import parse_qs, urlsplit
 import pytest
 from starlette.testclient import TestClient
 
-from hpn.web.app import create_app
-
 Case = dict[str, Any]
 
 FILE = Path(__file__).parent / "pasted/tables.toml"
 GROUPS: dict[str, dict[str, Case]] = tomllib.loads(FILE.read_text("utf-8"))
 CASES = [pytest.param(case, id=f"{group}: {name}") for group, cases in GROUPS.items() for name, case in cases.items()]
 SYMBOLS = ("T", "n", "t", "FRi", "FAi", "Tpk", "npk", "Trms")
-
-
-@pytest.fixture(scope="module")
-def client() -> Iterator[TestClient]:
-    app = create_app()
-    yield TestClient(app, follow_redirects=False)
-    app.state.pools.close()  # files are read in a process
 
 
 def outcome(client: TestClient, case: Case, chosen: dict[str, str]) -> tuple[str, str | list[str]]:

@@ -4,7 +4,7 @@ import io
 import re
 import time
 import zipfile
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from datetime import date, datetime, timedelta
 from datetime import time as clock
 from html import unescape
@@ -17,17 +17,9 @@ from openpyxl.workbook import Workbook
 from starlette.testclient import TestClient
 
 from hpn.tables.workbooks import MAXIMUM_BYTES, sheets_of
-from hpn.web.app import create_app
 
 Cell = str | float | date | clock | timedelta | bool | None | tuple[Any, str]
 HEADER: list[Cell] = ["Drehmoment [Nm]", "Drehzahl [1/min]", "Dauer [s]"]
-
-
-@pytest.fixture(scope="module")
-def client() -> Iterator[TestClient]:
-    app = create_app()
-    yield TestClient(app, follow_redirects=False)
-    app.state.pools.close()  # files are read in a process
 
 
 def book(*rows: Sequence[Cell], name: str = "Tabelle1", into: Workbook | None = None) -> Workbook:

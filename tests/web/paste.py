@@ -1,0 +1,33 @@
+"""Tables to paste, and the parts of a preview that the tests read."""
+
+import re
+from urllib.parse import parse_qs, urlsplit
+
+LINK = "T=40&n=250&t=0.3&T=32&n=500&t=3&tp=4&Tk=200&i=5"
+GERMAN = "Drehmoment [Nm]\tDrehzahl [1/min]\tDauer [s]\r\n9,3\t1.250\t0,3\r\n-12,5\t500\t1,25\r\n"
+LONG = "".join(f"40.{k % 10};{250 + k % 90};0.25\n" for k in range(4000))
+HTMX = {"HX-Request": "true"}
+
+
+def query_of(location: str) -> dict[str, list[str]]:
+    return parse_qs(urlsplit(location).query)
+
+
+def cells(page: str) -> list[str]:
+    """Cells of the rows of a preview."""
+    return re.findall(r"<td>(?:<mark>)?([^<]+)(?:</mark>)?</td>", page)
+
+
+def chosen(page: str) -> dict[str, str]:
+    """Value of each select of a preview; blank where it is asked."""
+    selects = re.findall(r'<select name="(\w+)".*?</select>', page, re.DOTALL)
+    found = re.findall(r'<select name="(\w+)"[^>]*>.*?<option(?: value="([^"]*)")? selected', page, re.DOTALL)
+    assert len(found) == len(selects)
+    return dict(found)
+
+
+def of(page: str) -> str:
+    """Digest that the choices of a preview are tied to."""
+    found = re.search(r'name="of" value="(\w+)"', page)
+    assert found
+    return found[1]
