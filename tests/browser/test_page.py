@@ -53,6 +53,7 @@ def test_first_visit_shows_the_worked_example_and_its_answer(visitor: Visitor) -
     verdict = page.get_by_role("region", name="Result")
     expect(verdict.get_by_text("governs").first).to_be_in_viewport()
     expect(verdict.get_by_text("Worked example of the handbook")).to_be_in_viewport()
+    expect(verdict.get_by_text("The lightest gear that passes every check.")).to_be_in_viewport()
 
 
 def test_worked_example_typed_by_keyboard_alone_into_an_empty_cycle_selects_HPN_20A_5(visitor: Visitor) -> None:
