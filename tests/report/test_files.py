@@ -9,6 +9,7 @@ import sys
 from collections.abc import Iterator
 from io import BytesIO
 from pathlib import Path
+from typing import get_args
 from zipfile import ZipFile
 
 import jsonschema_rs
@@ -17,11 +18,13 @@ import pytest
 from pypdf import PdfReader
 from starlette.testclient import TestClient
 
-from hpn.application import WORKED_EXAMPLE
+from hpn.application import WORKED_EXAMPLE, RankBy
 from hpn.catalogue import Catalogue
+from hpn.engine.evaluation import RANKED_BY
 from hpn.web.api.files import FILES as FORMATS
 from hpn.web.app import create_app
 from hpn.web.settings import Settings
+from hpn.words.terms import RANKINGS
 from tests.report.cases import language, typed_export_of
 
 QUERY = "T=40&n=250&t=0.3&T=32&n=500&t=3&T=20&n=250&t=0.4&tp=4&Tk=200&i=5"
@@ -57,6 +60,15 @@ def test_saved_posted_and_linked_selections_are_files(name: str, client: TestCli
         assert response.content.startswith(start)
         assert f'filename="HPN-20A-5.{name[-4:].strip(".")}"' in response.headers["content-disposition"]
     assert linked.content == posted.content
+
+
+@pytest.mark.parametrize("rank_by", get_args(RankBy))
+def test_page_and_files_open_by_every_ranking(rank_by: RankBy, client: TestClient) -> None:
+    asked = f"{QUERY.removesuffix('&i=5')}&JL=0.8&rank={rank_by}"
+    pages = [client.get(f"/?{asked}"), *(client.get(f"/{name}?{asked}") for name in FILES)]
+    assert [page.status_code for page in pages] == [200] * len(pages)
+    assert RANKINGS[rank_by].first in html.unescape(pages[0].text)
+    assert RANKED_BY.keys() == RANKINGS.keys() == set(get_args(RankBy))
 
 
 @pytest.mark.parametrize("name", FILES)

@@ -8,7 +8,7 @@ from hpn.application import Application
 from hpn.engine.notices import AREAS
 from hpn.words.quantities import INPUTS
 from hpn.words.reader import Reader
-from hpn.words.terms import BEARING_MODELS, LIFE_BASES
+from hpn.words.terms import BEARING_MODELS, LIFE_BASES, RANKINGS
 from hpn.words.units import suffix_of
 from hpn.words.wording import N_
 
@@ -27,14 +27,7 @@ REQUIREMENTS = tuple(path for path in INPUTS if not path.startswith((*_LOADING, 
 WORDS: Mapping[str, str] = {
     **BEARING_MODELS,
     **LIFE_BASES,
-    "weight": N_("weight"),
-    "utilisation": N_("utilisation"),
-    "length": N_("length"),
-    "motor_torque": N_("motor torque"),
-    "life": N_("life"),
-    "stiffness": N_("stiffness"),
-    "natural_frequency": N_("natural frequency"),
-    "position_error": N_("position error"),
+    **{code: ranking.name for code, ranking in RANKINGS.items()},
     "True": N_("yes"),
     "False": N_("no"),
     **{str(area): text for area, text in AREAS.items()},

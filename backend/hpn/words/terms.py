@@ -1,6 +1,7 @@
-"""Words for values: the choices of an input, the bases of a figure, and verdicts."""
+"""Words for values: the choices of an input, the bases of a figure, rankings and verdicts."""
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 
 from hpn.words.wording import N_
 
@@ -49,6 +50,69 @@ ENVELOPE_BASIS: Mapping[str, str] = {
 
 LIFE_BASES: Mapping[str, str] = {"L50": N_("L50 (50 % survive)"), "L10": N_("L10 (90 % survive)")}
 """Bases of a bearing life."""
+
+
+@dataclass(frozen=True, slots=True)
+class Ranking:
+    """An order of the suitable gears: its name, its choice in the form, and its first gear on page and in report."""
+
+    name: str
+    choice: str
+    first: str
+    first_of: str
+
+
+RANKINGS: Mapping[str, Ranking] = {
+    "weight": Ranking(
+        N_("weight"),
+        N_("lowest weight"),
+        N_("The lightest gear that passes every check."),
+        N_("It is the lightest of {count} suitable gears."),
+    ),
+    "utilisation": Ranking(
+        N_("utilisation"),
+        N_("largest reserve"),
+        N_("The gear with the largest reserve among those that pass every check."),
+        N_("It has the largest reserve of {count} suitable gears."),
+    ),
+    "length": Ranking(
+        N_("length"),
+        N_("shortest length"),
+        N_("The shortest gear that passes every check."),
+        N_("It is the shortest of {count} suitable gears."),
+    ),
+    "motor_torque": Ranking(
+        N_("motor torque"),
+        N_("lowest motor torque"),
+        N_("The gear that needs the least motor torque among those that pass every check."),
+        N_("It needs the least motor torque of {count} suitable gears."),
+    ),
+    "life": Ranking(
+        N_("life"),
+        N_("longest life"),
+        N_("The gear with the longest life among those that pass every check."),
+        N_("It has the longest life of {count} suitable gears."),
+    ),
+    "stiffness": Ranking(
+        N_("stiffness"),
+        N_("highest stiffness"),
+        N_("The stiffest gear that passes every check."),
+        N_("It is the stiffest of {count} suitable gears."),
+    ),
+    "natural_frequency": Ranking(
+        N_("natural frequency"),
+        N_("highest natural frequency"),
+        N_("The gear with the highest natural frequency among those that pass every check."),
+        N_("It has the highest natural frequency of {count} suitable gears."),
+    ),
+    "position_error": Ranking(
+        N_("position error"),
+        N_("smallest position error"),
+        N_("The gear with the smallest position error among those that pass every check."),
+        N_("It has the smallest position error of {count} suitable gears."),
+    ),
+}
+"""Rankings by their codes."""
 
 VERDICTS: Mapping[str, str] = {
     "suitable": N_("suitable"),

@@ -13,13 +13,9 @@ from hpn.files.words import bound_of, exact_percent, measured, title_of, used
 from hpn.words.quantities import GEAR
 from hpn.words.reader import NOTHING, Reader
 from hpn.words.symbols import sentence
+from hpn.words.terms import RANKINGS, VERDICTS
 from hpn.words.wording import N_, Quantity, Sentence
 
-WORD: Mapping[str, str] = {
-    "suitable": N_("suitable"),
-    "unsuitable": N_("not suitable"),
-    "unrated": N_("not rated"),
-}
 REASONS: Mapping[str, str] = {
     "unsuitable": N_("No gear is suitable. {gear} comes closest; “{check}” fails at {percent}."),
     "unlimited": N_(
@@ -44,14 +40,6 @@ CHOSEN: Mapping[str, str] = {
 }
 """Notes on a gear that does not pass and was chosen in place of a suitable one."""
 
-BEST: Mapping[str, str] = {
-    "weight": N_("It is the lightest of {count} suitable gears."),
-    "utilisation": N_("It has the largest reserve of {count} suitable gears."),
-    "length": N_("It is the shortest of {count} suitable gears."),
-    "motor_torque": N_("It needs the least motor torque of {count} suitable gears."),
-    "life": N_("It has the longest life of {count} suitable gears."),
-    "stiffness": N_("It is the stiffest of {count} suitable gears."),
-}
 ONLY = N_("It is the only suitable gear.")
 RANKED = N_("It was chosen; {selected} ranks first of {count} suitable gears.")
 
@@ -65,7 +53,7 @@ def verdict(export: Export, reader: Reader) -> dict[str, Any]:
     said = [reader.told(sentence) for sentence in _said(export, reader)]
     return {
         "gear": candidate.designation,
-        "word": reader.text(WORD[candidate.status]),
+        "word": reader.text(VERDICTS[candidate.status]),
         "rank": reader.told(_rank(export)),
         "text": sentence(" ".join(said)),
         **bar(candidate.utilisation, bound_of(export, code), candidate.status, reader),
@@ -138,7 +126,7 @@ def _place(export: Export) -> Sentence:
     selected = export.selection.selected
     if export.candidate.designation != selected:
         return Sentence(RANKED, {"selected": selected or "", "count": count})
-    return Sentence(BEST[export.application.rank_by] if count > 1 else ONLY, {"count": count})
+    return Sentence(RANKINGS[export.application.rank_by].first_of if count > 1 else ONLY, {"count": count})
 
 
 # --- Alternatives -----------------------------------------------------------------------------------------------------

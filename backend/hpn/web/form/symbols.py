@@ -16,7 +16,7 @@ from hpn.tables.inputs import NAME, PHASE, Input, Inputs
 from hpn.tables.numbers import Kind
 from hpn.web.form import labels
 from hpn.words.quantities import CANDIDATE, INPUTS, QUANTITIES
-from hpn.words.terms import BEARING_MODELS, LIFE_BASES
+from hpn.words.terms import BEARING_MODELS, LIFE_BASES, RANKINGS
 from hpn.words.units import suffix_of
 from hpn.words.wording import N_, Named
 
@@ -203,16 +203,7 @@ SYMBOLS = (
         "rank",
         ("rank_by",),
         "text",
-        choices={
-            "weight": N_("lowest weight"),
-            "utilisation": N_("largest reserve"),
-            "length": N_("shortest length"),
-            "motor_torque": N_("lowest motor torque"),
-            "life": N_("longest life"),
-            "stiffness": N_("highest stiffness"),
-            "natural_frequency": N_("highest natural frequency"),
-            "position_error": N_("smallest position error"),
-        },
+        choices={code: ranking.choice for code, ranking in RANKINGS.items()},
     ),
     Symbol("nm", ("requirements", "motor", "maximum_speed_rpm")),
     Symbol("Tm", ("requirements", "motor", "peak_torque_Nm")),

@@ -16,17 +16,7 @@ from hpn.files.export import DIGITS
 from hpn.web.pages.drive import Drive
 from hpn.web.pages.pictures import Pictures, pictures_of
 from hpn.words.reader import Reader
-from hpn.words.wording import N_, Sentence
-
-BEST: Mapping[RankBy, str] = {
-    "weight": N_("The lightest gear that passes every check."),
-    "utilisation": N_("The gear with the largest reserve among those that pass every check."),
-    "length": N_("The shortest gear that passes every check."),
-    "motor_torque": N_("The gear that needs the least motor torque among those that pass every check."),
-    "life": N_("The gear with the longest life among those that pass every check."),
-    "stiffness": N_("The stiffest gear that passes every check."),
-}
-"""Reasons for the selected gear, by what the candidates are ranked by."""
+from hpn.words.wording import Sentence
 
 LISTED_AT_ONCE = 8
 """Suitable gears that the list shows before somebody unfolds the rest."""

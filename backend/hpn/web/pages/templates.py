@@ -24,12 +24,12 @@ from hpn.web.form.labels import MOTOR_CODE, ordering_code
 from hpn.web.form.linked import carried_pairs, onward
 from hpn.web.pages import assets, pictures
 from hpn.web.pages.fleet_reasons import reasons_of
-from hpn.web.pages.result import BEST, preview_of
+from hpn.web.pages.result import preview_of
 from hpn.words import units
 from hpn.words.quantities import GEAR, LISTED, QUANTITIES, unit_of
 from hpn.words.reader import GROUP, LANGUAGE_NAMES, Reader
 from hpn.words.symbols import Part, formula, sentence
-from hpn.words.terms import BEARING_MODELS, ENVELOPE_BASIS, MECHANISMS, PROFILES, SHAPES, VERDICTS
+from hpn.words.terms import BEARING_MODELS, ENVELOPE_BASIS, MECHANISMS, PROFILES, RANKINGS, SHAPES, VERDICTS
 from hpn.words.wording import Sentence
 
 TEMPLATES, COMPILED = data_folder("frontend/templates"), assets.DIST / "templates"
@@ -222,7 +222,7 @@ FILTERS: dict[str, Callable[..., Any]] = {
 
 GLOBALS: dict[str, Any] = {
     "BEARING_MODELS": BEARING_MODELS,
-    "BEST": BEST,
+    "RANKINGS": RANKINGS,
     "calculation_of": calculation_of,
     "CHECKS": BY_CODE,
     "DRIVER_NAMES": DRIVER_NAMES,
