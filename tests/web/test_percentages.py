@@ -50,6 +50,16 @@ def test_only_part_of_a_limit_is_allowed_where_the_user_says_so(api: TestClient)
     assert "≥ 1\u202f000\u202fh ÷\xa080\u202f%" in text
 
 
+def test_the_share_of_the_bearing_life_names_the_load_and_the_cube_of_u(api: TestClient) -> None:
+    """108 h of 20,000 h at 569 %: the share is one of loads, and u of a load leaves u³ of the life."""
+    over = words(api, "/?T=900&n=1500&t=3&FR=9000", "en")
+    fits = words(api, "/?T=90&n=150&t=3&FR=900&u=0.9", "en")
+
+    assert re.search(r"569\u202f% ✕ ?fails? load Pm ", over)
+    assert "may grow to ↓must drop to" in over and "must drop to" not in fits
+    assert "÷\xa0u³ = 72.9\u202f%" in fits
+
+
 @pytest.mark.parametrize("allowed", [1.0, 0.8, 0.855, 1 / 3])
 @pytest.mark.parametrize("distance", [1e-1, 1e-3, 1e-6, 1e-9, 2e-12])
 def test_a_value_beside_its_bound_is_written_beside_it(allowed: float, distance: float) -> None:
