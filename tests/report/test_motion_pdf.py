@@ -104,6 +104,15 @@ def test_a_motion_is_drawn_over_time_and_phases_as_steps(catalogue: Catalogue) -
     assert "Short phases" in drawn["example"]["note"]
 
 
+def test_phases_that_govern_the_output_bearing_stand_out_in_the_cycle(catalogue: Catalogue) -> None:
+    loads = [{"torque_Nm": 10, "speed_rpm": 100, "duration_s": 1, "radial_N": N} for N in (400, 900, 400)]
+    export = typed_export_of({"duty_cycle": {"phases": loads}, "requirements": {"sizes": ["14A"]}}, catalogue)
+    assert export.candidate.governing_check == "output_bearing_load"
+    drawing = fromstring(content(export, ENGLISH)["cycle"]["drawing"])
+    steps = [step for step in drawing.iter() if "phase-step" in step.get("class", "")]
+    assert ["governing" in step.get("class", "") for step in steps] == [False, True, False]
+
+
 def test_torque_is_drawn_against_speed_where_a_motion_or_a_motor_is_given(catalogue: Catalogue) -> None:
     def planes(case: str) -> list[dict[str, str]]:
         found: list[dict[str, str]] = content(typed_export_of((CASES | MOVING)[case], catalogue), ENGLISH)["planes"]

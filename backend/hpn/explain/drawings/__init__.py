@@ -8,9 +8,9 @@ from hpn.explain.drawings.bearing import bearing_figure, sizes_figure
 from hpn.explain.drawings.chart import LARGE, SMALL, Scene, chart
 from hpn.explain.drawings.cycle import CyclePicture, cycle_picture
 from hpn.explain.drawings.envelope import GearEnvelope, envelope_scene, gear_envelope, sizes_scene
-from hpn.explain.drawings.governing import governing_phases
 from hpn.explain.drawings.layout import Figure
 from hpn.explain.drawings.picture import BearingPicture, NamedCurve, bearing_picture
+from hpn.explain.drawings.pictures import Pictures, governing_phases
 from hpn.explain.drawings.plane import Plane, gear_plane, motor_plane
 from hpn.explain.drawings.sizes import SizeUse, size_uses
 from hpn.explain.drawings.stops import emergency_stop_figure, emergency_stop_words
@@ -25,6 +25,7 @@ __all__ = [
     "Figure",
     "GearEnvelope",
     "NamedCurve",
+    "Pictures",
     "Plane",
     "Scene",
     "SizeUse",

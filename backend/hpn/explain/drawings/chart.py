@@ -35,6 +35,12 @@ MARGIN = 3.5
 SAME, REACH = 0.1, 130.0
 """Loads nearer than the first are one to the eye; those beyond the second are out of reach of a disc."""
 
+MOST_NUMBERS = 24
+"""Phases or loads that have a numbered disc, those nearest to their limit; others are dots."""
+
+LAST = -1.0
+"""Use of a mark whose disc gives way to all others."""
+
 ASIDE = 10.0
 """Distance of the middle of a name from its line."""
 

@@ -7,18 +7,12 @@ from xml.etree.ElementTree import Element
 from hpn.catalogue import Catalogue
 from hpn.catalogue.gear import Gear
 from hpn.engine.envelopes import EnvelopeCurve, EnvelopeQuery, has_envelope, life_envelopes
-from hpn.explain.drawings.chart import Line, Mark, Scene, chart
+from hpn.explain.drawings.chart import LAST, MOST_NUMBERS, Line, Mark, Scene, chart
 from hpn.explain.drawings.picture import BearingPicture, PhaseLoad, beyond_limit
 from hpn.explain.drawings.sizes import SizeUse
-from hpn.explain.drawings.words import coefficient_name, share
+from hpn.explain.drawings.words import coefficient_name, disc_label, share
 from hpn.words.reader import DEFAULT, Reader
 from hpn.words.wording import N_, Quantity, Sentence, Value
-
-LAST = -1.0
-"""Use of a mark whose disc gives way to all others."""
-
-MOST_NUMBERS = 24
-"""Loads that have a numbered disc, those nearest to their limit; others are dots."""
 
 
 def envelope_scene(
@@ -81,16 +75,10 @@ def gear_envelope(catalogue: Catalogue, gear: Gear, reader: Reader = DEFAULT) ->
         return None
     curves = life_envelopes(catalogue, gear, query)
     corners = [list(zip(curve.radial_N, curve.axial_N, strict=True)) for curve in curves]
-    lines = [_coefficient(c.load_coefficient, along, reader) for c, along in zip(curves, corners, strict=True)]
+    names = [coefficient_name(curve.load_coefficient, reader) for curve in curves]
+    lines = [Line("coefficient", name, along) for name, along in zip(names, corners, strict=True)]
     limit = Line("limit", reader.text(N_("published")), corners[0], strong=True)
     return GearEnvelope(curves, supplied, chart(Scene([limit, *lines], []), reader))
-
-
-# --- Lines ------------------------------------------------------------------------------------------------------------
-
-
-def _coefficient(f_w: float, corners: list[tuple[float, float]], reader: Reader) -> Line:
-    return Line("coefficient", coefficient_name(f_w, reader), corners)
 
 
 # --- Loads ------------------------------------------------------------------------------------------------------------
@@ -106,13 +94,9 @@ def _marks(picture: BearingPicture, governing: Sequence[int], reader: Reader, *,
         kind = "load governing" if set(governing) & set(load.places) else "load"
         if load.has_lever:
             marks.append(Mark("given", "", (load.given_N, load.axial_N), "", LAST))
-        label, told = _label(load) if at in numbered else "", _told_of(load, outside, reader)
+        label, told = disc_label(load.places) if at in numbered else "", _told_of(load, outside, reader)
         marks.append(Mark(kind, label, place, told, load.published, outside, load.marked))
     return marks
-
-
-def _label(load: PhaseLoad) -> str:
-    return load.phases if len(load.places) <= 3 or "–" in load.phases else f"{load.places[0] + 1} …"
 
 
 def _told_of(load: PhaseLoad, outside: bool, reader: Reader) -> str:

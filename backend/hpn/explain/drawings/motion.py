@@ -3,15 +3,13 @@
 import math
 from itertools import pairwise
 
-import numpy as np
-
 from hpn.application.motion import LinearMotion, Motion
 from hpn.engine.duty import Duty
 from hpn.explain.drawings.panels import RIGHT, Level, Panel, Stretch, TimeAxis, axis_left, stretches
 from hpn.explain.drawings.picture import MOST_MARKED
 from hpn.physics.motion import Trace, trace_of
 from hpn.physics.motion.course import Course
-from hpn.physics.motion.pieces import PlaceArray
+from hpn.physics.motion.trace import starts
 from hpn.words.reader import Reader
 from hpn.words.wording import N_, Quantity, Sentence, Value
 
@@ -45,9 +43,9 @@ def _axis(course: Course, trace: Trace, pause_s: float, left: float, reader: Rea
     end_s = trace.time_s.item(-1)
     right = _end_of_motion(left, end_s, pause_s)
     x = left + trace.time_s / end_s * (right - left)
-    begun = _starts(trace.phase)
+    begun = starts(trace.phase)
     phases = stretches([*x[begun, 0].tolist(), right])
-    bounds = [*_starts(course.move).tolist(), len(phases)]
+    bounds = [*starts(course.move).tolist(), len(phases)]
     moves = [Stretch(phases[k].start, phases[end - 1].end, range(k, end)) for k, end in pairwise(bounds)]
     times = [reader.figure(time, "s") for time in (*trace.time_s[begun, 0][bounds[:-1]].tolist(), end_s)]
     times[-1] = reader.with_unit(times[-1], "s")
@@ -59,11 +57,6 @@ def _axis(course: Course, trace: Trace, pause_s: float, left: float, reader: Rea
         row=2,
         times=list(zip((*(move.start for move in moves), right), times, strict=True)),
     )
-
-
-def _starts(of: PlaceArray) -> PlaceArray:
-    """Places at which a number begins that was not there before."""
-    return np.flatnonzero(np.diff(of, prepend=-1))
 
 
 def _end_of_motion(left: float, motion_s: float, pause_s: float) -> float:

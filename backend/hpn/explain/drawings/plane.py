@@ -8,18 +8,16 @@ from xml.etree.ElementTree import Element
 import numpy as np
 
 from hpn.application import Motor
-from hpn.catalogue import GearList
-from hpn.engine import figures as of_gear
-from hpn.engine.allowed import with_listed_motor
-from hpn.engine.figures import Figures
-from hpn.explain.drawings.chart import PLANE, Axes, Line, Mark, Scene, chart
+from hpn.engine.figures import efficiencies
+from hpn.explain.drawings.chart import LAST, MOST_NUMBERS, PLANE, Axes, Line, Mark, Scene, chart
 from hpn.explain.drawings.panels import OUT_OF_SCALE
 from hpn.explain.drawings.picture import beyond_limit
 from hpn.explain.drawings.subject import Subject
 from hpn.explain.drawings.svg import Point
-from hpn.explain.drawings.words import phase_numbers
+from hpn.explain.drawings.words import disc_label, phase_numbers
 from hpn.physics.equations import FloatArray
 from hpn.physics.motion import Trace, motor_trace, trace_of
+from hpn.physics.motion.trace import starts
 from hpn.words.quantities import DUTY, GEAR, INPUTS
 from hpn.words.reader import DEFAULT, Reader
 from hpn.words.titles import numbered
@@ -28,11 +26,8 @@ from hpn.words.wording import N_, Quantity, Sentence, Value
 OUTPUT = Axes(N_("output speed"), "rpm", N_("output torque"), "Nm")
 MOTOR = Axes(N_("motor speed"), "rpm", N_("motor torque"), "Nm")
 
-MOST_NUMBERS, MOST_MARKS = 24, 200
-"""Phases that have a numbered disc, those nearest to their limit, and those that are drawn at all."""
-
-LAST = -1.0
-"""Use of a mark whose disc gives way to all others."""
+MOST_MARKS = 200
+"""Phases that are drawn, those nearest to their limit."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,10 +103,7 @@ def motor_plane(subject: Subject, reader: Reader = DEFAULT, governing: Sequence[
 
     Of a motion whose motor's inertia is known the curve holds it.
     """
-    equipped = Subject(with_listed_motor(subject.application, subject.catalogue), subject.gear, subject.catalogue)
-    duty, gear, motor = equipped.duty, subject.gear, equipped.application.requirements.motor or Motor()
-    gears = GearList([gear], [subject.catalogue.curves.get(gear.size)])
-    figures = Figures(duty, gears, subject.catalogue)
+    figures, motor = subject.of_gear, subject.equipped.requirements.motor or Motor()
     limits = (
         _Limits(
             "limit",
@@ -130,7 +122,7 @@ def motor_plane(subject: Subject, reader: Reader = DEFAULT, governing: Sequence[
         _compared(N_("Largest torque {torque}, largest speed {speed}."), limits[0], subject),
         _compared(N_("RMS torque {torque}, average speed {speed}."), limits[1], subject),
     ]
-    return Plane(_drawn(_at_motor(equipped, motor), limits, "T_rms", MOTOR, subject, reader, governing), words)
+    return Plane(_drawn(_at_motor(subject, motor), limits, "T_rms", MOTOR, subject, reader, governing), words)
 
 
 def _of_motor(motor: Motor, name: str) -> _Limit:
@@ -139,9 +131,8 @@ def _of_motor(motor: Motor, name: str) -> _Limit:
 
 def _at_motor(subject: Subject, motor: Motor) -> _Cycle:
     """Phases at the motor: RMS torque at the mean speed, and peaks; of a motion the torque at every instant."""
-    duty, i, phases = subject.duty, subject.gear.ratio, subject.duty.phases
-    at_peak, at_rms = of_gear.efficiencies(duty, subject.gear, subject.catalogue)
-    gear = subject.gear
+    duty, gear, i, phases = subject.duty, subject.gear, subject.gear.ratio, subject.duty.phases
+    at_peak, at_rms = efficiencies(duty, gear, subject.catalogue)
     own, T_0 = gear.inertia_kgm2 or 0.0, gear.no_load_torque_Nm or 0.0
     moving = np.where(phases.speed_rpm[0, 0] > 0, T_0, 0.0)
     peaks = phases.peak_torque_Nm[0, 0] / (i * at_peak) + moving
@@ -150,7 +141,7 @@ def _at_motor(subject: Subject, motor: Motor) -> _Cycle:
         J = motor.inertia_kgm2 + own
         trace, torque = motor_trace(course, ratio=i, efficiency=at_peak, motor_inertia_kgm2=J, no_load_torque_Nm=T_0)
         curves = _curves(trace, np.abs(trace.speed_rpm) * i, np.abs(torque))
-        peaks = np.maximum.reduceat(np.abs(torque).max(axis=1), np.unique(trace.phase, return_index=True)[1])
+        peaks = np.maximum.reduceat(np.abs(torque).max(axis=1), starts(trace.phase))
     elif course is not None:
         trace = trace_of(course)
         torque = np.abs(trace.torque_Nm) / (i * at_peak[trace.phase])[:, None] + moving[trace.phase][:, None]
@@ -165,8 +156,8 @@ def _names(subject: Subject) -> Sequence[str | None]:
 
 def _curves(trace: Trace, speed: FloatArray, torque: FloatArray) -> dict[int, list[Point]]:
     """Curve of each phase of a motion."""
-    starts = np.flatnonzero(np.diff(trace.phase, prepend=-1))
-    pieces = zip(np.split(speed, starts[1:]), np.split(torque, starts[1:]), strict=True)
+    cuts = starts(trace.phase)[1:]
+    pieces = zip(np.split(speed, cuts), np.split(torque, cuts), strict=True)
     return {k: list(zip(n.ravel().tolist(), T.ravel().tolist(), strict=True)) for k, (n, T) in enumerate(pieces)}
 
 
@@ -252,9 +243,7 @@ def _phases(cycle: _Cycle, limits: _Limits, u: float, governing: Sequence[int], 
         places = sorted(unsorted)
         most = max(places, key=lambda k: used[k])
         kind = "load governing" if set(governing) & set(places) else "load"
-        label = phase_numbers(places) if order < MOST_NUMBERS else ""
-        if len(places) > 3 and "–" not in label and label:
-            label = f"{places[0] + 1} …"
+        label = disc_label(places) if order < MOST_NUMBERS else ""
         told = reader.told(_told(cycle, most, places)) if label else ""
         marks.append(Mark(kind, label, place, told, used.item(most), beyond_limit(used.item(most), u), places[:100]))
     if not cycle.curves:

@@ -38,6 +38,17 @@ class Subject:
         """Figures of the first gear of every size."""
         return Figures(self.duty, self.sizes, self.catalogue)
 
+    @cached_property
+    def equipped(self) -> Application:
+        """The application with the figures of the motor that it names."""
+        return with_listed_motor(self.application, self.catalogue)
+
+    @cached_property
+    def of_gear(self) -> Figures:
+        """Figures of the gear itself, with the motor's."""
+        gears = GearList([self.gear], [self.catalogue.curves.get(self.gear.size)])
+        return Figures(Duty.of([self.equipped]), gears, self.catalogue)
+
     @property
     def place(self) -> int:
         """Place of the gear's own size in `sizes`."""
@@ -48,6 +59,5 @@ class Subject:
         """Torque of the emergency stop on the gear by magnitude, or None where there is none."""
         if self.application.emergency_stop is None:
             return None
-        duty = Duty.of([with_listed_motor(self.application, self.catalogue)])
-        T_k = Figures(duty, GearList([self.gear], [None]), self.catalogue).stop_torque_Nm.item()
+        T_k = self.of_gear.stop_torque_Nm.item()
         return None if isnan(T_k) else T_k

@@ -46,3 +46,9 @@ def phase_numbers(places: Sequence[int]) -> str:
         return f"{places[0] + 1}–{places[-1] + 1}"
     numbers = ", ".join(str(place + 1) for place in places[:6])
     return numbers if len(places) <= 6 else numbers + " …"
+
+
+def disc_label(places: Sequence[int]) -> str:
+    """The same for a disc: of more than three that are not in a row the first alone."""
+    numbers = phase_numbers(places)
+    return numbers if len(places) <= 3 or "–" in numbers else f"{places[0] + 1} …"

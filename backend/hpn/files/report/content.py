@@ -81,7 +81,7 @@ def content(export: Export, reader: Reader) -> dict[str, Any]:
     text, selection = reader.text, export.selection
     labels = {key: text(label) for key, label in LABELS.items()}
     labels |= {key: labels[key].format(gear=export.candidate.designation) for key in ("checks", "ratings")}
-    on_motor = reader.told(on_motor_torques(selection.notices))
+    on_motor, pictures = reader.told(on_motor_torques(selection.notices)), plots.pictures_of(export, reader)
     title = _shortened(export.heading.title.strip() or labels["untitled"], LONGEST_TITLE)
     return {
         "lang": reader.language,
@@ -101,9 +101,9 @@ def content(export: Export, reader: Reader) -> dict[str, Any]:
         "move_listing": moves(export, reader),
         "listing": listing(export, reader),
         "derived": [*tables.of_cycle(export, reader), *tables.of_gear(export, reader)],
-        "cycle": plots.cycle(export, reader),
-        "planes": plots.planes(export, reader, on_motor),
-        "bearing": plots.envelope(export, reader),
+        "cycle": plots.cycle(export, pictures, reader),
+        "planes": plots.planes(export, pictures, reader, on_motor),
+        "bearing": plots.envelope(pictures, reader),
         "bearing_alt": text(N_("Loads of the phases within the envelopes of the output bearing")),
         "checks": checks(export, reader),
         "ratings": tables.ratings(export, reader),

@@ -3,25 +3,13 @@
 import re
 from typing import Any
 
-from hpn.explain.drawings import (
-    Plane,
-    Subject,
-    bearing_picture,
-    chart,
-    cycle_picture,
-    envelope_scene,
-    gear_plane,
-    governing_phases,
-    motor_plane,
-)
+from hpn.explain.drawings import Pictures, Plane, Subject, chart, cycle_picture
 from hpn.explain.drawings.chart import PAPER
 from hpn.explain.drawings.svg import STYLE, markup
 from hpn.files.export import Export
 from hpn.words.reader import Reader
 from hpn.words.symbols import sentence
 from hpn.words.wording import N_
-
-LIFE = "output_bearing_life"
 
 COLOURS = {
     "ink": "#15171b",
@@ -45,17 +33,18 @@ ON_PAPER = 'text { font-size: 13px; font-family: "HPN Sans" }\n' + re.sub(
 )
 """Style sheet of a drawing in the report."""
 
-# --- The cycle over time ----------------------------------------------------------------------------------------------
+
+def pictures_of(export: Export, reader: Reader) -> Pictures | None:
+    """The page's pictures of the reported gear, or None where its limits are not at hand."""
+    gear = export.gear(export.candidate)
+    if gear is None or export.figures is None:
+        return None
+    return Pictures(Subject(export.application, gear, export.figures), export.candidate, reader)
 
 
-def cycle(export: Export, reader: Reader) -> dict[str, str]:
+def cycle(export: Export, pictures: Pictures | None, reader: Reader) -> dict[str, str]:
     """The page's drawing of the cycle or motion over time, without limits where the gear's are not at hand."""
-    gear, application = export.gear(export.candidate), export.application
-    subject = None
-    if gear is not None and export.figures is not None:
-        subject = Subject(application, gear, export.figures)
-    governing = governing_phases(subject, export.candidate.governing_check, None) if subject else ()
-    picture = cycle_picture(application, subject, reader, governing, export.candidate.governing_check)
+    picture = pictures.cycle if pictures else cycle_picture(export.application, None, reader)
     return {
         "drawing": markup(picture.drawing, ON_PAPER),
         "alt": " ".join(reader.told(one) for one in picture.words),
@@ -63,23 +52,17 @@ def cycle(export: Export, reader: Reader) -> dict[str, str]:
     }
 
 
-# --- Torque against speed ---------------------------------------------------------------------------------------------
-
-
-def planes(export: Export, reader: Reader, left_out: str) -> list[dict[str, Any]]:
-    """The page's planes of gear and motor, where a motion or a motor is given and the gear's limits are at hand.
+def planes(export: Export, pictures: Pictures | None, reader: Reader, left_out: str) -> list[dict[str, Any]]:
+    """The page's planes of torque against speed of gear and motor, where a motion or a motor is given.
 
     `left_out` is what torques at the motor leave out.
     """
-    gear, application = export.gear(export.candidate), export.application
-    if gear is None or export.figures is None:
+    if pictures is None:
         return []
-    if application.requirements.motor is None and application.duty_cycle.motion is None:
+    if export.application.requirements.motor is None and export.application.duty_cycle.motion is None:
         return []
-    subject = Subject(application, gear, export.figures)
-    governing = governing_phases(subject, export.candidate.governing_check, None)
-    output = _plane(N_("Torque and speed at the gear’s output"), gear_plane(subject, reader, governing), reader)
-    motor = _plane(N_("Torque and speed at the motor"), motor_plane(subject, reader, governing), reader)
+    output = _plane(N_("Torque and speed at the gear’s output"), pictures.gear_plane, reader)
+    motor = _plane(N_("Torque and speed at the motor"), pictures.motor_plane, reader)
     return [output, motor | {"words": [*motor["words"], " " + left_out]}]
 
 
@@ -93,21 +76,11 @@ def _plane(title: str, plane: Plane, reader: Reader) -> dict[str, Any]:
     }
 
 
-# --- The output bearing -----------------------------------------------------------------------------------------------
-
-
-def envelope(export: Export, reader: Reader) -> dict[str, Any] | None:
-    """The drawing of the page in the colours of the report, and its condition; None without the gear's limits."""
-    gear, application = export.gear(export.candidate), export.application
-    if gear is None or export.figures is None:
+def envelope(pictures: Pictures | None, reader: Reader) -> dict[str, Any] | None:
+    """The page's drawing of the output bearing, and its condition; None where the bearing is not rated."""
+    if pictures is None or pictures.bearing is None:
         return None
-    subject = Subject(application, gear, export.figures)
-    picture = bearing_picture(subject, export.candidate.check(LIFE))
-    if picture is None:
-        return None
-    check = export.candidate.governing_check
-    governing = governing_phases(subject, check, picture)
     return {
-        "drawing": markup(chart(envelope_scene(picture, reader, governing, check), reader, PAPER), ON_PAPER),
-        "condition": sentence(reader.told(picture.condition)),
+        "drawing": markup(chart(pictures.envelope_scene, reader, PAPER), ON_PAPER),
+        "condition": sentence(reader.told(pictures.bearing.condition)),
     }

@@ -30,6 +30,11 @@ class Trace:
     torque_Nm: FloatArray
 
 
+def starts(of: PlaceArray) -> PlaceArray:
+    """Places at which a phase or a move begins, of what each piece or phase is part of."""
+    return np.flatnonzero(np.diff(of, prepend=-1))
+
+
 def trace_of(course: Course) -> Trace:
     """Trace of a course."""
     return _along(course, course.pieces, course.phase, course.factor)

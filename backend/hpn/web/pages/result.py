@@ -11,10 +11,11 @@ from hpn.catalogue.gear import Gear
 from hpn.engine.checks import BY_CODE, allowed
 from hpn.engine.remedy import Growth, alternatives_of, condition_of, growths_of, remedy_of
 from hpn.engine.selection import Candidate, Selection
+from hpn.explain.drawings import Pictures, Subject
 from hpn.explain.readings import Life, Reading, readings_of, shortest_life
 from hpn.files.export import DIGITS
+from hpn.web.door.visit import current
 from hpn.web.pages.drive import Drive
-from hpn.web.pages.pictures import Pictures, pictures_of
 from hpn.words.reader import Reader
 from hpn.words.wording import Sentence
 
@@ -100,7 +101,7 @@ class Result:
         """Pictures of the chosen candidate, or None where what they need is not kept."""
         if self.application is None or self.gear is None or self.catalogue is None:
             return None
-        return pictures_of(self.application, self.gear, self.chosen, self.catalogue)
+        return Pictures(Subject(self.application, self.gear, self.catalogue), self.chosen, current())
 
     @cached_property
     def drive(self) -> Drive | None:

@@ -4,7 +4,9 @@ import re
 from collections.abc import Callable
 from functools import lru_cache
 from typing import Any
+from xml.etree.ElementTree import Element
 
+import orjson
 from jinja2 import Environment, FileSystemBytecodeCache, FileSystemLoader, StrictUndefined, pass_context
 from jinja2.bccache import Bucket
 from jinja2.runtime import Context
@@ -15,14 +17,16 @@ from hpn.engine.checks import BY_CODE
 from hpn.engine.remedy import DRIVER_NAMES
 from hpn.engine.selection import Candidate, reason_of
 from hpn.explain.calculation import calculation_of, mathml
+from hpn.explain.drawings import Figure
 from hpn.explain.drawings.picture import beyond_limit
+from hpn.explain.drawings.svg import markup
 from hpn.explain.readings import stiffness_of
 from hpn.installed import data_folder
 from hpn.web.door.visit import address, current
 from hpn.web.form import symbols, ways
 from hpn.web.form.labels import MOTOR_CODE, ordering_code
 from hpn.web.form.linked import carried_pairs, onward
-from hpn.web.pages import assets, pictures
+from hpn.web.pages import assets
 from hpn.web.pages.fleet_reasons import reasons_of
 from hpn.web.pages.result import preview_of
 from hpn.words import units
@@ -110,7 +114,7 @@ def _templates(static: assets.Assets, compiled: Compiled) -> Environment:
     templates.install_gettext_callables(  # type: ignore[attr-defined]
         _for_reader("text"), _for_reader("plural"), newstyle=True
     )
-    templates.filters |= FILTERS | pictures.FILTERS
+    templates.filters |= FILTERS
     templates.tests |= {"beyond_limit": beyond_limit}
     templates.globals |= GLOBALS | {"asset": static.url}
     return templates
@@ -197,12 +201,25 @@ def _stiffness(_: Context, candidate: Candidate) -> str:
     return current().told(stiffness_of(candidate))
 
 
+def _inline(drawing: Element | list[Element]) -> Markup:
+    """A drawing, or one for each kind of place, as part of a page; an XML library made it, which escapes its texts."""
+    return Markup("".join(map(markup, drawing if isinstance(drawing, list) else [drawing])))
+
+
+def _as_attribute(figure: Figure) -> Markup:
+    """A figure as JSON in a single-quoted attribute, where its many double quotes may stand as they are."""
+    text = orjson.dumps(figure).decode()
+    return Markup(text.replace("&", "&amp;").replace("'", "&#39;").replace("<", "&lt;"))
+
+
 FILTERS: dict[str, Callable[..., Any]] = {
+    "as_attribute": _as_attribute,
     "as_read": _as_read,
     "as_typed": _as_typed,
     "capital": lambda text: text[:1].upper() + text[1:],
     "figure": _figure,
     "formula": as_formula,
+    "inline": _inline,
     "reason": _reason,
     "reasons": reasons_of,
     "say": _say,

@@ -1,0 +1,147 @@
+"""Pictures of a candidate in the language and units of a reader, for the page and the report."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from xml.etree.ElementTree import Element
+
+from hpn.engine.selection import Candidate
+from hpn.explain.drawings.bearing import bearing_figure, sizes_figure
+from hpn.explain.drawings.chart import LARGE, SMALL, Scene, chart
+from hpn.explain.drawings.cycle import CyclePicture, cycle_picture
+from hpn.explain.drawings.envelope import envelope_scene, sizes_scene
+from hpn.explain.drawings.layout import Figure
+from hpn.explain.drawings.picture import BearingPicture, bearing_picture
+from hpn.explain.drawings.plane import Plane, gear_plane, motor_plane
+from hpn.explain.drawings.sizes import SizeUse, size_uses
+from hpn.explain.drawings.stops import emergency_stop_figure, emergency_stop_words
+from hpn.explain.drawings.subject import Subject
+from hpn.explain.drawings.verdict import bearing_verdict, bearing_words, carries
+from hpn.physics.equations import FloatArray
+from hpn.words.reader import Reader
+from hpn.words.wording import Sentence
+
+_EXTREME = {
+    "repeated_peak_torque": "peak_torque_Nm",
+    "motor_peak_torque": "peak_torque_Nm",
+    "maximum_input_speed": "peak_speed_rpm",
+    "motor_speed": "peak_speed_rpm",
+}
+"""Checks of the largest value of a phase."""
+
+
+def governing_phases(subject: Subject, check: str | None, picture: BearingPicture | None) -> tuple[int, ...]:
+    """Places of the phases that a check goes by; none where it goes by an average, a stop or a property."""
+    if check in ("output_bearing_load", "output_bearing_life"):
+        return tuple(picture.worst.places) if picture and picture.loads else ()
+    if check not in _EXTREME:
+        return ()
+    values: FloatArray = getattr(subject.duty.phases, _EXTREME[check])[0, 0]
+    return tuple((values == values.max()).nonzero()[0].tolist())
+
+
+@dataclass(frozen=True)
+class Pictures:
+    """Pictures that page and report set or hand to Plotly; each is made when it is asked for.
+
+    `chosen` is the candidate that is looked at, as it was judged just now or when it was saved.
+    """
+
+    subject: Subject
+    chosen: Candidate
+    reader: Reader
+
+    @cached_property
+    def cycle(self) -> CyclePicture:
+        """Duty cycle or motion over time."""
+        subject, check = self.subject, self.chosen.governing_check
+        return cycle_picture(subject.application, subject, self.reader, self.governing, check)
+
+    @cached_property
+    def governing(self) -> tuple[int, ...]:
+        """Places of the phases that the governing check of the candidate goes by."""
+        return governing_phases(self.subject, self.chosen.governing_check, self.bearing)
+
+    @cached_property
+    def bearing(self) -> BearingPicture | None:
+        """Permitted and given loads of the output bearing, or None where it is not rated."""
+        return bearing_picture(self.subject, self.chosen.check("output_bearing_life"))
+
+    @cached_property
+    def envelope_scene(self) -> Scene:
+        """Envelopes and loads of `bearing`, which must be there."""
+        assert self.bearing is not None
+        return envelope_scene(self.bearing, self.reader, self.governing, self.chosen.governing_check)
+
+    @cached_property
+    def envelope(self) -> list[Element]:
+        """Drawings of `bearing`, which must be there, for a narrow and for a wide place."""
+        return self._drawn(self.envelope_scene)
+
+    @property
+    def bearing_figure(self) -> Figure:
+        """Plotly figure of `bearing`, which must be there."""
+        assert self.bearing is not None
+        return bearing_figure(self.envelope_scene, self.bearing, self.reader)
+
+    def _drawn(self, scene: Scene) -> list[Element]:
+        return [chart(scene, self.reader, size) for size in (SMALL, LARGE)]
+
+    @cached_property
+    def sizes(self) -> list[SizeUse]:
+        """Bearing of every size under the conditions of `bearing`, which must be there."""
+        assert self.bearing is not None
+        return size_uses(self.subject, self.bearing)
+
+    @property
+    def sizes_drawing(self) -> list[Element]:
+        """Drawings of all sizes, likewise."""
+        return self._drawn(self._all_sizes)
+
+    @property
+    def sizes_figure(self) -> Figure:
+        """Plotly figure of all sizes."""
+        assert self.bearing is not None
+        return sizes_figure(self._all_sizes, self.sizes, self.bearing, self.reader)
+
+    @cached_property
+    def _all_sizes(self) -> Scene:
+        assert self.bearing is not None
+        return sizes_scene(self.sizes, self.bearing, self.reader, self.governing)
+
+    @property
+    def carries(self) -> bool:
+        """True where the bearing carries the loads, which must be given."""
+        assert self.bearing is not None
+        return carries(self.bearing)
+
+    @property
+    def verdict(self) -> Sentence:
+        """Verdict on `bearing`, which must have loads."""
+        assert self.bearing is not None
+        return bearing_verdict(self.bearing)
+
+    @property
+    def words(self) -> list[Sentence]:
+        """Grounds of the verdict."""
+        assert self.bearing is not None
+        return bearing_words(self.bearing)
+
+    @cached_property
+    def gear_plane(self) -> Plane:
+        """Output torque against output speed, with the gear's limits."""
+        return gear_plane(self.subject, self.reader, self.governing)
+
+    @cached_property
+    def motor_plane(self) -> Plane:
+        """Motor torque against motor speed, with the motor's limits."""
+        return motor_plane(self.subject, self.reader, self.governing)
+
+    @cached_property
+    def stop_figure(self) -> Figure | None:
+        """Plotly figure of the emergency stops, or None where the gear is not rated."""
+        return emergency_stop_figure(self.subject, self.reader)
+
+    @property
+    def stop_words(self) -> list[Sentence]:
+        """The emergency stops in words."""
+        return emergency_stop_words(self.subject)
