@@ -31,6 +31,38 @@ PER_PHASE = cycle(
     requirements={"utilisation": 0.8, "life_h": 1000.0, "efficiency": 0.9, "motor": {"peak_torque_Nm": 9.0}},
 )
 
+TURNING = {
+    "mechanism": {
+        **{"type": "rotary", "inertia_kgm2": 2.0, "gravity_mass_kg": 20.0, "gravity_radius_mm": 250.0},
+        **{"friction_torque_Nm": 2.0, "efficiency": 0.9, "ratio": 1.5},
+    },
+    "moves": [{"profile": "trapezoidal", "angle_deg": 90.0, "time_s": 1.5}],
+}
+
+
+def stopped(motor: Json, **brake: float) -> Json:
+    """The turning mass stopped by a brake on a motor."""
+    stop, asked = {"brake": {"torque_Nm": 12.0} | brake}, {"motor": motor, "position_radius_mm": 250.0}
+    return {"duty_cycle": {"motion": TURNING}, "emergency_stop": stop, "requirements": {"efficiency": 0.8} | asked}
+
+
+HEAVY = {"inertia_kgm2": 0.002}
+STOPS = {
+    "at once": (stopped(HEAVY), 3, 7),
+    "after a dead time": (stopped(HEAVY, rise_time_s=0.03, reaction_time_s=0.05, speed_rpm=40.0), 3, 7),
+    "of a motor that is heavy": (stopped({"inertia_kgm2": 0.5}, dynamic_factor=1.4), 3, 7),
+    "of a motor that is not known": (stopped({}, rise_time_s=0.01), 2, 0),
+    "by a brake that is too weak": (stopped(HEAVY, torque_Nm=0.5), 3, 0),
+    "without a motion": (
+        worked_example(
+            emergency_stop={"brake": {"torque_Nm": 12.0}}, requirements={"load_inertia_kgm2": 0.8, "motor": HEAVY}
+        ),
+        *(3, 7),
+    ),
+    "without inertias": (worked_example(emergency_stop={"brake": {"torque_Nm": 12.0}}), 2, 0),
+}
+"""Stops, and how many equations their torque and their course take."""
+
 
 def steps_of(application: Json, designation: str) -> tuple[Json, tuple[Step, ...]]:
     """Entry of the reply, and the calculation of a gear."""
@@ -64,8 +96,9 @@ def row(children: list[Element], reader: Reader) -> float:
     """Value of terms with operators between them."""
     if children[0].tag == "mi":  # max ( a ; b )
         return max(worked_out(child, reader) for child in children[1:] if child.tag != "mo")
-    if children[0].tag == "mo":  # brackets
-        return worked_out(children[1], reader)
+    if children[0].tag == "mo":  # brackets, or the bars of a magnitude
+        inside = worked_out(children[1], reader)
+        return abs(inside) if children[0].text == "|" else inside
     value = worked_out(children[0], reader)
     for operator, operand in zip(children[1::2], children[2::2], strict=True):
         other = worked_out(operand, reader)
@@ -106,9 +139,16 @@ def shown(line: Line, reader: Reader) -> tuple[float, float]:
 # --- Tests ------------------------------------------------------------------------------------------------------------
 
 
+BEHIND = worked_example(
+    output_load={"radial_N": 600.0, "axial_N": 100.0, "radial_position_mm": -45.0}
+    | {"axial_radius_mm": 40.0, "shaft_centre_mm": 21.0}
+)
+
+
 @given(applications())
 @example(LOADED)
 @example(PER_PHASE)
+@example(BEHIND)
 def test_substituted_numbers_give_the_result_that_is_printed_in_every_language_and_unit(application: Json) -> None:
     for designation in ("HPN-20A-5", "HPN-32A-25"):
         _, steps = steps_of(application, designation)
@@ -141,6 +181,22 @@ def test_every_line_gives_the_figure_of_the_reply(application: Json) -> None:
         ("bearing_life", "bearing_life_L10_h"),
     ):
         assert results.get(code) == entry[name], code
+
+
+@pytest.mark.parametrize("name", STOPS)
+def test_every_line_of_a_stop_by_the_brake_gives_its_result_and_the_figures_of_the_reply(name: str) -> None:
+    entry, steps = steps_of(STOPS[name][0], "HPN-20A-5")
+    lines = {step.code: step.lines for step in steps}
+    for line in (*lines["stop"], *lines.get("stop_course", ())):
+        assert value_of(line.formula) == pytest.approx(line.result.value, rel=1e-11), line.result
+        for reader in READERS:
+            found, printed = shown(line, reader)
+            assert found == pytest.approx(printed, rel=NINE_DIGITS), (line.result, reader)
+    assert (len(lines["stop"]), len(lines.get("stop_course", ()))) == STOPS[name][1:]
+    assert lines["stop"][-1].result.value == entry["stop_torque_Nm"]
+    course = [entry[figure] for figure in ("stopping_time_s", "stopping_angle_deg", "stop_energy_J")]
+    shown_course = [line.result.value for line in lines.get("stop_course", ())[-3:]]
+    assert shown_course == (course if shown_course else [])
 
 
 @given(applications())

@@ -17,6 +17,7 @@ from hpn.catalogue import Catalogue, load_catalogue
 from hpn.explain.readings import readings_of
 from hpn.files.export import DIGITS, Heading
 from hpn.files.report.pdf import pdf
+from hpn.files.report.verdict import verdict
 from hpn.words.reader import Reader
 from hpn.words.units import PRESETS
 from tests.build import worked_example
@@ -177,6 +178,16 @@ def test_a_chosen_gear_is_reported_beside_the_one_that_ranks_first(catalogue: Ca
     count = sum(gear.status == "suitable" for gear in export.selection.candidates)
     assert f"It was chosen; HPN-20A-5 ranks first of {count} suitable gears." in other
     assert "HPN-14A-5 was chosen, but" in failing and "HPN-20A-5 would be suitable." in failing
+
+
+def test_a_brake_that_does_not_stop_the_load_is_why_no_gear_is_suitable(catalogue: Catalogue) -> None:
+    """100 kg at 250 mm pull with 245 Nm, 0.1 Nm of the brake hold 5 Nm at most."""
+    table = {"type": "rotary", "inertia_kgm2": 7.0, "gravity_mass_kg": 100.0, "gravity_radius_mm": 250.0}
+    motion = {"mechanism": table, "moves": [{"profile": "triangular", "angle_deg": 90.0, "time_s": 9.0}]}
+    stop = {"brake": {"torque_Nm": 0.1}}
+    asked = {"duty_cycle": {"motion": motion}, "emergency_stop": stop, "requirements": {"sizes": ["32A"]}}
+    said = "".join(verdict(typed_export_of(asked, catalogue), ENGLISH)["text"])
+    assert said.endswith("comes closest, but the brake does not stop the load.")
 
 
 def test_the_title_block_says_who_answers_for_what(catalogue: Catalogue) -> None:

@@ -5,7 +5,7 @@ from msgspec import structs
 
 from hpn.application import Application
 from hpn.catalogue import Catalogue
-from hpn.engine.remedy import followed, growths_of, remedy_of, ways_of
+from hpn.engine.remedy import BY_CURVE, alternatives_of, followed, growths_of, remedy_of, tried, ways_of
 from hpn.engine.selection import Candidate, Selection, select
 from hpn.words.wording import rounded
 from tests.build import Json, cycle, phase, worked_example
@@ -154,9 +154,27 @@ def test_a_motor_at_a_smaller_torque_is_promised_nothing_where_a_curve_says_what
     both = cycle(phase(26, 30), requirements={"ratios": [5], "utilisation": 0.8586, "motor": motor})
     alone = cycle(phase(20, 30), requirements={"ratios": [5], "utilisation": 0.8586, "motor": motor})
 
-    why = "The change that would make it fit is not in closed form: the efficiency follows your curve."
+    why = f"The change that would make it fit is {BY_CURVE}."
     assert words(both, "HPN-14A-5", book) == why
     assert words(alone, "HPN-14A-5", book) == "Fits if the motor’s peak torque rises to 5.824 Nm."
+
+
+def test_no_smaller_torque_is_promised_to_a_motor_that_turns_a_gear_with_a_torque_without_load(
+    supplemented: Supplement,
+) -> None:
+    """40 Nm / 5 + 4 Nm are 12 Nm; at 8 Nm of the motor 20 Nm are left, half of the torque and not two thirds."""
+    book = supplemented(gears="size,ratio,stages,no_load_torque_Nm,source\n20A,5,1,4,measured\n")
+    asked = {"ratios": [5], "sizes": ["20A"], "motor": {"peak_torque_Nm": 8.0}}
+    application = Application.model_validate(cycle(phase(40, 250), requirements=asked))
+    gear = chosen(select(application, book), "HPN-20A-5")
+
+    assert gear.reserve.torque_factor is None
+    assert growths_of(gear)["motor_peak_torque"][0].factor is None
+    for alternative in alternatives_of(gear):
+        assert chosen(select(tried(application, alternative, book), book), "HPN-20A-5").status == "suitable"
+    assert words(cycle(phase(40, 250), requirements=asked), "HPN-20A-5", book) == (
+        "Fits if the motor’s peak torque rises to 12 Nm."
+    )
 
 
 def test_each_check_says_how_far_its_own_drivers_may_grow(catalogue: Catalogue) -> None:

@@ -27,7 +27,7 @@ LIVES = ("life", "output_bearing_life")
 """Checks that two drivers move: slower running mends them as well as a smaller torque or load."""
 
 MOTOR_TORQUE_CHECKS = ("motor_peak_torque", "motor_rated_torque")
-"""Checks that no closed form follows where the torque at the motor goes by an efficiency curve."""
+"""Checks that no closed form follows where the torque at the motor is not in proportion to the load's."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,8 +79,8 @@ def _needed(used: Mapping[str, float], u: float, driver: Driver, untold: bool) -
 def _is_untold(candidate: Candidate, driver: Driver) -> bool:
     """True for a driver that a judged gear has no closed form of: a check of it is used, but its reserve has no factor.
 
-    That is the torque where motor torques follow an efficiency curve, and torque and speed where they have a part of
-    the motor's own inertia, which follows the motion.
+    That is the torque where motor torques follow an efficiency curve or the gear's torque without load counts, and
+    torque and speed where they have a part of the motor's own inertia, which follows the motion.
     """
     used = (check.utilisation or 0.0 for check in candidate.checks if check.code in MOVES[driver])
     return getattr(candidate.reserve, f"{driver}_factor") is None and any(share > _LEAST for share in used)
@@ -281,7 +281,7 @@ def _scaled(value: float | None, factor: float) -> float | None:
 
 # --- In words ---------------------------------------------------------------------------------------------------------
 
-BY_CURVE = N_("not in closed form: the efficiency follows your curve")
+BY_CURVE = N_("not in closed form: the efficiency follows your curve, or the gear’s torque without load counts")
 BY_INERTIA = N_("not in closed form: the motor’s own inertia follows the motion")
 UNTOLD = N_("The change that would make it fit is {reason}.")
 """Reasons for which a factor is not given."""
@@ -389,7 +389,7 @@ def growths_of(candidate: Candidate, reserve_utilisation: float = 1.0) -> dict[s
     """Growth of every driver by check of a candidate, until that check is at its limit.
 
     Below 1 where the check fails. Empty for a check that no driver moves and for one that is not rated. Without a
-    factor for motor torques that follow an efficiency curve or the motor's own inertia, which have no closed form;
+    factor for motor torques that follow an efficiency curve, torque without load or inertia, which have no closed form;
     empty for motor torques of a gear that is not judged, whose reserve is unknown too.
     """
     untold = _untold(candidate)

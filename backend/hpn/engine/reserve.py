@@ -28,8 +28,9 @@ def reserves(evaluation: Evaluation, index: int) -> dict[str, FloatArray]:
     Factors on all torques of the duty cycle (not the emergency stop), on all speeds and on all loads, the largest
     permissible emergency-stop torque and brake torque in Nm and the largest load inertia in kg m². A torque's mean,
     peak and RMS go together, and so do a speed's mean and peak. NaN also where the application moves no such check, and
-    where no closed form follows a motor torque: for the torque factor where it goes by the gear's efficiency curve, for
-    those of torque and speed where the motor's own inertia has a part in it, which goes by the motion's acceleration.
+    where no closed form follows a motor torque: for the torque factor where it goes by the gear's efficiency curve or
+    has the gear's torque without load in it, for those of torque and speed where the motor's own inertia has a part in
+    it, which goes by the motion's acceleration.
     """
     asked = evaluation.case.asked
     u = asked["requirements.utilisation"].item(index)
@@ -42,8 +43,8 @@ def reserves(evaluation: Evaluation, index: int) -> dict[str, FloatArray]:
         stated = not np.isnan(asked["requirements.efficiency"].item(index))
         own_inertia = not np.isnan(asked["requirements.motor.inertia_kgm2"].item(index))
         turns = own_inertia and evaluation.case.duty.courses.get(index) is not None
-        by_curve = follows_curve & ~np.bool_(stated)
-        factors["torque_factor"] = np.where(by_curve | np.bool_(turns), np.nan, factors["torque_factor"])
+        apart = follows_curve & ~np.bool_(stated) | (evaluation.gears.columns.no_load_torque_Nm > 0)
+        factors["torque_factor"] = np.where(apart | np.bool_(turns), np.nan, factors["torque_factor"])
         factors["speed_factor"] = np.where(np.bool_(turns), np.nan, factors["speed_factor"])
     return {**factors, **_of_stop(evaluation, index, u), "load_inertia_kgm2": _load_inertia(evaluation, index, u)}
 

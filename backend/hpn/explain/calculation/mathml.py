@@ -94,6 +94,10 @@ def compared(reader: Reader, comparison: Comparison, *, continued: bool = False)
     return mathml(reader, *parts, (Constant(comparison.bound, comparison.unit), True))
 
 
+def _is_negative(formula: Formula) -> bool:
+    return isinstance(formula, Term | Constant) and formula.value < 0
+
+
 def _operator(text: str) -> str:
     return f"<mo>{escape(text)}</mo>"
 
@@ -122,7 +126,8 @@ class _Writer:
             case Product(factors):
                 return self.row("·", map(self.factor, factors))
             case Magnitude(body):
-                return self.write(body) if self.numbers else self.fenced("|", body, "|")
+                plain = self.numbers and not _is_negative(body)
+                return self.write(body) if plain else self.fenced("|", body, "|")
             case Largest(of):
                 return self.call("max", map(self.write, of))
             case Quotient() | Power() | Root():
@@ -152,10 +157,9 @@ class _Writer:
         return f"<mrow>{before}{self.write(body)}{after}</mrow>"
 
     def factor(self, formula: Formula) -> str:
-        """A factor of a product, in brackets where it is a sum."""
-        return (
-            self.fenced("(", formula, ")") if isinstance(formula, Sum | Subtraction | Series) else self.write(formula)
-        )
+        """A factor of a product, in brackets where it is a sum or a negative number."""
+        in_brackets = isinstance(formula, Sum | Subtraction | Series) or (self.numbers and _is_negative(formula))
+        return self.fenced("(", formula, ")") if in_brackets else self.write(formula)
 
     def base(self, formula: Formula) -> str:
         """A base of a power, in brackets unless it is a symbol or a number without unit."""

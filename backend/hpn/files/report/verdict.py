@@ -21,6 +21,7 @@ REASONS: Mapping[str, str] = {
     "unlimited": N_(
         "No gear is suitable. {gear} comes closest, but T_k is too high: no emergency stop is permitted (eq. 17.9)."
     ),
+    "never_stops": N_("No gear is suitable. {gear} comes closest, but the brake does not stop the load."),
     "unrated": N_(
         "No gear is suitable. {gear} can’t be judged: figures that the checks need are not in this catalogue’s source."
     ),
@@ -33,6 +34,7 @@ CHOSEN: Mapping[str, str] = {
         "{gear} was chosen, but T_k is too high: no emergency stop is permitted (eq. 17.9). {selected} would be "
         "suitable."
     ),
+    "never_stops": N_("{gear} was chosen, but the brake does not stop the load. {selected} would be suitable."),
     "unrated": N_(
         "{gear} was chosen, but can’t be judged: figures that the checks need are not in this catalogue’s source. "
         "{selected} would be suitable."
@@ -105,7 +107,8 @@ def _length(gear: Gear | None, reader: Reader) -> str:
 def _said(export: Export, reader: Reader) -> Iterable[Sentence]:
     candidate, selected = export.candidate, export.selection.selected
     status, code = candidate.status, candidate.governing_check
-    key = "unlimited" if status == "unsuitable" and candidate.utilisation is None else status
+    without_number = "never_stops" if code == "momentary_peak_torque" else "unlimited"
+    key = without_number if status == "unsuitable" and candidate.utilisation is None else status
     values = {
         "gear": candidate.designation,
         "selected": selected or "",
