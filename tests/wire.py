@@ -10,6 +10,7 @@ from hpn.application import Application, InputError
 from hpn.catalogue import Catalogue
 from hpn.catalogue.gear import Gear
 from hpn.engine import batch, remedy, reserve, selection
+from hpn.engine.candidates import Candidate
 from hpn.engine.checks import BY_CODE
 from hpn.explain import calculation
 from hpn.explain.calculation import Step
@@ -61,9 +62,9 @@ def select_fleet(applications: Sequence[Application], catalogue: Catalogue) -> l
     return batch.judge_batch(applications, catalogue, Selection)
 
 
-def candidate_of(entry: Json) -> selection.Candidate:
+def candidate_of(entry: Json) -> Candidate:
     """A candidate of a reply, typed."""
-    return msgspec.convert(entry, selection.Candidate)
+    return msgspec.convert(entry, Candidate)
 
 
 def ways_of(entry: Json, reserve_utilisation: float = 1.0) -> tuple[remedy.Way, ...]:

@@ -40,8 +40,8 @@ MODULES = {
 }
 """Modules and packages on trial, and their rooms."""
 
-BESIDE = {"selection": ("allowed",)}
-"""Modules too small to be tried alone."""
+BESIDE = {"selection": ("candidates", "allowed")}
+"""Modules that are tried together with another."""
 
 NEAREST = {
     "equations": ["tests/reference/test_edges.py", "tests/reference/test_equations.py"],

@@ -13,9 +13,10 @@ from hypothesis import strategies as st
 
 from hpn.application import Application
 from hpn.catalogue import Catalogue, load_catalogue
+from hpn.engine.candidates import Candidate
 from hpn.engine.checks import BY_CODE
 from hpn.engine.remedy import alternatives_of, growths_of, remedy_of, tried
-from hpn.engine.selection import Candidate, select
+from hpn.engine.selection import select
 from hpn.explain.calculation import calculation_of
 from hpn.explain.calculation.formula import Formula, Subtraction, leaves_out, value_of
 from hpn.web.form.link_reader import parse

@@ -6,7 +6,8 @@ import pytest
 
 from hpn.application import Application
 from hpn.catalogue import Catalogue
-from hpn.engine.selection import Candidate, Selection, select
+from hpn.engine.candidates import Candidate
+from hpn.engine.selection import Selection, select
 from hpn.explain.comparison import Column, Row, groups_of, torsion_of, undominated
 from hpn.physics import equations
 from tests.build import Json, cycle, phase, worked_example

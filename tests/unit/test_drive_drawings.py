@@ -7,7 +7,8 @@ import pytest
 
 from hpn.application import Application
 from hpn.catalogue import Catalogue, load_catalogue
-from hpn.engine.selection import Candidate, select
+from hpn.engine.candidates import Candidate
+from hpn.engine.selection import select
 from hpn.explain import drawings
 from hpn.explain.drawings import Subject
 from hpn.explain.drawings.svg import markup

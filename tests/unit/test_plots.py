@@ -9,7 +9,8 @@ import pytest
 
 from hpn.application import Application
 from hpn.catalogue import Catalogue
-from hpn.engine.selection import CheckResult, select
+from hpn.engine.candidates import CheckResult
+from hpn.engine.selection import select
 from hpn.explain import drawings as plots
 from hpn.explain.drawings import Subject
 from hpn.words.reader import DEFAULT, Reader

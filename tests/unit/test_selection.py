@@ -8,8 +8,9 @@ import pytest
 from hpn.application import Application, InputError
 from hpn.catalogue import Catalogue
 from hpn.engine.batch import judge_batch
+from hpn.engine.candidates import Candidate, reason_of
 from hpn.engine.evaluation import Evaluation
-from hpn.engine.selection import Candidate, CheckDefinition, Judged, Selection, judge, reason_of, select
+from hpn.engine.selection import CheckDefinition, Judged, Selection, judge, select
 from tests.build import Json, cycle, phase
 from tests.conftest import Supplement
 

@@ -113,7 +113,7 @@ class _Motion(Model):
 
     @property
     def is_left_off(self) -> bool:
-        """Whether it ends where gravity pulls otherwise than where it began."""
+        """True for one that ends where gravity pulls otherwise than where it began."""
         if not self.mechanism.load.gravity_Nm:
             return False
         turns = math.fsum(move.way for move in self.moves) / 360

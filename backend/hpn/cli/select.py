@@ -8,8 +8,9 @@ import sys
 from hpn.application import Application
 from hpn.application.unique import require_unique
 from hpn.catalogue import load_catalogue
+from hpn.engine.candidates import Candidate
 from hpn.engine.checks import allowed
-from hpn.engine.selection import Candidate, Selection, encode, select
+from hpn.engine.selection import Selection, encode, select
 from hpn.web.form.link_writer import to_link
 from hpn.web.settings import Settings
 from hpn.words.wording import telling_decimals

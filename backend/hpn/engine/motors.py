@@ -8,10 +8,11 @@ import numpy as np
 from hpn.application import LISTED_FIGURES, Application, Motor
 from hpn.catalogue import Catalogue, GearList, ListedMotor
 from hpn.catalogue.gear import Gear
+from hpn.engine.candidates import Candidate, CheckResult
 from hpn.engine.checks.motor import MOTOR
 from hpn.engine.duty import Duty
 from hpn.engine.figures import Figures, efficiencies, inertia_ratio, torques_along
-from hpn.engine.selection import Candidate, CheckResult, Selection
+from hpn.engine.selection import Selection
 from hpn.physics.equations import ROUNDING, FloatArray
 
 MOTOR_CHECKS = tuple(check.code for check in MOTOR)

@@ -14,10 +14,10 @@ from hpn.application.motion import Motion
 from hpn.application.phase import Phase
 from hpn.catalogue import Catalogue
 from hpn.engine.allowed import with_listed_motor
+from hpn.engine.candidates import Candidate, CheckResult
 from hpn.engine.check import Driver
 from hpn.engine.checks import BY_CODE
 from hpn.engine.reserve import MOVES
-from hpn.engine.selection import Candidate, CheckResult
 from hpn.physics.equations import ROUNDING
 from hpn.physics.stiffness import ARCMIN_PER_RAD
 from hpn.words.units import suffix_of

@@ -9,7 +9,7 @@ import numpy as np
 
 from hpn.catalogue import Catalogue
 from hpn.catalogue.gear import Gear
-from hpn.engine.selection import Candidate
+from hpn.engine.candidates import Candidate
 from hpn.physics import equations
 from hpn.words.wording import N_, Quantity, Sentence, listed
 

@@ -14,11 +14,12 @@ import numpy as np
 from hpn.application import Application, LifeBasis, OutputLoad
 from hpn.catalogue import Catalogue, GearList
 from hpn.catalogue.gear import Gear
+from hpn.engine.candidates import Candidate, CheckResult
 from hpn.engine.check import Kind
 from hpn.engine.checks import BY_CODE
 from hpn.engine.duty import Duty
 from hpn.engine.figures import phase_loads
-from hpn.engine.selection import Candidate, CheckResult, Selection
+from hpn.engine.selection import Selection
 from hpn.words.quantities import CANDIDATE
 from hpn.words.wording import N_, Quantity, Sentence, listed
 

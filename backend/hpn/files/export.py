@@ -14,9 +14,10 @@ from hpn.application import Application
 from hpn.catalogue import Catalogue
 from hpn.catalogue.gear import Gear
 from hpn.engine.allowed import with_listed_motor
+from hpn.engine.candidates import Candidate
 from hpn.engine.checks import BY_CODE
 from hpn.engine.duty import Duty
-from hpn.engine.selection import Candidate, Selection
+from hpn.engine.selection import Selection
 from hpn.physics import equations
 from hpn.words.wording import N_
 
@@ -101,7 +102,7 @@ class Export:
         return exact or self.selection.check_definitions[code].source
 
     def follows_efficiency_curve(self, candidate: Candidate) -> bool:
-        """Whether the motor torques of a candidate are by a curve of a supplement, phase by phase.
+        """True for a candidate whose motor torques are by a curve of a supplement, phase by phase.
 
         A stated efficiency goes before any curve. Without the catalogue of the selection its figures tell, as far as
         they can: a curve that says nothing of any phase leaves no trace in them.
@@ -118,7 +119,7 @@ class Export:
         return bool((np.abs(shown - loss_free) > 1e-9 * loss_free).any())
 
     def is_lower_bound(self, candidate: Candidate) -> bool:
-        """Whether the motor torques of a candidate are loss-free: no efficiency is known."""
+        """True for a candidate whose motor torques are loss-free: no efficiency is known."""
         return self.application.requirements.efficiency is None and not self.follows_efficiency_curve(candidate)
 
     @property

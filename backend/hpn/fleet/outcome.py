@@ -12,9 +12,9 @@ from hpn.application import Application, InputError
 from hpn.application.faults import REQUIRED, faults_of
 from hpn.catalogue import Catalogue
 from hpn.engine.allowed import gears_for, with_listed_motor
+from hpn.engine.candidates import Candidate, Reserve, candidates_of
 from hpn.engine.checks import CHECKS
 from hpn.engine.evaluation import SUITABLE, Evaluation, evaluate
-from hpn.engine.selection import Candidate, Reserve, candidates_of
 from hpn.fleet.axes import Axes, BoolArray, IntArray, cells_of
 from hpn.fleet.columns import AXIS, COLUMNS
 from hpn.fleet.tables import Batch, Fault

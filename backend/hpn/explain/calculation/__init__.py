@@ -7,7 +7,7 @@ from hpn.application import Application
 from hpn.catalogue import Catalogue
 from hpn.catalogue.gear import Gear
 from hpn.engine.allowed import with_listed_motor
-from hpn.engine.selection import Candidate
+from hpn.engine.candidates import Candidate
 from hpn.explain.calculation.handbook import handbook_steps
 from hpn.explain.calculation.motor import motor_steps
 from hpn.explain.calculation.output_bearing import bearing_steps

@@ -8,11 +8,11 @@ from functools import cached_property
 from hpn.application import Application
 from hpn.catalogue import Catalogue, GearList
 from hpn.catalogue.gear import Gear
+from hpn.engine.candidates import Candidate
 from hpn.engine.check import Check
 from hpn.engine.checks import BY_CODE
 from hpn.engine.duty import Duty
 from hpn.engine.evaluation import CheckStatus
-from hpn.engine.selection import Candidate
 from hpn.explain.calculation.formula import (
     Formula,
     Magnitude,

@@ -7,10 +7,10 @@ from typing import Literal
 
 from hpn.application import OutputLoad
 from hpn.catalogue.gear import Gear
+from hpn.engine.candidates import CheckResult
 from hpn.engine.duty import Duty
 from hpn.engine.envelopes import EnvelopeCurve, envelope_curve, envelopes_for, has_envelope
 from hpn.engine.figures import phase_loads, radial_at_centre
-from hpn.engine.selection import CheckResult
 from hpn.explain.drawings.subject import Subject
 from hpn.explain.drawings.words import phase_numbers
 from hpn.physics import bearing
@@ -43,7 +43,7 @@ class PhaseLoad:
 
     @property
     def has_lever(self) -> bool:
-        """Whether the load acts beside the shaft's centre and counts as another there."""
+        """True for a load that acts beside the shaft's centre and counts as another there."""
         return self.given_N != self.radial_N
 
     @property

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from xml.etree.ElementTree import Element
 
-from hpn.engine.selection import Candidate
+from hpn.engine.candidates import Candidate
 from hpn.explain.drawings.bearing import bearing_figure, sizes_figure
 from hpn.explain.drawings.chart import LARGE, SMALL, Scene, chart
 from hpn.explain.drawings.cycle import CyclePicture, cycle_picture

@@ -18,7 +18,8 @@ from basyx.aas import model
 from basyx.aas.adapter import aasx
 from pyecma376_2.core_properties import OPCCoreProperties
 
-from hpn.engine.selection import FIGURES, Candidate, CheckResult, DutyFigures, encode
+from hpn.engine.candidates import FIGURES, Candidate, CheckResult
+from hpn.engine.selection import DutyFigures, encode
 from hpn.files.aas import Metamodel
 from hpn.files.aas.concepts import CONCEPTS, concept, concept_id, published, reference, texts, told, urn
 from hpn.files.export import LOSS_FREE, Export

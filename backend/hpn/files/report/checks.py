@@ -3,8 +3,8 @@
 from collections.abc import Iterable, Iterator
 from typing import Any
 
+from hpn.engine.candidates import CheckResult
 from hpn.engine.checks import CHECKS
-from hpn.engine.selection import CheckResult
 from hpn.explain.calculation import Comparison, Step, calculation_of
 from hpn.explain.calculation.mathml import compared, in_symbols, result, substituted
 from hpn.explain.readings import Reading, readings_of

@@ -5,7 +5,7 @@ from typing import Any
 
 from hpn.application import DutyCycle
 from hpn.application.phase import Phase
-from hpn.engine.selection import FIGURES
+from hpn.engine.candidates import FIGURES
 from hpn.explain.readings import figure_symbol
 from hpn.files import inputs
 from hpn.files.export import Export

@@ -4,9 +4,9 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 from hpn.catalogue.gear import Gear
+from hpn.engine.candidates import Candidate
 from hpn.engine.checks import BY_CODE
 from hpn.engine.remedy import remedy_of
-from hpn.engine.selection import Candidate
 from hpn.files.export import Export
 from hpn.files.report.checks import bar, failures
 from hpn.files.words import bound_of, exact_percent, measured, title_of, used

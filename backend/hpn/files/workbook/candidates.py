@@ -5,8 +5,8 @@ from typing import Any
 
 from xlsxwriter.utility import xl_range, xl_range_abs, xl_rowcol_to_cell
 
+from hpn.engine.candidates import Candidate
 from hpn.engine.checks import CHECKS
-from hpn.engine.selection import Candidate
 from hpn.files.export import LOWER_BOUND
 from hpn.files.workbook.formulas import CHECK_FORMULAS, GEAR_TERMS, NONE, RATINGS, written
 from hpn.files.workbook.known import Known

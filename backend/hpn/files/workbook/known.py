@@ -3,8 +3,8 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from hpn.engine.candidates import FIGURES, Candidate, CheckResult
 from hpn.engine.checks.motor import MOTOR
-from hpn.engine.selection import FIGURES, Candidate, CheckResult
 from hpn.explain.readings import figure_symbol
 from hpn.files.export import Export
 from hpn.files.workbook.formulas import (

@@ -8,9 +8,9 @@ from xlsxwriter.utility import xl_range_abs, xl_rowcol_to_cell
 
 from hpn.application import OutputLoad
 from hpn.application.input_fields import FIELDS
+from hpn.engine.candidates import CheckResult
 from hpn.engine.check import Check
 from hpn.engine.checks import CHECKS
-from hpn.engine.selection import CheckResult
 from hpn.explain.readings import relation_of
 from hpn.files.export import LOSS_FREE
 from hpn.files.inputs import LOAD_INERTIA, LOAD_REVERSES, LOADS, REQUIREMENTS

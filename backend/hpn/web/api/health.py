@@ -1,4 +1,4 @@
-"""Whether the service lives and is ready, for load balancers and orchestrators."""
+"""Liveness and readiness of the service, for load balancers and orchestrators."""
 
 from fastapi import APIRouter
 from pydantic import BaseModel, Field

@@ -75,7 +75,7 @@ class Gate:
 
     @property
     def has_keys(self) -> bool:
-        """Whether what is saved belongs to keys; without any, everybody may rename and delete."""
+        """True where what is saved belongs to keys; without any, everybody may rename and delete."""
         return bool(self._keys)
 
     def require_owner(self, request: Request, owner: str | None) -> None:

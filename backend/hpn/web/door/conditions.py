@@ -29,7 +29,7 @@ def conditional(request: Request, body: bytes, etag: str = "") -> Response:
 
 
 def has_already(request: Request, etag: str) -> bool:
-    """Whether the client has this state already."""
+    """True for a client that has this state already."""
     return _lists(request.headers.get("if-none-match", ""), etag, weakly=True)
 
 

@@ -13,7 +13,8 @@ from starlette.responses import HTMLResponse, RedirectResponse, Response
 from hpn.application import Application, InputError
 from hpn.catalogue import Catalogue
 from hpn.catalogue.gear import Gear
-from hpn.engine.selection import Candidate, Selection, judge
+from hpn.engine.candidates import Candidate
+from hpn.engine.selection import Selection, judge
 from hpn.tables.numbers import WRITTEN
 from hpn.web.door.access import admit
 from hpn.web.door.bodies import pairs_of, read_form

@@ -13,9 +13,10 @@ from starlette.responses import HTMLResponse, RedirectResponse, Response
 from hpn.application import Application
 from hpn.application.phase import Phase
 from hpn.catalogue import Catalogue
+from hpn.engine.candidates import FIGURES, Candidate, CheckResult
 from hpn.engine.check import Check
 from hpn.engine.checks import BY_CODE
-from hpn.engine.selection import FIGURES, Candidate, CheckResult, decode
+from hpn.engine.selection import decode
 from hpn.explain.readings import Reading, figure_symbol
 from hpn.files.inputs import LOADS, REQUIREMENTS, InputLine, given
 from hpn.files.motion import lines, move_line

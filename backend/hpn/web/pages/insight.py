@@ -7,8 +7,9 @@ from urllib.parse import quote
 
 from hpn.application import Application, OutputLoad
 from hpn.catalogue import Catalogue
+from hpn.engine.candidates import Candidate
 from hpn.engine.remedy import alternatives_of, tried
-from hpn.engine.selection import Candidate, Selection
+from hpn.engine.selection import Selection
 from hpn.explain.comparison import MOST_PINS, Column, RowGroup, groups_of, undominated
 from hpn.web.form.given import FieldProblem
 from hpn.web.form.link_reader import Form

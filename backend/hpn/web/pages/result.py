@@ -8,9 +8,10 @@ from functools import cached_property
 from hpn.application import Application, RankBy
 from hpn.catalogue import Catalogue
 from hpn.catalogue.gear import Gear
+from hpn.engine.candidates import Candidate
 from hpn.engine.checks import BY_CODE, allowed
 from hpn.engine.remedy import Growth, alternatives_of, condition_of, growths_of, remedy_of
-from hpn.engine.selection import Candidate, Selection
+from hpn.engine.selection import Selection
 from hpn.explain.drawings import Pictures, Subject
 from hpn.explain.readings import Life, Reading, readings_of, shortest_life
 from hpn.files.export import DIGITS

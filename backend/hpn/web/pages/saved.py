@@ -13,7 +13,8 @@ from starlette.responses import HTMLResponse, RedirectResponse, Response
 from hpn import ENGINE_VERSION
 from hpn.application import Application
 from hpn.catalogue import Catalogue
-from hpn.engine.selection import Selection, reason_of
+from hpn.engine.candidates import reason_of
+from hpn.engine.selection import Selection
 from hpn.explain.differences import Difference, FigureDifference
 from hpn.files.export import DIGITS
 from hpn.files.inputs import LOADS, REQUIREMENTS, given

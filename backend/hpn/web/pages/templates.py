@@ -13,9 +13,9 @@ from jinja2.runtime import Context
 from markupsafe import Markup, escape
 from starlette.datastructures import State
 
+from hpn.engine.candidates import Candidate, reason_of
 from hpn.engine.checks import BY_CODE
 from hpn.engine.remedy import DRIVER_NAMES
-from hpn.engine.selection import Candidate, reason_of
 from hpn.explain.calculation import calculation_of, mathml
 from hpn.explain.drawings import Figure
 from hpn.explain.drawings.picture import beyond_limit

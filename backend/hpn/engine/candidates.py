@@ -1,0 +1,228 @@
+"""Candidates: the gears as the reply has them, each with its figures, its checks and a reason."""
+
+from collections.abc import Iterator, Sequence
+from itertools import islice, repeat
+from typing import Annotated
+
+import msgspec
+import numpy as np
+from pydantic import Field
+
+from hpn.engine.checks import BY_CODE, allowed
+from hpn.engine.evaluation import (
+    CHECK_STATUS,
+    STATUS,
+    SUITABLE,
+    UNRATED,
+    CheckStatus,
+    Evaluation,
+    PlaceArray,
+    Status,
+)
+from hpn.engine.reserve import reserves
+from hpn.physics.equations import FloatArray
+from hpn.words.quantities import CANDIDATE, CHECK, RESERVE
+from hpn.words.reply import Reply, described
+from hpn.words.wording import N_, Quantity, Sentence, Value, telling_decimals
+
+
+class CheckResult(Reply, frozen=True):
+    """One check of one candidate."""
+
+    __pydantic_config__ = described(CHECK)
+
+    code: str
+    demand: float | None
+    limit: float | None
+    utilisation: float | None
+    status: CheckStatus
+
+
+class Reserve(Reply, frozen=True):
+    """Factors by which each driver may grow (above 1) or must shrink (below 1) on a candidate, the others as given."""
+
+    __pydantic_config__ = described(RESERVE)
+
+    torque_factor: float | None = None
+    speed_factor: float | None = None
+    load_factor: float | None = None
+    emergency_stop_torque_Nm: float | None = None
+    brake_torque_Nm: float | None = None
+    brake_torque_repeated_Nm: float | None = None
+    load_inertia_kgm2: float | None = None
+
+
+class Candidate(Reply, frozen=True):
+    """One gear, its verdict and why."""
+
+    __pydantic_config__ = described(CANDIDATE)
+
+    designation: str
+    size: str
+    ratio: int
+    stages: int
+    status: Status
+    rank: int | None
+    utilisation: float | None
+    governing_check: str | None
+    reason: str
+    average_input_speed_rpm: float | None = None
+    maximum_input_speed_rpm: float | None = None
+    life_L10_h: float | None = None
+    momentary_peak_count: float | None = None
+    bearing_life_L50_h: float | None = None
+    bearing_life_L10_h: float | None = None
+    motor_peak_torque_Nm: float | None = None
+    motor_rated_torque_Nm: float | None = None
+    natural_frequency_Hz: float | None = None
+    drive_resonance_Hz: float | None = None
+    wind_up_arcmin: float | None = None
+    position_error_arcmin: float | None = None
+    position_error_mm: float | None = None
+    stop_torque_Nm: float | None = None
+    stopping_time_s: float | None = None
+    stopping_angle_deg: float | None = None
+    stopping_distance_mm: float | None = None
+    stop_energy_J: float | None = None
+    end_stop_speed_rpm: float | None = None
+    motor_lock_speed_rpm: float | None = None
+    reserve: Reserve = Reserve()
+    checks: Annotated[tuple[CheckResult, ...], Field(min_length=1)] = ()
+
+    def check(self, code: str) -> CheckResult | None:
+        """The check of a code, or None where it was not asked for."""
+        return next((check for check in self.checks if check.code == code), None)
+
+    @property
+    def failing(self) -> tuple[CheckResult, ...]:
+        """The checks that fail."""
+        return tuple(check for check in self.checks if check.status == "fail")
+
+    @property
+    def is_judged(self) -> bool:
+        """True where every check could be judged; an unsuitable candidate may still have one that could not."""
+        return all(check.status != "not_rated" for check in self.checks)
+
+    def is_unlimited(self, figure: str) -> bool:
+        """True where a figure is empty because nothing limits it, not for want of an input or of a rating.
+
+        The candidate's status does not say: a gear that fails a check is unsuitable, rated or not.
+        """
+        asked, rated = _UNLIMITED_BY[figure]
+        rating = self.check(rated)
+        known = rating is not None and rating.status != "not_rated"
+        return getattr(self, figure) is None and self.check(asked) is not None and known
+
+
+_UNLIMITED_BY = {
+    "life_L10_h": ("average_torque", "average_torque"),
+    "momentary_peak_count": ("momentary_peak_torque", "repeated_peak_torque"),
+    "bearing_life_L50_h": ("output_bearing_life", "output_bearing_life"),
+}
+"""Figures that may be unlimited: the check that is present where they are asked for, and the check that is rated where
+the gear has the figure behind them."""
+
+FIGURES = tuple(field.name for field in msgspec.structs.fields(Candidate) if field.default is None)
+"""Figures of a candidate, in the order of its fields."""
+
+
+def candidates_of(evaluation: Evaluation, index: int) -> Iterator[Candidate]:
+    """Candidates of an application, best first."""
+    order, asked = evaluation.order[index], evaluation.asked_by(index)
+    codes = [check.code for check in evaluation.checks]
+    u = evaluation.case.asked["requirements.utilisation"].item(index)
+    figures = (getattr(evaluation.case.figures, name)[index] for name in FIGURES)
+    tables = (evaluation.demand, evaluation.limit, evaluation.used)
+    terms = (table[place, index] for place in asked for table in tables)
+    columns = iter(
+        _columns([evaluation.utilisation[index], *figures, *reserves(evaluation, index).values(), *terms], order)
+    )
+    used, values = next(columns), zip(*islice(columns, len(FIGURES)), strict=True)
+    reserve = map(Reserve, *islice(columns, len(Reserve.__struct_fields__)))
+    states = [map(CHECK_STATUS.__getitem__, row) for row in evaluation.status[asked, index][:, order].tolist()]
+    checks = [
+        map(CheckResult, repeat(codes[place]), next(columns), next(columns), next(columns), state)
+        for place, state in zip(asked, states, strict=True)
+    ]
+    rows = zip(used, values, reserve, zip(*checks, strict=True), strict=True)
+    verdicts, governs = evaluation.verdict[index].tolist(), evaluation.governing[index].tolist()
+    for place, (gear, (utilisation, numbers, own_reserve, results)) in enumerate(
+        zip(order.tolist(), rows, strict=True)
+    ):
+        verdict = verdicts[gear]
+        governing = None if verdict == UNRATED else codes[governs[gear]]
+        known = evaluation.gears.rows[gear]
+        failed = sum(result.status == "fail" for result in results)
+        yield Candidate(
+            designation=known.designation,
+            size=known.size,
+            ratio=known.ratio,
+            stages=known.stages,
+            status=STATUS[verdict],
+            rank=place + 1 if verdict == SUITABLE else None,
+            utilisation=utilisation,
+            governing_check=governing,
+            reason=_reason(known.size, STATUS[verdict], utilisation, governing, failed, u),
+            **dict(zip(FIGURES, numbers, strict=True)),
+            reserve=own_reserve,
+            checks=results,
+        )
+
+
+def _columns(values: Sequence[FloatArray], order: PlaceArray) -> list[list[float | None]]:
+    """Values of the gears in an order, a list for each; None where one is not finite."""
+    table = np.empty((len(values), len(order)))
+    for place, column in enumerate(values):
+        table[place] = column
+    table = table[:, order]
+    numbers = table.astype(object)
+    numbers[~np.isfinite(table)] = None
+    columns: list[list[float | None]] = numbers.tolist()
+    return columns
+
+
+# --- Reasons ----------------------------------------------------------------------------------------------------------
+
+REASONS = {
+    "suitable": N_("Every check passes; the closest is {check} at {percent} of its limit."),
+    "unsuitable": N_("{check} is at {percent} of its limit."),
+    "unsuitable_more": N_("{check} is at {percent} of its limit; checks that fail: {failed}."),
+    "never_stops": N_("The brake does not stop the load."),
+    "no_stop_allowed": N_("T_k is too high: no emergency stop is permitted (eq. 17.9)."),
+    "unrated": N_("Not rated: figures of {name} that the checks need are not in this catalogue’s source."),
+}
+"""Templates of the sentence on a candidate's rank."""
+
+
+def reason_of(candidate: Candidate, utilisation: float) -> Sentence:
+    """Sentence on a candidate's rank, for any language; `utilisation` is the user's u."""
+    used, code, failed = candidate.utilisation, candidate.governing_check, len(candidate.failing)
+    if used is None or code is None:
+        return Sentence(REASONS[_key_without_number(candidate.status, code)], {"name": f"HPN-{candidate.size}"})
+    percent = Quantity(_told_percent(used, code, utilisation), "percent", 12)
+    values: dict[str, Value] = {"check": BY_CODE[code].title, "percent": percent, "failed": failed}
+    return Sentence(REASONS[_key(candidate.status, failed)], values, ("check",))
+
+
+def _reason(size: str, status: Status, used: float | None, code: str | None, failed: int, u: float) -> str:
+    """The same sentence in English, as the API gives it, its number with every digit."""
+    if used is None or code is None:
+        return REASONS[_key_without_number(status, code)].format(name=f"HPN-{size}")
+    percent = f"{_told_percent(used, code, u)!r} %"
+    return REASONS[_key(status, failed)].format(check=BY_CODE[code].title, percent=percent, failed=failed)
+
+
+def _key_without_number(status: Status, code: str | None) -> str:
+    if status == "unrated":
+        return "unrated"
+    return "never_stops" if code == "momentary_peak_torque" else "no_stop_allowed"
+
+
+def _key(status: Status, failed: int) -> str:
+    return "unsuitable_more" if failed > 1 else status
+
+
+def _told_percent(used: float, code: str, u: float) -> float:
+    """Utilisation in percent, with enough decimals to tell it from the allowed one."""
+    percent = 100 * used
+    return round(percent, telling_decimals(percent, 100 * allowed(code, u), 1))
