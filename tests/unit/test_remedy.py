@@ -178,6 +178,45 @@ def test_no_smaller_torque_is_promised_to_a_motor_that_turns_a_gear_with_a_torqu
     )
 
 
+SCREW: Json = {
+    "mechanism": {"type": "ball_screw", "lead_mm": 20, "mass_kg": 400, "inertia_kgm2": 0.0005},
+    "moves": [{"profile": "trapezoidal", "distance_mm": 400, "time_s": 1.2, "acceleration_mm_per_s2": 2000}],
+}
+
+
+@pytest.mark.parametrize(
+    "own",
+    [{"peak_torque_Nm": 9, "rated_torque_Nm": 3}, {"rated_speed_rpm": 900, "peak_torque_Nm": 2, "rated_torque_Nm": 1}],
+)
+@pytest.mark.parametrize("u", [1.0, 0.8586])
+def test_a_motor_too_slow_by_its_own_inertia_may_be_faster(catalogue: Catalogue, own: Json, u: float) -> None:
+    """The motor's own limits have a closed form where speeds and torques have none; a hair less fails."""
+    motor = {"maximum_speed_rpm": 4500, "inertia_kgm2": 0.0003} | own
+    asked = {"duty_cycle": {"motion": SCREW, "pause_s": 1}, "requirements": {"motor": motor, "utilisation": u}}
+    application, mended = Application.model_validate(asked), 0
+    for gear in select(application, catalogue).candidates:
+        codes = {check.code for check in gear.failing}
+        if not codes or not gear.is_judged or any(not code.startswith("motor_") for code in codes):
+            continue
+        [alternative] = alternatives_of(gear, u)
+        faster = tried(application, alternative, catalogue)
+        assert faster.duty_cycle == application.duty_cycle
+        assert chosen(select(faster, catalogue), gear.designation).status == "suitable", codes
+        for change in alternative.requirements:
+            name = change.path.rpartition(".")[2]
+            stated = faster.requirements.motor
+            assert stated is not None
+            slower = stated.model_copy(update={name: getattr(stated, name) * 0.998})
+            wishes = faster.requirements.model_copy(update={"motor": slower})
+            less = select(faster.model_copy(update={"requirements": wishes}), catalogue)
+            assert chosen(less, gear.designation).status == "unsuitable", change
+        mended += 1
+    assert mended > 3
+    if own["peak_torque_Nm"] == 9 and u == 1:
+        expected = "Fits if the motor’s maximum speed rises to 4800 rpm."
+        assert words(asked, "HPN-11A-4", catalogue) == expected
+
+
 def test_each_check_says_how_far_its_own_drivers_may_grow(catalogue: Catalogue) -> None:
     """By hand: 80 / 32.021, 149 / 40 and 256 / 200 Nm, 3066035 of 1000 stops, 3000 / 1087.66 and 6000 / 2500 rpm."""
     asked = worked_example(

@@ -56,7 +56,7 @@ def ways_of(candidate: Candidate, reserve_utilisation: float = 1.0) -> tuple[Way
         return ()
     u = reserve_utilisation
     used = {check.code: check.utilisation for check in candidate.checks if check.utilisation is not None}
-    torque, speed, load = (_needed(used, u, driver, _is_untold(candidate, "torque")) for driver in MOVES)
+    torque, speed, load = (_needed(used, u, driver, _is_untold(candidate, driver)) for driver in MOVES)
     life = _excess(used.get("life", 0.0) * torque ** (10 / 3) * speed / u)
     bearing = _excess(used.get("output_bearing_life", 0.0) * load * speed ** (1 / 3) / u)
     stop = _stop(candidate, u)
@@ -66,11 +66,14 @@ def ways_of(candidate: Candidate, reserve_utilisation: float = 1.0) -> tuple[Way
 
 
 def _needed(used: Mapping[str, float], u: float, driver: Driver, untold: bool) -> float:
-    """Factor on a driver that those checks need which no other driver moves."""
+    """Factor on a driver that those checks need which no other driver moves.
+
+    Where no closed form follows the driver, a check of the user's own limit is left to that limit.
+    """
     rooms = [
         u / used[code]
         for code in MOVES[driver]
-        if code in used and code not in LIVES and not (untold and code in MOTOR_TORQUE_CHECKS)
+        if code in used and code not in LIVES and not (untold and BY_CODE[code].accepted)
         if _excess(used[code] / u) > 1
     ]
     return min(rooms, default=1.0)
@@ -155,7 +158,7 @@ _AMBIENT = (N_("the ambient temperature drops to {value}"), N_("the ambient temp
 
 
 def _requirements(candidate: Candidate, u: float) -> Iterable[Requirement]:
-    """Requirements that would pass, for the failing checks that no driver moves."""
+    """Requirements that would pass, for the failing checks that no driver moves in a closed form."""
     for check in candidate.failing:
         known = BY_CODE[check.code]
         inertia = candidate.reserve.load_inertia_kgm2
@@ -168,7 +171,7 @@ def _requirements(candidate: Candidate, u: float) -> Iterable[Requirement]:
             rises = check.demand < check.limit
             value = Quantity(check.limit, "degC", 6, "up" if rises else "down")
             yield Requirement(known.asked, value, _AMBIENT[rises])
-        elif known.accepted and (not known.moves or _is_untold(candidate, "torque")):
+        elif known.accepted and all(_is_untold(candidate, driver) for driver in known.moves):
             least, allowed = known.kind == "minimum", known.allowed(u)
             needed = check.demand * (allowed if least else 1 / allowed)
             computed = bool(known.moves) or known.group == "load"

@@ -24,6 +24,7 @@ MOTOR: tuple[Check, ...] = (
         sheet=Sheet("{n_in_max}", "n_mot"),
         relation="n_in,max ≤ n_mot",
         moves={"speed": 1.0},
+        accepted=N_("the motor’s maximum speed rises to {value}"),
     ),
     Check(
         code="motor_peak_torque",
@@ -100,6 +101,7 @@ MOTOR: tuple[Check, ...] = (
         sheet=Sheet("{n_in_av}", "n_mot_N"),
         relation="n_in,av ≤ n_mot,N",
         moves={"speed": 1.0},
+        accepted=N_("the motor’s rated speed rises to {value}"),
     ),
     Check(
         code="inertia_ratio",
