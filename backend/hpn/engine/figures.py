@@ -5,13 +5,12 @@ from functools import cached_property
 
 import numpy as np
 
-from hpn.catalogue import Catalogue, GearColumns, GearList
-from hpn.catalogue.gear import Gear
+from hpn.catalogue import Catalogue, GearList
 from hpn.engine.duty import Duty
+from hpn.engine.motor_torques import torques_at_motor
 from hpn.engine.stops import Stops
 from hpn.physics import bearing, equations, stiffness
 from hpn.physics.equations import FloatArray
-from hpn.physics.motion import Course, motor_torques
 from hpn.physics.stop import impact_speed
 
 
@@ -222,7 +221,7 @@ class Figures:
 
     @cached_property
     def _motor_torques(self) -> tuple[FloatArray, FloatArray]:
-        return _motor_torques(self.duty, self.gears, self.catalogue)
+        return torques_at_motor(self.duty, self.gears, self.catalogue)
 
 
 # --- Output bearing ---------------------------------------------------------------------------------------------------
@@ -276,144 +275,3 @@ def _bearing_loads(duty: Duty, gears: GearList) -> tuple[FloatArray, FloatArray]
     loads, phases = phase_loads(duty, gears), duty.phases
     mean = bearing.mean_equivalent_load(equivalent_load=loads, speed_rpm=phases.speed_rpm, duration_s=phases.duration_s)
     return loads.max(axis=-1)[:, gears.of_size], mean[:, gears.of_size]
-
-
-# --- Motor ------------------------------------------------------------------------------------------------------------
-
-
-def _motor_torques(duty: Duty, gears: GearList, catalogue: Catalogue) -> tuple[FloatArray, FloatArray]:
-    """Peak and RMS torque at the motor, shape (N, G); loss-free where no efficiency is known.
-
-    A stated efficiency has precedence over a supplied curve, which is read at a phase's peak for the peak and at its
-    RMS for the RMS. In a motion with a known motor inertia the torque counts at every instant, that inertia included.
-    A gear's own inertia and no-load torque from a supplement count as well.
-    """
-    stated, ratio = duty.asked["requirements.efficiency"], gears.columns.ratio
-    eta = np.where(np.isnan(stated), 1.0, stated)
-    peak = equations.motor_torque(output_torque_Nm=duty.maximum_torque_Nm, ratio=ratio, efficiency=eta)
-    rated = equations.motor_torque(output_torque_Nm=duty.rms_torque_Nm, ratio=ratio, efficiency=eta)
-    peaks, squares, unstated = duty.phases.peak_torque_Nm[:, 0], duty.phases.rms_torque_Nm[:, 0], np.isnan(stated)[:, 0]
-    curved = {place for place, gear in enumerate(gears.rows) if gear.designation in catalogue.efficiency}
-    without_load = np.nan_to_num(gears.columns.no_load_torque_Nm)
-    for place in sorted((curved if unstated.any() else set()) | set(np.flatnonzero(without_load).tolist())):
-        gear, own = gears.rows[place], unstated & (place in curved)
-        moving = np.where(duty.phases.speed_rpm[:, 0] > 0, without_load[place], 0.0)
-        some = own | bool(without_load[place])
-        at_peak, at_rms = (
-            equations.motor_torque(
-                output_torque_Nm=T,
-                ratio=gear.ratio,
-                efficiency=np.where(own[:, None], efficiency_along(catalogue, gear, T), eta) if own.any() else eta,
-            )
-            + moving
-            for T in (peaks, squares)
-        )
-        rms = equations.rms_torque(
-            torque_Nm=at_rms,
-            duration_s=duty.phases.duration_s[:, 0],
-            pause_s=duty.asked["duty_cycle.pause_s"][:, 0],
-        )
-        peak[some, place], rated[some, place] = at_peak.max(axis=1)[some], rms[some]
-    for index, course in duty.courses.items():
-        inertia = duty.asked["requirements.motor.inertia_kgm2"].item(index)
-        if not np.isnan(inertia):
-            peak[index], rated[index] = _with_own_inertia(duty, index, course, inertia, gears, catalogue)
-    return peak, rated
-
-
-def _with_own_inertia(
-    duty: Duty, index: int, course: Course, inertia_kgm2: float, gears: GearList, catalogue: Catalogue
-) -> tuple[FloatArray, FloatArray]:
-    """Peak and RMS torque at the motor of application `index`, its own inertia included, shape (G,) each.
-
-    Gears of one ratio without figures of their own have the same torques, which are computed once.
-    """
-    stated = duty.asked["requirements.efficiency"].item(index)
-    curved = [np.isnan(stated) and gear.designation in catalogue.efficiency for gear in gears.rows]
-    alone = [own or gear.inertia_kgm2 or gear.no_load_torque_Nm for gear, own in zip(gears.rows, curved, strict=True)]
-    kinds = [gear.designation if own else str(gear.ratio) for gear, own in zip(gears.rows, alone, strict=True)]
-    first = {kind: kinds.index(kind) for kind in kinds}
-    eta = np.full((2, len(first), len(course.move)), 1.0 if np.isnan(stated) else stated)
-    for row, place in enumerate(first.values()):
-        if curved[place]:
-            for at, T in enumerate((course.peak_torque_Nm, course.rms_torque_Nm)):
-                eta[at, row] = efficiency_along(catalogue, gears.rows[place], T)
-    peak, rms = torques_along(
-        course,
-        gears.columns,
-        list(first.values()),
-        efficiency_at_peak=eta[0],
-        efficiency_at_rms=eta[1],
-        inertia_kgm2=inertia_kgm2,
-        pause_s=duty.asked["duty_cycle.pause_s"].item(index),
-    )
-    rows = [list(first).index(kind) for kind in kinds]
-    return peak[rows], rms[rows]
-
-
-def torques_along(
-    course: Course,
-    gears: GearColumns,
-    places: list[int],
-    *,
-    efficiency_at_peak: FloatArray,
-    efficiency_at_rms: FloatArray,
-    inertia_kgm2: float | FloatArray,
-    pause_s: float,
-) -> tuple[FloatArray, FloatArray]:
-    """Peak and RMS torque in Nm of motors with an inertia of their own along a motion, on the gears at some places.
-
-    Of one motor on many gears, or of many motors on one gear; shape (gears,) or (motors,). The gear's own inertia and
-    torque without load count where they are known.
-    """
-    own_inertia, without_load = (
-        np.nan_to_num(column[places]) for column in (gears.inertia_kgm2, gears.no_load_torque_Nm)
-    )
-    return motor_torques(
-        course,
-        ratio=gears.ratio[places],
-        efficiency_at_peak=efficiency_at_peak,
-        efficiency_at_rms=efficiency_at_rms,
-        motor_inertia_kgm2=inertia_kgm2 + own_inertia,
-        pause_s=pause_s,
-        no_load_torque_Nm=without_load,
-    )
-
-
-def inertia_ratio(duty: Duty, gears: GearColumns, motor_inertia_kgm2: FloatArray) -> FloatArray:
-    """Inertia of the load at the motor, with the gear's own where it is known, over the motor's; broadcasts. [-]"""
-    return equations.inertia_ratio(
-        load_inertia_kgm2=duty.load_inertia_kgm2,
-        ratio=gears.ratio,
-        motor_inertia_kgm2=motor_inertia_kgm2,
-        gear_inertia_kgm2=np.nan_to_num(gears.inertia_kgm2),
-    )
-
-
-def efficiency_along(catalogue: Catalogue, gear: Gear, torque_Nm: FloatArray) -> FloatArray:
-    """Efficiency at torques by the curve that a supplement gives of a gear; beyond its ends that of the nearer end.
-
-    Raises KeyError for a gear without a curve.
-    """
-    return np.interp(torque_Nm, *catalogue.efficiency[gear.designation])
-
-
-def efficiencies(duty: Duty, gear: Gear, catalogue: Catalogue) -> tuple[FloatArray, FloatArray]:
-    """Efficiency of a gear in each phase of one application, at the phase's peak and at its RMS; 1 where none is known.
-
-    The same as for torques at the motor: stated, else by a supplied curve.
-    """
-    phases, stated = duty.phases, duty.asked["requirements.efficiency"].item()
-    torques = phases.peak_torque_Nm[0, 0], phases.rms_torque_Nm[0, 0]
-    if np.isnan(stated) and gear.designation in catalogue.efficiency:
-        at_peak, at_rms = (efficiency_along(catalogue, gear, torque) for torque in torques)
-        return at_peak, at_rms
-    eta = np.full(len(torques[0]), 1.0 if np.isnan(stated) else stated)
-    return eta, eta
-
-
-def leaves_curve(catalogue: Catalogue, gear: Gear, duty: Duty, index: int) -> bool:
-    """True where a torque of application `index` lies beyond the ends of a gear's efficiency curve, unless it is 0."""
-    known, _ = catalogue.efficiency[gear.designation]
-    torques = np.concatenate((duty.phases.peak_torque_Nm[index, 0], duty.phases.rms_torque_Nm[index, 0]))
-    return bool(((torques > 0) & ((torques < known[0]) | (torques > known[-1]))).any())

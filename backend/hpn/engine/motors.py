@@ -11,7 +11,8 @@ from hpn.catalogue.gear import Gear
 from hpn.engine.candidates import Candidate, CheckResult
 from hpn.engine.checks.motor import MOTOR
 from hpn.engine.duty import Duty
-from hpn.engine.figures import Figures, efficiencies, inertia_ratio, torques_along
+from hpn.engine.figures import Figures
+from hpn.engine.motor_torques import efficiencies, inertia_ratio, torques_along
 from hpn.engine.selection import Selection
 from hpn.physics.equations import ROUNDING, FloatArray
 

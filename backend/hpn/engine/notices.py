@@ -17,7 +17,7 @@ from hpn.application import BEARING_LIFE_H, Application, DutyCycle, OutputLoad
 from hpn.catalogue import Catalogue, GearList
 from hpn.catalogue.gear import Gear
 from hpn.engine.evaluation import SUITABLE, Evaluation
-from hpn.engine.figures import leaves_curve
+from hpn.engine.motor_torques import leaves_curve
 from hpn.physics.equations import ROUNDING, FloatArray
 from hpn.words.reply import Reply
 from hpn.words.units import suffix_of

@@ -1,7 +1,7 @@
 """Checks of the motor, against the limits that the user states: speeds, torques and the inertia ratio."""
 
 from hpn.engine.check import Check, Sheet
-from hpn.engine.figures import inertia_ratio
+from hpn.engine.motor_torques import inertia_ratio
 from hpn.words.wording import N_
 
 MOTOR: tuple[Check, ...] = (

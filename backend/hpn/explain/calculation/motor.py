@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from hpn.engine.figures import efficiency_along
+from hpn.engine.motor_torques import efficiency_at
 from hpn.explain.calculation.formula import (
     Constant,
     Formula,
@@ -139,11 +139,8 @@ def _magnitude_of(parts: Sequence[tuple[float, Formula]]) -> Formula:
 
 
 def _efficiencies(sheet: Sheet, torque_Nm: FloatArray) -> FloatArray:
-    """Efficiency of every phase: as stated, by the gear's curve, or 1."""
-    stated = sheet.given("requirements.efficiency")
-    if stated is None and sheet.gear.designation in sheet.catalogue.efficiency:
-        return efficiency_along(sheet.catalogue, sheet.gear, torque_Nm)
-    return np.full(len(torque_Nm), stated.value if stated else 1.0)
+    """Efficiency of the gear at the torque of every phase."""
+    return efficiency_at(torque_Nm, sheet.gear, sheet.catalogue, sheet.duty.asked["requirements.efficiency"].item())
 
 
 def _on_efficiency(sheet: Sheet) -> tuple[Sentence]:

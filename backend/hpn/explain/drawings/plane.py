@@ -8,7 +8,7 @@ from xml.etree.ElementTree import Element
 import numpy as np
 
 from hpn.application import Motor
-from hpn.engine.figures import efficiencies
+from hpn.engine.motor_torques import efficiencies
 from hpn.explain.drawings.chart import LAST, MOST_NUMBERS, PLANE, Axes, Line, Mark, Scene, chart
 from hpn.explain.drawings.panels import OUT_OF_SCALE
 from hpn.explain.drawings.picture import beyond_limit

@@ -1,0 +1,145 @@
+"""Torques at the motor under duty cycles, with the efficiency, the inertia and the torque without load of gears."""
+
+import numpy as np
+
+from hpn.catalogue import Catalogue, GearColumns, GearList
+from hpn.catalogue.gear import Gear
+from hpn.engine.duty import Duty
+from hpn.physics import equations
+from hpn.physics.equations import FloatArray
+from hpn.physics.motion import Course, motor_torques
+
+
+def torques_at_motor(duty: Duty, gears: GearList, catalogue: Catalogue) -> tuple[FloatArray, FloatArray]:
+    """Peak and RMS torque at the motor, shape (N, G); loss-free where no efficiency is known.
+
+    A stated efficiency has precedence over a supplied curve, which is read at a phase's peak for the peak and at its
+    RMS for the RMS. In a motion with a known motor inertia the torque counts at every instant, that inertia included.
+    A gear's own inertia and no-load torque from a supplement count as well.
+    """
+    stated, ratio = duty.asked["requirements.efficiency"], gears.columns.ratio
+    eta = np.where(np.isnan(stated), 1.0, stated)
+    peak = equations.motor_torque(output_torque_Nm=duty.maximum_torque_Nm, ratio=ratio, efficiency=eta)
+    rated = equations.motor_torque(output_torque_Nm=duty.rms_torque_Nm, ratio=ratio, efficiency=eta)
+    peaks, squares, unstated = duty.phases.peak_torque_Nm[:, 0], duty.phases.rms_torque_Nm[:, 0], np.isnan(stated)[:, 0]
+    curved = {place for place, gear in enumerate(gears.rows) if gear.designation in catalogue.efficiency}
+    without_load = np.nan_to_num(gears.columns.no_load_torque_Nm)
+    for place in sorted((curved if unstated.any() else set()) | set(np.flatnonzero(without_load).tolist())):
+        gear, own = gears.rows[place], unstated & (place in curved)
+        moving = np.where(duty.phases.speed_rpm[:, 0] > 0, without_load[place], 0.0)
+        some = own | bool(without_load[place])
+        at_peak, at_rms = (
+            equations.motor_torque(
+                output_torque_Nm=T,
+                ratio=gear.ratio,
+                efficiency=np.where(own[:, None], efficiency_at(T, gear, catalogue), eta) if own.any() else eta,
+            )
+            + moving
+            for T in (peaks, squares)
+        )
+        rms = equations.rms_torque(
+            torque_Nm=at_rms,
+            duration_s=duty.phases.duration_s[:, 0],
+            pause_s=duty.asked["duty_cycle.pause_s"][:, 0],
+        )
+        peak[some, place], rated[some, place] = at_peak.max(axis=1)[some], rms[some]
+    for index, course in duty.courses.items():
+        inertia = duty.asked["requirements.motor.inertia_kgm2"].item(index)
+        if not np.isnan(inertia):
+            peak[index], rated[index] = _with_own_inertia(duty, index, course, inertia, gears, catalogue)
+    return peak, rated
+
+
+def _with_own_inertia(
+    duty: Duty, index: int, course: Course, inertia_kgm2: float, gears: GearList, catalogue: Catalogue
+) -> tuple[FloatArray, FloatArray]:
+    """Peak and RMS torque at the motor of application `index`, its own inertia included, shape (G,) each.
+
+    Gears of one ratio without figures of their own have the same torques, which are computed once.
+    """
+    stated = duty.asked["requirements.efficiency"].item(index)
+    alone = [
+        gear.designation in catalogue.efficiency or gear.inertia_kgm2 or gear.no_load_torque_Nm for gear in gears.rows
+    ]
+    kinds = [gear.designation if own else str(gear.ratio) for gear, own in zip(gears.rows, alone, strict=True)]
+    first = {kind: kinds.index(kind) for kind in kinds}
+    at_peak, at_rms = (
+        np.array([efficiency_at(T, gears.rows[place], catalogue, stated) for place in first.values()])
+        for T in (course.peak_torque_Nm, course.rms_torque_Nm)
+    )
+    peak, rms = torques_along(
+        course,
+        gears.columns,
+        list(first.values()),
+        efficiency_at_peak=at_peak,
+        efficiency_at_rms=at_rms,
+        inertia_kgm2=inertia_kgm2,
+        pause_s=duty.asked["duty_cycle.pause_s"].item(index),
+    )
+    rows = [list(first).index(kind) for kind in kinds]
+    return peak[rows], rms[rows]
+
+
+def torques_along(
+    course: Course,
+    gears: GearColumns,
+    places: list[int],
+    *,
+    efficiency_at_peak: FloatArray,
+    efficiency_at_rms: FloatArray,
+    inertia_kgm2: float | FloatArray,
+    pause_s: float,
+) -> tuple[FloatArray, FloatArray]:
+    """Peak and RMS torque in Nm of motors with an inertia of their own along a motion, on the gears at some places.
+
+    Of one motor on many gears, or of many motors on one gear; shape (gears,) or (motors,). The gear's own inertia and
+    torque without load count where they are known.
+    """
+    own_inertia, without_load = (
+        np.nan_to_num(column[places]) for column in (gears.inertia_kgm2, gears.no_load_torque_Nm)
+    )
+    return motor_torques(
+        course,
+        ratio=gears.ratio[places],
+        efficiency_at_peak=efficiency_at_peak,
+        efficiency_at_rms=efficiency_at_rms,
+        motor_inertia_kgm2=inertia_kgm2 + own_inertia,
+        pause_s=pause_s,
+        no_load_torque_Nm=without_load,
+    )
+
+
+def inertia_ratio(duty: Duty, gears: GearColumns, motor_inertia_kgm2: FloatArray) -> FloatArray:
+    """Inertia of the load at the motor, with the gear's own where it is known, over the motor's; broadcasts. [-]"""
+    return equations.inertia_ratio(
+        load_inertia_kgm2=duty.load_inertia_kgm2,
+        ratio=gears.ratio,
+        motor_inertia_kgm2=motor_inertia_kgm2,
+        gear_inertia_kgm2=np.nan_to_num(gears.inertia_kgm2),
+    )
+
+
+def efficiency_at(torque_Nm: FloatArray, gear: Gear, catalogue: Catalogue, stated: float = np.nan) -> FloatArray:
+    """Efficiency of a gear at torques: as stated, else by the curve that a supplement gives of it, else 1. [-]
+
+    Beyond the ends of the curve it is that of the nearer end.
+    """
+    if np.isnan(stated) and gear.designation in catalogue.efficiency:
+        return np.interp(torque_Nm, *catalogue.efficiency[gear.designation])
+    return np.full(np.shape(torque_Nm), 1.0 if np.isnan(stated) else stated)
+
+
+def efficiencies(duty: Duty, gear: Gear, catalogue: Catalogue) -> tuple[FloatArray, FloatArray]:
+    """Efficiency of a gear in each phase of one application, at the phase's peak and at its RMS."""
+    phases, stated = duty.phases, duty.asked["requirements.efficiency"].item()
+    at_peak, at_rms = (
+        efficiency_at(torque[0, 0], gear, catalogue, stated) for torque in (phases.peak_torque_Nm, phases.rms_torque_Nm)
+    )
+    return at_peak, at_rms
+
+
+def leaves_curve(catalogue: Catalogue, gear: Gear, duty: Duty, index: int) -> bool:
+    """True where a torque of application `index` lies beyond the ends of a gear's efficiency curve, unless it is 0."""
+    known, _ = catalogue.efficiency[gear.designation]
+    torques = np.concatenate((duty.phases.peak_torque_Nm[index, 0], duty.phases.rms_torque_Nm[index, 0]))
+    return bool(((torques > 0) & ((torques < known[0]) | (torques > known[-1]))).any())
