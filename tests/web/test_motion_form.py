@@ -14,7 +14,7 @@ from hpn.web.form import symbols
 from hpn.web.form.labels import LABELS
 from hpn.web.form.link_reader import Form, parse
 from hpn.web.form.link_writer import to_link
-from hpn.web.form.symbols import MOVE_COLUMNS
+from hpn.web.form.rows import MOVE_COLUMNS
 from hpn.web.form.ways import EXAMPLES, START
 from tests.web.test_carried import Fields
 

@@ -10,7 +10,7 @@ from hpn.application.motion import MAXIMUM_MOVES
 from hpn.physics.motion.bodies import MOST_BODIES
 from hpn.tables.numbers import WAS, WRITTEN
 from hpn.web.form.labels import LABELS
-from hpn.web.form.rows import Rows
+from hpn.web.form.rows import OF_ANY_ROW, OPTIONAL, SHARED, Rows, groups_of, shown_columns
 from hpn.web.form.symbols import (
     BELT_BY_NAME,
     BODY_BY_NAME,
@@ -18,13 +18,9 @@ from hpn.web.form.symbols import (
     MECHANISM_SYMBOLS,
     MOVE_BY_LEAF,
     MOVE_BY_NAME,
-    OF_ANY_ROW,
-    OPTIONAL,
     PHASE_BY_NAME,
     PHASE_SYMBOLS,
-    SHARED,
     SYMBOLS,
-    shown_columns,
 )
 from hpn.web.form.ways import ASIDE
 from hpn.words.fields import MAXIMUM_PHASES
@@ -121,7 +117,7 @@ class Given:
 
     def tables(self) -> tuple[Rows, Rows, Rows, str | None]:
         """Phases, moves and bodies after the buttons that were pressed, and the element to go on from."""
-        self.shown = {group for group, names in OPTIONAL.items() if not self.columns.keys().isdisjoint(names)}
+        self.shown = groups_of(self.columns)
         moving = self.has_motion
         phases = Rows(self._of_phases(), self._phase_columns(), MAXIMUM_PHASES)
         moves = Rows(self.columns if moving else {}, self._move_columns(), MAXIMUM_MOVES)

@@ -14,6 +14,7 @@ from hpn.physics.strands import Strands
 from hpn.tables.numbers import read_value
 from hpn.web.form.given import FieldProblem
 from hpn.web.form.refusals import refusal_of
+from hpn.web.form.rows import filled
 from hpn.web.form.symbols import BELT_BY_NAME, BODY_BY_NAME, Symbol
 from hpn.web.form.ways import Pairs, way_of
 from hpn.words.wording import Sentence
@@ -35,7 +36,7 @@ class BodyTable:
     @property
     def given(self) -> bool:
         """True where anything is filled in."""
-        return any(map(_filled, self.rows))
+        return any(map(filled, self.rows))
 
 
 @dataclass(frozen=True)
@@ -49,22 +50,17 @@ class BeltInput:
     @property
     def given(self) -> bool:
         """True where anything is filled in."""
-        return bool(_filled(self.texts))
+        return bool(filled(self.texts))
 
     def messages(self, name: str) -> list[Sentence]:
         """Error messages of one input."""
         return [problem.message for problem in self.problems if problem.name == name]
 
 
-def _filled(texts: Mapping[str, str]) -> dict[str, str]:
-    """Texts that are not blank."""
-    return {name: text for name, text in texts.items() if text.strip()}
-
-
 def body_table(rows: Sequence[Mapping[str, str]]) -> BodyTable:
     """Bodies of rows; blank ones count as absent."""
     problems: list[FieldProblem] = []
-    bodies = [_model(Body, row, BODY_BY_NAME, k, problems) for k, row in enumerate(rows) if _filled(row)]
+    bodies = [_model(Body, row, BODY_BY_NAME, k, problems) for k, row in enumerate(rows) if filled(row)]
     whole = [body for body in bodies if body is not None]
     return BodyTable(tuple(rows), tuple(problems), sum_of(whole) if whole and not problems else None)
 
@@ -72,7 +68,7 @@ def body_table(rows: Sequence[Mapping[str, str]]) -> BodyTable:
 def belt_of(texts: Mapping[str, str]) -> BeltInput:
     """Belt of texts by name; blank ones count as absent."""
     problems: list[FieldProblem] = []
-    strands = _model(Strands, texts, BELT_BY_NAME, None, problems) if _filled(texts) else None
+    strands = _model(Strands, texts, BELT_BY_NAME, None, problems) if filled(texts) else None
     return BeltInput(texts, tuple(problems), strands.radial_N if strands else None)
 
 
@@ -84,7 +80,7 @@ def _model(
     problems: list[FieldProblem],
 ) -> M | None:
     """Model of texts by name; None where one can't be read or is refused, which is added to the problems."""
-    values = {name: read_value(text, symbols[name].kind) for name, text in _filled(texts).items()}
+    values = {name: read_value(text, symbols[name].kind) for name, text in filled(texts).items()}
     unread = [FieldProblem(name, index, value) for name, value in values.items() if isinstance(value, Sentence)]
     if unread:
         problems += unread

@@ -23,7 +23,7 @@ from hpn.web.form.helpers import BeltInput, BodyTable, belt_of, body_table, with
 from hpn.web.form.labels import LABELS, query_of
 from hpn.web.form.offers import with_offers
 from hpn.web.form.refusals import refusal_of
-from hpn.web.form.rows import TEXT, WIDTHS, expanded
+from hpn.web.form.rows import TEXT, WIDTHS, expanded, filled
 from hpn.web.form.symbols import (
     BY_NAME,
     BY_PATH,
@@ -71,6 +71,12 @@ _PARTS = {
     ("emergency_stop",): "Tk",
     ("emergency_stop", "brake"): "TB",
 }
+
+_TABLES = (
+    (("duty_cycle", "phases"), PHASE_BY_LEAF, "T"),
+    ((*MOTION_PATH, "moves"), MOVE_BY_LEAF, "mv"),
+)
+"""Tables of the model, their inputs by field, and the input beside which any other error of a row is shown."""
 
 
 @dataclass(frozen=True)
@@ -121,7 +127,7 @@ class Form:
     @property
     def has_both(self) -> bool:
         """True where phases are given beside a motion, which is refused."""
-        return self.has_motion and any(map(_filled, self.rows))
+        return self.has_motion and any(map(filled, self.rows))
 
     @property
     def mechanism(self) -> str:
@@ -282,15 +288,11 @@ def _list_problems(given: Given) -> Iterable[FieldProblem]:
 
 def _untouched(given: Given, rows: list[dict[str, str]], moves: list[dict[str, str]]) -> bool:
     """The form was sent with its duty table still blank."""
-    if any(map(_filled, (*rows, *moves))):
+    if any(map(filled, (*rows, *moves))):
         return False
     if given.has_motion:
         return "mv" in given.columns and given.scalars.get("mech", "").strip() in TYPES
     return all(name in given.columns for name in REQUIRED)
-
-
-def _filled(row: Mapping[str, str]) -> bool:
-    return any(text.strip() for text in row.values())
 
 
 def _document(
@@ -332,7 +334,7 @@ def _table(
     """Phases or moves, without blank rows."""
     table: list[dict[str, Any]] = []
     for k, row in enumerate(rows):
-        if _filled(row):
+        if filled(row):
             entry: dict[str, Any] = {}
             table.append(entry)
             for name, text in row.items():
@@ -365,7 +367,7 @@ def _put(
 def _validated(
     document: dict[str, Any], rows: Sequence[Mapping[str, str]], known: Sequence[FieldProblem]
 ) -> tuple[Application | None, list[FieldProblem]]:
-    kept = [k for k, row in enumerate(rows) if _filled(row)] or [0]
+    kept = [k for k, row in enumerate(rows) if filled(row)] or [0]
     places = {(problem.name, problem.index) for problem in known}
     try:
         return Application.model_validate(document), []
@@ -378,7 +380,7 @@ def _validated(
             name = "n"
         # Unreadable values are left out of the model, which then misses them, or the part that they belong to.
         consequence = known and error["type"] in ("no_motion", "no_load")
-        refused_phases = error["type"] == "too_short" and any(map(_filled, rows))
+        refused_phases = error["type"] == "too_short" and any(map(filled, rows))
         if (name, index) not in places and not consequence and not refused_phases:
             problems.append(FieldProblem(name, index, refusal_of(error)))
     return None, problems
@@ -388,14 +390,10 @@ def place_of(location: Sequence[int | str], rows: Sequence[int] = ()) -> tuple[s
     """Query name and index of a location in the application model; `rows` are the rows that became phases."""
     path = tuple(step for step in location if isinstance(step, str))
     index = next((step for step in location if isinstance(step, int)), None)
-    if path[:2] == ("duty_cycle", "phases"):
-        name = PHASE_BY_LEAF[path[2]].name if len(path) > 2 and path[2] in PHASE_BY_LEAF else "T"
-        k = index or 0
-        return name, rows[k] if k < len(rows) else k
-    if path[:3] == (*MOTION_PATH, "moves"):
-        name = MOVE_BY_LEAF[path[3]].name if len(path) > 3 and path[3] in MOVE_BY_LEAF else "mv"
-        k = index or 0
-        return name, rows[k] if k < len(rows) else k
+    for table, by_leaf, first in _TABLES:
+        if path[: len(table)] == table:
+            symbol, k = by_leaf.get("".join(path[len(table) :][:1])), index or 0
+            return symbol.name if symbol else first, rows[k] if k < len(rows) else k
     if path in BY_PATH:
         return BY_PATH[path].name, index
     return _PARTS.get(path, ".".join(path)), None

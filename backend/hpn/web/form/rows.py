@@ -1,16 +1,67 @@
-"""Rows of the tables of a form: phases, moves, bodies; the buttons that edit them, and phases as one text."""
+"""Columns and rows of the tables of a form: phases, moves, bodies; the buttons that edit them; phases as one text."""
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 
-from hpn.web.form.symbols import OPTIONAL, PHASE_SYMBOLS, shown_columns
+from hpn.tables.inputs import NAME, PHASE_ROLES
 from hpn.words.fields import MAXIMUM_PHASES
+
+LOADS = ("FRi", "FAi")
+OPTIONAL: Mapping[str, tuple[str, ...]] = {
+    "names": (NAME.role,),
+    "loads": LOADS,
+    "varying": ("Tpk", "npk", "Trms"),
+    "ramps": ("mta", "mtd", "md2"),
+}
+"""Columns of phases and moves that appear where they are used, by the button that shows them."""
+
+SHARED = ("names", "loads")
+"""Those that phases and moves have by the same names."""
+
+OF_ANY_ROW = (NAME.role, *LOADS)
+
+_TIMED = ("ms", "mt", "mn", "ma")
+_EVERY_MOVE = ("mx", *OF_ANY_ROW)
+MOVE_COLUMNS: Mapping[str, tuple[str, ...]] = {
+    "trapezoidal": (*_TIMED, *OPTIONAL["ramps"], *_EVERY_MOVE),
+    "triangular": (*_TIMED, *_EVERY_MOVE),
+    "s_curve": (*_TIMED, *OPTIONAL["ramps"], "mj", *_EVERY_MOVE),
+    "modified_sine": ("ms", "mt", *_EVERY_MOVE),
+    "dwell": ("mt", *_EVERY_MOVE),
+}
+"""Columns that a move of a profile has."""
+
+_EVERY_BODY = ("qm", "qe", "qn")
+BODY_COLUMNS: Mapping[str, tuple[str, ...]] = {
+    "disc": (*_EVERY_BODY, "qr", "qd", "qh"),
+    "ring": (*_EVERY_BODY, "qr", "qd", "qi", "qh"),
+    "bar": (*_EVERY_BODY, "qr", "qd", "ql"),
+    "block": (*_EVERY_BODY, "qr", "ql", "qw", "qh"),
+    "point_mass": _EVERY_BODY,
+}
+"""Columns that a body of a shape has."""
 
 TEXT = "phases"
 """Field of the form that holds the phases as text, a phase on each line, where they are too many for a table."""
 
 WIDTHS = {"names": 9, "varying": 8, "loads": 5}
 """Cells of a line of that text by what the phases have."""
+
+
+def groups_of(used: Collection[str]) -> set[str]:
+    """Groups of optional columns of which one is used."""
+    return {group for group, names in OPTIONAL.items() if any(name in used for name in names)}
+
+
+def shown_columns(names: Iterable[str], groups: Collection[str]) -> list[str]:
+    """Columns of phases or moves, of the optional ones those of some groups alone."""
+    hidden = {name for group, columns in OPTIONAL.items() if group not in groups for name in columns}
+    return [name for name in names if name not in hidden]
+
+
+def used_columns(names: Iterable[str], used: Collection[str]) -> list[str]:
+    """Columns of phases or moves, of the optional ones the groups of which one is used."""
+    return shown_columns(names, groups_of(used))
 
 
 class Rows:
@@ -60,6 +111,11 @@ class Rows:
         return None
 
 
+def filled(row: Mapping[str, str]) -> dict[str, str]:
+    """Texts of a row that are not blank, by their names."""
+    return {name: text for name, text in row.items() if text.strip()}
+
+
 def expanded(pairs: Sequence[tuple[str, str]]) -> list[tuple[str, str]]:
     """Pairs of a form with repeated T, n, t, and the others where used, in place of the text of the phases."""
     plain = [pair for pair in pairs if pair[0] != TEXT]
@@ -72,12 +128,13 @@ def expanded(pairs: Sequence[tuple[str, str]]) -> list[tuple[str, str]]:
 
 def _cells(line: str) -> list[str]:
     """Cells of a line, separated by tabs, semicolons or blanks; a ninth is the name, with all that follows."""
-    return re.split(r" *[;\t] *| +", line.strip(" "), maxsplit=len(PHASE_SYMBOLS) - 1)
+    return re.split(r" *[;\t] *| +", line.strip(" "), maxsplit=len(PHASE_ROLES))
 
 
 def _phase_pairs(rows: Sequence[Sequence[str]]) -> list[tuple[str, str]]:
     """Pairs of rows in the order T, n, t, FRi, FAi, Tpk, npk, Trms, pn; what a short row lacks is blank."""
-    columns = {symbol.name: [row[k] if k < len(row) else "" for row in rows] for k, symbol in enumerate(PHASE_SYMBOLS)}
-    used = {group for group, names in OPTIONAL.items() if any(any(columns.get(name, ())) for name in names)}
-    names = shown_columns(columns, used)
+    columns = {
+        name: [row[k] if k < len(row) else "" for row in rows] for k, name in enumerate((*PHASE_ROLES, NAME.role))
+    }
+    names = used_columns(columns, {name for name, texts in columns.items() if any(texts)})
     return [(name, columns[name][k].strip()) for k in range(len(rows)) for name in names]

@@ -15,6 +15,7 @@ from hpn.physics.motion.moves import DEFAULT_JERK_SHARE
 from hpn.tables.inputs import NAME, PHASE, Input, Inputs
 from hpn.tables.numbers import Kind
 from hpn.web.form import labels
+from hpn.web.form.rows import OF_ANY_ROW, OPTIONAL, shown_columns, used_columns
 from hpn.words.quantities import CANDIDATE, INPUTS, QUANTITIES
 from hpn.words.terms import BEARING_MODELS, LIFE_BASES, RANKINGS
 from hpn.words.units import suffix_of
@@ -86,20 +87,6 @@ class FormGroup:
 
 PHASE_SYMBOLS = tuple(Symbol(each.role, (each.place,), each.kind) for each in (*PHASE, NAME))
 """Repeated once per phase, all of equal length."""
-
-LOADS = ("FRi", "FAi")
-OPTIONAL: Mapping[str, tuple[str, ...]] = {
-    "names": (NAME.role,),
-    "loads": LOADS,
-    "varying": ("Tpk", "npk", "Trms"),
-    "ramps": ("mta", "mtd", "md2"),
-}
-"""Columns of phases and moves that appear where they are used, by the button that shows them."""
-
-SHARED = ("names", "loads")
-"""Those that phases and moves have by the same names."""
-
-OF_ANY_ROW = (NAME.role, *LOADS)
 
 SYMBOLS = (
     Symbol("tp", ("duty_cycle", "pause_s")),
@@ -288,17 +275,6 @@ TURN_SYMBOLS = _of_moves("angle_deg", "speed_rpm", "acceleration_deg_per_s2", "e
 STROKE_SYMBOLS = _of_moves("distance_mm", "speed_mm_per_s", "acceleration_mm_per_s2", "external_force_N")
 """Repeated once per move, all of equal length; a move carries loads and its name as a phase does."""
 
-_TIMED = ("ms", "mt", "mn", "ma")
-_EVERY_MOVE = ("mx", *OF_ANY_ROW)
-MOVE_COLUMNS: Mapping[str, tuple[str, ...]] = {
-    "trapezoidal": (*_TIMED, *OPTIONAL["ramps"], *_EVERY_MOVE),
-    "triangular": (*_TIMED, *_EVERY_MOVE),
-    "s_curve": (*_TIMED, *OPTIONAL["ramps"], "mj", *_EVERY_MOVE),
-    "modified_sine": ("ms", "mt", *_EVERY_MOVE),
-    "dwell": ("mt", *_EVERY_MOVE),
-}
-"""Columns that a move of a profile has."""
-
 BODY_SYMBOLS = (
     Symbol("qs", ("body", "shape"), "text"),
     Symbol("qm", ("body", "mass_kg")),
@@ -323,22 +299,6 @@ BELT_SYMBOLS = (
 )
 """A belt of the form whose radial load is worked out; no link has it."""
 
-_EVERY_BODY = ("qm", "qe", "qn")
-BODY_COLUMNS: Mapping[str, tuple[str, ...]] = {
-    "disc": (*_EVERY_BODY, "qr", "qd", "qh"),
-    "ring": (*_EVERY_BODY, "qr", "qd", "qi", "qh"),
-    "bar": (*_EVERY_BODY, "qr", "qd", "ql"),
-    "block": (*_EVERY_BODY, "qr", "ql", "qw", "qh"),
-    "point_mass": _EVERY_BODY,
-}
-"""Columns that a body of a shape has."""
-
-
-def shown_columns(names: Iterable[str], groups: Collection[str]) -> list[str]:
-    """Columns of phases or moves, of the optional ones those of some groups alone."""
-    hidden = {name for group, columns in OPTIONAL.items() if group not in groups for name in columns}
-    return [name for name in names if name not in hidden]
-
 
 def table_columns(symbols: Iterable[Symbol], groups: Collection[str]) -> list[Symbol]:
     """Columns of phases or moves that a table has, the name first."""
@@ -349,8 +309,7 @@ def table_columns(symbols: Iterable[Symbol], groups: Collection[str]) -> list[Sy
 def columns_used(phases: Sequence[Phase]) -> tuple[Symbol, ...]:
     """Columns of a table of phases: torque, speed and duration, and of loads and what varies the groups in use."""
     used = {s.name for s in PHASE_SYMBOLS if any(getattr(phase, s.path[0]) is not None for phase in phases)}
-    groups = {group for group, names in OPTIONAL.items() if not used.isdisjoint(names)}
-    return tuple(PHASE_BY_NAME[name] for name in shown_columns(PHASE_BY_NAME, groups))
+    return tuple(PHASE_BY_NAME[name] for name in used_columns(PHASE_BY_NAME, used))
 
 
 def move_symbols(mechanism: str) -> tuple[Symbol, ...]:

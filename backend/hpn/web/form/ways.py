@@ -11,7 +11,8 @@ from hpn.application.phase import Phase
 from hpn.physics.motion.mechanisms import CLASSES, TYPES
 from hpn.tables.numbers import Entry
 from hpn.web.form.link_writer import to_link
-from hpn.web.form.symbols import MECHANISM_SYMBOLS, OF_ANY_ROW, PHASE_SYMBOLS, TURN_SYMBOLS, mechanism_symbols
+from hpn.web.form.rows import OF_ANY_ROW
+from hpn.web.form.symbols import MECHANISM_SYMBOLS, PHASE_SYMBOLS, TURN_SYMBOLS, mechanism_symbols
 from hpn.words.wording import N_
 
 Pairs = Sequence[tuple[str, str]]

@@ -34,8 +34,8 @@ from hpn.web.door.visit import current
 from hpn.web.form import link_reader
 from hpn.web.form.link_reader import Pairs
 from hpn.web.form.link_writer import to_link
-from hpn.web.form.rows import TEXT, expanded
-from hpn.web.form.symbols import OPTIONAL, PHASE_BY_NAME, shown_columns
+from hpn.web.form.rows import TEXT, expanded, used_columns
+from hpn.web.form.symbols import PHASE_BY_NAME
 from hpn.web.form.ways import CYCLE_NAMES
 from hpn.web.pages import calculator
 from hpn.web.pages.templates import environment
@@ -273,8 +273,8 @@ def taken(draft: PasteDraft, *, append: bool) -> list[tuple[str, str]]:
     if append:
         given = link_reader.parse(pairs).rows
         rows = [dict(row) for row in given if any(text.strip() for text in row.values())] + rows
-    used = {group for group, columns in OPTIONAL.items() if any(row.get(name) for row in rows for name in columns)}
-    return [(name, row.get(name, "")) for row in rows for name in shown_columns(PHASE_BY_NAME, used)] + rest
+    used = {name for row in rows for name, text in row.items() if text}
+    return [(name, row.get(name, "")) for row in rows for name in used_columns(PHASE_BY_NAME, used)] + rest
 
 
 def _proceed(request: Request, pairs: Pairs) -> Response:

@@ -26,6 +26,7 @@ from hpn.web.door.visit import address, current
 from hpn.web.form import symbols, ways
 from hpn.web.form.labels import MOTOR_CODE, ordering_code
 from hpn.web.form.linked import carried_pairs, onward
+from hpn.web.form.rows import BODY_COLUMNS, LOADS, MOVE_COLUMNS
 from hpn.web.pages import assets
 from hpn.web.pages.fleet_reasons import reasons_of
 from hpn.web.pages.result import preview_of
@@ -240,6 +241,7 @@ FILTERS: dict[str, Callable[..., Any]] = {
 GLOBALS: dict[str, Any] = {
     "BEARING_MODELS": BEARING_MODELS,
     "RANKINGS": RANKINGS,
+    "BODY_COLUMNS": BODY_COLUMNS,
     "calculation_of": calculation_of,
     "CHECKS": BY_CODE,
     "DRIVER_NAMES": DRIVER_NAMES,
@@ -248,9 +250,11 @@ GLOBALS: dict[str, Any] = {
     "here": address,
     "LANGUAGE_NAMES": LANGUAGE_NAMES,
     "LISTED": LISTED,
+    "LOADS": LOADS,
     "unit_of": unit_of,
     "units": units,
     "MECHANISMS": MECHANISMS,
+    "MOVE_COLUMNS": MOVE_COLUMNS,
     "motor_pattern": MOTOR_CODE,
     "carried_pairs": carried_pairs,
     "onward": onward,
