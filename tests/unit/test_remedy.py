@@ -217,6 +217,37 @@ def test_a_motor_too_slow_by_its_own_inertia_may_be_faster(catalogue: Catalogue,
         assert words(asked, "HPN-11A-4", catalogue) == expected
 
 
+def test_a_brake_that_does_not_stop_the_load_has_no_alternative_whatever_else_fails(catalogue: Catalogue) -> None:
+    hanging = {"type": "rotary", "inertia_kgm2": 7.0, "gravity_mass_kg": 100.0, "gravity_radius_mm": 250.0}
+    motion = {"mechanism": hanging, "moves": [{"profile": "triangular", "angle_deg": 90.0, "time_s": 9.0}]}
+    asked = {"sizes": ["32A"], "weight_kg": 1.0}
+    weak = {"duty_cycle": {"motion": motion}, "emergency_stop": {"brake": {"torque_Nm": 0.1}}, "requirements": asked}
+    for gear in selected(weak, catalogue).candidates:
+        assert {"momentary_peak_torque", "weight"} <= {check.code for check in gear.failing}
+        assert alternatives_of(gear) == ()
+
+
+LIFTING_ONLY = {
+    "mechanism": {"type": "rotary", "inertia_kgm2": 2.5, "friction_torque_Nm": 100.0},
+    "moves": [{"profile": "trapezoidal", "angle_deg": 90.0, "time_s": 1.0}],
+}
+
+
+@pytest.mark.parametrize(
+    "asked", [{"position_error_arcmin": 9.0}, {"natural_frequency_Hz": 25.0}, {"torsional_stiffness_Nm_per_rad": 27e3}]
+)
+def test_each_change_of_a_motion_makes_the_gear_fit_as_it_is_printed(asked: Json, catalogue: Catalogue) -> None:
+    """Torques all of one sign keep it where phases take the place of the motion: nothing acts both ways."""
+    document = {"duty_cycle": {"motion": LIFTING_ONLY}, "requirements": {"sizes": ["14A", "20A"]} | asked}
+    application = Application.model_validate(document)
+    rejected = [one for one in select(application, catalogue).candidates if one.status == "unsuitable"]
+    alternatives = [(gear.designation, change) for gear in rejected for change in alternatives_of(gear)]
+    assert any(change.way.torque < 1 for _, change in alternatives)
+    for designation, change in alternatives:
+        after = chosen(select(tried(application, change, catalogue), catalogue), designation)
+        assert after.status == "suitable", (designation, change, after.failing)
+
+
 def test_each_check_says_how_far_its_own_drivers_may_grow(catalogue: Catalogue) -> None:
     """By hand: 80 / 32.021, 149 / 40 and 256 / 200 Nm, 3066035 of 1000 stops, 3000 / 1087.66 and 6000 / 2500 rpm."""
     asked = worked_example(

@@ -211,7 +211,7 @@ def _with(model: Any, path: Sequence[str], value: float | None) -> Any:
 def followed(application: Application, way: Way) -> Application:
     """The application changed by a way, with its figures as the words print them.
 
-    A motion is replaced by its phases where their torques or speeds change.
+    A motion is replaced by its phases where their torques or speeds change, whose signs hold as those of a motion do.
     """
     torque, speed, load = (_printed(factor, 3) for factor in (way.torque, way.speed, way.load))
     cycle, parts = application.duty_cycle, dict[str, Any]()
@@ -220,8 +220,9 @@ def followed(application: Application, way: Way) -> Application:
     else:
         parts["duty_cycle"] = cycle.model_copy(update={"phases": _driven(cycle, torque, speed, load), "motion": None})
         if cycle.motion is not None:
-            inertia = {"load_inertia_kgm2": cycle.motion.load_inertia_kgm2}
-            parts["requirements"] = application.requirements.model_copy(update=inertia)
+            asked = application.requirements
+            known = {"load_inertia_kgm2": cycle.motion.load_inertia_kgm2, "load_reverses": bool(asked.load_reverses)}
+            parts["requirements"] = asked.model_copy(update=known)
     if (given := application.output_load) is not None:
         loads = {name: _scaled(getattr(given, name), load) for name in LOADS}
         parts["output_load"] = given.model_copy(update={k: v for k, v in loads.items() if v is not None})
