@@ -23,7 +23,7 @@ from hpn.web.form.link_reader import parse
 from hpn.web.form.link_writer import to_link
 from tests.build import Json, cycle, phase, worked_example
 from tests.conftest import Supplement
-from tests.report.cases import CASES, language, long_cycle, typed_export_of
+from tests.report.cases import CASES, EVERYTHING, language, long_cycle, typed_export_of
 
 ENGLISH, GERMAN = language("en"), language("de")
 
@@ -121,6 +121,8 @@ def test_a_near_miss_by_the_users_own_utilisation_says_so(catalogue: Catalogue) 
     misses = content(typed_export_of(asked, catalogue), ENGLISH)["alternatives"]["misses"]
     assert misses
     assert "× 50\N{NARROW NO-BREAK SPACE}%" in misses[0][1][0]
+    whole = content(typed_export_of(worked_example(), catalogue), ENGLISH)["alternatives"]["misses"]
+    assert "×" not in "".join("".join(part) for _, said in whole for part in said)
 
 
 @pytest.mark.parametrize("phases", [1, 8])
@@ -213,6 +215,12 @@ def test_a_limit_above_every_number_is_a_word(code: str, word: str, catalogue: C
     idle = cycle(phase(0, 100), requirements={"life_h": 1e4})
     assert _check("momentary_peak_count", stops, catalogue, code)["limit"] == word
     assert _check("life", idle, catalogue, code)["demand"] == word
+
+
+def test_a_check_without_an_equation_stands_as_a_relation_with_demand_and_limit(catalogue: Catalogue) -> None:
+    row = _check("backlash", EVERYTHING, catalogue, "en")
+    assert "".join("".join(part) for part in row["relation"]) == "j ≤ jreq"
+    assert (row["demand"], row["sign"], row["limit"]) == ("5\u202farcmin", "≤", "7\u202farcmin")
 
 
 def _check(check: str, case: Json, catalogue: Catalogue, code: str) -> dict[str, Any]:

@@ -8,6 +8,7 @@ from hpn.engine.selection import select
 from hpn.explain.calculation import Step, calculation_of
 from hpn.explain.calculation.formula import Constant, Term, Variable, value_of
 from hpn.explain.calculation.mathml import mathml, with_numbers
+from hpn.explain.calculation.motor import OWN as OWN_FIGURES
 from hpn.web.api.samples import LIFTING, TURNING
 from hpn.words.reader import Reader
 from tests.build import Json, cycle, phase, worked_example
@@ -109,6 +110,17 @@ def test_a_motor_s_torques_are_those_of_its_checks_where_the_gear_has_inertia_an
         demand = next(check.demand for check in found.checks if check.code == code)
         assert steps[code].lines[0].result.value == pytest.approx(demand, rel=1e-12)
         assert value_of(steps[code].lines[0].formula) == pytest.approx(demand, rel=1e-12)
+
+
+@pytest.mark.parametrize(("cells", "said"), [("0.002,", True), (",0.5", True), (",", False)])
+def test_what_a_supplement_says_of_the_gear_is_told_beside_the_motors_torque(
+    supplemented: Supplement, cells: str, said: bool
+) -> None:
+    catalogue = supplemented(gears=f"size,ratio,stages,inertia_kgm2,no_load_torque_Nm,source\n20A,5,1,{cells},own\n")
+    motor = LIMITS | {"inertia_kgm2": 0.0004}
+    document = {"duty_cycle": {"motion": TURNING}, "requirements": {"motor": motor, "ratios": [5]}}
+    step = steps_of(document, "HPN-20A-5", catalogue)["motor_peak_torque"]
+    assert (OWN_FIGURES in [note.template for note in step.notes]) is said
 
 
 def test_texts_in_a_formula_are_escaped() -> None:

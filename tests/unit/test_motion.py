@@ -8,6 +8,7 @@ import pytest
 from hpn.application import Application
 from hpn.catalogue import Catalogue
 from hpn.physics.motion.mechanisms import GRAVITY
+from hpn.physics.motion.moves import Turn
 from hpn.words.fields import MAXIMUM_PHASES
 from tests.build import Json, answer, check, notices, phase
 from tests.unit.test_application import refused
@@ -166,6 +167,29 @@ def test_a_triangle_that_was_not_asked_for_is_told(catalogue: Catalogue, speed: 
     if is_cut:
         assert "Moves 2 " in notices(reply)["motion_triangle"]
         assert math.isclose(reply["duty"]["phases"][-1]["peak_speed_rpm"], 37.5, rel_tol=1e-14)
+
+
+def test_moves_in_a_row_are_told_as_a_range(catalogue: Catalogue) -> None:
+    cut = TURN | {"speed_rpm": 50}
+    told = notices(answer(motion(cut, TURN, cut, cut, cut), catalogue))["motion_triangle"]
+    assert "Moves 1, 3–5 " in told
+
+
+@pytest.mark.parametrize("ramps", [(0.2, 0.6), (0.7, 0.1), (0.4, 0.4)])
+def test_ramps_that_fill_the_time_keep_their_own_lengths(ramps: tuple[float, float]) -> None:
+    """90° in 0.8 s are 225°/s at the peak, which each ramp reaches in its own time."""
+    times = {"acceleration_time_s": ramps[0], "deceleration_time_s": ramps[1]}
+    timing = Turn(profile="trapezoidal", angle_deg=90, time_s=0.8, **times).timing
+    assert timing.ramps_s == pytest.approx(ramps, rel=1e-12)
+    assert timing.run_s == 0
+    assert timing.peak_speed == pytest.approx(225, rel=1e-12)
+    assert timing.peak_accelerations == pytest.approx([225 / ramp for ramp in ramps], rel=1e-12)
+    assert Turn(profile="triangular", angle_deg=90, time_s=0.8).timing.peak_speed == pytest.approx(225, rel=1e-12)
+
+
+def test_a_way_below_the_least_number_is_refused() -> None:
+    errors = refused(motion(TURN, TURN | {"angle_deg": 1e-13}))
+    assert "must be at least 1e-12 in magnitude" in errors["duty_cycle", "motion", "moves", 1, "angle_deg"]
 
 
 def test_a_speed_never_reached_and_an_acceleration_that_just_suffices_give_the_triangle_too(

@@ -23,6 +23,21 @@ def test_a_plain_application_on_rated_gears_needs_no_notice(catalogue: Catalogue
     assert codes(PLAIN, catalogue) == set()
 
 
+@pytest.mark.parametrize(("ramp_s", "told"), [(0.034, True), (0.036, False)])
+def test_a_ramp_shorter_than_a_period_of_the_load_is_told_with_both(
+    ramp_s: float, told: bool, catalogue: Catalogue
+) -> None:
+    """f_1 = √(26000 / 0.8) / 2π = 28.692 Hz, and its period 34.85 ms."""
+    move = {"profile": "trapezoidal", "angle_deg": 9.0, "time_s": 1.0, "acceleration_time_s": ramp_s}
+    motion = {"mechanism": {"type": "rotary", "inertia_kgm2": 0.8}, "moves": [move]}
+    found = notices(answer({"duty_cycle": {"motion": motion}, "requirements": {"sizes": ["20A"]}}, catalogue))
+    assert ("ramp_shorter_than_period" in found) is told
+    if told:
+        assert found["ramp_shorter_than_period"].startswith(
+            "A ramp of 0.034 s is shorter than a period of 0.0348528 s of the load’s natural frequency on HPN-20A-"
+        )
+
+
 def test_an_unrated_size_is_announced_with_the_reason(catalogue: Catalogue) -> None:
     reply = answer(cycle(phase(10, 100)), catalogue)
 

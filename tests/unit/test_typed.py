@@ -5,18 +5,41 @@ from fractions import Fraction
 import pytest
 
 from hpn.application import Application
-from hpn.tables.numbers import read_decimal
+from hpn.tables.numbers import Entry, Kind, read_decimal, read_value, to_wire
 from hpn.web.form import link_reader
 from hpn.web.form.link_writer import to_link
 from hpn.web.form.offers import beside_fields
 from hpn.words import units
 from hpn.words.reader import Reader
+from hpn.words.wording import Sentence
 
 
 def typed(name: str, text: str, written: str = "") -> Application | str:
     given = {"T": "40", "n": "250", "t": "0.3"} | {name: text, "written": written}
     form = link_reader.parse([*given.items(), ("Tk", given.get("Tk", "50"))] if name != "Tk" else list(given.items()))
     return form.application or form.problems[0].message.text
+
+
+@pytest.mark.parametrize(
+    ("text", "kind", "said"),
+    [
+        ("20.000", "whole", "write 20 or 20000"),
+        ("1.230", "whole", "write 1230"),
+        ("20.5", "whole", "must be a whole number"),
+        ("1" * 60, "whole", int(float("1" * 60))),
+        ("1" * 61, "whole", "is too long for a number"),
+    ],
+)
+def test_a_whole_number_with_a_mark_is_asked_about(text: str, kind: Kind, said: str | int) -> None:
+    found = read_value(text, kind)
+    assert (found.text if isinstance(found, Sentence) else found) == said
+
+
+@pytest.mark.parametrize(("unit", "said"), [("h", "write 20 h or 20000 h"), ("Nm", "write 20.000 Nm or 20000 Nm")])
+def test_only_hours_are_mostly_whole(unit: str, said: str) -> None:
+    [(_, entry)], _ = to_wire([("x", f"20.000 {unit}"), ("written", "de")], {"x": unit})
+    assert isinstance(entry, Entry) and entry.refusal is not None
+    assert entry.refusal.text == said
 
 
 @pytest.mark.parametrize(
