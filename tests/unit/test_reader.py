@@ -64,6 +64,11 @@ def test_numbers_follow_the_language() -> None:
     assert GERMAN.told(sentence) == f"Pause 12.345,6{GROUP}s."
 
 
+def test_a_number_in_a_sentence_has_the_whole_digits_that_it_has_in_a_table() -> None:
+    for value in (6391.2, 2454.6, 1_234_567.8, 818.18, 32.0213):
+        assert Reader().number(Quantity(value, "rpm")) == Reader().figure(value, "rpm"), value
+
+
 def test_a_bound_is_rounded_to_the_safe_side_in_the_unit_that_is_shown() -> None:
     assert AMERICAN.quantity(Quantity(107.0, "Nm", 3, "down")).startswith("947")  # 947.03
     assert AMERICAN.quantity(Quantity(106.99, "Nm", 3, "down")).startswith("946")  # 946.94

@@ -162,10 +162,11 @@ class Reader:
         return self.with_unit(self.number(quantity), quantity.unit)
 
     def number(self, quantity: Quantity) -> str:
-        """The number of a quantity in the reader's unit, which stands elsewhere."""
-        return self.written(
-            rounded(self.measure(quantity.unit).shown(quantity.value), quantity.digits, quantity.rounding)
-        )
+        """The number of a quantity in the reader's unit, which stands elsewhere; as `figure`, it loses no whole digit."""
+        shown, digits = self.measure(quantity.unit).shown(quantity.value), quantity.digits
+        if quantity.rounding == "nearest" and not _is_extreme(shown):
+            digits = max(digits, len(f"{abs(shown):.0f}"))
+        return self.written(rounded(shown, digits, quantity.rounding))
 
     def bound(self, quantity: Quantity) -> str:
         """The number of a quantity as it was given, for a message beside a field that shows the unit."""

@@ -27,8 +27,8 @@ MOST_FIELDS = 20_000
 DIGITS = 6
 """Digits of the phases that are taken over from a motion."""
 
-START = {way: f"mech={way}&mv=&ms=&mt=" for way in TYPES} | {PHASES: "T=&n=&t="}
-"""Query of a way in which nothing is given yet."""
+START = {way: f"mech={way}&mv=trapezoidal&ms=&mt=" for way in TYPES} | {PHASES: "T=&n=&t="}
+"""Query of a way in which nothing is given yet; of a motion the profile, without which no cell of its move is open."""
 
 
 EXAMPLES = {
