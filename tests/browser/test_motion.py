@@ -12,7 +12,7 @@ from tests.browser.conftest import Visitor, violations
 SAVED = re.compile("/selections/[A-Za-z0-9_-]{22}$")
 ON_DESK = pytest.mark.parametrize("width", [1440, pytest.param(390, marks=pytest.mark.soak)])
 ON_PHONE = pytest.mark.parametrize("width", [390, pytest.param(1440, marks=pytest.mark.soak)])
-START = "/?mech=rotary&mv=&ms=&mt="
+START = "/?mech=rotary&mv=trapezoidal&ms=&mt="
 LIFTED = "/?mech=ball_screw&h=20&ml=120&inc=90&mv=s_curve&ms=-400&mt=1.5&mv=modified_sine&ms=400&mt=2"
 
 

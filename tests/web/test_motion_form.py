@@ -101,6 +101,16 @@ def test_a_form_without_moves_asks_for_them_and_reports_nothing(api: TestClient)
     assert part.headers["HX-Push-Url"] == f"/?{START['rotary']}&tp=3"
 
 
+def test_a_move_begins_with_a_profile_and_the_page_names_what_is_still_to_enter(api: TestClient) -> None:
+    page = api.get(f"/?{START['ball_screw']}")
+    assert given(page.text, "mv", "aside") == [("mv", "trapezoidal")] and "Four ways to begin" in page.text
+    assert given(pressed(api, urlencode(fields_of(page.text)), "way:phases"), "aside") == []
+    half = api.get(f"/?{START['ball_screw']}&h=20")
+    assert half.status_code == 200
+    assert "Still to enter: Moved mass, a move." in half.text
+    assert api.get("/?mech=ball_screw&h=20&mv=trapezoidal").status_code == 422
+
+
 def test_another_linear_mechanism_keeps_what_it_has_too(api: TestClient) -> None:
     page = pressed(api, STROKE, "way:belt")
     assert given(page, "mech", "h", "d", "ml", "inc", "ms") == [
@@ -112,7 +122,7 @@ def test_another_linear_mechanism_keeps_what_it_has_too(api: TestClient) -> None
 
 def test_figures_of_another_geometry_are_never_taken_for_this_one(api: TestClient) -> None:
     page = pressed(api, TURN, "way:ball_screw")
-    assert given(page, "J", "ms", "mt", "mv", "Tf") == []
+    assert given(page, "J", "ms", "mt", "mv", "Tf") == [("mv", "trapezoidal")]  # its own beginning
 
 
 def test_phases_beside_a_motion_are_parted_by_the_switch(api: TestClient) -> None:

@@ -162,7 +162,7 @@ class Reader:
         return self.with_unit(self.number(quantity), quantity.unit)
 
     def number(self, quantity: Quantity) -> str:
-        """The number of a quantity in the reader's unit, which stands elsewhere; as `figure`, it loses no whole digit."""
+        """The number of a quantity in the reader's unit, which stands elsewhere, with every whole digit."""
         shown, digits = self.measure(quantity.unit).shown(quantity.value), quantity.digits
         if quantity.rounding == "nearest" and not _is_extreme(shown):
             digits = max(digits, len(f"{abs(shown):.0f}"))

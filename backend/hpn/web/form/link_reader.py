@@ -287,8 +287,9 @@ def _list_problems(given: Given) -> Iterable[FieldProblem]:
 
 
 def _untouched(given: Given, rows: list[dict[str, str]], moves: list[dict[str, str]]) -> bool:
-    """The form was sent with its duty table still blank."""
-    if any(map(filled, (*rows, *moves))):
+    """The form was sent with its duty table still blank, but for the profile that a move begins with."""
+    begun = {"mv"} if "mt" in given.columns else set()
+    if any(map(filled, rows)) or any(filled(move).keys() - begun for move in moves):
         return False
     if given.has_motion:
         return "mv" in given.columns and given.scalars.get("mech", "").strip() in TYPES

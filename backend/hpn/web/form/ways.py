@@ -67,7 +67,7 @@ def _switched(pairs: Pairs, wanted: str) -> Iterator[tuple[str, str]]:
     yield from own
     yield from ((name, text) for name, text in pairs if name not in CYCLE_NAMES and name != ASIDE)
     for query in kept.values():
-        if any(text.strip() for name, text in query if name != "mech"):
+        if any(text.strip() for name, text in query if name not in ("mech", "mv")):
             yield (ASIDE, _written(query))
 
 
