@@ -149,6 +149,8 @@ def test_a_cell_is_shown_where_the_profile_has_it_or_something_stands_in_it(visi
     page = visitor.open(START)
     box(page, "Moment of inertia").fill("2.5")
     profile = page.get_by_role("combobox", name="Profile, move 1")
+    expect(box(page, "Angle, move 1")).to_be_visible()  # of the profile that a move begins with
+    profile.select_option("")
     expect(box(page, "Angle, move 1")).to_be_hidden()
     profile.focus()
     profile.select_option("S-curve")
