@@ -103,6 +103,32 @@ def test_axes_are_sorted_and_chosen_by_the_address(client: TestClient, fleet: st
     assert [row.strip() for row in rows] == axes
 
 
+WITH_RESERVE = """axis,torque_Nm,speed_rpm,duration_s,requirements.utilisation,requirements.sizes,requirements.ratios,\
+requirements.weight_kg,emergency_stop.torque_Nm,emergency_stop.count
+just over,64.0032,100,1,0.8,20A,5,,,
+too heavy,20,100,1,0.8,20A,5,2.5,,
+no stop,20,100,1,0.8,20A,5,,900,1
+just within,63.9968,100,1,0.8,20A,5,,,
+"""
+
+
+def test_the_share_of_an_axis_is_told_from_what_its_governing_check_may_use(client: TestClient) -> None:
+    """64.0032 of 80 Nm are 80.004 %; of the permitted 2.5 kg all may be used; a stop that is never allowed is worst."""
+    first = post(client, WITH_RESERVE.encode())
+    sized = post(client, fields={**fields_of(first.text), "size": "1"})
+    page = re.sub(r"\s+", " ", client.get(sized.headers["location"]).text)
+    rows = re.findall(r'<th scope="row" class="axis"> ?<a [^>]*>([^<]+)</a>(.*?)</tr>', page)
+    shown = {axis: re.findall(r'class="percent">([^<]*)|class="limit" x="([^"]*)"', row) for axis, row in rows}
+    at_u, whole = ("", "53.33%"), ("", "66.67%")
+    assert list(shown.items()) == [
+        ("no stop", []),
+        ("too heavy", [whole, ("104 %", "")]),
+        ("just over", [at_u, ("80.004 %", "")]),
+        ("just within", [at_u, ("79.996 %", "")]),
+    ]
+    assert re.search(r'class="cell largest">.*?class="percent">79.996', page)
+
+
 def test_files_hold_the_answers(client: TestClient, fleet: str) -> None:
     parquet = pq.read_table(io.BytesIO(client.get(f"{fleet}/axes.parquet").content)).to_pylist()
     text = list(csv.DictReader(io.StringIO(client.get(f"{fleet}/axes.csv").content.decode())))

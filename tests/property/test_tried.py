@@ -67,7 +67,7 @@ def test_a_check_is_full_when_its_driver_has_grown_as_far_as_it_says(catalogue: 
         candidate = chance.choice(select(application, catalogue).candidates)
         for code, growths in growths_of(candidate, application.requirements.utilisation).items():
             for growth in growths:
-                if growth.factor is None or not 1e-2 < growth.factor < 1e2:  # inside the bounds of the input
+                if growth.factor is None or not 1e-3 < growth.factor < 1e2:  # inside the bounds of the input
                     continue
                 seen.add((code, growth.driver))
                 for factor, expected in ((growth.factor * (1 - 1e-9), "pass"), (growth.factor * (1 + 1e-6), "fail")):

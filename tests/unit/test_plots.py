@@ -195,6 +195,7 @@ def test_the_words_say_what_governs(catalogue: Catalogue) -> None:
     [
         (1260.0, "The output bearing carries these loads within u = 80 %."),
         (1530.0, "The loads exceed u = 80 %: they use 85 % of what the output bearing may carry."),
+        (1440.1, "The loads exceed u = 80 %: they use 80.01 % of what the output bearing may carry."),
         (1980.0, "The output bearing does not carry these loads, u = 80 % apart."),
     ],
 )

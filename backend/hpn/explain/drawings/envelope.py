@@ -104,7 +104,7 @@ def _told_of(load: PhaseLoad, outside: bool, reader: Reader) -> str:
         "phases": load.spoken,
         "radial": Quantity(load.radial_N, "N", 4),
         "axial": Quantity(load.axial_N, "N", 4),
-        "used": share(load.published),
+        "used": share(load.published, load.allowed),
     }
     if load.has_lever:
         given = {"given": Quantity(load.given_N, "N", 4)}
@@ -127,7 +127,7 @@ def _equivalent(picture: BearingPicture, reader: Reader) -> Mark:
     told = reader.told(
         Sentence(
             "Equivalent load of the cycle: {used} of the permissible constant load",
-            {"used": share(picture.constant_load_utilisation)},
+            {"used": share(picture.constant_load_utilisation, picture.allowed)},
         )
     )
     if outside:

@@ -28,7 +28,7 @@ def bearing_verdict(picture: BearingPicture) -> Sentence:
         return Sentence("The output bearing does not carry these loads, u = {allowed} apart.", values)
     return Sentence(
         "The loads exceed u = {allowed}: they use {used} of what the output bearing may carry.",
-        values | {"used": share(_most_used(picture))},
+        values | {"used": share(_most_used(picture), picture.allowed)},
     )
 
 
@@ -40,7 +40,7 @@ def bearing_words(picture: BearingPicture) -> list[Sentence]:
     equivalent = Sentence(
         "Equivalent load: {used} of the permissible constant load ({speed}, {life}, {basis}).",
         {
-            "used": share(picture.constant_load_utilisation),
+            "used": share(picture.constant_load_utilisation, picture.allowed),
             "speed": Quantity(picture.average_output_speed_rpm, "rpm"),
             "life": Quantity(picture.load.life_h, "h", 6),
             "basis": picture.load.life_basis,
@@ -50,7 +50,7 @@ def bearing_words(picture: BearingPicture) -> list[Sentence]:
 
 
 def _largest(picture: BearingPicture) -> Sentence:
-    used: dict[str, Value] = {"used": share(picture.worst.published)}
+    used: dict[str, Value] = {"used": share(picture.worst.published, picture.allowed)}
     if len(picture.loads) == 1:
         return Sentence("Single load: {used} of the published maximum.", used)
     return Sentence(
@@ -72,5 +72,5 @@ def _next_load_coefficient(picture: BearingPicture) -> list[Sentence]:
     larger = next((printed for printed in bearing.PRINTED_LOAD_COEFFICIENTS if printed > f_w), None)
     if larger is None or used == 0:
         return []
-    values: dict[str, Value] = {"coefficient": Quantity(larger, ""), "used": share(used * larger / f_w)}
-    return [Sentence("With f_w = {coefficient}: {used}.", values)]
+    next_used = share(used * larger / f_w, picture.allowed)
+    return [Sentence("With f_w = {coefficient}: {used}.", {"coefficient": Quantity(larger, ""), "used": next_used})]

@@ -29,9 +29,9 @@ def shown(values: Iterable[float], unit: str, reader: Reader) -> list[float]:
     return list(map(reader.measure(unit).shown, values))
 
 
-def share(used: float) -> Quantity:
-    """A utilisation in percent, with as many digits as it takes to tell it from 100 %."""
-    decimals = telling_decimals(100 * used, 100.0, 0)
+def share(used: float, allowed: float = 1.0) -> Quantity:
+    """A utilisation in percent, with as many digits as it takes to tell it from what is allowed."""
+    decimals = telling_decimals(100 * used, 100 * allowed, 0)
     return Quantity(100 * used, "percent", 3 + decimals if used > 1 else max(3, 2 + decimals))
 
 

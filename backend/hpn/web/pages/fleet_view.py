@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 from urllib.parse import urlencode
 
+from hpn.engine.checks import allowed
 from hpn.words.wording import N_
 
 if TYPE_CHECKING:  # Arrow takes half a second to import, which no other page needs
@@ -48,7 +49,7 @@ SORTINGS = {
 def by_need(rows: Iterable["AxisRow"]) -> list["AxisRow"]:
     """Rows without a gear first, the worst of them before all, then the others by falling utilisation."""
     states = ("unsuitable", "rejected", "selected")
-    return sorted(rows, key=lambda row: (states.index(row.state), -(row.utilisation or 0)))
+    return sorted(rows, key=lambda row: (states.index(row.state), row.utilisation is not None, -(row.utilisation or 0)))
 
 
 def foremost(rows: Iterable["AxisRow"]) -> "AxisRow | None":
@@ -69,6 +70,10 @@ class FleetView:
 
     top: "AxisRow | None" = None
     """The axis with a gear that is used most, out of all."""
+
+    def bound(self, row: "AxisRow") -> float:
+        """Largest utilisation with which the governing check of an axis passes."""
+        return allowed(row.governing_check, self.allowed.get(row.axis, 1.0))
 
     def choose(self, name: str, value: str) -> str:
         """Address of the axes that a count counts."""
