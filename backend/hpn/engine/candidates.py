@@ -108,10 +108,9 @@ class Candidate(Reply, frozen=True):
 
         The candidate's status does not say: a gear that fails a check is unsuitable, rated or not.
         """
-        asked, rated = _UNLIMITED_BY[figure]
-        rating = self.check(rated)
-        known = rating is not None and rating.status != "not_rated"
-        return getattr(self, figure) is None and self.check(asked) is not None and known
+        asked, rated = (self.check(code) for code in _UNLIMITED_BY.get(figure, ("", "")))
+        known = rated is not None and rated.status != "not_rated"
+        return getattr(self, figure) is None and asked is not None and known
 
 
 _UNLIMITED_BY = {

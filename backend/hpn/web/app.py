@@ -147,7 +147,6 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     app.state.metrics = Metrics()
     app.state.store = CountedStore(app.state.metrics, **settings.database())
     problems.install(app, explanations.page_of)
-    app.add_exception_handler(StoreUnavailableError, archive.unavailable)
     for router in ROUTERS:
         app.include_router(router, responses={} if router is health.router else schemas.GUARDED)
     openapi.install(app, Application, schemas.Batch, archive.SaveRequest, archive.Names)

@@ -8,7 +8,6 @@ from pydantic import AfterValidator, Field, StringConstraints, ValidationError
 from pydantic_core import PydanticCustomError
 from starlette.datastructures import State
 from starlette.requests import Request
-from starlette.responses import Response
 
 from hpn import ENGINE_VERSION
 from hpn.application import Application, InputError
@@ -19,7 +18,7 @@ from hpn.store import Draft, KeyReusedError, KeySpentError, SavedSelection
 from hpn.web.door.observation import note
 from hpn.web.door.pools import compute
 from hpn.web.door.problems import Problem
-from hpn.web.form.labels import OrderingCode, query_of, read_ordering_code
+from hpn.web.form.labels import FIELDS, OrderingCode, query_of, read_ordering_code
 from hpn.web.form.link_writer import to_link
 from hpn.words.fields import Model
 from hpn.words.titles import CONTROLS, LONGEST_TITLE, NO_CONTROLS, SCHEMA_CONTROLS, Title
@@ -41,9 +40,6 @@ Line = Annotated[
     Field(json_schema_extra={"pattern": f"^[^{SCHEMA_CONTROLS}]*$"}),
 ]
 """One line of text that something is looked for by; an empty one counts as none."""
-
-RETRY_SECONDS = 5
-"""Time after which to try a store that is out of reach again."""
 
 
 class Names(Model):
@@ -154,13 +150,13 @@ def _ordered(catalogue: Catalogue, selection: Selection, text: str | None) -> Or
 
 def _link(saved: SavedSelection, selection: Selection, catalogue: Catalogue) -> str:
     """Address of the live page with what was saved: its application, the gear of its ordering code, its labels."""
-    labels = {"title": saved.title, "ref": saved.reference, "author": saved.author, "rev": saved.revision}
+    labels = {name: getattr(saved, field) or "" for name, field in FIELDS.items()}
     gear, code = "", read_ordering_code(catalogue, saved.ordering_code or "")
     if isinstance(code, OrderingCode):
         labels |= code.labels
         shown = code.gear.designation
         gear = "" if shown == selection.foremost.designation else f"&gear={shown}"
-    return selection.link + gear + query_of({name: text or "" for name, text in labels.items()})
+    return selection.link + gear + query_of(labels)
 
 
 async def found(request: Request, id: str, work: Callable[[Reopened], T]) -> T:
@@ -220,8 +216,3 @@ def _figures(
     motor = application.requirements.motor if application else None
     gears = [candidate.designation for candidate in before.candidates]
     return figure_differences(then, today, gears, motor.designation if motor else None)
-
-
-async def unavailable(request: Request, error: Exception) -> Response:
-    """The store is out of reach for now."""
-    return Problem(503, str(error), headers={"Retry-After": str(RETRY_SECONDS)}).response()

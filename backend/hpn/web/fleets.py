@@ -84,8 +84,7 @@ def _under_way(state: State) -> Iterator[None]:
     try:
         yield
     except asyncio.CancelledError:  # nothing but the end of the service cancels a request
-        text = "the service ends before the table is sized; send it again"
-        raise Problem(503, text, headers={"Retry-After": str(RETRY_SECONDS)}) from None
+        raise Problem.later("the service ends before the table is sized; send it again", RETRY_SECONDS) from None
     finally:
         state.fleets_under_way.discard(task)
 
@@ -149,7 +148,7 @@ async def size_fleet(request: Request, tables: Tables, *, candidates: bool = Fal
                 found = await while_present(request, _sized(request, tables, files))
     except TimeoutError:
         text = f"the table was not sized within {settings.fleet_seconds:g} s; send fewer axes at once"
-        raise Problem(503, text, headers={"Retry-After": str(RETRY_SECONDS)}) from None
+        raise Problem.later(text, RETRY_SECONDS) from None
     if found.refusal:
         raise Problem(422, _in_words_of_the_caller(found.refusal, tables))
     if found.code:
@@ -183,7 +182,7 @@ def _too_much(error: EndedError, settings: Settings) -> Problem:
     if error.is_excess:
         return Problem(413, f"the table takes more than {settings.fleet_memory_bytes} bytes of memory; send fewer axes")
     logger.error("a fleet was not sized: %s", error)
-    return Problem(503, "tables of axes can’t be sized at the moment", headers={"Retry-After": str(RETRY_SECONDS)})
+    return Problem.later("tables of axes can’t be sized at the moment", RETRY_SECONDS)
 
 
 def _in_words_of_the_caller(text: str, tables: Tables) -> str:

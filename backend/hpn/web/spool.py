@@ -29,10 +29,7 @@ logger = logging.getLogger(__name__)
 
 def refusal(code: int | None) -> Problem:
     """Problem of a folder that can’t be used, by the system's code."""
-    sentence = Sentence(FULL if code in FULL_CODES else UNUSABLE)
-    problem = Problem(503, sentence.text, headers={"Retry-After": str(RETRY_SECONDS)})
-    problem.sentences = (sentence,)
-    return problem
+    return Problem.later(Sentence(FULL if code in FULL_CODES else UNUSABLE), RETRY_SECONDS)
 
 
 @contextmanager

@@ -81,7 +81,7 @@ async def _answered(body: bytes, state: State, pool: Pool) -> bytes:
     while done < len(spans):
         if time.monotonic() > deadline:
             text = f"the batch took longer than {settings.batch_seconds:g} s; send fewer items at once"
-            raise Problem(503, text, headers={"Retry-After": str(RETRY_SECONDS)})
+            raise Problem.later(text, RETRY_SECONDS)
         answers, count = await pool.run(_evaluated, body, spans, done, state)
         lines.append(answers)
         done += count

@@ -26,7 +26,7 @@ router = APIRouter(prefix="/api/v1", tags=["Catalogue"], dependencies=[admit("ca
     summary="Every gear",
     openapi_extra=schemas.IF_NONE_MATCH,
     response_model=CatalogueReply,
-    responses=schemas.answers(422, headers=schemas.headers("ETag")) | schemas.HAS_IT_ALREADY,
+    responses=schemas.tagged(422),
 )
 async def catalogue(request: Request) -> Response:
     """Every gear of the series with every published figure and its source; null where not published."""
@@ -40,7 +40,7 @@ async def catalogue(request: Request) -> Response:
     summary="One gear",
     openapi_extra=schemas.IF_NONE_MATCH,
     response_model=OneGearReply,
-    responses=schemas.answers(404, 422, headers=schemas.headers("ETag")) | schemas.HAS_IT_ALREADY,
+    responses=schemas.tagged(404, 422),
 )
 async def gear(request: Request, designation: schemas.Designation) -> Response:
     """One gear, by its designation in any of the printed spellings: by itself, and as the list has it."""
@@ -55,7 +55,7 @@ async def gear(request: Request, designation: schemas.Designation) -> Response:
     summary="Life envelopes of a size’s output bearing",
     openapi_extra=schemas.IF_NONE_MATCH,
     response_model=EnvelopeReply,
-    responses=schemas.answers(404, 422, headers=schemas.headers("ETag")) | schemas.HAS_IT_ALREADY,
+    responses=schemas.tagged(404, 422),
 )
 async def bearing_envelopes(request: Request, size: schemas.Size, query: Annotated[EnvelopeQuery, Query()]) -> Response:
     """Permitted constant load at this speed and life: one curve per load coefficient, from axial to radial axis."""

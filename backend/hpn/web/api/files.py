@@ -26,6 +26,7 @@ from hpn.web.door.bodies import parsed, read_body
 from hpn.web.door.conditions import etag_of, has_already
 from hpn.web.door.pools import pool_of, while_present
 from hpn.web.door.problems import Problem, needs
+from hpn.web.door.visit import absolute
 from hpn.web.form.labels import ordering_code
 from hpn.web.form.labels import query_of as query_of_labels
 from hpn.web.form.link_writer import to_link
@@ -235,11 +236,6 @@ def _of_gear(export: Export, designation: str) -> Export:
         selection = structs.replace(selection, candidates=(*selection.candidates, *beyond))
     link = f"{export.link}&gear={designation}"
     return replace(export, selection=selection, link=link, chosen=designation)
-
-
-def absolute(request: Request, path: str) -> str:
-    """Address of this service with a path."""
-    return str(request.base_url).rstrip("/") + path
 
 
 # --- Making it --------------------------------------------------------------------------------------------------------

@@ -26,7 +26,7 @@ router = APIRouter(prefix="/api/v1", tags=["Motors"], dependencies=[admit("calcu
     summary="The user’s own motors",
     openapi_extra=schemas.IF_NONE_MATCH,
     response_model=MotorsReply,
-    responses=schemas.answers(422, headers=schemas.headers("ETag")) | schemas.HAS_IT_ALREADY,
+    responses=schemas.tagged(422),
 )
 async def motors(request: Request) -> Response:
     """Motors of a supplement’s motors.csv; none where there is no such file, null where a figure is blank."""

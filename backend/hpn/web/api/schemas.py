@@ -143,6 +143,11 @@ def answers(*statuses: int, status: int = 200, **more: Any) -> dict[int | str, d
     return {status: {"description": "The answer.", **more}, **problems(*statuses)}
 
 
+def tagged(*statuses: int, **more: Any) -> dict[int | str, dict[str, Any]]:
+    """OpenAPI entries of an answer with an entity tag, which a client may have already, and of its problems."""
+    return answers(*statuses, headers=headers("ETag"), **more) | HAS_IT_ALREADY
+
+
 def batch_answers(*statuses: int) -> dict[int | str, dict[str, Any]]:
     """OpenAPI entries of a batch's answer, which comes in the form of its body."""
     lines = {

@@ -130,8 +130,7 @@ def _draft(body: bytes, catalogue: Catalogue, key: str | None, owner: str | None
     summary="Read a saved selection",
     openapi_extra=schemas.IF_NONE_MATCH,
     response_model=SavedSelectionReply,
-    responses=schemas.answers(404, 422, headers=schemas.headers("ETag"), links=schemas.FROM_SELECTION)
-    | schemas.HAS_IT_ALREADY,
+    responses=schemas.tagged(404, 422, links=schemas.FROM_SELECTION),
 )
 async def read_selection(request: Request, id: schemas.Id) -> Response:
     """Input and result as saved, and what today's engine and catalogue say differently, verdicts first."""

@@ -135,8 +135,7 @@ def _subject(request: Request) -> str:
 
 def too_many(rate: object, wait_seconds: int) -> Problem:
     """429, with the time to wait."""
-    text = f"{rate} are allowed; try again in {wait_seconds} s"
-    return Problem(429, text, headers={"Retry-After": str(wait_seconds)})
+    return Problem.later(f"{rate} are allowed; try again in {wait_seconds} s", wait_seconds, 429)
 
 
 def key_needed(path: str) -> Problem:

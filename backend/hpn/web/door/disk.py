@@ -42,7 +42,7 @@ class Share:
             raise Problem(413, f"more than {self._disk.total} bytes can’t be set aside; send less at once")
         if not self.fits(count):
             text = f"other requests have set {self._disk.taken} of {self._disk.total} bytes aside; try again later"
-            raise Problem(503, text, headers={"Retry-After": str(RETRY_SECONDS)})
+            raise Problem.later(text, RETRY_SECONDS)
         self.add(count)
 
     def add(self, count: int) -> None:

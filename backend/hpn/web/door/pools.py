@@ -79,7 +79,7 @@ class Pool:
         """Take a place for a while; Problem 503 where all are taken."""
         if self.taken >= self._most:
             text = f"too much of this kind is being computed; try again in {RETRY_SECONDS} s"
-            raise Problem(503, text, headers={"Retry-After": str(RETRY_SECONDS)})
+            raise Problem.later(text, RETRY_SECONDS)
         self.taken += 1
         try:
             yield
@@ -114,10 +114,10 @@ class Pool:
         except EndedError as error:
             if error.is_excess:
                 logger.warning("a file took too much to read: %s", error)
-                raise Problem.told(413, Sentence(TOO_LARGE)) from None
+                raise Problem(413, Sentence(TOO_LARGE)) from None
             logger.error("a process beside the service ended before its work was done: %s", error)
             text = f"this can’t be made at the moment; try again in {RETRY_SECONDS} s"
-            raise Problem(503, text, headers={"Retry-After": str(RETRY_SECONDS)}) from None
+            raise Problem.later(text, RETRY_SECONDS) from None
 
     def close(self) -> None:
         """End the processes."""

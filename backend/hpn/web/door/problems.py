@@ -16,6 +16,7 @@ from starlette.types import Scope
 from hpn.application import InputError
 from hpn.application.faults import Fault, Location, faults_of, plain_faults, pointer, unreadable
 from hpn.installed import ExtraMissingError, require
+from hpn.store import StoreUnavailableError
 from hpn.web.door.kinds import KINDS, OF_STATUS, PATH
 from hpn.words.wording import Sentence
 
@@ -24,26 +25,29 @@ MEDIA_TYPE = "application/problem+json"
 MAXIMUM_ERRORS = 20
 """Errors that an answer names."""
 
+STORE_SECONDS = 5
+"""Time after which to try a store that is out of reach again."""
+
 TITLES = {status: KINDS[name].title for status, name in OF_STATUS.items()}
 
 
 class Problem(HTTPException):
     """A refusal with its status, a text for people, and the fields it is about.
 
-    `kind` is a name of KINDS, by default that of the status. An error without a code of its own is `invalid`.
-    `sentences` say the same in any language; a page that has none shows the text.
+    `kind` is a name of KINDS, by default that of the status. An error without a code of its own is `invalid`. Sentences
+    say the text in any language; a page that has none shows the text.
     """
-
-    sentences: tuple[Sentence, ...] = ()
 
     def __init__(
         self,
         status: int,
-        detail: str,
+        detail: str | Sentence | Iterable[Sentence],
         errors: Iterable[tuple[Location, str] | Fault] = (),
         headers: dict[str, str] | None = None,
         kind: str = "",
     ) -> None:
+        self.sentences = () if isinstance(detail, str) else (detail,) if isinstance(detail, Sentence) else tuple(detail)
+        detail = detail if isinstance(detail, str) else "; ".join(sentence.text for sentence in self.sentences)
         self.kind = kind or OF_STATUS.get(status, "")
         self.errors = [Fault(*error) for error in errors]
         if len(self.errors) > MAXIMUM_ERRORS:
@@ -52,19 +56,17 @@ class Problem(HTTPException):
         super().__init__(status, detail, headers)
 
     @classmethod
-    def told(cls, status: int, sentence: Sentence) -> "Problem":
-        """Problem that says a sentence, on pages in the reader's language."""
-        problem = cls(status, sentence.text)
-        problem.sentences = (sentence,)
-        return problem
+    def later(cls, detail: str | Sentence, seconds: int, status: int = 503) -> "Problem":
+        """Problem for what may be asked again after a time."""
+        return cls(status, detail, headers={"Retry-After": str(seconds)})
 
     @classmethod
-    def of(cls, error: ValidationError | InputError) -> "Problem":
-        """Problem for input that the models or the selection refuse."""
+    def of(cls, error: ValidationError | InputError | StoreUnavailableError) -> "Problem":
+        """Problem for input that the models or the selection refuse, and for a store that is out of reach for now."""
+        if isinstance(error, StoreUnavailableError):
+            return cls.later(str(error), STORE_SECONDS)
         if isinstance(error, InputError):
-            problem = cls(422, str(error), faults_of(error))
-            problem.sentences = tuple(sentence for _, sentence in error.sentences)
-            return problem
+            return cls(422, (sentence for _, sentence in error.sentences), faults_of(error))
         if text := unreadable(error):
             return cls(400, text.replace("Invalid JSON:", "the body is not JSON:"))
         return cls._listing(faults_of(error))
@@ -105,9 +107,7 @@ def needs(extra: str) -> Any:
         try:
             require(extra)
         except ExtraMissingError as error:
-            problem = Problem(501, str(error))
-            problem.sentences = (error.sentence,)
-            raise problem from None
+            raise Problem(501, error.sentence) from None
 
     return Depends(check)
 
@@ -133,7 +133,7 @@ def install(app: FastAPI, page_of: Callable[[Request, HTTPException], Response |
     """
 
     async def refused(request: Request, error: Exception) -> Response:
-        if isinstance(error, ValidationError | InputError):
+        if isinstance(error, ValidationError | InputError | StoreUnavailableError):
             return Problem.of(error).response()
         if isinstance(error, RequestValidationError):
             return Problem.at((entry["loc"][1:], entry["type"], entry["msg"]) for entry in error.errors()).response()
@@ -149,5 +149,5 @@ def install(app: FastAPI, page_of: Callable[[Request, HTTPException], Response |
             headers = {"Allow": ", ".join(_methods_at(app, request.scope))}
         return Problem(error.status_code, text.get(error.status_code, error.detail), headers=headers).response()
 
-    for kind in (ValidationError, RequestValidationError, InputError, HTTPException):
+    for kind in (ValidationError, RequestValidationError, InputError, StoreUnavailableError, HTTPException):
         app.add_exception_handler(kind, refused)

@@ -145,4 +145,4 @@ def decoded(content: bytes) -> str:
     try:
         return text_of(content)
     except RefusedError as refused:
-        raise Problem.told(422, refused.sentence) from None
+        raise Problem(422, refused.sentence) from None

@@ -3,6 +3,8 @@
 from contextvars import ContextVar
 from typing import NamedTuple
 
+from starlette.requests import Request
+
 from hpn.words.reader import DEFAULT, Reader
 
 
@@ -17,6 +19,11 @@ NOBODY = Visit()
 
 # Per request, not per process: templates of every page find it without each route handing it on.
 VISIT: ContextVar[Visit] = ContextVar("visit", default=NOBODY)
+
+
+def absolute(request: Request, path: str) -> str:
+    """Address of this service with a path."""
+    return str(request.base_url).rstrip("/") + path
 
 
 def current() -> Reader:

@@ -20,6 +20,9 @@ TITLE_BLOCK: Mapping[str, str] = {
 }
 """Labels of the title block by their names in an address, and what the form calls them."""
 
+FIELDS: Mapping[str, str] = {"title": "title", "ref": "reference", "author": "author", "rev": "revision"}
+"""Fields in which the store keeps the labels of the title block."""
+
 LABELS: Mapping[str, str] = {
     **TITLE_BLOCK,
     "order_output": N_("Output shaft"),

@@ -35,7 +35,12 @@ async def query_of(request: Request, *options: str) -> str:
         return query.decode("latin-1")
     fields = await read_fields(request)
     posted = "".join(f"&{name}={fields[name]}" for name in options if name in fields)
-    return fields.get("link", "").removeprefix("/").removeprefix("?") + posted
+    return query_part(fields.get("link", "")) + posted
+
+
+def query_part(link: str) -> str:
+    """Query of a link, which may come without its path."""
+    return link.removeprefix("/").removeprefix("?")
 
 
 def linked(query: str, *options: str) -> Link:

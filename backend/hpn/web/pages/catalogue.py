@@ -3,12 +3,11 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import groupby
-from typing import Any
 from urllib.parse import quote, urlencode
 
 from fastapi import APIRouter
 from starlette.requests import Request
-from starlette.responses import HTMLResponse, PlainTextResponse, RedirectResponse, Response
+from starlette.responses import PlainTextResponse, RedirectResponse, Response
 
 from hpn.catalogue import Catalogue
 from hpn.catalogue.gear import Gear
@@ -16,11 +15,11 @@ from hpn.explain.drawings import gear_envelope
 from hpn.web.door.access import admit
 from hpn.web.door.bodies import pairs_of
 from hpn.web.door.pools import worked
-from hpn.web.door.visit import current
+from hpn.web.door.visit import absolute, current
 from hpn.web.form.labels import OrderingCode, ordering_code, query_of
-from hpn.web.form.linked import carried_pairs, onward
+from hpn.web.form.linked import carried_pairs, onward, query_part
 from hpn.web.pages.gear_figures import figures_of, neighbours, series_figures, supplements_for
-from hpn.web.pages.templates import environment
+from hpn.web.pages.rendering import page
 from hpn.words.designations import canonical_designation, canonical_size
 
 COLUMNS = (
@@ -74,7 +73,7 @@ def show_catalogue(request: Request) -> Response:
     sort = request.query_params.get("sort", "")
     sort = sort if sort.removeprefix("-") in (GEAR, *COLUMNS) else ""
     kept = {names[0]: size, names[1]: ratio, "sort": sort}
-    return _render(
+    return page(
         request,
         "catalogue.html",
         200 if gears else 404,
@@ -84,7 +83,7 @@ def show_catalogue(request: Request) -> Response:
         sizes=[_filter(one, size == one, kept, names[0]) for one in catalogue.sizes],
         ratios=[_filter(one, ratio == one, kept, names[1]) for one in map(str, catalogue.ratios)],
         filtered=bool(size or ratio),
-        canonical=f"{str(request.base_url).rstrip('/')}/catalogue",
+        canonical=absolute(request, "/catalogue"),
     )
 
 
@@ -121,7 +120,7 @@ def show_gear(request: Request) -> Response:
     query = request.query_params
     output, motor = (query.get(name, query.get(f"order_{name}", "")) for name in ("output", "motor"))
     order = ordering_code(catalogue, gear, output, motor)
-    return _render(
+    return page(
         request,
         "gear.html",
         200,
@@ -133,7 +132,7 @@ def show_gear(request: Request) -> Response:
         neighbours=neighbours(catalogue, gear),
         order=order,
         use=_use(gear, order),
-        canonical=f"{str(request.base_url).rstrip('/')}/catalogue/{gear.designation}",
+        canonical=absolute(request, f"/catalogue/{gear.designation}"),
     )
 
 
@@ -143,13 +142,13 @@ def _unknown(request: Request, name: str) -> Response:
     designation = canonical_designation(name)
     size = catalogue.find_size(designation.split("-")[1] if designation else name)
     near = [gear for gear in catalogue.gears if size is not None and gear.size == size.size]
-    return _render(request, "gear_unknown.html", 404, name=name[:60], near=near)
+    return page(request, "gear_unknown.html", 404, name=name[:60], near=near)
 
 
 def find_gear(request: Request) -> Response:
     """From the field that takes a gear by any spelling to that gear in the selection, with everything else as it is."""
     query = request.query_params
-    pairs = pairs_of(query.get("link", "").removeprefix("/").removeprefix("?"))
+    pairs = pairs_of(query_part(query.get("link", "")))
     gear = request.app.state.catalogue.find(query.get("gear", ""))
     if gear is None:
         return _unknown(request, query.get("gear", ""))
@@ -166,13 +165,6 @@ def _use(gear: Gear, order: OrderingCode) -> str:
 
 def _path(text: str) -> str:
     return quote(text[:60], safe="")
-
-
-def _render(request: Request, template: str, status: int, **context: Any) -> Response:
-    catalogue: Catalogue = request.app.state.catalogue
-    content = environment(request.app.state).get_template(template)
-    shown = content.render(catalogue=catalogue, **context)
-    return HTMLResponse(shown, status, {"Cache-Control": "no-cache"})
 
 
 async def robots(request: Request) -> Response:

@@ -8,7 +8,7 @@ from typing import Any
 from fastapi import APIRouter
 from pydantic import ValidationError
 from starlette.requests import Request
-from starlette.responses import HTMLResponse, RedirectResponse, Response
+from starlette.responses import RedirectResponse, Response
 
 from hpn.application import Application
 from hpn.application.phase import Phase
@@ -20,7 +20,7 @@ from hpn.engine.selection import decode
 from hpn.explain.readings import Reading, figure_symbol
 from hpn.files.inputs import LOADS, REQUIREMENTS, InputLine, given
 from hpn.files.motion import lines, move_line
-from hpn.store import SavedSelection, StoreUnavailableError
+from hpn.store import SavedSelection
 from hpn.web.archive import with_catalogue
 from hpn.web.door.access import admit
 from hpn.web.door.pools import compute
@@ -28,19 +28,16 @@ from hpn.web.door.problems import Problem
 from hpn.web.door.visit import current
 from hpn.web.form.linked import onward
 from hpn.web.form.symbols import PHASE_SYMBOLS
-from hpn.web.pages.gear_figures import Figure, figures_of
+from hpn.web.pages.gear_figures import Figure, all_figures
+from hpn.web.pages.rendering import or_reason, page
 from hpn.web.pages.result import Result
 from hpn.web.pages.saved import result_of
-from hpn.web.pages.saving import refused
-from hpn.web.pages.templates import environment
+from hpn.web.pages.saving import REASON
 from hpn.words.quantities import CANDIDATE, DUTY, INPUTS, unit_of
 from hpn.words.wording import N_, Named
 
 PHASES_SHOWN = 50
 """Phases that differ of which so many are shown."""
-
-LIMITLESS = frozenset(("life_L10_h", "momentary_peak_count", "bearing_life_L50_h"))
-"""Figures that may be empty because nothing limits them."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,6 +92,7 @@ class PhaseRow:
     sides: tuple[Cells, Cells]
 
 
+@or_reason(REASON)
 async def compare_selections(request: Request) -> Response:
     """Two saved selections side by side; `id` twice, as a form with boxes sends it, leads to `a` and `b`."""
     query = request.query_params
@@ -109,8 +107,6 @@ async def compare_selections(request: Request) -> Response:
     for place, id in zip("AB", ids, strict=True):
         try:
             found.append(await with_catalogue(request.app.state, id))
-        except StoreUnavailableError as error:
-            return await compute(request, "pages", refused, request, error)
         except Problem:
             missing.append(place)
     if missing:
@@ -209,7 +205,7 @@ def _figures(a: Side, b: Side) -> Iterator[Row]:
 
 
 def _figure(candidate: Candidate, name: str) -> float | str | None:
-    if name in LIMITLESS and candidate.is_unlimited(name):
+    if candidate.is_unlimited(name):
         return current().text(N_("unlimited"))
     value: float | None = getattr(candidate, name)
     return value
@@ -217,15 +213,10 @@ def _figure(candidate: Candidate, name: str) -> float | str | None:
 
 def _published(a: Side, b: Side) -> Iterator[tuple[Figure | None, Figure | None]]:
     """Published figures of the two gears that differ, each by the catalogue of its time."""
-    for pair in zip_longest(_figures_of(a), _figures_of(b)):
+    for pair in zip_longest(all_figures(a.result.gear), all_figures(b.result.gear)):
         before, after = (figure and figure.values for figure in pair)
         if before != after:
             yield pair
-
-
-def _figures_of(side: Side) -> list[Figure]:
-    gear = side.result.gear
-    return [figure for _, figures in figures_of(gear) for figure in figures] if gear else []
 
 
 def _pair(values: Iterable[Any]) -> tuple[Any, Any]:
@@ -236,8 +227,7 @@ def _pair(values: Iterable[Any]) -> tuple[Any, Any]:
 async def _rendered(request: Request, status: int, shown: dict[str, Any]) -> Response:
     def work() -> Response:
         compared = _compared(*(_side(*one) for one in shown["found"])) if "found" in shown else {}
-        content = environment(request.app.state).get_template("compared.html").render(shown | compared)
-        return HTMLResponse(content, status, {"Cache-Control": "no-cache"})
+        return page(request, "compared.html", status, **shown | compared)
 
     return await compute(request, "pages", work)
 

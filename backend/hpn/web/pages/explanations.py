@@ -1,30 +1,28 @@
 """Pages that explain: the test of a check, cause and remedy of a problem, addresses that lead to no page."""
 
-from typing import Any
-
 from fastapi import APIRouter
 from starlette.exceptions import HTTPException
 from starlette.requests import Request
-from starlette.responses import HTMLResponse, Response
+from starlette.responses import Response
 
 from hpn.engine.checks import BY_CODE
 from hpn.web.door.access import MAXIMUM_QUERY_BYTES, admit
 from hpn.web.door.kinds import KINDS, PATH
 from hpn.web.door.pools import worked
 from hpn.web.door.problems import Problem
-from hpn.web.pages.templates import environment
+from hpn.web.pages.rendering import page
 
 
 def show_check(request: Request) -> Response:
     """The page of a check by its code, of which the script shows a part."""
     check = BY_CODE.get(request.path_params["code"])
-    return _nowhere(request) if check is None else _page(request, "check.html", code=check.code, definition=check)
+    return _nowhere(request) if check is None else page(request, "check.html", code=check.code, definition=check)
 
 
 def show_kind(request: Request) -> Response:
     """The page of a kind of problem by its name: `type` of a problem leads to it."""
     kind = KINDS.get(request.path_params["name"])
-    return _nowhere(request) if kind is None else _page(request, "problem.html", kind=kind)
+    return _nowhere(request) if kind is None else page(request, "problem.html", kind=kind)
 
 
 async def show_oembed() -> Response:
@@ -35,7 +33,7 @@ async def show_oembed() -> Response:
 def page_of(request: Request, error: HTTPException) -> Response | None:
     """Page of an address that is too long or leads nowhere; None where a problem says it."""
     if error.status_code == 414 and (reads_pages(request) or request.scope["path"] == "/"):
-        return _page(request, "too_long.html", 414, limit=MAXIMUM_QUERY_BYTES)
+        return page(request, "too_long.html", 414, limit=MAXIMUM_QUERY_BYTES)
     if error.status_code == 404 and reads_pages(request) and not isinstance(error, Problem):
         return _nowhere(request)
     return None
@@ -47,13 +45,7 @@ def reads_pages(request: Request) -> bool:
 
 
 def _nowhere(request: Request) -> Response:
-    return _page(request, "nowhere.html", 404)
-
-
-def _page(request: Request, template: str, status: int = 200, **shown: Any) -> Response:
-    shown["catalogue"] = request.app.state.catalogue
-    content = environment(request.app.state).get_template(template).render(shown)
-    return HTMLResponse(content, status, {"Cache-Control": "no-cache"})
+    return page(request, "nowhere.html", 404)
 
 
 router = APIRouter(include_in_schema=False, dependencies=[admit("calculator")])

@@ -34,13 +34,13 @@ def require_few(answers: Path) -> None:
     count = pq.read_metadata(answers).num_rows
     if count > MOST_LISTED:
         values = {"axes": Quantity(count, "", 12), "most": Quantity(MOST_LISTED, "", 12)}
-        raise Problem.told(413, Sentence(TOO_MANY, values))
+        raise Problem(413, Sentence(TOO_MANY, values))
 
 
 def draft_of(listing: KeptListing | None, catalogue: Catalogue) -> FleetDraft:
     """Fleet to be kept of tables that were sized; Problem 413 for more than a page can read."""
     if listing is None:
-        raise Problem.told(413, Sentence(TOO_LONG, {"most": MOST_BYTES // 1_000_000}))
+        raise Problem(413, Sentence(TOO_LONG, {"most": MOST_BYTES // 1_000_000}))
     summary = listing.summary
     return FleetDraft(
         axes=summary.axes,

@@ -20,17 +20,17 @@ from hpn.store import FleetDraft, NoRoomError, ShareSpentError, StoreUnavailable
 from hpn.store.fleets import MOST_OF_CALLER
 from hpn.tables.axes import AxisTable
 from hpn.tables.files import Contents, Wanted, contents_of, packed, unpacked
-from hpn.web.archive import RETRY_SECONDS
 from hpn.web.door.access import admit
 from hpn.web.door.hosts import require_same_origin
 from hpn.web.door.observation import note
 from hpn.web.door.pools import compute, compute_beside, worked
-from hpn.web.door.problems import Problem, needs
+from hpn.web.door.problems import STORE_SECONDS, Problem, needs
 from hpn.web.door.uploads import read_parts
 from hpn.web.fleets import Tables, size_fleet, workplace
 from hpn.web.form.symbols import AXIS_INPUTS
-from hpn.web.pages.paste import assumed, choices_of
-from hpn.web.pages.sized_fleets import ADDRESS, rendered
+from hpn.web.pages.paste import assumed, choices_of, digest
+from hpn.web.pages.rendering import page
+from hpn.web.pages.sized_fleets import ADDRESS
 from hpn.words.wording import N_, Sentence
 
 NO_ROOM_SECONDS = 3600
@@ -68,7 +68,7 @@ class Draft:
 
 def start(request: Request) -> Response:
     """The page with an empty form."""
-    return rendered(request, "fleets.html", 200, draft=Draft(), problems=(), **_WORDS)
+    return page(request, "fleets.html", draft=Draft(), problems=(), **_WORDS)
 
 
 async def upload(request: Request) -> Response:
@@ -87,9 +87,9 @@ async def upload(request: Request) -> Response:
         headers = dict(problem.headers or {})
     except StoreUnavailableError:
         status, problems = 503, (Sentence(N_("Machines are temporarily unavailable: try again in a few seconds.")),)
-        headers = {"Retry-After": str(RETRY_SECONDS)}
+        headers = {"Retry-After": str(STORE_SECONDS)}
     shown = {"draft": draft, "problems": problems, **_WORDS}
-    response = await compute(request, "pages", lambda: rendered(request, "fleets.html", status, **shown))
+    response = await compute(request, "pages", page, request, "fleets.html", status, **shown)
     response.headers.update(headers)
     return response
 
@@ -118,7 +118,7 @@ def _draft_of(parts: Mapping[str, bytes], content: bytes, contents: Contents) ->
 
     fields = {name: part.decode(errors="replace") for name, part in parts.items() if name not in ("file", "table")}
     text = fields.get("text", "")
-    of = hashlib.sha256(content).hexdigest()[:16]
+    of = digest(content)
     if contents.problem:
         return _refused_table(text, contents.problem)
     chosen = fields.get("sheet", "") if fields.get("of") == of else ""
@@ -146,17 +146,12 @@ async def _sized(request: Request, content: bytes, suffix: str) -> str:
         draft = await _calculated(request, content, suffix)
         id: str = await store.keep_fleet(replace(draft, owner=request.state.api_key, caller=caller), most_bytes)
     except ShareSpentError:
-        raise _no_room(429, Sentence(SHARE_SPENT, {"most": str(MOST_OF_CALLER)})) from None
+        spent = Sentence(SHARE_SPENT, {"most": str(MOST_OF_CALLER)})
+        raise Problem.later(spent, NO_ROOM_SECONDS, 429) from None
     except NoRoomError:
-        raise _no_room(503, Sentence(NO_ROOM)) from None
+        raise Problem.later(Sentence(NO_ROOM), NO_ROOM_SECONDS) from None
     note(request, fleet=id)
     return id
-
-
-def _no_room(status: int, sentence: Sentence) -> Problem:
-    problem = Problem(status, sentence.text, headers={"Retry-After": str(NO_ROOM_SECONDS)})
-    problem.sentences = (sentence,)
-    return problem
 
 
 async def _calculated(request: Request, content: bytes, suffix: str) -> FleetDraft:

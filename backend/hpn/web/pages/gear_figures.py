@@ -84,6 +84,11 @@ def figures_of(gear: Gear) -> list[tuple[str, list[Figure]]]:
     return [(title, [_figure(gear, label) for label in labels]) for title, labels in GROUPS]
 
 
+def all_figures(gear: Gear | None) -> list[Figure]:
+    """The same in one list; none of a gear that is not known."""
+    return [figure for _, figures in figures_of(gear) for figure in figures] if gear else []
+
+
 def _figure(gear: Gear, label: Label) -> Figure:
     values = [getattr(gear, name) for name in label.fields]
     known = tuple(dict.fromkeys(value for value in values if value is not None))

@@ -34,6 +34,7 @@ from hpn.web.door.visit import current
 from hpn.web.form import link_reader
 from hpn.web.form.link_reader import Pairs
 from hpn.web.form.link_writer import to_link
+from hpn.web.form.linked import query_part
 from hpn.web.form.rows import TEXT, expanded, used_columns
 from hpn.web.form.symbols import PHASE_BY_NAME
 from hpn.web.form.ways import CYCLE_NAMES
@@ -109,12 +110,12 @@ class Given:
 
 def _given(parts: Mapping[str, bytes]) -> Given:
     fields = {name: decoded(content) for name, content in parts.items() if name != "file"}
-    link, text = fields.get("link", "").removeprefix("/").removeprefix("?"), tidied(fields.get("text", ""))
+    link, text = query_part(fields.get("link", "")), tidied(fields.get("text", ""))
     file = parts.get("file", b"")
     if not file and not text.strip() and (book := fields.get("book")):
         file = unpacked(book.encode(errors="replace"))
         if not file:
-            raise Problem.told(422, Sentence(NOTHING))
+            raise Problem(422, Sentence(NOTHING))
     return Given(link, text, file, fields)
 
 
@@ -135,7 +136,7 @@ def _answer(request: Request, given: Given, contents: Contents) -> Response:
         return _render(request, PasteDraft(given.link, text, problems=(contents.problem,)), 422)
     if contents.is_application:
         return _of_application(request, given.link, text, given.fields.get("take", ""))
-    of = _digest(text.encode(errors="replace") or given.file)
+    of = digest(text.encode(errors="replace") or given.file)
     sheets, fields = contents.sheets, given.fields
     chosen = fields.get("sheet", "") if fields.get("of") == of else ""
     sheet = chosen if chosen in sheets else next(iter(sheets)) if len(sheets) == 1 else ""
@@ -173,7 +174,8 @@ def _outcome(table: CycleTable) -> Sentence | None:
     return Sentence(OUTCOME, {**ends, "time": Quantity(table.lasting_s, "s")})
 
 
-def _digest(content: bytes) -> str:
+def digest(content: bytes) -> str:
+    """Short mark of what was given, which its choices carry."""
     return hashlib.sha256(content).hexdigest()[:16]
 
 

@@ -8,7 +8,7 @@ from typing import Any
 
 from fastapi import APIRouter
 from starlette.requests import Request
-from starlette.responses import HTMLResponse, RedirectResponse, Response
+from starlette.responses import RedirectResponse, Response
 
 from hpn import ENGINE_VERSION
 from hpn.application import Application
@@ -20,18 +20,17 @@ from hpn.files.export import DIGITS
 from hpn.files.inputs import LOADS, REQUIREMENTS, given
 from hpn.files.motion import lines, move_line
 from hpn.files.report.tables import number_of
-from hpn.store import ID, SavedSelection, StoreUnavailableError
+from hpn.store import ID, SavedSelection
 from hpn.web.archive import Reopened, found, url_of
 from hpn.web.door.access import admit
-from hpn.web.door.problems import Problem
-from hpn.web.door.visit import current
+from hpn.web.door.visit import absolute, current
 from hpn.web.form import link_reader
 from hpn.web.form.labels import read_ordering_code
 from hpn.web.pages import calculator
-from hpn.web.pages.gear_figures import Figure, figures_of
+from hpn.web.pages.gear_figures import Figure, all_figures
+from hpn.web.pages.rendering import or_reason, page
 from hpn.web.pages.result import Result
-from hpn.web.pages.saving import refused
-from hpn.web.pages.templates import environment
+from hpn.web.pages.saving import REASON
 from hpn.words.quantities import CANDIDATE, CHECK, DUTY, GEAR, MOTOR, PHASE, RESERVE
 from hpn.words.terms import VERDICTS
 from hpn.words.units import symbol_of
@@ -65,21 +64,19 @@ EXPORTS = (
 )
 
 
+@or_reason(REASON)
 async def show_selection(request: Request) -> Response:
     """The selection as it was saved, and beside it what today's engine and catalogue say differently."""
     id = request.path_params["id"]
     if (seen := link_reader.visible(id)) != id and ID.fullmatch(seen):
         return RedirectResponse(f"/selections/{seen}?{request.url.query}".removesuffix("?"), 308)
-    try:
-        return await found(request, id, partial(_shown, request))
-    except (Problem, StoreUnavailableError) as error:
-        return refused(request, error)
+    return await found(request, id, partial(_shown, request))
 
 
 def _shown(request: Request, reopened: Reopened) -> Response:
-    page = _page(reopened, request.query_params.get("gear", ""), request.app.state.catalogue)
-    address = f"{str(request.base_url).rstrip('/')}/selections/{reopened.saved.id}"
-    return _render(request, "selection.html", 200, address=address, **page)
+    shown = _page(reopened, request.query_params.get("gear", ""), request.app.state.catalogue)
+    address = absolute(request, url_of(reopened.saved.id))
+    return page(request, "selection.html", address=address, **shown)
 
 
 async def copy_selection(request: Request) -> Response:
@@ -89,11 +86,6 @@ async def copy_selection(request: Request) -> Response:
 
 def _copied(request: Request, reopened: Reopened) -> Response:
     return calculator.respond(request, calculator.read_query(reopened.link.removeprefix("/?").encode()))
-
-
-def _render(request: Request, template: str, status: int, **context: Any) -> HTMLResponse:
-    content = environment(request.app.state).get_template(template).render(status=status, **context)
-    return HTMLResponse(content, status, {"Cache-Control": "no-cache"})
 
 
 # --- What the page shows ----------------------------------------------------------------------------------------------
@@ -170,14 +162,9 @@ def result_of(
 
 def _published(then: Catalogue | None, today: Catalogue, designation: str) -> list[tuple[Figure, Figure | None]]:
     """Published figures of a gear, each with today's where that differs; none where the catalogue of then is lost."""
-    before, after = _figures(then, designation), _figures(today, designation)
+    before, after = (all_figures(one.by_designation.get(designation) if one else None) for one in (then, today))
     pairs = zip(before, after or before, strict=bool(before))
     return [(old, None if old.values == new.values else new) for old, new in pairs]
-
-
-def _figures(catalogue: Catalogue | None, designation: str) -> list[Figure]:
-    gear = catalogue.by_designation.get(designation) if catalogue else None
-    return [figure for _, figures in figures_of(gear) for figure in figures] if gear else []
 
 
 def _gears(figures: Sequence[FigureDifference] | None, *, gone: bool) -> list[str]:

@@ -6,9 +6,9 @@ from typing import Any
 from fastapi import APIRouter
 from pydantic import ValidationError
 from starlette.requests import Request
-from starlette.responses import HTMLResponse, RedirectResponse, Response
+from starlette.responses import RedirectResponse, Response
 
-from hpn.store import SavedFleet, SavedSelection, Store, StoreUnavailableError
+from hpn.store import SavedFleet, SavedSelection, Store
 from hpn.web.archive import Line, changeable, not_found
 from hpn.web.door.access import admit
 from hpn.web.door.bodies import pairs_of, read_form
@@ -18,8 +18,8 @@ from hpn.web.door.pools import compute
 from hpn.web.door.problems import Problem
 from hpn.web.form.labels import TITLE_BLOCK
 from hpn.web.form.linked import onward
-from hpn.web.pages.saving import refused
-from hpn.web.pages.templates import environment
+from hpn.web.pages.rendering import or_reason, page
+from hpn.web.pages.saving import REASON
 from hpn.words.fields import Model
 from hpn.words.titles import faults_of
 from hpn.words.wording import N_, Sentence
@@ -37,6 +37,7 @@ class Wanted(Model):
     search: Line | None = None
 
 
+@or_reason(REASON)
 async def show_selections(request: Request) -> Response:
     """Saved selections, newest first. `/api/v1/selections` says the same as JSON, also to a browser."""
     given = {name: request.query_params.get(name, "") for name in ("search", "reference")}
@@ -51,21 +52,21 @@ async def show_selections(request: Request) -> Response:
         "later": bool(cursor),
     }
     store: Store = request.app.state.store
+    status = 422
     try:
         wanted = Wanted.model_validate(given)
-        page = await store.page(reference=wanted.reference, search=wanted.search, cursor=cursor, limit=LINES_ON_PAGE)
+        part = await store.page(reference=wanted.reference, search=wanted.search, cursor=cursor, limit=LINES_ON_PAGE)
     except ValidationError as error:
-        errors = {fault.location[0]: fault.text for fault in Problem.of(error).errors}
-        return await _rendered(request, "selections.html", 422, shown | {"errors": errors})
+        shown["errors"] = {fault.location[0]: fault.text for fault in Problem.of(error).errors}
     except ValueError:
-        return await _rendered(request, "selections.html", 422, shown | {"problem": NO_SUCH_PART})
-    except StoreUnavailableError as error:
-        return refused(request, error)
-    shown["older"] = page.next_cursor and onward(ADDRESS, **given, cursor=page.next_cursor)
-    shown["lines"] = page.selections
-    return await _rendered(request, "selections.html", 200, shown)
+        shown["problem"] = NO_SUCH_PART
+    else:
+        status, shown["lines"] = 200, part.selections
+        shown["older"] = part.next_cursor and onward(ADDRESS, **given, cursor=part.next_cursor)
+    return await compute(request, "pages", page, request, "selections.html", status, **shown)
 
 
+@or_reason(REASON)
 async def rename_selection(request: Request) -> Response:
     """Gives a saved selection another title and reference, and leads back to the list."""
     return await _changed(request, _rename)
@@ -98,22 +99,19 @@ def names_of(fields: Mapping[str, str], saved: SavedSelection | SavedFleet) -> d
         for fault in faults_of(text)
     ]
     if faults:
-        problem = Problem(422, "; ".join(fault.text for fault in faults))
-        problem.sentences = tuple(faults)
-        raise problem
+        raise Problem(422, faults)
     return {"title": names["title"] or None, "reference": names["ref"] or None}
 
 
+@or_reason(REASON)
 async def ask_to_delete(request: Request) -> Response:
     """The question whether a saved selection is to go for good."""
-    try:
-        saved = await changeable(request, request.path_params["id"])
-    except (Problem, StoreUnavailableError) as error:
-        return refused(request, error)
+    saved = await changeable(request, request.path_params["id"])
     back = _back(request.query_params.get("back", ""))
-    return await _rendered(request, "selection_delete.html", 200, {"saved": saved, "back": back})
+    return await compute(request, "pages", page, request, "selection_delete.html", saved=saved, back=back)
 
 
+@or_reason(REASON)
 async def delete_selection(request: Request) -> Response:
     """Deletes a saved selection for good, and leads back to the list."""
     return await _changed(request, _delete)
@@ -127,13 +125,10 @@ async def _delete(request: Request, saved: SavedSelection, fields: dict[str, str
 
 async def _changed(request: Request, change: Any) -> Response:
     """Redirect after a change of a saved selection that the list has asked for."""
-    try:
-        require_same_origin(request)
-        fields = dict(pairs_of(await read_form(request)))
-        saved = await changeable(request, request.path_params["id"])
-        await change(request, saved, fields)
-    except (Problem, StoreUnavailableError) as error:
-        return await compute(request, "pages", refused, request, error)
+    require_same_origin(request)
+    fields = dict(pairs_of(await read_form(request)))
+    saved = await changeable(request, request.path_params["id"])
+    await change(request, saved, fields)
     note(request, selection=saved.id)
     return RedirectResponse(_back(fields.get("back", "")), 303)
 
@@ -142,11 +137,6 @@ def _back(address: str) -> str:
     """Part of the list that a change was asked for on, and no other place."""
     query = address.removeprefix(f"{ADDRESS}?")
     return address if query != address and query.isascii() and query.isprintable() else ADDRESS
-
-
-async def _rendered(request: Request, template: str, status: int, shown: dict[str, Any]) -> Response:
-    content = await compute(request, "pages", environment(request.app.state).get_template(template).render, shown)
-    return HTMLResponse(content, status, {"Cache-Control": "no-cache"})
 
 
 router = APIRouter(include_in_schema=False)

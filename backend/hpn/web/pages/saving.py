@@ -3,30 +3,33 @@
 import hashlib
 import re
 from dataclasses import dataclass
-from typing import Any
 from urllib.parse import urlencode
 
 import orjson
 from fastapi import APIRouter
 from starlette.requests import Request
-from starlette.responses import HTMLResponse, RedirectResponse, Response
+from starlette.responses import RedirectResponse, Response
 
 from hpn.application import InputError
 from hpn.catalogue import Catalogue
 from hpn.store import Draft, StoreUnavailableError
-from hpn.web.archive import RETRY_SECONDS, Labels, draft_of, keep, url_of
+from hpn.web.archive import Labels, draft_of, keep, url_of
 from hpn.web.door.access import admit
 from hpn.web.door.bodies import pairs_of, read_form
 from hpn.web.door.hosts import require_same_origin
 from hpn.web.door.pools import compute
 from hpn.web.door.problems import Problem
 from hpn.web.form import link_reader
-from hpn.web.form.labels import TITLE_BLOCK, query_of
+from hpn.web.form.labels import FIELDS, TITLE_BLOCK, query_of
 from hpn.web.form.link_reader import Form, Pairs
+from hpn.web.form.linked import query_part
 from hpn.web.pages import calculator
 from hpn.web.pages.calculator import Answer
-from hpn.web.pages.templates import environment
+from hpn.web.pages.rendering import reason
 from hpn.words.wording import N_
+
+REASON = "selection_refused.html"
+"""Page that says why something can't be saved or shown."""
 
 ONCE = re.compile(r"[A-Za-z0-9_-]{22}")
 
@@ -70,11 +73,11 @@ async def save_from_page(request: Request) -> Response:
         owner, catalogue = request.state.api_key, request.app.state.catalogue
         draft = await compute(request, "pages", _draft, posted, catalogue, owner)
         return RedirectResponse(url_of(await keep(request, draft)), 303)
-    except InputError as error:
-        problem: Problem | StoreUnavailableError = Problem.of(error)
-    except (Problem, StoreUnavailableError) as error:
+    except (InputError, StoreUnavailableError) as error:
+        problem = Problem.of(error)
+    except Problem as error:
         problem = error
-    return await compute(request, "pages", refused, request, problem, posted)
+    return await compute(request, "pages", _refused, request, problem, posted)
 
 
 def _posted(body: bytes) -> Posted:
@@ -83,7 +86,7 @@ def _posted(body: bytes) -> Posted:
     named = dict(fields)
     own = [(name, text) for name, text in fields if name not in ("link", "once")]
     given = {name for name, _ in own}
-    linked = pairs_of(named.get("link", "").removeprefix("/").removeprefix("?"))
+    linked = pairs_of(query_part(named.get("link", "")))
     pairs = [*own, *(pair for pair in linked if pair[0] not in given)]
     return Posted(pairs, named.get("once", ""), link_reader.parse(pairs))
 
@@ -93,8 +96,8 @@ def _draft(posted: Posted, catalogue: Catalogue, owner: str | None) -> Draft:
     if answer is None:
         errors = [((problem.name,), problem.message.text) for problem in form.problems]
         raise Problem(422, N_("the inputs have errors: correct them on the page, then save"), errors)
-    written = {"title": "title", "reference": "ref", "author": "author", "revision": "rev"}
-    labels = Labels(**{field: form.labels[name] for field, name in written.items()}, ordering_code=_code(form, answer))
+    given = {field: form.labels[name] for name, field in FIELDS.items()}
+    labels = Labels(**given, ordering_code=_code(form, answer))
     return draft_of(catalogue, answer.application, labels, posted.key, owner)
 
 
@@ -106,21 +109,11 @@ def _code(form: Form, answer: Answer) -> str | None:
     return answer.order.text if chosen else None
 
 
-def refused(request: Request, error: Problem | StoreUnavailableError, posted: Posted | None = None) -> Response:
+def _refused(request: Request, problem: Problem, posted: Posted) -> Response:
     """Page with the reason, which still has what was typed."""
-    if isinstance(error, StoreUnavailableError):
-        error = Problem(503, str(error), headers={"Retry-After": str(RETRY_SECONDS)})
-    spent = error.status_code == 410  # whoever saves it again means to
-    shown: dict[str, Any] = {
-        "status": error.status_code,
-        "problem": error,
-        "posted": posted,
-        "form": posted and posted.form,
-        "once_more": calculator.once_key() if spent or posted is None else posted.once,
-    }
-    content = environment(request.app.state).get_template("selection_refused.html").render(shown)
-    headers = {"Cache-Control": "no-cache", **(error.headers or {})}
-    return HTMLResponse(content, error.status_code, headers)
+    spent = problem.status_code == 410  # somebody who saves it again means to
+    once_more = calculator.once_key() if spent else posted.once
+    return reason(request, REASON, problem, posted=posted, form=posted.form, once_more=once_more)
 
 
 router = APIRouter(include_in_schema=False)

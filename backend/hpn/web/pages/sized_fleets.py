@@ -12,11 +12,10 @@ from urllib.parse import quote
 
 from fastapi import APIRouter
 from starlette.requests import Request
-from starlette.responses import HTMLResponse, RedirectResponse, Response
+from starlette.responses import RedirectResponse, Response
 
 from hpn import ENGINE_VERSION
 from hpn.store import SavedFleet, StoreUnavailableError
-from hpn.web.archive import RETRY_SECONDS
 from hpn.web.door.access import admit, key_needed
 from hpn.web.door.bodies import pairs_of, read_form
 from hpn.web.door.hosts import require_same_origin
@@ -24,11 +23,11 @@ from hpn.web.door.observation import note
 from hpn.web.door.pools import compute, pool_of, while_present
 from hpn.web.door.problems import Problem, needs
 from hpn.web.fleets import Tables, size_fleet, workplace
-from hpn.web.form.labels import TITLE_BLOCK
+from hpn.web.form.labels import FIELDS, TITLE_BLOCK
 from hpn.web.pages.explanations import reads_pages
 from hpn.web.pages.fleet_view import ROWS_ON_PAGE, SHOWN, SORTINGS, Chosen, FleetPageView, foremost
+from hpn.web.pages.rendering import or_reason, page, reason
 from hpn.web.pages.saved_list import changed_since, names_of, version_of
-from hpn.web.pages.templates import environment
 from hpn.words.reader import Reader
 from hpn.words.titles import faults_of
 from hpn.words.wording import N_, Sentence
@@ -42,8 +41,10 @@ MEDIA_TYPES = {
 }
 """Formats of the answers in the order in which they are offered: what keeps a text a text comes first."""
 
+REASON = "fleet_refused.html"
+"""Page that says why there is nothing to show."""
+
 CHANGES_ON_PAGE = 100
-WRITTEN = {"title": "title", "ref": "reference", "author": "author", "rev": "revision"}
 NOT_YOURS = N_("Only the key that calculated this machine may see it and save it.")
 SAVED_MEANWHILE = N_("This machine was saved meanwhile, under other names. Open it again, then rename it.")
 GONE = N_("There is no such machine. A machine that is not saved is kept for a day.")
@@ -71,13 +72,10 @@ class TitleBlock:
 EMPTY = TitleBlock(dict.fromkeys(TITLE_BLOCK, ""))
 
 
+@or_reason(REASON)
 async def show(request: Request) -> Response:
     """A sized fleet: counts, and its axes as the address filters and sorts them."""
-    try:
-        saved = await _found(request)
-        return await _shown(request, saved, 200, EMPTY)
-    except (Problem, StoreUnavailableError) as error:
-        return await compute(request, "pages", _refused, request, error)
+    return await _shown(request, await _found(request), 200, EMPTY)
 
 
 async def _shown(request: Request, saved: SavedFleet, status: int, form: TitleBlock) -> Response:
@@ -99,7 +97,7 @@ def _page(
     asked = fleet_result.asked_of(saved, list(shown))
     links, allowed = fleet_report.links_of(asked), fleet_report.allowed_of(asked)
     view = FleetPageView(summary, part, links, allowed, top, f"{ADDRESS}/{saved.id}", chosen, len(found))
-    return rendered(
+    return page(
         request,
         "fleet.html",
         status,
@@ -164,7 +162,7 @@ async def download(request: Request) -> Response:
         saved = await _found(request)
     except (Problem, StoreUnavailableError) as error:
         if reads_pages(request):
-            return await compute(request, "pages", _refused, request, error)
+            return reason(request, REASON, error)
         raise
     pool = pool_of(request, "exports")
 
@@ -188,20 +186,18 @@ def _file(saved: SavedFleet, suffix: str, reader: Reader) -> Callable[[], bytes]
 # --- Saving, listing, renaming, deleting ------------------------------------------------------------------------------
 
 
+@or_reason(REASON)
 async def save(request: Request) -> Response:
     """Saves a fleet that was calculated, with its title block, and leads back to its page."""
-    try:
-        require_same_origin(request)
-        fields = dict(pairs_of(await read_form(request)))
-        form = TitleBlock({name: fields.get(name, "").strip() for name in TITLE_BLOCK})
-        saved = await _found(request)
-        if not form.is_sound:
-            return await _shown(request, saved, 422, form)
-        names = {WRITTEN[name]: text or None for name, text in form.labels.items()}
-        if not await request.app.state.store.save_fleet(saved.id, names, request.state.api_key):
-            await _require_same(request, names)
-    except (Problem, StoreUnavailableError) as error:
-        return await compute(request, "pages", _refused, request, error)
+    require_same_origin(request)
+    fields = dict(pairs_of(await read_form(request)))
+    form = TitleBlock({name: fields.get(name, "").strip() for name in TITLE_BLOCK})
+    saved = await _found(request)
+    if not form.is_sound:
+        return await _shown(request, saved, 422, form)
+    names = {FIELDS[name]: text or None for name, text in form.labels.items()}
+    if not await request.app.state.store.save_fleet(saved.id, names, request.state.api_key):
+        await _require_same(request, names)
     note(request, fleet=saved.id)
     return RedirectResponse(f"{ADDRESS}/{saved.id}", 303)
 
@@ -213,6 +209,7 @@ async def _require_same(request: Request, names: Mapping[str, str | None]) -> No
         raise Problem(412, SAVED_MEANWHILE)
 
 
+@or_reason(REASON)
 async def show_saved(request: Request) -> Response:
     """Saved fleets, newest first."""
     cursor = request.query_params.get("cursor") or None
@@ -220,47 +217,38 @@ async def show_saved(request: Request) -> Response:
         lines, following = await request.app.state.store.fleets(cursor)
     except ValueError:
         return RedirectResponse(f"{ADDRESS}/saved", 303)
-    except StoreUnavailableError as error:
-        return await compute(request, "pages", _refused, request, error)
     shown = {"lines": lines, "following": following, "later": bool(cursor)}
-    return await compute(request, "pages", lambda: rendered(request, "fleets_saved.html", 200, **shown))
+    return await compute(request, "pages", page, request, "fleets_saved.html", **shown)
 
 
+@or_reason(REASON)
 async def rename(request: Request) -> Response:
     """Gives a saved fleet another title and reference, and leads back to its page."""
-    try:
-        require_same_origin(request)
-        fields = dict(pairs_of(await read_form(request)))
-        saved, version = await _own(request), version_of(fields)
-        names = names_of(fields, saved)
-        if not await request.app.state.store.rename_fleet(saved.id, names, version):
-            raise Problem(404, GONE) if version is None or saved.saved is None else changed_since()
-    except (Problem, StoreUnavailableError) as error:
-        return await compute(request, "pages", _refused, request, error)
+    require_same_origin(request)
+    fields = dict(pairs_of(await read_form(request)))
+    saved, version = await _own(request), version_of(fields)
+    names = names_of(fields, saved)
+    if not await request.app.state.store.rename_fleet(saved.id, names, version):
+        raise Problem(404, GONE) if version is None or saved.saved is None else changed_since()
     note(request, fleet=saved.id)
     return RedirectResponse(f"{ADDRESS}/{saved.id}", 303)
 
 
+@or_reason(REASON)
 async def ask_to_delete(request: Request) -> Response:
     """The page that asks before a fleet goes for good."""
-    try:
-        saved = await _own(request)
-    except (Problem, StoreUnavailableError) as error:
-        return await compute(request, "pages", _refused, request, error)
-    return await compute(request, "pages", lambda: rendered(request, "fleet_delete.html", 200, saved=saved))
+    return await compute(request, "pages", page, request, "fleet_delete.html", saved=await _own(request))
 
 
+@or_reason(REASON)
 async def delete(request: Request) -> Response:
     """Deletes a fleet for good, and leads to the list."""
-    try:
-        require_same_origin(request)
-        given = "content-type" in request.headers  # a script may send no body
-        version = version_of(dict(pairs_of(await read_form(request)))) if given else None
-        saved = await _own(request)
-        if not await request.app.state.store.delete_fleet(saved.id, version):
-            raise Problem(404, GONE) if version is None else changed_since()
-    except (Problem, StoreUnavailableError) as error:
-        return await compute(request, "pages", _refused, request, error)
+    require_same_origin(request)
+    given = "content-type" in request.headers  # a script may send no body
+    version = version_of(dict(pairs_of(await read_form(request)))) if given else None
+    saved = await _own(request)
+    if not await request.app.state.store.delete_fleet(saved.id, version):
+        raise Problem(404, GONE) if version is None else changed_since()
     note(request, fleet=saved.id)
     return RedirectResponse(f"{ADDRESS}/saved", 303)
 
@@ -278,24 +266,6 @@ async def lead_on(request: Request) -> Response:
     path, query = request.scope["path"].removeprefix(OLDER_ADDRESS), request.scope["query_string"]
     address = ADDRESS + quote(path) + (f"?{quote(query, safe=punctuation)}" if query else "")
     return RedirectResponse(address, 308)
-
-
-# --- Rendering --------------------------------------------------------------------------------------------------------
-
-
-def _refused(request: Request, error: Problem | StoreUnavailableError) -> Response:
-    """Page that gives the reason why there is nothing to show."""
-    if isinstance(error, StoreUnavailableError):
-        error = Problem(503, str(error), headers={"Retry-After": str(RETRY_SECONDS)})
-    response = rendered(request, "fleet_refused.html", error.status_code, problem=error)
-    response.headers.update(error.headers or {})
-    return response
-
-
-def rendered(request: Request, template: str, status: int, **shown: Any) -> Response:
-    """A page of fleets."""
-    content = environment(request.app.state).get_template(template).render(status=status, **shown)
-    return HTMLResponse(content, status, {"Cache-Control": "no-cache"})
 
 
 router = APIRouter(include_in_schema=False, dependencies=[needs("fleet")])
