@@ -5,7 +5,7 @@ from collections.abc import Callable
 
 import pytest
 
-from hpn.application import NUMBERS
+from hpn.application.input_fields import NUMBERS
 from hpn.catalogue import Catalogue
 from hpn.engine.checks import BY_CODE, CHECKS, allowed
 from tests.build import Json, answer, candidate, check, cycle, phase

@@ -1,25 +1,25 @@
 """The application: what a person asks, its phases or motion, and the faults of an input."""
 
 from hpn.application.application import (
-    BEARING_LIFE_H,
     LEAST_MOTION,
-    LISTED_FIGURES,
-    MOST_WISHES,
-    NUMBERS,
     WORKED_EXAMPLE,
     Application,
     ApplicationArea,
     BatchItem,
-    BearingModel,
     Brake,
     DutyCycle,
     EmergencyStop,
-    InputError,
+    RankBy,
+)
+from hpn.application.faults import InputError, Location
+from hpn.application.requirements import (
+    BEARING_LIFE_H,
+    LISTED_FIGURES,
+    MOST_WISHES,
+    BearingModel,
     LifeBasis,
-    Location,
     Motor,
     OutputLoad,
-    RankBy,
     Requirements,
 )
 
@@ -28,7 +28,6 @@ __all__ = [
     "LEAST_MOTION",
     "LISTED_FIGURES",
     "MOST_WISHES",
-    "NUMBERS",
     "WORKED_EXAMPLE",
     "Application",
     "ApplicationArea",

@@ -1,25 +1,37 @@
 """Faults of an input: where, in words that say what would be right, and a code for programs."""
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from typing import NamedTuple
 
 from pydantic import ValidationError
 
-from hpn.application import InputError
-from hpn.words.wording import N_
+from hpn.words.wording import N_, Sentence
 
-Location = Sequence[str | int]
+Location = tuple[str | int, ...]
 
 LISTED_ERRORS = 5000
-"""Errors up to which they are listed at all; of more it is only told how many there are."""
+"""Most errors that are listed; of more the number alone is given."""
 
 REQUIRED = N_("is required")
 SHOULD = re.compile("(?:Input|Tuple|String) should")
 NOT_AVAILABLE = "not_available"
-"""Code of a wish that the catalogue can't answer."""
+"""Code of an input that the catalogue has no answer to."""
 
 NOT_A_NUMBER = N_("must be a number, such as 9.3")
+
+
+class InputError(ValueError):
+    """Input that is well formed but can't be answered; `problems` are (location, detail) pairs, in English."""
+
+    def __init__(self, *sentences: tuple[Location, Sentence]) -> None:
+        self.sentences = sentences
+        self.problems = tuple((location, sentence.text) for location, sentence in sentences)
+        super().__init__("; ".join(detail for _, detail in self.problems))
+
+    def below(self, name: str) -> "InputError":
+        """The same of an application that is a field of something else."""
+        return InputError(*(((name, *location), sentence) for location, sentence in self.sentences))
 
 
 class Fault(NamedTuple):

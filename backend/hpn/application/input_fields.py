@@ -87,3 +87,6 @@ PHASE_FIGURES = tuple(name for name, field in PHASE_FIELDS.items() if field.kind
 
 FIELDS: Mapping[str, InputField] = {".".join(field.path): field for field in _of_application()}
 """Fields outside of the phases and the motion by their path: `requirements.life_h`."""
+
+NUMBERS = tuple(field.path for field in FIELDS.values() if field.kind in ("number", "integer") and not field.is_list)
+"""Path of every single number of an application but its motion: ("requirements", "motor", "peak_torque_Nm")."""

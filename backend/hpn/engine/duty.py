@@ -11,7 +11,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from hpn.application import NUMBERS, Application, OutputLoad
+from hpn.application import Application, OutputLoad
+from hpn.application.input_fields import NUMBERS
 from hpn.physics import bearing, equations
 from hpn.physics.equations import FloatArray
 from hpn.physics.motion import Course

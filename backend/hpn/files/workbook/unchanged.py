@@ -10,8 +10,8 @@ from typing import Any
 
 from xlsxwriter.utility import xl_range_abs
 
-from hpn.application import NUMBERS, OutputLoad
-from hpn.application.input_fields import PHASE_FIGURES
+from hpn.application import OutputLoad
+from hpn.application.input_fields import NUMBERS, PHASE_FIGURES
 from hpn.files.export import Export
 from hpn.files.inputs import LOAD_INERTIA, LOAD_PATH, LOAD_REVERSES, LOADS, REQUIREMENTS, Value, value_of
 from hpn.files.workbook.formulas import CHECK_FORMULAS, CYCLE_TERMS, GEAR_TERMS, MOTOR_TORQUES, cell_name
