@@ -9,7 +9,7 @@ from hpn.tables.numbers import Entry, Kind, read_decimal, read_value, to_wire
 from hpn.web.form import link_reader
 from hpn.web.form.link_writer import to_link
 from hpn.web.form.offers import beside_fields
-from hpn.words import units
+from hpn.words import spellings, units
 from hpn.words.reader import Reader
 from hpn.words.wording import Sentence
 
@@ -237,7 +237,7 @@ def test_message_on_a_link_shows_both_notations_beside_german_fields() -> None:
 def test_every_unit_is_read_by_its_own_symbol() -> None:
     for quantity, codes in units.READ.items():
         for code, symbol in codes.items():
-            assert units.codes_for(symbol, quantity) == (code,), symbol
+            assert spellings.codes_for(symbol, quantity) == (code,), symbol
 
 
 POUND, INCH = Fraction("0.45359237"), Fraction("0.0254")
@@ -248,7 +248,7 @@ STANDARD_GRAVITY = Fraction("9.80665")
 
 
 @pytest.mark.parametrize(
-    ("spellings", "code", "wire", "in_wire"),
+    ("written", "code", "wire", "in_wire"),
     [
         ("kgf·m kgf.m kgfm kp·m kpm", "kgf_m", "Nm", STANDARD_GRAVITY),
         ("kgf·cm kgf-cm kgfcm kp·cm", "kgf_cm", "Nm", STANDARD_GRAVITY / 100),
@@ -279,11 +279,9 @@ STANDARD_GRAVITY = Fraction("9.80665")
     ],
 )
 def test_unit_in_another_spelling_is_the_same_to_the_last_digit(
-    spellings: str, code: str, wire: str, in_wire: Fraction
+    written: str, code: str, wire: str, in_wire: Fraction
 ) -> None:
-    assert {spelling: units.codes_for(spelling) for spelling in spellings.split()} == dict.fromkeys(
-        spellings.split(), (code,)
-    )
+    assert {each: spellings.codes_for(each) for each in written.split()} == dict.fromkeys(written.split(), (code,))
     assert 1 / units.entered(wire, code).factor == in_wire
 
 
@@ -296,7 +294,7 @@ def test_kilogram_force_in_a_field_is_converted(text: str, link: str) -> None:
 
 @pytest.mark.parametrize("spelling", ["mN", "MN", "MNm", "nN", "", "-1", "Pa", "x" * 300])
 def test_an_unknown_unit_is_none(spelling: str) -> None:
-    assert units.codes_for(spelling) == ()
+    assert spellings.codes_for(spelling) == ()
 
 
 def test_sum_stands_in_its_field_as_it_was_typed() -> None:

@@ -5,7 +5,7 @@ from itertools import product
 import pytest
 
 from hpn.web.form.symbols import AXIS_INPUTS
-from hpn.words import units
+from hpn.words import spellings
 from hpn.words.reader import LANGUAGES, Reader
 from tests.web.axes import HEAD, asked, read
 
@@ -37,11 +37,11 @@ def test_a_unit_behind_a_name_is_never_taken_for_another(form: str, soak: bool) 
     for role, held in AXIS_INPUTS.by_role.items():
         quantity = held.quantity
         names = {Reader(language).text(held.named.name) for language in LANGUAGES} if quantity else ()
-        for name, spelling in product(sorted(names), units.SPELLINGS):
+        for name, spelling in product(sorted(names), spellings.SPELLINGS):
             count += 1
             if not soak and count % 10:
                 continue
-            codes = units.codes_for(spelling, quantity)
+            codes = spellings.codes_for(spelling, quantity)
             _, column, *_ = read(f"Achse;{form.format(name, spelling)};Nr.;Pos.", "A;1;1;1").columns
             if len(codes) == 1 and column.role == role and column.unit not in ("", codes[0]):
                 wrong.append(form.format(name, spelling))

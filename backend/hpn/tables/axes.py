@@ -18,7 +18,7 @@ from hpn.tables.inputs import AXIS, NAME, PHASE, PHASE_ROLES, Inputs
 from hpn.tables.numbers import known_units
 from hpn.tables.reading import Questions, Reading, Row, Table, durations_of, in_plain, unit_behind
 from hpn.tables.sheets import Grid, RefusedError
-from hpn.words import units
+from hpn.words import spellings
 from hpn.words.wording import N_, Sentence
 
 _BETWEEN = re.compile(r"[;/|\s]+")
@@ -126,7 +126,7 @@ class _AxesReading(Reading):
                 cell = cells[column.place]
                 if found is not None:
                     strange += [cell] if found.unit and not self.in_wire(found, column) else []
-                elif column.quantity and (unit := unit_behind(cell)) and not units.codes_for(unit):
+                elif column.quantity and (unit := unit_behind(cell)) and not spellings.codes_for(unit):
                     unknown.append(cell)
                     known = known or known_units(column.quantity)
                 elif not is_blank(cell):

@@ -13,7 +13,8 @@ from fractions import Fraction
 from functools import lru_cache
 from typing import Literal, NamedTuple
 
-from hpn.words.units import QUANTITY_OF, codes_for
+from hpn.words.spellings import codes_for
+from hpn.words.units import QUANTITY_OF
 
 Decimal = Literal[".", ","]
 DECIMALS: tuple[Decimal, ...] = (".", ",")

@@ -13,7 +13,7 @@ from hpn.tables.cells import DECIMALS, TIME_FORMAT, entry, is_blank, is_number
 from hpn.tables.headings import INDEX, LONGEST, QUANTITIES, SUM, heading_of, heading_over, parts_of, quantities_of
 from hpn.tables.heads import REQUIRED
 from hpn.tables.inputs import NAME, Input, Inputs
-from hpn.words import units
+from hpn.words import spellings, units
 from hpn.words.wording import N_, Sentence, Value
 
 SKIP, CELLS = "skip", "cells"
@@ -230,7 +230,7 @@ def _written_unit(text: str, wire: str) -> str:
 
 def _unit_by(written: Collection[str], quantity: str) -> str:
     """Code of the unit that is written above a column, blank for several and for one with two readings."""
-    codes = {units.codes_for(unit, quantity) for unit in written}
+    codes = {spellings.codes_for(unit, quantity) for unit in written}
     only = codes.pop() if len(codes) == 1 else ()
     return only[0] if len(only) == 1 else ""
 
@@ -248,7 +248,7 @@ def _foreign_unit(headings: Sequence[str], held: Input) -> str:
     own = {held.unit, _plain(units.SYMBOLS.get(held.unit, ""))} - {""}
     found = {_written_unit(text, held.unit or "1") for text in headings} - {"1"}
     strange = [unit for unit in sorted(found) if unit not in own and _plain(unit) not in own]
-    return next((unit for unit in strange if _UNIT.search(unit) or units.codes_for(unit)), "")
+    return next((unit for unit in strange if _UNIT.search(unit) or spellings.codes_for(unit)), "")
 
 
 def _plain(unit: str) -> str:

@@ -15,7 +15,7 @@ from hpn.tables.inputs import CYCLE, NAME, PHASE_ROLES
 from hpn.tables.numbers import either, known_units
 from hpn.tables.reading import Choice, Questions, Reading, Row, Table, durations_of, in_plain, unit_behind
 from hpn.tables.sheets import SEPARATORS, Grid, RefusedError, grids_of, no_number
-from hpn.words import units
+from hpn.words import spellings, units
 from hpn.words.fields import MAXIMUM_PHASES
 from hpn.words.titles import LONGEST_NAME, is_title
 from hpn.words.wording import N_, Sentence
@@ -280,7 +280,7 @@ class _CycleReading(Reading):
         code = super().code(found, column)
         if not found.unit:
             return code
-        codes = units.codes_for(found.unit, column.quantity)
+        codes = spellings.codes_for(found.unit, column.quantity)
         said = f"{found.number[:30]} {found.unit[:30]}"
         headed = column.unit != CELLS and bool(heading_over(self.body.headings[column.place]).units)
         if len(codes) > 1 and not headed:

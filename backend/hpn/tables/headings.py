@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 from hpn.tables.cells import is_blank, tidy
-from hpn.words import units
+from hpn.words import spellings, units
 
 QUANTITIES = {
     **{"T": "torque", "n": "speed", "t": "time"},
@@ -141,9 +141,9 @@ def _heading_of(cell: str) -> Heading:
     folded = _folded(name)
     if summed := _SUMS.fullmatch(folded):
         of = _kind(summed["rest"], "")
-        return Heading(SUM if of == "t" or (not of and units.codes_for(unit, "time")) else "", unit)
+        return Heading(SUM if of == "t" or (not of and spellings.codes_for(unit, "time")) else "", unit)
     kind = _kind(name, unit)
-    codes = units.codes_for(unit)
+    codes = spellings.codes_for(unit)
     if kind in QUANTITIES and codes and QUANTITIES[kind] not in {units.QUANTITY_OF[code] for code in codes}:
         return Heading("", unit)
     words = {folded, *map(_folded, name.rpartition(" "))}
@@ -156,13 +156,13 @@ def _unit_alone(text: str) -> str:
     inner = _without_in(_without_in(text).strip("[]()<>{} "))
     if text == "d":  # rather a symbol of something than days
         return ""
-    known = inner in units.SPELLINGS if len(inner) == 1 else bool(units.codes_for(inner))
+    known = inner in spellings.SPELLINGS if len(inner) == 1 else bool(spellings.codes_for(inner))
     return inner if known else ""
 
 
 def _without_in(unit: str) -> str:
     """A unit without the word “in” before it, which in `in lb` is the inch."""
-    return unit if units.codes_for(unit) else unit.removeprefix("in ")
+    return unit if spellings.codes_for(unit) else unit.removeprefix("in ")
 
 
 def parts_of(text: str) -> tuple[str, str]:
@@ -173,14 +173,14 @@ def parts_of(text: str) -> tuple[str, str]:
         return match[1].strip(" ,/"), _without_in(match[2])
     for between in _BETWEEN.finditer(text):
         name, unit = text[: between.start()], text[between.end() :]
-        if name and units.codes_for(unit):
+        if name and spellings.codes_for(unit):
             return name, unit
     return text, ""
 
 
 def _kind(name: str, unit: str) -> str:
     if name in _MEASURED:
-        return _MEASURED[name] if units.codes_for(unit, QUANTITIES[_MEASURED[name]]) else ""
+        return _MEASURED[name] if spellings.codes_for(unit, QUANTITIES[_MEASURED[name]]) else ""
     if name in _EXACT:
         return _EXACT[name]
     folded = _folded(name)
@@ -217,7 +217,7 @@ class Over:
     @property
     def codes(self) -> frozenset[str]:
         """Codes that its units may stand for."""
-        return frozenset(code for unit in self.units for code in units.codes_for(unit))
+        return frozenset(code for unit in self.units for code in spellings.codes_for(unit))
 
 
 def heading_over(texts: Sequence[str]) -> Over:
@@ -276,7 +276,7 @@ def is_of_motor(cell: str) -> bool:
 
 def quantities_of(unit: str) -> set[str]:
     """Quantities that a unit may measure."""
-    return {units.QUANTITY_OF[code] for code in units.codes_for(unit)}
+    return {units.QUANTITY_OF[code] for code in spellings.codes_for(unit)}
 
 
 def is_total(cell: str) -> bool:

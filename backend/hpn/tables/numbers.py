@@ -15,6 +15,7 @@ from typing import Literal, NamedTuple
 
 from hpn.tables.arithmetic import worked_out
 from hpn.tables.cells import DASHES, DECIMALS, plain_number, split_unit
+from hpn.words import spellings
 from hpn.words import units as measures
 from hpn.words.reader import Reader
 from hpn.words.units import NUMBER, SYMBOLS
@@ -142,7 +143,7 @@ def unit_code(spelled: str, unit: str) -> str | Sentence:
     """Code of a unit as somebody writes it, for a quantity in a unit of the wire, or what is wrong with it."""
     quantity = measures.quantity_of(unit)
     per_rad = unit.endswith("_per_rad")
-    codes = measures.codes_for(spelled.removesuffix("/rad") if per_rad else spelled, quantity) if quantity else ()
+    codes = spellings.codes_for(spelled.removesuffix("/rad") if per_rad else spelled, quantity) if quantity else ()
     if len(codes) == 1 and spelled.endswith("/rad") >= per_rad:
         return codes[0]
     if len(codes) > 1:
@@ -164,7 +165,7 @@ def known_units(quantity: str, per: str = "") -> str:
 def either(codes: Sequence[str], spelled: str) -> dict[str, Sentence]:
     """Meanings of a spelling, as values of a sentence: two units, or one and a frequency that counts no turns."""
     first, second = (Sentence(measures.symbol_of_code(code)) for code in codes[:2])
-    return {"first": first, "second": Sentence(ELECTRICAL) if spelled.strip() == measures.FREQUENCY else second}
+    return {"first": first, "second": Sentence(ELECTRICAL) if spelled.strip() == spellings.FREQUENCY else second}
 
 
 def read_decimal(text: str, decimal: str) -> str | None:

@@ -32,7 +32,7 @@ from hpn.tables.heads import REQUIRED
 from hpn.tables.inputs import AXIS
 from hpn.tables.numbers import either, known_units
 from hpn.tables.sheets import RefusedError
-from hpn.words import units
+from hpn.words import spellings, units
 from hpn.words.wording import N_, Sentence, Value
 
 MISSING = {
@@ -226,12 +226,12 @@ class Reading:
     def _unit_question(self, column: Column) -> Sentence:
         """Question for a unit that is open: which of two, or which at all where another is written."""
         said = heading_over(self.body.headings[column.place]).units
-        codes = {units.codes_for(unit, column.quantity): unit for unit in sorted(said)}
+        codes = {spellings.codes_for(unit, column.quantity): unit for unit in sorted(said)}
         meant, spelled = next(iter(codes.items())) if len(codes) == 1 else ((), "")
         if len(meant) > 1:
             template = N_("Which unit is column {name} in? It can be {first} or {second}.")
             return Sentence(template, {"name": column.called, **either(meant, spelled)})
-        unknown = next((unit for unit in sorted(said) if not units.codes_for(unit, column.quantity)), "")
+        unknown = next((unit for unit in sorted(said) if not spellings.codes_for(unit, column.quantity)), "")
         if unknown:
             template = N_("Which unit is column {name} in? {unit} is none that is known; known are {units}.")
             listed = known_units(column.quantity)
@@ -292,7 +292,7 @@ class Reading:
         """Code of the unit that a number is in: its own, else its column's; blank where it is none of the column's."""
         if not found.unit:
             return column.unit
-        codes = units.codes_for(found.unit, column.quantity) if column.quantity else ()
+        codes = spellings.codes_for(found.unit, column.quantity) if column.quantity else ()
         return codes[0] if len(codes) == 1 else ""
 
     def in_wire(self, found: Entry, column: Column) -> str:

@@ -1,10 +1,10 @@
-"""Units: the suffix of a field's name such as `_Nm`, the units for display, and the units that people type.
+"""Units: the suffix of a field's name such as `_Nm`, and the units that people choose and type.
 
 Units are converted exactly, by pint.
 """
 
 import re
-import unicodedata
+from collections.abc import Mapping
 from dataclasses import dataclass
 from decimal import ROUND_HALF_EVEN, Context, Decimal
 from fractions import Fraction
@@ -61,18 +61,110 @@ def symbol_of(field_name: str) -> str:
     return SYMBOLS[unit] if unit else ""
 
 
-# --- Units for display ------------------------------------------------------------------------------------------------
+# --- Units that people choose and type --------------------------------------------------------------------------------
 
-CHOICES = {
-    "torque": {"Nm": "Nm", "lb_in": "lb·in", "lb_ft": "lb·ft"},
-    "speed": {"rpm": N_("rpm"), "rad_per_s": "rad/s", "deg_per_s": "°/s"},
-    "force": {"N": "N", "lbf": "lbf"},
-    "weight": {"kg": "kg", "lb": "lb"},
-    "length": {"mm": "mm", "in": "in"},
-    "angle": {"arcmin": "arcmin", "mrad": "mrad"},
-    "temperature": {"degC": "°C", "degF": "°F"},
+
+@dataclass(frozen=True, slots=True)
+class Unit:
+    """A unit: its symbol, its name in pint, and further spellings, apart by blanks; a page may show it where `shown`.
+
+    A torque is spelled as force and arm, an inertia as mass and arm squared: `spellings.py` has what follows from that.
+    """
+
+    symbol: str
+    pint: str
+    spelled: str = ""
+    shown: bool = False
+
+
+UNITS: Mapping[str, Mapping[str, Unit]] = {
+    "torque": {
+        "Nm": Unit("Nm", "newton * meter", "N·m kN·mm", shown=True),
+        "kNm": Unit("kNm", "kilonewton * meter", "kN·m"),
+        "daNm": Unit("daNm", "decanewton * meter", "daN·m"),
+        "Ncm": Unit("Ncm", "newton * centimeter", "N·cm cN·m"),
+        "Nmm": Unit("Nmm", "newton * millimeter", "N·mm"),
+        "mNm": Unit("mNm", "millinewton * meter", "mN·m"),
+        "oz_in": Unit("oz·in", "force_ounce * inch", "ozf·in oz·in"),
+        "lb_in": Unit("lb·in", "force_pound * inch", "lbf·in lb·in lbs·in", shown=True),
+        "lb_ft": Unit("lb·ft", "force_pound * foot", "lbf·ft lb·ft lbs·ft", shown=True),
+        "kgf_m": Unit("kgf·m", "kilogram_force * meter", "kgf·m kp·m"),
+        "kgf_cm": Unit("kgf·cm", "kilogram_force * centimeter", "kgf·cm kp·cm kg·cm"),  # kg·cm is how servos are sold
+    },
+    "speed": {
+        "rpm": Unit(
+            N_("rpm"),
+            "rpm",
+            "rpm r.p.m. 1/min /min U/min Umdr/min r/min rev/min revs/min Upm tr/min giri/min varv/min omw/min ot/min "
+            "turn/min turns/min min-1 U·min-1 r·min-1 rev·min-1 tr·min-1",
+            shown=True,
+        ),
+        "krpm": Unit("krpm", "kilorpm", "krpm kU/min"),
+        "rev_per_s": Unit(
+            N_("rev/s"),
+            "revolution / second",
+            "rev/s rev/sec revs/s revs/sec U/s r/s rps tr/s giri/s varv/s turn/s turns/s turns/sec 1/s /s s-1 Hz "
+            "U·s-1 r·s-1 rev·s-1 tr·s-1",
+        ),
+        "rad_per_s": Unit("rad/s", "radian / second", "rad/s rad/sec rads-1 1/s /s s-1 Hz", shown=True),
+        "deg_per_s": Unit(
+            "°/s",
+            "degree / second",
+            "°/s °/sec deg/s deg/sec degree/s degrees/s Grad/s degs-1 °s-1",
+            shown=True,
+        ),
+        "deg_per_min": Unit("°/min", "degree / minute", "°/min deg/min degree/min degrees/min Grad/min"),
+    },
+    "force": {
+        "N": Unit("N", "newton", "N Newton newtons", shown=True),
+        "kN": Unit("kN", "kilonewton", "kN"),
+        "daN": Unit("daN", "decanewton", "daN"),
+        "lbf": Unit("lbf", "force_pound", "lbf lb lbs", shown=True),
+    },
+    "weight": {
+        "kg": Unit("kg", "kilogram", "kg", shown=True),
+        "g": Unit("g", "gram", "g"),
+        "lb": Unit("lb", "pound", "lb lbs", shown=True),
+    },
+    "length": {
+        "mm": Unit("mm", "millimeter", "mm", shown=True),
+        "cm": Unit("cm", "centimeter", "cm"),
+        "m": Unit("m", "meter", "m"),
+        "in": Unit("in", "inch", "in inch", shown=True),
+    },
+    "angle": {
+        "arcmin": Unit("arcmin", "arcminute", "arcmin '", shown=True),
+        "mrad": Unit("mrad", "milliradian", "mrad", shown=True),
+        "deg": Unit("°", "degree", "° deg Grad"),
+        "arcsec": Unit("arcsec", "arcsecond", "arcsec"),
+    },
+    "temperature": {
+        "degC": Unit("°C", "degC", "°C C degC", shown=True),
+        "degF": Unit("°F", "degF", "°F F degF", shown=True),
+    },
+    "time": {
+        "s": Unit(
+            "s", "second", "s sec sec. secs Sek Sek. second seconds Sekunde Sekunden secondes secondi segundos sekunder"
+        ),
+        "ms": Unit("ms", "millisecond", "ms msec msecs Millisekunden milliseconds millisecondes"),
+        "us": Unit("µs", "microsecond", "µs us usec"),
+        "min": Unit("min", "minute", "min min. mins minute minutes Minuten"),
+        "h": Unit("h", "hour", "h hr hrs hour hours Std Std. Stunde Stunden heures"),
+        "day": Unit("d", "day", "d day days Tag Tage jour jours"),
+    },
+    "inertia": {
+        "kgm2": Unit("kg·m²", "kilogram * meter ** 2", "kg·m2"),
+        "kg_cm2": Unit("kg·cm²", "kilogram * centimeter ** 2", "kg·cm2"),
+        "kg_mm2": Unit("kg·mm²", "kilogram * millimeter ** 2", "kg·mm2"),
+        "g_cm2": Unit("g·cm²", "gram * centimeter ** 2", "g·cm2"),
+        "lb_in2": Unit("lb·in²", "pound * inch ** 2", "lb·in2 lbm·in2 lbs·in2"),
+        "lb_ft2": Unit("lb·ft²", "pound * foot ** 2", "lb·ft2 lbm·ft2 lbs·ft2"),
+        "oz_in2": Unit("oz·in²", "ounce * inch ** 2", "oz·in2"),
+        "lb_in_s2": Unit("lb·in·s²", "force_pound * inch * second ** 2", "lb·in·s2 lbf·in·s2 lb·in·sec2 lbf·in·sec2"),
+        "oz_in_s2": Unit("oz·in·s²", "force_ounce * inch * second ** 2", "oz·in·s2 ozf·in·s2 oz·in·sec2 ozf·in·sec2"),
+    },
 }
-"""Kind of quantity -> codes of its units for display, with their symbols; the first is the wire's."""
+"""Kind of quantity -> codes of the units in which it may be given."""
 
 NAMES = {
     "torque": N_("Torque"),
@@ -83,6 +175,18 @@ NAMES = {
     "angle": N_("Angle"),
     "temperature": N_("Temperature"),
 }
+"""Kinds of quantities whose unit a reader may choose."""
+
+CHOICES = {name: {code: unit.symbol for code, unit in UNITS[name].items() if unit.shown} for name in NAMES}
+"""Kind of quantity -> codes of its units for display, with their symbols; the first is the wire's."""
+
+READ = {
+    name: CHOICES.get(name, {}) | {code: unit.symbol for code, unit in units.items()} for name, units in UNITS.items()
+}
+"""Kind of quantity -> codes of all units in which it may be given, with their symbols, those for display first."""
+
+QUANTITY_OF = {code: name for name, codes in READ.items() for code in codes}
+"""Code of a unit -> kind of quantity."""
 
 PRESETS = {"SI": (), "US": ("lb_in", "lbf", "lb", "in", "degF")}
 """Presets of all units."""
@@ -90,78 +194,8 @@ PRESETS = {"SI": (), "US": ("lb_in", "lbf", "lb", "in", "degF")}
 CODES = tuple(code for units in CHOICES.values() for code in list(units)[1:])
 """Codes of the units that differ from the wire's, in the order in which a cookie gives them."""
 
-_PINT = {
-    "Nm": "newton * meter",
-    "lb_in": "force_pound * inch",
-    "lb_ft": "force_pound * foot",
-    "rpm": "rpm",
-    "rad_per_s": "radian / second",
-    "deg_per_s": "degree / second",
-    "N": "newton",
-    "lbf": "force_pound",
-    "kg": "kilogram",
-    "lb": "pound",
-    "mm": "millimeter",
-    "in": "inch",
-    "arcmin": "arcminute",
-    "mrad": "milliradian",
-    "degC": "degC",
-    "degF": "degF",
-    "kNm": "kilonewton * meter",
-    "daNm": "decanewton * meter",
-    "Nmm": "newton * millimeter",
-    "Ncm": "newton * centimeter",
-    "mNm": "millinewton * meter",
-    "oz_in": "force_ounce * inch",
-    "kgf_m": "kilogram_force * meter",
-    "kgf_cm": "kilogram_force * centimeter",
-    "rev_per_s": "revolution / second",
-    "krpm": "kilorpm",
-    "deg_per_min": "degree / minute",
-    "kN": "kilonewton",
-    "daN": "decanewton",
-    "g": "gram",
-    "cm": "centimeter",
-    "m": "meter",
-    "arcsec": "arcsecond",
-    "deg": "degree",
-    "s": "second",
-    "ms": "millisecond",
-    "us": "microsecond",
-    "min": "minute",
-    "h": "hour",
-    "day": "day",
-    "kgm2": "kilogram * meter ** 2",
-    "kg_cm2": "kilogram * centimeter ** 2",
-    "kg_mm2": "kilogram * millimeter ** 2",
-    "g_cm2": "gram * centimeter ** 2",
-    "lb_in2": "pound * inch ** 2",
-    "lb_ft2": "pound * foot ** 2",
-    "oz_in2": "ounce * inch ** 2",
-    "lb_in_s2": "force_pound * inch * second ** 2",
-    "oz_in_s2": "force_ounce * inch * second ** 2",
-}
-FURTHER = {
-    "torque": {
-        **{"kNm": "kNm", "daNm": "daNm", "Ncm": "Ncm", "Nmm": "Nmm", "mNm": "mNm"},
-        **{"oz_in": "oz·in", "kgf_m": "kgf·m", "kgf_cm": "kgf·cm"},
-    },
-    "speed": {"krpm": "krpm", "rev_per_s": N_("rev/s"), "deg_per_min": "°/min"},
-    "force": {"kN": "kN", "daN": "daN"},
-    "weight": {"g": "g"},
-    "length": {"cm": "cm", "m": "m"},
-    "angle": {"deg": "°", "arcsec": "arcsec"},
-    "time": {"s": "s", "ms": "ms", "us": "µs", "min": "min", "h": "h", "day": "d"},
-    "inertia": {
-        **{"kgm2": "kg·m²", "kg_cm2": "kg·cm²", "kg_mm2": "kg·mm²", "g_cm2": "g·cm²"},
-        **{"lb_in2": "lb·in²", "lb_ft2": "lb·ft²", "oz_in2": "oz·in²", "lb_in_s2": "lb·in·s²", "oz_in_s2": "oz·in·s²"},
-    },
-}
-"""Further units that are only read: kind of quantity -> codes with their symbols."""
-
 _SUFFIXES = {symbol: suffix for suffix, symbol in SYMBOLS.items()}
 _OF_CODE = {code: next(iter(units)) for units in CHOICES.values() for code in units}
-_SYMBOL = {code: symbol for table in (FURTHER, CHOICES) for units in table.values() for code, symbol in units.items()}
 NUMBER = re.compile(r"[+-]?([0-9]+(\.[0-9]*)?|\.[0-9]+)([eE][+-]?[0-9]{1,3})?")
 
 
@@ -236,10 +270,11 @@ def entered(suffix: str, code: str) -> Measure:
     """Measure of a number that is given in the unit of a code, for a unit of the wire with the same dimension."""
     whole = _dividend(suffix)
     per = SYMBOLS[suffix].removeprefix(SYMBOLS[whole]) if whole != suffix else ""
-    symbol = _SYMBOL.get(code, SYMBOLS.get(suffix, suffix)) + per
+    symbol = (symbol_of_code(code) if code in QUANTITY_OF else SYMBOLS.get(suffix, suffix)) + per
     if code == whole:
         return Measure(symbol)
-    zero, one = (_registry().Quantity(Fraction(n), _PINT[whole]).to(_PINT[code]).magnitude for n in (0, 1))
+    units = UNITS[QUANTITY_OF[code]]
+    zero, one = (_registry().Quantity(Fraction(n), units[whole].pint).to(units[code].pint).magnitude for n in (0, 1))
     return Measure(symbol, Fraction(one - zero), Fraction(zero))
 
 
@@ -263,135 +298,6 @@ def codes_of(text: str) -> tuple[str, ...]:
     return tuple(code for code in CODES if code in first.values())
 
 
-# --- Units that people type -------------------------------------------------------------------------------------------
-
-READ = {name: {**CHOICES.get(name, {}), **FURTHER.get(name, {})} for name in (*CHOICES, "time", "inertia")}
-"""Kind of quantity -> codes of the units in which it may be given, with their symbols."""
-
-_SPELLED = {
-    "rpm": "rpm r.p.m. 1/min /min U/min Umdr/min r/min rev/min revs/min Upm tr/min giri/min varv/min omw/min ot/min "
-    "turn/min turns/min min-1 U·min-1 r·min-1 rev·min-1 tr·min-1",
-    "krpm": "krpm kU/min",
-    "rev_per_s": "rev/s rev/sec revs/s revs/sec U/s r/s rps tr/s giri/s varv/s turn/s turns/s turns/sec 1/s /s s-1 Hz "
-    "U·s-1 r·s-1 rev·s-1 tr·s-1",
-    "rad_per_s": "rad/s rad/sec rads-1 1/s /s s-1 Hz",
-    "deg_per_s": "°/s °/sec deg/s deg/sec degree/s degrees/s Grad/s degs-1 °s-1",
-    "deg_per_min": "°/min deg/min degree/min degrees/min Grad/min",
-    "N": "N Newton newtons",
-    "kN": "kN",
-    "daN": "daN",
-    "lbf": "lbf lb lbs",
-    "kg": "kg",
-    "g": "g",
-    "lb": "lb lbs",
-    "mm": "mm",
-    "cm": "cm",
-    "m": "m",
-    "in": "in inch",
-    "arcmin": "arcmin '",
-    "arcsec": "arcsec",
-    "deg": "° deg Grad",
-    "mrad": "mrad",
-    "degC": "°C C degC",
-    "degF": "°F F degF",
-    "s": "s sec sec. secs Sek Sek. second seconds Sekunde Sekunden secondes secondi segundos sekunder",
-    "ms": "ms msec msecs Millisekunden milliseconds millisecondes",
-    "us": "µs us usec",
-    "min": "min min. mins minute minutes Minuten",
-    "h": "h hr hrs hour hours Std Std. Stunde Stunden heures",
-    "day": "d day days Tag Tage jour jours",
-}
-_ARMS = {
-    "Nm": "N·m kN·mm",
-    "kNm": "kN·m",
-    "daNm": "daN·m",
-    "Ncm": "N·cm cN·m",
-    "Nmm": "N·mm",
-    "mNm": "mN·m",
-    "oz_in": "ozf·in oz·in",
-    "lb_in": "lbf·in lb·in lbs·in",
-    "lb_ft": "lbf·ft lb·ft lbs·ft",
-    "kgf_m": "kgf·m kp·m",
-    "kgf_cm": "kgf·cm kp·cm kg·cm",
-}
-"""Units of torque as force and arm; inch and foot may stand first. `kg·cm` is how servos are sold."""
-
-_INERTIAS = {
-    "kgm2": "kg·m2",
-    "kg_cm2": "kg·cm2",
-    "kg_mm2": "kg·mm2",
-    "g_cm2": "g·cm2",
-    "lb_in2": "lb·in2 lbm·in2 lbs·in2",
-    "lb_ft2": "lb·ft2 lbm·ft2 lbs·ft2",
-    "oz_in2": "oz·in2",
-    "lb_in_s2": "lb·in·s2 lbf·in·s2 lb·in·sec2 lbf·in·sec2",
-    "oz_in_s2": "oz·in·s2 ozf·in·s2 oz·in·sec2 ozf·in·sec2",
-}
-"""Units of inertia: with a square of time as torque for each angular acceleration, else as mass and arm squared."""
-
-FREQUENCY = "Hz"
-"""May count turns, or be the electrical frequency of a motor: so many times the turns as it has pairs of poles."""
-
-_SIGNS = " .·⋅∙•‧・*×"
-"""Signs of a product, besides a hyphen."""
-
-_PRODUCT = re.compile(rf"(?<=[A-Za-z])[{_SIGNS}_-]+(?=[A-Za-z])")
-_AS_TYPED = str.maketrans({**dict.fromkeys("\N{MINUS SIGN}\N{EN DASH}\N{HYPHEN}", "-"), "μ": "µ"})
-_SUPERSCRIPT = re.compile(r"\^?\(?-1\)?$")
-_SQUARE = re.compile(r"(?:\^|\*\*)\(?2\)?$")
-
-
-def _spelling(text: str) -> str:
-    """A unit with one sign for a product and one way of writing `per`: `N.m`, `N-m` and `N·m` are `N·m`."""
-    tight = unicodedata.normalize("NFKC", text).strip().translate(_AS_TYPED)
-    inverse = _SUPERSCRIPT.sub("-1", tight)
-    if inverse != tight or inverse.endswith("-1"):
-        return re.sub(rf"[{_SIGNS}^()]", "", inverse)
-    product = _PRODUCT.sub("·", _SQUARE.sub("2", tight))
-    return re.sub(r"\.? */ *", "/", product.removesuffix(".") if "·" in product else product)
-
-
-def _spellings() -> dict[str, tuple[str, ...]]:
-    found: dict[str, list[str]] = {}
-    for code, words in _SPELLED.items():
-        for word in words.split():
-            found.setdefault(_spelling(word), []).append(code)
-    for code, products in _ARMS.items():
-        for product in products.split():
-            force, arm = product.split("·")
-            for first, second in ((force, arm), (arm, force))[: 2 if arm in ("in", "ft") else 1]:
-                found[f"{first}·{second}"] = found[f"{first}{second}"] = [code]
-                found[f"{first}·{second}s"] = [code]
-    for code, products in _INERTIAS.items():
-        for product in products.split():
-            found[product] = found[product.replace("·", "")] = [code]
-    found["Newtonmeter"] = found["Newton·meter"] = found["newton·metres"] = ["Nm"]
-    return {spelling: tuple(codes) for spelling, codes in found.items()}
-
-
-SPELLINGS = _spellings()
-"""A unit as people write it -> the codes that it may stand for: `1/s` may count revolutions or radians."""
-
-_FOLDED = {
-    spelling.casefold(): codes
-    for spelling, codes in SPELLINGS.items()
-    if len({other for each, other in SPELLINGS.items() if each.casefold() == spelling.casefold()}) == 1
-    and not spelling.startswith(("mN", "Ms"))  # M and m are a factor of a thousand million
-    and spelling != "d"
-}
-QUANTITY_OF = {code: name for name, codes in READ.items() for code in codes}
-"""Code of a unit -> kind of quantity."""
-
-
-def codes_for(text: str, quantity: str = "") -> tuple[str, ...]:
-    """Codes that a unit as somebody writes it may stand for, of one quantity or any; several where it is ambiguous."""
-    if len(text) > 40:
-        return ()
-    spelling = _spelling(text)
-    codes = SPELLINGS.get(spelling) or _FOLDED.get(spelling.casefold(), ())
-    return tuple(code for code in codes if quantity in ("", QUANTITY_OF[code]))
-
-
 def quantity_of(suffix: str) -> str:
     """Kind of quantity of a unit of the wire; blank for a pure number."""
     whole = suffix.removesuffix("_per_rad")
@@ -400,4 +306,4 @@ def quantity_of(suffix: str) -> str:
 
 def symbol_of_code(code: str) -> str:
     """Symbol of a unit by its code."""
-    return _SYMBOL[code]
+    return READ[QUANTITY_OF[code]][code]

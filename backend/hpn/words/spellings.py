@@ -1,0 +1,77 @@
+"""Spellings of units: from a unit as people write it to the codes that it may stand for."""
+
+import re
+import unicodedata
+
+from hpn.words.units import QUANTITY_OF, UNITS
+
+FREQUENCY = "Hz"
+"""May count turns, or be the electrical frequency of a motor: so many times the turns as it has pairs of poles."""
+
+_SIGNS = " .·⋅∙•‧・*×"
+"""Signs of a product, besides a hyphen."""
+
+_PRODUCT = re.compile(rf"(?<=[A-Za-z])[{_SIGNS}_-]+(?=[A-Za-z])")
+_AS_TYPED = str.maketrans({**dict.fromkeys("\N{MINUS SIGN}\N{EN DASH}\N{HYPHEN}", "-"), "μ": "µ"})
+_SUPERSCRIPT = re.compile(r"\^?\(?-1\)?$")
+_SQUARE = re.compile(r"(?:\^|\*\*)\(?2\)?$")
+
+
+def _spelling(text: str) -> str:
+    """A unit with one sign for a product and one way of writing `per`: `N.m`, `N-m` and `N·m` are `N·m`."""
+    tight = unicodedata.normalize("NFKC", text).strip().translate(_AS_TYPED)
+    inverse = _SUPERSCRIPT.sub("-1", tight)
+    if inverse != tight or inverse.endswith("-1"):
+        return re.sub(rf"[{_SIGNS}^()]", "", inverse)
+    product = _PRODUCT.sub("·", _SQUARE.sub("2", tight))
+    return re.sub(r"\.? */ *", "/", product.removesuffix(".") if "·" in product else product)
+
+
+def _spellings() -> dict[str, tuple[str, ...]]:
+    found: dict[str, dict[str, None]] = {}
+    for quantity, units in UNITS.items():
+        for code, unit in units.items():
+            for word in unit.spelled.split():
+                for spelling in _FORMS.get(quantity, _plain)(word):
+                    found.setdefault(spelling, {})[code] = None
+    found |= {word: {"Nm": None} for word in ("Newtonmeter", "Newton·meter", "newton·metres")}
+    return {spelling: tuple(codes) for spelling, codes in found.items()}
+
+
+def _plain(word: str) -> list[str]:
+    return [_spelling(word)]
+
+
+def _of_torque(word: str) -> list[str]:
+    """A product of force and arm, of which inch and foot may stand first."""
+    force, arm = word.split("·")
+    turned = [(arm, force)] if arm in ("in", "ft") else []
+    return [spelling for a, b in ((force, arm), *turned) for spelling in (f"{a}·{b}", f"{a}{b}", f"{a}·{b}s")]
+
+
+def _of_inertia(word: str) -> list[str]:
+    """With a square of time a torque for each angular acceleration, else a mass and its arm squared."""
+    return [word, word.replace("·", "")]
+
+
+_FORMS = {"torque": _of_torque, "inertia": _of_inertia}
+
+SPELLINGS = _spellings()
+"""A unit as people write it -> the codes that it may stand for: `1/s` may count revolutions or radians."""
+
+_FOLDED = {
+    spelling.casefold(): codes
+    for spelling, codes in SPELLINGS.items()
+    if len({other for each, other in SPELLINGS.items() if each.casefold() == spelling.casefold()}) == 1
+    and not spelling.startswith(("mN", "Ms"))  # M and m are a factor of a thousand million
+    and spelling != "d"
+}
+
+
+def codes_for(text: str, quantity: str = "") -> tuple[str, ...]:
+    """Codes that a unit as somebody writes it may stand for, of one quantity or any; several where it is ambiguous."""
+    if len(text) > 40:
+        return ()
+    spelling = _spelling(text)
+    codes = SPELLINGS.get(spelling) or _FOLDED.get(spelling.casefold(), ())
+    return tuple(code for code in codes if quantity in ("", QUANTITY_OF[code]))
