@@ -249,6 +249,26 @@ def test_figures_of_a_check_stand_beside_the_first_line_of_its_name(visitor: Vis
         assert abs(name - demand) <= 1
 
 
+EDGES = "parts => parts.map(part => Math.round(part.getBoundingClientRect().left))"
+
+
+@pytest.mark.parametrize("language", ["en", "de"])
+def test_sign_and_unit_of_the_checks_stand_in_columns_and_each_name_in_one_line(
+    visitor: Visitor, language: str
+) -> None:
+    page = visitor.open(STATES["all gears"])
+    if language == "de":
+        read_german(page)
+    limits = page.locator("#limits tbody td:nth-child(3)")
+    page.evaluate("document.fonts.ready.then(() => 0)")
+    names = page.locator("#limits .explain").evaluate_all("names => names.map(name => name.offsetHeight)")
+
+    for part in (".sign", ".quantity .unit"):
+        assert len(set(limits.locator(part).evaluate_all(EDGES))) == 1, part
+    expect(page.locator("#limits tbody td:nth-child(2) .unit")).to_have_count(0)
+    assert max(names) <= 24, names
+
+
 def test_headings_of_a_comparison_stand_on_one_line_and_pins_have_no_ground_of_their_own(visitor: Visitor) -> None:
     page = visitor.open(EXAMPLE + "&gear=HPN-20A-5&pin=HPN-32A-5#compare")
     headings = page.locator("#comparison thead th")
