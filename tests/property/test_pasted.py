@@ -227,7 +227,7 @@ def test_answers_to_what_is_asked_lead_to_the_cycle(rows: list[tuple[Decimal, ..
     times = "ends" if how.instants else "durations"
     last = "sum" if how.last == "sum" else "phase"
     table = read_text(text, Choices(decimal=mark, times=times, last=last))
-    if table.whole and not (how.instants and not table.asks_times) and (how.last != "sum" or table.asks_last):
+    if table.whole and not (how.instants and not table.choice("times")) and (how.last != "sum" or table.choice("last")):
         wanted = [pytest.approx([float(value) for value in row], rel=1e-9) for row in wire]
         assert [list(phase[:3]) for phase in phases_of(table)] == wanted, text
 

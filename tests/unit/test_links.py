@@ -11,6 +11,7 @@ from pydantic import BaseModel
 
 from hpn.application import Application
 from hpn.web.form import link_reader, symbols
+from hpn.web.form.form import Form
 from hpn.web.form.link_writer import to_link
 from tests.property.draw import NAMES
 
@@ -98,7 +99,7 @@ def loaded(document: dict[str, Any]) -> bool:
     return "output_load" not in document or any("radial_N" in c or "axial_N" in c for c in carriers)
 
 
-def read(query: str) -> link_reader.Form:
+def read(query: str) -> Form:
     return link_reader.parse(parse_qsl(query, keep_blank_values=True))
 
 

@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 from hpn.tables.numbers import read_decimal
 from hpn.web.door.readers import accepted_language
 from hpn.web.form import link_reader
+from hpn.web.form.form import Form, for_reader
 from hpn.words import units
 from hpn.words.reader import GROUP, Reader
 from hpn.words.wording import Quantity, Sentence
@@ -21,7 +22,7 @@ NUMBERS = st.floats(allow_nan=False, allow_infinity=False, min_value=-1e12, max_
 )
 
 
-def form_of(**texts: str) -> link_reader.Form:
+def form_of(**texts: str) -> Form:
     return link_reader.parse(list(texts.items()))
 
 
@@ -86,7 +87,7 @@ def test_every_number_can_be_written_in_every_unit_and_comes_back_the_same(value
 )
 def test_a_form_sent_back_untouched_says_what_the_link_said(pairs: list[tuple[float, float]], reader: Reader) -> None:
     texts = [(name, repr(value)) for pair in pairs for name, value in zip("Tn", pair, strict=True)]
-    shown = link_reader.for_reader(link_reader.parse([*texts, ("bl", "7"), ("ta", "25")]), reader)
+    shown = for_reader(link_reader.parse([*texts, ("bl", "7"), ("ta", "25")]), reader)
     sent = [(name, row[name]) for row in shown.rows for name in "Tn"]
     sent += [*shown.texts.items(), ("written", shown.written or ""), ("was", shown.was)]
     back, _ = link_reader.in_wire_units(sent)
@@ -97,7 +98,7 @@ def test_a_form_sent_back_untouched_says_what_the_link_said(pairs: list[tuple[fl
 
 def test_numbers_that_would_look_alike_are_told_apart() -> None:
     form = link_reader.parse([("T", "40"), ("T", "40.0000001"), ("n", "1"), ("n", "1"), ("t", "1"), ("t", "1")])
-    first, second = (row["T"] for row in link_reader.for_reader(form, AMERICAN).rows)
+    first, second = (row["T"] for row in for_reader(form, AMERICAN).rows)
     assert first != second
 
 
@@ -105,7 +106,7 @@ def test_a_typed_number_stays_as_typed_and_is_converted_exactly() -> None:
     form = form_of(written="lb_in", T="354.0", n="1", t="1")
     assert form.application is not None
     assert form.application.duty_cycle.load_phases[0].torque_Nm == pytest.approx(354 * 0.1129848290276167, rel=1e-11)
-    assert link_reader.for_reader(form, Reader("en", ("lb_in",))).rows[0]["T"] == "354.0"
+    assert for_reader(form, Reader("en", ("lb_in",))).rows[0]["T"] == "354.0"
 
 
 @pytest.mark.parametrize(
@@ -119,7 +120,7 @@ def test_a_german_form_reads_a_decimal_comma(text: str, plain: str | None) -> No
 def test_a_german_form_asks_what_could_be_two_numbers() -> None:
     form = form_of(written="de", T="1.234", n="1", t="1")
     assert [problem.message.text for problem in form.problems] == ["write 1,234 or 1234"]
-    assert link_reader.for_reader(form, GERMAN).rows[0]["T"] == "1.234"
+    assert for_reader(form, GERMAN).rows[0]["T"] == "1.234"
 
 
 def test_a_link_takes_no_decimal_comma_whatever_its_reader() -> None:

@@ -7,6 +7,7 @@ import pytest
 from hpn.application import Application
 from hpn.tables.numbers import Entry, Kind, read_decimal, read_value, to_wire
 from hpn.web.form import link_reader
+from hpn.web.form.form import for_reader
 from hpn.web.form.link_writer import to_link
 from hpn.web.form.offers import beside_fields
 from hpn.words import spellings, units
@@ -299,5 +300,5 @@ def test_an_unknown_unit_is_none(spelling: str) -> None:
 
 def test_sum_stands_in_its_field_as_it_was_typed() -> None:
     form = link_reader.parse([("T", "=40*2"), ("n", "250"), ("t", "300 ms")])
-    shown = link_reader.for_reader(form, Reader())
+    shown = for_reader(form, Reader())
     assert dict(shown.rows[0]) == {"T": "=40*2", "n": "250", "t": "300 ms"}

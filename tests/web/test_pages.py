@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from starlette.testclient import TestClient
 
 from hpn.web.app import create_app
-from hpn.web.form.link_reader import MAXIMUM_QUERY_BYTES
+from hpn.web.door.access import MAXIMUM_QUERY_BYTES
 from hpn.web.form.symbols import PHASE_SYMBOLS, SYMBOLS
 from hpn.words.quantities import QUANTITIES
 

@@ -208,7 +208,7 @@ def _header(path: Path, written: list[str], columns: list[str]) -> tuple[list[st
     for place, name in enumerate(written):
         for column in columns if name not in columns else ():
             unit = suffix_of(column)
-            stem = column.removesuffix(unit or "").rstrip("_")
+            stem = column.removesuffix(unit).rstrip("_")
             if unit and quantity_of(unit) and name.startswith((f"{stem}_", f"{stem} ")):
                 code = unit_code(name.removeprefix(stem).strip("_ []()"), unit)
                 if isinstance(code, Sentence):

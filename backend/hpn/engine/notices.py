@@ -23,7 +23,7 @@ from hpn.words.reply import Reply
 from hpn.words.units import suffix_of
 from hpn.words.wording import N_, Quantity, Sentence
 
-DIGITS: Mapping[str | None, int] = {"Nm": 6, "percent": 3, "s": 6, "h": 6}
+DIGITS: Mapping[str, int] = {"Nm": 6, "percent": 3, "s": 6, "h": 6}
 """Digits of the numbers in a notice, by unit."""
 
 NOTICES: Mapping[str, str] = {
@@ -176,7 +176,7 @@ def _template_of(code: str, values: Mapping[str, Value]) -> str:
 
 def _sentence(template: str, values: Mapping[str, Value]) -> Sentence:
     shown = {
-        name: value if isinstance(value, str) else Quantity(value, suffix_of(name) or "", DIGITS[suffix_of(name)])
+        name: value if isinstance(value, str) else Quantity(value, suffix_of(name), DIGITS[suffix_of(name)])
         for name, value in values.items()
     }
     return Sentence(template, shown, TRANSLATED)

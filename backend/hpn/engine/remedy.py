@@ -176,7 +176,7 @@ def _requirements(candidate: Candidate, u: float) -> Iterable[Requirement]:
             needed = check.demand * (allowed if least else 1 / allowed)
             computed = bool(known.moves) or known.group == "load"
             digits = 4 if computed else 6  # a published figure is told in full
-            shown = Quantity(needed, suffix_of(known.asked) or "", digits, "down" if least else "up")
+            shown = Quantity(needed, suffix_of(known.asked), digits, "down" if least else "up")
             yield Requirement(known.asked, shown, known.accepted)
 
 

@@ -67,5 +67,5 @@ def _written(value: Value, path: str, reader: Reader) -> str:
         return ", ".join(map(str, value))
     if isinstance(value, str | bool):
         return reader.text(WORDS.get(str(value), str(value)))
-    unit = suffix_of(path) or ""
+    unit = suffix_of(path)
     return reader.with_unit(reader.exact(value, unit), unit)

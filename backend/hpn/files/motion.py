@@ -50,13 +50,13 @@ def written(value: Value | None, name: str, reader: Reader) -> str:
     """A value as its reader finds it, without its unit; blank where nothing is said."""
     if value is None:
         return ""
-    return reader.text(WORDS[value]) if isinstance(value, str) else reader.exact(value, suffix_of(name) or "")
+    return reader.text(WORDS[value]) if isinstance(value, str) else reader.exact(value, suffix_of(name))
 
 
 def lines(motion: Motion, reader: Reader) -> Iterator[InputLine]:
     """The mechanism, ready to read."""
     for name, named, value in mechanism_of(motion):
-        text = reader.with_unit(written(value, name, reader), suffix_of(name) or "" if name != "type" else "")
+        text = reader.with_unit(written(value, name, reader), suffix_of(name) if name != "type" else "")
         yield InputLine(reader.text(named.name), named.symbol, text)
 
 
@@ -64,5 +64,5 @@ def move_line(motion: Motion, place: int, reader: Reader) -> str:
     """One move in one line, figures with their units."""
     move = motion.moves[place]
     said = ((name, getattr(move, name)) for name in MOVES if _is_said(move, name))
-    told = (reader.with_unit(written(value, name, reader), suffix_of(name) or "") for name, value in said)
+    told = (reader.with_unit(written(value, name, reader), suffix_of(name)) for name, value in said)
     return " · ".join([move.name, *told] if move.name else told)

@@ -3,13 +3,13 @@
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from itertools import chain
 from math import isclose, isfinite, nan
 
 from hpn.tables.bodies import DIVIDED, Body, Labelled, body_of
-from hpn.tables.cells import DECIMALS, TIME_PARTED, Decimal, Entry, entry, is_blank, is_number, moment_of
-from hpn.tables.columns import CELLS, NO_CHOICES, Choices, Column, by_units, counts, proposed, settled, units_in
-from hpn.tables.headings import heading_over, is_name, is_remark
+from hpn.tables.cells import DECIMALS, TIME_PARTED, Decimal, Entry, entry, is_blank, is_number
+from hpn.tables.columns import CELLS, NO_CHOICES, Choices, Column
+from hpn.tables.cycle_columns import columns_of, has_two_ways
+from hpn.tables.headings import heading_over
 from hpn.tables.heads import REQUIRED, skipped
 from hpn.tables.inputs import CYCLE, NAME, PHASE_ROLES
 from hpn.tables.numbers import either, known_units
@@ -17,7 +17,6 @@ from hpn.tables.reading import Choice, Questions, Reading, Row, Table, durations
 from hpn.tables.sheets import SEPARATORS, Grid, RefusedError, grids_of, no_number
 from hpn.words import spellings, units
 from hpn.words.fields import MAXIMUM_PHASES
-from hpn.words.titles import LONGEST_NAME, is_title
 from hpn.words.wording import N_, Sentence
 
 SEPARATOR = Choice("separator", N_("Between the columns stands"), SEPARATORS)
@@ -64,16 +63,6 @@ class CycleTable(Table):
         """Seconds that all phases take; None where that is not known, or too long for a number."""
         total = sum(float(phase[PHASE_ROLES.index("t")] or 0) for phase in self.phases)
         return total if self.phases and isfinite(total) else None
-
-    @property
-    def asks_times(self) -> bool:
-        """True where there is a choice what the times are."""
-        return self.choice("times") is not None
-
-    @property
-    def asks_last(self) -> bool:
-        """True where there is a choice what the last row is."""
-        return self.choice("last") is not None
 
 
 def read_text(text: str, choices: Choices = NO_CHOICES, assumed: Collection[str] = tuple(CYCLE.units)) -> CycleTable:
@@ -124,19 +113,19 @@ def _read_grid(grid: Grid, choices: Choices, assumed: Collection[str]) -> CycleT
     asked = Questions(choices)
     try:
         body = body_of(grid, choices.scales)
-        if _has_two_ways(body):
+        if has_two_ways(body):
             way = asked.choose(PHASE, Sentence(N_("Is a phase a row or a column?")))
             body = body_of(grid.transposed(), choices.scales) if way == "column" else body
             if not way:
-                said = _CycleReading(body, _columns_of(body, choices, assumed), asked).said
+                said = _CycleReading(body, columns_of(body, choices, assumed), asked).said
                 return CycleTable(**said, separator=grid.separator)
         body = _one_cycle(body, asked)
         if len(body.rows) > MAXIMUM_PHASES:
             raise RefusedError(N_("there are more than {most} rows"), most=MAXIMUM_PHASES)
-        columns = _columns_of(body, choices, assumed)
+        columns = columns_of(body, choices, assumed)
         if body.totals:
             body = _without_totals(body, columns, asked)
-            columns = _columns_of(body, choices, assumed)
+            columns = columns_of(body, choices, assumed)
         return _CycleReading(body, columns, asked).table()
     except RefusedError as refused:
         return CycleTable(problem=refused.sentence, separator=grid.separator)
@@ -168,72 +157,6 @@ def _without_totals(body: Body, columns: tuple[Column, ...], asked: Questions) -
     left_out = body.totals if chosen == "sum" else sure
     notes = (*body.notes, *(skipped(*total[::2]) for total in left_out))
     return replace(body.including(open_ if chosen == "phase" else ()), totals=(), notes=notes)
-
-
-# --- Columns ----------------------------------------------------------------------------------------------------------
-
-
-def _columns_of(body: Body, choices: Choices, assumed: Collection[str]) -> tuple[Column, ...]:
-    found = proposed(body, CYCLE)
-    if sum(not column.text for column in found) < len(REQUIRED):
-        raise _too_few(body, found)
-    if not body.headed:
-        roles = _by_place(body, found)
-        found = [replace(column, role=roles.get(column.place, column.role)) for column in found]
-    if named := _column_of_names(found, body):
-        found = [replace(c, role=NAME.role, skipped=None) if c is named else c for c in found]
-    return settled(found, body, CYCLE, choices, assumed)
-
-
-def _column_of_names(columns: Sequence[Column], body: Body) -> Column | None:
-    """Column that names the phases unless somebody says otherwise: the one that this service writes so, one of texts
-    with a heading that says so, else the first of texts; most rows have one that may be a name, and not all the same.
-    """
-    found = []
-    for column in columns:
-        if column.heading == NAME.place:
-            return column
-        cells = [row[column.place] for row in body.rows]
-        filled = [cell for cell in cells if not is_blank(cell)]
-        tells_apart = 2 * len(filled) >= len(cells) and len(set(filled)) >= min(len(cells), 2)
-        is_other = is_remark(column.heading) or any(map(moment_of, filled))
-        if column.text and tells_apart and not is_other and all(is_title(cell, LONGEST_NAME) for cell in cells):
-            found.append(column)
-    return min(found, key=lambda column: not is_name(column.heading), default=None)
-
-
-def _too_few(body: Body, columns: Sequence[Column]) -> RefusedError:
-    """Error for less than three columns of numbers."""
-    for number, row in zip(body.numbers, body.rows, strict=True):
-        wrong = next((cell for cell in row if not is_blank(cell) and not is_number(cell)), None)
-        if wrong and len(columns) >= len(REQUIRED):
-            return no_number(number, wrong)
-    cells = sum(not is_blank(cell) for cell in body.rows[0])
-    template = N_("row {row} has {cells} cells; a phase has torque, speed and duration at least")
-    return RefusedError(template, row=body.numbers[0], cells=cells)
-
-
-def _by_place(body: Body, columns: Sequence[Column]) -> dict[int, str]:
-    """Quantities of columns without a heading: by the units in their cells, else torque, speed, duration in order.
-
-    None for more than three columns, nor where the first may count the phases, or its texts name quantities.
-    """
-    numeric = [column.place for column in columns if not column.text]
-    inside = {place: units_in(body, place) for place in numeric}
-    if any(found != {""} for found in inside.values()):
-        return {place: by_units(found) for place, found in inside.items()}
-    labelled = any(column.text for column in columns) and len(REQUIRED) <= len(body.rows) <= len(PHASE_ROLES)
-    if len(numeric) != len(REQUIRED) or labelled or counts(body, numeric[0]):
-        return {}
-    return dict(zip(numeric, REQUIRED, strict=True))
-
-
-def _has_two_ways(body: Body) -> bool:
-    """True where a phase can be a row or a column: three rows of as many plain numbers or more, and nothing else."""
-    places = range(body.grid.width)
-    if body.headed or len(body.rows) != len(REQUIRED) or len(places) < len(REQUIRED) or counts(body, 0):
-        return False
-    return all(map(is_number, chain.from_iterable(body.rows))) and all(units_in(body, k) == {""} for k in places)
 
 
 # --- Rows -------------------------------------------------------------------------------------------------------------

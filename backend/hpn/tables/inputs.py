@@ -48,7 +48,7 @@ class Input:
     @cached_property
     def unit(self) -> str:
         """Suffix of its unit, blank for a pure number or a text."""
-        return units.suffix_of(self.place) or ""
+        return units.suffix_of(self.place)
 
     @cached_property
     def quantity(self) -> str:

@@ -9,7 +9,6 @@ from collections.abc import Mapping
 from typing import Literal
 
 from hpn.words.motion import BODY, MOTION, STRANDS
-from hpn.words.units import symbol_of
 from hpn.words.wording import N_, Named
 
 CheckCode = Literal[
@@ -372,8 +371,3 @@ QUANTITIES: Mapping[str, Named] = {
         for name, named in table.items()
     },
 }
-
-
-def unit_of(place: str) -> str:
-    """Symbol of the unit of a quantity, empty for a pure number or a text."""
-    return symbol_of(place.rpartition(".")[2])

@@ -50,15 +50,14 @@ _LONGEST_FIRST = sorted(SYMBOLS, key=len, reverse=True)
 
 
 @lru_cache(maxsize=1024)  # names may be a stranger's: what they fill has a limit
-def suffix_of(field_name: str) -> str | None:
-    """Unit suffix that ends a field name (`torque_Nm` -> `Nm`), or None for a field without a unit."""
-    return next((unit for unit in _LONGEST_FIRST if field_name.endswith("_" + unit)), None)
+def suffix_of(field_name: str) -> str:
+    """Unit suffix that ends a field name (`torque_Nm` -> `Nm`), blank for a field without a unit."""
+    return next((unit for unit in _LONGEST_FIRST if field_name.endswith("_" + unit)), "")
 
 
 def symbol_of(field_name: str) -> str:
-    """Symbol of a field's unit (`life_L10_h` -> `h`), or an empty text for a field without one."""
-    unit = suffix_of(field_name)
-    return SYMBOLS[unit] if unit else ""
+    """Symbol of a field's unit (`life_L10_h` -> `h`), blank for a field without one."""
+    return SYMBOLS.get(suffix_of(field_name), "")
 
 
 # --- Units that people choose and type --------------------------------------------------------------------------------

@@ -131,7 +131,7 @@ class Sheet:
 
     def _of_phases(self, name: str) -> PhaseValues:
         values: FloatArray = getattr(self.duty.phases, name)[0, 0]
-        return PhaseValues(Variable.of(INPUTS[f"phase.{name}"].symbol), values, suffix_of(name) or "")
+        return PhaseValues(Variable.of(INPUTS[f"phase.{name}"].symbol), values, suffix_of(name))
 
     def _load_inertia(self) -> Term | None:
         """Inertia of the load: the motion's own, else as it is given; None without one."""
@@ -213,7 +213,7 @@ class Sheet:
 
 
 def _term(named: Named, name: str, value: float) -> Term:
-    return Term(Variable.of(named.symbol), value, suffix_of(name) or "")
+    return Term(Variable.of(named.symbol), value, suffix_of(name))
 
 
 def _limit_names(check: Check) -> tuple[Variable, ...]:

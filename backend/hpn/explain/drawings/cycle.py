@@ -81,7 +81,7 @@ def _panel(quantity: str, height: float, cycle: DutyCycle, name: str, levels: Se
     means = [*(getattr(phase, name) for phase in phases), *rest]
     peaks = [*_reached(phases, name), *rest]
     values, extremes = (np.repeat(np.array(found)[:, None], 2, axis=1) for found in (means, peaks))
-    return Panel(quantity, suffix_of(name) or "", height, values, levels, extremes if peaks != means else None)
+    return Panel(quantity, suffix_of(name), height, values, levels, extremes if peaks != means else None)
 
 
 # --- Time -------------------------------------------------------------------------------------------------------------

@@ -29,7 +29,7 @@ def listing(export: Export, reader: Reader) -> dict[str, Any] | None:
         return None
     table = [[head, *texts] for head, texts in numbers(cycle, reader).items()]
     for name, values in columns(phases).items():
-        unit = suffix_of(name) or ""
+        unit = suffix_of(name)
         head = f"{INPUTS[f'phase.{name}'].symbol} [{reader.unit(unit)}]"
         table.append([head, *("" if value is None else number(value, unit) for value in values)])
     return _laid_out(table)
@@ -42,7 +42,7 @@ def moves(export: Export, reader: Reader) -> dict[str, Any] | None:
         return None
     table = [[reader.text(N_("Move")), *(row_label(k, move.name) for k, move in enumerate(motion.moves))]]
     for name, values in moves_of(motion).items():
-        unit = reader.unit(suffix_of(name) or "")
+        unit = reader.unit(suffix_of(name))
         symbol = MOVES[name].symbol or reader.text(MOVES[name].name)
         table.append([f"{symbol} [{unit}]" if unit else symbol, *(written(value, name, reader) for value in values)])
     return _laid_out(table)

@@ -1,6 +1,6 @@
 """Tables of the report: duty cycle, figures of cycle and gear, and the gear's published figures."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
 from hpn.application import DutyCycle
@@ -9,6 +9,7 @@ from hpn.engine.candidates import FIGURES
 from hpn.explain.readings import figure_symbol
 from hpn.files import inputs
 from hpn.files.export import Export
+from hpn.files.inputs import InputLine
 from hpn.files.motion import MOVES, lines, moves_of, written
 from hpn.files.words import measured
 from hpn.words.quantities import CANDIDATE, DUTY, GEAR, INPUTS
@@ -29,7 +30,10 @@ Column = Sequence[float | None]
 
 def given(export: Export, paths: Sequence[str], reader: Reader) -> list[dict[str, Any]]:
     """Inputs that are given."""
-    rows = inputs.given(export.equipped, paths, reader)
+    return _lines(inputs.given(export.equipped, paths, reader))
+
+
+def _lines(rows: Iterable[InputLine]) -> list[dict[str, Any]]:
     return [{"label": row.label, "symbol": formula(row.symbol), "text": row.text} for row in rows]
 
 
@@ -40,14 +44,15 @@ def phases(export: Export, reader: Reader) -> dict[str, Any]:
     given, places = columns(listed), numbers(cycle, reader)
     if len(listed) <= MOST_PHASES:
         cells = [
-            ["" if value is None else number(value, _unit(name)) for value in column] for name, column in given.items()
+            ["" if value is None else number(value, suffix_of(name)) for value in column]
+            for name, column in given.items()
         ]
         rows, note = [[*row] for row in zip(*places.values(), *cells, strict=True)], ""
     else:
         rows = [[label, *[""] * (len(places) - 1), *row] for label, *row in _summary(given, reader)]
         text = N_("{count} phases, summarised here; each stands on the last pages.")
         note = reader.told(Sentence(text, {"count": reader.exact(len(listed))}))
-    heads = [[formula(INPUTS[f"phase.{name}"].symbol), reader.unit(_unit(name))] for name in given]
+    heads = [[formula(INPUTS[f"phase.{name}"].symbol), reader.unit(suffix_of(name))] for name in given]
     header = [*([[], name] for name in places), *heads]
     return {"header": header, "rows": rows, "note": note, "words": len(places)}
 
@@ -79,12 +84,13 @@ def motion(export: Export, reader: Reader) -> dict[str, Any] | None:
     given = export.application.duty_cycle.motion
     if given is None:
         return None
-    mechanism = [
-        {"label": line.label, "symbol": formula(line.symbol), "text": line.text} for line in lines(given, reader)
-    ]
+    mechanism = _lines(lines(given, reader))
     columns = moves_of(given)
     heads = [
-        [formula(MOVES[name].symbol), reader.unit(_unit(name)) if MOVES[name].symbol else reader.text(MOVES[name].name)]
+        [
+            formula(MOVES[name].symbol),
+            reader.unit(suffix_of(name)) if MOVES[name].symbol else reader.text(MOVES[name].name),
+        ]
         for name in columns
     ]
     rows, note = [], ""
@@ -102,14 +108,10 @@ def _summary(given: Mapping[str, Column], reader: Reader) -> list[list[str]]:
     known = {name: [value for value in column if value is not None] for name, column in given.items()}
     sums = [reader.figure(sum(values)) if name == "duration_s" else "" for name, values in known.items()]
     return [
-        [reader.text(N_("least")), *(reader.figure(min(values), _unit(name)) for name, values in known.items())],
-        [reader.text(N_("largest")), *(reader.figure(max(values), _unit(name)) for name, values in known.items())],
+        [reader.text(N_("least")), *(reader.figure(min(values), suffix_of(name)) for name, values in known.items())],
+        [reader.text(N_("largest")), *(reader.figure(max(values), suffix_of(name)) for name, values in known.items())],
         [reader.text(N_("sum")), *sums],
     ]
-
-
-def _unit(name: str) -> str:
-    return suffix_of(name) or ""
 
 
 def of_cycle(export: Export, reader: Reader) -> list[dict[str, Any]]:
@@ -140,7 +142,7 @@ def of_gear(export: Export, reader: Reader) -> list[dict[str, Any]]:
 
 
 def _line(label: str, symbol: str, name: str, value: float, reader: Reader, note: str = "") -> dict[str, Any]:
-    text = measured(value, suffix_of(name) or "", reader)
+    text = measured(value, suffix_of(name), reader)
     return {"label": sentence(reader.text(label) + note), "symbol": formula(symbol), "text": text}
 
 

@@ -80,11 +80,11 @@ class CellTerm:
 
 
 def _duty(field: str, formula: str) -> CellTerm:
-    return CellTerm(DUTY[field], suffix_of(field) or "", formula)
+    return CellTerm(DUTY[field], suffix_of(field), formula)
 
 
 def _result(field: str, formula: str) -> CellTerm:
-    return CellTerm(CANDIDATE[field], suffix_of(field) or "", formula, field)
+    return CellTerm(CANDIDATE[field], suffix_of(field), formula, field)
 
 
 # --- The cycle --------------------------------------------------------------------------------------------------------

@@ -182,12 +182,12 @@ class Overview:
         field = RATINGS[name]
         gear = self.book.export.gear(self.known.candidate)
         source = self.book.reader.source(gear.sources.get(field, "")) if gear else ""
-        self._line(GEAR[field].name, GEAR[field].symbol, suffix_of(field) or "", source)
+        self._line(GEAR[field].name, GEAR[field].symbol, suffix_of(field), source)
         block = f"INDEX({name}_all,MATCH(gear,candidates,0))"
         saved = "" if value is None else value
         self.sheet.write_formula(self.row, 2, f'=IF({block}="","",{block})', self.book.style("figure"), saved)
         self.book.name_cell(name, self.sheet, self.row, 2)
-        self._converted(suffix_of(field) or "", value)
+        self._converted(suffix_of(field), value)
         self.row += 1
 
     # --- Calculated ---------------------------------------------------------------------------------------------------
@@ -315,12 +315,12 @@ class Overview:
         for path in (*LOADS, *REQUIREMENTS):
             own = path == LOAD_INERTIA and self.book.export.selection.duty.load_inertia_kgm2 is not None
             source = self.text(OF_THE_MOTION) if own else ""
-            self._line(INPUTS[path].name, INPUTS[path].symbol, suffix_of(path) or "", source)
+            self._line(INPUTS[path].name, INPUTS[path].symbol, suffix_of(path), source)
             name, value = NAMES.get(path), entered(self.book.export, path)
             shown = (value[0] if len(value) == 1 else ", ".join(map(str, value))) if isinstance(value, tuple) else value
             still = own or (path == EFFICIENCY and self.book.export.selection.turns_motor)
             self.book.put(self.sheet, self.row, 2, shown, "fixed" if still else "input" if name else "label")
-            self._converted(suffix_of(path) or "", value if isinstance(value, float) else None)
+            self._converted(suffix_of(path), value if isinstance(value, float) else None)
             if name or path == LOAD_REVERSES:
                 self.book.name_cell(name or REVERSES, self.sheet, self.row, 2)
             if name and not still:

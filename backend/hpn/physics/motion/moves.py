@@ -222,7 +222,7 @@ class Move(Model):
 
 def _said(value: float, field: str, rounding: Rounding = "up") -> str:
     """A bound with its unit, rounded so that what is printed will do."""
-    return str(Quantity(value, suffix_of(field) or "", 6, rounding))
+    return str(Quantity(value, suffix_of(field), 6, rounding))
 
 
 class Turn(Move):

@@ -12,7 +12,8 @@ from hpn.web.door.problems import Problem
 from hpn.web.door.uploads import read_fields
 from hpn.web.door.visit import address
 from hpn.web.form import link_reader
-from hpn.web.form.link_reader import Pairs
+from hpn.web.form.form import Form
+from hpn.web.form.ways import Pairs
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,7 +53,7 @@ def linked(query: str, *options: str) -> Link:
     return Link(form.application, form.gear, form.labels, {name: value for name, value in pairs if name in options})
 
 
-def _unreadable(form: link_reader.Form) -> Problem:
+def _unreadable(form: Form) -> Problem:
     errors = [
         ((problem.name, *(() if problem.index is None else (problem.index,))), problem.message.text)
         for problem in form.problems

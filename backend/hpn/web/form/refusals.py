@@ -27,7 +27,7 @@ def refusal_of(error: Any) -> Sentence:
     context = error.get("ctx", {})
     if error["type"] in _BOUNDS:
         template, key = _BOUNDS[error["type"]]
-        return Sentence(template, {"bound": Quantity(context[key], suffix_of(str(error["loc"][-1])) or "", 12)})
+        return Sentence(template, {"bound": Quantity(context[key], suffix_of(str(error["loc"][-1])), 12)})
     if error["type"] in REFUSALS:
         symbols = _OF_BODY if error["type"].startswith("body_") else _OF_MOTION
         values = {name: _told(name, str(text), symbols) for name, text in context.items()}

@@ -62,7 +62,7 @@ class Symbol:
     @property
     def unit(self) -> str:
         """Suffix of its unit, blank for a pure number or a text."""
-        return suffix_of(self.path[-1]) or ""
+        return suffix_of(self.path[-1])
 
 
 @dataclass(frozen=True, slots=True)

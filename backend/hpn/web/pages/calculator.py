@@ -16,14 +16,14 @@ from hpn.catalogue.gear import Gear
 from hpn.engine.candidates import Candidate
 from hpn.engine.selection import Selection, judge
 from hpn.tables.numbers import WRITTEN
-from hpn.web.door.access import admit
+from hpn.web.door.access import MAXIMUM_QUERY_BYTES, admit
 from hpn.web.door.bodies import pairs_of, read_form
 from hpn.web.door.pools import compute, worked
 from hpn.web.door.visit import current
 from hpn.web.form import link_reader
+from hpn.web.form.form import Form, address_of_empty, for_reader
 from hpn.web.form.given import FieldProblem
 from hpn.web.form.labels import OrderingCode, ordering_code, query_of
-from hpn.web.form.link_reader import Form
 from hpn.web.form.link_writer import to_link
 from hpn.web.form.linked import LONGEST_LINK
 from hpn.web.form.offers import beside_fields
@@ -91,7 +91,7 @@ class Answer(Result):
     @property
     def too_long(self) -> bool:
         """True for an address longer than servers and proxies let through."""
-        return len(self.address) > link_reader.MAXIMUM_QUERY_BYTES
+        return len(self.address) > MAXIMUM_QUERY_BYTES
 
 
 def once_key() -> str:
@@ -228,7 +228,7 @@ def _render(request: Request, template: str, status: int, **context: Any) -> Res
     address = _address(context["answer"], form)
     form = replace(form, problems=beside_fields(form.problems, form.written, current()))
     if "form" in context["parts"]:  # typing brings the result alone, and leaves the fields as they are
-        form = link_reader.for_reader(form, current())
+        form = for_reader(form, current())
     context["form"] = form
     content = environment(request.app.state).get_template(template).render(**context)
     response = HTMLResponse(content, status)
@@ -244,7 +244,7 @@ def _render(request: Request, template: str, status: int, **context: Any) -> Res
 def _address(answer: Answer | None, form: Form) -> str | None:
     """Address for the address bar; None where there is something to correct."""
     if answer is None:
-        return link_reader.address_of_empty(form) if form.empty else None
+        return address_of_empty(form) if form.empty else None
     # A page too long for an address must not stand under another's: reloading leads to where it came from.
     return "/paste" if answer.too_long else answer.address
 

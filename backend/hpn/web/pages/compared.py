@@ -33,7 +33,8 @@ from hpn.web.pages.rendering import or_reason, page
 from hpn.web.pages.result import Result
 from hpn.web.pages.saved import result_of
 from hpn.web.pages.saving import REASON
-from hpn.words.quantities import CANDIDATE, DUTY, INPUTS, unit_of
+from hpn.words.quantities import CANDIDATE, DUTY, INPUTS
+from hpn.words.units import symbol_of
 from hpn.words.wording import N_, Named
 
 PHASES_SHOWN = 50
@@ -192,14 +193,14 @@ def _checks(a: Side, b: Side) -> Iterator[CheckRow]:
 def _figures(a: Side, b: Side) -> Iterator[Row]:
     """Figures of the cycle and of the gear under it."""
     for name, named in DUTY.items():
-        yield Row(named, _pair(getattr(side.result.selection.duty, name) for side in (a, b)), unit_of(name))
+        yield Row(named, _pair(getattr(side.result.selection.duty, name) for side in (a, b)), symbol_of(name))
     inertias = _pair(side.result.selection.duty.load_inertia_kgm2 for side in (a, b))
     if inertias != (None, None):
-        yield Row(INPUTS["requirements.load_inertia_kgm2"], inertias, unit_of("load_inertia_kgm2"))
+        yield Row(INPUTS["requirements.load_inertia_kgm2"], inertias, symbol_of("load_inertia_kgm2"))
     turns = any(side.result.selection.turns_motor for side in (a, b))
     for name in FIGURES:
         named = Named(CANDIDATE[name].name, figure_symbol(name, turns_motor=turns))
-        row = Row(named, _pair(_figure(side.chosen, name) for side in (a, b)), unit_of(name))
+        row = Row(named, _pair(_figure(side.chosen, name) for side in (a, b)), symbol_of(name))
         if row.values != (None, None):
             yield row
 

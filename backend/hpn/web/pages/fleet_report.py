@@ -12,8 +12,8 @@ from hpn import ENGINE_VERSION
 from hpn.catalogue import Catalogue
 from hpn.fleet.columns import AXIS
 from hpn.fleet.listing import Listing, applications_of, rows_of
+from hpn.web.door.access import MAXIMUM_QUERY_BYTES
 from hpn.web.door.visit import VISIT, Visit
-from hpn.web.form import link_reader
 from hpn.web.form.labels import query_of
 from hpn.web.form.link_writer import to_link
 from hpn.web.pages.assets import DIST, Assets
@@ -51,7 +51,7 @@ def _told(reader: Reader, **values: Any) -> str:
 def links_of(axes: pa.Table, base: str = "") -> dict[str, str]:
     """Link of each axis with its name as title, where that can be one; one that is too long for an address has none."""
     found = ((axis, to_link(application) + _titled(axis)) for axis, application in applications_of(axes))
-    return {axis: base + link for axis, link in found if len(link) <= link_reader.MAXIMUM_QUERY_BYTES}
+    return {axis: base + link for axis, link in found if len(link) <= MAXIMUM_QUERY_BYTES}
 
 
 def allowed_of(axes: pa.Table) -> dict[str, float]:

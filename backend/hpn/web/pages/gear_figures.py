@@ -94,7 +94,7 @@ def _figure(gear: Gear, label: Label) -> Figure:
     known = tuple(dict.fromkeys(value for value in values if value is not None))
     source = next((gear.sources[name] for name in label.fields if name in gear.sources), "")
     supplied = any(gear.is_supplied(name) for name in label.fields)
-    return Figure(label, known, suffix_of(label.fields[0]) or "", source, supplied)
+    return Figure(label, known, suffix_of(label.fields[0]), source, supplied)
 
 
 SERIES: Mapping[str, tuple[tuple[str, tuple[str, ...]], ...]] = {

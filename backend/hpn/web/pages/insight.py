@@ -11,8 +11,8 @@ from hpn.engine.candidates import Candidate
 from hpn.engine.remedy import alternatives_of, tried
 from hpn.engine.selection import Selection
 from hpn.explain.comparison import MOST_PINS, Column, RowGroup, groups_of, undominated
+from hpn.web.form.form import Form
 from hpn.web.form.given import FieldProblem
-from hpn.web.form.link_reader import Form
 from hpn.web.form.link_writer import to_link
 from hpn.web.pages.result import lighter_miss
 from hpn.words.wording import N_, Sentence

@@ -25,19 +25,18 @@ from hpn.tables.cycles import CycleTable, read_grids
 from hpn.tables.files import Contents, Wanted, contents_of, contents_of_text, packed, tidied, unpacked
 from hpn.tables.inputs import CYCLE, NAME, PHASE_ROLES, Inputs
 from hpn.tables.sheets import MAXIMUM_CHARACTERS, SEPARATORS, Grid
-from hpn.web.door.access import admit
+from hpn.web.door.access import MAXIMUM_QUERY_BYTES, admit
 from hpn.web.door.bodies import pairs_of, parsed
 from hpn.web.door.pools import compute, compute_beside, worked
 from hpn.web.door.problems import Problem
 from hpn.web.door.uploads import decoded, read_parts
 from hpn.web.door.visit import current
 from hpn.web.form import link_reader
-from hpn.web.form.link_reader import Pairs
 from hpn.web.form.link_writer import to_link
 from hpn.web.form.linked import query_part
 from hpn.web.form.rows import TEXT, expanded, used_columns
 from hpn.web.form.symbols import PHASE_BY_NAME
-from hpn.web.form.ways import CYCLE_NAMES
+from hpn.web.form.ways import CYCLE_NAMES, Pairs
 from hpn.web.pages import calculator
 from hpn.web.pages.templates import environment
 from hpn.words.fields import MAXIMUM_PHASES
@@ -282,7 +281,7 @@ def taken(draft: PasteDraft, *, append: bool) -> list[tuple[str, str]]:
 def _proceed(request: Request, pairs: Pairs) -> Response:
     """On to the page: by its address, and where that would be too long, right here."""
     query = urlencode(pairs)
-    if len(query) > link_reader.MAXIMUM_QUERY_BYTES:
+    if len(query) > MAXIMUM_QUERY_BYTES:
         return calculator.respond(request, link_reader.parse(pairs))
     return RedirectResponse(f"/?{query}", 303)
 

@@ -22,7 +22,7 @@ from hpn.files.motion import lines, move_line
 from hpn.files.report.tables import number_of
 from hpn.store import ID, SavedSelection
 from hpn.web.archive import Reopened, found, url_of
-from hpn.web.door.access import admit
+from hpn.web.door.access import MAXIMUM_QUERY_BYTES, admit
 from hpn.web.door.visit import absolute, current
 from hpn.web.form import link_reader
 from hpn.web.form.labels import read_ordering_code
@@ -128,7 +128,7 @@ def _page(reopened: Reopened, designation: str, catalogue: Catalogue) -> dict[st
         **_motion(application),
         "number": number_of(application.duty_cycle, replace(current(), digits=DIGITS)) if application else None,
         "exports": EXPORTS,
-        "longest_link": link_reader.MAXIMUM_QUERY_BYTES,
+        "longest_link": MAXIMUM_QUERY_BYTES,
     }
 
 

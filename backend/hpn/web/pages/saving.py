@@ -14,15 +14,16 @@ from hpn.application import InputError
 from hpn.catalogue import Catalogue
 from hpn.store import Draft, StoreUnavailableError
 from hpn.web.archive import Labels, draft_of, keep, url_of
-from hpn.web.door.access import admit
+from hpn.web.door.access import MAXIMUM_QUERY_BYTES, admit
 from hpn.web.door.bodies import pairs_of, read_form
 from hpn.web.door.hosts import require_same_origin
 from hpn.web.door.pools import compute
 from hpn.web.door.problems import Problem
 from hpn.web.form import link_reader
+from hpn.web.form.form import Form
 from hpn.web.form.labels import FIELDS, TITLE_BLOCK, query_of
-from hpn.web.form.link_reader import Form, Pairs
 from hpn.web.form.linked import query_part
+from hpn.web.form.ways import Pairs
 from hpn.web.pages import calculator
 from hpn.web.pages.calculator import Answer
 from hpn.web.pages.rendering import reason
@@ -61,7 +62,7 @@ class Posted:
     def address(self) -> str:
         """Address of the live page with all that it says; its start page where that is too long for one."""
         whole = self.link + query_of({name: self.form.labels[name] for name in TITLE_BLOCK})
-        return whole if len(whole) <= link_reader.MAXIMUM_QUERY_BYTES else "/"
+        return whole if len(whole) <= MAXIMUM_QUERY_BYTES else "/"
 
 
 async def save_from_page(request: Request) -> Response:

@@ -31,7 +31,7 @@ from hpn.web.pages import assets
 from hpn.web.pages.fleet_reasons import reasons_of
 from hpn.web.pages.result import preview_of
 from hpn.words import units
-from hpn.words.quantities import GEAR, LISTED, QUANTITIES, unit_of
+from hpn.words.quantities import GEAR, LISTED, QUANTITIES
 from hpn.words.reader import GROUP, LANGUAGE_NAMES, Reader
 from hpn.words.symbols import Part, formula, sentence
 from hpn.words.terms import BEARING_MODELS, ENVELOPE_BASIS, MECHANISMS, PROFILES, RANKINGS, SHAPES, VERDICTS
@@ -251,7 +251,7 @@ GLOBALS: dict[str, Any] = {
     "LANGUAGE_NAMES": LANGUAGE_NAMES,
     "LISTED": LISTED,
     "LOADS": LOADS,
-    "unit_of": unit_of,
+    "unit_of": units.symbol_of,
     "units": units,
     "MECHANISMS": MECHANISMS,
     "MOVE_COLUMNS": MOVE_COLUMNS,

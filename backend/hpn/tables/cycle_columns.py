@@ -1,0 +1,79 @@
+"""Columns of a table that is one cycle: by their headings, else by their units or places; one may name the phases."""
+
+from collections.abc import Collection, Sequence
+from dataclasses import replace
+from itertools import chain
+
+from hpn.tables.bodies import Body
+from hpn.tables.cells import is_blank, is_number, moment_of
+from hpn.tables.columns import Choices, Column, by_units, counts, proposed, settled, units_in
+from hpn.tables.headings import is_name, is_remark
+from hpn.tables.heads import REQUIRED
+from hpn.tables.inputs import CYCLE, NAME, PHASE_ROLES
+from hpn.tables.sheets import RefusedError, no_number
+from hpn.words.titles import LONGEST_NAME, is_title
+from hpn.words.wording import N_
+
+
+def columns_of(body: Body, choices: Choices, assumed: Collection[str]) -> tuple[Column, ...]:
+    """Columns with the answers about them and with their units; raises RefusedError for less than three of numbers."""
+    found = proposed(body, CYCLE)
+    if sum(not column.text for column in found) < len(REQUIRED):
+        raise _too_few(body, found)
+    if not body.headed:
+        roles = _by_place(body, found)
+        found = [replace(column, role=roles.get(column.place, column.role)) for column in found]
+    if named := _column_of_names(found, body):
+        found = [replace(c, role=NAME.role, skipped=None) if c is named else c for c in found]
+    return settled(found, body, CYCLE, choices, assumed)
+
+
+def _column_of_names(columns: Sequence[Column], body: Body) -> Column | None:
+    """Column that names the phases unless somebody says otherwise: the one that this service writes so, one of texts
+    with a heading that says so, else the first of texts; most rows have one that may be a name, and not all the same.
+    """
+    found = []
+    for column in columns:
+        if column.heading == NAME.place:
+            return column
+        cells = [row[column.place] for row in body.rows]
+        filled = [cell for cell in cells if not is_blank(cell)]
+        tells_apart = 2 * len(filled) >= len(cells) and len(set(filled)) >= min(len(cells), 2)
+        is_other = is_remark(column.heading) or any(map(moment_of, filled))
+        if column.text and tells_apart and not is_other and all(is_title(cell, LONGEST_NAME) for cell in cells):
+            found.append(column)
+    return min(found, key=lambda column: not is_name(column.heading), default=None)
+
+
+def _too_few(body: Body, columns: Sequence[Column]) -> RefusedError:
+    """Error for less than three columns of numbers."""
+    for number, row in zip(body.numbers, body.rows, strict=True):
+        wrong = next((cell for cell in row if not is_blank(cell) and not is_number(cell)), None)
+        if wrong and len(columns) >= len(REQUIRED):
+            return no_number(number, wrong)
+    cells = sum(not is_blank(cell) for cell in body.rows[0])
+    template = N_("row {row} has {cells} cells; a phase has torque, speed and duration at least")
+    return RefusedError(template, row=body.numbers[0], cells=cells)
+
+
+def _by_place(body: Body, columns: Sequence[Column]) -> dict[int, str]:
+    """Quantities of columns without a heading: by the units in their cells, else torque, speed, duration in order.
+
+    None for more than three columns, nor where the first may count the phases, or its texts name quantities.
+    """
+    numeric = [column.place for column in columns if not column.text]
+    inside = {place: units_in(body, place) for place in numeric}
+    if any(found != {""} for found in inside.values()):
+        return {place: by_units(found) for place, found in inside.items()}
+    labelled = any(column.text for column in columns) and len(REQUIRED) <= len(body.rows) <= len(PHASE_ROLES)
+    if len(numeric) != len(REQUIRED) or labelled or counts(body, numeric[0]):
+        return {}
+    return dict(zip(numeric, REQUIRED, strict=True))
+
+
+def has_two_ways(body: Body) -> bool:
+    """True where a phase can be a row or a column: three rows of as many plain numbers or more, and nothing else."""
+    places = range(body.grid.width)
+    if body.headed or len(body.rows) != len(REQUIRED) or len(places) < len(REQUIRED) or counts(body, 0):
+        return False
+    return all(map(is_number, chain.from_iterable(body.rows))) and all(units_in(body, k) == {""} for k in places)

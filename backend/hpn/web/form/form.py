@@ -1,0 +1,160 @@
+"""The form: what a query gives, field by field, and the application that it describes."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from urllib.parse import urlencode
+
+from hpn.application import Application
+from hpn.physics.motion.mechanisms import TYPES
+from hpn.tables import numbers
+from hpn.tables.inputs import NAME
+from hpn.web.form.given import FieldProblem
+from hpn.web.form.helpers import BeltInput, BodyTable
+from hpn.web.form.labels import LABELS, query_of
+from hpn.web.form.rows import WIDTHS, filled
+from hpn.web.form.symbols import (
+    MECHANISM_SYMBOLS,
+    PHASE_SYMBOLS,
+    Symbol,
+    mechanism_symbols,
+    move_symbols,
+    table_columns,
+    units_of,
+)
+from hpn.web.form.ways import START
+from hpn.words.reader import Reader
+from hpn.words.titles import numbered
+from hpn.words.wording import Sentence
+
+ROWS_IN_TABLE = 100
+"""A longer duty cycle is edited as text: a field for each of its figures would weigh megabytes."""
+
+LONGEST_ASIDE = 8_000
+"""Characters of what was typed another way that still fit an address."""
+
+
+@dataclass(frozen=True)
+class Form:
+    """A query as given, and the application it describes, or why it describes none.
+
+    `origins` are the places at which the rows of the duty table stood before the buttons that edit it. Of a motion the
+    mechanism stands in `texts`, and `moves` has a row per move; `bodies` are what its moment of inertia may be worked
+    out from. `asides` are the inputs of other ways to give the cycle. `written` is the marker of the language and units
+    in which a form was filled in; None for a link.
+    """
+
+    rows: tuple[Mapping[str, str], ...]
+    origins: tuple[int | None, ...]
+    texts: Mapping[str, str]
+    lists: Mapping[str, tuple[str, ...]]
+    moves: tuple[Mapping[str, str], ...] = ()
+    has_motion: bool = False
+    bodies: BodyTable = field(default_factory=BodyTable)
+    belt: BeltInput = field(default_factory=BeltInput)
+    asides: tuple[str, ...] = ()
+    shown: frozenset[str] = frozenset()
+    gear: str = ""
+    pins: tuple[str, ...] = ()
+    focus: str | None = None
+    problems: tuple[FieldProblem, ...] = ()
+    application: Application | None = None
+    written: str | None = None
+    was: str = ""
+    typed: str | None = None
+    labels: Mapping[str, str] = field(default_factory=lambda: dict.fromkeys(LABELS, ""))
+
+    @property
+    def as_text(self) -> bool:
+        """True where the duty cycle is edited as text instead of in a table."""
+        return len(self.rows) > ROWS_IN_TABLE
+
+    @property
+    def long(self) -> bool:
+        """True where the form is posted, since it may be too long for an address."""
+        return self.as_text or self.moves_are_hidden or sum(map(len, self.asides)) > LONGEST_ASIDE
+
+    @property
+    def moves_are_hidden(self) -> bool:
+        """True where there are more moves than the page has fields for."""
+        return len(self.moves) > ROWS_IN_TABLE
+
+    @property
+    def has_both(self) -> bool:
+        """True where phases are given beside a motion, which is refused."""
+        return self.has_motion and any(map(filled, self.rows))
+
+    @property
+    def mechanism(self) -> str:
+        """Kind of mechanism that moves."""
+        given = self.texts.get("mech", "").strip()
+        return given if given in TYPES else TYPES[0]
+
+    @property
+    def mechanism_symbols(self) -> tuple[Symbol, ...]:
+        """Inputs of the mechanism: its own, and any other that is given, which is refused where it stands."""
+        own = mechanism_symbols(self.mechanism)
+        names = {"mech", *(symbol.name for symbol in own)}
+        return (*own, *(symbol for symbol in MECHANISM_SYMBOLS if symbol.name in self.texts.keys() - names))
+
+    @property
+    def columns(self) -> list[Symbol]:
+        """Columns of the table of phases."""
+        return table_columns(PHASE_SYMBOLS, self.shown)
+
+    @property
+    def move_columns(self) -> list[Symbol]:
+        """Columns of the table of moves."""
+        return table_columns(move_symbols(self.mechanism), self.shown)
+
+    def row(self, problem: FieldProblem) -> str:
+        """Number of the row that a problem is in, with its name where it has one."""
+        at = problem.index or 0
+        rows = self.moves if self.has_motion and not self.has_both else self.rows
+        return numbered(at, rows[at].get(NAME.role, "").strip() if at < len(rows) else "")
+
+    @property
+    def text(self) -> str:
+        """The duty cycle as text, one phase per line: as typed, if it was."""
+        columns = PHASE_SYMBOLS[: next((width for group, width in WIDTHS.items() if group in self.shown), 3)]
+        lines = ("\t".join(row.get(symbol.name, "") for symbol in columns) for row in self.rows)
+        return "\n".join(lines) if self.typed is None else self.typed
+
+    @property
+    def empty(self) -> bool:
+        """Nobody has filled in a phase yet: neither an application nor an error."""
+        return self.application is None and not self.problems
+
+    def messages(self, name: str, index: int | None = None) -> list[Sentence]:
+        """Messages on one input."""
+        return [problem.message for problem in self.problems if (problem.name, problem.index) == (name, index)]
+
+
+def address_of_empty(form: Form) -> str:
+    """Address of a form without a phase, with all else that it says."""
+    lists = [(name, text) for name, texts in form.lists.items() for text in texts]
+    given = [(name, text) for name, text in (*form.texts.items(), *lists) if text.strip() and name != "mech"]
+    start = START[form.mechanism if form.has_motion else "phases"]
+    return "&".join(filter(None, (f"/?{start}", urlencode(given)))) + query_of(form.labels)
+
+
+def for_reader(form: Form, reader: Reader) -> Form:
+    """The same form with what the reader's fields show: their units and decimal mark."""
+    units = units_of(form.texts.get("mech", "").strip())
+    tables = (*form.rows, *form.moves, *form.bodies.rows, form.belt.texts, form.texts)
+    cells = [(text, units[name]) for table in tables for name, text in table.items() if name in units]
+    shown = numbers.to_fields(cells, reader, form.written)
+    texts = iter(shown.texts)
+    rows, moves, bodies, (belt, named) = (
+        tuple({name: next(texts) if name in units else text for name, text in table.items()} for table in part)
+        for part in (form.rows, form.moves, form.bodies.rows, (form.belt.texts, form.texts))
+    )
+    return replace(
+        form,
+        rows=rows,
+        moves=moves,
+        bodies=replace(form.bodies, rows=bodies),
+        belt=replace(form.belt, texts=belt),
+        texts=named,
+        written=reader.marker,
+        was=shown.was,
+    )
