@@ -8,7 +8,7 @@ from hypothesis import assume, example, given
 from hpn.application import Application
 from hpn.catalogue import Catalogue, load_catalogue
 from hpn.engine.remedy import Way
-from hpn.engine.remedy import followed as follow
+from hpn.engine.tried import followed as follow
 from hpn.words.wording import rounded
 from tests.build import Json, answer, candidate, cycle, phase, worked_example
 from tests.property.draw import applications

@@ -8,8 +8,9 @@ from urllib.parse import parse_qsl
 from hpn.application import Application
 from hpn.catalogue import Catalogue
 from hpn.engine.candidates import Candidate
-from hpn.engine.remedy import Alternative, alternatives_of, growths_of, tried
+from hpn.engine.remedy import Alternative, alternatives_of, growths_of
 from hpn.engine.selection import select
+from hpn.engine.tried import tried
 from hpn.web.form.link_reader import parse
 from hpn.web.form.link_writer import to_link
 from tests.build import Json

@@ -15,8 +15,9 @@ from hpn.application import Application
 from hpn.catalogue import Catalogue, load_catalogue
 from hpn.engine.candidates import Candidate
 from hpn.engine.checks import BY_CODE
-from hpn.engine.remedy import alternatives_of, growths_of, remedy_of, tried
+from hpn.engine.remedy import alternatives_of, growths_of, remedy_of
 from hpn.engine.selection import select
+from hpn.engine.tried import tried
 from hpn.explain.calculation import calculation_of
 from hpn.explain.calculation.formula import Formula, Subtraction, leaves_out, value_of
 from hpn.web.form.link_reader import parse

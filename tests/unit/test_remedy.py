@@ -6,8 +6,9 @@ from msgspec import structs
 from hpn.application import Application
 from hpn.catalogue import Catalogue
 from hpn.engine.candidates import Candidate
-from hpn.engine.remedy import BY_CURVE, alternatives_of, followed, growths_of, remedy_of, tried, ways_of
+from hpn.engine.remedy import BY_CURVE, alternatives_of, growths_of, remedy_of, ways_of
 from hpn.engine.selection import Selection, select
+from hpn.engine.tried import followed, tried
 from hpn.words.wording import rounded
 from tests.build import Json, cycle, phase, worked_example
 from tests.conftest import Supplement

@@ -9,8 +9,9 @@ from pydantic import ValidationError
 from hpn.application import Application
 from hpn.catalogue import Catalogue
 from hpn.engine.notices import ON_MOTOR_TORQUES, on_motor_torques
-from hpn.engine.remedy import alternatives_of, tried
+from hpn.engine.remedy import alternatives_of
 from hpn.engine.selection import select
+from hpn.engine.tried import tried
 from tests.build import Json, answer, candidate, check, cycle, notices, phase
 from tests.conftest import Supplement
 

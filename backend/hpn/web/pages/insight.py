@@ -8,8 +8,9 @@ from urllib.parse import quote
 from hpn.application import Application, OutputLoad
 from hpn.catalogue import Catalogue
 from hpn.engine.candidates import Candidate
-from hpn.engine.remedy import alternatives_of, tried
+from hpn.engine.remedy import alternatives_of
 from hpn.engine.selection import Selection
+from hpn.engine.tried import tried
 from hpn.explain.comparison import MOST_PINS, Column, RowGroup, groups_of, undominated
 from hpn.web.form.form import Form
 from hpn.web.form.given import FieldProblem

@@ -1,0 +1,117 @@
+"""Applications changed as a remedy says, with its figures as the words print them."""
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+from hpn.application import LISTED_FIGURES, Application, DutyCycle, EmergencyStop
+from hpn.application.motion import Motion
+from hpn.application.phase import Phase
+from hpn.catalogue import Catalogue
+from hpn.engine.allowed import with_listed_motor
+from hpn.engine.remedy import Alternative, Way
+from hpn.physics.stiffness import ARCMIN_PER_RAD
+from hpn.words.wording import Quantity, rounded
+
+
+def tried(application: Application, alternative: Alternative, catalogue: Catalogue) -> Application:
+    """The application changed by an alternative, with its figures as the words print them.
+
+    A listed motor of which a figure changes is replaced by its figures.
+    """
+    changed = followed(application, alternative.way)
+    figures = {f"requirements.motor.{name}" for name in LISTED_FIGURES}
+    if any(requirement.path in figures for requirement in alternative.requirements):
+        changed = with_listed_motor(changed, catalogue)
+        changed = _with(changed, ("requirements", "motor", "designation"), None)
+    asked = application.requirements
+    for requirement in alternative.requirements:
+        path, value = requirement.path, requirement.value
+        if path == POSITION_ERROR and asked.position_error_mm is not None:  # asked as a length: what it comes to there
+            length = value.value * (asked.position_radius_mm or 0.0) / ARCMIN_PER_RAD
+            path, value = "requirements.position_error_mm", Quantity(length, "mm", value.digits, value.rounding)
+        changed = _with(changed, path.split("."), float(rounded(value.value, value.digits, value.rounding)))
+    return changed
+
+
+POSITION_ERROR = "requirements.position_error_arcmin"
+
+
+def _with(model: Any, path: Sequence[str], value: float | None) -> Any:
+    name, *below = path
+    return model.model_copy(update={name: _with(getattr(model, name), below, value) if below else value})
+
+
+def followed(application: Application, way: Way) -> Application:
+    """The application changed by a way, with its figures as the words print them.
+
+    A motion is replaced by its phases where their torques or speeds change, whose signs hold as those of a motion do.
+    """
+    torque, speed, load = (_printed(factor, 3) for factor in (way.torque, way.speed, way.load))
+    cycle, parts = application.duty_cycle, dict[str, Any]()
+    if cycle.motion is not None and (torque, speed) == (1, 1):
+        parts["duty_cycle"] = cycle.model_copy(update={"motion": _loaded(cycle.motion, load)})
+    else:
+        parts["duty_cycle"] = cycle.model_copy(update={"phases": _driven(cycle, torque, speed, load), "motion": None})
+        if cycle.motion is not None:
+            asked = application.requirements
+            known = {"load_inertia_kgm2": cycle.motion.load_inertia_kgm2, "load_reverses": bool(asked.load_reverses)}
+            parts["requirements"] = asked.model_copy(update=known)
+    if (given := application.output_load) is not None:
+        loads = {name: _scaled(getattr(given, name), load) for name in LOADS}
+        parts["output_load"] = given.model_copy(update={k: v for k, v in loads.items() if v is not None})
+    if (stop := application.emergency_stop) is not None:
+        parts["emergency_stop"] = _stopped(stop, way)
+    return application.model_copy(update=parts)
+
+
+LOADS = ("radial_N", "axial_N")
+
+
+def _loaded(motion: Motion, load: float) -> Motion:
+    """The motion with the loads of its moves by a factor."""
+    if load == 1:
+        return motion
+    given = motion.model_dump(exclude_unset=True)  # validated again, since a copy would keep the phases of before
+    for move in given["moves"]:
+        move |= {name: _scaled(move[name], load) for name in LOADS if move.get(name) is not None}
+    return type(motion).model_validate(given)
+
+
+def _driven(cycle: DutyCycle, torque: float, speed: float, load: float) -> tuple[Phase, ...]:
+    """Phases of a cycle with their torques, speeds and loads by factors; a mean, its peak and its RMS go together."""
+    return tuple(
+        phase.model_copy(
+            update={
+                "torque_Nm": _scaled(phase.torque_Nm, torque),
+                "peak_torque_Nm": _scaled(phase.peak_torque_Nm, torque),
+                "rms_torque_Nm": _scaled(phase.rms_torque_Nm, torque),
+                "speed_rpm": _scaled(phase.speed_rpm, speed),
+                "peak_speed_rpm": _scaled(phase.peak_speed_rpm, speed),
+                **{name: _scaled(getattr(phase, name), load) for name in LOADS},
+            }
+        )
+        for phase in cycle.load_phases
+    )
+
+
+def _stopped(stop: EmergencyStop, way: Way) -> EmergencyStop:
+    """The emergency stop with its largest torque, else with its largest number, else as it is."""
+    if stop.brake is not None and way.brake_torque_Nm is not None:
+        brake = stop.brake.model_copy(update={"torque_Nm": _printed(way.brake_torque_Nm, 4)})
+        return stop.model_copy(update={"brake": brake})
+    if way.emergency_stop_torque_Nm is not None:
+        limit = _printed(way.emergency_stop_torque_Nm, 4)
+        return stop.model_copy(update={"torque_Nm": math.copysign(limit, stop.torque_Nm or 0.0)})
+    return stop if way.emergency_stop_count is None else stop.model_copy(update={"count": way.emergency_stop_count})
+
+
+def _printed(value: float, digits: int) -> float:
+    return value if value == 1 else float(rounded(value, digits, "down"))
+
+
+def _scaled(value: float | None, factor: float) -> float | None:
+    """A figure by a factor, as somebody would type it: without the last digits of floating point."""
+    if value is None or factor == 1:
+        return value
+    return math.copysign(float(rounded(abs(value * factor), 12, "down")), value)
