@@ -60,6 +60,7 @@ def test_only_hours_are_mostly_whole(unit: str, said: str) -> None:
         ("t", "2 min", "t=120&"),
         ("Lh", "60 min", "&Lh=1"),
         ("ta", "77 °F", "&ta=25"),
+        ("ta", "32 °F", "&ta=0"),
         ("K3", "2 kNm/rad", "&K3=2000"),
         ("n", "2.5 krpm", "n=2500&"),
         ("n", "4 turns/s", "n=240&"),
@@ -96,6 +97,10 @@ def test_unit_of_its_own_counts_before_the_readers_and_a_sum_is_in_the_readers(t
     application = typed("T", text, "de.lb_in")
     assert isinstance(application, Application)
     assert application.duty_cycle.load_phases[0].torque_Nm == torque
+
+
+def test_a_temperature_of_32_degrees_fahrenheit_is_0_degrees_celsius() -> None:
+    assert to_wire([("ta", "32"), ("written", "en.degF")], {"ta": "degC"})[0] == [("ta", "0")]
 
 
 @pytest.mark.parametrize(

@@ -102,7 +102,8 @@ class _Known:
             return Entry(plain, text) if self.reader.marker or plain != text.strip() else text
         own = measure is self.reader.measure(unit)
         value = self.was.get((unit, plain), measure.wire(plain)) if own else measure.wire(plain)
-        return Entry(_plain(value) if isfinite(value) and not _is_too_small(plain, value) else plain, text)
+        vanishes = not measure.offset and _is_too_small(plain, value)  # 32 °F are 0 °C
+        return Entry(_plain(value) if isfinite(value) and not vanishes else plain, text)
 
     def _number(self, text: str, unit: str) -> tuple[str | Sentence | None, measures.Measure]:
         """Number in plain notation and the unit that it is in; None where it is none, a message for what is wrong."""
