@@ -7,7 +7,7 @@ from hpn.catalogue import Catalogue
 from hpn.engine.selection import select
 from hpn.explain.calculation import Step, calculation_of
 from hpn.explain.calculation.formula import Constant, Term, Variable, value_of
-from hpn.explain.calculation.mathml import mathml, with_numbers
+from hpn.explain.calculation.mathml import in_symbols, mathml, with_numbers
 from hpn.explain.calculation.motor import OWN as OWN_FIGURES
 from hpn.web.api.samples import LIFTING, TURNING
 from hpn.words.reader import Reader
@@ -39,6 +39,29 @@ def test_nothing_is_said_of_rounding_where_it_changes_nothing(catalogue: Catalog
     steps = steps_of(cycle(phase(30.0, 100.0)), "HPN-20A-5", catalogue)
     assert steps["average_input_speed"].notes == ()
     assert not any("by hand" in note.text for note in steps["life"].notes)
+
+
+def test_a_motion_whose_speed_is_a_whole_number_but_for_its_last_bit_says_nothing_of_rounding(
+    catalogue: Catalogue,
+) -> None:
+    """90° in 1.5 s by way of a stage of 1.5 are 15 rpm."""
+    turn = {"profile": "trapezoidal", "angle_deg": 90, "time_s": 1.5}
+    table = {"type": "rotary", "inertia_kgm2": 2, "gravity_mass_kg": 20, "gravity_radius_mm": 250, "ratio": 1.5}
+    motion = {"mechanism": table, "moves": [turn]}
+    assert steps_of({"duty_cycle": {"motion": motion}}, "HPN-20A-10", catalogue)["average_input_speed"].notes == ()
+
+
+def test_speeds_enter_the_bearings_equivalent_load_by_magnitude_as_symbols_too(catalogue: Catalogue) -> None:
+    loaded = cycle(phase(10, -100), phase(10, 50), output_load={"radial_N": 500.0})
+    mean = steps_of(loaded, "HPN-20A-5", catalogue)["output_bearing_life"].lines[0]
+    assert "(|n_1|·t_1·P_1^3 + " in in_symbols(Reader(), mean)
+
+
+def test_torques_that_an_equation_picks_are_said_beside_it(catalogue: Catalogue) -> None:
+    stop = {"brake": {"torque_Nm": 5}}
+    steps = steps_of(cycle(phase(10, 100), phase(-4, 50), emergency_stop=stop), "HPN-20A-5", catalogue)
+    assert steps["position_error"].notes[0].text.startswith("T_lo and T_hi are the smallest and the largest peak")
+    assert any(note.text.startswith("T_opp is the load’s torque against the motion") for note in steps["stop"].notes)
 
 
 def test_limits_name_their_table_and_page(catalogue: Catalogue) -> None:

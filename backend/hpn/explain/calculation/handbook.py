@@ -87,8 +87,10 @@ def _average_input_speed_line(sheet: Sheet) -> Line:
 
 
 def _hand_input_speed(sheet: Sheet, line: Line) -> tuple[Sentence, ...]:
-    speed = _hand(sheet.n_out_av.value)
-    if speed is None or (by_hand := line.by_hand({sheet.n_out_av.symbol: speed})) == line.result.value:
+    if (speed := _hand(sheet.n_out_av.value)) is None:
+        return ()
+    by_hand = line.by_hand({sheet.n_out_av.symbol: speed})
+    if math.isclose(by_hand, line.result.value, rel_tol=ROUNDING):
         return ()
     values = {"speed": Quantity(speed, "rpm", 6), "result": Quantity(by_hand, "rpm", 9)}
     text = N_("With n_out,av rounded to {speed} by hand you would get {result}; this tool rounds nothing in between.")

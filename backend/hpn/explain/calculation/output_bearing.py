@@ -110,7 +110,7 @@ def _equivalent_load(sheet: Sheet, model: str, place: int, P: Term) -> Line:
 def _mean(sheet: Sheet, load: OutputLoad, loads: PhaseValues, mean: Term, k: Term, f_w: Term) -> Step:
     """Step of the cycle's equivalent load and of the load k that the required life allows."""
     speed, life = sheet.catalogue.bearing_reference
-    damage = over_phases(lambda n, t, P: Product((n, t, Power(P, EXPONENT))), sheet.speed, sheet.time, loads)
+    damage = over_phases(lambda n, t, P: Product((Magnitude(n), t, Power(P, EXPONENT))), sheet.speed, sheet.time, loads)
     above = Product((Constant(speed, "rpm"), Constant(life, "h")))
     lines = (
         Line(mean, Root(Quotient(damage, sheet.travel), EXPONENT)),

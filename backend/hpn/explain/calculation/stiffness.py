@@ -71,10 +71,16 @@ def _position(sheet: Sheet, K_3: Term) -> Step:
     length, radius = sheet.figure("position_error_mm"), sheet.given("requirements.position_radius_mm")
     if length is not None and radius is not None:
         lines.append(Line(length, Product((Quotient(error, ARCMIN), radius))))
-    both_ways = N_("The torque is taken to act both ways: T_lo is −T_max and T_hi is T_max.")
-    notes = [Sentence(both_ways)] if sheet.duty.torque_both_ways.item() else []
-    notes.append(Sentence(CANDIDATE["position_error_arcmin"].caveat))
-    return step_of_check("position_error", tuple(lines), sheet.compared("position_error", error), tuple(notes))
+    torques = Sentence(BOTH_WAYS if sheet.duty.torque_both_ways.item() else BY_SIGN)
+    notes = (torques, Sentence(CANDIDATE["position_error_arcmin"].caveat))
+    return step_of_check("position_error", tuple(lines), sheet.compared("position_error", error), notes)
+
+
+BOTH_WAYS = N_("The torque is taken to act both ways: T_lo is −T_max and T_hi is T_max.")
+BY_SIGN = N_(
+    "T_lo and T_hi are the smallest and the largest peak of the phases, each with the sign of its torque; a pause "
+    "counts as 0."
+)
 
 
 # --- Emergency stop by the brake --------------------------------------------------------------------------------------
@@ -108,12 +114,13 @@ def stop_steps(sheet: Sheet) -> Iterable[Step]:
         lines.append(Line(a, Quotient(Sum((at_motor, Product((loss, T_opp)))), below)))
         lines.append(Line(T_r, Subtraction(Product((J, a)), T_opp)))
     lines.append(Line(T_k, formula))
-    yield Step("stop", BRAKE, None, tuple(lines), (), (UNIFORM, *_on_the_factor(sheet, f)))
+    yield Step("stop", BRAKE, None, tuple(lines), (), (UNIFORM, Sentence(HARDEST), *_on_the_factor(sheet, f)))
     if J is not None and sheet.figure("stopping_time_s") is not None:
         yield _course(sheet, stops, J, at_motor, eta)
 
 
 BRAKE = N_("Emergency stop by the brake")
+HARDEST = N_("T_opp is the load’s torque against the motion at which T_k is the largest; 0 without a motion.")
 
 
 def _torque(brake: stop.Brake, T_opp: float, f: float) -> float:
