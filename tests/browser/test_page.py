@@ -348,11 +348,11 @@ def test_saved_selection_prints_its_candidates(visitor: Visitor) -> None:
 
 
 @pytest.mark.parametrize("units", ["Metric (SI)", "US customary"])
-@pytest.mark.parametrize("ratio", ["&i=5", ""], ids=["one ratio", "every ratio"])
+@pytest.mark.parametrize("more", ["&i=5", "", "&FR=500&FA=200&fw=1.2"], ids=["one ratio", "every ratio", "loads"])
 def test_the_worked_example_as_saved_takes_three_sheets_with_running_heads(
-    visitor: Visitor, units: str, ratio: str
+    visitor: Visitor, units: str, more: str
 ) -> None:
-    page = visitor.open(EXAMPLE.replace("&i=5", ratio))
+    page = visitor.open(EXAMPLE.replace("&i=5", more))
     page.get_by_text("Title block").click()
     page.get_by_label("Title", exact=True).fill('Infeed "turret" \\ C')
     page.get_by_role("button", name="Save", exact=True).click()
@@ -367,6 +367,22 @@ def test_the_worked_example_as_saved_takes_three_sheets_with_running_heads(
     whole = "".join(texts)
     assert whole.count("axialloadin") == 1, "the envelope stands once"
     assert "Checked" in texts[0] and "Approved" in texts[0] and page.url in whole
+    assert texts[0].index("Checked") < texts[0].index("Inputassaved"), "the title block comes first"
+    assert "▾" not in whole and "2more" not in whole
+    page.emulate_media(media="print")
+    code = page.locator(".address svg").bounding_box()
+    assert code and code["width"] == code["height"] > 50, "a code leads to the address"
+
+
+@pytest.mark.parametrize(
+    ("path", "first"), [("/catalogue", "HPN-11A-4"), ("/catalogue/HPN-20A-5", "Repeated peak torque")]
+)
+def test_a_table_begins_on_the_first_sheet_without_anything_to_press(visitor: Visitor, path: str, first: str) -> None:
+    page = visitor.open(path)
+    texts = printed(page)
+    assert len(texts) <= 2 and first in texts[0]
+    page.emulate_media(media="print")
+    assert page.get_by_role("link", name="Use in selection").or_(page.get_by_role("button")).count() == 0
 
 
 @pytest.mark.parametrize("width", [390, 768, 1024, 1440, 1920])

@@ -160,12 +160,13 @@ def _link(export: Export, reader: Reader) -> dict[str, Any]:
         "link": "" if carrier == "too long" else link,
         "link_note": reader.text(LINK[carrier]),
         "link_hint": reader.text(CARRIED) if carrier == "whole" else "",
-        "qr": _qr(link) if len(link) <= LONGEST_QR_LINK else "",
+        "qr": qr_code(link) if len(link) <= LONGEST_QR_LINK else "",
     }
 
 
-def _qr(link: str) -> str:
-    """QR code as an SVG drawing."""
+def qr_code(link: str) -> str:
+    """QR code of a link as an SVG drawing as large as there is room, for the report and for a printed page."""
     drawing = BytesIO()
-    segno.make(link, error="m", micro=False).save(drawing, kind="svg", border=0, xmldecl=False, svgclass=None)
+    code = segno.make(link, error="m", micro=False)
+    code.save(drawing, kind="svg", border=0, xmldecl=False, svgclass=None, lineclass=None, omitsize=True)
     return drawing.getvalue().decode()

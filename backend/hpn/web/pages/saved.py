@@ -19,6 +19,7 @@ from hpn.explain.differences import Difference, FigureDifference
 from hpn.files.export import DIGITS
 from hpn.files.inputs import LOADS, REQUIREMENTS, given
 from hpn.files.motion import lines, move_line
+from hpn.files.report.content import qr_code
 from hpn.files.report.tables import number_of
 from hpn.store import ID, SavedSelection
 from hpn.web.archive import Reopened, found, url_of
@@ -76,7 +77,7 @@ async def show_selection(request: Request) -> Response:
 def _shown(request: Request, reopened: Reopened) -> Response:
     shown = _page(reopened, request.query_params.get("gear", ""), request.app.state.catalogue)
     address = absolute(request, url_of(reopened.saved.id))
-    return page(request, "selection.html", address=address, **shown)
+    return page(request, "selection.html", address=address, qr_code=qr_code(address), **shown)
 
 
 async def copy_selection(request: Request) -> Response:
