@@ -67,17 +67,13 @@ class Symbol:
 
 @dataclass(frozen=True, slots=True)
 class FormGroup:
-    """Inputs under one heading of the form, in its order; one that is folded opens where something is given in it.
-
-    `short` is its name in the line of links at the top, blank where it has none.
-    """
+    """Inputs under one heading of the form, in its order; one that is folded opens where something is given in it."""
 
     code: str
     title: str
     names: tuple[str, ...]
     folded: bool = True
     hint: str = ""
-    short: str = ""
 
     @property
     def symbols(self) -> tuple["Symbol", ...]:
@@ -318,16 +314,15 @@ def move_symbols(mechanism: str) -> tuple[Symbol, ...]:
 
 
 GROUPS = (
-    FormGroup("load", N_("Loads"), ("FR", "FA", "fw", "Tk", "Nk"), folded=False, short=N_("Loads")),
+    FormGroup("load", N_("Loads"), ("FR", "FA", "fw", "Tk", "Nk"), folded=False),
     FormGroup(
         "wishes",
         N_("Requirements"),
         ("i", "size", "u", "rank", "Lh", "Lb", "Lbb"),
         folded=False,
         hint=N_("ratios i and sizes: none selected = all"),
-        short=N_("Requirements"),
     ),
-    FormGroup("motor", N_("Motor"), ("nm", "Tm", "Tmn", "eta", "nmr", "Jm", "Jr", "JL", "md"), short=N_("Motor")),
+    FormGroup("motor", N_("Motor"), ("nm", "Tm", "Tmn", "eta", "nmr", "Jm", "Jr", "JL", "md")),
     FormGroup(
         "brake",
         N_("Brake of the emergency stop"),
