@@ -26,10 +26,10 @@ DRAWN = ("../../backend/hpn/explain/drawings/drawings", "plots")
 """Style sheets of drawings, which the report uses too, and of plots."""
 
 COMMON = ("fonts", "tokens", "app", "form", "tools", "import")
-RESULT = ("selection", "insight", *DRAWN)
+RESULT = ("insight", *DRAWN)
 STYLES = {
     "page.css": (*COMMON, "workbench", *RESULT, "motion", "verdict", "sheet", "phone", "print"),
-    "site.css": (*COMMON, "catalogue", "saved", *RESULT, "fleet", "verdict", "phone", "print", "paper"),
+    "site.css": (*COMMON, "catalogue", "saved", "selection", *RESULT, "fleet", "verdict", "phone", "print", "paper"),
     "report.css": ("tokens", "app", "tools", "fleet", "phone", "print"),
 }
 """Style sheets of the form with its result, of all other pages, and of a fleet’s report, which holds its own."""

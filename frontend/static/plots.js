@@ -175,10 +175,12 @@ document.addEventListener("pointerover", (event) => markPhases(phaseAt(event.tar
 document.addEventListener("focusin", (event) => markPhases(phaseAt(event.target)));
 document.addEventListener("focusout", (event) => markPhases(phaseAt(event.relatedTarget)));
 
-// The rows stand in the form, which an answer leaves as it is: the phase that governs is told by the drawings.
+// The rows stand in the form, which an answer leaves as it is: the drawing says which phase governs and which figures follow.
 function markGoverning() {
   const governing = listOf(document.querySelector("[data-governing]")?.dataset.governing);
   for (const row of document.querySelectorAll(ROW)) row.classList.toggle("governing", placesOf(row).some((place) => governing.includes(place)));
+  const followed = JSON.parse(document.querySelector("[data-followed]")?.dataset.followed ?? "{}");
+  for (const [id, figure] of Object.entries(followed)) document.getElementById(id)?.setAttribute("placeholder", figure);
   markPhases(phaseAt(document.activeElement));
 }
 document.addEventListener("htmx:after:swap", markGoverning);

@@ -75,6 +75,7 @@ def test_a_rotary_table_known_by_its_dimensions_becomes_a_saved_selection(visito
     use_the_sum(page, "2.523")
     expect(box(page, "Moment of inertia")).to_have_value("2.523")
     add_move(page, 1, "Trapezoidal", Angle="90", Time="0.6")
+    expect(box(page, "Peak speed, move 1")).to_have_attribute("placeholder", "37.5")
     add_move(page, 2, "Dwell", Time="1.2")
     expect(page).to_have_url(re.compile("mv=dwell&ms=&mt=1.2$"))
     expect(result(page)).to_contain_text("HPN-20A-4")

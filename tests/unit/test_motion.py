@@ -1,6 +1,7 @@
 """Motions as somebody sends them: what is refused and where, what is told, and how large they may be."""
 
 import math
+from itertools import combinations
 from typing import Any
 
 import pytest
@@ -276,3 +277,19 @@ def test_an_inertia_below_that_of_the_gravity_mass_is_refused_with_the_bound() -
     assert place == ("duty_cycle", "motion", "mechanism", "inertia_kgm2")
     assert "at least 0.75 kg" in said
     assert phases_of(motion(TURN, mechanism=heavy | {"inertia_kgm2": 0.75}))
+
+
+@pytest.mark.parametrize("profile", ["trapezoidal", "s_curve"])
+@pytest.mark.parametrize("given", [*combinations(("time_s", "speed_rpm", "acceleration_deg_per_s2"), 2)])
+def test_figures_that_follow_give_the_same_move_when_they_are_typed(profile: Any, given: tuple[str, str]) -> None:
+    """A third of 0.4 s for each ramp: 110 deg at 412.5 deg/s (area of the trapezoid), reached in 0.4 / 3 s."""
+    typed = {"time_s": 0.4, "speed_rpm": 68.75, "acceleration_deg_per_s2": 412.5 * 3 / 0.4}
+    if profile == "s_curve":
+        typed["acceleration_deg_per_s2"] /= 0.75
+    move = Turn(profile=profile, angle_deg=110, **{name: typed[name] for name in given})
+    followed = move.followed
+    for name in typed.keys() - {*given}:
+        assert followed[name] == pytest.approx(typed[name], rel=1e-12)
+    assert followed["acceleration_time_s"] == followed["deceleration_time_s"] == pytest.approx(0.4 / 3, rel=1e-9)
+    assert "time_s" not in Turn(profile="trapezoidal", angle_deg=110, time_s=0.4).followed
+    assert Turn(profile="dwell", time_s=1).followed == {}

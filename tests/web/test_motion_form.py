@@ -276,3 +276,16 @@ def test_hostile_asides_are_left_alone(api: TestClient) -> None:
         for press in ("way:motion", "way:phases", "way:nothing", "take", "inertia"):
             page = api.post("/", data={"T": "1", "n": "1", "t": "1", "aside": aside, "do": press})
             assert page.status_code in (200, 413, 422)
+
+
+@pytest.mark.parametrize(
+    ("cookies", "speed", "acceleration"),
+    [("", "28.1", "633"), ("hpn_language=de", "28,1", "633")],
+    ids=["en", "de"],
+)
+def test_cells_left_blank_show_what_follows(api: TestClient, cookies: str, speed: str, acceleration: str) -> None:
+    """90 deg in 0.8 s with a third for each ramp: 168.75 deg/s or 28.125 rpm, 632.8 deg/s2."""
+    page = api.get(f"/?{TURN}", headers={"Cookie": cookies}).text
+    shown = dict(re.findall(r'<input id="(\w+-0)"[^>]*placeholder="([^"]*)"', page))
+    assert (shown["mn-0"], shown["ma-0"]) == (speed, acceleration)
+    assert shown["mt-0"] == " "

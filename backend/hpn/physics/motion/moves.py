@@ -88,6 +88,17 @@ class Move(Model):
         return (self.time_s or 0.0) / 2 if self.profile == "modified_sine" else min(self.timing.ramps_s)
 
     @property
+    def followed(self) -> dict[str, float]:
+        """Time, peak speed, accelerations and times of the ramps that follow from what is given, by field."""
+        if self.profile in ("dwell", "modified_sine"):
+            return {}
+        timing, (ramp, last) = self.timing, self._ramp_fields
+        figures = {"time_s": timing.time_s, self.SPEED: timing.peak_speed / self.SPEED_UNIT}
+        figures |= dict(zip((ramp[0], last[0]), timing.ramps_s, strict=True))
+        figures |= dict(zip((ramp[1], last[1]), timing.peak_accelerations, strict=True))
+        return {field: value for field, value in figures.items() if getattr(self, field) is None}
+
+    @property
     def external(self) -> float:
         """External torque or force."""
         return float(getattr(self, self.EXTERNAL))

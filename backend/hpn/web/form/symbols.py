@@ -109,10 +109,7 @@ SYMBOLS = (
         ("output_load", "load_coefficient"),
         placeholder="1",
         offered=(1, 1.2, 1.5),
-        hint=N_(
-            "1 to 1.2 without impact, 1.2 to 1.5 normal, 1.5 to 3 with impact: guidance of the maker’s other "
-            "handbooks, not of this one."
-        ),
+        hint=N_("1–1.2 smooth, 1.2–1.5 normal, 1.5–3 with impact; not from this handbook"),
     ),
     Symbol("Lb", ("output_load", "life_h"), placeholder="20000"),
     Symbol(
@@ -223,10 +220,10 @@ MECHANISM_SYMBOLS = (
 )
 """A mechanism and where its motion starts, in the order of a canonical link."""
 
-FIRST_OF_MECHANISM = ("d", "h", "ml", "J")
+FIRST_OF_MECHANISM = ("d", "h", "ml", "J", "Tf")
 """Inputs of a mechanism that nearly every one needs, as the form shows them; the others are folded."""
 
-_IN_FORM = (*FIRST_OF_MECHANISM, "mg", "rg", "th0", "inc", "Tf", "b", "mu", "etam", "im")
+_IN_FORM = (*FIRST_OF_MECHANISM, "mg", "rg", "th0", "inc", "b", "mu", "etam", "im")
 
 _INERTIA_OF_TURNING = N_("Of everything that turns with pinion, pulley or screw.")
 _INERTIA_OF_ROTARY = N_("Of everything that turns about the axis, a mass off the shaft included.")

@@ -1,7 +1,7 @@
 """The templates, and what they all use: texts, numbers and sentences in the language and units of the reader."""
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from functools import lru_cache
 from typing import Any
 from xml.etree.ElementTree import Element
@@ -22,6 +22,7 @@ from hpn.explain.drawings.picture import beyond_limit
 from hpn.explain.drawings.svg import markup
 from hpn.explain.readings import stiffness_of
 from hpn.installed import data_folder
+from hpn.physics.motion.moves import Move
 from hpn.web.door.visit import address, current
 from hpn.web.form import symbols, ways
 from hpn.web.form.labels import MOTOR_CODE, ordering_code
@@ -197,6 +198,17 @@ def _set(part: Part) -> Markup:
 
 
 @pass_context
+def _followed(_: Context, moves: Iterable[Move]) -> dict[str, str]:
+    """Figures of moves that follow from those given, each by the field of the form where it would stand."""
+    reader = current()
+    return {
+        f"{symbol.name}-{at}": reader.figure(value, symbol.unit)
+        for at, move in enumerate(moves)
+        for symbol, value in ((symbols.MOVE_BY_LEAF[field], value) for field, value in move.followed.items())
+    }
+
+
+@pass_context
 def _stiffness(_: Context, candidate: Candidate) -> str:
     """Natural frequency and position error of a candidate."""
     return current().told(stiffness_of(candidate))
@@ -219,6 +231,7 @@ FILTERS: dict[str, Callable[..., Any]] = {
     "as_typed": _as_typed,
     "capital": lambda text: text[:1].upper() + text[1:],
     "figure": _figure,
+    "followed": _followed,
     "formula": as_formula,
     "inline": _inline,
     "reason": _reason,
