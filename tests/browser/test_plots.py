@@ -13,7 +13,10 @@ from playwright.sync_api import Browser, Page, Playwright, expect
 from hpn.application import Application
 from hpn.catalogue import load_catalogue
 from hpn.engine.selection import select
-from hpn.explain.drawings import LARGE, SMALL, Subject, bearing_picture, chart, envelope_scene
+from hpn.explain.drawings import Subject, chart
+from hpn.explain.drawings.chart import LARGE, SMALL
+from hpn.explain.drawings.envelope import envelope_scene
+from hpn.explain.drawings.picture import bearing_picture
 from hpn.explain.drawings.svg import STYLE, markup
 from hpn.words.reader import Reader
 from tests.browser.conftest import PATIENCE_S, Visitor, open_section, violations

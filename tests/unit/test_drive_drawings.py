@@ -9,8 +9,8 @@ from hpn.application import Application
 from hpn.catalogue import Catalogue, load_catalogue
 from hpn.engine.candidates import Candidate
 from hpn.engine.selection import select
-from hpn.explain import drawings
 from hpn.explain.drawings import Subject
+from hpn.explain.drawings.plane import gear_plane, motor_plane
 from hpn.explain.drawings.svg import markup
 from hpn.physics.motion import trace_of
 from hpn.words.reader import Reader
@@ -51,7 +51,7 @@ def flat(points: list[Point]) -> list[float]:
 
 def test_phases_and_averages_stand_at_their_torque_and_speed_within_the_limits_of_the_gear() -> None:
     subject = subject_of(TYPED)
-    shown = Shown(drawings.gear_plane(subject).drawing)
+    shown = Shown(gear_plane(subject).drawing)
     gear, duty = subject.gear, subject.duty
 
     assert sorted(shown.dots("load")) == [pytest.approx(p, abs=0.5) for p in [(0, 20), (250, 40), (660, 60)]]
@@ -68,7 +68,7 @@ def test_phases_and_averages_stand_at_their_torque_and_speed_within_the_limits_o
 
 
 def test_a_limit_far_beyond_the_cycle_is_named_with_an_arrow_and_leaves_the_scale_to_the_cycle() -> None:
-    shown = Shown(drawings.gear_plane(subject_of(cycle(phase(2, 20))), Reader(language="de")).drawing, ",")
+    shown = Shown(gear_plane(subject_of(cycle(phase(2, 20))), Reader(language="de")).drawing, ",")
 
     assert shown.line("limit") == shown.line("mean") == []
     named = [Shown.said(text) for text in shown.of("text", "beyond")]
@@ -79,7 +79,7 @@ def test_a_limit_far_beyond_the_cycle_is_named_with_an_arrow_and_leaves_the_scal
 
 
 def test_with_a_reserve_of_their_own_limits_are_drawn_where_it_puts_them() -> None:
-    shown = Shown(drawings.gear_plane(subject_of(TYPED | {"requirements": {"utilisation": 0.8}})).drawing)
+    shown = Shown(gear_plane(subject_of(TYPED | {"requirements": {"utilisation": 0.8}})).drawing)
     gear = CATALOGUE.by_designation["HPN-20A-5"]
 
     assert gear.rated_torque_Nm
@@ -90,7 +90,7 @@ def test_with_a_reserve_of_their_own_limits_are_drawn_where_it_puts_them() -> No
 @pytest.mark.parametrize("document", [TURNING, LIFTING])
 def test_the_curve_of_a_motion_goes_through_its_largest_torque_and_speed(document: Json) -> None:
     subject = subject_of(document)
-    shown = Shown(drawings.gear_plane(subject).drawing)
+    shown = Shown(gear_plane(subject).drawing)
     points = np.array([point for curve in shown.line("curve") for point in curve])
 
     assert points[:, 0].max() == pytest.approx(subject.duty.maximum_output_speed_rpm.item(), rel=1e-3)
@@ -107,7 +107,7 @@ def test_the_curve_of_a_motion_goes_through_its_largest_torque_and_speed(documen
 def test_peak_and_rms_at_the_motor_are_those_of_the_checks(document: Json, motor: Json) -> None:
     subject = subject_of(document | {"requirements": {"motor": motor, "efficiency": 0.85}})
     candidate = candidate_of(subject)
-    shown = Shown(drawings.motor_plane(subject).drawing)
+    shown = Shown(motor_plane(subject).drawing)
 
     points = [*(point for curve in shown.line("curve") for point in curve), *shown.dots("load")]
     assert max(T for _, T in points) == pytest.approx(candidate.motor_peak_torque_Nm, rel=2e-3)
@@ -124,12 +124,12 @@ def test_a_listed_motor_brings_its_limits_and_its_inertia(supplemented: Suppleme
     figures = {"maximum_speed_rpm": 150, "rated_speed_rpm": 100, "rated_torque_Nm": 6, "peak_torque_Nm": 18}
     typed = subject_of(TURNING | {"requirements": {"motor": figures | {"inertia_kgm2": 0.004}}})
 
-    assert markup(drawings.motor_plane(listed).drawing) == markup(drawings.motor_plane(typed).drawing)
+    assert markup(motor_plane(listed).drawing) == markup(motor_plane(typed).drawing)
 
 
 @pytest.mark.parametrize("document", [TYPED, TURNING, LIFTING])
 def test_no_disc_lies_over_another_or_outside_the_axes(document: Json) -> None:
-    for plane in (drawings.gear_plane(subject_of(document)), drawings.motor_plane(subject_of(document))):
+    for plane in (gear_plane(subject_of(document)), motor_plane(subject_of(document))):
         discs = Shown(plane.drawing).of("rect", "disc")
         boxes = [[float(disc.get(name, "")) for name in ("x", "y", "width", "height")] for disc in discs]
         assert boxes
@@ -146,7 +146,7 @@ def test_a_limit_next_to_the_edge_keeps_its_name() -> None:
     gear = CATALOGUE.by_designation["HPN-20A-4"]
     assert gear.maximum_input_speed_rpm
     fast = cycle(phase(40, 0.9 * gear.maximum_input_speed_rpm / 4)) | {"requirements": {"utilisation": 0.9}}
-    shown = Shown(drawings.gear_plane(subject_of(fast, gear.designation)).drawing)
+    shown = Shown(gear_plane(subject_of(fast, gear.designation)).drawing)
 
     assert "u·nin(max)/i" in {Shown.said(text) for text in shown.of("text", "name")}
 
@@ -156,7 +156,7 @@ def test_planes_say_in_words_what_they_show() -> None:
     german = Reader(language="de")
     subject = subject_of(document)
 
-    gear = " ".join(map(german.told, drawings.gear_plane(subject, german).words))
-    motor = " ".join(map(german.told, drawings.motor_plane(subject, german).words))
+    gear = " ".join(map(german.told, gear_plane(subject, german).words))
+    motor = " ".join(map(german.told, motor_plane(subject, german).words))
     assert gear.startswith("Größtes Drehmoment 60\u202fNm von 149\u202fNm, größte Drehzahl 660")
     assert motor.startswith("Größtes Drehmoment 15\u202fNm von 14\u202fNm, größte Drehzahl 3.300")

@@ -13,8 +13,12 @@ from hypothesis import strategies as st
 from hpn.application import Application
 from hpn.catalogue import Catalogue, load_catalogue
 from hpn.engine.selection import select
-from hpn.explain import drawings
-from hpn.explain.drawings import Subject
+from hpn.explain.drawings import Subject, chart, gear_envelope
+from hpn.explain.drawings.chart import LARGE, SMALL
+from hpn.explain.drawings.envelope import envelope_scene, sizes_scene
+from hpn.explain.drawings.picture import BearingPicture, bearing_picture
+from hpn.explain.drawings.pictures import governing_phases
+from hpn.explain.drawings.sizes import size_uses
 from hpn.explain.drawings.svg import LETTER, markup
 from hpn.words.reader import DEFAULT, Reader
 from tests.build import Json, cycle, phase
@@ -88,21 +92,21 @@ def subject_of(document: Json, designation: str = "HPN-20A-5", catalogue: Catalo
     return Subject(Application.model_validate(document), catalogue.by_designation[designation], catalogue)
 
 
-def picture_of(subject: Subject) -> drawings.BearingPicture:
+def picture_of(subject: Subject) -> BearingPicture:
     candidate = select(subject.application, subject.catalogue).candidate(subject.gear.designation)
     assert candidate is not None
-    found = drawings.bearing_picture(subject, candidate.check("output_bearing_life"))
+    found = bearing_picture(subject, candidate.check("output_bearing_life"))
     assert found is not None
     return found
 
 
 def drawing_of(
-    picture: drawings.BearingPicture,
+    picture: BearingPicture,
     reader: Reader = DEFAULT,
     check: str | None = None,
-    size: Point = drawings.SMALL,
+    size: Point = SMALL,
 ) -> Element:
-    return drawings.chart(drawings.envelope_scene(picture, reader, (), check), reader, size)
+    return chart(envelope_scene(picture, reader, (), check), reader, size)
 
 
 def shown(document: Json, reader: Reader | None = None, catalogue: Catalogue = CATALOGUE) -> Shown:
@@ -189,7 +193,7 @@ def test_the_limit_has_its_two_values_on_the_axes() -> None:
 )
 def test_the_limit_that_governs_alone_takes_the_accent(check: str | None, kinds: list[str]) -> None:
     picture = picture_of(subject_of(cycle(*THREE)))
-    for size in (drawings.SMALL, drawings.LARGE):
+    for size in (SMALL, LARGE):
         drawn = Shown(drawing_of(picture, Reader(), check, size))
         assert [line.get("class", "").split()[1] for line in drawn.of("path", "governing")] == kinds
         assert [name.get("class", "").split()[1] for name in drawn.of("text", "governing")] == kinds
@@ -289,7 +293,7 @@ def test_no_text_lies_over_another_and_each_stays_inside(
 def test_loads_apart_from_each_other_all_have_their_number(count: int) -> None:
     phases = [phase(1, 100, radial_N=60 + 65.0 * (k % 24), axial_N=200.0 * (1 + k % 3)) for k in range(count)]
     picture = picture_of(subject_of(cycle(*phases)))
-    drawn = Shown(drawing_of(picture, size=drawings.LARGE))
+    drawn = Shown(drawing_of(picture, size=LARGE))
     assert [Shown.said(text) for text in drawn.of("text", "number")][:-1] == [str(k + 1) for k in range(count)]
 
 
@@ -307,7 +311,7 @@ def test_of_more_than_24_loads_those_nearest_to_their_limit_have_a_number() -> N
 def test_every_size_is_a_line_and_the_gears_own_is_the_strong_one() -> None:
     subject = subject_of(cycle(phase(10, 100), output_load={"radial_N": 300.0}))
     picture = picture_of(subject)
-    drawn = Shown(drawings.chart(drawings.sizes_scene(drawings.size_uses(subject, picture), picture), DEFAULT))
+    drawn = Shown(chart(sizes_scene(size_uses(subject, picture), picture), DEFAULT))
 
     limits = [(gear.dynamic_radial_load_N, gear.dynamic_axial_load_N) for gear in subject.sizes.rows]
     lines = [*drawn.line("limit"), *drawn.line("size")]
@@ -317,12 +321,12 @@ def test_every_size_is_a_line_and_the_gears_own_is_the_strong_one() -> None:
 
 
 def test_a_gear_in_the_catalogue_shows_its_published_limits() -> None:
-    envelope = drawings.gear_envelope(CATALOGUE, CATALOGUE.by_designation["HPN-20A-5"])
+    envelope = gear_envelope(CATALOGUE, CATALOGUE.by_designation["HPN-20A-5"])
     assert envelope is not None
     drawn = Shown(envelope.drawing)
     for line, f_w in zip(drawn.line("coefficient"), (1, 1.2, 1.5), strict=True):
         assert flat(line) == near([(0, F_A / f_w), (F_R / f_w, 0)])
-    assert drawings.gear_envelope(CATALOGUE, CATALOGUE.by_designation["HPN-40A-5"]) is None
+    assert gear_envelope(CATALOGUE, CATALOGUE.by_designation["HPN-40A-5"]) is None
 
 
 @pytest.mark.parametrize(("radial", "axial"), [(0.0, 0.0), (1e-300, 0.0), (1e9, 1e9), (0.0, 1e-12)])
@@ -358,4 +362,4 @@ def test_corners_lie_in_order_so_that_the_area_below_the_limit_is_the_permissibl
 def test_phases_that_a_check_goes_by(check: str | None, places: tuple[int, ...]) -> None:
     phases = (phase(10, 500, radial_N=10), phase(10, 100, axial_N=900), phase(-40, 100), phase(5, -500))
     subject = subject_of(cycle(*phases))
-    assert drawings.governing_phases(subject, check, picture_of(subject)) == places
+    assert governing_phases(subject, check, picture_of(subject)) == places

@@ -12,7 +12,8 @@ import pytest
 from hpn.application import Application
 from hpn.catalogue import Catalogue, load_catalogue
 from hpn.explain import drawings
-from hpn.explain.drawings import CyclePicture, Subject
+from hpn.explain.drawings import Subject
+from hpn.explain.drawings.cycle import CyclePicture
 from hpn.explain.drawings.svg import markup
 from hpn.physics.motion import trace_of
 from hpn.words.reader import DEFAULT, Reader

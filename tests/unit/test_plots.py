@@ -11,8 +11,13 @@ from hpn.application import Application
 from hpn.catalogue import Catalogue
 from hpn.engine.candidates import CheckResult
 from hpn.engine.selection import select
-from hpn.explain import drawings as plots
-from hpn.explain.drawings import Subject
+from hpn.explain.drawings import Figure, Subject, chart
+from hpn.explain.drawings.bearing import bearing_figure, sizes_figure
+from hpn.explain.drawings.envelope import envelope_scene, sizes_scene
+from hpn.explain.drawings.picture import BearingPicture, bearing_picture
+from hpn.explain.drawings.sizes import size_uses
+from hpn.explain.drawings.stops import emergency_stop_figure, emergency_stop_words
+from hpn.explain.drawings.verdict import bearing_verdict, bearing_words
 from hpn.words.reader import DEFAULT, Reader
 from tests.build import Json, cycle, phase
 from tests.conftest import Supplement
@@ -33,16 +38,16 @@ def example(catalogue: Catalogue, designation: str = "HPN-20A-5", **parts: objec
     return shown_on(cycle(*phases, pause_s=4.0, **parts), catalogue, designation)
 
 
-def picture(subject: Subject) -> plots.BearingPicture:
+def picture(subject: Subject) -> BearingPicture:
     loads = subject.application.loads
     life = check(subject, subject.gear.designation, "output_bearing_life") if loads else None
-    found = plots.bearing_picture(subject, life)
+    found = bearing_picture(subject, life)
     assert found is not None
     return found
 
 
-def figure_of(shown: plots.BearingPicture, reader: Reader = DEFAULT, governing: Sequence[int] = ()) -> plots.Figure:
-    return plots.bearing_figure(plots.envelope_scene(shown, reader, governing), shown, reader)
+def figure_of(shown: BearingPicture, reader: Reader = DEFAULT, governing: Sequence[int] = ()) -> Figure:
+    return bearing_figure(envelope_scene(shown, reader, governing), shown, reader)
 
 
 def check(subject: Subject, designation: str, code: str) -> CheckResult:
@@ -53,7 +58,7 @@ def check(subject: Subject, designation: str, code: str) -> CheckResult:
     return found
 
 
-def traces(figure: plots.Figure, kind: str) -> list[Json]:
+def traces(figure: Figure, kind: str) -> list[Json]:
     return [trace for trace in figure["data"] if trace["meta"]["kind"] == kind]
 
 
@@ -69,8 +74,8 @@ def test_figures_of_the_bearing_are_valid_in_every_model(
     figure = figure_of(shown)
 
     go.Figure(figure)
-    uses = plots.size_uses(subject, shown)
-    sizes = plots.sizes_figure(plots.sizes_scene(uses, shown), uses, shown)
+    uses = size_uses(subject, shown)
+    sizes = sizes_figure(sizes_scene(uses, shown), uses, shown)
     go.Figure(sizes)
     drawn = {trace["meta"]["load_coefficient"] for trace in traces(figure, "limit") + traces(figure, "coefficient")}
     assert drawn == {1.0, 1.2, 1.5, coefficient}
@@ -91,7 +96,7 @@ def test_each_curve_of_the_plot_has_the_drawings_name_on_it_and_no_legend(catalo
     single = [["single load"]] if shown.life_factor < 1 else []
     life = [["f<sub>w</sub> 1"], ["f<sub>w</sub> 1.5"]]
     assert sorted(names) == sorted([["limit now, f<sub>w</sub> 1.2"], *life, *single, ["P<sub>m</sub>"]])
-    drawing = "".join(plots.chart(plots.envelope_scene(shown), DEFAULT).itertext())
+    drawing = "".join(chart(envelope_scene(shown), DEFAULT).itertext())
     assert all(re.sub("<.*?>", "", name) in drawing.replace("f_w", "fw") for one in names for name in one)
 
 
@@ -176,7 +181,7 @@ def test_axes_stay_for_any_load_within_the_limits_and_widen_beyond(catalogue: Ca
 
 def words(document: Json, catalogue: Catalogue) -> str:
     shown = picture(shown_on(document, catalogue))
-    return " ".join(sentence.text for sentence in (plots.bearing_verdict(shown), *plots.bearing_words(shown)))
+    return " ".join(sentence.text for sentence in (bearing_verdict(shown), *bearing_words(shown)))
 
 
 def test_the_words_say_what_governs(catalogue: Catalogue) -> None:
@@ -215,8 +220,8 @@ def test_a_use_next_to_its_limit_is_never_called_100_percent(catalogue: Catalogu
 def test_without_limits_there_is_no_picture_of_the_bearing(catalogue: Catalogue) -> None:
     plain, unrated = example(catalogue, output_load=LOADS), example(catalogue, "HPN-40A-5", output_load=LOADS)
 
-    assert plots.bearing_picture(unrated, check(unrated, "HPN-40A-5", "output_bearing_life")) is None
-    uses = {use.gear.size: use.carries for use in plots.size_uses(plain, picture(plain))}
+    assert bearing_picture(unrated, check(unrated, "HPN-40A-5", "output_bearing_life")) is None
+    uses = {use.gear.size: use.carries for use in size_uses(plain, picture(plain))}
     assert uses.items() >= {"11A": False, "14A": False, "20A": True, "32A": True, "40A": None}.items()
 
 
@@ -228,7 +233,7 @@ def test_without_limits_there_is_no_picture_of_the_bearing(catalogue: Catalogue)
 )
 def test_figure_of_the_emergency_stops_is_valid(catalogue: Catalogue, stop: Json | None) -> None:
     subject = example(catalogue, emergency_stop=stop)
-    figure = plots.emergency_stop_figure(subject)
+    figure = emergency_stop_figure(subject)
     assert figure is not None
     go.Figure(figure)
     assert figure["layout"]["yaxis"]["type"] == "log"
@@ -247,7 +252,7 @@ def test_figure_of_the_emergency_stops_is_valid(catalogue: Catalogue, stop: Json
 )
 def test_emergency_stops_in_words(catalogue: Catalogue, stop: Json | None, said: str) -> None:
     subject = example(catalogue, emergency_stop=stop)
-    words = plots.emergency_stop_words(subject)
+    words = emergency_stop_words(subject)
     assert said in " ".join(sentence.text for sentence in words)
 
 
@@ -256,7 +261,7 @@ def test_emergency_stops_in_words(catalogue: Catalogue, stop: Json | None, said:
 )
 def test_labels_of_line_and_stop_stand_on_different_sides_of_the_line(catalogue: Catalogue, stop: Json) -> None:
     subject = example(catalogue, emergency_stop=stop)
-    figure = plots.emergency_stop_figure(subject)
+    figure = emergency_stop_figure(subject)
     assert figure is not None
     line, marked = figure["data"]
     assert line["textposition"].split()[0] != marked["textposition"].split()[0]
@@ -264,8 +269,8 @@ def test_labels_of_line_and_stop_stand_on_different_sides_of_the_line(catalogue:
 
 def test_emergency_stops_of_an_unrated_gear_have_words_but_no_plot(catalogue: Catalogue) -> None:
     subject = example(catalogue, "HPN-40A-5")
-    assert plots.emergency_stop_figure(subject) is None
-    assert "not in this catalogue’s source" in plots.emergency_stop_words(subject)[0].text
+    assert emergency_stop_figure(subject) is None
+    assert "not in this catalogue’s source" in emergency_stop_words(subject)[0].text
 
 
 def test_a_reader_of_other_units_sees_other_numbers(catalogue: Catalogue) -> None:
@@ -289,7 +294,7 @@ def test_a_size_carries_the_load_where_both_checks_of_its_bearing_pass(
     loads = LOADS | {"radial_N": radial, "life_h": life}
     subject = example(catalogue, output_load=loads, requirements={"utilisation": allowed})
 
-    for use in plots.size_uses(subject, picture(subject)):
+    for use in size_uses(subject, picture(subject)):
         codes = ("output_bearing_load", "output_bearing_life")
         states = [check(subject, use.gear.designation, code).status for code in codes]
         assert use.carries == (None if "not_rated" in states else states == ["pass", "pass"])

@@ -12,7 +12,10 @@ from hpn.application import Application
 from hpn.catalogue import Catalogue as Gears
 from hpn.engine.selection import select
 from hpn.explain.calculation import calculation_of
-from hpn.explain.drawings import Subject, bearing_figure, bearing_picture, envelope_scene
+from hpn.explain.drawings import Subject
+from hpn.explain.drawings.bearing import bearing_figure
+from hpn.explain.drawings.envelope import envelope_scene
+from hpn.explain.drawings.picture import bearing_picture
 from hpn.files.inputs import WORDS
 from hpn.web.form.symbols import BY_NAME
 from hpn.words.reader import Reader, catalogue

@@ -3,7 +3,6 @@
 from hpn.catalogue.catalogue import (
     AVERAGING_S,
     Catalogue,
-    FlangeBolt,
     GearList,
     ListedMotor,
     OutputVersion,
@@ -18,7 +17,6 @@ __all__ = [
     "HANDBOOK_FOLDER",
     "Catalogue",
     "CatalogueError",
-    "FlangeBolt",
     "GearColumns",
     "GearList",
     "ListedMotor",

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from hpn.application import LISTED_FIGURES, Application, Motor
-from hpn.catalogue import Catalogue, GearList, ListedMotor
+from hpn.catalogue import Catalogue, ListedMotor
 from hpn.catalogue.gear import Gear
 from hpn.engine.candidates import Candidate, CheckResult
 from hpn.engine.checks.motor import MOTOR
@@ -81,7 +81,7 @@ def _utilisations(
     """Demand over limit by check, and inertia ratio; shape (motors,), NaN where a figure is not known."""
     asked = application.requirements.motor
     duty = Duty.of([_without_motor(application)])
-    figures = Figures(duty, GearList([gear], [catalogue.curves.get(gear.size)]), catalogue)
+    figures = Figures(duty, catalogue.listed([gear]), catalogue)
     peak, rms = (
         np.full(len(catalogue.motors), torque.item())
         for torque in (figures.motor_peak_torque_Nm, figures.motor_rated_torque_Nm)

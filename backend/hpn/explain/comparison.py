@@ -60,10 +60,6 @@ def _figure(name: str) -> Read:
 
 
 def _result(name: str) -> Read:
-    return lambda column: getattr(column.candidate, name)
-
-
-def _unlimited_result(name: str) -> Read:
     """A figure of the reply; infinite where it is empty because nothing limits it."""
     return lambda column: math.inf if column.candidate.is_unlimited(name) else getattr(column.candidate, name)
 
@@ -88,12 +84,12 @@ def _utilisations(columns: Sequence[Column], checks: Mapping[str, str]) -> Itera
 
 
 def _results(columns: Sequence[Column], maximum_torque_Nm: float) -> Iterable[Row]:
-    yield _row(columns, "life", N_("Life"), _unlimited_result("life_L10_h"), "L_10", "h", lowest=False)
+    yield _row(columns, "life", N_("Life"), _result("life_L10_h"), "L_10", "h", lowest=False)
     if any(column.candidate.momentary_peak_count is not None for column in columns):
-        stops = _unlimited_result("momentary_peak_count")
+        stops = _result("momentary_peak_count")
         yield _row(columns, "stops", N_("Permitted stops"), stops, "N_k,max", lowest=False)
     if any(column.candidate.bearing_life_L50_h is not None for column in columns):
-        bearing_life = _unlimited_result("bearing_life_L50_h")
+        bearing_life = _result("bearing_life_L50_h")
         yield _row(columns, "bearing_life", N_("Bearing life"), bearing_life, "L_b,50", "h", lowest=False)
     peak, average = _result("motor_peak_torque_Nm"), _result("average_input_speed_rpm")
     yield _row(columns, "motor_torque", _motor_title(columns, maximum_torque_Nm), peak, "", "Nm", lowest=True)

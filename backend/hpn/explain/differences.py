@@ -142,7 +142,7 @@ def _largest_of_lists(*replies: _Fields) -> dict[Name, float]:
     """Largest magnitude of each field of numbered items, such as the torque of phases."""
     largest: dict[Name, float] = {}
     for name, (_, value) in chain.from_iterable(reply.values.items() for reply in replies):
-        if _is_number(value) and (one := _list_of(name)) != name:
+        if is_number(value) and (one := _list_of(name)) != name:
             largest[one] = max(largest.get(one, 0.0), abs(value))
     return largest
 
@@ -157,12 +157,13 @@ def _differs(name: Name, before: _Fields, after: _Fields, largest: Mapping[Name,
     return alone is None or name == (*alone, BRIEFLY[alone[-2]])
 
 
-def _is_number(value: Any) -> bool:
+def is_number(value: Any) -> bool:
+    """True for a number, which a bool is not."""
     return isinstance(value, int | float) and not isinstance(value, bool)
 
 
 def _same(saved: Any, today: Any, room: float) -> bool:
-    numbers = _is_number(saved) and _is_number(today)
+    numbers = is_number(saved) and is_number(today)
     return bool(saved == today or (numbers and math.isclose(saved, today, rel_tol=TOLERANCE, abs_tol=room)))
 
 

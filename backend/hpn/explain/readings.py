@@ -12,7 +12,7 @@ from operator import itemgetter
 import numpy as np
 
 from hpn.application import Application, LifeBasis, OutputLoad
-from hpn.catalogue import Catalogue, GearList
+from hpn.catalogue import Catalogue
 from hpn.catalogue.gear import Gear
 from hpn.engine.candidates import Candidate, CheckResult
 from hpn.engine.check import Kind
@@ -171,7 +171,7 @@ def _bearing_load(
     if not check.demand:
         return None
     duty = Duty.of([application])
-    used = phase_loads(duty, GearList([gear], [catalogue.curves.get(gear.size)]))[0, 0]
+    used = phase_loads(duty, catalogue.listed([gear]))[0, 0]
     worst = int(np.argmax(used))
     radial, axial = duty.phases.radial_N[0, 0, worst], duty.phases.axial_N[0, 0, worst]
     demand = load.load_coefficient * float(np.hypot(radial, axial))

@@ -9,20 +9,18 @@ from hpn.store.errors import (
     StoreError,
     StoreUnavailableError,
 )
-from hpn.store.fleets import FleetDraft, FleetSummary, SavedFleet
-from hpn.store.saved import Draft, Page, SavedSelection, Summary
+from hpn.store.fleets import FleetDraft, SavedFleet
+from hpn.store.saved import Draft, SavedSelection, Summary
 from hpn.store.store import ID, Store
 
 __all__ = [
     "ID",
     "Draft",
     "FleetDraft",
-    "FleetSummary",
     "KeyReusedError",
     "KeySpentError",
     "NewerDatabaseError",
     "NoRoomError",
-    "Page",
     "SavedFleet",
     "SavedSelection",
     "ShareSpentError",

@@ -173,7 +173,7 @@ class Sheet:
     @cached_property
     def gears(self) -> GearList:
         """List of this gear alone, as the engine takes it."""
-        return GearList([self.gear], [self.catalogue.curves.get(self.gear.size)])
+        return self.catalogue.listed([self.gear])
 
     @cached_property
     def travel(self) -> Series:

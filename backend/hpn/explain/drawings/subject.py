@@ -31,7 +31,7 @@ class Subject:
         first: dict[str, Gear] = {}
         for gear in self.catalogue.gears:
             first.setdefault(gear.size, gear)
-        return GearList(list(first.values()), [self.catalogue.curves.get(size) for size in first])
+        return self.catalogue.listed(first.values())
 
     @cached_property
     def of_sizes(self) -> Figures:
@@ -46,7 +46,7 @@ class Subject:
     @cached_property
     def of_gear(self) -> Figures:
         """Figures of the gear itself, with the motor's."""
-        gears = GearList([self.gear], [self.catalogue.curves.get(self.gear.size)])
+        gears = self.catalogue.listed([self.gear])
         return Figures(Duty.of([self.equipped]), gears, self.catalogue)
 
     @property

@@ -2,11 +2,10 @@
 
 from hpn.physics.motion.course import Course
 from hpn.physics.motion.motor import motor_torques, square_torque
-from hpn.physics.motion.trace import Instant, Trace, motor_trace, peak_instant, trace_of
+from hpn.physics.motion.trace import Trace, motor_trace, peak_instant, trace_of
 
 __all__ = [
     "Course",
-    "Instant",
     "Trace",
     "motor_torques",
     "motor_trace",

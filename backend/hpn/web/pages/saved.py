@@ -15,7 +15,7 @@ from hpn.application import Application
 from hpn.catalogue import Catalogue
 from hpn.engine.candidates import reason_of
 from hpn.engine.selection import Selection
-from hpn.explain.differences import Difference, FigureDifference
+from hpn.explain.differences import Difference, FigureDifference, is_number
 from hpn.files.export import DIGITS
 from hpn.files.inputs import LOADS, REQUIREMENTS, given
 from hpn.files.motion import lines, move_line
@@ -207,7 +207,7 @@ def _figure_text(value: Any, unit: str) -> str:
         given = {name: _figure_text(part, symbol_of(name)) for name, part in value.items() if part is not None}
         return " ".join(_BOLTS.get(name, "{}").format(text) for name, text in given.items())
     if isinstance(value, list):
-        return (" / " if all(map(_is_number, value)) else "; ").join(_figure_text(part, unit) for part in value)
+        return (" / " if all(map(is_number, value)) else "; ").join(_figure_text(part, unit) for part in value)
     return reader.with_unit(reader.figure(value, unit), unit)
 
 
@@ -223,7 +223,7 @@ def _line(difference: Difference, reopened: Reopened) -> ChangedField:
     unit = definitions[difference.check or ""].unit if own else symbol_of(difference.field)
     given = difference.saved, difference.today
     if difference.field in SHARES:
-        unit, given = "%", tuple(100 * value if _is_number(value) else value for value in given)
+        unit, given = "%", tuple(100 * value if is_number(value) else value for value in given)
     saved, today = _both(*given, unit) or (
         _text(value, difference, selection, reopened, unit)
         for value, selection in zip(given, (reopened.selection, reopened.today), strict=True)
@@ -252,7 +252,7 @@ def _text(value: Any, difference: Difference, selection: Selection | None, reope
     if value is None or selection is None:
         whole = difference.change != "changed" and difference.field == "status" and difference.check is None
         return reader.text(N_("no candidate")) if whole and selection is not None else "–"
-    if _is_number(value):
+    if is_number(value):
         return reader.figure(value, unit)
     candidate = selection.candidate(difference.candidate or "")
     if difference.field == "reason" and candidate is not None and reopened.application is not None:
@@ -265,7 +265,7 @@ def _text(value: Any, difference: Difference, selection: Selection | None, reope
 
 def _both(saved: Any, today: Any, unit: str) -> tuple[str, str] | None:
     """Two numbers for reading; None where one is none."""
-    return _told_apart(saved, today, unit) if _is_number(saved) and _is_number(today) else None
+    return _told_apart(saved, today, unit) if is_number(saved) and is_number(today) else None
 
 
 def _told_apart(saved: float, today: float, unit: str) -> tuple[str, str]:
@@ -278,10 +278,6 @@ def _told_apart(saved: float, today: float, unit: str) -> tuple[str, str]:
         first, second = next((pair for pair in pairs if len(set(pair)) == 2), ("", ""))
         return (reader.written(first), reader.written(second)) if first else (before, after)
     return before, after
-
-
-def _is_number(value: Any) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool)
 
 
 router = APIRouter(include_in_schema=False)
