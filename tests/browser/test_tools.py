@@ -55,7 +55,7 @@ def test_ambiguous_table_is_asked_about_by_keyboard(visitor: Visitor) -> None:
     page = visitor.open(EXAMPLE)
     paste(page, "1.234\t250\t3")
     expect(page.get_by_text("Which is the decimal mark?")).to_be_visible()
-    mark = page.get_by_role("group", name="The decimal mark is")
+    mark = page.get_by_role("group", name="Which is the decimal mark?")
     point, comma = mark.get_by_role("radio", name="a point"), mark.get_by_role("radio", name="a comma")
     expect(point).to_be_focused()
     expect(point).not_to_be_checked()
@@ -79,7 +79,7 @@ def test_choice_made_while_the_answer_to_the_one_before_is_under_way_counts(visi
     """The table is asked for 150 ms after a choice: an answer that came in between showed the choice before it."""
     page = visitor.open(EXAMPLE)
     paste(page, "1.234\t250\t3")
-    mark = page.get_by_role("group", name="The decimal mark is")
+    mark = page.get_by_role("group", name="Which is the decimal mark?")
     expect(mark.get_by_role("radio", name="a point")).to_be_focused()
     with answer_held_back(page, partial(page.keyboard.press, "Space"), "**/paste"):
         page.keyboard.press("ArrowDown")

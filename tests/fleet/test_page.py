@@ -70,6 +70,10 @@ def test_a_fleet_shows_each_axis_with_its_link(client: TestClient, fleet: str, s
         assert f'<a href="{to_link(application)}&{urlencode({"title": name})}">{name}</a>' in page
     assert f'<td class="gear">{select(applications[0], service.state.catalogue).selected}</td>' in page
     assert "No gear; nearest HPN-" in page
+    weight = next(
+        g.weight_kg for g in service.state.catalogue.gears if f'<td class="gear">{g.designation}</td>' in page
+    )
+    assert re.search(rf'Weight</p>\s*<p class="value">\s*<data class="quantity" value="{weight}">', page)
     assert re.search(r'Greifer</th>.*?class="reason"[^>]*>[^/]*/span> torque_Nm: ', page, re.DOTALL)
     german = unescape(client.get(fleet, headers={"Accept-Language": "de"}).text)
     assert re.search(

@@ -8,14 +8,17 @@ GERMAN = "Drehmoment [Nm]\tDrehzahl [1/min]\tDauer [s]\r\n9,3\t1.250\t0,3\r\n-12
 LONG = "".join(f"40.{k % 10};{250 + k % 90};0.25\n" for k in range(4000))
 HTMX = {"HX-Request": "true"}
 
+ASKED = re.compile(r'class="question asked">\s*<legend>(.*?)</legend>|<li>(.*?)</li>|<p class="error">(.*?)</p>')
+"""Open questions of a preview, at choices and about columns, or its problem."""
+
 
 def query_of(location: str) -> dict[str, list[str]]:
     return parse_qs(urlsplit(location).query)
 
 
 def cells(page: str) -> list[str]:
-    """Cells of the rows of a preview."""
-    return re.findall(r"<td>(?:<mark>)?([^<]+)(?:</mark>)?</td>", page)
+    """Cells of the rows of a preview as they are read; what is written there otherwise stands in grey before."""
+    return re.findall(r"<td>(?:\s*<small[^>]*>[^<]*</small>)?\s*(?:<mark>)?([^<]+?)\s*(?:</mark>)?</td>", page)
 
 
 def chosen(page: str) -> dict[str, str]:

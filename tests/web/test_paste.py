@@ -31,6 +31,44 @@ def test_an_open_question_shows_what_each_answer_makes_of_the_table(client: Test
         (",", "", "a comma: 1.250", "speeds 1.25\u202frpm to 2.5\u202frpm, cycle 3\u202fs"),
     ]
     assert "disabled" in page
+    assert re.findall(r'<path d="([^"]*)"', page) == ["M0 30.0V15.0H66.7V0.0H100.0V30.0"] * 2
+    assert "<figcaption" not in page and "cycle-words" not in page
+
+
+def test_each_answer_shows_its_cycle_where_by_one_of_them_a_named_row_is_no_sum(client: TestClient) -> None:
+    """By a comma 1,900 is no sum of the times, which only the next question asks about."""
+    text = "Step\tT\tn\tt [ms]\nrise\t12\t1,250\t350\nrun\t5\t2,500\t1,200\nbrake\t-9\t1,250\t350\nSum\t\t\t1,900\n"
+    page = client.post("/paste", data={"text": text}, headers=HTMX).text
+
+    assert re.findall(r"<small>([^<]*)</small>", page) == [
+        "speeds 1\u202f250\u202frpm to 2\u202f500\u202frpm, cycle 1.9\u202fs",
+        "speeds 1.25\u202frpm to 2.5\u202frpm, cycle 0.701\u202fs",
+    ]
+
+
+def test_a_preview_shows_cells_as_written_and_as_read_and_skipped_rows_in_their_places(client: TestClient) -> None:
+    text = "Infeed\n\nStep\tM [Nm]\tn [rpm]\tt [ms]\nrise\t12\t1250\t400\nrun\t5\t2500\t350\nSum\t\t\t750\n"
+    page = client.post("/paste", data={"text": text}, headers=HTMX).text
+    rows = re.findall(r'<th scope="row">(\d+)</th>(.*?)</tr>', page, re.S)
+
+    assert [(int(number), re.findall(r"<s>(.*?)</s> skipped", row)) for number, row in rows] == [
+        (1, ["Infeed"]),
+        (4, []),
+        (5, []),
+        (6, ["Sum"]),
+    ]
+    assert re.findall(r"<small[^>]*>(.*?)</small>", page) == ["400", "350"]
+    assert cells(page) == ["12", "1\u202f250", "0.4", "5", "2\u202f500", "0.35"]
+    assert "4 columns, 4 of them read. All phases take 0.75 s." in " ".join(page.split())
+
+
+def test_a_column_of_remarks_names_the_phases_unless_another_text_does(client: TestClient) -> None:
+    alone = "M\tn\tt\tBemerkung\n12\t250\t3\theben\n5\t500\t1\tsenken\n"
+    beside = "Schritt\tM\tn\tt\tBemerkung\nauf\t12\t250\t3\theben\nab\t5\t500\t1\tsenken\n"
+
+    assert chosen(client.post("/paste", data={"text": alone}, headers=HTMX).text)["r3"] == "pn"
+    assert chosen(client.post("/paste", data={"text": beside}, headers=HTMX).text)["r0"] == "pn"
+    assert chosen(client.post("/paste", data={"text": beside}, headers=HTMX).text)["r4"] == "skip"
 
 
 @pytest.mark.parametrize("headers", [HTMX, {}], ids=["with script", "without"])

@@ -10,6 +10,8 @@ from urllib.parse import parse_qs, urlsplit
 import pytest
 from starlette.testclient import TestClient
 
+from tests.web.paste import ASKED
+
 Case = dict[str, Any]
 
 FILE = Path(__file__).parent / "pasted/tables.toml"
@@ -28,11 +30,7 @@ def outcome(client: TestClient, case: Case, chosen: dict[str, str]) -> tuple[str
     assert reply.status_code in (200, 303, 422)
     if reply.status_code == 303:
         return "becomes", phases(reply.headers["location"])
-    said = [
-        unescape(text)
-        for text in re.findall(r"<li>(.*?)</li>|<p class=\"error\">(.*?)</p>", reply.text)
-        for text in text
-    ]
+    said = [unescape(text) for text in ASKED.findall(reply.text) for text in text]
     if reply.status_code == 422:
         return "refused", "".join(said)
     return "asks", list(filter(None, said))

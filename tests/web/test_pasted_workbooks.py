@@ -17,6 +17,7 @@ from openpyxl.workbook import Workbook
 from starlette.testclient import TestClient
 
 from hpn.tables.workbooks import MAXIMUM_BYTES, sheets_of
+from tests.web.paste import ASKED
 
 Cell = str | float | date | clock | timedelta | bool | None | tuple[Any, str]
 HEADER: list[Cell] = ["Drehmoment [Nm]", "Drehzahl [1/min]", "Dauer [s]"]
@@ -52,7 +53,7 @@ def taken(reply: Any) -> list[tuple[str, ...]]:
 
 
 def said(reply: Any) -> str:
-    return unescape(" ".join(re.findall(r"<li>(.*?)</li>|<p class=\"error\">(.*?)</p>", reply.text)[0]))
+    return unescape(" ".join(ASKED.findall(reply.text)[0]))
 
 
 @pytest.mark.parametrize(

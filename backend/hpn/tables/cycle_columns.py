@@ -30,7 +30,8 @@ def columns_of(body: Body, choices: Choices, assumed: Collection[str]) -> tuple[
 
 def _column_of_names(columns: Sequence[Column], body: Body) -> Column | None:
     """Column that names the phases unless somebody says otherwise: the one that this service writes so, one of texts
-    with a heading that says so, else the first of texts; most rows have one that may be a name, and not all the same.
+    with a heading that says so, else the first of texts, remarks last; most rows have one that may be a name, and not
+    all the same.
     """
     found = []
     for column in columns:
@@ -39,10 +40,10 @@ def _column_of_names(columns: Sequence[Column], body: Body) -> Column | None:
         cells = [row[column.place] for row in body.rows]
         filled = [cell for cell in cells if not is_blank(cell)]
         tells_apart = 2 * len(filled) >= len(cells) and len(set(filled)) >= min(len(cells), 2)
-        is_other = is_remark(column.heading) or any(map(moment_of, filled))
-        if column.text and tells_apart and not is_other and all(is_title(cell, LONGEST_NAME) for cell in cells):
+        is_time = any(map(moment_of, filled))
+        if column.text and tells_apart and not is_time and all(is_title(cell, LONGEST_NAME) for cell in cells):
             found.append(column)
-    return min(found, key=lambda column: not is_name(column.heading), default=None)
+    return min(found, key=lambda column: (is_remark(column.heading), not is_name(column.heading)), default=None)
 
 
 def _too_few(body: Body, columns: Sequence[Column]) -> RefusedError:

@@ -19,15 +19,11 @@ from hpn.words import spellings, units
 from hpn.words.fields import MAXIMUM_PHASES
 from hpn.words.wording import N_, Sentence
 
-SEPARATOR = Choice("separator", N_("Between the columns stands"), SEPARATORS)
-PHASE = Choice("phase", N_("A phase is"), {"row": N_("a row"), "column": N_("a column")})
-PARTS = Choice("parts", N_("These phases are"), {"one": N_("one cycle"), "first": N_("several: take the first alone")})
-TOTALS = Choice(
-    "totals",
-    N_("These rows are"),
-    {"phase": N_("phases"), "sum": N_("sums or other figures of the table: skip them")},
-)
-LAST = Choice("last", N_("The last row is"), {"phase": N_("a phase"), "sum": N_("a sum: skip it")})
+SEPARATOR = Choice("separator", SEPARATORS)
+PHASE = Choice("phase", {"row": N_("a row"), "column": N_("a column")})
+PARTS = Choice("parts", {"one": N_("one cycle"), "first": N_("several: take the first alone")})
+TOTALS = Choice("totals", {"phase": N_("phases"), "sum": N_("sums or other figures of the table: skip them")})
+LAST = Choice("last", {"phase": N_("a phase"), "sum": N_("a sum: skip it")})
 
 BLANK = {
     "T": N_("row {row}: the torque is blank"),

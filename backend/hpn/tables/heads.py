@@ -42,9 +42,12 @@ class Head:
     notes: tuple[Sentence, ...]
 
 
+SKIPPED = N_("Row {row} is skipped: {text}")
+
+
 def skipped(number: int, text: str) -> Sentence:
     """Note for a row that is left out."""
-    return Sentence(N_("Row {row} is skipped: {text}"), {"row": number, "text": text[:60]})
+    return Sentence(SKIPPED, {"row": number, "text": text[:60]})
 
 
 def uncommented(grid: Grid) -> Grid:

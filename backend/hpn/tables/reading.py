@@ -6,7 +6,7 @@ user is asked.
 """
 
 import decimal as decimals
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from itertools import chain, pairwise
@@ -28,7 +28,7 @@ from hpn.tables.cells import (
 )
 from hpn.tables.columns import SKIP, Choices, Column
 from hpn.tables.headings import heading_over
-from hpn.tables.heads import REQUIRED
+from hpn.tables.heads import REQUIRED, SKIPPED
 from hpn.tables.inputs import AXIS
 from hpn.tables.numbers import either, known_units
 from hpn.tables.sheets import RefusedError
@@ -53,27 +53,25 @@ Row = tuple[Entry | None, ...]
 
 @dataclass(frozen=True, slots=True)
 class Choice:
-    """A choice of how a table is read: its label, its options, and the chosen one, blank while it is asked.
+    """A choice of how a table is read: its question, its options, and the chosen one, blank while it is asked.
 
     `numbers` shows beside an option what a number of the table is by it.
     """
 
     name: str
-    label: str
     options: Mapping[str, str]
+    question: Sentence | None = None
     chosen: str = ""
     numbers: Mapping[str, str] = field(default_factory=dict)
 
 
-DECIMAL = Choice("decimal", N_("The decimal mark is"), {".": N_("a point"), ",": N_("a comma")})
+DECIMAL = Choice("decimal", {".": N_("a point"), ",": N_("a comma")})
 SCALES = Choice(
     "scales",
-    N_("The numbers count"),
     {"shown": N_("as the workbook shows them"), "held": N_("as the cells hold them")},
 )
 TIMES = Choice(
     "times",
-    N_("The times say"),
     {
         "durations": N_("how long each phase lasts"),
         "ends": N_("when each phase ends"),
@@ -99,7 +97,7 @@ class Questions:
         answer: str = getattr(self.answers, choice.name)
         if answer in choice.options:
             more["chosen"] = answer
-        found = replace(choice, **more)
+        found = replace(choice, question=question, **more)
         self.choices.append(found)
         if not found.chosen:
             self.open.append(question)
@@ -139,33 +137,53 @@ class Table:
         return count - FIRST_ROWS - LAST_ROWS if count > FIRST_ROWS + LAST_ROWS + 1 else 0
 
     @property
-    def shown(self) -> list[tuple[int, list["Shown"]]]:
-        """The first and the last rows with their numbers, each cell as it is read."""
+    def shown(self) -> list[tuple[int, list["Shown"], str]]:
+        """The first and the last rows with their numbers, each cell as it is read; of a skipped row its text."""
         if self.body is None:
             return []
         rows = list(zip(self.body.numbers, self.body.rows, strict=True))
         if self.hidden:
             rows = rows[:FIRST_ROWS] + rows[-LAST_ROWS:]
-        return [(number, [self._shown(row[column.place], column) for column in self.columns]) for number, row in rows]
+        cells = [[self._shown(row[column.place], column) for column in self.columns] for _, row in rows]
+        read = [(number, shown, "") for (number, _), shown in zip(rows, cells, strict=True)]
+        skipped = [(int(str(note.values["row"])), list[Shown](), str(note.values["text"])) for note in self._skipped]
+        return sorted([*read, *skipped])
+
+    @property
+    def _skipped(self) -> list[Sentence]:
+        return [note for note in self.notes if note.template == SKIPPED][:MOST_SKIPPED]
+
+    @property
+    def remarks(self) -> list[Sentence]:
+        """Notes but for those that stand as skipped rows among the others."""
+        return [note for note in self.notes if note not in self._skipped]
 
     def _shown(self, cell: str, column: Column) -> "Shown":
         if not column.is_number or is_blank(cell):
             return Shown(cell, kind="text" if column.held else "unread")
         found = {entry(cell, mark, any_unit=True) for mark in ((self.decimal,) if self.decimal else DECIMALS)} - {None}
         read = found.pop() if len(found) == 1 else None
-        return Shown(*read, kind="number") if read else Shown(cell, kind="asked")
+        if read is None:
+            return Shown(cell, kind="asked")
+        if column.held and (wire := in_wire(read, column)):
+            return Shown(wire, column.held.unit, "number", cell)
+        return Shown(*read, "number")
 
 
-FIRST_ROWS, LAST_ROWS = 6, 2
-"""Rows of a long table that are shown."""
+FIRST_ROWS, LAST_ROWS, MOST_SKIPPED = 6, 2, 5
+"""Rows of a long table that are shown, and rows that are skipped."""
 
 
 class Shown(NamedTuple):
-    """A cell of a preview: a number in plain notation with its unit, one with two readings or none, or a text."""
+    """A cell of a preview: a number in plain notation with its unit, one with two readings or none, or a text.
+
+    A number that is `written` in some way is in the unit of the wire, given as suffix; any other in the unit behind it.
+    """
 
     text: str
     unit: str = ""
     kind: Literal["number", "asked", "text", "unread"] = "unread"
+    written: str = ""
 
 
 class Reading:
@@ -289,23 +307,12 @@ class Reading:
         return self.body.rows[row][self.used[column].place]
 
     def code(self, found: Entry, column: Column) -> str:
-        """Code of the unit that a number is in: its own, else its column's; blank where it is none of the column's."""
-        if not found.unit:
-            return column.unit
-        codes = spellings.codes_for(found.unit, column.quantity) if column.quantity else ()
-        return codes[0] if len(codes) == 1 else ""
+        """Code of the unit that a number is in; a kind of table may raise RefusedError."""
+        return code_of(found, column)
 
     def in_wire(self, found: Entry, column: Column) -> str:
         """A number in the unit of the wire, in plain notation; blank where its unit is none of the column's."""
-        if found.unit == PERCENT:
-            return str(decimals.Decimal(found.number).scaleb(-2)) if column.role in SHARES else ""
-        if column.held is None or not column.quantity:
-            return "" if found.unit else found.number
-        if not (code := self.code(found, column)):
-            return ""
-        measure = units.entered(column.held.unit, code)
-        value = inf if measure.same else measure.wire(found.number)
-        return written(value) if isfinite(value) else found.number
+        return in_wire(found, column, self.code)
 
     # --- Times --------------------------------------------------------------------------------------------------------
 
@@ -337,6 +344,27 @@ class Reading:
     def may_go_on(self, going_on: Sequence[bool]) -> bool:
         """True where the times of axes leave a choice."""
         return bool(going_on)
+
+
+def code_of(found: Entry, column: Column) -> str:
+    """Code of the unit that a number is in: its own, else its column's; blank where it is none of the column's."""
+    if not found.unit:
+        return column.unit
+    codes = spellings.codes_for(found.unit, column.quantity) if column.quantity else ()
+    return codes[0] if len(codes) == 1 else ""
+
+
+def in_wire(found: Entry, column: Column, code_of: Callable[[Entry, Column], str] = code_of) -> str:
+    """A number in the unit of the wire, in plain notation; blank where its unit is none of the column's."""
+    if found.unit == PERCENT:
+        return str(decimals.Decimal(found.number).scaleb(-2)) if column.role in SHARES else ""
+    if column.held is None or not column.quantity:
+        return "" if found.unit else found.number
+    if not (code := code_of(found, column)):
+        return ""
+    measure = units.entered(column.held.unit, code)
+    value = inf if measure.same else measure.wire(found.number)
+    return written(value) if isfinite(value) else found.number
 
 
 def _goes_on(times: Sequence[Fraction | None]) -> bool:

@@ -17,7 +17,7 @@ from hpn.web.door.visit import VISIT, Visit
 from hpn.web.form.labels import query_of
 from hpn.web.form.link_writer import to_link
 from hpn.web.pages.assets import DIST, Assets
-from hpn.web.pages.fleet_view import SHOWN, FleetView, by_need, foremost
+from hpn.web.pages.fleet_view import SHOWN, FleetView, by_need, foremost, weights_of
 from hpn.web.pages.templates import environment
 from hpn.words.reader import Reader
 from hpn.words.titles import faults_of
@@ -33,7 +33,9 @@ def report_of(listing: Listing, name: str, catalogue: Catalogue, base: str = "",
     """
     rows, summary = rows_of(listing.answers), listing.summary
     top = foremost(rows) if len(rows) == summary.axes else None
-    view = FleetView(summary, by_need(rows), links_of(listing.axes, base), allowed_of(listing.axes), top)
+    view = FleetView(
+        summary, by_need(rows), links_of(listing.axes, base), allowed_of(listing.axes), top, weights_of(catalogue)
+    )
     return copy_context().run(
         _told, Reader(language), view=view, name=name, base=base, catalogue_version=catalogue.version
     )

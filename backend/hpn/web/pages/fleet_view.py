@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 from urllib.parse import urlencode
 
+from hpn.catalogue import Catalogue
 from hpn.engine.checks import allowed
 from hpn.words.wording import N_
 
@@ -52,6 +53,11 @@ def by_need(rows: Iterable["AxisRow"]) -> list["AxisRow"]:
     return sorted(rows, key=lambda row: (states.index(row.state), row.utilisation is not None, -(row.utilisation or 0)))
 
 
+def weights_of(catalogue: Catalogue) -> dict[str, float]:
+    """Weight of each gear in kg, of those that have one."""
+    return {gear.designation: gear.weight_kg for gear in catalogue.gears if gear.weight_kg is not None}
+
+
 def foremost(rows: Iterable["AxisRow"]) -> "AxisRow | None":
     """The axis with a gear whose utilisation is the largest."""
     judged = [row for row in rows if row.state == "selected" and row.utilisation is not None]
@@ -70,6 +76,16 @@ class FleetView:
 
     top: "AxisRow | None" = None
     """The axis with a gear that is used most, out of all."""
+
+    weights: Mapping[str, float] = field(default_factory=dict)
+    """Weight of each gear in kg, as far as the catalogue has it."""
+
+    @property
+    def weight_kg(self) -> float | None:
+        """Weight of the gears of all axes; None where that of one is not known."""
+        gears = dict(self.summary.gears)
+        known = gears.keys() <= self.weights.keys()
+        return sum(self.weights[name] * count for name, count in gears.items()) if known else None
 
     def bound(self, row: "AxisRow") -> float:
         """Largest utilisation with which the governing check of an axis passes."""

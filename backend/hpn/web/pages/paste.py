@@ -6,11 +6,12 @@ comes along as the field `link`, so that nothing typed is lost on the way.
 
 import hashlib
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
+from itertools import accumulate
 from math import isfinite
-from typing import Any
+from typing import Any, NamedTuple
 from urllib.parse import urlencode
 
 from fastapi import APIRouter
@@ -20,6 +21,7 @@ from starlette.responses import HTMLResponse, RedirectResponse, Response
 
 from hpn.application import Application
 from hpn.application.faults import plain_message, pointer
+from hpn.explain.drawings.cycle import CyclePicture, cycle_picture
 from hpn.tables.columns import Choices
 from hpn.tables.cycles import CycleTable, read_grids
 from hpn.tables.files import Contents, Wanted, contents_of, contents_of_text, packed, tidied, unpacked
@@ -74,8 +76,15 @@ class PasteDraft:
     sheets: tuple[str, ...] = ()
     sheet: str = ""
     book: str = ""
-    outcomes: Mapping[tuple[str, str], Sentence] = field(default_factory=dict)
+    outcomes: Mapping[tuple[str, str], "Outcome"] = field(default_factory=dict)
     """Outcome of each option of a choice."""
+
+
+class Outcome(NamedTuple):
+    """Result of reading a table in one way: speeds and time in words, and the course of the speed as a path in SVG."""
+
+    sentence: Sentence
+    course: str
 
 
 def start(request: Request) -> Response:
@@ -153,24 +162,38 @@ def _table(found: Sequence[Grid] | Sentence, choices: Choices) -> CycleTable:
     return CycleTable(problem=found) if isinstance(found, Sentence) else read_grids(found, choices, assumed(CYCLE))
 
 
-def _outcomes(found: Sequence[Grid] | Sentence, choices: Choices, table: CycleTable) -> dict[tuple[str, str], Sentence]:
-    """Speeds and time of the cycle by each option of the choices that a short table leaves, if nothing else is open."""
+def _outcomes(found: Sequence[Grid] | Sentence, choices: Choices, table: CycleTable) -> dict[tuple[str, str], Outcome]:
+    """Cycle by each option of the choices that a short table leaves, if nothing else is open.
+
+    Rows named like totals are left out, also where an option leaves it open what they are.
+    """
     if not table.body or len(table.body.rows) > MOST_ROWS_TRIED:
         return {}
     options = [(choice.name, code) for choice in table.choices for code in choice.options][:MOST_OPTIONS_TRIED]
-    tried: list[tuple[tuple[str, str], Sentence | None]] = []
+    tried: list[tuple[tuple[str, str], Outcome | None]] = []
     for name, code in options:
-        answer: dict[str, Any] = {name: code}
+        answer: dict[str, Any] = {"totals": choices.totals or "sum", name: code}
         tried.append(((name, code), _outcome(_table(found, replace(choices, **answer)))))
     return {option: outcome for option, outcome in tried if outcome}
 
 
-def _outcome(table: CycleTable) -> Sentence | None:
-    speeds = [abs(float(phase[PHASE_ROLES.index("n")] or 0)) for phase in table.phases]
-    if not table.whole or table.lasting_s is None or not isfinite(max(speeds)):
+def _outcome(table: CycleTable) -> Outcome | None:
+    speeds, times = ([float(phase[PHASE_ROLES.index(role)] or 0) for phase in table.phases] for role in "nt")
+    sizes = [abs(speed) for speed in speeds]
+    if not table.whole or table.lasting_s is None or not isfinite(max(sizes)):
         return None
-    ends = {"lowest": Quantity(min(speeds), "rpm"), "highest": Quantity(max(speeds), "rpm")}
-    return Sentence(OUTCOME, {**ends, "time": Quantity(table.lasting_s, "s")})
+    ends = {"lowest": Quantity(min(sizes), "rpm"), "highest": Quantity(max(sizes), "rpm")}
+    sentence = Sentence(OUTCOME, {**ends, "time": Quantity(table.lasting_s, "s")})
+    return Outcome(sentence, _course(speeds, accumulate(times), table.lasting_s))
+
+
+def _course(speeds: Sequence[float], ends: Iterable[float], lasting: float) -> str:
+    """Steps of a speed over time, back to zero at both ends, in a box of 100 × 30."""
+    highest, lowest = max(0.0, *speeds), min(0.0, *speeds)
+    scale = 30 / (highest - lowest or 1)
+    zero, width = highest * scale, 100 / (lasting or 1)
+    steps = (f"V{(highest - speed) * scale:.1f}H{end * width:.1f}" for speed, end in zip(speeds, ends, strict=True))
+    return f"M0 {zero:.1f}{''.join(steps)}V{zero:.1f}"
 
 
 def digest(content: bytes) -> str:
@@ -293,8 +316,16 @@ def _plain(text: str) -> Sentence:
 def _render(request: Request, draft: PasteDraft, status: int) -> Response:
     name = "_paste_preview.html" if "hx-request" in request.headers else "paste.html"
     template = environment(request.app.state).get_template(name)
-    content = template.render(draft=draft, paste=_WORDS)
+    content = template.render(draft=draft, paste=_WORDS, picture=_picture(draft))
     return HTMLResponse(content, status, {"Vary": "HX-Request", "Cache-Control": "no-store"})
+
+
+def _picture(draft: PasteDraft) -> CyclePicture | None:
+    """Torque and speed over time of a short table that can be taken."""
+    if not draft.table or not draft.table.whole or len(draft.table.phases) > MOST_ROWS_TRIED:
+        return None
+    application = link_reader.parse(taken(replace(draft, link="", example=False), append=False)).application
+    return cycle_picture(application, None, current()) if application else None
 
 
 _WORDS = {

@@ -25,7 +25,7 @@ from hpn.web.door.problems import Problem, needs
 from hpn.web.fleets import Tables, size_fleet, workplace
 from hpn.web.form.labels import FIELDS, TITLE_BLOCK
 from hpn.web.pages.explanations import reads_pages
-from hpn.web.pages.fleet_view import ROWS_ON_PAGE, SHOWN, SORTINGS, Chosen, FleetPageView, foremost
+from hpn.web.pages.fleet_view import ROWS_ON_PAGE, SHOWN, SORTINGS, Chosen, FleetPageView, foremost, weights_of
 from hpn.web.pages.rendering import or_reason, page, reason
 from hpn.web.pages.saved_list import changed_since, names_of, version_of
 from hpn.words.reader import Reader
@@ -96,7 +96,8 @@ def _page(
     shown = {row.axis for row in part if row.state != "rejected"} | ({top.axis} if top else set())
     asked = fleet_result.asked_of(saved, list(shown))
     links, allowed = fleet_report.links_of(asked), fleet_report.allowed_of(asked)
-    view = FleetPageView(summary, part, links, allowed, top, f"{ADDRESS}/{saved.id}", chosen, len(found))
+    weights = weights_of(request.app.state.catalogue)
+    view = FleetPageView(summary, part, links, allowed, top, weights, f"{ADDRESS}/{saved.id}", chosen, len(found))
     return page(
         request,
         "fleet.html",

@@ -162,8 +162,10 @@ def _reason(_: Context, candidate: Candidate, utilisation: float) -> str:
 
 
 @pass_context
-def _as_read(_: Context, number: str) -> str:
-    """A number of a pasted table with every digit and the reader's marks: `1 234.5`."""
+def _as_read(_: Context, number: str, unit: str = "") -> str:
+    """A number of a pasted table with every digit and the reader's marks: `1 234.5`; one of the wire in their unit."""
+    measure = current().measure(unit)
+    number = number if measure.same else measure.written(float(number), 6)
     sign = "\N{MINUS SIGN}" if number.startswith("-") else ""
     whole, point, fraction = number.lstrip("+-").partition(".")
     if whole.isdigit():
