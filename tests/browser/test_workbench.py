@@ -226,6 +226,35 @@ def test_ratios_that_tie_are_said_to_and_rejected_sizes_are_folded(visitor: Visi
     expect(page.locator("#rejected-14A").get_by_role("row", name=re.compile("HPN-14A-50"))).to_be_visible()
 
 
+def test_a_touched_screen_of_390_px_keeps_undo_in_reach_figures_in_their_cells_and_keys_out(visitor: Visitor) -> None:
+    page = visitor.open("/?T=38&n=300&t=0.5&T=15&n=600&t=4&gear=HPN-11A-15", 390, touch=True)
+    page.get_by_role("link", name="Try it").first.click()
+    undo = page.get_by_role("button", name="Undo")
+    expect(undo).to_be_in_viewport()
+    undo.click()
+    expect(torque(page, 1)).to_have_value("38")
+    expect(undo).to_have_count(0)
+    buttons = page.locator(".landscape td button")
+    text, cell = "range.getBoundingClientRect().width", "node.clientWidth"
+    inside = f"""nodes => nodes.map(node => {{
+        const range = document.createRange(); range.selectNodeContents(node); return {cell} - {text};
+    }})"""
+    assert min(buttons.evaluate_all(inside)) >= 4
+    assert page.locator(".tabs").evaluate("tabs => getComputedStyle(tabs).maskImage") == "none"
+    page.goto(page.url.split("?")[0] + "?T=&n=&t=")
+    expect(page.get_by_text("Alt+Enter").locator("visible=true")).to_have_count(0)
+
+
+def test_a_name_for_each_phase_moves_no_column(visitor: Visitor) -> None:
+    page = visitor.open(STATES["all gears"])
+    before = page.locator("#result").bounding_box()
+    page.get_by_role("button", name="name", exact=True).click()
+    expect(page.get_by_role("textbox", name="Name, phase 1")).to_be_visible()
+    assert page.locator("#result").bounding_box() == before
+    box = page.get_by_role("textbox", name="Torque, phase 1").bounding_box()
+    assert box and box["width"] >= 64  # room for nine characters
+
+
 def test_another_section_in_the_address_of_an_open_page_is_shown(visitor: Visitor) -> None:
     page = visitor.open("/")
     page.evaluate("location.hash = '#bearing'")

@@ -238,6 +238,18 @@ def test_a_gear_whose_rating_lacks_has_no_unlimited_life(client: TestClient) -> 
     assert (figure(unasked, "Gear life"), figure(unasked, "Permitted emergency stops")) == ("unlimited", "–")
 
 
+def test_a_motor_gives_no_figures_to_the_row_of_a_size_without_ratings(client: TestClient) -> None:
+    page = client.get("/", params={"T": 40, "n": 250, "t": 0.3, "nm": 300, "Tm": 20}).text
+    row = re.search(r'<th scope="row">40A</th>(.*?)</tr>', page, re.S)
+    assert row and "Not rated: figures of HPN-40A" in row[1] and "<button" not in row[1]
+
+
+def test_a_life_is_named_with_its_basis_and_a_column_with_its_unit(client: TestClient) -> None:
+    page = client.get("/", params={"T": 40, "n": 250, "t": 0.3, "FR": 500}).text
+    assert re.search(r">Bearing life L50</dt>\s*<dd>", page) and "L50, asked" not in page
+    assert re.search(r">\s*radial\s<span class=\"unit\">N</span>", page)
+
+
 @pytest.mark.parametrize(
     ("section", "names"),
     [

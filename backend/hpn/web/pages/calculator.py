@@ -13,7 +13,7 @@ from starlette.responses import HTMLResponse, RedirectResponse, Response
 from hpn.application import Application, InputError
 from hpn.catalogue import Catalogue
 from hpn.catalogue.gear import Gear
-from hpn.engine.candidates import Candidate
+from hpn.engine.candidates import REASONS, Candidate
 from hpn.engine.selection import Selection, judge
 from hpn.tables.numbers import WRITTEN
 from hpn.web.door.access import MAXIMUM_QUERY_BYTES, admit
@@ -53,11 +53,18 @@ class MapCell:
 
     @property
     def level(self) -> str:
-        """Step of the scale: reserve of a gear that passes, else one for failed and one for not rated."""
-        if self.candidate.status == "suitable":
-            used = self.candidate.utilisation or 0.0
-            return "most" if used <= 0.6 else "more" if used <= 0.85 else "some"
-        return "over" if self.candidate.status == "unsuitable" else "unknown"
+        """Step of the scale: reserve of a gear that passes, else one for failed and one for a gear without ratings."""
+        torque = self.candidate.check("average_torque")
+        if self.candidate.status == "unrated" or (torque and torque.status == "not_rated"):
+            return "unknown"
+        used = self.candidate.utilisation or 0.0
+        reserve = "most" if used <= 0.6 else "more" if used <= 0.85 else "some"
+        return reserve if self.candidate.status == "suitable" else "over"
+
+    @property
+    def unrated(self) -> Sentence:
+        """Sentence on a gear without ratings, whatever its other checks say."""
+        return Sentence(REASONS["unrated"], {"name": f"HPN-{self.gear.size}"})
 
 
 @dataclass(frozen=True, kw_only=True)
