@@ -80,7 +80,7 @@ FURTHER = (
     ],
     [
         *("tests/property/test_contract.py", "tests/property/test_calculation.py", "tests/web/test_select.py"),
-        *("tests/web/test_openapi.py", "tests/web/test_openapi_truth.py"),
+        *("tests/web/test_openapi.py", "tests/web/test_openapi_bounds.py", "tests/web/test_openapi_truth.py"),
     ],
 )
 """Further tests of a mutant that passes those, by cost."""

@@ -1,12 +1,15 @@
 """An open store, on each kind of database."""
 
 import multiprocessing
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Iterator
 from multiprocessing.context import ForkServerContext
 
 import pytest
+from starlette.testclient import TestClient
 
 from hpn.store import Store
+from hpn.web.app import create_app
+from hpn.web.settings import Settings
 from tests.databases import PostgreSQL, database, kind, migrated_database, migrated_file, postgresql, ready_database
 
 __all__ = [
@@ -33,6 +36,13 @@ async def store(ready_database: str) -> AsyncIterator[Store]:
     await store.open()
     yield store
     await store.close()
+
+
+@pytest.fixture
+def client(ready_database: str) -> Iterator[TestClient]:
+    """A client of a running service."""
+    with TestClient(create_app(Settings(database_url=ready_database))) as client:
+        yield client
 
 
 @pytest.fixture(scope="session")

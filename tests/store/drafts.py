@@ -4,9 +4,11 @@ from collections.abc import Callable
 from typing import Any
 
 from sqlalchemy import Connection
+from starlette.testclient import TestClient
 
 from hpn.store import Draft, Store
 from hpn.store.engine import WRITES
+from tests.build import worked_example
 
 
 def draft(**parts: Any) -> Draft:
@@ -32,3 +34,13 @@ size,ratio,repeated_peak_torque_Nm,rated_torque_Nm,momentary_peak_torque_Nm,sour
 20A,5,,30,,test
 """
 """Ratings with which HPN-20A-5 no longer suits the worked example."""
+
+
+ADDRESS = "/api/v1/selections"
+
+
+def save(client: TestClient, /, headers: dict[str, str] | None = None, **parts: Any) -> str:
+    """Id of a new saved selection."""
+    response = client.post(ADDRESS, json={"application": worked_example()} | parts, headers=headers)
+    assert response.status_code == 201, response.text
+    return str(response.json()["id"])
