@@ -245,9 +245,9 @@ RESERVE: Mapping[str, Named] = {
     "load_factor": Named(N_("All output loads"), "", "Factor on all output loads; null likewise."),
     "emergency_stop_torque_Nm": Named(N_("Emergency-stop torque"), "T_k", "Largest permissible emergency-stop torque."),
     "brake_torque_Nm": Named(
-        N_("Largest brake torque, at T_M"),
+        N_("Largest permissible brake torque"),
         "T_B",
-        "Largest brake torque that keeps the emergency stop at T_M; null without a brake.",
+        "Largest brake torque with which the emergency stop passes by T_M, u and number; null without a brake.",
     ),
     "brake_torque_repeated_Nm": Named(
         N_("Largest brake torque, at T_R"),
