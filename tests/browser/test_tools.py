@@ -93,7 +93,7 @@ def test_column_is_corrected_and_taken(visitor: Visitor) -> None:
     page.get_by_label("Unit of column 3").select_option("ms")
     expect(page.get_by_text("All phases take 0.5 s.")).to_be_visible()
     page.get_by_label("Quantity of column 1").select_option("Speed")
-    expect(page.get_by_text("Columns 1 and 2 are read as the same.")).to_be_visible()
+    expect(page.get_by_text("Columns 1 and 2 are read as the same quantity.")).to_be_visible()
     page.get_by_label("Quantity of column 2").select_option("Torque")
     button(page, "Replace phases").click()
     expect(page).to_have_url(re.compile(r"\?T=1250&n=9\.3&t=0\.3&T=500&n=12\.5&t=0\.2$"))

@@ -139,7 +139,7 @@ def test_narrow_screen_shows_one_section_at_a_time_and_its_tabs_stay_in_sight(vi
     open_section(page, "Candidates")
     expect(page.get_by_role("table", name="Suitable").first).to_be_visible()
     expect(page.get_by_role("table", name="Load limits")).to_be_hidden()
-    page.get_by_text("Independent of the maker.").scroll_into_view_if_needed()
+    page.get_by_text("Independent of the manufacturer.").scroll_into_view_if_needed()
     expect(tabs).to_be_in_viewport()
 
     open_section(page, "Bearing")

@@ -122,12 +122,12 @@ def test_every_axis_gets_what_select_answers(suffix: str, form: str, fleet: Flee
 @pytest.mark.parametrize(
     ("wrong", "said"),
     [
-        ({"requirements.motor.peak_torque_Nm": 5.0}, "either it or the figures"),
+        ({"requirements.motor.peak_torque_Nm": 5.0}, "either the motor or its figures"),
         ({"requirements.motor.designation": ""}, "must have at least 1 character"),
-        ({"requirements.motor.designation": "M 41"}, "the catalogue has no M 41; there are M 40, M 60, ?"),
+        ({"requirements.motor.designation": "M 41"}, "the catalogue has no M 41; available: M 40, M 60, ?"),
         (
             {"requirements.motor.designation": "M 60", "requirements.motor.inertia_ratio": 5.0},
-            "gives no inertia of this motor",
+            "needs the inertia of this motor",
         ),
         ({"requirements.load_inertia_kgm2": None, "requirements.motor.inertia_ratio": 5.0}, "needs a motion"),
     ],

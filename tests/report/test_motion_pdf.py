@@ -128,7 +128,7 @@ def test_torque_is_drawn_against_speed_where_a_motion_or_a_motor_is_given(catalo
         assert math.isclose(float(found[1]), torque, rel_tol=5e-3), plane["alt"]  # three digits
     printed = "\n".join(pages(pdf(typed_export_of(MOVING["rotary table"], catalogue), ENGLISH)))
     assert "Torque and speed at the motor" in printed
-    assert "include the motor’s own inertia; the gear’s inertia and losses without load are not published" in "".join(
+    assert "include the motor’s own inertia; the gear’s inertia and no-load losses are not published" in "".join(
         map(str, motor["words"])
     )
 

@@ -192,7 +192,7 @@ def test_motor_torques_are_unknown_once_an_input_behind_them_is_changed(
         rows, known = judged(book), name in ("saved", "other")
         for code, cell in zip(AT_MOTOR, MOTOR_TORQUES, strict=True):
             assert (rows[f"{BY_CODE[code].title} [Nm]"][3] == "not rated") == (not known), (name, code)
-            assert (beside(book, cell) == "not known here: inputs behind it were changed") == (not known), name
+            assert (beside(book, cell) == "not available: inputs that it depends on were changed") == (not known), name
         if not known:
             assert rows["Verdict"][0] != "suitable", name
             assert not [row for row in candidates(book).values() if row["Verdict"] == "suitable"], name

@@ -27,7 +27,7 @@ SUPPLIED = worked_example(
     requirements={"sizes": ["20A"], "ratios": [5], "motor": {"peak_torque_Nm": 20, "rated_torque_Nm": 8}},
 )
 
-OUTDATED = "not known here: inputs behind it were changed"
+OUTDATED = "not available: inputs that it depends on were changed"
 LOAD, LIFE = (BY_CODE[code].title for code in ("output_bearing_load", "output_bearing_life"))
 PEAK, RMS = (f"{BY_CODE[code].title} [Nm]" for code in ("motor_peak_torque", "motor_rated_torque"))
 WEIGHT, AMBIENT = f"{BY_CODE['weight'].title} [kg]", f"{BY_CODE['ambient_temperature'].title} [°C]"

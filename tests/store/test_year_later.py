@@ -148,7 +148,7 @@ def test_a_selection_saved_before_catalogues_were_kept_says_so(database: str, fo
 
     assert (reopened["gear"], reopened["today"]["figure_differences"]) == (None, None)
     assert "The catalogue of then is not kept" in page
-    assert "not kept: published figures stand only" in " ".join(words(files["report.pdf en"]).split())
+    assert "not kept: published figures appear only" in " ".join(words(files["report.pdf en"]).split())
     assert "not kept" not in whole
     notes = openpyxl.load_workbook(BytesIO(files["report.xlsx en"]))["Notes"]
     assert any("not kept" in str(row[1]) for row in notes.iter_rows(values_only=True))

@@ -83,7 +83,7 @@ def test_no_suitable_gear_is_exit_code_1_with_the_whole_answer(file: Path, capsy
         (orjson.dumps(cycle(phase(1, 1), price=5)), "/price: is not a field"),
         (
             orjson.dumps(cycle(phase(1, 1))).replace(b'"speed', b'"torque_Nm":2,"speed'),
-            "has the name 'torque_Nm' 2 times",
+            "contains the name 'torque_Nm' 2 times",
         ),
         (b"\xff\xfe", ""),
     ],

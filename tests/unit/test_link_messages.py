@@ -196,7 +196,7 @@ def test_cycle_without_motion_is_reported_at_the_speed() -> None:
 
 
 def test_count_without_a_torque_asks_for_the_torque() -> None:
-    assert found(PHASE + "&Nk=5") == {("Tk", None): "is required, or a brake in its place"}
+    assert found(PHASE + "&Nk=5") == {("Tk", None): "is required, unless a brake is given"}
 
 
 def test_load_coefficient_without_a_load_asks_for_a_load() -> None:

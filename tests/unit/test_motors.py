@@ -88,7 +88,7 @@ def test_in_a_batch_an_unlisted_motor_fails_alone(supplemented: Supplement) -> N
 def test_a_name_beside_figures_is_refused(name: str, value: float) -> None:
     errors = refused(asking({"designation": "M 40", name: value}))
     assert list(errors) == [("requirements", "motor", "designation")]
-    assert "either it or the figures" in errors["requirements", "motor", "designation"]
+    assert "either the motor or its figures" in errors["requirements", "motor", "designation"]
 
 
 @pytest.mark.parametrize(
@@ -228,6 +228,6 @@ def test_other_figures_of_a_motor_have_their_units_as_well(supplemented: Supplem
 def test_unknown_unit_of_a_motor_names_those_that_are_known(
     supplemented: Supplement, header: str, cell: str, column: str
 ) -> None:
-    with pytest.raises(CatalogueError, match=r"kgm is not a unit of this quantity; it takes kg·m², kg·cm²") as refusal:
+    with pytest.raises(CatalogueError, match=r"kgm is not a unit of this quantity; possible: kg·m², kg·cm²") as refusal:
         supplemented(motors=f"{HEADER.replace('inertia_kgm2', header)}M 40,6000,3000,2.4,7.2,{cell},data sheet\n")
     assert column in str(refusal.value)

@@ -174,7 +174,7 @@ def test_running_on_end_above_the_average_speed_is_told_beyond_the_bound(
 
 def test_the_notice_on_long_runs_says_how_long_and_that_the_bound_is_ours() -> None:
     text = on_end(60.5, 60.0, bound_s=60.0) or ""
-    assert text.startswith("With ratio 10 the input runs above n_av(max) for 60.5 s on end.")
+    assert text.startswith("With ratio 10 the input runs above n_av(max) for 60.5 s without a break.")
     assert "beyond 60 s (our assumption, setting HPN_AVERAGING_SECONDS)" in text
 
 
@@ -182,7 +182,7 @@ def test_splitting_a_long_phase_changes_nothing_about_it() -> None:
     asked = cycle(
         phase(1, 350, 200), phase(1, 350, 200), phase(1, 50, 400), requirements={"sizes": ["20A"], "ratios": [10]}
     )
-    assert "for 400 s on end" in notices(answer(asked, load_catalogue()))["speed_above_average"]
+    assert "for 400 s without a break" in notices(answer(asked, load_catalogue()))["speed_above_average"]
 
 
 def test_a_cycle_beside_longer_ones_has_the_same_notice_on_long_runs() -> None:

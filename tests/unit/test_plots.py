@@ -199,9 +199,9 @@ def test_the_words_say_what_governs(catalogue: Catalogue) -> None:
     ("radial", "said"),
     [
         (1260.0, "The output bearing carries these loads within u = 80 %."),
-        (1530.0, "The loads exceed u = 80 %: they use 85 % of what the output bearing may carry."),
-        (1440.1, "The loads exceed u = 80 %: they use 80.01 % of what the output bearing may carry."),
-        (1980.0, "The output bearing does not carry these loads, u = 80 % apart."),
+        (1530.0, "The loads exceed u = 80 %: they use 85 % of the permissible load of the output bearing."),
+        (1440.1, "The loads exceed u = 80 %: they use 80.01 % of the permissible load of the output bearing."),
+        (1980.0, "The output bearing does not carry these loads, even without u = 80 %."),
     ],
 )
 def test_a_reserve_of_ones_own_is_named_and_no_load_within_the_maximum_is_said_not_to_be_carried(

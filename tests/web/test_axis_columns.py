@@ -120,7 +120,7 @@ def test_a_unit_that_a_column_is_not_read_in_is_told(heading: str, foreign: str)
     table = read(f"{HEAD};{heading}", "A;1;9;1;14")
 
     assert table.columns[4].role
-    assert [foreign for question in asked(table) if f": {foreign} is not read there" in question] == [foreign] * bool(
+    assert [foreign for question in asked(table) if f": {foreign} is not supported" in question] == [foreign] * bool(
         foreign
     )
 
@@ -187,7 +187,7 @@ def test_an_inertia_is_read_in_the_unit_of_its_heading_or_cell(unit: str) -> Non
 def test_an_inertia_in_an_unknown_unit_names_those_that_are_known() -> None:
     (said,) = asked(read(f"{HEAD};Inertia of the load [kgm]", "A;40;250;1;12"))
 
-    assert "kgm is none that is known; known are kg·m², kg·cm²" in said
+    assert "kgm is not known; known units: kg·m², kg·cm²" in said
 
 
 def test_a_frequency_of_a_speed_is_asked() -> None:

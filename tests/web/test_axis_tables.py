@@ -19,7 +19,7 @@ def test_a_number_with_two_readings_is_asked() -> None:
 def test_times_that_go_on_in_every_axis_may_be_points_in_time() -> None:
     head, *rows = "Achse;Moment [Nm];Drehzahl [1/min];Zeit [s]", "A;1;10;1", "A;2;20;3", "B;1;10;2", "B;2;20;5"
 
-    assert asked(read(head, *rows)) == ["Do the times say how long a phase lasts, or when it is?"]
+    assert asked(read(head, *rows)) == ["Are the times durations, starts or ends of the phases?"]
     said = {times: read(head, *rows, times=times).axes for times in ("durations", "ends", "starts")}
     assert [axis["duration_s"] for axis in said["durations"]] == [[1, 3], [2, 5]]
     assert [axis["duration_s"] for axis in said["ends"]] == [[1, 2], [2, 3]]
@@ -30,7 +30,7 @@ def test_times_that_go_on_in_every_axis_may_be_points_in_time() -> None:
 def test_times_that_are_named_as_points_in_time_are_asked_even_where_they_go_back() -> None:
     head = "Achse;Moment [Nm];Drehzahl [1/min];Endzeit [s]"
 
-    assert asked(read(head, "A;1;10;3", "B;2;20;1")) == ["Do the times say how long a phase lasts, or when it is?"]
+    assert asked(read(head, "A;1;10;3", "B;2;20;1")) == ["Are the times durations, starts or ends of the phases?"]
     assert [axis["duration_s"] for axis in read(head, "A;1;10;3", "B;2;20;1", times="ends").axes] == [[3], [1]]
 
 
@@ -38,8 +38,8 @@ def test_cells_in_a_unit_of_something_else_are_said_before_their_axes_are_reject
     table = read(HEAD, "A;40 lb;100;1", "B;40;10 1/s;1", "C;40 Nm;100;300 ms", "D;n. b.;100;1")
 
     assert [note.text for note in table.notes] == [
-        "Cells that are no numbers, such as n. b.: 1. Their axes are rejected.",
-        "Cells in a unit that is not of their column, such as 40 lb: 2. Their axes are rejected.",
+        "Cells that are not numbers, such as n. b.: 1. Their axes are rejected.",
+        "Cells with a unit that does not fit their column, such as 40 lb: 2. Their axes are rejected.",
     ]
     assert [axis["torque_Nm"] for axis in table.axes] == [["40 lb"], [40], [40], ["n. b."]]
 
@@ -87,7 +87,7 @@ GOING_ON = ("A;1;10;1", "A;2;20;3", "B;1;10;2", "B;2;20;5", "C;1;10;2", "C;2;20;
 def test_one_axis_does_not_decide_what_the_times_of_the_others_are(other: str) -> None:
     head = "Achse;Moment [Nm];Drehzahl [1/min];Zeit [s]"
 
-    assert asked(read(head, *GOING_ON, other)) == ["Do the times say how long a phase lasts, or when it is?"]
+    assert asked(read(head, *GOING_ON, other)) == ["Are the times durations, starts or ends of the phases?"]
     said = read(head, *GOING_ON, other, times="ends")
     assert [axis["duration_s"] for axis in said.axes[:2]] == [[1, 2], [2, 3]]
     falling = read(head, "A;1;10;3", "A;2;20;1", "B;1;10;2")
@@ -101,13 +101,13 @@ def test_two_decimal_marks_in_a_table_are_asked_and_what_no_longer_is_a_number_i
     comma = read(HEAD, *rows, decimal=",")
     assert [axis["duration_s"] for axis in comma.axes] == [[1.5], [1125.0], ["0.5"]]
     assert [note.text for note in comma.notes][-1] == (
-        "Cells that are no numbers, such as 0.5: 1. Their axes are rejected."
+        "Cells that are not numbers, such as 0.5: 1. Their axes are rejected."
     )
     sure = read(HEAD, "A;12,5;100;1,5", "C;2;100;0.5")
     assert asked(sure) == [] and sure.axes[1]["duration_s"] == ["0.5"]
 
 
-SUM = "has no axis, which other rows have: leave it out if it is a sum, or write its axis into it."
+SUM = "has no axis, while other rows have one: leave it out if it is a sum, or enter its axis."
 
 
 @pytest.mark.parametrize(
@@ -204,7 +204,7 @@ def test_lines_above_the_header_are_skipped_and_that_is_said() -> None:
 def test_a_cell_in_an_unknown_unit_is_said_with_those_that_are_known() -> None:
     (note,) = read(HEAD, "A;40 kgm;100;1", "B;40;100;1").notes
 
-    assert "such as 40 kgm: 1. Known are Nm, lb·in, lb·ft, kNm" in note.text
+    assert "such as 40 kgm: 1. Known units: Nm, lb·in, lb·ft, kNm" in note.text
 
 
 def test_times_of_clocks_and_dates_are_read() -> None:
@@ -213,6 +213,6 @@ def test_times_of_clocks_and_dates_are_read() -> None:
     dated = HEAD.replace("Dauer [s]", "Timestamp"), *dates, "B;1;9;2026-03-02T08:00:01"
 
     assert [axis["duration_s"] for axis in clock.axes] == [[30], [1.5]]
-    assert asked(read(*dated)) == ["Do the times say how long a phase lasts, or when it is?"]
+    assert asked(read(*dated)) == ["Are the times durations, starts or ends of the phases?"]
     assert [axis["duration_s"] for axis in read(*dated, times="starts").axes] == [[2.5], [1]]
     assert [read(*dated, times=times).problem is None for times in ("durations", "ends")] == [False, False]

@@ -55,7 +55,7 @@ def test_a_motion_is_drawn_with_its_phases_and_both_planes_at_once(client: TestC
     assert part.count("<svg") == 2
     assert set(re.findall(r'class="phase-step[^"]*"[^>]* data-phase="(\d+)"', page)) >= {"0", "1", "2"}
     assert re.search(r"Motion of [^;]+; at most [^;]+; torque from ", words(page))
-    assert "for which a motion and the motor’s inertia are needed" in words(part)
+    assert "which needs a motion and the motor’s inertia" in words(part)
 
 
 def test_typed_phases_without_a_motor_have_the_plane_of_the_gear_and_a_line_on_motors(client: TestClient) -> None:

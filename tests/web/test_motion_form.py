@@ -258,8 +258,8 @@ def test_a_motion_of_hundreds_of_moves_is_taken_over_as_text(api: TestClient) ->
 def test_notices_of_a_motion_stand_beside_its_moves(api: TestClient) -> None:
     page = api.get("/?mech=rotary&J=0.8&mg=12&rg=250&mv=trapezoidal&ms=90&mn=500&ma=900").text
     form = page[: page.index('id="result"')]
-    assert "Moves 1 leave no time to run" in form
-    assert "ends at another angle than it starts" in form
+    assert "Moves 1 leave no time at constant speed" in form
+    assert "does not end at its start angle" in form
 
 
 @pytest.mark.parametrize("link", EXAMPLES)

@@ -50,8 +50,8 @@ def test_files_are_read_in_the_encoding_that_their_mark_promises(client: TestCli
         ("\ufeff40\t250\t3\n".encode("utf-16-le")[:-1], "as UTF-16-LE, but in line 1 the byte 0x0a, number 19"),
         ("\ufeff4\n".encode("utf-16-be") + b"\xd8\x00\x00\x34", "as UTF-16-BE, but in line 2 the byte 0xd8, number 7"),
         ("\ufeff40".encode("utf-32-le") + b"\xff\xff\xff\xff", "as UTF-32-LE, but in line 1 the byte 0xff, number 13"),
-        ("40\t250\t3\n".encode("utf-16-le"), "the file is no text: save the sheet as CSV"),
-        (b"40\t250\t3\x81", "the file is no text: save the sheet as CSV"),
+        ("40\t250\t3\n".encode("utf-16-le"), "the file is not text: save the sheet as CSV"),
+        (b"40\t250\t3\x81", "the file is not text: save the sheet as CSV"),
     ],
 )
 def test_a_byte_that_breaks_the_promise_of_the_mark_is_named_with_its_place(

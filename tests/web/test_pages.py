@@ -114,7 +114,7 @@ def test_unknown_name_is_422_and_suggests_the_nearest(client: TestClient) -> Non
     [
         ("i=6", "the catalogue has no 6"),
         ("size=99", "the catalogue has no 99A"),
-        ("size=11A&i=3", "no gear has such a size and ratio"),
+        ("size=11A&i=3", "there is no gear of this size and ratio"),
         ("gear=HPN-99A-5", "HPN-99A-5 is not a gear of the catalogue"),
         ("FR=100&bm=digitised", "bearing_envelopes.csv"),
     ],

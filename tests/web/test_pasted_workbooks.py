@@ -104,7 +104,7 @@ def test_workbook_becomes_what_its_cells_show(client: TestClient, rows: Any, pha
         ([40, "#DIV/0!", 3], "#DIV/0! is not a number"),
         (["=A1*2", 250, 3], "row 2: =A1*2 has no calculated value"),
         (["=A1*2", "=B1", "=C1"], "row 2: =A1*2 has no calculated value"),
-        (["1,5", "2.5", 3], "different ways"),
+        (["1,5", "2.5", 3], "different decimal marks"),
     ],
 )
 def test_cell_that_shows_no_number_is_refused(client: TestClient, cells: list[Cell], words: str) -> None:
@@ -142,7 +142,7 @@ def test_dates_of_a_workbook_are_points_in_time(client: TestClient) -> None:
 def test_unit_of_a_format_that_is_none_of_its_column_is_refused(client: TestClient) -> None:
     reply = answer(client, content(book(["T", "n", "Dauer"], [(40, '0" €"'), 250, 3])))
     assert reply.status_code == 422
-    assert "40 €: this unit does not belong" in said(reply)
+    assert "40 €: this unit does not fit" in said(reply)
 
 
 @pytest.mark.parametrize(
@@ -158,13 +158,13 @@ def test_unit_of_a_format_that_is_none_of_its_column_is_refused(client: TestClie
 def test_a_format_that_may_mean_something_else_is_refused(client: TestClient, cell: Cell, shown: str) -> None:
     reply = answer(client, content(book(["T", "n", "Dauer"], [cell, 250, 3])))
     assert reply.status_code == 422
-    assert f"{shown}: this unit does not belong" in said(reply)
+    assert f"{shown}: this unit does not fit" in said(reply)
 
 
 def test_time_of_a_cell_is_refused_under_another_unit(client: TestClient) -> None:
     reply = answer(client, content(book(["T", "n", "Dauer [min]"], [40, 250, clock(0, 3)])))
     assert reply.status_code == 422
-    assert "180 s: this unit does not belong to column “Dauer [min]”" in said(reply)
+    assert "180 s: this unit does not fit column “Dauer [min]”" in said(reply)
 
 
 def test_load_of_a_formula_without_a_value_is_refused_and_a_result_without_characters_is_blank(

@@ -238,7 +238,7 @@ def test_a_name_twice_in_one_object_is_refused_by_name(api: TestClient, once: st
     reply = api.post(PATH, content=text.replace(once, twice, 1), headers={"content-type": "application/json"})
 
     assert reply.status_code == 422
-    assert reply.json()["detail"] == f"has the name '{name}' 2 times in one object"
+    assert reply.json()["detail"] == f"contains the name '{name}' 2 times in one object"
 
 
 def test_many_names_twice_are_refused_at_once(api: TestClient) -> None:

@@ -122,7 +122,7 @@ class EmergencyStop(Model):
     @model_validator(mode="after")
     def _one_cause(self) -> Self:
         if self.torque_Nm is None and self.brake is None:
-            problem = PydanticCustomError("no_stop", "is required, or a brake in its place")
+            problem = PydanticCustomError("no_stop", "is required, unless a brake is given")
             raise refused(self, (("torque_Nm",), problem))
         if self.torque_Nm is not None and self.brake is not None:
             problem = PydanticCustomError("stop_twice", "give either the torque of the stop or the brake, not both")
@@ -160,7 +160,7 @@ class Application(Model):
         motion = info.data["duty_cycle"].motion if "duty_cycle" in info.data else None
         motor, given = asked.motor or Motor(), asked.load_inertia_kgm2 is not None
         if motion is not None and given:
-            problem = PydanticCustomError("inertia_twice", "the motion has its own inertia of the load: leave it out")
+            problem = PydanticCustomError("inertia_twice", "the load’s inertia follows from the motion: leave it out")
             raise refused(asked, (("load_inertia_kgm2",), problem))
         if "duty_cycle" not in info.data:
             return asked

@@ -81,7 +81,7 @@ class Motor(Model):
     def _stands_alone(cls, designation: str | None, info: ValidationInfo) -> str | None:
         if designation is not None and any(info.data.get(name) is not None for name in LISTED_FIGURES):
             raise PydanticCustomError(
-                "motor_twice", "stands for the figures of a motor in motors.csv: give either it or the figures"
+                "motor_twice", "selects a motor of motors.csv: give either the motor or its figures, not both"
             )
         return designation
 

@@ -7,8 +7,8 @@ from hpn.application import LISTED_FIGURES, Application, InputError, Location
 from hpn.catalogue import Catalogue, GearList
 from hpn.words.wording import N_, Sentence, Value
 
-NOT_THERE = N_("the catalogue has no {value}; there are {listed}")
-NOT_TOGETHER = N_("no gear has such a size and ratio together; there are {offered}")
+NOT_THERE = N_("the catalogue has no {value}; available: {listed}")
+NOT_TOGETHER = N_("there is no gear of this size and ratio; available: {offered}")
 
 MOTORS_NAMED = 20
 """Motors that an error names."""
@@ -30,7 +30,7 @@ def gears_allowed(
             (
                 ("output_load", "model"),
                 Sentence(
-                    "no candidate has points of a printed curve: put them into bearing_envelopes.csv of a catalogue "
+                    "no candidate has points of a printed curve: enter them in bearing_envelopes.csv of a catalogue "
                     "supplement (setting HPN_CATALOGUE_SUPPLEMENT), or choose linear or iso281"
                 ),
             )
@@ -91,12 +91,16 @@ def with_listed_motor(application: Application, catalogue: Catalogue) -> Applica
     if listed is None:
         names = list(catalogue.motor_by_designation)
         if not names:
-            raise InputError((place, Sentence(N_("there are no motors: list them in motors.csv of a supplement"))))
+            raise InputError(
+                (place, Sentence(N_("there are no motors: list them in motors.csv of a catalogue supplement")))
+            )
         more = ["…"] if len(names) > MOTORS_NAMED else []
         values: dict[str, Value] = {"value": asked.designation, "listed": ", ".join(names[:MOTORS_NAMED] + more)}
         raise InputError((place, Sentence(NOT_THERE, values)))
     if asked.inertia_ratio is not None and listed.inertia_kgm2 is None:
-        raise InputError((place, Sentence(N_("motors.csv gives no inertia of this motor, which inertia_ratio needs"))))
+        raise InputError(
+            (place, Sentence(N_("inertia_ratio needs the inertia of this motor, which motors.csv does not give")))
+        )
     motor = asked.model_copy(update={name: getattr(listed, name) for name in LISTED_FIGURES})
     requirements = application.requirements.model_copy(update={"motor": motor})
     return application.model_copy(update={"requirements": requirements})

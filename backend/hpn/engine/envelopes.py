@@ -82,7 +82,8 @@ def envelope_curve(
             (
                 ("model",),
                 Sentence(
-                    "there are no curve points of {name}: put them into bearing_envelopes.csv of a supplement",
+                    "there are no curve points of {name}: enter them in bearing_envelopes.csv of a catalogue "
+                    "supplement",
                     {"name": gear.name},
                 ),
             )

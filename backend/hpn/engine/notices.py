@@ -27,34 +27,36 @@ DIGITS: Mapping[str, int] = {"Nm": 6, "percent": 3, "s": 6, "h": 6}
 """Digits of the numbers in a notice, by unit."""
 
 NOTICES: Mapping[str, str] = {
-    "motion_triangle": N_("Moves {moves} leave no time to run: they are triangles, which nobody asked for."),
-    "motion_left_off": N_(
-        "The motion ends at another angle than it starts, so that the next cycle meets gravity otherwise than this one."
+    "motion_triangle": N_(
+        "Moves {moves} leave no time at constant speed: they become triangular, although another profile was chosen."
     ),
+    "motion_left_off": N_("The motion does not end at its start angle, so gravity acts differently in the next cycle."),
     "application_area": N_(
-        "Use in this area ({area}) needs a risk assessment and the maker’s approval (handbook 2.4)."
+        "Use in this area ({area}) needs a risk assessment and the manufacturer’s approval (handbook 2.4)."
     ),
     "emergency_stop_below_maximum": N_(
         "The emergency-stop torque of {stop_Nm} is below the largest torque of the cycle, {largest_Nm}: check T_k."
     ),
     "momentary_peak_count_unlimited": N_(
-        "Where the emergency-stop torque is at or below T_R, equation 17.9 sets no limit to the number of stops: the "
-        "permitted number is empty there."
+        "Where the emergency-stop torque is at or below T_R, equation 17.9 sets no limit to the number of stops; the "
+        "permitted number stays blank there."
     ),
     "stops_not_counted": N_(
-        "An emergency stop is given without the number of stops: whether equation 17.9 permits that many is not judged."
+        "An emergency stop is given without the number of stops: whether equation 17.9 permits that many is not "
+        "checked."
     ),
     "bearing_life_at_default": N_(
-        "A life of {gear_life_h} (L10) is asked of the gear, but its output bearing is judged for the default of "
+        "A life of {gear_life_h} (L10) is required of the gear, but its output bearing is checked for the default of "
         "{bearing_life_h} (L50)."
     ),
     "life_unlimited": N_(
-        "The average torque is 0 or so small that equation 17.10 gives a life without limit: the life is empty."
+        "The average torque is 0 or so small that equation 17.10 gives an unlimited life; the field stays blank."
     ),
-    "bearing_envelope_supplied": N_("The output bearing is judged along curve points that you supplied."),
+    "bearing_envelope_supplied": N_("The output bearing is checked against curve points that you supplied."),
     "speed_above_average": N_(
-        "With ratio {ratios} the input runs above n_av(max) for {longest_s} on end. The handbook’s average has no time "
-        "scale: beyond {bound_s} (our assumption, setting HPN_AVERAGING_SECONDS) the thermal average may not hold."
+        "With ratio {ratios} the input runs above n_av(max) for {longest_s} without a break. The handbook’s average "
+        "has no time scale: beyond {bound_s} (our assumption, setting HPN_AVERAGING_SECONDS) the thermal average may "
+        "not hold."
     ),
     "bearing_envelope_computed": N_(
         "The envelope of the output bearing is interpolated between the two published limits; printed curve not "
@@ -70,62 +72,64 @@ NOTICES: Mapping[str, str] = {
         "Loads act at the centre of the output shaft and along its axis; give their positions where they act elsewhere."
     ),
     "bearing_lever": N_(
-        "The loads act beside the shaft’s centre and count as the radial load F_R · max(1, |x| / x_c) + F_A · y / x_c "
-        "there: an upper bound for any distance of the bearings. The shaft beyond its shoulder is not judged."
+        "The loads act off the shaft’s centre and count as the radial load F_R · max(1, |x| / x_c) + F_A · y / x_c "
+        "there: an upper bound for any bearing spacing. The shaft beyond its shoulder is not checked."
     ),
     "bearing_centre_unknown": N_(
-        "The loads act beside the shaft’s centre, whose distance from the shoulder is not published for {names}: give "
-        "it, so that their bearings can be judged."
+        "The loads act off the shaft’s centre, whose distance from the shoulder is not published for {names}: give "
+        "it, so that their bearings can be checked."
     ),
     "bearing_life_basis": N_(
-        "Bearing life L10 = L50 / 5 is the relation of the maker’s other handbooks, not printed in this one; a Weibull "
-        "slope of 10/9 gives 5.45."
+        "Bearing life L10 = L50 / 5 is taken from the manufacturer’s other handbooks, not printed in this one; a "
+        "Weibull slope of 10/9 gives 5.45."
     ),
     "bearing_life_unlimited": N_(
-        "The equivalent load of the moving phases is 0 or so small that the bearing life has no limit: it is empty."
+        "The equivalent load of the moving phases is 0 or so small that the bearing life is unlimited; the field "
+        "stays blank."
     ),
     "efficiency_assumed": N_("Motor torques use the efficiency of {efficiency_percent} that you assume."),
     "efficiency_supplied": N_(
-        "Motor torques use the efficiency curves that you supplied; a gear without one is loss-free: a lower bound."
+        "Motor torques use the efficiency curves that you supplied; a gear without one counts as loss-free, a lower "
+        "bound."
     ),
     "efficiency_beyond_curve": N_(
         "Torques of the cycle lie beyond the ends of the efficiency curves of {names}: there the efficiency at the "
-        "nearer end counts."
+        "nearer end is used."
     ),
     "efficiency_unknown": N_(
         "Motor torques are loss-free, a lower bound: the handbook’s efficiency curves were not available and no "
-        "efficiency is stated."
+        "efficiency is given."
     ),
     "motor_torque_partial": N_(
-        "Motor torques leave out the inertia of motor and gear, for which a motion and the motor’s inertia are needed, "
-        "and losses without load where no supplement gives them."
+        "Motor torques leave out the inertia of motor and gear (which needs a motion and the motor’s inertia) and, "
+        "where no supplement gives them, no-load losses."
     ),
     "motor_losses_included": N_(
-        "Motor torques include the gear’s torque without load; they leave out the inertia of motor and gear."
+        "Motor torques include the gear’s no-load torque; they leave out the inertia of motor and gear."
     ),
     "motor_inertia_included": N_(
-        "Motor torques include the motor’s own inertia; the gear’s inertia and losses without load are not published, "
-        "and left out where no supplement gives them."
+        "Motor torques include the motor’s own inertia; the gear’s inertia and no-load losses are not published, and "
+        "left out where no supplement gives them."
     ),
-    "motor_all_included": N_("Motor torques include the inertia of motor and gear and the gear’s torque without load."),
+    "motor_all_included": N_("Motor torques include the inertia of motor and gear and the gear’s no-load torque."),
     "torque_signs_not_given": N_(
-        "No torque has a sign, so the position error counts each of them in both directions. Say that the load does "
-        "not reverse, or give signs, where that is not so."
+        "No torque has a sign, so the position error assumes each of them in both directions. Where that is not so, "
+        "choose “no torque reverses” or give signs."
     ),
     "ramp_shorter_than_period": N_(
-        "A ramp of {ramp_s} is shorter than a period of {period_s} of the load’s natural frequency on {name}: the axis "
-        "will swing after the move."
+        "A ramp of {ramp_s} is shorter than a period of {period_s} of the load’s natural frequency on {name}: the "
+        "axis will oscillate after the move."
     ),
     "brake_does_not_hold": N_(
-        "Gravity at rest asks for {torque_Nm}: with the ratios {ratios} the brake does not hold the load."
+        "At standstill gravity requires {torque_Nm}: with the ratios {ratios} the brake does not hold the load."
     ),
     "brake_uniform": N_(
-        "The emergency stop begins from uniform running: one during an acceleration adds (f − 1) · J · α. The motor’s "
-        "torque is taken to pass into the brake’s over its rise time."
+        "The emergency stop starts at constant speed: one during acceleration adds (f − 1) · J · α. The brake is "
+        "assumed to take over from the motor during its rise time."
     ),
     "brake_inertia_unknown": N_(
-        "Without the inertias of motor and load the whole torque of the brake counts, an upper bound; time and angle "
-        "of the stop stay unknown."
+        "Without the inertias of motor and load the full brake torque counts, an upper bound; time and angle of the "
+        "stop stay unknown."
     ),
     "size_unrated": N_("{name} is not rated. {note}"),
     "gears_unrated": N_("{names} are not rated. {note}"),

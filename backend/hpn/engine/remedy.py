@@ -175,7 +175,7 @@ def _requirements(candidate: Candidate, u: float) -> Iterable[Requirement]:
 
 # --- In words ---------------------------------------------------------------------------------------------------------
 
-BY_CURVE = N_("not in closed form: the efficiency follows your curve, or the gear’s torque without load counts")
+BY_CURVE = N_("not in closed form: the efficiency follows your curve, or the gear’s no-load torque counts")
 BY_INERTIA = N_("not in closed form: the motor’s own inertia follows the motion")
 UNTOLD = N_("The change that would make it fit is {reason}.")
 """Reasons for which a factor is not given."""

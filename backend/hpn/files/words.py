@@ -60,5 +60,5 @@ def paper(reader: Reader) -> Paper:
 def catalogue_version(export: Export, reader: Reader) -> str:
     """Version of the catalogue, and that its own figures are missing where it is not at hand."""
     version = export.selection.catalogue_version
-    missing = reader.text(N_("not kept: published figures stand only where the result names them"))
+    missing = reader.text(N_("not kept: published figures appear only where the result gives them"))
     return version if export.figures else f"{version} ({missing})"

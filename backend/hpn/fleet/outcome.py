@@ -24,7 +24,7 @@ from hpn.words.wording import N_
 MOST_FAULTS = 20
 """Faults that are listed of one axis."""
 
-DISAGREED = N_("is refused by the rules for columns and taken by those for one axis; please report it with this axis")
+DISAGREED = N_("is rejected by the rules for columns but accepted for a single axis; please report it with this axis")
 """Reason of a row on which both disagree, a fault of the service that ends no fleet."""
 
 

@@ -14,7 +14,7 @@ LONGEST = 60
 
 _TOKEN = re.compile(r"\s*(?:([0-9.,]+(?:[eE][+-]?[0-9]{1,3})?)|([-+*/()]))", re.ASCII)
 _MARKS = str.maketrans({"\N{MINUS SIGN}": "-", "\N{EN DASH}": "-", "×": "*", "·": "*", "÷": "/"})
-_WRONG = N_("can’t be worked out; write a sum such as =40*2")
+_WRONG = N_("can’t be calculated; write an expression such as =40*2")
 
 
 class _WrongError(ValueError):

@@ -131,12 +131,14 @@ class _AxesReading(Reading):
                     known = known or known_units(column.quantity)
                 elif not is_blank(cell):
                     wrong.append(cell)
-        self._note(N_("Cells that are no numbers, such as {cell}: {count}. Their axes are rejected."), wrong)
+        self._note(N_("Cells that are not numbers, such as {cell}: {count}. Their axes are rejected."), wrong)
         self._note(
-            N_("Cells in a unit that is not of their column, such as {cell}: {count}. Their axes are rejected."),
+            N_("Cells with a unit that does not fit their column, such as {cell}: {count}. Their axes are rejected."),
             strange,
         )
-        template = N_("Cells in an unknown unit, such as {cell}: {count}. Known are {units}. Their axes are rejected.")
+        template = N_(
+            "Cells with an unknown unit, such as {cell}: {count}. Known units: {units}. Their axes are rejected."
+        )
         self._note(template, unknown, units=known)
 
     def _note(self, template: str, cells: Sequence[str], **values: str) -> None:
@@ -185,7 +187,7 @@ class _AxesReading(Reading):
         sums = [place for place in unnamed if (strange and not counted[place]) or self.body.numbers[place] in totals]
         for place in sums[:1]:
             template = N_(
-                "Row {row} has no axis, which other rows have: leave it out if it is a sum, or write its axis into it."
+                "Row {row} has no axis, while other rows have one: leave it out if it is a sum, or enter its axis."
             )
             self.ask(template, row=self.body.numbers[place])
 

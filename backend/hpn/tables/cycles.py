@@ -21,7 +21,7 @@ from hpn.words.wording import N_, Sentence
 
 SEPARATOR = Choice("separator", SEPARATORS)
 PHASE = Choice("phase", {"row": N_("a row"), "column": N_("a column")})
-PARTS = Choice("parts", {"one": N_("one cycle"), "first": N_("several: take the first alone")})
+PARTS = Choice("parts", {"one": N_("one cycle"), "first": N_("several: use the first one")})
 TOTALS = Choice("totals", {"phase": N_("phases"), "sum": N_("sums or other figures of the table: skip them")})
 LAST = Choice("last", {"phase": N_("a phase"), "sum": N_("a sum: skip it")})
 
@@ -85,7 +85,7 @@ def read_grids(
         return distinct[0]
     names = {table.separator: SEPARATORS[table.separator] for table in distinct}
     asked = Questions(choices)
-    question = Sentence(N_("Which mark stands between the columns?"))
+    question = Sentence(N_("Which character separates the columns?"))
     chosen = asked.choose(replace(SEPARATOR, options=names), question)
     for table in distinct:
         if table.separator == chosen:
@@ -192,7 +192,7 @@ class _CycleReading(Reading):
                 cell = row[column.place]
                 if not is_blank(cell) and not is_number(cell):
                     raise _no_number_of(number, cell, column)
-        raise RefusedError(N_("the rows write their decimals in different ways: use a point or a comma throughout"))
+        raise RefusedError(N_("the rows use different decimal marks: use a point or a comma throughout"))
 
     def code(self, found: Entry, column: Column) -> str:
         """Code of the unit that a number is in; raises RefusedError where the column says another, or it is unclear."""
@@ -206,7 +206,7 @@ class _CycleReading(Reading):
             template = N_("{cell} in column {name} can be {first} or {second}; write one of them")
             raise RefusedError(template, cell=said, name=column.called, **either(codes, found.unit))
         if not code or (headed and code != column.unit):
-            template = N_("{cell}: this unit does not belong to column {name}, which takes {units}")
+            template = N_("{cell}: this unit does not fit column {name}; possible: {units}")
             taken = units.symbol_of_code(column.unit) if headed and column.unit else known_units(column.quantity)
             raise RefusedError(template, cell=said, name=column.called, units=taken)
         return code

@@ -133,10 +133,10 @@ def _is_taken_csv(text: str, takes: Takes) -> bool:
 
 # --- Text of a file, in the encoding that it is written in ------------------------------------------------------------
 
-NO_TEXT = N_("the file is no text: save the sheet as CSV, or copy its cells")
+NO_TEXT = N_("the file is not text: save the sheet as CSV, or copy its cells")
 WRONG_BYTE = N_(
-    "the file is marked as {encoding}, but in line {line} the byte {byte}, number {place} of the file, does not belong "
-    "to it: save the sheet as CSV again"
+    "the file is marked as {encoding}, but in line {line} the byte {byte}, number {place} of the file, is not valid "
+    "in it: save the sheet as CSV again"
 )
 MARKS = (
     (codecs.BOM_UTF8, "utf-8"),

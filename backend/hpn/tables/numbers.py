@@ -151,9 +151,9 @@ def unit_code(spelled: str, unit: str) -> str | Sentence:
         template = N_("{unit} can be {first} or {second}; write one of them")
         return Sentence(template, {"unit": spelled, **either(codes, spelled)})
     if not quantity:
-        return Sentence(N_("takes a number without a unit"))
+        return Sentence(N_("must be a number without a unit"))
     return Sentence(
-        N_("{unit} is not a unit of this quantity; it takes {units}"),
+        N_("{unit} is not a unit of this quantity; possible: {units}"),
         {"unit": spelled[:20], "units": known_units(quantity, "/rad" if per_rad else "")},
     )
 

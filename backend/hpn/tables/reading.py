@@ -225,7 +225,7 @@ class Reading:
             elif column.quantity and not column.unit:
                 self.questions.open.append(self._unit_question(column))
             elif column.foreign:
-                template = N_("Column {name}: {unit} is not read there. Convert it to {wire}, or let it be not read.")
+                template = N_("Column {name}: {unit} is not supported. Convert it to {wire}, or choose “not read”.")
                 wire = units.SYMBOLS.get(column.unit, "1")
                 self.ask(template, name=column.called, unit=column.foreign, wire=wire)
         roles = [column.role for column in self.columns]
@@ -235,7 +235,7 @@ class Reading:
         for role in dict.fromkeys(roles):
             if role not in ("", SKIP) and roles.count(role) > 1:
                 names = [column.called for column in self.columns if column.role == role]
-                self.ask(N_("Columns {one} and {other} are read as the same."), one=names[0], other=names[1])
+                self.ask(N_("Columns {one} and {other} are read as the same quantity."), one=names[0], other=names[1])
 
     def is_missed(self, role: str, roles: Collection[str]) -> bool:
         """True where a role is asked that no column has."""
@@ -251,7 +251,7 @@ class Reading:
             return Sentence(template, {"name": column.called, **either(meant, spelled)})
         unknown = next((unit for unit in sorted(said) if not spellings.codes_for(unit, column.quantity)), "")
         if unknown:
-            template = N_("Which unit is column {name} in? {unit} is none that is known; known are {units}.")
+            template = N_("Which unit is column {name} in? {unit} is not known; known units: {units}.")
             listed = known_units(column.quantity)
             return Sentence(template, {"name": column.called, "unit": unknown[:20], "units": listed})
         return Sentence(N_("Which unit is column {name} in?"), {"name": column.called})
@@ -332,13 +332,13 @@ class Reading:
         if any(column.lasting for column in columns) or not (instant or self.may_go_on(going_on)):
             return "durations"
         few = not instant and sum(going_on) < MOSTLY * len(going_on)
-        question = Sentence(N_("Do the times say how long a phase lasts, or when it is?"))
+        question = Sentence(N_("Are the times durations, starts or ends of the phases?"))
         chosen = self.choose(TIMES, question, chosen="durations" if few else "")
         dated = not self.body.dated.isdisjoint(column.place for column in columns)
         if dated and chosen == "durations":
-            raise RefusedError(N_("dates say when a phase is, and not how long it lasts"))
+            raise RefusedError(N_("dates give the start or end of a phase, not its duration"))
         if dated and chosen == "ends":
-            raise RefusedError(N_("dates of ends don’t say when the first phase starts: give the dates of starts"))
+            raise RefusedError(N_("end dates don’t give the start of the first phase: give start dates"))
         return chosen
 
     def may_go_on(self, going_on: Sequence[bool]) -> bool:

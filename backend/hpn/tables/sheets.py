@@ -130,7 +130,7 @@ def grid_of(rows: Iterable[Sequence[str]], separator: str = "", numbers: Iterabl
             room.take(row)
             kept.append((number, row, len(row)))
     if not kept:
-        raise RefusedError(N_("there is nothing in the text"))
+        raise RefusedError(N_("the text is empty"))
     if len(kept) * max(len(row) for _, row, _ in kept) > MOST_CELLS:
         raise too_many_cells()
     columns = list(zip_longest(*(row for _, row, _ in kept), fillvalue=""))
@@ -146,7 +146,7 @@ def grids_of(text: str, most_rows: int = MAXIMUM_PHASES, most_characters: int = 
         raise RefusedError(N_("the text is too long: at most {most} characters"), most=most_characters)
     text = text.removeprefix("\ufeff")
     if not tidy(text):
-        raise RefusedError(N_("there is nothing in the text"))
+        raise RefusedError(N_("the text is empty"))
     if sum(bool(line.strip()) for line in text.splitlines()) > most_rows + MOST_HEAD_ROWS:
         raise RefusedError(N_("there are more than {most} rows"), most=most_rows)
     hint = _HINT.match(text)

@@ -96,7 +96,7 @@ def sheets_of(content: bytes) -> Sheets:
     except Exception:  # whatever the library meets in a broken file
         raise unreadable from None
     if not sheets:
-        raise RefusedError(N_("there is nothing in the workbook"))
+        raise RefusedError(N_("the workbook is empty"))
     return sheets
 
 

@@ -142,7 +142,7 @@ def _ordered(catalogue: Catalogue, selection: Selection, text: str | None) -> Or
     code = read_ordering_code(catalogue, text)
     if isinstance(code, OrderingCode) and selection.candidate(code.gear.designation) is None:
         values = {"gear": code.gear.designation}
-        code = Sentence(N_("{gear} is none of the candidates: the ratios or sizes asked for leave it out"), values)
+        code = Sentence(N_("{gear} is not a candidate: the selected ratios or sizes exclude it"), values)
     if isinstance(code, Sentence):
         raise InputError((("ordering_code",), code))
     return code

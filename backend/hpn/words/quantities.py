@@ -302,7 +302,7 @@ GEAR: Mapping[str, Named] = {
         N_("Inertia at the input"), "J_g", "Moment of inertia of the gear at its input; from a supplement alone."
     ),
     "no_load_torque_Nm": Named(
-        N_("Torque without load"), "T_0", "Torque at the input without load; from a supplement alone."
+        N_("No-load torque"), "T_0", "Torque at the input without load; from a supplement alone."
     ),
     "ambient_temperature_minimum_degC": Named(N_("Lowest ambient temperature"), "t_min", "Lowest ambient temperature."),
     "ambient_temperature_maximum_degC": Named(

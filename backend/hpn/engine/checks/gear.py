@@ -38,12 +38,12 @@ GEAR: tuple[Check, ...] = (
             "The average output torque T_av of the moving phases, weighted with speed and time to the power 10/3,"
             " stays within the permissible average torque."
         ),
-        consequence=N_("Teeth and planet bearings fatigue: pitting and wear long before the life that was planned."),
+        consequence=N_("Teeth and planet bearings fatigue: pitting and wear set in long before the planned life."),
         basis=N_(
             "The handbook tabulates no average torque T_A for HPN. Its worked example uses the rated torque T_N "
             "as T_A (equation 18.2), and so does this check."
         ),
-        remedy=N_("Lower or shorten the phases with high torque, or take a gear with a larger rated torque."),
+        remedy=N_("Lower or shorten the phases with high torque, or choose a gear with a larger rated torque."),
         demand=lambda c: c.duty.average_torque_Nm,
         limit=lambda c: c.gears.rated_torque_Nm,
         sheet=Sheet("T_av", "{T_N}"),
@@ -66,7 +66,7 @@ GEAR: tuple[Check, ...] = (
         ),
         consequence=N_("Every start and stop overloads teeth and shaft; cracks grow from the tooth roots."),
         basis=N_("Limit T_R of the rating table."),
-        remedy=N_("Accelerate and brake more gently, or take a gear with a larger repeated peak torque."),
+        remedy=N_("Accelerate and brake more gently, or choose a gear with a larger repeated peak torque."),
         demand=lambda c: c.duty.maximum_torque_Nm,
         limit=lambda c: c.gears.repeated_peak_torque_Nm,
         sheet=Sheet("T_max", "{T_R}"),
@@ -89,8 +89,8 @@ GEAR: tuple[Check, ...] = (
         source=RATING_TABLES,
         tests=N_("The emergency-stop or collision torque T_k stays within the momentary peak torque."),
         consequence=N_("A single event can deform or break teeth, or make the input coupling slip."),
-        basis=N_("Limit T_M of the rating table. Such a torque must not belong to the normal cycle."),
-        remedy=N_("Limit the braking torque, or take a gear with a larger momentary peak torque."),
+        basis=N_("Limit T_M of the rating table. Such a torque must not occur in the normal cycle."),
+        remedy=N_("Limit the braking torque, or choose a gear with a larger momentary peak torque."),
         asked="emergency_stop.torque_Nm",
         instead="emergency_stop.brake.torque_Nm",
         demand=lambda c: c.figures.stop_torque_Nm,
@@ -112,10 +112,7 @@ GEAR: tuple[Check, ...] = (
         source=RATING_TABLES,
         tests=N_("The expected number of emergency stops stays within the number that T_k / T_R permits."),
         consequence=N_("Each stop uses up part of a fatigue budget; when it is spent, teeth may break."),
-        basis=N_(
-            "The equation holds where T_k is above T_R; at or below T_R it sets no limit. The number is a count, "
-            "rounded down."
-        ),
+        basis=N_("The equation holds for T_k above T_R; at or below T_R it sets no limit. The number is rounded down."),
         remedy=N_(
             "Make emergency stops rarer or gentler: the permitted number grows tenfold when T_k falls by two thirds"
             " of T_R."
@@ -149,7 +146,7 @@ GEAR: tuple[Check, ...] = (
         ),
         consequence=N_("The gear heats up; grease thins and ages, seals wear."),
         basis=N_("Limit n_av(max) of the rating table, for grease."),
-        remedy=N_("Add pause, run slower, or take a smaller ratio."),
+        remedy=N_("Lengthen the pause, run slower, or choose a smaller ratio."),
         demand=lambda c: c.figures.average_input_speed_rpm,
         limit=lambda c: c.gears.average_input_speed_rpm,
         sheet=Sheet("{n_in_av}", "{n_av_limit}"),
@@ -173,7 +170,7 @@ GEAR: tuple[Check, ...] = (
             "Limit n_in(max) of the rating table, for grease and for short periods (glossary); the average has its own "
             "limit."
         ),
-        remedy=N_("Lower the top speed, or take a smaller ratio."),
+        remedy=N_("Lower the top speed, or choose a smaller ratio."),
         demand=lambda c: c.figures.maximum_input_speed_rpm,
         limit=lambda c: c.gears.maximum_input_speed_rpm,
         sheet=Sheet("{n_in_max}", "{n_in_limit}"),
@@ -191,14 +188,14 @@ GEAR: tuple[Check, ...] = (
         group="load",
         limit_name=N_("L10 required"),
         source=RATING_TABLES,
-        tests=N_("The calculated life of the gear reaches the life that you require."),
+        tests=N_("The calculated life of the gear reaches the required life."),
         consequence=N_("The gear wears out before the planned end of its service."),
         basis=N_(
-            "The equation prints the result as L10 (90 % survive) and so does this tool. The glossary describes the "
-            "rated torque on a basis of 50 % failures (L50); the handbook does not settle which holds. Rated input "
+            "The equation gives the result as L10 (90 % survive), and so does this tool. The glossary describes the "
+            "rated torque on a basis of 50 % failures (L50); the handbook leaves open which applies. Rated input "
             "speed 3000 rpm (glossary). The hours include the pause."
         ),
-        remedy=N_("Lower the torque (life grows with the power 10/3), the speed or the duty, or take a larger gear."),
+        remedy=N_("Lower the torque (it counts to the power 10/3), the speed or the duty, or choose a larger gear."),
         asked="requirements.life_h",
         demand=lambda c: c.figures.life_L10_h,
         sheet=Sheet("{L_10}", "L_10_req", share='IF({L_10}="[unlimited]",0,L_10_req/{L_10})'),

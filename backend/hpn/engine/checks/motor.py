@@ -16,9 +16,9 @@ MOTOR: tuple[Check, ...] = (
         limit_name=N_("motor’s maximum"),
         source=N_("your input"),
         tests=N_("The largest output speed times the ratio stays within the motor’s maximum speed."),
-        consequence=N_("The motor can’t reach the speed that the cycle asks for."),
-        basis=N_("Limit as you stated it."),
-        remedy=N_("Take a smaller ratio, a faster motor, or a lower top speed."),
+        consequence=N_("The motor can’t reach the speed that the cycle requires."),
+        basis=N_("Limit as given."),
+        remedy=N_("Choose a smaller ratio, a faster motor, or a lower top speed."),
         asked="requirements.motor.maximum_speed_rpm",
         demand=lambda c: c.figures.maximum_input_speed_rpm,
         sheet=Sheet("{n_in_max}", "n_mot"),
@@ -36,17 +36,17 @@ MOTOR: tuple[Check, ...] = (
         limit_name=N_("motor’s peak torque"),
         source=N_("your input"),
         tests=N_(
-            "The largest torque of the cycle over ratio and efficiency stays within the motor’s peak torque. The "
-            "emergency stop does not count."
+            "The largest torque of the cycle, divided by ratio and efficiency, stays within the motor’s peak torque. "
+            "The emergency stop does not count."
         ),
-        consequence=N_("The motor can’t accelerate the load as the cycle asks."),
+        consequence=N_("The motor can’t accelerate the load as the cycle requires."),
         basis=N_(
-            "T_max / (i · η) with the efficiency that you state or a supplement gives; without one loss-free, a "
-            "lower bound. With a motion and the motor’s inertia J_m the largest T / (i · η) + J_m · i · α, "
-            "or T · η / i where the load drives. The gear’s inertia counts beside J_m, and its torque "
-            "without load always, where a supplement gives them; else they are left out."
+            "T_max / (i · η), with the efficiency given or that of a supplement; without one loss-free, a lower "
+            "bound. With a motion and the motor’s inertia J_m it is the largest T / (i · η) + J_m · i · α, or T · η / "
+            "i where the load drives. The gear’s inertia is added to J_m, and its no-load torque in any case, where a "
+            "supplement gives them; else they are left out."
         ),
-        remedy=N_("Take a larger ratio, a stronger motor, or accelerate more gently."),
+        remedy=N_("Choose a larger ratio or a stronger motor, or accelerate more gently."),
         asked="requirements.motor.peak_torque_Nm",
         demand=lambda c: c.figures.motor_peak_torque_Nm,
         sheet=Sheet("{T_mot_peak}", "T_mot"),
@@ -64,17 +64,17 @@ MOTOR: tuple[Check, ...] = (
         limit_name=N_("motor’s rated torque"),
         source=N_("your input"),
         tests=N_(
-            "The RMS of the torque over the cycle, pause included, over ratio and efficiency stays within the "
+            "The RMS of the torque over the cycle, pause included, divided by ratio and efficiency, stays within the "
             "motor’s rated torque."
         ),
         consequence=N_("The motor overheats."),
         basis=N_(
-            "RMS of T / (i · η) with the efficiency that you state or a supplement gives; without one loss-free, a "
-            "lower bound. With a motion and the motor’s inertia J_m that of T / (i · η) + J_m · i · α, or T · η / i "
-            "where the load drives. The gear’s inertia counts beside J_m, and its torque "
-            "without load always, where a supplement gives them; else they are left out."
+            "RMS of T / (i · η), with the efficiency given or that of a supplement; without one loss-free, a lower "
+            "bound. With a motion and the motor’s inertia J_m it is the RMS of T / (i · η) + J_m · i · α, or T · η / "
+            "i where the load drives. The gear’s inertia is added to J_m, and its no-load torque in any case, where a "
+            "supplement gives them; else they are left out."
         ),
-        remedy=N_("Take a larger ratio, a stronger motor, or add pause."),
+        remedy=N_("Choose a larger ratio or a stronger motor, or lengthen the pause."),
         asked="requirements.motor.rated_torque_Nm",
         demand=lambda c: c.figures.motor_rated_torque_Nm,
         sheet=Sheet("{T_mot_rms}", "T_mot_N"),
@@ -93,9 +93,9 @@ MOTOR: tuple[Check, ...] = (
         limit_name=N_("motor’s rated speed"),
         source=N_("your input"),
         tests=N_("The average output speed times the ratio, pause included, stays within the motor’s rated speed."),
-        consequence=N_("The motor heats up: its rated torque holds up to its rated speed."),
-        basis=N_("Limit as you stated it."),
-        remedy=N_("Take a smaller ratio, a faster motor, or add pause."),
+        consequence=N_("The motor overheats: its rated torque is available only up to its rated speed."),
+        basis=N_("Limit as given."),
+        remedy=N_("Choose a smaller ratio or a faster motor, or lengthen the pause."),
         asked="requirements.motor.rated_speed_rpm",
         demand=lambda c: c.figures.average_input_speed_rpm,
         sheet=Sheet("{n_in_av}", "n_mot_N"),
@@ -112,13 +112,13 @@ MOTOR: tuple[Check, ...] = (
         group="load",
         limit_name=N_("your limit"),
         source=N_("your input"),
-        tests=N_("The inertia of the load, seen from the motor, over the motor’s own stays within your limit."),
-        consequence=N_("The axis is hard to control: it swings, or follows slowly."),
+        tests=N_("The load’s inertia reflected to the motor, divided by the motor’s own, stays within your limit."),
+        consequence=N_("The axis is hard to control: it oscillates or responds slowly."),
         basis=N_(
             "(J_L / i² + J_g) / J_m. The inertia J_g of the gear at its input is not published in this handbook; it "
-            "counts where a supplement gives it."
+            "is included where a supplement gives it."
         ),
-        remedy=N_("Take a larger ratio, a motor with more inertia, or a lighter load."),
+        remedy=N_("Choose a larger ratio, a motor with more inertia, or a lighter load."),
         asked="requirements.motor.inertia_ratio",
         demand=lambda c: inertia_ratio(c.duty, c.gears, c.asked["requirements.motor.inertia_kgm2"]),
         sheet=Sheet('IF(J_L="","",J_L/({i}^2*J_m))', "r_J"),

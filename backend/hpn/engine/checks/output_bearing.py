@@ -21,12 +21,14 @@ OUTPUT_BEARING: tuple[Check, ...] = (
         limit_name=N_("1"),
         source=BEARING_LIMITS,
         tests=N_("In every phase the load times f_w stays inside the envelope of the published maxima."),
-        consequence=N_("Balls and raceways are indented, or the shaft deflects so far that the teeth run crooked."),
+        consequence=N_(
+            "Balls and raceways are indented, or the shaft deflects so far that the teeth mesh out of alignment."
+        ),
         basis=N_(
             "Interpolated between the two published limits; printed curve not available. That the limits belong to "
             "f_w = 1 is our reading. Slower running never enlarges this envelope."
         ),
-        remedy=N_("Support the load outside the gear, move it, or take a larger size."),
+        remedy=N_("Support the load outside the gear, move it, or choose a larger size."),
         asked="output_load.load_coefficient",
         demand=lambda c: c.figures.bearing_load,
         limit=lambda c: np.ones((1, 1)),
@@ -48,13 +50,12 @@ OUTPUT_BEARING: tuple[Check, ...] = (
             "The equivalent load f_w P_m of the cycle stays within the load k at which the bearing reaches the "
             "required life at the average output speed."
         ),
-        consequence=N_("The output bearing pits: play, noise and leakage at the shaft seal."),
+        consequence=N_("Pitting of the output bearing: play, noise and leakage at the shaft seal."),
         basis=N_(
-            "Life by ISO 281 with exponent 3 from the published condition of 100 rpm and 20000 h as L50. L10 = "
-            "L50 / 5 is the relation of the maker’s other handbooks, not printed in this one. The hours include the "
-            "pause."
+            "Life by ISO 281 with exponent 3 from the published condition of 100 rpm and 20000 h as L50. L10 = L50 / "
+            "5 is taken from the manufacturer’s other handbooks, not printed in this one. The hours include the pause."
         ),
-        remedy=N_("Lower load, speed or required life, choose f_w with more care, or take a larger size."),
+        remedy=N_("Lower load, speed or required life, choose f_w with more care, or choose a larger size."),
         asked="output_load.load_coefficient",
         demand=lambda c: c.figures.bearing_mean_load,
         limit=lambda c: c.figures.bearing_life_factor,

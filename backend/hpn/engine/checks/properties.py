@@ -50,10 +50,10 @@ PROPERTIES: tuple[Check, ...] = (
         tests=N_("The ambient temperature lies in the range of the rating table."),
         consequence=N_("Cold grease does not flow; warm grease ages and leaks."),
         basis=N_(
-            "Utilisation is the distance from the middle of the range over half the range. The lubricant’s range "
-            "reaches down to -10 °C, the gear’s does not."
+            "Utilisation is the distance from the middle of the range divided by half the range. The lubricant’s "
+            "range reaches down to −10 °C, the gear’s does not."
         ),
-        remedy=N_("Heat, cool or shield the gear, or ask the maker for another lubricant."),
+        remedy=N_("Heat, cool or shield the gear, or ask the manufacturer for another lubricant."),
         asked="requirements.ambient_temperature_degC",
         demand=lambda c: c.asked["requirements.ambient_temperature_degC"],
         limit=_nearer_end,
@@ -77,8 +77,8 @@ PROPERTIES: tuple[Check, ...] = (
         source=N_("table 15.1"),
         tests=N_("The largest backlash of the gear stays within your limit."),
         consequence=N_("Positioning error and knocking at reversal."),
-        basis=N_("The published figure is an upper limit for new gears and follows the number of stages."),
-        remedy=N_("Take a single-stage ratio, or accept more backlash."),
+        basis=N_("The published figure is an upper limit for new gears and depends on the number of stages."),
+        remedy=N_("Choose a single-stage ratio, or accept more backlash."),
         asked="requirements.backlash_arcmin",
         demand=lambda c: c.gears.backlash_arcmin,
         sheet=Sheet("{j}", "j_req"),
@@ -95,10 +95,10 @@ PROPERTIES: tuple[Check, ...] = (
         group="property",
         limit_name=N_("your limit"),
         source=N_("table 15.2"),
-        tests=N_("The torsional stiffness K_3 of the gear reaches what you require."),
-        consequence=N_("The output winds up under torque and swings after a move."),
+        tests=N_("The torsional stiffness K_3 of the gear reaches the required one."),
+        consequence=N_("The output winds up under torque and oscillates after a move."),
         basis=N_("K_3 holds above 15 % of the rated torque (glossary)."),
-        remedy=N_("Take a larger size."),
+        remedy=N_("Choose a larger size."),
         asked="requirements.torsional_stiffness_Nm_per_rad",
         demand=lambda c: c.gears.torsional_stiffness_Nm_per_rad,
         sheet=Sheet("{K_3}", "K_3_req"),
@@ -115,13 +115,13 @@ PROPERTIES: tuple[Check, ...] = (
         group="property",
         limit_name=N_("your limit"),
         source=N_("table 15.2"),
-        tests=N_("The load on the gear, the motor held, swings no slower than you require."),
+        tests=N_("With the motor held, the natural frequency of the load on the gear reaches the required one."),
         consequence=N_("The axis rings after each move and can’t be controlled stiffly."),
         basis=N_(
             "√(K_3 / J_L) / 2π with the torsional stiffness of the gear alone: an upper bound, which couplings and the "
             "gear’s own inertia lower. K_3 holds above 15 % of the rated torque (glossary)."
         ),
-        remedy=N_("Take a larger size, or a load with less inertia."),
+        remedy=N_("Choose a larger size, or a load with less inertia."),
         asked="requirements.natural_frequency_Hz",
         demand=lambda c: c.figures.natural_frequency_Hz,
         sheet=Sheet("{f_1}", "f_req"),
@@ -142,12 +142,14 @@ PROPERTIES: tuple[Check, ...] = (
             "Transmission accuracy, wind-up between the smallest and the largest torque of the cycle, and the backlash "
             "where the torque passes 0, together stay within your limit."
         ),
-        consequence=N_("The axis stands off its position by more than the work allows."),
+        consequence=N_("The axis deviates from its position by more than the task allows."),
         basis=N_(
-            "Added arithmetically, from limits of a new gear: about. The wind-up is a lower bound, since the gear is "
+            "Approximate: arithmetic sum of the limits of a new gear. The wind-up is a lower bound, since the gear is "
             "softer below 15 % of the rated torque (glossary)."
         ),
-        remedy=N_("Take a larger size or a single-stage ratio, lower the torque, or measure behind the gear."),
+        remedy=N_(
+            "Choose a larger size or a single-stage ratio, lower the torque, or measure the position at the load."
+        ),
         asked="requirements.position_error_arcmin",
         instead="requirements.position_error_mm",
         demand=lambda c: c.figures.position_error_arcmin,
@@ -174,7 +176,7 @@ PROPERTIES: tuple[Check, ...] = (
         tests=N_("The net weight of the standard version stays within your limit."),
         consequence=N_("The axis that carries the gear becomes slower."),
         basis=N_("Net weight without packing, by number of stages."),
-        remedy=N_("Take a smaller size or a single-stage ratio."),
+        remedy=N_("Choose a smaller size or a single-stage ratio."),
         asked="requirements.weight_kg",
         demand=lambda c: c.gears.weight_kg,
         sheet=Sheet("{m}", "m_req"),
@@ -192,9 +194,9 @@ PROPERTIES: tuple[Check, ...] = (
         limit_name=N_("your limit"),
         source=N_("tables 11.2 to 13.4"),
         tests=N_("The largest length L of the gear, which depends on the motor, stays within your limit."),
-        consequence=N_("The gear does not fit its space."),
+        consequence=N_("The gear does not fit the installation space."),
         basis=N_("L_max of the table; with a small motor the gear may be as short as L_min."),
-        remedy=N_("Take a smaller size or a single-stage ratio, or check the drawing for your motor."),
+        remedy=N_("Choose a smaller size or a single-stage ratio, or check the drawing for your motor."),
         asked="requirements.length_mm",
         demand=lambda c: c.gears.length_max_mm,
         sheet=Sheet("{L_max}", "L_req"),

@@ -23,8 +23,8 @@ from hpn.words.quantities import DUTY
 from hpn.words.wording import N_, Quantity, Sentence
 
 VARYING = N_(
-    "Where torque and speed vary in a phase, T is the mean that this equation weighs, |n| to the first power and |T| "
-    "to the power 10/3, and n the mean speed."
+    "Where torque and speed vary in a phase, T is the mean weighted as in this equation, |n| to the first power and "
+    "|T| to the power 10/3, and n the mean speed."
 )
 PEAKS = N_("Where torque and speed vary in a phase, its peak counts here.")
 
@@ -154,7 +154,7 @@ def _life(sheet: Sheet) -> Iterable[Step]:
     if T_N is None:
         return
     if L_10 is None:
-        note = Sentence(N_("T_av is 0 or so small that the equation gives a life without limit."))
+        note = Sentence(N_("T_av is 0 or so small that the equation gives an unlimited life."))
         yield step_of_check("life", notes=(note,))
         return
     rated = Term(Variable("n", "rated"), sheet.catalogue.rated_input_speed_rpm, "rpm")
@@ -168,7 +168,7 @@ def _life(sheet: Sheet) -> Iterable[Step]:
     basis = Sentence(
         N_(
             "n_rated is 3000 rpm for HPN (glossary). The equation calls its result L10; the glossary describes the "
-            "rated torque on a basis of 50 % failures. The handbook does not settle which holds."
+            "rated torque on a basis of 50 % failures. The handbook leaves open which applies."
         )
     )
     line = Line(L_10, formula)

@@ -32,10 +32,12 @@ from hpn.words.wording import N_, Quantity, Sentence, Value
 SQUARED = Constant(2)
 EFFICIENCY = Variable.of(INPUTS["requirements.efficiency"].symbol)
 MOTOR_PEAK, MOTOR_RMS = Variable("T", "in,max"), Variable("T", "in,rms")
-STATED = N_("η as you state it.")
-OWN = N_("The gear’s own inertia and torque without load count as you supplied them; at rest the latter is 0.")
+STATED = N_("η as given.")
+OWN = N_("The gear’s own inertia and no-load torque count as you supplied them; at rest the latter is 0.")
 LOSS_FREE = N_("η = 1, since no efficiency is known: loss-free, a lower bound.")
-BY_CURVE = N_("η of every phase from the efficiency curve that you supplied; beyond its ends that of the nearer end.")
+BY_CURVE = N_(
+    "η of every phase from the efficiency curve that you supplied; beyond its ends the value at the nearer end."
+)
 
 
 def motor_steps(sheet: Sheet) -> Iterable[Step]:
@@ -122,8 +124,8 @@ def _at_its_instant(
         "torque": Quantity(abs(own), "Nm", 6),
     }
     text = N_(
-        "The largest is in phase {phase}: there J_m of {inertia} and α of {acceleration} at the output take "
-        "T_J = J_m · i · α = {torque}."
+        "The largest is in phase {phase}: there J_m of {inertia} and α of {acceleration} at the output give T_J = J_m "
+        "· i · α = {torque}."
     )
     return formula, (Sentence(text, values), *_on_efficiency(sheet))
 
@@ -200,7 +202,7 @@ def _inertia_ratio(sheet: Sheet) -> Iterable[Step]:
     formula: Formula = Quotient(load, Product((Power(sheet.i, SQUARED), motor)))
     if (own := sheet.rating("inertia_kgm2")) is not None:
         formula = Sum((formula, Quotient(own, motor)))
-    note = N_("J_L from what you give for the load.")
+    note = N_("J_L as given for the load.")
     if sheet.duty.courses:
         note = N_("J_L is the inertia of the motion’s load at the gear’s output.")
     limit = sheet.compared("inertia_ratio", formula)

@@ -27,9 +27,7 @@ from hpn.words.terms import ENVELOPE_BASIS
 from hpn.words.wording import N_, Sentence
 
 SHOWN_LOADS = 6
-SUPPLIED = Sentence(
-    N_("P is the factor by which the load exceeds the curve that you supplied, along the load’s own direction.")
-)
+SUPPLIED = Sentence(N_("P is the ratio of the load to the curve that you supplied, in the load’s own direction."))
 EXPONENT = Constant(3)
 P = Variable("P")
 
@@ -131,7 +129,7 @@ def _life(sheet: Sheet, mean: Term, f_w: Term) -> Step:
     title = CANDIDATE["bearing_life_L10_h"].name
     L_50, L_10 = sheet.figure("bearing_life_L50_h"), sheet.figure("bearing_life_L10_h")
     if L_50 is None or L_10 is None:
-        note = Sentence(N_("The equivalent load is 0 or so small that the bearing life has no limit."))
+        note = Sentence(N_("The equivalent load is 0 or so small that the bearing life is unlimited."))
         return Step("bearing_life", title, None, notes=(note,))
     speed, life = sheet.catalogue.bearing_reference
     by_speed = Quotient(Constant(speed, "rpm"), sheet.n_out_av)
@@ -141,7 +139,7 @@ def _life(sheet: Sheet, mean: Term, f_w: Term) -> Step:
     )
     note = Sentence(
         N_(
-            "L10 = L50 / 5 is the relation of the maker’s other handbooks, not printed in this one; a Weibull slope "
+            "L10 = L50 / 5 is taken from the manufacturer’s other handbooks, not printed in this one; a Weibull slope "
             "of 10/9 gives 5.45."
         )
     )

@@ -29,7 +29,7 @@ from hpn.words.wording import N_, Sentence
 PI = Term(Variable("π"), math.pi)
 ARCMIN = Quotient(Constant(10800, "arcmin"), PI)
 DEGREES = Quotient(Constant(180, "deg"), PI)
-UNIFORM = Sentence(N_("The stop begins from uniform running; the motor’s torque passes into the brake’s as it rises."))
+UNIFORM = Sentence(N_("The stop starts at constant speed; the rising brake torque takes over from the motor’s."))
 
 
 def stiffness_steps(sheet: Sheet) -> Iterable[Step]:
@@ -76,7 +76,7 @@ def _position(sheet: Sheet, K_3: Term) -> Step:
     return step_of_check("position_error", tuple(lines), sheet.compared("position_error", error), notes)
 
 
-BOTH_WAYS = N_("The torque is taken to act both ways: T_lo is −T_max and T_hi is T_max.")
+BOTH_WAYS = N_("The torque is assumed to act both ways: T_lo is −T_max and T_hi is T_max.")
 BY_SIGN = N_(
     "T_lo and T_hi are the smallest and the largest peak of the phases, each with the sign of its torque; a pause "
     "counts as 0."
@@ -137,10 +137,12 @@ def _deceleration(brake: stop.Brake, T_opp: float) -> float:
 
 def _on_the_factor(sheet: Sheet, f: Term) -> tuple[Sentence, ...]:
     if sheet.given("emergency_stop.brake.dynamic_factor") is not None:
-        return (Sentence(N_("f as you state it.")),)
+        return (Sentence(N_("f as given.")),)
     if f.value == stop.STEP_FACTOR:
         return (Sentence(N_("f = 2: the brake closes at once, or its rise time or an inertia is not known.")),)
-    return (Sentence(N_("f = 1 + |sin(π · f_2 · t_b)| / (π · f_2 · t_b), by the rise time and the drive resonance.")),)
+    return (
+        Sentence(N_("f = 1 + |sin(π · f_2 · t_b)| / (π · f_2 · t_b), from the rise time and the drive resonance.")),
+    )
 
 
 def _course(sheet: Sheet, stops: Stops, J: Term, at_motor: Formula, eta: Term) -> Step:
@@ -178,5 +180,5 @@ def _course(sheet: Sheet, stops: Stops, J: Term, at_motor: Formula, eta: Term) -
 
 
 STOPPING = N_("Time, angle and energy of the stop")
-SMALLEST = N_("At the smallest torque that opposes the motion over the motion’s worst position.")
+SMALLEST = N_("At the smallest torque that opposes the motion, in its worst position.")
 BY_ITSELF = N_("The load stops by itself before the brake takes hold.")

@@ -75,7 +75,7 @@ def motion_words(motion: Motion, pause_s: float, duty: Duty) -> list[Sentence]:
         "high": Quantity(trace.torque_Nm.max().item(), "Nm"),
     }
     own = N_("The distance is the load’s; speed and torque are those at the gear’s output.")
-    turning = N_("All at the gear’s output; the angle counts from the start.")
+    turning = N_("All at the gear’s output; the angle is measured from the start.")
     said = [
         Sentence(N_("Motion of {time}; at most {speed}; torque from {low} to {high}."), values),
         Sentence(own if isinstance(motion, LinearMotion) else turning),

@@ -163,7 +163,7 @@ def _budget(count: int | None, allowed: float, torque: dict[str, Value]) -> Sent
         return Sentence("At {torque} equation 17.9 permits {allowed} stops over the life.", values)
     used: dict[str, Value] = {"count": Quantity(count, "", 16), "used": share(count / allowed)}
     return Sentence(
-        "At {torque} equation 17.9 permits {allowed} stops over the life; your {count} use {used} of that budget.",
+        "At {torque} equation 17.9 permits {allowed} stops over the life; your {count} use {used} of them.",
         values | used,
     )
 

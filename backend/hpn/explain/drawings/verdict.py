@@ -25,9 +25,9 @@ def bearing_verdict(picture: BearingPicture) -> Sentence:
     if carries(picture):
         return Sentence("The output bearing carries these loads within u = {allowed}.", values)
     if beyond_limit(_most_used(picture), 1.0):
-        return Sentence("The output bearing does not carry these loads, u = {allowed} apart.", values)
+        return Sentence("The output bearing does not carry these loads, even without u = {allowed}.", values)
     return Sentence(
-        "The loads exceed u = {allowed}: they use {used} of what the output bearing may carry.",
+        "The loads exceed u = {allowed}: they use {used} of the permissible load of the output bearing.",
         values | {"used": share(_most_used(picture), picture.allowed)},
     )
 

@@ -79,7 +79,7 @@ def _of_step(step: Step, export: Export, reader: Reader) -> Row:
 def _left_out(step: Step, export: Export, reader: Reader) -> Iterator[Sentence]:
     if step.abbreviated:
         count = len(export.application.duty_cycle.load_phases)
-        text = N_("Only some of the {count} phases are written out; the result counts them all.")
+        text = N_("Only some of the {count} phases are written out; the result includes all of them.")
         yield Sentence(text, {"count": reader.exact(count)})
 
 
@@ -144,7 +144,7 @@ def demand(read: Reading, reader: Reader) -> str:
 def failures(export: Export, designation: str, failing: Iterable[CheckResult], reader: Reader) -> str:
     """Failed checks of a candidate in one sentence's middle."""
     read = readings(export, designation)
-    text = N_("{check} {demand} against {limit} ({percent})")
+    text = N_("{check} {demand}, limit {limit} ({percent})")
     return "; ".join(
         reader.told(
             Sentence(

@@ -56,12 +56,12 @@ LABELS = {
     "open": N_("Open"),
     "page": N_("Page {page} of {pages}"),
     "disclaimer": N_(
-        "Made by an independent tool from the maker’s engineering data. Check the selection with the maker before you "
-        "order."
+        "Made by an independent tool from the manufacturer’s engineering data. Check the selection with the "
+        "manufacturer before ordering."
     ),
     "too_long_link": N_("The link is too long to print; it carries every phase."),
     "unprintable": N_("□ stands for characters that the report’s fonts lack: {codes}."),
-    "digits": N_("Page 17 of the handbook, with nine digits; nothing is rounded in between"),
+    "digits": N_("Page 17 of the handbook, to nine digits; nothing is rounded in between"),
     "each_phase": N_("Each phase of the duty cycle"),
     "each_move": N_("Each move of the motion"),
 }

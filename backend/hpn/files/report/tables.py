@@ -50,7 +50,7 @@ def phases(export: Export, reader: Reader) -> dict[str, Any]:
         rows, note = [[*row] for row in zip(*places.values(), *cells, strict=True)], ""
     else:
         rows = [[label, *[""] * (len(places) - 1), *row] for label, *row in _summary(given, reader)]
-        text = N_("{count} phases, summarised here; each stands on the last pages.")
+        text = N_("{count} phases, summarised here; each is listed on the last pages.")
         note = reader.told(Sentence(text, {"count": reader.exact(len(listed))}))
     heads = [[formula(INPUTS[f"phase.{name}"].symbol), reader.unit(suffix_of(name))] for name in given]
     header = [*([[], name] for name in places), *heads]
@@ -98,7 +98,7 @@ def motion(export: Export, reader: Reader) -> dict[str, Any] | None:
         cells = [[written(value, name, reader) for value in column] for name, column in columns.items()]
         rows = [[row_label(k, given.moves[k].name), *row] for k, row in enumerate(zip(*cells, strict=True))]
     else:
-        text = N_("{count} moves; each stands on the last pages.")
+        text = N_("{count} moves; each is listed on the last pages.")
         note = reader.told(Sentence(text, {"count": reader.exact(len(given.moves))}))
     header = [[[], reader.text(N_("Move"))], *heads]
     return {"mechanism": mechanism, "moves": {"header": header, "rows": rows, "note": note, "words": 2}}

@@ -23,7 +23,7 @@ REASONS: Mapping[str, str] = {
     ),
     "never_stops": N_("No gear is suitable. {gear} comes closest, but the brake does not stop the load."),
     "unrated": N_(
-        "No gear is suitable. {gear} can’t be judged: figures that the checks need are not in this catalogue’s source."
+        "No gear is suitable. {gear} can’t be rated: figures that the checks need are not in this catalogue’s source."
     ),
 }
 """Notes on the reported gear where none is suitable."""
@@ -36,7 +36,7 @@ CHOSEN: Mapping[str, str] = {
     ),
     "never_stops": N_("{gear} was chosen, but the brake does not stop the load. {selected} would be suitable."),
     "unrated": N_(
-        "{gear} was chosen, but can’t be judged: figures that the checks need are not in this catalogue’s source. "
+        "{gear} was chosen, but can’t be rated: figures that the checks need are not in this catalogue’s source. "
         "{selected} would be suitable."
     ),
 }

@@ -11,8 +11,8 @@ from hpn.words.units import symbol_of
 from hpn.words.wording import N_
 
 NOTE = N_(
-    "The load phases on the sheet of the duty cycle come from this motion, as saved: what is changed there is "
-    "calculated again, what is changed here is not."
+    "The load phases on the sheet of the duty cycle come from this motion, as saved: changes there are recalculated, "
+    "changes here are not."
 )
 
 

@@ -45,7 +45,7 @@ NEEDED = {
 """Conditions under which an optional input must be filled."""
 
 ALONG_THE_MOTION = N_("as saved: along the motion, with the motor’s own inertia")
-OUTDATED = N_("not known here: inputs behind it were changed")
+OUTDATED = N_("not available: inputs that it depends on were changed")
 OF_THE_MOTION = N_("of the motion")
 REMARK = 7
 """Column of remarks on inputs, clear of the values in other units."""
@@ -55,8 +55,8 @@ MARKED = N_("marked red under Inputs and on the sheet Duty cycle; no gear is rat
 REFERENCES = (
     ("rated_speed", N_("Rated input speed"), "rpm", 3000.0),
     ("rated_life", N_("Life at rated torque and speed"), "h", 20_000.0),
-    ("bearing_speed", N_("Speed that the published bearing loads hold for"), "rpm", 100.0),
-    ("bearing_life", N_("Bearing life L50 that the published loads hold for"), "h", 20_000.0),
+    ("bearing_speed", N_("Speed of the published bearing loads"), "rpm", 100.0),
+    ("bearing_life", N_("Bearing life L50 of the published loads"), "h", 20_000.0),
 )
 """Series figures of the equations: name, what it is, unit, the handbook's value."""
 
@@ -159,7 +159,7 @@ class Overview:
 
     def _wrong(self) -> None:
         """Write the number of inputs that the service would refuse: above 0 no gear is suitable."""
-        self._line(N_("Wrong inputs"), "", "")
+        self._line(N_("Invalid inputs"), "", "")
         self.counted = (self.row, 2)
         self.book.name_cell(WRONG, self.sheet, *self.counted)
         remark = f'"{self.text(MARKED)}"'

@@ -185,7 +185,7 @@ class CycleSheet:
     def write(self) -> None:
         """Write the sheet and name its columns."""
         heads = [(N_("Phase"), ""), *((INPUTS[f"phase.{name}"].name, symbol_of(name)) for name in PHASE_FIGURES)]
-        heads += [(N_("Radial load that counts"), "N"), (N_("Axial load that counts"), "N")]
+        heads += [(N_("Radial load used"), "N"), (N_("Axial load used"), "N")]
         for column, (head, unit) in enumerate(heads):
             self.sheet.write_string(
                 0, column, self.book.head(self.book.reader.text(head), unit), self.book.style("head")

@@ -42,7 +42,7 @@ WRONG_AS_A_WHOLE: Mapping[str, str] = {
     f"IFERROR(SUMPRODUCT(--(ABS(speed_rpm)*duration_s>{LEAST_MOTION:G}))=0,FALSE)": N_(
         "no phase moves: give at least one a speed and a duration"
     ),
-    f"COUNTA({BENEATH})>0": N_("below the bordered rows of the sheet Duty cycle no phase counts"),
+    f"COUNTA({BENEATH})>0": N_("phases below the bordered rows of the sheet Duty cycle do not count"),
     'AND(T_k<>"",T_B<>"")': N_("give either the torque of the stop or the brake, not both"),
     "COUNTBLANK(radial_used)>0": N_("copy the formulas of the sheet Duty cycle into the rows that were inserted there"),
 }

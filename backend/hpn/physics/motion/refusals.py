@@ -7,25 +7,25 @@ from pydantic_core import PydanticCustomError
 from hpn.words.wording import N_
 
 REFUSALS: Mapping[str, str] = {
-    "way_zero": N_("must not be 0: what stands still is a dwell"),
+    "way_zero": N_("must not be 0: use a dwell for a standstill"),
     "way_vanishing": N_("must be at least 1e-12 in magnitude"),
     "move_needs": N_("a move with the profile {profile} needs {field}"),
     "move_has_no": N_("a move with the profile {profile} has no {field}: leave it out"),
     "move_takes_two": N_(
-        "a move with the profile {profile} takes time_s, with or without ramps, a speed with a ramp or two, or both "
-        "with one ramp at most; given: {given}"
+        "a move with the profile {profile} needs time_s with or without ramps, a speed with one or two ramps, or both "
+        "with at most one ramp; given: {given}"
     ),
-    "move_takes_one": N_("a move with the profile {profile} takes one of {fields}; given: {given}"),
-    "move_too_slow": N_("must be above {bound}, the way over the time; from {triangle} on the move is a triangle"),
-    "move_too_gentle": N_("must be at least {bound} to cover the way in this time"),
-    "move_too_fast": N_("must be at most {bound}, at which the ramps leave no run"),
-    "ramp_too_long": N_("must be at most {bound} to cover the way in this time"),
+    "move_takes_one": N_("a move with the profile {profile} needs one of {fields}; given: {given}"),
+    "move_too_slow": N_("must be above {bound} (distance over time); from {triangle} on the move is triangular"),
+    "move_too_gentle": N_("must be at least {bound} to cover the distance in this time"),
+    "move_too_fast": N_("must be at most {bound}, where the ramps leave no time at constant speed"),
+    "ramp_too_long": N_("must be at most {bound} to cover the distance in this time"),
     "ramp_leaves_none": N_("must be below {bound}, so that time is left for the other ramp"),
     "ramp_too_gentle": N_("must be above {bound}, so that time is left for the other ramp"),
-    "ramp_twice": N_("stands for {field}: give either"),
+    "ramp_twice": N_("replaces {field}: give only one of them"),
     "gravity_needs": N_("gravity needs {field} as well"),
     "gravity_inertia": N_("includes the gravity mass and must be at least {bound}, its mass times its radius squared"),
-    "no_move": N_("no move moves: give at least one a profile other than dwell"),
+    "no_move": N_("nothing moves: give at least one move a profile other than dwell"),
     "motion_torque": N_("the torque at the gear reaches {found} in this move; it may be {bound} at most"),
     "motion_speed": N_("the speed of the gear reaches {found} in this move; it may be {bound} at most"),
     "motion_time": N_("this move takes {found}; a phase may take {bound} at most"),

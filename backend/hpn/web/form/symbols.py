@@ -138,7 +138,7 @@ SYMBOLS = (
     Symbol(
         "xc",
         ("output_load", "shaft_centre_mm"),
-        hint=N_("From the shoulder, at least: not published, so take it from the maker’s drawing."),
+        hint=N_("From the shoulder, at least: not published, so take it from the manufacturer’s drawing."),
     ),
     Symbol("i", ("requirements", "ratios"), "whole", many=True),
     Symbol("size", ("requirements", "sizes"), "text", many=True),
@@ -177,7 +177,7 @@ SYMBOLS = (
         ("application_area",),
         "text",
         choices={"": N_("none"), **AREAS},
-        hint=N_("These need a risk assessment and the maker’s approval."),
+        hint=N_("These need a risk assessment and the manufacturer’s approval."),
     ),
     Symbol(
         "rank",

@@ -44,7 +44,7 @@ from hpn.web.pages.templates import environment
 from hpn.words.fields import MAXIMUM_PHASES
 from hpn.words.wording import N_, Quantity, Sentence
 
-NOTHING = N_("there is nothing in the workbook")
+NOTHING = N_("the workbook is empty")
 WANTED = Wanted(MAXIMUM_PHASES, MAXIMUM_CHARACTERS)
 SHORT_CHARACTERS = 8_000
 """Texts up to which a worker reads at once: whatever they say, that takes some 50 ms."""
