@@ -90,7 +90,7 @@ def test_report_has_the_answer_the_calculation_and_only_vectors(case: str, made:
     pages = page_texts(made(case, GERMAN), 4)
     assert "Lastzyklus" in pages[0] and "Prüfungen von" in pages[0] + pages[1]
     assert any("Rechenkern" in page for page in pages[1:3])
-    assert any("Seite 17 des Handbuchs, mit neun Ziffern" in page for page in pages[:3])
+    assert any("Seite 17 des Handbuchs, mit neun Stellen" in page for page in pages[:3])
     assert not any(page.images for page in document.pages[:5])
 
 
