@@ -1,19 +1,24 @@
 """Fleets that are kept: saved, renamed and deleted, by whom, and how many there may be."""
 
 import hashlib
+import math
 from collections.abc import Iterator
+from dataclasses import replace
 from html import unescape
 from pathlib import Path
 
+import pyarrow as pa
 import pytest
 from fastapi import FastAPI
 from starlette.testclient import TestClient
 
 from hpn.application import Application
 from hpn.engine.selection import select
+from hpn.fleet.listing import as_parquet
 from hpn.store import FleetDraft
 from hpn.store.fleets import MOST_OF_CALLER
 from hpn.web.app import create_app
+from hpn.web.pages.fleet_files import table_of
 from hpn.web.settings import Settings
 from tests.fleet.page import HUB, post
 from tests.fleet.tables import row_of, write
@@ -93,6 +98,18 @@ def test_a_fleet_says_what_differs_today(client: TestClient, service: FastAPI, f
     changed = page[page.index("Differences today") : page.index('class="fleet-grid"')]
     assert changed.index(then.designation) < changed.index(str(now))
     assert "Differences today" not in client.get(fleet).text
+
+
+def test_last_bits_of_another_processor_are_no_other_answer(
+    client: TestClient, service: FastAPI, kept: FleetDraft
+) -> None:
+    answers = table_of(kept.answers)
+    place = answers.column_names.index("utilisation")
+    moved = [used and math.nextafter(used, 9.0) for used in answers["utilisation"].to_pylist()]
+    answers = answers.set_column(place, "utilisation", pa.array(moved, pa.float64()))
+    elsewhere = replace(kept, answers=as_parquet(answers), catalogue_version="of another machine")
+
+    assert "Every axis gets the same answer." in unescape(client.get(keep(client, service, elsewhere)).text)
 
 
 def test_only_the_owner_s_key_renames_and_deletes_a_fleet(kept: FleetDraft, tmp_path: Path) -> None:

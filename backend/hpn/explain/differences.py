@@ -150,7 +150,7 @@ def _largest_of_lists(*replies: _Fields) -> dict[Name, float]:
 def _differs(name: Name, before: _Fields, after: _Fields, largest: Mapping[Name, float]) -> bool:
     old, new = before.values.get(name), after.values.get(name)
     if old is not None and new is not None:
-        return not _same(old[1], new[1], TOLERANCE * largest.get(_list_of(name), 0.0))
+        return not is_same(old[1], new[1], TOLERANCE * largest.get(_list_of(name), 0.0))
     lacking = before.items if old is None else after.items
     items = (name[:length] for length in range(2, len(name)) if name[length - 2] in BRIEFLY)
     alone = next((item for item in items if item not in lacking), None)
@@ -162,7 +162,8 @@ def is_number(value: Any) -> bool:
     return isinstance(value, int | float) and not isinstance(value, bool)
 
 
-def _same(saved: Any, today: Any, room: float) -> bool:
+def is_same(saved: Any, today: Any, room: float = 0.0) -> bool:
+    """True for values that are equal, numbers to rounding: another processor has other last bits."""
     numbers = is_number(saved) and is_number(today)
     return bool(saved == today or (numbers and math.isclose(saved, today, rel_tol=TOLERANCE, abs_tol=room)))
 

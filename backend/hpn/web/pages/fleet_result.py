@@ -10,6 +10,7 @@ import pyarrow.parquet as pq
 
 from hpn import ENGINE_VERSION
 from hpn.catalogue import Catalogue
+from hpn.explain.differences import is_same
 from hpn.fleet.columns import AXIS
 from hpn.fleet.listing import MOST_BYTES, MOST_LISTED, AxisRow, KeptListing, read_answers, rows_of
 from hpn.fleet.summary import Summary, summary_of
@@ -93,4 +94,4 @@ def changes(saved: SavedFleet, answers: Path) -> list[Changed]:
 
 
 def _differs(saved: Mapping[str, Any], today: Mapping[str, Any]) -> bool:
-    return today["error"] is not None or any(saved[name] != today[name] for name in COMPARED)
+    return today["error"] is not None or not all(is_same(saved[name], today[name]) for name in COMPARED)
