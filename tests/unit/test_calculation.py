@@ -57,6 +57,23 @@ def test_speeds_enter_the_bearings_equivalent_load_by_magnitude_as_symbols_too(c
     assert "(|n_1|·t_1·P_1^3 + " in in_symbols(Reader(), mean)
 
 
+@pytest.mark.parametrize(
+    ("given", "lines"),
+    [
+        ({}, 1),
+        ({"shaft_centre_mm": 21}, 1),
+        ({"shaft_centre_mm": 21, "axial_radius_mm": 40}, 2),
+        ({"shaft_centre_mm": 21, "radial_position_mm": 10}, 2),
+        ({"axial_radius_mm": 40}, 0),
+    ],
+)
+def test_a_lever_has_an_equation_where_one_acts(given: Json, lines: int, catalogue: Catalogue) -> None:
+    """Without the shaft's centre nothing can be worked out."""
+    load = {"radial_N": 500.0, "axial_N": 100.0} | given
+    step = steps_of(cycle(phase(10, 100), output_load=load), "HPN-20A-5", catalogue).get("output_bearing_load")
+    assert len(step.lines if step else ()) == lines
+
+
 def test_torques_that_an_equation_picks_are_said_beside_it(catalogue: Catalogue) -> None:
     stop = {"brake": {"torque_Nm": 5}}
     steps = steps_of(cycle(phase(10, 100), phase(-4, 50), emergency_stop=stop), "HPN-20A-5", catalogue)

@@ -96,8 +96,8 @@ def test_a_reading_compares_as_its_check_does(catalogue: Catalogue) -> None:
             check = candidate.check(code)
             if check is None or not read.demand or not read.limit or read.kind == "range":
                 continue
-            least = read.kind == "minimum"
-            relative = read.limit / read.part / read.demand if least else read.demand / read.limit / read.part
+            assert read.bound is not None
+            relative = read.bound / read.demand if read.kind == "minimum" else read.demand / read.bound
             if not math.isclose(relative, 1, rel_tol=1e-9):
                 assert (relative < 1) == (check.status == "pass"), (code, read, check)
                 seen.add((code, check.status))
