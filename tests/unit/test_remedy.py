@@ -1,5 +1,7 @@
 """Remedies and reserves in words."""
 
+import re
+
 import pytest
 from msgspec import structs
 
@@ -66,6 +68,12 @@ def test_a_bearing_life_that_fails_alone_can_be_mended_by_load_or_by_speed(catal
     application = cycle(phase(1.0, 100.0), output_load={"radial_N": 900.0, "life_h": 20_000.0 * 2**3 * 2**3})
     expected = "Fits if one of these holds: (1) output loads drop to 50 %; (2) speeds drop to 12.5 %."
     assert words(application, "HPN-20A-5", catalogue) == expected
+
+
+def test_one_change_that_suffices_alone_comes_before_two(catalogue: Catalogue) -> None:
+    lives = {"requirements": {"life_h": 2_334_551.88}, "output_load": {"radial_N": 500.0, "life_h": 3_000_000.0}}
+    said = words(worked_example() | lives, "HPN-20A-5", catalogue)
+    assert said and re.search(r"\(1\) speeds drop to [0-9.]+ %; \(2\) torques drop to 81.2 % and output loads", said), said
 
 
 def test_properties_that_fail_name_the_limit_that_has_to_change(catalogue: Catalogue) -> None:

@@ -119,7 +119,7 @@ class Alternative:
 
 
 def alternatives_of(candidate: Candidate, reserve_utilisation: float = 1.0) -> tuple[Alternative, ...]:
-    """Alternatives that each make a rejected gear suitable.
+    """Alternatives that each make a rejected gear suitable, those with the fewest changes first.
 
     None for a gear that is not rejected, where not every check can be judged, and where a driver without a closed form
     would have to change: the motor's torque then depends on its curve, or on the motion.
@@ -131,7 +131,8 @@ def alternatives_of(candidate: Candidate, reserve_utilisation: float = 1.0) -> t
         return ()
     if any(way.brake_torque_Nm == 0 for way in ways) or _never_stops(candidate):
         return ()
-    return tuple(Alternative(one, changed) for way in ways or (Way(),) for one in _by_stop(way))
+    found = [Alternative(one, changed) for way in ways or (Way(),) for one in _by_stop(way)]
+    return tuple(sorted(found, key=lambda one: len(_clauses(one))))
 
 
 def _never_stops(candidate: Candidate) -> bool:
