@@ -46,13 +46,13 @@ TEXT_SUFFIXES = {".css", ".html", ".js", ".json", ".map", ".mjs", ".svg", ".txt"
 
 COMMENTS = {
     ".css": re.compile(rb"/\*.*?\*/\s*", re.DOTALL),
-    ".js": re.compile(rb"^ *//.*\n", re.MULTILINE),
+    ".js": re.compile(rb"^ *//.*\n|^ +", re.MULTILINE),
 }
-"""Comments of our own files by suffix: in scripts those on lines of their own."""
+"""Comments of our own files by suffix: in scripts those on lines of their own, and how lines are indented."""
 
 
 def sent(name: str) -> bytes:
-    """Content of one of our own files without the comments that only its authors read."""
+    """Content of one of our own files without what only its authors read."""
     path = STATIC / name
     content = path.read_bytes()
     return COMMENTS[path.suffix].sub(b"", content) if path.suffix in COMMENTS else content
@@ -67,6 +67,7 @@ def script(*names: str) -> bytes:
 def style(faces: dict[str, bytes], *names: str) -> bytes:
     """Style sheets of ours as one on one line, which ask for the faces by their hashed names."""
     text = " ".join(b"".join(sent(f"{name}.css") for name in names).decode().split())
+    text = re.sub(r" ?([{};]) ?", r"\1", text).replace(";}", "}")
     return re.sub(r"url\((hpn-[\w.-]+)\)", lambda url: f"url({hashed_name(url[1], faces[url[1]])})", text).encode()
 
 
