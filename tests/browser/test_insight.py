@@ -167,7 +167,7 @@ def test_trivial_steps_are_folded_until_the_switch_or_their_own_line_opens_them(
     expect(peak).to_be_hidden()
     page.get_by_role("heading", name="Maximum input speed").click()
     expect(speed).to_be_visible()
-    switch = page.get_by_role("switch", name="Open the trivial steps too")
+    switch = page.get_by_role("switch", name="Show the trivial steps too")
     switch.focus()
     page.keyboard.press("Space")
     expect(switch).to_have_attribute("aria-checked", "true")
@@ -186,7 +186,7 @@ def test_calculation_opened_after_an_edit_is_that_of_the_edit(visitor: Visitor) 
     expect(page.get_by_role("math", include_hidden=True)).to_have_count(0)
     open_section(page, "Calculation")
     peak = page.get_by_role("group", name="Formulas: Load limit 2: repeated peak torque")
-    page.get_by_role("switch", name="Open the trivial steps too").click()
+    page.get_by_role("switch", name="Show the trivial steps too").click()
     expect(peak).to_contain_text("41")
     open_section(page, "Overview")
     torque(page, 1).fill("42")
@@ -197,7 +197,7 @@ def test_calculation_opened_after_an_edit_is_that_of_the_edit(visitor: Visitor) 
 def test_trivial_steps_stay_open_where_the_calculation_is_fetched_anew(visitor: Visitor) -> None:
     page = visitor.open(EXAMPLE)
     open_section(page, "Calculation")
-    page.get_by_role("switch", name="Open the trivial steps too").click()
+    page.get_by_role("switch", name="Show the trivial steps too").click()
     peak = page.get_by_role("group", name="Formulas: Load limit 2: repeated peak torque")
     expect(peak).to_contain_text("40")
     open_section(page, "Overview")
@@ -206,7 +206,7 @@ def test_trivial_steps_stay_open_where_the_calculation_is_fetched_anew(visitor: 
     expect(page.get_by_role("math", include_hidden=True)).to_have_count(0)
     open_section(page, "Calculation")
     expect(peak).to_contain_text("42")
-    expect(page.get_by_role("switch", name="Open the trivial steps too")).to_be_checked()
+    expect(page.get_by_role("switch", name="Show the trivial steps too")).to_be_checked()
 
 
 def test_calculation_opens_without_script(visitor: Visitor) -> None:
@@ -231,7 +231,7 @@ def test_calculation_and_comparison_scroll_in_their_own_boxes_on_a_phone(visitor
 @pytest.mark.soak  # all sections are checked on a phone
 def test_remedy_calculation_and_comparison_are_accessible_in_both_themes(visitor: Visitor) -> None:
     page = visitor.open(EXAMPLE + "&gear=HPN-14A-5&pin=HPN-20A-5&FR=300", width=1000)
-    page.get_by_role("switch", name="Open the trivial steps too").click()
+    page.get_by_role("switch", name="Show the trivial steps too").click()
     assert violations(page) == []
 
 

@@ -138,7 +138,7 @@ def test_no_link_and_no_file_is_of_the_inputs_before(visitor: Visitor, typed: st
     page.on("download", lambda download: downloads.append(download))
     torque(page, 1).fill(typed)
     expect(page.locator(".verdict .outdated")).to_be_visible()
-    reason = page.get_by_text("No link and no file: the result is not of these inputs.")
+    reason = page.get_by_text("No link and no file: the result is out of date.")
     button(page, "Other files").click()
     for name in ("Copy link", "PDF", "Workbook", "Duty cycle as CSV"):
         page.locator("#commands").get_by_text(name, exact=True).dispatch_event("click")

@@ -128,14 +128,14 @@ def test_switching_taking_over_and_going_back(visitor: Visitor) -> None:
     add_move(page, 1, "Trapezoidal", Angle="90", Time="0.6")
     expect(page).to_have_url(re.compile("mech=rotary&J=2.5&mv=trapezoidal&ms=90&mt=0.6"))
     motion = page.url
-    page.get_by_text("Phases that come out").first.click()
+    page.get_by_text("Resulting phases").first.click()
     expect(page.locator(".out tbody tr")).to_have_count(3)
     box(page, "Time, move 1").fill("0.9")
     expect(page.locator(".out tbody tr").first).to_contain_text("0.3")
     box(page, "Time, move 1").fill("0.6")
     expect(page).to_have_url(motion)
 
-    page.get_by_role("button", name="Take over into the table").click()
+    page.get_by_role("button", name="Copy into the table").click()
     expect(box(page, "Torque, phase 3, in Nm", exact=True)).to_be_visible()
     expect(page).to_have_url(re.compile("Tpk="))
     page.go_back()

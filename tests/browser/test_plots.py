@@ -158,10 +158,10 @@ def test_all_sizes_are_a_second_view_by_keyboard_that_stays_while_typing(visitor
     page = visitor.open(PHASES + "#bearing")
     page.get_by_role("radio", name="This size").focus()
     page.keyboard.press("ArrowRight")
-    drawing = page.get_by_role("figure", name=re.compile("on each size"))
+    drawing = page.get_by_role("figure", name=re.compile("of each size"))
     expect(drawing.locator("text.name").locator("visible=true")).to_have_count(4)
     assert len([t for t in drawn(page, "of each size")["data"] if t["meta"]["kind"] in ("size", "limit")]) == 4
-    table = page.get_by_role("table", name="Which size carries the load")
+    table = page.get_by_role("table", name="Sizes that carry the load")
     expect(table.get_by_role("row", name=re.compile("14A"))).to_contain_text("does not carry it")
     expect(table.get_by_role("row", name=re.compile("20A"))).to_contain_text("carries the load")
     page.get_by_label("Load coefficient").fill("2")
@@ -173,7 +173,7 @@ def test_all_sizes_are_a_second_view_by_keyboard_that_stays_while_typing(visitor
 def test_of_two_questions_only_the_figure_that_fails_is_marked(visitor: Visitor) -> None:
     page = visitor.open("/?T=40&n=250&t=0.3&T=32&n=500&t=3&FR=1200#bearing")
     page.get_by_role("radio", name="All sizes").check()
-    row = page.get_by_role("table", name="Which size carries the load").get_by_role("row", name=re.compile("20A"))
+    row = page.get_by_role("table", name="Sizes that carry the load").get_by_role("row", name=re.compile("20A"))
     weight = "cell => getComputedStyle(cell.firstElementChild).fontWeight"
     cycle, phase = row.get_by_role("cell").nth(2), row.get_by_role("cell").nth(3)
     assert float(cycle.inner_text().split()[0]) > 100 > float(phase.inner_text().split()[0])
@@ -244,7 +244,7 @@ def test_without_script_sentence_and_tables_say_it_all(visitor: Visitor) -> None
     expect(section(page)).to_contain_text("Basis: interpolated between the two published limits")
     page.get_by_text("Data: loads and curves as tables").click()
     expect(page.get_by_role("table", name="Loads of the phases").get_by_role("row")).to_have_count(5)
-    expect(page.get_by_role("table", name="Which size carries the load")).to_be_visible()
+    expect(page.get_by_role("table", name="Sizes that carry the load")).to_be_visible()
     expect(page.get_by_role("button", name="Save as SVG")).to_have_count(0)
 
 

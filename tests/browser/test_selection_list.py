@@ -65,7 +65,7 @@ def test_two_are_marked_renamed_and_compared(visitor: Visitor, server: str) -> N
     page.get_by_role("button", name="Compare two").click()
 
     expect(page.get_by_role("heading", level=1)).to_have_text("Two selections side by side")
-    expect(page.get_by_text("None: both were asked the same.")).to_be_visible()
+    expect(page.get_by_text("None: both have the same input.")).to_be_visible()
 
 
 SIGN_AND_LIMIT = """cells => cells.map(cell =>

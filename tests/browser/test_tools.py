@@ -38,7 +38,7 @@ def test_german_table_is_shown_and_taken_and_undone(visitor: Visitor) -> None:
     page = visitor.open(EXAMPLE)
     assert not paste(page, GERMAN)
     dialog = page.get_by_role("dialog", name="Paste a table or open a file")
-    expect(dialog.get_by_text("Columns apart by tab.")).to_be_visible()
+    expect(dialog.get_by_text("Column separator: tab.")).to_be_visible()
     expect(dialog.get_by_role("row", name="2 9.3 1 250 0.3")).to_be_visible()
     expect(torque(page, 1)).to_have_value("40")  # nothing is taken yet
     button(page, "Replace phases").click()
@@ -166,9 +166,9 @@ def test_table_and_file_are_taken_without_script(visitor: Visitor, tmp_path: Pat
     pause(page).fill("5")  # typed, not calculated yet: it must come along
     button(page, "Paste table").click()
     page.get_by_label("Cells copied from a spreadsheet").fill("1.234;250;3\n2.345;100;1")
-    button(page, "Show what is read").click()
+    button(page, "Preview").click()
     page.get_by_role("radio", name="a point: 1.234").check()
-    button(page, "Show what is read").click()
+    button(page, "Preview").click()
     button(page, "Replace phases").click()
     expect(torque(page, 2)).to_have_value("2.345")
     expect(pause(page)).to_have_value("5")
@@ -176,7 +176,7 @@ def test_table_and_file_are_taken_without_script(visitor: Visitor, tmp_path: Pat
     file.write_text("9,3;250;0,5\n", "cp1252")
     page.get_by_role("link", name="Import").click()
     page.get_by_label("or a file").set_input_files(file)
-    button(page, "Show what is read").click()
+    button(page, "Preview").click()
     button(page, "Append").click()
     expect(torque(page, 3)).to_have_value("9.3")
 
@@ -237,7 +237,7 @@ class TestWithoutServer:
         pause(page).fill("7")
         expect(page.get_by_text("The server can’t be reached.")).to_be_visible()
         button(page, "Save").click()
-        expect(page.get_by_text("Not saved: there is no answer from the server.")).to_be_visible()
+        expect(page.get_by_text("Not saved: the server does not answer.")).to_be_visible()
         page.get_by_role("link", name="Catalogue", exact=True).click()
         page.wait_for_timeout(100)
         assert asked == ["beforeunload"]

@@ -157,4 +157,4 @@ def test_a_report_is_the_same_in_every_locale(tmp_path: Path) -> None:
 
 
 def test_the_basis_of_the_lives_stands_below_them(text: str) -> None:
-    assert "Gear life: L10 as eq. 17.10 prints it" in text
+    assert "Gear life: L10 as in eq. 17.10" in text

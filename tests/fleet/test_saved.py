@@ -190,5 +190,5 @@ def test_where_unsaved_fleets_take_all_their_room_a_new_one_is_refused(tmp_path:
     with TestClient(create_app(settings), follow_redirects=False) as client:
         refused = post(client, table)
 
-        assert refused.status_code == 503 and "they fill the room there is for them" in refused.text
+        assert refused.status_code == 503 and "the space for them is full" in refused.text
         assert client.post("/api/v1/fleet", content=table, headers={"Content-Type": "text/csv"}).status_code == 200

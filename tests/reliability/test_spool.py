@@ -63,7 +63,7 @@ def test_a_folder_that_is_gone_is_said_and_used_again_once_it_is_back(client: Te
     shutil.rmtree(spool)
     time.sleep(TRIAL_SECONDS)
 
-    assert_refused_for_want_of(answers_of(client), "is gone or can’t be written to")
+    assert_refused_for_want_of(answers_of(client), "is missing or not writable")
 
     spool.mkdir()
     time.sleep(TRIAL_SECONDS)

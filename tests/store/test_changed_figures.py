@@ -109,7 +109,7 @@ def test_figures_that_are_the_same_are_not_told(changed: Callable[..., tuple[Jso
         (
             "en",
             "Today’s catalogue no longer has HPN-20A-5.",
-            "The ordering code HPN-20A-5-J6-BH-AF1 is none",
+            "The ordering code HPN-20A-5-J6-BH-AF1 is not",
             "no candidate",
         ),
         (
@@ -140,7 +140,7 @@ def test_an_output_version_that_is_gone_is_told(changed: Callable[..., tuple[Jso
         return re.sub(r"(?m)^output,J6,.*\n", "", text)
 
     _, panel = changed(ONE_RATIO, {"versions.csv": without}, ordering_code=CODE)
-    assert f"The ordering code {CODE} is none of today’s catalogue" in _text(panel)
+    assert f"The ordering code {CODE} is not in today’s catalogue" in _text(panel)
 
 
 def test_utilisations_and_reserves_are_percentages(changed: Callable[..., tuple[Json, str]]) -> None:

@@ -73,7 +73,7 @@ def test_differences_in_input_verdict_checks_and_figures_stand_side_by_side(clie
     checks = rows(page, "checks")
     assert checks["Average torque"] == ["40 % ✓passes 32.0 Nm ≤ 80 Nm", "40 % ✓passes 32.4 Nm ≤ 80 Nm", "differs"]
     assert len(checks["Momentary peak torque"]) == 2
-    assert [texts[1:] for texts in checks.values() if "not asked" in texts] == [["not asked", "differs"]]
+    assert [texts[1:] for texts in checks.values() if "not required" in texts] == [["not required", "differs"]]
     figures = rows(page, "figures")
     assert figures["Maximum torque Tmax"] == ["40 Nm", "44 Nm", "differs"]
     assert len(figures["Maximum output speed nout,max"]) == 2
@@ -90,7 +90,7 @@ def test_a_demand_above_its_limit_is_not_said_to_be_below_it(client: TestClient)
 def test_two_of_the_same_differ_in_nothing(client: TestClient) -> None:
     page = compared(client, *(saved(client, LOADED) for _ in range(2)))
 
-    assert "None: both were asked the same." in page
+    assert "None: both have the same input." in page
     assert 'class="differs"' not in page
 
 

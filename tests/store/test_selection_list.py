@@ -280,7 +280,7 @@ def test_a_name_that_cannot_be_is_refused_in_words(client: TestClient) -> None:
     answer = client.post(f"{address}/rename", data={"title": "x" * 201, "ref": "a\nb"})
 
     assert answer.status_code == 422
-    assert "takes at most 200 characters" in answer.text and "must not contain control characters" in answer.text
+    assert "must have at most 200 characters" in answer.text and "must not contain control characters" in answer.text
     assert client.get(f"/api/v1{address}").json()["title"] == "t"
 
 

@@ -36,7 +36,7 @@ def test_a_selection_saved_without_labels_has_none(client: TestClient) -> None:
         ("BH-AF1", "must be a gear of the catalogue"),
         ("HPN-20A-5-J7", "must be a gear of the catalogue"),
         ("HPN-20A-5-J6-?", "must be a gear of the catalogue"),
-        ("HPN-32A-7-J6", "HPN-32A-7 is none of the candidates"),
+        ("HPN-32A-7-J6", "HPN-32A-7 is not a candidate"),
     ],
 )
 def test_an_ordering_code_that_cannot_be_is_refused(client: TestClient, code: str, detail: str) -> None:
@@ -125,7 +125,7 @@ def test_long_names_are_read_beside_the_event_loop(client: TestClient, monkeypat
     answer = client.patch(address, content=content, headers={"Content-Type": "application/json"})
 
     assert answer.status_code == 422
-    assert answer.json()["detail"] == "has the name 'title' 80000 times in one object"
+    assert answer.json()["detail"] == "contains the name 'title' 80000 times in one object"
     assert len(threads) == 1
     assert loop not in threads
 

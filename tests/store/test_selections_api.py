@@ -212,7 +212,7 @@ def test_an_application_that_today_cannot_be_answered_is_still_shown(
     assert saved.status_code == page.status_code == 200
     assert (saved.json()["selected"], saved.json()["engine_version"]) == ("HPN-99A-5", "0.1")
     assert detail in saved.json()["today"]["problem"]["detail"]
-    assert "Today there is no answer" in page.text
+    assert "Today there is no result" in page.text
 
 
 def test_a_list_goes_from_newest_to_oldest_by_links(client: TestClient) -> None:

@@ -112,7 +112,7 @@ def test_a_page_says_that_somebody_was_faster(client: TestClient) -> None:
     late = client.post(f"{place}/delete", data={"version": "1"})
 
     assert late.status_code == 412
-    assert "Somebody has renamed or deleted this" in late.text
+    assert "This was renamed or deleted" in late.text
     assert client.post(f"{place}/delete", data={"version": "nonsense"}).status_code == 412
     assert client.post(f"{place}/delete", data={"version": "2"}).status_code == 303
 

@@ -147,7 +147,7 @@ def test_a_selection_saved_before_catalogues_were_kept_says_so(database: str, fo
         page = client.get(address.removeprefix("/api/v1")).text
 
     assert (reopened["gear"], reopened["today"]["figure_differences"]) == (None, None)
-    assert "The catalogue of then is not kept" in page
+    assert "The catalogue of that time is not kept" in page
     assert "not kept: published figures appear only" in " ".join(words(files["report.pdf en"]).split())
     assert "not kept" not in whole
     notes = openpyxl.load_workbook(BytesIO(files["report.xlsx en"]))["Notes"]

@@ -119,9 +119,9 @@ def test_a_comma_in_the_only_phase_may_stand_between_two_values(link: str, said:
 @pytest.mark.parametrize(
     ("query", "said"),
     [
-        ("pn=a%E2%80%8Bb", "must not contain U+200B ZERO WIDTH SPACE, which nobody sees"),
+        ("pn=a%E2%80%8Bb", "must not contain the invisible character U+200B ZERO WIDTH SPACE"),
         ("pn=a%0Ab", "must not contain control characters or line breaks"),
-        (f"pn={'x' * 41}", "takes at most 40 characters"),
+        (f"pn={'x' * 41}", "must have at most 40 characters"),
         ("T=1&n=2&t=3&pn=a", "missing: the link gives 1 × pn, but 2 × T"),
     ],
 )
@@ -150,16 +150,16 @@ def test_unequal_lists_are_reported_where_the_value_is_missing() -> None:
 def test_repeated_scalar_is_reported_and_kept() -> None:
     form = read(PHASE + "&Tk=200&Tk=300")
     assert form.texts["Tk"] == "200"
-    assert found(PHASE + "&Tk=200&Tk=300") == {("Tk", None): "takes one value, given were 200, 300"}
-    assert found(PHASE + "&tp=4&tp=") == {("tp", None): 'takes one value, given were 4, ""'}
-    assert found(PHASE + "&tp=&tp= ") == {("tp", None): 'takes one value, given were "", ""'}
+    assert found(PHASE + "&Tk=200&Tk=300") == {("Tk", None): "must be a single value; given: 200, 300"}
+    assert found(PHASE + "&tp=4&tp=") == {("tp", None): 'must be a single value; given: 4, ""'}
+    assert found(PHASE + "&tp=&tp= ") == {("tp", None): 'must be a single value; given: "", ""'}
 
 
 @pytest.mark.parametrize(
     ("query", "name", "said"),
     [
-        ("i=5,7", "i", "give each value for itself: i=5&i=7"),
-        ("i=4 5;7", "i", "give each value for itself: i=4&i=5&i=7"),
+        ("i=5,7", "i", "give one value per field: i=5&i=7"),
+        ("i=4 5;7", "i", "give one value per field: i=4&i=5&i=7"),
         ("i=x", "i", "is not a number; write one such as 9.3"),
         ("Tk=200&Nk=5,7", "Nk", "must be a whole number"),
         ("Tk=200&Nk=1,000", "Nk", "write 1 or 1000"),

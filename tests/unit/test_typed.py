@@ -235,7 +235,7 @@ def test_press_that_offers_nothing_changes_nothing(press: str) -> None:
 def test_message_on_a_link_shows_both_notations_beside_german_fields() -> None:
     form = link_reader.parse([("T", "0,3"), ("n", "250"), ("t", "1")])
     (problem,) = beside_fields(form.problems, form.written, Reader("de"))
-    assert problem.message.text == "a link takes 0.3, this field 0,3"
+    assert problem.message.text == "in a link write 0.3, in this field 0,3"
     assert problem.message.offers == ("0,3",)
     assert beside_fields(form.problems, form.written, Reader()) == form.problems
 

@@ -81,7 +81,7 @@ def test_unknown_gear_is_404_that_helps(client: TestClient, name: str) -> None:
     page = client.get(f"/catalogue/{name}")
     assert page.status_code == 404
     if len(name) < 20 and ".." not in name:
-        assert "HPN-20-5, HPN-20A-05 and a whole ordering code" in page.text
+        assert "HPN-20-5, HPN-20A-05 and a full ordering code" in page.text
         assert "<b>" not in page.text
     if "20A" in name:
         assert "/catalogue/HPN-20A-5" in page.text

@@ -132,6 +132,6 @@ def test_the_saved_page_shows_the_same(supplied: TestClient, query: str) -> None
 def test_the_section_speaks_german(supplied: TestClient) -> None:
     part = words(drive(supplied.get(TURNING, headers={"Accept-Language": "de"}).text))
 
-    for said in ("Antrieb mit", "Drehmoment und Drehzahl am Abtrieb", "Ihre Motoren"):
+    for said in ("Antrieb mit", "Drehmoment und Drehzahl am Abtrieb", "Eigene Motoren"):
         assert said in part
     assert not re.search(r"\b(the|speed|torque|motors)\b", part)

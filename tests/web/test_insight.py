@@ -122,7 +122,7 @@ def test_thousands_of_pins_are_refused_without_a_message_for_each(client: TestCl
 
 def test_full_pins_offer_no_more(client: TestClient) -> None:
     html = client.get(EXAMPLE + "".join(f"&pin=HPN-{size}A-5" for size in (11, 14, 20, 32))).text
-    assert "take one out to pin another" in html
+    assert "remove one to pin another" in html
     assert 'aria-label="Compare HPN-40A-5"' not in html
 
 

@@ -185,7 +185,7 @@ def test_an_error_of_a_move_stands_below_the_table_and_is_tied_to_its_cell(
 def test_an_error_of_a_mechanism_stands_beside_its_field(api: TestClient) -> None:
     page = api.get(f"/?{TURN}&mg=12").text
     assert re.search(r'id="e-mg">gravity needs Its distance from the shaft \(rg\) as well', page)
-    assert re.search(r'id="e-h">is nothing that this mechanism has', api.get(f"/?{TURN}&h=5").text)
+    assert re.search(r'id="e-h">does not belong to this mechanism', api.get(f"/?{TURN}&h=5").text)
     german = api.get(f"/?{TURN}&mg=12", headers={"Cookie": "hpn_language=de"}).text
     assert re.search(r'id="e-mg">[^<]*Ihr Abstand von der Welle \(rg\)', german)
 

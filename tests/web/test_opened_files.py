@@ -30,7 +30,7 @@ def test_files_are_read_in_the_encodings_of_spreadsheets(client: TestClient, enc
     text = GERMAN.replace("\t", ";").replace("Dauer", "Zeit")
     page = client.post("/paste", files={"file": ("zyklus.csv", text.encode(encoding))}, data={"link": LINK})
     assert page.status_code == 200
-    assert "Columns apart by semicolon" in page.text
+    assert "Column separator: semicolon" in page.text
     assert chosen(page.text)["r2"] == "t"
 
 

@@ -87,7 +87,7 @@ def test_htmx_gets_the_part_that_changes_and_the_canonical_address(client: TestC
     [
         ("/?T=9,3&n=250&t=0.3", "e-T-0", "write 9.3"),
         ("/?T=40&n=250&t=0.3&T=30", "e-n-1", "missing"),
-        ("/?T=40&n=250&t=0.3&Tk=1&Tk=2", "e-Tk", "takes one value"),
+        ("/?T=40&n=250&t=0.3&Tk=1&Tk=2", "e-Tk", "must be a single value"),
         ("/?T=40&n=250&t=0.3&u=1.5", "e-u", "must be at most 1"),
     ],
 )

@@ -15,7 +15,7 @@ def test_preview_names_separator_columns_and_every_number(client: TestClient) ->
     page = client.post("/paste", data={"link": LINK, "text": GERMAN}, headers=HTMX)
     assert page.status_code == 200
     assert "<html" not in page.text
-    assert "Columns apart by tab." in page.text
+    assert "Column separator: tab." in page.text
     assert chosen(page.text) == {"r0": "T", "u0": "Nm", "r1": "n", "u1": "rpm", "r2": "t", "u2": "s"}
     assert cells(page.text) == ["9.3", "1\u202f250", "0.3", "\N{MINUS SIGN}12.5", "500", "1.25"]
 

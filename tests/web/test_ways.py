@@ -90,7 +90,7 @@ def test_the_name_of_the_site_leads_back_to_the_form_and_on_the_form_nowhere(cli
     assert 'formaction="/checks/average_torque"' in form  # a button of the form, which sends what it says
 
 
-STILL = " are the example’s:"
+STILL = " come from the example:"
 EXAMPLE = "T=40&n=250&t=0.3&T=32&n=500&t=3&T=20&n=250&t=0.4&tp=4&Tk=200&i=5"
 
 

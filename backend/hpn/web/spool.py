@@ -14,8 +14,8 @@ from hpn.web.door.problems import Problem
 from hpn.web.settings import Settings
 from hpn.words.wording import N_, Sentence
 
-FULL = N_("The folder for files on their way (HPN_SPOOL_FOLDER) is full: try again later.")
-UNUSABLE = N_("The folder for files on their way (HPN_SPOOL_FOLDER) is gone or can’t be written to: try again later.")
+FULL = N_("The spool folder (HPN_SPOOL_FOLDER) is full: try again later.")
+UNUSABLE = N_("The spool folder (HPN_SPOOL_FOLDER) is missing or not writable: try again later.")
 FULL_CODES = frozenset({errno.ENOSPC, errno.EDQUOT})
 CODES = FULL_CODES | {errno.ENOENT, errno.ENOTDIR, errno.EACCES, errno.EPERM, errno.EROFS, errno.EIO}
 """Errors of a disk, in place of those that a connection has."""

@@ -142,7 +142,7 @@ CANDIDATE: Mapping[str, Named] = {
         "L_10",
         "Life as equation 17.10 gives it, named L10; the hours include the pause. Null where unlimited or not rated.",
         "17.10",
-        caveat=N_("L10 as eq. 17.10 prints it; the glossary’s basis is L50. The hours include the pause."),
+        caveat=N_("L10 as in eq. 17.10; the glossary’s basis is L50. The hours include the pause."),
     ),
     "momentary_peak_count": Named(
         N_("Permitted emergency stops"),
@@ -159,16 +159,16 @@ CANDIDATE: Mapping[str, Named] = {
         N_("Bearing life L10"),
         "L_b,10",
         "Life of the output bearing on the basis L10: 90 % of the bearings survive it, L50 / 5.",
-        caveat=N_("L10 = L50 / 5, a relation of other handbooks. The hours include the pause."),
+        caveat=N_("L10 = L50 / 5, a relation from other handbooks. The hours include the pause."),
     ),
     "motor_peak_torque_Nm": Named(
-        N_("Peak motor torque needed"),
+        N_("Required peak motor torque"),
         "T_max/(i·η)",
         "Largest torque at the motor, T/(i·η), without the emergency stop; along a motion with the motor’s own "
         "inertia, where that is given. Where no efficiency is known η is 1, and the torque a lower bound.",
     ),
     "motor_rated_torque_Nm": Named(
-        N_("RMS motor torque needed"),
+        N_("Required RMS motor torque"),
         "T_rms/(i·η)",
         "RMS torque at the motor, T/(i·η), over the cycle with pause; along a motion with the motor’s own inertia, "
         "where that is given. Where no efficiency is known η is 1, and the torque a lower bound.",
@@ -195,7 +195,7 @@ CANDIDATE: Mapping[str, Named] = {
         N_("Position error"),
         "φ_e",
         "Transmission accuracy, wind-up over the cycle’s torques and, where the torque passes 0, backlash; added.",
-        caveat=N_("About: limits of a new gear, added arithmetically."),
+        caveat=N_("Approximate: limits of a new gear, added arithmetically."),
     ),
     "position_error_mm": Named(
         N_("Position error at the radius"),

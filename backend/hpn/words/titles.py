@@ -33,7 +33,7 @@ def faults_of(text: str, longest: int = LONGEST_TITLE) -> Iterator[Sentence]:
     if CONTROLS.search(text):
         yield Sentence(NO_CONTROLS)
     if len(text.strip()) > longest:
-        yield Sentence(N_("takes at most {most} characters"), {"most": str(longest)})
+        yield Sentence(N_("must have at most {most} characters"), {"most": str(longest)})
     else:  # to compose a long text can take long
         yield from _hidden_in(text.strip())
 
@@ -41,13 +41,13 @@ def faults_of(text: str, longest: int = LONGEST_TITLE) -> Iterator[Sentence]:
 def _hidden_in(text: str) -> Iterator[Sentence]:
     """Characters by which a text looks like another."""
     if found := HIDDEN.search(text):
-        yield Sentence(N_("must not contain {character}, which nobody sees"), {"character": _named(found[0])})
+        yield Sentence(N_("must not contain the invisible character {character}"), {"character": _named(found[0])})
     count = 0
     for character in unicodedata.normalize("NFC", text):
         count = count + 1 if unicodedata.category(character).startswith("M") else 0
         if count > MOST_MARKS:
             values = {"most": str(MOST_MARKS), "character": _named(character)}
-            yield Sentence(N_("takes at most {most} combining marks in a row, {character} is one more"), values)
+            yield Sentence(N_("must have at most {most} combining marks in a row; {character} is one more"), values)
             return
 
 

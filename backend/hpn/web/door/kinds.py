@@ -23,12 +23,12 @@ KINDS: Mapping[str, Kind] = {
         400,
         N_("The request can’t be read"),
         N_("The body is not the JSON, form or file that its content type says, or the request itself is broken."),
-        N_("Send what the API’s document describes; the detail names the place where reading ended."),
+        N_("Send what the API’s document describes; the detail names the place where reading stopped."),
     ),
     "api-key-needed": Kind(
         401,
         N_("An API key is needed"),
-        N_("This service asks for an API key here, and none was sent, or an unknown one."),
+        N_("This service requires an API key here; none was sent, or an unknown one."),
         N_("Send a key of this service as X-API-Key, as a Bearer token, or as the password of Basic authentication."),
     ),
     "not-allowed": Kind(
@@ -40,14 +40,14 @@ KINDS: Mapping[str, Kind] = {
     "not-found": Kind(
         404,
         N_("Not found"),
-        N_("There is nothing at this address: a part of it is mistyped, or what stood there has been deleted."),
-        N_("Check the address; lists of gears and of saved selections say what there is."),
+        N_("There is nothing at this address: part of it is mistyped, or the content has been deleted."),
+        N_("Check the address; the lists of gears and of saved selections show what there is."),
     ),
     "method-not-allowed": Kind(
         405,
         N_("Method not allowed"),
         N_("The address exists, but not with this method."),
-        N_("Use a method of the header Allow."),
+        N_("Use one of the methods in the header Allow."),
     ),
     "too-slow": Kind(
         408,
@@ -64,26 +64,26 @@ KINDS: Mapping[str, Kind] = {
     "gone": Kind(
         410,
         N_("No longer there"),
-        N_("It was there once and has been deleted, or the way it was asked for has ended."),
-        N_("Use what the detail names in its place."),
+        N_("It existed and was deleted, or this way of asking for it has been withdrawn."),
+        N_("Use the replacement that the detail names."),
     ),
     "idempotency-key-spent": Kind(
         410,
-        N_("The idempotency key is spent"),
+        N_("The idempotency key is used up"),
         N_("The selection saved under this Idempotency-Key has been deleted."),
         N_("Send another key to save it anew."),
     ),
     "other-state": Kind(
         412,
         N_("Precondition failed"),
-        N_("If-Match names another state: somebody has changed it since it was read."),
+        N_("If-Match names another version: it has been changed since it was read."),
         N_("Read it again, and repeat the change with its new ETag."),
     ),
     "too-large": Kind(
         413,
         N_("The request is too large"),
-        N_("The body, or what it stands for, is more than the service takes at once."),
-        N_("Send less at once; the detail says how much is taken."),
+        N_("The body, or its unpacked content, is larger than the service accepts at once."),
+        N_("Send less at once; the detail gives the limit."),
     ),
     "address-too-long": Kind(
         414,
@@ -94,7 +94,7 @@ KINDS: Mapping[str, Kind] = {
     "unsupported-type": Kind(
         415,
         N_("The content type or coding is not supported"),
-        N_("The content type or coding of the body is not one that is read here."),
+        N_("The content type or coding of the body is not supported here."),
         N_("Send one of those that the detail names."),
     ),
     "other-host": Kind(
@@ -106,8 +106,8 @@ KINDS: Mapping[str, Kind] = {
     "input-errors": Kind(
         422,
         N_("The input has errors"),
-        N_("The input could be read, but some of it can’t be calculated with."),
-        N_("Each entry of errors names a field by its JSON pointer, a code, and what would be right."),
+        N_("The input could be read, but part of it can’t be calculated."),
+        N_("Each entry of errors names a field by its JSON pointer, a code and the correction."),
     ),
     "idempotency-key-reused": Kind(
         422,
@@ -119,7 +119,7 @@ KINDS: Mapping[str, Kind] = {
         429,
         N_("Too many requests"),
         N_("This key or address has sent more than its share."),
-        N_("Wait for the time of Retry-After; RateLimit says how much is left."),
+        N_("Wait for the time given by Retry-After; RateLimit shows how much is left."),
     ),
     "head-too-large": Kind(
         431,
@@ -130,7 +130,7 @@ KINDS: Mapping[str, Kind] = {
     "internal-error": Kind(
         500,
         N_("Internal error"),
-        N_("The service made a mistake, which is in its log under the request’s id."),
+        N_("The service failed; its log has the cause under the request’s id."),
         N_("Tell the operator the X-Request-ID of the answer."),
     ),
     "not-installed": Kind(
@@ -142,8 +142,8 @@ KINDS: Mapping[str, Kind] = {
     "unavailable": Kind(
         503,
         N_("Temporarily unavailable"),
-        N_("The service, its database or its folder for files can’t take more at the moment."),
-        N_("Try again after the time of Retry-After."),
+        N_("The service, its database or its folder for files is full or busy at the moment."),
+        N_("Try again after the time given by Retry-After."),
     ),
 }
 

@@ -167,7 +167,9 @@ class Given:
         for name, texts in (*self.single.items(), *self.labels.items()):
             if len(texts) > 1:
                 listed = ", ".join(text.strip()[:20] or '""' for text in texts[:5])
-                yield FieldProblem(name, None, Sentence(N_("takes one value, given were {texts}"), {"texts": listed}))
+                yield FieldProblem(
+                    name, None, Sentence(N_("must be a single value; given: {texts}"), {"texts": listed})
+                )
         for name, texts in self.labels.items():
             yield from (FieldProblem(name, None, fault) for fault in faults_of(texts[0]))
         if (columns := self._of_phases()) and not self.presses:
@@ -192,7 +194,7 @@ def _beside_motion(columns: Mapping[str, list[str]]) -> Iterable[FieldProblem]:
     """Phases where a motion is given: blank ones, as a form submits them, count as absent."""
     for name, texts in columns.items():
         if filled := [k for k, text in enumerate(texts) if text.strip()]:
-            yield FieldProblem(name, filled[0], Sentence(N_("stands beside a motion: give either phases or a motion")))
+            yield FieldProblem(name, filled[0], Sentence(N_("given beside a motion: give either phases or a motion")))
             return
 
 

@@ -42,7 +42,7 @@ def query_of(labels: Mapping[str, str]) -> str:
 MOTOR_CODE = r"[A-Za-z0-9]{1,8}([.\-][A-Za-z0-9]{1,8}){0,3}"
 """Codes for the motor adapter look like `BH-AF1` or `xx.xx`; which one fits a motor only the maker says."""
 
-NOT_A_MOTOR_CODE = N_("letters and digits, in groups apart by - or . such as BH-AF1")
+NOT_A_MOTOR_CODE = N_("letters and digits, in groups separated by - or . such as BH-AF1")
 NOT_A_CODE = N_("must be a gear of the catalogue, an output version and the motor adapter, such as HPN-20A-5-J6-BH-AF1")
 
 

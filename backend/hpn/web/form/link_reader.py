@@ -142,7 +142,7 @@ def _list_problems(given: Given) -> Iterable[FieldProblem]:
             if BY_NAME[name].kind != "text" and isinstance(message := read_value(text, "whole"), Sentence):
                 if _SEVERAL.fullmatch(text.strip()):
                     example = "&".join(f"{name}={value}" for value in re.findall("[0-9]+", text)[:3])
-                    message = Sentence(N_("give each value for itself: {example}"), {"example": example})
+                    message = Sentence(N_("give one value per field: {example}"), {"example": example})
                 yield FieldProblem(name, k, message)
 
 

@@ -37,6 +37,6 @@ def beside_fields(problems: Sequence[FieldProblem], written: str | None, reader:
 def _of_link(message: Sentence, decimal: str) -> Sentence:
     number = message.values.get("number")
     if message.template == ONE_READING and isinstance(number, Typed) and "." in number.number:
-        template = N_("a link takes {plain}, this field {typed}")
+        template = N_("in a link write {plain}, in this field {typed}")
         message = Sentence(template, {"plain": str(number), "typed": number})
     return message.marked(decimal)

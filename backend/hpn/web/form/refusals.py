@@ -33,13 +33,13 @@ def refusal_of(error: Any) -> Sentence:
         values = {name: _told(name, str(text), symbols) for name, text in context.items()}
         return Sentence(REFUSALS[error["type"]], values)
     if error["type"] == "extra_forbidden":
-        return Sentence(N_("is nothing that this mechanism has: leave it out"))
+        return Sentence(N_("does not belong to this mechanism: leave it out"))
     if error["type"] == "no_load":
         return Sentence(N_("give a radial or an axial load, here or in a phase"))
     if error["type"] in ("missing", "too_short"):
         return Sentence(N_("is missing"))
     if error["type"] == "too_long":
-        return Sentence(N_("takes at most {bound} values"), {"bound": str(context["max_length"])})
+        return Sentence(N_("must have at most {bound} values"), {"bound": str(context["max_length"])})
     if error["type"] == "literal_error":
         choices = ", ".join(re.findall("'([^']*)'", context["expected"]))  # the library's "or" is English
         return Sentence(N_("must be one of {expected}"), {"expected": choices})

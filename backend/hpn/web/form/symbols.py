@@ -89,18 +89,18 @@ SYMBOLS = (
     Symbol("Tk", ("emergency_stop", "torque_Nm")),
     Symbol("Nk", ("emergency_stop", "count"), "whole"),
     Symbol(
-        "TB", ("emergency_stop", "brake", "torque_Nm"), hint=N_("At the motor, the largest that the brake may give.")
+        "TB", ("emergency_stop", "brake", "torque_Nm"), hint=N_("At the motor; the largest that the brake can give.")
     ),
     Symbol("tb", ("emergency_stop", "brake", "rise_time_s"), placeholder="0"),
     Symbol("tr", ("emergency_stop", "brake", "reaction_time_s"), placeholder="0"),
     Symbol(
-        "nb", ("emergency_stop", "brake", "speed_rpm"), hint=N_("At the output; without it the largest of the cycle.")
+        "nb", ("emergency_stop", "brake", "speed_rpm"), hint=N_("At the output; by default the largest of the cycle.")
     ),
     Symbol(
         "kd",
         ("emergency_stop", "brake", "dynamic_factor"),
         placeholder="2",
-        hint=N_("2 for a brake that closes at once; less by its rise time where both inertias are known."),
+        hint=N_("2 for a brake that closes at once; lower with a rise time where both inertias are known."),
     ),
     Symbol("FR", ("output_load", "radial_N")),
     Symbol("FA", ("output_load", "axial_N")),
@@ -124,15 +124,15 @@ SYMBOLS = (
         "text",
         choices=BEARING_MODELS,
         hint=N_(
-            "Straight line: between the two published limits, and inside every curve that the bearing theory allows. "
-            "ISO 281: the bearing standard’s factors, with more room where both loads act."
+            "Straight line: between the two published limits, and inside every curve that bearing theory allows. ISO "
+            "281: the factors of the bearing standard, which permit more where both loads act."
         ),
         supplied={"digitised": "curves"},
     ),
     Symbol(
         "xR",
         ("output_load", "radial_position_mm"),
-        hint=N_("From the shaft’s shoulder, outwards positive; without it at the shaft’s centre."),
+        hint=N_("From the shaft’s shoulder, outwards positive; by default at the shaft’s centre."),
     ),
     Symbol("yA", ("output_load", "axial_radius_mm"), placeholder="0", hint=N_("From the shaft’s axis.")),
     Symbol(
@@ -162,7 +162,7 @@ SYMBOLS = (
         hint=N_("Your assumption, between 0 and 1. Without one the motor side is loss-free, a lower bound."),
     ),
     Symbol("JL", ("requirements", "load_inertia_kgm2")),
-    Symbol("fn", ("requirements", "natural_frequency_Hz"), hint=N_("Needs the load’s inertia, or a motion.")),
+    Symbol("fn", ("requirements", "natural_frequency_Hz"), hint=N_("Needs the load’s inertia or a motion.")),
     Symbol("pe", ("requirements", "position_error_arcmin")),
     Symbol("pem", ("requirements", "position_error_mm"), hint=N_("At the radius below.")),
     Symbol("pr", ("requirements", "position_radius_mm")),
@@ -215,7 +215,7 @@ MECHANISM_SYMBOLS = (
     _of_mechanism("d", "mechanism.diameter_mm"),
     _of_mechanism("h", "mechanism.lead_mm"),
     _of_mechanism("ml", "mechanism.mass_kg"),
-    _of_mechanism("inc", "mechanism.incline_deg", hint=N_("Positive motion raises the mass where it is positive.")),
+    _of_mechanism("inc", "mechanism.incline_deg", hint=N_("If positive, positive motion raises the mass.")),
     _of_mechanism("mu", "mechanism.friction_coefficient"),
 )
 """A mechanism and where its motion starts, in the order of a canonical link."""
@@ -226,7 +226,7 @@ FIRST_OF_MECHANISM = ("d", "h", "ml", "J", "Tf")
 _IN_FORM = (*FIRST_OF_MECHANISM, "mg", "rg", "th0", "inc", "b", "mu", "etam", "im")
 
 _INERTIA_OF_TURNING = N_("Of everything that turns with pinion, pulley or screw.")
-_INERTIA_OF_ROTARY = N_("Of everything that turns about the axis, a mass off the shaft included.")
+_INERTIA_OF_ROTARY = N_("Of everything that turns about the axis, including a mass off the shaft.")
 
 
 @cache
@@ -324,13 +324,13 @@ GROUPS = (
         "brake",
         N_("Brake of the emergency stop"),
         ("TB", "tb", "tr", "nb", "kd"),
-        hint=N_("In place of the emergency-stop torque, which then follows for each gear."),
+        hint=N_("Instead of the emergency-stop torque, which then follows for each gear."),
     ),
     FormGroup(
         "lever",
         N_("Place of the loads, belt"),
         ("xR", "yA", "xc"),
-        hint=N_("Radial at the centre of the shaft, axial along its axis, but for what is given below."),
+        hint=N_("Radial at the shaft’s centre, axial along its axis, unless given below."),
     ),
     FormGroup(
         "stiffness",

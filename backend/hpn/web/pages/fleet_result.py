@@ -21,12 +21,12 @@ from hpn.words.wording import N_, Quantity, Sentence
 
 COMPARED = ("selected", "governing_check", "utilisation", "suitable")
 TOO_MANY = N_(
-    "The table has {axes} axes, and a page takes {most} at most: size it with the command hpn fleet or POST "
+    "The table has {axes} axes, and the limit of a page is {most}: size it with the command hpn fleet or POST "
     "/api/v1/fleet, which have no such limit."
 )
 TOO_LONG = N_(
-    "The phases of all axes take more than {most} MB, the most that a page reads: size the table with the command hpn "
-    "fleet or POST /api/v1/fleet, which have no such limit."
+    "The phases of all axes need more than {most} MB, the limit of a page: size the table with the command hpn fleet "
+    "or POST /api/v1/fleet, which have no such limit."
 )
 
 

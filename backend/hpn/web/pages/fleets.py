@@ -34,15 +34,15 @@ from hpn.web.pages.sized_fleets import ADDRESS
 from hpn.words.wording import N_, Sentence
 
 NO_ROOM_SECONDS = 3600
-NOTHING = N_("choose a file, or put cells into the field")
-LARGER = N_("Larger tables take the command hpn fleet and POST /api/v1/fleet, which have no such limit.")
+NOTHING = N_("choose a file or paste cells into the field")
+LARGER = N_("For larger tables use the command hpn fleet or POST /api/v1/fleet, which have no such limit.")
 SHARE_SPENT = N_(
-    "Machines that are not saved are kept for a day, and {most} of them are yours. Save one on its page or delete it "
-    "there, then size this table again."
+    "Unsaved machines are kept for a day, and {most} of them are yours. Save or delete one on its page, then size "
+    "this table again."
 )
 NO_ROOM = N_(
-    "Machines that are not saved are kept for a day, and together they fill the room there is for them. The command "
-    "hpn fleet and POST /api/v1/fleet size this table; here there is room again as soon as others are saved or expire."
+    "Unsaved machines are kept for a day, and the space for them is full. The command hpn fleet and POST "
+    "/api/v1/fleet size this table; here there is space again as soon as others are saved or expire."
 )
 
 

@@ -26,8 +26,8 @@ from hpn.words.wording import N_, Sentence
 
 ADDRESS = "/selections"
 LINES_ON_PAGE = 25
-CHANGED = N_("Somebody has renamed or deleted this since you opened the page. Open it again, then decide.")
-NO_SUCH_PART = N_("This part of the list can’t be found; its address is not whole.")
+CHANGED = N_("This was renamed or deleted since you opened the page. Open it again, then decide.")
+NO_SUCH_PART = N_("This part of the list can’t be found; its address is incomplete.")
 
 
 class Wanted(Model):

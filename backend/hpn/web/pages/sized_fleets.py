@@ -46,8 +46,8 @@ REASON = "fleet_refused.html"
 
 CHANGES_ON_PAGE = 100
 NOT_YOURS = N_("Only the key that calculated this machine may see it and save it.")
-SAVED_MEANWHILE = N_("This machine was saved meanwhile, under other names. Open it again, then rename it.")
-GONE = N_("There is no such machine. A machine that is not saved is kept for a day.")
+SAVED_MEANWHILE = N_("This machine has since been saved under other names. Open it again, then rename it.")
+GONE = N_("There is no such machine. An unsaved machine is kept for a day.")
 
 
 # --- The page of a result ---------------------------------------------------------------------------------------------
