@@ -127,7 +127,7 @@ def test_table_in_place_of_the_worked_example_starts_without_its_pause_stop_and_
     client: TestClient, link: str
 ) -> None:
     page = client.post("/paste", data={"link": link, "text": GERMAN}, headers=HTMX)
-    assert "leaves out the worked example’s pause, emergency stop and ratio" in page.text
+    assert "drops the worked example’s pause, emergency stop and ratio" in page.text
     assert "Append" not in page.text
     took = client.post("/paste", data={"link": link, "text": GERMAN, "take": "replace"})
     assert query_of(took.headers["location"]).keys() == {"T", "n", "t"}
