@@ -109,7 +109,7 @@ def test_last_bits_of_another_processor_are_no_other_answer(
     answers = answers.set_column(place, "utilisation", pa.array(moved, pa.float64()))
     elsewhere = replace(kept, answers=as_parquet(answers), catalogue_version="of another machine")
 
-    assert "Every axis gets the same answer." in unescape(client.get(keep(client, service, elsewhere)).text)
+    assert "Every axis gets the same result." in unescape(client.get(keep(client, service, elsewhere)).text)
 
 
 def test_only_the_owner_s_key_renames_and_deletes_a_fleet(kept: FleetDraft, tmp_path: Path) -> None:
