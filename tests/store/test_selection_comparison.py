@@ -17,6 +17,9 @@ LOADED = worked_example(
 )
 
 
+UNEVEN = [phase(8.5, 76, 1.2), phase(7.3, 67, 1.3), phase(18.8, 250, 2.3), phase(8.3, 184, 0.9)]
+
+
 @pytest.fixture(scope="module")
 def client(tmp_path_factory: pytest.TempPathFactory) -> Iterator[TestClient]:
     """A client of a service that runs for all tests of this file."""
@@ -92,6 +95,17 @@ def test_two_of_the_same_differ_in_nothing(client: TestClient) -> None:
 
     assert "None: both have the same input." in page
     assert 'class="differs"' not in page
+
+
+def test_last_bits_are_no_difference(client: TestClient) -> None:
+    """Phases in another order add up to another last bit, as another processor does."""
+    one, other = (saved(client, cycle(*phases, requirements={"ratios": [5]})) for phases in (UNEVEN, UNEVEN[::-1]))
+    a, b = (client.get(f"/api/v1/selections/{id}").json()["result"] for id in (one, other))
+    page = compared(client, one, other)
+
+    assert a["duty"]["average_torque_Nm"] != b["duty"]["average_torque_Nm"]
+    for part in ("verdicts", "checks", "figures"):
+        assert [head for head, cells in rows(page, part).items() if "differs" in cells] == []
 
 
 def test_figures_are_in_the_units_of_the_reader(client: TestClient) -> None:

@@ -1,11 +1,12 @@
 """Two saved selections side by side: what was asked, what came of it, and where they differ."""
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import astuple, dataclass
 from itertools import islice, zip_longest
 from typing import Any
 
 from fastapi import APIRouter
+from msgspec import structs
 from pydantic import ValidationError
 from starlette.requests import Request
 from starlette.responses import RedirectResponse, Response
@@ -17,6 +18,7 @@ from hpn.engine.candidates import FIGURES, Candidate, CheckResult
 from hpn.engine.check import Check
 from hpn.engine.checks import BY_CODE
 from hpn.engine.selection import decode
+from hpn.explain.differences import is_same
 from hpn.explain.readings import Reading, figure_symbol
 from hpn.files.inputs import LOADS, REQUIREMENTS, InputLine, given
 from hpn.files.motion import lines, move_line
@@ -64,8 +66,8 @@ class Row:
 
     @property
     def differs(self) -> bool:
-        """True for two different values."""
-        return bool(self.values[0] != self.values[1])
+        """True for two different values; numbers are equal to rounding."""
+        return not is_same(*self.values)
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,8 +79,9 @@ class CheckRow:
 
     @property
     def differs(self) -> bool:
-        """True for two different results."""
-        return self.sides[0] != self.sides[1]
+        """True for two different results; their figures are equal to rounding."""
+        figures = [(*structs.astuple(side[0]), *astuple(side[1])) if side else () for side in self.sides]
+        return len(figures[0]) != len(figures[1]) or not all(map(is_same, *figures))
 
 
 Cells = list[tuple[float | str, str]]
@@ -128,6 +131,7 @@ def _compared(a: Side, b: Side) -> dict[str, Any]:
     return {
         "sides": (a, b),
         "known": bool(a.result.application and b.result.application),
+        "used_alike": is_same(a.chosen.utilisation, b.chosen.utilisation),
         "inputs": list(_inputs(a, b)),
         "phases": list(islice(_phases(a, b), PHASES_SHOWN + 1)),
         "most_phases": PHASES_SHOWN,
