@@ -74,6 +74,13 @@ def test_a_lever_has_an_equation_where_one_acts(given: Json, lines: int, catalog
     assert len(step.lines if step else ()) == lines
 
 
+def test_the_peak_of_a_phase_is_said_to_count_where_it_does(catalogue: Catalogue) -> None:
+    varying = cycle(phase(10, 100, peak_torque_Nm=20), emergency_stop={"torque_Nm": 30})
+    steps = steps_of(varying, "HPN-20A-5", catalogue)
+    told = {code for code, step in steps.items() if any("its peak counts here" in note.text for note in step.notes)}
+    assert told == {"repeated_peak_torque", "maximum_input_speed"}
+
+
 def test_torques_that_an_equation_picks_are_said_beside_it(catalogue: Catalogue) -> None:
     stop = {"brake": {"torque_Nm": 5}}
     steps = steps_of(cycle(phase(10, 100), phase(-4, 50), emergency_stop=stop), "HPN-20A-5", catalogue)
