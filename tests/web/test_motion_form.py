@@ -289,3 +289,11 @@ def test_cells_left_blank_show_what_follows(api: TestClient, cookies: str, speed
     shown = dict(re.findall(r'<input id="(\w+-0)"[^>]*placeholder="([^"]*)"', page))
     assert (shown["mn-0"], shown["ma-0"]) == (speed, acceleration)
     assert shown["mt-0"] == " "
+
+
+def test_the_governing_check_names_its_move_or_phase(api: TestClient) -> None:
+    """A quarter turn in 0.4 s after five turns in 8 s has the peak torque; of two phases the faster has the speed."""
+    moves = "mech=rotary&J=0.8&Tf=1.5&mv=trapezoidal&ms=1800&mt=8&mv=trapezoidal&ms=-90&mt=0.4"
+    of_moves, of_phases = (api.get(f"/?{query}").text for query in (moves, "T=1&n=10&t=1&T=1&n=900&t=0.001&tp=1"))
+    assert re.search(r'id="check-repeated_peak_torque"(?:(?!</th>).)*· move 2\b', of_moves, re.DOTALL)
+    assert re.search(r'id="check-maximum_input_speed"(?:(?!</th>).)*· phase 2\b', of_phases, re.DOTALL)

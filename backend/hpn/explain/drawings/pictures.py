@@ -61,6 +61,13 @@ class Pictures:
         """Places of the phases that the governing check of the candidate goes by."""
         return governing_phases(self.subject, self.chosen.governing_check, self.bearing)
 
+    @property
+    def governing_rows(self) -> tuple[int, ...]:
+        """Numbers of these phases, or of the moves that they belong to."""
+        motion = self.subject.application.duty_cycle.motion
+        places = [int(motion.course.move[place]) for place in self.governing] if motion else self.governing
+        return tuple(place + 1 for place in dict.fromkeys(places))
+
     @cached_property
     def bearing(self) -> BearingPicture | None:
         """Permitted and given loads of the output bearing, or None where it is not rated."""
