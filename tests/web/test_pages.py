@@ -244,6 +244,11 @@ def test_a_motor_gives_no_figures_to_the_row_of_a_size_without_ratings(client: T
     assert row and "Not rated: figures of HPN-40A" in row[1] and "<button" not in row[1]
 
 
+def test_an_unlimited_limit_keeps_its_sign(client: TestClient) -> None:
+    page = client.get("/", params={"T": 40, "n": 250, "t": 0.3, "Tk": 41, "Nk": 500, "gear": "HPN-32A-4"}).text
+    assert re.search(r'id="check-momentary_peak_count".*?<span class="sign">≤</span>\s*unlimited', page, re.S)
+
+
 def test_a_life_is_named_with_its_basis_and_a_column_with_its_unit(client: TestClient) -> None:
     page = client.get("/", params={"T": 40, "n": 250, "t": 0.3, "FR": 500}).text
     assert re.search(r">Bearing life L50</dt>\s*<dd>", page) and "L50, asked" not in page
