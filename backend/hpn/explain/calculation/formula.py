@@ -6,7 +6,7 @@ One tree serves all three, so that what a reader sees substituted is what the re
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Self
+from typing import Any, Self, cast
 
 from hpn.physics.equations import FloatArray
 
@@ -32,8 +32,44 @@ class Variable:
         return Variable(self.letter, ",".join(filter(None, (self.index, index))))
 
 
+class Expression:
+    """Base of all formulas: operators put them together as they are printed; a number stands for itself."""
+
+    __slots__ = ()
+
+    def __add__(self, other: "Operand") -> "Sum":
+        return Sum((*(self.terms if isinstance(self, Sum) else (_formula(self),)), _formula(other)))
+
+    def __sub__(self, other: "Operand") -> "Subtraction":
+        return Subtraction(_formula(self), _formula(other))
+
+    def __rsub__(self, other: float) -> "Subtraction":
+        return Subtraction(Constant(other), _formula(self))
+
+    def __mul__(self, other: "Operand") -> "Product":
+        return Product((*(self.factors if isinstance(self, Product) else (_formula(self),)), _formula(other)))
+
+    def __rmul__(self, other: float) -> "Product":
+        return Product((Constant(other), _formula(self)))
+
+    def __truediv__(self, other: "Operand") -> "Quotient":
+        return Quotient(_formula(self), _formula(other))
+
+    def __rtruediv__(self, other: float) -> "Quotient":
+        return Quotient(Constant(other), _formula(self))
+
+    def __pow__(self, other: "Operand") -> "Power":
+        return Power(_formula(self), _formula(other))
+
+    def __rpow__(self, other: float) -> "Power":
+        return Power(Constant(other), _formula(self))
+
+    def __abs__(self) -> "Magnitude":
+        return Magnitude(_formula(self))
+
+
 @dataclass(frozen=True, slots=True)
-class Term:
+class Term(Expression):
     """A symbol and its value; `unit` is a suffix such as `Nm`, blank for a pure number."""
 
     symbol: Variable
@@ -55,7 +91,7 @@ class PhaseValues:
 
 
 @dataclass(frozen=True, slots=True)
-class Constant:
+class Constant(Expression):
     """A number that the equation itself prints."""
 
     value: float
@@ -63,14 +99,14 @@ class Constant:
 
 
 @dataclass(frozen=True, slots=True)
-class Sum:
+class Sum(Expression):
     """Terms added up."""
 
     terms: "tuple[Formula, ...]"
 
 
 @dataclass(frozen=True, slots=True)
-class Series:
+class Series(Expression):
     """A sum over the phases. `pattern` is its first, second and last term in symbols.
 
     Of a long series only the first terms are kept, and the last one; `total` is the value of all `count` of them.
@@ -88,7 +124,7 @@ class Series:
 
 
 @dataclass(frozen=True, slots=True)
-class Subtraction:
+class Subtraction(Expression):
     """One formula less another."""
 
     left: "Formula"
@@ -96,14 +132,14 @@ class Subtraction:
 
 
 @dataclass(frozen=True, slots=True)
-class Product:
+class Product(Expression):
     """Factors multiplied."""
 
     factors: "tuple[Formula, ...]"
 
 
 @dataclass(frozen=True, slots=True)
-class Quotient:
+class Quotient(Expression):
     """A fraction; `flat` where it stands in an exponent."""
 
     above: "Formula"
@@ -112,7 +148,7 @@ class Quotient:
 
 
 @dataclass(frozen=True, slots=True)
-class Power:
+class Power(Expression):
     """A base with an exponent."""
 
     base: "Formula"
@@ -120,7 +156,7 @@ class Power:
 
 
 @dataclass(frozen=True, slots=True)
-class Root:
+class Root(Expression):
     """A root; the square root where no degree is given."""
 
     body: "Formula"
@@ -128,20 +164,27 @@ class Root:
 
 
 @dataclass(frozen=True, slots=True)
-class Magnitude:
+class Magnitude(Expression):
     """Magnitude, in bars; the number in them is shown without its sign."""
 
     body: "Formula"
 
 
 @dataclass(frozen=True, slots=True)
-class Largest:
+class Largest(Expression):
     """The largest of some formulas."""
 
     of: "tuple[Formula, ...]"
 
 
 Formula = Term | Constant | Sum | Series | Subtraction | Product | Quotient | Power | Root | Magnitude | Largest
+
+Operand = Expression | float
+
+
+def _formula(operand: Operand) -> Formula:
+    return cast(Formula, operand if isinstance(operand, Expression) else Constant(operand))
+
 
 TEN_THIRDS = Quotient(Constant(10), Constant(3), flat=True)
 

@@ -3,20 +3,7 @@
 import math
 from collections.abc import Iterable
 
-from hpn.explain.calculation.formula import (
-    TEN_THIRDS,
-    Constant,
-    Magnitude,
-    Power,
-    Product,
-    Quotient,
-    Root,
-    Subtraction,
-    Term,
-    Variable,
-    over_phases,
-    value_of,
-)
+from hpn.explain.calculation.formula import TEN_THIRDS, Constant, Root, Term, Variable, over_phases, value_of
 from hpn.explain.calculation.sheet import Line, Sheet, Step, step_of_check
 from hpn.physics.equations import ROUNDING
 from hpn.words.quantities import DUTY
@@ -44,12 +31,7 @@ def handbook_steps(sheet: Sheet) -> Iterable[Step]:
 
 
 def _average_torque(sheet: Sheet) -> Step:
-    above = over_phases(
-        lambda n, t, T: Product((Magnitude(Product((n, t))), Power(T, TEN_THIRDS))),
-        sheet.speed,
-        sheet.time,
-        sheet.torque,
-    )
+    above = over_phases(lambda n, t, T: abs(n * t) * T**TEN_THIRDS, sheet.speed, sheet.time, sheet.torque)
     notes = [
         Sentence(
             N_(
@@ -62,13 +44,13 @@ def _average_torque(sheet: Sheet) -> Step:
         notes.append(Sentence(N_("Torques and speeds enter by magnitude, whatever their sign.")))
     if sheet.varies:
         notes.append(Sentence(VARYING))
-    line = Line(sheet.T_av, Root(Quotient(above, sheet.travel), TEN_THIRDS))
+    line = Line(sheet.T_av, Root(above / sheet.travel, TEN_THIRDS))
     return step_of_check("average_torque", (line,), sheet.compared("average_torque", sheet.T_av), tuple(notes))
 
 
 def _average_output_speed(sheet: Sheet) -> Step:
     named = DUTY["average_output_speed_rpm"]
-    line = Line(sheet.n_out_av, Quotient(sheet.travel, sheet.cycle_time))
+    line = Line(sheet.n_out_av, sheet.travel / sheet.cycle_time)
     return Step("average_output_speed", named.name, named.equation, (line,))
 
 
@@ -83,7 +65,7 @@ def _average_input_speed(sheet: Sheet) -> Step:
 
 
 def _average_input_speed_line(sheet: Sheet) -> Line:
-    return Line(sheet.n_in_av, Product((sheet.i, sheet.n_out_av)))
+    return Line(sheet.n_in_av, sheet.i * sheet.n_out_av)
 
 
 def _hand_input_speed(sheet: Sheet, line: Line) -> tuple[Sentence, ...]:
@@ -98,7 +80,7 @@ def _hand_input_speed(sheet: Sheet, line: Line) -> tuple[Sentence, ...]:
 
 
 def _maximum_input_speed(sheet: Sheet) -> Step:
-    line = Line(sheet.n_in_max, Product((sheet.n_out_max, sheet.i)))
+    line = Line(sheet.n_in_max, sheet.n_out_max * sheet.i)
     codes = ("maximum_input_speed", "motor_speed")
     limits = tuple(limit for code in codes for limit in sheet.compared(code, sheet.n_in_max))
     return step_of_check("maximum_input_speed", (line,), limits, _on_peaks(sheet), trivial=True)
@@ -129,9 +111,9 @@ def _stops(sheet: Sheet) -> Iterable[Step]:
         text = N_("The equation holds for T_k > T_R. Here T_k is {stop} and T_R is {limit}: it sets no limit.")
         yield step_of_check("momentary_peak_count", notes=(Sentence(text, values),))
         return
-    exponent = Subtraction(Constant(8.5), Product((Constant(1.5), Quotient(T_k, T_R))))
+    exponent = 8.5 - 1.5 * (T_k / T_R)
     x = Term(Variable("x"), value_of(exponent))
-    count = Line(allowed, Power(Constant(10), x), rounded_down=True)
+    count = Line(allowed, 10**x, rounded_down=True)
     expected = sheet.given("emergency_stop.count") or allowed
     limit = sheet.compared("momentary_peak_count", expected)
     yield step_of_check("momentary_peak_count", (Line(x, exponent), count), limit, _hand_stops(x, count))
@@ -158,13 +140,8 @@ def _life(sheet: Sheet) -> Iterable[Step]:
         yield step_of_check("life", notes=(note,))
         return
     rated = Term(Variable("n", "rated"), sheet.catalogue.rated_input_speed_rpm, "rpm")
-    formula = Product(
-        (
-            Constant(sheet.catalogue.life_at_rated_torque_h, "h"),
-            Quotient(rated, sheet.n_in_av),
-            Power(Quotient(T_N, sheet.T_av), TEN_THIRDS),
-        )
-    )
+    life = Constant(sheet.catalogue.life_at_rated_torque_h, "h")
+    formula = life * (rated / sheet.n_in_av) * (T_N / sheet.T_av) ** TEN_THIRDS
     basis = Sentence(
         N_(
             "n_rated is 3000 rpm for HPN (glossary). The equation calls its result L10; the glossary describes the "

@@ -89,7 +89,7 @@ def compared(reader: Reader, comparison: Comparison, *, continued: bool = False)
     named = Term(comparison.limit_names[-1], 0.0) if comparison.limit_names else limit
     reserve = Term(Variable("u"), u)
     for numbers, factor in ((False, named), (True, limit)):
-        reserved = Product((reserve, factor)) if comparison.relation == "≤" else Quotient(factor, reserve)
+        reserved = reserve * factor if comparison.relation == "≤" else factor / reserve
         parts += [(reserved, numbers), "="]
     return mathml(reader, *parts, (Constant(comparison.bound, comparison.unit), True))
 

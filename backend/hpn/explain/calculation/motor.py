@@ -7,21 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from hpn.engine.motor_torques import efficiency_at
-from hpn.explain.calculation.formula import (
-    Constant,
-    Formula,
-    PhaseValues,
-    Power,
-    Product,
-    Quotient,
-    Root,
-    Subtraction,
-    Sum,
-    Term,
-    Variable,
-    over_phases,
-    values_of,
-)
+from hpn.explain.calculation.formula import Formula, PhaseValues, Root, Sum, Term, Variable, over_phases, values_of
 from hpn.explain.calculation.sheet import Line, Sheet, Step, known, step_of_check
 from hpn.physics.equations import FloatArray
 from hpn.physics.motion import Course, peak_instant, square_torque
@@ -29,7 +15,6 @@ from hpn.words.quantities import INPUTS
 from hpn.words.titles import numbered
 from hpn.words.wording import N_, Quantity, Sentence, Value
 
-SQUARED = Constant(2)
 EFFICIENCY = Variable.of(INPUTS["requirements.efficiency"].symbol)
 MOTOR_PEAK, MOTOR_RMS = Variable("T", "in,max"), Variable("T", "in,rms")
 STATED = N_("η as given.")
@@ -54,10 +39,9 @@ def _torques(sheet: Sheet) -> Iterable[Step]:
     if (stated is None and sheet.gear.designation in sheet.catalogue.efficiency) or sheet.gear.no_load_torque_Nm:
         return _by_phase(sheet)
     eta = stated or Term(EFFICIENCY, 1.0)
-    shaft = Product((sheet.i, eta))
-    squares = over_phases(lambda T, t: Product((Power(T, SQUARED), t)), sheet.rms_torque, sheet.time)
-    rated = Quotient(Root(Quotient(squares, sheet.cycle_time)), shaft)
-    return _steps(sheet, Quotient(sheet.T_max, shaft), rated)
+    shaft = sheet.i * eta
+    squares = over_phases(lambda T, t: T**2 * t, sheet.rms_torque, sheet.time)
+    return _steps(sheet, sheet.T_max / shaft, Root(squares / sheet.cycle_time) / shaft)
 
 
 # --- With the motor's own inertia -------------------------------------------------------------------------------------
@@ -78,10 +62,10 @@ def _along_the_motion(sheet: Sheet, course: Course, inertia: Term) -> Iterable[S
         no_load_torque_Nm=T_0,
     )[0]
     of_phases = PhaseValues(MOTOR_RMS, np.sqrt(np.maximum(squares, 0.0) / course.duration_s), "Nm")
-    series = over_phases(lambda T, t: Product((Power(T, SQUARED), t)), of_phases, sheet.time)
+    series = over_phases(lambda T, t: T**2 * t, of_phases, sheet.time)
     peak, notes = _at_its_instant(sheet, course, inertia, at_peak)
     yield _step(sheet, "motor_peak_torque", MOTOR_PEAK, peak, *common, *notes)
-    rated = Root(Quotient(series, sheet.cycle_time))
+    rated = Root(series / sheet.cycle_time)
     of_each = Sentence(N_("T_in,rms of a phase is the RMS of the motor’s torque over the course of that phase."))
     yield _step(sheet, "motor_rated_torque", MOTOR_RMS, rated, *common, of_each)
 
@@ -110,7 +94,7 @@ def _at_its_instant(
     T, own = instant.torque_Nm, inertia.value * i * instant.acceleration_rad_per_s2
     at_motor = T / (i * eta.value) if instant.is_driven else T * eta.value / i
     load = Term(Variable("T"), abs(T), "Nm")
-    borne = Quotient(load, Product((sheet.i, eta))) if instant.is_driven else Quotient(Product((load, eta)), sheet.i)
+    borne = load / (sheet.i * eta) if instant.is_driven else load * eta / sheet.i
     accelerated = Term(Variable("T", "J"), abs(own), "Nm")
     parts: list[tuple[float, Formula]] = [(at_motor, borne), (own, accelerated)]
     if T_0:
@@ -136,7 +120,7 @@ def _magnitude_of(parts: Sequence[tuple[float, Formula]]) -> Formula:
     formula: Formula = Sum(tuple(part for value, part in parts if (value >= 0) == sense))
     for value, part in parts:
         if (value >= 0) != sense:
-            formula = Subtraction(formula, part)
+            formula = formula - part
     return formula
 
 
@@ -163,8 +147,8 @@ def _by_phase(sheet: Sheet) -> Iterable[Step]:
     T_0 = PhaseValues(Variable("T", "0"), np.where(sheet.speed.values > 0, _without_load(sheet), 0.0), "Nm")
 
     def at_motor(T: Formula, eta: Formula, T_0: Formula) -> Formula:
-        driven = Quotient(T, Product((sheet.i, eta)))
-        return Sum((driven, T_0)) if _without_load(sheet) else driven
+        driven = T / (sheet.i * eta)
+        return driven + T_0 if _without_load(sheet) else driven
 
     def of_phase(index: str, place: int) -> Formula:
         return at_motor(*(quantity.term(index, place) for quantity in (sheet.peak_torque, eta, T_0)))
@@ -172,11 +156,9 @@ def _by_phase(sheet: Sheet) -> Iterable[Step]:
     every = {quantity.symbol.of_phase("n"): quantity.values for quantity in (sheet.peak_torque, eta, T_0)}
     largest = int(values_of(of_phase("n", 0), every).argmax())
     squares = over_phases(
-        lambda T, eta, T_0, t: Product((Power(at_motor(T, eta, T_0), SQUARED), t)),
-        *(sheet.rms_torque, eta_rms, T_0, sheet.time),
+        lambda T, eta, T_0, t: at_motor(T, eta, T_0) ** 2 * t, sheet.rms_torque, eta_rms, T_0, sheet.time
     )
-    rated = Root(Quotient(squares, sheet.cycle_time))
-    return _steps(sheet, of_phase(str(largest + 1), largest), rated)
+    return _steps(sheet, of_phase(str(largest + 1), largest), Root(squares / sheet.cycle_time))
 
 
 def _steps(sheet: Sheet, peak: Formula, rated: Formula) -> Iterable[Step]:
@@ -199,9 +181,9 @@ def _inertia_ratio(sheet: Sheet) -> Iterable[Step]:
     load, motor = sheet.load_inertia, sheet.given("requirements.motor.inertia_kgm2")
     if load is None or motor is None or sheet.given("requirements.motor.inertia_ratio") is None:
         return
-    formula: Formula = Quotient(load, Product((Power(sheet.i, SQUARED), motor)))
+    formula: Formula = load / (sheet.i**2 * motor)
     if (own := sheet.rating("inertia_kgm2")) is not None:
-        formula = Sum((formula, Quotient(own, motor)))
+        formula = formula + own / motor
     note = N_("J_L as given for the load.")
     if sheet.duty.courses:
         note = N_("J_L is the inertia of the motion’s load at the gear’s output.")

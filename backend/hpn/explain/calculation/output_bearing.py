@@ -5,21 +5,7 @@ from collections.abc import Iterable
 
 from hpn.application import OutputLoad
 from hpn.engine.figures import phase_loads, radial_at_centre
-from hpn.explain.calculation.formula import (
-    Constant,
-    Formula,
-    Largest,
-    Magnitude,
-    PhaseValues,
-    Power,
-    Product,
-    Quotient,
-    Root,
-    Sum,
-    Term,
-    Variable,
-    over_phases,
-)
+from hpn.explain.calculation.formula import Constant, Formula, Largest, PhaseValues, Root, Term, Variable, over_phases
 from hpn.explain.calculation.sheet import Line, Sheet, Step, known, step_of_check
 from hpn.physics import bearing
 from hpn.words.quantities import CANDIDATE
@@ -28,8 +14,7 @@ from hpn.words.wording import N_, Sentence
 
 SHOWN_LOADS = 6
 SUPPLIED = Sentence(N_("P is the ratio of the load to the curve that you supplied, in the load’s own direction."))
-EXPONENT = Constant(3)
-P = Variable("P")
+P, CUBE = Variable("P"), Constant(3)
 
 
 def bearing_steps(sheet: Sheet) -> Iterable[Step]:
@@ -67,7 +52,7 @@ def _largest(sheet: Sheet, load: OutputLoad, loads: PhaseValues, f_w: Term) -> S
             values = {"shown": len(shown), "all": len(phases)}
             text = N_("{shown} of {all} different loads are shown, the largest among them.")
             notes.append(Sentence(text, values))
-    limit = sheet.compared("output_bearing_load", Product((f_w, loads.term(index[worst], worst))))
+    limit = sheet.compared("output_bearing_load", f_w * loads.term(index[worst], worst))
     return step_of_check("output_bearing_load", tuple(lines), limit, tuple(notes))
 
 
@@ -80,9 +65,9 @@ def _at_centre(sheet: Sheet, P: Term, place: int) -> Iterable[Line]:
     F_R, F_A = (values.term(P.symbol.index, place) for values in (sheet.radial, sheet.axial))
     formula: Formula = F_R
     if abs(x) > x_c.value:
-        formula = Product((F_R, Quotient(Magnitude(Term(Variable("x"), x, "mm")), x_c)))
+        formula = F_R * (abs(Term(Variable("x"), x, "mm")) / x_c)
     if y.value:
-        formula = Sum((formula, Product((F_A, Quotient(y, x_c)))))
+        formula = formula + F_A * (y / x_c)
     yield Line(_equivalent_radial(sheet, P, place), formula)
 
 
@@ -94,12 +79,9 @@ def _equivalent_radial(sheet: Sheet, P: Term, place: int) -> Term:
 
 
 def _equivalent_load(sheet: Sheet, model: str, place: int, P: Term) -> Line:
-    r = Quotient(_equivalent_radial(sheet, P, place), known(sheet.rating("dynamic_radial_load_N")))
-    a = Quotient(sheet.axial.term(P.symbol.index, place), known(sheet.rating("dynamic_axial_load_N")))
-    formula: Formula = Sum((r, a))
-    if model == "iso281":
-        formula = Largest((r, Sum((Product((Constant(bearing.RADIAL_FACTOR), r)), a))))
-    return Line(P, formula)
+    r = _equivalent_radial(sheet, P, place) / known(sheet.rating("dynamic_radial_load_N"))
+    a = sheet.axial.term(P.symbol.index, place) / known(sheet.rating("dynamic_axial_load_N"))
+    return Line(P, Largest((r, bearing.RADIAL_FACTOR * r + a)) if model == "iso281" else r + a)
 
 
 # --- Life -------------------------------------------------------------------------------------------------------------
@@ -108,13 +90,10 @@ def _equivalent_load(sheet: Sheet, model: str, place: int, P: Term) -> Line:
 def _mean(sheet: Sheet, load: OutputLoad, loads: PhaseValues, mean: Term, k: Term, f_w: Term) -> Step:
     """Step of the cycle's equivalent load and of the load k that the required life allows."""
     speed, life = sheet.catalogue.bearing_reference
-    damage = over_phases(lambda n, t, P: Product((Magnitude(n), t, Power(P, EXPONENT))), sheet.speed, sheet.time, loads)
-    above = Product((Constant(speed, "rpm"), Constant(life, "h")))
-    lines = (
-        Line(mean, Root(Quotient(damage, sheet.travel), EXPONENT)),
-        Line(k, Root(Quotient(above, Product((sheet.n_out_av, _required(sheet, load)))), EXPONENT)),
-    )
-    limit = sheet.compared("output_bearing_life", Product((f_w, mean)))
+    damage = over_phases(lambda n, t, P: abs(n) * t * P**3, sheet.speed, sheet.time, loads)
+    above, below = Constant(speed, "rpm") * Constant(life, "h"), sheet.n_out_av * _required(sheet, load)
+    lines = Line(mean, Root(damage / sheet.travel, CUBE)), Line(k, Root(above / below, CUBE))
+    limit = sheet.compared("output_bearing_life", f_w * mean)
     note = Sentence(N_("ISO 281, ball bearings, exponent 3; the published loads hold for L50 = 20000 h at 100 rpm."))
     return step_of_check("output_bearing_life", lines, limit, (note,))
 
@@ -122,7 +101,7 @@ def _mean(sheet: Sheet, load: OutputLoad, loads: PhaseValues, mean: Term, k: Ter
 def _required(sheet: Sheet, load: OutputLoad) -> Formula:
     """Required life as L50."""
     life = known(sheet.given("output_load.life_h"))
-    return Product((Constant(bearing.L50_PER_L10), life)) if load.life_basis == "L10" else life
+    return bearing.L50_PER_L10 * life if load.life_basis == "L10" else life
 
 
 def _life(sheet: Sheet, mean: Term, f_w: Term) -> Step:
@@ -132,10 +111,10 @@ def _life(sheet: Sheet, mean: Term, f_w: Term) -> Step:
         note = Sentence(N_("The equivalent load is 0 or so small that the bearing life is unlimited."))
         return Step("bearing_life", title, None, notes=(note,))
     speed, life = sheet.catalogue.bearing_reference
-    by_speed = Quotient(Constant(speed, "rpm"), sheet.n_out_av)
+    by_speed = Constant(speed, "rpm") / sheet.n_out_av
     lines = (
-        Line(L_50, Quotient(Product((Constant(life, "h"), by_speed)), Power(Product((f_w, mean)), EXPONENT))),
-        Line(L_10, Quotient(L_50, Constant(bearing.L50_PER_L10))),
+        Line(L_50, Constant(life, "h") * by_speed / (f_w * mean) ** 3),
+        Line(L_10, L_50 / bearing.L50_PER_L10),
     )
     note = Sentence(
         N_(

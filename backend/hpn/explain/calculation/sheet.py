@@ -15,9 +15,7 @@ from hpn.engine.duty import Duty
 from hpn.engine.evaluation import CheckStatus
 from hpn.explain.calculation.formula import (
     Formula,
-    Magnitude,
     PhaseValues,
-    Product,
     Series,
     Sum,
     Term,
@@ -178,12 +176,12 @@ class Sheet:
     @cached_property
     def travel(self) -> Series:
         """|n_1| t_1 + … + |n_n| t_n."""
-        return over_phases(lambda n, t: Product((Magnitude(n), t)), self.speed, self.time)
+        return over_phases(lambda n, t: abs(n) * t, self.speed, self.time)
 
     @cached_property
     def cycle_time(self) -> Sum:
         """t_1 + … + t_n + t_p."""
-        return Sum((over_phases(lambda t: t, self.time), known(self.given("duty_cycle.pause_s"))))
+        return over_phases(lambda t: t, self.time) + known(self.given("duty_cycle.pause_s"))
 
     def compared(self, code: str, tested: Formula) -> tuple[Comparison, ...]:
         """The check of a code, where the application asks for it and the gear's figures are published."""

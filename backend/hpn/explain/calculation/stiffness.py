@@ -7,28 +7,14 @@ import numpy as np
 
 from hpn.engine.figures import Figures
 from hpn.engine.stops import Stops
-from hpn.explain.calculation.formula import (
-    Constant,
-    Formula,
-    Magnitude,
-    Power,
-    Product,
-    Quotient,
-    Root,
-    Subtraction,
-    Sum,
-    Term,
-    Variable,
-    value_of,
-)
+from hpn.explain.calculation.formula import Constant, Formula, Root, Sum, Term, Variable, value_of
 from hpn.explain.calculation.sheet import Line, Sheet, Step, known, step_of_check
 from hpn.physics import stop
 from hpn.words.quantities import CANDIDATE
 from hpn.words.wording import N_, Sentence
 
 PI = Term(Variable("π"), math.pi)
-ARCMIN = Quotient(Constant(10800, "arcmin"), PI)
-DEGREES = Quotient(Constant(180, "deg"), PI)
+ARCMIN, DEGREES = Constant(10800, "arcmin") / PI, Constant(180, "deg") / PI
 UNIFORM = Sentence(N_("The stop starts at constant speed; the rising brake torque takes over from the motor’s."))
 
 
@@ -39,23 +25,22 @@ def stiffness_steps(sheet: Sheet) -> Iterable[Step]:
         return
     held, free = sheet.figure("natural_frequency_Hz"), sheet.figure("drive_resonance_Hz")
     if held is not None and J is not None:
-        lines = [Line(held, _frequency(Quotient(K_3, J)))]
+        lines = [Line(held, _frequency(K_3 / J))]
         if free is not None:
-            both = Sum((Quotient(Constant(1), J), Quotient(Constant(1), at_output(sheet))))
-            lines.append(Line(free, _frequency(Product((K_3, both)))))
+            lines.append(Line(free, _frequency(K_3 * (1 / J + 1 / at_output(sheet)))))
         note = Sentence(CANDIDATE["natural_frequency_Hz"].caveat)
         yield step_of_check("natural_frequency", tuple(lines), sheet.compared("natural_frequency", held), (note,))
     yield _position(sheet, K_3)
 
 
 def _frequency(square: Formula) -> Formula:
-    return Quotient(Root(square), Product((Constant(2), PI)))
+    return Root(square) / (2 * PI)
 
 
 def at_output(sheet: Sheet) -> Formula:
     """Inertia of the motor at the output, with the gear's own where it is known."""
     J_m, J_g = known(sheet.given("requirements.motor.inertia_kgm2")), sheet.rating("inertia_kgm2")
-    return Product((Power(sheet.i, Constant(2)), J_m if J_g is None else Sum((J_m, J_g))))
+    return sheet.i**2 * (J_m if J_g is None else J_m + J_g)
 
 
 def _position(sheet: Sheet, K_3: Term) -> Step:
@@ -63,14 +48,14 @@ def _position(sheet: Sheet, K_3: Term) -> Step:
     wind_up, error = known(sheet.figure("wind_up_arcmin")), known(sheet.figure("position_error_arcmin"))
     lowest, highest = (torque.item() for torque in sheet.duty.torque_range_Nm)
     T_lo, T_hi = Term(Variable("T", "lo"), lowest, "Nm"), Term(Variable("T", "hi"), highest, "Nm")
-    span = Product((Quotient(Subtraction(T_hi, T_lo), K_3), ARCMIN))
+    span = (T_hi - T_lo) / K_3 * ARCMIN
     parts: list[Formula] = [known(sheet.rating("transmission_accuracy_arcmin")), span]
     if lowest <= 0 <= highest:
         parts.append(known(sheet.rating("backlash_arcmin")))
-    lines = [Line(wind_up, Product((Quotient(sheet.T_max, K_3), ARCMIN))), Line(error, Sum(tuple(parts)))]
+    lines = [Line(wind_up, sheet.T_max / K_3 * ARCMIN), Line(error, Sum(tuple(parts)))]
     length, radius = sheet.figure("position_error_mm"), sheet.given("requirements.position_radius_mm")
     if length is not None and radius is not None:
-        lines.append(Line(length, Product((Quotient(error, ARCMIN), radius))))
+        lines.append(Line(length, error / ARCMIN * radius))
     torques = Sentence(BOTH_WAYS if sheet.duty.torque_both_ways.item() else BY_SIGN)
     notes = (torques, Sentence(CANDIDATE["position_error_arcmin"].caveat))
     return step_of_check("position_error", tuple(lines), sheet.compared("position_error", error), notes)
@@ -100,19 +85,18 @@ def stop_steps(sheet: Sheet) -> Iterable[Step]:
         Term(Variable("η"), np.asarray(stops.brake.efficiency).item()),
     )
     T_r = Term(Variable("T", "r"), _at_rest(stops.brake, hardest), "Nm")
-    formula: Formula = Product((f, Magnitude(T_r)))
+    formula: Formula = f * abs(T_r)
     if hardest > 0:
-        formula = Sum((formula, Product((Subtraction(f, Constant(1)), T_opp))))
+        formula = formula + (f - 1) * T_opp
     J, lines = sheet.load_inertia, list[Line]()
-    at_motor = Product((sheet.i, T_B))
+    at_motor = sheet.i * T_B
     if J is None or math.isnan(stops.course.time_s.item()):
-        lines.append(Line(T_r, Quotient(at_motor, eta)))
+        lines.append(Line(T_r, at_motor / eta))
     else:
-        loss: Formula = eta if T_r.value >= 0 else Quotient(Constant(1), eta)
+        loss: Formula = eta if T_r.value >= 0 else 1 / eta
         a = Term(Variable("a"), _deceleration(stops.brake, hardest), "rad_per_s2")
-        below = Sum((at_output(sheet), Product((loss, J))))
-        lines.append(Line(a, Quotient(Sum((at_motor, Product((loss, T_opp)))), below)))
-        lines.append(Line(T_r, Subtraction(Product((J, a)), T_opp)))
+        lines.append(Line(a, (at_motor + loss * T_opp) / (at_output(sheet) + loss * J)))
+        lines.append(Line(T_r, J * a - T_opp))
     lines.append(Line(T_k, formula))
     yield Step("stop", BRAKE, None, tuple(lines), (), (UNIFORM, Sentence(HARDEST), *_on_the_factor(sheet, f)))
     if J is not None and sheet.figure("stopping_time_s") is not None:
@@ -151,30 +135,24 @@ def _course(sheet: Sheet, stops: Stops, J: Term, at_motor: Formula, eta: Term) -
     t_r, t_b = known(given("emergency_stop.brake.reaction_time_s")), known(given("emergency_stop.brake.rise_time_s"))
     T_opp = Term(Variable("T", "opp"), lowest, "Nm")
     omega = Term(Variable("ω"), sheet.duty.stop_speed_rpm.item() * math.pi / 30, "rad_per_s")
-    inertia = Sum((J, at_output(sheet)))
+    inertia = J + at_output(sheet)
     c = Term(Variable("c"), lowest / value_of(inertia), "rad_per_s2")
     t_d = Term(Variable("t", "d"), t_r.value + t_b.value / 2, "s")
     slower = Term(Variable("ω", "1"), omega.value - c.value * t_d.value, "rad_per_s")
-    lines = [
-        Line(t_d, Sum((t_r, Quotient(t_b, Constant(2))))),
-        Line(c, Quotient(T_opp, inertia)),
-        Line(slower, Subtraction(omega, Product((c, t_d)))),
-    ]
+    lines = [Line(t_d, t_r + t_b / 2), Line(c, T_opp / inertia), Line(slower, omega - c * t_d)]
     time, angle = known(sheet.figure("stopping_time_s")), known(sheet.figure("stopping_angle_deg"))
-    energy, half = known(sheet.figure("stop_energy_J")), Constant(2)
+    energy = known(sheet.figure("stop_energy_J"))
     if slower.value <= 0:
-        lines = [Line(c, Quotient(T_opp, inertia)), Line(time, Quotient(omega, c))]
-        lines.append(Line(angle, Product((Quotient(Power(omega, half), Product((half, c))), DEGREES))))
+        lines = [Line(c, T_opp / inertia), Line(time, omega / c)]
+        lines.append(Line(angle, omega**2 / (2 * c) * DEGREES))
         return Step("stop_course", STOPPING, None, tuple(lines), (), (Sentence(BY_ITSELF),))
     a = Term(Variable("a"), _deceleration(stops.brake, lowest), "rad_per_s2")
-    below = Sum((at_output(sheet), Product((eta, J))))
-    running = Subtraction(Product((omega, t_d)), Quotient(Product((c, Power(t_d, half))), half))
-    turned = Sum((running, Quotient(Power(slower, half), Product((half, a)))))
+    turned = omega * t_d - c * t_d**2 / 2 + slower**2 / (2 * a)
     lines += [
-        Line(a, Quotient(Sum((at_motor, Product((eta, T_opp)))), below)),
-        Line(time, Sum((t_d, Quotient(slower, a)))),
-        Line(angle, Product((turned, DEGREES))),
-        Line(energy, Quotient(Product((inertia, Power(slower, half))), half)),
+        Line(a, (at_motor + eta * T_opp) / (at_output(sheet) + eta * J)),
+        Line(time, t_d + slower / a),
+        Line(angle, turned * DEGREES),
+        Line(energy, inertia * slower**2 / 2),
     ]
     return Step("stop_course", STOPPING, None, tuple(lines), (), (Sentence(SMALLEST),))
 
