@@ -10,6 +10,7 @@ import numpy as np
 from hpn.catalogue import Catalogue
 from hpn.catalogue.gear import Gear
 from hpn.engine.candidates import Candidate
+from hpn.engine.selection import Selection
 from hpn.physics import equations
 from hpn.words.wording import N_, Quantity, Sentence, listed
 
@@ -229,3 +230,23 @@ def _costs(candidate: Candidate, gear: Gear) -> tuple[float, ...]:
         candidate.motor_peak_torque_Nm,
     )
     return tuple(np.inf if cost is None else cost for cost in costs)
+
+
+# --- Lighter ----------------------------------------------------------------------------------------------------------
+
+
+def lighter_miss(selection: Selection, designation: str | None, gears: Mapping[str, Gear]) -> Candidate | None:
+    """The rejected gear closest to passing among those that are judged and lighter than another; None without one."""
+    weight = _weight(designation, gears)
+    if weight is None:
+        return None
+    for candidate in selection.candidates:
+        own = _weight(candidate.designation, gears)
+        if candidate.status == "unsuitable" and own is not None and own < weight and candidate.is_judged:
+            return candidate
+    return None
+
+
+def _weight(designation: str | None, gears: Mapping[str, Gear]) -> float | None:
+    gear = gears.get(designation or "")
+    return gear.weight_kg if gear else None

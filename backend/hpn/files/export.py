@@ -18,6 +18,7 @@ from hpn.engine.candidates import Candidate
 from hpn.engine.checks import BY_CODE
 from hpn.engine.duty import Duty
 from hpn.engine.selection import Selection
+from hpn.explain.comparison import lighter_miss
 from hpn.physics import equations
 from hpn.words.wording import N_
 
@@ -133,15 +134,12 @@ class Export:
         """Rejected gears beside the reported one that are worth a word: the nearest of those that are lighter, or the
         nearest of all where it fails itself.
         """
+        if self.candidate.status == "suitable":
+            gears = self.figures.by_designation if self.figures else {}
+            lighter = lighter_miss(self.selection, self.candidate.designation, gears)
+            return [lighter] if lighter else []
         rejected = [c for c in self.selection.candidates if c.status == "unsuitable" and c.is_judged]
-        if self.candidate.status != "suitable":
-            return [c for c in rejected if c.designation != self.candidate.designation][:2]
-        weight = self._weight(self.candidate)
-        return [c for c in rejected if weight and (own := self._weight(c)) and own < weight][:1]
-
-    def _weight(self, candidate: Candidate) -> float | None:
-        gear = self.gear(candidate)
-        return gear.weight_kg if gear else None
+        return [c for c in rejected if c.designation != self.candidate.designation][:2]
 
 
 def made_by(maker: str, export: Export, *more: Any, **chosen: Any) -> bytes:

@@ -11,11 +11,10 @@ from hpn.engine.candidates import Candidate
 from hpn.engine.remedy import alternatives_of
 from hpn.engine.selection import Selection
 from hpn.engine.tried import tried
-from hpn.explain.comparison import MOST_PINS, Column, RowGroup, groups_of, undominated
+from hpn.explain.comparison import MOST_PINS, Column, RowGroup, groups_of, lighter_miss, undominated
 from hpn.web.form.form import Form
 from hpn.web.form.given import FieldProblem
 from hpn.web.form.link_writer import to_link
-from hpn.web.pages.result import lighter_miss
 from hpn.words.wording import N_, Sentence
 
 
@@ -66,7 +65,7 @@ class Insight:
 
     def _second(self) -> Candidate | None:
         """The gear to compare with where no other is pinned: the nearest smaller miss, else the next in line."""
-        lighter = lighter_miss(self.selection, self.catalogue.by_designation)
+        lighter = lighter_miss(self.selection, self.selection.selected, self.catalogue.by_designation)
         others = [lighter] if lighter else []
         others += [candidate for candidate in self.selection.candidates if candidate.status != "unrated"]
         if self.chosen.designation != self.selection.foremost.designation:

@@ -4,6 +4,7 @@
 comes along as the field `link`, so that nothing typed is lost on the way.
 """
 
+import dataclasses
 import hashlib
 import re
 from collections.abc import Iterable, Mapping, Sequence
@@ -209,10 +210,7 @@ def choices_of(fields: Mapping[str, str], of: str) -> Choices:
     for name, value in fields.items():
         if place := _PLACE.fullmatch(name):
             said[place[1]][int(place[2])] = value
-    named = {
-        name: fields.get(name, "")
-        for name in ("separator", "phase", "decimal", "times", "last", "totals", "parts", "scales", "rest")
-    }
+    named = {part.name: fields.get(part.name, "") for part in dataclasses.fields(Choices) if part.type is str}
     return Choices(**named, roles=said["r"], units=said["u"])
 
 

@@ -12,6 +12,7 @@ from hpn.engine.candidates import Candidate
 from hpn.engine.checks import BY_CODE, allowed
 from hpn.engine.remedy import Growth, alternatives_of, condition_of, growths_of, remedy_of
 from hpn.engine.selection import Selection
+from hpn.explain.comparison import lighter_miss
 from hpn.explain.drawings import Pictures, Subject
 from hpn.explain.readings import Life, Reading, readings_of, shortest_life
 from hpn.files.export import DIGITS
@@ -124,7 +125,7 @@ class Result:
     @cached_property
     def lighter(self) -> Candidate | None:
         """The nearest miss that is lighter than the selected gear."""
-        return lighter_miss(self.selection, self.gears)
+        return lighter_miss(self.selection, self.selection.selected, self.gears)
 
     @property
     def shortest_life(self) -> Life | None:
@@ -193,23 +194,6 @@ def preview_of(selection: Selection, title: str | None = None) -> Preview:
         parts.append(f"motion of {len(duty.phases)} load phases, load inertia {inertia} kg·m²")
     parts.append(f"{best.designation}: {best.reason.removesuffix('.')}")
     return Preview(f"{title or 'HPN Select'}: {verdict}", ", ".join(parts) + ".")
-
-
-def lighter_miss(selection: Selection, gears: Mapping[str, Gear]) -> Candidate | None:
-    """The rejected gear closest to passing among those that are judged and lighter than the selected one."""
-    weight = _weight(selection.selected, gears)
-    if weight is None:
-        return None
-    for candidate in selection.candidates:
-        own = _weight(candidate.designation, gears)
-        if candidate.status == "unsuitable" and own is not None and own < weight and candidate.is_judged:
-            return candidate
-    return None
-
-
-def _weight(designation: str | None, gears: Mapping[str, Gear]) -> float | None:
-    gear = gears.get(designation or "")
-    return gear.weight_kg if gear else None
 
 
 def _ties(suitable: Sequence[Candidate], rank_by: RankBy) -> tuple[tuple[Candidate, ...], ...]:
