@@ -90,7 +90,7 @@ class DutyCycle(Model):
 
 
 class Brake(Model):
-    """Brake at the motor that stops the axis from uniform running."""
+    """Brake at the motor that stops the axis from constant speed."""
 
     torque_Nm: Positive = Field(description="Largest torque T_B of the brake, at the motor.", examples=[8.0])
     rise_time_s: Seconds = Field(0.0, description="Time t_b in which the brake’s torque rises.", examples=[0.005])
@@ -98,12 +98,11 @@ class Brake(Model):
         0.0, description="Time t_r from the command until the brake’s torque begins to rise.", examples=[0.02]
     )
     speed_rpm: MovingSpeed | None = Field(
-        None, description="Output speed n_b at the command; without it the largest of the cycle.", examples=[250.0]
+        None, description="Output speed n_b at the command; by default the largest of the cycle.", examples=[250.0]
     )
     dynamic_factor: Annotated[Number, Field(ge=1, le=10)] | None = Field(
         None,
-        description="Peak over steady torque of the stop; without it 2, or less where the rise time and the inertias "
-        "say so.",
+        description="Peak over steady torque of the stop; by default 2, or less with the rise time and both inertias.",
         examples=[2.0],
     )
 
@@ -135,10 +134,12 @@ class Application(Model):
 
     duty_cycle: DutyCycle = Field(description="Load phases and pause of the axis.")
     emergency_stop: EmergencyStop | None = Field(None, description="Emergency stop, where there is one.")
-    output_load: OutputLoad | None = Field(None, description="Load on the output shaft and what its bearing must last.")
+    output_load: OutputLoad | None = Field(
+        None, description="Load on the output shaft and the required life of its bearing."
+    )
     requirements: Requirements = Field(default_factory=Requirements, description="Requirements on the gear.")
     application_area: ApplicationArea | None = Field(
-        None, description="An area of use that needs the maker’s risk assessment and approval (handbook 2.4)."
+        None, description="An area of use that needs a risk assessment and the manufacturer’s approval (handbook 2.4)."
     )
     rank_by: RankBy = Field("weight", description="Order of the suitable gears.")
 

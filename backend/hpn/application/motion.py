@@ -153,7 +153,7 @@ class LinearMotion(_Motion):
     """Moves of a mass along a line."""
 
     mechanism: Annotated[LinearMechanism, BeforeValidator(_as_linear)] = Field(
-        description="Mechanism that turns the gear’s rotation into a way.", json_schema_extra=one_of
+        description="Mechanism that converts the gear’s rotation into travel.", json_schema_extra=one_of
     )
     moves: Annotated[tuple[Stroke, ...], WrapValidator(in_parts), at_most(MAXIMUM_MOVES)] = Field(
         min_length=1, max_length=MAXIMUM_MOVES, description="Moves in their order, each from rest to rest."

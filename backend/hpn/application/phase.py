@@ -13,27 +13,27 @@ ROOM = 1e-9
 class Phase(Model):
     """One load phase of the duty cycle (handbook, illustration 17.1).
 
-    Where torque or speed vary in a phase, `torque_Nm` is the mean that equation 17.2 weighs, and `speed_rpm` the mean
-    of |n|; the peaks and the RMS are magnitudes, by default those of torque and speed.
+    Where torque or speed vary in a phase, `torque_Nm` is the mean weighted as in equation 17.2, and `speed_rpm` the
+    mean of |n|; the peaks and the RMS are magnitudes, by default those of torque and speed.
     """
 
     torque_Nm: Torque = Field(description="Output torque T; its magnitude counts.", examples=[40.0])
     speed_rpm: Speed = Field(description="Output speed n; 0 is a holding phase.", examples=[250.0])
     duration_s: Duration = Field(description="Duration t of the phase.", examples=[0.3])
     radial_N: Load | None = Field(
-        None, description="Radial load on the shaft centre in this phase; without it the cycle’s.", examples=[500.0]
+        None, description="Radial load on the shaft centre in this phase; by default the cycle’s.", examples=[500.0]
     )
     axial_N: Load | None = Field(
-        None, description="Axial load on the shaft axis in this phase; without it the cycle’s.", examples=[200.0]
+        None, description="Axial load on the shaft axis in this phase; by default the cycle’s.", examples=[200.0]
     )
     peak_torque_Nm: TorqueMagnitude | None = Field(
-        None, description="Largest torque in the phase; without it the phase’s own torque.", examples=[55.0]
+        None, description="Largest torque in the phase; by default the phase’s own torque.", examples=[55.0]
     )
     peak_speed_rpm: SpeedMagnitude | None = Field(
-        None, description="Largest speed in the phase; without it the phase’s own speed.", examples=[500.0]
+        None, description="Largest speed in the phase; by default the phase’s own speed.", examples=[500.0]
     )
     rms_torque_Nm: TorqueMagnitude | None = Field(
-        None, description="RMS of the torque over the phase; without it the phase’s own torque.", examples=[42.0]
+        None, description="RMS of the torque over the phase; by default the phase’s own torque.", examples=[42.0]
     )
     name: Name | None = Field(None, description="Your name for the phase.", examples=["lift"])
 

@@ -36,7 +36,7 @@ class OutputLoad(Model):
     model: BearingModel = Field("linear", description="How the envelope runs between the two published limits.")
     radial_position_mm: Annotated[Number, Field(ge=-1e6, le=1e6)] | None = Field(
         None,
-        description="Where the radial load acts, x from the shaft’s shoulder, outwards positive; without it at the "
+        description="Where the radial load acts, x from the shaft’s shoulder, outwards positive; by default at the "
         "shaft’s centre.",
         examples=[45.0],
     )
@@ -45,8 +45,8 @@ class OutputLoad(Model):
     )
     shaft_centre_mm: Positive | None = Field(
         None,
-        description="Distance x_c from the shoulder to the shaft’s centre, at least; for sizes of which the catalogue "
-        "has none.",
+        description="Distance x_c from the shoulder to the shaft’s centre, at least; for sizes without one in the "
+        "catalogue.",
         examples=[21.0],
     )
 
@@ -62,7 +62,7 @@ class Motor(Model):
     peak_torque_Nm: Positive | None = Field(None, description="Peak motor torque.", examples=[20.0])
     rated_torque_Nm: Positive | None = Field(None, description="Continuous motor torque.", examples=[8.0])
     rated_speed_rpm: Positive | None = Field(
-        None, description="Rated motor speed, which the average speed keeps within.", examples=[3000.0]
+        None, description="Rated motor speed, the limit of the average speed.", examples=[3000.0]
     )
     inertia_kgm2: Positive | None = Field(
         None,

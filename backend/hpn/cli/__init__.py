@@ -99,9 +99,9 @@ def _parser() -> argparse.ArgumentParser:
     serve.add_argument("--host", help="address to listen on, instead of HPN_HOST")
     serve.add_argument("--port", type=_number, help="port to listen on, instead of HPN_PORT")
     serve.add_argument("--workers", type=_number, help="number of processes, instead of HPN_WORKERS")
-    commands.add_parser("database", help="bring the database up to date, and check that it can be saved in")
+    commands.add_parser("database", help="update the database, and check that saving works")
     key = commands.add_parser("key", help="make an API key")
-    key.add_argument("name", help="who gets it; the logs name it")
+    key.add_argument("name", help="owner of the key, as in the logs")
     return parser
 
 
@@ -116,9 +116,7 @@ def _add_fleet(fleet: argparse.ArgumentParser) -> None:
     )
     fleet.add_argument("--axes", type=Path, metavar="FILE", help="the other columns, where a row of INPUT is a phase")
     fleet.add_argument("--candidates", type=Path, metavar="FILE", help="write every candidate of every axis")
-    fleet.add_argument(
-        "--rejected", type=Path, metavar="FILE", help="write what is wrong with axes that have no answer"
-    )
+    fleet.add_argument("--rejected", type=Path, metavar="FILE", help="write the faults of axes that have no answer")
     fleet.add_argument(
         "--ignore",
         metavar="NAME",

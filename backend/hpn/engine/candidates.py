@@ -53,7 +53,7 @@ class Reserve(Reply, frozen=True):
 
 
 class Candidate(Reply, frozen=True):
-    """One gear, its verdict and why."""
+    """One gear with its verdict and the reason."""
 
     __pydantic_config__ = described(CANDIDATE)
 

@@ -49,7 +49,7 @@ class DutyFigures(Reply, frozen=True, omit_defaults=True):
     average_output_speed_rpm: float
     maximum_torque_Nm: float
     maximum_output_speed_rpm: float
-    phases: Annotated[tuple[PhaseFigures, ...], Field(description="Load phases that the motion comes to.")] = ()
+    phases: Annotated[tuple[PhaseFigures, ...], Field(description="Load phases that result from the motion.")] = ()
     load_inertia_kgm2: Annotated[
         float | None, Field(description="Moment of inertia of the motion’s load at the gear’s output.")
     ] = None
@@ -61,7 +61,7 @@ class CheckDefinition(Reply, frozen=True):
     title: Annotated[str, Field(description="Name of the check.")]
     equation: Annotated[str | None, Field(description="Number of the handbook’s equation, where it has one.")]
     unit: Annotated[str, Field(description="Unit of demand and limit; empty for a pure number.")]
-    kind: Annotated[Kind, Field(description="Which way the limit bounds the demand.")]
+    kind: Annotated[Kind, Field(description="Kind of limit: maximum or minimum of the demand.")]
     group: Annotated[
         Group,
         Field(description="Load checks count in the candidate’s utilisation; property checks only where they fail."),
@@ -70,8 +70,8 @@ class CheckDefinition(Reply, frozen=True):
     source: Annotated[str, Field(description="Where the limit comes from.")] = ""
     tests: Annotated[str, Field(description="Condition that is checked.")] = ""
     consequence: Annotated[str, Field(description="Consequence of exceeding the limit.")] = ""
-    basis: Annotated[str, Field(description="On which basis it stands.")] = ""
-    remedy: Annotated[str, Field(description="Change that helps.")] = ""
+    basis: Annotated[str, Field(description="Basis of the limit.")] = ""
+    remedy: Annotated[str, Field(description="Suggested change.")] = ""
 
 
 LINK = (
@@ -90,7 +90,7 @@ class Selection(Reply, frozen=True):
     selected: Annotated[str | None, Field(description="Designation of the first suitable candidate, or null.")]
     candidates: Annotated[tuple[Candidate, ...], Field(min_length=1, description="Every gear considered, best first.")]
     check_definitions: Annotated[dict[str, CheckDefinition], Field(description="Definitions by check code.")]
-    notices: Annotated[tuple[Notice, ...], Field(description="Assumptions and standings.")]
+    notices: Annotated[tuple[Notice, ...], Field(description="Assumptions and remarks.")]
 
     @property
     def foremost(self) -> Candidate:

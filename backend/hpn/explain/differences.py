@@ -48,7 +48,7 @@ class Difference(Reply, frozen=True):
         ),
     ]
     kind: Annotated[Kind, Field(description="Verdicts come first, then figures, then texts.")]
-    change: Annotated[Change, Field(description="Whether both have the field, or only one.")]
+    change: Annotated[Change, Field(description="Field of both replies, or of only one.")]
     candidate: Annotated[str | None, Field(description="Designation of the candidate it belongs to.")]
     check: Annotated[str | None, Field(description="Code of the check it belongs to.")]
     field: Annotated[str, Field(description="Name of the field.")]
@@ -57,8 +57,8 @@ class Difference(Reply, frozen=True):
     cause: Annotated[
         Literal["tie_rule"] | None,
         Field(
-            description="Why a verdict differs though no figure does: gears or checks tie, and an earlier version let "
-            "the last bit of a number decide."
+            description="Reason for a verdict that differs where no figure does: gears or checks tie, and an earlier "
+            "version let the last bit of a number decide."
         ),
     ] = None
 
@@ -206,7 +206,7 @@ class FigureDifference(Reply, frozen=True):
     field: Annotated[
         str, Field(description="Name of the figure in the catalogue; designation where only one has the gear or motor.")
     ]
-    saved: Annotated[Any, Field(description="Figure in the catalogue of then; null where it was not published.")]
+    saved: Annotated[Any, Field(description="Figure in the catalogue of that time; null where it was not published.")]
     today: Annotated[Any, Field(description="Figure in today’s catalogue; null where it is not published.")]
 
 

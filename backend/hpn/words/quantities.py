@@ -53,7 +53,7 @@ INPUTS: Mapping[str, Named] = {
     "emergency_stop.brake.torque_Nm": Named(N_("Brake torque"), "T_B"),
     "emergency_stop.brake.rise_time_s": Named(N_("Rise time of the brake"), "t_b"),
     "emergency_stop.brake.reaction_time_s": Named(N_("Reaction time"), "t_r"),
-    "emergency_stop.brake.speed_rpm": Named(N_("Speed at the command"), "n_b"),
+    "emergency_stop.brake.speed_rpm": Named(N_("Speed at the stop command"), "n_b"),
     "emergency_stop.brake.dynamic_factor": Named(N_("Dynamic factor"), "f"),
     "output_load.radial_N": Named(N_("Radial load of the cycle"), "F_R"),
     "output_load.axial_N": Named(N_("Axial load of the cycle"), "F_A"),
@@ -108,7 +108,7 @@ PHASE: Mapping[str, Named] = {
     for (name, named), sentence in zip(
         INPUTS.items(),
         (
-            "Mean torque that equation 17.2 weighs, with the torque’s sign.",
+            "Mean torque weighted as in equation 17.2, with the torque’s sign.",
             "Mean speed, with the direction of the motion.",
             "Duration.",
             "Radial load; left out where the move has none.",
@@ -134,7 +134,7 @@ CANDIDATE: Mapping[str, Named] = {
         N_("Utilisation"), "", "Largest utilisation of the load checks and of failing property checks."
     ),
     "governing_check": Named(N_("Governing check"), "", "Code of the check with that utilisation."),
-    "reason": Named(N_("Reason"), "", "Why the candidate stands where it does."),
+    "reason": Named(N_("Reason"), "", "Reason for the candidate’s status."),
     "average_input_speed_rpm": Named(N_("Average input speed"), "n_in,av", "Average input speed.", "17.5"),
     "maximum_input_speed_rpm": Named(N_("Maximum input speed"), "n_in,max", "Maximum input speed.", "17.6"),
     "life_L10_h": Named(
@@ -200,12 +200,12 @@ CANDIDATE: Mapping[str, Named] = {
     "position_error_mm": Named(
         N_("Position error at the radius"),
         "s_e",
-        "The same as a length at the radius that is asked for; null without one.",
+        "The same as a length at the given radius; null without one.",
     ),
     "stop_torque_Nm": Named(
         N_("Torque of the emergency stop"),
         "T_k",
-        "Torque of the gear in an emergency stop: as it is given, else that of the brake.",
+        "Torque of the gear in an emergency stop: as given, else from the brake.",
     ),
     "stopping_time_s": Named(
         N_("Stopping time"), "t_stop", "Time from the command to rest; null without both inertias, and without a brake."
@@ -214,21 +214,21 @@ CANDIDATE: Mapping[str, Named] = {
         N_("Stopping angle"), "φ_stop", "Angle that the output turns from the command to rest; null likewise."
     ),
     "stopping_distance_mm": Named(
-        N_("Stopping distance"), "s_stop", "The same as a length at the radius that is asked for; null without one."
+        N_("Stopping distance"), "s_stop", "The same as a length at the given radius; null without one."
     ),
     "stop_energy_J": Named(N_("Energy of one stop"), "E", "Energy that the brake takes in one stop; null likewise."),
     "end_stop_speed_rpm": Named(
         N_("Speed into an end stop"),
         "n_end",
-        "Output speed from which a load that meets an end stop brings the gear to T_M; shown, not judged.",
+        "Output speed from which a load that meets an end stop brings the gear to T_M; shown, not checked.",
     ),
     "motor_lock_speed_rpm": Named(
-        N_("Speed of a locked motor"),
+        N_("Speed with a locked motor"),
         "n_lock",
-        "Output speed from which a motor that locks brings the gear to T_M; shown, not judged.",
+        "Output speed from which a motor that locks brings the gear to T_M; shown, not checked.",
     ),
     "reserve": Named(N_("Reserve"), "", "Reserve per driver, the other inputs as given."),
-    "checks": Named(N_("Checks"), "", "Every check that was asked for, in a fixed order."),
+    "checks": Named(N_("Checks"), "", "Every required check, in a fixed order."),
 }
 
 LISTED: Mapping[str, Named] = {
@@ -257,7 +257,8 @@ RESERVE: Mapping[str, Named] = {
     "load_inertia_kgm2": Named(
         N_("Largest inertia of the load"),
         "J_L",
-        "Largest inertia of the load with which natural frequency and inertia ratio pass; null where neither is asked.",
+        "Largest inertia of the load with which natural frequency and inertia ratio pass; null where neither is "
+        "required.",
     ),
 }
 
@@ -296,14 +297,12 @@ GEAR: Mapping[str, Named] = {
     "shaft_centre_mm": Named(
         N_("Shoulder to shaft’s centre"),
         "x_c",
-        "Distance from the shaft’s shoulder to its centre; from a supplement alone.",
+        "Distance from the shaft’s shoulder to its centre; only from a supplement.",
     ),
     "inertia_kgm2": Named(
-        N_("Inertia at the input"), "J_g", "Moment of inertia of the gear at its input; from a supplement alone."
+        N_("Inertia at the input"), "J_g", "Moment of inertia of the gear at its input; only from a supplement."
     ),
-    "no_load_torque_Nm": Named(
-        N_("No-load torque"), "T_0", "Torque at the input without load; from a supplement alone."
-    ),
+    "no_load_torque_Nm": Named(N_("No-load torque"), "T_0", "No-load torque at the input; only from a supplement."),
     "ambient_temperature_minimum_degC": Named(N_("Lowest ambient temperature"), "t_min", "Lowest ambient temperature."),
     "ambient_temperature_maximum_degC": Named(
         N_("Highest ambient temperature"), "t_max", "Highest ambient temperature."
@@ -316,7 +315,7 @@ GEAR: Mapping[str, Named] = {
     "length_max_mm": Named(N_("Longest length"), "L_max", "Longest length L; it depends on the motor."),
     "clamp_bolts": Named(N_("Motor coupling bolt"), "", "Bolts of the motor coupling."),
     "housing_bolts": Named(N_("Housing bolts"), "", "Bolts of the housing flange."),
-    "note": Named(N_("Note"), "", "Peculiarity of the size."),
+    "note": Named(N_("Note"), "", "Note on the size."),
     "sources": Named(N_("Source"), "", "Where each figure comes from, by field name."),
 }
 

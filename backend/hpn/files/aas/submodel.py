@@ -50,7 +50,7 @@ GENERAL_INFORMATION = {
 """Elements of the template and their semantic ids, as the template of IDTA gives them."""
 
 ARTICLE_NUMBER = {
-    "en": "Designation of the gear: the maker’s engineering data print no article number.",
+    "en": "Designation of the gear: the manufacturer’s engineering data print no article number.",
     "de": "Bezeichnung des Getriebes: Die Projektierungsunterlagen des Herstellers nennen keine Artikelnummer.",
 }
 ORDER_CODE = {
@@ -166,7 +166,10 @@ def _technical_properties(export: Export) -> model.SubmodelElementCollection:
 
 def _further_information(export: Export) -> model.SubmodelElementCollection:
     statement = {
-        "en": "Figures of the maker’s engineering data, written by an independent tool; not a statement of the maker.",
+        "en": (
+            "Figures of the manufacturer’s engineering data, written by an independent tool; not a statement of the "
+            "manufacturer."
+        ),
         "de": "Angaben aus den Projektierungsunterlagen des Herstellers, von einem unabhängigen Werkzeug geschrieben; "
         "keine Aussage des Herstellers.",
     }

@@ -198,7 +198,7 @@ class BallScrew(Linear):
     """A ball screw."""
 
     type: Literal["ball_screw"] = Field(description="Kind of mechanism.", examples=["ball_screw"])
-    lead_mm: Positive = Field(description="Lead of the screw: way per turn.", examples=[10.0])
+    lead_mm: Positive = Field(description="Lead of the screw: travel per turn.", examples=[10.0])
 
     @property
     def radius_mm(self) -> float:

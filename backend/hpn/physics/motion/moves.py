@@ -49,7 +49,7 @@ class Move(Model):
     SPEED_UNIT: ClassVar[float]
     """Units of way per second in one unit of speed."""
 
-    profile: Profile = Field(description="Course of the speed.", examples=["trapezoidal"])
+    profile: Profile = Field(description="Speed profile.", examples=["trapezoidal"])
     time_s: MoveTime | None = Field(None, description="Time of the move.", examples=[0.8])
     jerk_share: Share | None = Field(
         None,
@@ -63,10 +63,10 @@ class Move(Model):
         None, description="Time of the last ramp; without it and its deceleration that of the first.", examples=[0.4]
     )
     radial_N: Load | None = Field(
-        None, description="Radial load on the gear’s shaft in this move; without it the cycle’s.", examples=[500.0]
+        None, description="Radial load on the gear’s shaft in this move; by default the cycle’s.", examples=[500.0]
     )
     axial_N: Load | None = Field(
-        None, description="Axial load on the gear’s shaft in this move; without it the cycle’s.", examples=[200.0]
+        None, description="Axial load on the gear’s shaft in this move; by default the cycle’s.", examples=[200.0]
     )
     name: Name | None = Field(None, description="Your name for the move.", examples=["lift"])
 

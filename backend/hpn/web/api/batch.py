@@ -54,7 +54,7 @@ router = APIRouter(prefix="/api/v1", tags=["Selection"], dependencies=[admit("ba
     responses=schemas.batch_answers(400, 408, 413, 415, 422),
 )
 async def select_batch(request: Request) -> Response:
-    """One line per application; one with errors never fails its neighbours.
+    """One line per application; an error in one never affects the others.
 
     As JSON up to 10000 applications; as newline-delimited JSON any number, answered while they still arrive.
     """

@@ -16,7 +16,7 @@ from hpn.web.form.link_writer import to_link
 
 SUMMARIES = {
     "worked_example": "The handbook’s worked example",
-    "no_duration": "The same, its first phase lasting 0 s",
+    "no_duration": "The same with a first phase of 0 s",
     "two_lines": "Two axes, one of them without a duty cycle",
     "first_gear": "The smallest gear",
     "first_size": "The smallest size at the published condition",

@@ -65,18 +65,18 @@ async def size(
     give: Annotated[
         Kind,
         Query(
-            description="Which table: the answers, a row for each axis; the rejected, a row for each fault of an axis; "
-            "or the candidates, a row for each gear that an axis allows."
+            description="Table to return: the answers, a row for each axis; the rejected, a row for each fault of an "
+            "axis; or the candidates, a row for each gear that an axis allows."
         ),
     ] = "answers",
     ignore: Annotated[
         list[Annotated[str, Query(max_length=MOST_NAME)]],
-        Query(description="Columns that no application has, and that are left out.", max_length=MOST_IGNORED),
+        Query(description="Columns to leave out, since no application has them.", max_length=MOST_IGNORED),
     ] = [],  # noqa: B006
 ) -> Response:
-    """A row for each axis, in its order; one with faults has an error and never fails its neighbours.
+    """A row for each axis, in its order; an error in one never affects the others.
 
-    As one table with a row for each axis, or as a form with a table of phases and one of what else is given of each
+    As one table with a row for each axis, or as a form with a table of phases and one of the other inputs of each
     axis. The answer is a table in the format of the input (Arrow’s file format for a stream, CSV for CSV in gzip), and
     comes when it is complete. Index columns that pandas wrote are ignored, and named in `HPN-Ignored-Columns`.
     """

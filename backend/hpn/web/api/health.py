@@ -29,15 +29,15 @@ class Readiness(Health):
     spool: str = Field(description="ok while files of fleets and streamed batches can be kept.", examples=["ok"])
 
 
-@router.get("/healthz", operation_id="getHealth", summary="Is the process alive")
+@router.get("/healthz", operation_id="getHealth", summary="Liveness")
 async def healthz() -> Health:
     """The process answers."""
     return Health(status="ok")
 
 
-@router.get("/readyz", operation_id="getReadiness", summary="Is the service ready", responses=problems(503))
+@router.get("/readyz", operation_id="getReadiness", summary="Readiness", responses=problems(503))
 async def readyz(request: Request) -> Readiness:
-    """The catalogue is loaded; that selections and files can be kept is tried at most once a second; else 503."""
+    """The catalogue is loaded, and selections and files can be saved (tried at most once a second); else 503."""
     catalogue = request.app.state.catalogue
     await request.app.state.store.check(catalogue)
     await request.app.state.spool.check()

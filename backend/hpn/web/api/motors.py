@@ -43,7 +43,7 @@ async def motors(request: Request) -> Response:
     responses=schemas.answers(400, 404, 408, 413, 415, 422),
 )
 async def motors_of_gear(request: Request, designation: schemas.Designation) -> Response:
-    """How far each motor of motors.csv is used on a gear under an application, in place of the application’s own."""
+    """Utilisation of each motor of motors.csv, in place of the application’s own, on a gear under an application."""
     state: State = request.app.state
     gear = gear_named(designation, state.catalogue)
     body = await read_body(request)

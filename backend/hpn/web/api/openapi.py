@@ -23,15 +23,15 @@ from hpn.web.settings import RouteGroup, Settings
 from hpn.words.units import suffix_of, symbol_of
 
 TAGS = [
-    {"name": "Selection", "description": "Which gear fits an application, for one or for many."},
+    {"name": "Selection", "description": "Gear selection for one application or for many."},
     {"name": "Catalogue", "description": "Published figures of the gears, each with its source."},
-    {"name": "Motors", "description": "The user’s own motors, and how far each is used on a gear."},
-    {"name": "Saved selections", "description": "Selections that last: save, list, read with what differs, delete."},
+    {"name": "Motors", "description": "The user’s own motors, and the utilisation of each on a gear."},
+    {"name": "Saved selections", "description": "Saved selections: save, list, read with differences, delete."},
     {"name": "Files", "description": "Report, workbook and Asset Administration Shell of a selection."},
     {"name": "Service", "description": "State of the service."},
 ]
 
-SERVERS = [{"url": "/", "description": "The service that has sent this document."}]
+SERVERS = [{"url": "/", "description": "This service."}]
 
 KEY_SCHEMES = {
     "bearer": {"type": "http", "scheme": "bearer", "description": "A key of the service, where it has keys."},

@@ -44,7 +44,7 @@ class FieldError(Reply, frozen=True):
 
     pointer: Annotated[str, Field(description="JSON pointer to the field.")]
     code: Annotated[str, Field(description="Kind of the fault, for programs.")]
-    detail: Annotated[str, Field(description="Value or form that would be right.")]
+    detail: Annotated[str, Field(description="Expected value or form.")]
 
 
 class ProblemReply(Reply, frozen=True, omit_defaults=True):
@@ -53,20 +53,18 @@ class ProblemReply(Reply, frozen=True, omit_defaults=True):
     type: Annotated[str, Field(description="Kind of problem: address of a page with its cause and remedy.")]
     title: Annotated[str, Field(description="Name of the kind.")]
     status: Annotated[int, Field(description="HTTP status.")]
-    detail: Annotated[str, Field(description="Error, and the value or form that would be right.")]
+    detail: Annotated[str, Field(description="Error, with the expected value or form.")]
     errors: (
-        Annotated[
-            list[FieldError], Field(min_length=1, max_length=MAXIMUM_ERRORS, description="The fields it is about.")
-        ]
+        Annotated[list[FieldError], Field(min_length=1, max_length=MAXIMUM_ERRORS, description="The fields at fault.")]
         | UnsetType
     ) = UNSET
 
 
 class BatchLine(Reply, frozen=True):
-    """Result of one item: its answer in brief, or why it has none."""
+    """Result of one item: its answer in brief, or the problem."""
 
     reference: Annotated[str | None, Field(description="The item’s own reference.")]
-    status: Annotated[Literal["ok", "error"], Field(description="Whether the item could be evaluated.")]
+    status: Annotated[Literal["ok", "error"], Field(description="Outcome of the item.")]
     selected: Annotated[str | None, Field(description="Designation of the selected gear, or null.")] | UnsetType = UNSET
     governing_check: (
         Annotated[str | None, Field(description="Check that is closest to its limit on that gear.")] | UnsetType
@@ -74,7 +72,7 @@ class BatchLine(Reply, frozen=True):
     utilisation: Annotated[float | None, Field(description="Utilisation of that check.")] | UnsetType = UNSET
     suitable: Annotated[int, Field(description="Number of suitable gears.")] | UnsetType = UNSET
     link: Annotated[str, Field(description=LINK)] | UnsetType = UNSET
-    problem: Annotated[ProblemReply, Field(description="Why the item could not be evaluated.")] | UnsetType = UNSET
+    problem: Annotated[ProblemReply, Field(description="Reason for an item without a result.")] | UnsetType = UNSET
 
     @property
     def verdict(self) -> str:
@@ -107,11 +105,13 @@ class MotorUseReply(Reply, frozen=True):
     """One of the user’s own motors on a gear."""
 
     motor: Annotated[ListedMotor, Field(description="The motor.")]
-    fits: Annotated[bool, Field(description="Whether it passes every check of the motor whose figures are known.")]
+    fits: Annotated[bool, Field(description="True if it passes every check of the motor whose figures are known.")]
     governing_check: Annotated[str, Field(description="Check of the motor that is closest to its limit.")]
     utilisations: Annotated[
         Mapping[str, float],
-        Field(description="Demand over limit by check of the motor, as `POST /api/v1/select` has it with this motor."),
+        Field(
+            description="Demand over limit for each check of the motor, as in `POST /api/v1/select` with this motor."
+        ),
     ]
     inertia_ratio: Annotated[
         float | None,
@@ -127,8 +127,8 @@ class MotorsOnGearReply(Reply, frozen=True):
     motors: Annotated[
         list[MotorUseReply],
         Field(
-            description="Every motor of motors.csv that has a figure which is checked; where an inertia ratio is "
-            "required, every one of which the inertia is listed."
+            description="Every motor of motors.csv with a figure that is checked; where an inertia ratio is required, "
+            "every one with an inertia."
         ),
     ]
 
@@ -153,7 +153,7 @@ class EnvelopeReply(Reply, frozen=True):
         list[EnvelopeCurve], Field(min_length=3, max_length=4, description="One curve per load coefficient.")
     ]
     sources: Annotated[
-        dict[str, str], Field(description="Where its limits come from, or its points; says what a user supplied.")
+        dict[str, str], Field(description="Source of its limits or points; marks those that a user supplied.")
     ]
 
 
@@ -198,10 +198,10 @@ class SummaryReply(Reply, frozen=True):
 
 
 class SelectionListReply(Reply, frozen=True):
-    """Part of the list of saved selections, newest first."""
+    """Page of the list of saved selections, newest first."""
 
     selections: Annotated[list[SummaryReply], Field(max_length=SELECTIONS_LISTED, description="Saved selections.")]
-    next_cursor: Annotated[str | None, Field(description="Cursor of the next part; null at the end.")]
+    next_cursor: Annotated[str | None, Field(description="Cursor of the next page; null at the end.")]
 
 
 class TodayReply(Reply, frozen=True):
@@ -215,7 +215,7 @@ class TodayReply(Reply, frozen=True):
         Annotated[list[FigureDifference], MOST] | None,
         Field(
             description="Published figures of the candidates that differ, the first 500; null where the catalogue of "
-            "then is not kept."
+            "that time is not kept."
         ),
     ]
     problem: Annotated[
@@ -233,9 +233,9 @@ class SavedSelectionReply(SummaryReply, frozen=True):
     gear: Annotated[
         Gear | None,
         Field(
-            description="Published figures of the first candidate in the catalogue of then; null where that is not "
-            "kept."
+            description="Published figures of the first candidate in the catalogue of that time; null where that is "
+            "not kept."
         ),
     ]
-    result: Annotated[Selection, Field(description="The reply it got, whole.")]
+    result: Annotated[Selection, Field(description="The complete reply.")]
     today: Annotated[TodayReply, Field(description="Differences today.")]

@@ -56,7 +56,7 @@ def fleet_body(media_types: Iterable[str]) -> dict[str, Any]:
                 **table,
                 "description": "Axes in list form, or phases: a row for each, those of an axis together.",
             },
-            "axes": {**table, "description": "Where `input` has phases: a row for each axis with what else is given."},
+            "axes": {**table, "description": "Where `input` has phases: a row for each axis with its other inputs."},
         },
         "required": ["input"],
         "additionalProperties": False,
@@ -69,20 +69,20 @@ def fleet_body(media_types: Iterable[str]) -> dict[str, Any]:
 
 HEADERS = {
     "X-Request-ID": "Id of the request, as in the log of the service.",
-    "RateLimit": "Rest of the rate, and when it begins anew; where there is a rate.",
-    "RateLimit-Policy": "How many requests are allowed in how many seconds; where there is a rate.",
-    "Retry-After": "Seconds after which to come again.",
+    "RateLimit": "Requests left and seconds until the rate starts again; where there is a rate.",
+    "RateLimit-Policy": "Requests allowed in a number of seconds; where there is a rate.",
+    "Retry-After": "Seconds to wait before the next request.",
     "Accept-Encoding": "identity, where the body was refused because it is compressed.",
     "WWW-Authenticate": "Kind of key that is needed.",
     "ETag": "Tag of this state, for If-None-Match and If-Match.",
     "Allow": "Methods that there are at this address.",
-    "Location": "Address of what was saved, or where to ask instead.",
+    "Location": "Address of the saved selection, or the address to use instead.",
     "Idempotency-Replayed": "true, where this answers for what the same Idempotency-Key saved before.",
-    "Link": "Address of the part that follows, rel=next; none at the end.",
-    "Preference-Applied": "Which preference of `Prefer` was followed.",
+    "Link": "Address of the next page, rel=next; none at the end.",
+    "Preference-Applied": "Preference of `Prefer` that was applied.",
     "Content-Disposition": "File name for a download.",
     "Content-Language": "Language of the file.",
-    "HPN-Ignored-Columns": "Index columns of pandas that were ignored, in quotes and percent-encoded; where there are.",
+    "HPN-Ignored-Columns": "Index columns of pandas that were ignored, in quotes and percent-encoded; if any.",
 }
 """Headers of responses, and what they say; components of the document."""
 
@@ -133,7 +133,7 @@ GUARDED = problems(401, 414, 421, 429, 503)
 """OpenAPI entries of what a route that is not open to all may answer for its keys, query, host, rate and service."""
 
 HAS_IT_ALREADY: dict[int | str, dict[str, Any]] = {
-    304: {"description": "The client has it already.", "headers": headers("ETag")}
+    304: {"description": "The client has the current version.", "headers": headers("ETag")}
 }
 DELETED: dict[int | str, dict[str, Any]] = {204: {"description": "It is deleted."}}
 
@@ -193,7 +193,7 @@ FROM_LIST = {
     "listSelections": {
         "operationId": "listSelections",
         "parameters": {"cursor": "$response.body#/next_cursor"},
-        "description": "The part that follows.",
+        "description": "The next page.",
     },
 }
 
@@ -201,7 +201,7 @@ FROM_LIST = {
 # --- Requests ---------------------------------------------------------------------------------------------------------
 
 
-Id = Annotated[str, Path(description="Identifier that saving answered with.")]
+Id = Annotated[str, Path(description="Id from the reply to saving.")]
 Designation = Annotated[str, Path(description="Designation in any of the printed spellings, such as HPN-20A-5.")]
 Size = Annotated[str, Path(description="Size, such as 20A.")]
 
@@ -211,4 +211,6 @@ def header(name: str, description: str) -> dict[str, Any]:
     return {"name": name, "in": "header", "required": False, **_text(description)}
 
 
-IF_NONE_MATCH = {"parameters": [header("If-None-Match", "Tag of the state that the client has: 304 if it is that.")]}
+IF_NONE_MATCH = {
+    "parameters": [header("If-None-Match", "Tag of the version that the client has: 304 if it is current.")]
+}

@@ -26,7 +26,7 @@ router = APIRouter(prefix="/api/v1", tags=["Selection"], dependencies=[admit("ca
     responses=schemas.answers(400, 408, 413, 415, 422),
 )
 async def select_one(request: Request) -> Response:
-    """Evaluates every size and ratio, ranks the candidates, and says why each stands where it does."""
+    """Evaluates every size and ratio, ranks the candidates, and gives the reason for each status."""
     state: State = request.app.state
     body = await read_body(request)
     selected, reply = await calculate(request, body, _reply, body, state)

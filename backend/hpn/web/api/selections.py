@@ -133,7 +133,7 @@ def _draft(body: bytes, catalogue: Catalogue, key: str | None, owner: str | None
     responses=schemas.tagged(404, 422, links=schemas.FROM_SELECTION),
 )
 async def read_selection(request: Request, id: schemas.Id) -> Response:
-    """Input and result as saved, and what today's engine and catalogue say differently, verdicts first."""
+    """Input and result as saved, and the differences under today's engine and catalogue, verdicts first."""
     return conditional(request, *await _representation(request, id))
 
 
@@ -154,10 +154,10 @@ async def list_selections(
         Line | None,
         Query(description="Only those with each of these words in title, reference, author, gear or ordering code."),
     ] = None,
-    cursor: Annotated[str | None, Query(max_length=200, description="From an earlier part of the list.")] = None,
-    limit: Annotated[int, Query(ge=1, le=SELECTIONS_LISTED, description="How many at most.")] = 50,
+    cursor: Annotated[str | None, Query(max_length=200, description="Cursor from the page before.")] = None,
+    limit: Annotated[int, Query(ge=1, le=SELECTIONS_LISTED, description="Largest number on a page.")] = 50,
 ) -> Response:
-    """Saved selections, newest first; the Link header leads to the next part."""
+    """Saved selections, newest first; the Link header gives the next page."""
     store: Store = request.app.state.store
     try:
         page = await store.page(reference=reference, search=search, cursor=cursor, limit=limit)
@@ -178,7 +178,7 @@ async def list_selections(
     operation_id="renameSelection",
     summary="Rename a saved selection",
     openapi_extra=schemas.request_body(Names, JSON, MERGE_PATCH)
-    | {"parameters": [schemas.header("If-Match", "Rename only this state of it.")]},
+    | {"parameters": [schemas.header("If-Match", "Tag of the version to rename.")]},
     response_model=SavedSelectionReply,
     responses=schemas.answers(*(400, 403, 404, 408, 412, 413, 415, 422), headers=schemas.headers("ETag")),
 )
@@ -207,10 +207,10 @@ async def rename_selection(request: Request, id: schemas.Id) -> Response:
     summary="Delete a saved selection",
     status_code=204,
     responses=schemas.DELETED | schemas.problems(403, 404, 412, 422),
-    openapi_extra={"parameters": [schemas.header("If-Match", "Delete only this state of it.")]},
+    openapi_extra={"parameters": [schemas.header("If-Match", "Tag of the version to delete.")]},
 )
 async def delete_selection(request: Request, id: schemas.Id) -> Response:
-    """Deletes a saved selection for good. A retry of saving it, with its Idempotency-Key, is then answered with 410.
+    """Deletes a saved selection permanently. A retry of saving it, with its Idempotency-Key, is then answered with 410.
 
     Where the service has API keys, a key deletes what it has saved, and the one named `admin` deletes any.
     """

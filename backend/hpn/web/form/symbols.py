@@ -328,7 +328,7 @@ GROUPS = (
     ),
     FormGroup(
         "lever",
-        N_("Place of the loads, belt"),
+        N_("Load positions, belt"),
         ("xR", "yA", "xc"),
         hint=N_("Radial at the shaft’s centre, axial along its axis, unless given below."),
     ),
