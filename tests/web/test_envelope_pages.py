@@ -162,4 +162,4 @@ def test_a_load_beside_the_shafts_centre_stands_with_what_it_counts_there(client
         " ", "\u202f"
     )
     assert re.search(r'<span class="percent"[^>]*>71\u202f%', part)
-    assert "counts there by an upper bound" in part and "can’t be judged" not in part
+    assert "counts as an upper bound" in part and "can’t be judged" not in part
