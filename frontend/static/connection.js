@@ -52,7 +52,7 @@ document.addEventListener("htmx:before:swap", (event) => {
   if (response.headers.get("content-type")?.startsWith("text/html") && response.status < 500) return;
   event.preventDefault();
   const isProblem = response.headers.get("content-type")?.startsWith("application/problem+json");
-  fail(event, "refused", isProblem ? JSON.parse(text).detail : String(response.status));
+  fail(event, "refused", isProblem ? JSON.parse(text).detail : `HTTP ${response.status}.`);
 });
 
 document.addEventListener("htmx:after:swap", (event) => {
@@ -66,7 +66,10 @@ document.addEventListener("htmx:after:swap", (event) => {
 document.addEventListener("htmx:error", (event) => ours(event) && event.detail.ctx.status !== "swapped" && fail(event, "lost"));
 document.addEventListener("htmx:finally:request", (event) => event.detail.ctx === latest && !tries && settle());
 addEventListener("online", () => tries && retry());
-document.addEventListener("click", (event) => event.target.closest("[data-retry]") && retry());
+document.addEventListener("click", ({ target }) => {
+  if (target.closest("[data-retry]")) retry();
+  if (target.closest("[data-goes]")) formOf().querySelector('[aria-invalid="true"]')?.focus();
+});
 
 // A cycle that no address holds would be lost with the page, and so would what nobody has answered.
 let downloading = false;

@@ -87,6 +87,8 @@ def test_wrong_inputs_are_not_saved(visitor: Visitor) -> None:
     expect(torque(page, 1)).to_have_attribute("aria-invalid", "true")
     page.get_by_role("button", name="Save", exact=True).click()
     expect(page.get_by_text("Not saved: first correct the marked inputs.")).to_be_visible()
+    page.get_by_role("button", name="Go to it").click()
+    expect(torque(page, 1)).to_be_focused()
     expect(torque(page, 1)).to_have_value("abc")
 
 
