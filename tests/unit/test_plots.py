@@ -211,6 +211,15 @@ def test_a_reserve_of_ones_own_is_named_and_no_load_within_the_maximum_is_said_n
     assert words(document, catalogue).startswith(said)
 
 
+def test_the_condition_of_the_curves_names_speed_life_basis_and_a_reserve_of_ones_own(catalogue: Catalogue) -> None:
+    load = {"radial_N": 100.0, "life_h": 8000.0, "life_basis": "L10"}
+    plain, reserved = (
+        picture(shown_on(cycle(phase(10, 50), output_load=load, requirements=asked), catalogue)).condition.text
+        for asked in ({}, {"utilisation": 0.8})
+    )
+    assert (plain, reserved) == ("50 rpm, 8000 h, L10", "50 rpm, 8000 h, L10, u = 80 %")
+
+
 def test_a_use_next_to_its_limit_is_never_called_100_percent(catalogue: Catalogue) -> None:
     said = words(cycle(phase(10, 50), output_load={"radial_N": 1800.0001}), catalogue)
     assert ": 100 %" not in said
