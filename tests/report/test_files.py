@@ -131,6 +131,33 @@ def test_a_link_with_a_gear_makes_files_of_that_gear(client: TestClient) -> None
     assert (unknown.status_code, unknown.json()["errors"][0]["pointer"]) == (422, "/gear")
 
 
+NONE_FITS = "T=900&n=100&t=1&i=5"
+
+
+@pytest.mark.parametrize(
+    ("query", "said"),
+    [
+        (
+            f"{QUERY}&gear=HPN-20A-7",
+            "2 of 5 gears are suitable HPN-20A-7 It passes every check, but its ratio or size was not",
+        ),
+        (f"{QUERY}&gear=HPN-14A-7", "HPN-20A-5 would be suitable. Fits if"),
+        (NONE_FITS, "0 of 5 gears are suitable HPN-32A-5 No gear is suitable. HPN-32A-5 comes closest; “Load limit 1"),
+        (f"{NONE_FITS}&gear=HPN-32A-5", "HPN-32A-5 No gear is suitable. HPN-32A-5 comes closest; “Load limit 1"),
+        (
+            f"{NONE_FITS}&gear=HPN-20A-5",
+            "HPN-20A-5 was chosen, but “Load limit 1: average torque” fails at 1 125 %. No gear",
+        ),
+        (f"{NONE_FITS}&gear=HPN-20A-7", "0 of 5 gears are suitable HPN-20A-7 HPN-20A-7 was chosen, but “Load limit 1"),
+    ],
+)
+def test_a_chosen_gear_is_neither_called_the_closest_nor_counted_where_it_is_not(
+    client: TestClient, query: str, said: str
+) -> None:
+    first = PdfReader(BytesIO(client.get(f"/report.pdf?{query}").content)).pages[0].extract_text()
+    assert said in " ".join(first.replace("\u202f", " ").split())
+
+
 def test_the_title_block_is_of_the_link_or_as_it_was_saved(client: TestClient) -> None:
     labels = {"title": "Axis 7", "reference": "4711", "author": "M. Muster", "revision": "B"}
     code = "HPN-32A-5-J8-BH-AF1"

@@ -77,6 +77,14 @@ class Export:
         return self.selection.candidate(self.chosen) or self.selection.foremost
 
     @cached_property
+    def asked(self) -> list[Candidate]:
+        """Candidates of the ratios and sizes that were asked for, beside which a chosen gear may stand."""
+        ratios, sizes = self.application.requirements.ratios, self.application.requirements.sizes
+        return [
+            c for c in self.selection.candidates if c.ratio in (ratios or [c.ratio]) and c.size in (sizes or [c.size])
+        ]
+
+    @cached_property
     def equipped(self) -> Application:
         """The application with the figures of the motor that it names, as far as the catalogue is at hand."""
         return with_listed_motor(self.application, self.figures) if self.figures else self.application

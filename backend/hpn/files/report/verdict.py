@@ -29,19 +29,17 @@ REASONS: Mapping[str, str] = {
 """Notes on the reported gear where none is suitable."""
 
 CHOSEN: Mapping[str, str] = {
-    "unsuitable": N_("{gear} was chosen, but “{check}” fails at {percent}. {selected} would be suitable."),
-    "unlimited": N_(
-        "{gear} was chosen, but T_k is too high: no emergency stop is permitted (eq. 17.9). {selected} would be "
-        "suitable."
-    ),
-    "never_stops": N_("{gear} was chosen, but the brake does not stop the load. {selected} would be suitable."),
+    "unsuitable": N_("{gear} was chosen, but “{check}” fails at {percent}."),
+    "unlimited": N_("{gear} was chosen, but T_k is too high: no emergency stop is permitted (eq. 17.9)."),
+    "never_stops": N_("{gear} was chosen, but the brake does not stop the load."),
     "unrated": N_(
-        "{gear} was chosen, but can’t be rated: figures that the checks need are not in this catalogue’s source. "
-        "{selected} would be suitable."
+        "{gear} was chosen, but can’t be rated: figures that the checks need are not in this catalogue’s source."
     ),
 }
-"""Notes on a gear that does not pass and was chosen in place of a suitable one."""
+"""Notes on a gear that does not pass and was chosen in place of a suitable one, or of the nearest miss."""
 
+SUITABLE, NONE = N_("{selected} would be suitable."), N_("No gear is suitable.")
+OUTSIDE = N_("It passes every check, but its ratio or size was not asked for.")
 ONLY = N_("It is the only suitable gear.")
 RANKED = N_("It was chosen; {selected} ranks first of {count} suitable gears.")
 
@@ -66,9 +64,7 @@ def verdict(export: Export, reader: Reader) -> dict[str, Any]:
 
 
 def _rank(export: Export) -> Sentence:
-    candidates = export.selection.candidates
-    count = sum(candidate.status == "suitable" for candidate in candidates)
-    values = {"rank": export.candidate.rank or 0, "count": count, "all": len(candidates)}
+    values = {"rank": export.candidate.rank or 0, "count": len(_suitable(export)), "all": len(export.asked)}
     return Sentence(PLACE if export.candidate.rank else NO_PLACE, values)
 
 
@@ -118,18 +114,28 @@ def _said(export: Export, reader: Reader) -> Iterable[Sentence]:
     if status == "suitable":
         yield _place(export)
         return
-    yield Sentence(CHOSEN[key] if selected else REASONS[key], values)
+    if candidate is export.selection.foremost:
+        yield Sentence(REASONS[key], values)
+    else:
+        yield Sentence(CHOSEN[key], values)
+        yield Sentence(SUITABLE if selected else NONE, values)
     if remedy := remedy_of(candidate, export.application.requirements.utilisation):
         yield remedy
 
 
 def _place(export: Export) -> Sentence:
     """Where a suitable gear stands among the suitable ones."""
-    count = sum(candidate.status == "suitable" for candidate in export.selection.candidates)
-    selected = export.selection.selected
+    count, selected = len(_suitable(export)), export.selection.selected
+    if export.candidate not in export.asked:
+        return Sentence(OUTSIDE)
     if export.candidate.designation != selected:
         return Sentence(RANKED, {"selected": selected or "", "count": count})
     return Sentence(RANKINGS[export.application.rank_by].first_of if count > 1 else ONLY, {"count": count})
+
+
+def _suitable(export: Export) -> list[Candidate]:
+    """Suitable gears of those that were asked for."""
+    return [candidate for candidate in export.asked if candidate.status == "suitable"]
 
 
 # --- Alternatives -----------------------------------------------------------------------------------------------------
@@ -152,11 +158,11 @@ HEADS = (
 def alternatives(export: Export, reader: Reader) -> dict[str, Any]:
     """How many gears were considered, the best suitable ones, and what keeps a lighter one or the next from fitting."""
     counts = dict.fromkeys(("suitable", "unsuitable", "unrated"), 0)
-    for candidate in export.selection.candidates:
+    for candidate in export.asked:
         counts[candidate.status] += 1
     overview = Sentence(
         N_("{total} gears considered: {suitable} suitable, {unsuitable} not suitable, {unrated} not rated."),
-        {"total": len(export.selection.candidates), **counts},
+        {"total": len(export.asked), **counts},
     )
     suitable = [candidate for candidate in export.selection.candidates if candidate.status == "suitable"]
     listed = [c for k, c in enumerate(suitable) if k < MOST_SUITABLE or c.designation == export.candidate.designation]
