@@ -245,6 +245,13 @@ def test_a_touched_screen_of_390_px_keeps_undo_in_reach_figures_in_their_cells_a
     expect(page.get_by_text("Alt+Enter").locator("visible=true")).to_have_count(0)
 
 
+def test_the_field_whose_value_governs_has_the_colour_of_its_row(visitor: Visitor) -> None:
+    page = visitor.open(STATES["all gears"])
+    edge = "field => getComputedStyle(field.parentElement).boxShadow"
+    colour = page.locator("#limits .governing .percent").evaluate("percent => getComputedStyle(percent).color")
+    assert colour in page.locator("#f-Tk").evaluate(edge) and colour not in page.locator("#f-Nk").evaluate(edge)
+
+
 def test_a_name_for_each_phase_moves_no_column(visitor: Visitor) -> None:
     page = visitor.open(STATES["all gears"])
     before = page.locator("#result").bounding_box()
