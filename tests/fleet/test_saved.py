@@ -82,7 +82,9 @@ def test_names_of_fleets_that_look_like_others_are_refused(
 
     wrong = client.post(f"{address}/rename", data={"title": "Line 4", "ref": "\U000e0041"})
 
-    assert wrong.status_code == 422 and "Reference: must not contain U+E0041" in unescape(wrong.text)
+    assert wrong.status_code == 422 and "Reference: must not contain the invisible character U+E0041" in unescape(
+        wrong.text
+    )
 
 
 def test_a_fleet_says_what_differs_today(client: TestClient, service: FastAPI, fleet: str, tmp_path: Path) -> None:
