@@ -150,7 +150,7 @@ def test_every_notice_and_the_versions_stand_in_the_report(catalogue: Catalogue)
 
 def test_motor_torques_without_an_efficiency_are_said_to_be_a_lower_bound(catalogue: Catalogue, made: Make) -> None:
     found = " ".join(text(pdf(typed_export_of(worked_example(), catalogue), ENGLISH), pages=2).split())
-    assert len(re.findall("motor torque, lower bound", found)) == 2
+    assert len(re.findall("motor torque needed, lower bound", found)) == 2
     assert "lower bound" not in text(made("everything", ENGLISH), pages=2)
 
 

@@ -162,13 +162,13 @@ CANDIDATE: Mapping[str, Named] = {
         caveat=N_("L10 = L50 / 5, a relation from other handbooks. The hours include the pause."),
     ),
     "motor_peak_torque_Nm": Named(
-        N_("Required peak motor torque"),
+        N_("Peak motor torque needed"),
         "T_max/(i·η)",
         "Largest torque at the motor, T/(i·η), without the emergency stop; along a motion with the motor’s own "
         "inertia, where that is given. Where no efficiency is known η is 1, and the torque a lower bound.",
     ),
     "motor_rated_torque_Nm": Named(
-        N_("Required RMS motor torque"),
+        N_("RMS motor torque needed"),
         "T_rms/(i·η)",
         "RMS torque at the motor, T/(i·η), over the cycle with pause; along a motion with the motor’s own inertia, "
         "where that is given. Where no efficiency is known η is 1, and the torque a lower bound.",

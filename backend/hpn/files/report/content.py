@@ -56,8 +56,8 @@ LABELS = {
     "open": N_("Open"),
     "page": N_("Page {page} of {pages}"),
     "disclaimer": N_(
-        "Made by an independent tool from the manufacturer’s engineering data. Check the selection with the "
-        "manufacturer before ordering."
+        "Made by an independent tool from the manufacturer’s engineering data. Check with the manufacturer before "
+        "ordering."
     ),
     "too_long_link": N_("The link is too long to print; it carries every phase."),
     "unprintable": N_("□ stands for characters that the report’s fonts lack: {codes}."),
