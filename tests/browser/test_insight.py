@@ -99,7 +99,7 @@ def test_comparing_gears_by_pinning_them_from_the_list(visitor: Visitor) -> None
     torque(page, 1).fill("41")
     expect(page).to_have_url(re.compile("T=41&.*&pin=HPN-32A-5#compare$"))
     expect(comparison(page)).to_have_accessible_name("Comparison of HPN-20A-5, HPN-32A-5")
-    page.get_by_role("button", name="Take HPN-32A-5 out of the comparison").first.click()
+    page.get_by_role("button", name="Remove HPN-32A-5 from the comparison").first.click()
     expect(comparison(page)).to_have_accessible_name("Comparison of HPN-20A-5, HPN-14A-5")
 
 
@@ -108,14 +108,14 @@ def test_pinning_by_key_keeps_the_focus_on_the_toggle(visitor: Visitor) -> None:
     open_section(page, "Candidates")
     candidates = page.get_by_role("region", name="Candidates")
     candidates.get_by_role("button", name="Compare HPN-32A-5").press("Enter")
-    out = candidates.get_by_role("button", name="Take HPN-32A-5 out of the comparison")
+    out = candidates.get_by_role("button", name="Remove HPN-32A-5 from the comparison")
     expect(out).to_be_focused()
     page.keyboard.press("Enter")
     expect(candidates.get_by_role("button", name="Compare HPN-32A-5")).to_be_focused()
     page.keyboard.press("Enter")
     expect(out).to_be_focused()
     open_section(page, "Compare")
-    comparison(page).get_by_role("button", name="Take HPN-32A-5 out of the comparison").press("Enter")
+    comparison(page).get_by_role("button", name="Remove HPN-32A-5 from the comparison").press("Enter")
     expect(comparison(page)).to_have_accessible_name("Comparison of HPN-20A-5, HPN-14A-5")
 
 
@@ -145,7 +145,7 @@ def test_comparing_gears_without_script(visitor: Visitor) -> None:
     page.get_by_role("button", name="Calculate").click()
     expect(page).to_have_url(re.compile("&i=5&pin=HPN-32A-5&pin=HPN-11A-5$"))
     expect(comparison(page)).to_have_accessible_name("Comparison of HPN-20A-5, HPN-32A-5, HPN-11A-5")
-    page.get_by_role("button", name="Take HPN-32A-5 out of the comparison").first.click()
+    page.get_by_role("button", name="Remove HPN-32A-5 from the comparison").first.click()
     expect(comparison(page)).to_have_accessible_name("Comparison of HPN-20A-5, HPN-11A-5")
 
 
@@ -159,26 +159,6 @@ def test_reading_the_calculation(visitor: Visitor) -> None:
     expect(page.get_by_text("Equation 17.10, page 17 of the handbook.")).to_be_visible()
 
 
-def test_trivial_steps_are_folded_until_the_switch_or_their_own_line_opens_them(visitor: Visitor) -> None:
-    page = visitor.open(EXAMPLE)
-    open_section(page, "Calculation")
-    peak = page.get_by_role("group", name="Formulas: Load limit 2: repeated peak torque")
-    speed = page.get_by_role("group", name="Formulas: Maximum input speed")
-    expect(peak).to_be_hidden()
-    page.get_by_role("heading", name="Maximum input speed").click()
-    expect(speed).to_be_visible()
-    switch = page.get_by_role("switch", name="Show the trivial steps too")
-    switch.focus()
-    page.keyboard.press("Space")
-    expect(switch).to_have_attribute("aria-checked", "true")
-    expect(peak).to_be_visible()
-    torque(page, 1).fill("41")
-    expect(peak).to_contain_text("41")
-    expect(peak).to_be_visible()
-    switch.click()
-    expect(peak).to_be_hidden()
-
-
 def test_calculation_opened_after_an_edit_is_that_of_the_edit(visitor: Visitor) -> None:
     page = visitor.open(EXAMPLE)
     torque(page, 1).fill("41")
@@ -186,7 +166,6 @@ def test_calculation_opened_after_an_edit_is_that_of_the_edit(visitor: Visitor) 
     expect(page.get_by_role("math", include_hidden=True)).to_have_count(0)
     open_section(page, "Calculation")
     peak = page.get_by_role("group", name="Formulas: Load limit 2: repeated peak torque")
-    page.get_by_role("switch", name="Show the trivial steps too").click()
     expect(peak).to_contain_text("41")
     open_section(page, "Overview")
     torque(page, 1).fill("42")
@@ -194,27 +173,10 @@ def test_calculation_opened_after_an_edit_is_that_of_the_edit(visitor: Visitor) 
     expect(peak).to_contain_text("42")
 
 
-def test_trivial_steps_stay_open_where_the_calculation_is_fetched_anew(visitor: Visitor) -> None:
-    page = visitor.open(EXAMPLE)
-    open_section(page, "Calculation")
-    page.get_by_role("switch", name="Show the trivial steps too").click()
-    peak = page.get_by_role("group", name="Formulas: Load limit 2: repeated peak torque")
-    expect(peak).to_contain_text("40")
-    open_section(page, "Overview")
-    torque(page, 1).fill("42")
-    expect(page.get_by_role("row", name="Average torque").first).to_contain_text("32.2")
-    expect(page.get_by_role("math", include_hidden=True)).to_have_count(0)
-    open_section(page, "Calculation")
-    expect(peak).to_contain_text("42")
-    expect(page.get_by_role("switch", name="Show the trivial steps too")).to_be_checked()
-
-
-def test_calculation_opens_without_script(visitor: Visitor) -> None:
+def test_calculation_stands_there_without_script(visitor: Visitor) -> None:
     page = visitor.open(EXAMPLE, script=False)
-    page.get_by_role("heading", name="Maximum input speed").click()
     formulas = page.get_by_role("group", name="Formulas: Maximum input speed")
     expect(formulas.get_by_role("math").last).to_contain_text("2\u202f500")
-    expect(page.get_by_role("switch")).to_have_count(0)
 
 
 def test_calculation_and_comparison_scroll_in_their_own_boxes_on_a_phone(visitor: Visitor) -> None:
@@ -231,7 +193,6 @@ def test_calculation_and_comparison_scroll_in_their_own_boxes_on_a_phone(visitor
 @pytest.mark.soak  # all sections are checked on a phone
 def test_remedy_calculation_and_comparison_are_accessible_in_both_themes(visitor: Visitor) -> None:
     page = visitor.open(EXAMPLE + "&gear=HPN-14A-5&pin=HPN-20A-5&FR=300", width=1000)
-    page.get_by_role("switch", name="Show the trivial steps too").click()
     assert violations(page) == []
 
 

@@ -12,7 +12,7 @@ from hpn.application import Application
 from hpn.catalogue import Catalogue, load_catalogue
 from hpn.explain.calculation import Line, Step
 from hpn.explain.calculation.formula import value_of
-from hpn.explain.calculation.mathml import compared, in_symbols, result, with_numbers
+from hpn.explain.calculation.mathml import compared, in_symbols, result, substituted
 from hpn.words.reader import Reader
 from tests.build import Json, candidate, cycle, phase, worked_example
 from tests.property.draw import applications
@@ -132,7 +132,7 @@ def sides(markup: str) -> list[list[Element]]:
 
 def shown(line: Line, reader: Reader) -> tuple[float, float]:
     """Value of the substituted numbers of a line, and the value that the page shows for them."""
-    (_, [formula]), (_, [first], *_) = sides(with_numbers(reader, line)), sides(result(reader, line))
+    (_, [formula]), (_, [first], *_) = sides(substituted(reader, line)), sides(result(reader, line))
     return worked_out(formula, reader), worked_out(first, reader)
 
 

@@ -7,7 +7,7 @@ from hpn.catalogue import Catalogue
 from hpn.engine.selection import select
 from hpn.explain.calculation import Step, calculation_of
 from hpn.explain.calculation.formula import Constant, Term, Variable, value_of
-from hpn.explain.calculation.mathml import in_symbols, mathml, with_numbers
+from hpn.explain.calculation.mathml import in_symbols, mathml, substituted
 from hpn.explain.calculation.motor import OWN as OWN_FIGURES
 from hpn.web.api.samples import LIFTING, TURNING
 from hpn.words.reader import Reader
@@ -104,7 +104,7 @@ def test_a_user_s_own_reserve_stands_in_the_limit(catalogue: Catalogue) -> None:
 def test_long_cycles_are_abbreviated_and_say_so(catalogue: Catalogue, count: int, written: int, left_out: bool) -> None:
     phases = [phase(10.0 + k % 7, 100.0 + k, 0.5) for k in range(count)]
     step = steps_of(cycle(*phases, pause_s=1.0), "HPN-20A-5", catalogue)["average_output_speed"]
-    markup = with_numbers(Reader(), step.lines[0])
+    markup = substituted(Reader(), step.lines[0])
     assert step.abbreviated == left_out
     assert markup.count("<mo>…</mo>") == 2 * left_out
     assert markup.count(">\u202frpm</mtext>") == written

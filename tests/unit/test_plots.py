@@ -16,7 +16,7 @@ from hpn.explain.drawings.bearing import bearing_figure, sizes_figure
 from hpn.explain.drawings.envelope import envelope_scene, sizes_scene
 from hpn.explain.drawings.picture import BearingPicture, bearing_picture
 from hpn.explain.drawings.sizes import size_uses
-from hpn.explain.drawings.stops import emergency_stop_figure, emergency_stop_words
+from hpn.explain.drawings.stops import emergency_stop_words, stop_scene
 from hpn.explain.drawings.verdict import bearing_verdict, bearing_words
 from hpn.words.reader import DEFAULT, Reader
 from tests.build import Json, cycle, phase
@@ -238,14 +238,31 @@ def test_without_limits_there_is_no_picture_of_the_bearing(catalogue: Catalogue)
 
 
 @pytest.mark.parametrize(
-    "stop", [None, {"torque_Nm": 200.0}, {"torque_Nm": 200.0, "count": 10**15}, {"torque_Nm": 1e6}]
+    ("stop", "place", "outside"),
+    [
+        ({"torque_Nm": 200.0}, (200.0, 3066035), False),
+        ({"torque_Nm": 200.0, "count": 1000}, (200.0, 1000), False),
+        ({"torque_Nm": 200.0, "count": 10**15}, (200.0, 10**15), True),
+        ({"torque_Nm": 149.0}, (149.0, 10**8), False),
+        ({"torque_Nm": 300.0}, (300.0, 301901), True),
+    ],
 )
-def test_figure_of_the_emergency_stops_is_valid(catalogue: Catalogue, stop: Json | None) -> None:
-    subject = example(catalogue, emergency_stop=stop)
-    figure = emergency_stop_figure(subject)
-    assert figure is not None
-    go.Figure(figure)
-    assert figure["layout"]["yaxis"]["type"] == "log"
+def test_a_stop_stands_at_its_torque_and_number_beside_the_line_of_equation_17_9(
+    catalogue: Catalogue, stop: Json, place: tuple[float, int], outside: bool
+) -> None:
+    scene = stop_scene(example(catalogue, emergency_stop=stop))
+    assert scene is not None
+    [mark], [line] = scene.marks, [line for line in scene.lines if line.kind == "limit"]
+    assert (mark.place[0], round(10 ** mark.place[1])) == place
+    assert mark.outside == outside
+    assert [*line.corners[0], *line.corners[1]] == pytest.approx([149.0, 7.0, 256.0, 8.5 - 1.5 * 256 / 149], rel=1e-12)
+
+
+@pytest.mark.parametrize("stop", [None, {"torque_Nm": 1e6}])
+def test_without_a_stop_that_is_permitted_once_the_line_stands_alone(catalogue: Catalogue, stop: Json | None) -> None:
+    scene = stop_scene(example(catalogue, emergency_stop=stop))
+    assert scene is not None
+    assert scene.marks == []
 
 
 @pytest.mark.parametrize(
@@ -268,17 +285,23 @@ def test_emergency_stops_in_words(catalogue: Catalogue, stop: Json | None, said:
 @pytest.mark.parametrize(
     "stop", [{"torque_Nm": 200}, {"torque_Nm": 200, "count": 10**7}, {"torque_Nm": 200, "count": 10**5}]
 )
-def test_labels_of_line_and_stop_stand_on_different_sides_of_the_line(catalogue: Catalogue, stop: Json) -> None:
-    subject = example(catalogue, emergency_stop=stop)
-    figure = emergency_stop_figure(subject)
-    assert figure is not None
-    line, marked = figure["data"]
-    assert line["textposition"].split()[0] != marked["textposition"].split()[0]
+def test_the_stop_covers_no_name_and_numbers_are_powers_of_ten(catalogue: Catalogue, stop: Json) -> None:
+    scene = stop_scene(example(catalogue, emergency_stop=stop))
+    assert scene is not None
+    drawing = chart(scene, Reader())
+    [disc] = [each for each in drawing.iter("rect") if each.get("class") == "disc"]
+    x, y, width, height = (float(disc.get(name, "")) for name in ("x", "y", "width", "height"))
+    names = [each.get("transform", "") for each in drawing.iter("text") if "name" in each.get("class", "")]
+    places = [tuple(map(float, re.findall(r"[\d.]+", name)[:2])) for name in names]
+    ticks = {"".join(each.itertext()) for each in drawing.iter("text") if each.get("class") == "tick"}
+    assert len(places) == 3
+    assert not any(x < across < x + width and y < down < y + height for across, down in places)
+    assert ticks > {"10⁰", "10²", "10⁴", "10⁶", "10⁸"}
 
 
-def test_emergency_stops_of_an_unrated_gear_have_words_but_no_plot(catalogue: Catalogue) -> None:
+def test_emergency_stops_of_an_unrated_gear_have_words_but_no_drawing(catalogue: Catalogue) -> None:
     subject = example(catalogue, "HPN-40A-5")
-    assert emergency_stop_figure(subject) is None
+    assert stop_scene(subject) is None
     assert "not in this catalogue’s source" in emergency_stop_words(subject)[0].text
 
 

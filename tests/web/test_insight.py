@@ -205,7 +205,7 @@ def test_an_unfolded_part_comes_alone_or_with_the_result(client: TestClient) -> 
     assert "<table" not in alone.text
     assert "HX-Push-Url" not in alone.headers
     assert "HPN-Parts" in alone.headers["Vary"]
-    assert "data-figure" in changes(client, "details#stops_figure").text
+    assert "data-figure" in changes(client, "details#bearing_figure").text
     assert "<math" in changes(client, RESULT, "calculation").text
 
 

@@ -266,7 +266,7 @@ def test_a_life_is_named_with_its_basis_and_a_column_with_its_unit(client: TestC
 def test_where_a_life_stands_its_basis_stands_too(client: TestClient, section: str, names: list[str]) -> None:
     asked = client.get(EXAMPLE + "&FR=500", headers={"HX-Request": "true", "HX-Target": f"section#{section}"}).text
 
-    caveats = " ".join(re.findall(r'<p class="hint caveat">(.*?)</p>', asked, re.S))
+    caveats = " ".join(re.findall(r'<(?:p class="hint caveat|span class="below)">(.*?)</', asked, re.S))
     for named in names:
         assert QUANTITIES[f"candidate.{named}"].caveat in caveats
 

@@ -40,7 +40,6 @@ class Row:
     kind: Kind
     values: tuple[float | Sentence | None, ...]
     best: frozenset[int]
-    differs: bool
 
 
 @dataclass(frozen=True, slots=True)
@@ -173,8 +172,7 @@ def _row(
     known = ~np.isnan(numbers)
     places = equations.tied(numbers if lowest else -numbers)
     is_ahead = (places == 0) & known & (lowest is not None and np.unique(places[known]).size > 1)
-    differs = np.unique(places).size > 1 if known.all() else any(value != values[0] for value in values)
-    return Row(code, title, symbol, unit, kind, values, frozenset(np.flatnonzero(is_ahead).tolist()), differs)
+    return Row(code, title, symbol, unit, kind, values, frozenset(np.flatnonzero(is_ahead).tolist()))
 
 
 def _housing_bolts(column: Column) -> Sentence | None:

@@ -206,7 +206,12 @@ class Reader:
 
     def _scientific(self, number: str) -> str:
         mantissa, exponent = number.split("e")
-        return f"{self._marked(mantissa)}·10{str(int(exponent)).translate(_SUPERSCRIPT)}"
+        return f"{self._marked(mantissa)}·{self.power_of_ten(int(exponent))}"
+
+    @staticmethod
+    def power_of_ten(exponent: int) -> str:
+        """A power of ten with its exponent above the line."""
+        return f"10{str(exponent).translate(_SUPERSCRIPT)}"
 
     def _marked(self, number: str) -> str:
         decimal, group = _marks(self.language)

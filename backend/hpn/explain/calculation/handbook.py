@@ -61,7 +61,7 @@ def _average_input_speed(sheet: Sheet) -> Step:
     line = _average_input_speed_line(sheet)
     codes = ("average_input_speed", "motor_rated_speed")
     limits = tuple(limit for code in codes for limit in sheet.compared(code, line.result))
-    return step_of_check("average_input_speed", (line,), limits, _hand_input_speed(sheet, line), trivial=True)
+    return step_of_check("average_input_speed", (line,), limits, _hand_input_speed(sheet, line))
 
 
 def _average_input_speed_line(sheet: Sheet) -> Line:
@@ -83,7 +83,7 @@ def _maximum_input_speed(sheet: Sheet) -> Step:
     line = Line(sheet.n_in_max, sheet.n_out_max * sheet.i)
     codes = ("maximum_input_speed", "motor_speed")
     limits = tuple(limit for code in codes for limit in sheet.compared(code, sheet.n_in_max))
-    return step_of_check("maximum_input_speed", (line,), limits, _on_peaks(sheet), trivial=True)
+    return step_of_check("maximum_input_speed", (line,), limits, _on_peaks(sheet))
 
 
 # --- Peaks ------------------------------------------------------------------------------------------------------------
@@ -94,7 +94,7 @@ def _peaks(sheet: Sheet) -> Iterable[Step]:
     for code, torque in tested.items():
         if torque is not None and (limit := sheet.compared(code, torque)):
             notes = _on_peaks(sheet) if torque is sheet.T_max else ()
-            yield step_of_check(code, (), limit, notes, trivial=True)
+            yield step_of_check(code, (), limit, notes)
 
 
 def _on_peaks(sheet: Sheet) -> tuple[Sentence, ...]:

@@ -50,13 +50,8 @@ def in_symbols(reader: Reader, line: Line) -> str:
     return mathml(reader, (line.result.symbol, False), "=", (line.formula, False))
 
 
-def with_numbers(reader: Reader, line: Line) -> str:
-    """The same equation with its numbers."""
-    return mathml(_reader_of(reader, line), (line.result.symbol, False), "=", (line.formula, True))
-
-
 def substituted(reader: Reader, line: Line) -> str:
-    """Its numbers alone."""
+    """The same equation's right side with its numbers."""
     return mathml(_reader_of(reader, line), "=", (line.formula, True))
 
 
@@ -122,7 +117,7 @@ class _Writer:
             case Series():
                 return self.row("+", self.terms(formula))
             case Subtraction(left, right):
-                return self.row("−", (self.write(left), self.write(right)))
+                return self.row("−", (self.write(left), self.factor(right)))
             case Product(factors):
                 return self.row("·", map(self.factor, factors))
             case Magnitude(body):
@@ -157,7 +152,7 @@ class _Writer:
         return f"<mrow>{before}{self.write(body)}{after}</mrow>"
 
     def factor(self, formula: Formula) -> str:
-        """A factor of a product, in brackets where it is a sum or a negative number."""
+        """A factor of a product, or what is subtracted: in brackets where it is a sum or a negative number."""
         in_brackets = isinstance(formula, Sum | Subtraction | Series) or (self.numbers and _is_negative(formula))
         return self.fenced("(", formula, ")") if in_brackets else self.write(formula)
 

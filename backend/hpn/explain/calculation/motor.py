@@ -169,8 +169,7 @@ def _steps(sheet: Sheet, peak: Formula, rated: Formula) -> Iterable[Step]:
 
 def _step(sheet: Sheet, code: str, symbol: Variable, formula: Formula, *notes: Sentence) -> Step:
     torque = replace(known(sheet.figure(f"{code}_Nm")), symbol=symbol)
-    limit, trivial = sheet.compared(code, torque), code == "motor_peak_torque"
-    return step_of_check(code, (Line(torque, formula),), limit, notes, trivial=trivial)
+    return step_of_check(code, (Line(torque, formula),), sheet.compared(code, torque), notes)
 
 
 # --- Inertia ----------------------------------------------------------------------------------------------------------
@@ -188,4 +187,4 @@ def _inertia_ratio(sheet: Sheet) -> Iterable[Step]:
     if sheet.duty.courses:
         note = N_("J_L is the inertia of the motion’s load at the gear’s output.")
     limit = sheet.compared("inertia_ratio", formula)
-    yield step_of_check("inertia_ratio", (), limit, (Sentence(note),), trivial=True)
+    yield step_of_check("inertia_ratio", (), limit, (Sentence(note),))

@@ -79,7 +79,13 @@ class Step:
     lines: tuple[Line, ...] = ()
     comparisons: tuple[Comparison, ...] = ()
     notes: tuple[Sentence, ...] = ()
-    trivial: bool = False
+
+    @property
+    def continued(self) -> bool:
+        """True where the first comparison goes on from the result of the last line."""
+        if not self.lines or not self.comparisons or self.lines[-1].rounded_down:
+            return False
+        return self.comparisons[0].tested == self.lines[-1].result
 
     @property
     def abbreviated(self) -> bool:
@@ -92,12 +98,10 @@ def step_of_check(
     lines: tuple[Line, ...] = (),
     comparisons: tuple[Comparison, ...] = (),
     notes: tuple[Sentence, ...] = (),
-    *,
-    trivial: bool = False,
 ) -> Step:
     """Step that calculates a check; it has the check's title and equation."""
     check = BY_CODE[code]
-    return Step(code, check.title, check.equation, lines, comparisons, notes, trivial)
+    return Step(code, check.title, check.equation, lines, comparisons, notes)
 
 
 def known(term: Term | None) -> Term:

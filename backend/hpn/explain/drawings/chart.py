@@ -17,7 +17,7 @@ from hpn.words.reader import Reader
 from hpn.words.wording import N_
 
 SMALL, LARGE, PLANE, PAPER = (348.0, 400.0), (560.0, 420.0), (400.0, 260.0), (400.0, 300.0)
-"""Sizes of a drawing: in a narrow and in a wide place, of one of two beside each other, and on paper."""
+"""Sizes of a drawing: in a narrow and in a wide place, lower in a narrow place, and on paper."""
 
 KINDS = {SMALL: "plane small", LARGE: "plane large", PLANE: "plane beside", PAPER: "plane"}
 
@@ -52,12 +52,16 @@ ENDS = (0.12, 0.88, 0.16, 0.84, 0.2, 0.8, 0.08, 0.92, *ALONG)
 
 @dataclass(frozen=True, slots=True)
 class Axes:
-    """Quantities to the right and upwards: name (an English msgid) and unit of each."""
+    """Quantities to the right and upwards: name (an English msgid) and unit of each.
+
+    With `powers` those upwards are powers of ten.
+    """
 
     across: str
     across_unit: str
     up: str
     up_unit: str
+    powers: bool = False
 
 
 LOADS = Axes(N_("radial load"), "N", N_("axial load"), "N")
@@ -177,7 +181,7 @@ def _within(frame: Frame, point: Point) -> Point:
 
 def _frame(points: Sequence[Point], bold: Sequence[Point], axes: Axes, size: Point, reader: Reader) -> Frame:
     across, up = (ROOM * max(filter(isfinite, values)) or 1.0 for values in zip(*points, strict=True))
-    labels = [label for _, label in _numbers(up, axes.up_unit, MOST_SPACES, reader)]
+    labels = [label for _, label in _upwards(up, axes, reader)]
     labels += [reader.figure(corner[1], axes.up_unit) for corner in bold]
     return Frame(axes, size, 12 + max(map(width_of, labels)), across, up)
 
@@ -188,17 +192,23 @@ def _numbers(largest: float, unit: str, spaces: int, reader: Reader) -> list[tup
     return [(largest * number / end, reader.tick(number)) for number in round_numbers(0.0, end, spaces)] or [(0.0, "0")]
 
 
+def _upwards(largest: float, axes: Axes, reader: Reader) -> list[tuple[float, str]]:
+    """Round numbers of the axis upwards."""
+    numbers = _numbers(largest, axes.up_unit, MOST_SPACES, reader)
+    return [(number, reader.power_of_ten(round(number))) for number, _ in numbers] if axes.powers else numbers
+
+
 def _axes(drawing: Element, frame: Frame, bold: Sequence[Point], reader: Reader) -> None:
     """Both axes with titles and round numbers, and in bold the values at which the corners of a limit meet them."""
     box, axes = frame.box, frame.axes
-    add(drawing, "path", "axis", d=path([(box.left, box.top), (box.left, box.bottom), (box.right, box.bottom)]))
+    strokes = [path([(box.left, box.top), (box.left, box.bottom), (box.right, box.bottom)])]
     own = [(corner[1], reader.figure(corner[1], axes.up_unit)) for corner in bold if corner[0] == 0]
     taken: list[Point] = []
-    for kind, numbers in (("tick own", own), ("tick", _numbers(frame.up, axes.up_unit, MOST_SPACES, reader))):
+    for kind, numbers in (("tick own", own), ("tick", _upwards(frame.up, axes, reader))):
         for value, label in numbers:
             _, y = frame.at((0.0, value))
             if _is_free(taken, y, LETTER / 2):
-                add(drawing, "path", "axis", d=path([(box.left - 4, y), (box.left, y)]))
+                strokes.append(path([(box.left - 4, y), (box.left, y)]))
                 text(drawing, kind, (box.left - 7, y + 4.5), label, "end")
     own = [(corner[0], reader.figure(corner[0], axes.across_unit)) for corner in bold if corner[1] == 0]
     taken = []
@@ -206,8 +216,9 @@ def _axes(drawing: Element, frame: Frame, bold: Sequence[Point], reader: Reader)
         for value, label in numbers:
             x, half = frame.at((value, 0.0))[0], width_of(label) / 2
             if _is_free(taken, x, half + GAP / 2):
-                add(drawing, "path", "axis", d=path([(x, box.bottom), (x, box.bottom + 4)]))
+                strokes.append(path([(x, box.bottom), (x, box.bottom + 4)]))
                 text(drawing, kind, (min(x, frame.size[0] - half), box.bottom + 18.5), label, "middle")
+    add(drawing, "path", "axis", d="".join(strokes))
     text(drawing, "title", (0.0, 11.0), axis_title(axes.up, axes.up_unit, reader))
     text(
         drawing,

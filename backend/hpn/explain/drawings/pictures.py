@@ -6,14 +6,14 @@ from xml.etree.ElementTree import Element
 
 from hpn.engine.candidates import Candidate
 from hpn.explain.drawings.bearing import bearing_figure, sizes_figure
-from hpn.explain.drawings.chart import LARGE, SMALL, Scene, chart
+from hpn.explain.drawings.chart import LARGE, PLANE, SMALL, Scene, chart
 from hpn.explain.drawings.cycle import CyclePicture, cycle_picture
 from hpn.explain.drawings.envelope import envelope_scene, sizes_scene
 from hpn.explain.drawings.layout import Figure
 from hpn.explain.drawings.picture import BearingPicture, bearing_picture
 from hpn.explain.drawings.plane import Plane, gear_plane, motor_plane
 from hpn.explain.drawings.sizes import SizeUse, size_uses
-from hpn.explain.drawings.stops import emergency_stop_figure, emergency_stop_words
+from hpn.explain.drawings.stops import emergency_stop_words, stop_scene
 from hpn.explain.drawings.subject import Subject
 from hpn.explain.drawings.verdict import bearing_verdict, bearing_words, carries
 from hpn.physics.equations import FloatArray
@@ -144,9 +144,10 @@ class Pictures:
         return motor_plane(self.subject, self.reader, self.governing)
 
     @cached_property
-    def stop_figure(self) -> Figure | None:
-        """Plotly figure of the emergency stops, or None where the gear is not rated."""
-        return emergency_stop_figure(self.subject, self.reader)
+    def stops_drawing(self) -> Element | None:
+        """Drawing of the emergency stops, or None where the gear is not rated."""
+        scene = stop_scene(self.subject, self.reader)
+        return chart(scene, self.reader, PLANE) if scene else None
 
     @property
     def stop_words(self) -> list[Sentence]:

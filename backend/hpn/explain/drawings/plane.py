@@ -9,7 +9,7 @@ import numpy as np
 
 from hpn.application import Motor
 from hpn.engine.motor_torques import efficiencies
-from hpn.explain.drawings.chart import LAST, MOST_NUMBERS, PLANE, Axes, Line, Mark, Scene, chart
+from hpn.explain.drawings.chart import LARGE, LAST, MOST_NUMBERS, PLANE, Axes, Line, Mark, Scene, chart
 from hpn.explain.drawings.panels import OUT_OF_SCALE
 from hpn.explain.drawings.picture import beyond_limit
 from hpn.explain.drawings.subject import Subject
@@ -18,10 +18,10 @@ from hpn.explain.drawings.words import disc_label, phase_numbers
 from hpn.physics.equations import FloatArray
 from hpn.physics.motion import Trace, motor_trace, trace_of
 from hpn.physics.motion.trace import starts
-from hpn.words.quantities import DUTY, GEAR, INPUTS
+from hpn.words.quantities import CANDIDATE, DUTY, GEAR, INPUTS
 from hpn.words.reader import DEFAULT, Reader
 from hpn.words.titles import numbered
-from hpn.words.wording import N_, Quantity, Sentence, Value
+from hpn.words.wording import N_, Named, Quantity, Sentence, Value
 
 OUTPUT = Axes(N_("output speed"), "rpm", N_("output torque"), "Nm")
 MOTOR = Axes(N_("motor speed"), "rpm", N_("motor torque"), "Nm")
@@ -31,11 +31,28 @@ MOST_MARKS = 200
 
 
 @dataclass(frozen=True, slots=True)
-class Plane:
-    """The drawing, and what it says in words."""
+class Demand:
+    """A figure of the cycle in a unit of the wire, and what it may be; `relation` compares their symbols."""
 
-    drawing: Element
+    name: str
+    relation: str
+    value: float
+    limit: float | None
+    unit: str
+
+
+@dataclass(frozen=True, slots=True)
+class Plane:
+    """Drawings for a narrow and for a wide place, and what they show as rows of a table and in words."""
+
+    drawings: list[Element]
+    demands: list[Demand]
     words: list[Sentence]
+
+    @property
+    def drawing(self) -> Element:
+        """That for a narrow place."""
+        return self.drawings[0]
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,12 +65,22 @@ class _Limit:
 
 @dataclass(frozen=True, slots=True)
 class _Limits:
-    """Limits of torque and speed that hold together, and the demands that they bound."""
+    """Limits of torque and speed that hold together, and the demands that they bound, with the names of those."""
 
     kind: str
     torque: _Limit
     speed: _Limit
     demand: Point
+    names: tuple[Named, Named]
+
+    def demands(self, u: float) -> Iterable[Demand]:
+        """Torque, then speed."""
+        pairs = zip(self.names, reversed(self.demand), (self.torque, self.speed), ("Nm", "rpm"), strict=True)
+        for named, value, limit, unit in pairs:
+            if limit.value is None:
+                yield Demand(named.name, named.symbol, value, None, unit)
+            else:
+                yield Demand(named.name, f"{named.symbol} ≤ {_name(limit, u)}", value, u * limit.value, unit)
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,8 +107,20 @@ def gear_plane(subject: Subject, reader: Reader = DEFAULT, governing: Sequence[i
         for value in [getattr(gear, name)]
     )
     limits = (
-        _Limits("limit", peak, maximum, (duty.maximum_output_speed_rpm.item(), duty.maximum_torque_Nm.item())),
-        _Limits("mean", rated, average, (duty.average_output_speed_rpm.item(), duty.average_torque_Nm.item())),
+        _Limits(
+            "limit",
+            peak,
+            maximum,
+            (duty.maximum_output_speed_rpm.item(), duty.maximum_torque_Nm.item()),
+            (DUTY["maximum_torque_Nm"], DUTY["maximum_output_speed_rpm"]),
+        ),
+        _Limits(
+            "mean",
+            rated,
+            average,
+            (duty.average_output_speed_rpm.item(), duty.average_torque_Nm.item()),
+            (DUTY["average_torque_Nm"], DUTY["average_output_speed_rpm"]),
+        ),
     )
     course = duty.courses.get(0)
     curves = {}
@@ -95,7 +134,7 @@ def gear_plane(subject: Subject, reader: Reader = DEFAULT, governing: Sequence[i
         _compared(N_("Average torque {torque}, average speed {speed}."), limits[1], subject),
     ]
     mean = DUTY["average_torque_Nm"].symbol
-    return Plane(_drawn(cycle, limits, mean, OUTPUT, subject, reader, governing), words)
+    return _plane(_scene(cycle, limits, mean, OUTPUT, subject, reader, governing), limits, words, subject, reader)
 
 
 def motor_plane(subject: Subject, reader: Reader = DEFAULT, governing: Sequence[int] = ()) -> Plane:
@@ -110,19 +149,27 @@ def motor_plane(subject: Subject, reader: Reader = DEFAULT, governing: Sequence[
             _of_motor(motor, "peak_torque_Nm"),
             _of_motor(motor, "maximum_speed_rpm"),
             (figures.maximum_input_speed_rpm.item(), figures.motor_peak_torque_Nm.item()),
+            (CANDIDATE["motor_peak_torque_Nm"], CANDIDATE["maximum_input_speed_rpm"]),
         ),
         _Limits(
             "mean",
             _of_motor(motor, "rated_torque_Nm"),
             _of_motor(motor, "rated_speed_rpm"),
             (figures.average_input_speed_rpm.item(), figures.motor_rated_torque_Nm.item()),
+            (CANDIDATE["motor_rated_torque_Nm"], CANDIDATE["average_input_speed_rpm"]),
         ),
     )
     words = [
         _compared(N_("Largest torque {torque}, largest speed {speed}."), limits[0], subject),
         _compared(N_("RMS torque {torque}, average speed {speed}."), limits[1], subject),
     ]
-    return Plane(_drawn(_at_motor(subject, motor), limits, "T_rms", MOTOR, subject, reader, governing), words)
+    scene = _scene(_at_motor(subject, motor), limits, "T_rms", MOTOR, subject, reader, governing)
+    return _plane(scene, limits, words, subject, reader)
+
+
+def _plane(scene: Scene, limits: Sequence[_Limits], words: list[Sentence], subject: Subject, reader: Reader) -> Plane:
+    demands = [demand for one in limits for demand in one.demands(subject.application.requirements.utilisation)]
+    return Plane([chart(scene, reader, size) for size in (PLANE, LARGE)], demands, words)
 
 
 def _of_motor(motor: Motor, name: str) -> _Limit:
@@ -164,7 +211,7 @@ def _curves(trace: Trace, speed: FloatArray, torque: FloatArray) -> dict[int, li
 # --- The drawing ------------------------------------------------------------------------------------------------------
 
 
-def _drawn(
+def _scene(
     cycle: _Cycle,
     limits: Sequence[_Limits],
     mean: str,
@@ -172,7 +219,7 @@ def _drawn(
     subject: Subject,
     reader: Reader,
     governing: Sequence[int],
-) -> Element:
+) -> Scene:
     u = subject.application.requirements.utilisation
     most = max(cycle.peak_speed_rpm), max(cycle.peak_torque_Nm)
     lines = [line for one in limits for line in _lines(one, u, most)]
@@ -187,7 +234,7 @@ def _drawn(
         if limit.value
     )
     marks.append(Mark("equivalent", mean, limits[1].demand, told, LAST, outside))
-    return chart(Scene(lines, marks, None, axes, list(_beyond(limits, u, most, reader))), reader, PLANE)
+    return Scene(lines, marks, None, axes, list(_beyond(limits, u, most, reader)))
 
 
 def _lines(limits: _Limits, u: float, most: Point) -> Iterable[Line]:

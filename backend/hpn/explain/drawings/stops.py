@@ -1,122 +1,56 @@
-"""Allowed number of emergency stops against their torque, with the user's stop, as a plot and in words."""
+"""Allowed number of emergency stops against their torque, with the user's stop, as a drawing and in words."""
 
-from math import ceil, inf, log10
+from math import inf, log10
 
-import numpy as np
-
-from hpn.explain.drawings.axis import widened
-from hpn.explain.drawings.layout import Figure, layout, points
+from hpn.explain.drawings.chart import Axes, Line, Mark, Scene
 from hpn.explain.drawings.subject import Subject
-from hpn.explain.drawings.words import axis_title, said, share, shown
+from hpn.explain.drawings.words import share
 from hpn.physics import equations
-from hpn.physics.equations import FloatArray
+from hpn.words.quantities import CANDIDATE, GEAR, INPUTS
 from hpn.words.reader import DEFAULT, Reader
 from hpn.words.wording import N_, Quantity, Sentence, Value
 
-TOP = 8
-"""Power of ten at which the axis of the number ends, unless more stops are expected."""
+TOP = 8.0
+"""Power of ten at which the stop of a user stands whose number is not limited."""
 
-LOW = 10
-"""Number of stops below which a label has no room under its point."""
-
-DRAWN_TORQUES = 60
+AXES = Axes(N_("emergency-stop torque"), "Nm", N_("number of stops"), "", powers=True)
 
 
-def emergency_stop_figure(subject: Subject, reader: Reader = DEFAULT) -> Figure | None:
+def stop_scene(subject: Subject, reader: Reader = DEFAULT) -> Scene | None:
     """Allowed number of emergency stops against their torque (equation 17.9), with the user's stop on it.
 
-    None where the gear's ratings are not published.
+    Numbers are powers of ten, for which the equation is a straight line. None where the gear's ratings are not
+    published.
     """
-    gear = subject.gear
-    T_R, T_M = gear.repeated_peak_torque_Nm, gear.momentary_peak_torque_Nm
+    T_R, T_M = subject.gear.repeated_peak_torque_Nm, subject.gear.momentary_peak_torque_Nm
     if T_R is None or T_M is None:
         return None
-    stop = subject.application.emergency_stop
-    top = max(TOP, ceil(log10(stop.count)) if stop and stop.count else 0)
-    torque = np.linspace(T_R, max(T_M, T_R), DRAWN_TORQUES)
-    number = equations.momentary_peaks_at(emergency_stop_torque_Nm=torque, repeated_peak_torque_Nm=T_R)
-    marked = _stop(subject, top, reader)
-    is_beyond = any("top" in point["textposition"] for point in marked)
-    return {
-        "data": [_line(torque, number, reader, named_below=is_beyond), *marked],
-        "layout": _layout(subject, T_R, T_M, top, reader),
-    }
+    one_stop = equations.emergency_stop_torque_for(momentary_peak_count=1, repeated_peak_torque_Nm=T_R).item()
+    start, end = ((torque, _power(torque, T_R)) for torque in (T_R, min(max(T_M, T_R), one_stop)))
+    lines = [
+        Line("region", "", [(0.0, inf), (T_R, inf), start, end, (end[0], 0.0)], strong=True),
+        Line("limit", CANDIDATE["momentary_peak_count"].symbol, [start, end]),
+        Line("mean", GEAR["repeated_peak_torque_Nm"].symbol, [(T_R, inf), start]),
+        Line("mean", GEAR["momentary_peak_torque_Nm"].symbol, [end, (end[0], 0.0)]),
+    ]
+    return Scene(lines, _stop(subject, T_M, reader), None, AXES)
 
 
-def _layout(subject: Subject, T_R: float, T_M: float, top: int, reader: Reader) -> Figure:
-    designation, torque = subject.gear.designation, reader.measure("Nm")
-    figure = layout(
-        reader,
-        axis_title(N_("emergency-stop torque T_k"), "Nm", reader),
-        reader.text(N_("number of stops")),
-        title=said(Sentence("Permitted emergency stops of {gear}, equation 17.9", {"gear": designation}), reader),
-        revision=designation,
-    )
-    edge = [torque.shown(T_R), torque.shown(T_M)]
-    figure["shapes"] = [_free(edge[0]), *map(_vertical, edge)]
-    figure["annotations"] = [_label(edge[0], "T<sub>R</sub>"), _label(edge[1], "T<sub>M</sub>"), _free_label(reader)]
-    figure["xaxis"]["range"] = [0, torque.shown(widened(T_M, [subject.emergency_stop_torque_Nm or 0.0])) * 1.06]
-    figure["yaxis"] |= {
-        "type": "log",
-        "range": [0, top],
-        "exponentformat": "power",
-        "dtick": 1,
-        "tickfont": {"size": 11},
-    }
-    return figure
+def _power(torque_Nm: float, T_R: float) -> float:
+    """Power of ten that is the number of stops at a torque."""
+    return log10(equations.momentary_peaks_at(emergency_stop_torque_Nm=torque_Nm, repeated_peak_torque_Nm=T_R).item())
 
 
-def _line(torque: FloatArray, number: FloatArray, reader: Reader, *, named_below: bool) -> Figure:
-    name = said(Sentence("Permitted number N_k,max"), reader)
-    named = len(torque) // (2 if named_below else 4)
-    return {
-        "type": "scatter",
-        "mode": "lines+text",
-        "name": name,
-        "text": [name if place == named else "" for place in range(len(torque))],
-        "textposition": "bottom left" if named_below else "top right",
-        "textfont": {"color": "var(--ink)", "size": 12},
-        "x": shown(torque.tolist(), "Nm", reader),
-        "y": number.tolist(),
-        "line": {"color": "var(--ink)", "width": 3},
-        "fill": "tozeroy",
-        "fillcolor": "var(--area)",
-        "hovertext": [
-            said(
-                Sentence("{torque}: {number} stops", {"torque": Quantity(T, "Nm"), "number": Quantity(int(N), "", 7)}),
-                reader,
-            )
-            for T, N in zip(torque.tolist(), number.tolist(), strict=True)
-        ],
-        "hoverinfo": "text",
-        "meta": {"kind": "allowed"},
-    }
-
-
-def _stop(subject: Subject, top: int, reader: Reader) -> list[Figure]:
+def _stop(subject: Subject, T_M: float, reader: Reader) -> list[Mark]:
+    """The user's stop at its expected number, or else at the one allowed; none where not one is allowed."""
     stop, torque = subject.application.emergency_stop, subject.emergency_stop_torque_Nm
     allowed = allowed_stops(subject)
-    if stop is None or torque is None or allowed is None:
+    if stop is None or torque is None or allowed is None or max(stop.count or 0, allowed) < 1:
         return []
-    number = float(stop.count) if stop.count else min(allowed, 10.0**top)
-    if number <= 0:
-        return []
-    name = said(Sentence("your stops") if stop.count else Sentence("your stop torque"), reader)
-    # Its label stands on the other side of the line than the line's own, and not on the numbers of the axis.
-    side = "top" if number > allowed * (1 + 1e-9) or number < LOW else "bottom"
-    return [
-        points("stop", size=12)
-        | {
-            "mode": "markers+text",
-            "name": name,
-            "text": [name],
-            "textposition": f"{side} left",
-            "textfont": {"color": "var(--ink)", "size": 12},
-            "x": shown([torque], "Nm", reader),
-            "y": [number],
-            "hovertext": [f"{name}<br>{reader.quantity(Quantity(torque, 'Nm'))}"],
-        }
-    ]
+    count = stop.count or min(allowed, 10**TOP)
+    outside = torque > T_M * (1 + equations.ROUNDING) or count > allowed
+    named = INPUTS["emergency_stop.count" if stop.count else "emergency_stop.torque_Nm"]
+    return [Mark("load", named.symbol, (torque, log10(count)), reader.text(named.name), 1.0, outside)]
 
 
 def allowed_stops(subject: Subject) -> float | None:
@@ -166,53 +100,3 @@ def _budget(count: int | None, allowed: float, torque: dict[str, Value]) -> Sent
         "At {torque} equation 17.9 permits {allowed} stops over the life; your {count} use {used} of them.",
         values | used,
     )
-
-
-# --- Parts of the plot ------------------------------------------------------------------------------------------------
-
-
-def _free(x: float) -> Figure:
-    """Region at and below T_R, where the equation sets no limit."""
-    return {
-        "type": "rect",
-        "x0": 0,
-        "x1": x,
-        "y0": 0,
-        "y1": 1,
-        "yref": "paper",
-        "layer": "below",
-        "fillcolor": "var(--area)",
-        "line": {"width": 0},
-    }
-
-
-def _free_label(reader: Reader) -> Figure:
-    return {
-        "x": 0.01,
-        "xref": "paper",
-        "y": 0.02,
-        "yref": "paper",
-        "xanchor": "left",
-        "yanchor": "bottom",
-        "text": said(Sentence("no limit by equation 17.9"), reader),
-        "showarrow": False,
-        "font": {"size": 12, "color": "var(--muted)"},
-    }
-
-
-def _vertical(x: float) -> Figure:
-    return {
-        "type": "line",
-        "x0": x,
-        "x1": x,
-        "y0": 0,
-        "y1": 1,
-        "yref": "paper",
-        "line": {"color": "var(--edge)", "width": 1, "dash": "dot"},
-    }
-
-
-def _label(x: float, text: str) -> Figure:
-    return {
-        "x": x, "y": 1, "yref": "paper", "text": text, "showarrow": False, "xanchor": "left", "yanchor": "top",
-    }  # fmt: skip

@@ -53,7 +53,10 @@ def runs(parent: Element, kind: str, at: Point, parts: Iterable[tuple[str, str]]
 
 def _run(element: Element, kind: str, content: str, shift: float) -> None:
     attributes = ({"class": kind.strip()} if kind else {}) | ({"dy": written(shift)} if shift else {})
-    SubElement(element, "tspan", attributes).text = content
+    if attributes or len(element):
+        SubElement(element, "tspan", attributes).text = content
+    else:
+        element.text = content
 
 
 def width_of(content: str) -> float:

@@ -19,7 +19,9 @@ def indexed(text: str) -> str:
 
 
 def axis_title(quantity: str, unit: str, reader: Reader) -> str:
-    """Title of an axis: a quantity (an English msgid) and the reader's unit."""
+    """Title of an axis: a quantity (an English msgid) and the reader's unit, where it has one."""
+    if not unit:
+        return reader.text(quantity)
     values = {"quantity": quantity, "unit": reader.unit(unit)}
     return said(Sentence(N_("{quantity} in {unit}"), values, ("quantity",)), reader)
 

@@ -36,7 +36,7 @@ from hpn.words.wording import N_, Sentence
 SECTIONS = ("overview", "bearing", "drive", "candidates", "compare", "calculation", "notes")
 """The result by sections, in their order."""
 
-FIGURES = frozenset(("bearing_figure", "sizes_figure", "stops_figure"))
+FIGURES = frozenset(("bearing_figure", "sizes_figure"))
 """Plots, which come only when somebody unfolds them: without script there is no use for their data."""
 
 PARTS = FIGURES.union(SECTIONS[1:])

@@ -133,8 +133,8 @@ def _for_reader(method: str) -> Callable[..., Any]:
     return pass_context(filtered)
 
 
-def _as_mathml(write: Callable[[Reader, Any], str]) -> Callable[..., Markup]:
-    return pass_context(lambda _, formula: Markup(write(current(), formula)))
+def _as_mathml(write: Callable[..., str]) -> Callable[..., Markup]:
+    return pass_context(lambda _, formula, **given: Markup(write(current(), formula, **given)))
 
 
 @lru_cache(maxsize=4096)
@@ -244,7 +244,7 @@ FILTERS: dict[str, Callable[..., Any]] = {
     "t": _for_reader("text"),
     **{
         write.__name__: _as_mathml(write)
-        for write in (mathml.in_symbols, mathml.with_numbers, mathml.result, mathml.compared)
+        for write in (mathml.in_symbols, mathml.substituted, mathml.result, mathml.compared)
     },
     **{
         name: _for_reader(name)
