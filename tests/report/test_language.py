@@ -43,7 +43,7 @@ def test_sources_are_told_in_the_language_of_the_file() -> None:
     assert GERMAN.source("table 12.1, page 12") == "Tab. 12.1, S.\u202f12"
     assert GERMAN.source("section 3.2") == "Abschn. 3.2"
     assert GERMAN.source("supplied by the user: my.csv") == "vom Benutzer geliefert: my.csv"
-    assert GERMAN.source("your input") == "eigene Angabe"
+    assert GERMAN.source("your input") == "Eingabe"
     assert GERMAN.source("a text of {somebody} else") == "a text of {somebody} else"
 
 
