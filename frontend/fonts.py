@@ -10,6 +10,7 @@ import unicodedata
 from collections.abc import Iterable
 from pathlib import Path
 
+from fontTools.pens.ttGlyphPen import TTGlyphPen
 from fontTools.subset import Options, Subsetter
 from fontTools.ttLib import TTFont
 from fontTools.varLib.instancer import instantiateVariableFont
@@ -58,8 +59,10 @@ def paper_faces(package: Path) -> dict[str, bytes]:
     cuts = {
         "HPNSans.ttf": cut(originals / ROMAN, ON_PAPER, UPRIGHT, "Regular", WEIGHTS[0]),
         "HPNSans-Bold.ttf": cut(originals / ROMAN, ON_PAPER, UPRIGHT, "Bold", BOLD),
-        "HPNSans-Italic.ttf": cut(originals / SLANTED, SYMBOLS, ITALIC, "Italic", WEIGHTS[0]),
+        "HPNSans-Italic.ttf": cut(originals / SLANTED, ON_PAPER, ITALIC, "Italic", WEIGHTS[0]),
     }
+    for font in cuts.values():
+        _raise_minus(font)
     licence = (package / "LICENSE.txt").read_bytes()
     return {name: saved(font) for name, font in cuts.items()} | {f"{name}.OFL.txt": licence for name in cuts}
 
@@ -86,6 +89,20 @@ def cut(source: Path, wanted: set[int], features: list[str], style: str, weight:
         if code in mapping:
             font["hmtx"][mapping[code]] = (round(em * units), 0)
     return font
+
+
+def _raise_minus(font: TTFont) -> None:
+    """Add the minus of min⁻¹, at the height of the raised 1: without it a whole text would be set in another face."""
+    shapes, widths, name = font["glyf"], font["hmtx"], "uni207B"
+    minus, one = shapes["minus"], shapes["onesuperior"]
+    share = (one.yMax - one.yMin) / (shapes["one"].yMax - shapes["one"].yMin)
+    middle = (one.yMax + one.yMin - share * (minus.yMax + minus.yMin)) / 2
+    pen = TTGlyphPen(shapes)
+    pen.addComponent("minus", (share, 0, 0, share, 0, middle))
+    font.setGlyphOrder([*font.getGlyphOrder(), name])
+    shapes[name], widths[name] = pen.glyph(), tuple(round(share * measure) for measure in widths["minus"])
+    for table in font["cmap"].tables:
+        table.cmap[0x207B] = name
 
 
 def _rename(font: TTFont, style: str) -> None:

@@ -10,7 +10,7 @@ from hpn.engine.check import Sheet
 from hpn.engine.checks import BY_CODE
 from hpn.files.inputs import LOADS, REQUIREMENTS
 from hpn.files.workbook.formulas import CHECK_FORMULAS, CYCLE_TERMS, GEAR_TERMS, RATINGS, cell_name, formulas_of
-from hpn.files.workbook.overview import REFERENCES
+from hpn.files.workbook.inputs_sheet import REFERENCES
 from hpn.files.workbook.sheets import USED
 from hpn.files.workbook.unchanged import ENTERED
 from hpn.words.quantities import INPUTS

@@ -109,8 +109,7 @@ def test_a_motion_has_a_sheet_of_its_own_in_every_language_and_unit(catalogue: C
 
 def test_columns_of_phases_that_vary_are_folded_unless_used(catalogue: Catalogue) -> None:
     plain, varying = (
-        opened(case, catalogue)["Duty cycle"].column_dimensions
-        for case in (CASES["example"], MOVING["phases that vary"])
+        opened(case, catalogue)["Inputs"].column_dimensions for case in (CASES["example"], MOVING["phases that vary"])
     )
     assert plain["G"].hidden
     assert not varying["G"].hidden

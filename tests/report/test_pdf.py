@@ -300,3 +300,15 @@ def test_a_figure_never_stands_on_another(made: Make) -> None:
     """Long German labels once pushed symbols and numbers of a table over each other."""
     page = text(made("everything", GERMAN), GERMAN)
     assert re.search(r"Lagerlebensdauer L50\s+Lb,50\s+84\s*437 h", page)
+
+
+@pytest.mark.parametrize("reader", [ENGLISH, GERMAN], ids=["en", "de"])
+def test_every_text_is_set_in_the_reports_own_faces(reader: Reader, catalogue: Catalogue) -> None:
+    """A character that a face lacks, such as the minus of min⁻¹, would set a whole text of a drawing in another one."""
+    document = pikepdf.open(BytesIO(pdf(typed_export_of(CASES["example"], catalogue), reader)))
+    faces = {str(one["/BaseFont"]).partition("+")[2] for one in document.objects if _is_font(one)}
+    assert {face for face in faces if "Math" not in face} == {"HPNSans-Regular", "HPNSans-Bold", "HPNSans-Italic"}
+
+
+def _is_font(one: pikepdf.Object) -> bool:
+    return isinstance(one, pikepdf.Dictionary) and one.get("/Type") == "/Font"

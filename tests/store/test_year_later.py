@@ -150,8 +150,8 @@ def test_a_selection_saved_before_catalogues_were_kept_says_so(database: str, fo
     assert "The catalogue of that time is not kept" in page
     assert "not kept: published figures appear only" in " ".join(words(files["report.pdf en"]).split())
     assert "not kept" not in whole
-    notes = openpyxl.load_workbook(BytesIO(files["report.xlsx en"]))["Notes"]
-    assert any("not kept" in str(row[1]) for row in notes.iter_rows(values_only=True))
+    notes = openpyxl.load_workbook(BytesIO(files["report.xlsx en"]))["Candidates"]
+    assert any("not kept" in str(row[0]) for row in notes.iter_rows(values_only=True))
 
 
 def test_a_database_from_before_is_brought_up_to_date_with_what_it_has(database: str) -> None:

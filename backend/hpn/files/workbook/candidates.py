@@ -1,4 +1,4 @@
-"""The sheet of all candidates: published figures as numbers, calculated ones as formulas."""
+"""The sheet of all candidates: utilisations, then published figures as numbers and calculated ones as formulas."""
 
 import json
 from typing import Any
@@ -8,9 +8,10 @@ from xlsxwriter.utility import xl_range, xl_range_abs, xl_rowcol_to_cell
 from hpn.engine.candidates import Candidate
 from hpn.engine.checks import CHECKS
 from hpn.files.export import LOWER_BOUND
+from hpn.files.words import catalogue_version
 from hpn.files.workbook.formulas import CHECK_FORMULAS, GEAR_TERMS, NONE, RATINGS, written
 from hpn.files.workbook.known import Known
-from hpn.files.workbook.sheets import Book
+from hpn.files.workbook.sheets import FOLDED, ROW_POINTS, Book
 from hpn.files.workbook.unchanged import as_saved
 from hpn.files.workbook.wrong import WRONG
 from hpn.words.quantities import GEAR
@@ -18,15 +19,23 @@ from hpn.words.units import symbol_of
 from hpn.words.wording import N_
 
 FIRST_ROW = 1
+WIDTH, MOST_UPRIGHT = 10.0, 9
+"""Width of a column in characters, and the number of checks that have room on an upright page."""
+
+CHARACTERS_PER_LINE = 100
+"""Length of a line of a note: no reader of the file fits the row to its text by itself."""
+
 IDENTITY = ("designation", "status", "utilisation", "rank")
-FIGURES = len(IDENTITY)
+USED = len(IDENTITY)
+FIGURES = USED + len(CHECKS)
 TERMS = FIGURES + len(RATINGS)
-USED = TERMS + len(GEAR_TERMS)
+CONVERTED = TERMS + len(GEAR_TERMS)
+"""First columns: of checks, which are printed, of published and of calculated figures, and of those in other units."""
 
 COLUMNS = (
-    {name: FIGURES + k for k, name in enumerate(RATINGS)}
+    {check.code: USED + k for k, check in enumerate(CHECKS)}
+    | {name: FIGURES + k for k, name in enumerate(RATINGS)}
     | {term.name: TERMS + k for k, term in enumerate(GEAR_TERMS)}
-    | {check.code: USED + k for k, check in enumerate(CHECKS)}
 )
 """Column by the name of a figure or the code of a check."""
 
@@ -35,10 +44,11 @@ LOAD = [check.code for check in CHECKS if check.group == "load"]
 
 
 class CandidatesSheet:
-    """One row per candidate, best first as saved."""
+    """One row per candidate, best first as saved; columns of checks that nobody asks for are folded."""
 
     def __init__(self, book: Book, sheet: Any) -> None:
         self.book, self.sheet = book, sheet
+        self.asked = book.export.selection.check_definitions.keys()
         self.symbols = {name: GEAR[field].symbol for name, field in RATINGS.items()}
         known = Known(book.export, book.export.candidate, book.words)
         self.symbols |= {term.name: known.symbol(term) for term in GEAR_TERMS}
@@ -56,11 +66,22 @@ class CandidatesSheet:
         for name, column in blocks.items():
             self.book.name(name, self.sheet, xl_range_abs(rows[0], column, rows[-1], column))
         self._colours(rows)
+        self._notes(rows[-1] + 2)
         self.sheet.repeat_rows(0)
-        self.sheet.repeat_columns(0)
-        self.book.page(self.sheet, across=3)
-        self.sheet.autofilter(0, 0, rows[-1], USED + len(CHECKS) - 1)
+        self.book.page(self.sheet, columns=FIGURES, landscape=len(self.asked) > MOST_UPRIGHT)
+        self.sheet.autofilter(0, 0, rows[-1], CONVERTED - 1)
         return rows
+
+    def _notes(self, row: int) -> None:
+        """Write the notices and versions of the selection below the list, across the columns that are printed."""
+        text, selection = self.book.reader.text, self.book.export.selection
+        self.sheet.write_string(row, 0, text(N_("Assumptions and notes")), self.book.style("section"))
+        notes = [self.book.shown.told(notice.sentence) for notice in selection.notices]
+        notes.append(f"{text(N_('Engine'))} {selection.engine_version}")
+        notes.append(f"{text(N_('Catalogue'))} {catalogue_version(self.book.export, self.book.reader)}")
+        for own, note in enumerate(notes, row + 1):
+            self.sheet.merge_range(own, 0, own, FIGURES - 1, note, self.book.style("wrap"))
+            self.sheet.set_row(own, ROW_POINTS * (1 + len(note) // CHARACTERS_PER_LINE))
 
     def _colours(self, rows: range) -> None:
         self.book.colour(self.sheet, rows[0], 1, rows[-1], 1)
@@ -71,17 +92,21 @@ class CandidatesSheet:
     def _heads(self) -> None:
         text, head = self.book.reader.text, self.book.head
         heads = [text(title) for title in (N_("Gear"), N_("Verdict"), N_("Utilisation"), N_("Rank as saved"))]
+        heads += [text(check.title) for check in CHECKS]
         heads += [head(GEAR[field].symbol, symbol_of(field)) for field in RATINGS.values()]
         bound = f", {text(LOWER_BOUND)}"
         heads += [head(self.symbols[term.name], term.unit) + bound * term.by_efficiency for term in GEAR_TERMS]
-        heads += [text(check.title) for check in CHECKS]
         unit_of = self.book.shown.unit
         heads += [f"{self.symbols[name]} [{unit_of(unit)}]" for name, unit in self.converted.items()]
         for column, shown in enumerate(heads):
-            self.sheet.write_string(0, column, shown, self.book.style("head"))
-        self.sheet.set_row(0, 80)
-        self.sheet.set_column(0, 0, 14)
-        self.sheet.set_column(1, len(heads) - 1, 14)
+            self.sheet.write_string(0, column, shown, self.book.style("turned" if USED <= column < FIGURES else "head"))
+        self.sheet.set_row(0, 106)
+        for column, width in enumerate((13, 12.5, 10, 8)):
+            self.sheet.set_column(column, column, width)
+        self.sheet.set_column(USED, len(heads) - 1, WIDTH)
+        for column, check in enumerate(CHECKS, USED):
+            if check.code not in self.asked:
+                self.sheet.set_column(column, column, WIDTH, None, FOLDED)
         self.sheet.freeze_panes(1, 1)
 
     def _row(self, row: int, candidate: Candidate) -> None:
@@ -108,7 +133,7 @@ class CandidatesSheet:
             self._cell(row, column, formula, used, "share")
         self._verdict(row, known)
         figures = known.ratings() | terms
-        for column, (name, unit) in enumerate(self.converted.items(), USED + len(CHECKS)):
+        for column, (name, unit) in enumerate(self.converted.items(), CONVERTED):
             source = xl_rowcol_to_cell(row, COLUMNS[name])
             self.book.converted(self.sheet, row, column, source, unit, figures[name])
 

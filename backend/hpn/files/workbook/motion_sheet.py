@@ -11,8 +11,8 @@ from hpn.words.units import symbol_of
 from hpn.words.wording import N_
 
 NOTE = N_(
-    "The load phases on the sheet of the duty cycle come from this motion, as saved: changes there are recalculated, "
-    "changes here are not."
+    "The load phases on the sheet Inputs come from this motion, as saved: changes there are recalculated, changes "
+    "here are not."
 )
 
 
@@ -23,7 +23,7 @@ def write_motion(book: Book, sheet: Any, motion: Motion) -> None:
     sheet.write_string(0, 0, book.reader.text(NOTE), book.style("quiet"))
     row = _mechanism(book, sheet, motion)
     _moves(book, sheet, motion, row + 1)
-    book.page(sheet)
+    book.page(sheet, landscape=True)
 
 
 def _mechanism(book: Book, sheet: Any, motion: Motion) -> int:

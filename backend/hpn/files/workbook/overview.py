@@ -1,98 +1,70 @@
-"""The first sheet: inputs, the chosen gear, and every check of it as formulas."""
+"""The first sheet: the chosen gear, every check of it and the figures behind them as formulas."""
 
 import json
-from dataclasses import replace
 from typing import Any
 
 from xlsxwriter.utility import xl_range_abs, xl_rowcol_to_cell
 
 from hpn.application import OutputLoad
-from hpn.application.input_fields import FIELDS
 from hpn.engine.candidates import CheckResult
 from hpn.engine.check import Check
 from hpn.engine.checks import CHECKS
 from hpn.explain.readings import relation_of
 from hpn.files.export import LOSS_FREE
-from hpn.files.inputs import LOAD_INERTIA, LOAD_REVERSES, LOADS, REQUIREMENTS
 from hpn.files.words import equation, origin
 from hpn.files.workbook.candidates import COLUMNS, LOAD
-from hpn.files.workbook.formulas import (
-    CHECK_FORMULAS,
-    CYCLE_TERMS,
-    GEAR_TERMS,
-    NONE,
-    RATINGS,
-    REVERSES,
-    CellTerm,
-    written,
-)
-from hpn.files.workbook.known import DEMANDS, Known, demand_of, limit_of
-from hpn.files.workbook.sheets import Book
-from hpn.files.workbook.unchanged import ENTERED, as_saved, entered
-from hpn.files.workbook.wrong import WRONG, WRONG_AS_A_WHOLE, WRONG_IN_CYCLE, advice, is_wrong, validation
+from hpn.files.workbook.formulas import CHECK_FORMULAS, CYCLE_TERMS, GEAR_TERMS, NONE, RATINGS, CellTerm, written
+from hpn.files.workbook.inputs_sheet import series_of
+from hpn.files.workbook.known import Known, demand_of, limit_of
+from hpn.files.workbook.sheets import ROW_POINTS, Book, Lines
+from hpn.files.workbook.unchanged import as_saved
+from hpn.files.workbook.wrong import EVERY_WRONG, WRONG, WRONG_AS_A_WHOLE
 from hpn.physics import bearing
-from hpn.words.quantities import GEAR, INPUTS
+from hpn.words.quantities import GEAR
 from hpn.words.terms import VERDICTS
 from hpn.words.units import suffix_of
 from hpn.words.wording import N_
 
-EFFICIENCY, MODEL = "requirements.efficiency", "output_load.model"
-NAMES = {path: name for name, path in ENTERED.items()}
-NEEDED = {
-    "emergency_stop.torque_Nm": 'AND(N_k<>"",T_B="")',
-    "emergency_stop.brake.torque_Nm": 'OR(n_b<>"",f<>"")',
-}
-"""Conditions under which an optional input must be filled."""
-
 ALONG_THE_MOTION = N_("as saved: along the motion, with the motor’s own inertia")
+BASIS = 11
+"""Column of the bases of checks, behind the columns that are printed, of which three have the reader's own units."""
+
+LONGEST_TITLE = 42
+"""Characters of a check's title that have room in one line."""
+
 OUTDATED = N_("not available: inputs that it depends on were changed")
-OF_THE_MOTION = N_("of the motion")
-REMARK = 7
-"""Column of remarks on inputs, clear of the values in other units."""
 
-MARKED = N_("marked red under Inputs and on the sheet Duty cycle; no gear is rated while there is one")
-
-REFERENCES = (
-    ("rated_speed", N_("Rated input speed"), "rpm", 3000.0),
-    ("rated_life", N_("Life at rated torque and speed"), "h", 20_000.0),
-    ("bearing_speed", N_("Speed of the published bearing loads"), "rpm", 100.0),
-    ("bearing_life", N_("Bearing life L50 of the published loads"), "h", 20_000.0),
-)
-"""Series figures of the equations: name, what it is, unit, the handbook's value."""
+MARKED = N_("marked red on the sheet Inputs; no gear is rated while there is one")
 
 
-class Overview:
-    """Rows from top to bottom: label, symbol, value, unit, source."""
+class Overview(Lines):
+    """Gear, checks and figures, with the basis of each check beside what is printed."""
 
     def __init__(self, book: Book, sheet: Any, candidates: range) -> None:
-        self.book, self.sheet, self.candidates = book, sheet, candidates
+        super().__init__(book, sheet)
+        self.candidates = candidates
         self.known = Known(book.export, book.export.candidate, book.words)
         every = (Known(book.export, candidate, book.words) for candidate in book.export.selection.candidates)
         self.fixed = set().union(*(known.fixed() for known in every))
         """Figures and checks that no formula gives for some gear."""
-        self.text = book.reader.text
-        self.row = 0
-        self.remarks: list[str] = []
-        """Cells with a remark on a wrong input."""
 
     def write(self) -> None:
         """Write the sheet."""
-        for column, width in enumerate((52, 24, 18, 16, 14, 16, 14, 38)):
+        for column, width in enumerate((36, 19, 12, 12, 10, 12, 10, 20, 12, 12, 8)):
             self.sheet.set_column(column, column, width)
         self._head()
         self._gear()
         self._checks()
         self._terms(N_("Figures of the cycle"), CYCLE_TERMS, self._cycle_values())
         self._terms(N_("Figures of the gear"), GEAR_TERMS, self.known.terms())
-        self._inputs()
-        self._references()
-        self.book.page(self.sheet)
+        self.book.page(self.sheet, columns=BASIS if self.book.shown.units else BASIS - 3)
 
     def _head(self) -> None:
         export = self.book.export
         self.sheet.write_string(
             0, 0, export.heading.title or self.text(N_("Untitled selection")), self.book.style("title")
         )
+        self.sheet.set_row(0, 20)
         self.sheet.freeze_panes(1, 0)
         heading, made = export.heading, export.made
         lines = [
@@ -114,29 +86,9 @@ class Overview:
         self.sheet.write_string(self.row, 0, self.text(hint), self.book.style("quiet"))
         self.row += 2
 
-    def _section(self, title: str, *heads: str) -> None:
-        self.sheet.write_string(self.row, 0, self.text(title), self.book.style("section"))
-        if self.book.shown.units and not heads:
-            self.sheet.write_string(self.row, 5, self.text(N_("In your units")), self.book.style("quiet"))
-        self.row += 1
-        for column, head in enumerate(heads):
-            self.sheet.write_string(self.row, column, self.text(head), self.book.style("head"))
-        self.row += bool(heads)
-
-    def _converted(self, unit: str, value: float | str | None) -> None:
-        """Write the value of a line in the reader's own unit too, where that is another."""
-        if self.book.converted(self.sheet, self.row, 5, xl_rowcol_to_cell(self.row, 2), unit, value):
-            self.sheet.write_string(self.row, 6, self.book.shown.unit(unit), self.book.style("unit"))
-
-    def _line(self, label: str, symbol: str, unit: str, source: str = "") -> None:
-        self.sheet.write_string(self.row, 0, self.text(label), self.book.style("label"))
-        self.sheet.write_string(self.row, 1, symbol, self.book.style("quiet"))
-        self.sheet.write_string(self.row, 3, self.book.reader.unit(unit), self.book.style("unit"))
-        self.sheet.write_string(self.row, 4, source, self.book.style("quiet"))
-
     def _gear(self) -> None:
-        self._section(N_("Gear"))
-        self._line(N_("Chosen gear (any candidate)"), "", "")
+        self.section(N_("Gear"))
+        self.line(N_("Chosen gear (any candidate)"), "", "")
         cell, designation = (self.row, 2), self.known.candidate.designation
         self.sheet.write_string(*cell, designation, self.book.style("input"))
         self.sheet.data_validation(*cell, *cell, {"validate": "list", "source": "=candidates"})
@@ -153,15 +105,16 @@ class Overview:
 
     def _looked_up(self, label: str, column: int, style: str, saved: float | str) -> None:
         """Write a line with a column of the list of candidates, for the chosen gear."""
-        self._line(label, "", "")
+        self.line(label, "", "")
         self.sheet.write_formula(self.row, 2, f"={self._of_candidate(column)}", self.book.style(style), saved)
         self.row += 1
 
     def _wrong(self) -> None:
         """Write the number of inputs that the service would refuse: above 0 no gear is suitable."""
-        self._line(N_("Invalid inputs"), "", "")
-        self.counted = (self.row, 2)
-        self.book.name_cell(WRONG, self.sheet, *self.counted)
+        self.line(N_("Invalid inputs"), "", "")
+        count = f"=IFERROR({'+'.join(EVERY_WRONG)},1)"
+        self.sheet.write_formula(self.row, 2, count, self.book.style("count"), 0)
+        self.book.name_cell(WRONG, self.sheet, self.row, 2)
         remark = f'"{self.text(MARKED)}"'
         for condition, said in WRONG_AS_A_WHOLE.items():
             remark = f'IF({condition},"{self.text(said)}",{remark})'
@@ -182,12 +135,12 @@ class Overview:
         field = RATINGS[name]
         gear = self.book.export.gear(self.known.candidate)
         source = self.book.reader.source(gear.sources.get(field, "")) if gear else ""
-        self._line(GEAR[field].name, GEAR[field].symbol, suffix_of(field), source)
+        self.line(GEAR[field].name, GEAR[field].symbol, suffix_of(field), source)
         block = f"INDEX({name}_all,MATCH(gear,candidates,0))"
         saved = "" if value is None else value
         self.sheet.write_formula(self.row, 2, f'=IF({block}="","",{block})', self.book.style("figure"), saved)
         self.book.name_cell(name, self.sheet, self.row, 2)
-        self._converted(suffix_of(field), value)
+        self.converted(suffix_of(field), value)
         self.row += 1
 
     # --- Calculated ---------------------------------------------------------------------------------------------------
@@ -196,17 +149,17 @@ class Overview:
         return {name: name for name in (*RATINGS, *(term.name for term in GEAR_TERMS))}
 
     def _terms(self, title: str, terms: tuple[CellTerm, ...], values: dict[str, float | str]) -> None:
-        self._section(title)
+        self.section(title)
         for term in terms:
             named = term.named
-            self._line(named.name, self.known.symbol(term), term.unit, equation(named.equation, self.book.reader))
+            self.line(named.name, self.known.symbol(term), term.unit, equation(named.equation, self.book.reader))
             formula, look = self._written(self.known.formula(term)), "result"
             if term.name in self.fixed:
                 formula, look = self._from_list(term.name), "fixed"
             self.sheet.write_formula(self.row, 2, formula, self.book.style(look), values[term.name])
             self._remark(term)
             self.book.name_cell(term.name, self.sheet, self.row, 2)
-            self._converted(term.unit, values[term.name])
+            self.converted(term.unit, values[term.name])
             self.row += 1
         self.row += 1
 
@@ -232,7 +185,7 @@ class Overview:
 
     def _cycle_values(self) -> dict[str, float | str]:
         duty, loads = self.book.export.selection.duty, self.book.export.application.loads or OutputLoad()
-        (speed, life), torques = self._series()[2:], self.book.export.duty.torque_range_Nm
+        (speed, life), torques = series_of(self.book.export)[2:], self.book.export.duty.torque_range_Nm
         factor = bearing.life_factor(
             average_output_speed_rpm=duty.average_output_speed_rpm,
             required_life_L50_h=bearing.required_L50(life_h=loads.life_h, basis=loads.life_basis),
@@ -252,8 +205,8 @@ class Overview:
 
     def _checks(self) -> None:
         heads = (N_("Check"), N_("Relation"), N_("Demand"), N_("Limit"), N_("Utilisation"), N_("Verdict"))
-        own = (N_("Demand"), N_("Limit"), N_("Your unit")) if self.book.shown.units else ()
-        self._section(N_("Checks"), *heads, N_("As saved"), N_("Source"), *own)
+        own = (N_("Demand"), N_("Limit"), N_("Your unit")) if self.book.shown.units else ("",) * 3
+        self.section(N_("Checks"), *heads, N_("As saved"), N_("Source"), *own, N_("Basis"))
         self.book.colour(self.sheet, self.row, 5, self.row + len(CHECKS) - 1, 5)
         for check in CHECKS:
             self._check(check)
@@ -261,7 +214,9 @@ class Overview:
 
     def _check(self, check: Check) -> None:
         style, saved, used = self.book.style, self.known.candidate.check(check.code), self.known.utilisation(check.code)
-        self.sheet.write_string(self.row, 0, self.book.head(self.text(check.title), check.unit), style("label"))
+        title = self.book.head(self.text(check.title), check.unit)
+        self.sheet.write_string(self.row, 0, title, style("wrap"))
+        self.sheet.set_row(self.row, ROW_POINTS * (1 + len(title) // LONGEST_TITLE))
         relation = relation_of(check.code, turns_motor=self.book.export.selection.turns_motor)
         self.sheet.write_string(self.row, 1, relation, style("quiet"))
         values = (demand_of(saved), limit_of(saved), used)
@@ -275,6 +230,9 @@ class Overview:
             self._while_known(7, source, check.code, xl_rowcol_to_cell(self.row, 2))
         else:
             self.sheet.write_string(self.row, 7, source, style("quiet"))
+        if definition := self.book.export.selection.check_definitions.get(check.code):
+            basis = f"{self.text(definition.tests)} {self.text(definition.basis)}"
+            self.sheet.write_string(self.row, BASIS, basis, style("quiet"))
         for column in (2, 3):
             shown = self.book.converted(
                 self.sheet, self.row, column + 6, xl_rowcol_to_cell(self.row, column), check.unit, values[column - 2]
@@ -307,54 +265,3 @@ class Overview:
         )
         word = words[VERDICTS[saved.status]] if saved else ""
         self.sheet.write_formula(self.row, 5, formula, self.book.style("verdict"), word)
-
-    # --- Inputs -------------------------------------------------------------------------------------------------------
-
-    def _inputs(self) -> None:
-        self._section(N_("Inputs"))
-        for path in (*LOADS, *REQUIREMENTS):
-            own = path == LOAD_INERTIA and self.book.export.selection.duty.load_inertia_kgm2 is not None
-            source = self.text(OF_THE_MOTION) if own else ""
-            self._line(INPUTS[path].name, INPUTS[path].symbol, suffix_of(path), source)
-            name, value = NAMES.get(path), entered(self.book.export, path)
-            shown = (value[0] if len(value) == 1 else ", ".join(map(str, value))) if isinstance(value, tuple) else value
-            still = own or (path == EFFICIENCY and self.book.export.selection.turns_motor)
-            self.book.put(self.sheet, self.row, 2, shown, "fixed" if still else "input" if name else "label")
-            self._converted(suffix_of(path), value if isinstance(value, float) else None)
-            if name or path == LOAD_REVERSES:
-                self.book.name_cell(name or REVERSES, self.sheet, self.row, 2)
-            if name and not still:
-                self._refuse(path)
-            self.row += 1
-        count = "+".join([*(f"(LEN({remark})>0)" for remark in self.remarks), *WRONG_IN_CYCLE])
-        self.sheet.write_formula(*self.counted, f"=IFERROR({count},1)", self.book.style("count"), 0)
-        self.row += 1
-
-    def _refuse(self, path: str) -> None:
-        """Write the remark that appears beside an input while the service would refuse it."""
-        field, cell = FIELDS[path], xl_rowcol_to_cell(self.row, 2)
-        if path == MODEL:
-            as_saved = not self.known.fixed().isdisjoint(DEMANDS)
-            field = replace(
-                field, choices=(str(entered(self.book.export, path)),) if as_saved else ("linear", "iso281")
-            )
-        wrong, said = is_wrong(field, cell, NEEDED.get(path, "")), advice(field, self.book.reader)
-        rule = validation(field, said)
-        self.book.refuse(self.sheet, self.row, 2, self.row, 2, wrong=wrong, validation=rule)
-        remark = f'=IF(IFERROR({wrong},1)>0,"{said}","")'
-        self.sheet.write_formula(self.row, REMARK, remark, self.book.style("wrong"), "")
-        self.remarks.append(xl_rowcol_to_cell(self.row, REMARK))
-
-    def _references(self) -> None:
-        self._section(N_("Figures of the series"))
-        for (name, label, unit, _), value in zip(REFERENCES, self._series(), strict=True):
-            self._line(label, "", unit)
-            self.book.put(self.sheet, self.row, 2, value, "figure")
-            self.book.name_cell(name, self.sheet, self.row, 2)
-            self.row += 1
-
-    def _series(self) -> list[float]:
-        figures = self.book.export.figures
-        if figures is None:
-            return [figure for *_, figure in REFERENCES]
-        return [figures.rated_input_speed_rpm, figures.life_at_rated_torque_h, *figures.bearing_reference]

@@ -1,4 +1,4 @@
-"""Styles and ways of writing that all sheets of the workbook use, and the sheet of the duty cycle."""
+"""Styles and ways of writing that all sheets of the workbook use, and the table of the duty cycle."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -23,22 +23,24 @@ FIGURE = "[>=10000000]0.00E+00;[>=10000]#,##0.00;#,##0.00##"
 """Number format that fits the column, which would show hashes otherwise."""
 
 STYLES: dict[str, dict[str, Any]] = {
-    "title": {"bold": True, "font_size": 16},
-    "section": {"bold": True, "font_color": ACCENT, "font_size": 12},
+    "title": {"bold": True, "font_size": 14},
+    "section": {"bold": True, "font_color": ACCENT, "font_size": 11},
     "head": {"bold": True, "font_color": "#FFFFFF", "bg_color": ACCENT, "text_wrap": True, "valign": "top"},
+    "turned": {"bold": True, "font_color": "#FFFFFF", "bg_color": ACCENT, "text_wrap": True, "rotation": 90},
     "label": {"valign": "top"},
+    "number": {"font_color": "#5B6875", "align": "left"},
     "quiet": {"font_color": "#5B6875", "valign": "top"},
     "unit": {"font_color": "#5B6875", "valign": "top", "indent": 1},
     "wrap": {"text_wrap": True, "valign": "top"},
     "input": {"bg_color": "#FFF8DC", "border": 1, "border_color": "#D5DBE1", "locked": False},
     "figure": {"bg_color": "#F3F6F9"},
-    "result": {"num_format": FIGURE},
+    "result": {"num_format": FIGURE, "valign": "top"},
     "shown": {"num_format": FIGURE, "font_color": "#5B6875"},
     "count": {"num_format": "#,##0"},
-    "share": {"num_format": "0.0##%"},
-    "fixed": {"num_format": FIGURE, "italic": True, "font_color": "#8A6100"},
+    "share": {"num_format": "0.0##%", "valign": "top", "shrink": True},
+    "fixed": {"num_format": FIGURE, "italic": True, "font_color": "#8A6100", "valign": "top"},
     "wrong": {"font_color": "#B3261E", "valign": "top"},
-    "verdict": {"bold": True, "indent": 1},
+    "verdict": {"bold": True, "valign": "top", "shrink": True},
 }
 """Yellow cells are inputs; amber italics are values that a formula can't give."""
 
@@ -60,8 +62,19 @@ COLOURS: Mapping[str, Mapping[str, str]] = {
 PAPERS: Mapping[Paper, int] = {"a4": 9, "us-letter": 1}
 """Numbers of the sizes of paper in the file format."""
 
+FONT = {"font_name": "Arial", "font_size": 10}
+"""A font that has the same widths in every office program, so that pages break alike."""
+
+ROW_POINTS, ROWS_ON_PAGE = 12.75, 83
+"""Height of a row, and how many of them a page holds at 7 points."""
+
 LONGEST_HEADER_TEXT = 100
 LONGEST_FOOTER_LINK = 100
+HEAD_AND_FOOT = {"margin": 0.25}
+"""Distance from the edge of the paper, in inches."""
+
+WIDTH = 11.5
+"""Width of a column of the duty cycle, in characters."""
 
 SPARE_PHASES = 20
 
@@ -106,7 +119,7 @@ class Book:
 
     def number(self, sheet: Any, row: int, place: int, name: str | None) -> None:
         """Write the number of a phase or a move into the first cell of its row, with its name where it has one."""
-        self.put(sheet, row, 0, row_label(place, name) if name else float(place + 1), "quiet")
+        self.put(sheet, row, 0, row_label(place, name) if name else float(place + 1), "number")
 
     def head(self, text: str, unit: str) -> str:
         """Head of a column: a text or symbol, with a unit if there is one."""
@@ -141,21 +154,23 @@ class Book:
         sheet.conditional_format(*block, rule)
         sheet.data_validation(*block, validation)
 
-    def page(self, sheet: Any, *, across: int = 1, landscape: bool = True) -> None:
-        """Set up a sheet for printing: everything on so many pages across, with heads on each."""
+    def page(self, sheet: Any, *, columns: int = 0, landscape: bool = False) -> None:
+        """Set up a sheet for printing: its first columns, or all, on one page across, with a head and a foot."""
         if landscape:
             sheet.set_landscape()
         sheet.set_paper(PAPERS[paper(self.shown)])
-        sheet.set_margins(left=0.5, right=0.4, top=0.7, bottom=0.7)
-        sheet.print_area(0, 0, sheet.dim_rowmax, sheet.dim_colmax)
-        sheet.fit_to_pages(across, 0)
-        export, text = self.export, self.reader.text
-        title = " ".join(f"{export.heading.title} {export.heading.reference}".split())[:LONGEST_HEADER_TEXT]
-        saved = self.reader.date(export.created) if export.created else ""
-        link = export.link if len(export.link) <= LONGEST_FOOTER_LINK else ""
+        sheet.set_margins(left=0.5, right=0.4, top=0.6, bottom=0.6)
+        sheet.print_area(0, 0, sheet.dim_rowmax, columns - 1 if columns else sheet.dim_colmax)
+        sheet.set_default_row(ROW_POINTS)
+        sheet.fit_to_pages(1, -(-sheet.dim_rowmax // ROWS_ON_PAGE))
+        heading, text = self.export.heading, self.reader.text
+        revision = f"{text(N_('Revision'))} {heading.revision}" if heading.revision else ""
+        title = ", ".join(filter(None, (heading.title, heading.reference, revision)))
+        saved = self.reader.date(self.export.created) if self.export.created else ""
+        link = self.export.link if len(self.export.link) <= LONGEST_FOOTER_LINK else ""
         numbers = text(N_("Page {page} of {pages}")).format(page="&P", pages="&N")
-        sheet.set_header(f"&L{_plain(title)}&R{_plain(saved)}")
-        sheet.set_footer(f"&LHPN Select {_plain(link)}&R{numbers}")
+        sheet.set_header(f"&L{_plain(' '.join(title.split())[:LONGEST_HEADER_TEXT])}&R{_plain(saved)}", HEAD_AND_FOOT)
+        sheet.set_footer(f"&LHPN Select {_plain(link)}&R{numbers}", HEAD_AND_FOOT)
 
     def name(self, name: str, sheet: Any, reference: str) -> None:
         """Define a name for a cell or a block of a sheet."""
@@ -172,37 +187,70 @@ def _plain(text: str) -> str:
     return text.replace("&", "&&")
 
 
-class CycleSheet:
-    """Phases as inputs with spare rows, and the loads that apply in each phase."""
+class Lines:
+    """A sheet written line by line: label, symbol, value, unit, source, and the value in the reader's unit at `own`."""
+
+    own = 5
 
     def __init__(self, book: Book, sheet: Any) -> None:
         self.book, self.sheet = book, sheet
+        self.text = book.reader.text
+        self.row = 0
+
+    def section(self, title: str, *heads: str) -> None:
+        """Write the title of a section, and the heads of its columns."""
+        self.sheet.write_string(self.row, 0, self.text(title), self.book.style("section"))
+        if self.book.shown.units and not heads:
+            self.sheet.write_string(self.row, self.own, self.text(N_("In your units")), self.book.style("quiet"))
+        self.row += 1
+        for column, head in enumerate(heads):
+            if head:
+                self.sheet.write_string(self.row, column, self.text(head), self.book.style("head"))
+        self.row += bool(heads)
+
+    def line(self, label: str, symbol: str, unit: str, source: str = "") -> None:
+        """Write what stands around a value."""
+        self.sheet.write_string(self.row, 0, self.text(label), self.book.style("label"))
+        self.sheet.write_string(self.row, 1, symbol, self.book.style("quiet"))
+        self.sheet.write_string(self.row, 3, self.book.reader.unit(unit), self.book.style("unit"))
+        if source:
+            self.sheet.write_string(self.row, 4, source, self.book.style("quiet"))
+
+    def converted(self, unit: str, value: float | str | None) -> None:
+        """Write the value of a line in the reader's own unit too, where that is another."""
+        if self.book.converted(self.sheet, self.row, self.own, xl_rowcol_to_cell(self.row, 2), unit, value):
+            self.sheet.write_string(self.row, self.own + 1, self.book.shown.unit(unit), self.book.style("unit"))
+
+
+class CycleTable:
+    """Phases as inputs with spare rows, from row `top` on, and the loads that apply in each phase."""
+
+    def __init__(self, book: Book, sheet: Any, top: int) -> None:
+        self.book, self.sheet, self.top = book, sheet, top
         self.phases = book.export.application.duty_cycle.load_phases
-        self.last = len(self.phases) + SPARE_PHASES
+        self.last = top + len(self.phases) + SPARE_PHASES
         self.converted = [name for name in PHASE_FIGURES if not book.shown.measure(symbol_of(name)).same]
         self.loads = {name: getattr(book.export.duty.phases, name)[0, 0] for name in USED.values()}
 
     def write(self) -> None:
-        """Write the sheet and name its columns."""
+        """Write the table and name its columns."""
         heads = [(N_("Phase"), ""), *((INPUTS[f"phase.{name}"].name, symbol_of(name)) for name in PHASE_FIGURES)]
         heads += [(N_("Radial load used"), "N"), (N_("Axial load used"), "N")]
         for column, (head, unit) in enumerate(heads):
             self.sheet.write_string(
-                0, column, self.book.head(self.book.reader.text(head), unit), self.book.style("head")
+                self.top, column, self.book.head(self.book.reader.text(head), unit), self.book.style("head")
             )
-        self.sheet.set_row(0, 32)
-        self.sheet.set_column(0, len(heads) - 1, 15)
-        self.sheet.freeze_panes(1, 0)
+        self.sheet.set_row(self.top, 45)
+        self.sheet.set_column(1, len(heads) - 1, WIDTH)
         self._heads_converted(len(heads))
         for column, name in enumerate((*PHASE_FIGURES, *USED), 1):
-            self.book.name(name, self.sheet, xl_range_abs(1, column, self.last, column))
-        for row in range(1, self.last + 1):
+            self.book.name(name, self.sheet, xl_range_abs(self.top + 1, column, self.last, column))
+        for row in range(self.top + 1, self.last + 1):
             self._phase(row)
         self._refuse()
         if not self.varies:
             self._fold(len(heads))
-        self.sheet.repeat_rows(0)
-        self.book.page(self.sheet, landscape=self.varies)
+        self.sheet.repeat_rows(self.top)
 
     @property
     def varies(self) -> bool:
@@ -212,34 +260,36 @@ class CycleSheet:
     def _fold(self, start: int) -> None:
         """Fold the columns of phases that vary; the mark above the next column opens them."""
         first, last = (1 + PHASE_FIGURES.index(VARYING[k]) for k in (0, -1))
-        self.sheet.set_column(first, last, 15, None, FOLDED)
-        self.sheet.set_column(last + 1, last + 1, 15, None, {"collapsed": True})
+        self.sheet.set_column(first, last, WIDTH, None, FOLDED)
+        self.sheet.set_column(last + 1, last + 1, WIDTH, None, {"collapsed": True})
         for column, name in enumerate(self.converted, start):
             if name in VARYING:
-                self.sheet.set_column(column, column, 15, None, {"hidden": True})
+                self.sheet.set_column(column, column, WIDTH, None, {"hidden": True})
 
     def _heads_converted(self, start: int) -> None:
         """Write the heads of the columns in other units, behind all others."""
         for column, name in enumerate(self.converted, start):
             symbol = self.book.shown.unit(symbol_of(name))
             head = f"{self.book.reader.text(INPUTS[f'phase.{name}'].name)} [{symbol}]"
-            self.sheet.write_string(0, column, head, self.book.style("head"))
-            self.sheet.set_column(column, column, 15)
+            self.sheet.write_string(self.top, column, head, self.book.style("head"))
+            self.sheet.set_column(column, column, WIDTH)
 
     def _refuse(self) -> None:
         """Mark values that the service would refuse, and name the rows beneath the last, which do not count."""
-        cells = {name: xl_rowcol_to_cell(1, column, col_abs=True) for column, name in enumerate(PHASE_FIGURES, 1)}
+        first = self.top + 1
+        cells = {name: xl_rowcol_to_cell(first, column, col_abs=True) for column, name in enumerate(PHASE_FIGURES, 1)}
         for column, name in enumerate(PHASE_FIGURES, 1):
             field, reader = PHASE_FIELDS[name], self.book.reader
             rule = validation(field, advice(field, reader, name))
             wrong = is_wrong_in_phase(name, cells)
-            self.book.refuse(self.sheet, 1, column, self.last, column, wrong=wrong, validation=rule)
+            self.book.refuse(self.sheet, first, column, self.last, column, wrong=wrong, validation=rule)
         beneath = (self.last + 1, 1, self.last + MOST_BENEATH, len(PHASE_FIGURES))
         self.book.name(BENEATH, self.sheet, xl_range_abs(*beneath))
 
     def _phase(self, row: int) -> None:
-        phase = self.phases[row - 1] if row <= len(self.phases) else None
-        self.book.number(self.sheet, row, row - 1, phase.name if phase else None)
+        place = row - self.top - 1
+        phase = self.phases[place] if place < len(self.phases) else None
+        self.book.number(self.sheet, row, place, phase.name if phase else None)
         for column, name in enumerate(PHASE_FIGURES, 1):
             self.book.put(self.sheet, row, column, getattr(phase, name, None), "input")
         for column, name in enumerate(self.converted, 1 + len(PHASE_FIGURES) + len(USED)):
@@ -252,4 +302,4 @@ class CycleSheet:
                 cell_name(INPUTS[f"output_load.{name}"].symbol),
             )
             formula = f'=IF({duration}="",0,ABS(IF({own}="",IF({whole}="",0,{whole}),{own})))'
-            self.sheet.write_formula(row, column, formula, None, loads[row - 1].item() if phase else 0.0)
+            self.sheet.write_formula(row, column, formula, None, loads[place].item() if phase else 0.0)

@@ -17,6 +17,9 @@ from hpn.words.wording import N_, Sentence
 WRONG = "wrong_inputs"
 """Name of the cell that counts the wrong inputs."""
 
+REMARKS = "remarks"
+"""Name of the remarks on inputs, each blank while its input is right."""
+
 BENEATH = "beneath_phases"
 """Name of the rows beneath the last of the duty cycle."""
 
@@ -42,9 +45,9 @@ WRONG_AS_A_WHOLE: Mapping[str, str] = {
     f"IFERROR(SUMPRODUCT(--(ABS(speed_rpm)*duration_s>{LEAST_MOTION:G}))=0,FALSE)": N_(
         "no phase moves: give at least one a speed and a duration"
     ),
-    f"COUNTA({BENEATH})>0": N_("phases below the bordered rows of the sheet Duty cycle do not count"),
+    f"COUNTA({BENEATH})>0": N_("phases below the bordered rows of the duty cycle do not count"),
     'AND(T_k<>"",T_B<>"")': N_("give either the torque of the stop or the brake, not both"),
-    "COUNTBLANK(radial_used)>0": N_("copy the formulas of the sheet Duty cycle into the rows that were inserted there"),
+    "COUNTBLANK(radial_used)>0": N_("copy the formulas of the duty cycle into the rows that were inserted there"),
 }
 """Faults of the duty cycle as a whole: condition and remedy."""
 
@@ -109,8 +112,9 @@ def validation(field: InputField, advised: str) -> dict[str, Any]:
     return {"validate": kind, "criteria": "between", "minimum": field.least, "maximum": field.most, **said}
 
 
-WRONG_IN_CYCLE = (
+EVERY_WRONG = (
+    f"SUMPRODUCT(--(LEN({REMARKS})>0))",
     *(f"SUMPRODUCT({is_wrong_in_phase(name, {name: name for name in PHASE_FIGURES})})" for name in PHASE_FIGURES),
     *(f"({condition})" for condition in WRONG_AS_A_WHOLE),
 )
-"""Formulas that count the faults in the duty cycle, over its columns."""
+"""Formulas that count the faults: remarks on inputs, and those in the duty cycle over its columns."""
