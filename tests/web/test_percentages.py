@@ -96,3 +96,9 @@ def test_a_figure_that_nothing_limits_is_a_word_beside_its_check(
     cell = re.findall(r'<td class="figure">(.*?)</td>', row[0], re.DOTALL)[column]
     assert "unlimited" in cell
     assert "–" not in cell and "93" not in cell
+
+
+def test_a_demand_that_is_not_published_has_no_unit(client: TestClient) -> None:
+    page = client.get("/?T=10&n=100&t=1&m=5&gear=HPN-40A-5").text
+    row = re.search(r'id="check-weight">.*?</tr>', page, re.DOTALL)
+    assert row and re.search(r">–\s*</data>\s*</td>", row[0])
