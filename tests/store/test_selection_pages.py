@@ -2,6 +2,7 @@
 
 import html
 import re
+import sqlite3
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -9,6 +10,8 @@ import pytest
 from starlette.testclient import TestClient
 
 from hpn.application import Application
+from hpn.engine.checks import BY_CODE
+from hpn.store.saved import packed, unpacked
 from hpn.web.app import create_app
 from hpn.web.form.link_writer import to_link
 from hpn.web.settings import Settings
@@ -105,7 +108,7 @@ def test_a_form_whose_selection_was_deleted_says_so_and_can_be_sent_anew(client:
     response = client.post("/selections", data={"link": LINK, "once": once})
 
     assert response.status_code == 410
-    assert "has been deleted since" in response.text
+    assert "has since been deleted" in response.text
     assert count(client) == 0
     assert sent(client, once=once_of(response.text))
     assert count(client) == 1
@@ -178,6 +181,21 @@ def test_a_result_that_differs_today_stands_beside_the_saved_one(client: TestCli
     assert "Differences today" in page.text
     assert page.text.index("Selected gear</th>") < page.text.index("Load limit 1: average torque: Utilisation")
     assert re.search(r'>HPN-20A-5</a>\s*<span class="standing"><span class="status suitable">', page.text)
+
+
+def test_a_sentence_that_only_reads_otherwise_is_no_other_result(client: TestClient, tmp_path: Path) -> None:
+    address, remedy = sent(client), BY_CODE["average_torque"].remedy.encode()
+    with sqlite3.connect(tmp_path / "store.sqlite3") as database:
+        ((content,),) = database.execute("SELECT result_packed FROM selections")
+        assert unpacked(content).count(remedy) == 1
+        database.execute(
+            "UPDATE selections SET result_packed = ?", [packed(unpacked(content).replace(remedy, b"Rest."))]
+        )
+
+    page = " ".join(client.get(address).text.split())
+
+    assert "Today the result is the same" in page and "Differences today" not in page
+    assert re.search(r"<summary>One sentence about a check reads otherwise today</summary>.*Rest\.", page)
 
 
 def test_a_page_that_is_not_there_says_so_in_words(client: TestClient) -> None:

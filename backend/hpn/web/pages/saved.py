@@ -104,15 +104,19 @@ class ChangedField:
     verdict: bool
     saved: str
     today: str
+    worded: bool = False
+    """True for a sentence about a check that only reads otherwise."""
 
 
 def _page(reopened: Reopened, designation: str, catalogue: Catalogue) -> dict[str, Any]:
     application = reopened.application
     answer = result_of(reopened.saved, reopened.selection, application, reopened.then, designation)
+    changed = [_line(difference, reopened) for difference in reopened.differences[:DIFFERENCES_ON_PAGE]]
     return {
         "reopened": reopened,
         "answer": answer,
-        "lines": [_line(difference, reopened) for difference in reopened.differences[:DIFFERENCES_ON_PAGE]],
+        "lines": [line for line in changed if not line.worded],
+        "worded": [line for line in changed if line.worded],
         "catalogue_version": catalogue.version,
         "published": _published(reopened.then, catalogue, answer.chosen.designation),
         "changed_figures": [
@@ -237,6 +241,7 @@ def _line(difference: Difference, reopened: Reopened) -> ChangedField:
         verdict=difference.kind == "verdict",
         saved=saved,
         today=today,
+        worded=difference.change == "changed" and difference.pointer.startswith("/check_definitions/"),
     )
 
 
