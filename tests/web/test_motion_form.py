@@ -255,6 +255,12 @@ def test_a_motion_of_hundreds_of_moves_is_taken_over_as_text(api: TestClient) ->
     assert [name for name, _ in fields_of(back.text)].count("mv") == 150
 
 
+def test_bounds_of_a_move_are_numbers_of_the_reader(api: TestClient) -> None:
+    link = "/?mech=rotary&J=0.08&mv=trapezoidal&ms=90&mt=0.8&mn=5"
+    assert "must be above 18.75 (" in api.get(link).text
+    assert "muss über 18,75 liegen" in api.get(link, headers={"Accept-Language": "de"}).text
+
+
 def test_notices_of_a_motion_stand_beside_its_moves(api: TestClient) -> None:
     page = api.get("/?mech=rotary&J=0.8&mg=12&rg=250&mv=trapezoidal&ms=90&mn=500&ma=900").text
     form = page[: page.index('id="result"')]

@@ -115,7 +115,7 @@ class Rotary(Mechanism):
             raise refused(self, ((given[0],), refusal("gravity_needs", field=other)))
         least = (self.gravity_mass_kg or 0.0) * ((self.gravity_radius_mm or 0.0) / 1000) ** 2
         if self.inertia_kgm2 < least * (1 - ROUNDING):
-            bound = str(Quantity(least, "kgm2", 6, "up"))
+            bound = Quantity(least, "kgm2", 6, "up")
             raise refused(self, (("inertia_kgm2",), refusal("gravity_inertia", bound=bound)))
         return self
 

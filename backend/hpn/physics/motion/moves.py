@@ -222,7 +222,7 @@ class Move(Model):
             return (acceleration,), refusal(by_acceleration, bound=_said(bound.acceleration, acceleration))
         return (time,), refusal(by_time, bound=_said(bound.time_s or 0.0, time, "down"))
 
-    def _refuse(self, field: str, code: str, **values: str) -> NoReturn:
+    def _refuse(self, field: str, code: str, **values: Quantity | str) -> NoReturn:
         raise refused(self, ((field,), refusal(code, **values)))
 
     def _refuse_count(self, code: str, given: Sequence[str]) -> NoReturn:
@@ -231,9 +231,9 @@ class Move(Model):
         raise refused(self, ((), refusal(code, profile=self.profile, fields=fields, given=said)))
 
 
-def _said(value: float, field: str, rounding: Rounding = "up") -> str:
+def _said(value: float, field: str, rounding: Rounding = "up") -> Quantity:
     """A bound with its unit, rounded so that what is printed will do."""
-    return str(Quantity(value, suffix_of(field), 6, rounding))
+    return Quantity(value, suffix_of(field), 6, rounding)
 
 
 class Turn(Move):

@@ -1,10 +1,10 @@
-"""Why a motion or a body is refused: texts by code, with the bound that would do."""
+"""Texts by code for a motion or a body that is not accepted, with the bound that would do."""
 
 from collections.abc import Mapping
 
 from pydantic_core import PydanticCustomError
 
-from hpn.words.wording import N_
+from hpn.words.wording import N_, Quantity
 
 REFUSALS: Mapping[str, str] = {
     "way_zero": N_("must not be 0: use a dwell for a standstill"),
@@ -36,9 +36,9 @@ REFUSALS: Mapping[str, str] = {
     "body_bore": N_("must be below the outer diameter"),
     "motion_turns": N_("with gravity the angles of all moves may add up to {bound} at most; they add up to {found}"),
 }
-"""English msgids; the values are texts."""
+"""English msgids; the values are quantities and texts."""
 
 
-def refusal(code: str, **values: str) -> PydanticCustomError:
+def refusal(code: str, **values: Quantity | str) -> PydanticCustomError:
     """Refusal of a code, for a validator to raise."""
     return PydanticCustomError(code, REFUSALS[code], values)

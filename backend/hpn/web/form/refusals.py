@@ -8,7 +8,7 @@ from hpn.physics.motion.refusals import REFUSALS
 from hpn.web.form.symbols import BODY_BY_LEAF, MECHANISM_SYMBOLS, STROKE_SYMBOLS, TURN_SYMBOLS, Symbol
 from hpn.words.terms import PROFILES
 from hpn.words.units import suffix_of
-from hpn.words.wording import N_, Quantity, Sentence, listed
+from hpn.words.wording import N_, Quantity, Sentence, Value, listed
 
 _BOUNDS = {
     "greater_than": (N_("must be above {bound}"), "gt"),
@@ -30,7 +30,7 @@ def refusal_of(error: Any) -> Sentence:
         return Sentence(template, {"bound": Quantity(context[key], suffix_of(str(error["loc"][-1])), 12)})
     if error["type"] in REFUSALS:
         symbols = _OF_BODY if error["type"].startswith("body_") else _OF_MOTION
-        values = {name: _told(name, str(text), symbols) for name, text in context.items()}
+        values = {name: _told(name, value, symbols) for name, value in context.items()}
         return Sentence(REFUSALS[error["type"]], values)
     if error["type"] == "extra_forbidden":
         return Sentence(N_("does not belong to this mechanism: leave it out"))
@@ -46,11 +46,13 @@ def refusal_of(error: Any) -> Sentence:
     return Sentence("{text}", {"text": error["msg"]}, ("text",))
 
 
-def _told(name: str, text: str, symbols: Mapping[str, Symbol]) -> Sentence | str:
+def _told(name: str, value: Quantity | str, symbols: Mapping[str, Symbol]) -> Value:
     """A value of a refusal: fields by their names, with what a link calls them, and profiles by theirs."""
+    if isinstance(value, Quantity):
+        return value
     if name == "profile":
-        return Sentence("{text}", {"text": PROFILES.get(text, text)}, ("text",))
-    return listed([_field(field, symbols) for field in text.split(", ")]) if name in _NAMES_FIELDS else text
+        return Sentence("{text}", {"text": PROFILES.get(value, value)}, ("text",))
+    return listed([_field(field, symbols) for field in value.split(", ")]) if name in _NAMES_FIELDS else value
 
 
 def _field(name: str, symbols: Mapping[str, Symbol]) -> Sentence:
