@@ -226,6 +226,12 @@ def test_ratios_that_tie_are_said_to_and_rejected_sizes_are_folded(visitor: Visi
     expect(page.locator("#rejected-14A").get_by_role("row", name=re.compile("HPN-14A-50"))).to_be_visible()
 
 
+def test_seven_named_phases_with_loads_take_at_most_5000_px_of_a_phone(visitor: Visitor) -> None:
+    page = visitor.open(SEVEN.replace("&FRi", "&pn=Rapid&FRi") + "&fw=1.2", 390, touch=True)
+    expect(page.locator("#limits tbody tr")).to_have_count(7)
+    assert page.evaluate("document.documentElement.scrollHeight") <= 5000
+
+
 def test_a_touched_screen_of_390_px_keeps_undo_in_reach_figures_in_their_cells_and_keys_out(visitor: Visitor) -> None:
     page = visitor.open("/?T=38&n=300&t=0.5&T=15&n=600&t=4&gear=HPN-11A-15", 390, touch=True)
     page.get_by_role("link", name="Try it").first.click()
