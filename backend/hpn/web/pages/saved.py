@@ -105,7 +105,7 @@ class ChangedField:
     saved: str
     today: str
     worded: bool = False
-    """True for a sentence about a check that only reads otherwise."""
+    """True for a sentence about a check, or a notice, that only reads otherwise."""
 
 
 def _page(reopened: Reopened, designation: str, catalogue: Catalogue) -> dict[str, Any]:
@@ -241,8 +241,16 @@ def _line(difference: Difference, reopened: Reopened) -> ChangedField:
         verdict=difference.kind == "verdict",
         saved=saved,
         today=today,
-        worded=difference.change == "changed" and difference.pointer.startswith("/check_definitions/"),
+        worded=difference.change == "changed" and _is_wording(difference, reopened),
     )
+
+
+def _is_wording(difference: Difference, reopened: Reopened) -> bool:
+    """True for a sentence about a check, and for a notice with the same values."""
+    notices = (*reopened.selection.notices, *(reopened.today.notices if reopened.today else ()))
+    values = {notice.text: notice.values for notice in notices}
+    before, after = (values.get(str(text)) for text in (difference.saved, difference.today))
+    return difference.pointer.startswith("/check_definitions/") or (before is not None and before == after)
 
 
 def phase_of(pointer: str) -> int | None:
