@@ -28,7 +28,7 @@ def workbook(export: Export, reader: Reader) -> bytes:
     """The workbook on an export; the same bytes for the same selection."""
     file = BytesIO()
     options = {"in_memory": True, "strings_to_formulas": False, "strings_to_urls": False, "nan_inf_to_errors": False}
-    book = xlsxwriter.Workbook(file, options | {"default_format_properties": FONT})
+    book = xlsxwriter.Workbook(file, options | {"default_format_properties": dict(FONT)})
     created = export.created.astimezone(UTC).replace(tzinfo=None) if export.created else UNDATED
     book.set_properties(
         {"title": export.heading.title, "author": export.heading.author or "HPN Select", "created": created}
