@@ -165,7 +165,7 @@ def test_a_cell_is_shown_where_the_profile_has_it_or_something_stands_in_it(visi
     box(page, "Time, move 1").fill("1")
     expect(box(page, "Jerk share, move 1")).to_be_hidden()
     expect(box(page, "Angle, move 1")).to_be_visible()
-    expect(page.locator("#duty-errors")).to_contain_text("has no Angle (ms): leave it out")
+    expect(page.locator("#duty-errors")).to_contain_text("has no Angle: leave it out")
 
 
 def test_moves_are_edited_by_the_keys_of_phases(visitor: Visitor) -> None:

@@ -355,7 +355,7 @@ def test_each_phase_of_a_long_table_has_its_step(visitor: Visitor) -> None:
         (f"{EXAMPLE}&FR=500&FA=200", 1440, (348, 400)),
         (f"{EXAMPLE}&FR=500&FA=200", 1920, (640, 480)),
         (PHASES, 1440, (348, 400)),  # a table with loads takes room of the result
-        (PHASES, 1920, (348, 400)),
+        (PHASES, 1920, (448, 515)),
     ],
 )
 def test_the_drawing_fits_its_place_on_the_overview(

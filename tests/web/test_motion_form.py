@@ -17,6 +17,7 @@ from hpn.web.form.link_reader import parse
 from hpn.web.form.link_writer import to_link
 from hpn.web.form.rows import MOVE_COLUMNS
 from hpn.web.form.ways import EXAMPLES, START
+from hpn.web.pages.templates import parted
 from tests.web.test_carried import Fields
 
 PHASES = "T=40&n=250&t=0.3&T=-20&n=100&t=2&FRi=5&FRi=&FAi=&FAi="
@@ -303,3 +304,10 @@ def test_the_governing_check_names_its_move_or_phase(api: TestClient) -> None:
     of_moves, of_phases = (api.get(f"/?{query}").text for query in (moves, "T=1&n=10&t=1&T=1&n=900&t=0.001&tp=1"))
     assert re.search(r'id="check-repeated_peak_torque"(?:(?!</th>).)*· move 2\b', of_moves, re.DOTALL)
     assert re.search(r'id="check-maximum_input_speed"(?:(?!</th>).)*· phase 2\b', of_phases, re.DOTALL)
+
+
+def test_a_head_parts_its_words_with_soft_hyphens_where_the_column_is_narrow() -> None:
+    words = "Drehzahl", "Spitzendrehzahl", "Beschleunigung", "Ruckanteil", "Acceleration", "Torque", "Dauer"
+    assert [parted(word).replace("\N{SOFT HYPHEN}", "|") for word in words] == [
+        *("Dreh|zahl", "Spitzen|drehzahl", "Beschleuni|gung", "Ruck|anteil", "Acceler|ation", "Torque", "Dauer")
+    ]

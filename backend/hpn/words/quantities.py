@@ -195,7 +195,7 @@ CANDIDATE: Mapping[str, Named] = {
         N_("Position error"),
         "φ_e",
         "Transmission accuracy, wind-up over the cycle’s torques and, where the torque passes 0, backlash; added.",
-        caveat=N_("Approximate: limits of a new gear, added arithmetically."),
+        caveat=N_("Approximate: limits of a new gear, added; wind-up from the lowest to the highest torque."),
     ),
     "position_error_mm": Named(
         N_("Position error at the radius"),

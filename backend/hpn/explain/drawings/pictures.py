@@ -63,10 +63,11 @@ class Pictures:
 
     @property
     def governing_rows(self) -> tuple[int, ...]:
-        """Numbers of these phases, or of the moves that they belong to."""
-        motion = self.subject.application.duty_cycle.motion
-        places = [int(motion.course.move[place]) for place in self.governing] if motion else self.governing
-        return tuple(place + 1 for place in dict.fromkeys(places))
+        """Numbers of these phases, or of the moves that they belong to; none where all are alike."""
+        cycle = self.subject.application.duty_cycle
+        of_motion = cycle.motion.course.move.tolist() if cycle.motion else range(len(cycle.load_phases))
+        places = dict.fromkeys(of_motion[place] for place in self.governing)
+        return () if len(places) == len({*of_motion}) else tuple(place + 1 for place in places)
 
     @cached_property
     def bearing(self) -> BearingPicture | None:

@@ -47,7 +47,7 @@ def refusal_of(error: Any) -> Sentence:
 
 
 def _told(name: str, value: Quantity | str, symbols: Mapping[str, Symbol]) -> Value:
-    """A value of a refusal: fields by their names, with what a link calls them, and profiles by theirs."""
+    """A value of a refusal: fields and profiles by their names."""
     if isinstance(value, Quantity):
         return value
     if name == "profile":
@@ -58,5 +58,4 @@ def _told(name: str, value: Quantity | str, symbols: Mapping[str, Symbol]) -> Va
 def _field(name: str, symbols: Mapping[str, Symbol]) -> Sentence:
     if name not in symbols:
         return Sentence("{text}", {"text": name}, ("text",))
-    template = "{name}" if symbols is _OF_BODY else "{name} ({symbol})"
-    return Sentence(template, {"name": symbols[name].named.name, "symbol": symbols[name].name}, ("name",))
+    return Sentence("{text}", {"text": symbols[name].named.name}, ("text",))
