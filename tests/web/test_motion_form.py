@@ -167,7 +167,7 @@ def test_the_columns_of_a_profile_are_those_that_the_model_lets_it_have() -> Non
 @pytest.mark.parametrize(
     ("query", "place", "said"),
     [
-        (f"{TURN}&mj=&mj=0.5", "mj-1", "has no Jerk share (mj): leave it out"),
+        (f"{TURN}&mj=&mj=0.5", "mj-1", "has no Jerk share: leave it out"),
         (TURN.replace("mt=0.8", "mt=x"), "mt-0", "is not a number"),
         (TURN.replace("mv=dwell", "mv="), "mv-1", "is missing"),
         (f"{TURN}&FRi=&FRi=x", "FRi-1", "is not a number"),
@@ -185,10 +185,10 @@ def test_an_error_of_a_move_stands_below_the_table_and_is_tied_to_its_cell(
 
 def test_an_error_of_a_mechanism_stands_beside_its_field(api: TestClient) -> None:
     page = api.get(f"/?{TURN}&mg=12").text
-    assert re.search(r'id="e-mg">gravity needs Its distance from the shaft \(rg\) as well', page)
+    assert re.search(r'id="e-mg">gravity needs Its distance from the shaft as well', page)
     assert re.search(r'id="e-h">does not belong to this mechanism', api.get(f"/?{TURN}&h=5").text)
     german = api.get(f"/?{TURN}&mg=12", headers={"Cookie": "hpn_language=de"}).text
-    assert re.search(r'id="e-mg">[^<]*Ihr Abstand von der Welle \(rg\)', german)
+    assert re.search(r'id="e-mg">[^<]*Ihr Abstand von der Welle', german)
 
 
 def test_only_what_the_mechanism_has_can_be_typed(api: TestClient) -> None:
