@@ -72,7 +72,9 @@ FAULTS: dict[str, Callable[[Row], None]] = {
         peak_torque_Nm=[sys.float_info.max] + [None] * (len(row["torque_Nm"]) - 1)
     ),
     "speed_rpm: has": _unequal,
-    "name: phase 1: must not contain U+200B": lambda row: row.update(name=_named(row, "a\u200bb")),
+    "name: phase 1: must not contain the invisible character U+200B": lambda row: row.update(
+        name=_named(row, "a\u200bb")
+    ),
     "name: phase 1: must have at most 40 characters": lambda row: row.update(name=_named(row, "x" * 41)),
     "no phase moves": lambda row: row.update(
         speed_rpm=[0.0] * len(row["speed_rpm"]), peak_speed_rpm=[None] * len(row["speed_rpm"])

@@ -124,7 +124,7 @@ def test_every_axis_gets_what_select_answers(suffix: str, form: str, fleet: Flee
     [
         ({"requirements.motor.peak_torque_Nm": 5.0}, "either the motor or its figures"),
         ({"requirements.motor.designation": ""}, "must have at least 1 character"),
-        ({"requirements.motor.designation": "M 41"}, "the catalogue has no M 41; available: M 40, M 60, ?"),
+        ({"requirements.motor.designation": "M 41"}, "the catalogue has no M 41 (available: M 40, M 60, ?)"),
         (
             {"requirements.motor.designation": "M 60", "requirements.motor.inertia_ratio": 5.0},
             "needs the inertia of this motor",

@@ -193,9 +193,9 @@ def test_what_the_error_of_a_move_advises_works(
                 asked["time_s"] = 1.0
         else:
             field = error["pointer"].rpartition("/")[2]
-            bound = float(context["bound"].partition(" ")[0])
+            bound = float(str(context["bound"]).partition(" ")[0])
             asked[field] = bound if error["detail"].startswith(("must be at least", "must be at most")) else bound * 1.5
-            assert context["bound"].partition(" ")[0] in error["detail"]
+            assert str(context["bound"]).partition(" ")[0] in error["detail"]
     assert refusals(body) == []
 
 

@@ -1,4 +1,4 @@
-"""Gears side by side: torsion, the better figure of a row, and best compromises."""
+"""Gears side by side: wind-up, the better figure of a row, and best compromises."""
 
 import math
 
@@ -8,8 +8,7 @@ from hpn.application import Application
 from hpn.catalogue import Catalogue
 from hpn.engine.candidates import Candidate
 from hpn.engine.selection import Selection, select
-from hpn.explain.comparison import Column, Row, groups_of, torsion_of, undominated
-from hpn.physics import equations
+from hpn.explain.comparison import Column, Row, groups_of, undominated
 from tests.build import Json, cycle, phase, worked_example
 from tests.conftest import Supplement
 
@@ -32,35 +31,12 @@ def rows(compared: list[Column], maximum_torque_Nm: float) -> dict[str, Row]:
     return {row.code: row for group in groups_of(compared, maximum_torque_Nm, {}) for row in group.rows}
 
 
-def test_torsion_follows_the_glossary(catalogue: Catalogue) -> None:
-    """(40 Nm - 0.15 · 80 Nm) / 26000 Nm/rad, in minutes of arc."""
-    torsion = torsion_of(catalogue.by_designation["HPN-20A-5"], 40.0)
-    assert torsion == pytest.approx(28 / 26000 * 180 / math.pi * 60, rel=1e-12)
-
-
-def test_torsion_below_its_reference_torque_is_nothing(catalogue: Catalogue) -> None:
-    assert torsion_of(catalogue.by_designation["HPN-20A-5"], 12.0) == 0
-    assert torsion_of(catalogue.by_designation["HPN-20A-5"], 3.0) == 0
-
-
-def test_torsion_of_what_is_not_published_is_not_made_up(catalogue: Catalogue) -> None:
-    assert torsion_of(catalogue.by_designation["HPN-40A-5"], 40.0) is None
-    figures = {"rated_torque_Nm": math.nan, "torsional_stiffness_Nm_per_rad": 143e3}
-    assert math.isnan(equations.torsion(maximum_torque_Nm=40.0, **figures))
-
-
-def test_the_better_figure_of_a_row_is_marked_and_equal_ones_are_not(catalogue: Catalogue) -> None:
-    selection = selected(worked_example(), catalogue)
-    compared = columns(selection, catalogue, "HPN-20A-5", "HPN-14A-5", "HPN-32A-5")
-    groups = groups_of(compared, 40.0, {"average_torque": "Average torque"})
-    found = {row.code: row for group in groups for row in group.rows}
-
-    assert found["weight"].values == (2.6, 0.95, 6.5)
-    assert found["weight"].best == {1}
-    assert found["stiffness"].best == {2}
-    assert found["average_torque"].best == {2}
-    assert found["backlash"].best == frozenset()
-    assert found["stops"].values[2] == math.inf and found["stops"].best == {2}
+def test_wind_up_is_that_of_the_drive_and_the_report(catalogue: Catalogue) -> None:
+    """T_max over K3, 40 Nm / 26000 Nm/rad, in minutes of arc; none where the stiffness is not published."""
+    compared = columns(selected(worked_example(), catalogue), catalogue, "HPN-20A-5", "HPN-40A-5")
+    rigid, unknown = rows(compared, 40.0)["wind_up"].values
+    assert rigid == pytest.approx(40 / 26000 * 180 / math.pi * 60, rel=1e-12)
+    assert unknown is None or unknown == compared[1].candidate.wind_up_arcmin
 
 
 def test_the_best_gear_of_each_row_is_the_one_with_the_smaller_or_the_larger_figure(catalogue: Catalogue) -> None:
@@ -70,7 +46,7 @@ def test_the_best_gear_of_each_row_is_the_one_with_the_smaller_or_the_larger_fig
     best = {code: row.best for code, row in rows(compared, 40.0).items() if row.best}
     assert {code for code in best if best[code] == {0}} == {"backlash", "accuracy", "weight", "length", "longest"}
     assert {code for code in best if best[code] == {1}} == {
-        *("life", "stops", "bearing_life", "motor_torque", "torsion", "stiffness", "frequency", "position_error"),
+        *("life", "stops", "bearing_life", "motor_torque", "wind_up", "stiffness", "frequency", "position_error"),
         *("rated_torque_Nm", "repeated_peak_torque_Nm", "momentary_peak_torque_Nm"),
     }
 

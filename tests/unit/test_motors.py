@@ -60,7 +60,7 @@ def test_a_motor_that_is_not_listed_is_refused_by_name_with_those_there_are(
         assert [place for place, _ in refusal.value.problems] == [("requirements", "motor", "designation")]
 
 
-@pytest.mark.parametrize(("count", "last"), [(20, "M 18, M 19"), (21, "M 18, M 19, …")])
+@pytest.mark.parametrize(("count", "last"), [(20, "M 18, M 19)"), (21, "M 18, M 19, …)")])
 def test_of_the_motors_there_are_twenty_are_named(supplemented: Supplement, count: int, last: str) -> None:
     book = supplemented(motors=HEADER + "".join(f"M {k},6000,,,,,\n" for k in range(count)))
     with pytest.raises(InputError) as refusal:

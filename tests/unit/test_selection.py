@@ -78,15 +78,15 @@ def test_where_there_is_no_utilisation_the_reason_says_why(catalogue: Catalogue)
     [
         (
             {"sizes": ["20A", "99A"]},
-            [(("requirements", "sizes", 1), "the catalogue has no 99A; available: {sizes}")],
+            [(("requirements", "sizes", 1), "the catalogue has no 99A (available: {sizes})")],
         ),
         (
             {"sizes": ["98A"], "ratios": [5, 6]},
             [
-                (("requirements", "sizes", 0), "the catalogue has no 98A; available: {sizes}"),
+                (("requirements", "sizes", 0), "the catalogue has no 98A (available: {sizes})"),
                 (
                     ("requirements", "ratios", 1),
-                    "the catalogue has no 6; available: 3, 4, 5, 7, 10, 15, 20, 25, 30, 35, 40, 45, 50",
+                    "the catalogue has no 6 (available: 3, 4, 5, 7, 10, 15, 20, 25, 30, 35, 40, 45, 50)",
                 ),
             ],
         ),
@@ -95,8 +95,8 @@ def test_where_there_is_no_utilisation_the_reason_says_why(catalogue: Catalogue)
             [
                 (
                     ("requirements", "ratios"),
-                    "there is no gear of this size and ratio; available: "
-                    "11A: 4, 5, 7, 10, 15, 20, 25, 30, 35, 40, 45, 50",
+                    "there is no gear of this size and ratio (available: "
+                    "11A: 4, 5, 7, 10, 15, 20, 25, 30, 35, 40, 45, 50)",
                 )
             ],
         ),
@@ -184,7 +184,7 @@ def test_of_several_sizes_each_is_told_with_its_ratios(supplemented: Supplement)
         first(cycle(phase(1, 1), requirements={"sizes": ["11A", "99A"], "ratios": [3]}), grown)
 
     [(_, text)] = refused.value.problems
-    assert text.endswith("available: 11A: 4, 5, 7, 10, 15, 20, 25, 30, 35, 40, 45, 50; 99A: 5")
+    assert text.endswith("(available: 11A: 4, 5, 7, 10, 15, 20, 25, 30, 35, 40, 45, 50; 99A: 5)")
 
 
 def test_a_batch_keeps_one_evaluation_at_a_time(catalogue: Catalogue) -> None:

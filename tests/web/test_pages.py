@@ -209,6 +209,16 @@ def test_only_built_files_are_served(client: TestClient, name: str) -> None:
     assert client.get(f"/static/{name}").status_code == 404
 
 
+def test_a_new_row_leaves_the_title_block_folded_and_a_gear_that_nobody_makes_is_asked_for_once(
+    client: TestClient,
+) -> None:
+    form = client.get("/?T=40&n=250&t=0.3&order_output=J6&do=add", headers={"HX-Request": "true"}).text
+    refused = client.get("/?T=40&n=250&t=0.3&gear=HPN-99A-5")
+    assert '<details class="group" id="group-title">' in form
+    assert refused.status_code == 422 and "HPN-99A-5 is not a gear" in refused.text
+    assert 'id="chosen-gear" value=""' in refused.text
+
+
 def test_first_view_stays_light(client: TestClient) -> None:
     """60 kB for everything but the plots, the page itself compressed as a proxy would."""
     page = client.get("/")

@@ -7,8 +7,8 @@ from hpn.application import LISTED_FIGURES, Application, InputError, Location
 from hpn.catalogue import Catalogue, GearList
 from hpn.words.wording import N_, Sentence, Value
 
-NOT_THERE = N_("the catalogue has no {value}; available: {listed}")
-NOT_TOGETHER = N_("there is no gear of this size and ratio; available: {offered}")
+NOT_THERE = N_("the catalogue has no {value} (available: {listed})")
+NOT_TOGETHER = N_("there is no gear of this size and ratio (available: {offered})")
 
 MOTORS_NAMED = 20
 """Motors that an error names."""

@@ -69,7 +69,7 @@ def groups_of(columns: Sequence[Column], maximum_torque_Nm: float, checks: Mappi
     return (
         RowGroup(N_("Utilisation"), tuple(_utilisations(columns, checks))),
         RowGroup(N_("Life and drive"), tuple(_results(columns, maximum_torque_Nm))),
-        RowGroup(N_("Stiffness and accuracy"), tuple(_accuracies(columns, maximum_torque_Nm))),
+        RowGroup(N_("Stiffness and accuracy"), tuple(_accuracies(columns))),
         RowGroup(N_("Ratings"), tuple(_ratings(columns))),
         RowGroup(N_("Size and mounting"), tuple(_mounting(columns))),
     )
@@ -105,15 +105,11 @@ def _motor_title(columns: Sequence[Column], maximum_torque_Nm: float) -> str:
     return N_("Peak torque at the motor")
 
 
-def _accuracies(columns: Sequence[Column], maximum_torque_Nm: float) -> Iterable[Row]:
+def _accuracies(columns: Sequence[Column]) -> Iterable[Row]:
     backlash, accuracy = _figure("backlash_arcmin"), _figure("transmission_accuracy_arcmin")
     stiffness = _figure("torsional_stiffness_Nm_per_rad")
-
-    def torsion(column: Column) -> float | None:
-        return torsion_of(column.gear, maximum_torque_Nm)
-
-    title = N_("Torsion at T_max, from 15 % of T_N on")
-    yield _row(columns, "torsion", title, torsion, "", "arcmin", lowest=True)
+    wind_up = _result("wind_up_arcmin")
+    yield _row(columns, "wind_up", N_("Wind-up at T_max"), wind_up, "φ_w", "arcmin", lowest=True)
     yield _row(columns, "backlash", N_("Backlash, at most"), backlash, "j", "arcmin", lowest=True)
     yield _row(columns, "accuracy", N_("Transmission accuracy, at most"), accuracy, "", "arcmin", lowest=True)
     yield _row(columns, "stiffness", N_("Torsional stiffness"), stiffness, "K_3", "Nm_per_rad", lowest=False)
@@ -122,17 +118,6 @@ def _accuracies(columns: Sequence[Column], maximum_torque_Nm: float) -> Iterable
         yield _row(columns, "frequency", N_("Natural frequency, at most"), held, "f_1", "Hz", lowest=False)
     error = _result("position_error_arcmin")
     yield _row(columns, "position_error", N_("Position error, about"), error, "φ_e", "arcmin", lowest=True)
-
-
-def torsion_of(gear: Gear, maximum_torque_Nm: float) -> float | None:
-    """Torsion in arcmin from 15 % of T_N up to the largest torque; 0 below, None where a figure is not published."""
-    if gear.rated_torque_Nm is None or gear.torsional_stiffness_Nm_per_rad is None:
-        return None
-    return equations.torsion(
-        maximum_torque_Nm=maximum_torque_Nm,
-        rated_torque_Nm=gear.rated_torque_Nm,
-        torsional_stiffness_Nm_per_rad=gear.torsional_stiffness_Nm_per_rad,
-    ).item()
 
 
 def _ratings(columns: Sequence[Column]) -> Iterable[Row]:

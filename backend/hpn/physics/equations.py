@@ -17,9 +17,6 @@ FloatArray = NDArray[np.float64]
 ROUNDING = 1e-12
 """Relative tolerance for floating point: a limit that is met exactly passes."""
 
-TORSION_REFERENCE = 0.15
-"""Share of the rated torque above which the torsional stiffness K3 holds (glossary)."""
-
 P = ParamSpec("P")
 
 
@@ -175,19 +172,6 @@ def life(
 def motor_torque(*, output_torque_Nm: ArrayLike, ratio: ArrayLike, efficiency: ArrayLike = 1.0) -> FloatArray:
     """Torque at the motor shaft T / (i eta) in Nm; loss-free, a lower bound, at the default efficiency of 1."""
     return np.divide(output_torque_Nm, np.multiply(ratio, efficiency))
-
-
-@equation
-def torsion(
-    *, maximum_torque_Nm: ArrayLike, rated_torque_Nm: ArrayLike, torsional_stiffness_Nm_per_rad: ArrayLike
-) -> FloatArray:
-    """Torsion of the output (T_max - 0.15 T_N) / K3 in arcmin, from 15 % of the rated torque up to T_max (glossary).
-
-    K3 holds above that reference torque only, so the torsion is 0 up to it. NaN where a figure is not published.
-    Backlash is not included.
-    """
-    above = np.maximum(np.asarray(maximum_torque_Nm) - TORSION_REFERENCE * np.asarray(rated_torque_Nm), 0.0)
-    return np.degrees(above / torsional_stiffness_Nm_per_rad) * 60
 
 
 @equation

@@ -37,15 +37,21 @@ def bearing_words(picture: BearingPicture) -> list[Sentence]:
     governs = (
         Sentence("Bearing life governs.") if picture.life_governs else Sentence("The largest single load governs.")
     )
-    equivalent = Sentence(
-        "Equivalent load: {used} of the permissible constant load ({speed}, {life}, {basis}).",
-        {
-            "used": share(picture.constant_load_utilisation, picture.allowed),
-            "speed": Quantity(picture.average_output_speed_rpm, "rpm"),
-            "life": Quantity(picture.load.life_h, "h", 6),
-            "basis": picture.load.life_basis,
-        },
+    values: dict[str, Value] = {
+        "used": share(picture.constant_load_utilisation, picture.allowed),
+        "by_life": share(picture.life_utilisation, picture.allowed),
+        "speed": Quantity(picture.average_output_speed_rpm, "rpm"),
+        "life": Quantity(picture.load.life_h, "h", 6),
+        "basis": picture.load.life_basis,
+    }
+    # Where k is above 1, the published maximum is below the constant load with this life.
+    of_both = Sentence(
+        "Equivalent load: {by_life} of the constant load with the required life ({speed}, {life}, {basis}), "
+        "{used} of the published maximum.",
+        values,
     )
+    of_one = Sentence("Equivalent load: {used} of the permissible constant load ({speed}, {life}, {basis}).", values)
+    equivalent = of_both if picture.life_factor > 1 else of_one
     return [governs, equivalent, _largest(picture), *_outside(picture), *_next_load_coefficient(picture)]
 
 

@@ -13,9 +13,9 @@ REFUSALS: Mapping[str, str] = {
     "move_has_no": N_("a move with the profile {profile} has no {field}: leave it out"),
     "move_takes_two": N_(
         "a move with the profile {profile} needs time_s with or without ramps, a speed with one or two ramps, or both "
-        "with at most one ramp; given: {given}"
+        "with at most one ramp (given: {given})"
     ),
-    "move_takes_one": N_("a move with the profile {profile} needs one of {fields}; given: {given}"),
+    "move_takes_one": N_("a move with the profile {profile} needs one of {fields} (given: {given})"),
     "move_too_slow": N_("must be above {bound} (distance over time); from {triangle} on the move is triangular"),
     "move_too_gentle": N_("must be at least {bound} to cover the distance in this time"),
     "move_too_fast": N_("must be at most {bound}, where the ramps leave no time at constant speed"),
