@@ -74,10 +74,10 @@ def test_a_fleet_shows_each_axis_with_its_link(client: TestClient, fleet: str, s
         g.weight_kg for g in service.state.catalogue.gears if f'<td class="gear">{g.designation}</td>' in page
     )
     assert re.search(rf'Weight</p>\s*<p class="value">\s*<data class="quantity" value="{weight}">', page)
-    assert re.search(r'Greifer</th>.*?class="reason"[^>]*>[^/]*/span> torque_Nm: ', page, re.DOTALL)
+    assert re.search(r'Greifer</th>.*?class="reason"[^>]*>[^/]*/span> Torque: row 6: ', page, re.DOTALL)
     german = unescape(client.get(fleet, headers={"Accept-Language": "de"}).text)
     assert re.search(
-        r'class="reason"[^>]*>[^/]*/span> torque_Nm: Phase 1: muss eine Zahl sein, z. B. 9.3, nicht "abc"\s*<', german
+        r'class="reason"[^>]*>[^/]*/span> Drehmoment: Zeile 6: muss eine Zahl sein, z. B. 9.3, nicht "abc"\s*<', german
     )
 
 
@@ -222,8 +222,8 @@ def test_reasons_of_a_file_for_people_are_in_the_readers_language(client: TestCl
             "parquet": pq.read_table(io.BytesIO(files["parquet"].content))["error"].to_pylist(),
         }
 
-    english = [None, None, 'torque_Nm: phase 1: must be a number, such as 9.3, not "abc"']
-    german = [None, None, 'torque_Nm: Phase 1: muss eine Zahl sein, z. B. 9.3, nicht "abc"']
+    english = [None, None, 'torque_Nm: row 6: must be a number, such as 9.3, not "abc"']
+    german = [None, None, 'torque_Nm: Zeile 6: muss eine Zahl sein, z. B. 9.3, nicht "abc"']
     assert errors("en") == {"csv": english, "xlsx": english, "parquet": english}
     assert errors("de") == {"csv": german, "xlsx": german, "parquet": english}
 

@@ -194,3 +194,21 @@ def test_a_frequency_of_a_speed_is_asked() -> None:
     assert asked(read("Achse;Moment [Nm];Drehzahl [Hz];Dauer [s]", "A;40;50;1")) == [
         "Which unit is column “Drehzahl [Hz]” in? It can be rev/s or an electrical frequency."
     ]
+
+
+@pytest.mark.parametrize("head", ["emergency stop [Nm]", "Not-Halt [kNm]", "Emergency stop in Nm", "NOT-AUS (Nm)"])
+def test_an_emergency_stop_in_a_unit_of_torque_is_its_torque(head: str) -> None:
+    *_, column = read(f"{HEAD};{head}", "A;1;10;1;30").columns
+
+    assert column.role == "Tk"
+
+
+@pytest.mark.parametrize("head", ["emergency stop", "Not-Halt", "emergency stop [1/h]", "emergency stop [s]"])
+def test_an_emergency_stop_without_a_unit_of_torque_is_asked(head: str) -> None:
+    assert asked(read(f"{HEAD};{head}", "A;1;10;1;30")) == [f"What is column “{head}”?"]
+
+
+def test_a_row_of_units_makes_an_emergency_stop_a_torque() -> None:
+    *_, column = read("Axis;Torque;Speed;Duration;Emergency stop", ";Nm;rpm;s;Nm", "A;1;10;1;30").columns
+
+    assert (column.role, column.unit) == ("Tk", "Nm")

@@ -38,8 +38,8 @@ def test_cells_in_a_unit_of_something_else_are_said_before_their_axes_are_reject
     table = read(HEAD, "A;40 lb;100;1", "B;40;10 1/s;1", "C;40 Nm;100;300 ms", "D;n. b.;100;1")
 
     assert [note.text for note in table.notes] == [
-        "Cells that are not numbers, such as n. b.: 1. Their axes are rejected.",
-        "Cells with a unit that does not fit their column, such as 40 lb: 2. Their axes are rejected.",
+        "Cells that are not numbers, such as n. b. in row 5: 1. Their axes are rejected.",
+        "Cells with a unit that does not fit their column, such as 40 lb in row 2: 2. Their axes are rejected.",
     ]
     assert [axis["torque_Nm"] for axis in table.axes] == [["40 lb"], [40], [40], ["n. b."]]
 
@@ -101,7 +101,7 @@ def test_two_decimal_marks_in_a_table_are_asked_and_what_no_longer_is_a_number_i
     comma = read(HEAD, *rows, decimal=",")
     assert [axis["duration_s"] for axis in comma.axes] == [[1.5], [1125.0], ["0.5"]]
     assert [note.text for note in comma.notes][-1] == (
-        "Cells that are not numbers, such as 0.5: 1. Their axes are rejected."
+        "Cells that are not numbers, such as 0.5 in row 4: 1. Their axes are rejected."
     )
     sure = read(HEAD, "A;12,5;100;1,5", "C;2;100;0.5")
     assert asked(sure) == [] and sure.axes[1]["duration_s"] == ["0.5"]
@@ -204,7 +204,7 @@ def test_lines_above_the_header_are_skipped_and_that_is_said() -> None:
 def test_a_cell_in_an_unknown_unit_is_said_with_those_that_are_known() -> None:
     (note,) = read(HEAD, "A;40 kgm;100;1", "B;40;100;1").notes
 
-    assert "such as 40 kgm: 1. Known units: Nm, lb·in, lb·ft, kNm" in note.text
+    assert "such as 40 kgm in row 2: 1. Known units: Nm, lb·in, lb·ft, kNm" in note.text
 
 
 def test_times_of_clocks_and_dates_are_read() -> None:
@@ -216,3 +216,41 @@ def test_times_of_clocks_and_dates_are_read() -> None:
     assert asked(read(*dated)) == ["Are the times durations, starts or ends of the phases?"]
     assert [axis["duration_s"] for axis in read(*dated, times="starts").axes] == [[2.5], [1]]
     assert [read(*dated, times=times).problem is None for times in ("durations", "ends")] == [False, False]
+
+
+LOADED = (
+    "Axis;Torque [Nm];Speed [rpm];Duration [s];Pause [s];Radial load [N]",
+    "A;60;40;0.35;0.8;900",
+    "A;25;70;1.4;;",
+)
+
+
+def test_a_load_in_the_first_row_of_an_axis_alone_is_asked() -> None:
+    table = read(*LOADED)
+
+    assert asked(table) == [
+        "Column “Radial load [N]” has a number in the first row of an axis alone: where does the load act?"
+    ]
+    assert offered(table, "loads").chosen == ""
+
+
+def test_a_load_in_the_first_row_counts_for_the_axis_or_for_its_phase_as_said() -> None:
+    (whole,), (alone,) = read(*LOADED, loads="axis").axes, read(*LOADED, loads="phase").axes
+
+    assert (whole.get("output_load.radial_N"), whole.get("radial_N")) == (900, None)
+    assert (alone.get("output_load.radial_N"), alone.get("radial_N")) == (None, [900, None])
+
+
+def test_a_load_in_the_first_row_counts_for_its_phase_beside_axes_with_several_loads_and_that_is_shown() -> None:
+    table = read(*LOADED, "B;1;10;1;;5", "B;1;10;1;;6")
+
+    assert (asked(table), offered(table, "loads").chosen) == ([], "phase")
+    assert table.axes[0]["radial_N"] == [900, None]
+    assert read(*LOADED, "B;1;10;1;;5", "B;1;10;1;;6", loads="axis").axes[1]["radial_N"] == [5, 6]
+
+
+@pytest.mark.parametrize("rows", [["A;1;10;1;;5"], ["A;1;10;1;;5", "A;1;10;1;;5"], ["A;1;10;1;;", "A;1;10;1;;5"]])
+def test_no_other_place_of_a_load_is_asked(rows: list[str]) -> None:
+    table = read(LOADED[0], *rows)
+
+    assert (table.questions, table.choice("loads")) == ((), None)

@@ -4,9 +4,9 @@ A cell that is no number spoils its axis alone, which is then rejected with its 
 """
 
 import re
-from collections.abc import Collection, Sequence
-from dataclasses import dataclass, replace
-from itertools import groupby, pairwise
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from itertools import groupby, pairwise, product
 from math import isfinite
 from typing import Any
 
@@ -16,14 +16,18 @@ from hpn.tables.columns import NO_CHOICES, Choices, Column, proposed, settled
 from hpn.tables.heads import REQUIRED, skipped
 from hpn.tables.inputs import AXIS, NAME, PHASE, PHASE_ROLES, Inputs
 from hpn.tables.numbers import known_units
-from hpn.tables.reading import Questions, Reading, Row, Table, durations_of, in_plain, unit_behind
+from hpn.tables.reading import Choice, Questions, Reading, Row, Table, durations_of, in_plain, unit_behind
 from hpn.tables.sheets import Grid, RefusedError
 from hpn.words import spellings
-from hpn.words.wording import N_, Sentence
+from hpn.words.wording import N_, Sentence, Value
 
 _BETWEEN = re.compile(r"[;/|\s]+")
 _OF_RATIO = re.compile(r"\bi\s*=\s*|\s*:\s*1(?![0-9.,])")
 """Signs beside the number of a ratio: `i = 5`, `5:1`."""
+
+LOADS = Choice("loads", {"axis": N_("in all phases of the axis"), "phase": N_("in its own phase alone")})
+_OF_AXIS = {"FRi": ("FR", "output_load.radial_N"), "FAi": ("FA", "output_load.axial_N")}
+"""Loads of a phase: role and place of the same load for a whole axis."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -31,9 +35,11 @@ class AxisTable(Table):
     """Reading of a table as axes.
 
     `axes` are rows in list form by the names of `hpn fleet`; a cell that is no number stands there as it is written.
+    `origins` are the numbers of the rows that the phases of an axis stand in.
     """
 
     axes: tuple[dict[str, Any], ...] = ()
+    origins: Mapping[str, tuple[int, ...]] = field(default_factory=dict)
 
 
 def read_axes(grid: Grid, inputs: Inputs, choices: Choices = NO_CHOICES, assumed: Collection[str] = ()) -> AxisTable:
@@ -91,6 +97,10 @@ def _with_axes(body: Body, columns: Sequence[Column]) -> Body:
     return replace(body.including([*named, *numbered]), notes=(*notes, *(skipped(*row[::2]) for row in left)))
 
 
+_Place = tuple[int, str]
+"""Number of a row and a cell in it."""
+
+
 @dataclass(frozen=True, slots=True)
 class _Group:
     """Rows of an axis: their cells, and the numbers in the columns that are used."""
@@ -98,6 +108,7 @@ class _Group:
     name: str
     cells: tuple[tuple[str, ...], ...]
     rows: tuple[Row, ...]
+    numbers: tuple[int, ...]
 
 
 class _AxesReading(Reading):
@@ -114,47 +125,53 @@ class _AxesReading(Reading):
         groups = self._groups()
         times = self.read_times([group.rows for group in groups])
         self.ask_scale()
-        axes = () if self.questions.open else tuple(self._axis(group, times) for group in groups)
-        return AxisTable(**self.said, axes=axes)
+        loads = self._read_loads(groups)
+        axes = () if self.questions.open else tuple(self._axis(group, times, loads) for group in groups)
+        return AxisTable(**self.said, axes=axes, origins={str(group.name): group.numbers for group in groups})
 
     def _note_unread(self) -> None:
         """Note cells that are rejected with their axes: no numbers, and those in a unit that their column has not."""
-        wrong, unknown, strange = list[str](), list[str](), list[str]()
+        wrong, unknown, strange = list[_Place](), list[_Place](), list[_Place]()
         known = ""
-        for cells, row in zip(self.body.rows, self.rows, strict=True):
+        for number, cells, row in zip(self.body.numbers, self.body.rows, self.rows, strict=True):
             for column, found in zip(self.used, row, strict=True):
                 cell = cells[column.place]
                 if found is not None:
-                    strange += [cell] if found.unit and not self.in_wire(found, column) else []
+                    strange += [(number, cell)] if found.unit and not self.in_wire(found, column) else []
                 elif column.quantity and (unit := unit_behind(cell)) and not spellings.codes_for(unit):
-                    unknown.append(cell)
+                    unknown.append((number, cell))
                     known = known or known_units(column.quantity)
                 elif not is_blank(cell):
-                    wrong.append(cell)
-        self._note(N_("Cells that are not numbers, such as {cell}: {count}. Their axes are rejected."), wrong)
+                    wrong.append((number, cell))
         self._note(
-            N_("Cells with a unit that does not fit their column, such as {cell}: {count}. Their axes are rejected."),
-            strange,
+            N_("Cells that are not numbers, such as {cell} in row {row}: {count}. Their axes are rejected."), wrong
         )
         template = N_(
-            "Cells with an unknown unit, such as {cell}: {count}. Known units: {units}. Their axes are rejected."
+            "Cells with a unit that does not fit their column, such as {cell} in row {row}: {count}. Their axes are "
+            "rejected."
+        )
+        self._note(template, strange)
+        template = N_(
+            "Cells with an unknown unit, such as {cell} in row {row}: {count}. Known units: {units}. Their axes are "
+            "rejected."
         )
         self._note(template, unknown, units=known)
 
-    def _note(self, template: str, cells: Sequence[str], **values: str) -> None:
-        if cells:
-            self.notes.append(Sentence(template, {"count": len(cells), "cell": cells[0][:40], **values}))
+    def _note(self, template: str, places: Sequence[_Place], **values: str) -> None:
+        for row, cell in places[:1]:
+            said: dict[str, Value] = {"count": len(places), "row": row, "cell": cell[:40], **values}
+            self.notes.append(Sentence(template, said))
 
     # --- Rows of an axis ----------------------------------------------------------------------------------------------
 
     def _groups(self) -> list[_Group]:
         """Rows of each axis; one without a name belongs to the axis above."""
         axis = next((column for column in reversed(self.columns) if column.role == AXIS), None)
-        rows = list(zip(self.body.rows, self.rows, strict=True))
+        rows = list(zip(self.body.rows, self.rows, self.body.numbers, strict=True))
         if axis is None:
-            return [_Group("", self.body.rows, tuple(self.rows))]
+            return [_Group("", self.body.rows, tuple(self.rows), self.body.numbers)]
         names, continued = list[str](), 0
-        for cells, _ in rows:
+        for cells, *_ in rows:
             goes_on = is_blank(cells[axis.place]) and bool(names)
             continued += goes_on
             names.append(names[-1] if goes_on else cells[axis.place])
@@ -164,8 +181,7 @@ class _AxesReading(Reading):
             self.notes.append(Sentence(template, {"count": continued}))
         groups = []
         for name, members in groupby(zip(names, rows, strict=True), key=lambda row: row[0]):
-            found = [row for _, row in members]
-            groups.append(_Group(name, tuple(cells for cells, _ in found), tuple(numbers for _, numbers in found)))
+            groups.append(_Group(name, *zip(*(row for _, row in members), strict=True)))
         return groups
 
     def _ask_unnamed(self, axis: Column) -> None:
@@ -191,9 +207,27 @@ class _AxesReading(Reading):
             )
             self.ask(template, row=self.body.numbers[place])
 
+    def _read_loads(self, groups: Sequence[_Group]) -> str:
+        """Phases of a load that stands in the first row of an axis alone, as its pause does; blank while it is asked.
+
+        Where other axes have loads in several rows, it counts for its own phase unless somebody says otherwise.
+        """
+        roles = {column.role for column in self.columns}
+        columns = [
+            column for column in self.columns if column.role in _OF_AXIS and _OF_AXIS[column.role][0] not in roles
+        ]
+        given = [(column, [row[column.place] for row in group.cells]) for group, column in product(groups, columns)]
+        first = [column for column, cells in given if _stands_first(cells)]
+        if not first:
+            return "phase"
+        several = any(not is_blank(cell) for _, cells in given for cell in cells[1:])
+        template = N_("Column {name} has a number in the first row of an axis alone: where does the load act?")
+        question = Sentence(template, {"name": first[0].called})
+        return self.choose(LOADS, question, chosen="phase" if several else "")
+
     # --- Values of an axis --------------------------------------------------------------------------------------------
 
-    def _axis(self, group: _Group, times: str) -> dict[str, Any]:
+    def _axis(self, group: _Group, times: str, loads: str) -> dict[str, Any]:
         values: dict[str, Any] = {AXIS: str(group.name)}
         numbers = dict(zip((column.place for column in self.used), zip(*group.rows, strict=True), strict=True))
         for column in self.columns:
@@ -205,7 +239,9 @@ class _AxesReading(Reading):
                 values[NAME.place] = [None if is_blank(cell) else str(cell) for cell in cells]
             elif column.role in PHASE_ROLES:
                 listed = [self._number(*each, column) for each in zip(cells, found, strict=True)]
-                if column.role in REQUIRED or any(value is not None for value in listed):
+                if loads == "axis" and column.role in _OF_AXIS and _stands_first(cells):
+                    values[_OF_AXIS[column.role][1]] = listed[0]
+                elif column.role in REQUIRED or any(value is not None for value in listed):
                     values[column.held.place] = listed
             elif (value := self._one(dict(zip(cells, found, strict=True)), column)) is not None:
                 values[column.held.place] = value
@@ -246,6 +282,11 @@ class _AxesReading(Reading):
 
 _OF_PHASE = frozenset(each.place for each in (*PHASE, NAME))
 _DURATION = "duration_s"
+
+
+def _stands_first(cells: Sequence[str]) -> bool:
+    """True for a cell in the first of several rows alone."""
+    return len(cells) > 1 and not is_blank(cells[0]) and all(map(is_blank, cells[1:]))
 
 
 def _listed(cell: str, texts: bool, decimal: Decimal) -> list[float | str]:

@@ -35,6 +35,7 @@ class Choices:
     totals: str = ""
     parts: str = ""
     scales: str = ""
+    loads: str = ""
     rest: str = ""
     roles: Mapping[int, str] = field(default_factory=dict)
     units: Mapping[int, str] = field(default_factory=dict)

@@ -31,6 +31,10 @@ FURTHER = {
 }
 """Further names by role. One that fits two inputs, such as “life” or “motor torque”, is in none: it is asked for."""
 
+_OF_STOP = "emergency stop, emergency-stop, e-stop, estop, not-halt, nothalt, not-aus, notaus, not-stopp"
+_MEASURED = dict.fromkeys(_OF_STOP.split(", "), "Tk")
+"""Names that mean an input only together with a unit of it."""
+
 
 @dataclass(frozen=True)
 class Input:
@@ -89,7 +93,7 @@ class Inputs:
         """Role by the name of an input that all texts above a column make together, or by the same name in each."""
         if not self.has_axes:
             return ""
-        found = {role for text in headings if (role := self._role_of(text))}
+        found = {role for text in headings if (role := self._role_of(text) or self._measured(text, said))}
         names = [text for text in headings if heading_of(text).kind != UNIT]
         if len(names) > 1:
             found = {role} if (role := self._role_of(said.name)) else found if len(found) == len(names) == 1 else set()
@@ -100,6 +104,12 @@ class Inputs:
         if len(heading) > LONGEST:
             return ""
         return self._roles.get(_folded(heading)) or self._roles.get(_folded(parts_of(heading)[0]), "")
+
+    def _measured(self, heading: str, said: Over) -> str:
+        """Role by a name that counts beside a unit of its input alone."""
+        role = _MEASURED.get(_folded(parts_of(heading)[0]), "") if len(heading) <= LONGEST else ""
+        measured = {units.QUANTITY_OF[code] for code in said.codes}
+        return role if role and measured == {self.by_role[role].quantity} else ""
 
     @cached_property
     def _roles(self) -> dict[str, str]:

@@ -153,6 +153,10 @@ class Reader:
         measure = self.measure(unit)
         return self.written(f"{value:.12g}" if measure.same else measure.written(value, 6))
 
+    def fixed(self, value: float, unit: str, places: int) -> str:
+        """A number of the wire in the reader's unit with as many decimals as its neighbours in a column."""
+        return self.written(f"{self.measure(unit).shown(value):.{places}f}")
+
     def with_unit(self, number: str, unit: str) -> str:
         """A number as it is written, and the reader's unit behind it; alone where the unit is blank."""
         return f"{number}{GROUP}{self.unit(unit)}" if unit and number != NOTHING else number

@@ -4,11 +4,13 @@ Fixed texts are translated as they are; of those with values the template is fou
 """
 
 import re
+from collections.abc import Sequence
 
 from hpn.engine.allowed import NOT_THERE, NOT_TOGETHER
 from hpn.words.wording import N_, Sentence
 
 TEMPLATES = (
+    N_("row {number}: {reason}"),
     N_("phase {number}: {reason}"),
     N_("item {number}: {reason}"),
     N_("the row has {found} cells where the header has {expected}, in {row}"),
@@ -31,7 +33,8 @@ TEMPLATES = (
 )
 """Reasons with values, the narrower before the wider."""
 
-_FAULTS = re.compile(r"; (?=[a-z][A-Za-z0-9_.]*: )")
+_OF_PHASE = re.compile(r"(^|; )([a-z][A-Za-z0-9_.]*): phase ([0-9]+): ")
+_FAULTS = re.compile(r"; (?!available: )(?=[a-z][A-Za-z0-9_.]*: )")
 
 
 def _pattern(template: str) -> re.Pattern[str]:
@@ -46,6 +49,16 @@ def reasons_of(error: str) -> list[tuple[str, Sentence]]:
     """Column and reason of each fault of an axis, from the text of all that the answers have."""
     parts = (fault.partition(": ") for fault in _FAULTS.split(error))
     return [(column, _sentence(reason)) for column, _, reason in parts]
+
+
+def by_rows(error: str, numbers: Sequence[int]) -> str:
+    """The text of all faults of an axis with the rows of its table in place of its phases."""
+
+    def by_row(found: re.Match[str]) -> str:
+        place = int(found[3]) - 1
+        return f"{found[1]}{found[2]}: row {numbers[place]}: " if place < len(numbers) else found[0]
+
+    return _OF_PHASE.sub(by_row, error)
 
 
 def _sentence(reason: str) -> Sentence:

@@ -1,6 +1,6 @@
 """A fleet that was sized, on its way into the store and out of it. Arrow is imported by this module."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -17,6 +17,7 @@ from hpn.fleet.summary import Summary, summary_of
 from hpn.store import FleetDraft, SavedFleet
 from hpn.web.door.problems import Problem
 from hpn.web.pages.fleet_files import table_of
+from hpn.web.pages.fleet_reasons import by_rows
 from hpn.words.wording import N_, Quantity, Sentence
 
 COMPARED = ("selected", "governing_check", "utilisation", "suitable")
@@ -36,6 +37,15 @@ def require_few(answers: Path) -> None:
     if count > MOST_LISTED:
         values = {"axes": Quantity(count, "", 12), "most": Quantity(MOST_LISTED, "", 12)}
         raise Problem(413, Sentence(TOO_MANY, values))
+
+
+def name_rows(answers: Path, origins: Mapping[str, Sequence[int]]) -> None:
+    """Writes answers anew whose reasons name the rows of the table that its axes stand in."""
+    table = pq.read_table(answers)
+    rows = zip(table["error"].to_pylist(), table[AXIS].to_pylist(), strict=True)
+    errors = [error and by_rows(error, origins.get(str(axis), ())) for error, axis in rows]
+    place = table.column_names.index("error")
+    pq.write_table(table.set_column(place, "error", pa.array(errors, pa.string())), answers)
 
 
 def draft_of(listing: KeptListing | None, catalogue: Catalogue) -> FleetDraft:

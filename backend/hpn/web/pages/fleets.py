@@ -5,11 +5,12 @@
 """
 
 import hashlib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
-from typing import Any
+from types import MappingProxyType
+from typing import Any, NamedTuple
 
 from fastapi import APIRouter
 from starlette.requests import Request
@@ -60,7 +61,15 @@ class Draft:
     carried: str = ""
     sheets: tuple[str, ...] = ()
     sheet: str = ""
-    taken: tuple[bytes, str] | None = field(default=None, repr=False)
+    taken: "Taken | None" = field(default=None, repr=False)
+
+
+class Taken(NamedTuple):
+    """A table to be sized: its content, its format, and by axis the rows of a table of cells that it came of."""
+
+    content: bytes
+    suffix: str
+    origins: Mapping[str, Sequence[int]] = MappingProxyType({})
 
 
 # --- Uploading --------------------------------------------------------------------------------------------------------
@@ -80,7 +89,7 @@ async def upload(request: Request) -> Response:
         draft = Draft(parts.get("text", b"").decode(errors="replace"))
         draft = await _read(request, parts)
         if draft.taken:
-            return RedirectResponse(f"{ADDRESS}/{await _sized(request, *draft.taken)}", 303)
+            return RedirectResponse(f"{ADDRESS}/{await _sized(request, draft.taken)}", 303)
         status, problems = (422 if draft.problems else 200), draft.problems
     except Problem as problem:
         status, problems = problem.status_code, problem.sentences or (Sentence("{text}", {"text": problem.detail}),)
@@ -103,7 +112,7 @@ async def _read(request: Request, parts: Mapping[str, bytes]) -> Draft:
     wanted = await compute(request, "pages", _wanted)
     contents = await compute_beside(request, "files", partial(contents_of, content, wanted))
     if contents.suffix:
-        return Draft(parts.get("text", b"").decode(errors="replace"), taken=(content, contents.suffix))
+        return Draft(parts.get("text", b"").decode(errors="replace"), taken=Taken(content, contents.suffix))
     return await compute(request, "pages", _draft_of, parts, content, contents)
 
 
@@ -127,7 +136,8 @@ def _draft_of(parts: Mapping[str, bytes], content: bytes, contents: Contents) ->
     if isinstance(found, Sentence):
         return replace(_refused_table(text, found), of=of, carried=packed(content), sheets=tuple(contents.sheets))
     table = fleet_upload.best_reading(found, choices_of(fields, of), assumed(AXIS_INPUTS))
-    taken = (fleet_upload.lines_of(table), ".ndjson") if table.whole and "size" in fields else None
+    sizes = table.whole and "size" in fields
+    taken = Taken(fleet_upload.lines_of(table), ".ndjson", table.origins) if sizes else None
     problems = (table.problem,) if table.problem else ()
     return Draft(text, problems, table, of, packed(content), tuple(contents.sheets), sheet, taken)
 
@@ -137,13 +147,13 @@ def _refused_table(text: str, problem: Sentence) -> Draft:
     return Draft(text, (problem, *larger))
 
 
-async def _sized(request: Request, content: bytes, suffix: str) -> str:
+async def _sized(request: Request, taken: Taken) -> str:
     """Id of the fleet that comes of a table; raises Problem, or StoreUnavailableError."""
     store, most_bytes = request.app.state.store, request.app.state.settings.maximum_unsaved_fleet_bytes
     caller = hashlib.sha256(request.state.caller.encode()).hexdigest()  # no address is kept in clear
     try:
         await store.require_room(caller, most_bytes)
-        draft = await _calculated(request, content, suffix)
+        draft = await _calculated(request, taken)
         id: str = await store.keep_fleet(replace(draft, owner=request.state.api_key, caller=caller), most_bytes)
     except ShareSpentError:
         spent = Sentence(SHARE_SPENT, {"most": str(MOST_OF_CALLER)})
@@ -154,24 +164,27 @@ async def _sized(request: Request, content: bytes, suffix: str) -> str:
     return id
 
 
-async def _calculated(request: Request, content: bytes, suffix: str) -> FleetDraft:
+async def _calculated(request: Request, taken: Taken) -> FleetDraft:
     """Fleet of a table; raises Problem."""
     async with workplace(request) as folder:
-        axes = folder / f"axes{suffix}"
-        await compute(request, "pages", axes.write_bytes, content)
+        axes = folder / f"axes{taken.suffix}"
+        await compute(request, "pages", axes.write_bytes, taken.content)
         files = await size_fleet(request, Tables(axes, input_name="The table"), suffix=".parquet")
-        work = await compute(request, "pages", _listed, axes, files.by_kind["answers"], request.app.state.catalogue)
+        answers, catalogue = files.by_kind["answers"], request.app.state.catalogue
+        work = await compute(request, "pages", _listed, axes, answers, catalogue, taken.origins)
         listing = await compute_beside(request, "files", work)
-        draft: FleetDraft = await compute(request, "pages", _kept, listing, request.app.state.catalogue)
+        draft: FleetDraft = await compute(request, "pages", _kept, listing, catalogue)
     return draft
 
 
-def _listed(axes: Path, answers: Path, catalogue: Catalogue) -> Any:
+def _listed(axes: Path, answers: Path, catalogue: Catalogue, origins: Mapping[str, Sequence[int]]) -> Any:
     """The work of reading a table again that was sized, with its answers; Problem 413 where these are too many."""
     from hpn.fleet.listing import kept_listing_of
     from hpn.web.pages import fleet_result
 
     fleet_result.require_few(answers)
+    if origins:
+        fleet_result.name_rows(answers, origins)
     return partial(kept_listing_of, axes, answers, catalogue)
 
 

@@ -235,10 +235,14 @@ def _as_attribute(figure: Figure) -> Markup:
     return Markup(text.replace("&", "&amp;").replace("'", "&#39;").replace("<", "&lt;"))
 
 
+_COLUMNS = {each.place: each.named.name for each in symbols.AXIS_INPUTS.by_role.values()}
+"""Names of the inputs of an axis by their columns."""
+
 FILTERS: dict[str, Callable[..., Any]] = {
     "as_attribute": _as_attribute,
     "as_read": _as_read,
     "as_typed": _as_typed,
+    "column": lambda place: current().text(_COLUMNS[place]) if place in _COLUMNS else place,
     "capital": lambda text: text[:1].upper() + text[1:],
     "figure": _figure,
     "followed": _followed,
@@ -257,7 +261,7 @@ FILTERS: dict[str, Callable[..., Any]] = {
     },
     **{
         name: _for_reader(name)
-        for name in ("exact", "percent", "capped_percent", "unit", "told", "quantity", "source", "translated")
+        for name in ("exact", "fixed", "percent", "capped_percent", "unit", "told", "quantity", "source", "translated")
     },
 }
 """`{{ 40 | figure("Nm") }}`, `{{ "Nm" | unit }}`, `{{ sentence | told }}`: for whoever reads the page."""
