@@ -1,5 +1,6 @@
 """The workbook with changed inputs, and on paper: LibreOffice calculates, prints and colours it."""
 
+import copy
 import random
 import re
 from collections import Counter
@@ -12,6 +13,7 @@ import pypdfium2
 import pytest
 from openpyxl.utils import get_column_letter
 from openpyxl.workbook import Workbook
+from openpyxl.worksheet.worksheet import Worksheet
 from pypdf import PdfReader
 
 from hpn.application import InputError
@@ -175,13 +177,68 @@ def test_every_sheet_has_its_print_area_and_keeps_its_heads(catalogue: Catalogue
         assert not head or sheet.print_title_rows == f"${head}:${head}"
 
 
-def test_letters_of_the_worked_example_on_paper_are_large_enough_to_read(catalogue: Catalogue) -> None:
-    """In the file's own font, of which a character is 7 pixels wide."""
-    for sheet in opened(SAVED, catalogue):
-        _, last, _ = SHEETS[sheet.title]
-        columns = [kind for kind in sheet.column_dimensions.values() if not kind.hidden]
-        counts = [max(0, min(kind.max or 0, last) - (kind.min or 0) + 1) for kind in columns]
-        width = sum(count * 7 * kind.width for count, kind in zip(counts, columns, strict=True)) * 72 / 96
-        rows = [sheet.row_dimensions[row] for row in range(1, sheet.max_row + 1)]
-        height = sum(row.height or 12.75 for row in rows if not row.hidden)
-        assert 10 * min(PAPER_POINTS / width, PAPER_HEIGHT / height, 1) >= LEAST_POINTS, sheet.title
+def letters(sheet: Worksheet) -> float:
+    """Size in points on A4 of the letters of a sheet in the file's own font, of which a character is 7 pixels wide."""
+    fitted = sheet.sheet_properties.pageSetUpPr
+    if not (fitted and fitted.fitToPage):
+        return 10 * (sheet.page_setup.scale or 100) / 100
+    _, last, _ = SHEETS[sheet.title]
+    columns = [kind for kind in sheet.column_dimensions.values() if not kind.hidden]
+    counts = [max(0, min(kind.max or 0, last) - (kind.min or 0) + 1) for kind in columns]
+    width = sum(count * 7 * kind.width for count, kind in zip(counts, columns, strict=True)) * 72 / 96
+    rows = [sheet.row_dimensions[row] for row in range(1, sheet.max_row + 1)]
+    height = sum(row.height or 12.75 for row in rows if not row.hidden) / (sheet.page_setup.fitToHeight or 1)
+    paper = (PAPER_POINTS, PAPER_HEIGHT)
+    if sheet.page_setup.orientation == "landscape":
+        paper = (842 - 0.9 * 72, 595 - 1.2 * 72)
+    return 10 * min(paper[0] / width, paper[1] / height, 1)
+
+
+EVERY_CHECK = copy.deepcopy(EVERYTHING)
+EVERY_CHECK["requirements"] |= {"natural_frequency_Hz": 5, "position_error_arcmin": 60, "load_inertia_kgm2": 0.1}
+EVERY_CHECK["requirements"].pop("ratios")
+EVERY_CHECK["requirements"]["motor"] |= {"inertia_kgm2": 0.001, "inertia_ratio": 10, "rated_speed_rpm": 3000}
+
+
+@pytest.mark.parametrize("application", [SAVED, EVERYTHING, EVERY_CHECK], ids=["saved", "everything", "every check"])
+def test_letters_of_lists_on_paper_are_large_enough_to_read(application: Json, catalogue: Catalogue) -> None:
+    for sheet in opened(application, catalogue):
+        if sheet.title in ("Candidates", "Inputs") or application is SAVED:
+            assert letters(sheet) >= LEAST_POINTS, sheet.title
+
+
+def test_checks_that_one_page_has_no_room_for_go_on_beside_their_gears_on_another(catalogue: Catalogue) -> None:
+    sheet = opened(EVERY_CHECK, catalogue)["Candidates"]
+    (second,) = [mark.id for mark in sheet.col_breaks.brk]
+    shown = [column for column in range(5, 26) if not sheet.column_dimensions[get_column_letter(column)].hidden]
+
+    assert sheet.print_title_cols == "$A:$A" and len(shown) == 21
+    assert sum(column <= second for column in shown) in (10, 11)
+    assert all(merged.max_col <= second for merged in sheet.merged_cells.ranges)
+
+
+def test_numbers_of_pieces_and_large_figures_have_no_decimals(catalogue: Catalogue) -> None:
+    sheet = opened(EVERYTHING, catalogue)["Selection"]
+    formats = {row[1].value: row[2].number_format for row in sheet.iter_rows()}
+
+    assert formats["N_k,max"].endswith("#,##0") and ".00;" not in formats["L_10"]
+
+
+def test_utilisations_have_one_format_and_heads_stand_above_their_numbers(catalogue: Catalogue) -> None:
+    sheet = opened(EVERYTHING, catalogue)["Selection"]
+    rows = list(sheet.iter_rows())
+    top = [row[0].value for row in rows].index("Check")
+    head, rows = rows[top], rows[top + 1 : top + 1 + len(CHECKS)]
+
+    shares = {row[k].number_format for row in rows for k in (4, 6)}
+    assert shares == {"0.00%"}
+    assert [cell.alignment.horizontal for cell in head[:8]] == [
+        None,
+        None,
+        "right",
+        "right",
+        "right",
+        None,
+        "right",
+        None,
+    ]

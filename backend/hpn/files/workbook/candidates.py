@@ -19,11 +19,12 @@ from hpn.words.units import symbol_of
 from hpn.words.wording import N_
 
 FIRST_ROW = 1
-WIDTH, MOST_UPRIGHT = 10.0, 9
-"""Width of a column in characters, and the number of checks that have room on an upright page."""
+WIDTH, CHECK_WIDTH, MOST_UPRIGHT, MOST_ACROSS = 10.0, 8.7, 9, 17
+"""Widths of columns of figures and of checks in characters, and the number of checks that an upright page and one
+across have room for.
+"""
 
-CHARACTERS_PER_LINE = 100
-"""Length of a line of a note: no reader of the file fits the row to its text by itself."""
+IDENTITY_WIDTHS = (13.0, 12.5, 10.0, 8.0)
 
 IDENTITY = ("designation", "status", "utilisation", "rank")
 USED = len(IDENTITY)
@@ -68,20 +69,36 @@ class CandidatesSheet:
         self._colours(rows)
         self._notes(rows[-1] + 2)
         self.sheet.repeat_rows(0)
-        self.book.page(self.sheet, columns=FIGURES, landscape=len(self.asked) > MOST_UPRIGHT)
+        self.book.page(self.sheet, columns=FIGURES, landscape=len(self.asked) > MOST_UPRIGHT, second=self.second)
         self.sheet.autofilter(0, 0, rows[-1], CONVERTED - 1)
         return rows
 
+    @property
+    def shown(self) -> list[int]:
+        """Columns of the checks that are asked."""
+        return [column for column, check in enumerate(CHECKS, USED) if check.code in self.asked]
+
+    @property
+    def second(self) -> int:
+        """Column with which a second page begins, after half of the checks; 0 where one page has room for all."""
+        return self.shown[len(self.shown) // 2] if len(self.shown) > MOST_ACROSS else 0
+
     def _notes(self, row: int) -> None:
-        """Write the notices and versions of the selection below the list, across the columns that are printed."""
+        """Write the notices and versions of the selection below the list, across the columns of the first page.
+
+        No reader of the file fits a row to its text by itself.
+        """
         text, selection = self.book.reader.text, self.book.export.selection
-        self.sheet.write_string(row, 0, text(N_("Assumptions and notes")), self.book.style("section"))
+        first = 1 if self.second else 0  # a second page repeats the first column
+        self.sheet.write_string(row, first, text(N_("Assumptions and notes")), self.book.style("section"))
         notes = [self.book.shown.told(notice.sentence) for notice in selection.notices]
         notes.append(f"{text(N_('Engine'))} {selection.engine_version}")
         notes.append(f"{text(N_('Catalogue'))} {catalogue_version(self.book.export, self.book.reader)}")
+        last = (self.second or FIGURES) - 1
+        line = int(sum(IDENTITY_WIDTHS) + CHECK_WIDTH * sum(column <= last for column in self.shown))
         for own, note in enumerate(notes, row + 1):
-            self.sheet.merge_range(own, 0, own, FIGURES - 1, note, self.book.style("wrap"))
-            self.sheet.set_row(own, ROW_POINTS * (1 + len(note) // CHARACTERS_PER_LINE))
+            self.sheet.merge_range(own, first, own, last, note, self.book.style("wrap"))
+            self.sheet.set_row(own, ROW_POINTS * (1 + len(note) // line))
 
     def _colours(self, rows: range) -> None:
         self.book.colour(self.sheet, rows[0], 1, rows[-1], 1)
@@ -99,14 +116,13 @@ class CandidatesSheet:
         unit_of = self.book.shown.unit
         heads += [f"{self.symbols[name]} [{unit_of(unit)}]" for name, unit in self.converted.items()]
         for column, shown in enumerate(heads):
-            self.sheet.write_string(0, column, shown, self.book.style("turned" if USED <= column < FIGURES else "head"))
+            self.sheet.write_string(0, column, shown, self.book.style(_look_of(column)))
         self.sheet.set_row(0, 106)
-        for column, width in enumerate((13, 12.5, 10, 8)):
+        for column, width in enumerate(IDENTITY_WIDTHS):
             self.sheet.set_column(column, column, width)
         self.sheet.set_column(USED, len(heads) - 1, WIDTH)
         for column, check in enumerate(CHECKS, USED):
-            if check.code not in self.asked:
-                self.sheet.set_column(column, column, WIDTH, None, FOLDED)
+            self.sheet.set_column(column, column, CHECK_WIDTH, None, {} if check.code in self.asked else FOLDED)
         self.sheet.freeze_panes(1, 1)
 
     def _row(self, row: int, candidate: Candidate) -> None:
@@ -161,6 +177,11 @@ class CandidatesSheet:
             f"MAX({load},IF({over.format(rest, 1)}>0,MAX({rest}),0))))"
         )
         self.sheet.write_formula(row, 2, used, self.book.style("share"), known.overall())
+
+
+def _look_of(column: int) -> str:
+    """Style of the head of a column: names of checks are turned, what stands above numbers is at the right."""
+    return "turned" if USED <= column < FIGURES else "head" if column < 2 else "head of numbers"
 
 
 def _while_unchanged(name: str, saved: float | str, otherwise: str = "") -> str | None:

@@ -48,7 +48,7 @@ def _moves(book: Book, sheet: Any, motion: Motion, row: int) -> None:
     heads = [book.head(book.reader.text(MOVES[name].name), symbol_of(name)) for name in columns]
     heads += [f"{book.reader.text(MOVES[name].name)} [{book.shown.unit(symbol_of(name))}]" for name in converted]
     for column, head in enumerate((book.reader.text(N_("Move")), *heads)):
-        sheet.write_string(row + 1, column, head, book.style("head"))
+        sheet.write_string(row + 1, column, head, book.style("head of numbers" if column > 1 else "head"))
     sheet.set_row(row + 1, 48)
     for place, move in enumerate(motion.moves):
         own = row + 2 + place

@@ -16,7 +16,7 @@ from hpn.files.workbook.candidates import COLUMNS, LOAD
 from hpn.files.workbook.formulas import CHECK_FORMULAS, CYCLE_TERMS, GEAR_TERMS, NONE, RATINGS, CellTerm, written
 from hpn.files.workbook.inputs_sheet import series_of
 from hpn.files.workbook.known import Known, demand_of, limit_of
-from hpn.files.workbook.sheets import ROW_POINTS, Book, Lines
+from hpn.files.workbook.sheets import COUNTS, ROW_POINTS, Book, Lines
 from hpn.files.workbook.unchanged import as_saved
 from hpn.files.workbook.wrong import EVERY_WRONG, WRONG, WRONG_AS_A_WHOLE
 from hpn.physics import bearing
@@ -153,7 +153,7 @@ class Overview(Lines):
         for term in terms:
             named = term.named
             self.line(named.name, self.known.symbol(term), term.unit, equation(named.equation, self.book.reader))
-            formula, look = self._written(self.known.formula(term)), "result"
+            formula, look = self._written(self.known.formula(term)), "count" if term.name in COUNTS else "result"
             if term.name in self.fixed:
                 formula, look = self._from_list(term.name), "fixed"
             self.sheet.write_formula(self.row, 2, formula, self.book.style(look), values[term.name])
@@ -181,7 +181,7 @@ class Overview(Lines):
     def _while_known(self, column: int, said: str, name: str, cell: str) -> None:
         """Write a remark on a figure that keeps its saved value, or that it is unknown for the present inputs."""
         known = f'=IF(OR({as_saved(name)},{cell}<>""),"{said}","{self.text(OUTDATED)}")'
-        self.sheet.write_formula(self.row, column, known, self.book.style("quiet"), said)
+        self.sheet.write_formula(self.row, column, known, self.book.style("source"), said)
 
     def _cycle_values(self) -> dict[str, float | str]:
         duty, loads = self.book.export.selection.duty, self.book.export.application.loads or OutputLoad()
@@ -206,7 +206,7 @@ class Overview(Lines):
     def _checks(self) -> None:
         heads = (N_("Check"), N_("Relation"), N_("Demand"), N_("Limit"), N_("Utilisation"), N_("Verdict"))
         own = (N_("Demand"), N_("Limit"), N_("Your unit")) if self.book.shown.units else ("",) * 3
-        self.section(N_("Checks"), *heads, N_("As saved"), N_("Source"), *own, N_("Basis"))
+        self.section(N_("Checks"), *heads, N_("As saved"), N_("Source"), *own, N_("Basis"), numbers=(2, 3, 4, 6, 8, 9))
         self.book.colour(self.sheet, self.row, 5, self.row + len(CHECKS) - 1, 5)
         for check in CHECKS:
             self._check(check)
@@ -221,7 +221,7 @@ class Overview(Lines):
         self.sheet.write_string(self.row, 1, relation, style("quiet"))
         values = (demand_of(saved), limit_of(saved), used)
         for column, (formula, value) in enumerate(zip(self._formulas(check), values, strict=True), 2):
-            look = style("share" if column == 4 else "result")
+            look = style("share" if column == 4 else "count" if check.code in COUNTS else "result")
             self.sheet.write_formula(self.row, column, formula, look, value)
         self._status(check, saved)
         self.book.put(self.sheet, self.row, 6, used, "share")
@@ -229,7 +229,7 @@ class Overview(Lines):
         if check.code in self.fixed:
             self._while_known(7, source, check.code, xl_rowcol_to_cell(self.row, 2))
         else:
-            self.sheet.write_string(self.row, 7, source, style("quiet"))
+            self.sheet.write_string(self.row, 7, source, style("source"))
         if definition := self.book.export.selection.check_definitions.get(check.code):
             basis = f"{self.text(definition.tests)} {self.text(definition.basis)}"
             self.sheet.write_string(self.row, BASIS, basis, style("quiet"))
@@ -264,4 +264,4 @@ class Overview(Lines):
             f'IF(ISTEXT({used}),{used},IF({used}<={bound},"{words["passes"]}","{words["fails"]}"))))))'
         )
         word = words[VERDICTS[saved.status]] if saved else ""
-        self.sheet.write_formula(self.row, 5, formula, self.book.style("verdict"), word)
+        self.sheet.write_formula(self.row, 5, formula, self.book.style("word"), word)

@@ -1,6 +1,6 @@
 """Styles and ways of writing that all sheets of the workbook use, and the table of the duty cycle."""
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -19,28 +19,37 @@ from hpn.words.units import symbol_of
 from hpn.words.wording import N_
 
 ACCENT = "#0B5394"
-FIGURE = "[>=10000000]0.00E+00;[>=10000]#,##0.00;#,##0.00##"
-"""Number format that fits the column, which would show hashes otherwise."""
+FIGURE = "[>=10000000]0.00E+00;[>=10000]#,##0;#,##0.00##"
+"""Number format that fits the column, which would show hashes otherwise; above 10,000 no decimals matter."""
+
+COUNTS = {"N_k_max", "momentary_peak_count"}
+"""Figures and checks whose numbers are whole."""
+
+_HEAD = {"bold": True, "font_color": "#FFFFFF", "bg_color": ACCENT, "text_wrap": True}
 
 STYLES: dict[str, dict[str, Any]] = {
     "title": {"bold": True, "font_size": 14},
     "section": {"bold": True, "font_color": ACCENT, "font_size": 11},
-    "head": {"bold": True, "font_color": "#FFFFFF", "bg_color": ACCENT, "text_wrap": True, "valign": "top"},
-    "turned": {"bold": True, "font_color": "#FFFFFF", "bg_color": ACCENT, "text_wrap": True, "rotation": 90},
+    "head": {**_HEAD, "valign": "top"},
+    "head of numbers": {**_HEAD, "valign": "top", "align": "right"},
+    "head of words": {**_HEAD, "valign": "top", "indent": 1},
+    "turned": {**_HEAD, "rotation": 90},
     "label": {"valign": "top"},
     "number": {"font_color": "#5B6875", "align": "left"},
     "quiet": {"font_color": "#5B6875", "valign": "top"},
+    "source": {"font_color": "#5B6875", "valign": "top", "indent": 1},
     "unit": {"font_color": "#5B6875", "valign": "top", "indent": 1},
     "wrap": {"text_wrap": True, "valign": "top"},
     "input": {"bg_color": "#FFF8DC", "border": 1, "border_color": "#D5DBE1", "locked": False},
     "figure": {"bg_color": "#F3F6F9"},
     "result": {"num_format": FIGURE, "valign": "top"},
     "shown": {"num_format": FIGURE, "font_color": "#5B6875"},
-    "count": {"num_format": "#,##0"},
-    "share": {"num_format": "0.0##%", "valign": "top", "shrink": True},
+    "count": {"num_format": "[>=10000000]0.00E+00;#,##0", "valign": "top"},
+    "share": {"num_format": "0.00%", "valign": "top", "shrink": True},
     "fixed": {"num_format": FIGURE, "italic": True, "font_color": "#8A6100", "valign": "top"},
     "wrong": {"font_color": "#B3261E", "valign": "top"},
     "verdict": {"bold": True, "valign": "top", "shrink": True},
+    "word": {"bold": True, "valign": "top", "indent": 1},
 }
 """Yellow cells are inputs; amber italics are values that a formula can't give."""
 
@@ -65,8 +74,11 @@ PAPERS: Mapping[Paper, int] = {"a4": 9, "us-letter": 1}
 FONT = {"font_name": "Arial", "font_size": 10}
 """A font that has the same widths in every office program, so that pages break alike."""
 
-ROW_POINTS, ROWS_ON_PAGE = 12.75, 83
-"""Height of a row, and how many of them a page holds at 7 points."""
+ROW_POINTS, ROWS_ON_PAGE, ROWS_ACROSS = 12.75, 83, 48
+"""Height of a row, and how many of them a page holds at 7 points: upright, and below a high head across."""
+
+LEAST_SCALE = 70
+"""Scale in per cent at which letters of 10 points have 7."""
 
 LONGEST_HEADER_TEXT = 100
 LONGEST_FOOTER_LINK = 100
@@ -154,15 +166,22 @@ class Book:
         sheet.conditional_format(*block, rule)
         sheet.data_validation(*block, validation)
 
-    def page(self, sheet: Any, *, columns: int = 0, landscape: bool = False) -> None:
-        """Set up a sheet for printing: its first columns, or all, on one page across, with a head and a foot."""
+    def page(self, sheet: Any, *, columns: int = 0, landscape: bool = False, second: int = 0) -> None:
+        """Set up a sheet for printing: its first columns, or all, with a head and a foot.
+
+        They stand on one page across, or those from `second` on beside the first column on another.
+        """
         if landscape:
             sheet.set_landscape()
         sheet.set_paper(PAPERS[paper(self.shown)])
         sheet.set_margins(left=0.5, right=0.4, top=0.6, bottom=0.6)
         sheet.print_area(0, 0, sheet.dim_rowmax, columns - 1 if columns else sheet.dim_colmax)
         sheet.set_default_row(ROW_POINTS)
-        sheet.fit_to_pages(1, -(-sheet.dim_rowmax // ROWS_ON_PAGE))
+        sheet.fit_to_pages(1, -(-sheet.dim_rowmax // (ROWS_ACROSS if landscape else ROWS_ON_PAGE)))
+        if second:
+            sheet.set_print_scale(LEAST_SCALE)
+            sheet.set_v_pagebreaks([second])
+            sheet.repeat_columns(0)
         heading, text = self.export.heading, self.reader.text
         revision = f"{text(N_('Revision'))} {heading.revision}" if heading.revision else ""
         title = ", ".join(filter(None, (heading.title, heading.reference, revision)))
@@ -197,15 +216,16 @@ class Lines:
         self.text = book.reader.text
         self.row = 0
 
-    def section(self, title: str, *heads: str) -> None:
-        """Write the title of a section, and the heads of its columns."""
+    def section(self, title: str, *heads: str, numbers: Collection[int] = ()) -> None:
+        """Write the title of a section, and the heads of its columns, those of `numbers` at the right."""
         self.sheet.write_string(self.row, 0, self.text(title), self.book.style("section"))
         if self.book.shown.units and not heads:
             self.sheet.write_string(self.row, self.own, self.text(N_("In your units")), self.book.style("quiet"))
         self.row += 1
         for column, head in enumerate(heads):
             if head:
-                self.sheet.write_string(self.row, column, self.text(head), self.book.style("head"))
+                style = "head of numbers" if column in numbers else "head of words" if column - 1 in numbers else "head"
+                self.sheet.write_string(self.row, column, self.text(head), self.book.style(style))
         self.row += bool(heads)
 
     def line(self, label: str, symbol: str, unit: str, source: str = "") -> None:
@@ -237,9 +257,8 @@ class CycleTable:
         heads = [(N_("Phase"), ""), *((INPUTS[f"phase.{name}"].name, symbol_of(name)) for name in PHASE_FIGURES)]
         heads += [(N_("Radial load used"), "N"), (N_("Axial load used"), "N")]
         for column, (head, unit) in enumerate(heads):
-            self.sheet.write_string(
-                self.top, column, self.book.head(self.book.reader.text(head), unit), self.book.style("head")
-            )
+            style = self.book.style("head of numbers" if column else "head")
+            self.sheet.write_string(self.top, column, self.book.head(self.book.reader.text(head), unit), style)
         self.sheet.set_row(self.top, 45)
         self.sheet.set_column(1, len(heads) - 1, WIDTH)
         self._heads_converted(len(heads))
@@ -271,7 +290,7 @@ class CycleTable:
         for column, name in enumerate(self.converted, start):
             symbol = self.book.shown.unit(symbol_of(name))
             head = f"{self.book.reader.text(INPUTS[f'phase.{name}'].name)} [{symbol}]"
-            self.sheet.write_string(self.top, column, head, self.book.style("head"))
+            self.sheet.write_string(self.top, column, head, self.book.style("head of numbers"))
             self.sheet.set_column(column, column, WIDTH)
 
     def _refuse(self) -> None:
