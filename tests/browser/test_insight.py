@@ -91,9 +91,9 @@ def test_comparing_gears_by_pinning_them_from_the_list(visitor: Visitor) -> None
     expect(comparison(page)).to_have_accessible_name("Comparison of HPN-20A-5, HPN-32A-5")
     expect(page).to_have_url(re.compile(re.escape(EXAMPLE + "&pin=HPN-32A-5") + "#compare$"))
 
-    torsion = comparison(page).get_by_role("row", name=re.compile("^Torsion at"))
-    expect(torsion.get_by_role("cell").nth(0)).to_have_text("3.70")
-    expect(torsion.get_by_role("cell").nth(1)).to_contain_text("best")
+    wind_up = comparison(page).get_by_role("row", name=re.compile("^Wind-up at"))
+    expect(wind_up.get_by_role("cell").nth(0)).to_have_text("5.29")  # 40 Nm / 26000 Nm/rad
+    expect(wind_up.get_by_role("cell").nth(1)).to_contain_text("best")
     expect(comparison(page).get_by_role("row", name=re.compile("^Backlash"))).not_to_contain_text("best")
 
     torque(page, 1).fill("41")

@@ -178,7 +178,7 @@ def test_an_edit_brings_what_is_in_sight_and_a_section_that_is_opened_follows_fr
     with page.expect_request("**/?*") as second:
         torque(page, 1).fill("45")
     assert second.value.headers["hpn-parts"] == "compare"
-    expect(comparison.get_by_role("row", name=re.compile("average torque"))).to_contain_text("41")
+    expect(comparison.get_by_role("row", name=re.compile("Average torque"))).to_contain_text("41")
 
     page.reload()
     expect(comparison).to_be_visible()
