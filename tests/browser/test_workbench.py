@@ -232,6 +232,16 @@ def test_seven_named_phases_with_loads_take_at_most_5000_px_of_a_phone(visitor: 
     assert page.evaluate("document.documentElement.scrollHeight") <= 5000
 
 
+@pytest.mark.parametrize("path", ["/?T=&n=&t=", EXAMPLE])
+def test_a_column_that_is_added_on_a_phone_leaves_the_table_in_its_place(visitor: Visitor, path: str) -> None:
+    page = visitor.open(path, 390, touch=True)
+    torque(page, 1).evaluate("field => scrollBy(0, field.getBoundingClientRect().top - 150)")
+    before = page.evaluate("scrollY")
+    page.get_by_role("button", name="load", exact=True).tap()
+    expect(page.get_by_role("textbox", name=re.compile("^Radial load.* 1"))).to_be_in_viewport()
+    assert page.evaluate("scrollY") == before > 0
+
+
 def test_a_touched_screen_of_390_px_keeps_undo_in_reach_figures_in_their_cells_and_keys_out(visitor: Visitor) -> None:
     page = visitor.open("/?T=38&n=300&t=0.5&T=15&n=600&t=4&gear=HPN-11A-15", 390, touch=True)
     page.get_by_role("link", name="Try it").first.click()
