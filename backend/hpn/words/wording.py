@@ -52,14 +52,14 @@ MOST_DECIMALS = 10
 
 
 def telling_decimals(value: float, bound: float, least: int) -> int:
-    """Decimals with which a value, once rounded, still lies on its own side of a bound, `least` at least.
+    """Decimals with which a percentage, once rounded, still lies on its own side of a bound and of 100, `least` at least.
 
     Within a relative 1e-12 a value is on neither side, as in the checks.
     """
+    marks = [mark for mark in (bound, 100.0) if abs(value - mark) <= 1 + _ROOM * abs(mark)]
     decimals = least
-    if abs(value - bound) <= 1 + _ROOM * abs(bound):  # to round it further away moves it by half at most
-        while decimals < MOST_DECIMALS and _side(round(value, decimals), bound) != _side(value, bound):
-            decimals += 1
+    while decimals < MOST_DECIMALS and any(_side(round(value, decimals), mark) != _side(value, mark) for mark in marks):
+        decimals += 1  # to round it further away than by 1 from a mark moves it by half at most
     return decimals
 
 
