@@ -19,7 +19,7 @@ from hpn.tables.numbers import WRITTEN
 from hpn.web.door.access import MAXIMUM_QUERY_BYTES, admit
 from hpn.web.door.bodies import pairs_of, read_form
 from hpn.web.door.pools import compute, worked
-from hpn.web.door.visit import current
+from hpn.web.door.visit import absolute, current
 from hpn.web.form import link_reader
 from hpn.web.form.form import Form, address_of_empty, for_reader
 from hpn.web.form.given import FieldProblem
@@ -137,7 +137,8 @@ def respond(request: Request, form: Form) -> Response:
     template = "_changes.html" if changes else "page.html"
     status = 422 if form.problems else 200
     shown = {"form": form, "answer": answer, "parts": parts, "catalogue": catalogue, "once": once_key()}
-    return _render(request, template, status, **shown)
+    printed = absolute(request, answer.address) if answer and answer.carried else ""
+    return _render(request, template, status, printed=printed, **shown)
 
 
 def read_query(query: bytes) -> Form:

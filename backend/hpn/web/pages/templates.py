@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Callable, Iterable
+from datetime import UTC, datetime
 from functools import lru_cache
 from typing import Any
 from xml.etree.ElementTree import Element
@@ -292,6 +293,7 @@ GLOBALS: dict[str, Any] = {
     "QUANTITIES": QUANTITIES,
     "reader": current,
     "SHAPES": SHAPES,
+    "today": lambda: datetime.now(UTC).date().isoformat(),
     "symbols": symbols,
     "ways": ways,
     "VERDICTS": VERDICTS,
