@@ -242,6 +242,31 @@ def test_a_column_that_is_added_on_a_phone_leaves_the_table_in_its_place(visitor
     assert page.evaluate("scrollY") == before > 0
 
 
+def test_the_menu_of_a_phone_has_one_edge_and_no_command_touches_the_edge_of_the_screen(visitor: Visitor) -> None:
+    page = visitor.open(EXAMPLE, 390, touch=True)
+    save = page.get_by_role("button", name="Save").bounding_box()
+    assert save and save["y"] > 0
+    page.get_by_role("button", name="More").tap()
+    entries = page.locator("#more :is(a, button):visible")
+    expect(entries).to_have_count(8)
+    edge = """nodes => nodes.map(node => {
+        const range = document.createRange(); range.selectNodeContents(node); return Math.round(range.getBoundingClientRect().left);
+    })"""
+    assert len(set(entries.evaluate_all(edge))) == 1
+
+
+def test_the_cells_of_a_row_of_the_map_stand_in_one_line_apart_from_each_other(visitor: Visitor) -> None:
+    page = visitor.open("/?mech=rotary&J=0.8&mv=trapezoidal&ms=90&mt=0.3&ma=&TB=40&tb=0.03&nm=3000&Tm=9&Tmn=3.2&Jm=0.0008")
+    buttons = page.locator("#map tr:first-child td button")
+    tops = buttons.evaluate_all("nodes => nodes.map(node => Math.round(node.getBoundingClientRect().top))")
+    assert len(set(tops)) == 1
+    room = """nodes => nodes.map(node => {
+        const range = document.createRange(); range.selectNodeContents(node);
+        return node.closest("td").clientWidth - range.getBoundingClientRect().width;
+    })"""
+    assert min(page.locator("#map td button").evaluate_all(room)) >= 4
+
+
 def test_a_touched_screen_of_390_px_keeps_undo_in_reach_figures_in_their_cells_and_keys_out(visitor: Visitor) -> None:
     page = visitor.open("/?T=38&n=300&t=0.5&T=15&n=600&t=4&gear=HPN-11A-15", 390, touch=True)
     page.get_by_role("link", name="Try it").first.click()

@@ -254,6 +254,37 @@ def test_a_motor_gives_no_figures_to_the_row_of_a_size_without_ratings(client: T
     assert row and "Not rated: figures of HPN-40A" in row[1] and "<button" not in row[1]
 
 
+def test_map_and_candidates_say_alike_which_gears_without_ratings_fail_in_any_case(client: TestClient) -> None:
+    query = {"T": 10, "n": 250, "t": 0.3, "nm": 3000}
+    body = {"duty_cycle": {"phases": [{"torque_Nm": 10, "speed_rpm": 250, "duration_s": 0.3}]}}
+    motor = {"requirements": {"motor": {"maximum_speed_rpm": 3000}}}
+    reply = client.post("/api/v1/select", json=body | motor).json()
+    failing = [c for c in reply["candidates"] if (c["size"], c["status"]) == ("40A", "unsuitable")]
+    page = client.get("/", params=query).text
+
+    assert len(failing) > 1 and f"{len(failing)} gears fail in any case." in page
+    group = re.search(r'id="rejected-40A".*?</summary>', page, re.S)
+    assert group and f"{len(failing)} gears" in group[0] and "The other checks are not rated." in group[0]
+
+
+def test_the_printed_page_says_whose_it_is_of_when_and_where_it_stands(client: TestClient) -> None:
+    page = client.get("/", params={"T": 40, "n": 250, "t": 0.3, "title": "Axis 7", "author": "M. M.", "rev": "B"}).text
+    head = re.search(r'<p class="on-paper">(.*?)</p>', page, re.S)
+    assert head and re.search(r"Axis 7 · M. M. · Revision B · \d{4}-\d\d-\d\d\s", head[1])
+    assert re.search(r"http://testserver/\?T=40&amp;n=250&amp;t=0.3&amp;title=Axis\+7", head[1])
+
+
+def test_a_default_in_a_field_is_written_as_results_are(client: TestClient) -> None:
+    page = client.get("/", headers={"Accept-Language": "de"}).text
+    assert re.search(r'id="f-Lb".*?placeholder="20\.000"', page, re.S)
+
+
+def test_the_drive_says_once_what_the_motor_torques_leave_out(client: TestClient) -> None:
+    page = client.get("/", params={"T": 10, "n": 250, "t": 0.3, "nm": 3000, "Tm": 9}).text
+    drive = page[page.index('id="drive"') : page.index('id="candidates"')]
+    assert drive.count("a lower bound") == len(re.findall(r"η = 1[^.]*a lower bound", drive)) == 1
+
+
 def test_an_unlimited_limit_keeps_its_sign(client: TestClient) -> None:
     page = client.get("/", params={"T": 40, "n": 250, "t": 0.3, "Tk": 41, "Nk": 500, "gear": "HPN-32A-4"}).text
     assert re.search(r'id="check-momentary_peak_count".*?<span class="sign">≤</span>\s*unlimited', page, re.S)

@@ -27,7 +27,7 @@ REQUIREMENTS = tuple(path for path in INPUTS if not path.startswith((*_LOADING, 
 WORDS: Mapping[str, str] = {
     **BEARING_MODELS,
     **LIFE_BASES,
-    **{code: ranking.name for code, ranking in RANKINGS.items()},
+    **{code: ranking.choice for code, ranking in RANKINGS.items()},
     "True": N_("yes"),
     "False": N_("no"),
     **{str(area): text for area, text in AREAS.items()},

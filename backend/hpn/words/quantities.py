@@ -221,11 +221,13 @@ CANDIDATE: Mapping[str, Named] = {
         N_("Speed into an end stop"),
         "n_end",
         "Output speed from which a load that meets an end stop brings the gear to T_M; shown, not checked.",
+        caveat=N_("From here on a load that meets an end stop brings the gear to T_M; not checked."),
     ),
     "motor_lock_speed_rpm": Named(
         N_("Speed with a locked motor"),
         "n_lock",
         "Output speed from which a motor that locks brings the gear to T_M; shown, not checked.",
+        caveat=N_("From here on a motor that locks brings the gear to T_M; not checked."),
     ),
     "reserve": Named(N_("Reserve"), "", "Reserve per driver, the other inputs as given."),
     "checks": Named(N_("Checks"), "", "Every required check, in a fixed order."),
@@ -253,6 +255,7 @@ RESERVE: Mapping[str, Named] = {
         N_("Largest brake torque, at T_R"),
         "T_B",
         "Largest brake torque that keeps the emergency stop at T_R, where equation 17.9 sets no limit; null likewise.",
+        caveat=N_("With a stronger brake the number of stops is limited (17.9)."),
     ),
     "load_inertia_kgm2": Named(
         N_("Largest inertia of the load"),
