@@ -273,6 +273,9 @@ def test_the_printed_page_says_whose_it_is_of_when_and_where_it_stands(client: T
     assert head and re.search(r"Axis 7 · M. M. · Revision B · \d{4}-\d\d-\d\d\s", head[1])
     assert re.search(r"http://testserver/\?T=40&amp;n=250&amp;t=0.3&amp;title=Axis\+7", head[1])
 
+    long = client.get("/?" + "&".join(["T=40&n=250&t=0.3"] * 60)).text
+    assert "Save the selection to print a short link." in long
+
 
 def test_a_default_in_a_field_is_written_as_results_are(client: TestClient) -> None:
     page = client.get("/", headers={"Accept-Language": "de"}).text

@@ -137,7 +137,7 @@ def respond(request: Request, form: Form) -> Response:
     template = "_changes.html" if changes else "page.html"
     status = 422 if form.problems else 200
     shown = {"form": form, "answer": answer, "parts": parts, "catalogue": catalogue, "once": once_key()}
-    printed = absolute(request, answer.address) if answer and answer.carried else ""
+    printed = absolute(request, answer.address) if answer else ""
     return _render(request, template, status, printed=printed, **shown)
 
 
