@@ -256,7 +256,9 @@ def test_the_menu_of_a_phone_has_one_edge_and_no_command_touches_the_edge_of_the
 
 
 def test_the_cells_of_a_row_of_the_map_stand_in_one_line_apart_from_each_other(visitor: Visitor) -> None:
-    page = visitor.open("/?mech=rotary&J=0.8&mv=trapezoidal&ms=90&mt=0.3&ma=&TB=40&tb=0.03&nm=3000&Tm=9&Tmn=3.2&Jm=0.0008")
+    page = visitor.open(
+        "/?mech=rotary&J=0.8&mv=trapezoidal&ms=90&mt=0.3&ma=&TB=40&tb=0.03&nm=3000&Tm=9&Tmn=3.2&Jm=0.0008"
+    )
     buttons = page.locator("#map tr:first-child td button")
     tops = buttons.evaluate_all("nodes => nodes.map(node => Math.round(node.getBoundingClientRect().top))")
     assert len(set(tops)) == 1
