@@ -250,7 +250,8 @@ def test_the_menu_of_a_phone_has_one_edge_and_no_command_touches_the_edge_of_the
     entries = page.locator("#more :is(a, button):visible")
     expect(entries).to_have_count(8)
     edge = """nodes => nodes.map(node => {
-        const range = document.createRange(); range.selectNodeContents(node); return Math.round(range.getBoundingClientRect().left);
+        const range = document.createRange(); range.selectNodeContents(node);
+        return Math.round(range.getBoundingClientRect().left);
     })"""
     assert len(set(entries.evaluate_all(edge))) == 1
 

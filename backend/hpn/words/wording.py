@@ -52,7 +52,7 @@ MOST_DECIMALS = 10
 
 
 def telling_decimals(value: float, bound: float, least: int) -> int:
-    """Decimals with which a percentage, once rounded, still lies on its own side of a bound and of 100, `least` at least.
+    """Decimals, `least` at least, with which a percentage, rounded, lies on its own side of a bound and of 100.
 
     Within a relative 1e-12 a value is on neither side, as in the checks.
     """
