@@ -20,7 +20,7 @@ from hpn.files.report.pdf import pdf
 from hpn.files.report.verdict import verdict
 from hpn.words.reader import Reader
 from hpn.words.units import PRESETS
-from tests.build import worked_example
+from tests.build import cycle, phase, worked_example
 from tests.report.cases import CASES, CREATED, EVERYTHING, language, typed_export_of
 
 ENGLISH, GERMAN = language("en"), language("de")
@@ -312,3 +312,19 @@ def test_every_text_is_set_in_the_reports_own_faces(reader: Reader, catalogue: C
 
 def _is_font(one: pikepdf.Object) -> bool:
     return isinstance(one, pikepdf.Dictionary) and one.get("/Type") == "/Font"
+
+
+@pytest.mark.parametrize("reader", [ENGLISH, GERMAN])
+def test_three_phases_with_a_load_and_lives_take_four_pages_and_no_title_loses_its_entries(
+    reader: Reader, catalogue: Catalogue
+) -> None:
+    phases = phase(60, 40, 0.35), phase(25, 70, 1.4), phase(-55, 40, 0.35)
+    load = {"radial_N": 900, "life_h": 30000, "life_basis": "L10"}
+    application = cycle(
+        *phases, pause_s=0.8, emergency_stop={"torque_Nm": 180}, output_load=load, requirements={"life_h": 30000}
+    )
+    pages = page_texts(pdf(typed_export_of(application, catalogue), reader), 9)
+
+    assert len(pages) == 4
+    (notices,) = [page for page in pages if f"\n{reader.text('Notices')}\n" in page]
+    assert re.search(rf"\n{reader.text('Notices')}\n1\b.*\n2\b", notices, re.DOTALL)

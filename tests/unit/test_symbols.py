@@ -13,6 +13,7 @@ from hpn.web.pages.templates import as_formula, with_symbols
 from hpn.words import symbols
 from hpn.words.quantities import QUANTITIES
 from hpn.words.reader import Reader
+from hpn.words.symbols import sentence
 from hpn.words.wording import Sentence
 
 Set = list[tuple[str, str]]
@@ -73,3 +74,7 @@ def test_characters_around_a_symbol_are_text() -> None:
     assert with_symbols("<b> T_k & η_m") == (
         '&lt;b&gt; <var class="symbol">T<sub>k</sub></var> &amp; <var class="symbol">η<sub>m</sub></var>'
     )
+
+
+def test_a_ratio_that_divides_a_symbol_is_one_and_no_other_i_of_a_sentence() -> None:
+    assert sentence("n_av(max)/i 750, i of them") == [("n", "av(max)"), "/", ("i", ""), " 750, i of them"]

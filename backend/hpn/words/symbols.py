@@ -9,7 +9,7 @@ Part = str | Symbol
 
 _LETTER = "[A-Za-zαβηθμφ]"
 _INDEXED = rf"\b{_LETTER}_[A-Za-z0-9]+(?:[,_][A-Za-z0-9]+)*(?:\([A-Za-z0-9]+\))?"
-_SENTENCE = re.compile(rf"({_INDEXED})")
+_SENTENCE = re.compile(rf"({_INDEXED}|(?<=\)/)i\b)")
 _FORMULA = re.compile(rf"({_INDEXED}|\b{_LETTER}\b)")
 
 
@@ -19,7 +19,7 @@ def formula(text: str) -> list[Part]:
 
 
 def sentence(text: str) -> list[Part]:
-    """A sentence, in which only what has an index is a symbol."""
+    """A sentence, in which only what has an index is a symbol, and a ratio i that divides one."""
     return _parts(_SENTENCE, text)
 
 

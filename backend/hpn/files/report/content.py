@@ -44,7 +44,7 @@ LABELS = {
     "moves": MOVES_TITLE,
     "derived": N_("Figures of the cycle and the gear"),
     "cycle": N_("Torque and speed over one cycle"),
-    "bearing": N_("Load on the output bearing"),
+    "bearing": N_("Load on the output shaft"),
     "checks": N_("Checks of {gear}"),
     "ratings": N_("Published figures of {gear}"),
     "alternatives": N_("Candidates"),
