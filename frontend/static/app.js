@@ -290,6 +290,9 @@ document.addEventListener("focusout", (event) => {
   if (left && formOf().matches("[data-waiting]")) formOf().requestSubmit();
 });
 
+// Behind a text that ends in a unit of its own the field's unit does not stand as well.
+document.addEventListener("input", ({ target }) => target.nextElementSibling?.matches(".unit") && (target.nextElementSibling.hidden = /[a-z]$/i.test(target.value)));
+
 // --- Inputs that stand in the result ----------------------------------------------------------------------------------
 
 // A link or button that chooses a gear, or pins one, changes an input at once, so that it is no less of the next request.

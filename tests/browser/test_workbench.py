@@ -270,6 +270,15 @@ def test_the_cells_of_a_row_of_the_map_stand_in_one_line_apart_from_each_other(v
     assert min(page.locator("#map td button").evaluate_all(room)) >= 4
 
 
+def test_the_unit_of_a_field_gives_way_to_one_that_is_typed(visitor: Visitor) -> None:
+    page = visitor.open(EXAMPLE)
+    unit = page.locator("#f-Tk + .unit")
+    page.locator("#f-Tk").fill("200000 Nmm")
+    expect(unit).to_be_hidden()
+    page.locator("#f-Tk").fill("200")
+    expect(unit).to_be_visible()
+
+
 def test_a_touched_screen_of_390_px_keeps_undo_in_reach_figures_in_their_cells_and_keys_out(visitor: Visitor) -> None:
     page = visitor.open("/?T=38&n=300&t=0.5&T=15&n=600&t=4&gear=HPN-11A-15", 390, touch=True)
     page.get_by_role("link", name="Try it").first.click()
