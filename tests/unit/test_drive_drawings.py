@@ -1,6 +1,7 @@
 """Drawings of motions and of torques at their speeds: what is read off their axes is what the figures say."""
 
 import itertools
+from xml.etree.ElementTree import Element
 
 import numpy as np
 import pytest
@@ -11,7 +12,7 @@ from hpn.engine.candidates import Candidate
 from hpn.engine.selection import select
 from hpn.explain.drawings import Subject
 from hpn.explain.drawings.plane import gear_plane, motor_plane
-from hpn.explain.drawings.svg import markup
+from hpn.explain.drawings.svg import markup, runs
 from hpn.physics.motion import trace_of
 from hpn.words.reader import Reader
 from tests.build import Json, cycle, phase
@@ -160,3 +161,13 @@ def test_planes_say_in_words_what_they_show() -> None:
     motor = " ".join(map(german.told, motor_plane(subject, german).words))
     assert gear.startswith("Größtes Drehmoment 60\u202fNm von 149\u202fNm, größte Drehzahl 660")
     assert motor.startswith("Größtes Drehmoment 15\u202fNm von 14\u202fNm, größte Drehzahl 3.300")
+
+
+def test_what_follows_an_index_stands_on_the_line_again() -> None:
+    """Shifts add up along a text: 3 down for the index, 3 up once behind it, and none for a letter without one."""
+    element = runs(Element("g"), "name", (0.0, 0.0), [("limit", "n_av(max)/i 750"), ("limit", "T_R")])
+    shown = [(run.text, float(run.get("dy", "0"))) for run in element]
+    assert shown == [
+        *(("n", 0.0), ("av(max)", 3.0), ("/", -3.0), ("i", 0.0), (" 750", 0.0)),
+        *(("\N{EN SPACE}", 0.0), ("T", 0.0), ("R", 3.0)),
+    ]

@@ -42,12 +42,11 @@ def runs(parent: Element, kind: str, at: Point, parts: Iterable[tuple[str, str]]
     for place, (own, content) in enumerate(parts):
         for part in sentence("\N{EN SPACE}" * (place > 0) + content):
             back = -3 if lowered else 0
-            lowered = not isinstance(part, str)
-            if isinstance(part, str):
-                _run(element, own, part, back)
-            else:
-                _run(element, f"{own} letter", part[0], back)
-                _run(element, f"{own} index", part[1], 3)
+            letter, index = ("", "") if isinstance(part, str) else part
+            lowered = index != ""
+            _run(element, f"{own} letter" if letter else own, letter or str(part), back)
+            if lowered:
+                _run(element, f"{own} index", index, 3)
     return element
 
 
