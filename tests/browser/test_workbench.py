@@ -75,7 +75,7 @@ def read_german(page: Page) -> None:
 
 
 def in_sight(page: Page, *locators: Any) -> list[bool]:
-    """Whether each lies in the window from its first to its last line."""
+    """True for each that lies in the window from its first to its last line."""
     height = page.viewport_size["height"] if page.viewport_size else 0
     boxes = [locator.bounding_box() for locator in locators]
     return [bool(box) and box["y"] >= 0 and box["y"] + box["height"] <= height for box in boxes]

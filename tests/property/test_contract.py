@@ -132,6 +132,6 @@ def test_random_applications_agree_under_a_supplement_that_rates_some_of_40a_and
 
 
 def _has_curve(case: Json) -> bool:
-    """Whether the digitised model, where it is asked for, has a curve for at least one of the sizes left."""
+    """True where the digitised model, if asked for, has a curve for at least one of the sizes left."""
     sizes = case.get("requirements", {}).get("sizes")
     return case.get("output_load", {}).get("model") != "digitised" or not sizes or bool(set(sizes) & set(CURVE))

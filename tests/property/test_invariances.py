@@ -46,7 +46,7 @@ def assert_same(first: Json, second: Json) -> None:
 
 
 def first_edge(utilisation: float) -> bool:
-    """Whether a utilisation sits within rounding of the edge of the tolerance, for any of the drawn reserves."""
+    """True for a utilisation within rounding of the edge of the tolerance, for any of the drawn reserves."""
     return any(math.isclose(utilisation, u * (1 + 1e-12), rel_tol=ROUNDING) for u in (0.5, 0.8, 1.0))
 
 

@@ -96,7 +96,7 @@ def followed(asked: Json, catalogue: Catalogue, chance: random.Random) -> Iterat
 
 
 def passes(application: Application, candidate: Candidate, catalogue: Catalogue) -> bool:
-    """Whether a gear is suitable."""
+    """True for a suitable gear."""
     again = select(application, catalogue).candidate(candidate.designation)
     return again is not None and again.status == "suitable"
 

@@ -71,7 +71,7 @@ def test_every_way_to_use_a_catalogue_leaves_its_copy_the_same(catalogue: Catalo
 
 
 def test_fields_of_this_format_stay_as_they_are(catalogue: Catalogue) -> None:
-    """Whoever renames or drops one of these fields raises FORMAT, and says what becomes of the copies there are."""
+    """A field that is renamed or dropped needs another FORMAT, and a way for the copies that are kept."""
     document = orjson.loads(copy_of(catalogue))
 
     assert (document["format"], FORMAT) == (1, 1)

@@ -187,7 +187,7 @@ def test_links_inside_the_folder_and_files_that_are_no_tables_are_let_be(tmp_pat
 
 @pytest.mark.parametrize("names", [(), ("README.md", "ratings.csv~")])
 def test_a_supplement_without_a_table_is_named(names: tuple[str, ...], tmp_path: Path) -> None:
-    """Whoever names a folder believes that it counts: a wrong one, or one that was not mounted, changed nothing."""
+    """A folder that is named is meant to count: a wrong one, or one that was not mounted, must not pass in silence."""
     for name in names:
         (tmp_path / name).write_text(RATINGS + ROW, encoding="utf-8")
     with pytest.raises(CatalogueError, match=f"^{tmp_path}: has no table of the catalogue; there are accuracy.csv, "):

@@ -233,7 +233,7 @@ def test_a_stream_that_a_shell_takes_away_is_a_line_at_most(case: str) -> None:
 def test_an_interruption_ends_it_without_a_word(tmp_path: Path) -> None:
     os.mkfifo(tmp_path / "pipe")
     command = [sys.executable, "-m", "hpn", "select", str(tmp_path / "pipe")]
-    # Whoever starts the tests in the background has interruptions ignored, which processes inherit.
+    # Tests started in the background ignore interruptions, and processes inherit that.
     heard = partial(signal.signal, signal.SIGINT, signal.default_int_handler)
     process = subprocess.Popen(command, stderr=subprocess.PIPE, preexec_fn=heard)
     with process, (tmp_path / "pipe").open("wb"):  # opens when the command reads

@@ -34,7 +34,7 @@ TEMPLATES = (
 """Reasons with values, the narrower before the wider."""
 
 _OF_PHASE = re.compile(r"(^|; )([a-z][A-Za-z0-9_.]*): phase ([0-9]+): ")
-_FAULTS = re.compile(r"; (?!available: )(?=[a-z][A-Za-z0-9_.]*: )")
+_FAULTS = re.compile(r"; (?=[a-z][A-Za-z0-9_.]*: )")
 
 
 def _pattern(template: str) -> re.Pattern[str]:
