@@ -7,6 +7,7 @@ from hpn.store.errors import (
     NoRoomError,
     ShareSpentError,
     StoreError,
+    StoreFullError,
     StoreUnavailableError,
 )
 from hpn.store.fleets import FleetDraft, SavedFleet
@@ -26,6 +27,7 @@ __all__ = [
     "ShareSpentError",
     "Store",
     "StoreError",
+    "StoreFullError",
     "StoreUnavailableError",
     "Summary",
 ]

@@ -1,6 +1,11 @@
 """Errors of the store."""
 
-from hpn.words.wording import MendableError
+from hpn.words.wording import N_, MendableError
+
+FULL = N_(
+    "The disk of the database (HPN_DATABASE_URL) is full: make some megabytes of room on it, then try again. "
+    "Deleting may need room, too."
+)
 
 
 class StoreError(MendableError):
@@ -9,6 +14,13 @@ class StoreError(MendableError):
 
 class StoreUnavailableError(StoreError):
     """The database can't be reached, is too slow, or is refused for now; the same call may work later."""
+
+
+class StoreFullError(StoreUnavailableError):
+    """The disk of the database is full; SQLite writes a deletion into its log, too, before it frees anything."""
+
+    def __init__(self) -> None:
+        super().__init__(FULL)
 
 
 class NewerDatabaseError(StoreError):

@@ -19,7 +19,7 @@ from sqlalchemy.ext.asyncio import AsyncConnection
 from hpn.catalogue import Catalogue
 from hpn.catalogue.copy import UnreadableCopyError, read_copy
 from hpn.store.engine import WRITES, make_engine
-from hpn.store.errors import NewerDatabaseError, StoreError, StoreUnavailableError
+from hpn.store.errors import NewerDatabaseError, StoreError, StoreFullError, StoreUnavailableError
 from hpn.store.fleets import (
     FleetDraft,
     FleetSummary,
@@ -42,6 +42,8 @@ logger = logging.getLogger(__name__)
 T = TypeVar("T")
 
 TRIAL_SECONDS = 1.0
+DISK_FULL = "53100"
+"""State of an error by which PostgreSQL says that."""
 UNAVAILABLE = "saved selections are temporarily unavailable"
 
 ID = re.compile(r"[A-Za-z0-9_-]{22}")
@@ -54,7 +56,7 @@ class Store:
     """Saved selections. A selection is durable once `save` has returned; only its title and reference can be changed.
 
     Every function raises StoreUnavailableError where the database can't be reached or takes longer than `seconds`, and
-    works again as soon as it can. Nothing is connected before it is needed.
+    works again as soon as it can; StoreFullError where a disk is full. Nothing is connected before it is needed.
     """
 
     def __init__(self, address: str, *, seconds: float = 5.0, password: str | None = None) -> None:
@@ -63,7 +65,7 @@ class Store:
         self._seconds = seconds
         self._turn = asyncio.Lock()
         self._opening: asyncio.Task[None] | None = None
-        self._trial: asyncio.Task[bool] | None = None
+        self._trial: asyncio.Task[StoreUnavailableError | None] | None = None
         self._next_trial = 0.0
 
     async def open(self) -> None:
@@ -100,15 +102,15 @@ class Store:
         if self._trial is None or (self._trial.done() and now >= self._next_trial):
             self._next_trial = now + TRIAL_SECONDS
             self._trial = asyncio.create_task(self._try_saving(catalogue))
-        if not await asyncio.shield(self._trial):
-            raise StoreUnavailableError(UNAVAILABLE)
+        if failed := await asyncio.shield(self._trial):
+            raise failed.with_traceback(None)  # of the trial, which all who ask share
 
-    async def _try_saving(self, catalogue: Catalogue | None) -> bool:
+    async def _try_saving(self, catalogue: Catalogue | None) -> StoreUnavailableError | None:
         try:
             await self._write(lambda connection: rehearse(connection, catalogue))
-        except StoreUnavailableError:
-            return False
-        return True
+        except StoreUnavailableError as error:
+            return error
+        return None
 
     async def require_complete(self) -> None:
         """Raise StoreError where the database lacks a table, column or index of this version."""
@@ -274,7 +276,14 @@ class Store:
 
 def _unavailable(error: Exception) -> StoreUnavailableError:
     logger.warning("the store is not available: %s: %s", type(error).__name__, error)
-    return StoreUnavailableError(UNAVAILABLE)
+    return StoreFullError() if _is_of_full_disk(error) else StoreUnavailableError(UNAVAILABLE)
+
+
+def _is_of_full_disk(error: Exception) -> bool:
+    cause = error.orig if isinstance(error, DBAPIError) else None
+    return (
+        getattr(cause, "sqlite_errorcode", None) == sqlite3.SQLITE_FULL or getattr(cause, "sqlstate", None) == DISK_FULL
+    )
 
 
 def _cursor(moment: datetime, id: str) -> str:

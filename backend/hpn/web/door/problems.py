@@ -16,7 +16,7 @@ from starlette.types import Scope
 from hpn.application import InputError
 from hpn.application.faults import Fault, Location, faults_of, plain_faults, pointer, unreadable
 from hpn.installed import ExtraMissingError, require
-from hpn.store import StoreUnavailableError
+from hpn.store import StoreFullError, StoreUnavailableError
 from hpn.web.door.kinds import KINDS, OF_STATUS, PATH
 from hpn.words.wording import Sentence
 
@@ -64,7 +64,8 @@ class Problem(HTTPException):
     def of(cls, error: ValidationError | InputError | StoreUnavailableError) -> "Problem":
         """Problem for input that the models or the selection refuse, and for a store that is out of reach for now."""
         if isinstance(error, StoreUnavailableError):
-            return cls.later(str(error), STORE_SECONDS)
+            is_full = isinstance(error, StoreFullError)
+            return cls.later(Sentence(str(error)) if is_full else str(error), STORE_SECONDS)
         if isinstance(error, InputError):
             return cls(422, (sentence for _, sentence in error.sentences), faults_of(error))
         if text := unreadable(error):

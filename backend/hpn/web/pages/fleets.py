@@ -25,7 +25,7 @@ from hpn.web.door.access import admit
 from hpn.web.door.hosts import require_same_origin
 from hpn.web.door.observation import note
 from hpn.web.door.pools import compute, compute_beside, worked
-from hpn.web.door.problems import STORE_SECONDS, Problem, needs
+from hpn.web.door.problems import Problem, needs
 from hpn.web.door.uploads import read_parts
 from hpn.web.fleets import Tables, size_fleet, workplace
 from hpn.web.form.symbols import AXIS_INPUTS
@@ -35,6 +35,7 @@ from hpn.web.pages.sized_fleets import ADDRESS
 from hpn.words.wording import N_, Sentence
 
 NO_ROOM_SECONDS = 3600
+UNAVAILABLE = N_("Machines are temporarily unavailable: try again in a few seconds.")
 NOTHING = N_("choose a file or paste cells into the field")
 LARGER = N_("For larger tables use the command hpn fleet or POST /api/v1/fleet, which have no such limit.")
 SHARE_SPENT = N_(
@@ -94,9 +95,10 @@ async def upload(request: Request) -> Response:
     except Problem as problem:
         status, problems = problem.status_code, problem.sentences or (Sentence("{text}", {"text": problem.detail}),)
         headers = dict(problem.headers or {})
-    except StoreUnavailableError:
-        status, problems = 503, (Sentence(N_("Machines are temporarily unavailable: try again in a few seconds.")),)
-        headers = {"Retry-After": str(STORE_SECONDS)}
+    except StoreUnavailableError as error:
+        refused = Problem.of(error)
+        status, problems = refused.status_code, refused.sentences or (Sentence(UNAVAILABLE),)
+        headers = dict(refused.headers or {})
     shown = {"draft": draft, "problems": problems, **_WORDS}
     response = await compute(request, "pages", page, request, "fleets.html", status, **shown)
     response.headers.update(headers)
