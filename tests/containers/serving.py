@@ -6,6 +6,7 @@ import time
 
 import httpx
 
+from hpn import ENGINE_VERSION
 from tests.build import worked_example
 from tests.containers.stack import IMAGE, Stack
 from tests.containers.trials import trial
@@ -167,14 +168,20 @@ def networks(stack: Stack) -> str:
     return ", ".join(own)
 
 
-@trial("the image has no pip and no compiler")
-def image(stack: Stack) -> None:
-    """Nothing that installs or builds."""
+@trial("the image has no pip and no compiler, and says which version it is")
+def image(stack: Stack) -> str:
+    """Its version."""
     search = "for each in pip pip3 uv cc gcc make; do command -v $each; done; python -c 'import pip' 2>&1"
     found = stack.inside("web", "sh", "-c", search).stdout
     assert "No module named 'pip'" in found, found
     programs = [line for line in found.splitlines() if line.startswith("/")]
     assert not programs, programs
+    label = '{{index .Config.Labels "org.opencontainers.image.version"}}'
+    said = stack.engine.docker("image", "inspect", "--format", label, IMAGE)
+    with stack.client() as client:
+        runs = client.get("/readyz").json()["engine_version"]
+    assert said == runs == ENGINE_VERSION, (said, runs)
+    return said
 
 
 @trial("the image alone starts read-only with any user of group 0, and beside a Kubernetes service named hpn")

@@ -17,7 +17,7 @@ from fnmatch import fnmatch
 from pathlib import Path
 
 CHANGES_THE_SYSTEM = ("useradd ", "groupadd ", "/usr/local/")
-OF_THE_ENGINE = ("USER", "EXPOSE", "VOLUME", "HEALTHCHECK", "CMD")
+OF_THE_ENGINE = ("LABEL", "USER", "EXPOSE", "VOLUME", "HEALTHCHECK", "CMD")
 
 
 @dataclass

@@ -14,6 +14,8 @@ from starlette.requests import Request
 from starlette.responses import Response
 from starlette.testclient import TestClient
 
+from hpn import ENGINE_VERSION
+from hpn.catalogue import Catalogue
 from hpn.store import Store
 from hpn.store.engine import make_engine
 from hpn.web.app import create_app
@@ -201,6 +203,11 @@ def test_selections_are_counted_by_verdict_wherever_they_are_asked_for(make_clie
     assert found["hpn_selections_total selected"] == 4
     assert found["hpn_selections_total none"] == 2
     assert found["hpn_selections_total refused"] == 1
+
+
+def test_the_versions_that_run_are_a_metric(make_client: MakeClient, catalogue: Catalogue) -> None:
+    # Labels in their order: catalogue_version, engine_version.
+    assert counts(make_client())[f"hpn_build_info {catalogue.version} {ENGINE_VERSION}"] == 1
 
 
 def test_operations_of_the_store_are_counted_and_its_failures(make_client: MakeClient) -> None:

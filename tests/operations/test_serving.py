@@ -15,6 +15,7 @@ import httpx
 import orjson
 import pytest
 
+from hpn import ENGINE_VERSION
 from tests.build import cycle, phase, worked_example
 from tests.operations.service import Service, children_of, held_port, is_gone, serving, until
 
@@ -183,10 +184,18 @@ def test_several_workers_serve_count_together_and_end(tmp_path: Path) -> None:
         assert f'hpn_http_requests_total{{method="POST",route="{SELECT}",status="200"}} 40.0' in counted
         assert 'hpn_selections_total{verdict="selected"} 41.0' in counted
         assert 'hpn_store_operations_total{operation="save",outcome="ok"} 1.0' in counted
+        assert counted.count("\nhpn_build_info{") == 1  # of the worker that was asked
 
         service.terminate()
         assert service.process.wait(timeout=30) == 0
         assert sum(event["event"].startswith("Finished server process") for event in service.events()) == 2
+
+
+def test_the_log_says_at_the_start_which_versions_run(service: Service) -> None:
+    ready, start = service.client.get("/readyz").json(), service.event(event="start")
+
+    assert start["engine_version"] == ENGINE_VERSION
+    assert start["catalogue_version"] == ready["catalogue_version"]
 
 
 def test_everything_that_is_logged_is_json(service: Service) -> None:

@@ -5,6 +5,7 @@ from typing import Any
 import pytest
 from starlette.testclient import TestClient
 
+from hpn import ENGINE_VERSION
 from hpn.catalogue import Catalogue
 from tests.reference import handbook
 
@@ -156,7 +157,7 @@ def test_health_says_that_it_lives_and_is_ready(api: TestClient, catalogue: Cata
     ready = api.get("/readyz")
     assert ready.status_code == 200
     assert (ready.json()["status"], ready.json()["gears"]) == ("ok", len(catalogue.gears))
-    assert ready.json()["catalogue_version"] == catalogue.version
+    assert (ready.json()["engine_version"], ready.json()["catalogue_version"]) == (ENGINE_VERSION, catalogue.version)
 
 
 def test_reading_endpoints_refuse_other_methods(api: TestClient) -> None:

@@ -144,7 +144,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     app.state.gate = Gate(settings)
     app.state.pools = Pools(settings.fleet_processes, fleets.bounds_of(settings))
     app.state.disk = Disk(settings.maximum_spool_bytes)
-    app.state.metrics = Metrics()
+    app.state.metrics = Metrics(app.state.catalogue.version)
     app.state.store = CountedStore(app.state.metrics, **settings.database())
     problems.install(app, explanations.page_of)
     for router in ROUTERS:

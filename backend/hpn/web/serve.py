@@ -19,6 +19,7 @@ from fastapi import FastAPI
 from uvicorn.config import STARTUP_FAILURE
 from uvicorn.supervisors import Multiprocess
 
+from hpn import ENGINE_VERSION
 from hpn.catalogue import CatalogueError
 from hpn.store import StoreError
 from hpn.web.app import create_app
@@ -41,6 +42,8 @@ def served_app() -> FastAPI:
     settings = Settings()
     logs.configure(settings.log_level)
     app = create_app(settings)
+    versions = {"engine_version": ENGINE_VERSION, "catalogue_version": app.state.catalogue.version}
+    logs.make_logger(settings.log_level).info("start", **versions)
     templates.prepare(templates.environment(app.state))
     gc.collect()
     gc.freeze()  # catalogue, templates and modules are never garbage; to search them takes 90 ms each time

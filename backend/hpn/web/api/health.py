@@ -5,6 +5,7 @@ from pydantic import BaseModel, Field
 from starlette.requests import Request
 from starlette.responses import PlainTextResponse, Response
 
+from hpn import ENGINE_VERSION
 from hpn.web.api.schemas import problems
 from hpn.web.door.access import OPEN, admit
 from hpn.web.door.metrics import CONTENT_TYPE
@@ -23,6 +24,7 @@ class Health(BaseModel):
 class Readiness(Health):
     """State of the service and of what it needs."""
 
+    engine_version: str = Field(description="Version of the calculation that runs.", examples=["1.1.0"])
     catalogue_version: str = Field(description="Hash of the loaded catalogue’s content.", examples=["53ef277c50b29b46"])
     gears: int = Field(description="Number of gears in the catalogue.", examples=[64])
     store: str = Field(description="ok while selections can be saved.", examples=["ok"])
@@ -42,7 +44,12 @@ async def readyz(request: Request) -> Readiness:
     await request.app.state.store.check(catalogue)
     await request.app.state.spool.check()
     return Readiness(
-        status="ok", catalogue_version=catalogue.version, gears=len(catalogue.gears), store="ok", spool="ok"
+        status="ok",
+        engine_version=ENGINE_VERSION,
+        catalogue_version=catalogue.version,
+        gears=len(catalogue.gears),
+        store="ok",
+        spool="ok",
     )
 
 
@@ -50,6 +57,6 @@ async def readyz(request: Request) -> Readiness:
     "/metrics", operation_id="getMetrics", summary="Metrics for Prometheus", response_class=PlainTextResponse
 )
 async def metrics(request: Request) -> Response:
-    """Counters for Prometheus: requests, selections by verdict, operations of the store."""
+    """Counters for Prometheus: requests, selections by verdict, operations of the store; versions of what runs."""
     text = await compute(request, "metrics", request.app.state.metrics.exposition)
     return Response(text, media_type=CONTENT_TYPE)

@@ -1,4 +1,4 @@
-"""Prometheus metrics: requests, selections by verdict, operations of the store.
+"""Prometheus metrics: requests, selections by verdict, operations of the store, versions.
 
 With several workers each writes its counts to files in one folder, and whichever is asked adds all of them up: that is
 the client library's multiprocess mode, for which `serve.py` sets PROMETHEUS_MULTIPROC_DIR before it starts them.
@@ -11,8 +11,11 @@ from types import MethodType
 from typing import ParamSpec, TypeVar
 
 from prometheus_client import CollectorRegistry, Counter, Histogram, ProcessCollector, generate_latest
+from prometheus_client.metrics_core import InfoMetricFamily
 from prometheus_client.multiprocess import MultiProcessCollector
+from prometheus_client.registry import Collector
 
+from hpn import ENGINE_VERSION
 from hpn.store import KeyReusedError, KeySpentError, NoRoomError, ShareSpentError, Store
 
 P = ParamSpec("P")
@@ -24,11 +27,24 @@ METHODS = frozenset({"GET", "HEAD", "POST", "DELETE", "OPTIONS", "PUT", "PATCH"}
 BUCKETS = (0.0005, 0.001, 0.0025, 0.005, 0.01, 0.025, 0.05, 0.1, 0.25, 0.5, 1, 2.5, 5, 10, 30, 60)
 
 
-class Metrics:
-    """Counts of one process."""
+class Build(Collector):
+    """Versions of the process that is asked, which nothing adds up."""
 
-    def __init__(self) -> None:
+    def __init__(self, catalogue_version: str) -> None:
+        self._versions = {"engine_version": ENGINE_VERSION, "catalogue_version": catalogue_version}
+
+    def collect(self) -> Iterable[InfoMetricFamily]:
+        """The one metric `hpn_build_info`, always 1."""
+        yield InfoMetricFamily("hpn_build", "Versions of engine and catalogue.", value=self._versions)
+
+
+class Metrics:
+    """Counts of one process, and its versions."""
+
+    def __init__(self, catalogue_version: str = "") -> None:
+        self._build = Build(catalogue_version)
         self._registry = registry = CollectorRegistry()
+        registry.register(self._build)
         if FOLDER not in os.environ:
             ProcessCollector(registry=registry)
         self._requests = Counter(
@@ -75,6 +91,7 @@ class Metrics:
         if FOLDER in os.environ:
             registry = CollectorRegistry()
             MultiProcessCollector(registry)  # type: ignore[no-untyped-call]
+            registry.register(self._build)
         return generate_latest(registry)
 
 
