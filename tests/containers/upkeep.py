@@ -2,7 +2,6 @@
 
 import contextlib
 import os
-import re
 import ssl
 import threading
 import time
@@ -18,6 +17,9 @@ LATER_S = 8.0
 """Longest that a database which is away delays a start; HPN_DATABASE_SECONDS is 5."""
 
 FOUND_AGAIN_S = 30.0
+UNFINISHED = ".unfinished."
+"""Beginning of the name of a file that is being written."""
+
 GRACE_S = 38.0
 """A stop that takes longer was no end but a kill: the file gives 40 s."""
 
@@ -192,12 +194,12 @@ def shutdown(stack: Stack) -> str:
 
 
 def _await_fleet(stack: Stack) -> None:
-    for _ in range(100):
-        if re.search(r"\bfleet\b", stack.inside("web", "sh", "-c", "cat /proc/[0-9]*/cmdline | tr '\\0' ' '").stdout):
-            time.sleep(2)
+    """Wait until answers are being written: a file of the fleet's folder tells that, whatever its process is called."""
+    for _ in range(300):
+        if stack.inside("web", "find", "/data", "-name", f"{UNFINISHED}*").stdout:
             return
         time.sleep(0.2)
-    raise AssertionError("no process for the fleet came up")
+    raise AssertionError("no fleet is under way")
 
 
 @trial("another POSTGRES_PASSWORD is no healthy stack; ALTER USER makes it one")
