@@ -45,25 +45,34 @@ TOGETHER := --ignore tests/browser --numprocesses 3 --dist loadfile --no-loadsco
 # hangs on floating point, so that of the units neither words nor files nor the command line.
 WORDS := application catalogue_errors catalogue_files check_texts cli facts links motion_links motors plots supplements symbols translations words
 NUMERIC := tests/reference tests/property tests/unit $(WORDS:%=--ignore tests/unit/test_%.py) --numprocesses 3 --dist loadfile --no-loadscope-reorder
-ELSEWHERE = NPY_DISABLE_CPU_FEATURES="$$($(BIN)/python -m tests.last_bits)" HPN_TEST_LAST_BITS
+ELSEWHERE = env NPY_DISABLE_CPU_FEATURES="$$($(BIN)/python -m tests.last_bits)" HPN_TEST_LAST_BITS
 BROWSERS := tests/browser --ignore tests/browser/test_lighthouse.py --numprocesses 3 --dist load
+# Parts of a run: one that fails keeps no other from running, and the last lines name it.
+PARTS = failed=; part() { name=$$1; shift; echo "$$name: $$*"; "$$@" || failed="$$failed $$name"; }
+ENDED = for name in $$failed; do echo "make $@: failed: $$name" >&2; done; [ -z "$$failed" ]
 test: install browser office curl nginx
 ifdef PYTEST_ARGS
 	$(BIN)/pytest $(PYTEST_ARGS)
 else
-	$(BIN)/pytest $(MEASURED)
-	$(BIN)/pytest $(TOGETHER)
-	$(ELSEWHERE)=mixed $(BIN)/pytest $(NUMERIC)
-	$(BIN)/pytest $(BROWSERS)
+	@$(PARTS); \
+	part measured $(BIN)/pytest $(MEASURED); \
+	part together $(BIN)/pytest $(TOGETHER); \
+	part another-processor $(ELSEWHERE)=mixed $(BIN)/pytest $(NUMERIC); \
+	part browsers $(BIN)/pytest $(BROWSERS); \
+	$(ENDED)
 endif
 
 # Tests that are long by nature, in their long form: hundreds of kills, examples by the thousand, Lighthouse over all pages.
-# Nothing runs beside tests of waiting times. A failure keeps nothing else from running.
+# Nothing runs beside tests of waiting times.
 UNDER_LOAD := tests/reliability/test_load.py tests/reliability/test_loop.py tests/operations/test_peers.py
 soak: install browser office curl nginx pdfua
-	@failed=0; for part in "$(MEASURED)" "$(UNDER_LOAD)" "$(TOGETHER) $(addprefix --ignore ,$(UNDER_LOAD))" "$(BROWSERS)"; do \
-	    echo "$(BIN)/pytest --soak $$part"; $(BIN)/pytest --soak $$part || failed=1; \
-	done; for way in up down mixed; do $(ELSEWHERE)=$$way $(BIN)/pytest $(NUMERIC) || failed=1; done; exit $$failed
+	@$(PARTS); \
+	part measured $(BIN)/pytest --soak $(MEASURED); \
+	part under-load $(BIN)/pytest --soak $(UNDER_LOAD); \
+	part together $(BIN)/pytest --soak $(TOGETHER) $(addprefix --ignore ,$(UNDER_LOAD)); \
+	part browsers $(BIN)/pytest --soak $(BROWSERS); \
+	for way in up down mixed; do part "last-bits-$$way" $(ELSEWHERE)=$$way $(BIN)/pytest $(NUMERIC); done; \
+	$(ENDED)
 
 # Each small change of the modules that decide has to make a test fail; one that no test finds is explained or listed.
 mutants: install

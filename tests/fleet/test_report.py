@@ -16,7 +16,7 @@ from hpn.application import Application
 from hpn.cli import main
 from hpn.web.form.link_reader import parse
 from tests.fleet.tables import Row, read, row_of, write
-from tests.reliability.faults import as_user
+from tests.reliability.faults import as_user, catalogue_for_all
 
 APPLICATION = {"duty_cycle": {"phases": [{"torque_Nm": 20.0, "speed_rpm": 200.0, "duration_s": 1.0}]}}
 HEAVY = {"duty_cycle": {"phases": [{"torque_Nm": 9000.0, "speed_rpm": 200.0, "duration_s": 1.0}]}}
@@ -126,10 +126,11 @@ def test_without_its_report_no_file_gets_its_name(
 
 
 def test_a_report_where_nothing_may_be_written_is_refused_before_anything_is_computed(
-    capsys: pytest.CaptureFixture[str],
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     with TemporaryDirectory() as name:
         folder = Path(name)
+        catalogue_for_all(folder, monkeypatch)
         axes = write(folder / "axes.csv", rows())
         assert main(["fleet", str(axes), str(folder / "before.csv")]) == 0  # loads all modules
         (folder / "open").mkdir(mode=0o777)

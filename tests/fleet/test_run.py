@@ -25,7 +25,7 @@ from hpn.fleet.run import Outcome, Size, here, size_fleet, threads
 from hpn.fleet.tables import Batch, Progress
 from tests.fleet.tables import row_of, write
 from tests.property.draw import at_random
-from tests.reliability.faults import as_user, full, small_disk
+from tests.reliability.faults import as_user, catalogue_for_all, full, small_disk
 
 
 @pytest.fixture(scope="module")
@@ -196,6 +196,7 @@ def test_a_file_that_permissions_forbid_ends_with_2_and_its_name(
         monkeypatch.setattr(Path, "is_dir", lambda path: os.path.isdir(path))
     with TemporaryDirectory() as name:
         folder = Path(name)
+        catalogue_for_all(folder, monkeypatch)
         (folder / "closed").mkdir()
         (folder / "open").mkdir()
         for path in ("in.csv", "secret.csv", "closed/in.csv"):

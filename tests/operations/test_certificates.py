@@ -41,7 +41,8 @@ def started(folder: Path) -> "subprocess.CompletedProcess[str]":
     """Outcome of the proxy's start, as its user, up to where it would serve."""
     user = ["setpriv", "--reuid=101", "--regid=101", "--clear-groups"] if BY_ROOT else []
     own = {
-        "PROXY_CONFIGURATION": str(ROOT / "backend/nginx.conf"),
+        # User 101 may have no way into the checkout.
+        "PROXY_CONFIGURATION": str(shutil.copy(ROOT / "backend/nginx.conf", folder)),
         "PROXY_CERTIFICATES": str(folder / "certificates"),
         "PROXY_HTTP": "127.0.0.1:18080",
         "PROXY_HTTPS": "127.0.0.1:18443",

@@ -33,6 +33,41 @@ def test_run_listens_where_make_or_the_settings_say(environment: dict[str, str],
     assert address in planned("run", **environment)
 
 
+PYTEST = """#!/bin/sh
+echo "$*" >> "$0.calls"
+case "$*" in tests/browser/test_lighthouse.py|"--soak tests/browser/test_lighthouse.py") exit 0 ;; esac
+exit 1
+"""
+INSTALLED = ("install", "browser", "office", "curl", "nginx", "pdfua")
+
+
+@pytest.mark.parametrize(
+    ("target", "failed"),
+    [
+        ("test", ["together", "another-processor", "browsers"]),
+        ("soak", ["under-load", "together", "browsers", "last-bits-up", "last-bits-down", "last-bits-mixed"]),
+    ],
+)
+def test_a_part_that_fails_keeps_no_other_from_running_and_is_named_at_the_end(
+    target: str, failed: list[str], tmp_path: Path
+) -> None:
+    for name, program in (("pytest", PYTEST), ("python", "#!/bin/sh\necho AVX2\n")):
+        (tmp_path / name).write_text(program)
+        (tmp_path / name).chmod(0o755)
+    old = [word for name in INSTALLED for word in ("--old-file", name)]  # nothing is installed for this
+    clean = {name: value for name, value in os.environ.items() if not name.startswith(("MAKE", "MFLAGS", "PYTEST"))}
+
+    run = subprocess.run(
+        ["make", *old, target, f"BIN={tmp_path}"], cwd=ROOT, env=clean, capture_output=True, text=True, timeout=60
+    )
+
+    assert run.returncode != 0
+    assert len((tmp_path / "pytest.calls").read_text().splitlines()) == len(failed) + 1
+    said = [line for line in run.stderr.splitlines() if "failed" in line]
+    assert said == [f"make {target}: failed: {name}" for name in failed]
+    assert run.stderr.splitlines()[-1].startswith("make: ***")
+
+
 def test_clean_takes_nothing_that_git_tracks() -> None:
     assert "bench-results.json" not in planned("clean")
 

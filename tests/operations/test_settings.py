@@ -11,6 +11,7 @@ from pydantic import ValidationError
 
 from hpn.cli import main
 from hpn.web.settings import Settings
+from tests.reliability.faults import as_user
 
 ROOT = Path(__file__).parents[2]
 OF_COMPOSE_ALONE = {"POSTGRES_PASSWORD", "PUBLISH", "PUBLISH_HTTP", "LOAD_BALANCERS", "SPOOL_SIZE", "WEB_MEMORY"}
@@ -206,14 +207,8 @@ def test_a_folder_of_secrets_that_can_not_be_read_is_not_taken_for_one_without_k
     monkeypatch.setattr(Path, "is_dir", os.path.isdir)  # as from Python 3.14 on: False where this user may not look
     (tmp_path / name).mkdir(parents=True)
     (tmp_path / "secrets").chmod(0)
-    as_root = os.geteuid() == 0
-    if as_root:
-        os.seteuid(65534)  # nobody, because root reads everything
-    try:
+    with as_user(65534):
         code = main(["catalogue"])
-    finally:
-        if as_root:
-            os.seteuid(0)
 
     assert code == 2
     assert f"{tmp_path}/secrets" in capsys.readouterr().err

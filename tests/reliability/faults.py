@@ -1,12 +1,16 @@
 """Faults that make a database unusable for a while, and the answers of a service meanwhile."""
 
 import os
+import shutil
 import sqlite3
 import subprocess
 import tempfile
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager, suppress
+from functools import cache
+from importlib import import_module
 from pathlib import Path
+from pkgutil import walk_packages
 from typing import Any
 
 import psycopg
@@ -14,6 +18,8 @@ import psycopg.sql
 import pytest
 from starlette.testclient import TestClient
 
+import hpn
+from hpn.catalogue import HANDBOOK_FOLDER
 from hpn.web.app import create_app
 from hpn.web.settings import Settings
 from tests.build import worked_example
@@ -135,8 +141,10 @@ def full(folder: Path) -> Iterator[None]:
 def as_user(user: int) -> Iterator[None]:
     """As another user in this process, where root runs it: permissions mean nothing to root.
 
-    Where Python lies in root's home this user can load no module: what is called has to have run before.
+    All of hpn is loaded before: this user may have no way into the checkout. Python itself may lie in root’s home, too:
+    what is called has to have run before.
     """
+    _load_all()
     before = os.geteuid()
     if os.getuid() == 0:
         os.seteuid(user)
@@ -144,3 +152,17 @@ def as_user(user: int) -> Iterator[None]:
         yield
     finally:
         os.seteuid(before)
+
+
+@cache
+def _load_all() -> None:
+    """Load every module of hpn but what runs when it is loaded."""
+    for module in walk_packages(hpn.__path__, "hpn."):
+        if "__main__" not in module.name and ".migrations." not in module.name:
+            import_module(module.name)
+
+
+def catalogue_for_all(folder: Path, patch: pytest.MonkeyPatch) -> None:
+    """Have commands read a copy of the catalogue below a folder that all may enter, unlike perhaps the checkout."""
+    shutil.copytree(HANDBOOK_FOLDER, folder / "catalogue")
+    patch.setenv("HPN_CATALOGUE_FOLDER", str(folder / "catalogue"))

@@ -18,14 +18,14 @@ from alembic.autogenerate import compare_metadata
 from alembic.config import Config
 from alembic.migration import MigrationContext
 from alembic.script import ScriptDirectory
-from sqlalchemy import Connection, text
+from sqlalchemy import Connection, bindparam, text
 
 from hpn.application import Application
 from hpn.catalogue import load_catalogue
 from hpn.engine.selection import encode, select
 from hpn.store import NewerDatabaseError, Store, upgrade
 from hpn.store.engine import make_engine
-from hpn.store.tables import metadata
+from hpn.store.tables import UtcTime, metadata
 from tests.build import cycle, phase
 from tests.store.drafts import change, draft
 
@@ -218,9 +218,10 @@ def _fleets_as_before(connection: Connection) -> None:
         f"INSERT INTO fleets (id, created, saved, title, {columns}) "
         "VALUES (:id, :now, :saved, :title, 1, 1, 0, 0, '1', 'x', :asked, :asked)"
     )
+    times = (bindparam("now", type_=UtcTime), bindparam("saved", type_=UtcTime))
     for number, (title, saved) in enumerate((("kept", datetime.now(UTC)), ("calculated", None))):
         values = {"id": f"{number:022}", "now": datetime.now(UTC), "saved": saved, "title": title}
-        connection.execute(text(statement), {**values, "asked": b"PAR1\x00\xff"})
+        connection.execute(text(statement).bindparams(*times), {**values, "asked": b"PAR1\x00\xff"})
 
 
 async def test_fleets_of_earlier_versions_are_renamed_saved_and_deleted(database: str) -> None:

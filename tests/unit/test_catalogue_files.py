@@ -4,8 +4,7 @@ import os
 import re
 import socket
 import tempfile
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from pathlib import Path
 
 import orjson
@@ -14,6 +13,7 @@ import pytest
 from hpn.catalogue import HANDBOOK_FOLDER, Catalogue, CatalogueError, load_catalogue
 from hpn.cli import main
 from tests.build import worked_example
+from tests.reliability.faults import as_user
 
 RATINGS = "size,ratio,repeated_peak_torque_Nm,rated_torque_Nm,momentary_peak_torque_Nm,source\n"
 CURVE = "size,load_coefficient,axial_N,radial_N,source\n"
@@ -143,19 +143,6 @@ def test_a_device_in_the_place_of_a_file_is_refused_without_reading_it(folder: P
         load_catalogue(folder)
 
 
-@contextmanager
-def without_rights() -> Iterator[None]:
-    """As a user who is not root, whom permissions mean nothing to."""
-    root = os.geteuid() == 0
-    if root:
-        os.seteuid(65534)
-    try:
-        yield
-    finally:
-        if root:
-            os.seteuid(0)
-
-
 @pytest.mark.parametrize("closed", ["", "ratings.csv"])
 def test_a_folder_or_a_file_that_permissions_close_is_named(closed: str) -> None:
     with tempfile.TemporaryDirectory(dir="/tmp") as name:  # pytest's own folder is closed to others as well
@@ -165,7 +152,7 @@ def test_a_folder_or_a_file_that_permissions_close_is_named(closed: str) -> None
         load_catalogue(supplement=folder)
         (folder / closed).chmod(0)
 
-        with without_rights(), pytest.raises(CatalogueError) as refusal:
+        with as_user(65534), pytest.raises(CatalogueError) as refusal:
             load_catalogue(supplement=folder)
 
         folder.chmod(0o755)
