@@ -65,6 +65,7 @@ class Peer:
     nginx_waits: bool = False  # nginx has no bound for the whole time of a body: gone once it stops, or after minutes
     protocol: str = ""  # h2, which nginx alone speaks
     alone: bool = False  # the service alone ends it too
+    of_one: int = 8  # how many of them one address may have behind nginx
 
 
 SELECT, BATCH, NOWHERE = b"/api/v1/select", b"/api/v1/select/batch", b"/nowhere"
@@ -80,14 +81,14 @@ PEERS = (
         alone=True,
     ),
     Peer("body that drips, read by nobody", post(NOWHERE, JSON, 100_000), b" ", nginx_waits=True),
-    Peer("streamed batch that drips blanks", post(BATCH, NDJSON, None), chunk(b" "), many=10, alone=True),
+    Peer("streamed batch that drips blanks", post(BATCH, NDJSON, None), chunk(b" "), many=10, alone=True, of_one=2),
     Peer("body announced and never sent", post(SELECT, JSON, 100_000), alone=True),
     Peer("early error, body still coming", post(NOWHERE, JSON, 10**9), bytes(65536)),
     Peer("body larger than allowed", post(SELECT, JSON, 10**8), bytes(65536)),
     Peer("chunked body without end", post(SELECT, JSON, None), chunk(bytes(65536))),
     Peer("answer nobody reads: page", head(b"GET", LINK) * 4, reads=False, crowd=1000),
-    Peer("answer nobody reads: PDF", head(b"GET", b"/report.pdf" + LINK[1:]) * 2, reads=False, many=4),
-    Peer("answer nobody reads: JSON of 2,000", post(BATCH, JSON, len(ITEMS)) + ITEMS, reads=False, many=4),
+    Peer("answer nobody reads: PDF", head(b"GET", b"/report.pdf" + LINK[1:]) * 2, reads=False, many=4, of_one=4),
+    Peer("answer nobody reads: JSON of 2,000", post(BATCH, JSON, len(ITEMS)) + ITEMS, reads=False, many=4, of_one=3),
     Peer(
         "answer nobody reads: streamed batch",
         post(BATCH, NDJSON, None),
@@ -95,6 +96,7 @@ PEERS = (
         reads=False,
         many=4,
         nginx_waits=True,
+        of_one=2,
     ),
     Peer("connections that say nothing", many=1000, tls=False),
     Peer("pipelined flood", head(b"GET", b"/healthz") * 2000, head(b"GET", b"/healthz") * 2000, reads=False),

@@ -54,8 +54,11 @@ class Proxy:
 
 
 @contextmanager
-def proxied(service: int, balancers: str = "") -> Iterator[Proxy]:
-    """Run the proxy before a service's port, behind load balancers at these addresses, until the block ends."""
+def proxied(service: int, balancers: str = "", names: str = f"{HOST},127.0.0.1") -> Iterator[Proxy]:
+    """Run the proxy before a service's port, behind load balancers at these addresses, until the block ends.
+
+    It answers for these names.
+    """
     with tempfile.TemporaryDirectory(prefix="hpn-nginx-") as name, held_port() as http, held_port() as https:
         folder = Path(name)
         folder.chmod(0o755)  # the workers of a root's nginx are somebody else
@@ -67,7 +70,7 @@ def proxied(service: int, balancers: str = "") -> Iterator[Proxy]:
             "PROXY_HTTPS": f"127.0.0.1:{https}",
             "PROXY_SERVICE": f"127.0.0.1:{service}",
             "PROXY_RESOLVER": "127.0.0.1",  # asks nobody: the service's address is no name
-            "PROXY_NAMES": f"{HOST},127.0.0.1",
+            "PROXY_NAMES": names,
             "PROXY_BALANCERS": balancers,
         }
         command = [word.replace("$$", "$") for word in SERVICE["command"]]

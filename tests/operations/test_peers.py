@@ -40,13 +40,13 @@ class Front:
     proxy: Proxy | None
 
     def connect(self, peer: Peer, number: int) -> socket.socket:
-        """A connection of a peer: at most a hundred have one address."""
+        """A connection of a peer: as many have one address as may be there at once."""
         port = self.proxy.https if self.proxy else self.service.port
         plain = socket.socket()
         if not peer.reads:
             plain.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
         plain.settimeout(20)
-        plain.bind((f"127.0.0.{2 + number // 100}", 0))
+        plain.bind((f"127.0.{1 + number // peer.of_one}.1", 0))
         plain.connect(("127.0.0.1", port))
         if self.proxy and peer.tls:
             return self.proxy.trust(*filter(None, [peer.protocol])).wrap_socket(plain, server_hostname="localhost")

@@ -5,7 +5,6 @@ import json
 import os
 import re
 import signal
-import socket
 import subprocess
 import time
 from collections import Counter
@@ -63,18 +62,12 @@ def test_it_starts_without_a_warning_whichever_version_it_is(proxy: Proxy) -> No
     assert [line for line in log.splitlines() if not line.startswith("{")] == []
 
 
-def test_http_leads_on_to_https_with_method_and_body(proxy: Proxy) -> None:
-    answer = httpx.post(f"http://localhost:{proxy.http}/api/v1/select?a=b", trust_env=False)
-
-    assert (answer.status_code, answer.headers["Location"]) == (308, "https://localhost/api/v1/select?a=b")
-
-
 def test_a_fleet_of_some_megabytes_comes_through_and_one_that_is_too_large_does_not(
     client: httpx.Client, proxy: Proxy
 ) -> None:
     passed = client.post(FLEET, content=b"x" * 3_000_000, headers={"Content-Type": "text/csv"})
     with proxy.connect() as connection:
-        connection.sendall(b"POST %s HTTP/1.1\r\nHost: a\r\nContent-Length: 200000001\r\n\r\n" % FLEET.encode())
+        connection.sendall(b"POST %s HTTP/1.1\r\nHost: localhost\r\nContent-Length: 200000001\r\n\r\n" % FLEET.encode())
         refused = connection.recv(65536)
 
     assert (passed.status_code, passed.json()["detail"]) == (422, "input: column axis is missing")
@@ -209,48 +202,11 @@ def chunk(piece: bytes) -> bytes:
     return b"%x\r\n%b\r\n" % (len(piece), piece)
 
 
-def begun(proxy: Proxy, path: str, kind: str, length: int) -> socket.socket:
-    """A connection whose request is counted and whose body is to come: nginx has asked for it."""
-    head = f"POST {path} HTTP/1.1\r\nHost: localhost\r\nContent-Type: {kind}\r\nContent-Length: {length}\r\n"
-    for _ in range(100):  # what tests before have left may be counted still
-        connection = proxy.connect()
-        connection.sendall(f"{head}Expect: 100-continue\r\n\r\n".encode())
-        if (answer := connection.recv(500)).startswith(b"HTTP/1.1 100 "):
-            return connection
-        connection.close()
-        time.sleep(0.1)
-    raise AssertionError(answer)
-
-
-def test_one_address_has_a_hundred_requests_at_once(proxy: Proxy) -> None:
-    with ExitStack() as held:
-        for _ in range(100):
-            held.enter_context(begun(proxy, "/api/v1/select", "application/json", 9))
-        assert status_from(proxy, "127.0.0.1") == 429
-        assert status_from(proxy, "127.0.0.2") == 200
-
-
-@pytest.mark.parametrize(
-    ("path", "kind", "most"),
-    [
-        (BATCH, "application/json", 4),
-        (BATCH, "application/x-ndjson", 1),
-        (FLEET, "text/csv", 4),
-        ("/api/v1/report.pdf", "application/json", 4),
-    ],
-)
-def test_long_requests_of_one_address_leave_room_for_others(proxy: Proxy, path: str, kind: str, most: int) -> None:
-    head = f"POST {path} HTTP/1.1\r\nHost: localhost\r\nContent-Type: {kind}\r\nContent-Length: ".encode()
-    with ExitStack() as held:
-        for _ in range(most):
-            held.enter_context(begun(proxy, path, kind, 1_000_000))
-        assert status_from(proxy, "127.0.0.1", head + b"2\r\n\r\n{}") == 429
-        assert status_from(proxy, "127.0.0.2", head + b"2\r\n\r\n{}") in (200, 422)
-        assert status_from(proxy, "127.0.0.1") == 200
-
-
 def test_a_batch_of_lines_too_many_is_told_so(client: httpx.Client, proxy: Proxy) -> None:
-    with begun(proxy, BATCH, LINES["Content-Type"], 30_000_000):
+    with proxy.connect() as connection:
+        head = f"POST {BATCH} HTTP/1.1\r\nHost: localhost\r\nContent-Type: {LINES['Content-Type']}\r\n"
+        connection.sendall(f"{head}Content-Length: 30000000\r\nExpect: 100-continue\r\n\r\n".encode())
+        assert connection.recv(500).startswith(b"HTTP/1.1 100 ")
         answer = client.post(BATCH, content=LINE, headers=LINES)
 
     assert answer.headers["Content-Type"] == "application/problem+json"
@@ -283,9 +239,9 @@ def test_more_than_the_service_does_in_time_is_refused_at_once_and_what_a_page_n
     try:
         with ExitStack() as held:
             for number in range(32):
-                connection = held.enter_context(proxy.connect(source=f"127.0.0.{2 + number % 2}"))
+                connection = held.enter_context(proxy.connect(source=f"127.0.0.{2 + number % 4}"))
                 connection.sendall(asked_for("/catalogue"))
-            refused, *others = (held.enter_context(proxy.connect(source="127.0.0.4")) for _ in range(3))
+            refused, *others = (held.enter_context(proxy.connect(source="127.0.0.6")) for _ in range(3))
             refused.sendall(asked_for("/catalogue"))
             answer = refused.recv(5000)
             for connection, path in zip(others, (style, "/healthz"), strict=True):

@@ -1,6 +1,6 @@
 """Load on nginx from a process of its own: `python -m tests.reliability.load PORT RATE SECONDS CERTIFICATE`.
 
-Connections come from eight addresses, since one may have a hundred requests at once. Requests begin at fixed moments,
+Connections come from 32 addresses, since one may have eight requests at once. Requests begin at fixed moments,
 whether earlier ones are answered or not; one that finds no free connection waits, and that counts as its latency. A
 rate of 0 asks for as much as eight connections take in turns, which measures capacity.
 """
@@ -23,7 +23,7 @@ CONNECTIONS = 256
 AT_ONCE = 8
 """Connections by which capacity is measured: fewer than make an overload."""
 
-ADDRESSES = 8
+ADDRESSES = 32
 
 BODY = json.dumps(worked_example()).encode()
 """Its answer is short, so that reading it costs the client less than the service."""

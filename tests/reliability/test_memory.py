@@ -56,7 +56,7 @@ def unread(proxy: Proxy, path: str, count: int) -> list[socket.socket]:
     """Clients that ask and don't read."""
     clients = list[socket.socket]()
     for number in range(count):
-        client = proxy.connect(source=f"127.0.0.{2 + number % 4}", receiving=4096)
+        client = proxy.connect(source=f"127.0.{1 + number // 8}.1", receiving=4096)
         client.sendall(f"GET {path} HTTP/1.1\r\nHost: localhost\r\n\r\n".encode())
         clients.append(client)
     return clients
@@ -67,7 +67,7 @@ def half_sent(proxy: Proxy, size: int, count: int) -> list[socket.socket]:
     head = "POST /api/v1/select HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\n"
     clients = list[socket.socket]()
     for number in range(count):
-        client = proxy.connect(source=f"127.0.0.{2 + number % 4}")
+        client = proxy.connect(source=f"127.0.{1 + number // 8}.2")
         with suppress(OSError):
             client.sendall(f"{head}Content-Length: {size}\r\n\r\n".encode() + b" " * (size - 1))
         clients.append(client)

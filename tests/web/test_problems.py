@@ -61,4 +61,4 @@ def test_nginx_names_the_kinds_of_the_service() -> None:
 
     assert kinds.pop("default") == OF_STATUS[400]
     assert kinds.pop("~^5") == OF_STATUS[503]
-    assert kinds == {str(status): OF_STATUS[status] for status in (408, 413, 414, 421, 429, 431)}
+    assert kinds == {str(status): OF_STATUS[status] for status in (404, 405, 408, 413, 414, 421, 429, 431)}
