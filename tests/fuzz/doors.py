@@ -47,15 +47,7 @@ class World:
     """Targets of the inputs: the service on a database of its own, and a small catalogue to lay supplements over."""
 
     def __init__(self, folder: Path) -> None:
-        self.app = create_app(
-            Settings(
-                database_url=SecretStr(f"sqlite:///{folder}/fuzz.sqlite3"),
-                log_level="error",
-                calculator_rate="off",
-                batch_rate="off",
-                writing_rate="off",
-            )
-        )
+        self.app = create_app(Settings(database_url=SecretStr(f"sqlite:///{folder}/fuzz.sqlite3"), log_level="error"))
         self.call = Caller(self.app)
         self.handbook, self.supplement, self.fleet = (folder / name for name in ("catalogue", "supplement", "fleet"))
         for place in (self.handbook, self.supplement, self.fleet):

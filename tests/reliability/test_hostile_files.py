@@ -21,7 +21,7 @@ from tests.operations.service import Service, children_of, serving, until
 from tests.operations.test_serving import ticks
 from tests.reliability.test_memory import LIMIT_BYTES, limited, peak_MB
 
-SETTINGS = {"HPN_LOG_LEVEL": "warning", "HPN_BATCH_RATE": "off", "HPN_CALCULATOR_RATE": "off"}
+SETTINGS = {"HPN_LOG_LEVEL": "warning"}
 REPORTED = (
     *("a cell in the last row of 20 sheets", "1,500,000 formats", "fonts", "rich texts", "shared strings"),
     *("empty rows", "empty cells", "merged cells"),

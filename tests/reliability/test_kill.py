@@ -36,7 +36,7 @@ def killed_server(database: str, kills: int) -> Iterator[tuple[int, "subprocess.
         command = [sys.executable, "-m", "tests.reliability.killer", str(listener.fileno()), str(kills), "17"]
         process = subprocess.Popen(
             command,
-            env={**os.environ, "HPN_DATABASE_URL": database, "HPN_LOG_LEVEL": "error", "HPN_WRITING_RATE": "off"},
+            env={**os.environ, "HPN_DATABASE_URL": database, "HPN_LOG_LEVEL": "error"},
             pass_fds=[listener.fileno()],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,

@@ -41,9 +41,8 @@ class Front:
 
 @pytest.fixture
 def quiet(tmp_path: Path) -> Iterator[Front]:
-    """A service without rates, which logs no requests, behind nginx."""
-    rates = {"HPN_CALCULATOR_RATE": "off", "HPN_BATCH_RATE": "off"}
-    settings = {"HPN_LOG_LEVEL": "warning", "HPN_TRUSTED_PROXIES": "*", **rates}
+    """A service that logs no requests, behind nginx."""
+    settings = {"HPN_LOG_LEVEL": "warning", "HPN_TRUSTED_PROXIES": "*"}
     with serving(tmp_path, settings) as service, proxied(service.port) as proxy:
         yield Front(service, proxy)
 

@@ -59,7 +59,6 @@ def surroundings(tmp_path: Path) -> dict[str, str]:
         "HPN_CATALOGUE_SUPPLEMENT": str(supplement),
         "HPN_WORKERS": str(WORKERS),
         "HPN_WORKER_SECONDS": str(WORKER_SECONDS),
-        "HPN_WRITING_RATE": "off",
     }
 
 

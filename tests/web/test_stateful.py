@@ -54,7 +54,7 @@ def file(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture(scope="module")
 def schema(file: Path) -> Iterator[schemathesis.BaseSchema]:
     """The document of a service, which runs while its operations are tried."""
-    app = create_app(Settings(database_url=SecretStr(f"sqlite:///{file}"), log_level="error", calculator_rate="off"))
+    app = create_app(Settings(database_url=SecretStr(f"sqlite:///{file}"), log_level="error"))
     with TestClient(app):
         schema = schemathesis.openapi.from_asgi("/openapi.json", app)
         schema.hook(before_generate_body)

@@ -260,12 +260,12 @@ class Settings(BaseSettings):
         "deleting, reading and metrics.",
     )
     calculator_rate: Rate = Field(
-        "120000/minute",
-        description="Most calculations, readings and pages, and apart from them metrics, per key or address and "
-        "process; off for no limit.",
+        "off",
+        description="Most calculations, readings and pages, and apart from them metrics, per key or else address, and "
+        "process, such as 120/minute.",
     )
-    batch_rate: Rate = Field("1200/minute", description="Most batches per key or address and process, or off.")
-    writing_rate: Rate = Field("60000/minute", description="Most savings and deletions likewise, or off.")
+    batch_rate: Rate = Field("off", description="Most batches likewise.")
+    writing_rate: Rate = Field("off", description="Most savings and deletions likewise.")
     trusted_proxies: Annotated[Words, AfterValidator(_proxies)] = Field(
         (),
         description="Addresses or networks of proxies whose X-Forwarded-For and X-Forwarded-Proto count; * for all.",

@@ -119,7 +119,7 @@ KINDS: Mapping[str, Kind] = {
         429,
         N_("Too many requests"),
         N_("This key or address has sent more than its share."),
-        N_("Wait for the time given by Retry-After; RateLimit shows how much is left."),
+        N_("Wait for the time given by Retry-After."),
     ),
     "head-too-large": Kind(
         431,

@@ -6,6 +6,7 @@ A worker that computes shares the interpreter's lock with the loop, so more of t
 import asyncio
 import contextvars
 import logging
+import sys
 import threading
 from collections.abc import Awaitable, Callable, Coroutine, Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor
@@ -34,7 +35,7 @@ class Places(NamedTuple):
 
 
 PLACES: Mapping[PoolName, Places] = {
-    "pages": Places(2, 30),
+    "pages": Places(2, sys.maxsize),  # bounded by max_conns of nginx, which calculations on the loop need, too
     "exports": Places(1, 15),  # the longest report takes 300 MB, in a process beside the service
     "files": Places(1, 7),  # a hostile one keeps the others waiting for FILE_BOUNDS.seconds
     "batches": Places(1, 15),
