@@ -2,6 +2,7 @@
 
 import os
 import random
+import signal
 import socket
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, suppress
@@ -260,6 +261,24 @@ def test_a_fleet_that_takes_too_much_is_refused_and_leaves_nothing(
 
     assert (answer.status_code, words in answer.text) == (status, True), answer.text
     assert ("Retry-After" in answer.headers) == (status == 503)
+    assert list((tmp_path / "spool").iterdir()) == []
+
+
+def killed(*_: Any) -> None:
+    """End as the system ends a process where memory runs out."""
+    signal.raise_signal(signal.SIGKILL)
+
+
+def test_a_fleet_that_the_system_kills_is_refused_with_a_sentence_and_not_asked_for_again(
+    bounded: Callable[..., TestClient], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    client = bounded()
+    monkeypatch.setattr(fleets, "sized", killed)
+
+    answer = client.post(PATH, content=ONE_AXIS, headers=CSV)
+
+    assert (answer.status_code, "Retry-After" in answer.headers) == (413, False)
+    assert "takes more memory than this machine has" in answer.json()["detail"]
     assert list((tmp_path / "spool").iterdir()) == []
 
 

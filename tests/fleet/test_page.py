@@ -24,13 +24,13 @@ from hpn.fleet import listing
 from hpn.fleet.listing import as_parquet, kept_listing_of
 from hpn.fleet.order import Order
 from hpn.fleet.run import size_fleet
-from hpn.tables.columns import NO_CHOICES
-from hpn.tables.files import NO_TEXT, Contents, contents_of
+from hpn.tables.files import NO_TEXT
+from hpn.tables.reading import Reading, reading_of
 from hpn.web.door.problems import Problem
 from hpn.web.form.link_writer import to_link
 from hpn.web.pages import fleet_result
 from hpn.web.pages.fleet_files import file_of
-from hpn.web.pages.fleet_upload import WANTED, best_reading
+from hpn.web.pages.fleet_upload import WANTED
 from hpn.words.reader import Reader
 from hpn.words.wording import Sentence
 from tests.fleet.page import GERMAN, HEAVY, HUB, fields_of, post
@@ -261,7 +261,7 @@ def test_tables_of_hpn_fleet_are_taken_as_they_are(tmp_path: Path, suffix: str, 
     rows = [row_of("one", HUB), row_of("two", HEAVY)]
     file = write(tmp_path / f"axes{suffix}", rows if form == "list" else in_long_form(rows)[0])
 
-    assert contents_of(file.read_bytes(), WANTED) == Contents(suffix=suffix)
+    assert reading_of(file.read_bytes(), WANTED) == Reading(suffix=suffix)
 
 
 def as_written_elsewhere(kind: str, folder: Path) -> bytes:
@@ -306,11 +306,10 @@ def test_gzip_and_streams_with_other_headings_are_read(kind: str, tmp_path: Path
     else:
         sink.write(gzip.compress(f"{','.join(row)}\n{','.join(map(str, row.values()))}\n".encode()))
 
-    grids = contents_of(sink.getvalue(), WANTED).sheets[""]
+    table = reading_of(sink.getvalue(), WANTED).table
 
-    assert not isinstance(grids, Sentence)
-    axes = best_reading(grids, NO_CHOICES, ()).axes
-    assert axes == ({"axis": "A", "torque_Nm": [12.5], "speed_rpm": [1234.567], "duration_s": [1e-3]},)
+    assert table is not None
+    assert table.axes == ({"axis": "A", "torque_Nm": [12.5], "speed_rpm": [1234.567], "duration_s": [1e-3]},)
 
 
 @pytest.mark.parametrize(
@@ -323,7 +322,8 @@ def test_gzip_and_streams_with_other_headings_are_read(kind: str, tmp_path: Path
     ids=["lines of JSON", "gzip in gzip", "no gzip"],
 )
 def test_gzip_without_a_table_is_said(content: bytes) -> None:
-    assert contents_of(content, WANTED).problem == Sentence(NO_TEXT)
+    table = reading_of(content, WANTED).table
+    assert table is not None and table.problem == Sentence(NO_TEXT)
 
 
 def test_a_table_of_hpn_fleet_is_sized_at_once(client: TestClient, tmp_path: Path) -> None:
@@ -345,11 +345,10 @@ def test_typed_tables_with_other_headings_are_read_with_every_digit(tmp_path: Pa
     else:
         file.write_text(json.dumps(row))
 
-    grids = contents_of(file.read_bytes(), WANTED).sheets[""]
+    table = reading_of(file.read_bytes(), WANTED).table
 
-    assert not isinstance(grids, Sentence)
-    axes = best_reading(grids, NO_CHOICES, ()).axes
-    assert axes == ({"axis": "A", "torque_Nm": [exact], "speed_rpm": [1234.567], "duration_s": [1e-3]},)
+    assert table is not None
+    assert table.axes == ({"axis": "A", "torque_Nm": [exact], "speed_rpm": [1234.567], "duration_s": [1e-3]},)
 
 
 @pytest.mark.parametrize(

@@ -20,7 +20,7 @@ from hpn.fleet.run import size_fleet
 from hpn.tables.cycles import LAST, PARTS, PHASE, SEPARATOR, TOTALS
 from hpn.tables.files import tidied
 from hpn.tables.inputs import CYCLE, Inputs
-from hpn.tables.reading import DECIMAL, SCALES, TIMES
+from hpn.tables.interpreter import DECIMAL, SCALES, TIMES
 from hpn.web.app import create_app
 from hpn.web.form.symbols import AXIS_INPUTS
 from hpn.web.settings import Settings

@@ -1,10 +1,15 @@
 """Work in a process beside the service that may take only so much memory and time, as reading a file does."""
 
 import asyncio
+import io
+import logging
 import os
+import pickle
 import resource
 import signal
+import sys
 import time
+import warnings
 from collections.abc import Iterator
 from functools import partial
 from pathlib import Path
@@ -12,9 +17,12 @@ from typing import Any
 
 import pytest
 
-from hpn.web.door.beside import Bounds
+from hpn.tables.cells import Figure
+from hpn.tables.reading import Reading, reading_of
+from hpn.web.door.beside import Answer, Bounds
 from hpn.web.door.pools import TOO_LARGE, Places, Pool
 from hpn.web.door.problems import Problem
+from hpn.web.pages.paste import WANTED
 from tests.operations.service import is_gone
 
 SMALL = Bounds(400_000_000, 0.5)
@@ -73,6 +81,50 @@ async def test_a_bounded_process_that_the_system_kills_is_a_503(bounded: Pool) -
     with pytest.raises(Problem) as ended:
         await bounded.run_beside(partial(signal.raise_signal, signal.SIGKILL))
     assert ended.value.status_code == 503
+
+
+def speak() -> str:
+    """Say something in every way that a library has, and what kind of text a cell may be."""
+    warnings.warn("4711 of a stranger's file", stacklevel=1)
+    print("4711", file=sys.stderr)
+    logging.getLogger("openpyxl").error("4711")
+    return Figure("40 Nm")
+
+
+@pytest.mark.anyio
+async def test_nothing_of_a_strangers_file_gets_into_the_log_and_a_text_comes_back_as_one(
+    roomy: Pool, capfd: pytest.CaptureFixture[str]
+) -> None:
+    found = await roomy.run_beside(speak)
+
+    assert (found, type(found)) == ("40 Nm", str)
+    assert capfd.readouterr() == ("", "")
+
+
+def read_table() -> Reading:
+    """A reading with everything in it that one may have."""
+    return reading_of("T [Nm];n;t\n1.234;100;1\nSumme;;\n2.5;200;1", WANTED)
+
+
+@pytest.mark.anyio
+async def test_a_reading_comes_back_as_it_was(roomy: Pool) -> None:
+    found = await roomy.run_beside(read_table)
+    assert found == read_table() and found.table and found.table.choices and found.table.shown
+
+
+class Trap:
+    """Content that runs something where it is unpickled."""
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return os.mkdir, ("trapped",)
+
+
+@pytest.mark.parametrize("head", [b"", b"\x40" + bytes(7)], ids=["alone", "with its length"])
+def test_an_answer_is_never_run(head: bytes, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises((EOFError, ValueError)):
+        Answer.received(io.BytesIO(head + pickle.dumps(Trap())))
+    assert list(tmp_path.iterdir()) == []
 
 
 @pytest.mark.anyio

@@ -2,7 +2,6 @@
 
 import asyncio
 import os
-import pickle
 import signal
 import sys
 import threading
@@ -19,6 +18,7 @@ from fastapi.routing import iter_route_contexts
 from starlette.requests import Request
 
 from hpn.web.app import create_app
+from hpn.web.door.beside import Answer
 from hpn.web.door.observation import GONE
 from hpn.web.door.pools import Places, Pool, while_present
 from hpn.web.door.problems import Problem
@@ -120,7 +120,7 @@ def processes_beside() -> set[int]:
 
 
 def fail_there() -> None:
-    """Go wrong with what no pickle can carry, and is no mere Exception, as typst's panics are."""
+    """Go wrong with what no answer can carry, and is no mere Exception, as typst's panics are."""
     raise BaseException(threading.Lock())
 
 
@@ -190,16 +190,16 @@ async def test_a_service_that_ends_ends_work_beside_and_closes_nothing_that_is_r
     pool: Pool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The answer is read late, so that a pipe closed at once would be found closed."""
-    file, load = tmp_path / "beats", pickle.load
+    file, receive = tmp_path / "beats", Answer.received
 
-    def load_late(pipe: Any) -> Any:
+    def receive_late(pipe: Any) -> Any:
         while not file.exists():
             time.sleep(0.01)
         os.waitid(os.P_PID, int(file.read_text()), os.WEXITED | os.WNOWAIT)
         time.sleep(0.1)
-        return load(pipe)
+        return receive(pipe)
 
-    monkeypatch.setattr(pickle, "load", load_late)
+    monkeypatch.setattr(Answer, "received", receive_late)
     work = asyncio.create_task(pool.run_beside(partial(beat, file)))
     while not file.exists():
         await asyncio.sleep(0.01)

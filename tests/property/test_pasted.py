@@ -17,8 +17,8 @@ from hpn.application.phase import Phase
 from hpn.tables.cells import DECIMALS, harmless
 from hpn.tables.cells import Decimal as Mark
 from hpn.tables.columns import Choices
-from hpn.tables.cycles import CycleTable as Table
 from hpn.tables.cycles import read_text
+from hpn.tables.table import Table
 from hpn.web.pages.transfer import write_table
 from tests.property.draw import NAMES
 

@@ -2,27 +2,27 @@
 
 from typing import Any
 
-from hpn.tables.axes import AxisTable, read_axes
+from hpn.tables.axes import read_axes
 from hpn.tables.columns import Choices
-from hpn.tables.reading import Choice
 from hpn.tables.sheets import grids_of
+from hpn.tables.table import Choice, Table
 from hpn.web.form.symbols import AXIS_INPUTS
 
 WIRE = tuple(AXIS_INPUTS.units)
 HEAD = "Achse;Moment [Nm];Drehzahl [1/min];Dauer [s]"
 
 
-def read(*lines: str, assumed: tuple[str, ...] = WIRE, **said: Any) -> AxisTable:
+def read(*lines: str, assumed: tuple[str, ...] = WIRE, **said: Any) -> Table:
     """Reading of a table."""
     return read_axes(grids_of("\n".join(lines))[0], AXIS_INPUTS, Choices(**said), assumed)
 
 
-def asked(table: AxisTable) -> list[str]:
+def asked(table: Table) -> list[str]:
     """Questions that are open."""
     return [question.text for question in table.questions]
 
 
-def offered(table: AxisTable, name: str) -> Choice:
+def offered(table: Table, name: str) -> Choice:
     """A choice that a table leaves."""
     choice = table.choice(name)
     assert choice is not None

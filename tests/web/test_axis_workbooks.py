@@ -7,8 +7,9 @@ from typing import Any
 import pytest
 from openpyxl import Workbook
 
-from hpn.tables.axes import AxisTable, read_axes
+from hpn.tables.axes import read_axes
 from hpn.tables.columns import Choices
+from hpn.tables.table import Table
 from hpn.tables.workbooks import sheets_of
 from hpn.web.form.symbols import AXIS_INPUTS
 from tests.web.axes import HEAD, WIRE, asked
@@ -32,7 +33,7 @@ def test_a_number_that_a_workbook_shows_in_thousands_is_asked() -> None:
         assert read_axes(grid, AXIS_INPUTS, Choices(scales=scales), WIRE).axes[0]["torque_Nm"] == [torque]
 
 
-def sheet_of(format_: str, *values: str) -> AxisTable:
+def sheet_of(format_: str, *values: str) -> Table:
     """A table whose last column holds these numbers of a workbook in a format, read as weight and efficiency."""
     book = Workbook()
     sheet: Any = book.active
@@ -56,7 +57,7 @@ def sheet_of(format_: str, *values: str) -> AxisTable:
 HEADED = (*HEAD.split(";"), "Lebensdauer [h]")
 
 
-def merged(*rows: tuple[object, ...], cells: str) -> AxisTable:
+def merged(*rows: tuple[object, ...], cells: str) -> Table:
     """A table of a workbook, some of whose cells are merged."""
     book = Workbook()
     sheet: Any = book.active

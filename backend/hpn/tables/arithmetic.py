@@ -3,16 +3,17 @@
 A grammar of four operations over exact fractions; nothing of it is handed to an interpreter.
 """
 
-import re
 from collections.abc import Callable
 from fractions import Fraction
+from re import ASCII
 
+from hpn.words.patterns import Pattern
 from hpn.words.wording import N_, Sentence
 
 LONGEST = 60
 """Characters; each number in them is below 1e1000, so that no result is large enough to take long."""
 
-_TOKEN = re.compile(r"\s*(?:([0-9.,]+(?:[eE][+-]?[0-9]{1,3})?)|([-+*/()]))", re.ASCII)
+_TOKEN = Pattern(r"\s*(?:([0-9.,]+(?:[eE][+-]?[0-9]{1,3})?)|([-+*/()]))", LONGEST, ASCII)
 _MARKS = str.maketrans({"\N{MINUS SIGN}": "-", "\N{EN DASH}": "-", "×": "*", "·": "*", "÷": "/"})
 _WRONG = N_("can’t be calculated; write an expression such as =40*2")
 

@@ -3,26 +3,27 @@
 A cell that is no number spoils its axis alone, which is then rejected with its reason.
 """
 
-import re
-from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass, replace
 from itertools import groupby, pairwise, product
 from math import isfinite
 from typing import Any
 
 from hpn.tables.bodies import Body, body_of
-from hpn.tables.cells import Decimal, Entry, Merged, entry, is_blank, is_number
+from hpn.tables.cells import LONGEST_CELL, Decimal, Entry, Merged, entry, is_blank, is_number
 from hpn.tables.columns import NO_CHOICES, Choices, Column, proposed, settled
 from hpn.tables.heads import REQUIRED, skipped
 from hpn.tables.inputs import AXIS, NAME, PHASE, PHASE_ROLES, Inputs
+from hpn.tables.interpreter import Interpreter, Questions, Row, durations_of, in_plain, unit_behind
 from hpn.tables.numbers import known_units
-from hpn.tables.reading import Choice, Questions, Reading, Row, Table, durations_of, in_plain, unit_behind
 from hpn.tables.sheets import Grid, RefusedError
+from hpn.tables.table import Choice, Table
 from hpn.words import spellings
+from hpn.words.patterns import Pattern
 from hpn.words.wording import N_, Sentence, Value
 
-_BETWEEN = re.compile(r"[;/|\s]+")
-_OF_RATIO = re.compile(r"\bi\s*=\s*|\s*:\s*1(?![0-9.,])")
+_BETWEEN = Pattern(r"[;/|\s]+", LONGEST_CELL)
+_OF_RATIO = Pattern(r"\bi\s*=\s*|:\s*1(?![0-9.,])", LONGEST_CELL)
 """Signs beside the number of a ratio: `i = 5`, `5:1`."""
 
 LOADS = Choice("loads", {"axis": N_("in all phases of the axis"), "phase": N_("in its own phase alone")})
@@ -30,19 +31,7 @@ _OF_AXIS = {"FRi": ("FR", "output_load.radial_N"), "FAi": ("FA", "output_load.ax
 """Loads of a phase: role and place of the same load for a whole axis."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class AxisTable(Table):
-    """Reading of a table as axes.
-
-    `axes` are rows in list form by the names of `hpn fleet`; a cell that is no number stands there as it is written.
-    `origins` are the numbers of the rows that the phases of an axis stand in.
-    """
-
-    axes: tuple[dict[str, Any], ...] = ()
-    origins: Mapping[str, tuple[int, ...]] = field(default_factory=dict)
-
-
-def read_axes(grid: Grid, inputs: Inputs, choices: Choices = NO_CHOICES, assumed: Collection[str] = ()) -> AxisTable:
+def read_axes(grid: Grid, inputs: Inputs, choices: Choices = NO_CHOICES, assumed: Collection[str] = ()) -> Table:
     """Reading of a table of cells; raises nothing, `problem` says why there is none."""
 
     def columns_of(body: Body) -> tuple[Column, ...]:
@@ -52,9 +41,9 @@ def read_axes(grid: Grid, inputs: Inputs, choices: Choices = NO_CHOICES, assumed
         body = body_of(grid, choices.scales)
         body = _with_axes(body, columns_of(body))
         columns = columns_of(body)
-        return _AxesReading(_unmerged(body, columns), columns, Questions(choices)).table()
+        return _AxesInterpreter(_unmerged(body, columns), columns, Questions(choices)).table()
     except RefusedError as refused:
-        return AxisTable(problem=refused.sentence)
+        return Table(problem=refused.sentence)
 
 
 def _named_apart(columns: list[Column]) -> list[Column]:
@@ -111,13 +100,13 @@ class _Group:
     numbers: tuple[int, ...]
 
 
-class _AxesReading(Reading):
+class _AxesInterpreter(Interpreter):
     """A table on its way to axes."""
 
     required = (AXIS, *REQUIRED)
     any_unit = True
 
-    def table(self) -> AxisTable:
+    def table(self) -> Table:
         """The table with what is to be asked, or with its axes."""
         self.ask_columns()
         self.read_numbers()
@@ -127,7 +116,7 @@ class _AxesReading(Reading):
         self.ask_scale()
         loads = self._read_loads(groups)
         axes = () if self.questions.open else tuple(self._axis(group, times, loads) for group in groups)
-        return AxisTable(**self.said, axes=axes, origins={str(group.name): group.numbers for group in groups})
+        return Table(**self.said, axes=axes, origins={str(group.name): group.numbers for group in groups})
 
     def _note_unread(self) -> None:
         """Note cells that are rejected with their axes: no numbers, and those in a unit that their column has not."""
@@ -291,6 +280,8 @@ def _stands_first(cells: Sequence[str]) -> bool:
 
 def _listed(cell: str, texts: bool, decimal: Decimal) -> list[float | str]:
     """Several ratios or sizes in a cell. A comma between digits is a decimal mark, and no ratio has one."""
+    if len(cell) > LONGEST_CELL:
+        return [str(cell)]
     parts = [text for part in _BETWEEN.split(_OF_RATIO.sub("", cell).strip("[]")) if (text := part.strip(","))]
     if texts:
         return [text.strip() for part in parts for text in part.split(",") if text.strip()]

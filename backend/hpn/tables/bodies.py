@@ -1,20 +1,21 @@
 """Body of a table: its rows of numbers below the headings, and the rows that are named like sums or like titles."""
 
-import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from typing import NamedTuple
 
-from hpn.tables.cells import Figure, held_of, is_blank, is_number, moment_of, seconds_between
+from hpn.tables.cells import LONGEST_CELL, Figure, held_of, is_blank, is_number, moment_of, seconds_between
 from hpn.tables.headings import heading_of, heading_over, is_total
 from hpn.tables.heads import MOST_COLUMNS, head_of, numbers_in, skipped, uncommented, upright
 from hpn.tables.sheets import Grid, RefusedError, require_even
+from hpn.words.patterns import Pattern
 from hpn.words.wording import N_, Sentence
 
 DIVIDED = N_("row {row}: {cell} can be one number or two")
-_DIVIDED = re.compile("[0-9] [0-9]")
-_LEADS, _FOLLOWS = re.compile("[-+]?[1-9][0-9]{0,2}"), re.compile("[0-9]{3}([.,][0-9]+)?")
+_DIVIDED = Pattern("[0-9] [0-9]", LONGEST_CELL)
+_LEADS = Pattern("[-+]?[1-9][0-9]{0,2}", LONGEST_CELL)
+_FOLLOWS = Pattern("[0-9]{3}([.,][0-9]+)?", LONGEST_CELL)
 
 
 class Labelled(NamedTuple):

@@ -5,7 +5,6 @@ follows a leading zero: `0,250` is a quarter under every reading. `0:00:30` and 
 `2026-03-01T08:00:30` is a moment.
 """
 
-import re
 from collections.abc import Sequence
 from datetime import UTC, datetime
 from decimal import Decimal as Exact
@@ -13,6 +12,7 @@ from fractions import Fraction
 from functools import lru_cache
 from typing import Literal, NamedTuple
 
+from hpn.words.patterns import Pattern
 from hpn.words.spellings import codes_for
 from hpn.words.units import QUANTITY_OF
 
@@ -33,16 +33,18 @@ LONGEST_CELL = 400
 
 _EXPONENT = r"(?:[eE][+-]?[0-9]{1,3})?"
 _NUMBER = {
-    decimal: re.compile(
+    decimal: Pattern(
         rf"[+-]?(?:(?P<plain>(?:[0-9]+(?:[{decimal}][0-9]+)?{trailing}|[{decimal}][0-9]+){_EXPONENT})"
         rf"|(?P<grouped>[1-9][0-9]{{0,2}}(?P<mark>[{group}'’{BLANKS}])[0-9]{{3}}(?:(?P=mark)[0-9]{{3}})*"
-        rf"(?:[{decimal}][0-9]+)?))"
+        rf"(?:[{decimal}][0-9]+)?))",
+        LONGEST_CELL,
     )
     for decimal, group, trailing in ((".", ",", r"\.?"), (",", ".", ""))
 }
-_WITH_UNIT = re.compile(
+_WITH_UNIT = Pattern(
     r"(?P<number>.*?[0-9][.,]?(?:[eE][+-]?[0-9]{1,3})?)"
-    r"(?:\s+(?P<per>1\s?/[^0-9]+)|\s*(?P<unit>(?![eE][+-]?[0-9])(?:[^\W\d_]|[°'/])[^0-9]*(?:\^?\(?(?:[-−–]1|2)\)?)?))"
+    r"(?:\s+(?P<per>1\s?/[^0-9]+)|\s*(?P<unit>(?![eE][+-]?[0-9])(?:[^\W\d_]|[°'/])[^0-9]*(?:\^?\(?(?:[-−–]1|2)\)?)?))",
+    LONGEST_CELL,
 )
 """A number and its unit: letters, or one divided by something."""
 
@@ -52,7 +54,7 @@ THOUSANDS = "÷"
 PERCENT = "%"
 _OF_PHASES = ("torque", "speed", "time", "force")
 _NOTHING = ("", "-", "–", "—", "\N{MINUS SIGN}", "\N{NON-BREAKING HYPHEN}")
-_HELD_AS_TEXT = re.compile(r"=\"(?P<formula>[^\"]*)\"|'(?P<text>[-+\N{MINUS SIGN}]?(?!0[0-9])[0-9].*)")
+_HELD_AS_TEXT = Pattern(r"=\"(?P<formula>[^\"]*)\"|'(?P<text>[-+\N{MINUS SIGN}]?(?!0[0-9])[0-9].*)", LONGEST_CELL)
 """A number that spreadsheet programs hold as a text: `="40"`, and `'40` but no `'040`."""
 
 _FULL_WIDTH = str.maketrans({chr(ord(sign) + 0xFEE0): sign for sign in "0123456789.,+-"})
@@ -163,27 +165,30 @@ def is_number(cell: str) -> bool:
 
 LONGEST_TIME = 40
 
-_CLOCK = re.compile(r"([0-9]{1,4}):([0-5][0-9]):([0-5][0-9])(?:[.,]([0-9]{1,9}))?")
-_MINUTES = re.compile(r"()([0-9]{1,3}):([0-5][0-9])[.,]([0-9]{1,9})")
+_CLOCK = Pattern(r"([0-9]{1,4}):([0-5][0-9]):([0-5][0-9])(?:[.,]([0-9]{1,9}))?", LONGEST_TIME)
+_MINUTES = Pattern(r"()([0-9]{1,3}):([0-5][0-9])[.,]([0-9]{1,9})", LONGEST_TIME)
 """Minutes, seconds and a fraction: nobody writes one of minutes."""
 
-_ISO = re.compile(r"PT(?=[0-9])(?:([0-9]{1,6})H)?(?:([0-9]{1,6})M)?(?:([0-9]{1,6})(?:[.,]([0-9]{1,9}))?S)?")
-_MOMENT = re.compile(
+_ISO = Pattern(r"PT(?=[0-9])(?:([0-9]{1,6})H)?(?:([0-9]{1,6})M)?(?:([0-9]{1,6})(?:[.,]([0-9]{1,9}))?S)?", LONGEST_TIME)
+_MOMENT = Pattern(
     r"([0-9]{4}-[0-9]{2}-[0-9]{2})[T ]([0-9]{2}:[0-9]{2}(?::[0-9]{2})?)(?:[.,]([0-9]{1,9}))?"
-    r"\s?(Z|[+-][0-9]{2}:?[0-9]{2})?"
+    r"\s?(Z|[+-][0-9]{2}:?[0-9]{2})?",
+    LONGEST_TIME,
 )
-TIME_FORMAT = re.compile(r"\[?[hH]{1,2}\]?:[mM]{2}:[sS]{2}(?:[.,](?:[0fsS]{1,6}|ms|xxx))?")
+TIME_FORMAT = Pattern(r"\[?[hH]{1,2}\]?:[mM]{2}:[sS]{2}(?:[.,](?:[0fsS]{1,6}|ms|xxx))?", LONGEST_TIME)
 """Format in a heading whose times are written as on a clock."""
 
-TIME_PARTED = re.compile(r"[0-5]?[0-9]:[0-5][0-9]")
+TIME_PARTED = Pattern(r"[0-5]?[0-9]:[0-5][0-9]", LONGEST_TIME)
 """A time of two parts, hours and minutes or minutes and seconds."""
 
 
-@lru_cache(maxsize=5000)
 def seconds_of(cell: str) -> str | None:
     """Seconds of a time on a clock or of a duration, in plain notation; None for anything else."""
-    if len(cell) > LONGEST_TIME:
-        return None
+    return _seconds_of(cell) if len(cell) <= LONGEST_TIME else None
+
+
+@lru_cache(maxsize=5000)
+def _seconds_of(cell: str) -> str | None:
     match = _CLOCK.fullmatch(cell) or _MINUTES.fullmatch(cell) or _ISO.fullmatch(cell)
     if match is None:
         return None
@@ -195,10 +200,14 @@ def _with_fraction(whole: int, fraction: str | None) -> str:
     return f"{whole}.{fraction}" if fraction and fraction.strip("0") else str(whole)
 
 
-@lru_cache(maxsize=5000)
 def moment_of(cell: str) -> Fraction | None:
     """Seconds from the year 1970 to a date with a time of day, all digits of its fraction counted; None for no such."""
-    match = _MOMENT.fullmatch(cell) if len(cell) <= LONGEST_TIME else None
+    return _moment_of(cell) if len(cell) <= LONGEST_TIME else None
+
+
+@lru_cache(maxsize=5000)
+def _moment_of(cell: str) -> Fraction | None:
+    match = _MOMENT.fullmatch(cell)
     if match is None or (match[3] and match[2].count(":") < 2):
         return None
     try:
@@ -217,7 +226,7 @@ def seconds_between(moments: Sequence[Fraction | None], moment: Fraction) -> str
 
 
 BEGINS_A_FORMULA = ("=", "+", "-", "@", "\t", "\r")
-_PLAIN_NUMBER = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?")
+_PLAIN_NUMBER = Pattern(r"[+-]?([0-9]+(\.[0-9]*)?|\.[0-9]+)([eE][+-]?[0-9]+)?", LONGEST_CELL)
 
 
 def harmless(cell: str | None) -> str | None:

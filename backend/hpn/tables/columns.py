@@ -3,21 +3,33 @@
 Anything with two readings is left blank here, and asked in `reading`.
 """
 
-import re
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import groupby, pairwise
 
 from hpn.tables.bodies import Body
 from hpn.tables.cells import DECIMALS, TIME_FORMAT, entry, is_blank, is_number
-from hpn.tables.headings import INDEX, LONGEST, QUANTITIES, SUM, heading_of, heading_over, parts_of, quantities_of
+from hpn.tables.headings import (
+    INDEX,
+    LONGEST,
+    LONGEST_WRITTEN,
+    QUANTITIES,
+    SUM,
+    heading_of,
+    heading_over,
+    parts_of,
+    quantities_of,
+)
 from hpn.tables.heads import REQUIRED
 from hpn.tables.inputs import NAME, Input, Inputs
 from hpn.words import spellings, units
+from hpn.words.patterns import Pattern
 from hpn.words.wording import N_, Sentence, Value
 
 SKIP, CELLS = "skip", "cells"
 """Of a column: not read; each cell says its own unit."""
+
+_COUNT = Pattern("[0-9]{1,9}", 9)
 
 NUMBERS = N_("numbers the phases")
 UNKNOWN = N_("not recognised")
@@ -25,8 +37,10 @@ UNKNOWN = N_("not recognised")
 
 @dataclass(frozen=True, slots=True)
 class Choices:
-    """Answers to the questions about a table: blank where there is none."""
+    """Answers to the questions about a table: blank where there is none. `of` is the mark of what they belong to."""
 
+    of: str = ""
+    sheet: str = ""
     separator: str = ""
     phase: str = ""
     decimal: str = ""
@@ -138,7 +152,7 @@ def counts(body: Body, place: int) -> bool:
 def in_steps(cells: Sequence[str]) -> bool:
     """True for numbers that can number rows: 1, 2, 3 from wherever, or 10, 20, 30 from 0 or 10."""
     texts = [cell.removesuffix(".") for cell in cells]
-    if not all(re.fullmatch("[0-9]{1,9}", text) for text in texts):
+    if not all(map(_COUNT.fullmatch, texts)):
         return False
     numbers = [int(text) for text in texts]
     first, step = numbers[0], numbers[1] - numbers[0] if len(numbers) > 1 else 1
@@ -151,7 +165,7 @@ def numbers_axes(cells: Sequence[str]) -> bool:
     texts = [cell.removesuffix(".") for cell, _ in groupby(cells)]
     if not all(map(is_number, cells)):
         return True
-    if not all(re.fullmatch("[0-9]{1,9}", text) for text in texts):
+    if not all(map(_COUNT.fullmatch, texts)):
         return False
     back = [k for k, (before, after) in enumerate(pairwise(map(int, texts)), start=1) if after < before]
     return all(in_steps(texts[start:end]) for start, end in pairwise([0, *back, len(texts)]))
@@ -236,7 +250,7 @@ def _unit_by(written: Collection[str], quantity: str) -> str:
     return only[0] if len(only) == 1 else ""
 
 
-_UNIT = re.compile(r"[%‰/²³^·*]|[0-9]{2}|[A-Za-z][0-9]")
+_UNIT = Pattern(r"[%‰/²³^·*]|[0-9]{2}|[A-Za-z][0-9]", LONGEST_WRITTEN)
 """Signs of an unknown unit, and of no word."""
 
 _AS_PLAIN = str.maketrans({"²": "2", "³": "3", **dict.fromkeys(" ·*^.⋅", "")})

@@ -1,9 +1,10 @@
 """A table that is one duty cycle, in whichever way it is written: its columns, its phases, and rows that are none."""
 
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from fractions import Fraction
-from math import isclose, isfinite, nan
+from math import isclose, nan
+from typing import NamedTuple
 
 from hpn.tables.bodies import DIVIDED, Body, Labelled, body_of
 from hpn.tables.cells import DECIMALS, TIME_PARTED, Decimal, Entry, entry, is_blank, is_number
@@ -12,9 +13,10 @@ from hpn.tables.cycle_columns import columns_of, has_two_ways
 from hpn.tables.headings import heading_over
 from hpn.tables.heads import REQUIRED, skipped
 from hpn.tables.inputs import CYCLE, NAME, PHASE_ROLES
+from hpn.tables.interpreter import Interpreter, Questions, Row, durations_of, in_plain, unit_behind
 from hpn.tables.numbers import either, known_units
-from hpn.tables.reading import Choice, Questions, Reading, Row, Table, durations_of, in_plain, unit_behind
 from hpn.tables.sheets import SEPARATORS, Grid, RefusedError, grids_of, no_number
+from hpn.tables.table import Choice, Table
 from hpn.words import spellings, units
 from hpn.words.fields import MAXIMUM_PHASES
 from hpn.words.wording import N_, Sentence
@@ -41,46 +43,38 @@ THREE_DIGITS = 0.005
 """Relative error of a number rounded to three digits."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class CycleTable(Table):
-    """Reading of a table as one cycle.
+class _Found(NamedTuple):
+    """Reading of the cells by one separator, and its rows."""
 
-    `phases` are plain numbers in units of the wire, in the order of PHASE_ROLES, blank where a phase has no load.
-    `names` are those of the phases, none where no column is read as that.
-    """
-
-    separator: str = ""
-    turned: bool = False
-    phases: tuple[tuple[str, ...], ...] = ()
-    names: tuple[str, ...] = ()
+    table: Table
+    rows: tuple[tuple[str, ...], ...] = ()
 
     @property
-    def lasting_s(self) -> float | None:
-        """Seconds that all phases take; None where that is not known, or too long for a number."""
-        total = sum(float(phase[PHASE_ROLES.index("t")] or 0) for phase in self.phases)
-        return total if self.phases and isfinite(total) else None
+    def difference(self) -> tuple[object, ...]:
+        """The phases, or the rows, in which two readings of one text differ."""
+        return (*self.table.phases, self.table.names) if self.table.whole or not self.rows else self.rows
 
 
-def read_text(text: str, choices: Choices = NO_CHOICES, assumed: Collection[str] = tuple(CYCLE.units)) -> CycleTable:
+def read_text(text: str, choices: Choices = NO_CHOICES, assumed: Collection[str] = tuple(CYCLE.units)) -> Table:
     """Reading of a pasted text; raises nothing, `problem` says why there is none."""
     try:
         return read_grids(grids_of(text), choices, assumed)
     except RefusedError as refused:
-        return CycleTable(problem=refused.sentence)
+        return Table(problem=refused.sentence)
 
 
 def read_grids(
     grids: Sequence[Grid], choices: Choices = NO_CHOICES, assumed: Collection[str] = tuple(CYCLE.units)
-) -> CycleTable:
+) -> Table:
     """Reading of the cells of a table, out of those by each separator; raises nothing."""
-    tables = [_read_grid(grid, choices, assumed) for grid in grids]
-    divided = next((table for table in tables if table.problem and table.problem.template == DIVIDED), None)
+    found = [_read_grid(grid, choices, assumed) for grid in grids]
+    divided = next((table for table, _ in found if table.problem and table.problem.template == DIVIDED), None)
     if divided:
         return divided
-    readable = [table for table in tables if table.problem is None]
-    distinct = list({_difference(table): table for table in reversed(readable)}.values())[::-1]
+    readable = [each for each in found if each.table.problem is None]
+    distinct = list({each.difference: each.table for each in reversed(readable)}.values())[::-1]
     if not distinct:
-        return tables[0]
+        return found[0].table
     if len(distinct) == 1:
         return distinct[0]
     names = {table.separator: SEPARATORS[table.separator] for table in distinct}
@@ -100,12 +94,7 @@ def read_grids(
     )
 
 
-def _difference(table: CycleTable) -> tuple[object, ...]:
-    """The phases, or the rows, in which two readings of one text differ."""
-    return (*table.phases, table.names) if table.whole or not table.body else table.body.rows
-
-
-def _read_grid(grid: Grid, choices: Choices, assumed: Collection[str]) -> CycleTable:
+def _read_grid(grid: Grid, choices: Choices, assumed: Collection[str]) -> _Found:
     asked = Questions(choices)
     try:
         body = body_of(grid, choices.scales)
@@ -113,8 +102,8 @@ def _read_grid(grid: Grid, choices: Choices, assumed: Collection[str]) -> CycleT
             way = asked.choose(PHASE, Sentence(N_("Is a phase a row or a column?")))
             body = body_of(grid.transposed(), choices.scales) if way == "column" else body
             if not way:
-                said = _CycleReading(body, columns_of(body, choices, assumed), asked).said
-                return CycleTable(**said, separator=grid.separator)
+                said = _CycleInterpreter(body, columns_of(body, choices, assumed), asked).said
+                return _Found(Table(**said, separator=grid.separator), body.rows)
         body = _one_cycle(body, asked)
         if len(body.rows) > MAXIMUM_PHASES:
             raise RefusedError(N_("there are more than {most} rows"), most=MAXIMUM_PHASES)
@@ -122,9 +111,9 @@ def _read_grid(grid: Grid, choices: Choices, assumed: Collection[str]) -> CycleT
         if body.totals:
             body = _without_totals(body, columns, asked)
             columns = columns_of(body, choices, assumed)
-        return _CycleReading(body, columns, asked).table()
+        return _Found(_CycleInterpreter(body, columns, asked).table(), body.rows)
     except RefusedError as refused:
-        return CycleTable(problem=refused.sentence, separator=grid.separator)
+        return _Found(Table(problem=refused.sentence, separator=grid.separator))
 
 
 def _one_cycle(body: Body, asked: Questions) -> Body:
@@ -139,7 +128,7 @@ def _one_cycle(body: Body, asked: Questions) -> Body:
 
 def _without_totals(body: Body, columns: tuple[Column, ...], asked: Questions) -> Body:
     """A table without the rows that are totals; of those that are only named so it is asked."""
-    reading = _CycleReading(body, columns, Questions(asked.answers))
+    reading = _CycleInterpreter(body, columns, Questions(asked.answers))
     reading.read_numbers()
     sure = _totals_of(body, reading.used, reading.decimal or DECIMALS[0])
     open_ = [total for total in body.totals if total not in sure]
@@ -158,10 +147,10 @@ def _without_totals(body: Body, columns: tuple[Column, ...], asked: Questions) -
 # --- Rows -------------------------------------------------------------------------------------------------------------
 
 
-class _CycleReading(Reading):
+class _CycleInterpreter(Interpreter):
     """A table on its way to the phases of one cycle: a cell that is no number spoils it."""
 
-    def table(self) -> CycleTable:
+    def table(self) -> Table:
         """The table with what is to be asked, or with its phases; raises RefusedError."""
         self.ask_columns()
         self.read_numbers()
@@ -172,7 +161,7 @@ class _CycleReading(Reading):
         names = next((column.place for column in self.columns if column.role == NAME.role), None)
         texts = () if names is None else tuple(row[names].strip() for row in self.body.rows[: len(phases)])
         grid = self.body.grid
-        return CycleTable(**self.said, separator=grid.separator, turned=grid.turned, phases=phases, names=texts)
+        return Table(**self.said, separator=grid.separator, turned=grid.turned, phases=phases, names=texts)
 
     def is_missed(self, role: str, roles: Collection[str]) -> bool:
         """True unless another column is asked, which may be it."""

@@ -1,6 +1,6 @@
-"""From the bytes of a file to the cells of its sheets: the one way in for tables of phases and of axes.
+"""From the bytes of a file, or a text, to the cells of its sheets.
 
-A file of kilobytes may expand to gigabytes: a service calls this in a process with limited memory and time. The sizes
+A file of kilobytes may expand to gigabytes: a service reads it in a process with limited memory and time. The sizes
 that a file states are checked before it is read, so that most such files get an error message.
 """
 
@@ -14,6 +14,7 @@ from contextlib import suppress
 from dataclasses import dataclass, field, replace
 
 from hpn.installed import ExtraMissingError, require
+from hpn.tables.inputs import Inputs
 from hpn.tables.sheets import MOST_CELLS, Grid, RefusedError, Takes, grids_of, too_many_cells
 from hpn.tables.workbooks import MAGIC, OLD_MAGIC, sheets_of
 from hpn.words.wording import N_, Sentence
@@ -29,11 +30,13 @@ MOST_CELLS_IN_ALL = 4 * MOST_CELLS
 
 @dataclass(frozen=True, slots=True)
 class Wanted:
-    """Bounds and uses of a file: its longest text, most rows of a text, and tables that are taken as they are.
+    """Table that is wanted of a file: inputs that its columns may hold, its most rows and its longest text, and those
+    that are taken as they are.
 
     Objects of JSON are rows of a table where tables may be taken as they are, else one application.
     """
 
+    inputs: Inputs
     most_rows: int
     most_characters: int
     takes: Takes | None = None
@@ -53,8 +56,10 @@ class Contents:
     problem: Sentence | None = None
 
 
-def contents_of(content: bytes, wanted: Wanted) -> Contents:
-    """Contents of a file; raises nothing but MemoryError, `problem` says why it can't be read."""
+def contents_of(content: bytes | str, wanted: Wanted) -> Contents:
+    """Contents of a file or a text; raises nothing but MemoryError, `problem` says why it can't be read."""
+    if isinstance(content, str):
+        return _of_text(content, wanted)
     try:
         if content.startswith(OLD_MAGIC):
             raise RefusedError(OLD_WORKBOOK)
@@ -72,7 +77,7 @@ def contents_of(content: bytes, wanted: Wanted) -> Contents:
         text = tidied(text_of(content))
     except (RefusedError, ExtraMissingError) as refused:
         return Contents(problem=refused.sentence)
-    return contents_of_text(text, wanted)
+    return _of_text(text, wanted)
 
 
 def _of_gzip(content: bytes, wanted: Wanted) -> Contents:
@@ -82,14 +87,13 @@ def _of_gzip(content: bytes, wanted: Wanted) -> Contents:
         unpacked = zlib.decompressobj(zlib.MAX_WBITS | 16).decompress(content, 4 * wanted.most_characters + 4)
     except zlib.error:
         raise RefusedError(NO_TEXT) from None
-    found = contents_of_text(tidied(text_of(unpacked)), wanted)
+    found = _of_text(tidied(text_of(unpacked)), wanted)
     if found.suffix not in ("", ".csv"):  # lines of JSON, which are read as they are alone
         raise RefusedError(NO_TEXT)
     return replace(found, suffix=".csv.gz") if found.suffix else found
 
 
-def contents_of_text(text: str, wanted: Wanted) -> Contents:
-    """The same of a text."""
+def _of_text(text: str, wanted: Wanted) -> Contents:
     try:
         if not text.lstrip().startswith("{"):
             if wanted.takes and _is_taken_csv(text, wanted.takes):

@@ -1,12 +1,12 @@
 """Headings of a table in several languages: which quantity a column holds, and in which unit."""
 
-import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 
 from hpn.tables.cells import is_blank, tidy
 from hpn.words import spellings, units
+from hpn.words.patterns import Pattern
 
 QUANTITIES = {
     **{"T": "torque", "n": "speed", "t": "time"},
@@ -99,17 +99,18 @@ OF_MOTOR = {
 ANGULAR = {"ω", "omega", "winkelgeschwindigkeit", "angular velocity", "angular speed"}
 """Names of a speed that is as likely in rad/s as in rpm."""
 
-_SUMS = re.compile(
+_SUMS = Pattern(
     r"(?:(?:summe|sum|total|gesamt|insgesamt|kumuliert\w*|kumulativ\w*|kum|cumul\w*|cum|somme|somma|suma|totale|summa)\b"
-    r"|[σ∑]) *(?P<rest>.*)"
+    r"|[σ∑]) *(?P<rest>.*)",
+    LONGEST_WRITTEN,
 )
-_TOTALS = re.compile(
+_TOTALS = Pattern(
     r"[σ∑ø].*|.*\b(?:subtotal|zwischensumme|gesamtzeit|zykluszeit|cycle time|overall|ergebnis|"
     r"mittel|mittelwert\w*|mittlere\w*|average|mean|avg|durchschnitt\w*|moyenne|media|medelvärde|"
-    r"max|maximum|maximal\w*|(?<![0-9] )min|minimum|minimal\w*|rms|effektivwert\w*|std|standardabweichung)\b.*"
+    r"max|maximum|maximal\w*|(?<![0-9] )min|minimum|minimal\w*|rms|effektivwert\w*|std|standardabweichung)\b.*",
+    LONGEST_WRITTEN,
 )
-_BRACKETS = re.compile(r"(.*?)\s*[\[(<{]\s*(.*?)\s*[\])>}]")
-_BETWEEN = re.compile(r"\s+in\s+|\s*/\s*|\s*,\s*|[\s_]+")
+_BETWEEN = Pattern(r"\s+in\s+|\s*[/,]\s*|[\s_]+", LONGEST_WRITTEN)
 
 
 @dataclass(frozen=True, slots=True)
@@ -167,15 +168,24 @@ def _without_in(unit: str) -> str:
 
 def parts_of(text: str) -> tuple[str, str]:
     """Name and unit of `Drehzahl [1/min]`, `Drehzahl in 1/min`, `Drehzahl_1/min`, `n / min-1`."""
-    if _kind(text, ""):
+    if len(text) > LONGEST_WRITTEN or _kind(text, ""):
         return text, ""
-    if match := _BRACKETS.fullmatch(text):
-        return match[1].strip(" ,/"), _without_in(match[2])
+    if parts := _around_bracket(text):
+        return parts[0].strip(" ,/"), _without_in(parts[1])
     for between in _BETWEEN.finditer(text):
         name, unit = text[: between.start()], text[between.end() :]
         if name and spellings.codes_for(unit):
             return name, unit
     return text, ""
+
+
+def _around_bracket(text: str) -> tuple[str, str] | None:
+    """What stands before the first opening bracket, and behind it up to one at the end; None where it is elsewhere."""
+    first = min((place for bracket in "[(<{" if (place := text.find(bracket)) >= 0), default=-1)
+    if first < 0 or text[-1] not in "])>}":
+        return None
+    name, unit = text[:first].rstrip(), text[first + 1 : -1].strip()
+    return None if "\n" in name or "\n" in unit else (name, unit)
 
 
 def _kind(name: str, unit: str) -> str:

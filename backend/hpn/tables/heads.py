@@ -1,13 +1,13 @@
 """Head of a table: which of its rows name the columns, which say their units, and what stands above and is skipped."""
 
-import re
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from hpn.tables.cells import is_blank, is_meant_as_number
-from hpn.tables.headings import QUANTITIES, UNIT, heading_of, is_of_motor, is_qualifier, quantities_of
+from hpn.tables.headings import LONGEST_WRITTEN, QUANTITIES, UNIT, heading_of, is_of_motor, is_qualifier, quantities_of
 from hpn.tables.sheets import MOST_HEAD_ROWS, Grid, RefusedError
+from hpn.words.patterns import Pattern
 from hpn.words.wording import N_, Sentence
 
 REQUIRED = ("T", "n", "t")
@@ -28,7 +28,7 @@ MOST_COLUMNS = 200
 MOST_SKIPPED = 3
 """Rows above the header that are quoted one by one."""
 
-_MARKED = re.compile(r"#+\s*(?=[^\W\d_])(?!(?:N/A|NV|N/V|[A-ZÄÖÜ0/]+[!?])$)")
+_MARKED = Pattern(r"#+\s*(?=[^\W\d_])(?!(?:N/A|NV|N/V|[A-ZÄÖÜ0/]+[!?])$)", LONGEST_WRITTEN)
 """The sign of a comment before a heading; the errors of spreadsheet programs begin with it as well."""
 
 

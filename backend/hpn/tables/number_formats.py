@@ -1,20 +1,23 @@
 """Number formats of workbooks: what one shows around a number, by which the number has its unit."""
 
 import operator
-import re
 from dataclasses import dataclass
 from functools import lru_cache
+from re import DOTALL
+
+from hpn.words.patterns import Pattern
 
 LONGEST_FORMAT = 255
 """Characters, the most that spreadsheet programs take."""
 
-_TOKEN = re.compile(
+_TOKEN = Pattern(
     r'"(?P<quoted>[^"]*)"|\\(?P<escaped>.)'
     r"|\[\$(?P<marked>[^\]]*?)(?:-(?:[0-9A-Fa-f]{2,8}|[a-z]{2}-[A-Z]{2}|x-\w+))?\]|\[(?P<said>[^\]]*)\]"
     r"|(?P<gap>[_*].|\s)|(?P<number>General|[0#?.,]+|E[+-]0+)|(?P<end>;)|(?P<other>.)",
-    re.DOTALL,
+    LONGEST_FORMAT,
+    DOTALL,
 )
-_CONDITION = re.compile(r"(<=|>=|<>|<|>|=)(-?[0-9.]+)")
+_CONDITION = Pattern(r"(<=|>=|<>|<|>|=)(-?[0-9.]+)", LONGEST_FORMAT)
 _HOLDS = {
     **{"<": operator.lt, "<=": operator.le, "=": operator.eq},
     **{">": operator.gt, ">=": operator.ge, "<>": operator.ne},

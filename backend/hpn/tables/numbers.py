@@ -6,7 +6,6 @@ a number that is shown shorter than it is stands in the field `was`, and counts 
 carry a unit of its own, `40 Nm`, or be a sum, `=40*2`: the wire has the plain number.
 """
 
-import re
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from decimal import Decimal
@@ -17,6 +16,7 @@ from hpn.tables.arithmetic import worked_out
 from hpn.tables.cells import DASHES, DECIMALS, plain_number, split_unit
 from hpn.words import spellings
 from hpn.words import units as measures
+from hpn.words.patterns import Pattern
 from hpn.words.reader import Reader
 from hpn.words.units import NUMBER, SYMBOLS
 from hpn.words.wording import N_, Sentence, Typed
@@ -29,19 +29,20 @@ WRITTEN, WAS = "written", "was"
 DIGITS = 5
 """Digits that a number from elsewhere is shown with in another unit."""
 
-_ASKED = {
-    decimal: re.compile(rf"[+-]?[1-9][0-9]{{0,2}}[{group}][0-9]{{3}}") for decimal, group in ((".", ","), (",", "."))
-}
-"""Numbers whose mark may stand between thousands or be a decimal mark of another language."""
-
-_POWER = re.compile(r"\s?[·×]\s?10([⁺⁻]?[⁰¹²³⁴⁵⁶⁷⁸⁹]{1,3})")
-_RAISED = str.maketrans("⁺⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "+-0123456789")
-FLAGS: Mapping[str, bool] = {"0": False, "1": True, "false": False, "true": True}
-"""How no and yes are written."""
-
 LONGEST_TEXT = 100
 _LONGEST = 60
 """Characters of a text, such as the designation of a motor, and of a number."""
+
+_ASKED = {
+    decimal: Pattern(rf"[+-]?[1-9][0-9]{{0,2}}[{group}][0-9]{{3}}", _LONGEST)
+    for decimal, group in ((".", ","), (",", "."))
+}
+"""Numbers whose mark may stand between thousands or be a decimal mark of another language."""
+
+_POWER = Pattern(r"\s?[·×]\s?10([⁺⁻]?[⁰¹²³⁴⁵⁶⁷⁸⁹]{1,3})", _LONGEST)
+_RAISED = str.maketrans("⁺⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "+-0123456789")
+FLAGS: Mapping[str, bool] = {"0": False, "1": True, "false": False, "true": True}
+"""How no and yes are written."""
 
 Units = Mapping[str, str]
 """Names of the fields that take numbers -> the suffix of their unit, blank for a pure number."""
@@ -252,9 +253,9 @@ def _plain(value: float) -> str:
 
 ELECTRICAL = N_("an electrical frequency")
 NOT_WHOLE = N_("must be a whole number")
-_ANY_NUMBER = re.compile(r"[+-]?([0-9]+(\.[0-9]*)?|\.[0-9]+)([eE][+-]?[0-9]+)?")
+_ANY_NUMBER = Pattern(r"[+-]?([0-9]+(\.[0-9]*)?|\.[0-9]+)([eE][+-]?[0-9]+)?", _LONGEST)
 
-_IN_GROUPS = re.compile(r"[+-]?[1-9][0-9]{0,2}\.[0-9]{2}0")
+_IN_GROUPS = Pattern(r"[+-]?[1-9][0-9]{0,2}\.[0-9]{2}0", _LONGEST)
 """A number as nobody writes a whole one, unless the point is meant to stand between thousands."""
 
 
@@ -291,12 +292,13 @@ def _without_zeros(number: str) -> str:
 
 def _is_too_small(plain: str, value: float) -> bool:
     """True where a number in plain notation is another one than the zero that became of it."""
-    return value == 0 and bool(re.search("[1-9]", re.split("[eE]", plain)[0]))
+    return value == 0 and not set("123456789").isdisjoint(plain.casefold().partition("e")[0])
 
 
 ONE_READING = N_("write {number}")
 _SUCH_AS = N_("is not a number; write one such as 9.3")
-_APART = re.compile(r"[0-9][\s'’]+(?![0-9]{3}(?![0-9]))[0-9]")
+_BLANKS = Pattern(r"[\s'’]+", 2 * _LONGEST)
+_APART = Pattern(r"[0-9][\s'’]+(?![0-9]{3}(?![0-9]))[0-9]", 2 * _LONGEST)
 """Digits with a blank between them where no thousands end: two numbers, or a point that was missed."""
 
 
@@ -308,7 +310,7 @@ def _advice(text: str, unit: str = "", *, mostly_whole: bool = False, whole: boo
 
 def _not_a_number(text: str, kind: Kind, unit: str = "", *, mostly_whole: bool = False, whole: bool = True) -> Sentence:
     """Advice for a text that is no number: the numbers that it may stand for."""
-    tight = re.sub(r"[\s'’]", "", text)
+    tight = _BLANKS.sub("", text)
     if len(tight) > _LONGEST:
         return Sentence(N_("is too long for a number"))
     numbers = [] if _APART.search(text) else [each for each in _readings(tight) if _ANY_NUMBER.fullmatch(each)]

@@ -1,391 +1,72 @@
-"""Reading of a table from its columns to numbers: what is asked on the way, and what is said about it.
+"""From a file or a text to a reading, as plain data: the one way in for tables of phases and of axes.
 
-A number is never silently another number: what a table says in one way alone is read so and shown; where it can be
-read in two ways (`1.234` is 1.234 or 1234; 0.1, 0.2, 0.3 last so long or are points in time), none is chosen: the
-user is asked.
+Whatever cells say is looked at here and nowhere else: a service calls this in a process with limited memory and time,
+and shows what comes of it.
 """
 
-import decimal as decimals
-from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
-from fractions import Fraction
-from itertools import chain, pairwise
-from math import inf, isfinite
-from typing import Any, Literal, NamedTuple
+import hashlib
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass
 
-from hpn.tables.bodies import Body
-from hpn.tables.cells import (
-    DECIMALS,
-    LONGEST_CELL,
-    PERCENT,
-    Decimal,
-    Entry,
-    entry,
-    is_blank,
-    is_number,
-    split_unit,
-    written,
-)
-from hpn.tables.columns import SKIP, Choices, Column
-from hpn.tables.headings import heading_over
-from hpn.tables.heads import REQUIRED, SKIPPED
-from hpn.tables.inputs import AXIS
-from hpn.tables.numbers import either, known_units
-from hpn.tables.sheets import RefusedError
-from hpn.words import spellings, units
-from hpn.words.wording import N_, Sentence, Value
-
-MISSING = {
-    AXIS: N_("Which column names the axis?"),
-    "T": N_("Which column is the torque?"),
-    "n": N_("Which column is the speed?"),
-    "t": N_("Which column is the duration?"),
-}
-
-SHARES = ("u", "eta", "fw")
-"""Inputs that may be written as percentages."""
-
-MOSTLY = 0.75
-"""Share of the axes from which on all times count as going on: a bad cell in one changes nothing for the others."""
-
-Row = tuple[Entry | None, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class Choice:
-    """A choice of how a table is read: its question, its options, and the chosen one, blank while it is asked.
-
-    `numbers` shows beside an option what a number of the table is by it.
-    """
-
-    name: str
-    options: Mapping[str, str]
-    question: Sentence | None = None
-    chosen: str = ""
-    numbers: Mapping[str, str] = field(default_factory=dict)
-
-
-DECIMAL = Choice("decimal", {".": N_("a point"), ",": N_("a comma")})
-SCALES = Choice(
-    "scales",
-    {"shown": N_("as the workbook shows them"), "held": N_("as the cells hold them")},
-)
-TIMES = Choice(
-    "times",
-    {
-        "durations": N_("how long each phase lasts"),
-        "ends": N_("when each phase ends"),
-        "starts": N_("when each phase starts; the last row ends the cycle"),
-    },
-)
-
-
-class Questions:
-    """Open questions about a table, and the choices that it leaves, by the answers to them."""
-
-    def __init__(self, answers: Choices) -> None:
-        self.answers = answers
-        self.open: list[Sentence] = []
-        self.choices: list[Choice] = []
-
-    def ask(self, template: str, **values: Value) -> None:
-        """Add a question."""
-        self.open.append(Sentence(template, dict(values)))
-
-    def choose(self, choice: Choice, question: Sentence, **more: Any) -> str:
-        """The option that somebody has chosen, else `chosen`, the usual one; blank, and asked, where there is none."""
-        answer: str = getattr(self.answers, choice.name)
-        if answer in choice.options:
-            more["chosen"] = answer
-        found = replace(choice, question=question, **more)
-        self.choices.append(found)
-        if not found.chosen:
-            self.open.append(question)
-        return found.chosen
+from hpn.tables.axes import read_axes
+from hpn.tables.columns import NO_CHOICES, Choices
+from hpn.tables.cycles import read_grids
+from hpn.tables.files import Wanted, contents_of
+from hpn.tables.outcomes import with_outcomes
+from hpn.tables.sheets import Grid
+from hpn.tables.table import Table
+from hpn.words.wording import Sentence
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Table:
-    """Reading of a table. It can be taken when there is no problem and no question."""
-
-    problem: Sentence | None = None
-    questions: tuple[Sentence, ...] = ()
-    choices: tuple[Choice, ...] = ()
-    notes: tuple[Sentence, ...] = ()
-    columns: tuple[Column, ...] = ()
-    body: Body | None = None
-    decimal: Decimal | None = None
-
-    @property
-    def whole(self) -> bool:
-        """True where it can be taken as it is."""
-        return self.problem is None and not self.questions
-
-    @property
-    def unknown(self) -> int:
-        """Number of columns below a header of which nothing is known: they can be skipped at once."""
-        return sum(column.is_unknown for column in self.columns) if self.body and self.body.headed else 0
-
-    def choice(self, name: str) -> Choice | None:
-        """A choice by its name; None where the table leaves none."""
-        return next((choice for choice in self.choices if choice.name == name), None)
-
-    @property
-    def hidden(self) -> int:
-        """Number of rows of a long table that are not shown."""
-        count = len(self.body.rows) if self.body else 0
-        return count - FIRST_ROWS - LAST_ROWS if count > FIRST_ROWS + LAST_ROWS + 1 else 0
-
-    @property
-    def shown(self) -> list[tuple[int, list["Shown"], str]]:
-        """The first and the last rows with their numbers, each cell as it is read; of a skipped row its text."""
-        if self.body is None:
-            return []
-        rows = list(zip(self.body.numbers, self.body.rows, strict=True))
-        if self.hidden:
-            rows = rows[:FIRST_ROWS] + rows[-LAST_ROWS:]
-        cells = [[self._shown(row[column.place], column) for column in self.columns] for _, row in rows]
-        read = [(number, shown, "") for (number, _), shown in zip(rows, cells, strict=True)]
-        skipped = [(int(str(note.values["row"])), list[Shown](), str(note.values["text"])) for note in self._skipped]
-        return sorted([*read, *skipped])
-
-    @property
-    def _skipped(self) -> list[Sentence]:
-        return [note for note in self.notes if note.template == SKIPPED][:MOST_SKIPPED]
-
-    @property
-    def remarks(self) -> list[Sentence]:
-        """Notes but for those that stand as skipped rows among the others."""
-        return [note for note in self.notes if note not in self._skipped]
-
-    def _shown(self, cell: str, column: Column) -> "Shown":
-        if not column.is_number or is_blank(cell):
-            return Shown(cell, kind="text" if column.held else "unread")
-        found = {entry(cell, mark, any_unit=True) for mark in ((self.decimal,) if self.decimal else DECIMALS)} - {None}
-        read = found.pop() if len(found) == 1 else None
-        if read is None:
-            return Shown(cell, kind="asked")
-        if column.held and (wire := in_wire(read, column)):
-            return Shown(wire, column.held.unit, "number", cell)
-        return Shown(*read, "number")
-
-
-FIRST_ROWS, LAST_ROWS, MOST_SKIPPED = 6, 2, 5
-"""Rows of a long table that are shown, and rows that are skipped."""
-
-
-class Shown(NamedTuple):
-    """A cell of a preview: a number in plain notation with its unit, one with two readings or none, or a text.
-
-    A number that is `written` in some way is in the unit of the wire, given as suffix; any other in the unit behind it.
-    """
-
-    text: str
-    unit: str = ""
-    kind: Literal["number", "asked", "text", "unread"] = "unread"
-    written: str = ""
-
-
 class Reading:
-    """A table on its way from cells to numbers.
+    """A file or a text as the program takes it, with the questions that it leaves open.
 
-    `rows` are the numbers of the columns that are used: None for a blank cell, and for one that is no number.
+    `of` is the mark of its content, to which answers belong. Without a `table` it is asked which of its `sheets` is
+    meant; or `suffix` names the format of a table that is taken as it is, or its `text` is an object of JSON.
     """
 
-    required: Sequence[str] = REQUIRED
-    any_unit = False
-
-    def __init__(self, body: Body, columns: tuple[Column, ...], questions: Questions) -> None:
-        self.body, self.columns, self.questions = body, columns, questions
-        self.ask, self.choose = questions.ask, questions.choose
-        self.used = [column for column in columns if column.is_number]
-        self.notes = list(body.notes)
-        self.decimal: Decimal | None = None
-        self.rows: list[Row] = []
-
-    @property
-    def said(self) -> dict[str, Any]:
-        """Fields that every table has."""
-        return {
-            "questions": tuple(self.questions.open),
-            "choices": tuple(self.questions.choices),
-            "notes": (*self.body.grid.notes, *self.notes),
-            "columns": self.columns,
-            "body": self.body,
-            "decimal": self.decimal,
-        }
-
-    # --- Columns ------------------------------------------------------------------------------------------------------
-
-    def ask_columns(self) -> None:
-        """Ask for columns without a role or a unit, and for what has no column or two."""
-        for column in self.columns:
-            if not column.role:
-                self.ask(N_("What is column {name}?"), name=column.called)
-            elif column.quantity and not column.unit:
-                self.questions.open.append(self._unit_question(column))
-            elif column.foreign:
-                template = N_("Column {name}: {unit} is not supported. Convert it to {wire}, or choose “not read”.")
-                wire = units.SYMBOLS.get(column.unit, "1")
-                self.ask(template, name=column.called, unit=column.foreign, wire=wire)
-        roles = [column.role for column in self.columns]
-        for role in self.required:
-            if role not in roles and self.is_missed(role, roles):
-                self.ask(MISSING[role])
-        for role in dict.fromkeys(roles):
-            if role not in ("", SKIP) and roles.count(role) > 1:
-                names = [column.called for column in self.columns if column.role == role]
-                self.ask(N_("Columns {one} and {other} are read as the same quantity."), one=names[0], other=names[1])
-
-    def is_missed(self, role: str, roles: Collection[str]) -> bool:
-        """True where a role is asked that no column has."""
-        return True
-
-    def _unit_question(self, column: Column) -> Sentence:
-        """Question for a unit that is open: which of two, or which at all where another is written."""
-        said = heading_over(self.body.headings[column.place]).units
-        codes = {spellings.codes_for(unit, column.quantity): unit for unit in sorted(said)}
-        meant, spelled = next(iter(codes.items())) if len(codes) == 1 else ((), "")
-        if len(meant) > 1:
-            template = N_("Which unit is column {name} in? It can be {first} or {second}.")
-            return Sentence(template, {"name": column.called, **either(meant, spelled)})
-        unknown = next((unit for unit in sorted(said) if not spellings.codes_for(unit, column.quantity)), "")
-        if unknown:
-            template = N_("Which unit is column {name} in? {unit} is not known; known units: {units}.")
-            listed = known_units(column.quantity)
-            return Sentence(template, {"name": column.called, "unit": unknown[:20], "units": listed})
-        return Sentence(N_("Which unit is column {name} in?"), {"name": column.called})
-
-    # --- Numbers ------------------------------------------------------------------------------------------------------
-
-    def ask_scale(self) -> None:
-        """Ask which number counts where a workbook shows one in thousands of the one that a cell holds."""
-        scaled = [self.body.scaled[column.place] for column in self.used if column.place in self.body.scaled]
-        for shown, held in scaled[:1]:
-            template = N_("The workbook shows {shown} where the cell holds {held}. Which number counts?")
-            numbers = {"shown": shown, "held": held}
-            self.choose(SCALES, Sentence(template, {**numbers}), numbers=numbers)
-
-    def read_numbers(self) -> None:
-        """Read the numbers of the used columns by their decimal mark, which is asked where it has two readings."""
-        read = {mark: [self._row(row, mark) for row in self.body.rows] for mark in DECIMALS}
-        self.require_numbers(read)
-        self.decimal = self._mark(read)
-        if self.decimal:
-            self.rows = read[self.decimal]
-        else:
-            pairs = zip(*read.values(), strict=True)
-            self.rows = [tuple(one or other for one, other in zip(*pair, strict=True)) for pair in pairs]
-
-    def _row(self, row: Sequence[str], mark: Decimal) -> Row:
-        cells = (row[column.place] for column in self.used)
-        return tuple(None if is_blank(cell) else entry(cell, mark, any_unit=self.any_unit) for cell in cells)
-
-    def require_numbers(self, read: Mapping[Decimal, Sequence[Row]]) -> None:
-        """Raise RefusedError where a cell that is no number spoils the table."""
-
-    def _mark(self, read: Mapping[Decimal, Sequence[Row]]) -> Decimal | None:
-        """The mark by which most cells are numbers; asked where two would give different ones, or both are written."""
-        pairs = list(zip(*(chain.from_iterable(rows) for rows in read.values()), strict=True))
-        counts = [sum(pair[k] is not None for pair in pairs) for k in (0, 1)]
-        alone = [next((k for k, pair in enumerate(pairs) if pair[j] and not pair[1 - j]), None) for j in (0, 1)]
-        differing = next((pair for pair in pairs if pair[0] != pair[1] and all(pair)), None)
-        if differing is None or (counts[0] != counts[1] and None in alone):
-            return DECIMALS[counts[1] > counts[0]]
-        question = Sentence(N_("Which is the decimal mark?"))
-        if None not in alone:
-            one, other = (self._cell(place or 0)[:40] for place in alone)
-            template = N_("Both decimal marks are written, as in {one} and {other}: which one counts?")
-            question = Sentence(template, {"one": one, "other": other})
-        numbers = {mark: cell.number for mark, cell in zip(DECIMALS, differing, strict=True) if cell}
-        chosen = self.choose(DECIMAL, question, numbers=numbers)
-        return next((mark for mark in DECIMALS if mark == chosen), None)
-
-    def _cell(self, place: int) -> str:
-        """Cell of the used columns by its number, row after row."""
-        row, column = divmod(place, len(self.used))
-        return self.body.rows[row][self.used[column].place]
-
-    def code(self, found: Entry, column: Column) -> str:
-        """Code of the unit that a number is in; a kind of table may raise RefusedError."""
-        return code_of(found, column)
-
-    def in_wire(self, found: Entry, column: Column) -> str:
-        """A number in the unit of the wire, in plain notation; blank where its unit is none of the column's."""
-        return in_wire(found, column, self.code)
-
-    # --- Times --------------------------------------------------------------------------------------------------------
-
-    def seconds(self, row: Row) -> Fraction | None:
-        """Time of a row in seconds, None where it is blank or its unit is to be asked."""
-        for column, cell in zip(self.used, row, strict=True):
-            if column.role == "t" and cell is not None and column.unit and (code := self.code(cell, column)):
-                return Fraction(cell.number) / units.entered("s", code).factor
-        return None
-
-    def read_times(self, groups: Iterable[Sequence[Row]]) -> str:
-        """Meaning of the times, blank where it is asked: they go on in most axes, or are named as points in time."""
-        columns = [column for column in self.columns if column.role == "t"]
-        instant = any(column.instant for column in columns)
-        series = [[self.seconds(row) for row in rows] for rows in groups]
-        going_on = [_goes_on(times) for times in series if len(times) > 1 and None not in times]
-        if any(column.lasting for column in columns) or not (instant or self.may_go_on(going_on)):
-            return "durations"
-        few = not instant and sum(going_on) < MOSTLY * len(going_on)
-        question = Sentence(N_("Are the times durations, starts or ends of the phases?"))
-        chosen = self.choose(TIMES, question, chosen="durations" if few else "")
-        dated = not self.body.dated.isdisjoint(column.place for column in columns)
-        if dated and chosen == "durations":
-            raise RefusedError(N_("dates give the start or end of a phase, not its duration"))
-        if dated and chosen == "ends":
-            raise RefusedError(N_("end dates don’t give the start of the first phase: give start dates"))
-        return chosen
-
-    def may_go_on(self, going_on: Sequence[bool]) -> bool:
-        """True where the times of axes leave a choice."""
-        return bool(going_on)
+    of: str = ""
+    text: str = ""
+    sheets: tuple[str, ...] = ()
+    sheet: str = ""
+    table: Table | None = None
+    suffix: str = ""
+    is_application: bool = False
 
 
-def code_of(found: Entry, column: Column) -> str:
-    """Code of the unit that a number is in: its own, else its column's; blank where it is none of the column's."""
-    if not found.unit:
-        return column.unit
-    codes = spellings.codes_for(found.unit, column.quantity) if column.quantity else ()
-    return codes[0] if len(codes) == 1 else ""
+def reading_of(
+    content: bytes | str, wanted: Wanted, choices: Choices = NO_CHOICES, assumed: Collection[str] = ()
+) -> Reading:
+    """Reading of a file or a text, by the answers to its questions; raises nothing but MemoryError.
+
+    A column without a unit is in one that is `assumed`.
+    """
+    found = contents_of(content, wanted)
+    if found.problem:
+        return Reading(text=found.text, table=Table(problem=found.problem))
+    if found.suffix or found.is_application:
+        return Reading(text=found.text, suffix=found.suffix, is_application=found.is_application)
+    of = _mark_of(found.text or content)
+    if choices.of != of:
+        choices = NO_CHOICES
+    sheets = tuple(found.sheets)
+    first = sheets[0] if len(sheets) == 1 or wanted.inputs.has_axes else ""
+    sheet = choices.sheet if choices.sheet in sheets else first
+    table = _table(found.sheets[sheet], wanted, choices, assumed) if sheet in sheets else None
+    return Reading(of=of, text=found.text, sheets=sheets, sheet=sheet, table=table)
 
 
-def in_wire(found: Entry, column: Column, code_of: Callable[[Entry, Column], str] = code_of) -> str:
-    """A number in the unit of the wire, in plain notation; blank where its unit is none of the column's."""
-    if found.unit == PERCENT:
-        return str(decimals.Decimal(found.number).scaleb(-2)) if column.role in SHARES else ""
-    if column.held is None or not column.quantity:
-        return "" if found.unit else found.number
-    if not (code := code_of(found, column)):
-        return ""
-    measure = units.entered(column.held.unit, code)
-    value = inf if measure.same else measure.wire(found.number)
-    return written(value) if isfinite(value) else found.number
+def _mark_of(content: bytes | str) -> str:
+    content = content.encode(errors="replace") if isinstance(content, str) else content
+    return hashlib.sha256(content).hexdigest()[:16]
 
 
-def _goes_on(times: Sequence[Fraction | None]) -> bool:
-    known = [time for time in times if time is not None]
-    return known == sorted(known) and known[-1] > known[0]
-
-
-def durations_of(moments: Sequence[Fraction], times: str) -> list[Fraction]:
-    """Seconds between points in time. Of starts the last one ends the cycle; the first phase of ends starts at 0."""
-    return [end - start for start, end in pairwise(moments if times == "starts" else [Fraction(0), *moments])]
-
-
-def in_plain(value: Fraction) -> str:
-    """A number in plain notation; one beyond every float stays one that is too large."""
-    try:
-        return written(float(value))
-    except OverflowError:
-        return "1e999" if value > 0 else "-1e999"
-
-
-def unit_behind(cell: str) -> str:
-    """Letters behind a number as its unit, blank for any other cell."""
-    number, unit = split_unit(cell) if len(cell) <= LONGEST_CELL else ("", "")
-    return unit if unit[:1].isalpha() and is_number(number) else ""
+def _table(found: Sequence[Grid] | Sentence, wanted: Wanted, choices: Choices, assumed: Collection[str]) -> Table:
+    """The table of a sheet; of axes the reading that knows most columns, out of those by each separator."""
+    if isinstance(found, Sentence):
+        return Table(problem=found)
+    if wanted.inputs.has_axes:
+        tables = [read_axes(grid, wanted.inputs, choices, assumed) for grid in found]
+        return max(tables, key=lambda table: sum(bool(column.role) for column in table.columns))
+    return with_outcomes(read_grids(found, choices, assumed), found, choices, assumed)

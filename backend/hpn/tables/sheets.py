@@ -3,14 +3,15 @@
 import csv
 import io
 import itertools
-import re
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import zip_longest
+from re import IGNORECASE
 
 from hpn.tables.cells import Merged, tidy
 from hpn.words.fields import MAXIMUM_PHASES
+from hpn.words.patterns import Pattern
 from hpn.words.wording import N_, Sentence, Value
 
 MAXIMUM_CHARACTERS = 1_000_000
@@ -33,10 +34,7 @@ SEPARATORS = {
     "blank": N_("blank"),
 }
 _MARKS = {"tab": "\t", "semicolon": ";", "comma": ",", "bar": "|"}
-_RULE = re.compile(r"(?=.*--)[-|:+ ]+")
-"""A line of a table in Markdown that only sets the header apart."""
-
-_HINT = re.compile(r"sep=(.)\r?\n", re.IGNORECASE)
+_HINT = Pattern(r"sep=(.)\r?\n", 7, IGNORECASE)
 """First line with which Excel is told the separator."""
 
 
@@ -149,7 +147,7 @@ def grids_of(text: str, most_rows: int = MAXIMUM_PHASES, most_characters: int = 
         raise RefusedError(N_("the text is empty"))
     if sum(bool(line.strip()) for line in text.splitlines()) > most_rows + MOST_HEAD_ROWS:
         raise RefusedError(N_("there are more than {most} rows"), most=most_rows)
-    hint = _HINT.match(text)
+    hint = _HINT.match(text[: _HINT.longest])
     text = text[hint.end() :] if hint else text
     return [grid_of(([tidy(cell) for cell in row] for row in _rows(text, name)), name) for name in _separators(text)]
 
@@ -180,14 +178,19 @@ def _parts(name: str, lines: Sequence[str], begin: int) -> bool:
 
 def _barred(lines: Sequence[str]) -> bool:
     """True where bars make a table: each line has as many as the others, two at least. One may be part of a cell."""
-    counts = {line.count("|") for line in lines if not _RULE.fullmatch(line.strip())}
+    counts = {line.count("|") for line in lines if not _is_rule(line.strip())}
     return len(counts) == 1 and counts.pop() >= 2
 
 
 def _without_frame(line: str) -> str:
     """A line of a table in Markdown without the bars at its ends; nothing of one that only sets the header apart."""
     line = line.strip()
-    return "" if _RULE.fullmatch(line) else line.removeprefix("|").removesuffix("|")
+    return "" if _is_rule(line) else line.removeprefix("|").removesuffix("|")
+
+
+def _is_rule(line: str) -> bool:
+    """True for a line of a table in Markdown that only sets the header apart."""
+    return "--" in line and not line.strip("-|:+ ")
 
 
 def _rows(text: str, name: str) -> Iterator[list[str]]:
@@ -199,9 +202,9 @@ def _rows(text: str, name: str) -> Iterator[list[str]]:
         except csv.Error:  # a cell longer than the module takes
             raise RefusedError(N_("a cell is longer than any number or heading")) from None
     else:
-        between = re.compile("  +" if name == "blanks" else " +")
-        for line in re.split(r"\r\n|\r|\n", text):
-            yield between.split(line.strip(" \t"))
+        between = "  " if name == "blanks" else " "
+        for line in text.replace("\r\n", "\n").replace("\r", "\n").split("\n"):
+            yield [cell for part in line.strip(" \t").split(between) if (cell := part.strip(" "))]
 
 
 def require_even(grid: Grid, first: int, head: int) -> None:

@@ -181,6 +181,9 @@ async def _sized(request: Request, tables: Tables, files: Mapping[Kind, Path]) -
 def _too_much(error: EndedError, settings: Settings) -> Problem:
     if error.is_excess:
         return Problem(413, f"the table takes more than {settings.fleet_memory_bytes} bytes of memory; send fewer axes")
+    if error.is_killed:
+        logger.warning("a fleet was killed: %s", error)
+        return Problem(413, "the table takes more memory than this machine has; send fewer axes")
     logger.error("a fleet was not sized: %s", error)
     return Problem.later("tables of axes can’t be sized at the moment", RETRY_SECONDS)
 

@@ -1,8 +1,8 @@
 """Spellings of units: from a unit as people write it to the codes that it may stand for."""
 
-import re
 import unicodedata
 
+from hpn.words.patterns import Pattern
 from hpn.words.units import QUANTITY_OF, UNITS
 
 FREQUENCY = "Hz"
@@ -11,10 +11,16 @@ FREQUENCY = "Hz"
 _SIGNS = " .·⋅∙•‧・*×"
 """Signs of a product, besides a hyphen."""
 
-_PRODUCT = re.compile(rf"(?<=[A-Za-z])[{_SIGNS}_-]+(?=[A-Za-z])")
+LONGEST = 40
+_COMPOSED = 18 * LONGEST
+"""Characters of a unit as somebody writes it, and of the same in compatible characters, 18 for one at most."""
+
+_PRODUCT = Pattern(rf"(?<=[A-Za-z])[{_SIGNS}_-]+(?=[A-Za-z])", _COMPOSED)
 _AS_TYPED = str.maketrans({**dict.fromkeys("\N{MINUS SIGN}\N{EN DASH}\N{HYPHEN}", "-"), "μ": "µ"})
-_SUPERSCRIPT = re.compile(r"\^?\(?-1\)?$")
-_SQUARE = re.compile(r"(?:\^|\*\*)\(?2\)?$")
+_SUPERSCRIPT = Pattern(r"\^?\(?-1\)?$", _COMPOSED)
+_SQUARE = Pattern(r"(?:\^|\*\*)\(?2\)?$", _COMPOSED)
+_PER = Pattern(r"\.? */ *", _COMPOSED)
+_BESIDE_POWER = Pattern(rf"[{_SIGNS}^()]", _COMPOSED)
 
 
 def _spelling(text: str) -> str:
@@ -22,9 +28,9 @@ def _spelling(text: str) -> str:
     tight = unicodedata.normalize("NFKC", text).strip().translate(_AS_TYPED)
     inverse = _SUPERSCRIPT.sub("-1", tight)
     if inverse != tight or inverse.endswith("-1"):
-        return re.sub(rf"[{_SIGNS}^()]", "", inverse)
+        return _BESIDE_POWER.sub("", inverse)
     product = _PRODUCT.sub("·", _SQUARE.sub("2", tight))
-    return re.sub(r"\.? */ *", "/", product.removesuffix(".") if "·" in product else product)
+    return _PER.sub("/", product.removesuffix(".") if "·" in product else product)
 
 
 def _spellings() -> dict[str, tuple[str, ...]]:
@@ -70,7 +76,7 @@ _FOLDED = {
 
 def codes_for(text: str, quantity: str = "") -> tuple[str, ...]:
     """Codes that a unit as somebody writes it may stand for, of one quantity or any; several where it is ambiguous."""
-    if len(text) > 40:
+    if len(text) > LONGEST:
         return ()
     spelling = _spelling(text)
     codes = SPELLINGS.get(spelling) or _FOLDED.get(spelling.casefold(), ())

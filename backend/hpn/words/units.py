@@ -3,7 +3,6 @@
 Units are converted exactly, by pint.
 """
 
-import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from decimal import ROUND_HALF_EVEN, Context, Decimal
@@ -11,6 +10,8 @@ from fractions import Fraction
 from functools import cache, lru_cache
 from math import inf
 from typing import Any
+
+from hpn.words.patterns import Pattern
 
 
 def N_(text: str) -> str:
@@ -195,7 +196,8 @@ CODES = tuple(code for units in CHOICES.values() for code in list(units)[1:])
 
 _SUFFIXES = {symbol: suffix for suffix, symbol in SYMBOLS.items()}
 _OF_CODE = {code: next(iter(units)) for units in CHOICES.values() for code in units}
-NUMBER = re.compile(r"[+-]?([0-9]+(\.[0-9]*)?|\.[0-9]+)([eE][+-]?[0-9]{1,3})?")
+NUMBER = Pattern(r"[+-]?([0-9]+(\.[0-9]*)?|\.[0-9]+)([eE][+-]?[0-9]{1,3})?", 400)
+"""A number in plain notation: written out, the largest has some 310 digits."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -249,7 +251,8 @@ class Measure:
 
 def _digits(text: str) -> int:
     """Number of significant digits."""
-    return len(re.sub(r"[eE].*|\D", "", text).lstrip("0"))
+    mantissa = text.casefold().partition("e")[0]
+    return len("".join(filter(str.isdigit, mantissa)).lstrip("0"))
 
 
 def measure(unit: str, chosen: tuple[str, ...]) -> Measure:

@@ -2,8 +2,11 @@
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass
 from typing import Literal, Union
+
+from msgspec import Struct, field
+from msgspec.structs import replace
 
 from hpn.words.units import N_ as N_
 from hpn.words.units import SYMBOLS
@@ -15,8 +18,7 @@ class MendableError(Exception):
     """Something that the caller or the operator can mend; the text names it and says what would be right."""
 
 
-@dataclass(frozen=True, slots=True)
-class Quantity:
+class Quantity(Struct, frozen=True, tag=True):
     """A number with the suffix of its unit, rounded for reading where it is shown; a blank unit is a pure number.
 
     A bound is rounded to the safe side, in whatever unit it is shown.
@@ -72,8 +74,7 @@ def _side(value: float, bound: float) -> int:
 _ROOM = 1e-12
 
 
-@dataclass(frozen=True, slots=True)
-class Typed:
+class Typed(Struct, frozen=True, tag=True):
     """A number to type in place of another text, with the unit behind it; a form offers one that is `whole`.
 
     It is in plain notation until the page that shows it gives it its reader's decimal mark. One that is not whole
@@ -91,15 +92,14 @@ class Typed:
 Value = Union[Quantity, Typed, str, int, "Sentence"]
 
 
-@dataclass(frozen=True, slots=True)
-class Sentence:
+class Sentence(Struct, frozen=True, tag=True):
     """An English template (msgid for translation) and the values in it, among them other sentences.
 
     `translated` names values that are msgids.
     """
 
     template: str
-    values: Mapping[str, Value] = field(default_factory=dict)
+    values: Mapping[str, "Value"] = field(default_factory=dict)
     translated: tuple[str, ...] = ()
 
     @property

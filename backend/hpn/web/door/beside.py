@@ -1,6 +1,7 @@
 """A process for work in which no thread can be stopped: kept from call to call, and killed where nobody waits any more.
 
-It imports what its calls name and nothing else of the web, so that it starts soon.
+It imports what its calls name and nothing else of the web, so that it starts soon. Its answers are plain data, decoded
+as the type that the called function says: whatever a file makes of the process, nothing of it is run by the service.
 """
 
 import os
@@ -8,6 +9,7 @@ import pickle
 import re
 import resource
 import signal
+import struct
 import subprocess
 import sys
 import threading
@@ -16,8 +18,11 @@ import traceback
 import weakref
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
+from functools import partial
 from pathlib import Path
-from typing import IO, Any, NamedTuple, TypeVar, cast
+from typing import IO, Any, NamedTuple, TypeVar, cast, get_type_hints
+
+import msgspec
 
 T = TypeVar("T")
 
@@ -35,6 +40,10 @@ PLAIN_MEMORY = {"ARROW_DEFAULT_MEMORY_POOL": "system", "OPENBLAS_NUM_THREADS": "
 """Environment of a bounded process: no library sets memory aside that the work then lacks."""
 
 
+_LENGTH = struct.Struct("<Q")
+"""Bytes of an answer, before it."""
+
+
 class Bounds(NamedTuple):
     """Most memory of a process, code and libraries included, and most time of one call on the clock."""
 
@@ -45,12 +54,36 @@ class Bounds(NamedTuple):
 class EndedError(Exception):
     """The process has ended before its work was done, or could not be started; the text says how.
 
-    `is_excess` tells that the work took more than it may.
+    `is_excess` tells that the work took more than it may, `is_killed` that something else than the service killed it:
+    the system, where the machine has no more memory.
     """
 
-    def __init__(self, text: str, *, is_excess: bool = False) -> None:
+    def __init__(self, text: str, *, is_excess: bool = False, is_killed: bool = False) -> None:
         super().__init__(text)
-        self.is_excess = is_excess
+        self.is_excess, self.is_killed = is_excess, is_killed
+
+
+class Answer(msgspec.Struct, array_like=True):
+    """End of a call: its result, or the traceback of what went wrong; `has_grown` advises to end the process."""
+
+    is_done: bool
+    has_grown: bool
+    result: msgspec.Raw
+
+    @classmethod
+    def received(cls, pipe: IO[bytes]) -> "Answer":
+        """The next one; EOFError, or ValueError for what is none."""
+        head = pipe.read(_LENGTH.size)
+        if len(head) < _LENGTH.size:
+            raise EOFError
+        content = pipe.read(*_LENGTH.unpack(head))
+        return msgspec.msgpack.decode(content, type=cls)
+
+    def send(self, pipe: IO[bytes]) -> None:
+        """Write it."""
+        content = msgspec.msgpack.encode(self)
+        pipe.write(_LENGTH.pack(len(content)) + content)
+        pipe.flush()
 
 
 class ProcessBeside:
@@ -61,6 +94,7 @@ class ProcessBeside:
         self._calling = threading.Lock()  # whoever has it may use the pipes
         self._lock = threading.Lock()  # whoever has it may start and end the process
         self._process: subprocess.Popen[bytes] | None = None
+        self._is_ended = False
         self.is_taken = False
 
     @contextmanager
@@ -74,7 +108,7 @@ class ProcessBeside:
 
     def call(self, work: Callable[[], T], given_up: threading.Event) -> T:
         """Result of work; EndedError, or RuntimeError with the traceback of what goes wrong there."""
-        call = pickle.dumps(work)
+        call, kind = pickle.dumps(work), _result_type(work)
         with self._calling:
             with self._lock:
                 if given_up.is_set():
@@ -83,28 +117,31 @@ class ProcessBeside:
             try:
                 cast(Any, process.stdin).write(call)
                 cast(Any, process.stdin).flush()
-                done, result, has_grown = pickle.load(cast(Any, process.stdout))
-            except (OSError, EOFError, pickle.UnpicklingError):
+                answer = Answer.received(cast(Any, process.stdout))
+                result = msgspec.msgpack.decode(answer.result, type=kind if answer.is_done else str)
+            except (OSError, EOFError, ValueError):
                 self._reap(process)
                 raise self._ended(process.returncode) from None
-            if has_grown:
+            if answer.has_grown:
                 self.end()
                 self._reap(process)
-        if not done:
+        if not answer.is_done:
             raise RuntimeError(result)
         return cast(T, result)
 
     def _ended(self, code: int) -> EndedError:
-        """Killed is a process by this one, or by the system where the machine's memory runs out: no fault of the work.
-
-        Whatever else ends a bounded one is its work: libraries abort, or worse, where they get no memory.
+        """Error for a process that has ended. Whatever ends a bounded one without killing it is its work: libraries
+        abort, or worse, where they get no memory.
         """
-        return EndedError(f"exit code {code}", is_excess=self._bounds is not None and code != -signal.SIGKILL)
+        is_killed = code == -signal.SIGKILL
+        is_excess = self._bounds is not None and not is_killed
+        return EndedError(f"exit code {code}", is_excess=is_excess, is_killed=is_killed and not self._is_ended)
 
     def end(self) -> None:
         """Kill the process; whoever calls at the moment gets an EndedError."""
         with self._lock:
             if self._process is not None:
+                self._is_ended = True
                 self._process.kill()
 
     def close(self) -> None:
@@ -117,9 +154,11 @@ class ProcessBeside:
     def _reap(self, process: "subprocess.Popen[bytes]") -> None:
         """End a process that may be on its way out: how it ends by itself is told by its code."""
         with self._lock:
-            with suppress(subprocess.TimeoutExpired):
+            try:
                 process.wait(0.1)
-            process.kill()
+            except subprocess.TimeoutExpired:
+                self._is_ended = True
+                process.kill()
             process.communicate()  # closes its pipes
 
     def _running(self) -> "subprocess.Popen[bytes]":
@@ -127,12 +166,15 @@ class ProcessBeside:
             if self._process.poll() is None:
                 return self._process
             self._process.communicate()
+        self._is_ended = False
         environment = {name: value for name, value in os.environ.items() if not name.upper().startswith("HPN_")}
+        quiet = ("-W", "ignore") if self._bounds else ()
         try:
             self._process = subprocess.Popen(
-                [sys.executable, "-m", __name__, *map(str, self._bounds or ())],
+                [sys.executable, *quiet, "-m", __name__, *map(str, self._bounds or ())],
                 stdin=subprocess.PIPE,
                 stdout=subprocess.PIPE,
+                stderr=subprocess.DEVNULL if self._bounds else None,  # libraries quote what a stranger's file says
                 env=environment | PLAIN_MEMORY if self._bounds else environment,
                 start_new_session=True,  # Ctrl+C is for the service, which finishes what runs
             )
@@ -140,6 +182,11 @@ class ProcessBeside:
             raise EndedError(f"it can’t be started: {error}") from None
         weakref.finalize(self, _forsaken, self._process)
         return self._process
+
+
+def _result_type(work: Callable[[], Any]) -> Any:
+    """Type that a function says to return; any plain data where it says none."""
+    return get_type_hints(work.func if isinstance(work, partial) else work).get("return", Any)
 
 
 def _forsaken(process: "subprocess.Popen[bytes]") -> None:
@@ -160,9 +207,9 @@ def main(bounds: Bounds | None) -> None:
     os.dup2(2, 1)
     while calls.peek(1):
         signal.setitimer(signal.ITIMER_REAL, bounds.seconds if bounds else 0)  # nothing here holds up the signal
-        answer = _answer(calls, is_bounded=bounds is not None)
-        pickle.dump((*answer, bounds is not None and _peak_bytes() > KEPT_SHARE * bounds.memory_bytes), answers)
-        answers.flush()
+        is_done, result = _done(calls, is_bounded=bounds is not None)
+        has_grown = bounds is not None and _peak_bytes() > KEPT_SHARE * bounds.memory_bytes
+        Answer(is_done, has_grown, result).send(answers)
         signal.setitimer(signal.ITIMER_REAL, 0)
 
 
@@ -173,14 +220,22 @@ def _end_with_parent(parent: int) -> None:
     os._exit(1)
 
 
-def _answer(calls: IO[bytes], *, is_bounded: bool) -> tuple[bool, Any]:
+def _done(calls: IO[bytes], *, is_bounded: bool) -> tuple[bool, msgspec.Raw]:
     """Result of the next call, or the traceback of what goes wrong."""
     try:
-        return True, pickle.load(calls)()
+        result = pickle.load(calls)()
+        return True, msgspec.Raw(msgspec.msgpack.encode(result, enc_hook=_plain))
     except BaseException as error:
         if is_bounded and isinstance(error, MemoryError):
             os._exit(EXHAUSTED)
-        return False, traceback.format_exc()
+        return False, msgspec.Raw(msgspec.msgpack.encode(traceback.format_exc()))
+
+
+def _plain(value: object) -> str:
+    """A text of a kind of its own as a text."""
+    if isinstance(value, str):
+        return str(value)
+    raise TypeError(f"no plain data: {type(value)}")
 
 
 def _peak_bytes() -> int:

@@ -19,8 +19,9 @@ from starlette.responses import RedirectResponse, Response
 from hpn.catalogue import Catalogue
 from hpn.store import FleetDraft, NoRoomError, ShareSpentError, StoreUnavailableError
 from hpn.store.fleets import MOST_OF_CALLER
-from hpn.tables.axes import AxisTable
-from hpn.tables.files import Contents, Wanted, contents_of, packed, unpacked
+from hpn.tables.files import Wanted, packed, unpacked
+from hpn.tables.reading import Reading
+from hpn.tables.table import Table
 from hpn.web.door.access import admit
 from hpn.web.door.hosts import require_same_origin
 from hpn.web.door.observation import note
@@ -29,7 +30,7 @@ from hpn.web.door.problems import Problem, needs
 from hpn.web.door.uploads import read_parts
 from hpn.web.fleets import Tables, size_fleet, workplace
 from hpn.web.form.symbols import AXIS_INPUTS
-from hpn.web.pages.paste import assumed, choices_of, digest
+from hpn.web.pages.reading import read
 from hpn.web.pages.rendering import page
 from hpn.web.pages.sized_fleets import ADDRESS
 from hpn.words.wording import N_, Sentence
@@ -57,7 +58,7 @@ class Draft:
 
     text: str = ""
     problems: tuple[Sentence, ...] = ()
-    table: AxisTable | None = None
+    table: Table | None = None
     of: str = ""
     carried: str = ""
     sheets: tuple[str, ...] = ()
@@ -112,10 +113,11 @@ async def _read(request: Request, parts: Mapping[str, bytes]) -> Draft:
     if not content.strip():
         return Draft(problems=(Sentence(NOTHING),))
     wanted = await compute(request, "pages", _wanted)
-    contents = await compute_beside(request, "files", partial(contents_of, content, wanted))
-    if contents.suffix:
-        return Draft(parts.get("text", b"").decode(errors="replace"), taken=Taken(content, contents.suffix))
-    return await compute(request, "pages", _draft_of, parts, content, contents)
+    fields = {name: part.decode(errors="replace") for name, part in parts.items() if name not in ("file", "table")}
+    reading = await read(request, content, wanted, fields)
+    if reading.suffix:
+        return Draft(fields.get("text", ""), taken=Taken(content, reading.suffix))
+    return await compute(request, "pages", _draft_of, fields, content, reading)
 
 
 def _wanted() -> Wanted:
@@ -124,29 +126,17 @@ def _wanted() -> Wanted:
     return fleet_upload.WANTED
 
 
-def _draft_of(parts: Mapping[str, bytes], content: bytes, contents: Contents) -> Draft:
+def _draft_of(fields: Mapping[str, str], content: bytes, reading: Reading) -> Draft:
     from hpn.web.pages import fleet_upload
 
-    fields = {name: part.decode(errors="replace") for name, part in parts.items() if name not in ("file", "table")}
-    text = fields.get("text", "")
-    of = digest(content)
-    if contents.problem:
-        return _refused_table(text, contents.problem)
-    chosen = fields.get("sheet", "") if fields.get("of") == of else ""
-    sheet = chosen if chosen in contents.sheets else next(iter(contents.sheets))
-    found = contents.sheets[sheet]
-    if isinstance(found, Sentence):
-        return replace(_refused_table(text, found), of=of, carried=packed(content), sheets=tuple(contents.sheets))
-    table = fleet_upload.best_reading(found, choices_of(fields, of), assumed(AXIS_INPUTS))
+    table, problems = reading.table, tuple[Sentence, ...]()
+    assert table is not None
+    if table.problem:
+        problems = (table.problem, *([Sentence(LARGER)] if "most" in table.problem.values else ()))
     sizes = table.whole and "size" in fields
     taken = Taken(fleet_upload.lines_of(table), ".ndjson", table.origins) if sizes else None
-    problems = (table.problem,) if table.problem else ()
-    return Draft(text, problems, table, of, packed(content), tuple(contents.sheets), sheet, taken)
-
-
-def _refused_table(text: str, problem: Sentence) -> Draft:
-    larger = (Sentence(LARGER),) if "most" in problem.values else ()
-    return Draft(text, (problem, *larger))
+    carried = packed(content) if reading.sheets else ""
+    return Draft(fields.get("text", ""), problems, table, reading.of, carried, reading.sheets, reading.sheet, taken)
 
 
 async def _sized(request: Request, taken: Taken) -> str:

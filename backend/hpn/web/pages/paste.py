@@ -4,15 +4,8 @@
 comes along as the field `link`, so that nothing typed is lost on the way.
 """
 
-import dataclasses
-import hashlib
-import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from functools import partial
-from itertools import accumulate
-from math import isfinite
-from typing import Any, NamedTuple
 from urllib.parse import urlencode
 
 from fastapi import APIRouter
@@ -23,14 +16,15 @@ from starlette.responses import HTMLResponse, RedirectResponse, Response
 from hpn.application import Application
 from hpn.application.faults import plain_message, pointer
 from hpn.explain.drawings.cycle import CyclePicture, cycle_picture
-from hpn.tables.columns import Choices
-from hpn.tables.cycles import CycleTable, read_grids
-from hpn.tables.files import Contents, Wanted, contents_of, contents_of_text, packed, tidied, unpacked
-from hpn.tables.inputs import CYCLE, NAME, PHASE_ROLES, Inputs
-from hpn.tables.sheets import MAXIMUM_CHARACTERS, SEPARATORS, Grid
+from hpn.tables.files import Wanted, packed, tidied, unpacked
+from hpn.tables.inputs import CYCLE, NAME, PHASE_ROLES
+from hpn.tables.outcomes import MOST_ROWS_TRIED
+from hpn.tables.reading import Reading
+from hpn.tables.sheets import MAXIMUM_CHARACTERS, SEPARATORS
+from hpn.tables.table import Table
 from hpn.web.door.access import MAXIMUM_QUERY_BYTES, admit
 from hpn.web.door.bodies import pairs_of, parsed
-from hpn.web.door.pools import compute, compute_beside, worked
+from hpn.web.door.pools import compute, worked
 from hpn.web.door.problems import Problem
 from hpn.web.door.uploads import decoded, read_parts
 from hpn.web.door.visit import current
@@ -41,21 +35,13 @@ from hpn.web.form.rows import TEXT, expanded, used_columns
 from hpn.web.form.symbols import PHASE_BY_NAME
 from hpn.web.form.ways import CYCLE_NAMES, Pairs
 from hpn.web.pages import calculator
+from hpn.web.pages.reading import read
 from hpn.web.pages.templates import environment
 from hpn.words.fields import MAXIMUM_PHASES
-from hpn.words.wording import N_, Quantity, Sentence
+from hpn.words.wording import N_, Sentence
 
 NOTHING = N_("the workbook is empty")
-WANTED = Wanted(MAXIMUM_PHASES, MAXIMUM_CHARACTERS)
-SHORT_CHARACTERS = 8_000
-"""Texts up to which a worker reads at once: whatever they say, that takes some 50 ms."""
-
-MOST_ROWS_TRIED, MOST_OPTIONS_TRIED = 100, 6
-"""Rows of a table, and options of its choices, that are read once more to show what comes of each."""
-
-OUTCOME = N_("speeds {lowest} to {highest}, cycle {time}")
-
-_PLACE = re.compile(r"([ru])([0-9]{1,6})")
+WANTED = Wanted(CYCLE, MAXIMUM_PHASES, MAXIMUM_CHARACTERS)
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,7 +54,7 @@ class PasteDraft:
 
     link: str
     text: str = ""
-    table: CycleTable | None = None
+    table: Table | None = None
     application: Application | None = None
     problems: tuple[Sentence, ...] = ()
     has_phases: bool = False
@@ -77,20 +63,11 @@ class PasteDraft:
     sheets: tuple[str, ...] = ()
     sheet: str = ""
     book: str = ""
-    outcomes: Mapping[tuple[str, str], "Outcome"] = field(default_factory=dict)
-    """Outcome of each option of a choice."""
-
-
-class Outcome(NamedTuple):
-    """Result of reading a table in one way: speeds and time in words, and the course of the speed as a path in SVG."""
-
-    sentence: Sentence
-    course: str
 
 
 def start(request: Request) -> Response:
     """The page with an empty field."""
-    return _render(request, _draft(request.url.query), 200)
+    return _render(request, _draft(request.url.query, "", Reading()), 200)
 
 
 async def paste(request: Request) -> Response:
@@ -98,7 +75,10 @@ async def paste(request: Request) -> Response:
     given = Given()
     try:
         given = await compute(request, "pages", _given, await read_parts(request))
-        return await compute(request, "pages", _answer, request, given, await _contents(request, given))
+        reading = Reading()
+        if given.file or given.text.strip():
+            reading = await read(request, given.file or given.text, WANTED, given.fields)
+        return await compute(request, "pages", _answer, request, given, reading)
     except Problem as problem:
         problems = problem.sentences or (_plain(problem.detail),)
         draft = PasteDraft(given.link, given.text, problems=problems)
@@ -128,96 +108,14 @@ def _given(parts: Mapping[str, bytes]) -> Given:
     return Given(link, text, file, fields)
 
 
-async def _contents(request: Request, given: Given) -> Contents:
-    """Cells of what was given: a short text is read here, a file in a process whose memory and time are bounded."""
-    if given.file:
-        return await compute_beside(request, "files", partial(contents_of, given.file, WANTED))
-    if len(given.text) > SHORT_CHARACTERS:
-        return await compute_beside(request, "files", partial(contents_of_text, given.text, WANTED))
-    if not given.text.strip():
-        return Contents()
-    return await compute(request, "pages", contents_of_text, given.text, WANTED)
-
-
-def _answer(request: Request, given: Given, contents: Contents) -> Response:
-    text = contents.text if given.file else given.text
-    if contents.problem:
-        return _render(request, PasteDraft(given.link, text, problems=(contents.problem,)), 422)
-    if contents.is_application:
+def _answer(request: Request, given: Given, reading: Reading) -> Response:
+    text = reading.text if given.file else given.text
+    if reading.is_application:
         return _of_application(request, given.link, text, given.fields.get("take", ""))
-    of = digest(text.encode(errors="replace") or given.file)
-    sheets, fields = contents.sheets, given.fields
-    chosen = fields.get("sheet", "") if fields.get("of") == of else ""
-    sheet = chosen if chosen in sheets else next(iter(sheets)) if len(sheets) == 1 else ""
-    choices = choices_of(fields, of)
-    table = _table(sheets[sheet], choices) if sheet in sheets else None
-    outcomes = _outcomes(sheets[sheet], choices, table) if table else {}
-    draft = _draft(given.link, text, table, of=of, outcomes=outcomes)
-    if given.file and not text:
-        carried = "" if "hx-request" in request.headers else packed(given.file)
-        draft = replace(draft, sheets=tuple(sheets), sheet=sheet, book=carried)
-    return _taken_or_shown(request, fields, draft)
-
-
-def _table(found: Sequence[Grid] | Sentence, choices: Choices) -> CycleTable:
-    return CycleTable(problem=found) if isinstance(found, Sentence) else read_grids(found, choices, assumed(CYCLE))
-
-
-def _outcomes(found: Sequence[Grid] | Sentence, choices: Choices, table: CycleTable) -> dict[tuple[str, str], Outcome]:
-    """Cycle by each option of the choices that a short table leaves, if nothing else is open.
-
-    Rows named like totals are left out, also where an option leaves it open what they are.
-    """
-    if not table.body or len(table.body.rows) > MOST_ROWS_TRIED:
-        return {}
-    options = [(choice.name, code) for choice in table.choices for code in choice.options][:MOST_OPTIONS_TRIED]
-    tried: list[tuple[tuple[str, str], Outcome | None]] = []
-    for name, code in options:
-        answer: dict[str, Any] = {"totals": choices.totals or "sum", name: code}
-        tried.append(((name, code), _outcome(_table(found, replace(choices, **answer)))))
-    return {option: outcome for option, outcome in tried if outcome}
-
-
-def _outcome(table: CycleTable) -> Outcome | None:
-    speeds, times = ([float(phase[PHASE_ROLES.index(role)] or 0) for phase in table.phases] for role in "nt")
-    sizes = [abs(speed) for speed in speeds]
-    if not table.whole or table.lasting_s is None or not isfinite(max(sizes)):
-        return None
-    ends = {"lowest": Quantity(min(sizes), "rpm"), "highest": Quantity(max(sizes), "rpm")}
-    sentence = Sentence(OUTCOME, {**ends, "time": Quantity(table.lasting_s, "s")})
-    return Outcome(sentence, _course(speeds, accumulate(times), table.lasting_s))
-
-
-def _course(speeds: Sequence[float], ends: Iterable[float], lasting: float) -> str:
-    """Steps of a speed over time, back to zero at both ends, in a box of 100 × 30."""
-    highest, lowest = max(0.0, *speeds), min(0.0, *speeds)
-    scale = 30 / (highest - lowest or 1)
-    zero, width = highest * scale, 100 / (lasting or 1)
-    steps = (f"V{(highest - speed) * scale:.1f}H{end * width:.1f}" for speed, end in zip(speeds, ends, strict=True))
-    return f"M0 {zero:.1f}{''.join(steps)}V{zero:.1f}"
-
-
-def digest(content: bytes) -> str:
-    """Short mark of what was given, which its choices carry."""
-    return hashlib.sha256(content).hexdigest()[:16]
-
-
-def choices_of(fields: Mapping[str, str], of: str) -> Choices:
-    """Choices for this very text; for another one there are none."""
-    if fields.get("of") != of:
-        return Choices()
-    said: dict[str, dict[int, str]] = {"r": {}, "u": {}}
-    for name, value in fields.items():
-        if place := _PLACE.fullmatch(name):
-            said[place[1]][int(place[2])] = value
-    named = {part.name: fields.get(part.name, "") for part in dataclasses.fields(Choices) if part.type is str}
-    return Choices(**named, roles=said["r"], units=said["u"])
-
-
-def assumed(inputs: Inputs) -> tuple[str, ...]:
-    """Units that a column without one is taken to be in: those of the wire that the reader sees as well."""
-    reader = current()
-    return tuple(unit for unit in inputs.units if reader.measure(unit).same)
+    draft = _draft(given.link, text, reading)
+    if given.file and not text and reading.sheets and "hx-request" not in request.headers:
+        draft = replace(draft, book=packed(given.file))
+    return _taken_or_shown(request, given.fields, draft)
 
 
 def _taken_or_shown(request: Request, fields: Mapping[str, str], draft: PasteDraft) -> Response:
@@ -259,8 +157,9 @@ def _opened(link: str, text: str) -> PasteDraft:
 # --- Drafts -----------------------------------------------------------------------------------------------------------
 
 
-def _draft(link: str, text: str = "", table: CycleTable | None = None, **more: Any) -> PasteDraft:
+def _draft(link: str, text: str, reading: Reading) -> PasteDraft:
     """Draft of a table, or of nothing yet."""
+    table = reading.table
     return PasteDraft(
         link,
         text,
@@ -268,7 +167,9 @@ def _draft(link: str, text: str = "", table: CycleTable | None = None, **more: A
         problems=(table.problem,) if table and table.problem else (),
         has_phases=any(name in {*CYCLE_NAMES, TEXT} and value for name, value in pairs_of(link)),
         example=table is not None and is_example(link),
-        **more,
+        of=reading.of,
+        sheets=reading.sheets,
+        sheet=reading.sheet,
     )
 
 

@@ -1,0 +1,44 @@
+"""Reading of what somebody gives a page: a file in a process whose memory and time are bounded, a short text here."""
+
+import dataclasses
+from collections.abc import Callable, Mapping
+from functools import partial
+
+from starlette.requests import Request
+
+from hpn.tables.columns import Choices
+from hpn.tables.files import Wanted
+from hpn.tables.reading import Reading, reading_of
+from hpn.web.door.pools import compute, compute_beside
+from hpn.web.door.visit import current
+from hpn.words.patterns import Pattern
+
+SHORT_CHARACTERS = 2_000
+"""Texts up to which a worker reads at once: whatever they say, that takes some milliseconds."""
+
+_PLACE = Pattern(r"([ru])([0-9]{1,6})", 7)
+
+
+async def read(request: Request, content: bytes | str, wanted: Wanted, fields: Mapping[str, str]) -> Reading:
+    """Reading of a file or a text, by the answers in the fields of a form; raises Problem 413 or 503."""
+    work = await compute(request, "pages", _work, content, wanted, fields)
+    if isinstance(content, str) and len(content) <= SHORT_CHARACTERS:
+        return await compute(request, "pages", work)
+    return await compute_beside(request, "files", work)
+
+
+def _work(content: bytes | str, wanted: Wanted, fields: Mapping[str, str]) -> Callable[[], Reading]:
+    """The call that reads. A column without a unit is in that of the wire where the reader sees the same."""
+    reader = current()
+    assumed = tuple(unit for unit in wanted.inputs.units if reader.measure(unit).same)
+    return partial(reading_of, content, wanted, choices_of(fields), assumed)
+
+
+def choices_of(fields: Mapping[str, str]) -> Choices:
+    """Answers to questions in the fields of a form."""
+    said: dict[str, dict[int, str]] = {"r": {}, "u": {}}
+    for name, value in fields.items():
+        if place := _PLACE.fullmatch(name):
+            said[place[1]][int(place[2])] = value
+    named = {part.name: fields.get(part.name, "") for part in dataclasses.fields(Choices) if part.type is str}
+    return Choices(**named, roles=said["r"], units=said["u"])
