@@ -2,89 +2,31 @@
 
 import io
 import json
-import zipfile
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Sequence
 from functools import cache
 
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-Make = Callable[[], bytes]
+from tests.fuzz import cells
+from tests.fuzz.formats import (
+    MILLION,
+    OTHERS,
+    PHASE,
+    Make,
+    arrow,
+    many,
+    parquet,
+    row_of_strings,
+    table_of,
+    within,
+    workbook,
+    zeros,
+)
 
-MILLION = 1_000_000
 LETTERS = "ABCDEFGHIJKLMNOPQRSTUVWXYZ"
 
 # --- XLSX -------------------------------------------------------------------------------------------------------------
-
-MAIN = "http://schemas.openxmlformats.org/spreadsheetml/2006/main"
-RELATIONS = "http://schemas.openxmlformats.org/officeDocument/2006/relationships"
-PACKAGE = "http://schemas.openxmlformats.org/package/2006"
-TYPES = "application/vnd.openxmlformats-officedocument.spreadsheetml"
-TABLE = '<row><c t="inlineStr"><is><t>T</t></is></c></row><row><c><v>40</v></c><c><v>250</v></c><c><v>1</v></c></row>'
-
-
-def workbook(
-    data: str = TABLE,
-    *,
-    behind: str = "",
-    before: str = "",
-    styles: str = "",
-    strings: str = "",
-    names: str = "",
-    types: str = "",
-    relations: str = "",
-    sheets: int = 1,
-    more: Mapping[str, str] | None = None,
-    styles_at: str = "styles.xml",
-) -> bytes:
-    """A workbook of hand-made parts: rows of each sheet, what stands before and behind them, and what else it has."""
-    places = range(1, sheets + 1)
-    overrides = "".join(
-        f'<Override PartName="/xl/worksheets/sheet{k}.xml" ContentType="{TYPES}.worksheet+xml"/>' for k in places
-    )
-    listed = "".join(f'<sheet name="S{k}" sheetId="{k}" r:id="s{k}"/>' for k in places)
-    targets = "".join(
-        f'<Relationship Id="s{k}" Type="{RELATIONS}/worksheet" Target="worksheets/sheet{k}.xml"/>' for k in places
-    )
-    sheet = f'<worksheet xmlns="{MAIN}">{before}<sheetData>{data}</sheetData>{behind}</worksheet>'
-    parts = {
-        "[Content_Types].xml": f'<Types xmlns="{PACKAGE}/content-types"><Default Extension="xml" '
-        f'ContentType="application/xml"/><Default Extension="rels" ContentType="{PACKAGE}.relationships+xml"/>'
-        f'<Override PartName="/xl/workbook.xml" ContentType="{TYPES}.sheet.main+xml"/>'
-        f'<Override PartName="/xl/{styles_at}" ContentType="{TYPES}.styles+xml"/>'
-        f'<Override PartName="/xl/sharedStrings.xml" ContentType="{TYPES}.sharedStrings+xml"/>{overrides}{types}'
-        "</Types>",
-        "_rels/.rels": f'<Relationships xmlns="{PACKAGE}/relationships"><Relationship Id="r" '
-        f'Type="{RELATIONS}/officeDocument" Target="xl/workbook.xml"/></Relationships>',
-        "xl/_rels/workbook.xml.rels": f'<Relationships xmlns="{PACKAGE}/relationships">{targets}'
-        f'<Relationship Id="t" Type="{RELATIONS}/styles" Target="{styles_at}"/>'
-        f'<Relationship Id="u" Type="{RELATIONS}/sharedStrings" Target="sharedStrings.xml"/>{relations}'
-        "</Relationships>",
-        "xl/workbook.xml": f'<workbook xmlns="{MAIN}" xmlns:r="{RELATIONS}"><sheets>{listed}</sheets>{names}'
-        "</workbook>",
-        f"xl/{styles_at}": f'<styleSheet xmlns="{MAIN}">{styles}</styleSheet>',
-        "xl/sharedStrings.xml": f'<sst xmlns="{MAIN}">{strings}</sst>',
-        **{f"xl/worksheets/sheet{k}.xml": sheet for k in places},
-        **(more or {}),
-    }
-    out = io.BytesIO()
-    with zipfile.ZipFile(out, "w", zipfile.ZIP_DEFLATED, compresslevel=9) as archive:
-        for name, content in parts.items():
-            archive.writestr(name, content)
-    return out.getvalue()
-
-
-def _many(element: str, of: int = 7_800_000) -> str:
-    """An element as often as the unpacked size lets it be there."""
-    return element * (of // len(element))
-
-
-def _within(whole: str, element: str) -> str:
-    return f"<{whole}>{_many(element)}</{whole}>"
-
-
-def _row_of_strings(count: int, text: int) -> str:
-    return "".join(f'<row r="{k}"><c t="s"><v>{text}</v></c></row>' for k in range(1, count + 1))
 
 
 WORKBOOKS: dict[str, Make] = {
@@ -98,76 +40,52 @@ WORKBOOKS: dict[str, Make] = {
     "formats in a part of another name": lambda: workbook(
         styles="<cellXfs>" + "<xf/>" * 1_500_000 + "</cellXfs>", styles_at="x.xml"
     ),
-    "fonts": lambda: workbook(styles=_within("fonts", "<font/>")),
-    "fills": lambda: workbook(styles=_within("fills", "<fill/>")),
-    "borders": lambda: workbook(styles=_within("borders", "<border/>")),
-    "number formats": lambda: workbook(styles=_within("numFmts", '<numFmt numFmtId="200" formatCode="0"/>')),
-    "names of styles": lambda: workbook(styles=_within("cellStyles", '<cellStyle name="a" xfId="0"/>')),
-    "conditional styles": lambda: workbook(styles=_within("dxfs", "<dxf/>")),
-    "colours": lambda: workbook(styles=f"<colors>{_within('indexedColors', '<rgbColor/>')}</colors>"),
+    "fonts": lambda: workbook(styles=within("fonts", "<font/>")),
+    "fills": lambda: workbook(styles=within("fills", "<fill/>")),
+    "borders": lambda: workbook(styles=within("borders", "<border/>")),
+    "number formats": lambda: workbook(styles=within("numFmts", '<numFmt numFmtId="200" formatCode="0"/>')),
+    "names of styles": lambda: workbook(styles=within("cellStyles", '<cellStyle name="a" xfId="0"/>')),
+    "conditional styles": lambda: workbook(styles=within("dxfs", "<dxf/>")),
+    "colours": lambda: workbook(styles=f"<colors>{within('indexedColors', '<rgbColor/>')}</colors>"),
     "a long number format on each cell": lambda: workbook(
         "".join('<row><c s="1"><v>1</v></c></row>' for _ in range(60_000)),
         styles='<numFmts><numFmt numFmtId="200" formatCode="'
         + "0;" * 1_000_000
         + '"/></numFmts><cellXfs><xf/><xf numFmtId="200"/></cellXfs>',
     ),
-    "shared strings": lambda: workbook(strings=_many("<si/>")),
-    "rich texts": lambda: workbook(strings=_many("<si><r><t>a</t></r></si>")),
-    "one rich text of very many parts": lambda: workbook(strings=_within("si", "<r/>")),
-    "phonetic parts": lambda: workbook(strings=_within("si", '<rPh sb="0" eb="1"/>')),
+    "shared strings": lambda: workbook(strings=many("<si/>")),
+    "rich texts": lambda: workbook(strings=many("<si><r><t>a</t></r></si>")),
+    "one rich text of very many parts": lambda: workbook(strings=within("si", "<r/>")),
+    "phonetic parts": lambda: workbook(strings=within("si", '<rPh sb="0" eb="1"/>')),
     "a long text in each cell": lambda: workbook(
-        _row_of_strings(100_000, 0), strings=f"<si><t>{'a' * 2_000_000}</t></si>"
+        row_of_strings(100_000, 0), strings=f"<si><t>{'a' * 2_000_000}</t></si>"
     ),
     "a text as long as may be in each cell": lambda: workbook(
-        _row_of_strings(100_000, 0), strings=f"<si><t>{'a' * 32_000}</t></si>"
+        row_of_strings(100_000, 0), strings=f"<si><t>{'a' * 32_000}</t></si>"
     ),
-    "empty rows": lambda: workbook(_many("<row/>")),
-    "empty cells": lambda: workbook(_within("row", "<c/>")),
-    "cells in one row": lambda: workbook(_within("row", "<c><v>1</v></c>")),
-    "cells by the row": lambda: workbook(_many("<row><c><v>1</v></c></row>")),
-    "inline texts": lambda: workbook(_many('<row><c t="inlineStr"><is><t>a</t></is></c></row>')),
-    "formulas": lambda: workbook(_many("<row><c><f>A1</f></c></row>")),
-    "merged cells": lambda: workbook(behind=_within("mergeCells", '<mergeCell ref="A1:B2"/>')),
+    "empty rows": lambda: workbook(many("<row/>")),
+    "empty cells": lambda: workbook(within("row", "<c/>")),
+    "cells in one row": lambda: workbook(within("row", "<c><v>1</v></c>")),
+    "cells by the row": lambda: workbook(many("<row><c><v>1</v></c></row>")),
+    "inline texts": lambda: workbook(many('<row><c t="inlineStr"><is><t>a</t></is></c></row>')),
+    "formulas": lambda: workbook(many("<row><c><f>A1</f></c></row>")),
+    "merged cells": lambda: workbook(behind=within("mergeCells", '<mergeCell ref="A1:B2"/>')),
     "large merged cells": lambda: workbook(
         behind="<mergeCells>" + '<mergeCell ref="A2:XFD1048576"/>' * 19_000 + "</mergeCells>"
     ),
-    "hidden columns": lambda: workbook(before=_within("cols", '<col min="1" max="16384" hidden="1"/>')),
-    "rules of conditional formats": lambda: workbook(behind=_many('<conditionalFormatting sqref="A1"/>')),
-    "defined names": lambda: workbook(names=_within("definedNames", '<definedName name="a">S1!A1</definedName>')),
-    "content types": lambda: workbook(types=_many('<Default Extension="a" ContentType="b"/>')),
-    "relations": lambda: workbook(relations=_many('<Relationship Id="a" Type="b" Target="c"/>')),
+    "hidden columns": lambda: workbook(before=within("cols", '<col min="1" max="16384" hidden="1"/>')),
+    "rules of conditional formats": lambda: workbook(behind=many('<conditionalFormatting sqref="A1"/>')),
+    "defined names": lambda: workbook(names=within("definedNames", '<definedName name="a">S1!A1</definedName>')),
+    "content types": lambda: workbook(types=many('<Default Extension="a" ContentType="b"/>')),
+    "relations": lambda: workbook(relations=many('<Relationship Id="a" Type="b" Target="c"/>')),
     "elements in one another": lambda: workbook("<a>" * 900_000 + "</a>" * 900_000),
     "attributes": lambda: workbook("<row " + " ".join(f'a{k}="1"' for k in range(30_000)) + "/>"),
     "very many parts": lambda: workbook(more={f"{k}": "" for k in range(900)}),
-    "comments and white space": lambda: workbook(_many("<!---->")),
+    "comments and white space": lambda: workbook(many("<!---->")),
 }
 """Workbooks by what is repeated in them; no part of a workbook here is read that Excel would not read as well."""
 
 # --- Parquet and Arrow ------------------------------------------------------------------------------------------------
-
-PHASE = ("axis", "torque_Nm", "speed_rpm", "duration_s")
-
-
-def parquet(table: pa.Table, **options: object) -> bytes:
-    """A table as Parquet."""
-    out = io.BytesIO()
-    pq.write_table(table, out, compression="zstd", **options)
-    return out.getvalue()
-
-
-def arrow(*batches: pa.RecordBatch) -> bytes:
-    """Batches as an Arrow file."""
-    out = io.BytesIO()
-    with pa.ipc.new_file(out, batches[0].schema, options=pa.ipc.IpcWriteOptions(compression="zstd")) as file:
-        for batch in batches:
-            file.write_batch(batch)
-    return out.getvalue()
-
-
-def zeros(count: int, kind: pa.DataType | None = None) -> pa.Array:
-    """So many zeros."""
-    kind = kind or pa.float64()
-    return pa.Array.from_buffers(kind, count, [None, pa.py_buffer(bytes(count * kind.bit_width // 8))])
 
 
 def _nothing(count: int) -> pa.Array:
@@ -180,17 +98,13 @@ def long_text(length: int) -> pa.Array:
     return pa.StringArray.from_buffers(1, offsets, pa.py_buffer(b"a" * length))
 
 
-def _columns(*values: pa.Array, names: Sequence[str] = PHASE) -> pa.Table:
-    return pa.Table.from_arrays(list(values), names=list(names[: len(values)]))
-
-
 def _of_one(text: pa.Array, names: Sequence[str] = PHASE) -> pa.Table:
-    return _columns(text, *[zeros(1)] * 3, names=names)
+    return table_of(text, *[zeros(1)] * 3, names=names)
 
 
 def _many_rows(names: Sequence[str], rows: int = 100 * MILLION, groups: int = 100) -> bytes:
     out = io.BytesIO()
-    part = _columns(*[zeros(rows // groups, pa.int8())] * len(names), names=names)
+    part = table_of(*[zeros(rows // groups, pa.int8())] * len(names), names=names)
     with pq.ParquetWriter(out, part.schema, compression="zstd") as file:
         for _ in range(groups):
             file.write_table(part, row_group_size=rows // groups)
@@ -208,9 +122,6 @@ def _dictionary(length: int, rows: int) -> pa.Array:
     return pa.DictionaryArray.from_arrays(zeros(rows, pa.int32()), long_text(length))
 
 
-OTHERS = ("Achse", "Moment", "Drehzahl", "Dauer")
-"""Names of columns that only a page reads."""
-
 TABLES: dict[str, Make] = {
     "Parquet of 10⁸ rows": lambda: _many_rows(("a",)),
     "Parquet of 10⁷ phases": lambda: _many_rows(PHASE[1:], 10 * MILLION, 10),
@@ -218,10 +129,10 @@ TABLES: dict[str, Make] = {
     "Parquet with a long text": lambda: parquet(_of_one(long_text(400 * MILLION), OTHERS), write_statistics=False),
     "Parquet with a long axis": lambda: parquet(_of_one(long_text(400 * MILLION)), write_statistics=False),
     "Parquet with one long text in each row": lambda: parquet(
-        _columns(_dictionary(30_000, 30_000), *[zeros(30_000)] * 3, names=OTHERS)
+        table_of(_dictionary(30_000, 30_000), *[zeros(30_000)] * 3, names=OTHERS)
     ),
-    "Parquet of many columns": lambda: parquet(_columns(*[zeros(1)] * 2000, names=[f"c{k}" for k in range(2000)])),
-    "Parquet of many groups of rows": lambda: parquet(_columns(zeros(1000), names=("a",)), row_group_size=1),
+    "Parquet of many columns": lambda: parquet(table_of(*[zeros(1)] * 2000, names=[f"c{k}" for k in range(2000)])),
+    "Parquet of many groups of rows": lambda: parquet(table_of(zeros(1000), names=("a",)), row_group_size=1),
     "Parquet of types in one another": lambda: parquet(
         pa.table({"a": pa.array([None] * 1000, _nested(90)), "b": [1.0] * 1000})
     ),
@@ -346,10 +257,19 @@ OBJECTS: dict[str, Make] = {
     ),
 }
 
-FILES: dict[str, Make] = {**WORKBOOKS, **TABLES, **TEXTS, **OBJECTS}
+WORKBOOKS |= cells.WORKBOOKS
+TABLES |= cells.TABLES
+TEXTS |= cells.TEXTS
+OBJECTS |= cells.OBJECTS
+PACKED = cells.PACKED
+
+FILES: dict[str, Make] = {**WORKBOOKS, **TABLES, **TEXTS, **PACKED, **OBJECTS}
 """All of them by name."""
 
-NAMES = {**dict.fromkeys(WORKBOOKS, "a.xlsx"), **dict.fromkeys(TEXTS, "a.csv"), **dict.fromkeys(OBJECTS, "a.ndjson")}
+NAMES = {
+    **{**dict.fromkeys(WORKBOOKS, "a.xlsx"), **dict.fromkeys(TEXTS, "a.csv"), **dict.fromkeys(OBJECTS, "a.ndjson")},
+    **dict.fromkeys(PACKED, "a.csv.gz"),
+}
 
 
 @cache

@@ -17,13 +17,14 @@ from hpn.tables.files import Wanted
 from hpn.tables.reading import Reading, reading_of
 from hpn.tables.sheets import MAXIMUM_CHARACTERS
 from hpn.tables.table import Table
-from hpn.tables.workbooks import sheets_of
+from hpn.tables.workbooks import LONGEST_NAME, sheets_of
 from hpn.web.door.beside import EndedError, ProcessBeside
 from hpn.web.door.pools import FILE_BOUNDS
 from hpn.web.pages.fleet_upload import WANTED as AXES
 from hpn.web.pages.paste import WANTED as PHASES
 from hpn.words.wording import Sentence
-from tests.fuzz.costly import OBJECTS, TABLES, TEXTS, WORKBOOKS, made
+from tests.fuzz import cells as of_cells
+from tests.fuzz.costly import OBJECTS, PACKED, TABLES, TEXTS, WORKBOOKS, made
 
 SMALL_BYTES = 100_000
 """Of what the issue of cost is about; some that were reported are larger."""
@@ -33,14 +34,22 @@ LARGER = {"attributes", "a cell in the last column of each row", "a long text in
     *("Parquet of 10⁸ rows", "Parquet of 10⁷ phases", "Parquet of 10⁷ rows as the command names them"),
     *("Parquet of many columns", "Parquet of many groups of rows", "Arrow of columns", "columns", "header rows"),
 }
-SLOW = {"phonetic parts", "cells by the row", "inline texts", "formulas", "elements in one another", "attributes"}
+SHORT = {"a workbook of brackets", "a workbook of ratios", "gzip of 131,000 brackets", "entities in one another"} | {
+    *("a key of 90,000 brackets", "Parquet with ratios of blanks", "a ratio of blanks", "lines in quotes"),
+    *("times on a clock", "headings as long as any is read", "a sheet with a long name", "UTF-16 of brackets"),
+}
+"""Files of cells that the short form has as well."""
+
+SLOW = {"phonetic parts", "cells by the row", "inline texts", "formulas", "elements in one another", "attributes"} | (
+    {*of_cells.WORKBOOKS, *of_cells.TABLES, *of_cells.TEXTS, *of_cells.PACKED, *of_cells.OBJECTS} - SHORT
+)
 """Files that take some seconds within the limits, left to the long form."""
 
 MOST_SENT = 20_000_000
 """Bytes that come back to the service at most."""
 
-FOR_PHASES = {**WORKBOOKS, **TABLES, **TEXTS}
-FOR_AXES = {**TABLES, **TEXTS, **OBJECTS}
+FOR_PHASES = {**WORKBOOKS, **TABLES, **TEXTS, **PACKED}
+FOR_AXES = {**of_cells.WORKBOOKS, **TABLES, **TEXTS, **PACKED, **OBJECTS}
 CASES = [
     pytest.param(name, wanted, marks=[pytest.mark.soak] if name in SLOW else [], id=f"{name}, for {of}")
     for names, wanted, of in ((FOR_PHASES, PHASES, "phases"), (FOR_AXES, AXES, "axes"))
@@ -119,6 +128,10 @@ def test_a_cell_far_away_is_read_like_any_other() -> None:
     assert (grid.rows, grid.numbers) == ((("1",),), (1048576,))
 
 
+def test_a_sheet_has_a_short_name() -> None:
+    assert [len(name) for name in reading_of(made("a sheet with a long name"), PHASES).sheets] == [LONGEST_NAME]
+
+
 def test_long_cells_are_not_kept_in_mind() -> None:
     from hpn.tables import cells, headings
 
@@ -131,7 +144,9 @@ def test_long_cells_are_not_kept_in_mind() -> None:
     assert before == [each.cache_info().currsize for each in kept]
 
 
-@pytest.mark.parametrize("name", TEXTS)
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=[pytest.mark.soak] if name in SLOW else []) for name in TEXTS]
+)
 def test_text_of_the_largest_size_is_read_or_refused(beside: ProcessBeside, name: str) -> None:
     part = made(name)
     content = (part * (MAXIMUM_CHARACTERS // len(part) + 1))[:MAXIMUM_CHARACTERS]

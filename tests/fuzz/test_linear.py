@@ -33,7 +33,7 @@ from hpn.web.pages.fleet_upload import WANTED as AXES
 from hpn.web.pages.paste import WANTED as PHASES
 from hpn.words.patterns import Pattern
 from hpn.words.reader import Reader
-from tests.fuzz.costly import workbook
+from tests.fuzz.formats import workbook
 
 ROOM = Path(hpn.__file__).parent
 SIGNS = "[](){}<>\"'-−.,;:/|\\°_#=%*+^ \t5aexiσ1ª½²"

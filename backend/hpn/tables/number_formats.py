@@ -12,7 +12,7 @@ LONGEST_FORMAT = 255
 
 _TOKEN = Pattern(
     r'"(?P<quoted>[^"]*)"|\\(?P<escaped>.)'
-    r"|\[\$(?P<marked>[^\]]*?)(?:-(?:[0-9A-Fa-f]{2,8}|[a-z]{2}-[A-Z]{2}|x-\w+))?\]|\[(?P<said>[^\]]*)\]"
+    r"|\[\$(?P<marked>[^\[\]]*?)(?:-(?:[0-9A-Fa-f]{2,8}|[a-z]{2}-[A-Z]{2}|x-\w+))?\]|\[(?P<said>[^\[\]]*)\]"
     r"|(?P<gap>[_*].|\s)|(?P<number>General|[0#?.,]+|E[+-]0+)|(?P<end>;)|(?P<other>.)",
     LONGEST_FORMAT,
     DOTALL,

@@ -32,6 +32,9 @@ MAXIMUM_BYTES = 8_000_000
 
 MOST_PARTS = 300
 MOST_SHEETS = 20
+LONGEST_NAME = 100
+"""Characters of a sheet's name; spreadsheet programs write 31."""
+
 MOST_ROWS = 1_048_576
 """Of a sheet, by the format."""
 
@@ -136,7 +139,7 @@ def _read(content: bytes) -> Sheets:
     with suppress(AttributeError):  # sheets of charts have no cells
         for sheet in book.worksheets[:MOST_SHEETS]:
             if sheet.sheet_state == "visible" and (read := _sheet(Worksheet(sheet), room)).rows:
-                sheets[sheet.title] = read
+                sheets[sheet.title[:LONGEST_NAME]] = read
     return sheets
 
 
