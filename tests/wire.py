@@ -103,4 +103,5 @@ def rooms_of(entry: Json, reserve_utilisation: float = 1.0) -> tuple[Room, ...]:
 
 def calculation_of(entry: Json, gear: Gear, application: Application, catalogue: Catalogue) -> tuple[Step, ...]:
     """Calculation of a candidate of a reply."""
-    return calculation.calculation_of(candidate_of(entry), gear, application, catalogue)
+    duty = selection.select(application, catalogue).duty
+    return calculation.calculation_of(candidate_of(entry), duty, gear, application, catalogue)

@@ -143,7 +143,7 @@ def test_a_calculation_of_a_motion_gives_the_figures_of_the_reply(motion: Json, 
     selection = select(application, equipped())
     candidate = next(one for one in selection.candidates if one.is_judged)
     gear = equipped().by_designation[candidate.designation]
-    steps = calculation_of(candidate, gear, application, equipped())
+    steps = calculation_of(candidate, selection.duty, gear, application, equipped())
     lines = [(step.code, line) for step in steps for line in step.lines]
     for code, line in lines:
         value = value_of(line.formula)

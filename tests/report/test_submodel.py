@@ -21,7 +21,8 @@ from basyx.aas.adapter import aasx
 
 from hpn.application import Application
 from hpn.catalogue import Catalogue
-from hpn.engine.selection import decode, encode
+from hpn.engine.kept import decode
+from hpn.engine.selection import encode
 from hpn.files.aas import Metamodel
 from hpn.files.aas.submodel import ARTICLE_NUMBER, ORDER_CODE, TECHNICAL_DATA, package
 from hpn.files.export import LOSS_FREE

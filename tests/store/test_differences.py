@@ -122,14 +122,25 @@ def test_a_notice_that_is_new_is_one_difference(reply: Json) -> None:
     assert (difference.kind, difference.change, difference.today) == ("text", "added", "Something to note.")
 
 
-def test_a_field_that_one_of_the_replies_lacks_is_named(reply: Json) -> None:
+def test_a_field_that_todays_reply_lacks_is_named(reply: Json) -> None:
+    today = changed(reply)
+    del today["duty"]["maximum_torque_Nm"]
+
+    (difference,) = differences(reply, today)
+
+    assert (difference.pointer, difference.change) == ("/duty/maximum_torque_Nm", "removed")
+    assert (difference.saved, difference.today) == (reply["duty"]["maximum_torque_Nm"], None)
+
+
+def test_a_field_that_the_version_of_the_saved_reply_did_not_know_is_no_difference(reply: Json) -> None:
     older = changed(reply)
     del older["duty"]["maximum_torque_Nm"]
+    for entry in older["candidates"]:
+        del entry["wind_up_arcmin"], entry["reserve"]["brake_torque_Nm"]
 
-    (difference,) = differences(older, reply)
-
-    assert (difference.pointer, difference.change) == ("/duty/maximum_torque_Nm", "added")
-    assert (difference.saved, difference.today) == (None, reply["duty"]["maximum_torque_Nm"])
+    assert differences(older, reply) == []
+    older["candidates"][0]["wind_up_arcmin"] = None
+    assert {one.field for one in differences(older, reply)} == {"wind_up_arcmin"}
 
 
 def test_a_pointer_is_escaped_as_the_standard_says() -> None:

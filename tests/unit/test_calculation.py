@@ -18,9 +18,10 @@ from tests.conftest import Supplement
 def steps_of(document: Json, designation: str, catalogue: Catalogue) -> dict[str, Step]:
     """Steps of the calculation of a gear by their code."""
     application = Application.model_validate(document)
-    candidate = select(application, catalogue).candidate(designation)
+    selection = select(application, catalogue)
+    candidate = selection.candidate(designation)
     assert candidate is not None
-    steps = calculation_of(candidate, catalogue.by_designation[designation], application, catalogue)
+    steps = calculation_of(candidate, selection.duty, catalogue.by_designation[designation], application, catalogue)
     return {step.code: step for step in steps}
 
 

@@ -102,13 +102,14 @@ def test_the_form_and_the_report_have_one_word_for_a_choice(name: str) -> None:
 def test_the_plot_and_the_calculation_state_one_basis(model: str, catalogue: Gears) -> None:
     document = cycle(phase(40, 250), output_load={"radial_N": 500.0, "model": model})
     application = Application.model_validate(document)
-    candidate = select(application, catalogue).candidate("HPN-20A-5")
-    assert candidate is not None
+    selection = select(application, catalogue)
+    candidate = selection.foremost
     gear = catalogue.by_designation[candidate.designation]
     picture = bearing_picture(Subject(application, gear, catalogue), candidate.check("output_bearing_life"))
     assert picture is not None
 
     drawn = str(bearing_figure(envelope_scene(picture), picture, Reader()))
-    notes = [note.text for step in calculation_of(candidate, gear, application, catalogue) for note in step.notes]
+    steps = calculation_of(candidate, selection.duty, gear, application, catalogue)
+    notes = [note.text for step in steps for note in step.notes]
 
     assert sum(note in drawn for note in notes) == 1

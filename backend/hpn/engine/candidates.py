@@ -89,6 +89,10 @@ class Candidate(Reply, frozen=True):
     reserve: Reserve = Reserve()
     checks: Annotated[tuple[CheckResult, ...], Field(min_length=1)] = ()
 
+    def says(self, figure: str) -> bool:
+        """False for a figure that the version of a saved answer did not know; None is then no value of it."""
+        return True
+
     def check(self, code: str) -> CheckResult | None:
         """The check of a code, or None where it was not asked for."""
         return next((check for check in self.checks if check.code == code), None)
@@ -110,7 +114,7 @@ class Candidate(Reply, frozen=True):
         """
         asked, rated = (self.check(code) for code in _UNLIMITED_BY.get(figure, ("", "")))
         known = rated is not None and rated.status != "not_rated"
-        return getattr(self, figure) is None and asked is not None and known
+        return self.says(figure) and getattr(self, figure) is None and asked is not None and known
 
 
 _UNLIMITED_BY = {
@@ -198,6 +202,8 @@ def reason_of(candidate: Candidate, utilisation: float) -> Sentence:
     used, code, failed = candidate.utilisation, candidate.governing_check, len(candidate.failing)
     if used is None or code is None:
         return Sentence(REASONS[_key_without_number(candidate.status, code)], {"name": f"HPN-{candidate.size}"})
+    if code not in BY_CODE:  # a check of another version
+        return Sentence("{text}", {"text": candidate.reason})
     percent = Quantity(_told_percent(used, code, utilisation), "percent", 12)
     values: dict[str, Value] = {"check": BY_CODE[code].title, "percent": percent, "failed": failed}
     return Sentence(REASONS[_key(candidate.status, failed)], values, ("check",))

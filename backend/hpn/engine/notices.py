@@ -168,10 +168,11 @@ class Notice(Reply, frozen=True):
     @property
     def sentence(self) -> Sentence:
         """The notice for any language and units; as it was written where its version kept no values."""
-        template = NOTICES.get(_template_of(self.code, self.values))
-        if template is None or not {name for _, name, *_ in Formatter().parse(template) if name} <= self.values.keys():
+        template = NOTICES.get(_template_of(self.code, self.values), "")
+        names = {name for _, name, *_ in Formatter().parse(template) if name}
+        if not template or not names <= self.values.keys():
             return Sentence("{text}", {"text": self.text})
-        return _sentence(template, self.values)
+        return _sentence(template, {name: self.values[name] for name in names})
 
 
 def _template_of(code: str, values: Mapping[str, Value]) -> str:

@@ -124,7 +124,7 @@ def alternatives_of(candidate: Candidate, reserve_utilisation: float = 1.0) -> t
     None for a gear that is not rejected, where not every check can be judged, and where a driver without a closed form
     would have to change: the motor's torque then depends on its curve, or on the motion.
     """
-    if candidate.status != "unsuitable" or not candidate.is_judged:
+    if candidate.status != "unsuitable" or not candidate.is_judged or not _is_known(candidate):
         return ()
     ways, changed = ways_of(candidate, reserve_utilisation), tuple(_requirements(candidate, reserve_utilisation))
     if any(getattr(way, driver) < 1 for way in ways for driver in MOVES if _is_untold(candidate, driver)):
@@ -132,7 +132,13 @@ def alternatives_of(candidate: Candidate, reserve_utilisation: float = 1.0) -> t
     if any(way.brake_torque_Nm == 0 for way in ways) or _never_stops(candidate):
         return ()
     found = [Alternative(one, changed) for way in ways or (Way(),) for one in _by_stop(way)]
-    return tuple(sorted(found, key=lambda one: len(_clauses(one))))
+    return tuple(sorted(filter(_clauses, found), key=lambda one: len(_clauses(one))))
+
+
+def _is_known(candidate: Candidate) -> bool:
+    """False for a candidate of another version with a check or without a reserve that this one needs."""
+    codes = all(check.code in BY_CODE for check in candidate.failing)
+    return codes and all(candidate.says(f"reserve.{driver}_factor") for driver in MOVES)
 
 
 def _never_stops(candidate: Candidate) -> bool:
@@ -214,6 +220,8 @@ def remedy_of(candidate: Candidate, reserve_utilisation: float = 1.0) -> Sentenc
 
 def _untold(candidate: Candidate) -> str:
     """Why no closed form follows the torque, a msgid; blank where one does."""
+    if not _is_known(candidate):
+        return ""
     by_curve = BY_CURVE if _is_untold(candidate, "torque") else ""
     return BY_INERTIA if _is_untold(candidate, "speed") else by_curve
 
@@ -304,7 +312,7 @@ def _growths(check: CheckResult, u: float, untold: str) -> Iterable[Growth]:
     elif check.code == "momentary_peak_count" and check.demand:
         most = None if check.limit is None else math.floor(u * check.limit * (1 + ROUNDING))
         yield Growth("emergency_stop_count", None if most is None else most / check.demand)
-    for driver, power in BY_CODE[check.code].moves.items():
+    for driver, power in BY_CODE[check.code].moves.items() if check.code in BY_CODE else ():
         yield Growth(driver, None, untold) if untold else _growth(driver, check.utilisation / u, power)
 
 

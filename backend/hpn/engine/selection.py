@@ -16,7 +16,7 @@ from hpn.catalogue import Catalogue
 from hpn.engine.allowed import gears_for, gears_left_out, with_listed_motor
 from hpn.engine.candidates import Candidate, candidates_of
 from hpn.engine.check import Check, Group, Kind
-from hpn.engine.checks import BY_CODE
+from hpn.engine.checks import BY_CODE, name_of
 from hpn.engine.duty import Duty
 from hpn.engine.evaluation import SUITABLE, Evaluation, evaluate
 from hpn.engine.notices import Notice, notices_of
@@ -97,6 +97,11 @@ class Selection(Reply, frozen=True):
         """The selected gear, else the nearest miss among those that could be judged, if any could."""
         return next((candidate for candidate in self.candidates if candidate.is_judged), self.candidates[0])
 
+    def name_of(self, code: str) -> str:
+        """Name of a check as it stands inside a sentence; the title of one of another version."""
+        titled = code not in BY_CODE and code in self.check_definitions
+        return self.check_definitions[code].title if titled else name_of(code)
+
     @property
     def turns_motor(self) -> bool:
         """True where the motor's own inertia counts in its torques, which a notice says."""
@@ -109,9 +114,6 @@ class Selection(Reply, frozen=True):
 
 encode = msgspec.json.Encoder().encode
 """JSON of a selection; NaN and infinity, which stand for unpublished and unlimited, become null."""
-
-decode = msgspec.json.Decoder(Selection).decode
-"""Selection of JSON, also of JSON that an earlier version has saved; raises msgspec.MsgspecError for any other."""
 
 
 class Outcome(NamedTuple):

@@ -106,31 +106,23 @@ def differences(saved: Selection | Mapping[str, Any], today: Selection | Mapping
     before.add(saved)
     after.add(today)
     largest = _largest_of_lists(before, after)
-    unknown = LATER_FIGURES if _is_before_them(before) else frozenset[str]()
+    known = {_of_any(name) for name in before.values}
+    kinds = {name[:-1] for name in known}
     found = [
         _difference(name, before.values.get(name), after.values.get(name))
         for name in before.values | after.values
-        if not (name[0] == "candidates" and name[-1] in unknown) and _differs(name, before, after, largest)
+        if (one := _of_any(name)) in known or one[:-1] not in kinds
+        if _differs(name, before, after, largest)
     ]
     if not any(one.kind == "figure" or one.field == "status" for one in found):
         found = [structs.replace(one, cause="tie_rule") if one.kind == "verdict" else one for one in found]
     return sorted(found, key=_weight)
 
 
-LATER_FIGURES = frozenset(
-    (
-        *("natural_frequency_Hz", "drive_resonance_Hz", "wind_up_arcmin", "position_error_arcmin", "position_error_mm"),
-        *("stop_torque_Nm", "stopping_time_s", "stopping_angle_deg", "stopping_distance_mm", "stop_energy_J"),
-        *("end_stop_speed_rpm", "motor_lock_speed_rpm"),
-        *("brake_torque_Nm", "brake_torque_repeated_Nm", "load_inertia_kgm2"),
-    )
-)
-"""Figures that earlier versions did not give: a selection that they saved does not differ by having none."""
-
-
-def _is_before_them(saved: _Fields) -> bool:
-    """True for a reply without the figure among them that every rated gear has."""
-    return all(value is None for name, (_, value) in saved.values.items() if name[-1] == "wind_up_arcmin")
+def _of_any(name: Name) -> Name:
+    """Name of a field of any item: where it has such items but none of them has the field, its version knew none."""
+    named = enumerate(name)
+    return tuple("" if place and (name[place - 1] in BRIEFLY or part.isdecimal()) else part for place, part in named)
 
 
 def _list_of(name: Name) -> Name:
@@ -149,6 +141,8 @@ def _largest_of_lists(*replies: _Fields) -> dict[Name, float]:
 
 def _differs(name: Name, before: _Fields, after: _Fields, largest: Mapping[Name, float]) -> bool:
     old, new = before.values.get(name), after.values.get(name)
+    if (old is None or old[1] is None) and (new is None or new[1] is None):
+        return False  # what is left out is null
     if old is not None and new is not None:
         return not is_same(old[1], new[1], TOLERANCE * largest.get(_list_of(name), 0.0))
     lacking = before.items if old is None else after.items

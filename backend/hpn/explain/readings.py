@@ -90,8 +90,9 @@ def shortest_life(candidate: Candidate, application: Application | None) -> Life
     if candidate.life_L10_h is not None or candidate.is_unlimited("life_L10_h"):
         lives.append((_endless(candidate.life_L10_h), Life("life", candidate.life_L10_h, "L10")))
     bearing, load = candidate.check("output_bearing_life"), application.loads if application else None
-    if bearing and bearing.status != "not_rated":
-        basis: LifeBasis = load.life_basis if load else "L50"
+    basis: LifeBasis = load.life_basis if load else "L50"
+    known = all(candidate.says(f"bearing_life_{each}_h") for each in ("L10", basis))
+    if bearing and bearing.status != "not_rated" and known:
         judged = candidate.bearing_life_L10_h if basis == "L10" else candidate.bearing_life_L50_h
         lives.append((_endless(candidate.bearing_life_L10_h), Life("output_bearing_life", judged, basis)))
     return min(lives, key=itemgetter(0))[1] if lives else None
@@ -133,7 +134,7 @@ def readings_of(
     readings: dict[str, Reading] = {}
     for check in candidate.checks:
         reading = None
-        if check.code == "output_bearing_life" and load:
+        if check.code == "output_bearing_life" and load and candidate.says(f"bearing_life_{load.life_basis}_h"):
             reading = _bearing_life(candidate, check, load, u)
         if check.code == "output_bearing_load" and application and load and catalogue and gear:
             reading = _bearing_load(check, application, load, catalogue, gear, u)

@@ -12,7 +12,8 @@ from starlette.requests import Request
 from hpn import ENGINE_VERSION
 from hpn.application import Application, InputError
 from hpn.catalogue import Catalogue
-from hpn.engine.selection import Selection, decode, encode, select
+from hpn.engine.kept import UnreadableReplyError, decode, fields_of
+from hpn.engine.selection import Selection, encode, select
 from hpn.explain.differences import Difference, FigureDifference, differences, figure_differences
 from hpn.store import Draft, KeyReusedError, KeySpentError, SavedSelection
 from hpn.web.door.observation import note
@@ -192,14 +193,25 @@ def not_found(id: str) -> Problem:
     return Problem(404, f"there is no saved selection {id[:60]!r}; it may have been deleted")
 
 
+def answer_of(saved: SavedSelection) -> Selection:
+    """The answer as it was saved; Problem 409 for one that can't be read."""
+    try:
+        return decode(saved.result)
+    except UnreadableReplyError as error:
+        raise Problem(409, Sentence(UNREADABLE), [(("result",), str(error))]) from None
+
+
+UNREADABLE = N_("What was saved here can’t be read: parts are missing that the answers of every version have.")
+
+
 def reopen(saved: SavedSelection, then: Catalogue | None, catalogue: Catalogue) -> Reopened:
     """Ask today's engine and catalogue again, and compare; what was saved stays as it is."""
-    before = decode(saved.result)
+    before = answer_of(saved)
     application, after, found, problem = None, None, list[Difference](), None
     try:
         application = Application.model_validate_json(saved.application)
         after = select(application, catalogue, to_link(application))
-        found = differences(before, after)
+        found = differences(fields_of(saved.result), after)
     except (ValidationError, InputError) as error:
         problem = Problem.of(error)
     link = _link(saved, after or before, catalogue)

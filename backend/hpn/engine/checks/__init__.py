@@ -16,6 +16,16 @@ CHECKS: tuple[Check, ...] = (*GEAR, *OUTPUT_BEARING, *MOTOR, *PROPERTIES)
 BY_CODE = {check.code: check for check in CHECKS}
 
 
+def name_of(code: str) -> str:
+    """Name of a check as it stands inside a sentence; the code of one of another version."""
+    return BY_CODE[code].name if code in BY_CODE else code
+
+
 def allowed(code: str | None, utilisation: float) -> float:
-    """Largest utilisation with which the check of a code passes; 1 where there is none to name."""
-    return 1.0 if code is None else BY_CODE[code].allowed(utilisation)
+    """Largest utilisation with which the check of a code passes; 1 where there is none to name.
+
+    A check of another version, which this one does not know, counts as a load check.
+    """
+    if code is None:
+        return 1.0
+    return BY_CODE[code].allowed(utilisation) if code in BY_CODE else utilisation

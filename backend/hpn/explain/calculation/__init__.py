@@ -3,28 +3,79 @@
 Only shows what the selection has worked out: a test holds every formula against the figure of the candidate.
 """
 
+import math
+from collections.abc import Callable, Iterable, Iterator
+
 from hpn.application import Application
 from hpn.catalogue import Catalogue
 from hpn.catalogue.gear import Gear
 from hpn.engine.allowed import with_listed_motor
 from hpn.engine.candidates import Candidate
-from hpn.explain.calculation.handbook import handbook_steps
-from hpn.explain.calculation.motor import motor_steps
+from hpn.engine.selection import DutyFigures
+from hpn.explain.calculation.formula import Formula, Subtraction, Term, inside, value_of
+from hpn.explain.calculation.handbook import HANDBOOK
+from hpn.explain.calculation.motor import MOTOR
 from hpn.explain.calculation.output_bearing import bearing_steps
-from hpn.explain.calculation.sheet import Comparison, Line, Sheet, Step
-from hpn.explain.calculation.stiffness import stiffness_steps, stop_steps
+from hpn.explain.calculation.sheet import Comparison, LackingFigureError, Line, Sheet, Step
+from hpn.explain.calculation.stiffness import frequency_steps, position_steps, stop_steps
+from hpn.words.wording import N_, Sentence
 
 __all__ = ["Comparison", "Line", "Step", "calculation_of"]
 
+STEPS: tuple[Callable[[Sheet], Iterable[Step]], ...] = (
+    *(stop_steps, *HANDBOOK, *MOTOR),
+    *(bearing_steps, frequency_steps, position_steps),
+)
+"""Steps in the order of the handbook, then motor, output bearing and stiffness."""
+
+OTHERWISE = N_("The version that saved this calculated it otherwise: its result stands, without an equation.")
+
+AGREEMENT = 1e-9
+"""Relative difference of a formula and its figure that rounding explains."""
+
 
 def calculation_of(
-    candidate: Candidate, gear: Gear, application: Application, catalogue: Catalogue
+    candidate: Candidate, duty: DutyFigures, gear: Gear, application: Application, catalogue: Catalogue
 ) -> tuple[Step, ...]:
-    """Every equation that applies to a gear, in the order of the handbook, then motor, output bearing and stiffness.
+    """Every equation that applies to a gear, in the order of STEPS.
 
-    `candidate` is the result for the gear under the application. Equations that need an unpublished figure are left
-    out.
+    `candidate` and `duty` are the answer for the gear under the application, as it was judged just now or when it was
+    saved. Steps that need an unpublished figure, or one that the answer lacks, are left out; a step whose equations do
+    not give the figures of the answer keeps its comparisons alone.
     """
-    sheet = Sheet(candidate, gear, with_listed_motor(application, catalogue), catalogue)
-    handbook, motor = (*stop_steps(sheet), *handbook_steps(sheet)), motor_steps(sheet)
-    return (*handbook, *motor, *bearing_steps(sheet), *stiffness_steps(sheet))
+    sheet = Sheet(candidate, duty, gear, with_listed_motor(application, catalogue), catalogue)
+    return tuple(step if _holds(step) else _as_saved(step) for make in STEPS for step in _known(make(sheet)))
+
+
+def _known(steps: Iterable[Step]) -> Iterator[Step]:
+    """Steps up to the first that needs a figure which the answer lacks."""
+    try:
+        yield from steps
+    except LackingFigureError:
+        return
+
+
+def _holds(step: Step) -> bool:
+    """True for a step whose equations give its figures."""
+    try:
+        return all(
+            math.isclose(figure, computed, rel_tol=AGREEMENT, abs_tol=_room(formula))
+            for figure, computed, formula in (
+                *((line.result.value, line.by_hand({}), line.formula) for line in step.lines),
+                *((one.value, value_of(one.tested), one.tested) for one in step.comparisons),
+            )
+        )
+    except (ArithmeticError, TypeError):  # a power of a negative number is complex
+        return False
+
+
+def _room(formula: Formula) -> float:
+    """Difference that is left of rounding where a formula takes one large number from another."""
+    taken = (one for one in inside(formula) if isinstance(one, Subtraction))
+    return AGREEMENT * math.fsum(abs(value_of(one.left)) + abs(value_of(one.right)) for one in taken)
+
+
+def _as_saved(step: Step) -> Step:
+    """A step without the equations of this version; a comparison stays where a figure alone is compared."""
+    compared = tuple(one for one in step.comparisons if isinstance(one.tested, Term))
+    return Step(step.code, step.title, step.equation, (), compared, (Sentence(OTHERWISE),))

@@ -19,18 +19,7 @@ LARGEST_WORTH_ROUNDING = 1e6
 """Largest number that is rounded to a whole number by hand."""
 
 
-def handbook_steps(sheet: Sheet) -> Iterable[Step]:
-    """Steps in the order of the handbook's page 17."""
-    yield _average_torque(sheet)
-    yield _average_output_speed(sheet)
-    yield _average_input_speed(sheet)
-    yield _maximum_input_speed(sheet)
-    yield from _peaks(sheet)
-    yield from _stops(sheet)
-    yield from _life(sheet)
-
-
-def _average_torque(sheet: Sheet) -> Step:
+def _average_torque(sheet: Sheet) -> Iterable[Step]:
     above = over_phases(lambda n, t, T: abs(n * t) * T**TEN_THIRDS, sheet.speed, sheet.time, sheet.torque)
     notes = [
         Sentence(
@@ -45,23 +34,23 @@ def _average_torque(sheet: Sheet) -> Step:
     if sheet.varies:
         notes.append(Sentence(VARYING))
     line = Line(sheet.T_av, Root(above / sheet.travel, TEN_THIRDS))
-    return step_of_check("average_torque", (line,), sheet.compared("average_torque", sheet.T_av), tuple(notes))
+    yield step_of_check("average_torque", (line,), sheet.compared("average_torque", sheet.T_av), tuple(notes))
 
 
-def _average_output_speed(sheet: Sheet) -> Step:
+def _average_output_speed(sheet: Sheet) -> Iterable[Step]:
     named = DUTY["average_output_speed_rpm"]
     line = Line(sheet.n_out_av, sheet.travel / sheet.cycle_time)
-    return Step("average_output_speed", named.name, named.equation, (line,))
+    yield Step("average_output_speed", named.name, named.equation, (line,))
 
 
 # --- Input speeds -----------------------------------------------------------------------------------------------------
 
 
-def _average_input_speed(sheet: Sheet) -> Step:
+def _average_input_speed(sheet: Sheet) -> Iterable[Step]:
     line = _average_input_speed_line(sheet)
     codes = ("average_input_speed", "motor_rated_speed")
     limits = tuple(limit for code in codes for limit in sheet.compared(code, line.result))
-    return step_of_check("average_input_speed", (line,), limits, _hand_input_speed(sheet, line))
+    yield step_of_check("average_input_speed", (line,), limits, _hand_input_speed(sheet, line))
 
 
 def _average_input_speed_line(sheet: Sheet) -> Line:
@@ -79,11 +68,11 @@ def _hand_input_speed(sheet: Sheet, line: Line) -> tuple[Sentence, ...]:
     return (Sentence(text, values),)
 
 
-def _maximum_input_speed(sheet: Sheet) -> Step:
+def _maximum_input_speed(sheet: Sheet) -> Iterable[Step]:
     line = Line(sheet.n_in_max, sheet.n_out_max * sheet.i)
     codes = ("maximum_input_speed", "motor_speed")
     limits = tuple(limit for code in codes for limit in sheet.compared(code, sheet.n_in_max))
-    return step_of_check("maximum_input_speed", (line,), limits, _on_peaks(sheet))
+    yield step_of_check("maximum_input_speed", (line,), limits, _on_peaks(sheet))
 
 
 # --- Peaks ------------------------------------------------------------------------------------------------------------
@@ -185,3 +174,10 @@ def _hand(value: float) -> float | None:
     if not 0.01 <= value < LARGEST_WORTH_ROUNDING:
         return None
     return float(round(value)) if value >= 10 else float(f"{value:.2g}")
+
+
+HANDBOOK = (
+    *(_average_torque, _average_output_speed, _average_input_speed, _maximum_input_speed),
+    *(_peaks, _stops, _life),
+)
+"""Steps in the order of the handbook's page 17."""

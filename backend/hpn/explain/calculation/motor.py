@@ -25,12 +25,6 @@ BY_CURVE = N_(
 )
 
 
-def motor_steps(sheet: Sheet) -> Iterable[Step]:
-    """Steps of peak and RMS torque, loss-free where no efficiency is known, and of the inertia ratio if asked for."""
-    yield from _torques(sheet)
-    yield from _inertia_ratio(sheet)
-
-
 def _torques(sheet: Sheet) -> Iterable[Step]:
     course, inertia = sheet.duty.courses.get(0), sheet.given("requirements.motor.inertia_kgm2")
     if course is not None and inertia is not None:
@@ -64,10 +58,10 @@ def _along_the_motion(sheet: Sheet, course: Course, inertia: Term) -> Iterable[S
     of_phases = PhaseValues(MOTOR_RMS, np.sqrt(np.maximum(squares, 0.0) / course.duration_s), "Nm")
     series = over_phases(lambda T, t: T**2 * t, of_phases, sheet.time)
     peak, notes = _at_its_instant(sheet, course, inertia, at_peak)
-    yield _step(sheet, "motor_peak_torque", MOTOR_PEAK, peak, *common, *notes)
+    yield from _step(sheet, "motor_peak_torque", MOTOR_PEAK, peak, *common, *notes)
     rated = Root(series / sheet.cycle_time)
     of_each = Sentence(N_("T_in,rms of a phase is the RMS of the motor’s torque over the course of that phase."))
-    yield _step(sheet, "motor_rated_torque", MOTOR_RMS, rated, *common, of_each)
+    yield from _step(sheet, "motor_rated_torque", MOTOR_RMS, rated, *common, of_each)
 
 
 def _own_inertia(sheet: Sheet, motor: Term) -> Term:
@@ -163,13 +157,15 @@ def _by_phase(sheet: Sheet) -> Iterable[Step]:
 
 def _steps(sheet: Sheet, peak: Formula, rated: Formula) -> Iterable[Step]:
     notes = (*_on_efficiency(sheet), *([Sentence(OWN)] if _without_load(sheet) else []))
-    yield _step(sheet, "motor_peak_torque", MOTOR_PEAK, peak, *notes)
-    yield _step(sheet, "motor_rated_torque", MOTOR_RMS, rated, *notes)
+    yield from _step(sheet, "motor_peak_torque", MOTOR_PEAK, peak, *notes)
+    yield from _step(sheet, "motor_rated_torque", MOTOR_RMS, rated, *notes)
 
 
-def _step(sheet: Sheet, code: str, symbol: Variable, formula: Formula, *notes: Sentence) -> Step:
+def _step(sheet: Sheet, code: str, symbol: Variable, formula: Formula, *notes: Sentence) -> Iterable[Step]:
+    if not sheet.candidate.says(f"{code}_Nm"):
+        return
     torque = replace(known(sheet.figure(f"{code}_Nm")), symbol=symbol)
-    return step_of_check(code, (Line(torque, formula),), sheet.compared(code, torque), notes)
+    yield step_of_check(code, (Line(torque, formula),), sheet.compared(code, torque), notes)
 
 
 # --- Inertia ----------------------------------------------------------------------------------------------------------
@@ -188,3 +184,7 @@ def _inertia_ratio(sheet: Sheet) -> Iterable[Step]:
         note = N_("J_L is the inertia of the motion’s load at the gear’s output.")
     limit = sheet.compared("inertia_ratio", formula)
     yield step_of_check("inertia_ratio", (), limit, (Sentence(note),))
+
+
+MOTOR = (_torques, _inertia_ratio)
+"""Steps of peak and RMS torque, loss-free where no efficiency is known, and of the inertia ratio if asked for."""

@@ -13,6 +13,7 @@ from hpn.engine.check import Check
 from hpn.engine.checks import BY_CODE
 from hpn.engine.duty import Duty
 from hpn.engine.evaluation import CheckStatus
+from hpn.engine.selection import DutyFigures
 from hpn.explain.calculation.formula import (
     Formula,
     PhaseValues,
@@ -104,17 +105,28 @@ def step_of_check(
     return Step(code, check.title, check.equation, lines, comparisons, notes)
 
 
+class LackingFigureError(LookupError):
+    """A figure that a step needs and that a saved answer does not have."""
+
+
 def known(term: Term | None) -> Term:
-    """Term of a value that is always present."""
-    assert term is not None
+    """Term of a value that its step needs; raises LackingFigureError without one."""
+    if term is None:
+        raise LackingFigureError
     return term
 
 
 class Sheet:
-    """Figures for the steps of one gear: the candidate's, the gear's, the duty's and the phases."""
+    """Figures for the steps of one gear: the candidate's, the gear's, the duty's and the phases.
 
-    def __init__(self, candidate: Candidate, gear: Gear, application: Application, catalogue: Catalogue) -> None:
-        self.candidate, self.gear, self.application, self.catalogue = candidate, gear, application, catalogue
+    What an answer says is taken from it, never computed again.
+    """
+
+    def __init__(
+        self, candidate: Candidate, figures: DutyFigures, gear: Gear, application: Application, catalogue: Catalogue
+    ) -> None:
+        self.candidate, self.figures, self.gear = candidate, figures, gear
+        self.application, self.catalogue = application, catalogue
         self.duty = Duty.of([application])
         self.torque = self._of_phases("torque_Nm")
         self.peak_torque = self._varying("peak_torque_Nm", self.torque)
@@ -126,10 +138,23 @@ class Sheet:
         self.T_av, self.n_out_av = self._of_duty("average_torque_Nm"), self._of_duty("average_output_speed_rpm")
         self.T_max, self.n_out_max = self._of_duty("maximum_torque_Nm"), self._of_duty("maximum_output_speed_rpm")
         self.i = known(self.rating("ratio"))
-        self.n_in_av = known(self.figure("average_input_speed_rpm"))
-        self.n_in_max = known(self.figure("maximum_input_speed_rpm"))
-        self.T_k = self.figure("stop_torque_Nm") or self.given("emergency_stop.torque_Nm")
         self.load_inertia = self._load_inertia()
+
+    @property
+    def n_in_av(self) -> Term:
+        """Average input speed."""
+        return known(self.figure("average_input_speed_rpm"))
+
+    @property
+    def n_in_max(self) -> Term:
+        """Largest input speed."""
+        return known(self.figure("maximum_input_speed_rpm"))
+
+    @property
+    def T_k(self) -> Term | None:
+        """Torque of the emergency stop: the answer's, else as it is given."""
+        own = self.figure("stop_torque_Nm") if self.candidate.says("stop_torque_Nm") else None
+        return own or self.given("emergency_stop.torque_Nm")
 
     def _of_phases(self, name: str) -> PhaseValues:
         values: FloatArray = getattr(self.duty.phases, name)[0, 0]
@@ -155,10 +180,12 @@ class Sheet:
         return varying if (varying.values != steady.values).any() else steady
 
     def _of_duty(self, name: str) -> Term:
-        return _term(DUTY[name], name, getattr(self.duty, name).item())
+        return _term(DUTY[name], name, getattr(self.figures, name))
 
     def figure(self, name: str) -> Term | None:
-        """Figure of the candidate, or None."""
+        """Figure of the candidate, or None; LackingFigureError where its version did not know it."""
+        if not self.candidate.says(name):
+            raise LackingFigureError(name)
         value: float | None = getattr(self.candidate, name)
         return None if value is None else _term(CANDIDATE[name], name, value)
 

@@ -18,8 +18,8 @@ ARCMIN, DEGREES = Constant(10800, "arcmin") / PI, Constant(180, "deg") / PI
 UNIFORM = Sentence(N_("The stop starts at constant speed; the rising brake torque takes over from the motor’s."))
 
 
-def stiffness_steps(sheet: Sheet) -> Iterable[Step]:
-    """Frequency, resonance, wind-up and position error, as far as the gear's figures are published."""
+def frequency_steps(sheet: Sheet) -> Iterable[Step]:
+    """Natural frequency and resonance, as far as the gear's figures are published."""
     K_3, J = sheet.rating("torsional_stiffness_Nm_per_rad"), sheet.load_inertia
     if K_3 is None:
         return
@@ -30,7 +30,6 @@ def stiffness_steps(sheet: Sheet) -> Iterable[Step]:
             lines.append(Line(free, _frequency(K_3 * (1 / J + 1 / at_output(sheet)))))
         note = Sentence(CANDIDATE["natural_frequency_Hz"].caveat)
         yield step_of_check("natural_frequency", tuple(lines), sheet.compared("natural_frequency", held), (note,))
-    yield _position(sheet, K_3)
 
 
 def _frequency(square: Formula) -> Formula:
@@ -43,8 +42,11 @@ def at_output(sheet: Sheet) -> Formula:
     return sheet.i**2 * (J_m if J_g is None else J_m + J_g)
 
 
-def _position(sheet: Sheet, K_3: Term) -> Step:
+def position_steps(sheet: Sheet) -> Iterable[Step]:
     """Wind-up under T_max, and what adds up to the position error."""
+    K_3 = sheet.rating("torsional_stiffness_Nm_per_rad")
+    if K_3 is None:
+        return
     wind_up, error = known(sheet.figure("wind_up_arcmin")), known(sheet.figure("position_error_arcmin"))
     lowest, highest = (torque.item() for torque in sheet.duty.torque_range_Nm)
     T_lo, T_hi = Term(Variable("T", "lo"), lowest, "Nm"), Term(Variable("T", "hi"), highest, "Nm")
@@ -58,7 +60,7 @@ def _position(sheet: Sheet, K_3: Term) -> Step:
         lines.append(Line(length, error / ARCMIN * radius))
     torques = Sentence(BOTH_WAYS if sheet.duty.torque_both_ways.item() else BY_SIGN)
     notes = (torques, Sentence(CANDIDATE["position_error_arcmin"].caveat))
-    return step_of_check("position_error", tuple(lines), sheet.compared("position_error", error), notes)
+    yield step_of_check("position_error", tuple(lines), sheet.compared("position_error", error), notes)
 
 
 BOTH_WAYS = N_("The torque is assumed to act both ways: T_lo is −T_max and T_hi is T_max.")

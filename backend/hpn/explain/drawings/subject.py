@@ -8,17 +8,22 @@ from hpn.application import Application
 from hpn.catalogue import Catalogue, GearList
 from hpn.catalogue.gear import Gear
 from hpn.engine.allowed import with_listed_motor
+from hpn.engine.candidates import Candidate
 from hpn.engine.duty import Duty
 from hpn.engine.figures import Figures
 
 
 @dataclass(frozen=True)
 class Subject:
-    """An application and one gear; figures shared by its pictures are computed once, for the first that uses them."""
+    """An application and one gear; figures shared by its pictures are computed once, for the first that uses them.
+
+    `chosen` is the gear as it was judged, just now or when it was saved.
+    """
 
     application: Application
     gear: Gear
     catalogue: Catalogue
+    chosen: Candidate | None = None
 
     @cached_property
     def duty(self) -> Duty:
@@ -57,7 +62,11 @@ class Subject:
     @cached_property
     def emergency_stop_torque_Nm(self) -> float | None:
         """Torque of the emergency stop on the gear by magnitude, or None where there is none."""
-        if self.application.emergency_stop is None:
+        stop = self.application.emergency_stop
+        if stop is None:
             return None
+        if self.chosen is not None:
+            own = self.chosen.says("stop_torque_Nm")
+            return self.chosen.stop_torque_Nm if own else stop.torque_Nm and abs(stop.torque_Nm)
         T_k = self.of_gear.stop_torque_Nm.item()
         return None if isnan(T_k) else T_k

@@ -309,7 +309,7 @@ def _check(export: Export, check: CheckResult) -> model.SubmodelElementCollectio
         check.code,
         [*_properties_of(figures), *([model.Property("unit", str, definition.unit)] if definition.unit else [])],
         display_name=model.MultiLanguageNameType(texts(definition.title)),
-        description=model.MultiLanguageTextType(texts(definition.basis)),
+        description=model.MultiLanguageTextType(texts(definition.basis)) if definition.basis else None,
     )
 
 

@@ -35,7 +35,7 @@ def checks(export: Export, reader: Reader) -> list[Row]:
     limits = {limit.code: limit for step in steps for limit in step.comparisons}
     for check in export.candidate.checks:
         if check.code not in shown:
-            rows.append((ORDER[check.code], _of_check(check, limits.get(check.code), export, reader)))
+            rows.append((ORDER.get(check.code, len(ORDER)), _of_check(check, limits.get(check.code), export, reader)))
     return [row for _, row in sorted(rows, key=lambda row: row[0])]
 
 
@@ -54,7 +54,7 @@ def _steps(export: Export) -> tuple[Step, ...]:
     gear = export.gear(export.candidate)
     if gear is None or export.figures is None:
         return ()
-    return calculation_of(export.candidate, gear, export.application, export.figures)
+    return calculation_of(export.candidate, export.selection.duty, gear, export.application, export.figures)
 
 
 def _of_step(step: Step, export: Export, reader: Reader) -> Row:

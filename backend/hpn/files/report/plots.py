@@ -39,7 +39,8 @@ def pictures_of(export: Export, reader: Reader) -> Pictures | None:
     gear = export.gear(export.candidate)
     if gear is None or export.figures is None:
         return None
-    return Pictures(Subject(export.application, gear, export.figures), export.candidate, reader)
+    subject = Subject(export.application, gear, export.figures, export.candidate)
+    return Pictures(subject, export.candidate, reader)
 
 
 def cycle(export: Export, pictures: Pictures | None, reader: Reader) -> dict[str, str]:

@@ -5,7 +5,6 @@ from typing import Any
 
 from hpn.catalogue.gear import Gear
 from hpn.engine.candidates import Candidate
-from hpn.engine.checks import BY_CODE
 from hpn.engine.remedy import remedy_of
 from hpn.files.export import Export
 from hpn.files.report.checks import bar, failures
@@ -57,7 +56,7 @@ def verdict(export: Export, reader: Reader) -> dict[str, Any]:
         "rank": reader.told(_rank(export)),
         "text": sentence(" ".join(said)),
         **bar(candidate.utilisation, bound_of(export, code), candidate.status, reader),
-        "governing": reader.text(BY_CODE[code].name) if code else "",
+        "governing": reader.text(export.selection.name_of(code)) if code else "",
         "allowed": exact_percent(export.application.requirements.utilisation, reader),
         "facts": [[sentence(label), text] for label, text in _facts(export, reader) if text],
     }
@@ -77,8 +76,9 @@ def _facts(export: Export, reader: Reader) -> Iterable[tuple[str, str]]:
             N_("Bearing life {basis}, asked {life}"), {"basis": load.life_basis, "life": Quantity(load.life_h, "h", 6)}
         )
         life = candidate.bearing_life_L10_h if load.life_basis == "L10" else candidate.bearing_life_L50_h
-        yield reader.told(asked), _life(life, life is None, reader)
-    yield reader.text(N_("Gear life L_10")), _gear_life(candidate, reader)
+        known = candidate.says(f"bearing_life_{load.life_basis}_h")
+        yield reader.told(asked), _life(life, life is None, reader) if known else ""
+    yield reader.text(N_("Gear life L_10")), _gear_life(candidate, reader) if candidate.says("life_L10_h") else ""
     if gear:
         yield reader.text(GEAR["weight_kg"].name), _published(gear.weight_kg, "kg", reader)
         yield reader.text(N_("Length")), _length(gear, reader)
@@ -187,7 +187,7 @@ def _row(export: Export, candidate: Candidate, reader: Reader) -> dict[str, Any]
         "gear": candidate.designation,
         "is_reported": candidate.designation == export.candidate.designation,
         **bar(candidate.utilisation, bound_of(export, code), candidate.status, reader),
-        "governing": reader.text(BY_CODE[code].name) if code else "",
+        "governing": reader.text(export.selection.name_of(code)) if code else "",
         "figures": [
             _published(gear.weight_kg if gear else None, "kg", reader),
             _length(gear, reader),

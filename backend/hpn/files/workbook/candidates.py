@@ -53,6 +53,7 @@ class CandidatesSheet:
         self.symbols = {name: GEAR[field].symbol for name, field in RATINGS.items()}
         known = Known(book.export, book.export.candidate, book.words)
         self.symbols |= {term.name: known.symbol(term) for term in GEAR_TERMS}
+        self.unknown = known.unknown()
         units = {name: symbol_of(field) for name, field in RATINGS.items()}
         units |= {term.name: term.unit for term in GEAR_TERMS}
         self.converted = {name: unit for name, unit in units.items() if not book.shown.measure(unit).same}
@@ -123,6 +124,8 @@ class CandidatesSheet:
         self.sheet.set_column(USED, len(heads) - 1, WIDTH)
         for column, check in enumerate(CHECKS, USED):
             self.sheet.set_column(column, column, CHECK_WIDTH, None, {} if check.code in self.asked else FOLDED)
+        for name in self.unknown:
+            self.sheet.set_column(COLUMNS[name], COLUMNS[name], WIDTH, None, {"hidden": True})
         self.sheet.freeze_panes(1, 1)
 
     def _row(self, row: int, candidate: Candidate) -> None:

@@ -3,8 +3,11 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from msgspec import structs
+
 from hpn.engine.candidates import FIGURES, Candidate, CheckResult
 from hpn.engine.checks.motor import MOTOR
+from hpn.explain.differences import is_same
 from hpn.explain.readings import figure_symbol
 from hpn.files.export import Export
 from hpn.files.workbook.formulas import (
@@ -66,10 +69,32 @@ class Known:
             fixed |= DEMANDS.keys()
         if self.export.follows_efficiency_curve(self.candidate) or self.export.selection.turns_motor:
             fixed |= set(MOTOR_TORQUES)
-        fixed |= self._by_supplement() | self._by_brake()
+        fixed |= self._by_supplement() | self._by_brake() | self.unknown() | self._otherwise()
         if self.export.figures is None and self._has_listed_motor:
             fixed |= {check.code for check in MOTOR}
         return fixed
+
+    def unknown(self) -> set[str]:
+        """Terms that the version of a saved answer did not know."""
+        return {term.name for term in GEAR_TERMS if term.field and not self.candidate.says(term.field)}
+
+    def _otherwise(self) -> set[str]:
+        """Terms and codes of checks that a saved answer has otherwise than this version's equations give them."""
+        today = self.export.today and self.export.today.candidate(self.candidate.designation)
+        if not today:
+            return set()
+        figures = {term.name: term.field for term in GEAR_TERMS if term.field}
+        own = {
+            name
+            for name, field in figures.items()
+            if not is_same(getattr(self.candidate, field), getattr(today, field))
+        }
+        checks = {
+            check.code
+            for check in self.candidate.checks
+            if check.code in CHECK_FORMULAS and not _is_same_check(check, today.check(check.code))
+        }
+        return own | checks | {name for name, code in DEMANDS.items() if code in checks}
 
     def _by_supplement(self) -> set[str]:
         """Terms and checks that depend on the gear's own inertia or no-load torque."""
@@ -123,6 +148,10 @@ class Known:
         """Utilisation of the candidate as saved."""
         unlimited = NONE if self.candidate.status == "unsuitable" else ""
         return unlimited if self.candidate.utilisation is None else self.candidate.utilisation
+
+
+def _is_same_check(saved: CheckResult, today: CheckResult | None) -> bool:
+    return today is not None and all(map(is_same, structs.astuple(saved), structs.astuple(today)))
 
 
 def demand_of(check: CheckResult | None) -> float | str:

@@ -160,6 +160,8 @@ class Overview(Lines):
             self._remark(term)
             self.book.name_cell(term.name, self.sheet, self.row, 2)
             self.converted(term.unit, values[term.name])
+            if term.name in self.known.unknown():
+                self.sheet.set_row(self.row, None, None, {"hidden": True})
             self.row += 1
         self.row += 1
 

@@ -15,12 +15,12 @@ from starlette.responses import Response
 
 from hpn.application import Application
 from hpn.catalogue import Catalogue
-from hpn.engine.selection import decode, judge, select
+from hpn.engine.selection import judge, select
 from hpn.files.aas import Metamodel
 from hpn.files.export import DIGITS, Export, Heading, made_by
 from hpn.store import SavedSelection
 from hpn.web.api import schemas
-from hpn.web.archive import url_of, with_catalogue
+from hpn.web.archive import answer_of, url_of, with_catalogue
 from hpn.web.door.access import admit
 from hpn.web.door.bodies import parsed, read_body
 from hpn.web.door.conditions import etag_of, has_already
@@ -188,7 +188,7 @@ def _of_saved(saved: SavedSelection, catalogue: Catalogue | None, request: Reque
         raise Problem(409, "the saved input does not fit this version’s model any more") from None
     return Export(
         application=application,
-        selection=decode(saved.result),
+        selection=answer_of(saved),
         link=absolute(request, url_of(saved.id)),
         heading=Heading(*(getattr(saved, part.name) or "" for part in fields(Heading))),
         created=saved.created,

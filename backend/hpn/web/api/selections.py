@@ -130,7 +130,7 @@ def _draft(body: bytes, catalogue: Catalogue, key: str | None, owner: str | None
     summary="Read a saved selection",
     openapi_extra=schemas.IF_NONE_MATCH,
     response_model=SavedSelectionReply,
-    responses=schemas.tagged(404, 422, links=schemas.FROM_SELECTION),
+    responses=schemas.tagged(404, 409, 422, links=schemas.FROM_SELECTION),
 )
 async def read_selection(request: Request, id: schemas.Id) -> Response:
     """Input and result as saved, and the differences under today's engine and catalogue, verdicts first."""
@@ -180,7 +180,7 @@ async def list_selections(
     openapi_extra=schemas.request_body(Names, JSON, MERGE_PATCH)
     | {"parameters": [schemas.header("If-Match", "Tag of the version to rename.")]},
     response_model=SavedSelectionReply,
-    responses=schemas.answers(*(400, 403, 404, 408, 412, 413, 415, 422), headers=schemas.headers("ETag")),
+    responses=schemas.answers(*(400, 403, 404, 408, 409, 412, 413, 415, 422), headers=schemas.headers("ETag")),
 )
 async def rename_selection(request: Request, id: schemas.Id) -> Response:
     """Changes title or reference of a saved selection; null removes one, and a field that is left out stays.

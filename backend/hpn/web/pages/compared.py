@@ -17,13 +17,12 @@ from hpn.catalogue import Catalogue
 from hpn.engine.candidates import FIGURES, Candidate, CheckResult
 from hpn.engine.check import Check
 from hpn.engine.checks import BY_CODE
-from hpn.engine.selection import decode
 from hpn.explain.differences import is_same
 from hpn.explain.readings import Reading, figure_symbol
 from hpn.files.inputs import LOADS, REQUIREMENTS, InputLine, given
 from hpn.files.motion import lines, move_line
 from hpn.store import SavedSelection
-from hpn.web.archive import with_catalogue
+from hpn.web.archive import answer_of, with_catalogue
 from hpn.web.door.access import admit
 from hpn.web.door.pools import compute
 from hpn.web.door.problems import Problem
@@ -124,7 +123,7 @@ def _side(saved: SavedSelection, catalogue: Catalogue | None) -> Side:
         application: Application | None = Application.model_validate_json(saved.application)
     except ValidationError:
         application = None
-    return Side(saved, result_of(saved, decode(saved.result), application, catalogue))
+    return Side(saved, result_of(saved, answer_of(saved), application, catalogue))
 
 
 def _compared(a: Side, b: Side) -> dict[str, Any]:

@@ -9,7 +9,7 @@ from hpn.application import Application, RankBy
 from hpn.catalogue import Catalogue
 from hpn.catalogue.gear import Gear
 from hpn.engine.candidates import Candidate
-from hpn.engine.checks import BY_CODE, allowed
+from hpn.engine.checks import allowed
 from hpn.engine.remedy import Growth, alternatives_of, condition_of, growths_of, remedy_of
 from hpn.engine.selection import Selection
 from hpn.explain.comparison import lighter_miss
@@ -18,8 +18,9 @@ from hpn.explain.readings import Life, Reading, readings_of, shortest_life
 from hpn.files.export import DIGITS
 from hpn.web.door.visit import current
 from hpn.web.pages.drive import Drive
+from hpn.words.quantities import LISTED
 from hpn.words.reader import Reader
-from hpn.words.wording import Sentence
+from hpn.words.wording import Named, Sentence
 
 LISTED_AT_ONCE = 8
 """Suitable gears that the list shows before somebody unfolds the rest."""
@@ -81,7 +82,7 @@ class Result:
     @property
     def names(self) -> Mapping[str, str]:
         """Checks by code, as they stand inside a sentence."""
-        return {code: BY_CODE[code].name for code in self.selection.check_definitions}
+        return {code: self.selection.name_of(code) for code in self.selection.check_definitions}
 
     @property
     def bounds(self) -> Mapping[str | None, float]:
@@ -103,7 +104,8 @@ class Result:
         """Pictures of the chosen candidate, or None where what they need is not kept."""
         if self.application is None or self.gear is None or self.catalogue is None:
             return None
-        return Pictures(Subject(self.application, self.gear, self.catalogue), self.chosen, current())
+        subject = Subject(self.application, self.gear, self.catalogue, self.chosen)
+        return Pictures(subject, self.chosen, current())
 
     @cached_property
     def drive(self) -> Drive | None:
@@ -165,6 +167,11 @@ class Result:
         chosen = self.chosen.designation == designation
         candidate = self.chosen if chosen else self.selection.candidate(designation)
         return candidate if designation in self.gears else None
+
+    @property
+    def columns(self) -> Mapping[str, Named]:
+        """Figures of which the list of candidates has a column."""
+        return {name: named for name, named in LISTED.items() if self.chosen.says(name)}
 
     @property
     def growths(self) -> Mapping[str, tuple[Growth, ...]]:

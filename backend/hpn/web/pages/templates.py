@@ -15,7 +15,7 @@ from markupsafe import Markup, escape
 from starlette.datastructures import State
 
 from hpn.engine.candidates import Candidate, reason_of
-from hpn.engine.checks import BY_CODE
+from hpn.engine.checks import BY_CODE, name_of
 from hpn.engine.remedy import DRIVER_NAMES
 from hpn.explain.calculation import calculation_of, mathml
 from hpn.explain.drawings import Figure
@@ -273,6 +273,7 @@ GLOBALS: dict[str, Any] = {
     "BODY_COLUMNS": BODY_COLUMNS,
     "calculation_of": calculation_of,
     "CHECKS": BY_CODE,
+    "check_name": name_of,
     "DRIVER_NAMES": DRIVER_NAMES,
     "ENVELOPE_BASIS": ENVELOPE_BASIS,
     "GEAR": GEAR,
