@@ -198,8 +198,28 @@ def _moves(way: str, speed: str, unit: float, acceleration: str, external: str) 
     """A possible move; what its ramps leave to say is said in each of the ways that there are."""
 
     deceleration = acceleration.replace("acc", "dec")
+    jerk = acceleration.replace("acceleration", "jerk").replace("s2", "s3")
 
     def of(
+        profile: str,
+        size: float,
+        time: float,
+        ramps: tuple[float, float],
+        said: int,
+        share: float,
+        load: float | None,
+        by_jerk: bool,
+    ) -> Json:
+        move = by_share(profile, size, time, ramps, said, share, load)
+        if profile == "s_curve" and by_jerk:
+            move.pop("jerk_share", None)
+            lengths = (1 / 3, 1 / 3) if said == 0 else (ramps[0],) * 2 if said < 4 else [min(r, 0.49) for r in ramps]
+            V = abs(size) / (time * (1 - sum(lengths) / 2))
+            # Twice that of the share in the shorter ramp: the longer one gets shorter by it, so that the speed drops.
+            move[jerk] = 4 * V / ((1 - share / 2) * share * (time * min(lengths)) ** 2)
+        return move
+
+    def by_share(
         profile: str, size: float, time: float, ramps: tuple[float, float], said: int, share: float, load: float | None
     ) -> Json:
         ramp = ramps[0]
@@ -242,8 +262,7 @@ def _moves(way: str, speed: str, unit: float, acceleration: str, external: str) 
             9: {speed: fast, "acceleration_time_s": short[0]},
             10: {speed: fast, deceleration: a[1]},
         }
-        jerk = {"jerk_share": share} if profile == "s_curve" else {}
-        return ways[said] | jerk
+        return ways[said] | ({"jerk_share": share} if profile == "s_curve" else {})
 
     return st.builds(
         lambda *drawn: {name: value for name, value in of(*drawn).items() if value is not None},
@@ -254,6 +273,7 @@ def _moves(way: str, speed: str, unit: float, acceleration: str, external: str) 
         st.integers(0, 10),
         st.sampled_from([0.1, 0.5, 1.0]),
         st.none() | st.floats(-40, 40),
+        st.booleans(),
     )
 
 
@@ -288,6 +308,9 @@ def linear_motions() -> st.SearchStrategy[Json]:
     common = {
         "incline_deg": st.floats(-90, 90),
         "friction_coefficient": st.floats(0, 0.3),
+        "friction_force_N": st.floats(0, 300),
+        "friction_torque_Nm": st.floats(0, 5),
+        "counterweight_kg": st.floats(0, 300),
         "inertia_kgm2": st.floats(0, 0.1),
         "efficiency": st.floats(0.5, 1),
         "ratio": st.floats(0.5, 4),
@@ -297,6 +320,9 @@ def linear_motions() -> st.SearchStrategy[Json]:
         lambda kind: st.fixed_dictionaries(
             {"type": st.just(kind), "mass_kg": st.floats(1, 500), size[kind]: st.floats(5, 200)}, optional=common
         )
+    )
+    mechanism = mechanism.map(
+        lambda one: one if one.get("incline_deg") else {k: v for k, v in one.items() if k != "counterweight_kg"}
     )
     return _of(mechanism, _moves("distance_mm", "speed_mm_per_s", 1.0, "acceleration_mm_per_s2", "external_force_N"))
 

@@ -156,6 +156,7 @@ NAMES = {
     "rotary": ("angle_deg", "speed_rpm", "acceleration_deg_per_s2"),
     "": ("distance_mm", "speed_mm_per_s", "acceleration_mm_per_s2"),
 }
+JERKS = {"rotary": "jerk_deg_per_s3", "": "jerk_mm_per_s3"}
 
 
 @given(
@@ -173,7 +174,7 @@ def test_what_the_error_of_a_move_advises_works(
     move: Json = {"profile": profile, names[0]: sign * way}
     move |= {name: value for name, value in zip(("time_s", *names[1:]), given_, strict=True) if value is not None}
     if share is not None and profile == "s_curve":
-        move["jerk_share"] = share
+        move |= {"jerk_share": share} if share < 1 else {JERKS[kind]: 10 * way}
     mechanism = {"type": "rotary", "inertia_kgm2": 1e-3} if kind else {"type": "belt", "mass_kg": 1, "diameter_mm": 50}
     body = {"mechanism": mechanism, "moves": [move]}
 
@@ -197,6 +198,27 @@ def test_what_the_error_of_a_move_advises_works(
             asked[field] = bound if error["detail"].startswith(("must be at least", "must be at most")) else bound * 1.5
             assert str(context["bound"]).partition(" ")[0] in error["detail"]
     assert refusals(body) == []
+
+
+@given(motions(), st.floats(1e-9, 1e-3))
+def test_a_jerk_that_an_error_advises_works_and_none_below_it_does(motion: Json, low: float) -> None:
+    """Every move is possible with some jerk, and with next to none none is."""
+    turning = motion["mechanism"]["type"] == "rotary"
+    name = JERKS["rotary" if turning else ""]
+    light = (
+        {"type": "rotary", "inertia_kgm2": 1e-9} if turning else {"type": "belt", "mass_kg": 1e-9, "diameter_mm": 50}
+    )
+    ramped = [move for move in motion["moves"] if move["profile"] in ("trapezoidal", "s_curve")]
+    moves = [move | {"profile": "s_curve", name: low} for move in ramped]
+    for move in moves:
+        move.pop("jerk_share", None)
+        body = {"mechanism": light, "moves": [move]}
+        [error] = refusals(body)
+        bound = float(str(error["ctx"]["bound"]).partition(" ")[0])
+        move[name] = bound * (1 - 2e-5)  # it is said with six digits, rounded up
+        assert [error["pointer"].rpartition("/")[2] for error in refusals(body)] == [name]
+        move[name] = bound
+        assert refusals(body) == []
 
 
 @pytest.mark.parametrize("extra", ["speed_rpm", "jerk_share", "angle_deg", "acceleration_deg_per_s2"])

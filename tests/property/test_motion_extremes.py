@@ -30,6 +30,7 @@ def mechanism_at_random(chance: random.Random) -> Json:
         mechanism = {"type": kind, "mass_kg": wide[0], size: wide[1]}
         if chance.random() < 0.5:
             mechanism |= {"incline_deg": chance.choice([-90, 90, 30]), "inertia_kgm2": wide[2]}
+            mechanism |= {"counterweight_kg": wide[3], "friction_force_N": min(wide[4], 1e9)}
     return mechanism | ({"efficiency": min(wide[3], 1), "ratio": wide[5]} if chance.random() < 0.3 else {})
 
 
@@ -50,7 +51,8 @@ def move_at_random(chance: random.Random, rotary: bool) -> Json:
         if said == 3:
             del move["time_s"]
     if profile == "s_curve" and chance.random() < 0.5:
-        move["jerk_share"] = extreme(chance, 1e-12, 1)
+        jerk = acceleration.replace("acceleration", "jerk").replace("s2", "s3")
+        move |= chance.choice([{"jerk_share": extreme(chance, 1e-12, 1)}, {jerk: extreme(chance, 1e-12, 1e12)}])
     return move | ({external: -extreme(chance, 1e-12, 1e6)} if chance.random() < 0.3 else {})
 
 

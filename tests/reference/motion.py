@@ -31,6 +31,8 @@ class Way:
     place: Callable[[Any], Any]
     speed: Callable[[Any], Any]
     acceleration: Callable[[Any], Any]
+    shares: tuple[Any, Any] | None = None
+    """Shares of the two ramps in which jerk acts, where they follow from it."""
 
 
 def course(move: Json, way: Any, speed_unit: Any) -> Way:
@@ -44,6 +46,9 @@ def course(move: Json, way: Any, speed_unit: Any) -> Way:
     t1, t2 = (mpf(move[k]) if k in move else None for k in ("acceleration_time_s", "deceleration_time_s"))
     if move["profile"] == "modified_sine":
         return modified_sine(T)
+    jerk = next((mpf(move[k]) for k in ("jerk_deg_per_s3", "jerk_mm_per_s3") if k in move), None)
+    if jerk:
+        return jerked(D, T, V, (t1, a), (t2, b), jerk)
     share = mpf(move.get("jerk_share", "0.5")) if move["profile"] == "s_curve" else mpf(0)
     if move["profile"] == "triangular":
         T = T or (2 * D / V if V else 2 * mp.sqrt(D / a))
@@ -73,36 +78,61 @@ def unequal(D: Any, T: Any, V: Any, first: Any, last: Any, k: Any, share: Any) -
     def times(speed: Any) -> list[Any]:
         return [t or speed / (k * a) for t, a in both]
 
+    ramps, run = ramps_of(D, T, V, times, last_is_given=not any(first))
+    return joined(ramps, run, [share, share])
+
+
+def jerked(D: Any, T: Any, V: Any, first: Any, last: Any, jerk: Any) -> Way:
+    """Course whose ramps have a jerk, each with the share of it that follows from its speed and time."""
+    both = [first if any(first) else last, last if any(last) else first]
+    if not any(both[0]):
+        both, V = [(min(T - D / V if V else T / 3, T / 2), None)] * 2, None
+
+    def times(speed: Any) -> list[Any]:
+        return [t or speed / a + a / jerk for t, a in both]
+
+    ramps, run = ramps_of(D, T, V, times, last_is_given=not any(first))
+    V = D / (run + sum(ramps) / 2)
+    # V = A t - A² / j with the smaller root; what jerk takes of the ramp is twice A / j.
+    peaks = [jerk * (t - mp.sqrt(max(0, t**2 - 4 * V / jerk))) / 2 for t in ramps]
+    return joined(ramps, run, [2 * A / (jerk * t) for A, t in zip(peaks, ramps, strict=True)])
+
+
+def ramps_of(D: Any, T: Any, V: Any, times: Callable[[Any], list[Any]], last_is_given: bool) -> tuple[list[Any], Any]:
+    """Times of two ramps, which `times` has for a speed, and of the run between them."""
     if T and V:
-        own = 0 if any(first) else 1
+        own = 1 if last_is_given else 0
         ramps = times(V)
         ramps[1 - own] = 2 * (T - D / V) - ramps[own]
-    elif T:
+        return ramps, T - sum(ramps)
+    if T:
         # Way of a course of this time grows with its speed up to that of the triangle.
         V = bisected(lambda speed: speed * (T - sum(times(speed)) / 2) - D, mpf(0), 2 * D / T)
-        ramps = times(V)
-    else:
-        if V * sum(times(V)) / 2 > D:
-            V = bisected(lambda speed: speed * sum(times(speed)) / 2 - D, mpf(0), V)
-        ramps = times(V)
-        T = D / V + sum(ramps) / 2
-    run = T - sum(ramps)
-    halves = [ramped(ramp, mpf(0), share) for ramp in ramps]  # a triangle of each, of which half is taken
-    ways = [V * ramps[0] / (2 * D), V * run / D, V * ramps[1] / (2 * D)]
+        return times(V), T - sum(times(V))
+    if V * sum(times(V)) / 2 > D:
+        V = bisected(lambda speed: speed * sum(times(speed)) / 2 - D, mpf(0), V)
+    return times(V), D / V - sum(times(V)) / 2
+
+
+def joined(ramps: list[Any], run: Any, shares: list[Any]) -> Way:
+    """Course over a way of 1 of two ramps, each with its share of jerk, and the run between them."""
+    T, V = sum(ramps) + run, 1 / (sum(ramps) / 2 + run)
+    halves = [ramped(ramp, mpf(0), share) for ramp, share in zip(ramps, shares, strict=True)]  # triangles, half of each
 
     def part(t: Any, of: str) -> Any:
-        scale = V * ramps[0 if t <= ramps[0] else 1] / D
+        scale = V * ramps[0 if t <= ramps[0] else 1]
         if t <= ramps[0]:
             return scale * getattr(halves[0], of)(t)
         if t < T - ramps[1]:
-            return {"place": ways[0] + V * (t - ramps[0]) / D, "speed": V / D, "acceleration": mpf(0)}[of]
+            return {"place": V * (t - ramps[0] / 2), "speed": V, "acceleration": mpf(0)}[of]
         value = scale * getattr(halves[1], of)(T - t)
         return {"place": 1 - value, "speed": value, "acceleration": -value}[of]
 
-    rises = [ramp * share / 2 for ramp in ramps]
+    rises = [ramp * share / 2 for ramp, share in zip(ramps, shares, strict=True)]
     kinks = {0, rises[0], ramps[0] - rises[0], ramps[0], T - ramps[1], T - ramps[1] + rises[1], T - rises[1], T}
     ends = [ramps[0], T] if run < mpf(10) ** -25 else [ramps[0], T - ramps[1], T]
-    return Way(sorted(kinks), ends, *(partial(part, of=of) for of in ("place", "speed", "acceleration")))
+    place, speed, acceleration = (partial(part, of=of) for of in ("place", "speed", "acceleration"))
+    return Way(sorted(kinks), ends, place, speed, acceleration, (shares[0], shares[1]))
 
 
 def bisected(function: Callable[[Any], Any], low: Any, high: Any) -> Any:
@@ -267,9 +297,13 @@ def _load(m: Json, move: Json, rho: Any, rotary: bool) -> Callable[[Any, Any, An
 
     def linear(theta: Any, omega: Any, alpha: Any, sign: Any) -> Any:
         r, mass, beta = rho / 1000, mpf(m["mass_kg"]), mpf(m.get("incline_deg", 0)) * mp.pi / 180
-        a = alpha * r
-        weight = mass * G * (mp.sin(beta) + mpf(m.get("friction_coefficient", 0)) * mp.cos(beta) * sign)
-        return (mass * a + weight + mpf(move.get("external_force_N", 0))) * r + mpf(m.get("inertia_kgm2", 0)) * a / r
+        a, hanging = alpha * r, mpf(m.get("counterweight_kg", 0))
+        weight = mass * G * mp.sin(beta) - hanging * G * mp.sign(beta)
+        rubbing = (
+            mpf(m.get("friction_coefficient", 0)) * mass * G * mp.cos(beta) + mpf(m.get("friction_force_N", 0))
+        ) * sign
+        force = (mass + hanging) * a + weight + rubbing + mpf(move.get("external_force_N", 0))
+        return force * r + mpf(m.get("inertia_kgm2", 0)) * a / r + mpf(m.get("friction_torque_Nm", 0)) * sign
 
     return linear
 
@@ -382,14 +416,15 @@ def _acceleration(move: Json, one: Way, duration: float, t: Any) -> Any:
         x = t / duration
         return np.where((x > 1 / 8) & (x < 7 / 8), np.sin((np.pi + 4 * np.pi * x) / 3), np.sin(4 * np.pi * x))
     share = move.get("jerk_share", 0.5) if move["profile"] == "s_curve" else 0
+    shares = one.shares or (share, share)
     first, last = float(one.parts[0]), duration - float(one.parts[-2])
 
-    def ramp(u: Any, length: float) -> Any:
+    def ramp(u: Any, length: float, share: float) -> Any:
         rise = length * share / 2
         shape = np.minimum(1, np.minimum(u, length - u) / rise) if rise else np.ones_like(u)
-        return np.where(u < length, shape, 0) / length
+        return np.where(u < length, shape, 0) / (length - rise)
 
-    return ramp(t, first) - ramp(duration - t, last)
+    return ramp(t, first, float(shares[0])) - ramp(duration - t, last, float(shares[1]))
 
 
 def _load_of_floats(m: Json, move: Json, per_rad: float, theta: Any, omega: Any, alpha: Any, sign: float) -> Any:
@@ -400,6 +435,8 @@ def _load_of_floats(m: Json, move: Json, per_rad: float, theta: Any, omega: Any,
         held = gravity * np.cos(np.radians(theta)) + move.get("external_torque_Nm", 0)
         return m["inertia_kgm2"] * alpha + friction + viscous + held
     r, beta = per_rad / 1000, np.radians(m.get("incline_deg", 0))
-    weight = m["mass_kg"] * 9.80665 * (np.sin(beta) + m.get("friction_coefficient", 0) * np.cos(beta) * sign)
-    force = m["mass_kg"] * alpha * r + weight + move.get("external_force_N", 0)
-    return force * r + m.get("inertia_kgm2", 0) * alpha
+    hanging = m.get("counterweight_kg", 0)
+    weight = 9.80665 * (m["mass_kg"] * np.sin(beta) - hanging * np.sign(beta))
+    rubbing = 9.80665 * m["mass_kg"] * m.get("friction_coefficient", 0) * np.cos(beta) + m.get("friction_force_N", 0)
+    force = (m["mass_kg"] + hanging) * alpha * r + weight + rubbing * sign + move.get("external_force_N", 0)
+    return force * r + m.get("inertia_kgm2", 0) * alpha + m.get("friction_torque_Nm", 0) * sign

@@ -56,6 +56,9 @@ SCREW: Json = {
         "lead_mm": 10,
         "incline_deg": 30,
         "friction_coefficient": 0.1,
+        "friction_force_N": 24.5,
+        "friction_torque_Nm": 0.3,
+        "counterweight_kg": 60,
         "inertia_kgm2": 0.01,
         "efficiency": 0.9,
         "ratio": 2,
@@ -107,6 +110,33 @@ UNEQUAL: Json = {
 }
 
 
+JERKED: Json = {
+    "mechanism": {
+        "type": "rack_and_pinion",
+        "mass_kg": 40,
+        "diameter_mm": 60,
+        "incline_deg": -90,
+        "counterweight_kg": 55,
+        "friction_force_N": 12,
+        "friction_torque_Nm": 0.5,
+        "efficiency": 0.9,
+    },
+    "moves": [
+        {"distance_mm": 500, "time_s": 0.8},
+        {"distance_mm": -500, "time_s": 0.8, "acceleration_mm_per_s2": 5500},
+        {"distance_mm": 500, "time_s": 0.8, "speed_mm_per_s": 900},
+        {"distance_mm": 500, "speed_mm_per_s": 900, "acceleration_mm_per_s2": 5000},
+        {"distance_mm": 60, "speed_mm_per_s": 900, "acceleration_mm_per_s2": 4000},
+        {"distance_mm": -400, "time_s": 0.9, "acceleration_mm_per_s2": 7000, "deceleration_time_s": 0.3},
+        {"distance_mm": 400, "time_s": 0.9, "speed_mm_per_s": 700, "deceleration_mm_per_s2": 4000},
+        {"distance_mm": 400, "speed_mm_per_s": 700, "acceleration_time_s": 0.3, "deceleration_mm_per_s2": 4000},
+    ],
+}
+JERKED = JERKED | {
+    "moves": [{"profile": "s_curve", "jerk_mm_per_s3": 85_000 + 900 * k} | m for k, m in enumerate(JERKED["moves"])]
+}
+
+
 def phases_of(motion: Json) -> list[Any]:
     """Phases that the application model gives."""
     application = Application.model_validate({"duty_cycle": {"motion": motion}})
@@ -119,7 +149,16 @@ def with_profile(motion: Json, profile: str) -> Json:
 
 @pytest.mark.parametrize(
     "motion",
-    [CONTRACT, PENDULUM, SCREW, VISCOUS, BELT, with_profile(UNEQUAL, "trapezoidal"), with_profile(UNEQUAL, "s_curve")],
+    [
+        CONTRACT,
+        PENDULUM,
+        SCREW,
+        VISCOUS,
+        BELT,
+        JERKED,
+        with_profile(UNEQUAL, "trapezoidal"),
+        with_profile(UNEQUAL, "s_curve"),
+    ],
 )
 def test_phases_are_those_that_mpmath_integrates(motion: Json) -> None:
     expected, found = reference.phases(motion), phases_of(motion)

@@ -162,6 +162,6 @@ MOVING: dict[str, Json] = {
         "requirements": {"sizes": ["11A", "14A"], "efficiency": 0.9},
         "rank_by": "motor_torque",
     },
-    "many moves": {"duty_cycle": {"motion": LIFTING | {"moves": LIFTING["moves"] * 60}}},
+    "many moves": {"duty_cycle": {"motion": LIFTING | {"moves": LIFTING["moves"] * 40}}},
 }
 """Cycles whose torque and speed vary, typed or from a motion."""

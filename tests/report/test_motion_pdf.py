@@ -88,7 +88,7 @@ def test_every_move_of_many_is_printed_under_heads(reader: Reader, catalogue: Ca
     title = reader.text("Each move of the motion")
     found = pages(document)
     first = next(k for k, page in enumerate(found) if title in page)
-    numbers = re.findall(r"^ *(\d+) +(?:Modifi|Triang|Dreieck)", "\n".join(found[first:]), re.M)
+    numbers = re.findall(r"^ *(\d+) +(?:Modifi|Triang|Dreieck|S-)", "\n".join(found[first:]), re.M)
     assert {int(number) for number in numbers} >= set(range(1, 121))
     assert len(PdfReader(BytesIO(document)).pages) <= 11
 

@@ -66,6 +66,40 @@ def phases_of(application: Json) -> tuple[Any, ...]:
         ({"profile": "triangular", "jerk_share": 0.5}, ("jerk_share",), "has no jerk_share"),
         ({"profile": "modified_sine", "speed_rpm": 30}, ("speed_rpm",), "has no speed_rpm"),
         ({"profile": "modified_sine", "time_s": None}, (), "needs time_s"),
+        (
+            {"profile": "s_curve", "acceleration_deg_per_s2": 900, "jerk_deg_per_s3": 5999},
+            ("jerk_deg_per_s3",),
+            "at least 6000 °/s³",  # 225 °/s in 0.4 s: 225 / 900 + 900 / j
+        ),
+        (
+            {"profile": "s_curve", "time_s": None, "speed_rpm": 25, "acceleration_deg_per_s2": 900}
+            | {"jerk_deg_per_s3": 5000},
+            ("jerk_deg_per_s3",),
+            "at least 5400 °/s³",  # A² / V = 900² / 150
+        ),
+        (
+            {
+                "profile": "s_curve",
+                "time_s": None,
+                "speed_rpm": 25,
+                "acceleration_time_s": 0.3,
+                "jerk_deg_per_s3": 6600,
+            },
+            ("jerk_deg_per_s3",),
+            "at least 6666.67 °/s³",  # 4 V / t² = 4 · 150 / 0.3²
+        ),
+        (
+            {"profile": "s_curve", "jerk_deg_per_s3": 9000},
+            ("jerk_deg_per_s3",),
+            "at least 9492.19 °/s³",  # a third of the time for each ramp: 4 · 168.75 / (0.8 / 3)²
+        ),
+        ({"profile": "s_curve", "jerk_deg_per_s3": 9e4, "jerk_share": 0.5}, ("jerk_deg_per_s3",), "give only one"),
+        ({"jerk_deg_per_s3": 9e4}, ("jerk_deg_per_s3",), "has no jerk_deg_per_s3"),
+        (
+            {"profile": "s_curve", "acceleration_deg_per_s2": 500, "jerk_deg_per_s3": 9e4},
+            ("acceleration_deg_per_s2",),
+            "at least 571.575 °/s²",  # 225 = 0.4 A - A² / 90000
+        ),
         ({"profile": "dwell"}, ("angle_deg",), "has no angle_deg"),
         ({"angle_deg": 0}, ("angle_deg",), "must not be 0"),
         ({"angle_deg": None}, (), "needs angle_deg"),
@@ -120,6 +154,11 @@ def test_a_mechanism_is_refused_where_it_stands(mechanism: Any, place: tuple[str
         (SCREW | {"inertia_kgm2": -0.1}, "inertia_kgm2"),
         (SCREW | {"diameter_mm": 5.0}, "diameter_mm"),
         (SCREW | {"lead_mm": 0}, "lead_mm"),
+        (SCREW | {"friction_force_N": -0.1}, "friction_force_N"),
+        (SCREW | {"friction_torque_Nm": -0.1}, "friction_torque_Nm"),
+        (SCREW | {"counterweight_kg": -0.1, "incline_deg": 5}, "counterweight_kg"),
+        (SCREW | {"counterweight_kg": 5.0}, "counterweight_kg"),
+        (SCREW | {"viscous_friction_Nm_per_rpm": 5.0}, "viscous_friction_Nm_per_rpm"),
         ({"type": "belt", "mass_kg": 1.0}, "diameter_mm"),
     ],
 )
@@ -293,3 +332,46 @@ def test_figures_that_follow_give_the_same_move_when_they_are_typed(profile: Any
     assert followed["acceleration_time_s"] == followed["deceleration_time_s"] == pytest.approx(0.4 / 3, rel=1e-9)
     assert "time_s" not in Turn(profile="trapezoidal", angle_deg=110, time_s=0.4).followed
     assert Turn(profile="dwell", time_s=1).followed == {}
+
+
+def test_a_jerk_gives_each_ramp_its_share() -> None:
+    """90° in 0.8 s at 900 °/s² and 20 000 °/s³: V = 900 t - 900² / 20 000, 90 = V (0.8 - t)."""
+    move = Turn(profile="s_curve", angle_deg=90, time_s=0.8, acceleration_deg_per_s2=900, jerk_deg_per_s3=20_000)
+
+    assert round(move.timing.peak_speed, 3) == 154.197
+    assert [round(t, 6) for t in move.timing.ramps_s] == [0.216330] * 2
+    assert [round(share, 6) for share in move.timing.jerk_shares] == [0.416032] * 2
+    share = move.followed["jerk_share"]
+    typed = Turn(profile="s_curve", angle_deg=90, time_s=0.8, acceleration_deg_per_s2=900, jerk_share=share)
+    assert typed.timing.ramps_s == pytest.approx(move.timing.ramps_s, rel=1e-12)
+    assert typed.followed["jerk_deg_per_s3"] == pytest.approx(20_000, rel=1e-12)
+
+
+def test_a_jerk_at_its_bound_fills_the_ramps_and_a_great_one_leaves_them_straight() -> None:
+    ends = {"angle_deg": 90, "time_s": 0.8}
+    least = Turn(profile="s_curve", **ends, acceleration_time_s=0.2, jerk_deg_per_s3=4 * 150 / 0.2**2)
+    assert least.timing.jerk_shares == pytest.approx((1.0, 1.0), rel=1e-12)
+    assert least.timing.peak_accelerations == pytest.approx((1500, 1500), rel=1e-12)
+    great = Turn(profile="s_curve", **ends, acceleration_deg_per_s2=900, jerk_deg_per_s3=1e12)
+    straight = Turn(profile="trapezoidal", **ends, acceleration_deg_per_s2=900)
+    assert great.timing.ramps_s == pytest.approx(straight.timing.ramps_s, rel=1e-8)  # A / j is 9e-10 s
+
+
+@pytest.mark.parametrize(
+    ("incline_deg", "coefficient", "told"), [(90, 0.1, True), (-90, 0.1, True), (90, 0, False), (89, 0.1, False)]
+)
+def test_a_coefficient_of_friction_that_has_no_effect_is_told(
+    catalogue: Catalogue, incline_deg: float, coefficient: float, told: bool
+) -> None:
+    stroke = {"profile": "modified_sine", "distance_mm": 10, "time_s": 1}
+    guided = SCREW | {"incline_deg": incline_deg, "friction_coefficient": coefficient}
+    assert ("friction_without_effect" in notices(answer(motion(stroke, mechanism=guided), catalogue))) is told
+
+
+def test_a_weight_and_its_counterweight_leave_no_rounding_error() -> None:
+    held = SCREW | {"incline_deg": 30.0, "counterweight_kg": 50.0}
+    stroke = {"profile": "trapezoidal", "distance_mm": 100.0, "time_s": 0.5}
+
+    _, run, _ = phases_of(motion(stroke, mechanism=held))
+
+    assert (str(run.torque_Nm), run.peak_torque_Nm) == ("0.0", 0.0)

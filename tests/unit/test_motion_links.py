@@ -51,13 +51,22 @@ def test_a_motion_has_the_link_of_the_contract() -> None:
 
 def test_a_linear_motion_has_the_link_of_the_contract() -> None:
     screw = {"type": "ball_screw", "mass_kg": 80.0, "lead_mm": 10.0, "incline_deg": 30.0, "friction_coefficient": 0.05}
+    screw |= {"friction_torque_Nm": 0.8, "friction_force_N": 24.5, "counterweight_kg": 40.0}
     move = {"profile": "triangular", "distance_mm": 500.0, "speed_mm_per_s": 400.0, "external_force_N": 200.0}
     loads = {"radial_N": 500.0, "axial_N": -20.0}
     linear = {"mechanism": screw, "moves": [move | loads, {"profile": "dwell", "time_s": 1.0}]}
 
     assert to_link(application(linear)) == (
-        "/?mech=ball_screw&h=10&ml=80&inc=30&mu=0.05"
+        "/?mech=ball_screw&Tf=0.8&Ff=24.5&mc=40&h=10&ml=80&inc=30&mu=0.05"
         "&mv=triangular&ms=500&mt=&mn=400&mx=200&FRi=500&FAi=-20&mv=dwell&ms=&mt=1&mn=&mx=&FRi=&FAi="
+    )
+
+
+def test_a_jerk_stands_behind_its_share() -> None:
+    curve = {"profile": "s_curve", "angle_deg": 90.0, "time_s": 1.0}
+    moves = [curve | {"jerk_share": 0.25}, curve | {"jerk_deg_per_s3": 8e3}]
+    assert to_link(application(ROTARY | {"moves": moves})).partition("&th0=30")[2] == (
+        "&mv=s_curve&ms=90&mt=1&mj=0.25&mjk=&mv=s_curve&ms=90&mt=1&mj=&mjk=8000"
     )
 
 
@@ -114,6 +123,12 @@ def test_every_motion_survives_its_link(motion: dict[str, Any], document: dict[s
         (f"{TURN}&h=5", ("h", None), "does not belong to this mechanism"),
         (f"{STROKE}&th0=5", ("th0", None), "does not belong to this mechanism"),
         (f"{STROKE}&d=5", ("d", None), "does not belong to this mechanism"),
+        (f"{STROKE}&mc=20", ("mc", None), "acts along an incline alone"),
+        (f"{STROKE}&b=5", ("b", None), "does not belong to this mechanism"),
+        (f"{TURN}&Ff=5", ("Ff", None), "does not belong to this mechanism"),
+        (f"{TURN}&mjk=5", ("mjk", 0), "has no Jerk: leave it out"),
+        (TURN.replace("trapezoidal", "s_curve") + "&mjk=5", ("mjk", 0), "must be at least 9492.19"),
+        (TURN.replace("trapezoidal", "s_curve") + "&mjk=9999&mj=0.5", ("mjk", 0), "replaces Jerk share"),
         (f"{STROKE}&etam=1.5", ("etam", None), "must be at most 1"),
         (f"{STROKE}&inc=100", ("inc", None), "must be at most 90"),
         (f"{TURN}&mn=5", ("mn", 0), "must be above 18.75"),

@@ -90,7 +90,9 @@ BODIES: dict[str, tuple[str, Json]] = {
 }
 
 
-RACK: Json = LIFTING | {"mechanism": {"type": "rack_and_pinion", "mass_kg": 80.0, "diameter_mm": 60.0}}
+RACK: Json = LIFTING | {
+    "mechanism": {"type": "rack_and_pinion", "mass_kg": 80.0, "diameter_mm": 60.0, "incline_deg": 30.0}
+}
 GRAVITY = ("gravity_mass_kg", "gravity_radius_mm")
 WEIGHTLESS: Json = TURNING | {
     "mechanism": {name: value for name, value in TURNING["mechanism"].items() if name not in GRAVITY}

@@ -19,6 +19,7 @@ from hpn.catalogue.gear import Gear
 from hpn.engine.evaluation import SUITABLE, Evaluation
 from hpn.engine.motor_torques import leaves_curve
 from hpn.physics.equations import ROUNDING, FloatArray
+from hpn.physics.motion.mechanisms import Linear
 from hpn.words.reply import Reply
 from hpn.words.units import suffix_of
 from hpn.words.wording import N_, Quantity, Sentence
@@ -31,6 +32,10 @@ NOTICES: Mapping[str, str] = {
         "Moves {moves} leave no time at constant speed: they become triangular, although another profile was chosen."
     ),
     "motion_left_off": N_("The motion does not end at its start angle, so gravity acts differently in the next cycle."),
+    "friction_without_effect": N_(
+        "At an incline of ±90° no weight rests on the guide: its coefficient of friction has no effect. Give the "
+        "friction of seals, wipers or pressed gibs as a force."
+    ),
     "application_area": N_(
         "Use in this area ({area}) needs a risk assessment and the manufacturer’s approval (handbook 2.4)."
     ),
@@ -225,6 +230,8 @@ def _on_the_motion(cycle: DutyCycle) -> Iterable[Notice]:
         yield notice("motion_triangle", moves=_ranges(cycle.motion.triangles))
     if cycle.motion.is_left_off:
         yield notice("motion_left_off")
+    if isinstance(cycle.motion.mechanism, Linear) and cycle.motion.mechanism.has_idle_coefficient:
+        yield notice("friction_without_effect")
 
 
 def _ranges(places: Sequence[int]) -> str:

@@ -36,6 +36,8 @@ SYMBOLS = {
     "rad_per_s2": "rad/s²",
     "mm_per_s": "mm/s",
     "mm_per_s2": "mm/s²",
+    "deg_per_s3": "°/s³",
+    "mm_per_s3": "mm/s³",
     "kgm2": "kg·m²",
     "Nm_per_rpm": N_("Nm/rpm"),
     "g_per_cm3": "g/cm³",

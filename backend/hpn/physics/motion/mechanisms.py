@@ -9,7 +9,7 @@ from pydantic import Field, model_validator
 
 from hpn.physics.equations import ROUNDING
 from hpn.physics.motion.refusals import refusal
-from hpn.words.fields import Model, Number, Positive, Share, TorqueMagnitude, refused
+from hpn.words.fields import Load, Model, Number, Positive, Share, TorqueMagnitude, refused
 from hpn.words.wording import Quantity
 
 GRAVITY = 9.80665
@@ -35,13 +35,19 @@ def sine(angle_deg: float) -> float:
     return math.sin(math.radians(reduced))
 
 
+def balance(*terms: float) -> float:
+    """Sum of forces or torques; 0 where it is below ROUNDING of the largest, such as a weight and its counterweight."""
+    held = math.fsum(terms)
+    return held if abs(held) >= ROUNDING * max(map(abs, terms)) else 0.0
+
+
 @dataclass(frozen=True, slots=True)
 class ShaftLoad:
     """Load on the mechanism's shaft: T_load = J α + T_f sgn ω + b ω + G cos θ + T_0, in Nm, rad and s.
 
-    `way_per_rad` is how many degrees or mm of way there are to a radian, `external_Nm` the torque of an external torque
-    of 1 Nm or force of 1 N. At the gear T = T_load / (η ratio) where the load is driven, T_load η / ratio where it
-    drives.
+    `friction_Nm` is all dry friction, `way_per_rad` how many degrees or mm of way there are to a radian, `external_Nm`
+    the torque of an external torque of 1 Nm or force of 1 N. At the gear T = T_load / (η ratio) where the load is
+    driven, T_load η / ratio where it drives.
     """
 
     inertia_kgm2: float
@@ -73,6 +79,11 @@ class ShaftLoad:
 class Mechanism(Model):
     """Fields of every mechanism."""
 
+    friction_torque_Nm: TorqueMagnitude = Field(
+        0.0,
+        description="Friction torque T_f about the mechanism’s shaft (pinion, pulley or screw), against the motion.",
+        examples=[1.5],
+    )
     efficiency: Share = Field(1.0, description="Efficiency of the mechanism.", examples=[0.9])
     ratio: Positive = Field(
         1.0,
@@ -99,9 +110,6 @@ class Rotary(Mechanism):
     )
     gravity_radius_mm: Positive | None = Field(
         None, description="Distance r of its centre of gravity from the shaft.", examples=[250.0]
-    )
-    friction_torque_Nm: TorqueMagnitude = Field(
-        0.0, description="Friction torque T_f, against the motion.", examples=[1.5]
     )
     viscous_friction_Nm_per_rpm: Annotated[Number, Field(ge=0, le=1e6)] = Field(
         0.0, description="Viscous friction b per speed of the mechanism.", examples=[0.01]
@@ -137,7 +145,10 @@ class Rotary(Mechanism):
 
 
 class Linear(Mechanism):
-    """A mass that moves along a line; T_load = (m a + m g (sin β + μ cos β sgn v) + F_ext) ρ + J a / ρ."""
+    """A mass that moves along a line, its counterweight m_c with it.
+
+    T_load = ((m + m_c) a + m g (sin β + μ cos β sgn v) - m_c g sgn β + F_f sgn v + F_ext) ρ + J a / ρ + T_f sgn v.
+    """
 
     mass_kg: Positive = Field(description="Moved mass m.", examples=[80.0])
     incline_deg: Annotated[Number, Field(ge=-90, le=90)] = Field(
@@ -146,9 +157,26 @@ class Linear(Mechanism):
     friction_coefficient: Annotated[Number, Field(ge=0, le=1e3)] = Field(
         0.0, description="Coefficient of friction μ of the guide.", examples=[0.05]
     )
+    friction_force_N: Annotated[Load, Field(ge=0)] = Field(
+        0.0,
+        description="Friction force F_f that no weight causes (seals, wipers, pressed gibs), against the motion.",
+        examples=[24.5],
+    )
+    counterweight_kg: Annotated[Number, Field(ge=0, le=1e12)] = Field(
+        0.0,
+        description="Counterweight m_c, which hangs vertically and moves with the mass; its weight acts against the "
+        "mass’s. Only with an incline.",
+        examples=[60.0],
+    )
     inertia_kgm2: Annotated[Number, Field(ge=0, le=1e12)] = Field(
         0.0, description="Moment of inertia J of everything that turns with pinion, pulley or screw.", examples=[0.002]
     )
+
+    @model_validator(mode="after")
+    def _counterweight_hangs(self) -> Self:
+        if self.counterweight_kg and not self.incline_deg:
+            raise refused(self, (("counterweight_kg",), refusal("counterweight_level")))
+        return self
 
     @property
     @abstractmethod
@@ -156,16 +184,23 @@ class Linear(Mechanism):
         """Way per radian ρ."""
 
     @property
+    def has_idle_coefficient(self) -> bool:
+        """True where no weight rests on the guide, so that its coefficient of friction has no effect."""
+        return bool(self.friction_coefficient) and not cosine(self.incline_deg)
+
+    @property
     def load(self) -> ShaftLoad:
         """The load on its shaft."""
         radius = self.radius_mm / 1000
         weight_Nm = self.mass_kg * GRAVITY * radius
+        hanging_Nm = math.copysign(self.counterweight_kg * GRAVITY * radius, self.incline_deg)
+        rubbing_Nm = weight_Nm * self.friction_coefficient * cosine(self.incline_deg)
         return ShaftLoad(
-            inertia_kgm2=self.mass_kg * radius**2 + self.inertia_kgm2,
-            friction_Nm=weight_Nm * self.friction_coefficient * cosine(self.incline_deg),
+            inertia_kgm2=(self.mass_kg + self.counterweight_kg) * radius**2 + self.inertia_kgm2,
+            friction_Nm=rubbing_Nm + self.friction_force_N * radius + self.friction_torque_Nm,
             viscous_Nms=0.0,
             gravity_Nm=0.0,
-            constant_Nm=weight_Nm * sine(self.incline_deg),
+            constant_Nm=balance(weight_Nm * sine(self.incline_deg), -hanging_Nm),
             way_per_rad=self.radius_mm,
             external_Nm=radius,
             efficiency=self.efficiency,

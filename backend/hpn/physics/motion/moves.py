@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import replace
 from functools import cached_property
 from typing import Annotated, ClassVar, Literal, NoReturn, Self
 
@@ -10,7 +9,17 @@ from pydantic import AfterValidator, Field, model_validator
 from pydantic_core import PydanticCustomError
 
 from hpn.physics.equations import ROUNDING
-from hpn.physics.motion.ramps import Ramp, Timing, at_speed, at_triangle, equal_ramps, in_time, triangle
+from hpn.physics.motion.ramps import (
+    Ramp,
+    Shape,
+    Timing,
+    at_speed,
+    at_speed_in_time,
+    at_triangle,
+    equal_ramps,
+    in_time,
+    triangle,
+)
 from hpn.physics.motion.refusals import refusal
 from hpn.words.fields import LEAST, Load, Model, MoveTime, Number, Positive, Share, Torque, refused
 from hpn.words.titles import Name
@@ -22,6 +31,9 @@ Refusal = tuple[tuple[str, ...], PydanticCustomError]
 Profile = Literal["trapezoidal", "triangular", "s_curve", "modified_sine", "dwell"]
 
 DEFAULT_JERK_SHARE = 0.5
+
+SEARCHED = 1e-13
+"""Relative room of a bound that is searched for: less than ROUNDING, so that what is exact is said exactly."""
 
 MODIFIED_SINE_SPEED = 4 * math.pi / (4 + math.pi)
 """Largest over mean speed of a modified sine, c_v."""
@@ -45,6 +57,7 @@ class Move(Model):
     SPEED: ClassVar[str]
     ACCELERATION: ClassVar[str]
     DECELERATION: ClassVar[str]
+    JERK: ClassVar[str]
     EXTERNAL: ClassVar[str]
     SPEED_UNIT: ClassVar[float]
     """Units of way per second in one unit of speed."""
@@ -53,7 +66,8 @@ class Move(Model):
     time_s: MoveTime | None = Field(None, description="Time of the move.", examples=[0.8])
     jerk_share: Share | None = Field(
         None,
-        description="Share of a ramp of an S-curve in which jerk acts, half of it at either end; 0.5 by default.",
+        description="Share of a ramp of an S-curve in which jerk acts, half of it at either end; 0.5 by default. A "
+        "jerk may be given in its place.",
         examples=[0.5],
     )
     acceleration_time_s: MoveTime | None = Field(
@@ -96,6 +110,7 @@ class Move(Model):
         figures = {"time_s": timing.time_s, self.SPEED: timing.peak_speed / self.SPEED_UNIT}
         figures |= dict(zip((ramp[0], last[0]), timing.ramps_s, strict=True))
         figures |= dict(zip((ramp[1], last[1]), timing.peak_accelerations, strict=True))
+        figures |= self._followed_jerk(timing)
         return {field: value for field, value in figures.items() if getattr(self, field) is None}
 
     @property
@@ -104,10 +119,25 @@ class Move(Model):
         return float(getattr(self, self.EXTERNAL))
 
     @property
-    def ramp_mean(self) -> float:
-        """Mean over peak acceleration of a ramp: 1 - share / 2."""
-        share = DEFAULT_JERK_SHARE if self.jerk_share is None else self.jerk_share
-        return 1 - share / 2 if self.profile == "s_curve" else 1.0
+    def _jerk(self) -> float | None:
+        jerk: float | None = getattr(self, self.JERK)
+        return jerk
+
+    @property
+    def _shape(self) -> Shape:
+        """How its ramps begin and end."""
+        if self.profile != "s_curve":
+            return Shape()
+        if self._jerk is not None:
+            return Shape(jerk=self._jerk)
+        return Shape(DEFAULT_JERK_SHARE if self.jerk_share is None else self.jerk_share)
+
+    def _followed_jerk(self, timing: Timing) -> dict[str, float]:
+        """Jerk of an S-curve that follows from its share, or the share from the jerk, where both ramps are alike."""
+        if self.profile != "s_curve" or timing.ramps_s[0] != timing.ramps_s[1]:
+            return {}
+        a, t, share = timing.peak_accelerations[0], timing.ramps_s[0], timing.jerk_shares[0]
+        return {"jerk_share": share} if self._jerk is not None else {self.JERK: 2 * a / (share * t)}
 
     @model_validator(mode="after")
     def _is_possible(self) -> Self:
@@ -119,7 +149,7 @@ class Move(Model):
     def _check_fields(self) -> None:
         """Refuse fields that the profile has no use for, and the lack of one that it needs."""
         needed = {"dwell": ("time_s",), "modified_sine": (self.WAY, "time_s")}.get(self.profile, (self.WAY,))
-        ramps, unequal = ("jerk_share",), ("acceleration_time_s", "deceleration_time_s", self.DECELERATION)
+        ramps, unequal = ("jerk_share", self.JERK), ("acceleration_time_s", "deceleration_time_s", self.DECELERATION)
         idle: Sequence[str] = {
             "dwell": (self.WAY, self.SPEED, self.ACCELERATION, *ramps, *unequal),
             "modified_sine": (self.SPEED, self.ACCELERATION, *ramps, *unequal),
@@ -141,9 +171,36 @@ class Move(Model):
     @cached_property
     def timing(self) -> Timing:
         """Ramps and run of a trapezoid, triangle or S-curve; raises ValidationError where there are none."""
+        shape, jerk = self._shape, self._jerk
+        if jerk is not None and self.jerk_share is not None:
+            raise refused(self, ((self.JERK,), refusal("ramp_twice", field="jerk_share")))
+        found = self._timing_of(shape)
+        if jerk is not None and (found.least_jerk > jerk * (1 + ROUNDING) if found else self._timing_of(Shape())):
+            self._refuse(self.JERK, "jerk_too_low", bound=_said(self._least_jerk(jerk), self.JERK))
+        return found or self._refuse_ramps(shape)
+
+    def _least_jerk(self, low: float) -> float:
+        """Smallest jerk with which the move is possible, where `low` is not enough and some jerk is.
+
+        With more of it ramps grow shorter, and what they need grows more slowly than what they have.
+        """
+
+        def suffices(jerk: float) -> bool:
+            timing = self._timing_of(Shape(jerk=jerk))
+            return timing is not None and timing.least_jerk <= jerk * (1 + ROUNDING)
+
+        high = low
+        while not suffices(high):
+            low, high = high, high * 1e3
+        while high > low * (1 + SEARCHED):
+            middle = math.sqrt(low * high)
+            low, high = (low, middle) if suffices(middle) else (middle, high)
+        return high
+
+    def _timing_of(self, shape: Shape) -> Timing | None:
+        """Ramps and run with some shape of ramps; None where these leave too little time."""
         T, speed, given = self.time_s, getattr(self, self.SPEED), self._given
-        D, k = abs(self.way), self.ramp_mean
-        V = None if speed is None else speed * self.SPEED_UNIT
+        D, V = abs(self.way), None if speed is None else speed * self.SPEED_UNIT
         if self.profile == "triangular":
             if len(given) != 1:
                 self._refuse_count("move_takes_one", given)
@@ -153,13 +210,12 @@ class Move(Model):
         if (T is None and (V is None or not known)) or (T is not None and V is not None and len(known) == 2):
             self._refuse_count("move_takes_two", given)
         if T is not None and V is not None:
-            return self._by_time_and_speed(D, T, V, ramps)
+            self._check_speed(D, T, V, known)
+            return at_speed_in_time(D, T, V, ramps, shape)
         if not known:
-            return equal_ramps(D, T or 0.0, (T or 0.0) / 3, k)
+            return equal_ramps(D, T or 0.0, (T or 0.0) / 3, shape)
         pair = [ramp or known[0] for ramp in ramps]
-        if T is None:
-            return at_speed(D, V or 0.0, pair, k)
-        return in_time(D, T, pair, k) or self._refuse_ramps(D, T, pair, 1 if ramps[0] is None else 0)
+        return at_speed(D, V or 0.0, pair, shape) if T is None else in_time(D, T, pair, shape)
 
     @property
     def _ramp_fields(self) -> tuple[tuple[str, str], tuple[str, str]]:
@@ -179,41 +235,33 @@ class Move(Model):
             raise refused(self, ((time,), refusal("ramp_twice", field=acceleration)))
         return None if t is None and a is None else Ramp(t, math.inf if a is None else a)
 
-    def _by_time_and_speed(self, D: float, T: float, V: float, ramps: Sequence[Ramp | None]) -> Timing:
-        """Equal ramps, or the other one as what the time leaves beside one: t2 = 2 (T - D / V) - t1."""
-        k, fastest = self.ramp_mean, 2 * D / T
+    def _check_speed(self, D: float, T: float, V: float, ramps: Sequence[Ramp]) -> None:
+        """Refuse a speed that does not cover the way D in time T, or leaves no time for the other ramp beside one."""
+        fastest = 2 * D / T
         if not D / T < V * (1 - ROUNDING):
             said = (_said(speed / self.SPEED_UNIT, self.SPEED) for speed in (D / T, fastest))
             self._refuse(self.SPEED, "move_too_slow", bound=next(said), triangle=next(said))
-        place = 0 if ramps[0] else 1
-        ramp = ramps[place]
-        if ramp is None:
-            return equal_ramps(D, T, min(T - D / V, T / 2), k)
-        if fastest * (1 + ROUNDING) < V:
+        if ramps and fastest * (1 + ROUNDING) < V:
             self._refuse(self.SPEED, "move_too_fast", bound=_said(fastest / self.SPEED_UNIT, self.SPEED, "down"))
-        both, own = 2 * (T - D / V), ramp.time_at(V, k)
-        if not own < both * (1 - ROUNDING):
-            codes = "ramp_leaves_none", "ramp_too_gentle"
-            raise refused(self, self._too_slow(place, ramp, Ramp(both, V / (k * both)), *codes))
-        pair = Ramp(time_s=own), Ramp(time_s=both - own)
-        timing = in_time(D, T, pair if place == 0 else pair[::-1], k)
-        return replace(timing, is_cut=False) if timing else triangle(D, T)
 
-    def _refuse_ramps(self, D: float, T: float, ramps: Sequence[Ramp], place: int) -> NoReturn:
-        """Refuse ramps that together take too long: the longer one, or both where the shorter is too long by itself.
-
-        `place` is that of the one that is given where they are the same.
-        """
-        k, times = self.ramp_mean, at_triangle(D, T, ramps, self.ramp_mean)
-        if ramps[0] is ramps[1]:
+    def _refuse_ramps(self, shape: Shape) -> NoReturn:
+        """Refuse ramps that together take too long: the longer one, or both where the shorter is too long by itself."""
+        D, T, ramps = abs(self.way), self.time_s or 0.0, [self._ramp(place) for place in (0, 1)]
+        place = 1 if ramps[0] is None else 0
+        pair = [ramp or ramps[place] or Ramp() for ramp in ramps]
+        V, codes = 2 * D / T, ("ramp_too_long", "move_too_gentle")
+        times = at_triangle(D, T, pair, shape)
+        if (speed := getattr(self, self.SPEED)) is not None:
+            V, codes = speed * self.SPEED_UNIT, ("ramp_leaves_none", "ramp_too_gentle")
+            left = {place: 2 * (T - D / V)}
+        elif pair[0] is pair[1]:
             left = {place: T / 2}
         elif min(times) < T:
             left = {times.index(max(times)): T - min(times)}
         else:
             left = {0: T / 2, 1: T / 2}
-        bounds = {place: Ramp(time_s, 2 * D / (k * T * time_s)) for place, time_s in left.items()}
-        codes = "ramp_too_long", "move_too_gentle"
-        raise refused(self, *(self._too_slow(place, ramps[place], bound, *codes) for place, bound in bounds.items()))
+        bounds = {place: Ramp(time_s, shape.peak_of(V, time_s)) for place, time_s in left.items()}
+        raise refused(self, *(self._too_slow(place, pair[place], bound, *codes) for place, bound in bounds.items()))
 
     def _too_slow(self, place: int, ramp: Ramp, bound: Ramp, by_time: str, by_acceleration: str) -> Refusal:
         """Refusal of a ramp by the bound of the field that gives it."""
@@ -241,6 +289,7 @@ class Turn(Move):
 
     WAY, SPEED, EXTERNAL = "angle_deg", "speed_rpm", "external_torque_Nm"
     ACCELERATION, DECELERATION = "acceleration_deg_per_s2", "deceleration_deg_per_s2"
+    JERK = "jerk_deg_per_s3"
     SPEED_UNIT = 6.0
 
     angle_deg: Way | None = Field(
@@ -253,6 +302,11 @@ class Turn(Move):
     deceleration_deg_per_s2: Positive | None = Field(
         None, description="Deceleration of the last ramp; without it that of the first.", examples=[450.0]
     )
+    jerk_deg_per_s3: Positive | None = Field(
+        None,
+        description="Jerk of an S-curve in place of its share: it acts at both ends of each ramp.",
+        examples=[20000.0],
+    )
     external_torque_Nm: Torque = Field(
         0.0, description="External torque in this move; a positive one opposes positive motion.", examples=[30.0]
     )
@@ -263,6 +317,7 @@ class Stroke(Move):
 
     WAY, SPEED, EXTERNAL = "distance_mm", "speed_mm_per_s", "external_force_N"
     ACCELERATION, DECELERATION = "acceleration_mm_per_s2", "deceleration_mm_per_s2"
+    JERK = "jerk_mm_per_s3"
     SPEED_UNIT = 1.0
 
     distance_mm: Way | None = Field(
@@ -274,6 +329,11 @@ class Stroke(Move):
     )
     deceleration_mm_per_s2: Positive | None = Field(
         None, description="Deceleration of the last ramp; without it that of the first.", examples=[1250.0]
+    )
+    jerk_mm_per_s3: Positive | None = Field(
+        None,
+        description="Jerk of an S-curve in place of its share: it acts at both ends of each ramp.",
+        examples=[50000.0],
     )
     external_force_N: Load = Field(
         0.0, description="External force in this move; a positive one opposes positive motion.", examples=[200.0]

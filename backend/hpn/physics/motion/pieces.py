@@ -13,8 +13,8 @@ from operator import attrgetter
 import numpy as np
 from numpy.typing import NDArray
 
-from hpn.physics.equations import ROUNDING, FloatArray
-from hpn.physics.motion.mechanisms import ShaftLoad, cosine, sine
+from hpn.physics.equations import FloatArray
+from hpn.physics.motion.mechanisms import ShaftLoad, balance, cosine, sine
 from hpn.physics.motion.moves import Move
 
 PlaceArray = NDArray[np.intp]
@@ -138,7 +138,7 @@ def _rows(moves: Sequence[Move], start_deg: float, load: ShaftLoad) -> Iterator[
     position = start_deg
     for place, move in enumerate(moves):
         sign = math.copysign(1.0, move.way) if move.way else 0.0
-        held = _held(load.friction_Nm * sign, load.constant_Nm, load.external_Nm * move.external)
+        held = balance(load.friction_Nm * sign, load.constant_Nm, load.external_Nm * move.external)
         end = math.fmod(position + move.way, 360.0) if load.gravity_Nm else 0.0
         bases = [(cosine(angle), sine(angle), held, load.inertia_kgm2) for angle in (position, end)]
         if not sign:
@@ -153,12 +153,6 @@ def _rows(moves: Sequence[Move], start_deg: float, load: ShaftLoad) -> Iterator[
         for one in (_mirrored(one) for one in reversed(last)):
             yield (place, BRAKE, one.start, one.end, sign, *_coefficients(one, sign), *bases[1])
         position = end
-
-
-def _held(*terms: float) -> float:
-    """Sum of torques in Nm; 0 where it is below ROUNDING of the largest, such as a weight and its counterweight."""
-    held = math.fsum(terms)
-    return held if abs(held) >= ROUNDING * max(map(abs, terms)) else 0.0
 
 
 def _coefficients(one: _Course, sign: float) -> tuple[float, ...]:
@@ -185,9 +179,10 @@ def _courses(move: Move, total: float) -> tuple[list[_Course], _Course | None, l
         return half, None, half
     timing = move.timing
     scale = total / abs(move.way)
-    V, share = timing.peak_speed * scale, 2 * (1 - move.ramp_mean)
+    V = timing.peak_speed * scale
     first, last = (
-        _ramp(ramp_s, V, a * scale, share) for ramp_s, a in zip(timing.ramps_s, timing.peak_accelerations, strict=True)
+        _ramp(ramp_s, V, a * scale, share)
+        for ramp_s, a, share in zip(timing.ramps_s, timing.peak_accelerations, timing.jerk_shares, strict=True)
     )
     run = _Course(0.0, timing.run_s, angle=V * timing.ramps_s[0] / 2, speed=V) if timing.run_s else None
     return first, run, last

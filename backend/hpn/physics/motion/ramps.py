@@ -1,40 +1,86 @@
 """Timing of a move from rest to rest: two ramps, each by its time or its acceleration, and the run between them.
 
 With ramps of t1 and t2 and a run at the speed V a move of the way D takes T, where D = V (T - (t1 + t2) / 2). A ramp by
-its acceleration a takes t = V / (k a), where k is the mean over the peak acceleration: 1, and of an S-curve less.
+its acceleration a takes t = V / (k a) + a / j, where k is the mean over the peak acceleration that a share of jerk
+leaves, and j a jerk that is given in place of it, with k = 1.
 """
 
 import math
 import sys
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from hpn.physics.equations import ROUNDING
+
+NEXT_TO_NONE = 8 * sys.float_info.epsilon
+"""Share of a whole that is rounding alone."""
+
+
+@dataclass(frozen=True, slots=True)
+class Shape:
+    """How ramps begin and end: jerk acts in a share of each, half of it at either end, or has a size of its own.
+
+    The jerk is in units of way per s³; infinite where the share is what is given.
+    """
+
+    share: float = 0.0
+    jerk: float = math.inf
+
+    @property
+    def mean(self) -> float:
+        """Mean over peak acceleration of a ramp that a share of jerk leaves."""
+        return 1 - self.share / 2
+
+    def peak_of(self, V: float, t: float) -> float:
+        """Smallest peak acceleration of a ramp that takes the time t in s to the speed V.
+
+        V = a t - a² / j; where the jerk is too low for that, the acceleration of a share of 1.
+        """
+        left = 1 - 4 * V / (self.jerk * t**2)
+        return V / (self.mean * t) * 2 / (1 + (math.sqrt(left) if left > NEXT_TO_NONE else 0.0))
+
+    def share_of(self, a: float, t: float) -> float:
+        """Share in which jerk acts of a ramp with a peak acceleration a in the time t in s."""
+        return self.share if math.isinf(self.jerk) else min(2 * a / (self.jerk * t), 1.0)
 
 
 @dataclass(frozen=True, slots=True)
 class Ramp:
-    """A ramp by either its time in s or its peak acceleration in units of way per s²."""
+    """A ramp by its time in s or its peak acceleration in units of way per s², or the time that follows from both."""
 
     time_s: float | None = None
     acceleration: float = math.inf
 
-    def time_at(self, V: float, k: float) -> float:
+    def time_at(self, V: float, shape: Shape) -> float:
         """Time in s to or from the speed V."""
-        return V / (k * self.acceleration) if self.time_s is None else self.time_s
+        if self.time_s is not None:
+            return self.time_s
+        return V / (shape.mean * self.acceleration) + self.acceleration / shape.jerk
+
+    def peak_at(self, V: float, t: float, shape: Shape) -> float:
+        """Its peak acceleration, where it takes the time t in s to the speed V."""
+        by_jerk = self.acceleration < math.inf and shape.jerk < math.inf
+        return self.acceleration if by_jerk else shape.peak_of(V, t)
+
+    def least_jerk(self, V: float, t: float) -> float:
+        """Smallest jerk with which it takes the time t in s to the speed V, or reaches its acceleration on the way."""
+        return self.acceleration**2 / V if self.acceleration < math.inf else 4 * V / t**2
 
 
 @dataclass(frozen=True, slots=True)
 class Timing:
     """Ramps and run of a move in s; its speed and, in the middle of each ramp, its accelerations by way and seconds.
 
-    `is_cut` says that the speed asked for leaves no time to run, so that a triangle comes out that nobody asked for.
+    `jerk_shares` are the shares of the ramps in which jerk acts, `least_jerk` the smallest that suffices. `is_cut` says
+    that the speed asked for leaves no time to run, so that a triangle comes out that nobody asked for.
     """
 
     ramps_s: tuple[float, float]
     run_s: float
     peak_speed: float
     peak_accelerations: tuple[float, float]
+    jerk_shares: tuple[float, float] = (0.0, 0.0)
+    least_jerk: float = 0.0
     is_cut: bool = False
 
     @property
@@ -43,9 +89,10 @@ class Timing:
         return sum(self.ramps_s) + self.run_s
 
 
-def equal_ramps(D: float, T: float, ramp_s: float, k: float) -> Timing:
+def equal_ramps(D: float, T: float, ramp_s: float, shape: Shape) -> Timing:
     """Way D in time T with ramps of one length; one that leaves next to no run is half the time."""
-    return _of_ramps(D, T, (ramp_s, ramp_s) if T - 2 * ramp_s > ROUNDING * T else (T / 2, T / 2), k)
+    times = (ramp_s, ramp_s) if T - 2 * ramp_s > ROUNDING * T else (T / 2, T / 2)
+    return _of_ramps(D, T, times, (Ramp(ramp_s), Ramp(ramp_s)), shape)
 
 
 def triangle(D: float, T: float) -> Timing:
@@ -53,47 +100,74 @@ def triangle(D: float, T: float) -> Timing:
     return Timing((T / 2, T / 2), 0.0, 2 * D / T, (4 * D / T**2,) * 2)
 
 
-def at_triangle(D: float, T: float, ramps: Sequence[Ramp], k: float) -> list[float]:
+def at_triangle(D: float, T: float, ramps: Sequence[Ramp], shape: Shape) -> list[float]:
     """Times in s of ramps to the speed 2 D / T of a triangle: together they may take T at most."""
-    return [ramp.time_at(2 * D / T, k) for ramp in ramps]
+    return [ramp.time_at(2 * D / T, shape) for ramp in ramps]
 
 
-def in_time(D: float, T: float, ramps: Sequence[Ramp], k: float) -> Timing | None:
+def in_time(D: float, T: float, ramps: Sequence[Ramp], shape: Shape) -> Timing | None:
     """Way D in time T with two ramps; None where they leave too little time to cover the way.
 
-    D = V (T' - s V), where T' is T less half of the ramps by time, and s V half of those by acceleration.
+    D = V (T' - s V), where T' is T less half of what the ramps take at any speed, and s V half of the rest of them.
     """
-    most = at_triangle(D, T, ramps, k)
+    most = at_triangle(D, T, ramps, shape)
     if sum(most) > T * (1 + ROUNDING):
         return None
-    if sum(most) > T * (1 - 8 * sys.float_info.epsilon):  # a triangle, but for rounding
-        return _of_ramps(D, T, (most[0] * T / sum(most), most[1] * T / sum(most)), k)
-    by_time, s = _halves(ramps, k)
-    left = T - by_time
+    if sum(most) > T * (1 - NEXT_TO_NONE):  # a triangle, but for rounding
+        return _of_ramps(D, T, (most[0] * T / sum(most), most[1] * T / sum(most)), ramps, shape)
+    fixed, s = _halves(ramps, shape)
+    left = T - fixed
     V = 2 * D / (left * (1 + math.sqrt(max(1 - 4 * s * D / left**2, 0.0))))
-    return _of_ramps(D, T, (ramps[0].time_at(V, k), ramps[1].time_at(V, k)), k)
+    return _of_ramps(D, T, (ramps[0].time_at(V, shape), ramps[1].time_at(V, shape)), ramps, shape)
 
 
-def at_speed(D: float, V: float, ramps: Sequence[Ramp], k: float) -> Timing:
+def at_speed(D: float, V: float, ramps: Sequence[Ramp], shape: Shape) -> Timing:
     """Way D at the speed V with two ramps; without a run where the speed is not reached before the brake has to act."""
-    half, s = _halves(ramps, k)
+    half, s = _halves(ramps, shape)
     run_s = D / V - half - s * V
     if is_cut := run_s <= ROUNDING * (half + s * V):
         V, run_s = 2 * D / (half + math.sqrt(half**2 + 4 * s * D)), 0.0
-    first, second = (ramp.time_at(V, k) for ramp in ramps)
-    return Timing((first, second), run_s, V, (V / (k * first), V / (k * second)), is_cut)
+    times = ramps[0].time_at(V, shape), ramps[1].time_at(V, shape)
+    return _shaped(times, run_s, V, ramps, shape, is_cut)
 
 
-def _halves(ramps: Sequence[Ramp], k: float) -> tuple[float, float]:
-    """Half the time of the ramps by time, and half the time over the speed of those by acceleration."""
-    by_time = math.fsum(ramp.time_s / 2 for ramp in ramps if ramp.time_s is not None)
-    return by_time, math.fsum(1 / (2 * k * ramp.acceleration) for ramp in ramps if ramp.time_s is None)
+def at_speed_in_time(D: float, T: float, V: float, ramps: Sequence[Ramp | None], shape: Shape) -> Timing | None:
+    """Way D at the speed V in time T: equal ramps, or beside one the other as what the time leaves.
+
+    t2 = 2 (T - D / V) - t1; None where that is nothing.
+    """
+    place = 0 if ramps[0] else 1
+    if (ramp := ramps[place]) is None:
+        return equal_ramps(D, T, min(T - D / V, T / 2), shape)
+    both, own = 2 * (T - D / V), ramp.time_at(V, shape)
+    if not own < both * (1 - ROUNDING):
+        return None
+    pair = Ramp(own, ramp.acceleration), Ramp(both - own)
+    timing = in_time(D, T, pair if place == 0 else pair[::-1], shape)
+    return replace(timing, is_cut=False) if timing else equal_ramps(D, T, T / 2, shape)
 
 
-def _of_ramps(D: float, T: float, ramps_s: tuple[float, float], k: float) -> Timing:
+def _halves(ramps: Sequence[Ramp], shape: Shape) -> tuple[float, float]:
+    """Half the time that ramps take at any speed, and half of the rest over the speed."""
+    fixed = math.fsum(ramp.time_at(0.0, shape) / 2 for ramp in ramps)
+    return fixed, math.fsum(1 / (2 * shape.mean * ramp.acceleration) for ramp in ramps if ramp.time_s is None)
+
+
+def _of_ramps(D: float, T: float, ramps_s: tuple[float, float], ramps: Sequence[Ramp], shape: Shape) -> Timing:
     """Way D in time T with ramps of some times, which may leave no run but for rounding."""
     first, second = ramps_s
     run_s = T - first - second
     is_cut = run_s <= ROUNDING * T
     V = 2 * D / T if is_cut else D / (T - (first + second) / 2)
-    return Timing(ramps_s, 0.0 if is_cut else run_s, V, (V / (k * first), V / (k * second)), is_cut)
+    return _shaped(ramps_s, 0.0 if is_cut else run_s, V, ramps, shape, is_cut)
+
+
+def _shaped(
+    ramps_s: tuple[float, float], run_s: float, V: float, ramps: Sequence[Ramp], shape: Shape, is_cut: bool
+) -> Timing:
+    """Timing with accelerations and shares of its ramps, and the jerk that they need."""
+    pairs = list(zip(ramps, ramps_s, strict=True))
+    first, second = (ramp.peak_at(V, t, shape) for ramp, t in pairs)
+    shares = shape.share_of(first, ramps_s[0]), shape.share_of(second, ramps_s[1])
+    least = max(ramp.least_jerk(V, t) for ramp, t in pairs)
+    return Timing(ramps_s, run_s, V, (first, second), shares, least, is_cut)

@@ -52,10 +52,20 @@ TURNING: Json = {
     ],
 }
 LIFTING: Json = {
-    "mechanism": {"type": "ball_screw", "mass_kg": 80.0, "lead_mm": 10.0, "incline_deg": 30.0, "inertia_kgm2": 0.002},
+    "mechanism": {
+        "type": "ball_screw",
+        "mass_kg": 80.0,
+        "lead_mm": 10.0,
+        "incline_deg": 30.0,
+        "inertia_kgm2": 0.002,
+        "friction_force_N": 24.5,
+        "friction_torque_Nm": 0.8,
+        "counterweight_kg": 30.0,
+    },
     "moves": [
         {"profile": "modified_sine", "distance_mm": 500.0, "time_s": 1.2, "external_force_N": 200.0},
         {"profile": "triangular", "distance_mm": -500.0, "speed_mm_per_s": 800.0},
+        {"profile": "s_curve", "distance_mm": 200.0, "time_s": 1.0, "jerk_mm_per_s3": 20000.0},
     ],
 }
 """Motions of a rotary and of a linear mechanism."""

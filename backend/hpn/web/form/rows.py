@@ -12,6 +12,7 @@ OPTIONAL: Mapping[str, tuple[str, ...]] = {
     "loads": LOADS,
     "varying": ("Tpk", "npk", "Trms"),
     "ramps": ("mta", "mtd", "md2"),
+    "jerk": ("mjk",),
 }
 """Columns of phases and moves that appear where they are used, by the button that shows them."""
 
@@ -25,7 +26,7 @@ _EVERY_MOVE = ("mx", *OF_ANY_ROW)
 MOVE_COLUMNS: Mapping[str, tuple[str, ...]] = {
     "trapezoidal": (*_TIMED, *OPTIONAL["ramps"], *_EVERY_MOVE),
     "triangular": (*_TIMED, *_EVERY_MOVE),
-    "s_curve": (*_TIMED, *OPTIONAL["ramps"], "mj", *_EVERY_MOVE),
+    "s_curve": (*_TIMED, *OPTIONAL["ramps"], "mj", *OPTIONAL["jerk"], *_EVERY_MOVE),
     "modified_sine": ("ms", "mt", *_EVERY_MOVE),
     "dwell": ("mt", *_EVERY_MOVE),
 }

@@ -208,6 +208,10 @@ MECHANISM_SYMBOLS = (
     _of_mechanism("mg", "mechanism.gravity_mass_kg"),
     _of_mechanism("rg", "mechanism.gravity_radius_mm"),
     _of_mechanism("Tf", "mechanism.friction_torque_Nm"),
+    _of_mechanism("Ff", "mechanism.friction_force_N", hint=N_("Of seals, wipers, pressed gibs: whatever the weight.")),
+    _of_mechanism(
+        "mc", "mechanism.counterweight_kg", hint=N_("Moves with the mass; its weight acts against the mass’s.")
+    ),
     _of_mechanism("b", "mechanism.viscous_friction_Nm_per_rpm"),
     _of_mechanism("etam", "mechanism.efficiency"),
     _of_mechanism("im", "mechanism.ratio", hint=N_("Turns of the gear per turn of the mechanism.")),
@@ -223,10 +227,13 @@ MECHANISM_SYMBOLS = (
 FIRST_OF_MECHANISM = ("d", "h", "ml", "J", "Tf")
 """Inputs of a mechanism that nearly every one needs, as the form shows them; the others are folded."""
 
-_IN_FORM = (*FIRST_OF_MECHANISM, "mg", "rg", "th0", "inc", "b", "mu", "etam", "im")
+_IN_FORM = (*FIRST_OF_MECHANISM, "mg", "rg", "th0", "inc", "mc", "b", "mu", "Ff", "etam", "im")
 
-_INERTIA_OF_TURNING = N_("Of everything that turns with pinion, pulley or screw.")
-_INERTIA_OF_ROTARY = N_("Of everything that turns about the axis, including a mass off the shaft.")
+_OF_TURNING = {
+    "J": N_("Of everything that turns with pinion, pulley or screw."),
+    "Tf": N_("At pinion, pulley or screw, against the motion."),
+}
+_OF_ROTARY = {"J": N_("Of everything that turns about the axis, including a mass off the shaft.")}
 
 
 @cache
@@ -236,14 +243,14 @@ def mechanism_symbols(mechanism: str) -> tuple[Symbol, ...]:
     An unknown mechanism turns.
     """
     model = CLASSES.get(mechanism, Rotary)
-    inertia = _INERTIA_OF_ROTARY if model is Rotary else _INERTIA_OF_TURNING
+    hints = _OF_ROTARY if model is Rotary else _OF_TURNING
     found = []
     for symbol in (BY_NAME[name] for name in _IN_FORM):
         field = model.model_fields.get(symbol.path[-1])
         if field is not None or (model is Rotary and symbol.name == "th0"):
             default = 0.0 if field is None else field.default
             shown = f"{default:g}" if isinstance(default, float) else ""
-            found.append(replace(symbol, placeholder=shown, hint=inertia if symbol.name == "J" else symbol.hint))
+            found.append(replace(symbol, placeholder=shown, hint=hints.get(symbol.name, symbol.hint)))
     return tuple(found)
 
 
@@ -252,14 +259,17 @@ _OF_A_MOVE = {"mj": f"{DEFAULT_JERK_SHARE:g}", "mx": "0"}
 
 
 def _of_moves(way: str, speed: str, acceleration: str, external: str) -> tuple[Symbol, ...]:
-    fields = ("profile", way, "time_s", speed, acceleration, "jerk_share", external)
+    jerk = acceleration.replace("acceleration", "jerk").replace("s2", "s3")
+    fields = ("profile", way, "time_s", speed, acceleration, "jerk_share", jerk, external)
     ramps = ("acceleration_time_s", "deceleration_time_s", acceleration.replace("acc", "dec"))
     return tuple(
         Symbol(
             name, ("motion", "move", field), "text" if name == "mv" else "number", placeholder=_OF_A_MOVE.get(name, "")
         )
         for name, field in zip(
-            ("mv", "ms", "mt", "mn", "ma", "mj", "mx", *OPTIONAL["ramps"]), (*fields, *ramps), strict=True
+            ("mv", "ms", "mt", "mn", "ma", "mj", *OPTIONAL["jerk"], "mx", *OPTIONAL["ramps"]),
+            (*fields, *ramps),
+            strict=True,
         )
     ) + tuple(symbol for symbol in PHASE_SYMBOLS if symbol.name in OF_ANY_ROW)
 
