@@ -30,7 +30,7 @@ def evaluation_of(chance: np.random.Generator, rank_by: NDArray[Any]) -> Evaluat
         length_max_mm=drawn(chance, GEARS),
         torsional_stiffness_Nm_per_rad=drawn(chance, GEARS),
     )
-    ranked = ("life_L10_h", "motor_peak_torque_Nm", "natural_frequency_Hz", "position_error_arcmin")
+    ranked = ("life_L10_h", "shortest_life_h", "motor_peak_torque_Nm", "natural_frequency_Hz", "position_error_arcmin")
     figures = SimpleNamespace(**{name: drawn(chance, axes, GEARS) for name in ranked})
     case = SimpleNamespace(gears=gears, figures=figures, asked=SimpleNamespace(rank_by=rank_by))
     none = cast(Any, None)
@@ -50,7 +50,7 @@ def sorted_by_hand(evaluation: Evaluation, axis: int, rank_by: str) -> list[int]
         "utilisation": evaluation.utilisation[axis],
         "length": gears.length_max_mm,
         "motor_torque": figures.motor_peak_torque_Nm[axis],
-        "life": -figures.life_L10_h[axis],
+        "life": -figures.shortest_life_h[axis],
         "natural_frequency": -figures.natural_frequency_Hz[axis],
         "position_error": figures.position_error_arcmin[axis],
         "stiffness": -gears.torsional_stiffness_Nm_per_rad,

@@ -273,6 +273,7 @@ def _judge(
             "momentary_peak_count": allowed,
             "bearing_life_L50_h": bearing_life,
             "bearing_life_L10_h": None if bearing_life is None else bearing_life / 5,
+            "shortest_life_h": _shortest_life(application, life, bearing_life, checks),
             "motor_peak_torque_Nm": duty.T_max / loss,
             "motor_rated_torque_Nm": duty.T_rms / loss,
             "stop_torque_Nm": T_k,
@@ -283,6 +284,17 @@ def _judge(
     )
     _conclude(result, load_checks)
     return result
+
+
+def _shortest_life(
+    application: Mapping[str, Any], life: float | None, bearing_life: float | None, checks: list[Check]
+) -> float | None:
+    """The smaller of gear life and judged bearing life; None where one of them is not rated."""
+    if not any(check.code == "output_bearing_life" for check in checks):
+        return life
+    if life is None or bearing_life is None:
+        return None
+    return min(life, bearing_life / (5 if (application.get("output_load") or {}).get("life_basis") == "L10" else 1))
 
 
 def _stop_torque(brake: Mapping[str, Any], wishes: Mapping[str, Any], gear: Gear) -> float:
@@ -426,7 +438,7 @@ def _ordered(candidates: list[Candidate], rank_by: str) -> list[Candidate]:
             "utilisation": last(c.utilisation),
             "length": last(c.gear.length),
             "motor_torque": last(c.figures["motor_peak_torque_Nm"]),
-            "life": last(c.figures["life_L10_h"], -1),
+            "life": last(c.figures["shortest_life_h"], -1),
             "stiffness": last(c.gear.K3, -1),
             "natural_frequency": last(c.figures["natural_frequency_Hz"], -1),
             "position_error": last(c.figures["position_error_arcmin"]),

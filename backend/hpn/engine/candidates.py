@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 from itertools import islice, repeat
-from typing import Annotated
+from typing import Annotated, Literal
 
 import msgspec
 import numpy as np
@@ -24,6 +24,8 @@ from hpn.physics.equations import FloatArray
 from hpn.words.quantities import CANDIDATE, CHECK, RESERVE
 from hpn.words.reply import Reply, described
 from hpn.words.wording import N_, Quantity, Sentence, Value, telling_decimals
+
+LifeOf = Literal["gear_L10", "bearing_L50", "bearing_L10"]
 
 
 class CheckResult(Reply, frozen=True):
@@ -72,6 +74,8 @@ class Candidate(Reply, frozen=True):
     momentary_peak_count: float | None = None
     bearing_life_L50_h: float | None = None
     bearing_life_L10_h: float | None = None
+    shortest_life_h: float | None = None
+    shortest_life_of: LifeOf | None = None
     motor_peak_torque_Nm: float | None = None
     motor_rated_torque_Nm: float | None = None
     natural_frequency_Hz: float | None = None
@@ -121,11 +125,14 @@ _UNLIMITED_BY = {
     "life_L10_h": ("average_torque", "average_torque"),
     "momentary_peak_count": ("momentary_peak_torque", "repeated_peak_torque"),
     "bearing_life_L50_h": ("output_bearing_life", "output_bearing_life"),
+    "bearing_life_L10_h": ("output_bearing_life", "output_bearing_life"),
 }
 """Figures that may be unlimited: the check that is present where they are asked for, and the check that is rated where
 the gear has the figure behind them."""
 
-FIGURES = tuple(field.name for field in msgspec.structs.fields(Candidate) if field.default is None)
+FIGURES = tuple(
+    field.name for field in msgspec.structs.fields(Candidate) if field.type == float | None and not field.required
+)
 """Figures of a candidate, in the order of its fields."""
 
 
@@ -149,6 +156,7 @@ def candidates_of(evaluation: Evaluation, index: int) -> Iterator[Candidate]:
     ]
     rows = zip(used, values, reserve, zip(*checks, strict=True), strict=True)
     verdicts, governs = evaluation.verdict[index].tolist(), evaluation.governing[index].tolist()
+    lives = evaluation.case.figures.shortest_life_of[index].tolist()
     for place, (gear, (utilisation, numbers, own_reserve, results)) in enumerate(
         zip(order.tolist(), rows, strict=True)
     ):
@@ -167,6 +175,7 @@ def candidates_of(evaluation: Evaluation, index: int) -> Iterator[Candidate]:
             governing_check=governing,
             reason=_reason(known.size, STATUS[verdict], utilisation, governing, failed, u),
             **dict(zip(FIGURES, numbers, strict=True)),
+            shortest_life_of=lives[gear] or None,
             reserve=own_reserve,
             checks=results,
         )

@@ -32,7 +32,7 @@ RANKED_BY: Mapping[RankBy, Callable[[Case, FloatArray], FloatArray]] = {
     "utilisation": lambda case, used: used,
     "length": lambda case, used: case.gears.length_max_mm,
     "motor_torque": lambda case, used: case.figures.motor_peak_torque_Nm,
-    "life": lambda case, used: -case.figures.life_L10_h,
+    "life": lambda case, used: -case.figures.shortest_life_h,
     "stiffness": lambda case, used: -case.gears.torsional_stiffness_Nm_per_rad,
     "natural_frequency": lambda case, used: -case.figures.natural_frequency_Hz,
     "position_error": lambda case, used: case.figures.position_error_arcmin,

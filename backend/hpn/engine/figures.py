@@ -6,11 +6,11 @@ from functools import cached_property
 import numpy as np
 
 from hpn.catalogue import Catalogue, GearList
-from hpn.engine.duty import Duty
+from hpn.engine.duty import Duty, TextArray
 from hpn.engine.motor_torques import torques_at_motor
 from hpn.engine.stops import Stops
 from hpn.physics import bearing, equations, stiffness
-from hpn.physics.equations import FloatArray
+from hpn.physics.equations import ROUNDING, FloatArray
 from hpn.physics.stop import impact_speed
 
 
@@ -204,6 +204,27 @@ class Figures:
     def bearing_life_L10_h(self) -> FloatArray:
         """Life L10 of the output bearing in hours, shape (N, G)."""
         return self.bearing_life_L50_h / bearing.L50_PER_L10
+
+    @cached_property
+    def judged_bearing_life_h(self) -> FloatArray:
+        """Life of the output bearing in hours on the basis of the required one, shape (N, G)."""
+        return np.where(self.duty.asked.life_basis == "L10", self.bearing_life_L10_h, self.bearing_life_L50_h)
+
+    @cached_property
+    def shortest_life_h(self) -> FloatArray:
+        """The smaller of gear life L10 and judged bearing life in hours, shape (N, G); the gear's without a load.
+
+        NaN where one of them is not rated.
+        """
+        loaded = ~np.isnan(self.duty.asked["output_load.load_coefficient"])
+        return np.where(loaded, np.minimum(self.life_L10_h, self.judged_bearing_life_h), self.life_L10_h)
+
+    @cached_property
+    def shortest_life_of(self) -> TextArray:
+        """The life that this is, shape (N, G): of gear or bearing, with its basis; blank where there is no number."""
+        of_bearing = np.where(self.duty.asked.life_basis == "L10", "bearing_L10", "bearing_L50")
+        is_gear = self.shortest_life_h >= self.life_L10_h * (1 - ROUNDING)
+        return np.where(np.isfinite(self.shortest_life_h), np.where(is_gear, "gear_L10", of_bearing), "")
 
     @cached_property
     def motor_peak_torque_Nm(self) -> FloatArray:

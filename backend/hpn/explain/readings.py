@@ -7,14 +7,13 @@ comparisons, since P grows in proportion with a load along its direction and the
 
 import math
 from dataclasses import dataclass
-from operator import itemgetter
 
 import numpy as np
 
 from hpn.application import Application, LifeBasis, OutputLoad
 from hpn.catalogue import Catalogue
 from hpn.catalogue.gear import Gear
-from hpn.engine.candidates import Candidate, CheckResult
+from hpn.engine.candidates import Candidate, CheckResult, LifeOf
 from hpn.engine.check import Kind
 from hpn.engine.checks import BY_CODE
 from hpn.engine.duty import Duty
@@ -80,26 +79,33 @@ class Life:
     life_h: float | None
     basis: LifeBasis
 
+    @property
+    def hours(self) -> float:
+        """The life in hours; infinite where it is unlimited."""
+        return math.inf if self.life_h is None else self.life_h
 
-def shortest_life(candidate: Candidate, application: Application | None) -> Life | None:
-    """Life of a gear or of its output bearing, whichever has the shorter L10; None where none is known.
-
-    The bearing's life is on the basis on which it is judged.
-    """
-    lives: list[tuple[float, Life]] = []
-    if candidate.life_L10_h is not None or candidate.is_unlimited("life_L10_h"):
-        lives.append((_endless(candidate.life_L10_h), Life("life", candidate.life_L10_h, "L10")))
-    bearing, load = candidate.check("output_bearing_life"), application.loads if application else None
-    basis: LifeBasis = load.life_basis if load else "L50"
-    known = all(candidate.says(f"bearing_life_{each}_h") for each in ("L10", basis))
-    if bearing and bearing.status != "not_rated" and known:
-        judged = candidate.bearing_life_L10_h if basis == "L10" else candidate.bearing_life_L50_h
-        lives.append((_endless(candidate.bearing_life_L10_h), Life("output_bearing_life", judged, basis)))
-    return min(lives, key=itemgetter(0))[1] if lives else None
+    @property
+    def sentence(self) -> Sentence:
+        """The life with its basis, such as "68 678 h (bearing L50)"."""
+        if self.life_h is None:
+            return Sentence(N_("unlimited"))
+        text = N_("{life} (gear {basis})") if self.check == "life" else N_("{life} (bearing {basis})")
+        return Sentence(text, {"life": Quantity(self.life_h, "h"), "basis": self.basis})
 
 
-def _endless(life_h: float | None) -> float:
-    return math.inf if life_h is None else life_h
+def shortest_life(candidate: Candidate) -> Life | None:
+    """Shortest life of a gear, by the check that it belongs to; None where one is not rated, or no reply has it."""
+    loaded = candidate.check("output_bearing_life") is not None
+    endless = candidate.is_unlimited("life_L10_h") and (not loaded or candidate.is_unlimited("bearing_life_L50_h"))
+    known = endless or candidate.shortest_life_h is not None
+    return life_of(candidate.shortest_life_h, candidate.shortest_life_of) if known else None
+
+
+def life_of(life_h: float | None, of: LifeOf | None) -> Life:
+    """A shortest life as a reply has it; unlimited without a number."""
+    if of is None:
+        return Life("life", None, "L10")
+    return Life("life" if of == "gear_L10" else "output_bearing_life", life_h, "L50" if of == "bearing_L50" else "L10")
 
 
 _AT_MOTOR = {"motor_peak_torque_Nm": "T_in,max", "motor_rated_torque_Nm": "T_in,rms"}

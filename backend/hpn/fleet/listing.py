@@ -16,6 +16,7 @@ import pyarrow.parquet as pq
 from hpn.application import Application
 from hpn.catalogue import Catalogue
 from hpn.engine.evaluation import Evaluation, PlaceArray, evaluate
+from hpn.explain.readings import Life, life_of
 from hpn.fleet.axes import Axes
 from hpn.fleet.columns import AXIS, COLUMNS
 from hpn.fleet.gathering import axes_of
@@ -61,7 +62,7 @@ class AxisRow(NamedTuple):
     gear: str | None
     governing_check: str | None
     utilisation: float | None
-    life_L10_h: float | None
+    life: Life | None
     suitable: int | None
     runner_up: str | None
     average_torque_Nm: float | None
@@ -176,6 +177,9 @@ def _row(place: int, **cells: Any) -> AxisRow:
         state: State = "rejected"
     else:
         state = "selected" if cells["selected"] else "unsuitable"
+    shortest = cells.pop("shortest_life_h", None), cells.pop("shortest_life_of", "")
+    cells["life"] = life_of(*shortest) if state == "selected" and shortest[1] != "" else None
+    del cells["life_L10_h"]
     if state == "unsuitable":
         cells |= dict(zip(("selected", "governing_check", "utilisation"), nearest, strict=True))
     return AxisRow(place, cells.pop(AXIS) or "", state, cells.pop("selected"), **cells)

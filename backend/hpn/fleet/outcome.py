@@ -41,6 +41,8 @@ def answer_fields(axis: pa.DataType) -> pa.Schema:
             ("governing_check", pa.string()),
             ("utilisation", pa.float64()),
             ("life_L10_h", pa.float64()),
+            ("shortest_life_h", pa.float64()),
+            ("shortest_life_of", pa.string()),
             ("suitable", pa.int64()),
             ("runner_up", pa.string()),
             ("average_torque_Nm", pa.float64()),
@@ -83,7 +85,9 @@ class _Answers:
 
     def __init__(self, count: int) -> None:
         self.selected, self.runner_up, self.governing = (np.full(count, -1, np.int32) for _ in range(3))
-        self.utilisation, self.life_L10_h, self.average_torque_Nm = (np.full(count, np.nan) for _ in range(3))
+        self.utilisation, self.average_torque_Nm = np.full(count, np.nan), np.full(count, np.nan)
+        self.life_L10_h, self.shortest_life_h = np.full(count, np.nan), np.full(count, np.nan)
+        self.shortest_life_of = np.full(count, "", object)
         self.suitable = np.full(count, -1, np.int64)
         self.designations: list[str] = []
 
@@ -91,7 +95,7 @@ class _Answers:
         """Take the answers of some axes."""
         suits = evaluation.verdict == SUITABLE
         count = suits.sum(axis=-1)
-        best, found = evaluation.foremost(suits), count > 0
+        best, found, figures = evaluation.foremost(suits), count > 0, evaluation.case.figures
         names = np.array([self._number(gear.designation) for gear in evaluation.gears.rows], np.int32)
         codes = np.array([CODES.index(check.code) for check in evaluation.checks], np.int32)
         rows = np.arange(len(places))
@@ -100,8 +104,9 @@ class _Answers:
         self.selected[places] = np.where(found, names[best], -1)
         self.governing[places] = np.where(found, codes[evaluation.governing_of(best)], -1)
         self.utilisation[places] = np.where(found, evaluation.utilisation[rows, best], np.nan)
-        life = np.broadcast_to(evaluation.case.figures.life_L10_h, suits.shape)
-        self.life_L10_h[places] = np.where(found, life[rows, best], np.nan)
+        for own, figure in ((self.life_L10_h, figures.life_L10_h), (self.shortest_life_h, figures.shortest_life_h)):
+            own[places] = np.where(found, figure[rows, best], np.nan)
+        self.shortest_life_of[places] = np.where(found, figures.shortest_life_of[rows, best], "")
         suits[rows, best] = False
         self.runner_up[places] = np.where(count > 1, names[evaluation.foremost(suits)], -1)
 
@@ -113,6 +118,8 @@ class _Answers:
             _named(self.governing, CODES),
             _finite(self.utilisation),
             _finite(self.life_L10_h),
+            _finite(self.shortest_life_h),
+            pa.array([life or None for life in self.shortest_life_of.tolist()], pa.string()),
             pa.array(self.suitable, mask=self.suitable < 0),
             _named(self.runner_up, self.designations),
             _finite(self.average_torque_Nm),
@@ -198,7 +205,10 @@ def _located(row: int, location: tuple[str | int, ...], text: str) -> Fault:
 
 RESERVE = {f"reserve.{name}": name for name in Reserve.__struct_fields__}
 PLAIN = tuple(name for name in Candidate.__struct_fields__ if name not in ("reserve", "checks"))
-WHOLE, TEXTS = ("ratio", "stages", "rank"), ("designation", "size", "status", "governing_check", "reason")
+WHOLE, TEXTS = (
+    ("ratio", "stages", "rank"),
+    ("designation", "size", "status", "governing_check", "reason", "shortest_life_of"),
+)
 
 
 def candidate_fields(axis: pa.DataType) -> pa.Schema:

@@ -161,6 +161,15 @@ CANDIDATE: Mapping[str, Named] = {
         "Life of the output bearing on the basis L10: 90 % of the bearings survive it, L50 / 5.",
         caveat=N_("L10 = L50 / 5, a relation from other handbooks. The hours include the pause."),
     ),
+    "shortest_life_h": Named(
+        N_("Shortest life"),
+        "",
+        "The smaller of gear life L10 and, under a load, bearing life on its required basis. Null where both are "
+        "unlimited or one is not rated.",
+    ),
+    "shortest_life_of": Named(
+        N_("Shortest life of"), "", "The life that this is, with its basis; null where there is no number."
+    ),
     "motor_peak_torque_Nm": Named(
         N_("Peak motor torque needed"),
         "T_max/(i·η)",
@@ -234,7 +243,7 @@ CANDIDATE: Mapping[str, Named] = {
 }
 
 LISTED: Mapping[str, Named] = {
-    "life_L10_h": Named(N_("Life"), "L_10"),
+    "shortest_life_h": Named(N_("Shortest life")),
     "maximum_input_speed_rpm": Named(N_("Input speed")),
 }
 """Figures of a candidate that the page lists of all of them, by a name as short as a column."""

@@ -6,6 +6,7 @@ from typing import Any
 from hpn.catalogue.gear import Gear
 from hpn.engine.candidates import Candidate
 from hpn.engine.remedy import remedy_of
+from hpn.explain.readings import shortest_life
 from hpn.files.export import Export
 from hpn.files.report.checks import bar, failures
 from hpn.files.words import bound_of, exact_percent, measured, title_of, used
@@ -150,7 +151,7 @@ HEADS = (
     N_("Governing check"),
     N_("Weight"),
     N_("Length"),
-    N_("Gear life L_10"),
+    N_("Shortest life"),
 )
 """Columns of the candidates."""
 
@@ -191,7 +192,7 @@ def _row(export: Export, candidate: Candidate, reader: Reader) -> dict[str, Any]
         "figures": [
             _published(gear.weight_kg if gear else None, "kg", reader),
             _length(gear, reader),
-            _gear_life(candidate, reader),
+            reader.told(life.sentence) if (life := shortest_life(candidate)) else NOTHING,
         ],
     }
 

@@ -29,7 +29,7 @@ ORDERS: Mapping[str, Callable[["AxisRow"], Any]] = {
     "gear": lambda row: row.gear,
     "utilisation": lambda row: row.utilisation,
     "check": lambda row: row.governing_check,
-    "life": lambda row: row.life_L10_h,
+    "life": lambda row: row.life and row.life.hours,
     "suitable": lambda row: row.suitable,
     "runner_up": lambda row: row.runner_up,
     "torque": lambda row: row.average_torque_Nm,

@@ -132,7 +132,7 @@ class Result:
     @property
     def shortest_life(self) -> Life | None:
         """The shortest life of the chosen gear; None where none is known."""
-        return shortest_life(self.chosen, self.application)
+        return shortest_life(self.chosen)
 
     @cached_property
     def listed(self) -> CandidateList:

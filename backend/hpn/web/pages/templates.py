@@ -21,7 +21,7 @@ from hpn.explain.calculation import calculation_of, mathml
 from hpn.explain.drawings import Figure
 from hpn.explain.drawings.picture import beyond_limit
 from hpn.explain.drawings.svg import markup
-from hpn.explain.readings import stiffness_of
+from hpn.explain.readings import shortest_life, stiffness_of
 from hpn.installed import data_folder
 from hpn.physics.motion.moves import Move
 from hpn.web.door.visit import address, current
@@ -253,6 +253,7 @@ FILTERS: dict[str, Callable[..., Any]] = {
     "reason": _reason,
     "reasons": reasons_of,
     "say": _say,
+    "shortest_life": shortest_life,
     "stiffness": _stiffness,
     "symbols": with_symbols,
     "t": _for_reader("text"),
