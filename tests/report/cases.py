@@ -12,7 +12,6 @@ from hpn.application import Application
 from hpn.catalogue import Catalogue
 from hpn.engine.selection import Selection, encode, select
 from hpn.files import export
-from hpn.files.workbook import workbook as sheets
 from hpn.web.api.samples import LIFTING, TURNING
 from hpn.web.form.link_writer import to_link
 from hpn.words.reader import Reader
@@ -126,11 +125,6 @@ def export_of(application: Json, catalogue: Catalogue, *, title: str = "Rotary t
 def language(code: str) -> Reader:
     """Reader of a file."""
     return Reader(code, digits=export.DIGITS)
-
-
-def workbook(given: Export, reader: Reader) -> bytes:
-    """The workbook on an export."""
-    return sheets.workbook(given.typed(), reader)
 
 
 # --- Motions and phases that vary -------------------------------------------------------------------------------------

@@ -10,7 +10,6 @@ import pytest
 from openpyxl.workbook import Workbook
 
 Recalculate = Callable[[Mapping[str, Workbook]], dict[str, Workbook]]
-Print = Callable[[Mapping[str, Workbook]], dict[str, bytes]]
 Convert = Callable[[Mapping[str, Workbook], str], dict[str, Path]]
 
 
@@ -37,12 +36,6 @@ def recalculate(convert: Convert) -> Recalculate:
     return lambda books: {
         name: openpyxl.load_workbook(path, data_only=True) for name, path in convert(books, "xlsx").items()
     }
-
-
-@pytest.fixture(scope="session")
-def print_out(convert: Convert) -> Print:
-    """Workbooks as LibreOffice prints them."""
-    return lambda books: {name: path.read_bytes() for name, path in convert(books, "pdf").items()}
 
 
 def _saved(book: Workbook, path: Path) -> Path:

@@ -126,7 +126,7 @@ def test_a_link_with_a_gear_makes_files_of_that_gear(client: TestClient) -> None
         assert f'"{gear}.pdf"' in report.headers["content-disposition"]
         assert f"Checks of {gear}" in PdfReader(BytesIO(report.content)).pages[0].extract_text()
         book = openpyxl.load_workbook(BytesIO(client.get(f"/report.xlsx?{QUERY}&gear={gear}").content))
-        assert gear in [cell.value for cell in book.worksheets[0]["C"]]
+        assert gear in [cell.value for cell in book.worksheets[0]["B"]]
     unknown = client.get(f"/report.pdf?{QUERY}&gear=HPN-99A-5")
     assert (unknown.status_code, unknown.json()["errors"][0]["pointer"]) == (422, "/gear")
 

@@ -39,31 +39,16 @@ class Case:
 Values = Callable[[Case], FloatArray]
 
 
-@dataclass(frozen=True, slots=True)
-class Sheet:
-    """Demand and limit of a check as formulas of the workbook, by the names that `files/workbook/formulas.py` gives.
-
-    `{T_N}` stands for a figure of the gear, `T_k` for an input. A blank `share` is demand over limit, or limit over
-    demand for a minimum; a blank `asked` that the check's input is filled.
-    """
-
-    demand: str
-    limit: str
-    share: str = ""
-    asked: str = ""
-
-
 @dataclass(frozen=True)
 class Check:
     """One check. Its texts are English msgids; `name` is how it stands inside a sentence.
 
     `asked` is the input whose presence asks for it, blank for a check that is always made; `instead` is another input
     that asks for it as well. Without a `limit` that input is the limit. Utilisation is demand over limit, limit over
-    demand for a minimum, or what `share` gives. `sheet` is the same as formulas; None for a check
-    that no workbook can calculate, which then stands there as saved. `limited_by` is the catalogue figure behind the
-    limit, None where that is the user's own. `relation` is the check in the handbook's symbols. `moves` gives the power
-    with which the utilisation grows with each driver; `accepted` says which {value} of the input `asked` lets it pass
-    where none of them moves it, or none in closed form.
+    demand for a minimum, or what `share` gives. `limited_by` is the catalogue figure behind the limit, None where that
+    is the user's own. `relation` is the check in the handbook's symbols. `moves` gives the power with which the
+    utilisation grows with each driver; `accepted` says which {value} of the input `asked` lets it pass where none of
+    them moves it, or none in closed form.
     """
 
     code: str
@@ -79,7 +64,6 @@ class Check:
     basis: str
     remedy: str
     demand: Values
-    sheet: Sheet | None
     relation: str
     asked: str = ""
     instead: str = ""

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from hpn.engine.check import RATING_TABLES, Case, Check, Sheet
+from hpn.engine.check import RATING_TABLES, Case, Check
 from hpn.physics import equations
 from hpn.physics.equations import FloatArray
 from hpn.words.wording import N_
@@ -46,7 +46,6 @@ GEAR: tuple[Check, ...] = (
         remedy=N_("Lower or shorten the phases with high torque, or choose a gear with a larger rated torque."),
         demand=lambda c: c.duty.average_torque_Nm,
         limit=lambda c: c.gears.rated_torque_Nm,
-        sheet=Sheet("T_av", "{T_N}"),
         limited_by="rated_torque_Nm",
         relation="T_av ≤ T_A = T_N",
         moves={"torque": 1.0},
@@ -69,7 +68,6 @@ GEAR: tuple[Check, ...] = (
         remedy=N_("Accelerate and brake more gently, or choose a gear with a larger repeated peak torque."),
         demand=lambda c: c.duty.maximum_torque_Nm,
         limit=lambda c: c.gears.repeated_peak_torque_Nm,
-        sheet=Sheet("T_max", "{T_R}"),
         share=lambda c: equations.repeated_peak_torque_utilisation(
             maximum_torque_Nm=c.duty.maximum_torque_Nm, repeated_peak_torque_Nm=c.gears.repeated_peak_torque_Nm
         ),
@@ -95,7 +93,6 @@ GEAR: tuple[Check, ...] = (
         instead="emergency_stop.brake.torque_Nm",
         demand=lambda c: c.figures.stop_torque_Nm,
         limit=lambda c: c.gears.momentary_peak_torque_Nm,
-        sheet=Sheet("ABS(T_k)", "{T_M}"),
         share=_share_of_peak,
         limited_by="momentary_peak_torque_Nm",
         relation="T_k ≤ T_M",
@@ -120,12 +117,6 @@ GEAR: tuple[Check, ...] = (
         asked="emergency_stop.count",
         demand=lambda c: c.asked["emergency_stop.count"],
         limit=lambda c: c.figures.momentary_peak_count,
-        sheet=Sheet(
-            "N_k",
-            "{N_k_max}",
-            share='IF({N_k_max}="[unlimited]",0,IF({N_k_max}=0,"–",N_k/{N_k_max}))',
-            asked='AND(T_k<>"",N_k<>"")',
-        ),
         share=_share_of_stops,
         limited_by="repeated_peak_torque_Nm",
         relation="N_k ≤ N_k,max",
@@ -149,7 +140,6 @@ GEAR: tuple[Check, ...] = (
         remedy=N_("Lengthen the pause, run slower, or choose a smaller ratio."),
         demand=lambda c: c.figures.average_input_speed_rpm,
         limit=lambda c: c.gears.average_input_speed_rpm,
-        sheet=Sheet("{n_in_av}", "{n_av_limit}"),
         limited_by="average_input_speed_rpm",
         relation="n_in,av ≤ n_av(max)",
         moves={"speed": 1.0},
@@ -173,7 +163,6 @@ GEAR: tuple[Check, ...] = (
         remedy=N_("Lower the top speed, or choose a smaller ratio."),
         demand=lambda c: c.figures.maximum_input_speed_rpm,
         limit=lambda c: c.gears.maximum_input_speed_rpm,
-        sheet=Sheet("{n_in_max}", "{n_in_limit}"),
         limited_by="maximum_input_speed_rpm",
         relation="n_in,max ≤ n_in(max)",
         moves={"speed": 1.0},
@@ -198,7 +187,6 @@ GEAR: tuple[Check, ...] = (
         remedy=N_("Lower the torque (it counts to the power 10/3), the speed or the duty, or choose a larger gear."),
         asked="requirements.life_h",
         demand=lambda c: c.figures.life_L10_h,
-        sheet=Sheet("{L_10}", "L_10_req", share='IF({L_10}="[unlimited]",0,L_10_req/{L_10})'),
         limited_by="rated_torque_Nm",
         relation="L_10 ≥ L_10,req",
         moves={"torque": 10 / 3, "speed": 1.0},

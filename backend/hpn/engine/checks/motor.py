@@ -1,6 +1,6 @@
 """Checks of the motor, against the limits that the user states: speeds, torques and the inertia ratio."""
 
-from hpn.engine.check import Check, Sheet
+from hpn.engine.check import Check
 from hpn.engine.motor_torques import inertia_ratio
 from hpn.words.wording import N_
 
@@ -21,7 +21,6 @@ MOTOR: tuple[Check, ...] = (
         remedy=N_("Choose a smaller ratio, a faster motor, or a lower top speed."),
         asked="requirements.motor.maximum_speed_rpm",
         demand=lambda c: c.figures.maximum_input_speed_rpm,
-        sheet=Sheet("{n_in_max}", "n_mot"),
         relation="n_in,max ≤ n_mot",
         moves={"speed": 1.0},
         accepted=N_("the motor’s maximum speed rises to {value}"),
@@ -49,7 +48,6 @@ MOTOR: tuple[Check, ...] = (
         remedy=N_("Choose a larger ratio or a stronger motor, or accelerate more gently."),
         asked="requirements.motor.peak_torque_Nm",
         demand=lambda c: c.figures.motor_peak_torque_Nm,
-        sheet=Sheet("{T_mot_peak}", "T_mot"),
         relation="T_max / (i · η) ≤ T_mot",
         moves={"torque": 1.0},
         accepted=N_("the motor’s peak torque rises to {value}"),
@@ -77,7 +75,6 @@ MOTOR: tuple[Check, ...] = (
         remedy=N_("Choose a larger ratio or a stronger motor, or lengthen the pause."),
         asked="requirements.motor.rated_torque_Nm",
         demand=lambda c: c.figures.motor_rated_torque_Nm,
-        sheet=Sheet("{T_mot_rms}", "T_mot_N"),
         relation="T_rms / (i · η) ≤ T_mot,N",
         moves={"torque": 1.0},
         accepted=N_("the motor’s rated torque rises to {value}"),
@@ -98,7 +95,6 @@ MOTOR: tuple[Check, ...] = (
         remedy=N_("Choose a smaller ratio or a faster motor, or lengthen the pause."),
         asked="requirements.motor.rated_speed_rpm",
         demand=lambda c: c.figures.average_input_speed_rpm,
-        sheet=Sheet("{n_in_av}", "n_mot_N"),
         relation="n_in,av ≤ n_mot,N",
         moves={"speed": 1.0},
         accepted=N_("the motor’s rated speed rises to {value}"),
@@ -121,7 +117,6 @@ MOTOR: tuple[Check, ...] = (
         remedy=N_("Choose a larger ratio, a motor with more inertia, or a lighter load."),
         asked="requirements.motor.inertia_ratio",
         demand=lambda c: inertia_ratio(c.duty, c.gears, c.asked["requirements.motor.inertia_kgm2"]),
-        sheet=Sheet('IF(J_L="","",J_L/({i}^2*J_m))', "r_J"),
         relation="(J_L / i² + J_g) / J_m ≤ r_J",
         accepted=N_("the permitted inertia ratio rises to {value}"),
     ),

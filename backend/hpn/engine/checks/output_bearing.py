@@ -2,13 +2,10 @@
 
 import numpy as np
 
-from hpn.engine.check import Check, Sheet
+from hpn.engine.check import Check
 from hpn.words.wording import N_
 
 BEARING_LIMITS = N_("F_R,dyn(max) and F_A,dyn(max), rating tables 10.1 to 12.2")
-
-LOADED = "COUNT(F_R,F_A,radial_N,axial_N)>0"
-"""Condition of a workbook under which there is a load on the output."""
 
 OUTPUT_BEARING: tuple[Check, ...] = (
     Check(
@@ -32,7 +29,6 @@ OUTPUT_BEARING: tuple[Check, ...] = (
         asked="output_load.load_coefficient",
         demand=lambda c: c.figures.bearing_load,
         limit=lambda c: np.ones((1, 1)),
-        sheet=Sheet("{P_max}", "1", asked=LOADED),
         limited_by="dynamic_radial_load_N",
         relation="max f_w · P_i ≤ 1",
         moves={"load": 1.0},
@@ -59,7 +55,6 @@ OUTPUT_BEARING: tuple[Check, ...] = (
         asked="output_load.load_coefficient",
         demand=lambda c: c.figures.bearing_mean_load,
         limit=lambda c: c.figures.bearing_life_factor,
-        sheet=Sheet("{P_m}", "k_b", asked=LOADED),
         limited_by="dynamic_radial_load_N",
         relation="f_w · P_m ≤ k",
         moves={"speed": 1 / 3, "load": 1.0},

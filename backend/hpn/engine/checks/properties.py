@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from hpn.engine.check import RATING_TABLES, Case, Check, Sheet
+from hpn.engine.check import RATING_TABLES, Case, Check
 from hpn.physics.equations import FloatArray
 from hpn.physics.stiffness import ARCMIN_PER_RAD
 from hpn.words.wording import N_
@@ -57,11 +57,6 @@ PROPERTIES: tuple[Check, ...] = (
         asked="requirements.ambient_temperature_degC",
         demand=lambda c: c.asked["requirements.ambient_temperature_degC"],
         limit=_nearer_end,
-        sheet=Sheet(
-            "t_amb",
-            f'IF(OR({{amb_min}}="",{{amb_max}}=""),"",IF(t_amb>={_MIDDLE},{{amb_max}},{{amb_min}}))',
-            share=f"ABS(t_amb-{_MIDDLE})/(({{amb_max}}-{{amb_min}})/2)",
-        ),
         share=_distance_from_middle,
         limited_by="ambient_temperature_maximum_degC",
         relation="t_min ≤ t_amb ≤ t_max",
@@ -81,7 +76,6 @@ PROPERTIES: tuple[Check, ...] = (
         remedy=N_("Choose a single-stage ratio, or accept more backlash."),
         asked="requirements.backlash_arcmin",
         demand=lambda c: c.gears.backlash_arcmin,
-        sheet=Sheet("{j}", "j_req"),
         limited_by="backlash_arcmin",
         relation="j ≤ j_req",
         accepted=N_("the backlash limit rises to {value}"),
@@ -101,7 +95,6 @@ PROPERTIES: tuple[Check, ...] = (
         remedy=N_("Choose a larger size."),
         asked="requirements.torsional_stiffness_Nm_per_rad",
         demand=lambda c: c.gears.torsional_stiffness_Nm_per_rad,
-        sheet=Sheet("{K_3}", "K_3_req"),
         limited_by="torsional_stiffness_Nm_per_rad",
         relation="K_3 ≥ K_3,req",
         accepted=N_("the required torsional stiffness drops to {value}"),
@@ -124,7 +117,6 @@ PROPERTIES: tuple[Check, ...] = (
         remedy=N_("Choose a larger size, or a load with less inertia."),
         asked="requirements.natural_frequency_Hz",
         demand=lambda c: c.figures.natural_frequency_Hz,
-        sheet=Sheet("{f_1}", "f_req"),
         limited_by="torsional_stiffness_Nm_per_rad",
         relation="√(K_3 / J_L) / 2π ≥ f_req",
         accepted=N_("the required natural frequency drops to {value}"),
@@ -154,12 +146,6 @@ PROPERTIES: tuple[Check, ...] = (
         instead="requirements.position_error_mm",
         demand=lambda c: c.figures.position_error_arcmin,
         limit=_permitted_error,
-        sheet=Sheet(
-            "{phi_e}",
-            'IF(phi_req="",s_req/r_p*10800/PI(),phi_req)',
-            share='{phi_e}/IF(phi_req="",s_req/r_p*10800/PI(),phi_req)',
-            asked='OR(phi_req<>"",s_req<>"")',
-        ),
         limited_by="torsional_stiffness_Nm_per_rad",
         relation="φ_e ≤ φ_req",
         accepted=N_("the permitted position error rises to {value}"),
@@ -179,7 +165,6 @@ PROPERTIES: tuple[Check, ...] = (
         remedy=N_("Choose a smaller size or a single-stage ratio."),
         asked="requirements.weight_kg",
         demand=lambda c: c.gears.weight_kg,
-        sheet=Sheet("{m}", "m_req"),
         limited_by="weight_kg",
         relation="m ≤ m_req",
         accepted=N_("the weight limit rises to {value}"),
@@ -199,7 +184,6 @@ PROPERTIES: tuple[Check, ...] = (
         remedy=N_("Choose a smaller size or a single-stage ratio, or check the drawing for your motor."),
         asked="requirements.length_mm",
         demand=lambda c: c.gears.length_max_mm,
-        sheet=Sheet("{L_max}", "L_req"),
         limited_by="length_max_mm",
         relation="L_max ≤ L_req",
         accepted=N_("the length limit rises to {value}"),

@@ -19,14 +19,12 @@ from basyx.aas.adapter import aasx
 from pyecma376_2.core_properties import OPCCoreProperties
 
 from hpn.engine.candidates import FIGURES, Candidate, CheckResult
+from hpn.engine.checks import BY_CODE
 from hpn.engine.selection import DutyFigures, encode
 from hpn.files.aas import Metamodel
 from hpn.files.aas.concepts import CONCEPTS, concept, concept_id, published, reference, texts, told, urn
 from hpn.files.export import LOSS_FREE, Export
 from hpn.files.motion import mechanism_of, moves_of
-from hpn.files.workbook.formulas import RATINGS
-from hpn.files.workbook.known import Known
-from hpn.files.workbook.sheets import VARYING
 from hpn.words.motion import MOTION
 from hpn.words.quantities import DUTY, GEAR, INPUTS
 from hpn.words.source import source_sentence
@@ -38,6 +36,9 @@ Value = str | int | float | None
 MOTOR_TORQUES = ("motor_peak_torque_Nm", "motor_rated_torque_Nm")
 CALCULATED = ("ratio", "stages", "utilisation", *FIGURES)
 """Fields of a candidate that are figures."""
+
+OPTIONAL = ("peak_torque_Nm", "peak_speed_rpm", "rms_torque_Nm", "name")
+"""Fields of a phase that only some cycles have."""
 
 MANUFACTURER = "Harmonic Drive AG"
 TECHNICAL_DATA = "https://admin-shell.io/ZVEI/TechnicalData/"
@@ -155,13 +156,20 @@ def _technical_properties(export: Export) -> model.SubmodelElementCollection:
         figures |= {published(name): getattr(gear, name) for name in GEAR if published(name) in CONCEPTS}
         sources = {published(name): source_sentence(source) for name, source in gear.sources.items() if name in GEAR}
     else:
-        known = Known(export, candidate, {}).ratings()
-        figures |= {published(RATINGS[name]): value for name, value in known.items() if RATINGS[name] != "ratio"}
+        figures |= {published(name): value for name, value in _limits(candidate)}
     return model.SubmodelElementCollection(
         "TechnicalProperties",
         _properties_of(figures, sources),
         semantic_id=reference(TECHNICAL_DATA + "TechnicalProperties/1/1"),
     )
+
+
+def _limits(candidate: Candidate) -> Iterator[tuple[str, Value]]:
+    """Published figures that are the limit of a load check: what a kept answer says without its catalogue."""
+    for check in candidate.checks:
+        known = BY_CODE.get(check.code)
+        if known and known.group == "load" and known.limited_by and known.unit == symbol_of(known.limited_by):
+            yield known.limited_by, check.limit
 
 
 def _further_information(export: Export) -> model.SubmodelElementCollection:
@@ -258,7 +266,7 @@ def _cycle(export: Export) -> Iterable[model.SubmodelElementCollection]:
             *_numbered("Move", moves, len(cycle.motion.moves)),
         ]
         yield model.SubmodelElementCollection("Motion", parts)
-    elif not any(getattr(phase, name) is not None for phase in cycle.load_phases for name in (*VARYING, "name")):
+    elif not any(getattr(phase, name) is not None for phase in cycle.load_phases for name in OPTIONAL):
         return
     phases = (phase.model_dump(exclude_none=True) for phase in cycle.load_phases)
     yield model.SubmodelElementCollection("Phases", [*_numbered("Phase", phases, len(cycle.load_phases))])

@@ -1,4 +1,4 @@
-"""The workbook with live formulas."""
+"""The workbook: the whole selection as numbers, and the handbook's printed equations live on a sheet of their own."""
 
 
 class EveryDigit(float):

@@ -1,61 +1,171 @@
-"""The workbook: the whole selection with live formulas, so that a changed torque changes every figure behind it."""
+"""The workbook: title block, checks, figures and notes, all inputs, every candidate, and the printed equations."""
 
-from collections.abc import Mapping
-from dataclasses import replace
+from collections.abc import Iterator
 from datetime import UTC, datetime
 from io import BytesIO
 from typing import Any
 
 import xlsxwriter
 
-from hpn.files.export import Export
-from hpn.files.motion import MOTION_TITLE
-from hpn.files.workbook.candidates import CandidatesSheet
-from hpn.files.workbook.formulas import NOT_RATED, UNLIMITED
-from hpn.files.workbook.inputs_sheet import InputsSheet
-from hpn.files.workbook.motion_sheet import write_motion
-from hpn.files.workbook.overview import Overview
-from hpn.files.workbook.sheets import FONT, Book
-from hpn.files.workbook.unchanged import write_unchanged
+from hpn.engine.candidates import FIGURES
+from hpn.explain.readings import Reading, figure_symbol
+from hpn.files.export import LOWER_BOUND, Export
+from hpn.files.report.checks import readings
+from hpn.files.words import catalogue_version, equation, origin
+from hpn.files.workbook.candidates import write_candidates
+from hpn.files.workbook.equations import write_equations
+from hpn.files.workbook.inputs import write_inputs
+from hpn.files.workbook.sheet import FONT, LONGEST_TEXT, ROW_POINTS, STYLES, VERDICT_STYLES, Cell, Line, Sheet
+from hpn.words.quantities import CANDIDATE, DUTY, GEAR
 from hpn.words.reader import Reader
-from hpn.words.wording import N_
+from hpn.words.terms import VERDICTS
+from hpn.words.units import suffix_of
+from hpn.words.wording import N_, Named
 
 UNDATED = datetime(1980, 1, 1)
 """Creation time of the workbook of a selection that is not saved: the earliest that its container can hold."""
 
+WIDTHS = (38, 18, 13, 13, 9, 11, 14, 30)
+"""Columns of the first sheet in characters; the basis of each check stands behind them and is not printed."""
+
 
 def workbook(export: Export, reader: Reader) -> bytes:
     """The workbook on an export; the same bytes for the same selection."""
-    file = BytesIO()
+    content = BytesIO()
     options = {"in_memory": True, "strings_to_formulas": False, "strings_to_urls": False, "nan_inf_to_errors": False}
-    book = xlsxwriter.Workbook(file, options | {"default_format_properties": dict(FONT)})
+    book = xlsxwriter.Workbook(content, options | {"default_format_properties": dict(FONT)})
     created = export.created.astimezone(UTC).replace(tzinfo=None) if export.created else UNDATED
-    book.set_properties(
-        {"title": export.heading.title, "author": export.heading.author or "HPN Select", "created": created}
-    )
+    author = export.heading.author or "HPN Select"
+    book.set_properties({"title": export.heading.title, "author": author, "created": created})
     book.set_calc_mode("auto")
-    _fill(Book(book, export, replace(reader, units=()), reader, words(reader)))
+    styles = {name: book.add_format({**FONT, **style}) for name, style in STYLES.items()}
+    for name, write in (
+        (N_("Selection"), _write_selection),
+        (N_("Inputs"), write_inputs),
+        (N_("Candidates"), write_candidates),
+        (N_("Equations"), write_equations),
+    ):
+        if write is not write_equations or export.gear(export.candidate):
+            write(Sheet(book.add_worksheet(reader.text(name)), styles, export, reader))
     book.close()
-    return file.getvalue()
+    return content.getvalue()
 
 
-def words(reader: Reader) -> Mapping[str, str]:
-    """Words that formulas write, by their English ones."""
-    english = (UNLIMITED, NOT_RATED, N_("passes"), N_("fails"), N_("suitable"), N_("unsuitable"), N_("unrated"))
-    return {word: reader.text(word) for word in english}
+def _write_selection(sheet: Sheet) -> None:
+    _write_title_block(sheet)
+    _write_checks(sheet)
+    export, reader = sheet.export, sheet.reader
+    sheet.lines(N_("Figures of the cycle"), _figures_of_cycle(export, reader))
+    sheet.lines(N_("Figures of the gear under the cycle"), _figures_of_gear(export, reader))
+    sheet.lines(N_("Published figures"), _ratings(export, reader))
+    _write_notes(sheet)
+    sheet.page(WIDTHS, columns=len(WIDTHS))
 
 
-def _fill(book: Book) -> None:
-    overview, inputs = (_sheet(book, name) for name in (N_("Selection"), N_("Inputs")))
-    InputsSheet(book, inputs).write()
-    if (motion := book.export.application.duty_cycle.motion) is not None:
-        write_motion(book, _sheet(book, MOTION_TITLE), motion)
-    sheet = Overview(book, overview, CandidatesSheet(book, _sheet(book, N_("Candidates"))).write())
-    sheet.write()
-    if sheet.fixed:
-        write_unchanged(book, _sheet(book, N_("As saved")), sheet.fixed)
-    overview.activate()
+def _write_title_block(sheet: Sheet) -> None:
+    export, reader, heading = sheet.export, sheet.reader, sheet.export.heading
+    sheet.put(0, heading.title or reader.text(N_("Untitled selection")), "title")
+    sheet.sheet.set_row(0, 20)
+    sheet.sheet.freeze_panes(1, 0)
+    candidate, made = export.candidate, export.made
+    block: dict[str, Cell] = {
+        N_("Gear"): candidate.designation,
+        N_("Ordering code"): heading.ordering_code,
+        N_("Reference"): heading.reference,
+        N_("Revision"): heading.revision,
+        N_("Author"): heading.author,
+        N_("Saved"): reader.date(export.created) if export.created else "",
+        N_("Made, not saved"): reader.day(made) if made and not export.created else "",
+        N_("Engine"): export.selection.engine_version,
+        N_("Catalogue"): catalogue_version(export, reader),
+        N_("Link"): export.link if len(export.link) < LONGEST_TEXT else "",
+    }
+    sheet.row = 1
+    for label, value in block.items():
+        if value:
+            sheet.put(0, reader.text(label), "quiet")
+            sheet.put(1, value)
+            sheet.row += 1
+    sheet.put(0, reader.text(N_("Verdict")), "quiet")
+    sheet.put(1, reader.text(VERDICTS[candidate.status]), VERDICT_STYLES[candidate.status])
+    sheet.put(2, candidate.utilisation, "share")
+    sheet.row += 1
 
 
-def _sheet(book: Book, name: str) -> Any:
-    return book.file.add_worksheet(book.reader.text(name))
+# --- Checks -----------------------------------------------------------------------------------------------------------
+
+CHECK_HEADS = (
+    N_("Check"),
+    N_("Relation"),
+    N_("Demand"),
+    N_("Limit"),
+    N_("Unit"),
+    N_("Utilisation"),
+    N_("Verdict"),
+    N_("Source"),
+    N_("Basis"),
+)
+
+
+def _write_checks(sheet: Sheet) -> None:
+    text, definitions = sheet.reader.text, sheet.export.selection.check_definitions
+    read = readings(sheet.export)
+    sheet.heads(N_("Checks"), *map(text, CHECK_HEADS), numbers=(2, 3, 5))
+    for check in sheet.export.candidate.checks:
+        reading, definition = read[check.code], definitions[check.code]
+        sheet.put(0, text(definition.title), "wrap")
+        sheet.put(1, reading.relation, "quiet")
+        for column, value in enumerate(_sides(sheet, reading), 2):
+            sheet.put(column, value, "figure")
+        sheet.put(4, sheet.reader.unit(reading.unit), "unit")
+        sheet.put(5, check.utilisation, "share")
+        sheet.put(6, text(VERDICTS[check.status]), VERDICT_STYLES[check.status])
+        sheet.put(7, origin(sheet.export, check.code, sheet.reader), "quiet")
+        sheet.put(8, f"{text(definition.tests)} {text(definition.basis)}", "quiet")
+        sheet.sheet.set_row(sheet.row, ROW_POINTS * (1 + len(text(definition.title)) // WIDTHS[0]))
+        sheet.row += 1
+    u = sheet.export.application.requirements.utilisation
+    if u < 1:
+        sheet.put(0, text(N_("Maximum utilisation")), "quiet")
+        sheet.put(1, "u", "quiet")
+        sheet.put(5, u, "share")
+        sheet.row += 1
+
+
+def _sides(sheet: Sheet, reading: Reading) -> tuple[Cell, Cell]:
+    """Demand and limit; the word where one is unlimited."""
+    unlimited = sheet.reader.text(N_("unlimited"))
+    demand, limit = (sheet.shown(value, reading.unit) for value in (reading.demand, reading.limit))
+    return unlimited if reading.has_unlimited_demand else demand, unlimited if reading.has_unlimited_limit else limit
+
+
+# --- Figures ----------------------------------------------------------------------------------------------------------
+
+
+def _figures_of_cycle(export: Export, reader: Reader) -> Iterator[Line]:
+    for name, named in DUTY.items():
+        yield Line(named, getattr(export.selection.duty, name), suffix_of(name), equation(named.equation, reader))
+
+
+def _figures_of_gear(export: Export, reader: Reader) -> Iterator[Line]:
+    candidate, turns = export.candidate, export.selection.turns_motor
+    for name in FIGURES:
+        named, value = CANDIDATE[name], getattr(candidate, name)
+        bound = name.startswith("motor_") and export.is_lower_bound(candidate)
+        source = reader.text(LOWER_BOUND) if bound else equation(named.equation, reader)
+        shown = N_("unlimited") if candidate.is_unlimited(name) else value
+        yield Line(Named(named.name, figure_symbol(name, turns_motor=turns)), shown, suffix_of(name), source)
+
+
+def _ratings(export: Export, reader: Reader) -> Iterator[Line]:
+    gear = export.gear(export.candidate)
+    for name, named in GEAR.items() if gear else ():
+        value: Any = getattr(gear, name)
+        if suffix_of(name) and gear:
+            yield Line(named, value, suffix_of(name), reader.source(gear.sources.get(name, "")))
+
+
+def _write_notes(sheet: Sheet) -> None:
+    sheet.heads(N_("Assumptions and notes"))
+    for notice in sheet.export.selection.notices:
+        sheet.note(sheet.reader.told(notice.sentence), WIDTHS)

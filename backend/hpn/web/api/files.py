@@ -84,7 +84,7 @@ FILES = (
         "report.xlsx",
         "Workbook",
         "application/vnd.openxmlformats-officedocument.spreadsheetml.sheet",
-        "Workbook with live formulas",
+        "Workbook of numbers, the handbook’s equations live on one sheet",
         "hpn.files.workbook.workbook:workbook",
         "serve",
     ),

@@ -1,0 +1,160 @@
+"""A sheet of the workbook, written from the top: its styles, its tables and its page."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+from hpn.files.export import Export
+from hpn.files.words import Paper, paper
+from hpn.files.workbook import EveryDigit
+from hpn.words.reader import Reader
+from hpn.words.units import symbol_of
+from hpn.words.wording import N_, Named
+
+FONT = {"font_name": "Arial", "font_size": 10}
+"""A font that has the same widths in every office program, so that pages break alike."""
+
+ACCENT, QUIET = "#0B5394", "#5B6875"
+FIGURE = "[>=10000000]0.00E+00;[>=10000]#,##0;#,##0.00##"
+"""Number format that fits the column, which would show hashes otherwise; above 10,000 no decimals matter."""
+
+_HEAD = {"bold": True, "font_color": "#FFFFFF", "bg_color": ACCENT, "text_wrap": True, "valign": "top"}
+
+STYLES: Mapping[str, Mapping[str, Any]] = {
+    "title": {"bold": True, "font_size": 14},
+    "section": {"bold": True, "font_color": ACCENT, "font_size": 11},
+    "head": _HEAD,
+    "head of numbers": {**_HEAD, "align": "right"},
+    "label": {"valign": "top"},
+    "quiet": {"font_color": QUIET, "valign": "top"},
+    "unit": {"font_color": QUIET, "valign": "top", "indent": 1},
+    "wrap": {"text_wrap": True, "valign": "top"},
+    "figure": {"num_format": FIGURE, "align": "right", "valign": "top"},
+    "share": {"num_format": "0.00%", "align": "right", "valign": "top"},
+    "input": {"bg_color": "#FFF8DC", "border": 1, "border_color": "#D5DBE1", "locked": False, "num_format": FIGURE},
+    "pass": {"font_color": "#1B7F3B", "bg_color": "#E6F4EA", "valign": "top", "indent": 1},
+    "fail": {"font_color": "#B3261E", "bg_color": "#FCE8E6", "valign": "top", "indent": 1},
+    "open": {"font_color": "#8A6100", "bg_color": "#FFF4D6", "valign": "top", "indent": 1},
+}
+
+VERDICT_STYLES: Mapping[str, str] = {
+    **dict.fromkeys(("pass", "suitable"), "pass"),
+    **dict.fromkeys(("fail", "unsuitable"), "fail"),
+    **dict.fromkeys(("not_rated", "unrated"), "open"),
+}
+"""Style of a verdict on a check or candidate."""
+
+PAPERS: Mapping[Paper, int] = {"a4": 9, "us-letter": 1}
+"""Numbers of the sizes of paper in the file format."""
+
+LONGEST_HEADER_TEXT, LONGEST_FOOTER_LINK = 100, 100
+HEAD_AND_FOOT = {"margin": 0.25}
+"""Distance from the edge of the paper, in inches."""
+
+LONGEST_TEXT = 32_000
+"""Characters of a cell, of which the file format has room for 32,767."""
+
+ROW_POINTS = 12.75
+
+Cell = float | str | None
+
+
+class Line(NamedTuple):
+    """A quantity: name and symbol, value in a unit of the wire (a suffix or symbol), and where it comes from."""
+
+    named: Named
+    value: Cell
+    unit: str = ""
+    source: str = ""
+
+
+@dataclass
+class Sheet:
+    """A sheet that is written from the top, in its reader's language and units; `row` is the next one."""
+
+    sheet: Any
+    styles: Mapping[str, Any]
+    export: Export
+    reader: Reader
+    row: int = 0
+
+    def put(self, column: int, value: Cell, style: str = "label") -> None:
+        """Write a cell: a number with all of its digits, a text as it stands; blank for none, nothing for None."""
+        if value == "":
+            self.sheet.write_blank(self.row, column, None, self.styles[style])
+        elif isinstance(value, str):
+            self.sheet.write_string(self.row, column, value[:LONGEST_TEXT], self.styles[style])
+        elif value is not None:
+            self.sheet.write_number(self.row, column, EveryDigit(value), self.styles[style])
+
+    def shown(self, value: Cell, unit: str) -> Cell:
+        """A value as its reader has it: a number in their unit, a text in their language."""
+        return self.reader.text(value) if isinstance(value, str) else self.reader.value(value, unit)
+
+    def heads(self, title: str, *heads: str, numbers: Sequence[int] = ()) -> None:
+        """Begin a table; heads of numbers stand at the right."""
+        self.row += 1
+        self.put(0, self.reader.text(title), "section")
+        self.row += 1
+        for column, head in enumerate(heads):
+            self.put(column, head, "head of numbers" if column in numbers else "head")
+        self.row += bool(heads)
+
+    def note(self, text: str, widths: Sequence[float]) -> None:
+        """Write a text across columns; no reader of the file fits a merged row to its text by itself."""
+        self.sheet.merge_range(self.row, 0, self.row, len(widths) - 1, text, self.styles["wrap"])
+        self.sheet.set_row(self.row, ROW_POINTS * (1 + len(text) // int(sum(widths))))
+        self.row += 1
+
+    def lines(self, title: str, lines: Iterable[Line]) -> None:
+        """Table of quantities with a value; nothing where there is none."""
+        known = [line for line in lines if line.value is not None]
+        if not known:
+            return
+        self.heads(title)
+        for line in known:
+            self.put(0, self.reader.text(line.named.name))
+            self.put(1, line.named.symbol, "quiet")
+            self.put(2, self.shown(line.value, line.unit), "figure")
+            self.put(3, self.reader.unit(line.unit), "unit")
+            self.put(4, line.source, "quiet")
+            self.row += 1
+
+    def table(self, title: str, columns: Mapping[str, tuple[str, Sequence[Cell]]]) -> None:
+        """Table of columns by their heads, each with the unit of its numbers."""
+        self.heads(title, *columns, numbers=range(1, len(columns)))
+        for row in zip(*(values for _, values in columns.values()), strict=True):
+            for column, (value, (unit, _)) in enumerate(zip(row, columns.values(), strict=True)):
+                self.put(column, self.shown(value, unit) if column else value, "figure" if column else "quiet")
+            self.row += 1
+
+    def head(self, text: str, field: str) -> str:
+        """Head of a column of numbers: a text or symbol, with the unit that its reader sees."""
+        unit = self.reader.unit(symbol_of(field))
+        return f"{text} [{unit}]" if unit else text
+
+    def page(self, widths: Sequence[float], *, across: bool = False, pages: int = 1, columns: int = 0) -> None:
+        """Set up columns and page: what is printed are the first columns, or all, on some pages beside each other."""
+        for column, width in enumerate(widths):
+            self.sheet.set_column(column, column, width)
+        if across:
+            self.sheet.set_landscape()
+        self.sheet.set_paper(PAPERS[paper(self.reader)])
+        self.sheet.set_margins(left=0.5, right=0.4, top=0.6, bottom=0.6)
+        self.sheet.print_area(0, 0, self.sheet.dim_rowmax, columns - 1 if columns else self.sheet.dim_colmax)
+        self.sheet.fit_to_pages(pages, 0)
+        heading, text = self.export.heading, self.reader.text
+        revision = f"{text(N_('Revision'))} {heading.revision}" if heading.revision else ""
+        title = ", ".join(filter(None, (heading.title, heading.reference, revision)))
+        saved = self.reader.date(self.export.created) if self.export.created else ""
+        link = self.export.link if len(self.export.link) <= LONGEST_FOOTER_LINK else ""
+        numbers = text(N_("Page {page} of {pages}")).format(page="&P", pages="&N")
+        self.sheet.set_header(
+            f"&L{_plain(' '.join(title.split())[:LONGEST_HEADER_TEXT])}&R{_plain(saved)}", HEAD_AND_FOOT
+        )
+        self.sheet.set_footer(f"&LHPN Select {_plain(link)}&R{numbers}", HEAD_AND_FOOT)
+
+
+def _plain(text: str) -> str:
+    """Text of a header without commands, which begin with &."""
+    return text.replace("&", "&&")
