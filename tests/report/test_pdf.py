@@ -157,7 +157,9 @@ def test_motor_torques_without_an_efficiency_are_said_to_be_a_lower_bound(catalo
 def test_alternatives_are_the_next_suitable_gears_and_what_makes_a_lighter_one_fit(made: Make) -> None:
     page = " ".join(text(made("example", ENGLISH)).split())
     assert re.search(
-        r"Shortest life 1 HPN-20A-5 .* 2 HPN-32A-5 41\.7 % maximum input speed 6\.5 kg 130–169 mm 24 ?753 ?706 h \(gear L10\)", page
+        r"Shortest life 1 HPN-20A-5 .* 2 HPN-32A-5 41\.7 % maximum input speed 6\.5 kg 130–169 mm "
+        r"24 ?753 ?706 h \(gear L10\)",
+        page,
     )
     assert re.search(
         r"Nearest miss: HPN-14A-5 .*110\.4 %.*186\.9 %.* Fits if torques drop to 90\.5 % and T ?k to 107", page
