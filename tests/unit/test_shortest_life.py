@@ -4,7 +4,8 @@ import pytest
 
 from hpn.application import Application
 from hpn.catalogue import Catalogue
-from hpn.engine.selection import decode, encode, select
+from hpn.engine.kept import decode
+from hpn.engine.selection import encode, select
 from hpn.explain.readings import shortest_life
 from tests.build import Json, answer, candidate, cycle, phase
 

@@ -10,14 +10,14 @@ from typing import Any
 
 import numpy as np
 
-from hpn.application import Application, InputError
+from hpn.application import Application
 from hpn.catalogue import Catalogue
 from hpn.catalogue.gear import Gear
 from hpn.engine.allowed import with_listed_motor
 from hpn.engine.candidates import Candidate
 from hpn.engine.checks import BY_CODE
 from hpn.engine.duty import Duty
-from hpn.engine.selection import Selection, select
+from hpn.engine.selection import Selection
 from hpn.explain.comparison import lighter_miss
 from hpn.physics import equations
 from hpn.words.wording import N_
@@ -99,19 +99,6 @@ class Export:
         """The catalogue of the selection's own version, or None where that is not at hand."""
         known = self.catalogue is not None and self.catalogue.version == self.selection.catalogue_version
         return self.catalogue if known else None
-
-    @cached_property
-    def today(self) -> Selection | None:
-        """What this version says to a saved application under the catalogue of that time.
-
-        None for one that is not saved, where that catalogue is not at hand, and where it gives no answer.
-        """
-        if not self.created or self.figures is None:
-            return None
-        try:
-            return select(self.application, self.figures)
-        except InputError:
-            return None
 
     def gear(self, candidate: Candidate) -> Gear | None:
         """Published figures of a candidate as they were, or None."""

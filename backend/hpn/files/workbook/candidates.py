@@ -8,7 +8,7 @@ from hpn.words.terms import VERDICTS
 from hpn.words.units import suffix_of
 from hpn.words.wording import N_
 
-IDENTITY = (N_("Gear"), N_("Verdict"), N_("Rank"), N_("Utilisation"))
+IDENTITY = (N_("Gear"), N_("Verdict"), N_("Utilisation"), N_("Rank"))
 HEAD_POINTS = 80
 """Height of the heads, which have titles of checks in narrow columns."""
 
@@ -37,7 +37,7 @@ def write_candidates(sheet: Sheet) -> None:
         _write_candidate(sheet, candidate, list(definitions), known, published)
     sheet.sheet.autofilter(0, 0, sheet.row, len(heads) - 1)
     checks = len(IDENTITY) + len(definitions)
-    widths = (13, 14, 7, 11, *[CHECK_WIDTH] * len(definitions), *[WIDTH] * (len(heads) - checks))
+    widths = (13, 14, 11, 7, *[CHECK_WIDTH] * len(definitions), *[WIDTH] * (len(heads) - checks))
     sheet.page(widths, across=True, pages=1 + (len(definitions) > MOST_ACROSS), columns=checks)
 
 
@@ -46,8 +46,8 @@ def _write_candidate(
 ) -> None:
     sheet.put(0, candidate.designation)
     sheet.put(1, sheet.reader.text(VERDICTS[candidate.status]), VERDICT_STYLES[candidate.status])
-    sheet.put(2, candidate.rank, "figure")
-    sheet.put(3, candidate.utilisation, "share")
+    sheet.put(2, candidate.utilisation, "share")
+    sheet.put(3, candidate.rank, "figure")
     for column, code in enumerate(codes, len(IDENTITY)):
         check = candidate.check(code)
         sheet.put(column, check.utilisation if check else None, "share")

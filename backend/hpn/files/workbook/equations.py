@@ -159,7 +159,8 @@ def _write_inputs(sheet: Sheet) -> None:
     """Write pause, T_k and the phases, the cells that may be changed."""
     application, candidate = sheet.export.application, sheet.export.candidate
     sheet.heads(N_("Inputs"))
-    stop = candidate.stop_torque_Nm if candidate.stop_torque_Nm is not None else ""
+    typed = application.emergency_stop.torque_Nm if application.emergency_stop else None
+    stop = next((torque for torque in (candidate.stop_torque_Nm, typed) if torque is not None), "")
     for path, value in (("duty_cycle.pause_s", application.duty_cycle.pause_s), ("emergency_stop.torque_Nm", stop)):
         sheet.put(0, sheet.reader.text(INPUTS[path].name))
         sheet.put(1, INPUTS[path].symbol, "quiet")
