@@ -82,6 +82,11 @@ FAULTS: dict[str, Callable[[Row], None]] = {
     "emergency_stop.torque_Nm: is required": lambda row: row.update(
         {"emergency_stop.torque_Nm": None, "emergency_stop.count": 5}
     ),
+    "emergency_stop.brake.opposing_torque_Nm: must be at least load_torque_Nm": lambda row: row.update(
+        {"emergency_stop.torque_Nm": None, "emergency_stop.count": None}
+        | {f"emergency_stop.brake.{name}_Nm": 9.0 for name in ("torque", "load_torque")}
+        | {"emergency_stop.brake.opposing_torque_Nm": 8.9}
+    ),
     "requirements.utilisation: must be less than or equal to 1": lambda row: row.update(
         {"requirements.utilisation": 1.5}
     ),

@@ -51,6 +51,10 @@ APPLICATIONS: tuple[Json, ...] = (
     worked_example(),
     worked_example(output_load=LOAD, requirements=REQUIREMENTS, application_area="vacuum", rank_by="life"),
     worked_example(output_load={"axial_N": 100, "life_basis": "L10"}, emergency_stop={"torque_Nm": 200, "count": 1000}),
+    worked_example(
+        emergency_stop={"brake": {"torque_Nm": 8, "rise_time_s": 0.1, "load_torque_Nm": 5, "opposing_torque_Nm": 9}},
+        requirements=INERTIAS,
+    ),
     cycle(phase(-40, 250, 0.5, radial_N=50), phase(0, -1e3, 2.5, axial_N=7), pause_s=4.0, output_load={}),
     cycle(phase(9.3, 0), phase(1e-3, 1e4, 1e-3), requirements={"ratios": [5]}, rank_by="motor_torque"),
     cycle(*(phase(k, 100 + k, 0.1) for k in range(1, 40)), pause_s=1.5),

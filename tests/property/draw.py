@@ -174,6 +174,10 @@ def at_random(chance: random.Random, models: Sequence[str] = ("linear", "iso281"
             brake["rise_time_s"] = some(0, 0.05, 0, 0.005)
         elif maybe(0.3):
             brake["dynamic_factor"] = some(1, 2, 1, 2)
+        if maybe(0.4):
+            brake["load_torque_Nm"] = some(0, 30, 0, 12)
+        if maybe(0.3):
+            brake["opposing_torque_Nm"] = brake.get("load_torque_Nm", 0.0) + some(0, 30, 0, 5)
         parts["emergency_stop"] = {"brake": brake} | {
             name: count for name, count in parts["emergency_stop"].items() if name == "count"
         }

@@ -48,18 +48,24 @@ def stopped(motor: Json, **brake: float) -> Json:
 
 HEAVY = {"inertia_kgm2": 0.002}
 STOPS = {
-    "at once": (stopped(HEAVY), 3, 7),
-    "after a dead time": (stopped(HEAVY, rise_time_s=0.03, reaction_time_s=0.05, speed_rpm=40.0), 3, 7),
-    "of a motor that is heavy": (stopped({"inertia_kgm2": 0.5}, dynamic_factor=1.4), 3, 7),
-    "of a motor that is not known": (stopped({}, rise_time_s=0.01), 2, 0),
-    "by a brake that is too weak": (stopped(HEAVY, torque_Nm=0.5), 3, 0),
+    "at once": (stopped(HEAVY), 7, 6),
+    "after a dead time": (stopped(HEAVY, rise_time_s=0.03, reaction_time_s=0.05, speed_rpm=40.0), 7, 6),
+    "of a motor that is heavy": (stopped({"inertia_kgm2": 0.5}, dynamic_factor=1.4), 6, 6),
+    "of a motor that is not known": (stopped({}, rise_time_s=0.01), 6, 0),
+    "by a brake that is too weak": (stopped(HEAVY, torque_Nm=0.5), 7, 0),
     "without a motion": (
         worked_example(
             emergency_stop={"brake": {"torque_Nm": 12.0}}, requirements={"load_inertia_kgm2": 0.8, "motor": HEAVY}
         ),
-        *(3, 7),
+        *(4, 6),
     ),
-    "without inertias": (worked_example(emergency_stop={"brake": {"torque_Nm": 12.0}}), 2, 0),
+    "without inertias": (worked_example(emergency_stop={"brake": {"torque_Nm": 12.0}}), 3, 0),
+    "of a load that is pulled": (
+        worked_example(
+            emergency_stop={"brake": {"torque_Nm": 12.0, "load_torque_Nm": 9.0, "opposing_torque_Nm": 11.0}}
+        ),
+        *(3, 0),
+    ),
 }
 """Stops, and how many equations their torque and their course take."""
 

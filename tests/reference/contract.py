@@ -205,8 +205,11 @@ def _judge(
     stop, T_k = application.get("emergency_stop"), None
     if stop is not None:
         T_k = abs(stop["torque_Nm"]) if "torque_Nm" in stop else _stop_torque(stop["brake"], wishes, gear)
-        at_most("momentary_peak_torque", T_k, gear.T_M)
-        if gear.T_R is not None:
+        if _stops(stop.get("brake"), gear):
+            at_most("momentary_peak_torque", T_k, gear.T_M)
+        else:
+            compare("momentary_peak_torque", T_k, gear.T_M, INFINITE, u)
+        if gear.T_R is not None and T_k is not None:
             allowed = INFINITE
             if T_k > gear.T_R:
                 allowed = by.floor(by.number(10) ** max(8.5 - 1.5 * T_k / gear.T_R, -300) * (1 + ROOM))
@@ -297,19 +300,28 @@ def _shortest_life(
     return min(life, bearing_life / (5 if (application.get("output_load") or {}).get("life_basis") == "L10" else 1))
 
 
-def _stop_torque(brake: Mapping[str, Any], wishes: Mapping[str, Any], gear: Gear) -> float:
-    """T_k of a stop by the brake, without a motion: nothing opposes it."""
+def _stops(brake: Mapping[str, Any] | None, gear: Gear) -> bool:
+    """True for a stop whose brake, if it is one, is stronger at the gear than what pulls the load."""
+    return brake is None or bool(gear.ratio * brake["torque_Nm"] > (brake.get("load_torque_Nm") or 0.0) * (1 + ROOM))
+
+
+def _stop_torque(brake: Mapping[str, Any], wishes: Mapping[str, Any], gear: Gear) -> float | None:
+    """T_k of a stop by the brake, without a motion."""
     J, J_m = wishes.get("load_inertia_kgm2"), (wishes.get("motor") or {}).get("inertia_kgm2")
     i, eta, T_B = gear.ratio, wishes.get("efficiency") or 1.0, brake["torque_Nm"]
+    T_d = brake.get("load_torque_Nm") or 0.0
+    T_o = T_d if brake.get("opposing_torque_Nm") is None else brake["opposing_torque_Nm"]
+    T_r, B = max(i * T_B / eta, T_d), 1 / eta**2
+    if J is not None and J_m is not None:
+        lam = J / (i**2 * J_m)
+        T_r, B = (lam * i * T_B + T_d) / (1 + eta * lam), (1 + lam / eta) / (1 + eta * lam)
     f = brake.get("dynamic_factor")
-    if f is None:
-        f, t_b = 2, brake.get("rise_time_s", 0)
-        if t_b and J is not None and J_m is not None and gear.K3 is not None:
-            turn = math.sqrt(gear.K3 * (1 / J + 1 / (i**2 * J_m))) / 2 * t_b  # π f₂ t_b
-            f = 1 + abs(math.sin(turn)) / turn
-    if J is None or J_m is None:
-        return float(f * i * T_B / eta)
-    return float(f * J * i * T_B / (i**2 * J_m + eta * J))
+    if f is not None:
+        return float(f * T_r + (f - 1) * T_o)
+    if gear.K3 is None or gear.backlash is None:
+        return None
+    crossed = gear.K3 * gear.backlash * math.pi / 10800
+    return float(T_r + math.sqrt(T_r**2 + 2 * T_r * (T_o + crossed) + B * T_o**2))
 
 
 def _position_error(application: Mapping[str, Any], wishes: Mapping[str, Any], gear: Gear) -> float | None:

@@ -144,7 +144,8 @@ def test_each_bound_of_a_motion_is_the_one_that_is_applied(
 def test_each_bound_of_a_brake_is_the_one_that_is_applied(api: TestClient, document: Json) -> None:
     tried, brake = (
         0,
-        {"torque_Nm": 8.0, "rise_time_s": 0.01, "reaction_time_s": 0.02, "speed_rpm": 9.0, "dynamic_factor": 2.0},
+        {"torque_Nm": 8.0, "rise_time_s": 0.01, "reaction_time_s": 0.02, "speed_rpm": 9.0, "dynamic_factor": 2.0}
+        | {"load_torque_Nm": 0.0, "opposing_torque_Nm": 1e6},
     )
     for path, schema in leaves(document, document["components"]["schemas"]["Brake"]):
         for value, allowed in tries(schema, at(brake, path)):

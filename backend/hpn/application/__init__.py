@@ -2,6 +2,7 @@
 
 from hpn.application.application import (
     LEAST_MOTION,
+    STOP_LOADS,
     WORKED_EXAMPLE,
     Application,
     ApplicationArea,
@@ -28,6 +29,7 @@ __all__ = [
     "LEAST_MOTION",
     "LISTED_FIGURES",
     "MOST_WISHES",
+    "STOP_LOADS",
     "WORKED_EXAMPLE",
     "Application",
     "ApplicationArea",

@@ -21,6 +21,7 @@ from hpn.words.fields import (
     Positive,
     Seconds,
     Torque,
+    TorqueMagnitude,
     at_most,
     in_parts,
     one_of,
@@ -90,7 +91,7 @@ class DutyCycle(Model):
 
 
 class Brake(Model):
-    """Brake at the motor that stops the axis from constant speed."""
+    """Brake at the motor that stops the axis."""
 
     torque_Nm: Positive = Field(description="Largest torque T_B of the brake, at the motor.", examples=[8.0])
     rise_time_s: Seconds = Field(0.0, description="Time t_b in which the brake’s torque rises.", examples=[0.005])
@@ -100,11 +101,35 @@ class Brake(Model):
     speed_rpm: MovingSpeed | None = Field(
         None, description="Output speed n_b at the command; by default the largest of the cycle.", examples=[250.0]
     )
+    load_torque_Nm: TorqueMagnitude | None = Field(
+        None,
+        description="Largest torque T_L of weight and process force at the gear, by magnitude; a motion has its own. "
+        "Without it the load counts as one that no force pulls.",
+        examples=[12.0],
+    )
+    opposing_torque_Nm: TorqueMagnitude | None = Field(
+        None,
+        description="The same T_o with friction and the acceleration’s J α, at least T_L and by default it; a motion "
+        "has its own.",
+        examples=[15.0],
+    )
     dynamic_factor: Annotated[Number, Field(ge=1, le=10)] | None = Field(
         None,
-        description="Peak over steady torque of the stop; by default 2, or less with the rise time and both inertias.",
+        description="Your own dynamic factor f: the stop then has T_k = f T_r + (f − 1) T_o; by default the bound that "
+        "backlash and both flanks give.",
         examples=[2.0],
     )
+
+    @model_validator(mode="after")
+    def _opposes_with_the_load(self) -> Self:
+        if self.opposing_torque_Nm is not None and self.opposing_torque_Nm < (self.load_torque_Nm or 0.0):
+            problem = PydanticCustomError("opposing_below_load", "must be at least load_torque_Nm, which is part of it")
+            raise refused(self, (("opposing_torque_Nm",), problem))
+        return self
+
+
+STOP_LOADS = ("load_torque_Nm", "opposing_torque_Nm")
+"""Torques of the load in a stop by the brake that typed phases lack and a motion has."""
 
 
 class EmergencyStop(Model):
@@ -142,6 +167,18 @@ class Application(Model):
         None, description="An area of use that needs a risk assessment and the manufacturer’s approval (handbook 2.4)."
     )
     rank_by: RankBy = Field("weight", description="Order of the suitable gears.")
+
+    @field_validator("emergency_stop")
+    @classmethod
+    def _takes_loads_of_the_motion(cls, stop: EmergencyStop | None, info: ValidationInfo) -> EmergencyStop | None:
+        cycle = info.data.get("duty_cycle")
+        if stop is None or stop.brake is None or cycle is None or cycle.motion is None:
+            return stop
+        typed = [name for name in STOP_LOADS if getattr(stop.brake, name) is not None]
+        if typed:
+            problem = PydanticCustomError("load_twice", "the load’s torque follows from the motion: leave it out")
+            raise refused(stop, *((("brake", name), problem) for name in typed))
+        return stop
 
     @field_validator("output_load")
     @classmethod

@@ -16,6 +16,7 @@ from hpn.physics.motion.mechanisms import CLASSES, RPM, TYPES, LinearMechanism, 
 from hpn.physics.motion.moves import Move, Stroke, Turn
 from hpn.physics.motion.pieces import PlaceArray
 from hpn.physics.motion.refusals import refusal
+from hpn.physics.motion.stopped import StoppedLoad, stopped_load
 from hpn.words.fields import MAXIMUM_PHASES, Model, Number, at_most, in_parts, one_of, refused
 from hpn.words.wording import Quantity
 
@@ -70,6 +71,11 @@ class _Motion(Model):
     def course(self) -> Course:
         """Torque and speed of the moves over time, at the gear's output."""
         return course_of(self.moves, getattr(self, "start_deg", 0.0), self.mechanism.load)
+
+    @cached_property
+    def stopped_load(self) -> StoppedLoad:
+        """Torques of the load in an emergency stop at any instant of the moves."""
+        return stopped_load(self.moves, self.course)
 
     @cached_property
     def phases(self) -> tuple[Phase, ...]:

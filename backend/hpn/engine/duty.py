@@ -15,7 +15,8 @@ from hpn.application import Application, OutputLoad
 from hpn.application.input_fields import NUMBERS
 from hpn.physics import bearing, equations
 from hpn.physics.equations import FloatArray
-from hpn.physics.motion import Course
+from hpn.physics.motion import Course, StoppedLoad
+from hpn.physics.stop import LoadTorques
 
 TextArray = NDArray[np.str_]
 
@@ -121,12 +122,14 @@ class Duty:
 
     Each figure has shape (N, 1), is NaN where it is not asked for, and is computed when it is first read.
 
-    `courses` are those of the motions, by the place of their application.
+    `courses` are those of the motions, and `stopped_loads` their loads in a stop by the brake, where there is one; both
+    by the place of their application.
     """
 
     phases: Phases
     asked: Asked
     courses: Mapping[int, Course] = field(default_factory=dict)
+    stopped_loads: Mapping[int, StoppedLoad] = field(default_factory=dict)
 
     @cached_property
     def average_torque_Nm(self) -> FloatArray:
@@ -176,12 +179,15 @@ class Duty:
         return np.where(np.isnan(given), self.maximum_output_speed_rpm, given)
 
     @cached_property
-    def opposing_torque_Nm(self) -> tuple[FloatArray, FloatArray]:
-        """Smallest and largest torque in Nm at the gear that opposes the motion of a stop; 0 without a motion."""
-        lowest, highest = np.zeros_like(self.stop_speed_rpm), np.zeros_like(self.stop_speed_rpm)
-        for place, course in self.courses.items():
-            lowest[place], highest[place] = course.load.opposing_Nm(self.stop_speed_rpm.item(place))
-        return lowest, highest
+    def stop_load(self) -> LoadTorques:
+        """Torques T_d, T_v and T_o of the load in a stop: of its motion, else as they are given, else 0."""
+        T_d = np.nan_to_num(self.asked["emergency_stop.brake.load_torque_Nm"])
+        given = self.asked["emergency_stop.brake.opposing_torque_Nm"]
+        T_v, T_o = T_d.copy(), np.where(np.isnan(given), T_d, given)
+        for place, load in self.stopped_loads.items():
+            T_d[place], T_v[place] = load.pulling_at_gear_Nm, load.driving_at_gear_Nm
+            T_o[place] = load.opposing_at_gear_Nm(self.stop_speed_rpm.item(place))
+        return LoadTorques(T_d, T_v, T_o)
 
     @cached_property
     def torque_both_ways(self) -> NDArray[np.bool_]:
@@ -221,6 +227,8 @@ class Duty:
     @classmethod
     def of(cls, applications: Sequence[Application]) -> "Duty":
         """Duty of applications, in their order."""
-        motions = enumerate(application.duty_cycle.motion for application in applications)
-        courses = {place: motion.course for place, motion in motions if motion}
-        return cls(Phases.of(applications), Asked.of(applications), courses)
+        motions = {place: motion for place, one in enumerate(applications) if (motion := one.duty_cycle.motion)}
+        braked = [stop is not None and stop.brake is not None for stop in (one.emergency_stop for one in applications)]
+        courses = {place: motion.course for place, motion in motions.items()}
+        stopped = {place: motion.stopped_load for place, motion in motions.items() if braked[place]}
+        return cls(Phases.of(applications), Asked.of(applications), courses, stopped)

@@ -119,7 +119,7 @@ class Figures:
     @cached_property
     def stops(self) -> Stops:
         """Emergency stops by the brake."""
-        return Stops(self.duty, self.gears.columns, self.drive_resonance_Hz, self.motor_inertia_kgm2)
+        return Stops(self.duty, self.gears.columns, self.motor_inertia_kgm2)
 
     @cached_property
     def stop_torque_Nm(self) -> FloatArray:

@@ -13,7 +13,7 @@ from msgspec import field
 from numpy.typing import NDArray
 from pydantic import Field
 
-from hpn.application import BEARING_LIFE_H, Application, DutyCycle, OutputLoad
+from hpn.application import BEARING_LIFE_H, Application, Brake, DutyCycle, OutputLoad
 from hpn.catalogue import Catalogue, GearList
 from hpn.catalogue.gear import Gear
 from hpn.engine.evaluation import SUITABLE, Evaluation
@@ -126,11 +126,28 @@ NOTICES: Mapping[str, str] = {
         "axis will oscillate after the move."
     ),
     "brake_does_not_hold": N_(
-        "At standstill gravity requires {torque_Nm}: with the ratios {ratios} the brake does not hold the load."
+        "Weight and external load may pull with {torque_Nm} at the gear: with the ratios {ratios} the brake stops the "
+        "load but does not hold it at rest."
     ),
-    "brake_uniform": N_(
-        "The emergency stop starts at constant speed: one during acceleration adds (f − 1) · J · α. The brake is "
-        "assumed to take over from the motor during its rise time."
+    "brake_bound": N_(
+        "T_k of the brake is an upper bound at any instant of the motion: the gear’s own backlash is crossed under the "
+        "brake’s whole torque, and the motor may go off before, at or through the brake’s rise, which does not lower "
+        "it. Not in it: backlash of what is behind the gear, and that the gear is softer below 15 % of T_N."
+    ),
+    "brake_factor_typed": N_(
+        "T_k of the brake goes by your dynamic factor, and is no bound: a load that crosses the gear’s backlash may "
+        "exceed it."
+    ),
+    "brake_efficiency_unknown": N_(
+        "No efficiency is given, so the stop by the brake counts η as 1, which is not the safe side: losses raise T_k, "
+        "up to 1 / η times."
+    ),
+    "brake_without_load": N_(
+        "The stop by the brake takes the load for one that nothing pulls and that does not accelerate: give the torque "
+        "of weight and process force at the gear, and that with friction and J · α."
+    ),
+    "brake_while_accelerating": N_(
+        "J · α of a stop during acceleration is in T_k only as far as the opposing torque that you give includes it."
     ),
     "brake_inertia_unknown": N_(
         "Without the inertias of motor and load the full brake torque counts, an upper bound; time and angle of the "
@@ -258,28 +275,30 @@ def _on_stop_and_life(application: Application, evaluation: Evaluation, index: i
     if application.emergency_stop is not None and application.emergency_stop.count is None:
         yield notice("stops_not_counted")
     if application.emergency_stop is not None and application.emergency_stop.brake is not None:
-        yield from _on_the_brake(evaluation, index)
+        yield from _on_the_brake(application.emergency_stop.brake, evaluation, index)
     if _is_unlimited(figures.momentary_peak_count, index):
         yield notice("momentary_peak_count_unlimited")
     if _is_unlimited(figures.life_L10_h, index):
         yield notice("life_unlimited")
 
 
-def _on_the_brake(evaluation: Evaluation, index: int) -> Iterable[Notice]:
-    duty, ratio = evaluation.case.duty, evaluation.gears.columns.ratio
-    if (
-        np.isnan(duty.load_inertia_kgm2.item(index))
-        or np.isnan(evaluation.case.figures.motor_inertia_kgm2[index]).all()
-    ):
+def _on_the_brake(brake: Brake, evaluation: Evaluation, index: int) -> Iterable[Notice]:
+    duty, figures = evaluation.case.duty, evaluation.case.figures
+    if np.isnan(duty.load_inertia_kgm2.item(index)) or np.isnan(figures.motor_inertia_kgm2[index]).all():
         yield notice("brake_inertia_unknown")
-    yield notice("brake_uniform")
-    if (course := duty.courses.get(index)) is None:
-        return
-    weight = course.load.weight_Nm / course.load.ratio
-    held = duty.asked["emergency_stop.brake.torque_Nm"].item(index) * ratio * (1 + ROUNDING)
-    slips = sorted({i for i, torque in zip(ratio.tolist(), held.tolist(), strict=True) if torque < weight})
-    if slips:
-        yield notice("brake_does_not_hold", torque_Nm=weight, ratios=", ".join(f"{i:g}" for i in slips))
+    yield notice("brake_bound" if brake.dynamic_factor is None else "brake_factor_typed")
+    if np.isnan(duty.asked["requirements.efficiency"].item(index)):
+        yield notice("brake_efficiency_unknown")
+    if index not in duty.stopped_loads:
+        if brake.load_torque_Nm is None and brake.opposing_torque_Nm is None:
+            yield notice("brake_without_load")
+        else:
+            yield notice("brake_while_accelerating")
+    ratio = evaluation.gears.columns.ratio
+    slipping = sorted(set(ratio[figures.stops.never_holds[index]].tolist()))
+    if slipping:
+        pulling = np.asarray(duty.stop_load.pulling_Nm).item(index)
+        yield notice("brake_does_not_hold", torque_Nm=pulling, ratios=", ".join(f"{i:g}" for i in slipping))
 
 
 def _on_stiffness(application: Application, evaluation: Evaluation, index: int) -> Iterable[Notice]:

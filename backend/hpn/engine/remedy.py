@@ -129,6 +129,9 @@ def alternatives_of(candidate: Candidate, reserve_utilisation: float = 1.0) -> t
     ways, changed = ways_of(candidate, reserve_utilisation), tuple(_requirements(candidate, reserve_utilisation))
     if any(getattr(way, driver) < 1 for way in ways for driver in MOVES if _is_untold(candidate, driver)):
         return ()
+    if candidate.reserve.brake_torque_Nm is not None and any(change.path == LOAD_INERTIA for change in changed):
+        # with that inertia the stop by the brake passes as it is
+        ways = tuple(dict.fromkeys(replace(way, emergency_stop_count=None, brake_torque_Nm=None) for way in ways))
     if any(way.brake_torque_Nm == 0 for way in ways) or _never_stops(candidate):
         return ()
     found = [Alternative(one, changed) for way in ways or (Way(),) for one in _by_stop(way)]
@@ -153,6 +156,7 @@ def _by_stop(way: Way) -> Iterable[Way]:
         yield replace(way, emergency_stop_torque_Nm=None, brake_torque_Nm=None)
 
 
+LOAD_INERTIA = "requirements.load_inertia_kgm2"
 LESS_INERTIA = N_("the load’s inertia drops to {value}")
 _AMBIENT = (N_("the ambient temperature drops to {value}"), N_("the ambient temperature rises to {value}"))
 
@@ -162,8 +166,8 @@ def _requirements(candidate: Candidate, u: float) -> Iterable[Requirement]:
     for check in candidate.failing:
         known = BY_CODE[check.code]
         inertia = candidate.reserve.load_inertia_kgm2
-        if check.code == "natural_frequency" and inertia is not None:
-            yield Requirement("requirements.load_inertia_kgm2", Quantity(inertia, "kgm2", 4, "down"), LESS_INERTIA)
+        if check.code == "natural_frequency" and inertia:  # 0 where no inertia lets the stop pass
+            yield Requirement(LOAD_INERTIA, Quantity(inertia, "kgm2", 4, "down"), LESS_INERTIA)
             continue
         if not known.asked or check.demand is None or check.limit is None:
             continue

@@ -89,19 +89,23 @@ def _emergency_stop_torque(evaluation: Evaluation, index: int, u: float) -> Floa
 
 
 def _load_inertia(evaluation: Evaluation, index: int, u: float) -> FloatArray:
-    """Largest inertia of the load in kg m² with which natural frequency and inertia ratio pass, shape (G,).
+    """Largest inertia of the load in kg m² with which natural frequency, inertia ratio and stop pass, shape (G,).
 
-    NaN where neither is asked for, and along a motion, whose torques go by the inertia too. The frequency goes by
-    1 / √J; what the gear's own inertia adds to the ratio stays.
+    NaN where none of them is asked for, and along a motion, whose torques go by the inertia too. The frequency goes by
+    1 / √J; what the gear's own inertia adds to the ratio stays; the torque of a stop by the brake rises with it, and is
+    NaN where the brake does not hold the load.
     """
     case = evaluation.case
     J, f, n = (case.asked[f"requirements.{name}"].item(index) for name in LOAD_INERTIA_INPUTS)
+    J_m = case.asked["requirements.motor.inertia_kgm2"].item(index)
     rooms = []
     if not np.isnan(f):
         rooms.append(case.gears.torsional_stiffness_Nm_per_rad / np.square(2 * np.pi * f))
     if not np.isnan(n):
-        J_m = case.asked["requirements.motor.inertia_kgm2"].item(index)
         rooms.append(np.square(case.gears.ratio) * (u * n * J_m - np.nan_to_num(case.gears.inertia_kgm2)))
+    if case.duty.brakes is not None and case.duty.brakes.item(index) and not np.isnan(J_m):
+        T_k = _emergency_stop_torque(evaluation, index, u)
+        rooms.append(case.figures.stops.largest_load_inertia_kgm2(T_k)[index])
     return np.minimum.reduce(rooms) if rooms and not np.isnan(J) else np.array(np.nan)
 
 

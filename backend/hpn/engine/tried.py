@@ -48,7 +48,7 @@ def followed(application: Application, way: Way) -> Application:
     A motion is replaced by its phases where their torques or speeds change, whose signs hold as those of a motion do.
     """
     torque, speed, load = (_printed(factor, 3) for factor in (way.torque, way.speed, way.load))
-    cycle, parts = application.duty_cycle, dict[str, Any]()
+    cycle, stop, parts = application.duty_cycle, application.emergency_stop, dict[str, Any]()
     if cycle.motion is not None and (torque, speed) == (1, 1):
         parts["duty_cycle"] = cycle.model_copy(update={"motion": _loaded(cycle.motion, load)})
     else:
@@ -57,10 +57,11 @@ def followed(application: Application, way: Way) -> Application:
             asked = application.requirements
             known = {"load_inertia_kgm2": cycle.motion.load_inertia_kgm2, "load_reverses": bool(asked.load_reverses)}
             parts["requirements"] = asked.model_copy(update=known)
+            stop = stop and _pulled(stop, cycle.motion)
     if (given := application.output_load) is not None:
         loads = {name: _scaled(getattr(given, name), load) for name in LOADS}
         parts["output_load"] = given.model_copy(update={k: v for k, v in loads.items() if v is not None})
-    if (stop := application.emergency_stop) is not None:
+    if stop is not None:
         parts["emergency_stop"] = _stopped(stop, way)
     return application.model_copy(update=parts)
 
@@ -93,6 +94,17 @@ def _driven(cycle: DutyCycle, torque: float, speed: float, load: float) -> tuple
         )
         for phase in cycle.load_phases
     )
+
+
+def _pulled(stop: EmergencyStop, motion: Motion) -> EmergencyStop:
+    """The stop with the torques of the motion's load, which its phases lack; a bound where they fall."""
+    if stop.brake is None:
+        return stop
+    speed_rpm = stop.brake.speed_rpm or max(phase.peak_speed_rpm or 0.0 for phase in motion.phases)
+    load = motion.stopped_load
+    torques = {"load_torque_Nm": load.pulling_at_gear_Nm, "opposing_torque_Nm": load.opposing_at_gear_Nm(speed_rpm)}
+    brake = stop.brake.model_copy(update=torques)
+    return stop.model_copy(update={"brake": brake})
 
 
 def _stopped(stop: EmergencyStop, way: Way) -> EmergencyStop:

@@ -16,7 +16,7 @@ import pyarrow.compute as pc
 from numpy.typing import NDArray
 from pydantic import ValidationError
 
-from hpn.application import LEAST_MOTION, Application, InputError
+from hpn.application import LEAST_MOTION, STOP_LOADS, Application, InputError
 from hpn.application.phase import ROOM
 from hpn.catalogue import Catalogue, GearList
 from hpn.engine.allowed import gears_for, with_listed_motor
@@ -53,7 +53,8 @@ class Axes:
             mask &= ~is_excluded
         self._take(table if mask.all() else table.filter(pa.array(mask)), np.flatnonzero(mask))
         with np.errstate(all="ignore"):  # what is out of its bounds is rejected for that
-            self._keep(self._in_bounds() & self._have_sound_phases() & self._have_sound_names())
+            sound = self._have_sound_phases() & self._have_sound_stops() & self._have_sound_names()
+            self._keep(self._in_bounds() & sound)
         self._judge()
 
     def _take(self, table: pa.Table, places: IntArray) -> None:
@@ -110,6 +111,11 @@ class Axes:
             wrong = (peak_T < T * (1 - ROOM)) | (peak_n < n * (1 - ROOM)) | ((n == 0) & (peak_n > 0))
             mask &= ~self._any_phase(wrong | (rms > np.where(np.isnan(peak_T), T, peak_T) * (1 + ROOM)))
         return mask
+
+    def _have_sound_stops(self) -> BoolArray:
+        """True where what opposes a stop is not less than the load's torque, which is part of it."""
+        load, opposing = (self._numbers(f"emergency_stop.brake.{name}") for name in STOP_LOADS)
+        return ~(opposing < np.nan_to_num(load))
 
     def _have_sound_names(self) -> BoolArray:
         """True where each phase has a name that the models take, or none."""

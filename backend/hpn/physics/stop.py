@@ -1,7 +1,8 @@
-"""An emergency stop by the brake on the motor: its torque at the gear, its time, angle and energy.
+"""An emergency stop by the brake on the motor: upper bounds of its torque at the gear, its time, angle and energy.
 
-Motor and load turn uniformly when the brake closes. A torque that opposes the motion acts at the gear's output: gravity
-and friction of the load, negative where the load drives. Arguments broadcast; NaN stands for what is not known.
+Motor and load are rigid, the gear between them is a spring of stiffness K3 with backlash γ. The bounds hold at any
+instant of the motion, whether the motor goes off before, at, or through the rise of the brake's torque, and until the
+load has come to rest. Arguments broadcast; NaN stands for what is not known.
 """
 
 from dataclasses import dataclass
@@ -12,20 +13,6 @@ from numpy.typing import NDArray
 from hpn.physics.equations import ROUNDING, FloatArray, equation
 
 Figure = FloatArray | float
-
-STEP_FACTOR = 2.0
-"""Peak over final torque of an undamped spring on which a torque acts at once."""
-
-
-@equation
-def dynamic_factor(*, rise_time_s: Figure, drive_resonance_Hz: Figure) -> FloatArray:
-    """Dynamic factor 1 + |sin(π f t)| / (π f t) of a torque that rises linearly in t [-]; 2 where either is not known.
-
-    Response of an undamped mass on a spring to a ramp; C. M. Harris, A. G. Piersol, Shock and Vibration Handbook,
-    chapter on transient response.
-    """
-    turn = np.multiply(rise_time_s, drive_resonance_Hz)
-    return np.where(np.isnan(turn), STEP_FACTOR, 1 + np.abs(np.sinc(turn)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,74 +29,137 @@ class Brake:
     load_inertia_kgm2: Figure
     efficiency: Figure = 1.0
 
+    @property
+    def at_output_Nm(self) -> FloatArray:
+        """Torque i T_B of the brake at the output in Nm."""
+        return np.asarray(np.multiply(self.ratio, self.torque_Nm))
 
-@equation
-def deceleration(*, brake: Brake, opposing_torque_Nm: Figure) -> FloatArray:
-    """Deceleration a = (i T_B + η T_opp) / (i² J_m + η J) of the output in rad/s².
+    @property
+    def motor_at_output_kgm2(self) -> FloatArray:
+        """Inertia i² J_m of the motor at the output in kg m²."""
+        return np.asarray(np.square(self.ratio) * self.motor_inertia_kgm2)
 
-    η loses on the way from the load to the brake. Where the load lags behind and the motor drives it, 1/η stands for η.
+
+@dataclass(frozen=True, eq=False)
+class LoadTorques:
+    """Torques of the load at the gear in Nm, none negative; every figure broadcasts.
+
+    `pulling_Nm` T_d is the largest that may drive the load against the brake, at rest too, `driving_Nm` T_v ≤ T_d the
+    largest that does along a stop, and `opposing_Nm` T_o ≥ T_d the largest that the gear may bear before the stop.
     """
-    a = _deceleration(brake, opposing_torque_Nm, brake.efficiency)
-    lags = np.multiply(brake.load_inertia_kgm2, a) - opposing_torque_Nm < 0
-    return np.where(lags, _deceleration(brake, opposing_torque_Nm, np.divide(1, brake.efficiency)), a)
+
+    pulling_Nm: Figure = 0.0
+    driving_Nm: Figure = 0.0
+    opposing_Nm: Figure = 0.0
 
 
-def _deceleration(brake: Brake, T_opp: Figure, eta: Figure) -> FloatArray:
-    inertia = np.square(brake.ratio) * brake.motor_inertia_kgm2 + np.multiply(eta, brake.load_inertia_kgm2)
-    return np.asarray((np.multiply(brake.ratio, brake.torque_Nm) + np.multiply(eta, T_opp)) / inertia)
+@dataclass(frozen=True, eq=False)
+class Play:
+    """A gear as a spring with backlash; every figure broadcasts."""
+
+    torsional_stiffness_Nm_per_rad: Figure
+    backlash_rad: Figure
+
+    @property
+    def crossed_Nm(self) -> FloatArray:
+        """Torque K3 γ in Nm that would wind the gear up by its backlash."""
+        return np.asarray(np.multiply(self.torsional_stiffness_Nm_per_rad, self.backlash_rad))
 
 
-def is_stopped(*, brake: Brake, opposing_torque_Nm: Figure) -> NDArray[np.bool_]:
-    """True where the brake decelerates the load, i T_B + η T_opp > 0, whatever the inertias are."""
-    driving = -np.multiply(brake.efficiency, opposing_torque_Nm)
-    stopped: NDArray[np.bool_] = np.multiply(brake.ratio, brake.torque_Nm) > driving * (1 + ROUNDING)
+def is_stopped(*, brake: Brake, load: LoadTorques) -> NDArray[np.bool_]:
+    """True where the brake decelerates the load, i T_B > T_v, whatever the inertias are."""
+    stopped: NDArray[np.bool_] = brake.at_output_Nm > np.multiply(load.driving_Nm, 1 + ROUNDING)
     return stopped
 
 
-@equation
-def stop_torque_at_rest(*, brake: Brake, opposing_torque_Nm: Figure) -> FloatArray:
-    """Torque T_r = J a - T_opp in Nm that the gear bears while both ends slow down as one body.
-
-    Where an inertia is not known i T_B / η, an upper bound.
-    """
-    rigid = brake.load_inertia_kgm2 * deceleration(brake=brake, opposing_torque_Nm=opposing_torque_Nm)
-    bound = np.multiply(brake.ratio, brake.torque_Nm) / brake.efficiency
-    return np.where(np.isnan(rigid), bound, rigid - opposing_torque_Nm)
+def is_held(*, brake: Brake, load: LoadTorques) -> NDArray[np.bool_]:
+    """True where the brake holds the load at rest, i T_B > T_d."""
+    held: NDArray[np.bool_] = brake.at_output_Nm > np.multiply(load.pulling_Nm, 1 + ROUNDING)
+    return held
 
 
 @equation
-def stop_torque(*, brake: Brake, opposing_torque_Nm: Figure, dynamic_factor: Figure) -> FloatArray:
-    """Torque T_k = f |T_r| + (f - 1) max(T_opp, 0) of the gear in a stop in Nm.
+def settled_torque(*, brake: Brake, load: LoadTorques) -> FloatArray:
+    """Torque T_r = (λ i T_B + T_d) / (1 + η λ) in Nm, λ = J / (i² J_m), about which the gear swings in a stop.
 
-    The gear starts from the torque that keeps a uniform speed, -T_opp, and swings about T_r. Exact for a step of the
-    brake and T_opp ≥ 0, else an upper bound.
+    Motor and load slow down as one body, the load driving the motor with losses; without an inertia
+    max(i T_B / η, T_d).
     """
-    T_r = stop_torque_at_rest(brake=brake, opposing_torque_Nm=opposing_torque_Nm)
-    f = np.asarray(dynamic_factor, dtype=np.float64)
-    T_k: FloatArray = f * np.abs(T_r) + (f - 1) * np.maximum(opposing_torque_Nm, 0.0)
-    return T_k
+    J, m, at_output = brake.load_inertia_kgm2, brake.motor_at_output_kgm2, brake.at_output_Nm
+    T_r = (J * at_output + m * load.pulling_Nm) / (m + np.multiply(brake.efficiency, J))
+    return np.where(np.isnan(m + J), np.maximum(at_output / brake.efficiency, load.pulling_Nm), T_r)
+
+
+@equation
+def flank_share(*, brake: Brake) -> FloatArray:
+    """Share B = (1 + λ/η) / (1 + η λ) of T_o² that stays after the losses [-]; without an inertia 1/η²."""
+    J, m, eta = brake.load_inertia_kgm2, brake.motor_at_output_kgm2, np.asarray(brake.efficiency)
+    return np.where(np.isnan(m + J), 1 / eta**2, (m + J / eta) / (m + eta * J))
+
+
+@equation
+def stop_torque(*, brake: Brake, load: LoadTorques, gear: Play, dynamic_factor: Figure) -> FloatArray:
+    """Torque T_k = T_r + √(T_r² + 2 T_r (T_o + K3 γ) + B T_o²) in Nm, which the gear does not exceed in a stop.
+
+    The load lets go of one flank under T_o, crosses the backlash under the brake's whole torque and swings about T_r on
+    the other; how fast the brake closes doesn't lower the bound. With a dynamic factor f, the user's own,
+    T_k = f T_r + (f - 1) T_o; NaN for none.
+    """
+    T_r, T_o, f = settled_torque(brake=brake, load=load), np.asarray(load.opposing_Nm), np.asarray(dynamic_factor)
+    swing = np.sqrt(T_r**2 + 2 * T_r * (T_o + gear.crossed_Nm) + flank_share(brake=brake) * T_o**2)
+    return np.where(np.isnan(f), T_r + swing, f * T_r + (f - 1) * T_o)
+
+
+# --- Inverses ---------------------------------------------------------------------------------------------------------
 
 
 @equation
 def largest_brake_torque(
-    *, brake: Brake, opposing_torque_Nm: Figure, dynamic_factor: Figure, permissible_torque_Nm: Figure
+    *, brake: Brake, load: LoadTorques, gear: Play, dynamic_factor: Figure, permissible_torque_Nm: Figure
 ) -> FloatArray:
-    """Largest torque of the brake in Nm, its own not counted, at which T_k stays permissible; 0 where none does.
+    """Largest torque T_B in Nm, the brake's own not counted, at which T_k stays within a limit L.
 
-    `stop_torque` solved for T_B: T_r = (T - (f - 1) max(T_opp, 0)) / f, a = (T_r + T_opp) / J.
+    `stop_torque` solved for T_B: T_r = (L² - B T_o²) / (2 (L + T_o + K3 γ)), or (L - (f - 1) T_o) / f with a factor,
+    i T_B = (T_r (1 + η λ) - T_d) / λ; without inertias η T_r. 0 where none keeps to the limit and stops the load; NaN
+    where L is.
     """
-    f, eta, T_opp = np.asarray(dynamic_factor), np.asarray(brake.efficiency), np.asarray(opposing_torque_Nm)
-    T_r = (np.asarray(permissible_torque_Nm) - (f - 1) * np.maximum(T_opp, 0.0)) / f
-    a = (T_r + T_opp) / brake.load_inertia_kgm2
-    inertia = np.square(brake.ratio) * brake.motor_inertia_kgm2 + eta * brake.load_inertia_kgm2
-    rigid = (a * inertia - eta * T_opp) / brake.ratio
-    largest = np.where(np.isnan(rigid), T_r * eta / brake.ratio, rigid)
-    return np.where(T_r < 0, 0.0, np.maximum(largest, 0.0))
+    J, m, eta = brake.load_inertia_kgm2, brake.motor_at_output_kgm2, np.asarray(brake.efficiency)
+    L, T_o, f = np.asarray(permissible_torque_Nm), np.asarray(load.opposing_Nm), np.asarray(dynamic_factor)
+    swung = (L**2 - flank_share(brake=brake) * T_o**2) / (2 * (L + T_o + gear.crossed_Nm))
+    T_r = np.where(np.isnan(f), swung, (L - (f - 1) * T_o) / f)
+    rigid = (T_r * (m + eta * J) - m * load.pulling_Nm) / J
+    at_output = np.where(np.isnan(m + J), np.where(T_r < load.pulling_Nm, 0.0, eta * T_r), rigid)
+    stopping = at_output > np.multiply(load.driving_Nm, 1 + ROUNDING)
+    return np.where(np.isnan(at_output), np.nan, np.where(stopping, at_output / brake.ratio, 0.0))
+
+
+@equation
+def largest_load_inertia(
+    *, brake: Brake, load: LoadTorques, gear: Play, dynamic_factor: Figure, permissible_torque_Nm: Figure
+) -> FloatArray:
+    """Largest inertia J of the load in kg m², the brake's own not counted, at which T_k stays within a limit L.
+
+    `stop_torque` is L where λ (2 i T_B (L + T_o + K3 γ) + T_o²/η - η L²) = L² - T_o² - 2 T_d (L + T_o + K3 γ); with a
+    factor where λ (i T_B - η T_r) = T_r - T_d. Infinite where no inertia reaches the limit, 0 where every one exceeds
+    it, NaN where the brake does not hold the load (T_k then falls with J) and without the motor's inertia.
+    """
+    m, eta, at_output = brake.motor_at_output_kgm2, np.asarray(brake.efficiency), brake.at_output_Nm
+    L, T_d, T_o = (np.asarray(value) for value in (permissible_torque_Nm, load.pulling_Nm, load.opposing_Nm))
+    f, reach = np.asarray(dynamic_factor), L + T_o + gear.crossed_Nm
+    typed = (L - (f - 1) * T_o) / f
+    room = np.where(np.isnan(f), L**2 - T_o**2 - 2 * T_d * reach, typed - T_d)
+    slope = np.where(np.isnan(f), 2 * at_output * reach + T_o**2 / eta - eta * L**2, at_output - eta * typed)
+    J = np.where(room <= 0, 0.0, np.where(slope <= 0, np.inf, m * room / slope))
+    known = is_held(brake=brake, load=load) & ~np.isnan(m + room + slope)
+    return np.where(known, J, np.nan)
+
+
+# --- Course -----------------------------------------------------------------------------------------------------------
 
 
 @dataclass(frozen=True, eq=False)
 class Stop:
-    """Course of a stop: time in s and angle in rad from the command to rest, energy in J that the brake takes.
+    """Upper bounds of a stop: time in s and angle in rad from the command to rest, energy in J that the brake takes.
 
     NaN where an inertia is not known; infinite where the brake does not stop the load.
     """
@@ -122,30 +172,35 @@ class Stop:
 def course_of_stop(
     *,
     brake: Brake,
-    opposing_torque_Nm: Figure,
+    load: LoadTorques,
+    gear: Play,
+    stop_torque_Nm: Figure,
     speed_rad_per_s: Figure,
     reaction_time_s: Figure,
     rise_time_s: Figure,
 ) -> Stop:
-    """Stop from a speed of the output: uniform change of speed for the dead time, then uniform deceleration.
+    """Stop from a speed ω of the output with T_v driving all along, losses left out.
 
-    Half of the linear rise counts as dead time, which holds the angle's first-order part. Where the opposing torque
-    alone stops the load before that, the brake takes no energy.
+    t_d = t_r + t_b/2 counts as dead time, ω₁ = ω + T_v t_d / (J + i² J_m), a = (i T_B - T_v) / (J + i² J_m). The time
+    is t_d + ω₁/a + 1/(4 f₂), with f₂ the resonance of the drive; the angle
+    φ = ω t_d + T_v t_d² / (2 (J + i² J_m)) + ω₁²/(2a) + γ + (T_k + T_o)/K3; the energy (J + i² J_m) ω²/2 + T_v φ.
     """
     with np.errstate(all="ignore"):
-        omega, T_opp = np.asarray(speed_rad_per_s, dtype=float), np.asarray(opposing_torque_Nm, dtype=float)
-        dead = np.asarray(reaction_time_s) + np.asarray(rise_time_s) / 2
-        inertia = brake.load_inertia_kgm2 + np.square(brake.ratio) * brake.motor_inertia_kgm2
-        c = T_opp / inertia
-        a = deceleration(brake=brake, opposing_torque_Nm=T_opp)
-        slower = omega - c * dead
-        alone, stops = slower <= 0, is_stopped(brake=brake, opposing_torque_Nm=T_opp)
-        time = np.where(alone, omega / c, np.where(stops, dead + slower / a, np.inf))
-        angle = omega * dead - c * dead**2 / 2 + slower**2 / (2 * a)
-        angle = np.where(alone, omega**2 / (2 * c), np.where(stops, angle, np.inf))
-        known = ~np.isnan(inertia)
-        energy = np.where(alone, 0.0, inertia * slower**2 / 2)
-    return Stop(*(np.where(known, figure, np.nan) for figure in (time, angle, energy)))
+        omega, T_v, K3 = (
+            np.asarray(x) for x in (speed_rad_per_s, load.driving_Nm, gear.torsional_stiffness_Nm_per_rad)
+        )
+        J, m = np.asarray(brake.load_inertia_kgm2), brake.motor_at_output_kgm2
+        dead, inertia = np.asarray(reaction_time_s) + np.asarray(rise_time_s) / 2, J + m
+        drawn, a = T_v / inertia, (brake.at_output_Nm - T_v) / inertia
+        faster = omega + drawn * dead
+        quarter = np.pi / 2 / np.sqrt(K3 * (1 / J + 1 / m))
+        time = dead + faster / a + quarter
+        wound = gear.backlash_rad + (np.asarray(stop_torque_Nm) + load.opposing_Nm) / K3
+        angle = omega * dead + drawn * dead**2 / 2 + faster**2 / (2 * a) + wound
+        energy = inertia * omega**2 / 2 + T_v * angle
+        stops, known = is_stopped(brake=brake, load=load), ~np.isnan(inertia)
+    figures = (np.where(stops, figure, np.inf) for figure in (time, angle, energy))
+    return Stop(*(np.where(known, figure, np.nan) for figure in figures))
 
 
 @equation

@@ -54,6 +54,8 @@ INPUTS: Mapping[str, Named] = {
     "emergency_stop.brake.rise_time_s": Named(N_("Rise time of the brake"), "t_b"),
     "emergency_stop.brake.reaction_time_s": Named(N_("Reaction time"), "t_r"),
     "emergency_stop.brake.speed_rpm": Named(N_("Speed at the stop command"), "n_b"),
+    "emergency_stop.brake.load_torque_Nm": Named(N_("Load’s torque in the stop"), "T_L"),
+    "emergency_stop.brake.opposing_torque_Nm": Named(N_("Opposing torque in the stop"), "T_o"),
     "emergency_stop.brake.dynamic_factor": Named(N_("Dynamic factor"), "f"),
     "output_load.radial_N": Named(N_("Radial load of the cycle"), "F_R"),
     "output_load.axial_N": Named(N_("Axial load of the cycle"), "F_A"),
@@ -214,18 +216,22 @@ CANDIDATE: Mapping[str, Named] = {
     "stop_torque_Nm": Named(
         N_("Torque of the emergency stop"),
         "T_k",
-        "Torque of the gear in an emergency stop: as given, else from the brake.",
+        "Torque of the gear in an emergency stop: as given, else the bound that the brake gives.",
     ),
     "stopping_time_s": Named(
-        N_("Stopping time"), "t_stop", "Time from the command to rest; null without both inertias, and without a brake."
+        N_("Stopping time"),
+        "t_stop",
+        "Longest time from the command to rest; null without both inertias, and without a brake that stops the load.",
     ),
     "stopping_angle_deg": Named(
-        N_("Stopping angle"), "φ_stop", "Angle that the output turns from the command to rest; null likewise."
+        N_("Stopping angle"), "φ_stop", "Largest angle of the output from the command to rest; null likewise."
     ),
     "stopping_distance_mm": Named(
         N_("Stopping distance"), "s_stop", "The same as a length at the given radius; null without one."
     ),
-    "stop_energy_J": Named(N_("Energy of one stop"), "E", "Energy that the brake takes in one stop; null likewise."),
+    "stop_energy_J": Named(
+        N_("Energy of one stop"), "E", "Largest energy that the brake takes in one stop; null likewise."
+    ),
     "end_stop_speed_rpm": Named(
         N_("Speed into an end stop"),
         "n_end",

@@ -17,7 +17,8 @@ from hpn.explain.calculation.handbook import HANDBOOK
 from hpn.explain.calculation.motor import MOTOR
 from hpn.explain.calculation.output_bearing import bearing_steps
 from hpn.explain.calculation.sheet import Comparison, LackingFigureError, Line, Sheet, Step
-from hpn.explain.calculation.stiffness import frequency_steps, position_steps, stop_steps
+from hpn.explain.calculation.stiffness import frequency_steps, position_steps
+from hpn.explain.calculation.stop import stop_steps
 from hpn.words.wording import N_, Sentence
 
 __all__ = ["Comparison", "Line", "Step", "calculation_of"]

@@ -2,10 +2,12 @@
 
 from hpn.physics.motion.course import Course
 from hpn.physics.motion.motor import motor_torques, square_torque
+from hpn.physics.motion.stopped import StoppedLoad
 from hpn.physics.motion.trace import Trace, motor_trace, peak_instant, trace_of
 
 __all__ = [
     "Course",
+    "StoppedLoad",
     "Trace",
     "motor_torques",
     "motor_trace",

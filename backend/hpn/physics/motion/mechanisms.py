@@ -65,16 +65,6 @@ class ShaftLoad:
         """Largest torque of gravity in Nm, over a full turn or in both directions."""
         return max(self.gravity_Nm, abs(self.constant_Nm))
 
-    def opposing_Nm(self, speed_rpm: float) -> tuple[float, float]:
-        """Smallest and largest torque in Nm at the gear that opposes a motion at a speed of the gear.
-
-        From gravity that drives without friction to gravity that is raised with friction, by ratio and efficiency as
-        along a motion; over a full turn where the mass turns, in both directions where it moves along a line.
-        """
-        friction = self.friction_Nm + self.viscous_Nms * speed_rpm * RPM / self.ratio
-        lowest, highest = -self.weight_Nm, self.weight_Nm + friction
-        return lowest * self.efficiency / self.ratio, highest / (self.efficiency * self.ratio)
-
 
 class Mechanism(Model):
     """Fields of every mechanism."""

@@ -97,10 +97,20 @@ SYMBOLS = (
         "nb", ("emergency_stop", "brake", "speed_rpm"), hint=N_("At the output; by default the largest of the cycle.")
     ),
     Symbol(
+        "TL",
+        ("emergency_stop", "brake", "load_torque_Nm"),
+        placeholder="0",
+        hint=N_("At the gear, of weight and process force; a motion has its own."),
+    ),
+    Symbol(
+        "To",
+        ("emergency_stop", "brake", "opposing_torque_Nm"),
+        hint=N_("The same with friction and J · α; by default the load’s torque. A motion has its own."),
+    ),
+    Symbol(
         "kd",
         ("emergency_stop", "brake", "dynamic_factor"),
-        placeholder="2",
-        hint=N_("2 for a brake that closes at once; lower with a rise time where both inertias are known."),
+        hint=N_("Your own, in place of the bound: T_k = f T_r + (f − 1) T_o."),
     ),
     Symbol("FR", ("output_load", "radial_N")),
     Symbol("FA", ("output_load", "axial_N")),
@@ -333,7 +343,7 @@ GROUPS = (
     FormGroup(
         "brake",
         N_("Brake of the emergency stop"),
-        ("TB", "tb", "tr", "nb", "kd"),
+        ("TB", "tb", "tr", "nb", "TL", "To", "kd"),
         hint=N_("Instead of the emergency-stop torque, which then follows for each gear."),
     ),
     FormGroup(
