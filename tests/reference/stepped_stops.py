@@ -155,9 +155,11 @@ def _before(s: Stops) -> tuple[Figures, ...]:
 
 def _spring(s: Stops, twist: Figures) -> Figures:
     """Torque of the gear: none within the gap."""
-    return s.stiffness * (np.maximum(twist - s.gap / 2, 0) + np.minimum(twist + s.gap / 2, 0))
+    torque: Figures = s.stiffness * (np.maximum(twist - s.gap / 2, 0) + np.minimum(twist + s.gap / 2, 0))
+    return torque
 
 
 def _rubbed(speed: Figures, most: Figures) -> Figures:
     """Speed after a step of friction, which changes it by so much at most and not beyond rest."""
-    return np.sign(speed) * np.maximum(np.abs(speed) - most, 0)
+    slower: Figures = np.sign(speed) * np.maximum(np.abs(speed) - most, 0)
+    return slower

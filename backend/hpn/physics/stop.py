@@ -107,7 +107,8 @@ def stop_torque(*, brake: Brake, load: LoadTorques, gear: Play, dynamic_factor: 
     """
     T_r, T_o, f = settled_torque(brake=brake, load=load), np.asarray(load.opposing_Nm), np.asarray(dynamic_factor)
     swing = np.sqrt(T_r**2 + 2 * T_r * (T_o + gear.crossed_Nm) + flank_share(brake=brake) * T_o**2)
-    return np.where(np.isnan(f), T_r + swing, f * T_r + (f - 1) * T_o)
+    T_k: FloatArray = np.where(np.isnan(f), T_r + swing, f * T_r + (f - 1) * T_o)
+    return T_k
 
 
 # --- Inverses ---------------------------------------------------------------------------------------------------------
