@@ -35,13 +35,21 @@ def verdict(application: Application, designation: str, catalogue: Catalogue) ->
     return candidate.status
 
 
+def has_no_brake(candidate: Candidate) -> bool:
+    """True where no brake both stops the load and keeps the gear, or where the one that is given is too weak."""
+    peak = candidate.check("momentary_peak_torque")
+    return candidate.reserve.brake_torque_Nm == 0 or (
+        peak is not None and peak.status == "fail" and not peak.utilisation
+    )
+
+
 def test_each_alternative_of_each_rejected_gear_alone_makes_it_pass(catalogue: Catalogue, soak: bool) -> None:
     """Property limits included, as the link writes it and the form reads it again."""
     found = rejected(random.Random(16), catalogue)
     several, properties = 0, 0
     for application, candidate in (next(found) for _ in range(6000 if soak else 300)):
         alternatives = alternatives_of(candidate, application.requirements.utilisation)
-        assert alternatives, (candidate, application)
+        assert alternatives or has_no_brake(candidate), (candidate, application)
         several += len(alternatives) > 1
         properties += bool(PROPERTIES & {check.code for check in candidate.failing})
         for alternative in alternatives:

@@ -290,13 +290,10 @@ def _on_the_brake(brake: Brake, evaluation: Evaluation, index: int) -> Iterable[
     if np.isnan(duty.asked["requirements.efficiency"].item(index)):
         yield notice("brake_efficiency_unknown")
     if index not in duty.stopped_loads:
-        if brake.load_torque_Nm is None and brake.opposing_torque_Nm is None:
-            yield notice("brake_without_load")
-        else:
-            yield notice("brake_while_accelerating")
+        pulled = brake.load_torque_Nm is not None or brake.opposing_torque_Nm is not None
+        yield notice("brake_while_accelerating" if pulled else "brake_without_load")
     ratio = evaluation.gears.columns.ratio
-    slipping = sorted(set(ratio[figures.stops.never_holds[index]].tolist()))
-    if slipping:
+    if slipping := sorted(set(ratio[figures.stops.never_holds[index]].tolist())):
         pulling = np.asarray(duty.stop_load.pulling_Nm).item(index)
         yield notice("brake_does_not_hold", torque_Nm=pulling, ratios=", ".join(f"{i:g}" for i in slipping))
 

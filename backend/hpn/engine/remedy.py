@@ -129,8 +129,8 @@ def alternatives_of(candidate: Candidate, reserve_utilisation: float = 1.0) -> t
     ways, changed = ways_of(candidate, reserve_utilisation), tuple(_requirements(candidate, reserve_utilisation))
     if any(getattr(way, driver) < 1 for way in ways for driver in MOVES if _is_untold(candidate, driver)):
         return ()
-    if candidate.reserve.brake_torque_Nm is not None and any(change.path == LOAD_INERTIA for change in changed):
-        # with that inertia the stop by the brake passes as it is
+    swings = candidate.reserve.brake_torque_Nm is not None and candidate.drive_resonance_Hz is not None
+    if swings and any(change.path == LOAD_INERTIA for change in changed):  # with it the brake's stop passes as it is
         ways = tuple(dict.fromkeys(replace(way, emergency_stop_count=None, brake_torque_Nm=None) for way in ways))
     if any(way.brake_torque_Nm == 0 for way in ways) or _never_stops(candidate):
         return ()
