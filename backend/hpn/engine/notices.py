@@ -13,7 +13,7 @@ from msgspec import field
 from numpy.typing import NDArray
 from pydantic import Field
 
-from hpn.application import BEARING_LIFE_H, Application, Brake, DutyCycle, OutputLoad
+from hpn.application import BEARING_LIFE_H, Application, DutyCycle, OutputLoad
 from hpn.catalogue import Catalogue, GearList
 from hpn.catalogue.gear import Gear
 from hpn.engine.evaluation import SUITABLE, Evaluation
@@ -275,27 +275,12 @@ def _on_stop_and_life(application: Application, evaluation: Evaluation, index: i
     if application.emergency_stop is not None and application.emergency_stop.count is None:
         yield notice("stops_not_counted")
     if application.emergency_stop is not None and application.emergency_stop.brake is not None:
-        yield from _on_the_brake(application.emergency_stop.brake, evaluation, index)
+        said = figures.stops.said_of(application.emergency_stop.brake, index)
+        yield from (notice(code, **values) for code, values in said)
     if _is_unlimited(figures.momentary_peak_count, index):
         yield notice("momentary_peak_count_unlimited")
     if _is_unlimited(figures.life_L10_h, index):
         yield notice("life_unlimited")
-
-
-def _on_the_brake(brake: Brake, evaluation: Evaluation, index: int) -> Iterable[Notice]:
-    duty, figures = evaluation.case.duty, evaluation.case.figures
-    if np.isnan(duty.load_inertia_kgm2.item(index)) or np.isnan(figures.motor_inertia_kgm2[index]).all():
-        yield notice("brake_inertia_unknown")
-    yield notice("brake_bound" if brake.dynamic_factor is None else "brake_factor_typed")
-    if np.isnan(duty.asked["requirements.efficiency"].item(index)):
-        yield notice("brake_efficiency_unknown")
-    if index not in duty.stopped_loads:
-        pulled = brake.load_torque_Nm is not None or brake.opposing_torque_Nm is not None
-        yield notice("brake_while_accelerating" if pulled else "brake_without_load")
-    ratio = evaluation.gears.columns.ratio
-    if slipping := sorted(set(ratio[figures.stops.never_holds[index]].tolist())):
-        pulling = np.asarray(duty.stop_load.pulling_Nm).item(index)
-        yield notice("brake_does_not_hold", torque_Nm=pulling, ratios=", ".join(f"{i:g}" for i in slipping))
 
 
 def _on_stiffness(application: Application, evaluation: Evaluation, index: int) -> Iterable[Notice]:

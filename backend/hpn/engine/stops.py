@@ -1,11 +1,13 @@
 """Emergency stops by the brake on gears: torque, time, angle and energy, and how hard the brake may be."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
+from hpn.application import Brake
 from hpn.catalogue import GearColumns
 from hpn.engine.duty import Duty
 from hpn.physics import stop
@@ -106,3 +108,17 @@ class Stops:
             dynamic_factor=self.dynamic_factor,
             permissible_torque_Nm=permissible_torque_Nm,
         )
+
+    def said_of(self, brake: Brake, index: int) -> Iterator[tuple[str, dict[str, float | str]]]:
+        """Codes and values of the notices on the stops of application `index` by its brake."""
+        if np.isnan(self.duty.load_inertia_kgm2.item(index)) or np.isnan(self.motor_inertia_kgm2[index]).all():
+            yield "brake_inertia_unknown", {}
+        yield "brake_bound" if brake.dynamic_factor is None else "brake_factor_typed", {}
+        if np.isnan(self.duty.asked["requirements.efficiency"].item(index)):
+            yield "brake_efficiency_unknown", {}
+        if index not in self.duty.stopped_loads:
+            pulled = brake.load_torque_Nm is not None or brake.opposing_torque_Nm is not None
+            yield "brake_while_accelerating" if pulled else "brake_without_load", {}
+        if slipping := sorted(set(self.gears.ratio[self.never_holds[index]].tolist())):
+            pulling = np.asarray(self.load.pulling_Nm).item(index)
+            yield "brake_does_not_hold", {"torque_Nm": pulling, "ratios": ", ".join(f"{i:g}" for i in slipping)}
