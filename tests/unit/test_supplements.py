@@ -1,6 +1,8 @@
 """A supplement fills or corrects cells, says so wherever they show, and needs no change of code."""
 
+import csv
 import dataclasses
+import io
 from pathlib import Path
 from typing import Any
 
@@ -8,6 +10,7 @@ import pytest
 
 from hpn.application import Application, InputError
 from hpn.catalogue import HANDBOOK_FOLDER, Catalogue, CatalogueError, load_catalogue
+from hpn.catalogue.tables import TABLES
 from hpn.engine.envelopes import EnvelopeQuery, life_envelopes
 from hpn.engine.selection import select
 from tests.build import answer, candidate, check, cycle, notices, phase, suitable, worked_example
@@ -265,8 +268,53 @@ def test_a_file_written_before_a_published_figure_came_still_loads_and_corrects_
     assert gear.sources[lacking] == printed.sources[lacking]
 
 
-@pytest.mark.parametrize("lacking", ["size", "stages", "source"])
-def test_no_file_may_lack_what_names_a_row_or_its_source(lacking: str, supplemented: Supplement) -> None:
+@pytest.mark.parametrize("lacking", ["note", "source"])
+def test_a_column_of_texts_that_a_file_lacks_counts_as_blank(
+    lacking: str, supplemented: Supplement, catalogue: Catalogue
+) -> None:
+    cells = {"size": "40A", "shaft_centre_mm": "31.5", "note": "by hand", "source": "measured"}
+    del cells[lacking]
+    gear = supplemented(sizes=f"{','.join(cells)}\n{','.join(cells.values())}\n").by_designation["HPN-40A-5"]
+
+    assert gear.shaft_centre_mm == 31.5
+    assert gear.note == cells.get("note", catalogue.by_designation["HPN-40A-5"].note)
+    assert gear.sources["shaft_centre_mm"] == f"supplied by the user: {cells.get('source', 'sizes.csv')}"
+
+
+def test_every_table_of_a_supplement_may_lack_what_its_rows_do_not_change(
+    supplemented: Supplement, folder: Path
+) -> None:
+    """The first row of every shipped table, with its key alone and with each other column alone, changes nothing."""
+    for table in (table for table in TABLES if not table.may_be_empty):
+        with (folder / table.file).open(newline="", encoding="utf-8") as file:
+            row = next(csv.DictReader(file))
+        for more in ((), *((column,) for column in table.columns() if column in row and column not in table.key)):
+            columns = [*table.key, *more]
+            text = io.StringIO()
+            csv.writer(text).writerows([columns, [row[column] for column in columns]])
+            assert supplemented(**{table.file.removesuffix(".csv"): text.getvalue()}).gears
+            (folder.parent / "supplement" / table.file).unlink()
+
+
+def test_a_row_that_is_new_needs_what_no_other_file_gives(supplemented: Supplement) -> None:
+    with pytest.raises(CatalogueError, match=r"gears\.csv, line 2, column stages: .*found ''"):
+        supplemented(gears="size,ratio,source\n20A,60,measured\n")
+
+
+@pytest.mark.parametrize("written", ["8.53e-05", "8.53E-5", "0.0000853", "+85.3e-6", "0.853 kg·cm²"])
+def test_a_figure_may_be_written_with_a_power_of_ten(written: str, supplemented: Supplement) -> None:
+    catalogue = supplemented(gears=f"size,ratio,inertia_kgm2,source\n20A,5,{written},measured\n")
+    assert catalogue.by_designation["HPN-20A-5"].inertia_kgm2 == 8.53e-05
+
+
+@pytest.mark.parametrize("written", ["1_000", "nan", "infinity", "1e999", "1e-999", "8.53e", "e-05", "0x10", "1.2.3"])
+def test_what_is_no_number_or_another_one_is_refused(written: str, supplemented: Supplement) -> None:
+    with pytest.raises(CatalogueError, match=r"sizes\.csv, line 2, column ambient_temperature_minimum_degC"):
+        supplemented(sizes=f"size,ambient_temperature_minimum_degC,source\n20A,{written},measured\n")
+
+
+@pytest.mark.parametrize("lacking", ["size", "stages"])
+def test_no_file_may_lack_what_names_a_row(lacking: str, supplemented: Supplement) -> None:
     cells = {"size": "20A", "stages": "1", "weight_kg": "2.7", "source": "measured"}
     del cells[lacking]
     with pytest.raises(CatalogueError, match=rf"weights\.csv, line 1: the header must have .*see {lacking}$"):

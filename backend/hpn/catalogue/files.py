@@ -16,7 +16,7 @@ from hpn.catalogue.tables import CatalogueError, Cell, Cells, Table, TableRow
 from hpn.tables.cells import split_unit
 from hpn.tables.numbers import unit_code
 from hpn.words.designations import canonical_size
-from hpn.words.units import NUMBER, entered, quantity_of, suffix_of
+from hpn.words.units import NUMBER, entered, quantity_of, quotient_of, suffix_of
 from hpn.words.wording import Sentence
 
 MAXIMUM_FILE_BYTES = 4_000_000
@@ -95,7 +95,8 @@ def read(path: Path, content: bytes, table: type[Table], *, supplied: bool) -> d
     repeated key.
     """
     rows: dict[Key, Cells] = {}
-    for line, row in _lines(path, _text(path, content), table, table.figures if supplied else table.optional):
+    may_lack = frozenset(table.columns()) - {*table.key} if supplied else table.optional
+    for line, row in _lines(path, _text(path, content), table, may_lack):
         texts = {column: text.strip() for column, text in row.items()}
         cells = {column: Cell(text, texts["source"], str(path), line, supplied) for column, text in texts.items()}
         for column in table.key:
@@ -209,7 +210,7 @@ def _header(path: Path, written: list[str], columns: list[str]) -> tuple[list[st
         for column in columns if name not in columns else ():
             unit = suffix_of(column)
             stem = column.removesuffix(unit).rstrip("_")
-            if unit and quantity_of(unit) and name.startswith((f"{stem}_", f"{stem} ")):
+            if _takes_units(unit) and name.startswith((f"{stem}_", f"{stem} ")):
                 code = unit_code(name.removeprefix(stem).strip("_ []()"), unit)
                 if isinstance(code, Sentence):
                     raise CatalogueError(path, 1, name[:40], code.text)
@@ -217,10 +218,15 @@ def _header(path: Path, written: list[str], columns: list[str]) -> tuple[list[st
     return names, codes
 
 
+def _takes_units(unit: str) -> bool:
+    """True for a unit of the wire in place of which others may be given."""
+    return bool(quantity_of(quotient_of(unit).dividend))
+
+
 def _in_wire(text: str, column: str, code: str) -> str | Sentence:
     """A cell in the unit of its column; the unit that it says itself counts before that of the header."""
     unit = suffix_of(column)
-    if not unit or not quantity_of(unit):
+    if not _takes_units(unit):
         return text
     number, own = split_unit(text.strip())
     found = unit_code(own, unit) if own else code

@@ -4,6 +4,7 @@ A table is a pydantic model: its fields are the columns, in their units, and `ke
 row. A supplement has files of the same form that are merged cell by cell; a blank cell keeps what was there.
 """
 
+import re
 from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, TypeVar
@@ -13,7 +14,7 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, create_model
 from hpn.catalogue.gear import Gear
 from hpn.words.designations import canonical_size
 from hpn.words.quantities import CheckCode
-from hpn.words.units import SYMBOLS
+from hpn.words.units import NUMBER, SYMBOLS
 from hpn.words.wording import MendableError
 
 
@@ -40,9 +41,13 @@ Cells = dict[str, Cell]
 
 
 def _plain_number(value: Any) -> Any:
-    # float() would take "1_000", "nan" and "infinity"; a catalogue figure is digits and a decimal point.
-    if isinstance(value, str) and not set(value) <= set("0123456789.-"):
-        raise ValueError("must be a plain number with a decimal point, such as 9.3")
+    # float() would take "1_000", "nan" and "infinity", and make 0 of a number that is too small.
+    if not isinstance(value, str):
+        return value
+    if not NUMBER.fullmatch(value):
+        raise ValueError("must be a plain number with a decimal point, such as 9.3 or 8.5e-05")
+    if float(value) == 0 and re.search("[1-9]", re.split("[eE]", value)[0]):
+        raise ValueError("must be 0 or a number that is not so small")
     return value
 
 
@@ -61,9 +66,7 @@ class Table(BaseModel):
     most_rows: ClassVar[int] = 1000
     may_be_empty: ClassVar[bool] = False
     optional: ClassVar[frozenset[str]] = frozenset()
-    """Columns that a file may lack, as if they were blank."""
-    figures: ClassVar[frozenset[str]] = frozenset()
-    """Columns that the file of a supplement may lack: it was written before they came, or corrects others."""
+    """Columns that a file may lack, as if they were blank; one of a supplement may lack all but the key."""
     source: str | None = Field(None, min_length=1)
     cells: Cells = Field(default_factory=dict, exclude=True)
 
@@ -128,8 +131,7 @@ def _with_figures(file: str, base: type[TableRow]) -> type[TableRow]:
     }
     table: type[TableRow] = create_model(file, __base__=base, **figures)
     table.file = file
-    table.figures = frozenset(figures)
-    table.optional = Gear.unpublished() & table.figures
+    table.optional = Gear.unpublished() & figures.keys()
     return table
 
 

@@ -43,7 +43,7 @@ _NUMBER = {
 }
 _WITH_UNIT = Pattern(
     r"(?P<number>.*?[0-9][.,]?(?:[eE][+-]?[0-9]{1,3})?)"
-    r"(?:\s+(?P<per>1\s?/[^0-9]+)|\s*(?P<unit>(?![eE][+-]?[0-9])(?:[^\W\d_]|[°'/])[^0-9]*(?:\^?\(?(?:[-−–]1|2)\)?)?))",
+    r"(?:\s+(?P<per>1\s?/[^0-9]+)|\s*(?P<unit>(?![eE][+-]?[0-9])(?:[^\W\d_]|[°'′″\"/])[^0-9]*(?:\^?\(?(?:[-−–]1|[23])\)?)?))",
     LONGEST_CELL,
 )
 """A number and its unit: letters, or one divided by something."""

@@ -57,8 +57,7 @@ class Input:
     @cached_property
     def quantity(self) -> str:
         """Quantity that its unit measures, blank for a pure number or a text, and where there is one unit alone."""
-        quantity = "" if self.unit.endswith("_per_rad") else units.quantity_of(self.unit)
-        return quantity if quantity in units.READ else ""
+        return units.quantity_of(self.unit)
 
     @property
     def is_number(self) -> bool:

@@ -143,25 +143,24 @@ def _without_percent(number: str | None) -> Sentence | None:
 
 def unit_code(spelled: str, unit: str) -> str | Sentence:
     """Code of a unit as somebody writes it, for a quantity in a unit of the wire, or what is wrong with it."""
-    quantity = measures.quantity_of(unit)
-    per_rad = unit.endswith("_per_rad")
-    codes = spellings.codes_for(spelled.removesuffix("/rad") if per_rad else spelled, quantity) if quantity else ()
-    if len(codes) == 1 and spelled.endswith("/rad") >= per_rad:
+    codes = spellings.codes_in(spelled, unit)
+    if len(codes) == 1:
         return codes[0]
     if len(codes) > 1:
         template = N_("{unit} can be {first} or {second}; write one of them")
         return Sentence(template, {"unit": spelled, **either(codes, spelled)})
-    if not quantity:
+    wire = measures.quotient_of(unit)
+    if not (quantity := measures.quantity_of(wire.dividend)):
         return Sentence(N_("must be a number without a unit"))
+    possible = ", ".join(wire._replace(dividend=code).symbol for code in measures.READ[quantity])
     return Sentence(
-        N_("{unit} is not a unit of this quantity; possible: {units}"),
-        {"unit": spelled[:20], "units": known_units(quantity, "/rad" if per_rad else "")},
+        N_("{unit} is not a unit of this quantity; possible: {units}"), {"unit": spelled[:20], "units": possible}
     )
 
 
-def known_units(quantity: str, per: str = "") -> str:
+def known_units(quantity: str) -> str:
     """Symbols of all units that are read for a quantity."""
-    return ", ".join(f"{symbol}{per}" for symbol in measures.READ[quantity].values())
+    return ", ".join(measures.READ[quantity].values())
 
 
 def either(codes: Sequence[str], spelled: str) -> dict[str, Sentence]:

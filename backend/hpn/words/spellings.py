@@ -3,7 +3,7 @@
 import unicodedata
 
 from hpn.words.patterns import Pattern
-from hpn.words.units import QUANTITY_OF, UNITS
+from hpn.words.units import QUANTITY_OF, UNITS, quantity_of, quotient_of
 
 FREQUENCY = "Hz"
 """May count turns, or be the electrical frequency of a motor: so many times the turns as it has pairs of poles."""
@@ -21,6 +21,7 @@ _SUPERSCRIPT = Pattern(r"\^?\(?-1\)?$", _COMPOSED)
 _SQUARE = Pattern(r"(?:\^|\*\*)\(?2\)?$", _COMPOSED)
 _PER = Pattern(r"\.? */ *", _COMPOSED)
 _BESIDE_POWER = Pattern(rf"[{_SIGNS}^()]", _COMPOSED)
+_POWER = Pattern(r"(.+?)(?:\^|\*\*)?\(?([23])?\)?", _COMPOSED)
 
 
 def _spelling(text: str) -> str:
@@ -75,9 +76,32 @@ _FOLDED = {
 
 
 def codes_for(text: str, quantity: str = "") -> tuple[str, ...]:
-    """Codes that a unit as somebody writes it may stand for, of one quantity or any; several where it is ambiguous."""
+    """Codes that a unit as somebody writes it may stand for, of one quantity or any; several where it is ambiguous.
+
+    Where no quantity is known, `Hz` is one of speed.
+    """
     if len(text) > LONGEST:
         return ()
     spelling = _spelling(text)
     codes = SPELLINGS.get(spelling) or _FOLDED.get(spelling.casefold(), ())
-    return tuple(code for code in codes if quantity in ("", QUANTITY_OF[code]))
+    return tuple(code for code in codes if QUANTITY_OF[code] == quantity or not (quantity or code == FREQUENCY))
+
+
+def codes_in(text: str, unit: str) -> tuple[str, ...]:
+    """Codes that a unit as somebody writes it may stand for in place of a unit of the wire, such as `mm_per_s2`.
+
+    None for a pure number. Of a quotient the code of the dividend, with that of another divisor: `Nm/arcmin`.
+    """
+    wire = quotient_of(unit)
+    if not wire.divisor:
+        return codes_for(text, quantity_of(unit)) if quantity_of(unit) else ()
+    if len(text) > LONGEST:
+        return ()
+    over, _, under = _spelling(text).rpartition("/")
+    parts = _POWER.fullmatch(under)
+    if parts is None or (parts[2] or "") != wire.power:
+        return ()
+    dividends, divisors = (
+        codes_for(part, QUANTITY_OF[code]) for part, code in ((over, wire.dividend), (parts[1], wire.divisor))
+    )
+    return tuple(a if b == wire.divisor else f"{a}/{b}" for a in dividends for b in divisors)

@@ -9,7 +9,7 @@ from decimal import ROUND_HALF_EVEN, Context, Decimal
 from fractions import Fraction
 from functools import cache, lru_cache
 from math import inf
-from typing import Any
+from typing import Any, NamedTuple
 
 from hpn.words.patterns import Pattern
 
@@ -122,11 +122,13 @@ UNITS: Mapping[str, Mapping[str, Unit]] = {
         "kN": Unit("kN", "kilonewton", "kN"),
         "daN": Unit("daN", "decanewton", "daN"),
         "lbf": Unit("lbf", "force_pound", "lbf lb lbs", shown=True),
+        "kgf": Unit("kgf", "kilogram_force", "kgf kp"),
     },
     "weight": {
         "kg": Unit("kg", "kilogram", "kg", shown=True),
         "g": Unit("g", "gram", "g"),
         "lb": Unit("lb", "pound", "lb lbs", shown=True),
+        "oz": Unit("oz", "ounce", "oz"),
     },
     "length": {
         "mm": Unit("mm", "millimeter", "mm", shown=True),
@@ -135,10 +137,12 @@ UNITS: Mapping[str, Mapping[str, Unit]] = {
         "in": Unit("in", "inch", "in inch", shown=True),
     },
     "angle": {
-        "arcmin": Unit("arcmin", "arcminute", "arcmin '", shown=True),
+        "arcmin": Unit("arcmin", "arcminute", "arcmin ' ′", shown=True),
         "mrad": Unit("mrad", "milliradian", "mrad", shown=True),
         "deg": Unit("°", "degree", "° deg Grad"),
-        "arcsec": Unit("arcsec", "arcsecond", "arcsec"),
+        "arcsec": Unit("arcsec", "arcsecond", 'arcsec " ″'),
+        "rad": Unit("rad", "radian", "rad"),
+        "rev": Unit("rev", "revolution", "rev revs turn turns Umdr"),
     },
     "temperature": {
         "degC": Unit("°C", "degC", "°C C degC", shown=True),
@@ -153,6 +157,7 @@ UNITS: Mapping[str, Mapping[str, Unit]] = {
         "min": Unit("min", "minute", "min min. mins minute minutes Minuten"),
         "h": Unit("h", "hour", "h hr hrs hour hours Std Std. Stunde Stunden heures"),
         "day": Unit("d", "day", "d day days Tag Tage jour jours"),
+        "year": Unit("yr", "year", "yr yrs year years Jahr Jahre"),  # 365.25 days, which is said where a life is typed
     },
     "inertia": {
         "kgm2": Unit("kg·m²", "kilogram * meter ** 2", "kg·m2"),
@@ -165,6 +170,8 @@ UNITS: Mapping[str, Mapping[str, Unit]] = {
         "lb_in_s2": Unit("lb·in·s²", "force_pound * inch * second ** 2", "lb·in·s2 lbf·in·s2 lb·in·sec2 lbf·in·sec2"),
         "oz_in_s2": Unit("oz·in·s²", "force_ounce * inch * second ** 2", "oz·in·s2 ozf·in·s2 oz·in·sec2 ozf·in·sec2"),
     },
+    "frequency": {"Hz": Unit("Hz", "hertz", "Hz"), "kHz": Unit("kHz", "kilohertz", "kHz")},
+    "power": {"W": Unit("W", "watt", "W Watt watts"), "kW": Unit("kW", "kilowatt", "kW")},
 }
 """Kind of quantity -> codes of the units in which it may be given."""
 
@@ -265,27 +272,59 @@ def measure(unit: str, chosen: tuple[str, ...]) -> Measure:
 
 @cache
 def _measure(suffix: str, chosen: tuple[str, ...]) -> Measure:
-    whole = _dividend(suffix)
+    whole = quotient_of(suffix).dividend
     return entered(suffix, next((code for code in chosen if _OF_CODE[code] == whole), whole))
 
 
 @cache
 def entered(suffix: str, code: str) -> Measure:
-    """Measure of a number that is given in the unit of a code, for a unit of the wire with the same dimension."""
-    whole = _dividend(suffix)
-    per = SYMBOLS[suffix].removeprefix(SYMBOLS[whole]) if whole != suffix else ""
-    symbol = (symbol_of_code(code) if code in QUANTITY_OF else SYMBOLS.get(suffix, suffix)) + per
-    if code == whole:
-        return Measure(symbol)
-    units = UNITS[QUANTITY_OF[code]]
-    zero, one = (_registry().Quantity(Fraction(n), units[whole].pint).to(units[code].pint).magnitude for n in (0, 1))
-    return Measure(symbol, Fraction(one - zero), Fraction(zero))
+    """Measure of a number that is given in the unit of a code, for a unit of the wire with the same dimension.
+
+    Of a quotient the code may be that of the dividend alone, as in `lb_in` for `lb·in/rad`, or of both, `Nm/arcmin`.
+    """
+    wire = quotient_of(suffix)
+    over, _, under = code.partition("/")
+    own = wire._replace(dividend=over, divisor=under or wire.divisor)
+    if own == wire:
+        return Measure(own.symbol)
+    zero, one = (_registry().Quantity(Fraction(n), wire.pint).to(own.pint).magnitude for n in (0, 1))
+    return Measure(own.symbol, Fraction(one - zero), Fraction(zero))
 
 
-def _dividend(suffix: str) -> str:
-    """The part of a unit that a reader may choose: of `Nm_per_rad` and `mm_per_s2` what stands before `_per_`."""
-    whole = suffix.partition("_per_")[0]
-    return whole if whole in _OF_CODE.values() else suffix
+class Quotient(NamedTuple):
+    """Unit by the codes of its parts, `mm` and `s` with power 2 of `mm_per_s2`; the divisor is blank where it has none.
+
+    The dividend of what has no code, such as a percentage, is its suffix.
+    """
+
+    dividend: str
+    divisor: str = ""
+    power: str = ""
+
+    @property
+    def symbol(self) -> str:
+        """Its symbol: `mm/s²`."""
+        over = symbol_of_code(self.dividend) if self.dividend in QUANTITY_OF else SYMBOLS.get(self.dividend, "")
+        return f"{over}/{symbol_of_code(self.divisor)}{_RAISED[self.power]}" if self.divisor else over
+
+    @property
+    def pint(self) -> str:
+        """Its name in pint."""
+        over = UNITS[QUANTITY_OF[self.dividend]][self.dividend].pint
+        if not self.divisor:
+            return over
+        return f"({over}) / ({UNITS[QUANTITY_OF[self.divisor]][self.divisor].pint}) ** {self.power or 1}"
+
+
+_RAISED = {"": "", "2": "²", "3": "³"}
+_PER = Pattern(r"(\w+)_per_([a-z]+)([23]?)", 60)
+
+
+@lru_cache(maxsize=1024)
+def quotient_of(suffix: str) -> Quotient:
+    """Parts of a unit of the wire; one that has a code of its own, such as `rad_per_s`, is no quotient."""
+    parts = None if suffix in QUANTITY_OF else _PER.fullmatch(suffix)
+    return Quotient(*parts.groups()) if parts else Quotient(suffix)
 
 
 @cache
@@ -303,9 +342,8 @@ def codes_of(text: str) -> tuple[str, ...]:
 
 
 def quantity_of(suffix: str) -> str:
-    """Kind of quantity of a unit of the wire; blank for a pure number."""
-    whole = suffix.removesuffix("_per_rad")
-    return QUANTITY_OF.get(whole, "")
+    """Kind of quantity of a unit of the wire; blank for a pure number and for a quotient."""
+    return QUANTITY_OF.get(suffix, "")
 
 
 def symbol_of_code(code: str) -> str:

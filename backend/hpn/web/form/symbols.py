@@ -84,6 +84,9 @@ class FormGroup:
 PHASE_SYMBOLS = tuple(Symbol(each.role, (each.place,), each.kind) for each in (*PHASE, NAME))
 """Repeated once per phase, all of equal length."""
 
+YEAR = N_("A year (yr) counts as 8766 h, without a standstill.")
+"""Note beside a life: years are read as 365.25 days of operation."""
+
 SYMBOLS = (
     Symbol("tp", ("duty_cycle", "pause_s")),
     Symbol("Tk", ("emergency_stop", "torque_Nm")),
@@ -121,7 +124,7 @@ SYMBOLS = (
         offered=(1, 1.2, 1.5),
         hint=N_("1–1.2 smooth, 1.2–1.5 normal, 1.5–3 with impact; not from this handbook"),
     ),
-    Symbol("Lb", ("output_load", "life_h"), placeholder="20000"),
+    Symbol("Lb", ("output_load", "life_h"), placeholder="20000", hint=YEAR),
     Symbol(
         "Lbb",
         ("output_load", "life_basis"),
@@ -152,7 +155,7 @@ SYMBOLS = (
     ),
     Symbol("i", ("requirements", "ratios"), "whole", many=True),
     Symbol("size", ("requirements", "sizes"), "text", many=True),
-    Symbol("Lh", ("requirements", "life_h")),
+    Symbol("Lh", ("requirements", "life_h"), hint=YEAR),
     Symbol("ta", ("requirements", "ambient_temperature_degC"), offered=(0, 25, 40)),
     Symbol("bl", ("requirements", "backlash_arcmin"), offered="backlash_arcmin"),
     Symbol("K3", ("requirements", "torsional_stiffness_Nm_per_rad"), offered="torsional_stiffness_Nm_per_rad"),
