@@ -17,7 +17,7 @@ from hpn.engine.candidates import Candidate
 from hpn.engine.checks import BY_CODE
 from hpn.engine.remedy import alternatives_of, growths_of, remedy_of
 from hpn.engine.selection import select
-from hpn.engine.tried import tried
+from hpn.engine.tried import needed_of, tried
 from hpn.explain.calculation import calculation_of
 from hpn.explain.calculation.formula import Formula, Subtraction, leaves_out, value_of
 from hpn.web.form.link_reader import parse
@@ -88,7 +88,7 @@ def followed(asked: Json, catalogue: Catalogue, chance: random.Random) -> Iterat
         one for one in select(application, catalogue).candidates if one.status == "unsuitable" and one.is_judged
     ]
     for candidate in chance.sample(rejected, min(3, len(rejected))):
-        for alternative in alternatives_of(candidate, application.requirements.utilisation):
+        for alternative in needed_of(candidate, application, catalogue):
             query = to_link(tried(application, alternative, catalogue)).partition("?")[2]
             form = parse(parse_qsl(query, keep_blank_values=True))
             assert form.application is not None, form.problems
@@ -178,7 +178,7 @@ def test_a_load_that_has_to_drop_drops_in_the_moves() -> None:
     asked = {"duty_cycle": {"motion": TURNING | {"moves": moves}}, "requirements": {"sizes": ["20A"], "ratios": [5]}}
     application = Application.model_validate(asked)
     [candidate] = select(application, equipped()).candidates
-    assert remedy_of(candidate) is not None
+    assert remedy_of(candidate, alternatives_of(candidate)) is not None
     for changed, _ in followed(asked, equipped(), random.Random(1)):
         motion = changed.duty_cycle.motion
         assert motion is not None
@@ -198,7 +198,8 @@ def test_a_speed_that_has_to_drop_promises_nothing_where_the_motor_turns_its_own
         [candidate] = select(application, equipped()).candidates
         assert {check.code for check in candidate.failing} <= {"average_input_speed", "maximum_input_speed"}
         assert candidate.failing and candidate.is_judged
-        ways[inertia], remedy = alternatives_of(candidate), remedy_of(candidate)
+        ways[inertia] = alternatives_of(candidate)
+        remedy = remedy_of(candidate, ways[inertia])
         assert remedy is not None
         assert (
             "The change that would make it fit is not in closed form: the motor’s own inertia" in remedy.text

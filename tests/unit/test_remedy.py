@@ -10,7 +10,7 @@ from hpn.catalogue import Catalogue
 from hpn.engine.candidates import Candidate
 from hpn.engine.remedy import BY_CURVE, alternatives_of, growths_of, remedy_of, ways_of
 from hpn.engine.selection import Selection, select
-from hpn.engine.tried import followed, tried
+from hpn.engine.tried import followed, needed_of, tried
 from hpn.words.wording import rounded
 from tests.build import Json, cycle, phase, worked_example
 from tests.conftest import Supplement
@@ -30,8 +30,8 @@ def chosen(selection: Selection, designation: str) -> Candidate:
 
 def words(application: Json, designation: str, catalogue: Catalogue) -> str | None:
     """Remedy of a gear in English."""
-    u = application.get("requirements", {}).get("utilisation", 1.0)
-    remedy = remedy_of(chosen(selected(application, catalogue), designation), u)
+    gear = chosen(selected(application, catalogue), designation)
+    remedy = remedy_of(gear, needed_of(gear, Application.model_validate(application), catalogue))
     return remedy.text if remedy else None
 
 
@@ -95,7 +95,7 @@ def test_a_load_check_and_a_property_stand_in_one_sentence(catalogue: Catalogue)
 
 def test_too_many_stops_may_be_gentler_or_rarer(catalogue: Catalogue) -> None:
     application = cycle(phase(10.0, 100.0), emergency_stop={"torque_Nm": 200.0, "count": 4_000_000})
-    expected = "Fits if one of these holds: (1) T_k drops to 188.5 Nm; (2) N_k drops to 3066035."
+    expected = "Fits if one of these holds: (1) T_k drops to 188.5 Nm; (2) N_k drops to 3066000."
     assert words(application, "HPN-20A-5", catalogue) == expected
 
 

@@ -5,8 +5,8 @@ rounded to the safe side, so that following the words passes.
 """
 
 import math
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, fields, replace
 
 from hpn.engine.candidates import Candidate, CheckResult
 from hpn.engine.check import Driver
@@ -15,6 +15,9 @@ from hpn.engine.reserve import MOVES
 from hpn.physics.equations import ROUNDING
 from hpn.words.units import suffix_of
 from hpn.words.wording import N_, Quantity, Sentence, listed
+
+DIGITS = 4
+"""Digits of a bound; a percentage has one less."""
 
 LIVES = ("life", "output_bearing_life")
 """Checks that two drivers move: slower running mends them as well as a smaller torque or load."""
@@ -121,8 +124,9 @@ class Alternative:
 def alternatives_of(candidate: Candidate, reserve_utilisation: float = 1.0) -> tuple[Alternative, ...]:
     """Alternatives that each make a rejected gear suitable, those with the fewest changes first.
 
-    None for a gear that is not rejected, where not every check can be judged, and where a driver without a closed form
-    would have to change: the motor's torque then depends on its curve, or on the motion.
+    Each check that fails has its change, though another change may mend it too: `tried.needed_of` leaves out what is
+    not needed. None for a gear that is not rejected, where not every check can be judged, and where a driver without a
+    closed form would have to change: the motor's torque then depends on its curve, or on the motion.
     """
     if candidate.status != "unsuitable" or not candidate.is_judged or not _is_known(candidate):
         return ()
@@ -135,13 +139,27 @@ def alternatives_of(candidate: Candidate, reserve_utilisation: float = 1.0) -> t
     if any(way.brake_torque_Nm == 0 for way in ways) or _never_stops(candidate):
         return ()
     found = [Alternative(one, changed) for way in ways or (Way(),) for one in _by_stop(way)]
-    return tuple(sorted(filter(_clauses, found), key=lambda one: len(_clauses(one))))
+    return in_order(found)
 
 
 def _is_known(candidate: Candidate) -> bool:
     """False for a candidate of another version with a check or without a reserve that this one needs."""
     codes = all(check.code in BY_CODE for check in candidate.failing)
     return codes and all(candidate.says(f"reserve.{driver}_factor") for driver in MOVES)
+
+
+def in_order(alternatives: Iterable[Alternative]) -> tuple[Alternative, ...]:
+    """Alternatives that change something, each once, those with the fewest changes first."""
+    return tuple(sorted(filter(_clauses, dict.fromkeys(alternatives)), key=lambda one: len(_clauses(one))))
+
+
+def parts_less(alternative: Alternative) -> Iterator[Alternative]:
+    """The alternative without one of its clauses, for each of them, the last first."""
+    for requirement in reversed(alternative.requirements):
+        yield replace(alternative, requirements=tuple(one for one in alternative.requirements if one != requirement))
+    for change in reversed(fields(Way)):
+        if getattr(alternative.way, change.name) != change.default:
+            yield replace(alternative, way=replace(alternative.way, **{change.name: change.default}))
 
 
 def _never_stops(candidate: Candidate) -> bool:
@@ -167,20 +185,18 @@ def _requirements(candidate: Candidate, u: float) -> Iterable[Requirement]:
         known = BY_CODE[check.code]
         inertia = candidate.reserve.load_inertia_kgm2
         if check.code == "natural_frequency" and inertia:  # 0 where no inertia lets the stop pass
-            yield Requirement(LOAD_INERTIA, Quantity(inertia, "kgm2", 4, "down"), LESS_INERTIA)
+            yield Requirement(LOAD_INERTIA, Quantity(inertia, "kgm2", DIGITS, "down"), LESS_INERTIA)
             continue
         if not known.asked or check.demand is None or check.limit is None:
             continue
         if known.kind == "range":
             rises = check.demand < check.limit
-            value = Quantity(check.limit, "degC", 6, "up" if rises else "down")
+            value = Quantity(check.limit, "degC", DIGITS, "up" if rises else "down")
             yield Requirement(known.asked, value, _AMBIENT[rises])
         elif known.accepted and all(_is_untold(candidate, driver) for driver in known.moves):
             least, allowed = known.kind == "minimum", known.allowed(u)
             needed = check.demand * (allowed if least else 1 / allowed)
-            computed = bool(known.moves) or known.group == "load"
-            digits = 4 if computed else 6  # a published figure is told in full
-            shown = Quantity(needed, suffix_of(known.asked), digits, "down" if least else "up")
+            shown = Quantity(needed, suffix_of(known.asked), DIGITS, "down" if least else "up")
             yield Requirement(known.asked, shown, known.accepted)
 
 
@@ -202,12 +218,12 @@ _STOP_COUNT = (N_("N_k drops to {value}"), N_("N_k to {value}"))
 """Texts on what drops to a value, as the first clause of a sentence and as a later one."""
 
 
-def remedy_of(candidate: Candidate, reserve_utilisation: float = 1.0) -> Sentence | None:
-    """Sentence on all alternatives that make a rejected gear fit, or on why no closed form gives one.
+def remedy_of(candidate: Candidate, alternatives: Iterable[Alternative]) -> Sentence | None:
+    """Sentence on the alternatives that make a rejected gear fit, or on why no closed form gives one.
 
     None for a gear that is not rejected, and where not every check can be judged.
     """
-    conditions = [condition_of(alternative) for alternative in alternatives_of(candidate, reserve_utilisation)]
+    conditions = [condition_of(alternative) for alternative in alternatives]
     if not conditions:
         reason = _untold(candidate) if candidate.status == "unsuitable" and candidate.is_judged else ""
         return Sentence(UNTOLD, {"reason": reason}, ("reason",)) if reason else None
@@ -244,11 +260,11 @@ def _clauses(alternative: Alternative) -> list[Sentence]:
         if (factor := getattr(way, driver)) < 1:
             changes.append((wording, _bound(100 * factor, "percent")))
     if way.emergency_stop_torque_Nm is not None:
-        changes.append((_STOP_TORQUE, _bound(way.emergency_stop_torque_Nm, "Nm", 4)))
+        changes.append((_STOP_TORQUE, _bound(way.emergency_stop_torque_Nm, "Nm", DIGITS)))
     if way.brake_torque_Nm is not None:
-        changes.append((_BRAKE, _bound(way.brake_torque_Nm, "Nm", 4)))
+        changes.append((_BRAKE, _bound(way.brake_torque_Nm, "Nm", DIGITS)))
     if way.emergency_stop_count is not None:
-        changes.append((_STOP_COUNT, _bound(way.emergency_stop_count, "", 16)))
+        changes.append((_STOP_COUNT, _bound(way.emergency_stop_count, "", DIGITS)))
     drops = [Sentence(wording[place > 0], {"value": value}) for place, (wording, value) in enumerate(changes)]
     return drops + [Sentence(one.clause, {"value": one.value}) for one in alternative.requirements]
 

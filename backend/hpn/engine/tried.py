@@ -1,17 +1,54 @@
-"""Applications changed as a remedy says, with its figures as the words print them."""
+"""Applications changed as a remedy says, with its figures as the words print them, and what of it is needed."""
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
-from hpn.application import LISTED_FIGURES, Application, DutyCycle, EmergencyStop
+from hpn.application import LISTED_FIGURES, Application, DutyCycle, EmergencyStop, Requirements
 from hpn.application.motion import Motion
 from hpn.application.phase import Phase
-from hpn.catalogue import Catalogue
+from hpn.catalogue import Catalogue, GearList
 from hpn.engine.allowed import with_listed_motor
-from hpn.engine.remedy import Alternative, Way
+from hpn.engine.candidates import Candidate
+from hpn.engine.duty import Duty
+from hpn.engine.evaluation import SUITABLE, evaluate
+from hpn.engine.remedy import DIGITS, Alternative, Requirement, Way, alternatives_of, in_order, parts_less
 from hpn.physics.stiffness import ARCMIN_PER_RAD
 from hpn.words.wording import Quantity, rounded
+
+
+def needed_of(candidate: Candidate, application: Application, catalogue: Catalogue) -> tuple[Alternative, ...]:
+    """Alternatives that each make a rejected gear suitable, without a change that the others make needless.
+
+    Less torque may mend a position error, and less inertia an inertia ratio, which then need no change of their own. A
+    length that is asked for is answered as one. Those with the fewest changes come first.
+    """
+    asked, gears = application.requirements, catalogue.listed([catalogue.by_designation[candidate.designation]])
+    found = []
+    for proposed in alternatives_of(candidate, asked.utilisation):
+        one = replace(proposed, requirements=tuple(_as_asked(limit, asked) for limit in proposed.requirements))
+        while less := next((less for less in parts_less(one) if _fits(application, less, gears, catalogue)), None):
+            one = less
+        found.append(one)
+    return in_order(found)
+
+
+def _fits(application: Application, alternative: Alternative, gears: GearList, catalogue: Catalogue) -> bool:
+    """True for an alternative with which a gear alone in its list is suitable."""
+    if alternative == Alternative(Way()):
+        return False
+    changed = with_listed_motor(tried(application, alternative, catalogue), catalogue)
+    return evaluate(Duty.of([changed]), gears, catalogue).verdict.item() == SUITABLE
+
+
+def _as_asked(limit: Requirement, asked: Requirements) -> Requirement:
+    """The limit of a position error as a length where it is asked for as one."""
+    if limit.path != POSITION_ERROR or asked.position_error_mm is None:
+        return limit
+    length = limit.value.value * (asked.position_radius_mm or 0.0) / ARCMIN_PER_RAD
+    value = Quantity(length, "mm", limit.value.digits, limit.value.rounding)
+    return replace(limit, path="requirements.position_error_mm", value=value)
 
 
 def tried(application: Application, alternative: Alternative, catalogue: Catalogue) -> Application:
@@ -24,13 +61,10 @@ def tried(application: Application, alternative: Alternative, catalogue: Catalog
     if any(requirement.path in figures for requirement in alternative.requirements):
         changed = with_listed_motor(changed, catalogue)
         changed = _with(changed, ("requirements", "motor", "designation"), None)
-    asked = application.requirements
     for requirement in alternative.requirements:
-        path, value = requirement.path, requirement.value
-        if path == POSITION_ERROR and asked.position_error_mm is not None:  # asked as a length: what it comes to there
-            length = value.value * (asked.position_radius_mm or 0.0) / ARCMIN_PER_RAD
-            path, value = "requirements.position_error_mm", Quantity(length, "mm", value.digits, value.rounding)
-        changed = _with(changed, path.split("."), float(rounded(value.value, value.digits, value.rounding)))
+        limit = _as_asked(requirement, application.requirements)
+        printed = rounded(limit.value.value, limit.value.digits, limit.value.rounding)
+        changed = _with(changed, limit.path.split("."), float(printed))
     return changed
 
 
@@ -110,12 +144,14 @@ def _pulled(stop: EmergencyStop, motion: Motion) -> EmergencyStop:
 def _stopped(stop: EmergencyStop, way: Way) -> EmergencyStop:
     """The emergency stop with its largest torque, else with its largest number, else as it is."""
     if stop.brake is not None and way.brake_torque_Nm is not None:
-        brake = stop.brake.model_copy(update={"torque_Nm": _printed(way.brake_torque_Nm, 4)})
+        brake = stop.brake.model_copy(update={"torque_Nm": _printed(way.brake_torque_Nm, DIGITS)})
         return stop.model_copy(update={"brake": brake})
     if way.emergency_stop_torque_Nm is not None:
-        limit = _printed(way.emergency_stop_torque_Nm, 4)
+        limit = _printed(way.emergency_stop_torque_Nm, DIGITS)
         return stop.model_copy(update={"torque_Nm": math.copysign(limit, stop.torque_Nm or 0.0)})
-    return stop if way.emergency_stop_count is None else stop.model_copy(update={"count": way.emergency_stop_count})
+    if way.emergency_stop_count is None:
+        return stop
+    return stop.model_copy(update={"count": int(_printed(way.emergency_stop_count, DIGITS))})
 
 
 def _printed(value: float, digits: int) -> float:

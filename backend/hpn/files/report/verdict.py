@@ -6,7 +6,8 @@ from typing import Any
 from hpn.catalogue.gear import Gear
 from hpn.engine.candidates import Candidate
 from hpn.engine.remedy import remedy_of
-from hpn.explain.readings import shortest_life
+from hpn.engine.tried import needed_of
+from hpn.explain.readings import shortest_life, torque_limit_of
 from hpn.files.export import Export
 from hpn.files.report.checks import bar, failures
 from hpn.files.words import bound_of, exact_percent, measured, title_of, used
@@ -50,7 +51,9 @@ NO_PLACE = N_("{count} of {all} gears are suitable")
 def verdict(export: Export, reader: Reader) -> dict[str, Any]:
     """The verdict: gear, status and rank, a sentence, and the check that governs."""
     candidate, code = export.candidate, export.candidate.governing_check
-    said = [reader.told(sentence) for sentence in _said(export, reader)]
+    limit = torque_limit_of(candidate, export.gear(candidate), export.equipped)
+    lines = limit.lines if limit.warns or candidate.status == "suitable" else ()
+    said = [reader.told(sentence) for sentence in (*_said(export, reader), *lines)]
     return {
         "gear": candidate.designation,
         "word": reader.text(VERDICTS[candidate.status]),
@@ -120,8 +123,14 @@ def _said(export: Export, reader: Reader) -> Iterable[Sentence]:
     else:
         yield Sentence(CHOSEN[key], values)
         yield Sentence(SUITABLE if selected else NONE, values)
-    if remedy := remedy_of(candidate, export.application.requirements.utilisation):
+    if remedy := _remedy(export, candidate):
         yield remedy
+
+
+def _remedy(export: Export, candidate: Candidate) -> Sentence | None:
+    """Changes that make a gear fit, as far as its catalogue figures are known."""
+    known = export.gear(candidate) and export.figures
+    return remedy_of(candidate, needed_of(candidate, export.application, known) if known else ())
 
 
 def _place(export: Export) -> Sentence:
@@ -208,5 +217,5 @@ def _missed(export: Export, candidate: Candidate, reader: Reader) -> str:
         name = f"{name} ({_published(gear.weight_kg, 'kg', reader)})"
     failed = failures(export, candidate.designation, candidate.failing, reader)
     told = reader.told(Sentence(N_("{gear} fails: {failures}."), {"gear": name, "failures": failed}))
-    remedy = remedy_of(candidate, export.application.requirements.utilisation)
+    remedy = _remedy(export, candidate)
     return f"{told} {reader.told(remedy)}" if remedy else told

@@ -15,6 +15,7 @@ from hpn.catalogue import Catalogue
 from hpn.catalogue.gear import Gear
 from hpn.engine.candidates import REASONS, Candidate
 from hpn.engine.selection import Selection, judge
+from hpn.engine.tried import tried
 from hpn.tables.numbers import WRITTEN
 from hpn.web.door.access import MAXIMUM_QUERY_BYTES, admit
 from hpn.web.door.bodies import pairs_of, read_form
@@ -89,6 +90,10 @@ class Answer(Result):
     def mark(self) -> str:
         """Short mark of the answer, by which a part that comes later is known to belong to it."""
         return f"{crc32(self.address.encode()):08x}"
+
+    def tries(self, designation: str) -> tuple[str, ...]:
+        """Links that follow the alternatives of a gear's remedy, one each."""
+        return tuple(to_link(tried(self.application, one, self.catalogue)) for one in self.alternatives(designation))
 
     @property
     def carried(self) -> str:

@@ -8,9 +8,7 @@ from urllib.parse import quote
 from hpn.application import Application, OutputLoad
 from hpn.catalogue import Catalogue
 from hpn.engine.candidates import Candidate
-from hpn.engine.remedy import alternatives_of
 from hpn.engine.selection import Selection
-from hpn.engine.tried import tried
 from hpn.explain.comparison import MOST_PINS, Column, RowGroup, groups_of, lighter_miss, undominated
 from hpn.web.form.form import Form
 from hpn.web.form.given import FieldProblem
@@ -31,11 +29,6 @@ class Insight:
     chosen: Candidate
     pins: tuple[str, ...]
     catalogue: Catalogue
-
-    def tries(self, designation: str) -> tuple[str, ...]:
-        """Links that follow the alternatives of a gear's remedy, one each."""
-        alternatives = alternatives_of(self.everything[designation], self.application.requirements.utilisation)
-        return tuple(to_link(tried(self.application, one, self.catalogue)) for one in alternatives)
 
     @property
     def same_life(self) -> str:

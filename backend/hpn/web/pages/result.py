@@ -8,13 +8,15 @@ from functools import cached_property
 from hpn.application import Application, RankBy
 from hpn.catalogue import Catalogue
 from hpn.catalogue.gear import Gear
+from hpn.engine.allowed import with_listed_motor
 from hpn.engine.candidates import Candidate
 from hpn.engine.checks import allowed
-from hpn.engine.remedy import Growth, alternatives_of, condition_of, growths_of, remedy_of
+from hpn.engine.remedy import Alternative, Growth, condition_of, growths_of, remedy_of
 from hpn.engine.selection import Selection
+from hpn.engine.tried import needed_of
 from hpn.explain.comparison import lighter_miss
 from hpn.explain.drawings import Pictures, Subject
-from hpn.explain.readings import Life, Reading, readings_of, shortest_life
+from hpn.explain.readings import Life, Reading, TorqueLimit, readings_of, shortest_life, torque_limit_of
 from hpn.files.export import DIGITS
 from hpn.web.door.visit import current
 from hpn.web.pages.drive import Drive
@@ -114,6 +116,14 @@ class Result:
             return None
         return Drive(self.application, self.gear, self.catalogue, self.selection)
 
+    @cached_property
+    def torque_limit(self) -> TorqueLimit:
+        """Torque limit of the drive on the chosen gear, and what the cycle needs above it."""
+        equipped = self.application
+        if equipped is not None and self.catalogue is not None:
+            equipped = with_listed_motor(equipped, self.catalogue)
+        return torque_limit_of(self.chosen, self.gear, equipped)
+
     @property
     def utilisation(self) -> float:
         """Largest utilisation that was accepted."""
@@ -155,12 +165,25 @@ class Result:
     def remedy(self, designation: str) -> Sentence | None:
         """Remedy that makes a candidate fit, as far as its catalogue figures are known."""
         candidate = self._judged(designation)
-        return remedy_of(candidate, self.utilisation) if candidate else None
+        return remedy_of(candidate, self.alternatives(designation)) if candidate else None
 
     def conditions(self, designation: str) -> tuple[Sentence, ...]:
         """Changes that each alone make a candidate fit, as far as its catalogue figures are known."""
-        candidate = self._judged(designation)
-        return tuple(map(condition_of, alternatives_of(candidate, self.utilisation))) if candidate else ()
+        return tuple(map(condition_of, self.alternatives(designation)))
+
+    def alternatives(self, designation: str) -> tuple[Alternative, ...]:
+        """The same changes as figures."""
+        if designation not in self._alternatives:
+            candidate, found = self._judged(designation), tuple[Alternative, ...]()
+            if candidate and self.application and self.catalogue:
+                found = needed_of(candidate, self.application, self.catalogue)
+            self._alternatives[designation] = found
+        return self._alternatives[designation]
+
+    @cached_property
+    def _alternatives(self) -> dict[str, tuple[Alternative, ...]]:
+        """Alternatives that were worked out, by designation."""
+        return {}
 
     def _judged(self, designation: str) -> Candidate | None:
         """A candidate with known catalogue figures; the chosen one may stand outside the ratios and sizes asked for."""
