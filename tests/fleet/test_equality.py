@@ -53,6 +53,7 @@ def expected(axis: object, application: Json, catalogue: Catalogue) -> Row:
         "life_L10_h": best and best.life_L10_h,
         "shortest_life_h": best and best.shortest_life_h,
         "shortest_life_of": best and best.shortest_life_of,
+        "motor_torque_limit_Nm": best and best.motor_torque_limit_Nm,
         "suitable": sum(candidate.status == "suitable" for candidate in selection.candidates),
         "runner_up": second.designation if second and second.rank == 2 else None,
         "average_torque_Nm": selection.duty.average_torque_Nm,

@@ -19,8 +19,8 @@ def codes(application: Json, catalogue: Catalogue) -> set[str]:
     return set(notices(answer(application, catalogue)))
 
 
-def test_a_plain_application_on_rated_gears_needs_no_notice(catalogue: Catalogue) -> None:
-    assert codes(PLAIN, catalogue) == set()
+def test_a_plain_application_on_rated_gears_needs_a_notice_on_the_efficiency_alone(catalogue: Catalogue) -> None:
+    assert codes(PLAIN, catalogue) == {"limit_without_efficiency"}
 
 
 @pytest.mark.parametrize(("ramp_s", "told"), [(0.034, True), (0.036, False)])
@@ -143,7 +143,8 @@ def test_a_motor_without_a_stated_efficiency_is_a_lower_bound(catalogue: Catalog
     motor = PLAIN["requirements"] | {"motor": {"peak_torque_Nm": 20}}
 
     assert "lower bound" in notices(answer(PLAIN | {"requirements": motor}, catalogue))["efficiency_unknown"]
-    assert codes(PLAIN | {"rank_by": "motor_torque"}, catalogue) == {"efficiency_unknown", "motor_torque_partial"}
+    ranked = codes(PLAIN | {"rank_by": "motor_torque"}, catalogue)
+    assert ranked == {"efficiency_unknown", "limit_without_efficiency", "motor_torque_partial"}
     stated = PLAIN | {"requirements": motor | {"efficiency": 0.9}}
     assert codes(stated, catalogue) == {"efficiency_assumed", "motor_torque_partial"}
 

@@ -62,7 +62,7 @@ def test_typed_phases_without_a_motor_have_the_plane_of_the_gear_and_a_line_on_m
     part = drive(client.get(TYPED).text)
 
     assert part.count("<svg") == 2
-    assert part.count("<table") == 2  # stiffness and position, and the plane, for which no motor is needed
+    assert part.count("<table") == 3  # torque limit, stiffness and position, and the plane, which need no motor
     assert "list them in motors.csv of a catalogue supplement" in words(part)
 
 

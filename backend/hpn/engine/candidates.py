@@ -78,6 +78,7 @@ class Candidate(Reply, frozen=True):
     shortest_life_of: LifeOf | None = None
     motor_peak_torque_Nm: float | None = None
     motor_rated_torque_Nm: float | None = None
+    motor_torque_limit_Nm: float | None = None
     natural_frequency_Hz: float | None = None
     drive_resonance_Hz: float | None = None
     wind_up_arcmin: float | None = None

@@ -7,7 +7,7 @@ import numpy as np
 
 from hpn.catalogue import Catalogue, GearList
 from hpn.engine.duty import Duty, TextArray
-from hpn.engine.motor_torques import torques_at_motor
+from hpn.engine.motor_torques import torque_limit, torques_at_motor
 from hpn.engine.stops import Stops
 from hpn.physics import bearing, equations, stiffness
 from hpn.physics.equations import ROUNDING, FloatArray
@@ -235,6 +235,11 @@ class Figures:
     def motor_rated_torque_Nm(self) -> FloatArray:
         """RMS torque of the cycle at the motor in Nm, shape (N, G)."""
         return self._motor_torques[1]
+
+    @cached_property
+    def motor_torque_limit_Nm(self) -> FloatArray:
+        """Torque in Nm to set in the drive, so that the output stays at or below T_R; shape (N, G)."""
+        return torque_limit(self.duty, self.gears, self.catalogue)
 
     @cached_property
     def _bearing_loads(self) -> tuple[FloatArray, FloatArray]:

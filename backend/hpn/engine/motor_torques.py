@@ -1,5 +1,7 @@
 """Torques at the motor under duty cycles, with the efficiency, the inertia and the torque without load of gears."""
 
+from functools import lru_cache
+
 import numpy as np
 
 from hpn.catalogue import Catalogue, GearColumns, GearList
@@ -107,6 +109,27 @@ def torques_along(
         pause_s=pause_s,
         no_load_torque_Nm=without_load,
     )
+
+
+def torque_limit(duty: Duty, gears: GearList, catalogue: Catalogue) -> FloatArray:
+    """Torque η T_R / i in Nm to which a drive limits its motor, shape (N, G); NaN where T_R is not published.
+
+    With it the output stays at or below T_R, whether the motor drives (at most i M) or brakes (up to i M / η), as long
+    as its torque changes slowly against 1 / f_2. η as stated, else by a supplied curve at T_R, else 1.
+    """
+    T_R = gears.columns.repeated_peak_torque_Nm
+    stated, known = duty.asked["requirements.efficiency"], known_efficiency(gears, catalogue)
+    return np.where(np.isnan(stated), np.where(np.isnan(known), 1.0, known), stated) * T_R / gears.columns.ratio
+
+
+@lru_cache(maxsize=256)
+def known_efficiency(gears: GearList, catalogue: Catalogue) -> FloatArray:
+    """Efficiency of each gear at its T_R by its curve of a supplement, shape (G,); NaN without one. [-]"""
+    known = np.full(len(gears.rows), np.nan)
+    for place, gear in enumerate(gears.rows):
+        if gear.designation in catalogue.efficiency:
+            known[place] = efficiency_at(gears.columns.repeated_peak_torque_Nm[place : place + 1], gear, catalogue)[0]
+    return known
 
 
 def inertia_ratio(duty: Duty, gears: GearColumns, motor_inertia_kgm2: FloatArray) -> FloatArray:

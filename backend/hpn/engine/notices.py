@@ -17,12 +17,12 @@ from hpn.application import BEARING_LIFE_H, Application, DutyCycle, OutputLoad
 from hpn.catalogue import Catalogue, GearList
 from hpn.catalogue.gear import Gear
 from hpn.engine.evaluation import SUITABLE, Evaluation
-from hpn.engine.motor_torques import leaves_curve
+from hpn.engine.motor_torques import known_efficiency, leaves_curve
 from hpn.physics.equations import ROUNDING, FloatArray
 from hpn.physics.motion.mechanisms import Linear
 from hpn.words.reply import Reply
 from hpn.words.units import suffix_of
-from hpn.words.wording import N_, Quantity, Sentence
+from hpn.words.wording import N_, Quantity, Rounding, Sentence
 
 DIGITS: Mapping[str, int] = {"Nm": 6, "percent": 3, "s": 6, "h": 6}
 """Digits of the numbers in a notice, by unit."""
@@ -117,6 +117,22 @@ NOTICES: Mapping[str, str] = {
         "left out where no supplement gives them."
     ),
     "motor_all_included": N_("Motor torques include the inertia of motor and gear and the gear’s no-load torque."),
+    "limit_without_efficiency": N_(
+        "The drive’s torque limit leaves out losses (no efficiency is known): in braking the gear can carry up to "
+        "T_R / η."
+    ),
+    "limit_below_need": N_(
+        "The cycle needs {need_Nm} at the motor of {name}, above the drive’s torque limit of {limit_Nm} that keeps the "
+        "gear at or below T_R: choose a gear with a larger T_R, or accelerate more gently."
+    ),
+    "gear_below_motor": N_(
+        "The motor’s peak torque of {peak_Nm} can put {torque_Nm} on {name} (T_R {repeated_Nm}): set the drive’s "
+        "torque limit to {limit_Nm}, {share_percent} of that peak."
+    ),
+    "gear_far_below_motor": N_(
+        "The motor can break the gear: its peak torque of {peak_Nm} puts {torque_Nm} on {name} (T_M {momentary_Nm}). "
+        "Set the drive’s torque limit to {limit_Nm}, {share_percent} of that peak, before the axis is started."
+    ),
     "torque_signs_not_given": N_(
         "No torque has a sign, so the position error assumes each of them in both directions. Where that is not so, "
         "choose “no torque reverses” or give signs."
@@ -197,16 +213,22 @@ class Notice(Reply, frozen=True):
         return _sentence(template, {name: self.values[name] for name in names})
 
 
+_OTHERWISE = {("size_unrated", "names"): "gears_unrated", ("gear_below_motor", "momentary_Nm"): "gear_far_below_motor"}
+"""Other sentences of a code, by a value that they alone have."""
+
+
 def _template_of(code: str, values: Mapping[str, Value]) -> str:
-    return "gears_unrated" if code == "size_unrated" and "names" in values else code
+    return next((_OTHERWISE[code, name] for name in values if (code, name) in _OTHERWISE), code)
 
 
 def _sentence(template: str, values: Mapping[str, Value]) -> Sentence:
-    shown = {
-        name: value if isinstance(value, str) else Quantity(value, suffix_of(name), DIGITS[suffix_of(name)])
-        for name, value in values.items()
-    }
+    shown = {name: value if isinstance(value, str) else Quantity(value, *_told(name)) for name, value in values.items()}
     return Sentence(template, shown, TRANSLATED)
+
+
+def _told(name: str) -> tuple[str, int, Rounding]:
+    """Unit, digits and rounding of a value; what is to be set as a limit is rounded down."""
+    return suffix_of(name), DIGITS[suffix_of(name)], "down" if name in ("limit_Nm", "share_percent") else "nearest"
 
 
 def notice(code: str, **values: Value) -> Notice:
@@ -226,11 +248,14 @@ def notices_of(application: Application, evaluation: Evaluation, index: int) -> 
     if application.loads is not None:
         found += _on_the_bearing(application.loads, evaluation, index)
     found += _on_the_motor(application, evaluation, index)
+    found += _on_the_torque_limit(evaluation, index)
     found += _unrated(evaluation.gears, evaluation.catalogue)
     return (*found, *([notice("catalogue_supplement")] if evaluation.catalogue.supplement else ()))
 
 
-ON_MOTOR_TORQUES = frozenset(code for code in NOTICES if code.startswith("motor_"))
+ON_MOTOR_TORQUES = frozenset(
+    ("motor_torque_partial", "motor_losses_included", "motor_inertia_included", "motor_all_included")
+)
 """Codes of the notices on what the motor torques include; a selection that asks about a motor has one of them."""
 
 
@@ -370,6 +395,37 @@ def _on_the_motor(application: Application, evaluation: Evaluation, index: int) 
             yield notice("motor_all_included" if has_inertia and has_losses else "motor_inertia_included")
         else:
             yield notice("motor_losses_included" if has_losses else "motor_torque_partial")
+
+
+def _on_the_torque_limit(evaluation: Evaluation, index: int) -> Iterable[Notice]:
+    """Notices on the drive's torque limit: of the first candidate, and on the efficiency behind those of all."""
+    figures, asked, best = evaluation.case.figures, evaluation.case.asked, evaluation.order.item(index, 0)
+    limits = figures.motor_torque_limit_Nm[index]
+    without = np.isnan(known_efficiency(evaluation.gears, evaluation.catalogue)) & ~np.isnan(limits)
+    if np.isnan(asked["requirements.efficiency"].item(index)) and without.any():
+        yield notice("limit_without_efficiency")
+    yield from on_torque_limit(
+        evaluation.gears.rows[best],
+        limit_Nm=limits.item(best),
+        need_Nm=figures.motor_peak_torque_Nm[index].item(best),
+        peak_Nm=asked["requirements.motor.peak_torque_Nm"].item(index),
+    )
+
+
+def on_torque_limit(gear: Gear, *, limit_Nm: float, need_Nm: float, peak_Nm: float) -> Iterable[Notice]:
+    """Notices on a gear whose torque limit η T_R / i the motor's peak torque or the need of the cycle is above.
+
+    NaN stands for a torque that is not known.
+    """
+    if peak_Nm > limit_Nm * (1 + ROUNDING):
+        T_R, T_M = gear.repeated_peak_torque_Nm or np.nan, gear.momentary_peak_torque_Nm or np.nan
+        torque = T_R * peak_Nm / limit_Nm
+        above = {"momentary_Nm": T_M} if torque > T_M * (1 + ROUNDING) else {"repeated_Nm": T_R}
+        share = 100 * limit_Nm / peak_Nm
+        values = {"peak_Nm": peak_Nm, "torque_Nm": torque, "limit_Nm": limit_Nm, "share_percent": share, **above}
+        yield notice("gear_below_motor", name=gear.designation, **values)
+    if need_Nm > limit_Nm * (1 + ROUNDING):
+        yield notice("limit_below_need", name=gear.designation, need_Nm=need_Nm, limit_Nm=limit_Nm)
 
 
 @lru_cache(maxsize=256)

@@ -93,6 +93,8 @@ def _results(columns: Sequence[Column], maximum_torque_Nm: float) -> Iterable[Ro
         yield _row(columns, "bearing_life", N_("Bearing life"), bearing_life, "L_b,50", "h", lowest=False)
     peak, average = _result("motor_peak_torque_Nm"), _result("average_input_speed_rpm")
     yield _row(columns, "motor_torque", _motor_title(columns, maximum_torque_Nm), peak, "", "Nm", lowest=True)
+    limit = _result("motor_torque_limit_Nm")
+    yield _row(columns, "torque_limit", N_("Torque limit of the drive"), limit, "T_lim", "Nm")
     yield _row(columns, "input_speed", N_("Average input speed"), average, "n_in,av", "rpm")
     largest = _result("maximum_input_speed_rpm")
     yield _row(columns, "largest_input_speed", N_("Maximum input speed"), largest, "n_in,max", "rpm")

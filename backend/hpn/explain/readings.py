@@ -18,9 +18,10 @@ from hpn.engine.check import Kind
 from hpn.engine.checks import BY_CODE
 from hpn.engine.duty import Duty
 from hpn.engine.figures import phase_loads
+from hpn.engine.notices import on_torque_limit
 from hpn.engine.selection import Selection
 from hpn.words.quantities import CANDIDATE
-from hpn.words.wording import N_, Quantity, Sentence, listed
+from hpn.words.wording import N_, Quantity, Sentence, Value, listed
 
 OTHERWISE = {"≤": ">", "≥": "<"}
 """Sign between demand and limit of a failing check, by the sign of one that passes."""
@@ -108,7 +109,7 @@ def life_of(life_h: float | None, of: LifeOf | None) -> Life:
     return Life("life" if of == "gear_L10" else "output_bearing_life", life_h, "L50" if of == "bearing_L50" else "L10")
 
 
-_AT_MOTOR = {"motor_peak_torque_Nm": "T_in,max", "motor_rated_torque_Nm": "T_in,rms"}
+AT_MOTOR = {"motor_peak_torque_Nm": "T_in,max", "motor_rated_torque_Nm": "T_in,rms"}
 """Symbols of torques at the motor to which its own inertia adds, so that they are no quotient of the load's torque."""
 
 _RELATIONS = {"motor_peak_torque": "T_in,max ≤ T_mot", "motor_rated_torque": "T_in,rms ≤ T_mot,N"}
@@ -116,7 +117,7 @@ _RELATIONS = {"motor_peak_torque": "T_in,max ≤ T_mot", "motor_rated_torque": "
 
 def figure_symbol(name: str, *, turns_motor: bool) -> str:
     """Symbol of a candidate's figure; `turns_motor` says whether the motor's own inertia counts in its torques."""
-    own = _AT_MOTOR.get(name) if turns_motor else None
+    own = AT_MOTOR.get(name) if turns_motor else None
     return own or CANDIDATE[name].symbol
 
 
@@ -184,6 +185,45 @@ def _bearing_load(
     demand = load.load_coefficient * float(np.hypot(radial, axial))
     name = N_("maximum in this direction")
     return Reading(demand, demand / check.demand, "N", "maximum", name, "f_w · F ≤ F_max", u)
+
+
+LIMIT, WITHIN = (
+    N_("Set the drive’s torque limit to {limit}."),
+    N_("Set the drive’s torque limit to {limit}, {share} of the motor’s peak torque."),
+)
+NO_LIMIT = N_("The motor’s peak torque of {peak} stays within the drive’s torque limit of {limit}.")
+
+
+@dataclass(frozen=True, slots=True)
+class TorqueLimit:
+    """Sentences on the torque to which a drive has to limit its motor; `warns` where motor or cycle is above it."""
+
+    lines: tuple[Sentence, ...] = ()
+    warns: bool = False
+
+
+def torque_limit_of(candidate: Candidate, gear: Gear | None, application: Application | None) -> TorqueLimit:
+    """Torque limit of the drive on a gear, with a further line where the cycle needs more.
+
+    No line where it is not known; without the gear's figures or the motor's peak torque the limit alone. The
+    application has the figures of a motor that it names.
+    """
+    limit, need = candidate.motor_torque_limit_Nm, candidate.motor_peak_torque_Nm
+    if limit is None:
+        return TorqueLimit()
+    motor = application.requirements.motor if application else None
+    peak = (motor and motor.peak_torque_Nm) or math.nan
+    need = math.nan if need is None else need
+    warnings = on_torque_limit(gear, limit_Nm=limit, need_Nm=need, peak_Nm=peak) if gear else ()
+    said = {notice.code: notice.sentence for notice in warnings}
+    values: dict[str, Value] = {
+        "limit": Quantity(limit, "Nm", 4, "down"),
+        "share": Quantity(100 * limit / peak, "percent", 3, "down"),
+        "peak": Quantity(peak, "Nm", 6),
+    }
+    plain = Sentence(LIMIT if math.isnan(peak) else NO_LIMIT if peak <= limit else WITHIN, values)
+    warns = bool(said)
+    return TorqueLimit((said.pop("gear_below_motor", plain), *said.values()), warns)
 
 
 def stiffness_of(candidate: Candidate) -> Sentence:

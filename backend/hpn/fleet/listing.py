@@ -67,6 +67,7 @@ class AxisRow(NamedTuple):
     runner_up: str | None
     average_torque_Nm: float | None
     error: str | None
+    motor_torque_limit_Nm: float | None = None
 
 
 NEAREST = pa.schema([("nearest", pa.string()), ("nearest_check", pa.string()), ("nearest_utilisation", pa.float64())])

@@ -43,6 +43,7 @@ def answer_fields(axis: pa.DataType) -> pa.Schema:
             ("life_L10_h", pa.float64()),
             ("shortest_life_h", pa.float64()),
             ("shortest_life_of", pa.string()),
+            ("motor_torque_limit_Nm", pa.float64()),
             ("suitable", pa.int64()),
             ("runner_up", pa.string()),
             ("average_torque_Nm", pa.float64()),
@@ -87,7 +88,7 @@ class _Answers:
         self.selected, self.runner_up, self.governing = (np.full(count, -1, np.int32) for _ in range(3))
         self.utilisation, self.average_torque_Nm = np.full(count, np.nan), np.full(count, np.nan)
         self.life_L10_h, self.shortest_life_h = np.full(count, np.nan), np.full(count, np.nan)
-        self.shortest_life_of = np.full(count, "", object)
+        self.shortest_life_of, self.limit_Nm = np.full(count, "", object), np.full(count, np.nan)
         self.suitable = np.full(count, -1, np.int64)
         self.designations: list[str] = []
 
@@ -104,7 +105,8 @@ class _Answers:
         self.selected[places] = np.where(found, names[best], -1)
         self.governing[places] = np.where(found, codes[evaluation.governing_of(best)], -1)
         self.utilisation[places] = np.where(found, evaluation.utilisation[rows, best], np.nan)
-        for own, figure in ((self.life_L10_h, figures.life_L10_h), (self.shortest_life_h, figures.shortest_life_h)):
+        lives = (self.life_L10_h, figures.life_L10_h), (self.shortest_life_h, figures.shortest_life_h)
+        for own, figure in (*lives, (self.limit_Nm, figures.motor_torque_limit_Nm)):
             own[places] = np.where(found, figure[rows, best], np.nan)
         self.shortest_life_of[places] = np.where(found, figures.shortest_life_of[rows, best], "")
         suits[rows, best] = False
@@ -120,6 +122,7 @@ class _Answers:
             _finite(self.life_L10_h),
             _finite(self.shortest_life_h),
             pa.array([life or None for life in self.shortest_life_of.tolist()], pa.string()),
+            _finite(self.limit_Nm),
             pa.array(self.suitable, mask=self.suitable < 0),
             _named(self.runner_up, self.designations),
             _finite(self.average_torque_Nm),

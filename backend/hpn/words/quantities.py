@@ -184,6 +184,13 @@ CANDIDATE: Mapping[str, Named] = {
         "RMS torque at the motor, T/(i·η), over the cycle with pause; along a motion with the motor’s own inertia, "
         "where that is given. Where no efficiency is known η is 1, and the torque a lower bound.",
     ),
+    "motor_torque_limit_Nm": Named(
+        N_("Torque limit of the drive"),
+        "T_lim",
+        "Torque η·T_R/i to set in the drive as the motor’s limit: with it the output stays at or below T_R, whether "
+        "the motor drives or brakes. Where no efficiency is known η is 1. Null where T_R is not published.",
+        caveat=N_("For torque that changes slowly against 1 / f_2: a step rings above it."),
+    ),
     "natural_frequency_Hz": Named(
         N_("Natural frequency"),
         "f_1",

@@ -11,7 +11,7 @@ from hpn.explain.calculation.formula import Formula, PhaseValues, Root, Sum, Ter
 from hpn.explain.calculation.sheet import Line, Sheet, Step, known, step_of_check
 from hpn.physics.equations import FloatArray
 from hpn.physics.motion import Course, peak_instant, square_torque
-from hpn.words.quantities import INPUTS
+from hpn.words.quantities import CANDIDATE, INPUTS
 from hpn.words.titles import numbered
 from hpn.words.wording import N_, Quantity, Sentence, Value
 
@@ -168,6 +168,24 @@ def _step(sheet: Sheet, code: str, symbol: Variable, formula: Formula, *notes: S
     yield step_of_check(code, (Line(torque, formula),), sheet.compared(code, torque), notes)
 
 
+# --- Torque limit of the drive ---------------------------------------------------------------------------------------
+
+
+def _torque_limit(sheet: Sheet) -> Iterable[Step]:
+    """Torque at the motor with which the gear stays at or below T_R."""
+    limit, T_R = sheet.figure("motor_torque_limit_Nm"), sheet.rating("repeated_peak_torque_Nm")
+    if limit is None or T_R is None:
+        return
+    source = N_("η = 1, since no efficiency is known: in braking up to T_R / η.")
+    if sheet.given("requirements.efficiency") is not None:
+        source = STATED
+    elif sheet.gear.designation in sheet.catalogue.efficiency:
+        source = N_("η at T_R from the efficiency curve that you supplied.")
+    eta = Term(EFFICIENCY, _efficiencies(sheet, np.array(T_R.value)).item())
+    title, line = CANDIDATE["motor_torque_limit_Nm"].name, Line(limit, eta * T_R / sheet.i)
+    yield Step("torque_limit", title, None, (line,), (), (Sentence(source),))
+
+
 # --- Inertia ----------------------------------------------------------------------------------------------------------
 
 
@@ -186,5 +204,5 @@ def _inertia_ratio(sheet: Sheet) -> Iterable[Step]:
     yield step_of_check("inertia_ratio", (), limit, (Sentence(note),))
 
 
-MOTOR = (_torques, _inertia_ratio)
-"""Steps of peak and RMS torque, loss-free where no efficiency is known, and of the inertia ratio if asked for."""
+MOTOR = (_torques, _torque_limit, _inertia_ratio)
+"""Steps of peak and RMS torque, loss-free where no efficiency is known, of the limit, and of the ratio if asked for."""

@@ -21,6 +21,7 @@ from pyecma376_2.core_properties import OPCCoreProperties
 from hpn.engine.candidates import FIGURES, Candidate, CheckResult
 from hpn.engine.checks import BY_CODE
 from hpn.engine.selection import DutyFigures, encode
+from hpn.explain.readings import AT_MOTOR
 from hpn.files.aas import Metamodel
 from hpn.files.aas.concepts import CONCEPTS, concept, concept_id, published, reference, texts, told, urn
 from hpn.files.export import LOSS_FREE, Export
@@ -33,7 +34,6 @@ from hpn.words.wording import Sentence
 
 Value = str | int | float | None
 
-MOTOR_TORQUES = ("motor_peak_torque_Nm", "motor_rated_torque_Nm")
 CALCULATED = ("ratio", "stages", "utilisation", *FIGURES)
 """Fields of a candidate that are figures."""
 
@@ -301,7 +301,7 @@ _TABLES = (("mechanism.", MOTION), ("move.", MOTION), ("", MOTION), ("phase.", I
 
 def _calculated(export: Export) -> list[model.Property]:
     """Figures of the candidate; motor torques without an efficiency are described as a lower bound."""
-    loss_free = MOTOR_TORQUES if export.is_lower_bound(export.candidate) else ()
+    loss_free = AT_MOTOR if export.is_lower_bound(export.candidate) else ()
     return _properties_of(_fields(export.candidate, CALCULATED), dict.fromkeys(loss_free, Sentence(LOSS_FREE)))
 
 

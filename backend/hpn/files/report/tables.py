@@ -6,7 +6,7 @@ from typing import Any
 from hpn.application import DutyCycle
 from hpn.application.phase import Phase
 from hpn.engine.candidates import FIGURES
-from hpn.explain.readings import figure_symbol
+from hpn.explain.readings import AT_MOTOR, figure_symbol
 from hpn.files import inputs
 from hpn.files.export import Export
 from hpn.files.inputs import InputLine
@@ -134,7 +134,7 @@ def of_gear(export: Export, reader: Reader) -> list[dict[str, Any]]:
             name,
             value,
             reader,
-            bound if name.startswith("motor_") else "",
+            bound if name in AT_MOTOR else "",
         )
         for name in FIGURES
         if name not in typed and (value := getattr(candidate, name)) is not None

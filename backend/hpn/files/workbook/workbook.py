@@ -8,7 +8,7 @@ from typing import Any
 import xlsxwriter
 
 from hpn.engine.candidates import FIGURES
-from hpn.explain.readings import Reading, figure_symbol
+from hpn.explain.readings import AT_MOTOR, Reading, figure_symbol
 from hpn.files.export import LOWER_BOUND, Export
 from hpn.files.report.checks import readings
 from hpn.files.words import catalogue_version, equation, origin
@@ -151,7 +151,7 @@ def _figures_of_gear(export: Export, reader: Reader) -> Iterator[Line]:
     candidate, turns = export.candidate, export.selection.turns_motor
     for name in FIGURES:
         named, value = CANDIDATE[name], getattr(candidate, name)
-        bound = name.startswith("motor_") and export.is_lower_bound(candidate)
+        bound = name in AT_MOTOR and export.is_lower_bound(candidate)
         source = reader.text(LOWER_BOUND) if bound else equation(named.equation, reader)
         shown = N_("unlimited") if candidate.is_unlimited(name) else value
         yield Line(Named(named.name, figure_symbol(name, turns_motor=turns)), shown, suffix_of(name), source)
