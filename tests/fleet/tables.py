@@ -16,12 +16,15 @@ from tests.build import Json
 
 PHASE = (
     *("torque_Nm", "speed_rpm", "duration_s", "radial_N", "axial_N"),
-    *("peak_torque_Nm", "peak_speed_rpm", "rms_torque_Nm"),
+    *("peak_torque_Nm", "peak_speed_rpm", "rms_torque_Nm", "least_torque_Nm"),
     "name",
 )
 REQUIRED = PHASE[:3]
 LISTS = {"requirements.ratios": pa.list_(pa.int64()), "requirements.sizes": pa.list_(pa.string())}
-TEXTS = ("output_load.life_basis", "output_load.model", "rank_by", "application_area", "requirements.motor.designation")
+TEXTS = (
+    *("output_load.life_basis", "output_load.model", "rank_by", "application_area"),
+    *("requirements.motor.designation", "requirements.position_error_at"),
+)
 
 Row = dict[str, Any]
 

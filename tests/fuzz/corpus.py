@@ -59,8 +59,10 @@ APPLICATIONS: tuple[Json, ...] = (
     cycle(phase(9.3, 0), phase(1e-3, 1e4, 1e-3), requirements={"ratios": [5]}, rank_by="motor_torque"),
     cycle(*(phase(k, 100 + k, 0.1) for k in range(1, 40)), pause_s=1.5),
     cycle(
-        phase(40, 250, 1, peak_torque_Nm=60, peak_speed_rpm=400, rms_torque_Nm=45) | {"name": "lift"},
-        requirements=INERTIAS,
+        phase(40, 250, 1, peak_torque_Nm=60, peak_speed_rpm=400, rms_torque_Nm=45, least_torque_Nm=30)
+        | {"name": "lift"},
+        phase(9, 0),
+        requirements=INERTIAS | {"position_error_at": "rest", "rest_friction_Nm": 2.5},
     ),
     {"duty_cycle": {"motion": TURNING, "pause_s": 0.5}, "requirements": {"motor": MOTOR}},
     {"duty_cycle": {"motion": LIFTING}, "rank_by": "motor_torque"},
@@ -199,6 +201,8 @@ FIELDS = tuple(
             "peak_torque_Nm",
             "s_curve",
             "rms_torque_Nm",
+            "least_torque_Nm",
+            "rest",
         ),
         *("applications", "digitised", "L10", "", "x" * 300, "\\ud800", "\\u0000", "\u202e"),
     )

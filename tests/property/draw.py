@@ -189,7 +189,24 @@ def at_random(chance: random.Random, models: Sequence[str] = ("linear", "iso281"
     pause_s = some(0, 20, 0) if maybe() else 0.0
     if maybe(0.3):
         phases = [entry | ({"name": chance.choice(NAMES)} if maybe(0.7) else {}) for entry in phases]
-    return cycle(*phases, pause_s=pause_s, **parts)
+    return _with_rest(cycle(*phases, pause_s=pause_s, **parts))
+
+
+def _with_rest(application: Json) -> Json:
+    """The application with least torques of its phases, and what it asks of its rest: by chance of its own, so that
+    seeds of before mean what they meant.
+    """
+    cycle, chance = application["duty_cycle"], random.Random(repr(application))
+    for entry in cycle["phases"]:
+        if chance.random() < 0.2:
+            own = abs(entry["torque_Nm"])
+            entry["least_torque_Nm"] = min(own, entry.get("rms_torque_Nm", own)) * chance.choice([0, 0.4, 1])
+    asked: Json = {"rest_friction_Nm": chance.choice([0.0, 5.0, 40.0])} if chance.random() < 0.3 else {}
+    if chance.random() < 0.3 and (cycle["pause_s"] or any(not entry["speed_rpm"] for entry in cycle["phases"])):
+        asked["position_error_at"] = "rest"
+    if asked:
+        application["requirements"] = application.get("requirements", {}) | asked
+    return application
 
 
 # --- Motions ----------------------------------------------------------------------------------------------------------

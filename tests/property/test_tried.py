@@ -177,7 +177,7 @@ def test_a_check_is_full_when_its_driver_has_grown_as_far_as_it_says(catalogue: 
 
 
 FIELDS = {
-    "torque": ("torque_Nm", "peak_torque_Nm", "rms_torque_Nm"),
+    "torque": ("torque_Nm", "peak_torque_Nm", "rms_torque_Nm", "least_torque_Nm"),
     "speed": ("speed_rpm", "peak_speed_rpm"),
     "load": ("radial_N", "axial_N"),
 }

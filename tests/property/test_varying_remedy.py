@@ -43,6 +43,7 @@ def varied(chance: random.Random, asked: Json) -> Json:
         if chance.random() < 0.6:
             phase["peak_torque_Nm"] = T * chance.choice([1, 1.5, 4])
             phase["rms_torque_Nm"] = chance.uniform(0, phase["peak_torque_Nm"])
+            phase["least_torque_Nm"] = min(phase.get("least_torque_Nm", 0.0), phase["rms_torque_Nm"])
         if n and chance.random() < 0.6:
             phase["peak_speed_rpm"] = n * chance.uniform(1, 3)
     return asked

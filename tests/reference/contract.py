@@ -327,20 +327,32 @@ def _stop_torque(brake: Mapping[str, Any], wishes: Mapping[str, Any], gear: Gear
 def _position_error(application: Mapping[str, Any], wishes: Mapping[str, Any], gear: Gear) -> float | None:
     if gear.accuracy is None or gear.K3 is None or gear.backlash is None:
         return None
-    cycle = application["duty_cycle"]
-    torques = [
-        (1 if p["torque_Nm"] > 0 else -1 if p["torque_Nm"] < 0 else 0) * _peak(p, "torque_Nm") for p in cycle["phases"]
-    ]
-    reverses, largest = wishes.get("load_reverses"), max(_peak(p, "torque_Nm") for p in cycle["phases"])
-    if reverses is None:
-        reverses = not any(p["torque_Nm"] < 0 for p in cycle["phases"])
-    if reverses:
-        torques = [-largest, largest]
-    elif cycle.get("pause_s"):
-        torques.append(0)
-    low, high = min(torques), max(torques)
+    low, high = torque_range(application["duty_cycle"], wishes)
     error: float = gear.accuracy + (high - low) / gear.K3 * 10800 / math.pi
     return error + (gear.backlash if low <= 0 <= high else 0)
+
+
+def torque_range(cycle: Mapping[str, Any], wishes: Mapping[str, Any]) -> tuple[Any, Any]:
+    """T_lo and T_hi of typed phases."""
+    reverses, friction = wishes.get("load_reverses"), wishes.get("rest_friction_Nm", 0)
+    signed, torques = any(p["torque_Nm"] < 0 for p in cycle["phases"]), []
+    for p in cycle["phases"]:
+        if wishes.get("position_error_at") == "rest" and p["speed_rpm"] != 0:
+            continue
+        T, peak, R = p["torque_Nm"], _peak(p, "torque_Nm"), friction if p["speed_rpm"] == 0 else 0
+        least = p.get("least_torque_Nm")
+        if least is None:
+            steady = peak <= abs(T) * (1 + 1e-9) and _own(p, "rms_torque_Nm", "torque_Nm") >= abs(T) * (1 - 1e-9)
+            least = abs(T) if steady else 0
+        ends = [-peak, peak] if T == 0 else [least, peak] if T > 0 else [-peak, -least]
+        if T == 0 and reverses is False and not signed:
+            ends = [least, peak]
+        torques += [ends[0] - R, ends[1] + R]
+    if cycle.get("pause_s"):
+        torques += [-friction, friction]
+    if reverses or (reverses is None and not signed):
+        torques = [M := max(map(abs, torques)), -M]
+    return min(torques), max(torques)
 
 
 def _bearing(application: Mapping[str, Any], duty: _Duty, gear: Gear, at_most: Any, by: Arithmetic) -> float | None:

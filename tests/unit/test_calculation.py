@@ -85,7 +85,7 @@ def test_the_peak_of_a_phase_is_said_to_count_where_it_does(catalogue: Catalogue
 def test_torques_that_an_equation_picks_are_said_beside_it(catalogue: Catalogue) -> None:
     stop = {"brake": {"torque_Nm": 5}}
     steps = steps_of(cycle(phase(10, 100), phase(-4, 50), emergency_stop=stop), "HPN-20A-5", catalogue)
-    assert steps["position_error"].notes[0].text.startswith("T_lo and T_hi are the smallest and the largest peak")
+    assert steps["position_error"].notes[0].text.startswith("T_lo and T_hi are the smallest and the largest torque")
     assert [note.text[:12] for note in steps["stop"].notes] == ["Upper bound:"]
 
 

@@ -165,7 +165,8 @@ def test_blank_fields_of_a_motion_beside_phases_count_as_absent() -> None:
 
 def test_a_button_opens_and_closes_the_columns_of_what_varies_without_script() -> None:
     opened = read(f"{PHASE}&do=varying")
-    assert [dict(row) for row in opened.rows] == [{"T": "40", "n": "250", "t": "0.3", "Tpk": "", "npk": "", "Trms": ""}]
+    blank = dict.fromkeys(("Tpk", "npk", "Trms", "Tlo"), "")
+    assert [dict(row) for row in opened.rows] == [{"T": "40", "n": "250", "t": "0.3"} | blank]
     assert (opened.focus, opened.application) == ("varying", read(PHASE).application)
     closed = read(f"{PHASE}&Tpk=55&npk=&Trms=&do=varying")
     assert ("varying" in closed.shown, closed.application) == (False, read(PHASE).application)

@@ -10,6 +10,7 @@ import pytest
 from starlette.testclient import TestClient
 
 from hpn.application import Application
+from hpn.application.input_fields import PHASE_FIGURES
 from hpn.cli import main
 from hpn.tables.cycles import read_text
 from hpn.web.api.samples import LIFTING, TURNING
@@ -161,11 +162,7 @@ def test_files_of_a_link_are_of_its_application(api: TestClient, application: Ap
 
 def test_the_csv_of_a_cycle_has_its_phases_with_peaks_and_rms(api: TestClient, application: Application) -> None:
     text = api.get(f"/cycle.csv?{to_link(application).removeprefix('/?')}").text
-    fields = ("torque_Nm", "speed_rpm", "duration_s", "radial_N", "axial_N")
-    wanted = [
-        tuple(getattr(phase, name) for name in (*fields, "peak_torque_Nm", "peak_speed_rpm", "rms_torque_Nm"))
-        for phase in application.duty_cycle.load_phases
-    ]
+    wanted = [tuple(getattr(phase, name) for name in PHASE_FIGURES) for phase in application.duty_cycle.load_phases]
     found = [tuple(float(cell) if cell else None for cell in phase) for phase in read_text(text).phases]
     assert found == wanted
 

@@ -17,7 +17,7 @@ Case = dict[str, Any]
 FILE = Path(__file__).parent / "pasted/tables.toml"
 GROUPS: dict[str, dict[str, Case]] = tomllib.loads(FILE.read_text("utf-8"))
 CASES = [pytest.param(case, id=f"{group}: {name}") for group, cases in GROUPS.items() for name, case in cases.items()]
-SYMBOLS = ("T", "n", "t", "FRi", "FAi", "Tpk", "npk", "Trms")
+SYMBOLS = ("T", "n", "t", "FRi", "FAi", "Tpk", "npk", "Trms", "Tlo")
 
 
 def outcome(client: TestClient, case: Case, chosen: dict[str, str]) -> tuple[str, str | list[str]]:
@@ -38,7 +38,8 @@ def outcome(client: TestClient, case: Case, chosen: dict[str, str]) -> tuple[str
 
 def phases(location: str) -> str:
     given = parse_qs(urlsplit(location).query, keep_blank_values=True)
-    rows = zip(*(given[name] for name in SYMBOLS if name in given), strict=True)
+    said = [name for name in SYMBOLS if name in given and (name != "Tlo" or any(given[name]))]
+    rows = zip(*(given[name] for name in said), strict=True)
     figures = "; ".join(" ".join(cell or "-" for cell in row) for row in rows)
     return f"{figures} named {'; '.join(given['pn'])}" if "pn" in given else figures
 

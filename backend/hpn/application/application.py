@@ -89,6 +89,20 @@ class DutyCycle(Model):
         """Its phases, as they are typed or as they come out of the motion."""
         return self.motion.phases if self.motion is not None else self.phases or ()
 
+    @property
+    def rests(self) -> bool:
+        """True where it has a pause, or a phase at speed 0."""
+        return self.pause_s > 0 or any(phase.speed_rpm == 0 for phase in self.load_phases)
+
+    @property
+    def rest_friction_Nm(self) -> float:
+        """Largest torque at the gear by which dry friction may hold a motion at rest; 0 of phases, 0 without rest."""
+        if self.motion is None:
+            return 0.0
+        held = [abs(phase.torque_Nm) for phase in self.motion.phases if phase.speed_rpm == 0]
+        held += [0.0] if self.pause_s > 0 else []
+        return float(self.motion.mechanism.load.rest_friction_Nm(max(held))) if held else 0.0
+
 
 class Brake(Model):
     """Brake at the motor that stops the axis."""
@@ -210,6 +224,20 @@ class Application(Model):
         if places and motion is None and not given:
             problem = PydanticCustomError("inertia_of_load", "needs a motion, or requirements.load_inertia_kgm2")
             raise refused(asked, *((place, problem) for place in places))
+        return asked
+
+    @field_validator("requirements")
+    @classmethod
+    def _knows_its_rest(cls, asked: Requirements, info: ValidationInfo) -> Requirements:
+        if "duty_cycle" not in info.data:
+            return asked
+        cycle: DutyCycle = info.data["duty_cycle"]
+        if cycle.motion is not None and asked.rest_friction_Nm:
+            problem = PydanticCustomError("friction_twice", "friction at rest follows from the motion: leave it out")
+            raise refused(asked, (("rest_friction_Nm",), problem))
+        if asked.position_error_at == "rest" and not cycle.rests:
+            problem = PydanticCustomError("no_rest", "needs a phase with speed 0, a dwell or a pause")
+            raise refused(asked, (("position_error_at",), problem))
         return asked
 
     @field_validator("rank_by")

@@ -89,6 +89,7 @@ class _Motion(Model):
             course.peak_torque_Nm.tolist(),
             course.peak_speed_rpm.tolist(),
             course.rms_torque_Nm.tolist(),
+            course.least_torque_Nm.tolist(),
             strict=True,
         )
         return tuple(
@@ -101,9 +102,10 @@ class _Motion(Model):
                 peak_torque_Nm=peak,
                 peak_speed_rpm=fastest,
                 rms_torque_Nm=rms,
+                least_torque_Nm=least,
                 name=self.moves[move].name,
             )
-            for move, T, n, t, peak, fastest, rms in columns
+            for move, T, n, t, peak, fastest, rms, least in columns
         )
 
     @property

@@ -14,7 +14,8 @@ class Phase(Model):
     """One load phase of the duty cycle (handbook, illustration 17.1).
 
     Where torque or speed vary in a phase, `torque_Nm` is the mean weighted as in equation 17.2, and `speed_rpm` the
-    mean of |n|; the peaks and the RMS are magnitudes, by default those of torque and speed.
+    mean of |n|; the peaks and the RMS are magnitudes, by default those of torque and speed. The least torque is by
+    default the phase's own where peak and RMS equal it, else 0.
     """
 
     torque_Nm: Torque = Field(description="Output torque T; its magnitude counts.", examples=[40.0])
@@ -34,6 +35,12 @@ class Phase(Model):
     )
     rms_torque_Nm: TorqueMagnitude | None = Field(
         None, description="RMS of the torque over the phase; by default the phase’s own torque.", examples=[42.0]
+    )
+    least_torque_Nm: TorqueMagnitude | None = Field(
+        None,
+        description="Least magnitude of the torque in the phase; by default the phase’s own torque where peak and RMS "
+        "equal it, else 0.",
+        examples=[30.0],
     )
     name: Name | None = Field(None, description="Your name for the phase.", examples=["lift"])
 
@@ -61,3 +68,14 @@ class Phase(Model):
         if rms > peak * (1 + ROOM):
             raise PydanticKnownError("less_than_equal", {"le": peak})
         return rms
+
+    @field_validator("least_torque_Nm")
+    @classmethod
+    def _below_all(cls, least: float | None, info: ValidationInfo) -> float | None:
+        if least is None or not {"torque_Nm", "rms_torque_Nm"} <= info.data.keys():
+            return least
+        rms, own = info.data["rms_torque_Nm"], abs(info.data["torque_Nm"])
+        most = own if rms is None else min(own, rms)
+        if least > most * (1 + ROOM):
+            raise PydanticKnownError("less_than_equal", {"le": most})
+        return least

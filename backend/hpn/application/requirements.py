@@ -6,10 +6,11 @@ from pydantic import BeforeValidator, Field, ValidationInfo, field_validator, mo
 from pydantic_core import PydanticCustomError
 
 from hpn.words.designations import canonical_size
-from hpn.words.fields import Hours, Load, Model, Number, Positive, Ratio, Share, at_most, refused
+from hpn.words.fields import Hours, Load, Model, Number, Positive, Ratio, Share, TorqueMagnitude, at_most, refused
 
 BearingModel = Literal["linear", "iso281", "digitised"]
 LifeBasis = Literal["L50", "L10"]
+PositionErrorAt = Literal["cycle", "rest"]
 MOST_WISHES = 100
 """Ratios or sizes that may be asked for."""
 
@@ -127,10 +128,21 @@ class Requirements(Model):
     position_radius_mm: Positive | None = Field(
         None, description="Radius at which the position error is shown as a length.", examples=[250.0]
     )
+    position_error_at: PositionErrorAt = Field(
+        "cycle",
+        description="cycle: position error over the whole cycle. rest: only in phases with speed 0 and in the pause.",
+        examples=["cycle"],
+    )
+    rest_friction_Nm: TorqueMagnitude = Field(
+        0.0,
+        description="Torque at the gear by which dry friction may hold the axis in phases with speed 0 and in the "
+        "pause; a motion has its mechanism’s.",
+        examples=[6.0],
+    )
     load_reverses: Annotated[bool, Field(strict=True)] | None = Field(
         None,
-        description="True: the torque acts both ways. False: the signs of the torques hold as given. Without it, both "
-        "ways where no torque is negative and there is no motion.",
+        description="True: the torque acts both ways. False: the signs of the torques hold as given, and where none is "
+        "negative no torque reverses. Without it, both ways where no torque is negative and there is no motion.",
         examples=[False],
     )
 

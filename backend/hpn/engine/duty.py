@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from hpn.application import Application, OutputLoad
 from hpn.application.input_fields import NUMBERS
+from hpn.application.phase import ROOM
 from hpn.physics import bearing, equations
 from hpn.physics.equations import FloatArray
 from hpn.physics.motion import Course, StoppedLoad
@@ -28,7 +29,8 @@ class Phases:
     """Phases of N cycles by magnitude, and the signs of their torques, each of shape (N, 1, phases).
 
     Shorter cycles are padded at the end with phases of no duration, which have no weight in any equation. Each load is
-    the phase's own, else the cycle's, else 0; peaks and RMS are those of a steady phase where none are given.
+    the phase's own, else the cycle's, else 0; peaks and RMS are those of a steady phase where none are given, and the
+    least torque is 0 where it is not given and the phase varies.
     """
 
     torque_Nm: FloatArray
@@ -39,17 +41,28 @@ class Phases:
     peak_torque_Nm: FloatArray
     peak_speed_rpm: FloatArray
     rms_torque_Nm: FloatArray
+    least_torque_Nm: FloatArray
     torque_sign: FloatArray
 
     @classmethod
     def of(cls, applications: Sequence[Application]) -> "Phases":
         """Phases of applications, each padded to the longest cycle."""
         longest = max(len(application.duty_cycle.load_phases) for application in applications)
-        table = np.zeros((8, len(applications), 1, longest))
+        table = np.zeros((9, len(applications), 1, longest))
         for place, application in enumerate(applications):
             rows = _rows(application)
             table[:, place, 0, : len(rows)] = np.array(rows).T
-        return cls(*[*np.abs(table), np.sign(table[0])])
+        sign = np.sign(table[0])
+        np.abs(table, out=table)
+        T, _, _, _, _, peak, _, rms, least = table
+        table[8] = np.where(np.isnan(least), least_torque(torque_Nm=T, peak_torque_Nm=peak, rms_torque_Nm=rms), least)
+        return cls(*[*table, sign])
+
+
+def least_torque(*, torque_Nm: FloatArray, peak_torque_Nm: FloatArray, rms_torque_Nm: FloatArray) -> FloatArray:
+    """Least torque in Nm of phases that say none, by magnitude: their own where peak and RMS equal it, else 0."""
+    steady = (peak_torque_Nm <= torque_Nm * (1 + ROOM)) & (rms_torque_Nm >= torque_Nm * (1 - ROOM))
+    return np.where(steady, torque_Nm, 0.0)
 
 
 def _rows(application: Application) -> list[tuple[float, ...]]:
@@ -65,6 +78,7 @@ def _rows(application: Application) -> list[tuple[float, ...]]:
             T if phase.peak_torque_Nm is None else phase.peak_torque_Nm,
             n if phase.peak_speed_rpm is None else phase.peak_speed_rpm,
             T if phase.rms_torque_Nm is None else phase.rms_torque_Nm,
+            np.nan if phase.least_torque_Nm is None else phase.least_torque_Nm,
         )
         for phase in phases
     ]
@@ -76,13 +90,14 @@ class Asked:
 
     `numbers` holds every single number of the application model by its path with dots, such as `requirements.life_h`;
     NaN where it is not given. Where no load is given, neither are the conditions of a load. `load_reverses` is NaN, 0
-    or 1.
+    or 1, `position_error_at` the word of the application.
     """
 
     numbers: Mapping[str, FloatArray]
     bearing_model: TextArray
     life_basis: TextArray
     rank_by: TextArray
+    position_error_at: TextArray
     load_reverses: FloatArray
 
     @classmethod
@@ -95,6 +110,7 @@ class Asked:
             np.array([[load.model if load else ""] for load in loads]),
             np.array([[load.life_basis if load else ""] for load in loads]),
             np.array([[application.rank_by] for application in applications]),
+            np.array([[application.requirements.position_error_at] for application in applications]),
             np.array([[application.requirements.load_reverses] for application in applications], dtype=np.float64),
         )
 
@@ -193,23 +209,58 @@ class Duty:
     def torque_both_ways(self) -> NDArray[np.bool_]:
         """True where the torque is taken to act both ways: as asked, else where no sign says otherwise."""
         asked = self.asked.load_reverses
+        return np.where(np.isnan(asked), self._are_unsigned, asked == 1)
+
+    @cached_property
+    def _are_unsigned(self) -> NDArray[np.bool_]:
+        """True where no torque is negative and there is no motion, as the handbook enters magnitudes; shape (N, 1)."""
         unsigned: NDArray[np.bool_] = np.array((self.phases.torque_sign >= 0).all(axis=-1))
         unsigned[list(self.courses)] = False
-        return np.where(np.isnan(asked), unsigned, asked == 1)
+        return unsigned
+
+    @cached_property
+    def rest_friction_Nm(self) -> tuple[FloatArray, FloatArray]:
+        """Torque in Nm at the gear by which dry friction may hold each phase, shape (N, 1, phases), and the pause.
+
+        0 where the axis moves. Of a motion by its mechanism, else as it is given.
+        """
+        paused = self.asked["requirements.rest_friction_Nm"].copy()
+        phases = np.where(self.phases.speed_rpm == 0, paused[..., None], 0.0)
+        for place, course in self.courses.items():
+            count = len(course.move)
+            held = course.load.rest_friction_Nm(course.peak_torque_Nm)
+            phases[place, 0, :count] = np.where(course.speed_rpm == 0, held, 0.0)
+            paused[place] = course.load.rest_friction_Nm(0.0)
+        return phases, paused
 
     @cached_property
     def torque_range_Nm(self) -> tuple[FloatArray, FloatArray]:
-        """Smallest and largest torque in Nm over the cycle, with its sign; a pause counts as 0."""
-        signed = self.phases.torque_sign * self.phases.peak_torque_Nm
-        signed = np.where(self.phases.duration_s > 0, signed, signed[..., :1])  # what a cycle is padded with is none
-        lowest, highest = signed.min(axis=-1), signed.max(axis=-1)
-        paused = self.asked["duty_cycle.pause_s"] > 0
-        lowest, highest = (
-            np.where(paused, np.minimum(lowest, 0), lowest),
-            np.where(paused, np.maximum(highest, 0), highest),
-        )
-        both = self.torque_both_ways
-        return np.where(both, -self.maximum_torque_Nm, lowest), np.where(both, self.maximum_torque_Nm, highest)
+        """Smallest and largest torque in Nm, with its sign, between which the gear winds up: T_lo and T_hi.
+
+        Of the whole cycle or of its rest, with the dry friction there; a pause holds that friction alone.
+        """
+        phases, at_rest = self.phases, self.asked.position_error_at == "rest"
+        friction, of_pause = self.rest_friction_Nm
+        counts = (phases.duration_s > 0) & (~at_rest[..., None] | (phases.speed_rpm == 0))  # a cycle's padding doesn't
+        lasts = self.asked["duty_cycle.pause_s"] > 0
+        ends = self._signed_torques_Nm
+        lowest = np.where(counts, np.minimum(*ends) - friction, np.inf).min(axis=-1)
+        highest = np.where(counts, np.maximum(*ends) + friction, -np.inf).max(axis=-1)
+        lowest = np.where(lasts, np.minimum(lowest, -of_pause), lowest)
+        highest = np.where(lasts, np.maximum(highest, of_pause), highest)
+        both, largest = self.torque_both_ways, np.maximum(-lowest, highest)
+        return np.where(both, -largest, lowest), np.where(both, largest, highest)
+
+    @property
+    def _signed_torques_Nm(self) -> tuple[FloatArray, FloatArray]:
+        """Ends of the range of torque in each phase, friction at rest left out, shape (N, 1, phases).
+
+        A torque that is 0 on average has its peak both ways, unless no torque reverses.
+        """
+        phases, one_way = self.phases, (self.asked.load_reverses == 0) & self._are_unsigned
+        sign = np.where(one_way[..., None] & (phases.torque_sign == 0), 1.0, phases.torque_sign)
+        peak, least = phases.peak_torque_Nm, phases.least_torque_Nm
+        return np.where(sign == 0, -peak, sign * least), np.where(sign == 0, peak, sign * peak)
 
     @cached_property
     def required_bearing_life_L50_h(self) -> FloatArray:

@@ -137,6 +137,10 @@ NOTICES: Mapping[str, str] = {
         "No torque has a sign, so the position error assumes each of them in both directions. Where that is not so, "
         "choose “no torque reverses” or give signs."
     ),
+    "torque_range_not_given": N_(
+        "The torque varies in phases {phases}, whose least torque is not given: the position error counts it from 0. "
+        "Give the least torque where it stays above 0."
+    ),
     "ramp_shorter_than_period": N_(
         "A ramp of {ramp_s} is shorter than a period of {period_s} of the load’s natural frequency on {name}: the "
         "axis will oscillate after the move."
@@ -284,7 +288,12 @@ def _ranges(places: Sequence[int]) -> str:
             rows[-1].append(place)
         else:
             rows.append([place])
-    return ", ".join(f"{row[0] + 1}" if len(row) == 1 else f"{row[0] + 1}–{row[-1] + 1}" for row in rows)
+    listed = [f"{row[0] + 1}" if len(row) == 1 else f"{row[0] + 1}–{row[-1] + 1}" for row in rows[:RANGES_NAMED]]
+    return ", ".join([*listed, "…"] if len(rows) > RANGES_NAMED else listed)
+
+
+RANGES_NAMED = 20
+"""Ranges of phases or moves that a notice names."""
 
 
 def _is_unlimited(figure: FloatArray, index: int) -> bool:
@@ -312,6 +321,8 @@ def _on_stiffness(application: Application, evaluation: Evaluation, index: int) 
     duty, best = evaluation.case.duty, evaluation.order.item(index, 0)
     if np.isnan(duty.asked.load_reverses.item(index)) and duty.torque_both_ways.item(index):
         yield notice("torque_signs_not_given")
+    if unsaid := _without_least_torque(application, evaluation, index):
+        yield notice("torque_range_not_given", phases=_ranges(unsaid))
     if (motion := application.duty_cycle.motion) is None:
         return
     frequency = np.broadcast_to(evaluation.case.figures.natural_frequency_Hz, evaluation.verdict.shape)[index, best]
@@ -319,6 +330,13 @@ def _on_stiffness(application: Application, evaluation: Evaluation, index: int) 
     if min(ramps) * frequency < 1 - ROUNDING:
         name = evaluation.gears.rows[best].designation
         yield notice("ramp_shorter_than_period", ramp_s=min(ramps), period_s=float(1 / frequency), name=name)
+
+
+def _without_least_torque(application: Application, evaluation: Evaluation, index: int) -> list[int]:
+    """Places of the phases whose torque varies without a least one, but for those that have no sign on average."""
+    least = evaluation.case.duty.phases.least_torque_Nm[index, 0].tolist()
+    phases = enumerate(application.duty_cycle.load_phases)
+    return [place for place, phase in phases if phase.least_torque_Nm is None and phase.torque_Nm and not least[place]]
 
 
 def _on_speed(evaluation: Evaluation, index: int) -> Iterable[Notice]:

@@ -35,6 +35,7 @@ class PhaseFigures(Reply, frozen=True, omit_defaults=True):
     peak_torque_Nm: float
     peak_speed_rpm: float
     rms_torque_Nm: float
+    least_torque_Nm: float | None = None
     radial_N: float | None = None
     axial_N: float | None = None
     name: str | None = None

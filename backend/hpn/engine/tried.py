@@ -89,8 +89,7 @@ def followed(application: Application, way: Way) -> Application:
         parts["duty_cycle"] = cycle.model_copy(update={"phases": _driven(cycle, torque, speed, load), "motion": None})
         if cycle.motion is not None:
             asked = application.requirements
-            known = {"load_inertia_kgm2": cycle.motion.load_inertia_kgm2, "load_reverses": bool(asked.load_reverses)}
-            parts["requirements"] = asked.model_copy(update=known)
+            parts["requirements"] = asked.model_copy(update=_of_motion(cycle, cycle.motion, asked, torque))
             stop = stop and _pulled(stop, cycle.motion)
     if (given := application.output_load) is not None:
         loads = {name: _scaled(getattr(given, name), load) for name in LOADS}
@@ -98,6 +97,15 @@ def followed(application: Application, way: Way) -> Application:
     if stop is not None:
         parts["emergency_stop"] = _stopped(stop, way)
     return application.model_copy(update=parts)
+
+
+def _of_motion(cycle: DutyCycle, motion: Motion, asked: Requirements, torque: float) -> dict[str, float | bool]:
+    """What the requirements have to say of a motion whose phases are typed, their torques by a factor."""
+    return {
+        "load_inertia_kgm2": motion.load_inertia_kgm2,
+        "load_reverses": bool(asked.load_reverses),
+        "rest_friction_Nm": _scaled(cycle.rest_friction_Nm, torque) or 0.0,
+    }
 
 
 LOADS = ("radial_N", "axial_N")
@@ -121,6 +129,7 @@ def _driven(cycle: DutyCycle, torque: float, speed: float, load: float) -> tuple
                 "torque_Nm": _scaled(phase.torque_Nm, torque),
                 "peak_torque_Nm": _scaled(phase.peak_torque_Nm, torque),
                 "rms_torque_Nm": _scaled(phase.rms_torque_Nm, torque),
+                "least_torque_Nm": _scaled(phase.least_torque_Nm, torque),
                 "speed_rpm": _scaled(phase.speed_rpm, speed),
                 "peak_speed_rpm": _scaled(phase.peak_speed_rpm, speed),
                 **{name: _scaled(getattr(phase, name), load) for name in LOADS},

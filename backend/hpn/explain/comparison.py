@@ -64,12 +64,16 @@ def _result(name: str) -> Read:
     return lambda column: math.inf if column.candidate.is_unlimited(name) else getattr(column.candidate, name)
 
 
-def groups_of(columns: Sequence[Column], maximum_torque_Nm: float, checks: Mapping[str, str]) -> tuple[RowGroup, ...]:
-    """The comparison. `checks` are the titles of the checks that the application asks for, by code."""
+def groups_of(
+    columns: Sequence[Column], maximum_torque_Nm: float, checks: Mapping[str, str], *, at_rest: bool = False
+) -> tuple[RowGroup, ...]:
+    """The comparison. `checks` are the titles of the checks that the application asks for, by code; `at_rest` says that
+    the position error is that of rest alone.
+    """
     return (
         RowGroup(N_("Utilisation"), tuple(_utilisations(columns, checks))),
         RowGroup(N_("Life and drive"), tuple(_results(columns, maximum_torque_Nm))),
-        RowGroup(N_("Stiffness and accuracy"), tuple(_accuracies(columns))),
+        RowGroup(N_("Stiffness and accuracy"), tuple(_accuracies(columns, at_rest=at_rest))),
         RowGroup(N_("Ratings"), tuple(_ratings(columns))),
         RowGroup(N_("Size and mounting"), tuple(_mounting(columns))),
     )
@@ -107,7 +111,7 @@ def _motor_title(columns: Sequence[Column], maximum_torque_Nm: float) -> str:
     return N_("Peak torque at the motor")
 
 
-def _accuracies(columns: Sequence[Column]) -> Iterable[Row]:
+def _accuracies(columns: Sequence[Column], *, at_rest: bool) -> Iterable[Row]:
     backlash, accuracy = _figure("backlash_arcmin"), _figure("transmission_accuracy_arcmin")
     stiffness = _figure("torsional_stiffness_Nm_per_rad")
     wind_up = _result("wind_up_arcmin")
@@ -118,8 +122,10 @@ def _accuracies(columns: Sequence[Column]) -> Iterable[Row]:
     if any(column.candidate.natural_frequency_Hz is not None for column in columns):
         held = _result("natural_frequency_Hz")
         yield _row(columns, "frequency", N_("Natural frequency, at most"), held, "f_1", "Hz", lowest=False)
-    error = _result("position_error_arcmin")
-    yield _row(columns, "position_error", N_("Position error, about"), error, "φ_e", "arcmin", lowest=True)
+    error, name = _result("position_error_arcmin"), N_("Position error, about")
+    if at_rest:
+        name = N_("Position error at rest, about")
+    yield _row(columns, "position_error", name, error, "φ_e", "arcmin", lowest=True)
 
 
 def _ratings(columns: Sequence[Column]) -> Iterable[Row]:

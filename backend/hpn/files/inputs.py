@@ -8,14 +8,13 @@ from hpn.application import Application
 from hpn.engine.notices import AREAS
 from hpn.words.quantities import INPUTS
 from hpn.words.reader import Reader
-from hpn.words.terms import BEARING_MODELS, LIFE_BASES, RANKINGS
+from hpn.words.terms import BEARING_MODELS, LIFE_BASES, POSITION_ERROR_AT, RANKINGS
 from hpn.words.units import suffix_of
 from hpn.words.wording import N_
 
 Value = float | str | bool | tuple[str | int, ...]
 
 LOAD_PATH, LOAD_INERTIA = "output_load.", "requirements.load_inertia_kgm2"
-LOAD_REVERSES = "requirements.load_reverses"
 _LOADING = ("duty_cycle.", "emergency_stop.", LOAD_PATH)
 
 LOADS = tuple(path for path in INPUTS if path.startswith(_LOADING))
@@ -24,9 +23,13 @@ LOADS = tuple(path for path in INPUTS if path.startswith(_LOADING))
 REQUIREMENTS = tuple(path for path in INPUTS if not path.startswith((*_LOADING, "phase.")))
 """Requirements of the gear, likewise."""
 
+UNSAID: Mapping[str, Value] = {"requirements.position_error_at": "cycle", "requirements.rest_friction_Nm": 0.0}
+"""Inputs whose default nobody needs to read, as it asks for nothing."""
+
 WORDS: Mapping[str, str] = {
     **BEARING_MODELS,
     **LIFE_BASES,
+    **POSITION_ERROR_AT,
     **{code: ranking.choice for code, ranking in RANKINGS.items()},
     "True": N_("yes"),
     "False": N_("no"),
@@ -45,13 +48,16 @@ class InputLine:
 
 
 def value_of(application: Application, path: str) -> Value | None:
-    """Value of an application at a path of INPUTS, or None; of the load, also the defaults that a phase's load has."""
+    """Value of an application at a path of INPUTS, or None where nothing is said.
+
+    Of the load, also the defaults that a phase's load has.
+    """
     first, *rest = path.split(".")
     part: Any = application.loads if first == "output_load" else getattr(application, first)
     for step in rest:
         part = getattr(part, step, None)
     value: Value | None = part
-    return value
+    return None if value == UNSAID.get(path) else value
 
 
 def given(application: Application, paths: Iterable[str], reader: Reader) -> Iterable[InputLine]:

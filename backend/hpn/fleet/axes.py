@@ -21,7 +21,7 @@ from hpn.application.phase import ROOM
 from hpn.catalogue import Catalogue, GearList
 from hpn.engine.allowed import gears_for, with_listed_motor
 from hpn.engine.batch import chunks_of
-from hpn.engine.duty import Asked, Duty, Phases
+from hpn.engine.duty import Asked, Duty, Phases, least_torque
 from hpn.fleet.columns import AXIS, COLUMNS, Column, is_list
 from hpn.physics.equations import FloatArray
 from hpn.words.fields import MAXIMUM_PHASES
@@ -35,6 +35,10 @@ STEADY = {"peak_torque_Nm": "torque_Nm", "peak_speed_rpm": "speed_rpm", "rms_tor
 """Figures of phases that vary, and what they are of a steady one."""
 
 PAUSE, REVERSES = "duty_cycle.pause_s", "requirements.load_reverses"
+TEXTS = ("bearing_model", "life_basis", "rank_by", "position_error_at")
+"""Inputs that are texts, as the engine takes them."""
+
+LEAST, ERROR_AT = "least_torque_Nm", "requirements.position_error_at"
 
 MOST_CELLS = 100_000
 """Cells and items of lists that are objects at once, while the models judge axes."""
@@ -103,13 +107,17 @@ class Axes:
         return mask
 
     def _have_sound_phases(self) -> BoolArray:
-        """True where a phase moves, and none has a peak below its own torque or speed, or an RMS above its peak."""
+        """True where a phase moves, none has figures that contradict each other, and one rests where rest is judged."""
         T, n, t = (np.abs(self._numbers(name)) for name in ("torque_Nm", "speed_rpm", "duration_s"))
         mask = self._any_phase(n * t > LEAST_MOTION)
-        if any(map(self._is_given, STEADY)):
-            peak_T, peak_n, rms = map(self._numbers, STEADY)
+        if any(map(self._is_given, (*STEADY, LEAST))):
+            peak_T, peak_n, rms, least = map(self._numbers, (*STEADY, LEAST))
             wrong = (peak_T < T * (1 - ROOM)) | (peak_n < n * (1 - ROOM)) | ((n == 0) & (peak_n > 0))
-            mask &= ~self._any_phase(wrong | (rms > np.where(np.isnan(peak_T), T, peak_T) * (1 + ROOM)))
+            wrong |= (rms > np.where(np.isnan(peak_T), T, peak_T) * (1 + ROOM)) | (least > np.fmin(T, rms) * (1 + ROOM))
+            mask &= ~self._any_phase(wrong)
+        if self._is_given(ERROR_AT):
+            of_cycle = np.asarray(pc.fill_null(pc.not_equal(self._table[ERROR_AT], "rest"), fill_value=True))
+            mask &= of_cycle | (self._numbers("pause_s") > 0) | self._any_phase(n == 0)
         return mask
 
     def _have_sound_stops(self) -> BoolArray:
@@ -194,7 +202,7 @@ class Axes:
             series = [(values[place] * inside)[:, None, :] for values in self._phases.values()]
         assert self._asked is not None
         numbers = {path: values[axes, None] for path, values in self._wanted.items()}
-        texts = (getattr(self._asked, name)[self._pattern[axes]] for name in ("bearing_model", "life_basis", "rank_by"))
+        texts = (getattr(self._asked, name)[self._pattern[axes]] for name in TEXTS)
         return Duty(Phases(*series), Asked(numbers, *[*texts, self._numbers(REVERSES)[axes, None]]))
 
     @cached_property
@@ -206,6 +214,9 @@ class Axes:
             values[name] = np.nan_to_num(np.where(np.isnan(values[name]), whole, values[name]))
         for name, steady in STEADY.items():
             values[name] = np.where(np.isnan(values[name]), values[steady], values[name])
+        T, peak, _, rms = (values[name] for name in ("torque_Nm", *STEADY))
+        by_default = least_torque(torque_Nm=T, peak_torque_Nm=peak, rms_torque_Nm=rms)
+        values[LEAST] = np.where(np.isnan(values[LEAST]), by_default, values[LEAST])
         return values | {"torque_sign": np.sign(self._numbers("torque_Nm"))}
 
     @cached_property

@@ -11,7 +11,7 @@ from hpn.words.patterns import Pattern
 QUANTITIES = {
     **{"T": "torque", "n": "speed", "t": "time"},
     **{"FRi": "force", "FAi": "force"},
-    **{"Tpk": "torque", "npk": "speed", "Trms": "torque"},
+    **{"Tpk": "torque", "npk": "speed", "Trms": "torque", "Tlo": "torque"},
 }
 """Link symbols of the columns of the duty table -> what they measure."""
 
@@ -51,6 +51,9 @@ _WORDS = {
     "Trms": "rms torque; torque rms; effective torque; trms; t rms; t eff; teff; m eff; meff; "
     "effektivmoment; effektivdrehmoment; effektives moment; effektives drehmoment; drehmoment eff; "
     "moment eff; drehmoment effektiv",
+    "Tlo": "least torque; minimum torque; min torque; torque min; lowest torque; smallest torque; tlo; t lo; "
+    "mmin; kleinstes moment; kleinstes drehmoment; minimalmoment; minimaldrehmoment; "
+    "minimales moment; minimales drehmoment; min drehmoment; min moment; drehmoment min; moment min",
     INDEX: "nr; no; #; №; n°; nº; pos; index; idx; id; lfd nr; lfd-nr; lfdnr; nummer; number; num; phase; phase nr; "
     "phase no; phasen-nr; phasennr; phasennummer; step; schritt; segment; abschnitt; row; zeile; étape; fase; steg; "
     "i; k; line; item; point; punkt",

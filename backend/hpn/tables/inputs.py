@@ -1,6 +1,6 @@
 """Inputs that the columns of a table may hold, and the names by which a heading calls them.
 
-A table of the eight quantities of a phase is one duty cycle. Where a column may name the axis, it has many: beside the
+A table of the nine quantities of a phase is one duty cycle. Where a column may name the axis, it has many: beside the
 phases it may have a column for every other input of an application.
 """
 
@@ -67,7 +67,7 @@ class Input:
 
 _OF_PHASE = {
     **{"T": "torque_Nm", "n": "speed_rpm", "t": "duration_s", "FRi": "radial_N", "FAi": "axial_N"},
-    **{"Tpk": "peak_torque_Nm", "npk": "peak_speed_rpm", "Trms": "rms_torque_Nm"},
+    **{"Tpk": "peak_torque_Nm", "npk": "peak_speed_rpm", "Trms": "rms_torque_Nm", "Tlo": "least_torque_Nm"},
 }
 PHASE = tuple(Input(role, place, quantities.INPUTS[f"phase.{place}"]) for role, place in _OF_PHASE.items())
 PHASE_ROLES = tuple(_OF_PHASE)

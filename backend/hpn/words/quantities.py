@@ -46,6 +46,7 @@ INPUTS: Mapping[str, Named] = {
     "phase.peak_torque_Nm": Named(N_("Peak torque"), "T_pk"),
     "phase.peak_speed_rpm": Named(N_("Peak speed"), "n_pk"),
     "phase.rms_torque_Nm": Named(N_("RMS torque"), "T_rms"),
+    "phase.least_torque_Nm": Named(N_("Least torque"), "T_min"),
     "phase.name": Named(N_("Name")),
     "duty_cycle.pause_s": Named(N_("Pause"), "t_p"),
     "emergency_stop.torque_Nm": Named(N_("Emergency-stop torque"), "T_k"),
@@ -81,6 +82,8 @@ INPUTS: Mapping[str, Named] = {
     "requirements.position_error_arcmin": Named(N_("Maximum position error"), "φ_req"),
     "requirements.position_error_mm": Named(N_("Maximum position error as a length"), "s_req"),
     "requirements.position_radius_mm": Named(N_("Radius of the position"), "r_p"),
+    "requirements.position_error_at": Named(N_("Position error counts")),
+    "requirements.rest_friction_Nm": Named(N_("Dry friction at rest"), "T_f,rest"),
     "requirements.load_reverses": Named(N_("Torque acts both ways")),
     "requirements.ambient_temperature_degC": Named(N_("Ambient temperature"), "t_amb"),
     "requirements.backlash_arcmin": Named(N_("Maximum backlash"), "j_req"),
@@ -118,6 +121,7 @@ PHASE: Mapping[str, Named] = {
             "Largest torque in the phase.",
             "Largest speed in the phase.",
             "RMS of the torque over the phase.",
+            "Least magnitude of the torque in the phase.",
             "Name of the move that it belongs to; left out where it has none.",
         ),
         strict=False,
@@ -212,7 +216,7 @@ CANDIDATE: Mapping[str, Named] = {
     "position_error_arcmin": Named(
         N_("Position error"),
         "φ_e",
-        "Transmission accuracy, wind-up over the cycle’s torques and, where the torque passes 0, backlash; added.",
+        "Transmission accuracy, wind-up over the torques of the cycle or of its rest and, where they pass 0, backlash.",
         caveat=N_("Approximate: limits of a new gear, added; wind-up from the lowest to the highest torque."),
     ),
     "position_error_mm": Named(

@@ -131,13 +131,13 @@ PROPERTIES: tuple[Check, ...] = (
         limit_name=N_("your limit"),
         source=N_("tables 15.1 and 15.2"),
         tests=N_(
-            "Transmission accuracy, wind-up between the smallest and the largest torque of the cycle, and the backlash "
-            "where the torque passes 0, together stay within your limit."
+            "Transmission accuracy, wind-up between the smallest and the largest torque of the cycle or of its rest, "
+            "and the backlash where the torque passes 0, together stay within your limit."
         ),
         consequence=N_("The axis deviates from its position by more than the task allows."),
         basis=N_(
             "Approximate: arithmetic sum of the limits of a new gear. The wind-up is a lower bound, since the gear is "
-            "softer below 15 % of the rated torque (glossary)."
+            "softer below 15 % of the rated torque (glossary). At rest dry friction holds the axis to either side."
         ),
         remedy=N_(
             "Choose a larger size or a single-stage ratio, lower the torque, or measure the position at the load."

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from hpn.explain.calculation.formula import Constant, Formula, Root, Sum, Term, Variable
 from hpn.explain.calculation.sheet import Line, Sheet, Step, known, step_of_check
 from hpn.words.quantities import CANDIDATE
-from hpn.words.wording import N_, Sentence
+from hpn.words.wording import N_, Quantity, Sentence
 
 PI = Term(Variable("π"), math.pi)
 ARCMIN = Constant(10800, "arcmin") / PI
@@ -52,13 +52,33 @@ def position_steps(sheet: Sheet) -> Iterable[Step]:
     length, radius = sheet.figure("position_error_mm"), sheet.given("requirements.position_radius_mm")
     if length is not None and radius is not None:
         lines.append(Line(length, error / ARCMIN * radius))
-    torques = Sentence(BOTH_WAYS if sheet.duty.torque_both_ways.item() else BY_SIGN)
-    notes = (torques, Sentence(CANDIDATE["position_error_arcmin"].caveat))
+    notes = (*_on_the_range(sheet), Sentence(CANDIDATE["position_error_arcmin"].caveat))
     yield step_of_check("position_error", tuple(lines), sheet.compared("position_error", error), notes)
 
 
-BOTH_WAYS = N_("The torque is assumed to act both ways: T_lo is −T_max and T_hi is T_max.")
+def _on_the_range(sheet: Sheet) -> Iterable[Sentence]:
+    """Notes on where T_lo and T_hi come from."""
+    duty, motion = sheet.duty, sheet.application.duty_cycle.motion
+    both = duty.torque_both_ways.item()
+    yield Sentence(BOTH_WAYS if both else BY_SIGN if motion is None else BY_COURSE)
+    if sheet.application.requirements.position_error_at == "rest":
+        yield Sentence(AT_REST)
+    friction = max(part.max() for part in duty.rest_friction_Nm)
+    if friction and sheet.application.duty_cycle.rests:
+        yield Sentence(FRICTION if motion is None else R_OF_MOTION, {"friction": Quantity(float(friction), "Nm", 6)})
+
+
+BOTH_WAYS = N_("The torque is assumed to act both ways: T_hi is its largest magnitude, and T_lo is −T_hi.")
 BY_SIGN = N_(
-    "T_lo and T_hi are the smallest and the largest peak of the phases, each with the sign of its torque; a pause "
-    "counts as 0."
+    "T_lo and T_hi are the smallest and the largest torque: of each phase from its least torque to its peak with the "
+    "sign of its torque, of the pause 0."
+)
+BY_COURSE = N_(
+    "T_lo and T_hi are the smallest and the largest torque along the motion, with their signs; a pause counts as 0."
+)
+AT_REST = N_("Rest alone counts: phases at speed 0, dwells and the pause.")
+FRICTION = N_("At rest dry friction may raise or lower the torque by {friction}.")
+R_OF_MOTION = N_(
+    "At rest dry friction may raise or lower the torque by R = ((|T_load| + T_s) / η − |T_load|) / ratio, with the dry "
+    "friction T_s and the η of the mechanism: by at most {friction}."
 )

@@ -23,7 +23,7 @@ MOST_PHASES = 20
 """Phases up to which each is listed; beyond, their range and sum."""
 
 _ALWAYS = ("torque_Nm", "speed_rpm", "duration_s")
-_WHERE_GIVEN = ("peak_torque_Nm", "peak_speed_rpm", "rms_torque_Nm", "radial_N", "axial_N")
+_WHERE_GIVEN = ("peak_torque_Nm", "peak_speed_rpm", "rms_torque_Nm", "least_torque_Nm", "radial_N", "axial_N")
 
 Column = Sequence[float | None]
 

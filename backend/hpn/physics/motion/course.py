@@ -23,9 +23,9 @@ class Course:
     """A motion at the gear's output: its phases, and the data behind the motor's torque.
 
     Of each phase, shape (phases,): the place of its move, the mean torque that equation 17.2 weighs and the mean speed,
-    both signed; peaks and RMS by magnitude; and the integrals of T (Nm s), α (rad/s), T² (Nm² s), T α (Nm rad/s) and α²
-    (rad²/s³), signed at the output. `pieces` are smooth, their torque keeps its sign and is monotone; `phase` says
-    which phase each is part of, and `factor` what the gear bears of the shaft's torque.
+    both signed; peaks, least torques and RMS by magnitude; and the integrals of T (Nm s), α (rad/s), T² (Nm² s), T α
+    (Nm rad/s) and α² (rad²/s³), signed at the output. `pieces` are smooth, their torque keeps its sign and is monotone;
+    `phase` says which phase each is part of, and `factor` what the gear bears of the shaft's torque.
     """
 
     load: ShaftLoad
@@ -39,6 +39,7 @@ class Course:
     peak_torque_Nm: FloatArray
     peak_speed_rpm: FloatArray
     rms_torque_Nm: FloatArray
+    least_torque_Nm: FloatArray
     torque_time: FloatArray
     speed_change: FloatArray
     square_torque: FloatArray
@@ -99,11 +100,12 @@ def course_along(pieces: Pieces, load: ShaftLoad) -> Course:
         factor=factor,
         move=pieces.move[starts],
         duration_s=duration,
-        torque_Nm=sign[starts] * np.where(steady | ~moving[starts], peak, np.minimum(mean, peak)),
+        torque_Nm=sign[starts] * np.where(steady | ~moving[starts], peak, np.clip(mean, least, peak)),
         speed_rpm=angle / duration * load.ratio / RPM,
         peak_torque_Nm=peak,
         peak_speed_rpm=np.maximum.reduceat(speeds.max(axis=0), starts) * moving[starts] * load.ratio / RPM,
-        rms_torque_Nm=np.where(steady, peak, np.minimum(np.sqrt(square_torque / duration), peak)),
+        rms_torque_Nm=np.where(steady, peak, np.clip(np.sqrt(square_torque / duration), least, peak)),
+        least_torque_Nm=least,
         torque_time=np.add.reduceat(summed(pieces, values) * factor, starts),
         speed_change=np.add.reduceat(summed(pieces, acceleration) * load.ratio, starts),
         square_torque=square_torque,

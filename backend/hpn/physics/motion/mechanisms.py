@@ -5,9 +5,10 @@ from abc import abstractmethod
 from dataclasses import dataclass
 from typing import Annotated, Literal, Self
 
+import numpy as np
 from pydantic import Field, model_validator
 
-from hpn.physics.equations import ROUNDING
+from hpn.physics.equations import ROUNDING, FloatArray
 from hpn.physics.motion.refusals import refusal
 from hpn.words.fields import Load, Model, Number, Positive, Share, TorqueMagnitude, refused
 from hpn.words.wording import Quantity
@@ -64,6 +65,16 @@ class ShaftLoad:
     def weight_Nm(self) -> float:
         """Largest torque of gravity in Nm, over a full turn or in both directions."""
         return max(self.gravity_Nm, abs(self.constant_Nm))
+
+    def rest_friction_Nm(self, torque_Nm: FloatArray | float) -> FloatArray:
+        """Torque R in Nm at the gear by which dry friction may raise or lower a torque at rest; takes the gear's.
+
+        R = ((|T_load| + T_s) / η - |T_load|) / ratio with all dry friction T_s: what it takes to set the axis in
+        motion, beside what it takes to hold it without friction.
+        """
+        held = np.abs(torque_Nm)
+        friction: FloatArray = held * (1 / self.efficiency - 1) + self.friction_Nm / (self.efficiency * self.ratio)
+        return friction
 
 
 class Mechanism(Model):

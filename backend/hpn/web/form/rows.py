@@ -10,7 +10,7 @@ LOADS = ("FRi", "FAi")
 OPTIONAL: Mapping[str, tuple[str, ...]] = {
     "names": (NAME.role,),
     "loads": LOADS,
-    "varying": ("Tpk", "npk", "Trms"),
+    "varying": ("Tpk", "npk", "Trms", "Tlo"),
     "ramps": ("mta", "mtd", "md2"),
     "jerk": ("mjk",),
 }
@@ -45,7 +45,7 @@ BODY_COLUMNS: Mapping[str, tuple[str, ...]] = {
 TEXT = "phases"
 """Field of the form that holds the phases as text, a phase on each line, where they are too many for a table."""
 
-WIDTHS = {"names": 9, "varying": 8, "loads": 5}
+WIDTHS = {"names": 10, "varying": 9, "loads": 5}
 """Cells of a line of that text by what the phases have."""
 
 
@@ -128,12 +128,12 @@ def expanded(pairs: Sequence[tuple[str, str]]) -> list[tuple[str, str]]:
 
 
 def _cells(line: str) -> list[str]:
-    """Cells of a line, separated by tabs, semicolons or blanks; a ninth is the name, with all that follows."""
+    """Cells of a line, separated by tabs, semicolons or blanks; a tenth is the name, with all that follows."""
     return re.split(r" *[;\t] *| +", line.strip(" "), maxsplit=len(PHASE_ROLES))
 
 
 def _phase_pairs(rows: Sequence[Sequence[str]]) -> list[tuple[str, str]]:
-    """Pairs of rows in the order T, n, t, FRi, FAi, Tpk, npk, Trms, pn; what a short row lacks is blank."""
+    """Pairs of rows in the order T, n, t, FRi, FAi, Tpk, npk, Trms, Tlo, pn; what a short row lacks is blank."""
     columns = {
         name: [row[k] if k < len(row) else "" for row in rows] for k, name in enumerate((*PHASE_ROLES, NAME.role))
     }

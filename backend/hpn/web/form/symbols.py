@@ -17,7 +17,7 @@ from hpn.tables.numbers import Kind
 from hpn.web.form import labels
 from hpn.web.form.rows import OF_ANY_ROW, OPTIONAL, shown_columns, used_columns
 from hpn.words.quantities import CANDIDATE, INPUTS, QUANTITIES
-from hpn.words.terms import BEARING_MODELS, LIFE_BASES, RANKINGS
+from hpn.words.terms import BEARING_MODELS, LIFE_BASES, POSITION_ERROR_AT, RANKINGS
 from hpn.words.units import suffix_of
 from hpn.words.wording import N_, Named
 
@@ -179,6 +179,19 @@ SYMBOLS = (
     Symbol("pe", ("requirements", "position_error_arcmin")),
     Symbol("pem", ("requirements", "position_error_mm"), hint=N_("At the radius below.")),
     Symbol("pr", ("requirements", "position_radius_mm")),
+    Symbol(
+        "pea",
+        ("requirements", "position_error_at"),
+        "text",
+        choices=POSITION_ERROR_AT,
+        hint=N_("At rest: in phases at speed 0, dwells and the pause."),
+    ),
+    Symbol(
+        "rf",
+        ("requirements", "rest_friction_Nm"),
+        placeholder="0",
+        hint=N_("At the gear; holds the axis in phases at speed 0 and in the pause. A motion has its mechanism’s."),
+    ),
     Symbol(
         "lr",
         ("requirements", "load_reverses"),
@@ -358,7 +371,7 @@ GROUPS = (
     FormGroup(
         "stiffness",
         N_("Stiffness and position"),
-        ("fn", "pe", "pem", "pr", "lr"),
+        ("fn", "pe", "pem", "pr", "pea", "lr", "rf"),
         hint=N_("Frequency: the motor held. Position error: accuracy, wind-up and backlash, added."),
     ),
     FormGroup("limits", N_("Properties and environment"), ("bm", "bl", "K3", "m", "L", "ta", "aa")),

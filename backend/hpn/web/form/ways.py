@@ -18,8 +18,14 @@ from hpn.words.wording import N_
 Pairs = Sequence[tuple[str, str]]
 
 ASIDE, PHASES, MOTION = "aside", "phases", "motion"
+REST_FRICTION, REVERSES = "rf", "lr"
+"""Names of what phases have to say of their rest and of the sense of their torque, which a motion has by itself."""
+
 CYCLE_NAMES = {symbol.name for symbol in (*PHASE_SYMBOLS, *TURN_SYMBOLS, *MECHANISM_SYMBOLS)}
 """Names of a link that make its duty cycle, as phases or as a motion."""
+
+_OF_ITS_WAY = {*CYCLE_NAMES, REST_FRICTION, REVERSES}
+"""Names of what belongs to one way alone."""
 
 _OF_PHASES_ALONE = {symbol.name for symbol in PHASE_SYMBOLS} - {*OF_ANY_ROW}
 
@@ -53,7 +59,7 @@ def switched(pairs: Pairs) -> Pairs:
 
 
 def _switched(pairs: Pairs, wanted: str) -> Iterator[tuple[str, str]]:
-    own = [(name, text) for name, text in pairs if name in CYCLE_NAMES]
+    own = [(name, text) for name, text in pairs if name in _OF_ITS_WAY]
     kept = {way_of(query): query for query in map(_read, (text for name, text in pairs if name == ASIDE))}
     here = way_of(own)
     if here != PHASES and (stray := [(name, text) for name, text in own if name in _OF_PHASES_ALONE]):
@@ -65,7 +71,7 @@ def _switched(pairs: Pairs, wanted: str) -> Iterator[tuple[str, str]]:
         before, own = own, list(kept.pop(wanted, []) or _begun(own, here, wanted))
         kept[here] = before
     yield from own
-    yield from ((name, text) for name, text in pairs if name not in CYCLE_NAMES and name != ASIDE)
+    yield from ((name, text) for name, text in pairs if name not in _OF_ITS_WAY and name != ASIDE)
     for query in kept.values():
         if any(text.strip() for name, text in query if name not in ("mech", "mv")):
             yield (ASIDE, _written(query))
@@ -83,9 +89,12 @@ def taken_over(pairs: Pairs, application: Application) -> Pairs:
     """Pairs with the phases that come out of a motion in place of the motion, which is kept aside."""
     phases = tuple(map(_rounded, application.duty_cycle.load_phases))
     cycle = to_link(Application(duty_cycle=DutyCycle(phases=phases))).removeprefix("/?")
-    own = [(name, text) for name, text in pairs if name in CYCLE_NAMES]
-    rest = [(name, text) for name, text in pairs if name not in (*CYCLE_NAMES, "do") and not _is_of_phases(name, text)]
-    return [*_read(cycle), *rest, (ASIDE, _written(own)), ("do", f"way:{PHASES}")]
+    own = [(name, text) for name, text in pairs if name in _OF_ITS_WAY]
+    rest = [(name, text) for name, text in pairs if name not in (*_OF_ITS_WAY, "do") and not _is_of_phases(name, text)]
+    says = [(REVERSES, next((text for name, text in own if name == REVERSES and text.strip()), "0"))]
+    if friction := application.duty_cycle.rest_friction_Nm:
+        says.append((REST_FRICTION, repr(_in_few_digits(friction))))
+    return [*_read(cycle), *says, *rest, (ASIDE, _written(own)), ("do", f"way:{PHASES}")]
 
 
 def _is_of_phases(name: str, text: str) -> bool:
@@ -94,9 +103,11 @@ def _is_of_phases(name: str, text: str) -> bool:
 
 def _rounded(phase: Phase) -> Phase:
     """A phase in fewer digits. Rounding keeps the order of numbers, so that no peak comes to lie below a mean."""
-    return phase.model_copy(
-        update={name: float(f"{value:.{DIGITS}g}") for name, value in phase if isinstance(value, float)}
-    )
+    return phase.model_copy(update={name: _in_few_digits(value) for name, value in phase if isinstance(value, float)})
+
+
+def _in_few_digits(value: float) -> float:
+    return float(f"{value:.{DIGITS}g}")
 
 
 def _read(query: str) -> Pairs:
@@ -105,7 +116,7 @@ def _read(query: str) -> Pairs:
         pairs = parse_qsl(query, keep_blank_values=True, max_num_fields=MOST_FIELDS)
     except ValueError:
         return []
-    return [(name, text) for name, text in pairs if name in CYCLE_NAMES]
+    return [(name, text) for name, text in pairs if name in _OF_ITS_WAY]
 
 
 def _written(pairs: Pairs) -> str:

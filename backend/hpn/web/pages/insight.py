@@ -49,7 +49,8 @@ class Insight:
     def groups(self) -> tuple[RowGroup, ...]:
         """The rows of the comparison."""
         titles = {code: definition.title for code, definition in self.selection.check_definitions.items()}
-        return groups_of(self.columns, self.selection.duty.maximum_torque_Nm, titles)
+        at_rest = self.application.requirements.position_error_at == "rest"
+        return groups_of(self.columns, self.selection.duty.maximum_torque_Nm, titles, at_rest=at_rest)
 
     @cached_property
     def undominated(self) -> frozenset[str]:
