@@ -147,14 +147,25 @@ def test_a_key_that_cannot_be_one_is_refused(client: TestClient, key: str) -> No
     assert response.status_code == 400
 
 
-def test_a_client_can_prefer_no_body_or_the_whole(client: TestClient) -> None:
+def test_the_gear_of_a_saved_selection_is_the_one_of_its_designation(client: TestClient) -> None:
+    """An ordering code names another gear than the first candidate."""
+    body = {"application": worked_example(), "ordering_code": "HPN-20A-7-J6"}
+    saved = client.get(client.post(ADDRESS, json=body).headers["location"]).json()
+
+    assert saved["selected"] != "HPN-20A-7"
+    assert saved["gear"]["designation"] == saved["designation"] == "HPN-20A-7"
+
+
+def test_a_client_can_prefer_the_whole_and_always_gets_a_body(client: TestClient) -> None:
+    """Generated clients read the body that the document promises."""
     body = {"application": worked_example()}
 
     minimal = client.post(ADDRESS, json=body, headers={"Prefer": "respond-async, return=minimal"})
     whole = client.post(ADDRESS, json=body, headers={"Prefer": 'return="representation"'})
 
-    assert (minimal.status_code, minimal.content) == (201, b"")
-    assert minimal.headers["preference-applied"] == "return=minimal"
+    assert minimal.status_code == 201
+    assert minimal.json()["url"].endswith(minimal.json()["id"])
+    assert "preference-applied" not in minimal.headers
     assert client.get(minimal.headers["location"]).status_code == 200
     assert whole.status_code == 201
     assert whole.headers["preference-applied"] == "return=representation"

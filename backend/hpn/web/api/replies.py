@@ -233,8 +233,8 @@ class SavedSelectionReply(SummaryReply, frozen=True):
     gear: Annotated[
         Gear | None,
         Field(
-            description="Published figures of the first candidate in the catalogue of that time; null where that is "
-            "not kept."
+            description="Published figures of the gear `designation` in the catalogue of that time; null where that "
+            "is not kept."
         ),
     ]
     result: Annotated[Selection, Field(description="The complete reply.")]

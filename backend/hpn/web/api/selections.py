@@ -43,7 +43,14 @@ from hpn.web.archive import (
 )
 from hpn.web.door.access import admit
 from hpn.web.door.bodies import JSON, MERGE_PATCH, parsed, read_body
-from hpn.web.door.conditions import conditional, etag_of, idempotency_key, other_state, preferred_return, require_match
+from hpn.web.door.conditions import (
+    conditional,
+    etag_of,
+    idempotency_key,
+    other_state,
+    prefers_representation,
+    require_match,
+)
 from hpn.web.door.observation import note
 from hpn.web.door.pools import calculate
 from hpn.web.door.problems import Problem
@@ -79,7 +86,7 @@ router = APIRouter(prefix="/api/v1/selections", tags=["Saved selections"])
     | {
         "parameters": [
             schemas.header("Idempotency-Key", KEY),
-            schemas.header("Prefer", "return=minimal: no body; return=representation: the whole saved selection."),
+            schemas.header("Prefer", "return=representation: the whole saved selection."),
         ]
     },
     response_model=SavedReply,
@@ -102,12 +109,8 @@ async def save_selection(request: Request) -> Response:
         headers["ETag"] = _tag(id, 1, catalogue.version, catalogue)
     else:
         headers |= {"ETag": _tag_of(*await with_catalogue(request.app.state, id), catalogue), REPLAYED: "true"}
-    preferred = preferred_return(request)
-    if preferred:
-        headers["Preference-Applied"] = f"return={preferred}"
-    if preferred == "minimal":
-        return Response(status_code=201, headers=headers)
-    if preferred == "representation":
+    if prefers_representation(request):
+        headers["Preference-Applied"] = "return=representation"
         whole, headers["ETag"] = await _representation(request, id)
         return JSONBytes(whole, 201, headers)
     return JSONBytes(encode_reply(SavedReply(id, url_of(id))), 201, headers)
@@ -251,12 +254,12 @@ async def _representation(request: Request, id: str) -> tuple[bytes, str]:
 
 def _represented(reopened: Reopened, catalogue: Catalogue) -> tuple[bytes, str]:
     saved, then = reopened.saved, reopened.then
-    first = reopened.selection.foremost.designation
+    shown = saved.designation or reopened.selection.foremost.designation
     body = encode_reply(
         {
             **structs.asdict(_summary(saved)),
             "application": Raw(saved.application),
-            "gear": then and then.by_designation.get(first),
+            "gear": then and then.by_designation.get(shown),
             "result": Raw(saved.result),
             "today": _today(reopened, catalogue),
         }

@@ -11,7 +11,7 @@ from hpn.web.door.problems import Problem
 IDEMPOTENCY_KEY = re.compile(r'"?([\x21\x23-\x7e]{1,200})"?')
 """Visible ASCII, with or without the quotes of a structured field."""
 
-PREFERRED_RETURN = re.compile(r"(?:^|[,;\s])return\s*=\s*\"?(minimal|representation)\b", re.I)
+REPRESENTATION = re.compile(r"(?:^|[,;\s])return\s*=\s*\"?representation\b", re.I)
 
 
 def etag_of(body: bytes) -> str:
@@ -63,7 +63,6 @@ def idempotency_key(request: Request) -> str | None:
     return f"{name}:{match[1]}" if name else f"address {hashlib.sha256(f'{caller} {match[1]}'.encode()).hexdigest()}"
 
 
-def preferred_return(request: Request) -> str | None:
-    """Value of `Prefer: return=…`: minimal, representation, or None."""
-    match = PREFERRED_RETURN.search(request.headers.get("prefer", ""))
-    return match[1].lower() if match else None
+def prefers_representation(request: Request) -> bool:
+    """True for `Prefer: return=representation`; any other preference is ignored, as RFC 7240 permits."""
+    return REPRESENTATION.search(request.headers.get("prefer", "")) is not None
