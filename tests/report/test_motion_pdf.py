@@ -46,9 +46,10 @@ def test_a_motion_is_printed_as_given_with_the_phases_that_come_out(catalogue: C
     for line in ("Mechanismus Drehachse", "0,8 kg·m²", "250 mm", "1 turn Trapez 90 0,8 900", "3 S-Kurve −90 1 25 0,5"):
         assert line in re.sub(r"[\u2009\u202f\xa0]", " ", first), line
     assert "Lastphasen der Bewegung" in first
-    rows = re.findall(r"^(\d) (\d)(?: turn)? (\S+) (\S+) (\S+) (\S+) (\S+) (\S+)$", first, re.M)
+    rows = re.findall(r"^(\d) (\d)(?: turn)? (\S+) (\S+) (\S+) (\S+) (\S+) (\S+) (\S+)$", first, re.M)
     assert [row[:2] for row in rows] == [*zip("12345678", "11123333", strict=True)]  # each with its move
     assert rows[0][2:4] == ("48,12", "11,63")
+    assert float(rows[0][8].replace(",", ".")) < 48.12 < float(rows[0][5].replace(",", "."))  # least torque and peak
 
 
 def test_a_bracket_behind_a_symbol_is_no_part_of_its_index() -> None:
