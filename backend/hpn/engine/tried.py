@@ -87,8 +87,11 @@ def followed(application: Application, way: Way) -> Application:
         parts["duty_cycle"] = cycle.model_copy(update={"motion": _loaded(cycle.motion, load)})
     else:
         parts["duty_cycle"] = cycle.model_copy(update={"phases": _driven(cycle, torque, speed, load), "motion": None})
-        if cycle.motion is not None:
-            asked = application.requirements
+        asked = application.requirements
+        if cycle.motion is None:
+            friction = _scaled(asked.rest_friction_Nm, torque) or 0.0  # a torque of the cycle as the others are
+            parts["requirements"] = asked.model_copy(update={"rest_friction_Nm": friction})
+        else:
             parts["requirements"] = asked.model_copy(update=_of_motion(cycle, cycle.motion, asked, torque))
             stop = stop and _pulled(stop, cycle.motion)
     if (given := application.output_load) is not None:
