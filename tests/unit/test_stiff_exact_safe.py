@@ -280,6 +280,28 @@ def test_phases_in_place_of_a_motion_keep_the_torques_of_its_load(catalogue: Cat
     assert typed.stopping_time_s > moved.stopping_time_s  # all of T_d drives
 
 
+@pytest.mark.parametrize(("mass_kg", "counterweight_kg", "is_told"), [(600, 560, False), (180, 120, True)])
+def test_a_stop_harder_than_g_lets_the_rope_of_a_counterweight_go_slack(
+    mass_kg: float, counterweight_kg: float, is_told: bool, catalogue: Catalogue
+) -> None:
+    """(T_k + T_o) / J · 30 mm by hand; without a counterweight nothing hangs."""
+    rack: Json = {"type": "rack_and_pinion", "mass_kg": mass_kg, "diameter_mm": 60, "incline_deg": 90}
+    rack["counterweight_kg"] = counterweight_kg
+    moves = [{"profile": "trapezoidal", "distance_mm": 300, "time_s": 2}]
+    asked = {"ratios": [5], "sizes": ["20A"], "motor": {"inertia_kgm2": 0.0015}}
+    stop = {"brake": {"torque_Nm": 6}}
+    application = {"duty_cycle": {"motion": {"mechanism": rack, "moves": moves}}, "emergency_stop": stop}
+    reply = answer(application | {"requirements": asked}, catalogue)
+    J, a = (mass_kg + counterweight_kg) * 0.03**2, 4.5 * 0.3 / 2**2
+    T_o = (mass_kg - counterweight_kg) * 9.80665 * 0.03 + J / 0.03 * a
+    slowing = (candidate(reply, GEAR)["stop_torque_Nm"] + T_o) / J * 0.03
+
+    assert (slowing > 9.80665) == is_told
+    assert ("counterweight_slack" in notices(reply)) == is_told
+    rack.pop("counterweight_kg")
+    assert "counterweight_slack" not in notices(answer(application | {"requirements": asked}, catalogue))
+
+
 def hanging(mass_kg: float, brake: Json, **requirements: Any) -> Json:
     """A mass at 250 mm that turns over the top, and the brake that stops it."""
     mechanism = {"type": "rotary", "inertia_kgm2": mass_kg * 0.07} | {"gravity_mass_kg": mass_kg}

@@ -169,6 +169,10 @@ NOTICES: Mapping[str, str] = {
     "brake_while_accelerating": N_(
         "J · α of a stop during acceleration is in T_k only as far as the opposing torque that you give includes it."
     ),
+    "counterweight_slack": N_(
+        "A stop on {name} may decelerate the load by up to {share_percent} of g: above g the counterweight’s rope goes "
+        "slack, and T_k is no bound when it tightens again."
+    ),
     "brake_inertia_unknown": N_(
         "Without the inertias of motor and load the full brake torque counts, an upper bound; time and angle of the "
         "stop stay unknown."
@@ -308,9 +312,9 @@ def _on_stop_and_life(application: Application, evaluation: Evaluation, index: i
         yield notice("emergency_stop_below_maximum", stop_Nm=stop, largest_Nm=largest)
     if application.emergency_stop is not None and application.emergency_stop.count is None:
         yield notice("stops_not_counted")
-    if application.emergency_stop is not None and application.emergency_stop.brake is not None:
-        said = figures.stops.said_of(application.emergency_stop.brake, index)
-        yield from (notice(code, **values) for code, values in said)
+    first = evaluation.order.item(index, 0)
+    said = figures.stops.said_of(application, index, first, evaluation.gears.rows[first].designation)
+    yield from (notice(code, **values) for code, values in said)
     if _is_unlimited(figures.momentary_peak_count, index):
         yield notice("momentary_peak_count_unlimited")
     if _is_unlimited(figures.life_L10_h, index):

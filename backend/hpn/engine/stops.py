@@ -7,11 +7,12 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from hpn.application import Brake
+from hpn.application import Application
 from hpn.catalogue import GearColumns
 from hpn.engine.duty import Duty
 from hpn.physics import stop
-from hpn.physics.equations import FloatArray
+from hpn.physics.equations import ROUNDING, FloatArray
+from hpn.physics.motion.mechanisms import GRAVITY, Linear
 from hpn.physics.stiffness import ARCMIN_PER_RAD
 
 
@@ -109,8 +110,16 @@ class Stops:
             permissible_torque_Nm=permissible_torque_Nm,
         )
 
-    def said_of(self, brake: Brake, index: int) -> Iterator[tuple[str, dict[str, float | str]]]:
-        """Codes and values of the notices on the stops of application `index` by its brake."""
+    def said_of(
+        self, application: Application, index: int, first: int, name: str
+    ) -> Iterator[tuple[str, dict[str, float | str]]]:
+        """Codes and values of the notices on the stops of application `index` by its brake.
+
+        `first` is the place of its first candidate, `name` its designation.
+        """
+        given, motion = application.emergency_stop, application.duty_cycle.motion
+        if given is None or (brake := given.brake) is None:
+            return
         if np.isnan(self.duty.load_inertia_kgm2.item(index)) or np.isnan(self.motor_inertia_kgm2[index]).all():
             yield "brake_inertia_unknown", {}
         yield "brake_bound" if brake.dynamic_factor is None else "brake_factor_typed", {}
@@ -122,3 +131,13 @@ class Stops:
         if slipping := sorted(set(self.gears.ratio[self.never_holds[index]].tolist())):
             pulling = np.asarray(self.load.pulling_Nm).item(index)
             yield "brake_does_not_hold", {"torque_Nm": pulling, "ratios": ", ".join(f"{i:g}" for i in slipping)}
+        if motion is not None and isinstance(motion.mechanism, Linear) and motion.mechanism.counterweight_kg:
+            share = self.hardest_rad_per_s2[index, first] * motion.mechanism.load.way_at_gear_m / GRAVITY
+            if share > 1 + ROUNDING:
+                yield "counterweight_slack", {"share_percent": 100 * float(share), "name": name}
+
+    @property
+    def hardest_rad_per_s2(self) -> FloatArray:
+        """Deceleration (T_k + T_o) / J of the load in rad/s² that no stop exceeds, shape (N, G)."""
+        hardest: FloatArray = (self.torque_Nm + self.load.opposing_Nm) / self.duty.load_inertia_kgm2
+        return hardest

@@ -232,7 +232,9 @@ CANDIDATE: Mapping[str, Named] = {
     "stopping_time_s": Named(
         N_("Stopping time"),
         "t_stop",
-        "Longest time from the command to rest; null without both inertias, and without a brake that stops the load.",
+        "Longest time from the command until brake and motor stand; null without both inertias, and where the brake "
+        "does not stop the load.",
+        caveat=N_("Until brake and motor stand; the load may swing on the gear for longer."),
     ),
     "stopping_angle_deg": Named(
         N_("Stopping angle"), "φ_stop", "Largest angle of the output from the command to rest; null likewise."

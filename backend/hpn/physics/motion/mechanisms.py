@@ -76,6 +76,11 @@ class ShaftLoad:
         friction: FloatArray = held * (1 / self.efficiency - 1) + self.friction_Nm / (self.efficiency * self.ratio)
         return friction
 
+    @property
+    def way_at_gear_m(self) -> float:
+        """Way in m of a linear load to a radian of the gear."""
+        return self.way_per_rad / (1000 * self.ratio)
+
 
 class Mechanism(Model):
     """Fields of every mechanism."""
