@@ -11,7 +11,7 @@ from urllib.parse import parse_qsl
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hpn.application import Application
+from hpn.application import STOP_LOADS, Application
 from hpn.catalogue import Catalogue, load_catalogue
 from hpn.engine.candidates import Candidate
 from hpn.engine.checks import BY_CODE
@@ -77,6 +77,8 @@ def moved(chance: random.Random, motion: Json) -> Json:
         if chance.random() < 0.4:
             move["radial_N"] = chance.uniform(100, 3000)
     asked["duty_cycle"] = {"motion": motion, "pause_s": asked["duty_cycle"]["pause_s"]}
+    for name in STOP_LOADS:  # a motion has its own
+        asked.get("emergency_stop", {}).get("brake", {}).pop(name, None)
     if "radial_N" not in asked.get("output_load", {}) and not any("radial_N" in move for move in motion["moves"]):
         asked.pop("output_load", None)
     return motored(chance, asked, moving=True) if chance.random() < 0.7 else asked
