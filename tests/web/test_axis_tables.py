@@ -254,3 +254,31 @@ def test_no_other_place_of_a_load_is_asked(rows: list[str]) -> None:
     table = read(LOADED[0], *rows)
 
     assert (table.questions, table.choice("loads")) == ((), None)
+
+
+def test_times_of_axes_that_go_back_are_asked_with_the_row_where_they_do() -> None:
+    shift = (
+        HEAD.replace("Dauer [s]", "Zeit [s]"),
+        "A;40;250;0",
+        "A;20;100;2",
+        "A;10;90;5",
+        "A;0;0;3",
+        "B;1;9;0",
+        "B;2;8;4",
+    )
+    table = read(*shift)
+
+    assert "In row 5 they fall, from 5 to 3." in asked(table)[0]
+    assert "in row 5" in asked(read(*shift, times="starts"))[0]
+    wrong = read(*shift, times="starts", falls="error").axes
+    assert [axis["duration_s"] for axis in wrong] == [[2, 3, -2], [4]]  # the fleet rejects the first, and says why
+
+
+def test_a_counter_of_axes_goes_on_and_phases_of_one_stamp_are_left_out() -> None:
+    rows = ("A;40;250;65000", "A;20;100;65500", "A;5;50;65500", "A;10;90;464", "A;0;0;964")
+    table = read(HEAD.replace("Dauer [s]", "Zeit [ms]"), *rows, times="starts", falls="8192/125")
+
+    assert [axis["duration_s"] for axis in table.axes] == [[0.5, 0.5, 0.5]]
+    assert [axis["torque_Nm"] for axis in table.axes] == [[40, 5, 10]]
+    assert table.origins == {"A": (2, 4, 5, 6)}
+    assert "Rows that last 0 s are left out: 3." in [note.text for note in table.notes]

@@ -12,12 +12,13 @@ from typing import Any
 from hpn.tables.bodies import Body, body_of
 from hpn.tables.cells import LONGEST_CELL, Decimal, Entry, Merged, entry, is_blank, is_number
 from hpn.tables.columns import NO_CHOICES, Choices, Column, proposed, settled
-from hpn.tables.heads import REQUIRED, skipped
+from hpn.tables.heads import REQUIRED, left_out, skipped
 from hpn.tables.inputs import AXIS, NAME, PHASE, PHASE_ROLES, Inputs
-from hpn.tables.interpreter import Interpreter, Questions, Row, durations_of, in_plain, unit_behind
+from hpn.tables.interpreter import Interpreter, Questions, Row, Series, unit_behind
 from hpn.tables.numbers import known_units
 from hpn.tables.sheets import Grid, RefusedError
 from hpn.tables.table import Choice, Table
+from hpn.tables.times import ERROR, durations_of, in_plain, unrolled
 from hpn.words import spellings
 from hpn.words.patterns import Pattern
 from hpn.words.wording import N_, Sentence, Value
@@ -105,6 +106,11 @@ class _AxesInterpreter(Interpreter):
 
     required = (AXIS, *REQUIRED)
     any_unit = True
+    ways_back = (ERROR,)
+
+    def __init__(self, body: Body, columns: tuple[Column, ...], questions: Questions) -> None:
+        super().__init__(body, columns, questions)
+        self.standing: list[int] = []
 
     def table(self) -> Table:
         """The table with what is to be asked, or with its axes."""
@@ -112,11 +118,16 @@ class _AxesInterpreter(Interpreter):
         self.read_numbers()
         self._note_unread()
         groups = self._groups()
-        times = self.read_times([group.rows for group in groups])
+        times = self.read_times([Series(group.numbers, group.rows) for group in groups])
         self.ask_scale()
         loads = self._read_loads(groups)
-        axes = () if self.questions.open else tuple(self._axis(group, times, loads) for group in groups)
-        return Table(**self.said, axes=axes, origins={str(group.name): group.numbers for group in groups})
+        read = () if self.questions.open else tuple(self._axis(group, times, loads) for group in groups)
+        lasting = [self._without_standing(axis, group) for axis, group in zip(read, groups, strict=False)]
+        origins = {str(group.name): group.numbers for group in groups}
+        origins |= {str(axis[AXIS]): numbers for axis, numbers in lasting}
+        if self.standing:
+            self.notes.append(left_out(self.standing))
+        return Table(**self.said, axes=tuple(axis for axis, _ in lasting), origins=origins)
 
     def _note_unread(self) -> None:
         """Note cells that are rejected with their axes: no numbers, and those in a unit that their column has not."""
@@ -263,10 +274,20 @@ class _AxesInterpreter(Interpreter):
         moments = [moment for row in group.rows if (moment := self.seconds(row)) is not None]
         if times not in ("starts", "ends") or len(moments) < len(group.rows):
             return values
-        texts = [in_plain(duration) for duration in durations_of(moments, times)]
+        texts = [in_plain(duration) for duration in durations_of(unrolled(moments, self.lap), times)]
         durations = [float(text) if isfinite(float(text)) else text for text in texts]
         values |= {_DURATION: durations}
         return {name: value[: len(durations)] if name in _OF_PHASE else value for name, value in values.items()}
+
+    def _without_standing(self, axis: dict[str, Any], group: _Group) -> tuple[dict[str, Any], tuple[int, ...]]:
+        """An axis without its phases that last 0 s, as of two rows with one stamp, and the numbers of its rows."""
+        durations = axis.get(_DURATION, ())
+        kept = [k for k, duration in enumerate(durations) if duration != 0]
+        if not kept or len(kept) == len(durations):
+            return axis, group.numbers
+        self.standing += [number for number, duration in zip(group.numbers, durations, strict=False) if duration == 0]
+        found = {name: [value[k] for k in kept] if name in _OF_PHASE else value for name, value in axis.items()}
+        return found, tuple(group.numbers[k] for k in kept) + group.numbers[len(durations) :]
 
 
 _OF_PHASE = frozenset(each.place for each in (*PHASE, NAME))

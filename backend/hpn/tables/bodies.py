@@ -60,6 +60,10 @@ class Body:
         rows = dict(zip(self.numbers, self.rows, strict=True)) | {each.number: each.cells for each in more}
         return replace(self, numbers=tuple(sorted(rows)), rows=tuple(rows[number] for number in sorted(rows)))
 
+    def of(self, places: Sequence[int]) -> "Body":
+        """Some of the rows by their places, in this order."""
+        return replace(self, numbers=tuple(self.numbers[k] for k in places), rows=tuple(self.rows[k] for k in places))
+
     def above(self, number: int) -> "Body":
         """The rows above one."""
         count = sum(each < number for each in self.numbers)

@@ -46,6 +46,7 @@ class Choices:
     decimal: str = ""
     times: str = ""
     last: str = ""
+    falls: str = ""
     totals: str = ""
     parts: str = ""
     scales: str = ""

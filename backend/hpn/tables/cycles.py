@@ -11,15 +11,16 @@ from hpn.tables.cells import DECIMALS, TIME_PARTED, Decimal, Entry, entry, is_bl
 from hpn.tables.columns import CELLS, NO_CHOICES, Choices, Column
 from hpn.tables.cycle_columns import columns_of, has_two_ways
 from hpn.tables.headings import heading_over
-from hpn.tables.heads import REQUIRED, skipped
+from hpn.tables.heads import REQUIRED, left_out, skipped
 from hpn.tables.inputs import CYCLE, NAME, PHASE_ROLES
-from hpn.tables.interpreter import Interpreter, Questions, Row, durations_of, in_plain, unit_behind
+from hpn.tables.interpreter import Interpreter, Questions, Row, Series, unit_behind
 from hpn.tables.numbers import either, known_units
 from hpn.tables.sheets import SEPARATORS, Grid, RefusedError, grids_of, no_number
 from hpn.tables.table import Choice, Table
+from hpn.tables.times import FIRST, SORTED, durations_of, falls_of, in_plain, unrolled
 from hpn.words import spellings, units
 from hpn.words.fields import MAXIMUM_PHASES
-from hpn.words.wording import N_, Sentence
+from hpn.words.wording import N_, Sentence, Value
 
 SEPARATOR = Choice("separator", SEPARATORS)
 PHASE = Choice("phase", {"row": N_("a row"), "column": N_("a column")})
@@ -155,9 +156,9 @@ class _CycleInterpreter(Interpreter):
         self.ask_columns()
         self.read_numbers()
         self.ask_scale()
-        times = self.read_times([self.rows])
+        times = self.read_times([Series(self.body.numbers, self.rows)])
         rows = self._phase_rows(times)
-        phases = () if self.questions.open else self._phases(rows, times)
+        phases = () if self.questions.open else self._lasting(self._phases(rows, times))
         names = next((column.place for column in self.columns if column.role == NAME.role), None)
         texts = () if names is None else tuple(row[names].strip() for row in self.body.rows[: len(phases)])
         grid = self.body.grid
@@ -170,6 +171,24 @@ class _CycleInterpreter(Interpreter):
     def may_go_on(self, going_on: Sequence[bool]) -> bool:
         """True where the times of the cycle go on."""
         return any(going_on)
+
+    def mend(self, fall: str) -> None:
+        """Sort the rows by time, or end them where the times first go back."""
+        times = [self.seconds(row) or Fraction(0) for row in self.rows]
+        places = range(len(times))
+        if fall == SORTED:
+            self._keep(sorted(places, key=times.__getitem__))
+            self.notes.append(Sentence(N_("The rows are sorted by time.")))
+        elif fall == FIRST:
+            end = falls_of(times)[0]
+            values: dict[str, Value] = {"first": self.body.numbers[end], "last": self.body.numbers[-1]}
+            self.notes.append(Sentence(N_("Rows {first} to {last} are left out: they are of another run."), values))
+            self._keep(places[:end])
+
+    def _keep(self, places: Sequence[int]) -> None:
+        """Keep some of the rows, in this order."""
+        self.rows = [self.rows[k] for k in places]
+        self.body = self.body.of(places)
 
     def require_numbers(self, read: Mapping[Decimal, Sequence[Row]]) -> None:
         """Raise RefusedError unless all cells that are used are numbers by one decimal mark."""
@@ -240,7 +259,8 @@ class _CycleInterpreter(Interpreter):
             for row in rows
         ]
         if times in ("starts", "ends"):
-            durations = durations_of([self.seconds(row) or Fraction(0) for row in rows], times)
+            moments = unrolled([self.seconds(row) or Fraction(0) for row in rows], self.lap)
+            durations = durations_of(moments, times)
             if not durations:
                 raise RefusedError(N_("the last row ends the cycle, and there is no other"))
             for number, duration in zip(self.body.numbers[times == "starts" :], durations, strict=False):
@@ -248,6 +268,17 @@ class _CycleInterpreter(Interpreter):
                     raise RefusedError(N_("row {row}: the time goes back"), row=number)
             phases = [{**phase, "t": in_plain(t)} for phase, t in zip(phases, durations, strict=False)]
         return tuple(tuple(phase.get(role, "") for role in PHASE_ROLES) for phase in phases)
+
+    def _lasting(self, phases: Sequence[tuple[str, ...]]) -> tuple[tuple[str, ...], ...]:
+        """Phases but for those that last 0 s, as of two rows with one stamp: these are left out with a note."""
+        lasting = [float(phase[PHASE_ROLES.index("t")]) for phase in phases]
+        standing = [k for k, seconds in enumerate(lasting) if seconds == 0]
+        if len(standing) == len(phases):
+            raise RefusedError(N_("no row lasts longer than 0 s"))
+        if standing:
+            self.notes.append(left_out([self.body.numbers[k] for k in standing]))
+            self._keep([k for k in range(len(self.rows)) if k not in set(standing)])
+        return tuple(phase for phase, seconds in zip(phases, lasting, strict=True) if seconds != 0)
 
 
 def _no_number_of(row: int, cell: str, column: Column) -> RefusedError:

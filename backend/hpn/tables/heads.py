@@ -25,6 +25,9 @@ MOST_TURNED = 20
 MOST_COLUMNS = 200
 """Columns that a table of phases or axes may have, once it has a row for each phase."""
 
+MOST_NAMED = 5
+"""Rows that a note names."""
+
 MOST_SKIPPED = 3
 """Rows above the header that are quoted one by one."""
 
@@ -48,6 +51,12 @@ SKIPPED = N_("Row {row} is skipped: {text}")
 def skipped(number: int, text: str) -> Sentence:
     """Note for a row that is left out."""
     return Sentence(SKIPPED, {"row": number, "text": text[:60]})
+
+
+def left_out(numbers: Sequence[int]) -> Sentence:
+    """Note for rows that last 0 s."""
+    listed = ", ".join([*map(str, numbers[:MOST_NAMED]), *(["…"] if len(numbers) > MOST_NAMED else [])])
+    return Sentence(N_("Rows that last 0 s are left out: {rows}."), {"rows": listed})
 
 
 def uncommented(grid: Grid) -> Grid:

@@ -6,12 +6,12 @@ user is asked.
 """
 
 import decimal as decimals
-from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
-from itertools import chain, pairwise
+from itertools import chain
 from math import inf, isfinite
-from typing import Any
+from typing import Any, NamedTuple
 
 from hpn.tables.bodies import Body
 from hpn.tables.cells import (
@@ -33,6 +33,19 @@ from hpn.tables.inputs import AXIS
 from hpn.tables.numbers import either, known_units
 from hpn.tables.sheets import RefusedError
 from hpn.tables.table import Choice, Shown, ShownRow, skipped_among
+from hpn.tables.times import (
+    DAY,
+    FIRST,
+    MIDNIGHT,
+    OF_COUNTER,
+    OF_FALLS,
+    SORTED,
+    falls_now_and_then,
+    falls_of,
+    go_on,
+    in_plain,
+    laps_of,
+)
 from hpn.words import spellings, units
 from hpn.words.wording import N_, Sentence, Value
 
@@ -52,6 +65,13 @@ MOSTLY = 0.75
 Row = tuple[Entry | None, ...]
 
 
+class Series(NamedTuple):
+    """Rows whose times belong together, and their numbers."""
+
+    numbers: Sequence[int]
+    rows: Sequence[Row]
+
+
 DECIMAL = Choice("decimal", {".": N_("a point"), ",": N_("a comma")})
 SCALES = Choice(
     "scales",
@@ -65,6 +85,9 @@ TIMES = Choice(
         "starts": N_("when each phase starts; the last row ends the cycle"),
     },
 )
+FALLS = Choice("falls", OF_FALLS)
+MOST_FALLS = 5
+"""Rows where times fall that a question names."""
 
 
 class Questions:
@@ -103,6 +126,7 @@ class Interpreter:
 
     required: Sequence[str] = REQUIRED
     any_unit = False
+    ways_back: Sequence[str] = (SORTED, FIRST)
 
     def __init__(self, body: Body, columns: tuple[Column, ...], questions: Questions) -> None:
         self.body, self.columns, self.questions = body, columns, questions
@@ -111,6 +135,7 @@ class Interpreter:
         self.notes = list(body.notes)
         self.decimal: Decimal | None = None
         self.rows: list[Row] = []
+        self.lap = Fraction(0)
 
     @property
     def said(self) -> dict[str, Any]:
@@ -258,23 +283,74 @@ class Interpreter:
                 return Fraction(cell.number) / units.entered("s", code).factor
         return None
 
-    def read_times(self, groups: Iterable[Sequence[Row]]) -> str:
+    def read_times(self, groups: Sequence[Series]) -> str:
         """Meaning of the times, blank where it is asked: they go on in most axes, or are named as points in time."""
         columns = [column for column in self.columns if column.role == "t"]
         instant = any(column.instant for column in columns)
-        series = [[self.seconds(row) for row in rows] for rows in groups]
-        going_on = [_goes_on(times) for times in series if len(times) > 1 and None not in times]
+        timed = [(group, times) for group in groups if (times := self._times(group.rows))]
+        going_on = [go_on(times, on_clock=self._on_clock(columns)) for _, times in timed]
         if any(column.lasting for column in columns) or not (instant or self.may_go_on(going_on)):
             return "durations"
         few = not instant and sum(going_on) < MOSTLY * len(going_on)
-        question = Sentence(N_("Are the times durations, starts or ends of the phases?"))
-        chosen = self.choose(TIMES, question, chosen="durations" if few else "")
+        falling = [each for each in timed if falls_now_and_then(each[1])]
+        going_back = [each for each, goes in zip(timed, going_on, strict=True) if goes and each in falling]
+        chosen = self.choose(TIMES, self._times_question(going_back), chosen="durations" if few else "")
         dated = not self.body.dated.isdisjoint(column.place for column in columns)
         if dated and chosen == "durations":
             raise RefusedError(N_("dates give the start or end of a phase, not its duration"))
         if dated and chosen == "ends":
             raise RefusedError(N_("end dates don’t give the start of the first phase: give start dates"))
+        if falling and chosen in ("starts", "ends"):
+            self._ask_falls(falling, dated=dated)
         return chosen
+
+    def _times(self, rows: Sequence[Row]) -> list[Fraction]:
+        """Seconds of several rows; none where one is not known."""
+        times = [self.seconds(row) for row in rows]
+        known = [time for time in times if time is not None]
+        return known if len(known) == len(times) > 1 else []
+
+    def _on_clock(self, columns: Sequence[Column]) -> bool:
+        return any(":" in row[column.place] for column in columns for row in self.body.rows)
+
+    def _times_question(self, falling: Sequence[tuple[Series, Sequence[Fraction]]]) -> Sentence:
+        if not falling:
+            return Sentence(N_("Are the times durations, starts or ends of the phases?"))
+        template = N_(
+            "Are the times durations, starts or ends of the phases? In row {row} they fall, from {before} to {after}."
+        )
+        return Sentence(template, self._fall(*falling[0]))
+
+    def _fall(self, series: Series, times: Sequence[Fraction]) -> dict[str, Value]:
+        """The first row whose time is before that of the row above, and both times as written."""
+        cells = dict(zip(self.body.numbers, self.body.rows, strict=True))
+        place = next(column.place for column in self.columns if column.role == "t")
+        before, after = (series.numbers[falls_of(times)[0] - step] for step in (1, 0))
+        return {"row": after, "before": cells[before][place][:40], "after": cells[after][place][:40]}
+
+    def _ask_falls(self, falling: Sequence[tuple[Series, Sequence[Fraction]]], *, dated: bool) -> None:
+        """Ask why times go back: a clock past midnight and a counter that begins anew gain a lap."""
+        rows = [series.numbers[k] for series, times in falling for k in falls_of(times)]
+        listed = ", ".join([*map(str, rows[:MOST_FALLS]), *(["…"] if len(rows) > MOST_FALLS else [])])
+        template = N_("The times go back in row {rows}, first from {before} to {after}. What is it?")
+        question = Sentence(template, {**self._fall(*falling[0]), "rows": listed})
+        unit_s = self._seconds_of_unit()
+        found = [] if dated else laps_of([times for _, times in falling], unit_s)
+        laps = {MIDNIGHT if lap == DAY else str(lap): lap for lap in found}
+        options = {code: OF_FALLS.get(code, OF_COUNTER) for code in (*laps, *self.ways_back)}
+        numbers = {code: in_plain(lap / unit_s) for code, lap in laps.items() if code != MIDNIGHT}
+        chosen = self.choose(replace(FALLS, options=options), question, numbers=numbers)
+        self.lap = laps.get(chosen, Fraction(0))
+        self.mend(chosen)
+
+    def _seconds_of_unit(self) -> Fraction:
+        """Seconds of the unit that times are written in."""
+        place = next(k for k, column in enumerate(self.used) if column.role == "t")
+        read = [(self.seconds(row), Fraction(cell.number)) for row in self.rows if (cell := row[place])]
+        return next((seconds / number for seconds, number in read if seconds and number), Fraction(1))
+
+    def mend(self, fall: str) -> None:
+        """Change the rows by what a time that goes back was said to be."""
 
     def may_go_on(self, going_on: Sequence[bool]) -> bool:
         """True where the times of axes leave a choice."""
@@ -300,24 +376,6 @@ def in_wire(found: Entry, column: Column, code_of: Callable[[Entry, Column], str
     measure = units.entered(column.held.unit, code)
     value = inf if measure.same else measure.wire(found.number)
     return written(value) if isfinite(value) else found.number
-
-
-def _goes_on(times: Sequence[Fraction | None]) -> bool:
-    known = [time for time in times if time is not None]
-    return known == sorted(known) and known[-1] > known[0]
-
-
-def durations_of(moments: Sequence[Fraction], times: str) -> list[Fraction]:
-    """Seconds between points in time. Of starts the last one ends the cycle; the first phase of ends starts at 0."""
-    return [end - start for start, end in pairwise(moments if times == "starts" else [Fraction(0), *moments])]
-
-
-def in_plain(value: Fraction) -> str:
-    """A number in plain notation; one beyond every float stays one that is too large."""
-    try:
-        return written(float(value))
-    except OverflowError:
-        return "1e999" if value > 0 else "-1e999"
 
 
 def unit_behind(cell: str) -> str:
