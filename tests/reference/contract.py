@@ -64,6 +64,7 @@ class Check:
     limit: float | None
     utilisation: float | None  # infinite where it fails without one
     status: str
+    at_least: float | None = None
 
 
 @dataclass
@@ -75,6 +76,12 @@ class Candidate:
     utilisation: float | None = None
     governing: str | None = None
     rank: int | None = None
+
+    @property
+    def lacks_input(self) -> bool:
+        """True for an unrated gear of which a lower bound says something wherever it is not rated."""
+        unknown = [check for check in self.checks if check.status == "not_rated"]
+        return self.status == "unrated" and all(check.at_least is not None for check in unknown)
 
 
 @dataclass
@@ -185,9 +192,15 @@ def _judge(
         status = "not_rated" if used is None else "pass" if used <= bound * (1 + ROOM) else "fail"
         checks.append(Check(code, demand, limit, used, status))
 
-    def at_most(code: str, demand: float | None, limit: float | None, bound: float = u) -> None:
+    def at_most(
+        code: str, demand: float | None, limit: float | None, bound: float = u, least: float | None = None
+    ) -> None:
         used = None if demand is None or limit is None else demand / limit
+        if used is None and limit is not None and least is not None and least / limit > bound * (1 + ROOM):
+            demand, used = least, least / limit
         compare(code, demand, limit, used, bound)
+        if used is None and least is not None and limit is not None:
+            checks[-1].at_least = least / limit
 
     def at_least(code: str, demand: float | None, limit: float, bound: float = u) -> None:
         compare(code, demand, limit, None if demand is None else limit / demand, bound)
@@ -380,12 +393,20 @@ def _bearing(application: Mapping[str, Any], duty: _Duty, gear: Gear, at_most: A
     required = given.get("life_h", 20000) * (5 if given.get("life_basis") == "L10" else 1)
     k = (100 * 20000 / (duty.n_av * required)) ** (by.number(1) / 3)
     known = [p for p in P if p is not None]
-    if len(known) < len(P):
-        at_most("output_bearing_load", None, 1.0)
-        at_most("output_bearing_life", None, k)
-        return None
     weights = [abs(p["speed_rpm"]) * p["duration_s"] for p in phases]
-    mean = (by.total(w * p**3 for w, p in zip(weights, known, strict=True)) / by.total(weights)) ** (by.number(1) / 3)
+
+    def mean_of(loads: list[float]) -> Any:
+        cubes = by.total(w * p**3 for w, p in zip(weights, loads, strict=True))
+        return (cubes / by.total(weights)) ** (by.number(1) / 3)
+
+    if len(known) < len(P):
+        plain = [_equivalent(given.get("model", "linear"), F_R, F_A, gear) for F_R, F_A in loads]
+        least = [p for p in plain if p is not None]
+        whole = len(least) == len(plain)
+        at_most("output_bearing_load", None, 1.0, least=f_w * max(least) if whole else None)
+        at_most("output_bearing_life", None, k, least=f_w * mean_of(least) if whole else None)
+        return None
+    mean = mean_of(known)
     at_most("output_bearing_load", f_w * max(known), 1.0)
     at_most("output_bearing_life", f_w * mean, k)
     return 20000 * (100 / duty.n_av) / (f_w * mean) ** 3 if mean > 0 else INFINITE
@@ -449,6 +470,13 @@ def _places(values: Sequence[float]) -> list[int]:
     return places
 
 
+def _judged(candidate: Candidate) -> float:
+    """Largest utilisation, or lower bound of one, of what is judged of a gear."""
+    return max(
+        value for check in candidate.checks for value in (check.utilisation, check.at_least) if value is not None
+    )
+
+
 def _ordered(candidates: list[Candidate], rank_by: str) -> list[Candidate]:
     def last(value: float | None, sign: int = 1) -> float:
         return INFINITE if value is None else sign * value
@@ -469,11 +497,12 @@ def _ordered(candidates: list[Candidate], rank_by: str) -> list[Candidate]:
         }[rank_by]
 
     def ordered(status: str, first: Callable[[Candidate], float]) -> list[Candidate]:
-        some = [c for c in candidates if c.status == status]
+        some = [c for c in candidates if (c.lacks_input if status == "lacking" else c.status == status)]
         keys = zip(*map(_places, zip(*[(first(c), *ties(c)) for c in some], strict=True)), strict=True)
         return [c for _, _, c in sorted(zip(keys, itertools.count(), some, strict=False), key=lambda entry: entry[:2])]
 
     good, bad = ordered("suitable", wish), ordered("unsuitable", lambda c: last(c.utilisation))
     for place, c in enumerate(good):
         c.rank = place + 1
-    return good + bad + [c for c in candidates if c.status == "unrated"]
+    lacking = ordered("lacking", _judged)
+    return good + lacking + bad + [c for c in candidates if c.status == "unrated" and not c.lacks_input]

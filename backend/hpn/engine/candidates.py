@@ -38,6 +38,7 @@ class CheckResult(Reply, frozen=True):
     limit: float | None
     utilisation: float | None
     status: CheckStatus
+    at_least: float | None = None
 
 
 class Reserve(Reply, frozen=True):
@@ -68,6 +69,7 @@ class Candidate(Reply, frozen=True):
     utilisation: float | None
     governing_check: str | None
     reason: str
+    missing: tuple[str, ...] = ()
     average_input_speed_rpm: float | None = None
     maximum_input_speed_rpm: float | None = None
     life_L10_h: float | None = None
@@ -108,6 +110,13 @@ class Candidate(Reply, frozen=True):
         return tuple(check for check in self.checks if check.status == "fail")
 
     @property
+    def is_lower_bound(self) -> bool:
+        """True where its utilisation is that of a bearing load whose lever is not known: it fails already without."""
+        life = self.check("output_bearing_life")
+        by_bearing = self.governing_check in ("output_bearing_load", "output_bearing_life")
+        return by_bearing and self.bearing_life_L50_h is None and life is not None and life.status != "pass"
+
+    @property
     def is_judged(self) -> bool:
         """True where every check could be judged; an unsuitable candidate may still have one that could not."""
         return all(check.status != "not_rated" for check in self.checks)
@@ -131,6 +140,9 @@ _UNLIMITED_BY = {
 """Figures that may be unlimited: the check that is present where they are asked for, and the check that is rated where
 the gear has the figure behind them."""
 
+MISSING = ("output_load.shaft_centre_mm",)
+"""Inputs that a gear may lack: the bearing's, where loads act off the shaft's centre."""
+
 FIGURES = tuple(
     field.name for field in msgspec.structs.fields(Candidate) if field.type == float | None and not field.required
 )
@@ -151,8 +163,18 @@ def candidates_of(evaluation: Evaluation, index: int) -> Iterator[Candidate]:
     used, values = next(columns), zip(*islice(columns, len(FIGURES)), strict=True)
     reserve = map(Reserve, *islice(columns, len(Reserve.__struct_fields__)))
     states = [map(CHECK_STATUS.__getitem__, row) for row in evaluation.status[asked, index][:, order].tolist()]
+    lacks, bounded = evaluation.lacks_input[index].tolist(), bool(np.isfinite(evaluation.at_least[:, index]).any())
+    limits = np.select([lacks, evaluation.by_lower_bound[index]], ["missing", "at_least"], "").tolist()
     checks = [
-        map(CheckResult, repeat(codes[place]), next(columns), next(columns), next(columns), state)
+        map(
+            CheckResult,
+            repeat(codes[place]),
+            next(columns),
+            next(columns),
+            next(columns),
+            state,
+            *(_columns([evaluation.at_least[place, index]], order) if bounded else ()),
+        )
         for place, state in zip(asked, states, strict=True)
     ]
     rows = zip(used, values, reserve, zip(*checks, strict=True), strict=True)
@@ -174,7 +196,8 @@ def candidates_of(evaluation: Evaluation, index: int) -> Iterator[Candidate]:
             rank=place + 1 if verdict == SUITABLE else None,
             utilisation=utilisation,
             governing_check=governing,
-            reason=_reason(known.size, STATUS[verdict], utilisation, governing, failed, u),
+            reason=_reason(known.size, STATUS[verdict], utilisation, governing, failed, u, limits[gear]),
+            missing=MISSING if lacks[gear] else (),
             **dict(zip(FIGURES, numbers, strict=True)),
             shortest_life_of=lives[gear] or None,
             reserve=own_reserve,
@@ -202,6 +225,10 @@ REASONS = {
     "unsuitable_more": N_("{check} is at {percent} of its limit; checks that fail: {failed}."),
     "never_stops": N_("The brake does not stop the load."),
     "no_stop_allowed": N_("T_k is too high: no emergency stop is permitted (eq. 17.9)."),
+    "missing": N_("Not rated: the output bearing needs the distance x_c of the shaft’s centre."),
+    "at_least": N_(
+        "{check} is at {percent} of its limit or more, wherever the shaft’s centre is; checks that fail: {failed}."
+    ),
     "unrated": N_("Not rated: figures of {name} that the checks need are not in this catalogue’s source."),
 }
 """Templates of the sentence on a candidate's rank."""
@@ -211,25 +238,31 @@ def reason_of(candidate: Candidate, utilisation: float) -> Sentence:
     """Sentence on a candidate's rank, for any language; `utilisation` is the user's u."""
     used, code, failed = candidate.utilisation, candidate.governing_check, len(candidate.failing)
     if used is None or code is None:
-        return Sentence(REASONS[_key_without_number(candidate.status, code)], {"name": f"HPN-{candidate.size}"})
+        key = _key_without_number(candidate.status, code, lacks=bool(candidate.missing))
+        return Sentence(REASONS[key], {"name": f"HPN-{candidate.size}"})
     if code not in BY_CODE:  # a check of another version
         return Sentence("{text}", {"text": candidate.reason})
     percent = Quantity(_told_percent(used, code, utilisation), "percent", 12)
     values: dict[str, Value] = {"check": BY_CODE[code].title, "percent": percent, "failed": failed}
-    return Sentence(REASONS[_key(candidate.status, failed)], values, ("check",))
+    key = "at_least" if candidate.is_lower_bound else _key(candidate.status, failed)
+    return Sentence(REASONS[key], values, ("check",))
 
 
-def _reason(size: str, status: Status, used: float | None, code: str | None, failed: int, u: float) -> str:
-    """The same sentence in English, as the API gives it, its number with every digit."""
+def _reason(size: str, status: Status, used: float | None, code: str | None, failed: int, u: float, limits: str) -> str:
+    """The same sentence in English, as the API gives it, its number with every digit.
+
+    `limits` is `missing` for a gear that lacks an input, `at_least` for one that a lower bound governs.
+    """
     if used is None or code is None:
-        return REASONS[_key_without_number(status, code)].format(name=f"HPN-{size}")
+        return REASONS[_key_without_number(status, code, lacks=limits == "missing")].format(name=f"HPN-{size}")
     percent = f"{_told_percent(used, code, u)!r} %"
-    return REASONS[_key(status, failed)].format(check=BY_CODE[code].title, percent=percent, failed=failed)
+    key = limits or _key(status, failed)
+    return REASONS[key].format(check=BY_CODE[code].title, percent=percent, failed=failed)
 
 
-def _key_without_number(status: Status, code: str | None) -> str:
+def _key_without_number(status: Status, code: str | None, *, lacks: bool) -> str:
     if status == "unrated":
-        return "unrated"
+        return "missing" if lacks else "unrated"
     return "never_stops" if code == "momentary_peak_torque" else "no_stop_allowed"
 
 

@@ -45,7 +45,8 @@ class Check:
 
     `asked` is the input whose presence asks for it, blank for a check that is always made; `instead` is another input
     that asks for it as well. Without a `limit` that input is the limit. Utilisation is demand over limit, limit over
-    demand for a minimum, or what `share` gives. `limited_by` is the catalogue figure behind the limit, None where that
+    demand for a minimum, or what `share` gives. `at_least` is a lower bound of it where
+    an input is missing, NaN elsewhere. `limited_by` is the catalogue figure behind the limit, None where that
     is the user's own. `relation` is the check in the handbook's symbols. `moves` gives the power with which the
     utilisation grows with each driver; `accepted` says which {value} of the input `asked` lets it pass where none of
     them moves it, or none in closed form.
@@ -69,6 +70,7 @@ class Check:
     instead: str = ""
     limit: Values | None = None
     share: Values | None = None
+    at_least: Values | None = None
     equation: str | None = None
     limited_by: str | None = None
     moves: Mapping[Driver, float] = field(default_factory=dict)

@@ -89,6 +89,31 @@ class Evaluation:
         return np.where(np.isnan(self.used), np.int8(NOT_RATED), judged)
 
     @cached_property
+    def at_least(self) -> FloatArray:
+        """Lower bounds of utilisations that are not rated for want of an input, NaN elsewhere; shape (C, N, G)."""
+        table = np.full(self.used.shape, np.nan)
+        with np.errstate(all="ignore"):
+            for place, check in enumerate(self.checks):
+                if check.at_least:
+                    table[place] = np.where(np.isnan(self.used[place]), check.at_least(self.case), np.nan)
+        return table
+
+    @cached_property
+    def lacks_input(self) -> BoolArray:
+        """True for an unrated gear that inputs would rate: a lower bound stands for whatever is not rated, (N, G)."""
+        if not any(check.at_least for check in self.checks):
+            return np.zeros(self.verdict.shape, np.bool_)
+        unknown = np.isnan(self.used) & self.asked & np.isnan(self.at_least)
+        return np.array((self.verdict == UNRATED) & ~unknown.any(axis=0))
+
+    @cached_property
+    def by_lower_bound(self) -> BoolArray:
+        """True where the governing check of an unsuitable gear fails by a lower bound, shape (N, G)."""
+        largest, mean = self.case.figures.bearing_loads_at_least
+        of_bearing = np.array([check.at_least is not None for check in self.checks])[self.governing]
+        return np.array((self.verdict == UNSUITABLE) & of_bearing & np.isfinite(largest) & np.isfinite(mean))
+
+    @cached_property
     def governing(self) -> PlaceArray:
         """Place in `checks` of the first check that reaches a gear's utilisation within ROUNDING, shape (N, G)."""
         return self._first_that_reaches(self.utilisation, self.used, self.bound)
@@ -109,9 +134,9 @@ class Evaluation:
     def order(self) -> PlaceArray:
         """Places of the gears from best to last, shape (N, G).
 
-        Suitable gears come first by `rank_by`, then unsuitable ones by ascending utilisation, then unrated ones in the
-        order of the catalogue. Ties fall to weight, utilisation, life and ratio, and last to the order of the
-        catalogue; what is not published comes last.
+        Suitable gears come first by `rank_by`, then those that lack an input alone by what is judged of them, then
+        unsuitable ones by ascending utilisation, then the other unrated ones in the order of the catalogue. Ties fall
+        to weight, utilisation, life and ratio, last to the order of the catalogue; what is not published comes last.
         """
         keys = np.empty((5, *self.verdict.shape))
         weight, used, life, ratio = self._ties
@@ -120,8 +145,12 @@ class Evaluation:
         keys[:3] = tied(keys[:3])  # weights and ratios are published figures, without rounding
         wish, used, life, weight, ratio = keys
         rejected = np.where(self.verdict == UNSUITABLE, used, np.arange(used.shape[1]))
-        wish = np.where(self.verdict == SUITABLE, wish, rejected)
-        return np.lexsort((ratio, life, used, weight, wish, self.verdict), axis=-1)  # the last key decides first
+        wish, group = np.where(self.verdict == SUITABLE, wish, rejected), self.verdict
+        if self.lacks_input.any():
+            judged = np.fmax.reduce(np.where(np.isinf(self.used), np.nan, np.fmax(self.used, self.at_least)), axis=0)
+            wish = np.where(self.lacks_input, tied(judged[None])[0], wish)
+            group = np.where(self.lacks_input, (SUITABLE + UNSUITABLE) / 2, group)
+        return np.lexsort((ratio, life, used, weight, wish, group), axis=-1)  # the last key decides first
 
     def foremost(self, among: BoolArray) -> PlaceArray:
         """Place of the first gear by that order out of some of the suitable ones (N, G); any where there is none.

@@ -243,7 +243,20 @@ class Figures:
 
     @cached_property
     def _bearing_loads(self) -> tuple[FloatArray, FloatArray]:
-        return _bearing_loads(self.duty, self.gears)
+        return _bearing_loads(self.duty, self.gears, radial_at_centre(self.duty, self.gears))
+
+    @cached_property
+    def bearing_loads_at_least(self) -> tuple[FloatArray, FloatArray]:
+        """Lower bounds of both loads where only the shaft's centre is not known, else NaN; shape (N, G).
+
+        They are those of the loads at the shaft's centre and along its axis, which no lever makes smaller.
+        """
+        at_centre = self.duty.phases.radial_N
+        if radial_at_centre(self.duty, self.gears) is at_centre:
+            return self._unasked, self._unasked
+        largest, mean = _bearing_loads(self.duty, self.gears, at_centre)
+        unknown = np.isnan(self.bearing_load)
+        return np.where(unknown, largest, np.nan), np.where(unknown, mean, np.nan)
 
     @cached_property
     def _motor_torques(self) -> tuple[FloatArray, FloatArray]:
@@ -253,13 +266,13 @@ class Figures:
 # --- Output bearing ---------------------------------------------------------------------------------------------------
 
 
-def phase_loads(duty: Duty, gears: GearList) -> FloatArray:
-    """f_w P of every phase on the bearing of every size, shape (N, sizes, phases).
+def phase_loads(duty: Duty, gears: GearList, radial_N: FloatArray | None = None) -> FloatArray:
+    """f_w P of every phase on the bearing of every size, shape (N, sizes, phases); `radial_N` is that at the centre.
 
     NaN without a load, where the limits of a size are not published, and where the digitised model lacks its curve.
     """
     first, phases, model = gears.first_of_size, duty.phases, duty.asked.bearing_model[..., None]
-    radial = radial_at_centre(duty, gears)
+    radial = radial_at_centre(duty, gears) if radial_N is None else radial_N
     with np.errstate(all="ignore"):
         r = radial / gears.columns.dynamic_radial_load_N[first][:, None]
         a = phases.axial_N / gears.columns.dynamic_axial_load_N[first][:, None]
@@ -293,11 +306,11 @@ def radial_at_centre(duty: Duty, gears: GearList) -> FloatArray:
     )
 
 
-def _bearing_loads(duty: Duty, gears: GearList) -> tuple[FloatArray, FloatArray]:
+def _bearing_loads(duty: Duty, gears: GearList, radial_N: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Largest f_w P of a phase, and f_w P_m of the cycle, on every gear, shape (N, G)."""
     if np.isnan(duty.asked["output_load.load_coefficient"]).all():
         nothing = np.full((1, 1), np.nan)
         return nothing, nothing
-    loads, phases = phase_loads(duty, gears), duty.phases
+    loads, phases = phase_loads(duty, gears, radial_N), duty.phases
     mean = bearing.mean_equivalent_load(equivalent_load=loads, speed_rpm=phases.speed_rpm, duration_s=phases.duration_s)
     return loads.max(axis=-1)[:, gears.of_size], mean[:, gears.of_size]

@@ -95,8 +95,8 @@ class Selection(Reply, frozen=True):
 
     @property
     def foremost(self) -> Candidate:
-        """The selected gear, else the nearest miss among those that could be judged, if any could."""
-        return next((candidate for candidate in self.candidates if candidate.is_judged), self.candidates[0])
+        """The selected gear, else the first that is judged or lacks an input alone, if any does."""
+        return next((one for one in self.candidates if one.is_judged or one.missing), self.candidates[0])
 
     def name_of(self, code: str) -> str:
         """Name of a check as it stands inside a sentence; the title of one of another version."""

@@ -210,7 +210,7 @@ RESERVE = {f"reserve.{name}": name for name in Reserve.__struct_fields__}
 PLAIN = tuple(name for name in Candidate.__struct_fields__ if name not in ("reserve", "checks"))
 WHOLE, TEXTS = (
     ("ratio", "stages", "rank"),
-    ("designation", "size", "status", "governing_check", "reason", "shortest_life_of"),
+    ("designation", "size", "status", "governing_check", "reason", "missing", "shortest_life_of"),
 )
 
 
@@ -240,9 +240,14 @@ class _Candidates:
         of = np.repeat(np.array(places, np.int64), [len(self.of_axis[place]) for place in places])
         columns = [pa.array(of), axis.take(pa.array(of)).combine_chunks()]
         schema = candidate_fields(axis.type)
-        columns += [pa.array([getattr(row, name) for row in rows], schema.field(name).type) for name in PLAIN]
+        columns += [pa.array([_plain(getattr(row, name)) for row in rows], schema.field(name).type) for name in PLAIN]
         columns += [pa.array([getattr(row.reserve, name) for row in rows], pa.float64()) for name in RESERVE.values()]
         return pa.Table.from_arrays(columns, schema=schema)
+
+
+def _plain(value: Any) -> Any:
+    """A field of a candidate as a cell: a list as one text, null where it is empty."""
+    return (", ".join(value) or None) if isinstance(value, tuple) else value
 
 
 FIELDS = {"answers": answer_fields, "rejected": rejected_fields, "candidates": candidate_fields}

@@ -141,6 +141,9 @@ CANDIDATE: Mapping[str, Named] = {
     ),
     "governing_check": Named(N_("Governing check"), "", "Code of the check with that utilisation."),
     "reason": Named(N_("Reason"), "", "Reason for the candidate’s status."),
+    "missing": Named(
+        N_("Missing inputs"), "", "Paths of the inputs that an unrated candidate lacks alone; none elsewhere."
+    ),
     "average_input_speed_rpm": Named(N_("Average input speed"), "n_in,av", "Average input speed.", "17.5"),
     "maximum_input_speed_rpm": Named(N_("Maximum input speed"), "n_in,max", "Maximum input speed.", "17.6"),
     "life_L10_h": Named(
@@ -303,6 +306,11 @@ CHECK: Mapping[str, Named] = {
         N_("Utilisation"), "", "Demand over limit (limit over demand for a minimum); null where there is none."
     ),
     "status": Named(N_("Verdict"), "", "Verdict of the check."),
+    "at_least": Named(
+        N_("Utilisation, at least"),
+        "",
+        "Lower bound of the utilisation of a check that an input would rate; else null.",
+    ),
 }
 
 GEAR: Mapping[str, Named] = {

@@ -2,10 +2,18 @@
 
 import numpy as np
 
-from hpn.engine.check import Check
+from hpn.engine.check import Case, Check
+from hpn.physics.equations import ROUNDING, FloatArray
 from hpn.words.wording import N_
 
 BEARING_LIMITS = N_("F_R,dyn(max) and F_A,dyn(max), rating tables 10.1 to 12.2")
+
+
+def _known_or_failing(known: FloatArray, at_least: FloatArray, case: Case, limit: FloatArray) -> FloatArray:
+    """A load where it is known, or its lower bound where that fails already; NaN where neither says anything."""
+    fails = at_least > limit * case.asked["requirements.utilisation"] * (1 + ROUNDING)
+    return np.where(np.isnan(known) & fails, at_least, known)
+
 
 OUTPUT_BEARING: tuple[Check, ...] = (
     Check(
@@ -27,8 +35,11 @@ OUTPUT_BEARING: tuple[Check, ...] = (
         ),
         remedy=N_("Support the load outside the gear, move it, or choose a larger size."),
         asked="output_load.load_coefficient",
-        demand=lambda c: c.figures.bearing_load,
+        demand=lambda c: _known_or_failing(
+            c.figures.bearing_load, c.figures.bearing_loads_at_least[0], c, np.ones((1, 1))
+        ),
         limit=lambda c: np.ones((1, 1)),
+        at_least=lambda c: c.figures.bearing_loads_at_least[0],
         limited_by="dynamic_radial_load_N",
         relation="max f_w · P_i ≤ 1",
         moves={"load": 1.0},
@@ -53,8 +64,11 @@ OUTPUT_BEARING: tuple[Check, ...] = (
         ),
         remedy=N_("Lower load, speed or required life, choose f_w with more care, or choose a larger size."),
         asked="output_load.load_coefficient",
-        demand=lambda c: c.figures.bearing_mean_load,
+        demand=lambda c: _known_or_failing(
+            c.figures.bearing_mean_load, c.figures.bearing_loads_at_least[1], c, c.figures.bearing_life_factor
+        ),
         limit=lambda c: c.figures.bearing_life_factor,
+        at_least=lambda c: c.figures.bearing_loads_at_least[1] / c.figures.bearing_life_factor,
         limited_by="dynamic_radial_load_N",
         relation="f_w · P_m ≤ k",
         moves={"speed": 1 / 3, "load": 1.0},

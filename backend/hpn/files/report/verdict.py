@@ -4,7 +4,7 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 from hpn.catalogue.gear import Gear
-from hpn.engine.candidates import Candidate
+from hpn.engine.candidates import Candidate, reason_of
 from hpn.engine.remedy import remedy_of
 from hpn.engine.tried import needed_of
 from hpn.explain.readings import shortest_life, torque_limit_of
@@ -118,7 +118,9 @@ def _said(export: Export, reader: Reader) -> Iterable[Sentence]:
     if status == "suitable":
         yield _place(export)
         return
-    if candidate is export.selection.foremost:
+    if candidate.missing:
+        yield reason_of(candidate, export.application.requirements.utilisation)
+    elif candidate is export.selection.foremost:
         yield Sentence(REASONS[key], values)
     else:
         yield Sentence(CHOSEN[key], values)

@@ -144,6 +144,11 @@ class Result:
         """The shortest life of the chosen gear; None where none is known."""
         return shortest_life(self.chosen)
 
+    @property
+    def lacking(self) -> int:
+        """Number of gears that lack an input alone."""
+        return sum(bool(candidate.missing) for candidate in self.selection.candidates)
+
     @cached_property
     def listed(self) -> CandidateList:
         """The candidates as they are listed."""

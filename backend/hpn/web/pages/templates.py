@@ -14,7 +14,7 @@ from jinja2.runtime import Context
 from markupsafe import Markup, escape
 from starlette.datastructures import State
 
-from hpn.engine.candidates import Candidate, reason_of
+from hpn.engine.candidates import REASONS, Candidate, reason_of
 from hpn.engine.checks import BY_CODE, name_of
 from hpn.engine.remedy import DRIVER_NAMES
 from hpn.explain.calculation import calculation_of, mathml
@@ -271,6 +271,7 @@ FILTERS: dict[str, Callable[..., Any]] = {
 GLOBALS: dict[str, Any] = {
     "BEARING_MODELS": BEARING_MODELS,
     "RANKINGS": RANKINGS,
+    "REASONS": REASONS,
     "BODY_COLUMNS": BODY_COLUMNS,
     "calculation_of": calculation_of,
     "CHECKS": BY_CODE,
