@@ -11,7 +11,7 @@ from hpn.catalogue import Catalogue
 from hpn.engine.notices import ON_MOTOR_TORQUES, on_motor_torques
 from hpn.engine.remedy import Way, alternatives_of
 from hpn.engine.selection import select
-from hpn.engine.tried import followed, tried
+from hpn.engine.tried import followed, needed_of, tried
 from tests.build import Json, answer, candidate, check, cycle, notices, phase
 from tests.conftest import Supplement
 
@@ -263,6 +263,18 @@ def test_a_brake_that_does_not_stop_or_hold_the_load_is_told(catalogue: Catalogu
     assert check(weak, GEAR, "momentary_peak_torque")["status"] == "pass"
     assert "ratios 5 " in notices(weak)["brake_does_not_hold"]
     assert candidate(weak, GEAR)["reserve"]["load_inertia_kgm2"] is None
+
+
+def test_no_remedy_is_offered_whose_phases_the_brake_does_not_stop(catalogue: Catalogue) -> None:
+    """3.6 Nm stop the motion of T_v 16.7 Nm, not phases that T_d of 19.7 Nm drives; 14 Nm stop both."""
+    for brake_Nm, count in ((3.6, 0), (14, 2)):
+        document = crane({"torque_Nm": brake_Nm}, [5])
+        document["requirements"] |= {"life_h": 1e9}
+        application = Application.model_validate(document)
+        gear = select(application, catalogue).candidate(GEAR)
+        assert gear is not None and gear.status == "unsuitable"
+        assert any(alternative.way.torque < 1 for alternative in alternatives_of(gear))
+        assert len(needed_of(gear, application, catalogue)) == count
 
 
 def test_phases_in_place_of_a_motion_keep_the_torques_of_its_load(catalogue: Catalogue) -> None:

@@ -14,6 +14,7 @@ from hpn.engine.candidates import Candidate
 from hpn.engine.duty import Duty
 from hpn.engine.evaluation import SUITABLE, evaluate
 from hpn.engine.remedy import DIGITS, Alternative, Requirement, Way, alternatives_of, in_order, parts_less
+from hpn.physics.equations import ROUNDING
 from hpn.physics.stiffness import ARCMIN_PER_RAD
 from hpn.words.wording import Quantity, rounded
 
@@ -30,8 +31,17 @@ def needed_of(candidate: Candidate, application: Application, catalogue: Catalog
         one = replace(proposed, requirements=tuple(_as_asked(limit, asked) for limit in proposed.requirements))
         while less := next((less for less in parts_less(one) if _fits(application, less, gears, catalogue)), None):
             one = less
-        found.append(one)
+        if not _slips(application, candidate) or _fits(application, one, gears, catalogue):
+            found.append(one)
     return in_order(found)
+
+
+def _slips(application: Application, candidate: Candidate) -> bool:
+    """True where a brake may not hold a motion's load, all of which drives in the phases that take its place."""
+    stop, motion = application.emergency_stop, application.duty_cycle.motion
+    if stop is None or stop.brake is None or motion is None:
+        return False
+    return candidate.ratio * stop.brake.torque_Nm <= motion.stopped_load.pulling_at_gear_Nm * (1 + ROUNDING)
 
 
 def _fits(application: Application, alternative: Alternative, gears: GearList, catalogue: Catalogue) -> bool:
