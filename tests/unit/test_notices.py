@@ -7,7 +7,7 @@ import pytest
 from hpn.application import Application, ApplicationArea
 from hpn.catalogue import Catalogue, load_catalogue
 from hpn.engine.batch import judge_batch
-from hpn.engine.notices import AREAS
+from hpn.engine.notice import AREAS
 from hpn.engine.selection import Judged, Selection, select
 from tests.build import Json, answer, candidate, check, cycle, notices, phase
 from tests.conftest import Supplement

@@ -19,7 +19,8 @@ from hpn.engine.check import Check, Group, Kind
 from hpn.engine.checks import BY_CODE, name_of
 from hpn.engine.duty import Duty
 from hpn.engine.evaluation import SUITABLE, Evaluation, evaluate
-from hpn.engine.notices import Notice, notices_of
+from hpn.engine.notice import Notice
+from hpn.engine.notices import notices_of
 from hpn.words.quantities import DUTY, PHASE
 from hpn.words.reply import Reply, described
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from hpn.application import Application
-from hpn.engine.notices import AREAS
+from hpn.engine.notice import AREAS
 from hpn.words.quantities import INPUTS
 from hpn.words.reader import Reader
 from hpn.words.terms import BEARING_MODELS, LIFE_BASES, POSITION_ERROR_AT, RANKINGS

@@ -9,7 +9,7 @@ from functools import cache
 
 from hpn.application.phase import Phase
 from hpn.catalogue import Catalogue
-from hpn.engine.notices import AREAS
+from hpn.engine.notice import AREAS
 from hpn.physics.motion.mechanisms import CLASSES, Rotary
 from hpn.physics.motion.moves import DEFAULT_JERK_SHARE
 from hpn.tables.inputs import NAME, PHASE, Input, Inputs
