@@ -18,7 +18,11 @@ def answer_to(query: str, catalogue: Catalogue) -> Answer:
 
 
 @pytest.mark.parametrize(
-    "query", [EXAMPLE, EXAMPLE + "&FR=2000&rank=life", "T=5000&n=10&t=1", EXAMPLE + "&i=5&size=40A"]
+    "query",
+    [
+        *(EXAMPLE, EXAMPLE + "&FR=2000&rank=life", "T=5000&n=10&t=1"),
+        *(EXAMPLE + "&i=5&size=40A", EXAMPLE + "&FR=1201.7&xR=45"),
+    ],
 )
 def test_every_candidate_is_listed_once_in_the_order_of_the_reply(catalogue: Catalogue, query: str) -> None:
     answer = answer_to(query, catalogue)
@@ -26,7 +30,8 @@ def test_every_candidate_is_listed_once_in_the_order_of_the_reply(catalogue: Cat
 
     rejected = [candidate for group in listed.rejected for candidate in group.candidates]
     assert (*listed.first, *listed.more) == tuple(c for c in given if c.status == "suitable")
-    assert listed.unrated == tuple(c for c in given if c.status == "unrated")
+    assert listed.unrated == tuple(c for c in given if c.status == "unrated" and not c.missing)
+    assert listed.lacking == tuple(c for c in given if c.missing)
     assert sorted(rejected, key=given.index) == [c for c in given if c.status == "unsuitable"]
     nearest = [given.index(group.candidates[0]) for group in listed.rejected]
     assert nearest == sorted(nearest)

@@ -265,7 +265,7 @@ CANDIDATE: Mapping[str, Named] = {
 }
 
 LISTED: Mapping[str, Named] = {
-    "shortest_life_h": Named(N_("Shortest life")),
+    "shortest_life_h": Named(N_("Life")),
     "maximum_input_speed_rpm": Named(N_("Input speed")),
 }
 """Figures of a candidate that the page lists of all of them, by a name as short as a column."""

@@ -38,7 +38,8 @@ class RejectedSize:
 
 @dataclass(frozen=True, slots=True)
 class CandidateList:
-    """The candidates as they are listed: suitable ones in parts, rejected ones by size, nearest miss first.
+    """The candidates as they are listed: suitable ones in parts, then those that lack an input alone, rejected ones by
+    size, nearest miss first, and the other unrated ones.
 
     `ties` are runs of suitable gears of one size that differ neither in what they are ranked by nor in weight and
     utilisation, so that L10 alone orders them.
@@ -46,6 +47,7 @@ class CandidateList:
 
     first: tuple[Candidate, ...]
     more: tuple[Candidate, ...]
+    lacking: tuple[Candidate, ...]
     rejected: tuple[RejectedSize, ...]
     unrated: tuple[Candidate, ...]
     ties: tuple[tuple[Candidate, ...], ...]
@@ -144,11 +146,6 @@ class Result:
         """The shortest life of the chosen gear; None where none is known."""
         return shortest_life(self.chosen)
 
-    @property
-    def lacking(self) -> int:
-        """Number of gears that lack an input alone."""
-        return sum(bool(candidate.missing) for candidate in self.selection.candidates)
-
     @cached_property
     def listed(self) -> CandidateList:
         """The candidates as they are listed."""
@@ -163,7 +160,8 @@ class Result:
             first=suitable[:LISTED_AT_ONCE],
             more=suitable[LISTED_AT_ONCE:],
             rejected=tuple(RejectedSize(size, tuple(group)) for size, group in sizes.items()),
-            unrated=tuple(by_status["unrated"]),
+            lacking=tuple(candidate for candidate in by_status["unrated"] if candidate.missing),
+            unrated=tuple(candidate for candidate in by_status["unrated"] if not candidate.missing),
             ties=_ties(suitable, self.rank_by),
         )
 
