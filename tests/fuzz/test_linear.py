@@ -249,12 +249,12 @@ def test_no_pattern_over_cells_is_without_a_bound() -> None:
     [
         ("Drehzahl [1/min]", ("Drehzahl", "1/min")),
         ("Drehzahl\n[1/min]", ("Drehzahl", "1/min")),
-        ("Moment (Abtrieb) (Nm)", ("Moment", "Abtrieb) (Nm")),
+        ("Moment (Abtrieb) (Nm)", ("Moment Abtrieb", "Nm")),
         ("Moment , { Nm }", ("Moment", "Nm")),
         ("[Nm]", ("", "Nm")),
-        ("Moment [Nm] max", ("Moment [Nm] max", "")),
+        ("Moment [Nm] max", ("Moment max", "Nm")),
         ("Moment ]", ("Moment ]", "")),
     ],
 )
-def test_a_heading_is_parted_at_its_first_bracket(text: str, parts: tuple[str, str]) -> None:
+def test_a_unit_in_brackets_is_parted_from_the_name_that_keeps_other_words_in_brackets(text: str, parts: tuple[str, str]) -> None:
     assert parts_of(text) == parts

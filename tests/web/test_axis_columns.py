@@ -137,7 +137,8 @@ def test_a_unit_row_below_the_names_of_columns_is_asked_where_it_says_otherwise(
 def test_a_row_of_units_lets_no_name_vanish() -> None:
     table = read("Axis;Duration;Motor speed;Torque", ";s;rpm;Nm", "A;1;2500;40")
 
-    assert asked(table) == ["What is column “Motor speed rpm”?", "Which column is the speed?"]
+    (question,) = asked(table)
+    assert question.startswith("Motor speed rpm: named after the motor")
     assert [column.role for column in table.columns] == ["axis", "t", "", "T"]
 
 
@@ -161,7 +162,8 @@ def test_a_name_above_that_of_a_quantity_counts() -> None:
     table = read("Achse;Motor;;Dauer", ";Drehmoment;Drehzahl;", "A;4;2500;1")
 
     assert [column.role for column in table.columns] == ["axis", "", "", "t"]
-    assert "What is column “Motor Drehzahl”?" in asked(table)
+    (question,) = asked(table)
+    assert question.startswith("Motor Drehmoment, Motor Drehzahl: named after the motor")
     joined = read("Achse;Drehmoment;;Drehzahl;Dauer", ";;max;;", "A;40;55;250;1", roles={1: "T"})
     assert [column.role for column in joined.columns] == ["axis", "T", "Tpk", "n", "t"]
 

@@ -246,6 +246,25 @@ def test_merged_title_and_heading_are_read(client: TestClient) -> None:
     assert taken(answer(client, content(made))) == [("40", "250", "0.3")]
 
 
+def test_name_merged_over_some_columns_is_part_of_their_names(client: TestClient) -> None:
+    def merged(name: str, title: str) -> str:
+        made = book(
+            [title, None, None, None],
+            [None, name, None, None],
+            ["Dauer [s]", "Drehmoment [Nm]", "Drehzahl [1/min]", "Temperatur"],
+            [0.3, 4, 2500, 20],
+        )
+        for cells in ("A1:D1", "B2:C2"):
+            made.worksheets[0].merge_cells(cells)
+        return said(answer(client, content(made)))
+
+    assert "Motorwelle Drehmoment [Nm], Motorwelle Drehzahl [1/min]: named after the motor" in merged(
+        "Motorwelle", "Test"
+    )
+    assert "What is column “Kanal 7 Drehmoment [Nm]”?" in merged("Kanal 7", "Test")
+    assert "What is column “Temperatur”?" in merged("Abtrieb", "Test")  # under no name, and no part of the title
+
+
 @pytest.mark.parametrize("script", [True, False])
 def test_sheet_is_asked_for_where_several_have_cells(client: TestClient, script: bool) -> None:
     made = book(HEADER, [40, 250, 0.3], name="Achse 1")

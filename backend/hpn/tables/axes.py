@@ -14,8 +14,9 @@ from hpn.tables.cells import LONGEST_CELL, Decimal, Entry, Merged, entry, is_bla
 from hpn.tables.columns import NO_CHOICES, Choices, Column, proposed, settled
 from hpn.tables.heads import REQUIRED, left_out, skipped
 from hpn.tables.inputs import AXIS, NAME, PHASE, PHASE_ROLES, Inputs
-from hpn.tables.interpreter import Interpreter, Questions, Row, Series, unit_behind
+from hpn.tables.interpreter import Interpreter, Row, Series, unit_behind
 from hpn.tables.numbers import known_units
+from hpn.tables.questions import Questions
 from hpn.tables.sheets import Grid, RefusedError
 from hpn.tables.table import Choice, Table
 from hpn.tables.times import ERROR, durations_of, in_plain, unrolled

@@ -72,6 +72,17 @@ class Merged(str):
     __slots__ = ()
 
 
+class Spanning(str):
+    """A text of a merged cell over several columns of one row."""
+
+    columns: int
+
+
+def spanned(cell: str) -> int:
+    """Columns that a merged text covers; 0 for any other, of which nothing says where it ends."""
+    return cell.columns if isinstance(cell, Spanning) else 0
+
+
 class Entry(NamedTuple):
     """A number in plain notation, and the unit written behind it."""
 

@@ -33,6 +33,7 @@ _COUNT = Pattern("[0-9]{1,9}", 9)
 
 NUMBERS = N_("numbers the phases")
 UNKNOWN = N_("not recognised")
+MOTOR = Sentence(N_("of the motor’s side"))
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,6 +48,7 @@ class Choices:
     times: str = ""
     last: str = ""
     falls: str = ""
+    side: str = ""
     totals: str = ""
     parts: str = ""
     scales: str = ""
@@ -63,7 +65,8 @@ NO_CHOICES = Choices()
 class Column:
     """A column: its place, its heading as written, its role (blank: to be asked), and why it is skipped.
 
-    `foreign` is the unit in its heading where it is read in another alone.
+    `foreign` is the unit in its heading where it is read in another alone. Where its name has a word of the motor it is
+    `of_motor`, and `meant` is its role if the values are those of the output.
     """
 
     place: int
@@ -77,6 +80,8 @@ class Column:
     doubled: bool = False
     held: Input | None = None
     foreign: str = ""
+    of_motor: bool = False
+    meant: str = ""
 
     @property
     def is_unknown(self) -> bool:
@@ -128,7 +133,9 @@ def _proposed(body: Body, place: int, inputs: Inputs) -> Column:
     if kind in (INDEX, SUM):
         why = Sentence(NUMBERS) if kind == INDEX else Sentence(N_("a sum"))
         return Column(place, heading, SKIP, skipped=why)
-    return Column(place, heading, kind, lasting=said.lasting, instant=said.instant or place in body.dated)
+    meant = "" if kind else said.meant
+    instant = said.instant or place in body.dated
+    return Column(place, heading, kind, lasting=said.lasting, instant=instant, of_motor=said.of_motor, meant=meant)
 
 
 def _is_text(cells: Sequence[str], kind: str, named: bool) -> bool:
@@ -183,11 +190,27 @@ def settled(
     Two of one role are asked, unknown ones may be skipped. `assumed` are the units of the wire that a column without a
     unit is taken to be in.
     """
+    if choices.side in SIDES:
+        held = {column.role for column in columns}
+        columns = [_on_side(column, choices.side, held) for column in columns]
     roles = [column.role for column in columns if column.role not in ("", SKIP)]
     found = [
         _answered(replace(column, doubled=roles.count(column.role) > 1), inputs.by_role, choices) for column in columns
     ]
     return tuple(_with_unit(column, body, inputs, choices, assumed) for column in found)
+
+
+SIDES: Mapping[str, str] = {
+    "output": N_("of the gear’s output"),
+    "motor": N_("of the motor or the gear’s input: not read"),
+}
+
+
+def _on_side(column: Column, side: str, held: Collection[str]) -> Column:
+    """A column that is named after the motor as somebody has said whose values it has; others hold their roles."""
+    if not column.meant or (side == "output" and column.meant in held):
+        return column
+    return replace(column, role=column.meant if side == "output" else SKIP, skipped=MOTOR if side == "motor" else None)
 
 
 def _answered(column: Column, roles: Collection[str], choices: Choices) -> Column:

@@ -13,8 +13,9 @@ from hpn.tables.cycle_columns import columns_of, has_two_ways
 from hpn.tables.headings import heading_over
 from hpn.tables.heads import REQUIRED, left_out, skipped
 from hpn.tables.inputs import CYCLE, NAME, PHASE_ROLES
-from hpn.tables.interpreter import Interpreter, Questions, Row, Series, unit_behind
+from hpn.tables.interpreter import Interpreter, Row, Series, unit_behind
 from hpn.tables.numbers import either, known_units
+from hpn.tables.questions import Questions
 from hpn.tables.sheets import SEPARATORS, Grid, RefusedError, grids_of, no_number
 from hpn.tables.table import Choice, Table
 from hpn.tables.times import FIRST, SORTED, durations_of, falls_of, in_plain, unrolled

@@ -4,7 +4,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 
-from hpn.tables.cells import is_blank, tidy
+from hpn.tables.cells import TIME_FORMAT, is_blank, tidy
+from hpn.tables.shafts import is_of_motor, without_motor, without_output
 from hpn.words import spellings, units
 from hpn.words.patterns import Pattern
 
@@ -78,9 +79,18 @@ INSTANTS = {
 } | {*("beginn", "bis", "von", "until", "from")}
 """Names that mean a point in time, and never how long something lasts."""
 
+_LARGEST = {"max", "maximum", "maximal", "maximale", "maxi", "massima", "massimo", "peak", "spitze", "crête", "picco"}
+_EFFECTIVE = {"rms", "eff", "effective", "effektiv", "efficace"}
+_QUALIFIED = {
+    **{(word, kind): f"{kind}pk" for word in _LARGEST for kind in ("T", "n")},
+    **{(word, "T"): "Trms" for word in _EFFECTIVE},
+}
+"""A word before or behind the name of a quantity, and its kind -> what both mean."""
+
 QUALIFIERS = {
-    *("max", "maximum", "min", "minimum", "peak", "spitze", "mean", "average", "avg", "mittel", "mittelwert"),
-    *("rms", "eff", "effective", "effektiv", "nominal", "rated", "nenn"),
+    *_LARGEST,
+    *_EFFECTIVE,
+    *("min", "minimum", "mean", "average", "avg", "mittel", "mittelwert", "nominal", "rated", "nenn"),
 }
 """Names below that of a quantity, which say what of it a column holds."""
 
@@ -92,12 +102,6 @@ OF_REMARKS = {"remark", "remarks", "comment", "note", "notes", "bemerkung", "bem
 
 OF_LOAD = {"load", "last", "load cycle", "lastzyklus", "duty cycle", "cycle", "zyklus"}
 """Names above that of a quantity that change nothing of it."""
-
-OF_MOTOR = {
-    *("motor", "servo", "servomotor", "motorseite", "motor side", "antrieb", "antriebsseite", "eingang", "input"),
-    *("input side", "drive", "drive side"),
-}
-"""Names above that of a quantity which say that it is another shaft's than the gear's output."""
 
 ANGULAR = {"ω", "omega", "winkelgeschwindigkeit", "angular velocity", "angular speed"}
 """Names of a speed that is as likely in rad/s as in rpm."""
@@ -118,13 +122,22 @@ _BETWEEN = Pattern(r"\s+in\s+|\s*[/,]\s*|[\s_]+", LONGEST_WRITTEN)
 
 @dataclass(frozen=True, slots=True)
 class Heading:
-    """Meaning of a heading: the quantity, an index, a sum, a unit alone, or nothing that is known (`kind` blank)."""
+    """Meaning of a heading: the quantity, an index, a sum, a unit alone, or nothing that is known (`kind` blank).
+
+    Beside a word of the motor it is `meant` alone: the quantity may be of another shaft than the output.
+    """
 
     kind: str
     unit: str = ""
+    meant: str = ""
     lasting: bool = False
     angular: bool = False
     instant: bool = False
+
+    @property
+    def names_quantity(self) -> bool:
+        """True where it names a quantity of a phase, on whichever shaft."""
+        return self.kind in QUANTITIES or bool(self.meant)
 
 
 def heading_of(cell: str) -> Heading:
@@ -143,16 +156,18 @@ def _heading_of(cell: str) -> Heading:
         return Heading(UNIT, unit)
     name, unit = parts_of(text)
     folded = _folded(name)
-    if summed := _SUMS.fullmatch(folded):
+    if summed := _SUMS.fullmatch(folded) or _SUMS.fullmatch(" ".join(reversed(folded.rsplit(" ", 1)))):
         of = _kind(summed["rest"], "")
         return Heading(SUM if of == "t" or (not of and spellings.codes_for(unit, "time")) else "", unit)
-    kind = _kind(name, unit)
+    of_motor = is_of_motor(name)
+    kind = meant = _kind(without_motor(name), unit) if of_motor else _kind(name, unit)
     codes = spellings.codes_for(unit)
     if kind in QUANTITIES and codes and QUANTITIES[kind] not in {units.QUANTITY_OF[code] for code in codes}:
         return Heading("", unit)
+    kind, meant = (kind, "") if not of_motor or kind == "t" else ("", kind if kind in QUANTITIES else "")
     words = {folded, *map(_folded, name.rpartition(" "))}
     lasting, angular, instant = (not words.isdisjoint(names) for names in (DURATIONS, ANGULAR, INSTANTS))
-    return Heading(kind, unit, lasting, angular, instant)
+    return Heading(kind, unit, meant, lasting, angular, instant)
 
 
 def _unit_alone(text: str) -> str:
@@ -170,25 +185,56 @@ def _without_in(unit: str) -> str:
 
 
 def parts_of(text: str) -> tuple[str, str]:
-    """Name and unit of `Drehzahl [1/min]`, `Drehzahl in 1/min`, `Drehzahl_1/min`, `n / min-1`."""
+    """Name and unit of `Drehzahl [1/min]`, `Drehzahl in 1/min`, `Drehzahl_1/min`, `n / min-1`.
+
+    What else stands in brackets is part of the name: `Speed motor` of `Speed (motor) [rpm]`. A short word in the last
+    of them may be a unit that is not known; one in round brackets is both, and then both are asked.
+    """
     if len(text) > LONGEST_WRITTEN or _kind(text, ""):
         return text, ""
-    if parts := _around_bracket(text):
-        return parts[0].strip(" ,/"), _without_in(parts[1])
+    parts = _bracketed(text)
+    inside = [k for k, (bracket, _) in enumerate(parts) if bracket]
+    place = next((k for k in inside if _is_unit(parts[k][1])), None)
+    if place is not None:
+        return _joined(parts, place), _without_in(parts[place][1])
     for between in _BETWEEN.finditer(text):
         name, unit = text[: between.start()], text[between.end() :]
         if name and spellings.codes_for(unit):
             return name, unit
-    return text, ""
+    bracket, unit = parts[inside[-1]] if inside else ("", "")
+    if bracket and _may_be_unit(unit):
+        return _joined(parts, None if bracket == "(" else inside[-1]), unit
+    return _joined(parts), ""
 
 
-def _around_bracket(text: str) -> tuple[str, str] | None:
-    """What stands before the first opening bracket, and behind it up to one at the end; None where it is elsewhere."""
-    first = min((place for bracket in "[(<{" if (place := text.find(bracket)) >= 0), default=-1)
-    if first < 0 or text[-1] not in "])>}":
-        return None
-    name, unit = text[:first].rstrip(), text[first + 1 : -1].strip()
-    return None if "\n" in name or "\n" in unit else (name, unit)
+def _bracketed(text: str) -> list[tuple[str, str]]:
+    """Parts of a text outside and inside of its outer brackets, each with the bracket that it stands in."""
+    found, begin, depth, bracket = list[tuple[str, str]](), 0, 0, ""
+    for k, sign in enumerate(text):
+        opens, closes = sign in "[(<{", sign in "])>}" and depth > 0
+        if (opens and not depth) or (closes and depth == 1):
+            found.append((bracket, text[begin:k].strip()))
+            begin, bracket = k + 1, sign if opens else ""
+        depth += opens - closes
+    return [*found, (bracket, text[begin:].strip())]
+
+
+def _joined(parts: Sequence[tuple[str, str]], without: int | None = None) -> str:
+    """Name of the parts of a text but for one, and for brackets that say nothing."""
+    kept = [part for k, (bracket, part) in enumerate(parts) if k != without and not (bracket and is_blank(part))]
+    return " ".join(" ".join(kept).split()).strip(" ,/")
+
+
+def _is_unit(text: str) -> bool:
+    return bool(spellings.codes_for(_without_in(text)) or TIME_FORMAT.fullmatch(text))
+
+
+def _may_be_unit(text: str) -> bool:
+    """True for a short word or a sign, of no meaning beside a name."""
+    known = is_qualifier(text) or is_of_motor(text) or not without_output(text) or text in _SYMBOLS
+    return (
+        not known and not _SUMS.fullmatch(_folded(text)) and " " not in text and (len(text) < 6 or not text.isalpha())
+    )
 
 
 def _kind(name: str, unit: str) -> str:
@@ -199,9 +245,21 @@ def _kind(name: str, unit: str) -> str:
     folded = _folded(name)
     if len(folded) == 1 and folded in "tnm":
         return ""
+    if kind := _NAMES.get(folded) or _qualified(folded):
+        return kind
+    if (of_output := without_output(name)) != name.strip() and of_output:
+        return _kind(of_output, unit)
     word, _, symbol = name.strip().rpartition(" ")
     meant = _NAMES.get(_folded(word), "")
-    return _NAMES.get(folded) or (meant if meant and _SYMBOLS.get(symbol) == meant else "")
+    return meant if meant and _SYMBOLS.get(symbol) == meant else ""
+
+
+def _qualified(folded: str) -> str:
+    """Largest or effective value of the quantity that the other words name: `torque max`, `vitesse maximale`."""
+    first, _, behind = folded.partition(" ")
+    before, _, last = folded.rpartition(" ")
+    ways = ((first, _NAMES.get(behind)), (last, _NAMES.get(before)))
+    return next((found for word, kind in ways if kind and (found := _QUALIFIED.get((word, kind)))), "")
 
 
 def _folded(name: str) -> str:
@@ -212,12 +270,15 @@ def _folded(name: str) -> str:
 class Over:
     """Meaning of all texts above a column together. A unit outranks no name: beside a name it says the unit alone.
 
-    `kind` is blank where nothing is known, or two things; `name` is what the column is called without its units.
+    `kind` is blank where nothing is known, or two things; `name` is what the column is called without its units. Beside
+    a word of the motor the kind is `meant` alone.
     """
 
     kind: str
     name: str
     units: frozenset[str]
+    meant: str = ""
+    of_motor: bool = False
     lasting: bool = False
     angular: bool = False
     instant: bool = False
@@ -239,16 +300,18 @@ def heading_over(texts: Sequence[str]) -> Over:
     measured = frozenset(each.unit for each in said) - {""}
     names = [text for text, each in zip(texts, said, strict=True) if each.kind != UNIT]
     if len(names) < 2:
-        kind = next((each.kind for each in said if each.kind != UNIT), "")
+        kind, meant = next(((each.kind, each.meant) for each in said if each.kind != UNIT), ("", ""))
         found, name = said, names[0] if names else ""
     else:
         found, name = _together(names)
-        kind = found[0].kind
+        kind, meant = found[0].kind, found[0].meant
         measured |= {each.unit for each in found} - {""}
     return Over(
         kind,
         name,
         measured,
+        meant,
+        any(is_of_motor(parts_of(" ".join(text.split()))[0]) for text in names),
         lasting=any(each.lasting for each in found),
         angular=any(each.angular for each in found),
         instant=any(each.instant for each in found),
@@ -258,9 +321,9 @@ def heading_over(texts: Sequence[str]) -> Over:
 def _together(names: Sequence[str]) -> tuple[list[Heading], str]:
     """Headings that names above one another make, read downwards or upwards, and the name that they make."""
     bare = [parts_of(" ".join(name.split()))[0] for name in names]
-    bare = [name for name in bare if _folded(name) not in OF_LOAD] or bare
+    bare = [name for name in bare if _folded(name) not in OF_LOAD and without_output(name)] or bare
     for name in (" ".join(bare), " ".join(reversed(bare))):
-        if (found := heading_of(name)).kind:
+        if (found := heading_of(name)).kind or found.meant:
             return [found], name
     each = [heading_of(name) for name in bare]
     same = len({heading.kind for heading in each}) == 1
@@ -280,11 +343,6 @@ def is_name(cell: str) -> bool:
 def is_remark(cell: str) -> bool:
     """True for a heading of remarks."""
     return len(cell) <= LONGEST and _folded(cell) in OF_REMARKS
-
-
-def is_of_motor(cell: str) -> bool:
-    """True for a name of the motor's side."""
-    return len(cell) <= LONGEST and _folded(cell.strip("[]():")) in OF_MOTOR
 
 
 def quantities_of(unit: str) -> set[str]:

@@ -4,8 +4,9 @@ from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from hpn.tables.cells import is_blank, is_meant_as_number
-from hpn.tables.headings import LONGEST_WRITTEN, QUANTITIES, UNIT, heading_of, is_of_motor, is_qualifier, quantities_of
+from hpn.tables.cells import is_blank, is_meant_as_number, spanned
+from hpn.tables.headings import LONGEST_WRITTEN, QUANTITIES, UNIT, heading_of, is_qualifier, quantities_of
+from hpn.tables.shafts import is_of_motor
 from hpn.tables.sheets import MOST_HEAD_ROWS, Grid, RefusedError
 from hpn.words.patterns import Pattern
 from hpn.words.wording import N_, Sentence
@@ -130,8 +131,8 @@ def _named(row: Sequence[str]) -> int:
     found = set()
     for cell in row[:MOST_COLUMNS]:
         heading = heading_of(cell)
-        if heading.kind in QUANTITIES:
-            found.add(heading.kind)
+        if heading.names_quantity:
+            found.add(heading.kind or heading.meant)
         elif heading.kind == UNIT:
             measured = quantities_of(heading.unit)
             found |= {role for role in REQUIRED if QUANTITIES[role] in measured}
@@ -168,13 +169,31 @@ def _qualifies(row: Sequence[str], above: Sequence[str]) -> bool:
 def _heads(row: Sequence[str], below: Sequence[str]) -> bool:
     """True for a row of names above a row of the header, which are no title and no pair such as `Project;Axis 7`."""
     filled = [(k, cell) for k, cell in enumerate(row) if not is_blank(cell)]
-    if filled and all(is_of_motor(cell) for _, cell in filled):
-        return True
-    if len(filled) < 2 or any(is_meant_as_number(cell) or cell[0].isdigit() or cell[-1] == ":" for _, cell in filled):
+    if any(is_meant_as_number(cell) or cell[0].isdigit() or cell[-1] == ":" for _, cell in filled):
         return False
+    if len(filled) < 2:
+        return any(_is_group(k, cell, below) for k, cell in filled)
+    if all(is_of_motor(cell) and ":" not in cell for _, cell in filled):
+        return True
     if all(heading_of(cell).kind == UNIT for cell in below):
         return True
-    return filled[-1][0] > 1 or all(heading_of(cell).kind in (*QUANTITIES, UNIT) for _, cell in filled)
+    reaches_down = any(heading_of(cell).names_quantity and is_blank(below[k]) for k, cell in filled)
+    pair = filled[-1][0] <= 1 and not reaches_down
+    return not pair or all(heading_of(cell).kind in (*QUANTITIES, UNIT) for _, cell in filled)
+
+
+def _is_group(place: int, cell: str, below: Sequence[str]) -> bool:
+    """True for the only name in its row where it belongs to columns, and is no title.
+
+    Such is a name of the motor, and one over some of the columns: merged, or behind the first with two below it.
+    """
+    named = [k for k, under in enumerate(below) if not is_blank(under)]
+    over = [k for k in named if place <= k < place + spanned(cell)]
+    if len(over) > 1:
+        return len(over) < len(named)
+    if is_of_motor(cell):
+        return ":" not in cell
+    return bool(named) and place > named[0] and {place, place + 1}.issubset(named)
 
 
 def _headings(head: Sequence[Sequence[str]], width: int) -> tuple[tuple[str, ...], ...]:
@@ -185,12 +204,12 @@ def _headings(head: Sequence[Sequence[str]], width: int) -> tuple[tuple[str, ...
     """
     found = [list[str]() for _ in range(width)]
     for row, below in zip(head, [*head[1:], ()], strict=False):
-        over, has_names = "", False
+        over, has_names, end = "", False, 0
         for k, cell in enumerate(row):
             under = below[k] if below and not is_blank(below[k]) and heading_of(below[k]).kind != UNIT else ""
             if not is_blank(cell):
-                over, has_names = cell, bool(under)
-            elif not under or heading_of(under).kind == "t":
+                over, has_names, end = cell, bool(under), k + spanned(cell)
+            elif k == end or not under or heading_of(under).kind == "t":
                 over = ""
             if text := cell or (over if has_names or is_qualifier(under) else ""):
                 found[k].append(text)

@@ -102,7 +102,11 @@ class Inputs:
         """Role by one of the names of an input, with or without a unit behind it."""
         if len(heading) > LONGEST:
             return ""
-        return self._roles.get(_folded(heading)) or self._roles.get(_folded(parts_of(heading)[0]), "")
+        name = parts_of(heading)[0]
+        word, _, symbol = name.rpartition(" ")
+        role = self._roles.get(_folded(word), "")
+        with_symbol = role if role and symbol in (role, self.by_role[role].named.symbol) else ""
+        return self._roles.get(_folded(heading)) or self._roles.get(_folded(name)) or with_symbol
 
     def _measured(self, heading: str, said: Over) -> str:
         """Role by a name that counts beside a unit of its input alone."""

@@ -26,11 +26,12 @@ from hpn.tables.cells import (
     split_unit,
     written,
 )
-from hpn.tables.columns import SKIP, Choices, Column
+from hpn.tables.columns import MOTOR, SIDES, SKIP, Column
 from hpn.tables.headings import heading_over
-from hpn.tables.heads import REQUIRED
+from hpn.tables.heads import MOST_NAMED, REQUIRED
 from hpn.tables.inputs import AXIS
 from hpn.tables.numbers import either, known_units
+from hpn.tables.questions import Questions
 from hpn.tables.sheets import RefusedError
 from hpn.tables.table import Choice, Shown, ShownRow, skipped_among
 from hpn.tables.times import (
@@ -86,32 +87,9 @@ TIMES = Choice(
     },
 )
 FALLS = Choice("falls", OF_FALLS)
-MOST_FALLS = 5
-"""Rows where times fall that a question names."""
-
-
-class Questions:
-    """Open questions about a table, and the choices that it leaves, by the answers to them."""
-
-    def __init__(self, answers: Choices) -> None:
-        self.answers = answers
-        self.open: list[Sentence] = []
-        self.choices: list[Choice] = []
-
-    def ask(self, template: str, **values: Value) -> None:
-        """Add a question."""
-        self.open.append(Sentence(template, dict(values)))
-
-    def choose(self, choice: Choice, question: Sentence, **more: Any) -> str:
-        """The option that somebody has chosen, else `chosen`, the usual one; blank, and asked, where there is none."""
-        answer: str = getattr(self.answers, choice.name)
-        if answer in choice.options:
-            more["chosen"] = answer
-        found = replace(choice, question=question, **more)
-        self.choices.append(found)
-        if not found.chosen:
-            self.open.append(question)
-        return found.chosen
+SIDE = Choice("side", SIDES)
+OF_SHAFT = ("T", "n", "FRi", "FAi", "Tpk", "npk", "Trms")
+"""Roles whose values are those of the output."""
 
 
 FIRST_ROWS, LAST_ROWS = 6, 2
@@ -179,8 +157,9 @@ class Interpreter:
 
     def ask_columns(self) -> None:
         """Ask for columns without a role or a unit, and for what has no column or two."""
+        of_side = self._ask_side()
         for column in self.columns:
-            if not column.role:
+            if not column.role and column not in of_side:
                 self.ask(N_("What is column {name}?"), name=column.called)
             elif column.quantity and not column.unit:
                 self.questions.open.append(self._unit_question(column))
@@ -190,12 +169,32 @@ class Interpreter:
                 self.ask(template, name=column.called, unit=column.foreign, wire=wire)
         roles = [column.role for column in self.columns]
         for role in self.required:
-            if role not in roles and self.is_missed(role, roles):
+            if role not in (*roles, *(column.meant for column in of_side)) and self.is_missed(role, roles):
                 self.ask(MISSING[role])
         for role in dict.fromkeys(roles):
             if role not in ("", SKIP) and roles.count(role) > 1:
                 names = [column.called for column in self.columns if column.role == role]
                 self.ask(N_("Columns {one} and {other} are read as the same quantity."), one=names[0], other=names[1])
+
+    def _ask_side(self) -> list[Column]:
+        """Ask which shaft columns are of that are named after the motor; those about which this is the question.
+
+        Values of the motor are never those of the output: the gear's ratio and losses lie between them.
+        """
+        held = [column.role for column in self.columns if not column.of_motor]
+        named = [column for column in self.columns if column.of_motor and column.role in OF_SHAFT]
+        open_ = [column for column in self.columns if column.meant and not column.role and column.meant not in held]
+        skipped = [column for column in self.columns if column.skipped is MOTOR]
+        if not (named or open_ or skipped):
+            return []
+        listed = ", ".join(column.heading[:40] for column in (*named, *open_, *skipped)[:MOST_NAMED])
+        template = N_("{names}: named after the motor or the gear’s input. Which shaft are the values of?")
+        chosen = self.choose(SIDE, Sentence(template, {"names": listed}))
+        if chosen == "motor" and (named or not {"T", "n"}.issubset(held)):
+            raise RefusedError(
+                N_("torque and speed are needed at the gear’s output; those of the motor are other values")
+            )
+        return open_ if not chosen else []
 
     def is_missed(self, role: str, roles: Collection[str]) -> bool:
         """True where a role is asked that no column has."""
@@ -331,7 +330,7 @@ class Interpreter:
     def _ask_falls(self, falling: Sequence[tuple[Series, Sequence[Fraction]]], *, dated: bool) -> None:
         """Ask why times go back: a clock past midnight and a counter that begins anew gain a lap."""
         rows = [series.numbers[k] for series, times in falling for k in falls_of(times)]
-        listed = ", ".join([*map(str, rows[:MOST_FALLS]), *(["…"] if len(rows) > MOST_FALLS else [])])
+        listed = ", ".join([*map(str, rows[:MOST_NAMED]), *(["…"] if len(rows) > MOST_NAMED else [])])
         template = N_("The times go back in row {rows}, first from {before} to {after}. What is it?")
         question = Sentence(template, {**self._fall(*falling[0]), "rows": listed})
         unit_s = self._seconds_of_unit()

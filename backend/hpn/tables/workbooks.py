@@ -15,7 +15,7 @@ from math import inf
 from typing import TYPE_CHECKING, Any
 from warnings import catch_warnings
 
-from hpn.tables.cells import THOUSANDS, Figure, Merged, is_number, tidy, written
+from hpn.tables.cells import THOUSANDS, Figure, Merged, Spanning, is_number, tidy, written
 from hpn.tables.number_formats import LONGEST_FORMAT, section_of
 from hpn.tables.sheets import LONGEST_TEXT, MOST_CELLS, Grid, RefusedError, Room, grid_of, too_many_cells
 from hpn.words.wording import N_, Sentence
@@ -172,12 +172,18 @@ def _placed(row: list[Any]) -> list[str]:
 def _with_merged(rows: dict[int, list[str]], spans: Iterable["Span"]) -> dict[int, list[str]]:
     """Rows whose cells say so where a merged one with a number covers them: it may be the number of each, or of all.
 
-    A row that is covered altogether says nothing: there a row of the table is several rows high.
+    A row that is covered altogether says nothing: there a row of the table is several rows high. A text knows the
+    columns that it is over.
     """
     widest, lowest = max(map(len, rows.values()), default=0), max(rows, default=0)
     cells = 0
     for span in spans:
-        if len(rows.get(span.top, ())) < span.first or not is_number(number := rows[span.top][span.first - 1]):
+        if len(rows.get(span.top, ())) < span.first:
+            continue
+        if not is_number(number := rows[span.top][span.first - 1]):
+            if span.top == span.bottom and number:
+                rows[span.top][span.first - 1] = text = Spanning(number)
+                text.columns = span.last - span.first + 1
             continue
         last, bottom = min(span.last, widest), min(span.bottom, lowest)
         cells += (last - span.first + 1) * (bottom - span.top + 1)

@@ -1,0 +1,32 @@
+"""Questions about a table that are open, and the choices that it leaves."""
+
+from dataclasses import replace
+from typing import Any
+
+from hpn.tables.columns import Choices
+from hpn.tables.table import Choice
+from hpn.words.wording import Sentence, Value
+
+
+class Questions:
+    """Open questions about a table, and the choices that it leaves, by the answers to them."""
+
+    def __init__(self, answers: Choices) -> None:
+        self.answers = answers
+        self.open: list[Sentence] = []
+        self.choices: list[Choice] = []
+
+    def ask(self, template: str, **values: Value) -> None:
+        """Add a question."""
+        self.open.append(Sentence(template, dict(values)))
+
+    def choose(self, choice: Choice, question: Sentence, **more: Any) -> str:
+        """The option that somebody has chosen, else `chosen`, the usual one; blank, and asked, where there is none."""
+        answer: str = getattr(self.answers, choice.name)
+        if answer in choice.options:
+            more["chosen"] = answer
+        found = replace(choice, question=question, **more)
+        self.choices.append(found)
+        if not found.chosen:
+            self.open.append(question)
+        return found.chosen

@@ -1,0 +1,47 @@
+"""Shafts that the names of columns are of: the motor's, which is the gear's input, or the gear's output."""
+
+from re import IGNORECASE
+
+from hpn.words.patterns import Pattern
+
+_LONGEST = 1000
+"""Characters of a name, as of those above one another together."""
+
+_SIDE = r"(?:[ -]?(?:shaft|side|welle|seite|drive|motor))?"
+_MOTOR = (
+    r"(?:(?:servo|electric|elektro|getriebe)[ -]?)?(?:motor(?:en)?|servo|actuator)" + _SIDE,
+    r"(?:(?:gear|gearbox|getriebe|reducer)[ -]?)?(?:input|eingangs?|antriebs?|drive|driving)" + _SIDE,
+    r"(?:(?:high|fast)[ -]?speed shaft|hss|schnelle welle|primary|primärseite)",
+    r"(?:arbre |côté |axe )?(?:d['’ ])?(?:moteur|entrée)(?: (?:du )?(?:réducteur|moteur))?",
+    r"(?:albero |lato |asse )?(?:d['’ ])?(?:motore|ingresso|entrata|azionamento)(?: (?:del )?riduttore)?",
+    r"(?:eje |lado )?(?:del |de )?(?:entrada)|mot|(?<=[nmt][ _])in$",
+)
+OF_MOTOR = Pattern(rf"(?<![^\W_])(?:{'|'.join(_MOTOR)})(?![^\W\d_])[ _-]*", _LONGEST, IGNORECASE)
+_JOINED = Pattern(
+    r"(?<![^\W_])(?:servo|elektro)?(?:motor|antriebs|eingangs|getriebeeingangs)(?=[^\W\d_]{3})", _LONGEST, IGNORECASE
+)
+"""The motor as the first part of a German word: `Motordrehzahl`."""
+
+_OUTPUT = (
+    r"(?:(?:gear|gearbox|getriebe|reducer)[ -]?)?(?:output|abtriebs?|ausgangs?)" + _SIDE,
+    r"(?:low|slow)[ -]?speed shaft|lss|langsame welle|load[ -]?side|lastseite|lastseitig|abtriebsseitig",
+    r"(?:arbre |côté |axe )?(?:de )?(?:sortie)(?: (?:du )?réducteur)?",
+    r"(?:albero |lato |asse )?(?:di |d['’])?(?:uscita)(?: (?:del )?riduttore)?",
+    r"(?:eje |lado )?(?:de )?salida",
+)
+OF_OUTPUT = Pattern(rf"(?<![^\W_])(?:{'|'.join(_OUTPUT)})(?![^\W\d_])[ _-]*", _LONGEST, IGNORECASE)
+
+
+def is_of_motor(name: str) -> bool:
+    """True for a name with a word of the motor's side."""
+    return bool(OF_MOTOR.search(name) or _JOINED.search(name))
+
+
+def without_motor(name: str) -> str:
+    """A name without words of the motor's side."""
+    return _JOINED.sub("", OF_MOTOR.sub("", name)).strip(" _-")
+
+
+def without_output(name: str) -> str:
+    """A name without words of the output, the side that all inputs are of."""
+    return OF_OUTPUT.sub("", name).strip(" _-")
