@@ -256,5 +256,7 @@ def test_no_pattern_over_cells_is_without_a_bound() -> None:
         ("Moment ]", ("Moment ]", "")),
     ],
 )
-def test_a_unit_in_brackets_is_parted_from_the_name_that_keeps_other_words_in_brackets(text: str, parts: tuple[str, str]) -> None:
+def test_a_unit_in_brackets_is_parted_from_the_name_that_keeps_other_words_in_brackets(
+    text: str, parts: tuple[str, str]
+) -> None:
     assert parts_of(text) == parts
