@@ -22,7 +22,7 @@ PHASE = (
 REQUIRED = PHASE[:3]
 LISTS = {"requirements.ratios": pa.list_(pa.int64()), "requirements.sizes": pa.list_(pa.string())}
 TEXTS = (
-    *("output_load.life_basis", "output_load.model", "rank_by", "application_area"),
+    *("output_load.life_basis", "output_load.model", "output_load.drive.type", "rank_by", "application_area"),
     *("requirements.motor.designation", "requirements.position_error_at"),
 )
 

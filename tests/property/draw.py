@@ -189,7 +189,18 @@ def at_random(chance: random.Random, models: Sequence[str] = ("linear", "iso281"
     pause_s = some(0, 20, 0) if maybe() else 0.0
     if maybe(0.3):
         phases = [entry | ({"name": chance.choice(NAMES)} if maybe(0.7) else {}) for entry in phases]
-    return _with_rest(cycle(*phases, pause_s=pause_s, **parts))
+    return _with_drive(_with_rest(cycle(*phases, pause_s=pause_s, **parts)))
+
+
+def _with_drive(application: Json) -> Json:
+    """The application with a pinion or pulley on the shaft where there is a load, by chance of its own likewise."""
+    chance = random.Random(repr(application))
+    if "output_load" in application and chance.random() < 0.25:
+        drive = {"type": chance.choice(["rack_and_pinion", "belt"]), "diameter_mm": chance.uniform(20, 300)}
+        more = {"rack_helix_deg": chance.choice([0.0, chance.uniform(0, 45)])}
+        more |= {"belt_tension_factor": chance.choice([2.0, chance.uniform(1, 5)])}
+        application["output_load"] |= {"drive": drive} | more
+    return application
 
 
 def _with_rest(application: Json) -> Json:

@@ -12,7 +12,7 @@ import pytest
 from hpn.application import Application
 from hpn.catalogue import Catalogue
 from hpn.engine.candidates import Candidate
-from hpn.engine.remedy import Alternative, Way, condition_of, growths_of
+from hpn.engine.remedy import Alternative, Way, condition_of, growths_of, remedy_of
 from hpn.engine.selection import select
 from hpn.engine.tried import needed_of, tried
 from hpn.web.form.link_reader import parse
@@ -31,7 +31,11 @@ def rejected(chance: random.Random, catalogue: Catalogue) -> Iterator[tuple[Appl
         application = Application.model_validate(at_random(chance))
         known = [one for one in select(application, catalogue).candidates if one.is_judged]
         if failing := [one for one in known if one.status == "unsuitable"]:
-            yield application, chance.choice(failing)
+            candidate = chance.choice(failing)
+            remedy = remedy_of(candidate, needed_of(candidate, application, catalogue))
+            # A pinion or pulley that is too much for the shaft is relieved by no factor.
+            if remedy is None or "pinion or pulley" not in remedy.text:
+                yield application, candidate
 
 
 def verdict(application: Application, designation: str, catalogue: Catalogue) -> str:

@@ -79,7 +79,11 @@ def moved(chance: random.Random, motion: Json) -> Json:
     asked["duty_cycle"] = {"motion": motion, "pause_s": asked["duty_cycle"]["pause_s"]}
     for name in STOP_LOADS:  # a motion has its own
         asked.get("emergency_stop", {}).get("brake", {}).pop(name, None)
-    if "radial_N" not in asked.get("output_load", {}) and not any("radial_N" in move for move in motion["moves"]):
+    asked.get("output_load", {}).pop("drive", None)
+    wheel = motion["mechanism"]["type"] in ("rack_and_pinion", "belt") and motion["mechanism"].get("ratio", 1) == 1
+    if wheel and chance.random() < 0.5:
+        asked["output_load"] = {"shaft_centre_mm": 30.0} | asked.get("output_load", {}) | {"from_motion": True}
+    elif "radial_N" not in asked.get("output_load", {}) and not any("radial_N" in move for move in motion["moves"]):
         asked.pop("output_load", None)
     return motored(chance, asked, moving=True) if chance.random() < 0.7 else asked
 

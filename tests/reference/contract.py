@@ -384,6 +384,7 @@ def _bearing(application: Mapping[str, Any], duty: _Duty, gear: Gear, at_most: A
         )
         for p in phases
     ]
+    loads = [(F_R + own[0], F_A + own[1]) for (F_R, F_A), own in zip(loads, _of_wheel(phases, given, by), strict=True)]
     x, y, x_c = given.get("radial_position_mm"), given.get("axial_radius_mm", 0), given.get("shaft_centre_mm")
     at_centre = [_at_centre(F_R, F_A, x, y, x_c) for F_R, F_A in loads]
     P = [
@@ -410,6 +411,19 @@ def _bearing(application: Mapping[str, Any], duty: _Duty, gear: Gear, at_most: A
     at_most("output_bearing_load", f_w * max(known), 1.0)
     at_most("output_bearing_life", f_w * mean, k)
     return 20000 * (100 / duty.n_av) / (f_w * mean) ** 3 if mean > 0 else INFINITE
+
+
+def _of_wheel(phases: Sequence[Any], given: Mapping[str, Any], by: Arithmetic) -> list[tuple[Any, Any]]:
+    """Radial and axial load of each phase that a pinion or pulley on the shaft makes."""
+    drive = given.get("drive")
+    if drive is None:
+        return [(by.number(0), by.number(0))] * len(phases)
+    forces = [2000 * _peak(p, "torque_Nm") / drive["diameter_mm"] for p in phases]
+    if drive["type"] == "belt":
+        return [(given.get("belt_tension_factor", by.number(2)) * max(forces), by.number(0))] * len(phases)
+    helix = math.radians(float(given.get("rack_helix_deg", 0)))
+    across = math.hypot(1, math.tan(math.radians(20)) / math.cos(helix))
+    return [(F * by.number(across), F * by.number(math.tan(helix))) for F in forces]
 
 
 def _at_centre(F_R: float, F_A: float, x: float | None, y: float, x_c: float | None) -> float | None:

@@ -97,7 +97,12 @@ GRAVITY = ("gravity_mass_kg", "gravity_radius_mm")
 WEIGHTLESS: Json = TURNING | {
     "mechanism": {name: value for name, value in TURNING["mechanism"].items() if name not in GRAVITY}
 }
-TRIED_BY_THEMSELVES: tuple[Path, ...] = (("applications", 0), ("duty_cycle", "motion"), ("emergency_stop", "brake"))
+TRIED_BY_THEMSELVES: tuple[Path, ...] = (
+    ("applications", 0),
+    ("duty_cycle", "motion"),
+    ("emergency_stop", "brake"),
+    ("output_load", "drive"),
+)
 
 
 @pytest.mark.parametrize("name", BODIES)
@@ -155,6 +160,17 @@ def test_each_bound_of_a_brake_is_the_one_that_is_applied(api: TestClient, docum
             assert (refusals(response, pointer) == []) is allowed, (pointer, str(value)[:60], response.text[:300])
             tried += 1
     assert tried >= 8
+
+
+def test_each_bound_of_a_drive_is_the_one_that_is_applied(api: TestClient, document: Json) -> None:
+    tried, drive = 0, {"type": "belt", "diameter_mm": 80.0}
+    for path, schema in leaves(document, document["components"]["schemas"]["Drive"]):
+        for value, allowed in tries(schema, at(drive, path)):
+            body = worked_example() | {"output_load": {"drive": with_value(drive, path, value)}}
+            pointer = "".join(f"/{step}" for step in ("output_load", "drive", *path))
+            assert (refusals(api.post("/api/v1/select", json=body), pointer) == []) is allowed, (pointer, value)
+            tried += 1
+    assert tried >= 4
 
 
 def test_each_bound_of_a_query_is_the_one_that_is_applied(api: TestClient, document: Json) -> None:

@@ -27,6 +27,7 @@ from hpn.words.fields import (
     one_of,
     refused,
 )
+from hpn.words.wording import N_
 
 RankBy = Literal[
     "weight", "utilisation", "length", "motor_torque", "life", "stiffness", "natural_frequency", "position_error"
@@ -47,6 +48,9 @@ ApplicationArea = Literal[
 LEAST_MOTION = 1e-100
 """Product of speed and duration up to which a phase rests: the sums of eq. 17.2 and 17.4 would vanish."""
 
+
+SHAFT_OF_MOTION = N_("needs the motion of a rack or belt with ratio 1, whose pinion or pulley sits on the gear’s shaft")
+DRIVE_OF_PHASES = N_("is for typed phases: a motion has its own pinion or pulley, see from_motion")
 
 PHASES: Any = Field(min_length=1, max_length=MAXIMUM_PHASES)
 
@@ -198,7 +202,14 @@ class Application(Model):
     @classmethod
     def _loaded(cls, load: OutputLoad | None, info: Any) -> OutputLoad | None:
         cycle = info.data.get("duty_cycle")
-        if load is None or cycle is None or load.radial_N is not None or load.axial_N is not None:
+        if load is None or cycle is None:
+            return load
+        motion = cycle.motion
+        if load.from_motion and (motion is None or motion.wheel is None):
+            raise refused(load, (("from_motion",), PydanticCustomError("shaft_of_motion", SHAFT_OF_MOTION)))
+        if load.drive is not None and motion is not None:
+            raise refused(load, (("drive",), PydanticCustomError("drive_twice", DRIVE_OF_PHASES)))
+        if load.from_motion or load.drive is not None or load.radial_N is not None or load.axial_N is not None:
             return load
         if any(phase.radial_N is not None or phase.axial_N is not None for phase in cycle.load_phases):
             return load
@@ -257,6 +268,14 @@ class Application(Model):
                 if phase.radial_N is not None or phase.axial_N is not None:
                     return OutputLoad()
         return self.output_load
+
+    @property
+    def shaft_drive(self) -> str:
+        """Pinion (`rack_and_pinion`) or pulley (`belt`) on the gear's shaft whose load counts; blank for none."""
+        load, motion = self.output_load, self.duty_cycle.motion
+        if load is None or (load.drive is None and not load.from_motion):
+            return ""
+        return load.drive.type if load.drive else (motion and motion.wheel) or ""
 
     @classmethod
     def worked_example(cls) -> Self:

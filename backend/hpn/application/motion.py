@@ -114,6 +114,12 @@ class _Motion(Model):
         return self.course.load_inertia_kgm2
 
     @property
+    def wheel(self) -> str | None:
+        """Type of the mechanism where a pinion or pulley may sit on the gear's shaft; None for any other."""
+        kind: str = getattr(self.mechanism, "type", "")
+        return kind if kind in ("rack_and_pinion", "belt") and self.mechanism.ratio == 1 else None
+
+    @property
     def triangles(self) -> tuple[int, ...]:
         """Places of the moves that came out as triangles nobody asked for."""
         ramped = ("trapezoidal", "s_curve")

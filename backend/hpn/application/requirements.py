@@ -24,6 +24,13 @@ BEARING_LIFE_H = 20_000.0
 """Life for which an output bearing is judged where none is asked of it, as L50."""
 
 
+class Drive(Model):
+    """Pinion or pulley on the gear's shaft, whose load follows from the torques of typed phases."""
+
+    type: Literal["rack_and_pinion", "belt"] = Field(description="Pinion of a rack, or pulley of a belt.")
+    diameter_mm: Positive = Field(description="Pitch diameter of the pinion or pulley.", examples=[60.0])
+
+
 class OutputLoad(Model):
     """Load on the output shaft: where no position is given, at the centre of the shaft and along its axis."""
 
@@ -49,6 +56,25 @@ class OutputLoad(Model):
         description="Distance x_c from the shoulder to the shaft’s centre, at least; for sizes without one in the "
         "catalogue.",
         examples=[21.0],
+    )
+    from_motion: Annotated[bool, Field(strict=True)] = Field(
+        False,
+        description="True: the motion’s pinion or pulley sits on the gear’s shaft, and its load is added to the typed "
+        "ones.",
+        examples=[False],
+    )
+    rack_helix_deg: Annotated[Number, Field(ge=0, le=45)] = Field(
+        0.0, description="Helix angle β of a rack’s teeth.", examples=[0.0]
+    )
+    belt_tension_factor: Annotated[Number, Field(ge=1, le=5)] = Field(
+        2.0,
+        description="Radial load of a belt over its largest tangential force, from its pretension: acts always.",
+        examples=[2.0],
+    )
+    drive: Drive | None = Field(
+        None,
+        description="Pinion or pulley on the gear’s shaft, for typed phases.",
+        examples=[{"type": "belt", "diameter_mm": 60.0}],
     )
 
 

@@ -91,6 +91,7 @@ class Candidate(Reply, frozen=True):
     stopping_angle_deg: float | None = None
     stopping_distance_mm: float | None = None
     stop_energy_J: float | None = None
+    stop_radial_N: float | None = None
     end_stop_speed_rpm: float | None = None
     motor_lock_speed_rpm: float | None = None
     reserve: Reserve = Reserve()

@@ -5,7 +5,7 @@ application and a chunk of a fleet go through the same lines.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -14,9 +14,9 @@ from numpy.typing import NDArray
 from hpn.application import Application, OutputLoad
 from hpn.application.input_fields import NUMBERS
 from hpn.application.phase import ROOM
-from hpn.physics import bearing, equations
+from hpn.physics import bearing, equations, shaft_load
 from hpn.physics.equations import FloatArray
-from hpn.physics.motion import Course, StoppedLoad
+from hpn.physics.motion import Course, StoppedLoad, tangential_force
 from hpn.physics.stop import LoadTorques
 
 TextArray = NDArray[np.str_]
@@ -98,6 +98,7 @@ class Asked:
     life_basis: TextArray
     rank_by: TextArray
     position_error_at: TextArray
+    shaft_drive: TextArray
     load_reverses: FloatArray
 
     @classmethod
@@ -111,6 +112,7 @@ class Asked:
             np.array([[load.life_basis if load else ""] for load in loads]),
             np.array([[application.rank_by] for application in applications]),
             np.array([[application.requirements.position_error_at] for application in applications]),
+            np.array([[application.shaft_drive] for application in applications]),
             np.array([[application.requirements.load_reverses] for application in applications], dtype=np.float64),
         )
 
@@ -126,6 +128,7 @@ def _numbers(application: Application) -> list[float | None]:
         ("emergency_stop",): stop,
         ("emergency_stop", "brake"): stop and stop.brake,
         ("output_load",): application.loads,
+        ("output_load", "drive"): application.output_load and application.output_load.drive,
         ("requirements",): application.requirements,
         ("requirements", "motor"): application.requirements.motor,
     }
@@ -139,13 +142,62 @@ class Duty:
     Each figure has shape (N, 1), is NaN where it is not asked for, and is computed when it is first read.
 
     `courses` are those of the motions, and `stopped_loads` their loads in a stop by the brake, where there is one; both
-    by the place of their application.
+    by the place of their application. `typed` are the phases with the loads that are typed.
     """
 
-    phases: Phases
+    typed: Phases
     asked: Asked
     courses: Mapping[int, Course] = field(default_factory=dict)
     stopped_loads: Mapping[int, StoppedLoad] = field(default_factory=dict)
+
+    @cached_property
+    def phases(self) -> Phases:
+        """Phases with all loads: those of a pinion or pulley on the shaft are added to the typed ones."""
+        if not self.has_shaft_drive:
+            return self.typed
+        radial, axial = self.shaft_load_of(self.shaft_force_N)
+        return replace(self.typed, radial_N=self.typed.radial_N + radial, axial_N=self.typed.axial_N + axial)
+
+    @cached_property
+    def has_shaft_drive(self) -> bool:
+        """True where a pinion or pulley loads the shaft of some axis."""
+        return bool((self.asked.shaft_drive != "").any())
+
+    @cached_property
+    def shaft_diameter_mm(self) -> FloatArray:
+        """Pitch diameter of pinion or pulley in mm."""
+        diameter = self.asked["output_load.drive.diameter_mm"].copy()
+        for place, course in self.courses.items():
+            if self.asked.shaft_drive[place, 0]:
+                diameter[place] = 2000 * course.load.external_Nm
+        return diameter
+
+    @cached_property
+    def shaft_force_N(self) -> FloatArray:
+        """Tangential force F_t in N at pinion or pulley in each phase, shape (N, 1, phases); of phases 2 T / d."""
+        force: FloatArray = 2000 * self.typed.peak_torque_Nm / self.shaft_diameter_mm[..., None]
+        for place, course in self.courses.items():
+            if self.asked.shaft_drive[place, 0]:
+                force[place, 0, : len(course.move)] = tangential_force(course)
+        return force
+
+    def shaft_load_of(self, force_N: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Radial and axial load in N of pinion or pulley at tangential forces, 0 where none is; shape (N, 1, phases).
+
+        A belt has that of its largest force at all times.
+        """
+        kind, asked = self.asked.shaft_drive[..., None], self.asked
+        radial, axial = shaft_load.rack_load(force_N=force_N, helix_deg=asked["output_load.rack_helix_deg"][..., None])
+        tension = asked["output_load.belt_tension_factor"][..., None]
+        by_belt = shaft_load.belt_load(largest_force_N=force_N.max(axis=-1, keepdims=True), tension_factor=tension)
+        is_rack = kind == "rack_and_pinion"
+        return np.where(is_rack, radial, np.where(kind == "belt", by_belt, 0.0)), np.where(is_rack, axial, 0.0)
+
+    @cached_property
+    def shaft_radial_N(self) -> FloatArray:
+        """Largest radial load in N of pinion or pulley in the cycle, shape (N, 1)."""
+        radial: FloatArray = self.shaft_load_of(self.shaft_force_N)[0].max(axis=-1)
+        return radial
 
     @cached_property
     def average_torque_Nm(self) -> FloatArray:
@@ -283,3 +335,14 @@ class Duty:
         courses = {place: motion.course for place, motion in motions.items()}
         stopped = {place: motion.stopped_load for place, motion in motions.items() if braked[place]}
         return cls(Phases.of(applications), Asked.of(applications), courses, stopped)
+
+
+def unasked_shaft_load_N(application: Application) -> float | None:
+    """Largest radial load in N of a motion's pinion or pulley that neither counts nor is typed; None without one."""
+    load, motion = application.output_load or _UNLOADED, application.duty_cycle.motion
+    if motion is None or motion.wheel is None or application.shaft_drive:
+        return None
+    if load.radial_N is not None or any(move.radial_N is not None for move in motion.moves):
+        return None
+    counted = application.model_copy(update={"output_load": load.model_copy(update={"from_motion": True})})
+    return Duty.of([counted]).shaft_radial_N.item()

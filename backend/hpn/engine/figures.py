@@ -9,7 +9,7 @@ from hpn.catalogue import Catalogue, GearList
 from hpn.engine.duty import Duty, TextArray
 from hpn.engine.motor_torques import torque_limit, torques_at_motor
 from hpn.engine.stops import Stops
-from hpn.physics import bearing, equations, stiffness
+from hpn.physics import bearing, equations, shaft_load, stiffness
 from hpn.physics.equations import ROUNDING, FloatArray
 from hpn.physics.stop import impact_speed
 
@@ -126,6 +126,17 @@ class Figures:
         """Torque T_k of an emergency stop in Nm: as it is given, else that of the brake; shape (N, 1) or (N, G)."""
         given = self.duty.typed_stop_torque_Nm
         return given if self.duty.brakes is None else np.where(self.duty.brakes, self.stops.torque_Nm, given)
+
+    @cached_property
+    def stop_radial_N(self) -> FloatArray:
+        """Radial load in N of pinion or pulley in an emergency stop, shape (N, 1) or (N, G): 2 T_k / d at the rack."""
+        duty = self.duty
+        if not duty.has_shaft_drive:
+            return self._unasked
+        force: FloatArray = 2000 * self.stop_torque_Nm / duty.shaft_diameter_mm
+        radial, _ = shaft_load.rack_load(force_N=force, helix_deg=duty.asked["output_load.rack_helix_deg"])
+        is_rack = duty.asked.shaft_drive == "rack_and_pinion"
+        return np.where(is_rack, radial, np.maximum(force, duty.shaft_radial_N))
 
     @cached_property
     def stop_energy_J(self) -> FloatArray:

@@ -11,7 +11,7 @@ from hpn.words.reply import Reply
 from hpn.words.units import suffix_of
 from hpn.words.wording import N_, Quantity, Rounding, Sentence
 
-DIGITS: Mapping[str, int] = {"Nm": 6, "percent": 3, "s": 6, "h": 6}
+DIGITS: Mapping[str, int] = {"Nm": 6, "percent": 3, "s": 6, "h": 6, "N": 6}
 """Digits of the numbers in a notice, by unit."""
 
 NOTICES: Mapping[str, str] = {
@@ -22,6 +22,17 @@ NOTICES: Mapping[str, str] = {
     "friction_without_effect": N_(
         "At an incline of ±90° no weight rests on the guide: its coefficient of friction has no effect. Give the "
         "friction of seals, wipers or pressed gibs as a force."
+    ),
+    "shaft_load_of_motion": N_(
+        "The motion’s pinion or pulley loads the gear’s shaft with up to {radial_N} where it sits there: not counted."
+    ),
+    "shaft_load_counted": N_(
+        "Pinion or pulley load the gear’s shaft with up to {radial_N}, from a tangential force of {force_N}; typed "
+        "loads are added, their directions being unknown. A belt’s pretension acts at all times."
+    ),
+    "stop_radial_above_limit": N_(
+        "In an emergency stop pinion or pulley load the shaft with up to {radial_N}, above the permissible radial load "
+        "of {names}; not checked."
     ),
     "application_area": N_(
         "Use in this area ({area}) needs a risk assessment and the manufacturer’s approval (handbook 2.4)."

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from hpn.application import BEARING_LIFE_H, Application, DutyCycle, OutputLoad
 from hpn.catalogue import Catalogue, GearList
 from hpn.catalogue.gear import Gear
+from hpn.engine.duty import unasked_shaft_load_N
 from hpn.engine.evaluation import SUITABLE, Evaluation
 from hpn.engine.motor_torques import known_efficiency, leaves_curve
 from hpn.engine.notice import AREAS, Notice, notice
@@ -23,6 +24,7 @@ def notices_of(application: Application, evaluation: Evaluation, index: int) -> 
     if application.application_area is not None:
         found.append(notice("application_area", area=AREAS[application.application_area]))
     found += _on_the_motion(application.duty_cycle)
+    found += _on_the_shaft(application, evaluation, index)
     found += _on_stop_and_life(application, evaluation, index)
     found += _on_stiffness(application, evaluation, index)
     found += _on_speed(evaluation, index)
@@ -55,6 +57,23 @@ def _on_the_motion(cycle: DutyCycle) -> Iterable[Notice]:
         yield notice("motion_left_off")
     if isinstance(cycle.motion.mechanism, Linear) and cycle.motion.mechanism.has_idle_coefficient:
         yield notice("friction_without_effect")
+
+
+def _on_the_shaft(application: Application, evaluation: Evaluation, index: int) -> Iterable[Notice]:
+    if (radial_N := unasked_shaft_load_N(application)) is not None:
+        yield notice("shaft_load_of_motion", radial_N=radial_N)
+    gears, loads = evaluation.gears, evaluation.case.figures.stop_radial_N
+    if application.shaft_drive:
+        duty = evaluation.case.duty
+        force_N = float(duty.shaft_force_N[index].max())
+        yield notice("shaft_load_counted", radial_N=duty.shaft_radial_N.item(index), force_N=force_N)
+        stop_N = np.broadcast_to(loads, evaluation.verdict.shape)[index]
+        above = (evaluation.verdict[index] == SUITABLE) & (
+            stop_N > gears.columns.dynamic_radial_load_N * (1 + ROUNDING)
+        )
+        if above.any():
+            names = ", ".join(gears.rows[place].designation for place in np.flatnonzero(above).tolist())
+            yield notice("stop_radial_above_limit", radial_N=float(stop_N[above].max()), names=names)
 
 
 def _ranges(places: Sequence[int]) -> str:

@@ -22,6 +22,9 @@ DIGITS = 4
 LIVES = ("life", "output_bearing_life")
 """Checks that two drivers move: slower running mends them as well as a smaller torque or load."""
 
+BEARING_CHECKS = ("output_bearing_load", "output_bearing_life")
+"""Checks that no closed form follows where a pinion or pulley loads the shaft."""
+
 MOTOR_TORQUE_CHECKS = ("motor_peak_torque", "motor_rated_torque")
 """Checks that no closed form follows where the torque at the motor is not in proportion to the load's."""
 
@@ -204,6 +207,10 @@ def _requirements(candidate: Candidate, u: float) -> Iterable[Requirement]:
 
 BY_CURVE = N_("not in closed form: the efficiency follows your curve, or the gear’s no-load torque counts")
 BY_INERTIA = N_("not in closed form: the motor’s own inertia follows the motion")
+BY_SHAFT = N_(
+    "not in closed form: pinion or pulley load the shaft, less with a larger pitch diameter, a smaller tension factor "
+    "or a smaller distance x"
+)
 UNTOLD = N_("The change that would make it fit is {reason}.")
 """Reasons for which a factor is not given."""
 
@@ -242,6 +249,8 @@ def _untold(candidate: Candidate) -> str:
     """Why no closed form follows the torque, a msgid; blank where one does."""
     if not _is_known(candidate):
         return ""
+    if _is_untold(candidate, "load"):
+        return BY_SHAFT
     by_curve = BY_CURVE if _is_untold(candidate, "torque") else ""
     return BY_INERTIA if _is_untold(candidate, "speed") else by_curve
 
@@ -316,10 +325,12 @@ def growths_of(candidate: Candidate, reserve_utilisation: float = 1.0) -> dict[s
     empty for motor torques of a gear that is not judged, whose reserve is unknown too.
     """
     untold = _untold(candidate)
+    loaded = untold == BY_SHAFT
+    without = (BEARING_CHECKS if loaded else ()) + (MOTOR_TORQUE_CHECKS if _is_untold(candidate, "torque") else ())
     return {
         check.code: ()
-        if untold and check.code in MOTOR_TORQUE_CHECKS and not candidate.is_judged
-        else tuple(_growths(check, reserve_utilisation, untold if check.code in MOTOR_TORQUE_CHECKS else ""))
+        if untold and check.code in without and not candidate.is_judged
+        else tuple(_growths(check, reserve_utilisation, untold if check.code in without else ""))
         for check in candidate.checks
     }
 

@@ -32,7 +32,7 @@ def reserves(evaluation: Evaluation, index: int) -> dict[str, FloatArray]:
     has the gear's torque without load in it, for those of torque and speed where the motor's own inertia has a part in
     it, which goes by the motion's acceleration.
     """
-    asked = evaluation.case.asked
+    asked, duty = evaluation.case.asked, evaluation.case.duty
     u = asked["requirements.utilisation"].item(index)
     with np.errstate(all="ignore"):
         factors = {f"{driver}_factor": _factor(evaluation, index, driver, u) for driver in DRIVERS}
@@ -42,11 +42,26 @@ def reserves(evaluation: Evaluation, index: int) -> dict[str, FloatArray]:
         )
         stated = not np.isnan(asked["requirements.efficiency"].item(index))
         own_inertia = not np.isnan(asked["requirements.motor.inertia_kgm2"].item(index))
-        turns = own_inertia and evaluation.case.duty.courses.get(index) is not None
+        turns = own_inertia and duty.courses.get(index) is not None
         apart = follows_curve & ~np.bool_(stated) | (evaluation.gears.columns.no_load_torque_Nm > 0)
         factors["torque_factor"] = np.where(apart | np.bool_(turns), np.nan, factors["torque_factor"])
         factors["speed_factor"] = np.where(np.bool_(turns), np.nan, factors["speed_factor"])
+    if duty.asked.shaft_drive[index, 0]:
+        factors |= _beside_shaft_drive(evaluation, index, factors)
     return {**factors, **_of_stop(evaluation, index, u), "load_inertia_kgm2": _load_inertia(evaluation, index, u)}
+
+
+def _beside_shaft_drive(
+    evaluation: Evaluation, index: int, factors: Mapping[str, FloatArray]
+) -> Mapping[str, FloatArray]:
+    """Factors where a pinion or pulley loads the shaft: its load goes by the torques, and no factor scales it alone.
+
+    Beside typed loads no closed form follows the torques either.
+    """
+    typed = evaluation.case.duty.typed
+    alone = not (typed.radial_N[index].any() or typed.axial_N[index].any())
+    torque = np.minimum(factors["torque_factor"], factors["load_factor"]) if alone else np.array(np.nan)
+    return {"torque_factor": torque, "load_factor": np.array(np.nan)}
 
 
 def _factor(evaluation: Evaluation, index: int, driver: Driver, u: float) -> FloatArray:

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import Any
+from typing import Any, overload
 
 from hpn.application import LISTED_FIGURES, Application, DutyCycle, EmergencyStop, Requirements
 from hpn.application.motion import Motion
@@ -96,7 +96,8 @@ def followed(application: Application, way: Way) -> Application:
     if cycle.motion is not None and (torque, speed) == (1, 1):
         parts["duty_cycle"] = cycle.model_copy(update={"motion": _loaded(cycle.motion, load)})
     else:
-        parts["duty_cycle"] = cycle.model_copy(update={"phases": _driven(cycle, torque, speed, load), "motion": None})
+        phases = _with_shaft_loads(application, _driven(cycle, torque, speed, load), load)
+        parts["duty_cycle"] = cycle.model_copy(update={"phases": phases, "motion": None})
         asked = application.requirements
         if cycle.motion is None:
             friction = _scaled(asked.rest_friction_Nm, torque) or 0.0  # a torque of the cycle as the others are
@@ -106,6 +107,7 @@ def followed(application: Application, way: Way) -> Application:
             stop = stop and _pulled(stop, cycle.motion)
     if (given := application.output_load) is not None:
         loads = {name: _scaled(getattr(given, name), load) for name in LOADS}
+        loads |= {"from_motion": given.from_motion and parts["duty_cycle"].motion is not None}
         parts["output_load"] = given.model_copy(update={k: v for k, v in loads.items() if v is not None})
     if stop is not None:
         parts["emergency_stop"] = _stopped(stop, way)
@@ -163,6 +165,19 @@ def _pulled(stop: EmergencyStop, motion: Motion) -> EmergencyStop:
     return stop.model_copy(update={"brake": brake})
 
 
+def _with_shaft_loads(application: Application, phases: tuple[Phase, ...], load: float) -> tuple[Phase, ...]:
+    """Phases in place of a motion with the load of its pinion or pulley as it was, a bound where torques fall."""
+    if not (application.output_load and application.output_load.from_motion):
+        return phases
+    duty = Duty.of([application])
+    typed = [getattr(duty.typed, name)[0, 0].tolist() for name in LOADS]
+    shaft = [part[0, 0].tolist() for part in duty.shaft_load_of(duty.shaft_force_N)]
+    return tuple(
+        phase.model_copy(update={name: _scaled(typed[k][at], load) + shaft[k][at] for k, name in enumerate(LOADS)})
+        for at, phase in enumerate(phases)
+    )
+
+
 def _stopped(stop: EmergencyStop, way: Way) -> EmergencyStop:
     """The emergency stop with its largest torque, else with its largest number, else as it is."""
     if stop.brake is not None and way.brake_torque_Nm is not None:
@@ -180,6 +195,10 @@ def _printed(value: float, digits: int) -> float:
     return value if value == 1 else float(rounded(value, digits, "down"))
 
 
+@overload
+def _scaled(value: float, factor: float) -> float: ...
+@overload
+def _scaled(value: float | None, factor: float) -> float | None: ...
 def _scaled(value: float | None, factor: float) -> float | None:
     """A figure by a factor, as somebody would type it: without the last digits of floating point."""
     if value is None or factor == 1:

@@ -8,7 +8,7 @@ from hpn.application import Application
 from hpn.engine.notice import AREAS
 from hpn.words.quantities import INPUTS
 from hpn.words.reader import Reader
-from hpn.words.terms import BEARING_MODELS, LIFE_BASES, POSITION_ERROR_AT, RANKINGS
+from hpn.words.terms import BEARING_MODELS, LIFE_BASES, MECHANISMS, POSITION_ERROR_AT, RANKINGS
 from hpn.words.units import suffix_of
 from hpn.words.wording import N_
 
@@ -23,13 +23,27 @@ LOADS = tuple(path for path in INPUTS if path.startswith(_LOADING))
 REQUIREMENTS = tuple(path for path in INPUTS if not path.startswith((*_LOADING, "phase.")))
 """Requirements of the gear, likewise."""
 
-UNSAID: Mapping[str, Value] = {"requirements.position_error_at": "cycle", "requirements.rest_friction_Nm": 0.0}
+UNSAID: Mapping[str, Value] = {
+    "requirements.position_error_at": "cycle",
+    "requirements.rest_friction_Nm": 0.0,
+    "output_load.from_motion": False,
+}
 """Inputs whose default nobody needs to read, as it asks for nothing."""
+
+OF_SHAFT: Mapping[str, tuple[str, ...]] = {
+    "output_load.from_motion": ("rack_and_pinion", "belt"),
+    "output_load.drive.type": ("rack_and_pinion", "belt"),
+    "output_load.drive.diameter_mm": ("rack_and_pinion", "belt"),
+    "output_load.rack_helix_deg": ("rack_and_pinion",),
+    "output_load.belt_tension_factor": ("belt",),
+}
+"""Inputs of a pinion or pulley on the shaft, and with which of both they count."""
 
 WORDS: Mapping[str, str] = {
     **BEARING_MODELS,
     **LIFE_BASES,
     **POSITION_ERROR_AT,
+    **MECHANISMS,
     **{code: ranking.choice for code, ranking in RANKINGS.items()},
     "True": N_("yes"),
     "False": N_("no"),
@@ -52,6 +66,8 @@ def value_of(application: Application, path: str) -> Value | None:
 
     Of the load, also the defaults that a phase's load has.
     """
+    if path in OF_SHAFT and application.shaft_drive not in OF_SHAFT[path]:
+        return None
     first, *rest = path.split(".")
     part: Any = application.loads if first == "output_load" else getattr(application, first)
     for step in rest:

@@ -35,7 +35,7 @@ STEADY = {"peak_torque_Nm": "torque_Nm", "peak_speed_rpm": "speed_rpm", "rms_tor
 """Figures of phases that vary, and what they are of a steady one."""
 
 PAUSE, REVERSES = "duty_cycle.pause_s", "requirements.load_reverses"
-TEXTS = ("bearing_model", "life_basis", "rank_by", "position_error_at")
+TEXTS = ("bearing_model", "life_basis", "rank_by", "position_error_at", "shaft_drive")
 """Inputs that are texts, as the engine takes them."""
 
 LEAST, ERROR_AT = "least_torque_Nm", "requirements.position_error_at"
@@ -163,6 +163,8 @@ class Axes:
 
     def _codes(self, name: str) -> IntArray:
         """A number for each axis, the same where a column makes no difference to the rules."""
+        if COLUMNS.all[name].kind == "boolean":  # null, false or true
+            return (np.nan_to_num(self._numbers(name), nan=-1.0) + 1).astype(np.intp)
         if _is_number(name):
             given = ~np.isnan(self._numbers(name))
             return (self._any_phase(given) if name in COLUMNS.phases else given).astype(np.intp)

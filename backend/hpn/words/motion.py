@@ -1,4 +1,4 @@
-"""Inputs of a motion, of a body that turns and of a belt: their names and symbols, by their path in each.
+"""Inputs of a motion and of a body that turns: their names and symbols, by their path in each.
 
 `quantities.py` has them all under one name.
 """
@@ -58,13 +58,3 @@ BODY: Mapping[str, Named] = {
     "distance_mm": Named(N_("Off the axis")),
 }
 """Inputs of a body whose moment of inertia is calculated; none is part of an application."""
-
-STRANDS: Mapping[str, Named] = {
-    "tight_strand_N": Named(N_("Tight strand"), "F_1"),
-    "slack_strand_N": Named(N_("Slack strand"), "F_2"),
-    "power_W": Named(N_("or power"), "P"),
-    "speed_m_per_s": Named(N_("Speed of the belt"), "v"),
-    "pretension_factor": Named(N_("Pretension factor"), "k_F"),
-    "wrap_deg": Named(N_("Wrap angle"), "β"),
-}
-"""Inputs of a belt whose radial load is worked out; none is part of an application."""

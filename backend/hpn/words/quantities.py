@@ -8,7 +8,7 @@ Asset Administration Shell, comparison, differences and the OpenAPI document all
 from collections.abc import Mapping
 from typing import Literal
 
-from hpn.words.motion import BODY, MOTION, STRANDS
+from hpn.words.motion import BODY, MOTION
 from hpn.words.wording import N_, Named
 
 CheckCode = Literal[
@@ -67,6 +67,11 @@ INPUTS: Mapping[str, Named] = {
     "output_load.radial_position_mm": Named(N_("Radial load acts at"), "x"),
     "output_load.axial_radius_mm": Named(N_("Axial load acts at"), "y"),
     "output_load.shaft_centre_mm": Named(N_("Shaft’s centre at"), "x_c"),
+    "output_load.from_motion": Named(N_("Load of the motion’s pinion or pulley")),
+    "output_load.rack_helix_deg": Named(N_("Helix angle of the rack"), "β"),
+    "output_load.belt_tension_factor": Named(N_("Tension factor of the belt"), "k_t"),
+    "output_load.drive.type": Named(N_("On the gear’s shaft")),
+    "output_load.drive.diameter_mm": Named(N_("Pitch diameter"), "d"),
     "requirements.life_h": Named(N_("Required gear life"), "L_10,req"),
     "requirements.utilisation": Named(N_("Maximum utilisation"), "u"),
     "requirements.efficiency": Named(N_("Assumed efficiency"), "η"),
@@ -248,6 +253,12 @@ CANDIDATE: Mapping[str, Named] = {
     "stop_energy_J": Named(
         N_("Energy of one stop"), "E", "Largest energy that the brake takes in one stop; null likewise."
     ),
+    "stop_radial_N": Named(
+        N_("Radial load of the emergency stop"),
+        "F_R,k",
+        "Radial load of pinion or pulley at T_k; shown, not checked; null without an emergency stop, and without one.",
+        caveat=N_("Load of pinion or pulley at T_k; not checked."),
+    ),
     "end_stop_speed_rpm": Named(
         N_("Speed into an end stop"),
         "n_end",
@@ -392,7 +403,6 @@ QUANTITIES: Mapping[str, Named] = {
     **INPUTS,
     **{f"motion.{place}": named for place, named in MOTION.items()},
     **{f"body.{place}": named for place, named in BODY.items()},
-    **{f"strands.{place}": named for place, named in STRANDS.items()},
     **{
         f"{place}.{name}": named
         for place, table in (

@@ -254,8 +254,9 @@ def leaves_out(formula: Formula) -> bool:
 
 
 def in_wire_units(formula: Formula) -> bool:
-    """True for a formula with an inertia or an acceleration, which hold together in the units of the wire alone."""
-    return any(isinstance(one, Term) and one.unit in ("kgm2", "rad_per_s2") for one in inside(formula))
+    """True for a formula that holds in the units of the wire alone: of an inertia, or of a torque and its arm."""
+    units = {one.unit for one in inside(formula) if isinstance(one, Term)}
+    return bool(units & {"kgm2", "rad_per_s2"}) or {"Nm", "mm"} <= units
 
 
 def inside(formula: Formula) -> Iterator[Formula]:

@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from hpn.application import OutputLoad
 from hpn.engine.figures import phase_loads, radial_at_centre
 from hpn.explain.calculation.formula import Constant, Formula, Largest, PhaseValues, Root, Term, Variable, over_phases
+from hpn.explain.calculation.shaft import notes_on_shaft, of_shaft
 from hpn.explain.calculation.sheet import Line, Sheet, Step, known, step_of_check
 from hpn.physics import bearing
 from hpn.words.quantities import CANDIDATE
@@ -41,13 +42,15 @@ def _largest(sheet: Sheet, load: OutputLoad, loads: PhaseValues, f_w: Term) -> S
     phases = list(first.values())
     worst = max(phases, key=loads.values.item)
     index = {place: "" if len(phases) == 1 else str(place + 1) for place in phases}
-    notes = [SUPPLIED if load.model == "digitised" else Sentence(ENVELOPE_BASIS[load.model])]
+    basis = SUPPLIED if load.model == "digitised" else Sentence(ENVELOPE_BASIS[load.model])
+    notes = [basis, *notes_on_shaft(sheet)]
     lines: list[Line] = []
     if load.model != "digitised":
         shown = sorted({*phases[: SHOWN_LOADS - 1], worst})
         for place in shown:
             P_i = loads.term(index[place], place)
-            lines += [*_at_centre(sheet, P_i, place), _equivalent_load(sheet, load.model, place, P_i)]
+            lines += [*of_shaft(sheet, P_i.symbol.index, place), *_at_centre(sheet, P_i, place)]
+            lines.append(_equivalent_load(sheet, load.model, place, P_i))
         if len(shown) < len(phases):
             values = {"shown": len(shown), "all": len(phases)}
             text = N_("{shown} of {all} different loads are shown, the largest among them.")

@@ -4,6 +4,7 @@ from hpn.physics.motion.course import Course
 from hpn.physics.motion.motor import motor_torques, square_torque
 from hpn.physics.motion.stopped import StoppedLoad
 from hpn.physics.motion.trace import Trace, motor_trace, peak_instant, trace_of
+from hpn.physics.motion.traction import tangential_force
 
 __all__ = [
     "Course",
@@ -13,5 +14,6 @@ __all__ = [
     "motor_trace",
     "peak_instant",
     "square_torque",
+    "tangential_force",
     "trace_of",
 ]

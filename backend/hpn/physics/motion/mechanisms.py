@@ -47,7 +47,8 @@ class ShaftLoad:
     """Load on the mechanism's shaft: T_load = J α + T_f sgn ω + b ω + G cos θ + T_0, in Nm, rad and s.
 
     `friction_Nm` is all dry friction, `way_per_rad` how many degrees or mm of way there are to a radian, `external_Nm`
-    the torque of an external torque of 1 Nm or force of 1 N. At the gear T = T_load / (η ratio) where the load is
+    the torque of an external torque of 1 Nm or force of 1 N, `own_inertia_kgm2` and `own_friction_Nm` what pinion,
+    pulley or screw have themselves of inertia and friction. At the gear T = T_load / (η ratio) where the load is
     driven, T_load η / ratio where it drives.
     """
 
@@ -60,6 +61,8 @@ class ShaftLoad:
     external_Nm: float
     efficiency: float
     ratio: float
+    own_inertia_kgm2: float = 0.0
+    own_friction_Nm: float = 0.0
 
     @property
     def weight_Nm(self) -> float:
@@ -211,6 +214,8 @@ class Linear(Mechanism):
             external_Nm=radius,
             efficiency=self.efficiency,
             ratio=self.ratio,
+            own_inertia_kgm2=self.inertia_kgm2,
+            own_friction_Nm=self.friction_torque_Nm,
         )
 
 

@@ -9,7 +9,7 @@ from hpn.physics.motion.mechanisms import TYPES
 from hpn.tables import numbers
 from hpn.tables.inputs import NAME
 from hpn.web.form.given import FieldProblem
-from hpn.web.form.helpers import BeltInput, BodyTable
+from hpn.web.form.helpers import BodyTable
 from hpn.web.form.labels import LABELS, query_of
 from hpn.web.form.rows import WIDTHS, filled
 from hpn.web.form.symbols import (
@@ -28,6 +28,9 @@ from hpn.words.wording import Sentence
 
 ROWS_IN_TABLE = 100
 """A longer duty cycle is edited as text: a field for each of its figures would weigh megabytes."""
+
+WHEELS = ("rack_and_pinion", "belt")
+"""Mechanisms whose pinion or pulley may sit on the gear's shaft."""
 
 LONGEST_ASIDE = 8_000
 """Characters of what was typed another way that still fit an address."""
@@ -50,7 +53,6 @@ class Form:
     moves: tuple[Mapping[str, str], ...] = ()
     has_motion: bool = False
     bodies: BodyTable = field(default_factory=BodyTable)
-    belt: BeltInput = field(default_factory=BeltInput)
     asides: tuple[str, ...] = ()
     shown: frozenset[str] = frozenset()
     gear: str = ""
@@ -96,6 +98,13 @@ class Form:
         names = {"mech", *(symbol.name for symbol in own)}
         return (*own, *(symbol for symbol in MECHANISM_SYMBOLS if symbol.name in self.texts.keys() - names))
 
+    def shows(self, name: str) -> bool:
+        """True for an input that the cycle leaves open, or that is given, which is refused where it stands."""
+        if name in self.texts or not self.has_motion:
+            return name in self.texts or name != "fm"
+        own = {"hx": "rack_and_pinion", "kb": "belt"}.get(name, self.mechanism)
+        return name not in ("JL", "dt", "dd") and own == self.mechanism and not (name == "fm" and own not in WHEELS)
+
     @property
     def columns(self) -> list[Symbol]:
         """Columns of the table of phases."""
@@ -140,20 +149,19 @@ def address_of_empty(form: Form) -> str:
 def for_reader(form: Form, reader: Reader) -> Form:
     """The same form with what the reader's fields show: their units and decimal mark."""
     units = units_of(form.texts.get("mech", "").strip())
-    tables = (*form.rows, *form.moves, *form.bodies.rows, form.belt.texts, form.texts)
+    tables = (*form.rows, *form.moves, *form.bodies.rows, form.texts)
     cells = [(text, units[name]) for table in tables for name, text in table.items() if name in units]
     shown = numbers.to_fields(cells, reader, form.written)
     texts = iter(shown.texts)
-    rows, moves, bodies, (belt, named) = (
+    rows, moves, bodies, (named,) = (
         tuple({name: next(texts) if name in units else text for name, text in table.items()} for table in part)
-        for part in (form.rows, form.moves, form.bodies.rows, (form.belt.texts, form.texts))
+        for part in (form.rows, form.moves, form.bodies.rows, (form.texts,))
     )
     return replace(
         form,
         rows=rows,
         moves=moves,
         bodies=replace(form.bodies, rows=bodies),
-        belt=replace(form.belt, texts=belt),
         texts=named,
         written=reader.marker,
         was=shown.was,

@@ -12,7 +12,6 @@ from hpn.tables.numbers import WAS, WRITTEN
 from hpn.web.form.labels import LABELS
 from hpn.web.form.rows import OF_ANY_ROW, OPTIONAL, SHARED, Rows, groups_of, shown_columns
 from hpn.web.form.symbols import (
-    BELT_BY_NAME,
     BODY_BY_NAME,
     BY_NAME,
     MECHANISM_SYMBOLS,
@@ -78,14 +77,11 @@ class Given:
         self.unknown: list[str] = []
         self.asides: list[str] = []
         self.shown = set[str]()
-        self.belt: dict[str, str] = {}
 
     def add(self, name: str, text: str) -> None:
         """Take one pair of the query."""
         if name in PHASE_BY_NAME or name in MOVE_BY_NAME or name in BODY_BY_NAME:
             self.columns.setdefault(name, []).append(text)
-        elif name in BELT_BY_NAME:
-            self.belt.setdefault(name, text)
         elif name == "do":
             self.presses.append(text)
         elif name == "pin":
@@ -133,11 +129,13 @@ class Given:
                 focus = do
             elif do == "one_way":
                 self.scalars["lr"], focus = "0", "f-lr"
+            elif do == "from_motion":
+                self.scalars["fm"], focus = "1", "f-fm"
             elif do == "way":
                 focus = f"way-{number}"
             elif do == "take":
                 focus = number.partition(":")[0]
-            elif do in ("inertia", "gravity", "belt"):
+            elif do in ("inertia", "gravity"):
                 focus = do
             elif do.endswith("_body"):
                 focus = bodies.press(do.removesuffix("_body"), k)

@@ -18,7 +18,7 @@ from hpn.tables.inputs import NAME
 from hpn.tables.numbers import read_value
 from hpn.web.form.form import Form
 from hpn.web.form.given import REQUIRED, FieldProblem, Given
-from hpn.web.form.helpers import BodyTable, belt_of, body_table, with_figures
+from hpn.web.form.helpers import BodyTable, body_table, with_figures
 from hpn.web.form.labels import LABELS
 from hpn.web.form.offers import with_offers
 from hpn.web.form.refusals import refusal_of
@@ -55,6 +55,7 @@ _PARTS = {
     MOTION_PATH: "mech",
     (*MOTION_PATH, "mechanism"): "mech",
     ("output_load",): "FR",
+    ("output_load", "drive"): "dt",
     ("emergency_stop",): "Tk",
     ("emergency_stop", "brake"): "TB",
 }
@@ -111,7 +112,6 @@ def _parsed(pairs: Pairs, written: str | None) -> Form:
         moves=tuple(moves),
         has_motion=given.has_motion,
         bodies=body_table(bodies.texts) if given.has_motion else BodyTable(),
-        belt=belt_of(given.belt),
         asides=tuple(given.asides),
         shown=frozenset(given.shown),
         gear=given.page.get("gear", "").strip(),

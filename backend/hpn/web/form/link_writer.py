@@ -6,7 +6,7 @@ from urllib.parse import quote
 
 from pydantic import BaseModel
 
-from hpn.application import Application, Brake, DutyCycle, EmergencyStop, Motor, OutputLoad, Requirements
+from hpn.application import Application, Brake, Drive, DutyCycle, EmergencyStop, Motor, OutputLoad, Requirements
 from hpn.application.motion import Motion
 from hpn.web.form.symbols import MECHANISM_SYMBOLS, PHASE_SYMBOLS, SYMBOLS, move_symbols
 
@@ -20,6 +20,7 @@ _MODELS: tuple[type[BaseModel], ...] = (
     EmergencyStop,
     Brake,
     OutputLoad,
+    Drive,
     Requirements,
     Application,
     Motor,
@@ -92,7 +93,7 @@ def _moves(motion: Motion) -> Iterator[str]:
 def _parts(application: Application) -> tuple[BaseModel | None, ...]:
     asked, load = application.requirements, application.output_load
     stop = application.emergency_stop
-    return application.duty_cycle, stop, stop and stop.brake, load, asked, application, asked.motor
+    return application.duty_cycle, stop, stop and stop.brake, load, load and load.drive, asked, application, asked.motor
 
 
 def _written(value: float | str) -> str:

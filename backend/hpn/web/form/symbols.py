@@ -46,7 +46,7 @@ class Symbol:
         """Its place as `hpn.words.quantities` names it."""
         if self.path[:2] == MOTION_PATH:
             return ".".join(self.path[1:])
-        if self.path[0] in ("body", "strands"):
+        if self.path[0] == "body":
             return ".".join(self.path)
         return ".".join(self.path if len(self.path) > 1 or self.path[0] in INPUTS else ("phase", *self.path))
 
@@ -153,6 +153,26 @@ SYMBOLS = (
         ("output_load", "shaft_centre_mm"),
         hint=N_("From the shoulder, at least: not published, so take it from the manufacturer’s drawing."),
     ),
+    Symbol(
+        "fm",
+        ("output_load", "from_motion"),
+        "flag",
+        choices={"": N_("not counted"), "1": N_("counted: it sits on the gear’s shaft")},
+    ),
+    Symbol("hx", ("output_load", "rack_helix_deg"), placeholder="0"),
+    Symbol(
+        "kb",
+        ("output_load", "belt_tension_factor"),
+        placeholder="2",
+        hint=N_("Radial load over the largest tangential force; the pretension acts always."),
+    ),
+    Symbol(
+        "dt",
+        ("output_load", "drive", "type"),
+        "text",
+        choices={"": N_("neither"), "rack_and_pinion": N_("pinion of a rack"), "belt": N_("pulley of a belt")},
+    ),
+    Symbol("dd", ("output_load", "drive", "diameter_mm")),
     Symbol("i", ("requirements", "ratios"), "whole", many=True),
     Symbol("size", ("requirements", "sizes"), "text", many=True),
     Symbol("Lh", ("requirements", "life_h"), hint=YEAR),
@@ -318,16 +338,6 @@ BODY_SYMBOLS = (
 )
 """Bodies of the form whose moment of inertia is worked out, repeated once per body; no link has them."""
 
-BELT_SYMBOLS = (
-    Symbol("bF1", ("strands", "tight_strand_N")),
-    Symbol("bF2", ("strands", "slack_strand_N")),
-    Symbol("bP", ("strands", "power_W")),
-    Symbol("bv", ("strands", "speed_m_per_s")),
-    Symbol("bk", ("strands", "pretension_factor")),
-    Symbol("bw", ("strands", "wrap_deg"), placeholder="180"),
-)
-"""A belt of the form whose radial load is worked out; no link has it."""
-
 
 def table_columns(symbols: Iterable[Symbol], groups: Collection[str]) -> list[Symbol]:
     """Columns of phases or moves that a table has, the name first."""
@@ -364,8 +374,8 @@ GROUPS = (
     ),
     FormGroup(
         "lever",
-        N_("Load positions, belt"),
-        ("xR", "yA", "xc"),
+        N_("Pinion or belt, load positions"),
+        ("fm", "dt", "dd", "hx", "kb", "xR", "yA", "xc"),
         hint=N_("Radial at the shaft’s centre, axial along its axis, unless given below."),
     ),
     FormGroup(
@@ -381,7 +391,6 @@ GROUPS = (
 PHASE_BY_NAME = {symbol.name: symbol for symbol in PHASE_SYMBOLS}
 PHASE_BY_LEAF = {symbol.path[0]: symbol for symbol in PHASE_SYMBOLS}
 BODY_BY_NAME = {symbol.name: symbol for symbol in BODY_SYMBOLS}
-BELT_BY_NAME = {symbol.name: symbol for symbol in BELT_SYMBOLS}
 BODY_BY_LEAF = {symbol.path[-1]: symbol for symbol in BODY_SYMBOLS}
 MOVE_BY_NAME = {symbol.name: symbol for symbol in TURN_SYMBOLS}
 MOVE_BY_LEAF = {symbol.path[-1]: symbol for symbol in (*TURN_SYMBOLS, *STROKE_SYMBOLS)}
@@ -389,7 +398,7 @@ BY_NAME = {symbol.name: symbol for symbol in (*SYMBOLS, *MECHANISM_SYMBOLS)}
 BY_PATH = {symbol.path: symbol for symbol in (*SYMBOLS, *MECHANISM_SYMBOLS)}
 _SINGLE = (*PHASE_SYMBOLS, *SYMBOLS, *MECHANISM_SYMBOLS)
 LABELS = {
-    **{symbol.name: symbol.named.name for symbol in (*TURN_SYMBOLS, *_SINGLE, *BODY_SYMBOLS, *BELT_SYMBOLS)},
+    **{symbol.name: symbol.named.name for symbol in (*TURN_SYMBOLS, *_SINGLE, *BODY_SYMBOLS)},
     "ms": N_("Angle or distance"),
     "mx": N_("External torque or force"),
     "gear": CANDIDATE["designation"].name,
@@ -405,5 +414,5 @@ AXIS_INPUTS = Inputs(
 
 def units_of(mechanism: str) -> Mapping[str, str]:
     """Names that take a number, and the suffix of its unit, which of a move depends on the mechanism."""
-    symbols = (*move_symbols(mechanism), *_SINGLE, *BODY_SYMBOLS, *BELT_SYMBOLS)
+    symbols = (*move_symbols(mechanism), *_SINGLE, *BODY_SYMBOLS)
     return {symbol.name: symbol.unit for symbol in symbols if symbol.kind in ("number", "whole") and not symbol.many}

@@ -131,7 +131,7 @@ def respond(request: Request, form: Form) -> Response:
     form, answer = answered(form, catalogue)
     changes = "hx-request" in request.headers
     # The page holds nothing that its address has not.
-    alone = not (form.focus or form.asides or form.bodies.given or form.belt.given)
+    alone = not (form.focus or form.asides or form.bodies.given)
     if answer and WRITTEN in request.query_params and not changes and alone:
         return RedirectResponse(answer.address, 303)  # what was written in a reader's units gets an address for all
     parts = _parts(request, form)
