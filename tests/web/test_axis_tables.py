@@ -282,3 +282,13 @@ def test_a_counter_of_axes_goes_on_and_phases_of_one_stamp_are_left_out() -> Non
     assert [axis["torque_Nm"] for axis in table.axes] == [[40, 5, 10]]
     assert table.origins == {"A": (2, 4, 5, 6)}
     assert "Rows that last 0 s are left out: 3." in [note.text for note in table.notes]
+
+
+def test_a_row_named_like_an_emergency_stop_is_asked_and_may_be_that_of_its_axis() -> None:
+    rows = (HEAD + ";Phase name", "A;40;250;1;up", "A;200;;;E-stop", "Crash sled;9;90;2;run")
+
+    assert asked(read(*rows)) == ["Named like an emergency stop: row 3 (E-stop). What is it?"]
+    stopped, other = read(*rows, stop="stop").axes
+    assert (stopped["torque_Nm"], stopped["emergency_stop.torque_Nm"]) == ([40], 200)
+    assert "emergency_stop.torque_Nm" not in other
+    assert read(*rows, stop="phase").axes[0]["torque_Nm"] == [40, 200]

@@ -1,6 +1,7 @@
 """Pasting a table, and long cycles, over HTTP."""
 
 import re
+from html import unescape
 from urllib.parse import parse_qs, quote, urlsplit
 
 import pytest
@@ -305,3 +306,17 @@ def test_a_speed_per_second_is_said_to_have_two_readings_in_the_readers_words(
 ) -> None:
     reply = client.post("/paste", data={"text": f"T\t{head}\tt\n40\t{cell}\t3"}, headers={"Accept-Language": "de"})
     assert "kann U/s oder rad/s sein" in reply.text
+
+
+def test_a_row_of_the_emergency_stop_goes_to_its_torque_and_takes_the_place_of_a_brake(client: TestClient) -> None:
+    text = "Phase;T [Nm];n;t [s]\nA;40;250;3\nB;32;500;0.3\nE-stop;-200;250;0.1\nNot-Halt;150;250;0.1"
+    page = client.post("/paste", data={"text": text}).text
+    fields = {"text": text, "of": of(page), "stop": "stop", "link": "T=1&n=1&t=1&TB=8&tb=0.1&Nk=50&i=5"}
+    shown = client.post("/paste", data=fields).text
+    reply = client.post("/paste", data={**fields, "take": "replace"}, follow_redirects=False)
+
+    query = query_of(reply.headers["location"])
+    assert (query["T"], query["Tk"], query["Nk"], query["i"]) == (["40", "32"], ["-200"], ["50"], ["5"])
+    assert not {"TB", "tb"} & query.keys()
+    assert "Row 4 is the emergency stop: −200\u202fNm." in unescape(shown)
+    assert "Row 5 is the emergency stop: 150\u202fNm." in unescape(shown)

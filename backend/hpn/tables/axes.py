@@ -12,6 +12,7 @@ from typing import Any
 from hpn.tables.bodies import Body, body_of
 from hpn.tables.cells import LONGEST_CELL, Decimal, Entry, Merged, entry, is_blank, is_number
 from hpn.tables.columns import NO_CHOICES, Choices, Column, proposed, settled
+from hpn.tables.headings import is_stop
 from hpn.tables.heads import REQUIRED, left_out, skipped
 from hpn.tables.inputs import AXIS, NAME, PHASE, PHASE_ROLES, Inputs
 from hpn.tables.interpreter import Interpreter, Row, Series, unit_behind
@@ -112,13 +113,14 @@ class _AxesInterpreter(Interpreter):
     def __init__(self, body: Body, columns: tuple[Column, ...], questions: Questions) -> None:
         super().__init__(body, columns, questions)
         self.standing: list[int] = []
+        self.stops: dict[str, str] = {}
 
     def table(self) -> Table:
         """The table with what is to be asked, or with its axes."""
         self.ask_columns()
         self.read_numbers()
         self._note_unread()
-        groups = self._groups()
+        groups = self._without_stops(self._groups())
         times = self.read_times([Series(group.numbers, group.rows) for group in groups])
         self.ask_scale()
         loads = self._read_loads(groups)
@@ -226,10 +228,33 @@ class _AxesInterpreter(Interpreter):
         question = Sentence(template, {"name": first[0].called})
         return self.choose(LOADS, question, chosen="phase" if several else "")
 
+    def _without_stops(self, groups: list[_Group]) -> list[_Group]:
+        """Axes without the rows that are their emergency stop, whose largest torque is T_k."""
+        axis = {column.place for column in self.columns if column.role == AXIS}
+        cells = dict(zip(self.body.numbers, self.body.rows, strict=True))
+        named = [
+            number
+            for number in self.body.stops
+            if any(is_stop(cell) for place, cell in enumerate(cells[number]) if place not in axis)
+        ]
+        if not named or self.ask_stop(named) == "phase":
+            return groups
+        found = []
+        for group in groups:
+            rows = list(zip(group.cells, group.rows, group.numbers, strict=True))
+            torques = [torque for _, row, number in rows if number in named and (torque := self.torque_of(row))]
+            if torques:
+                self.stops[group.name] = max(torques, key=lambda torque: abs(float(torque)))
+            if kept := [row for row in rows if row[2] not in named]:
+                found.append(_Group(group.name, *zip(*kept, strict=True)))
+        return found
+
     # --- Values of an axis --------------------------------------------------------------------------------------------
 
     def _axis(self, group: _Group, times: str, loads: str) -> dict[str, Any]:
         values: dict[str, Any] = {AXIS: str(group.name)}
+        if stop := self.stops.get(group.name):
+            values[_STOP] = float(stop)
         numbers = dict(zip((column.place for column in self.used), zip(*group.rows, strict=True), strict=True))
         for column in self.columns:
             if column.held is None or column.role == AXIS:
@@ -293,6 +318,7 @@ class _AxesInterpreter(Interpreter):
 
 _OF_PHASE = frozenset(each.place for each in (*PHASE, NAME))
 _DURATION = "duration_s"
+_STOP = "emergency_stop.torque_Nm"
 
 
 def _stands_first(cells: Sequence[str]) -> bool:

@@ -6,7 +6,7 @@ from itertools import pairwise
 from typing import NamedTuple
 
 from hpn.tables.cells import LONGEST_CELL, Figure, held_of, is_blank, is_number, moment_of, seconds_between
-from hpn.tables.headings import heading_of, heading_over, is_total
+from hpn.tables.headings import heading_of, heading_over, is_stop, is_total
 from hpn.tables.heads import MOST_COLUMNS, head_of, numbers_in, skipped, uncommented, upright
 from hpn.tables.sheets import Grid, RefusedError, require_even
 from hpn.words.patterns import Pattern
@@ -33,6 +33,7 @@ class Body:
     `totals` are rows of numbers by whose names they may be sums, means or extremes of the others, and `titles` rows of
     one text. Where every row may be a total, they are among the rows as well. Columns that are `dated` had dates with a
     time of day, and have the seconds since the first; of one that is `scaled`, what a cell shows and what it holds.
+    Rows by whose texts they may be the emergency stop are among the others, with their texts in `stops`.
     """
 
     rows: tuple[tuple[str, ...], ...]
@@ -44,6 +45,7 @@ class Body:
     titles: tuple[Labelled, ...] = ()
     dated: frozenset[int] = frozenset()
     scaled: Mapping[int, tuple[str, str]] = field(default_factory=dict)
+    stops: Mapping[int, str] = field(default_factory=dict)
 
     @property
     def headed(self) -> bool:
@@ -87,7 +89,7 @@ def body_of(grid: Grid, scales: str = "") -> Body:
     require_even(grid, head.end, head.count)
     settled = _Settled(grid.rows[head.end :], head.headings, scales)
     notes = list(head.notes)
-    rows, totals, titles = list[Labelled](), list[Labelled](), list[Labelled]()
+    rows, totals, titles, stops = list[Labelled](), list[Labelled](), list[Labelled](), dict[int, str]()
     for number, row in zip(grid.numbers[head.end :], settled.rows, strict=True):
         written, filled = [cell for cell in row if cell], [cell for cell in row if not is_blank(cell)]
         text = next((cell for cell in filled if not is_number(cell)), "")
@@ -96,12 +98,14 @@ def body_of(grid: Grid, scales: str = "") -> Body:
             notes += [skipped(number, " ".join(written))] if written else []
         else:
             _require_undivided(grid, number, filled)
-            (totals if is_total(text) else rows).append(Labelled(number, row, text))
+            stop = next((cell for cell in filled if is_stop(cell)), "")
+            stops |= {number: stop} if stop else {}
+            (totals if is_total(text) and not stop else rows).append(Labelled(number, row, text))
     found = rows or totals
     if not found:
         raise RefusedError(N_("there is a header, but no row of numbers below it"))
     left_out = tuple(totals), tuple(titles)
-    body = Body((), (), head.headings, tuple(notes), grid, *left_out, settled.dated, settled.scaled)
+    body = Body((), (), head.headings, tuple(notes), grid, *left_out, settled.dated, settled.scaled, stops)
     return body.including(found)
 
 

@@ -49,6 +49,7 @@ class Choices:
     last: str = ""
     falls: str = ""
     side: str = ""
+    stop: str = ""
     totals: str = ""
     parts: str = ""
     scales: str = ""

@@ -4,7 +4,7 @@ from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from math import isclose, nan
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from hpn.tables.bodies import DIVIDED, Body, Labelled, body_of
 from hpn.tables.cells import DECIMALS, TIME_PARTED, Decimal, Entry, entry, is_blank, is_number
@@ -21,7 +21,7 @@ from hpn.tables.table import Choice, Table
 from hpn.tables.times import FIRST, SORTED, durations_of, falls_of, in_plain, unrolled
 from hpn.words import spellings, units
 from hpn.words.fields import MAXIMUM_PHASES
-from hpn.words.wording import N_, Sentence, Value
+from hpn.words.wording import N_, Quantity, Sentence, Value
 
 SEPARATOR = Choice("separator", SEPARATORS)
 PHASE = Choice("phase", {"row": N_("a row"), "column": N_("a column")})
@@ -157,13 +157,34 @@ class _CycleInterpreter(Interpreter):
         self.ask_columns()
         self.read_numbers()
         self.ask_scale()
+        stop = self._take_stops()
         times = self.read_times([Series(self.body.numbers, self.rows)])
         rows = self._phase_rows(times)
         phases = () if self.questions.open else self._lasting(self._phases(rows, times))
         names = next((column.place for column in self.columns if column.role == NAME.role), None)
         texts = () if names is None else tuple(row[names].strip() for row in self.body.rows[: len(phases)])
         grid = self.body.grid
-        return Table(**self.said, separator=grid.separator, turned=grid.turned, phases=phases, names=texts)
+        said: dict[str, Any] = {**self.said, "separator": grid.separator, "turned": grid.turned}
+        return Table(**said, phases=phases, names=texts, stop_Nm=stop)
+
+    def _take_stops(self) -> str:
+        """T_k of the rows that are the emergency stop, the largest by magnitude: they are no phases."""
+        stops = [k for k, number in enumerate(self.body.numbers) if number in self.body.stops]
+        chosen = self.ask_stop([self.body.numbers[k] for k in stops])
+        if not stops or chosen == "phase":
+            return ""
+        is_read = chosen and any(column.role == "T" for column in self.used)
+        torques = [self.torque_of(self.rows[k]) for k in stops] if is_read else []
+        for number, torque in zip((self.body.numbers[k] for k in stops), torques, strict=False):
+            if not torque:
+                raise RefusedError(BLANK["T"], row=number)
+            values: dict[str, Value] = {"row": number, "torque": Quantity(float(torque), "Nm")}
+            self.notes.append(Sentence(N_("Row {row} is the emergency stop: {torque}."), values))
+        phases = sorted({*range(len(self.rows))}.difference(stops))
+        if chosen and not phases:
+            raise RefusedError(N_("there is no phase beside the emergency stop"))
+        self._keep(phases or stops)
+        return max(torques, key=lambda torque: abs(float(torque)), default="")
 
     def is_missed(self, role: str, roles: Collection[str]) -> bool:
         """True unless another column is asked, which may be it."""

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
+from re import IGNORECASE
 
 from hpn.tables.cells import TIME_FORMAT, is_blank, tidy
 from hpn.tables.shafts import is_of_motor, without_motor, without_output
@@ -116,6 +117,13 @@ _TOTALS = Pattern(
     r"mittel|mittelwert\w*|mittlere\w*|average|mean|avg|durchschnitt\w*|moyenne|media|medelvärde|"
     r"max|maximum|maximal\w*|(?<![0-9] )min|minimum|minimal\w*|rms|effektivwert\w*|std|standardabweichung)\b.*",
     LONGEST_WRITTEN,
+)
+_STOPS = Pattern(
+    r"(?<![^\W_])(?:e[ -]?stop|e[ -]?halt|emergency(?:[ -]?(?:stop|halt|off|brak(?:e|ing)))?|crash|collision|kollision|"
+    r"not[ -]?(?:aus|halt|stopp?|bremsung)|arrêt d['’ ]urgence|urgence|arresto (?:di |d['’])emergenza|emergenza|"
+    r"parada de emergencia|t[ _]?k)(?![^\W\d_])",
+    LONGEST,
+    IGNORECASE,
 )
 _BETWEEN = Pattern(r"\s+in\s+|\s*[/,]\s*|[\s_]+", LONGEST_WRITTEN)
 
@@ -356,3 +364,8 @@ def is_total(cell: str) -> bool:
         return False
     folded = _folded(cell.rstrip(":"))
     return bool(_SUMS.fullmatch(folded) or _TOTALS.fullmatch(folded))
+
+
+def is_stop(cell: str) -> bool:
+    """True where a cell may label its row as the emergency stop."""
+    return bool(_STOPS.search(cell))

@@ -88,6 +88,7 @@ TIMES = Choice(
 )
 FALLS = Choice("falls", OF_FALLS)
 SIDE = Choice("side", SIDES)
+STOP = Choice("stop", {"phase": N_("a phase"), "stop": N_("the emergency stop: its torque is T_k")})
 OF_SHAFT = ("T", "n", "FRi", "FAi", "Tpk", "npk", "Trms")
 """Roles whose values are those of the output."""
 
@@ -272,6 +273,19 @@ class Interpreter:
     def in_wire(self, found: Entry, column: Column) -> str:
         """A number in the unit of the wire, in plain notation; blank where its unit is none of the column's."""
         return in_wire(found, column, self.code)
+
+    def torque_of(self, row: Row) -> str:
+        """Torque of a row in the unit of the wire, blank where it has none."""
+        cells = zip(self.used, row, strict=True)
+        return next((self.in_wire(cell, column) for column, cell in cells if column.role == "T" and cell), "")
+
+    def ask_stop(self, numbers: Sequence[int]) -> str:
+        """Ask what rows are that are named like an emergency stop; blank while that is open, and for no such row."""
+        if not numbers:
+            return ""
+        listed = ", ".join(f"{number} ({self.body.stops[number][:40]})" for number in numbers[:MOST_NAMED])
+        template = N_("Named like an emergency stop: row {rows}. What is it?")
+        return self.choose(STOP, Sentence(template, {"rows": listed}))
 
     # --- Times --------------------------------------------------------------------------------------------------------
 

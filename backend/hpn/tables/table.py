@@ -62,9 +62,9 @@ class Table:
     """Reading of a table. It can be taken when there is no problem and no question.
 
     `phases` of one cycle are plain numbers in units of the wire, in the order of PHASE_ROLES, blank where a phase has
-    no load; `names` are theirs, none where no column is read as that. `axes` are rows in list form by the names of
-    `hpn fleet`, where a cell that is no number stands as it is written; `origins` are the numbers of the rows that the
-    phases of an axis stand in.
+    no load; `names` are theirs, none where no column is read as that. `stop_Nm` is T_k by rows that are no phases but
+    the emergency stop, blank for none. `axes` are rows in list form by the names of `hpn fleet`, where a cell that is
+    no number stands as it is written; `origins` are the numbers of the rows that the phases of an axis stand in.
     """
 
     problem: Sentence | None = None
@@ -79,6 +79,7 @@ class Table:
     turned: bool = False
     phases: tuple[tuple[str, ...], ...] = ()
     names: tuple[str, ...] = ()
+    stop_Nm: str = ""
     axes: tuple[dict[str, Any], ...] = ()
     origins: Mapping[str, tuple[int, ...]] = field(default_factory=dict)
 

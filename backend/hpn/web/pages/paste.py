@@ -32,7 +32,7 @@ from hpn.web.form import link_reader
 from hpn.web.form.link_writer import to_link
 from hpn.web.form.linked import query_part
 from hpn.web.form.rows import TEXT, expanded, used_columns
-from hpn.web.form.symbols import PHASE_BY_NAME
+from hpn.web.form.symbols import BY_NAME, PHASE_BY_NAME
 from hpn.web.form.ways import CYCLE_NAMES, Pairs
 from hpn.web.pages import calculator
 from hpn.web.pages.reading import read
@@ -189,7 +189,10 @@ def taken(draft: PasteDraft, *, append: bool) -> list[tuple[str, str]]:
     dropped = {*CYCLE_NAMES, "do", TEXT}
     if draft.example and not append:
         dropped |= {name for name, _ in pairs_of(to_link(Application.worked_example()).removeprefix("/?"))}
+    if stop := draft.table.stop_Nm:
+        dropped |= {name for name, symbol in BY_NAME.items() if symbol.path[0] == "emergency_stop" and name != "Nk"}
     rest = [(name, value) for name, value in pairs if value.strip() and name not in dropped]
+    rest += [("Tk", stop)] if stop else []
     names = draft.table.names or ("",) * len(draft.table.phases)
     named = zip(names, draft.table.phases, strict=True)
     rows = [{NAME.role: name, **dict(zip(PHASE_ROLES, phase, strict=True))} for name, phase in named]
