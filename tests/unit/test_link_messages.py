@@ -1,5 +1,7 @@
 """Messages on links that somebody writes by hand: each stands at its input and says what would be right."""
 
+from urllib.parse import parse_qsl
+
 import pytest
 
 from hpn.web.form import link_reader
@@ -201,3 +203,20 @@ def test_count_without_a_torque_asks_for_the_torque() -> None:
 
 def test_load_coefficient_without_a_load_asks_for_a_load() -> None:
     assert found(PHASE + "&fw=1.2") == {("FR", None): "give a radial or an axial load, here or in a phase"}
+
+
+@pytest.mark.parametrize(
+    ("query", "name", "example"),
+    [("T=40&n=250,500,250&t=1", "n", "n=250&n=500&n=250"), ("T=40,32,-20&n=250&t=1", "T", "T=40&T=32&T=-20")],
+)
+def test_values_of_several_phases_in_one_field_are_told_to_repeat_the_name(query: str, name: str, example: str) -> None:
+    (problem,) = link_reader.parse(parse_qsl(query)).problems
+
+    assert (problem.name, problem.message.text) == (name, f"give one value per field: {example}")
+
+
+def test_a_ratio_may_be_written_to_one() -> None:
+    form = link_reader.parse(parse_qsl("T=40&n=250&t=1&i=5:1"))
+
+    assert form.application is not None
+    assert form.application.requirements.ratios == (5,)

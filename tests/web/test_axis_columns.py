@@ -214,3 +214,16 @@ def test_a_row_of_units_makes_an_emergency_stop_a_torque() -> None:
     *_, column = read("Axis;Torque;Speed;Duration;Emergency stop", ";Nm;rpm;s;Nm", "A;1;10;1;30").columns
 
     assert (column.role, column.unit) == ("Tk", "Nm")
+
+
+@pytest.mark.parametrize(
+    ("heading", "role"),
+    [
+        ("Emergency stop torque [Nm]", "Tk"),
+        ("Emergency-stop torque [Nm]", "Tk"),
+        ("Motor inertia [kgm²]", "Jm"),
+        ("Backlash [arcmin]", "bl"),
+    ],
+)
+def test_a_column_with_one_possible_meaning_is_not_asked(heading: str, role: str) -> None:
+    assert read(f"{HEAD};{heading}", "A;1;9;1;14").columns[4].role == role

@@ -7,12 +7,23 @@ from typing import NamedTuple
 
 from hpn.tables.cells import LONGEST_CELL, Figure, held_of, is_blank, is_number, moment_of, seconds_between
 from hpn.tables.headings import heading_of, heading_over, is_stop, is_total
-from hpn.tables.heads import MOST_COLUMNS, head_of, numbers_in, skipped, uncommented, upright
+from hpn.tables.heads import (
+    MOST_COLUMNS,
+    REQUIRED,
+    Head,
+    head_of,
+    is_comment,
+    numbers_in,
+    skipped,
+    uncommented,
+    upright,
+)
 from hpn.tables.sheets import Grid, RefusedError, require_even
 from hpn.words.patterns import Pattern
 from hpn.words.wording import N_, Sentence
 
 DIVIDED = N_("row {row}: {cell} can be one number or two")
+TOO_FEW = N_("row {row} has {cells} cells; a phase has torque, speed and duration at least")
 _DIVIDED = Pattern("[0-9] [0-9]", LONGEST_CELL)
 _LEADS = Pattern("[-+]?[1-9][0-9]{0,2}", LONGEST_CELL)
 _FOLLOWS = Pattern("[0-9]{3}([.,][0-9]+)?", LONGEST_CELL)
@@ -86,14 +97,17 @@ def body_of(grid: Grid, scales: str = "") -> Body:
     head = head_of(grid)
     if head.end == len(grid.rows):
         raise _no_numbers(grid)
-    require_even(grid, head.end, head.count)
+    apart = _rows_apart(grid, head)
+    require_even(grid, head.end, head.count, apart)
     settled = _Settled(grid.rows[head.end :], head.headings, scales)
     notes = list(head.notes)
     rows, totals, titles, stops = list[Labelled](), list[Labelled](), list[Labelled](), dict[int, str]()
     for number, row in zip(grid.numbers[head.end :], settled.rows, strict=True):
         written, filled = [cell for cell in row if cell], [cell for cell in row if not is_blank(cell)]
         text = next((cell for cell in filled if not is_number(cell)), "")
-        if not filled or written == [text]:
+        if number in apart and written != [text]:
+            notes.append(skipped(number, " ".join(written)))
+        elif not filled or written == [text]:
             titles += [Labelled(number, row, text)] if text else []
             notes += [skipped(number, " ".join(written))] if written else []
         else:
@@ -109,12 +123,28 @@ def body_of(grid: Grid, scales: str = "") -> Body:
     return body.including(found)
 
 
+def _rows_apart(grid: Grid, head: Head) -> set[int]:
+    """Numbers of rows below the header that are none of the table: comments, the header once more, lines of text."""
+    found = set()
+    for k in range(head.end, len(grid.rows)):
+        row = grid.rows[k]
+        filled = [place for place, cell in enumerate(row) if not is_blank(cell)]
+        again = len(filled) > 1 and all(row[place] in head.headings[place] for place in filled)
+        alone = grid.separator == "comma" and filled == [0] and grid.counts[k : k + 1] == (1,) and not is_number(row[0])
+        if is_comment(row) or again or alone:
+            found.add(grid.numbers[k])
+    return found
+
+
 def _no_numbers(grid: Grid) -> RefusedError:
     """Error for no row of numbers: it names a cell that may be meant as one, where a row has several."""
     for number, row in zip(grid.numbers, grid.rows, strict=True):
         meant = [cell for cell in row if any(map(str.isdigit, cell)) and not heading_of(cell).kind]
-        if len(meant) >= 2:
-            return RefusedError(N_("row {row}: {cell} is not a number"), row=number, cell=meant[0][:40])
+        wrong = next((cell for cell in meant if not is_number(cell)), "")
+        if len(meant) >= 2 and sum(map(bool, row)) < len(REQUIRED):
+            return RefusedError(TOO_FEW, row=number, cells=sum(map(bool, row)))
+        if len(meant) >= 2 and wrong:
+            return RefusedError(N_("row {row}: {cell} is not a number"), row=number, cell=wrong[:40])
     return RefusedError(N_("there is a header, but no row of numbers below it"))
 
 

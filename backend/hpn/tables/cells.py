@@ -57,6 +57,11 @@ _NOTHING = ("", "-", "–", "—", "\N{MINUS SIGN}", "\N{NON-BREAKING HYPHEN}")
 _HELD_AS_TEXT = Pattern(r"=\"(?P<formula>[^\"]*)\"|'(?P<text>[-+\N{MINUS SIGN}]?(?!0[0-9])[0-9].*)", LONGEST_CELL)
 """A number that spreadsheet programs hold as a text: `="40"`, and `'40` but no `'040`."""
 
+_QUOTED = Pattern(
+    r"\"(?P<a>[^\"]+)\"|'(?P<b>[^']+)'|[“„](?P<c>[^“”„]+)[”“]|[‘‚](?P<d>[^‘’‚]+)[’‘]|«(?P<e>[^«»]+)»", LONGEST_CELL
+)
+"""A cell in quotes, as programs write it whose separator is none that quotes belong to."""
+
 _FULL_WIDTH = str.maketrans({chr(ord(sign) + 0xFEE0): sign for sign in "0123456789.,+-"})
 
 
@@ -93,6 +98,8 @@ class Entry(NamedTuple):
 def tidy(cell: str) -> str:
     """A cell without what can't be seen at its ends; a number that is held as a text, or in full width, as a number."""
     cell = cell.strip().strip(UNSEEN).strip()
+    if match := _QUOTED.fullmatch(cell):
+        cell = match[match.lastgroup or 0].strip()
     if match := _HELD_AS_TEXT.fullmatch(cell):
         cell = (match["formula"] or match["text"] or "").strip()
     plain = cell if cell.isascii() else cell.translate(_FULL_WIDTH)

@@ -4,7 +4,7 @@ from collections.abc import Collection, Sequence
 from dataclasses import replace
 from itertools import chain
 
-from hpn.tables.bodies import Body
+from hpn.tables.bodies import TOO_FEW, Body
 from hpn.tables.cells import is_blank, is_number, moment_of
 from hpn.tables.columns import Choices, Column, by_units, counts, proposed, settled, units_in
 from hpn.tables.headings import is_name, is_remark
@@ -12,7 +12,6 @@ from hpn.tables.heads import REQUIRED
 from hpn.tables.inputs import CYCLE, NAME, PHASE_ROLES
 from hpn.tables.sheets import RefusedError, no_number
 from hpn.words.titles import LONGEST_NAME, is_title
-from hpn.words.wording import N_
 
 
 def columns_of(body: Body, choices: Choices, assumed: Collection[str]) -> tuple[Column, ...]:
@@ -53,8 +52,7 @@ def _too_few(body: Body, columns: Sequence[Column]) -> RefusedError:
         if wrong and len(columns) >= len(REQUIRED):
             return no_number(number, wrong)
     cells = sum(not is_blank(cell) for cell in body.rows[0])
-    template = N_("row {row} has {cells} cells; a phase has torque, speed and duration at least")
-    return RefusedError(template, row=body.numbers[0], cells=cells)
+    return RefusedError(TOO_FEW, row=body.numbers[0], cells=cells)
 
 
 def _by_place(body: Body, columns: Sequence[Column]) -> dict[int, str]:

@@ -10,7 +10,7 @@ from hpn.tables.bodies import DIVIDED, Body, Labelled, body_of
 from hpn.tables.cells import DECIMALS, TIME_PARTED, Decimal, Entry, entry, is_blank, is_number
 from hpn.tables.columns import CELLS, NO_CHOICES, Choices, Column
 from hpn.tables.cycle_columns import columns_of, has_two_ways
-from hpn.tables.headings import heading_over
+from hpn.tables.headings import heading_over, is_pause
 from hpn.tables.heads import REQUIRED, left_out, skipped
 from hpn.tables.inputs import CYCLE, NAME, PHASE_ROLES
 from hpn.tables.interpreter import Interpreter, Row, Series, unit_behind
@@ -156,6 +156,7 @@ class _CycleInterpreter(Interpreter):
         """The table with what is to be asked, or with its phases; raises RefusedError."""
         self.ask_columns()
         self.read_numbers()
+        self._stand_still()
         self.ask_scale()
         stop = self._take_stops()
         times = self.read_times([Series(self.body.numbers, self.rows)])
@@ -166,6 +167,18 @@ class _CycleInterpreter(Interpreter):
         grid = self.body.grid
         said: dict[str, Any] = {**self.said, "separator": grid.separator, "turned": grid.turned}
         return Table(**said, phases=phases, names=texts, stop_Nm=stop)
+
+    def _stand_still(self) -> None:
+        """Fill torque and speed of a pause that has a time alone with zeros."""
+        for k, (cells, row) in enumerate(zip(self.body.rows, self.rows, strict=True)):
+            given = {column.role for column, cell in zip(self.used, row, strict=True) if cell is not None}
+            if given == {"t"} and any(map(is_pause, cells)):
+                self.rows[k] = tuple(
+                    Entry("0", column.held.unit if column.held and column.unit == CELLS else "")
+                    if column.role in ("T", "n")
+                    else cell
+                    for column, cell in zip(self.used, row, strict=True)
+                )
 
     def _take_stops(self) -> str:
         """T_k of the rows that are the emergency stop, the largest by magnitude: they are no phases."""

@@ -8,14 +8,17 @@ import base64
 import codecs
 import csv
 import io
+import json
 import zlib
 from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 
 from hpn.installed import ExtraMissingError, require
+from hpn.tables.cells import Figure, plain_number
+from hpn.tables.heads import MOST_COLUMNS
 from hpn.tables.inputs import Inputs
-from hpn.tables.sheets import MOST_CELLS, Grid, RefusedError, Takes, grids_of, too_many_cells
+from hpn.tables.sheets import MOST_CELLS, Grid, RefusedError, Takes, grid_of, grids_of, too_many_cells
 from hpn.tables.workbooks import MAGIC, OLD_MAGIC, sheets_of
 from hpn.words.wording import N_, Sentence
 
@@ -96,6 +99,8 @@ def _of_gzip(content: bytes, wanted: Wanted) -> Contents:
 def _of_text(text: str, wanted: Wanted) -> Contents:
     try:
         if not text.lstrip().startswith("{"):
+            if wanted.takes is None and (phases := _phases(text, wanted)):
+                return Contents({"": (phases,)}, text)
             if wanted.takes and _is_taken_csv(text, wanted.takes):
                 return Contents(suffix=".csv")
             return Contents({"": tuple(grids_of(text, wanted.most_rows, wanted.most_characters))}, text)
@@ -106,6 +111,28 @@ def _of_text(text: str, wanted: Wanted) -> Contents:
         return _of_rows(*records.objects(text, wanted.takes))
     except RefusedError as refused:
         return Contents(text=text if len(text) <= wanted.most_characters else "", problem=refused.sentence)
+
+
+def _phases(text: str, wanted: Wanted) -> Grid | None:
+    """Table of phases as a list of objects of JSON with plain values; None for any other text."""
+    if not text.lstrip().startswith("[") or len(text) > wanted.most_characters:
+        return None
+    try:
+        listed = json.loads(text, parse_float=_figure, parse_int=_figure)
+    except (ValueError, RecursionError):
+        return None
+    if not all(isinstance(each, dict) for each in listed) or not 0 < len(listed) <= wanted.most_rows:
+        return None
+    names = list(dict.fromkeys(name for each in listed for name in each))
+    values = [each.get(name) for each in listed for name in names] if len(names) <= MOST_COLUMNS else [()]
+    if not all(value is None or isinstance(value, str) for value in values):
+        return None
+    return grid_of([names, *([each.get(name) or "" for name in names] for each in listed)])
+
+
+def _figure(number: str) -> str:
+    plain = plain_number(number, ".")
+    return number if plain is None else Figure(plain)
 
 
 def _of_rows(suffix: str, grid: Grid | None) -> Contents:

@@ -58,7 +58,8 @@ _WORDS = {
     "minimales moment; minimales drehmoment; min drehmoment; min moment; drehmoment min; moment min",
     INDEX: "nr; no; #; №; n°; nº; pos; index; idx; id; lfd nr; lfd-nr; lfdnr; nummer; number; num; phase; phase nr; "
     "phase no; phasen-nr; phasennr; phasennummer; step; schritt; segment; abschnitt; row; zeile; étape; fase; steg; "
-    "i; k; line; item; point; punkt",
+    "i; k; line; item; point; punkt; quantity; quantity unit; größe; größe einheit; grandeur; grandeur unité; "
+    "grandezza; grandezza unità; parameter; parameter unit",
 }
 _NAMES = {word.strip(): kind for kind, words in _WORDS.items() for word in words.split(";")}
 DURATIONS = {"duration", "dauer", "zeitdauer", "phasendauer", "durée", "durata", "duración", "varaktighet", "duur"} | {
@@ -122,6 +123,11 @@ _STOPS = Pattern(
     r"(?<![^\W_])(?:e[ -]?stop|e[ -]?halt|emergency(?:[ -]?(?:stop|halt|off|brak(?:e|ing)))?|crash|collision|kollision|"
     r"not[ -]?(?:aus|halt|stopp?|bremsung)|arrêt d['’ ]urgence|urgence|arresto (?:di |d['’])emergenza|emergenza|"
     r"parada de emergencia|t[ _]?k)(?![^\W\d_])",
+    LONGEST,
+    IGNORECASE,
+)
+_PAUSES = Pattern(
+    r"(?:pause(?:nzeit)?|pausa|dwell|idle|wait(?:ing)?|warten|stillstand|standstill|sosta|attesa|repos)[ _]?[0-9]{0,3}",
     LONGEST,
     IGNORECASE,
 )
@@ -369,3 +375,8 @@ def is_total(cell: str) -> bool:
 def is_stop(cell: str) -> bool:
     """True where a cell may label its row as the emergency stop."""
     return bool(_STOPS.search(cell))
+
+
+def is_pause(cell: str) -> bool:
+    """True where a cell names its row as a pause."""
+    return bool(_PAUSES.fullmatch(cell))

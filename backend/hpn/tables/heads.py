@@ -60,6 +60,11 @@ def left_out(numbers: Sequence[int]) -> Sentence:
     return Sentence(N_("Rows that last 0 s are left out: {rows}."), {"rows": listed})
 
 
+def is_comment(row: Sequence[str]) -> bool:
+    """True for a row that begins with the sign of a comment, and has too few numbers for a phase."""
+    return bool(_MARKED.match(row[0])) and numbers_in(row) < len(REQUIRED)
+
+
 def uncommented(grid: Grid) -> Grid:
     """A table without the `#` that programs write before a header, in a cell of its own where blanks part the columns.
 
@@ -67,7 +72,8 @@ def uncommented(grid: Grid) -> Grid:
     """
     usual = Counter(reversed(grid.counts)).most_common(1)[0][0] if grid.counts else 0
     rows, counts = list(grid.rows), list(grid.counts)
-    for k, row in enumerate(rows[:HEAD_ROWS]):
+    first = next((k for k, row in enumerate(rows[:HEAD_ROWS]) if numbers_in(row) >= len(REQUIRED)), HEAD_ROWS)
+    for k, row in enumerate(rows[: first + 1]):
         if row[0] == "#" and grid.separator in ("blank", "blanks") and counts[k] == usual + 1:
             rows[k], counts[k] = (*row[1:], ""), usual
         elif mark := _MARKED.match(row[0]):

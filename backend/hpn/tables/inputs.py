@@ -20,7 +20,9 @@ FURTHER = {
     AXIS: "axis name, achse, achsname, achsbezeichnung, achse nr, antrieb, drive, joint, gelenk, bezeichnung, name",
     "pn": "phase name, name of the phase, phasenname, phasenbezeichnung",
     "tp": "pause, pausenzeit, dwell",
-    "Tk": "not-halt-moment, nothaltmoment, not-halt-drehmoment",
+    "Tk": "emergency stop torque, e-stop torque, not-halt-moment, nothaltmoment, not-halt-drehmoment",
+    "Jm": "motor inertia, rotor inertia, motorträgheit, motorträgheitsmoment, rotorträgheit",
+    "bl": "backlash, max backlash, maximum backlash, spiel, verdrehspiel",
     "Nk": "emergency stops, not-halt-vorgänge, anzahl not-halt",
     "Lh": "gear life, lebensdauer getriebe",
     "Lb": "bearing life, lagerlebensdauer",
@@ -31,7 +33,7 @@ FURTHER = {
 }
 """Further names by role. One that fits two inputs, such as “life” or “motor torque”, is in none: it is asked for."""
 
-_OF_STOP = "emergency stop, emergency-stop, e-stop, estop, not-halt, nothalt, not-aus, notaus, not-stopp"
+_OF_STOP = "emergency stop, e stop, estop, not halt, nothalt, not aus, notaus, not stopp"
 _MEASURED = dict.fromkeys(_OF_STOP.split(", "), "Tk")
 """Names that mean an input only together with a unit of it."""
 
@@ -133,4 +135,4 @@ CYCLE = Inputs()
 
 
 def _folded(text: str) -> str:
-    return " ".join(text.casefold().replace("_", " ").split()).strip(" :.")
+    return " ".join(text.casefold().replace("_", " ").replace("-", " ").split()).strip(" :.")

@@ -4,7 +4,7 @@ import csv
 import io
 import itertools
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import zip_longest
 from re import IGNORECASE
@@ -207,15 +207,15 @@ def _rows(text: str, name: str) -> Iterator[list[str]]:
             yield [cell for part in line.strip(" \t").split(between) if (cell := part.strip(" "))]
 
 
-def require_even(grid: Grid, first: int, head: int) -> None:
+def require_even(grid: Grid, first: int, head: int, apart: Collection[int] = ()) -> None:
     """Raise RefusedError where rows of the body, from `first` on, or of the header just above it differ in length
-    though they must not.
+    though they must not; rows that stand `apart`, by their numbers, are of any length.
     """
     if not grid.even or not grid.counts:
         return
     counts = [min(count, grid.width) for count in grid.counts]  # a separator at the end of a row begins no cell
     usual = Counter(counts[first:]).most_common(1)[0][0]
     for number, count in list(zip(grid.numbers, counts, strict=True))[first - head :]:
-        if count != usual:
+        if count != usual and number not in apart:
             template = N_("row {row} has {cells} cells, others have {usual}")
             raise RefusedError(template, row=number, cells=count, usual=usual)

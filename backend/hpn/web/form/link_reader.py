@@ -48,6 +48,11 @@ _OF_TWO_PHASES = re.compile(r"([1-9][0-9]{1,4}),([1-9][0-9]{1,4})")
 _SEVERAL = re.compile(r"(?![0-9]+,0+$)[0-9]{1,5}([\s,;/]+[0-9]{1,5}){1,10}")
 """Several whole numbers in one text; `5,0` is one."""
 
+_VALUES = re.compile(r"(?![0-9]{1,2}(?:,[0-9]{3})+$)[+-]?[0-9]{1,6}(?:[,;] ?[+-]?[0-9]{1,6}){2,10}")
+"""Several whole numbers in the field of one phase: `250,500,250`, but `1,234,567` is rather one."""
+
+_RATIO = re.compile(r"([0-9]{1,4}) ?: ?1")
+
 # Inputs beside which an error of a whole part of the model is shown.
 _PARTS = {
     ("duty_cycle",): "T",
@@ -93,7 +98,7 @@ def _parsed(pairs: Pairs, written: str | None) -> Form:
     """Form of pairs in the wire's units."""
     given = Given()
     for name, text in pairs:
-        given.add(name, text)
+        given.add(name, match[1] if name == "i" and (match := _RATIO.fullmatch(text.strip())) else text)
     phases, moved, bodies, focus = given.tables()
     rows, moves = phases.texts, moved.texts if given.has_motion else []
     problems = [*given.problems(), *_list_problems(given)]
@@ -181,6 +186,10 @@ def _document(
 
 def _with_two_phases(problem: FieldProblem, texts: Sequence[str]) -> FieldProblem:
     """Fault of a number in the only phase, with advice where it may be two numbers."""
+    several = next((text for text in texts if _VALUES.fullmatch(text.strip())), "")
+    if several:
+        example = "&".join(f"{problem.name}={value}" for value in re.findall("[+-]?[0-9]+", several)[:3])
+        return replace(problem, message=Sentence(N_("give one value per field: {example}"), {"example": example}))
     match = next(filter(None, (_OF_TWO_PHASES.fullmatch(text.strip()) for text in texts)), None)
     if match is None:
         return problem
