@@ -120,11 +120,13 @@ let last = at;
 let restoring = null; // what the form said in the entry that somebody has gone to
 let settled = true; // the next change is a new edit; what is typed in one visit of a field is one
 let addressed = contentOf(formOf()); // what the form said when the address came to be
+let accepted = { query: location.search, addressed }; // the same before the visit of a field in which somebody types
 
 document.addEventListener("focusin", () => (settled = true));
 
 function note(own = false) {
   const content = contentOf(formOf());
+  if (settled) accepted = { query: location.search, addressed };
   if (content === history.state?.content) return;
   if (settled || own) history.pushState({ at: (last = ++at), content }, "");
   else history.replaceState({ at, content }, "");
@@ -202,8 +204,13 @@ function showSteps() {
   }
 }
 
+// Of a field that is refused, what was read from its first characters is not what somebody wanted to say.
 function showAddress(ctx) {
-  if (!ctx.hx?.pushurl) return;
+  if (!ctx.hx?.pushurl) {
+    if (ctx.restores || !document.querySelector("#problems > *")) return;
+    addressed = accepted.addressed;
+    return history.replaceState(history.state, "", location.pathname + accepted.query + location.hash);
+  }
   addressed = ctx.kept ? contentOf(formOf()) : ctx.asked;
   history.replaceState(history.state, "", ctx.hx.pushurl + location.hash);
 }

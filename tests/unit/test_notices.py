@@ -231,3 +231,26 @@ def test_a_life_asked_of_the_gear_alone_says_for_which_life_its_bearing_is_judge
 @pytest.mark.parametrize(("stop", "told"), [({"torque_Nm": 200}, True), ({"torque_Nm": 200, "count": 9}, False)])
 def test_stops_without_their_number_say_that_it_is_not_judged(catalogue: Catalogue, stop: Json, told: bool) -> None:
     assert ("stops_not_counted" in codes(PLAIN | {"emergency_stop": stop}, catalogue)) == told
+
+
+@pytest.mark.parametrize(
+    ("own", "whole", "told"),
+    [
+        ((620, 310), 900, True),
+        ((620, None), 900, False),
+        ((None, None), 900, False),
+        ((900, 900), 900, False),
+        ((620, 310), None, False),
+    ],
+)
+@pytest.mark.parametrize("direction", ["radial", "axial"])
+def test_a_load_of_the_cycle_that_counts_in_no_phase_is_said_not_to_be_used(
+    catalogue: Catalogue, direction: str, own: tuple[float | None, ...], whole: float | None, told: bool
+) -> None:
+    name = f"{direction}_N"
+    phases = [phase(10, 100) | ({name: load} if load else {}) for load in own]
+    document = cycle(*phases) | ({"output_load": {name: whole}} if whole else {})
+
+    text = notices(answer(document, catalogue)).get(f"{direction}_load_not_used", "")
+
+    assert (f"The {direction} load of the whole cycle, 900 N, is not used" in text) == told

@@ -277,6 +277,18 @@ def test_each_check_says_how_far_its_own_drivers_may_grow(catalogue: Catalogue) 
     }
 
 
+@pytest.mark.parametrize(("radial_N", "sign"), [(800.0, "more"), (1700.0, "less")])
+def test_the_smallest_change_of_a_bearing_life_stands_first(catalogue: Catalogue, radial_N: float, sign: str) -> None:
+    """The life goes by the load to the power 3 and by the speed to the power 1: less of a change of the load does."""
+    selection = selected(cycle(phase(10, 300), output_load={"radial_N": radial_N}), catalogue)
+    load, speed = growths_of(chosen(selection, "HPN-20A-5"))["output_bearing_life"]
+
+    assert (load.driver, speed.driver) == ("load", "speed")
+    assert load.factor is not None
+    assert speed.factor == pytest.approx(load.factor**3, rel=1e-12)
+    assert (load.factor > 1) == (sign == "more")
+
+
 def test_a_check_without_a_limit_or_a_rating_says_so(catalogue: Catalogue) -> None:
     selection = selected(cycle(phase(0.0, 100.0), emergency_stop={"torque_Nm": 1, "count": 1}), catalogue)
     fine, unrated = growths_of(chosen(selection, "HPN-20A-5")), growths_of(chosen(selection, "HPN-40A-5"))

@@ -52,6 +52,8 @@ NOTICES: Mapping[str, str] = {
         "A life of {gear_life_h} (L10) is required of the gear, but its output bearing is checked for the default of "
         "{bearing_life_h} (L50)."
     ),
+    "radial_load_not_used": N_("The radial load of the whole cycle, {load_N}, is not used: every phase has its own."),
+    "axial_load_not_used": N_("The axial load of the whole cycle, {load_N}, is not used: every phase has its own."),
     "life_unlimited": N_(
         "The average torque is 0 or so small that equation 17.10 gives an unlimited life; the field stays blank."
     ),

@@ -29,6 +29,7 @@ def notices_of(application: Application, evaluation: Evaluation, index: int) -> 
     found += _on_stiffness(application, evaluation, index)
     found += _on_speed(evaluation, index)
     if application.loads is not None:
+        found += _on_unused_loads(application.loads, application.duty_cycle)
         found += _on_the_bearing(application.loads, evaluation, index)
     found += _on_the_motor(application, evaluation, index)
     found += _on_the_torque_limit(evaluation, index)
@@ -163,6 +164,14 @@ def _longest_run(above: NDArray[np.bool_], duration_s: FloatArray, *, circular: 
         above, duration_s = np.roll(above, -start), np.roll(duration_s, -start)
     ends = np.flatnonzero(~above)
     return max(float(part.sum()) for part in np.split(np.where(above, duration_s, 0.0), ends))
+
+
+def _on_unused_loads(load: OutputLoad, cycle: DutyCycle) -> Iterable[Notice]:
+    """Loads of the whole cycle beside which every phase has its own, another one in some."""
+    for direction in ("radial", "axial"):
+        whole, own = getattr(load, f"{direction}_N"), [getattr(phase, f"{direction}_N") for phase in cycle.load_phases]
+        if whole is not None and None not in own and set(own) != {whole}:
+            yield notice(f"{direction}_load_not_used", load_N=whole)
 
 
 def _on_the_bearing(load: OutputLoad, evaluation: Evaluation, index: int) -> Iterable[Notice]:

@@ -305,6 +305,11 @@ class Growth:
     untold: str = ""
 
     @property
+    def change(self) -> float:
+        """Size of the change, alike for more and for less: the factor or its inverse; infinite without a factor."""
+        return math.inf if not self.factor else max(self.factor, 1 / self.factor)
+
+    @property
     def bound(self) -> Sentence:
         """In words: `up to 249 %`, rounded down."""
         if self.factor is None:
@@ -318,7 +323,7 @@ class Growth:
 
 
 def growths_of(candidate: Candidate, reserve_utilisation: float = 1.0) -> dict[str, tuple[Growth, ...]]:
-    """Growth of every driver by check of a candidate, until that check is at its limit.
+    """Growth of every driver by check of a candidate until that check is at its limit, the smallest change first.
 
     Below 1 where the check fails. Empty for a check that no driver moves and for one that is not rated. Without a
     factor for motor torques that follow an efficiency curve, torque without load or inertia, which have no closed form;
@@ -330,7 +335,12 @@ def growths_of(candidate: Candidate, reserve_utilisation: float = 1.0) -> dict[s
     return {
         check.code: ()
         if untold and check.code in without and not candidate.is_judged
-        else tuple(_growths(check, reserve_utilisation, untold if check.code in without else ""))
+        else tuple(
+            sorted(
+                _growths(check, reserve_utilisation, untold if check.code in without else ""),
+                key=lambda growth: growth.change,
+            )
+        )
         for check in candidate.checks
     }
 

@@ -219,13 +219,15 @@ CANDIDATE: Mapping[str, Named] = {
         N_("Wind-up at T_max"),
         "φ_w",
         "Wind-up of the output under the largest torque: a lower bound.",
-        caveat=N_("A lower bound: the gear is softer below 15 % of the rated torque."),
+        caveat=N_("A lower bound, of the largest magnitude: the gear is softer below 15 % of the rated torque."),
     ),
     "position_error_arcmin": Named(
         N_("Position error"),
         "φ_e",
         "Transmission accuracy, wind-up over the torques of the cycle or of its rest and, where they pass 0, backlash.",
-        caveat=N_("Approximate: limits of a new gear, added; wind-up from the lowest to the highest torque."),
+        caveat=N_(
+            "Approximate: limits of a new gear, added; wind-up from the lowest to the highest torque, with their signs."
+        ),
     ),
     "position_error_mm": Named(
         N_("Position error at the radius"),

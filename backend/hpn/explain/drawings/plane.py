@@ -15,6 +15,7 @@ from hpn.explain.drawings.picture import beyond_limit
 from hpn.explain.drawings.subject import Subject
 from hpn.explain.drawings.svg import Point
 from hpn.explain.drawings.words import disc_label, phase_numbers
+from hpn.explain.readings import figure_symbol
 from hpn.physics.equations import FloatArray
 from hpn.physics.motion import Trace, motor_trace, trace_of
 from hpn.physics.motion.trace import starts
@@ -143,20 +144,25 @@ def motor_plane(subject: Subject, reader: Reader = DEFAULT, governing: Sequence[
     Of a motion whose motor's inertia is known the curve holds it.
     """
     figures, motor = subject.of_gear, subject.equipped.requirements.motor or Motor()
+    turns = subject.duty.courses.get(0) is not None and motor.inertia_kgm2 is not None
+    peak, rms = (
+        Named(CANDIDATE[name].name, figure_symbol(name, turns_motor=turns))
+        for name in ("motor_peak_torque_Nm", "motor_rated_torque_Nm")
+    )
     limits = (
         _Limits(
             "limit",
             _of_motor(motor, "peak_torque_Nm"),
             _of_motor(motor, "maximum_speed_rpm"),
             (figures.maximum_input_speed_rpm.item(), figures.motor_peak_torque_Nm.item()),
-            (CANDIDATE["motor_peak_torque_Nm"], CANDIDATE["maximum_input_speed_rpm"]),
+            (peak, CANDIDATE["maximum_input_speed_rpm"]),
         ),
         _Limits(
             "mean",
             _of_motor(motor, "rated_torque_Nm"),
             _of_motor(motor, "rated_speed_rpm"),
             (figures.average_input_speed_rpm.item(), figures.motor_rated_torque_Nm.item()),
-            (CANDIDATE["motor_rated_torque_Nm"], CANDIDATE["average_input_speed_rpm"]),
+            (rms, CANDIDATE["average_input_speed_rpm"]),
         ),
     )
     words = [

@@ -73,10 +73,13 @@ def _outside(picture: BearingPicture) -> list[Sentence]:
 
 
 def _next_load_coefficient(picture: BearingPicture) -> list[Sentence]:
-    """Equivalent load with the next printed load coefficient."""
-    f_w, used = picture.load.load_coefficient, picture.constant_load_utilisation
+    """Utilisation of the limit that governs, with the next printed load coefficient, which every load grows by."""
+    f_w, used = picture.load.load_coefficient, _most_used(picture)
     larger = next((printed for printed in bearing.PRINTED_LOAD_COEFFICIENTS if printed > f_w), None)
     if larger is None or used == 0:
         return []
-    next_used = share(used * larger / f_w, picture.allowed)
-    return [Sentence("With f_w = {coefficient}: {used}.", {"coefficient": Quantity(larger, ""), "used": next_used})]
+    values: dict[str, Value] = {
+        "coefficient": Quantity(larger, ""),
+        "used": share(used * larger / f_w, picture.allowed),
+    }
+    return [Sentence("With f_w = {coefficient}: utilisation of the bearing {used}.", values)]

@@ -268,6 +268,9 @@ FILTERS: dict[str, Callable[..., Any]] = {
 }
 """`{{ 40 | figure("Nm") }}`, `{{ "Nm" | unit }}`, `{{ sentence | told }}`: for whoever reads the page."""
 
+NOT_USED = {"FR": "radial_load_not_used", "FA": "axial_load_not_used"}
+"""Inputs that may count for nothing beside others, and the notice that says so at their fields."""
+
 GLOBALS: dict[str, Any] = {
     "BEARING_MODELS": BEARING_MODELS,
     "RANKINGS": RANKINGS,
@@ -289,6 +292,7 @@ GLOBALS: dict[str, Any] = {
     "MOVE_COLUMNS": MOVE_COLUMNS,
     "motor_pattern": MOTOR_CODE,
     "carried_pairs": carried_pairs,
+    "NOT_USED": NOT_USED,
     "onward": onward,
     "ordering_code": ordering_code,
     "preview_of": preview_of,
