@@ -1,6 +1,7 @@
 """Three journeys: a gear that is too soft, a pulley beside the shaft's centre, a brake that is too hard."""
 
 import json
+import re
 from urllib.request import Request, urlopen
 
 from playwright.sync_api import Locator, Page, expect
@@ -54,14 +55,15 @@ def test_a_pulley_at_45_mm_is_judged_with_its_lever(visitor: Visitor) -> None:
     expect(verdict(page)).to_contain_text("largest load on the output bearing (102")
 
 
-def test_a_belt_comes_to_a_radial_load(visitor: Visitor) -> None:
-    page = visitor.open(f"{AXIS}&size=20A&FR=1")
+def test_a_pulley_on_the_shaft_is_counted_from_the_torques(visitor: Visitor) -> None:
+    page = visitor.open(f"{AXIS}&size=20A")
     page.locator("#group-lever > summary").click()
-    page.get_by_text("Radial load of a belt").click()
-    page.get_by_label("Tight strand").fill("450")
-    page.get_by_label("Slack strand").fill("150")
-    page.get_by_role("button", name="Use this load").click()
-    expect(page.get_by_label("Radial load of the cycle")).to_have_value("600")
+    page.get_by_label("On the gear’s shaft").select_option("belt")
+    page.get_by_label("Pitch diameter").fill("200")
+    page.get_by_label("Tension factor of the belt").fill("1.5")
+    expect(page).to_have_url(re.compile("kb=1.5&dt=belt&dd=200"))
+    page.get_by_role("link", name="Bearing").click()
+    expect(page.get_by_text("from a tangential force of 400").first).to_be_visible()
 
 
 def test_a_brake_that_is_too_hard_says_how_hard_it_may_be(visitor: Visitor) -> None:

@@ -15,7 +15,7 @@ from hpn.words.wording import Sentence
 
 UNITS = {"": "SI", "lb_in.lbf.lb.in.degF": "US"}
 PHASES = "/?T=40&n=250&t=0.3&FRi=1&FAi=2&Tpk=50&npk=300&Trms=45&pn=a&xR=1"
-MOVES = "&mv=s_curve&ms=90&mt=1&mj=0.5&mx=1&mv=trapezoidal&ms=-90&mt=1&ma=900&mj=&mx=&tp=1"
+MOVES = "&mv=s_curve&ms=90&mt=1&mj=0.5&mjk=&mx=1&mv=trapezoidal&ms=-90&mt=1&ma=900&mj=&mjk=&mx=&tp=1"
 PAGES = {
     "phases": ("", PHASES),
     "rotary": ("rotary", f"/?mech=rotary&J=0.8{MOVES}"),
@@ -76,6 +76,11 @@ def test_every_unit_that_a_page_prints_beside_a_field_may_be_typed_into_it(
         ("belt", "mn", "18 m/min", 300),
         ("belt", "ma", "2000 mm/s²", 2000),
         ("belt", "ma", "2 m/s²", 2000),
+        ("rotary", "mjk", "20000 °/s³", 20000),
+        ("rotary", "mjk", "20000 deg/s^3", 20000),
+        ("belt", "mjk", "50 m/s³", 50000),
+        ("belt", "Ff", "2.5 daN", 25),
+        ("", "hx", "0.5 rad", 28.6478897565),  # 90 / π
         ("", "K3", "26000 Nm/rad", 26000),
         ("", "K3", "7.5 Nm/arcmin", 25783.1007809),  # 7.5 · 10800 / π
         ("", "K3", "7.5 Nm/′", 25783.1007809),
@@ -94,16 +99,6 @@ def test_every_unit_that_a_page_prints_beside_a_field_may_be_typed_into_it(
 def test_a_unit_as_engineers_write_it_has_its_value(mechanism: str, name: str, text: str, value: float) -> None:
     """Twelve digits are kept of a number in another unit."""
     assert float(typed(name, text, "en", mechanism)) == pytest.approx(value, rel=1e-11)
-
-
-def test_the_belt_takes_its_units_too() -> None:
-    for name, text, value in (
-        ("bP", "1500 W", 1500),
-        ("bP", "1.5 kW", 1500),
-        ("bv", "3 m/s", 3),
-        ("bv", "180 m/min", 3),
-    ):
-        assert float(typed(name, text, "en", "rotary")) == pytest.approx(value, rel=1e-11), (name, text)
 
 
 def test_the_bodies_take_their_units_too() -> None:

@@ -27,7 +27,9 @@ BEARING_LIFE_H = 20_000.0
 class Drive(Model):
     """Pinion or pulley on the gear's shaft, whose load follows from the torques of typed phases."""
 
-    type: Literal["rack_and_pinion", "belt"] = Field(description="Pinion of a rack, or pulley of a belt.")
+    type: Literal["rack_and_pinion", "belt"] = Field(
+        description="Pinion of a rack, or pulley of a belt.", examples=["belt"]
+    )
     diameter_mm: Positive = Field(description="Pitch diameter of the pinion or pulley.", examples=[60.0])
 
 

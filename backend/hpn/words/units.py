@@ -44,8 +44,6 @@ SYMBOLS = {
     "Hz": "Hz",
     "rad_per_s": "rad/s",
     "J": "J",
-    "W": "W",
-    "m_per_s": "m/s",
 }
 """Unit suffix of a field name -> the symbol a reader sees."""
 
@@ -171,7 +169,6 @@ UNITS: Mapping[str, Mapping[str, Unit]] = {
         "oz_in_s2": Unit("oz·in·s²", "force_ounce * inch * second ** 2", "oz·in·s2 ozf·in·s2 oz·in·sec2 ozf·in·sec2"),
     },
     "frequency": {"Hz": Unit("Hz", "hertz", "Hz"), "kHz": Unit("kHz", "kilohertz", "kHz")},
-    "power": {"W": Unit("W", "watt", "W Watt watts"), "kW": Unit("kW", "kilowatt", "kW")},
 }
 """Kind of quantity -> codes of the units in which it may be given."""
 
