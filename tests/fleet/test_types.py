@@ -6,6 +6,7 @@ import random
 from decimal import Decimal
 from pathlib import Path
 from typing import Any
+from uuid import UUID
 
 import pyarrow as pa
 import pyarrow.parquet as pq
@@ -13,6 +14,7 @@ import pytest
 
 from hpn.catalogue import Catalogue
 from hpn.fleet.gathering import axes_of
+from hpn.fleet.listing import listing_of, read_answers
 from hpn.fleet.opened import open_axes
 from hpn.fleet.order import FleetError, Order
 from hpn.fleet.run import size_fleet
@@ -31,7 +33,7 @@ PLAIN = {
     "pause_s": pa.array([1.0, 2.0, 1.0]),
 }
 
-SAID = {"axis": "text or integers belong", "torque_Nm": "numbers belong", "rank_by": "texts belong"}
+SAID = {"axis": "text, integers or UUIDs belong", "torque_Nm": "numbers belong", "rank_by": "texts belong"}
 
 
 def views(values: pa.Array) -> pa.Array:
@@ -173,6 +175,55 @@ def test_an_axis_comes_back_in_its_type(kind: pa.DataType, tmp_path: Path, catal
     pq.write_table(table.set_column(0, "axis", table["axis"].cast(kind)), tmp_path / "in.parquet")
     size_fleet(Order(tmp_path / "in.parquet", tmp_path / "out.arrow"), catalogue)
     assert pa.ipc.open_file(str(tmp_path / "out.arrow")).schema.field("axis").type == kind
+
+
+UUIDS = [UUID("00000000-0000-0000-0000-00000000000f"), UUID("f0e1d2c3-b4a5-9687-7869-5a4b3c2d1e0f"), None]
+
+
+def with_uuids(path: Path) -> Path:
+    """A table with axes that are UUIDs, the last of which is null; its columns begin within what Arrow keeps."""
+    rows = [{**AXES[0], "axis": number} for number in range(4)]
+    kept = pa.array([UUID(int=7).bytes, *(each and each.bytes for each in UUIDS)], pa.binary(16))
+    axes = pa.ExtensionArray.from_storage(pa.uuid(), kept)
+    table = pa.table({name: [row[name] for row in rows] for name in rows[0]}).set_column(0, "axis", axes).slice(1)
+    if path.suffix == ".parquet":
+        pq.write_table(table, path)
+    else:
+        with pa.ipc.new_file(str(path), table.schema) as file:
+            file.write_table(table)
+    return path
+
+
+@pytest.mark.parametrize("suffix", [".parquet", ".arrow"])
+def test_axes_that_are_uuids_come_back_as_uuids_and_as_text_where_there_is_no_such_type(
+    suffix: str, tmp_path: Path, catalogue: Catalogue
+) -> None:
+    """As the standard library writes them."""
+    path, texts = with_uuids(tmp_path / f"in{suffix}"), [each and str(each) for each in UUIDS]
+    for target in (".parquet", ".arrow", ".csv", ".ndjson"):
+        out, rejected = tmp_path / f"out{target}", tmp_path / f"rejected{target}"
+        size_fleet(Order(path, out, rejected=rejected, candidates=tmp_path / f"all{target}"), catalogue)
+        assert [answer["axis"] for batch in read_answers(out) for answer in batch.to_pylist()] == texts
+        if target in (".parquet", ".arrow"):
+            found = pq.read_table(out) if target == ".parquet" else pa.ipc.open_file(str(out)).read_all()
+            assert found["axis"].type == pa.uuid()
+            assert found["axis"].to_pylist() == UUIDS
+    listing = listing_of(Order(path, out), out, catalogue)
+    assert listing.axes["axis"].to_pylist() == texts[:2]
+    assert faults(tmp_path) == [(None, "axis", "is required")]
+
+
+def test_a_uuid_that_is_there_twice_is_rejected_whole(tmp_path: Path, catalogue: Catalogue) -> None:
+    rows = [{**AXES[0], "axis": number} for number in range(3)]
+    axes = pa.array([UUIDS[0], UUIDS[1], UUIDS[0]], pa.uuid())
+    table = pa.table({name: [row[name] for row in rows] for name in rows[0]}).set_column(0, "axis", axes)
+    pq.write_table(table, tmp_path / "in.parquet")
+
+    size_fleet(Order(tmp_path / "in.parquet", tmp_path / "out.parquet"), catalogue)
+
+    answers = pq.read_table(tmp_path / "out.parquet")
+    assert answers["axis"].to_pylist() == UUIDS[:2]
+    assert [error is None for error in answers["error"].to_pylist()] == [False, True]
 
 
 @pytest.mark.parametrize("suffix", [".parquet", ".arrow"])

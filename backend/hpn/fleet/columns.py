@@ -15,6 +15,7 @@ import pyarrow as pa
 import pyarrow.types as kinds
 
 from hpn.application.input_fields import FIELDS, PHASE_FIELDS, InputField
+from hpn.fleet.uuids import is_uuid
 
 Json = dict[str, Any]
 
@@ -65,7 +66,7 @@ def plain_type(given: pa.DataType) -> pa.DataType:
         return plain_type(given.value_type)
     if is_list(given):
         return pa.list_(plain_type(given.value_type))
-    return pa.string() if kinds.is_string_view(given) else given
+    return pa.string() if kinds.is_string_view(given) or is_uuid(given) else given
 
 
 def is_text(given: pa.DataType) -> bool:

@@ -24,6 +24,8 @@ from hpn.fleet.opened import open_tables
 from hpn.fleet.order import Order, format_of
 from hpn.fleet.outcome import answer_fields
 from hpn.fleet.summary import Summary, summary_of
+from hpn.fleet.uuids import is_uuid, text_of
+from hpn.fleet.writing import WITHOUT_UUIDS
 
 MOST_LISTED = 10_000
 """Axes that a page or a report shows one by one; more are in the files."""
@@ -110,8 +112,14 @@ def as_parquet(table: pa.Table) -> bytes:
 
 def read_answers(path: Path) -> Iterator[pa.RecordBatch]:
     """Answers as a run has written them, with the names of the axes as text."""
-    schema = answer_fields(pa.string())
-    return iter(datasets.dataset(path, schema, FORMATS[format_of(path)]).to_batches())
+    suffix = format_of(path)
+    if suffix not in WITHOUT_UUIDS:
+        axis = datasets.dataset(path, format=FORMATS[suffix]).schema.field(AXIS).type
+        if is_uuid(axis):
+            for batch in datasets.dataset(path, answer_fields(axis), FORMATS[suffix]).to_batches():
+                yield batch.set_column(0, AXIS, text_of(batch.column(0)))
+            return
+    yield from datasets.dataset(path, answer_fields(pa.string()), FORMATS[suffix]).to_batches()
 
 
 def _first(batches: Iterator[pa.RecordBatch]) -> pa.Table:

@@ -111,7 +111,7 @@ def size_fleet(
             outcomes.add(found)
             watch(table.progress)
         outcomes.close()
-        axis = pa.int64() if table.has_untyped_axes and outcomes.are_whole else table.axis_type
+        axis = pa.int64() if table.has_untyped_axes and outcomes.are_whole else table.written_axis_type
         rows, torn = {}, outcomes.torn()
         for kind, target in order.targets.items():
             stack.callback(unfinished(target).unlink, missing_ok=True)

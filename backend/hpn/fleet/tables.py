@@ -96,7 +96,12 @@ class Table(ABC):
     @property
     @abstractmethod
     def axis_type(self) -> pa.DataType:
-        """Type of the axes: text or integers."""
+        """Type of the axes while they are worked on: text or integers."""
+
+    @property
+    def written_axis_type(self) -> pa.DataType:
+        """Type of the axes in files that have it."""
+        return self.axis_type
 
     has_untyped_axes = False
     """True where axes are text until all of them are known to be whole numbers."""

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from hpn.fleet.columns import AXIS, COLUMNS, INDEX, Column, is_list, is_text, plain_type
 from hpn.fleet.tables import Batch, Fault, Progress, Table
+from hpn.fleet.uuids import is_uuid, text_of
 from hpn.words.wording import N_
 
 NOT_WHOLE = N_("must be text or a whole number")
@@ -62,6 +63,11 @@ class TypedTable(Table):
             return pa.int64()
         return pa.string() if kinds.is_null(given) else given
 
+    @property
+    def written_axis_type(self) -> pa.DataType:
+        given = self.given.field(AXIS).type
+        return given if is_uuid(given) else self.axis_type
+
     @contextmanager
     def readable(self, where: str = "") -> Iterator[None]:
         """Raise FleetError in place of Arrow's errors of a file, but for memory: that is of the machine."""
@@ -78,7 +84,7 @@ class TypedTable(Table):
         given = self.given.field(name).type
         if name == AXIS:
             is_right = is_text(self.axis_type) or kinds.is_integer(self.axis_type)
-            wanted = "text or integers"
+            wanted = "text, integers or UUIDs"
         else:
             column = COLUMNS.all[name]
             is_right = column.takes(given, self.type_of(name))
@@ -114,6 +120,8 @@ def _plain(column: pa.Array) -> pa.Array:
         ends = np.cumsum([0, *np.asarray(pc.fill_null(lengths, 0))])
         items = _plain(pc.list_flatten(column))
         return pa.ListArray.from_arrays(pa.array(ends, pa.int32()), items, mask=pc.is_null(lengths))
+    if is_uuid(given):
+        return text_of(column)
     return column.cast(pa.string()) if kinds.is_string_view(given) else column
 
 

@@ -23,6 +23,7 @@ from hpn.fleet.columns import AXIS, is_text
 from hpn.fleet.gathering import NO_PHASES, NOT_BESIDE
 from hpn.fleet.order import format_of
 from hpn.fleet.outcome import FIELDS, ROW
+from hpn.fleet.uuids import is_uuid, uuids_of
 from hpn.words.wording import N_
 
 TWICE = N_("must be unique, with its rows together")
@@ -58,6 +59,18 @@ WRITERS: dict[str, Callable[[str, pa.Schema], Any]] = {
 }
 
 
+WITHOUT_UUIDS = (".csv", ".ndjson")
+"""Formats in which a UUID is text."""
+
+
+def _typed(table: pa.Table, schema: pa.Schema) -> pa.Table:
+    """The table with the types of a schema, UUIDs out of their texts."""
+    place = schema.get_field_index(AXIS)
+    if not is_uuid(schema.field(place).type):
+        return table.cast(schema)
+    return table.set_column(place, schema.field(place), uuids_of(table[AXIS])).cast(schema)
+
+
 class Outcomes:
     """Outcomes of the axes so far, by kind, in files beside the answers: a batch for each."""
 
@@ -90,13 +103,14 @@ class Outcomes:
             path.unlink(missing_ok=True)
 
     def write(self, path: Path, kind: str, axis: pa.DataType, torn: "Torn") -> int:
-        """Write the file of a kind with axes of a type; gives its number of rows."""
+        """Write the file of a kind with axes of a type, as far as its format has it; gives its number of rows."""
+        axis = pa.string() if is_uuid(axis) and format_of(path) in WITHOUT_UUIDS else axis
         schema, rows, seen = FIELDS[kind](axis), 0, set[Any]()
         schema = schema.remove(schema.get_field_index(ROW)) if ROW in schema.names else schema
         with closing(WRITERS[format_of(path)](str(path), schema)) as writer:
             for answers, table in zip(self._read("answers"), self._read(kind), strict=True):
                 whole = torn.whole(kind, table, answers, seen) if torn else table
-                writer.write_table(whole.select(schema.names).cast(schema))
+                writer.write_table(_typed(whole.select(schema.names), schema))
                 rows += whole.num_rows
         with path.open("rb") as file:
             os.fsync(file.fileno())
