@@ -59,10 +59,11 @@ FIGURES: Mapping[str, str] = {
 """Published figures of a gear that are more than a number."""
 
 EXPORTS = (
-    ("report.pdf", N_("PDF report")),
-    ("report.xlsx", N_("Workbook")),
-    ("submodel.aasx", N_("Asset Administration Shell")),
+    ("report.pdf", N_("PDF report"), "report"),
+    ("report.xlsx", N_("Workbook"), "serve"),
+    ("submodel.aasx", N_("Asset Administration Shell"), "aas"),
 )
+"""Files of a saved selection: name, title, and the extra that makes it."""
 
 
 @or_reason(REASON)

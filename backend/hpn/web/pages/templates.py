@@ -22,7 +22,7 @@ from hpn.explain.drawings import Figure
 from hpn.explain.drawings.picture import beyond_limit
 from hpn.explain.drawings.svg import markup
 from hpn.explain.readings import shortest_life, stiffness_of
-from hpn.installed import data_folder
+from hpn.installed import data_folder, has_extra
 from hpn.physics.motion.moves import Move
 from hpn.web.door.visit import address, current
 from hpn.web.form import symbols, ways
@@ -282,6 +282,7 @@ GLOBALS: dict[str, Any] = {
     "DRIVER_NAMES": DRIVER_NAMES,
     "ENVELOPE_BASIS": ENVELOPE_BASIS,
     "GEAR": GEAR,
+    "has_extra": has_extra,
     "here": address,
     "LANGUAGE_NAMES": LANGUAGE_NAMES,
     "LISTED": LISTED,
