@@ -142,6 +142,55 @@ def test_a_401_is_a_problem_that_says_how_to_authenticate(make_client: MakeClien
     assert page.headers["WWW-Authenticate"] == 'Basic realm="HPN Select"'
 
 
+def test_a_wrong_key_and_no_key_read_differently(make_client: MakeClient) -> None:
+    key, pair = new_key("plm")
+    client = make_client(api_keys=pair)
+
+    none = client.get("/api/v1/selections")
+    wrong = client.get("/api/v1/selections", headers={"X-API-Key": key[:-1]})
+
+    assert (none.status_code, wrong.status_code) == (401, 401)
+    assert (none.json()["type"], wrong.json()["type"]) == ("/problems/api-key-needed", "/problems/api-key-unknown")
+    assert "a key is needed" in none.json()["detail"]
+    assert "is none of this service" in wrong.json()["detail"]
+    assert key[:-1] not in wrong.text
+    assert none.headers["WWW-Authenticate"] == wrong.headers["WWW-Authenticate"]
+
+
+@pytest.mark.parametrize(
+    ("language", "needed", "unknown"),
+    [
+        ("en", "An API key is needed", "The API key is unknown"),
+        ("de", "Ein API-Schlüssel ist erforderlich", "Der API-Schlüssel ist unbekannt"),
+    ],
+)
+def test_a_reader_gets_the_page_of_a_key_that_is_missing_or_unknown(
+    make_client: MakeClient, language: str, needed: str, unknown: str
+) -> None:
+    client = make_client(api_keys=new_key("plm")[1])
+    read = {"Accept": "text/html,*/*", "Cookie": f"hpn_language={language}"}
+
+    none, wrong = (client.get("/selections", headers=read | more) for more in ({}, {"X-API-Key": "hpn_x"}))
+
+    for answer, title in ((none, needed), (wrong, unknown)):
+        assert answer.status_code == 401
+        assert answer.headers["WWW-Authenticate"] == 'Basic realm="HPN Select"'
+        assert f"<h2>{title}" in answer.text
+
+
+def test_a_403_says_whether_a_key_was_sent(make_client: MakeClient) -> None:
+    keys = {name: new_key(name) for name in ("plm", "erp")}
+    client = make_client(api_keys=",".join(pair for _, pair in keys.values()), guarded="writing")
+    own, other = ({"X-API-Key": keys[name][0]} for name in keys)
+    place = client.post("/api/v1/selections", json=SAVE, headers=own).headers["Location"]
+
+    none, wrong = client.delete(place), client.delete(place, headers=other)
+
+    assert (none.status_code, wrong.status_code) == (403, 403)
+    assert none.json()["detail"].startswith("no key was sent; only")
+    assert wrong.json()["detail"].startswith("the key erp did not save it; only")
+
+
 def test_a_key_never_appears_in_its_pair_nor_in_the_settings() -> None:
     key, pair = new_key("plm")
     name, digest = pair.split(":")

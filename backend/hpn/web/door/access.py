@@ -69,7 +69,7 @@ class Gate:
             if not counted.granted:
                 raise too_many(counted.rate, counted.wait_seconds)
         if name is None and (presented is not None or group in self._guarded):
-            raise key_needed(request.scope["path"])
+            raise key_needed(request.scope["path"], is_unknown=bool(presented))
         if len(request.scope.get("query_string", b"")) > MAXIMUM_QUERY_BYTES:
             raise Problem(414, f"a link may have {MAXIMUM_QUERY_BYTES} bytes at most; post what is longer")
 
@@ -87,7 +87,8 @@ class Gate:
         if name is None and not path.startswith(API):
             raise key_needed(path)
         if name is None or name not in (ADMIN, owner):
-            text = f"only the key that saved this selection, or the one named {ADMIN}, may rename or delete it"
+            sent = "no key was sent" if name is None else f"the key {name} did not save it"
+            text = f"{sent}; only the key that saved this selection, or the one named {ADMIN}, may rename or delete it"
             raise Problem(403, text)
 
 
@@ -138,8 +139,10 @@ def too_many(rate: object, wait_seconds: int) -> Problem:
     return Problem.later(f"{rate} are allowed; try again in {wait_seconds} s", wait_seconds, 429)
 
 
-def key_needed(path: str) -> Problem:
+def key_needed(path: str, *, is_unknown: bool = False) -> Problem:
     """401; on a page the browser asks for the key itself, as a password with any user name."""
     scheme = "Bearer" if path.startswith(API) else "Basic"
-    text = "send a valid key as `Authorization: Bearer …` or `X-API-Key: …`"
-    return Problem(401, text, headers={"WWW-Authenticate": f'{scheme} realm="HPN Select"'})
+    text, kind = "a key is needed: send it as `Authorization: Bearer …` or `X-API-Key: …`", "api-key-needed"
+    if is_unknown:
+        text, kind = "the key that was sent is none of this service: it is mistyped, or withdrawn", "api-key-unknown"
+    return Problem(401, text, headers={"WWW-Authenticate": f'{scheme} realm="HPN Select"'}, kind=kind)

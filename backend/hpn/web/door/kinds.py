@@ -28,13 +28,19 @@ KINDS: Mapping[str, Kind] = {
     "api-key-needed": Kind(
         401,
         N_("An API key is needed"),
-        N_("This service requires an API key here; none was sent, or an unknown one."),
+        N_("This service requires an API key here, and none was sent."),
         N_("Send a key of this service as X-API-Key, as a Bearer token, or as the password of Basic authentication."),
+    ),
+    "api-key-unknown": Kind(
+        401,
+        N_("The API key is unknown"),
+        N_("A key was sent, but it is none of this service: it is mistyped or cut off, or has been withdrawn."),
+        N_("Compare it with the key that you were given, which begins with hpn_, or ask the operator for a new one."),
     ),
     "not-allowed": Kind(
         403,
         N_("Not allowed"),
-        N_("The key is known but may not do this, or a form was sent from another site."),
+        N_("It belongs to another key than the one that was sent, or none was sent; or a form came from another site."),
         N_("Use the key that saved it or an administrator’s, or send the form from this service’s own page."),
     ),
     "not-found": Kind(

@@ -31,11 +31,15 @@ async def show_oembed() -> Response:
 
 
 def page_of(request: Request, error: HTTPException) -> Response | None:
-    """Page of an address that is too long or leads nowhere; None where a problem says it."""
+    """Page of an address that is too long, leads nowhere or needs a key; None where a problem says it."""
     if error.status_code == 414 and (reads_pages(request) or request.scope["path"] == "/"):
         return page(request, "too_long.html", 414, limit=MAXIMUM_QUERY_BYTES)
     if error.status_code == 404 and reads_pages(request) and not isinstance(error, Problem):
         return _nowhere(request)
+    if error.status_code in (401, 403) and reads_pages(request) and isinstance(error, Problem):
+        answer = page(request, "problem.html", error.status_code, kind=KINDS[error.kind])
+        answer.headers.update(error.headers or {})
+        return answer
     return None
 
 
