@@ -49,17 +49,11 @@ def fleet_body(media_types: Iterable[str]) -> dict[str, Any]:
         "description": "Axes in list form, a row for each: `axis`, lists named as the fields of a phase, and the other "
         "fields of an application by their paths with dots, such as `requirements.life_h`.",
     }
-    form = {
+    form = {  # no model of its own: generators that skip those of forms import it all the same, and Java can't compile
         "type": "object",
-        "properties": {
-            "input": {
-                **table,
-                "description": "Axes in list form, or phases: a row for each, those of an axis together.",
-            },
-            "axes": {**table, "description": "Where `input` has phases: a row for each axis with its other inputs."},
-        },
-        "required": ["input"],
-        "additionalProperties": False,
+        "additionalProperties": {"type": "string", "format": "binary"},
+        "description": "`input`: axes in list form, or phases, a row for each, those of an axis together. `axes`, "
+        "where `input` has phases: a row for each axis with its other inputs.",
     }
     content = {media_type: {"schema": dict(table)} for media_type in media_types}
     return {"requestBody": {"required": True, "content": content | {"multipart/form-data": {"schema": form}}}}
