@@ -1,11 +1,14 @@
 """Faults of an input: where, in words that say what would be right, and a code for programs."""
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
 from pydantic import ValidationError
+from pydantic_core import ErrorDetails
 
+from hpn.words.fields import UNKNOWN
+from hpn.words.likeness import likeness
 from hpn.words.wording import N_, Sentence
 
 Location = tuple[str | int, ...]
@@ -48,8 +51,7 @@ def faults_of(error: ValidationError | InputError) -> list[Fault]:
         return [Fault(location, text, NOT_AVAILABLE) for location, text in error.problems]
     if error.error_count() > LISTED_ERRORS:
         return [Fault((), f"has {error.error_count()} errors")]
-    found = error.errors(include_url=False, include_context=False, include_input=False)
-    return plain_faults((entry["loc"], entry["type"], entry["msg"]) for entry in found)
+    return plain_faults(error.errors(include_url=False, include_input=False))
 
 
 def unreadable(error: ValidationError) -> str | None:
@@ -63,22 +65,42 @@ def pointer(location: Location) -> str:
     return "".join("/" + str(part).replace("~", "~0").replace("/", "~1") for part in location)
 
 
-def plain_faults(found: Iterable[tuple[Location, str, str]]) -> list[Fault]:
-    """Faults for pydantic's (location, type, message) entries."""
+def plain_faults(entries: Sequence[ErrorDetails]) -> list[Fault]:
+    """Faults for pydantic's entries."""
     # A list whose items are wrong is also reported as too short; the items say it better.
-    entries = list(found)
-    items = {tuple(location[:end]) for location, _, _ in entries for end in range(len(location))}
-    return [
-        Fault(location, plain_message(kind, message), kind)
-        for location, kind, message in entries
-        if kind != "too_short" or tuple(location) not in items
-    ]
+    items = {entry["loc"][:end] for entry in entries for end in range(len(entry["loc"]))}
+    kept = [entry for entry in entries if entry["type"] != "too_short" or entry["loc"] not in items]
+    told = [sentence_of(entry).text for entry in kept[:MOST_TOLD]]
+    told += [_plain_message(entry) for entry in kept[MOST_TOLD:]]
+    return [Fault(entry["loc"], text, entry["type"]) for entry, text in zip(kept, told, strict=True)]
 
 
-def plain_message(kind: str, message: str) -> str:
-    """Pydantic's message in words that say what would be right."""
+MOST_TOLD = 100
+"""Errors whose sentence names the field that a misspelt one looks like, which takes a while to find."""
+
+
+def sentence_of(entry: ErrorDetails) -> Sentence:
+    """Pydantic's message in words that say what would be right; of a misspelt field what it looks like."""
+    if entry["type"] == UNKNOWN:
+        return unknown_field(str(entry["loc"][-1]), entry.get("ctx", {}).get("fields", ()))
+    return Sentence("{text}", {"text": _plain_message(entry)}, ("text",))
+
+
+def unknown_field(name: str, fields: Iterable[str]) -> Sentence:
+    """Sentence on a name that is none of the fields of an object, with the one that it looks like."""
+    near = likeness(name, fields)
+    if near is None:
+        return Sentence(NO_FIELD)
+    return Sentence(N_("is not a field of this object; it looks like {near}"), {"near": near})
+
+
+NO_FIELD = N_("is not a field of this object")
+
+
+def _plain_message(entry: ErrorDetails) -> str:
+    kind, message = entry["type"], entry["msg"]
     return {
-        "extra_forbidden": N_("is not a field of this object"),
+        UNKNOWN: NO_FIELD,
         "missing": REQUIRED,
         "float_parsing": NOT_A_NUMBER,
         "finite_number": N_("must be a finite number"),

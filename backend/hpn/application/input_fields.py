@@ -16,15 +16,13 @@ Json = dict[str, Any]
 class InputField:
     """One field: its place in the application, or in a phase, and what it, or each item of its list, may be.
 
-    `least` and `most` may be reached, `above` may not. `nullable` is a field that may be left out for good; `required`
-    one that any application, or any phase, has.
+    `least` and `most` may be reached, `above` may not. `required` is one that any application, or any phase, has.
     """
 
     path: tuple[str, ...]
     kind: Kind
     is_list: bool
     required: bool
-    nullable: bool
     default: Any
     least: float
     most: float
@@ -59,7 +57,6 @@ def _field(path: tuple[str, ...], entry: Json, shape: Json, *, required: bool) -
         kind=item["type"],
         is_list=shape["type"] == "array",
         required=required,
-        nullable="anyOf" in entry,
         default=entry.get("default"),
         least=item.get("minimum", -math.inf),
         most=item.get("maximum", math.inf),

@@ -6,7 +6,7 @@ from pydantic import ValidationError
 from pydantic_settings import SettingsError
 
 from hpn.application import InputError
-from hpn.application.faults import faults_of, plain_message, pointer, unreadable
+from hpn.application.faults import faults_of, pointer, sentence_of, unreadable
 from hpn.cli.system import CALLERS, others
 from hpn.installed import ExtraMissingError
 from hpn.web.settings import Settings, source_of
@@ -47,7 +47,7 @@ def _wrong_settings(error: ValidationError, options: argparse.Namespace) -> list
     """A line for each wrong setting, named as it was given: by option, variable or file."""
     lines = []
     for entry in error.errors(include_url=False, include_context=False, include_input=False):
-        text = plain_message(entry["type"], entry["msg"])
+        text = sentence_of(entry).text
         for name in map(str, entry["loc"][:1]):
             given = f"--{name}" if getattr(options, name, None) is not None else source_of(name)
             text = f"{given}: {text}"

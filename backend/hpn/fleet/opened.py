@@ -3,7 +3,6 @@
 import stat
 from collections import Counter
 from collections.abc import Sequence
-from difflib import get_close_matches
 from pathlib import Path
 
 from hpn.fleet.columns import AXIS, COLUMNS
@@ -12,6 +11,7 @@ from hpn.fleet.ndjson import NdjsonTable
 from hpn.fleet.order import FleetError, Order, status_of, suffix_of, wrong_encoding
 from hpn.fleet.tables import Table
 from hpn.fleet.typed import ArrowTable, ParquetTable
+from hpn.words.likeness import likeness
 
 FORMATS: dict[str, type[Table]] = {
     ".parquet": ParquetTable,
@@ -98,6 +98,6 @@ def _unknown(name: str, allowed: list[str]) -> str:
         return f"column {name} belongs into the table of --axes, since a row is a phase"
     if name in COLUMNS.phases:
         return f"column {name} belongs to the phases"
-    close = get_close_matches(name[:80], allowed, 1)
-    said = f"; it looks like {close[0]}" if close else ""
+    close = likeness(name, allowed)
+    said = f"; it looks like {close}" if close else ""
     return f"column {name!r:.80} is unknown{said}"

@@ -5,7 +5,6 @@ import re
 import stat
 import warnings
 from dataclasses import dataclass
-from difflib import get_close_matches
 from ipaddress import ip_network
 from pathlib import Path
 from typing import Annotated, Any, Literal, Self, TypedDict
@@ -23,6 +22,7 @@ from pydantic_settings import (
 )
 
 from hpn.catalogue import AVERAGING_S, HANDBOOK_FOLDER
+from hpn.words.likeness import likeness
 
 RouteGroup = Literal["calculator", "batch", "writing", "listing", "deleting", "reading", "metrics"]
 """Kinds of requests that keys and rate limits tell apart; each route declares its own."""
@@ -313,7 +313,7 @@ class Settings(BaseSettings):
         given = {name: name for name in os.environ}
         given |= {file.name: str(file) for file in (folder.iterdir() if folder else ())}
         for name in sorted(given):
-            meant = get_close_matches(name.upper(), known, 1, 0.85) if name.upper() not in {*known, *GONE} else []
+            meant = None if name.upper() in {*known, *GONE} else likeness(name, known, 0.85)
             if meant and name.upper().startswith("HPN_"):
-                raise ValueError(f"{given[name]} is not a setting; it looks like {meant[0]}")
+                raise ValueError(f"{given[name]} is not a setting; it looks like {meant}")
         return self

@@ -5,10 +5,19 @@ number.
 """
 
 from collections.abc import Callable
+from functools import cache
 from typing import Annotated, Any
 
-from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, ValidationError
-from pydantic_core import InitErrorDetails, PydanticCustomError, PydanticKnownError
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    ValidationError,
+    model_validator,
+)
+from pydantic_core import ErrorDetails, InitErrorDetails, PydanticCustomError, PydanticKnownError
 
 from hpn.words.units import suffix_of, symbol_of
 
@@ -87,15 +96,88 @@ def name_units(schema: dict[str, Any]) -> None:
             entry["x-unit"] = symbol_of(name)
 
 
+def describe(schema: dict[str, Any]) -> None:
+    """Say in the JSON Schema of a model which fields may be null, and the unit of every field."""
+    for name, entry in schema.get("properties", {}).items():
+        if name not in schema.get("required", ()):
+            _let_be_null(entry)
+    name_units(schema)
+
+
+def _let_be_null(entry: dict[str, Any]) -> None:
+    null = {"type": "null"}
+    if null not in entry.get("anyOf", entry.get("oneOf", ())):
+        moved = {key: entry.pop(key) for key in tuple(entry) if key not in BESIDE}
+        entry["anyOf"] = [moved, null]
+
+
+BESIDE = ("default", "description", "examples", "title")
+"""Keys of a field's JSON Schema that hold for its null as well."""
+
+
 def one_of(schema: dict[str, Any]) -> None:
     """Name a union whose members exclude each other `oneOf`, which generators of clients read as a union of types."""
     schema["oneOf"] = schema.pop("anyOf")
 
 
 class Model(BaseModel):
-    """Frozen, and closed: an unknown field is an error, never ignored."""
+    """Frozen, and closed: an unknown field is an error, never ignored. A null where a field may be left out is none."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid", json_schema_extra=name_units)
+    model_config = ConfigDict(frozen=True, extra="forbid", json_schema_extra=describe)
+
+    @model_validator(mode="before")
+    @classmethod
+    def _reads_fields(cls, value: Any) -> Any:
+        """The value without nulls of fields that have something else by default; an unknown one is refused."""
+        if not isinstance(value, dict) or isinstance(value, _Refused):
+            return value
+        if None in value.values():
+            value = {name: each for name, each in value.items() if each is not None or name not in _defaults(cls)}
+        if not value.keys() <= cls.model_fields.keys():
+            cls._refuse_unknown(value)
+        return value
+
+    @classmethod
+    def _refuse_unknown(cls, value: dict[str, Any]) -> None:
+        """Raise the errors of a value with an unknown field, which know the fields that there are."""
+        if len(value.keys() - cls.model_fields.keys()) > MOST_UNKNOWN:
+            return
+        try:
+            cls.model_validate(_Refused(value))
+        except ValidationError as error:
+            found = error.errors(include_url=False, include_input=False)
+            details = [_with_fields(entry, tuple(cls.model_fields)) for entry in found]
+            raise ValidationError.from_exception_data(error.title, details) from None
+
+
+class _Refused(dict[str, Any]):
+    """A value with an unknown field, on its second way through its model."""
+
+
+MOST_UNKNOWN = 20
+"""Unknown fields of an object that are compared with those that there are; with more it is another object."""
+
+
+@cache
+def _defaults(model: type[Model]) -> frozenset[str]:
+    """Fields that have something else than null by default."""
+    return frozenset(
+        name
+        for name, field in model.model_fields.items()
+        if not field.is_required() and field.get_default(call_default_factory=True) is not None
+    )
+
+
+def _with_fields(entry: ErrorDetails, fields: tuple[str, ...]) -> InitErrorDetails:
+    """An error of a model as it was, with the model's fields where it is an unknown one."""
+    is_unknown = entry["type"] == UNKNOWN and len(entry["loc"]) == 1
+    context = {"fields": fields} if is_unknown else entry.get("ctx")
+    error = PydanticCustomError(entry["type"], entry["msg"], context)
+    return InitErrorDetails(type=error, loc=entry["loc"], input=None)
+
+
+UNKNOWN = "extra_forbidden"
+"""Pydantic's code of an unknown field."""
 
 
 def refused(model: BaseModel, *problems: tuple[tuple[str | int, ...], PydanticCustomError]) -> ValidationError:

@@ -5,7 +5,8 @@ from typing import NamedTuple, NoReturn
 
 from pydantic_core import from_json
 
-from hpn.web.door.problems import Problem
+from hpn.application.faults import unknown_field
+from hpn.web.door.problems import MAXIMUM_ERRORS, Problem
 
 DEPTH = 16
 """How deep lists and objects may lie in each other; an application takes four."""
@@ -40,7 +41,9 @@ def items_of(body: bytes, most: int, most_bytes: int) -> list[Span]:
     if items is None:
         raise Problem(422, SHAPE, [(("applications",), "must be a list")])
     if unknown:
-        raise Problem(422, f"{SHAPE} alone", [((name,), "is not a field of this object") for name in unknown])
+        known = [("applications",) if place < MAXIMUM_ERRORS else () for place in range(len(unknown))]
+        errors = [((name,), unknown_field(name, each).text) for name, each in zip(unknown, known, strict=True)]
+        raise Problem(422, f"{SHAPE} alone", errors)
     return items
 
 

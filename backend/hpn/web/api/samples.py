@@ -9,6 +9,7 @@ import msgspec
 
 from hpn import ENGINE_VERSION
 from hpn.application import WORKED_EXAMPLE, Application, InputError
+from hpn.application.faults import Fault
 from hpn.catalogue import Catalogue, ListedMotor
 from hpn.engine.envelopes import EnvelopeQuery, life_envelopes
 from hpn.engine.selection import Selection, select
@@ -160,7 +161,7 @@ def plain(reply: Any) -> Any:
 def refusal() -> Problem:
     """Of an application whose first phase lasts no time."""
     location = ("duty_cycle", "phases", 0, "duration_s")
-    return Problem.at([(location, "greater_than", "must be greater than 0")])
+    return Problem.at([Fault(location, "must be greater than 0", "greater_than")])
 
 
 def envelopes(catalogue: Catalogue, size: str) -> Json:

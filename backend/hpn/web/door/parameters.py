@@ -6,6 +6,7 @@ from typing import get_origin
 from fastapi.dependencies.utils import get_flat_params
 from starlette.requests import Request
 
+from hpn.application.faults import Fault
 from hpn.web.door.problems import Problem
 
 MOST_PARAMETERS = 100
@@ -29,10 +30,11 @@ def require_declared(request: Request) -> None:
     right = f"there are {', '.join(known)}" if known else "it takes none"
     counts = Counter(name for name, _ in request.query_params.multi_items())
     unknown = [
-        ((name[:MOST_NAMED],), "unknown", f"is no parameter of this address; {right}")
+        Fault((name[:MOST_NAMED],), f"is no parameter of this address; {right}", "unknown")
         for name in counts
         if name not in known
     ]
-    twice = [((name,), "repeated", "must be given once") for name in known if counts[name] > 1 and name not in lists]
+    repeated = [name for name in known if counts[name] > 1 and name not in lists]
+    twice = [Fault((name,), "must be given once", "repeated") for name in repeated]
     if unknown or twice:
         raise Problem.at(unknown + twice)

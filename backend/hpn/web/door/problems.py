@@ -70,15 +70,11 @@ class Problem(HTTPException):
             return cls(422, (sentence for _, sentence in error.sentences), faults_of(error))
         if text := unreadable(error):
             return cls(400, text.replace("Invalid JSON:", "the body is not JSON:"))
-        return cls._listing(faults_of(error))
+        return cls.at(faults_of(error))
 
     @classmethod
-    def at(cls, found: Iterable[tuple[Location, str, str]]) -> "Problem":
-        """Problem for pydantic's (location, type, message) entries."""
-        return cls._listing(plain_faults(found))
-
-    @classmethod
-    def _listing(cls, errors: list[Fault]) -> "Problem":
+    def at(cls, errors: list[Fault]) -> "Problem":
+        """Problem for faults of an input, of which its text has the first."""
         detail = "; ".join(": ".join(filter(None, (pointer(at), text))) for at, text, _ in errors[:3])
         return cls(422, detail, errors)
 
@@ -137,7 +133,8 @@ def install(app: FastAPI, page_of: Callable[[Request, HTTPException], Response |
         if isinstance(error, ValidationError | InputError | StoreUnavailableError):
             return Problem.of(error).response()
         if isinstance(error, RequestValidationError):
-            return Problem.at((entry["loc"][1:], entry["type"], entry["msg"]) for entry in error.errors()).response()
+            faults = plain_faults(error.errors())  # each begins with the part of the request
+            return Problem.at([fault._replace(location=fault.location[1:]) for fault in faults]).response()
         assert isinstance(error, HTTPException)
         page = page_of(request, error)
         if page is not None:

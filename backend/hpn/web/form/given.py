@@ -1,6 +1,5 @@
 """The pairs of a query sorted by what they belong to: rows of phases, moves, bodies, single values, lists, the page."""
 
-import difflib
 import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -23,6 +22,7 @@ from hpn.web.form.symbols import (
 )
 from hpn.web.form.ways import ASIDE
 from hpn.words.fields import MAXIMUM_PHASES
+from hpn.words.likeness import likeness
 from hpn.words.titles import faults_of
 from hpn.words.wording import N_, Sentence
 
@@ -201,11 +201,8 @@ def unknown_name(name: str) -> Sentence:
     known = (*PHASE_BY_NAME, *BY_NAME, *MOVE_BY_NAME, *PAGE_NAMES, *LABELS)
     names = {each.lower(): each for each in known}
     bare = name[:60].strip().removesuffix("[]").strip()
-    exact = [bare] if bare in known else []
-    near = exact or [
-        (leaves | names)[key] for key in difflib.get_close_matches(bare.lower(), leaves | names, n=1, cutoff=0.4)
-    ]
-    if not near:
+    close = likeness(bare, leaves | names, 0.4)
+    if bare not in known and close is None:
         return Sentence(N_("{name} is not a parameter of this page"), {"name": name[:60]})
-    values = {"name": name[:60], "near": near[0]}
+    values = {"name": name[:60], "near": bare if bare in known else (leaves | names)[close or ""]}
     return Sentence(N_("{name} is not a parameter of this page; did you mean {near}?"), values)

@@ -14,7 +14,7 @@ from starlette.requests import Request
 from starlette.responses import HTMLResponse, RedirectResponse, Response
 
 from hpn.application import Application
-from hpn.application.faults import plain_message, pointer
+from hpn.application.faults import pointer, sentence_of
 from hpn.explain.drawings.cycle import CyclePicture, cycle_picture
 from hpn.tables.files import Wanted, packed, tidied, unpacked
 from hpn.tables.inputs import CYCLE, NAME, PHASE_ROLES
@@ -143,11 +143,10 @@ def _opened(link: str, text: str) -> PasteDraft:
     except Problem as problem:
         return PasteDraft(link, text, problems=(_plain(problem.detail),))
     except ValidationError as error:
-        found = error.errors(include_url=False, include_context=False, include_input=False)
+        found = error.errors(include_url=False, include_input=False)
         problems = [
             Sentence(
-                N_("{field}: {message}"),
-                {"field": pointer(entry["loc"]) or "JSON", "message": plain_message(entry["type"], entry["msg"])},
+                N_("{field}: {message}"), {"field": pointer(entry["loc"]) or "JSON", "message": sentence_of(entry)}
             )
             for entry in found[:20]
         ]

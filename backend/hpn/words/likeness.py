@@ -1,0 +1,21 @@
+"""Likeness of a misspelt name to one that there is."""
+
+from collections.abc import Iterable
+from difflib import get_close_matches
+
+from hpn.words.units import suffix_of
+
+LONGEST = 80
+"""Characters of a name that are compared: of a longer one the time would grow with its square."""
+
+
+def likeness(name: str, known: Iterable[str], least: float = 0.6) -> str | None:
+    """The known name that another looks like, with its unit or without, in upper or lower case; None where none does.
+
+    `least` is the ratio of `difflib`, 1 for the same letters.
+    """
+    names = tuple(known)
+    bare = {each.removesuffix(f"_{suffix_of(each)}").casefold(): each for each in names}
+    folded = bare | {each.casefold(): each for each in names}
+    close = get_close_matches(name[:LONGEST].casefold(), folded, 1, least)
+    return folded[close[0]] if close else None
