@@ -111,16 +111,21 @@ class Candidate(Reply, frozen=True):
         return tuple(check for check in self.checks if check.status == "fail")
 
     @property
+    def lacks_lever(self) -> bool:
+        """True where the lever of the load on its bearing is not known: checks of it are lower bounds, if they fail."""
+        life = self.check("output_bearing_life")
+        unknown = self.bearing_life_L50_h is None and self.says("bearing_life_L50_h")
+        return unknown and life is not None and life.status != "pass"
+
+    @property
     def is_lower_bound(self) -> bool:
         """True where its utilisation is that of a bearing load whose lever is not known: it fails already without."""
-        life = self.check("output_bearing_life")
-        by_bearing = self.governing_check in ("output_bearing_load", "output_bearing_life")
-        return by_bearing and self.bearing_life_L50_h is None and life is not None and life.status != "pass"
+        return self.lacks_lever and self.governing_check in BEARING_CHECKS
 
     @property
     def is_judged(self) -> bool:
         """True where every check could be judged; an unsuitable candidate may still have one that could not."""
-        return all(check.status != "not_rated" for check in self.checks)
+        return all(check.status != "not_rated" for check in self.checks) and not self.lacks_lever
 
     def is_unlimited(self, figure: str) -> bool:
         """True where a figure is empty because nothing limits it, not for want of an input or of a rating.
@@ -140,6 +145,9 @@ _UNLIMITED_BY = {
 }
 """Figures that may be unlimited: the check that is present where they are asked for, and the check that is rated where
 the gear has the figure behind them."""
+
+BEARING_CHECKS = ("output_bearing_load", "output_bearing_life")
+"""Checks of the output bearing, which no closed form follows where a pinion or pulley loads the shaft."""
 
 MISSING = ("output_load.shaft_centre_mm",)
 """Inputs that a gear may lack: the bearing's, where loads act off the shaft's centre."""

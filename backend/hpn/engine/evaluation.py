@@ -107,6 +107,12 @@ class Evaluation:
         return np.array((self.verdict == UNRATED) & ~unknown.any(axis=0))
 
     @cached_property
+    def is_judged(self) -> BoolArray:
+        """True where every check that is asked for is rated, and none by a lower bound alone, shape (N, G)."""
+        bounded = np.isfinite(self.case.figures.bearing_loads_at_least[0])
+        return np.array(~(self.asked & np.isnan(self.used)).any(axis=0) & ~bounded)
+
+    @cached_property
     def by_lower_bound(self) -> BoolArray:
         """True where the governing check of an unsuitable gear fails by a lower bound, shape (N, G)."""
         largest, mean = self.case.figures.bearing_loads_at_least

@@ -8,7 +8,7 @@ import math
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, fields, replace
 
-from hpn.engine.candidates import Candidate, CheckResult
+from hpn.engine.candidates import BEARING_CHECKS, Candidate, CheckResult
 from hpn.engine.check import Driver
 from hpn.engine.checks import BY_CODE
 from hpn.engine.reserve import MOVES
@@ -21,9 +21,6 @@ DIGITS = 4
 
 LIVES = ("life", "output_bearing_life")
 """Checks that two drivers move: slower running mends them as well as a smaller torque or load."""
-
-BEARING_CHECKS = ("output_bearing_load", "output_bearing_life")
-"""Checks that no closed form follows where a pinion or pulley loads the shaft."""
 
 MOTOR_TORQUE_CHECKS = ("motor_peak_torque", "motor_rated_torque")
 """Checks that no closed form follows where the torque at the motor is not in proportion to the load's."""
@@ -334,7 +331,8 @@ def growths_of(candidate: Candidate, reserve_utilisation: float = 1.0) -> dict[s
     without = (BEARING_CHECKS if loaded else ()) + (MOTOR_TORQUE_CHECKS if _is_untold(candidate, "torque") else ())
     return {
         check.code: ()
-        if untold and check.code in without and not candidate.is_judged
+        if (untold and check.code in without and not candidate.is_judged)
+        or (candidate.lacks_lever and check.code in BEARING_CHECKS)
         else tuple(
             sorted(
                 _growths(check, reserve_utilisation, untold if check.code in without else ""),

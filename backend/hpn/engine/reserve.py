@@ -66,11 +66,13 @@ def _beside_shaft_drive(
 
 def _factor(evaluation: Evaluation, index: int, driver: Driver, u: float) -> FloatArray:
     """Smallest (u / utilisation)^(1 / power) over the checks that a driver moves; NaN where it moves none."""
+    unknown = np.isfinite(evaluation.case.figures.bearing_loads_at_least[0])  # a lower bound is no utilisation
     rooms = [
         room if power == 1 else room ** (1 / power)
         for place, check in enumerate(evaluation.checks)
         if (power := check.moves.get(driver)) and evaluation.asked.item(place, index, 0)
-        for room in (u / evaluation.used[place, index],)
+        for used in (evaluation.used[place, index],)
+        for room in (u / (np.where(unknown[index], np.nan, used) if check.at_least else used),)
     ]
     return np.minimum.reduce(rooms) if rooms else np.array(np.nan)
 

@@ -163,7 +163,7 @@ def nearest_misses(axes: pa.Table, catalogue: Catalogue) -> pa.Table:
 
 def _foremost(evaluation: Evaluation) -> PlaceArray:
     """Place of the first gear that is judged or lacks an input alone, of any if there is none, shape (N, 1)."""
-    judged = ~(evaluation.asked & np.isnan(evaluation.used)).any(axis=0) | evaluation.lacks_input
+    judged = evaluation.is_judged | evaluation.lacks_input
     first = np.take_along_axis(judged, evaluation.order, -1).argmax(axis=-1)[:, None]
     places: PlaceArray = np.take_along_axis(evaluation.order, first, -1)
     return places

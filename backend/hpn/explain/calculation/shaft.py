@@ -10,8 +10,8 @@ from hpn.physics.shaft_load import PRESSURE_ANGLE_DEG
 from hpn.words.wording import N_, Sentence
 
 RACK = N_(
-    "F_t is the tangential force at the pinion: 2 T / d, or the force F at the rack where that is larger; q = tan 20° "
-    "/ cos β."
+    "F_t is the tangential force at the pinion: 2 T / d, or the force F at the rack where that is larger; q is "
+    "tan 20° over the cosine of the helix angle."
 )
 BELT = N_(
     "F_t is the largest tangential force at the pulley: 2 T / d, or the force F at the belt where that is larger. The "

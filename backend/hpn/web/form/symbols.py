@@ -122,7 +122,7 @@ SYMBOLS = (
         ("output_load", "load_coefficient"),
         placeholder="1",
         offered=(1, 1.2, 1.5),
-        hint=N_("1–1.2 smooth, 1.2–1.5 normal, 1.5–3 with impact; not from this handbook"),
+        hint=N_("1–1.2 smooth, 1.2–1.5 normal, 1.5–3 impact; other handbooks"),
     ),
     Symbol("Lb", ("output_load", "life_h"), placeholder="20000", hint=YEAR),
     Symbol(
