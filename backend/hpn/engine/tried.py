@@ -31,15 +31,20 @@ def needed_of(candidate: Candidate, application: Application, catalogue: Catalog
         one = replace(proposed, requirements=tuple(_as_asked(limit, asked) for limit in proposed.requirements))
         while less := next((less for less in parts_less(one) if _fits(application, less, gears, catalogue)), None):
             one = less
-        if not _slips(application, candidate) or _fits(application, one, gears, catalogue):
+        if not _is_bounded(application, candidate) or _fits(application, one, gears, catalogue):
             found.append(one)
     return in_order(found)
 
 
-def _slips(application: Application, candidate: Candidate) -> bool:
-    """True where a brake may not hold a motion's load, all of which drives in the phases that take its place."""
+def _is_bounded(application: Application, candidate: Candidate) -> bool:
+    """True where phases that take a motion's place are a bound of it, with which a change that suffices may not.
+
+    The largest dry friction stands for each rest, and all of the load drives in a stop that its brake may not hold.
+    """
     stop, motion = application.emergency_stop, application.duty_cycle.motion
-    if stop is None or stop.brake is None or motion is None:
+    if motion is None or application.duty_cycle.rest_friction_Nm:
+        return motion is not None
+    if stop is None or stop.brake is None:
         return False
     return candidate.ratio * stop.brake.torque_Nm <= motion.stopped_load.pulling_at_gear_Nm * (1 + ROUNDING)
 
