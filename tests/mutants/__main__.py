@@ -32,7 +32,7 @@ MODULES = {
     "bearing": "physics",
     "stop": "physics",
     "stiffness": "physics",
-    "strands": "physics",
+    "shaft_load": "physics",
     "stops": "engine",
     "checks": "engine",
     "evaluation": "engine",
@@ -48,7 +48,7 @@ NEAREST = {
     "bearing": ["tests/reference/test_edges.py", "tests/reference/test_bearing.py"],
     "stop": ["tests/property/test_stiffness.py", "tests/unit/test_stiff_exact_safe.py"],
     "stiffness": ["tests/property/test_stiffness.py", "tests/unit/test_stiff_exact_safe.py"],
-    "strands": ["tests/property/test_stiffness.py", "tests/web/test_belt.py"],
+    "shaft_load": ["tests/reference/test_shaft_load.py", "tests/unit/test_shaft_load.py"],
     "stops": ["tests/unit/test_stiff_exact_safe.py", "tests/property/test_stiffness.py"],
     "checks": ["tests/unit/test_check_texts.py", "tests/unit/test_checks.py"],
     "evaluation": [

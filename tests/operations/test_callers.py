@@ -225,9 +225,16 @@ def refused(proxy: Proxy, path: str, source: str, forwarded: str = "") -> bool:
 def test_a_network_of_ipv6_is_one_caller(one: str, same: str, another: str, proxy: Proxy, service: Service) -> None:
     balancer = "127.0.0.9"
     with ExitStack() as held, paused(service):
-        for number in range(8):
-            held.enter_context(asked(proxy, "/catalogue", balancer, one if number % 2 else same))
-        until(lambda: refused(proxy, "/catalogue", balancer, one) and refused(proxy, "/catalogue", balancer, same))
+
+        def is_full() -> bool:
+            """True once both are refused; else one more request of each is held."""
+            if refused(proxy, "/catalogue", balancer, one) and refused(proxy, "/catalogue", balancer, same):
+                return True
+            for address in (one, same):
+                held.enter_context(asked(proxy, "/catalogue", balancer, address))
+            return False
+
+        until(is_full)
         assert not refused(proxy, "/catalogue", balancer, another)
 
 

@@ -234,7 +234,12 @@ def test_every_equation_that_applies_is_there_in_symbols(application: Json) -> N
     assert [step.equation for step in steps if step.equation] == [*expected, "17.10"]
     codes = [step.code for step in steps if not step.equation]
     bearing: list[Any] = ["output_bearing_load", "output_bearing_life", "bearing_life"]
-    expected = ["motor_peak_torque", "motor_rated_torque", *(bearing if "output_load" in application else [])]
+    expected = [
+        "motor_peak_torque",
+        "motor_rated_torque",
+        "torque_limit",
+        *(bearing if "output_load" in application else []),
+    ]
     expected += ["natural_frequency"] if "load_inertia_kgm2" in application.get("requirements", {}) else []
     assert codes == [*expected, "position_error"]
     for line in (line for step in steps for line in step.lines):

@@ -90,7 +90,9 @@ def test_a_requirement_as_L10_counts_five_times_and_L10_is_a_fifth_of_L50(catalo
     as_L10 = answer(cycle(phase(1, 90), output_load=load | {"life_h": 4000, "life_basis": "L10"}), catalogue)
     as_L50 = answer(cycle(phase(1, 90), output_load=load | {"life_h": 20000, "life_basis": "L50"}), catalogue)
 
-    assert as_L10["candidates"] == as_L50["candidates"]
+    for one, other in zip(as_L10["candidates"], as_L50["candidates"], strict=True):
+        basis = {"shortest_life_h", "shortest_life_of"}  # the life that is judged, on its own basis
+        assert {k: v for k, v in one.items() if k not in basis} == {k: v for k, v in other.items() if k not in basis}
     gear = candidate(as_L10, "HPN-20A-5")
     assert gear["bearing_life_L50_h"] == 5 * gear["bearing_life_L10_h"]
 

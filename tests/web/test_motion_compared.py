@@ -62,12 +62,12 @@ def test_a_saved_motion_is_shown_as_it_was_given_and_its_phases_with_the_digits_
     assert "0.8\N{NARROW NO-BREAK SPACE}kg·m²" in given
     assert given.count("<li>") == len(TURNING["moves"])
     assert "Load phases of the motion" in given
-    numbers = re.findall(r"<td>−?([\d.\N{NARROW NO-BREAK SPACE}]+)</td>", given)
+    numbers = re.findall(r"<td[^>]*>−?([\d.\N{NARROW NO-BREAK SPACE}]+)</td>", given)
     assert numbers and max(len(re.sub(r"^[0.]+|\D", "", number)) for number in numbers) == DIGITS
 
 
 def test_typed_phases_stay_as_typed_on_the_page_of_a_saved_selection(api: TestClient) -> None:
     reply = api.post("/api/v1/selections", json={"application": cycle(phase(40.123456, 250, 1))})
     page = api.get(f"/selections/{reply.json()['id']}", headers={"Accept-Language": "en"}).text
-    assert "<td>40.123456</td>" in page
+    assert ">40.123456</td>" in page
     assert "Load phases of the motion" not in page

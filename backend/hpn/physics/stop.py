@@ -105,7 +105,8 @@ def stop_torque(*, brake: Brake, load: LoadTorques, gear: Play, dynamic_factor: 
     the other; how fast the brake closes doesn't lower the bound. With a dynamic factor f, the user's own,
     T_k = f T_r + (f - 1) T_o; NaN for none.
     """
-    T_r, T_o, f = settled_torque(brake=brake, load=load), np.asarray(load.opposing_Nm), np.asarray(dynamic_factor)
+    T_o, f = np.asarray(load.opposing_Nm), np.asarray(dynamic_factor)
+    T_r = settled_torque(brake=brake, load=load)
     swing = np.sqrt(T_r**2 + 2 * T_r * (T_o + gear.crossed_Nm) + flank_share(brake=brake) * T_o**2)
     T_k: FloatArray = np.where(np.isnan(f), T_r + swing, f * T_r + (f - 1) * T_o)
     return T_k
