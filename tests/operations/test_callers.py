@@ -227,10 +227,10 @@ def test_a_network_of_ipv6_is_one_caller(one: str, same: str, another: str, prox
     with ExitStack() as held, paused(service):
 
         def is_full() -> bool:
-            """True once both are refused; else one more request of each is held."""
+            """True once both are refused; else some more requests of each are held."""
             if refused(proxy, "/catalogue", balancer, one) and refused(proxy, "/catalogue", balancer, same):
                 return True
-            for address in (one, same):
+            for address in (one, same) * 3:
                 held.enter_context(asked(proxy, "/catalogue", balancer, address))
             return False
 
