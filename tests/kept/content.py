@@ -1,4 +1,4 @@
-"""What a database of a version holds: applications of every kind that it may know, few gears in each answer."""
+"""Contents of a database of a version: applications of every kind that it may know, few gears in each answer."""
 
 from typing import Any
 

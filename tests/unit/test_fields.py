@@ -28,7 +28,7 @@ MOVED = [{"duty_cycle": {"motion": motion}} for motion in (ROTARY, BELT)]
 
 
 def with_nulls(model: BaseModel) -> Json:
-    """What was given of a model, with null for every field that was left out, in every object of it."""
+    """Given fields of a model, with null for every field that was left out, in every object of it."""
     given = {name: getattr(model, name) for name in model.model_fields_set}
     return dict.fromkeys(type(model).model_fields) | {name: _with_nulls(value) for name, value in given.items()}
 
@@ -50,7 +50,7 @@ def test_a_null_for_any_field_that_may_be_left_out_counts_as_not_given(given: Js
 
 @pytest.mark.parametrize("given", [WHOLE, *MOVED], ids=["whole", "rotary", "belt"])
 def test_a_null_for_a_default_is_kept_nowhere(given: Json) -> None:
-    """What is saved, and its digest, are as if the field had been left out; nulls that were taken before stay."""
+    """Saved application and digest are as if the field had been left out; nulls that were taken before stay."""
     application = Application.model_validate(given | {"requirements": given.get("requirements"), "rank_by": None})
 
     assert application.model_dump(exclude_unset=True) == Application.model_validate(given).model_dump(

@@ -120,7 +120,7 @@ def followed(application: Application, way: Way) -> Application:
 
 
 def _of_motion(cycle: DutyCycle, motion: Motion, asked: Requirements, torque: float) -> dict[str, float | bool]:
-    """What the requirements have to say of a motion whose phases are typed, their torques by a factor."""
+    """Requirements that stand for a motion whose phases are typed, their torques by a factor."""
     return {
         "load_inertia_kgm2": motion.load_inertia_kgm2,
         "load_reverses": bool(asked.load_reverses),
