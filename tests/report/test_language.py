@@ -4,8 +4,8 @@ import re
 
 import pytest
 
+from hpn.account.inputs import LOADS, REQUIREMENTS
 from hpn.catalogue import Catalogue
-from hpn.files.inputs import LOADS, REQUIREMENTS
 from hpn.files.report.content import content
 from hpn.files.workbook.workbook import workbook
 from hpn.words import reader as readers

@@ -13,8 +13,8 @@ import pytest
 from numpy.typing import NDArray
 from pypdf import PdfReader
 
+from hpn.account.readings import readings_of
 from hpn.catalogue import Catalogue, load_catalogue
-from hpn.explain.readings import readings_of
 from hpn.files.export import DIGITS, Heading
 from hpn.files.report.pdf import pdf
 from hpn.files.report.verdict import verdict

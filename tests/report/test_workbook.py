@@ -11,11 +11,11 @@ import openpyxl
 import pytest
 from openpyxl.workbook import Workbook
 
+from hpn.account.inputs import LOADS, REQUIREMENTS, value_of
+from hpn.account.readings import figure_symbol
 from hpn.catalogue import Catalogue
 from hpn.engine.candidates import FIGURES
-from hpn.explain.readings import figure_symbol
 from hpn.files.export import LOWER_BOUND, Export
-from hpn.files.inputs import LOADS, REQUIREMENTS, value_of
 from hpn.files.report.checks import readings
 from hpn.files.workbook.workbook import workbook
 from hpn.words.quantities import CANDIDATE, INPUTS

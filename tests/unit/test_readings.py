@@ -5,10 +5,10 @@ import random
 
 import pytest
 
+from hpn.account.readings import Reading, readings_of
 from hpn.application import Application
 from hpn.catalogue import Catalogue
 from hpn.engine.selection import select
-from hpn.explain.readings import Reading, readings_of
 from tests.build import Json, cycle, phase, worked_example
 from tests.property.draw import at_random
 from tests.reference.test_motion import CONTRACT

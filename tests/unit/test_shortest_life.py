@@ -2,11 +2,11 @@
 
 import pytest
 
+from hpn.account.readings import shortest_life
 from hpn.application import Application
 from hpn.catalogue import Catalogue
 from hpn.engine.kept import decode
 from hpn.engine.selection import encode, select
-from hpn.explain.readings import shortest_life
 from tests.build import Json, answer, candidate, cycle, phase
 
 

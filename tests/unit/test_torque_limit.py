@@ -4,13 +4,13 @@ import msgspec
 import pytest
 from msgspec import structs
 
+from hpn.account.readings import torque_limit_of
 from hpn.application import Application
 from hpn.catalogue import Catalogue
 from hpn.engine.selection import Selection, select
 from hpn.explain.calculation import calculation_of
 from hpn.explain.calculation.formula import value_of
 from hpn.explain.differences import differences
-from hpn.explain.readings import torque_limit_of
 from hpn.files.export import Export
 from hpn.files.report.tables import of_gear
 from hpn.words.reader import GROUP, Reader

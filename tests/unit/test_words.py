@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 from babel.messages.catalog import Catalog
 
+from hpn.account.inputs import WORDS
 from hpn.application import Application
 from hpn.catalogue import Catalogue as Gears
 from hpn.engine.selection import select
@@ -16,7 +17,6 @@ from hpn.explain.drawings import Subject
 from hpn.explain.drawings.bearing import bearing_figure
 from hpn.explain.drawings.envelope import envelope_scene
 from hpn.explain.drawings.picture import bearing_picture
-from hpn.files.inputs import WORDS
 from hpn.web.form.symbols import BY_NAME
 from hpn.words.reader import Reader, catalogue
 from tests.build import cycle, phase

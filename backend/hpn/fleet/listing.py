@@ -13,10 +13,10 @@ import pyarrow.csv as pacsv
 import pyarrow.dataset as datasets
 import pyarrow.parquet as pq
 
+from hpn.account.readings import Life, life_of
 from hpn.application import Application
 from hpn.catalogue import Catalogue
 from hpn.engine.evaluation import Evaluation, PlaceArray, evaluate
-from hpn.explain.readings import Life, life_of
 from hpn.fleet.axes import Axes
 from hpn.fleet.columns import AXIS, COLUMNS
 from hpn.fleet.gathering import axes_of

@@ -7,6 +7,7 @@ from xml.etree.ElementTree import Element
 
 import numpy as np
 
+from hpn.account.readings import figure_symbol
 from hpn.application import Motor
 from hpn.engine.motor_torques import efficiencies
 from hpn.explain.drawings.chart import LARGE, LAST, MOST_NUMBERS, PLANE, Axes, Line, Mark, Scene, chart
@@ -15,7 +16,6 @@ from hpn.explain.drawings.picture import beyond_limit
 from hpn.explain.drawings.subject import Subject
 from hpn.explain.drawings.svg import Point
 from hpn.explain.drawings.words import disc_label, phase_numbers
-from hpn.explain.readings import figure_symbol
 from hpn.physics.equations import FloatArray
 from hpn.physics.motion import Trace, motor_trace, trace_of
 from hpn.physics.motion.trace import starts

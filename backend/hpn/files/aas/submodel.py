@@ -18,14 +18,14 @@ from basyx.aas import model
 from basyx.aas.adapter import aasx
 from pyecma376_2.core_properties import OPCCoreProperties
 
+from hpn.account.motion import mechanism_of, moves_of
+from hpn.account.readings import AT_MOTOR
 from hpn.engine.candidates import FIGURES, Candidate, CheckResult
 from hpn.engine.checks import BY_CODE
 from hpn.engine.selection import DutyFigures, encode
-from hpn.explain.readings import AT_MOTOR
 from hpn.files.aas import Metamodel
 from hpn.files.aas.concepts import CONCEPTS, concept, concept_id, published, reference, texts, told, urn
 from hpn.files.export import LOSS_FREE, Export
-from hpn.files.motion import mechanism_of, moves_of
 from hpn.words.motion import MOTION
 from hpn.words.quantities import DUTY, GEAR, INPUTS
 from hpn.words.source import source_sentence

@@ -3,11 +3,11 @@
 from collections.abc import Iterable, Iterator
 from typing import Any
 
+from hpn.account.readings import Reading, readings_of
 from hpn.engine.candidates import CheckResult
 from hpn.engine.checks import CHECKS
 from hpn.explain.calculation import Comparison, Step, calculation_of
 from hpn.explain.calculation.mathml import compared, in_symbols, result, substituted
-from hpn.explain.readings import Reading, readings_of
 from hpn.files.export import Export
 from hpn.files.words import bound_of, exact_percent, measured, title_of
 from hpn.words.reader import Reader

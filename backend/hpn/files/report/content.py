@@ -6,10 +6,10 @@ from typing import Any
 
 import segno
 
+from hpn.account.inputs import LOADS, REQUIREMENTS
+from hpn.account.motion import MOTION_TITLE, MOVES_TITLE, PHASES_TITLE
 from hpn.engine.notices import on_motor_torques
 from hpn.files.export import Export
-from hpn.files.inputs import LOADS, REQUIREMENTS
-from hpn.files.motion import MOTION_TITLE, MOVES_TITLE, PHASES_TITLE
 from hpn.files.report import plots, tables
 from hpn.files.report.checks import bases, checks
 from hpn.files.report.listing import listing, moves

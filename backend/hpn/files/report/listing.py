@@ -5,8 +5,8 @@ A table of 10,000 phases would take typst 700 MB, a cell of ten lines a quarter 
 
 from typing import Any
 
+from hpn.account.motion import MOVES, moves_of, written
 from hpn.files.export import Export
-from hpn.files.motion import MOVES, moves_of, written
 from hpn.files.report.tables import MOST_PHASES, columns, number_of, numbers
 from hpn.words.quantities import INPUTS
 from hpn.words.reader import Reader

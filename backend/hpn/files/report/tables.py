@@ -3,14 +3,14 @@
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
+from hpn.account import inputs
+from hpn.account.inputs import InputLine
+from hpn.account.motion import MOVES, lines, moves_of, written
+from hpn.account.readings import AT_MOTOR, figure_symbol
 from hpn.application import DutyCycle
 from hpn.application.phase import Phase
 from hpn.engine.candidates import FIGURES
-from hpn.explain.readings import AT_MOTOR, figure_symbol
-from hpn.files import inputs
 from hpn.files.export import Export
-from hpn.files.inputs import InputLine
-from hpn.files.motion import MOVES, lines, moves_of, written
 from hpn.files.words import measured
 from hpn.words.quantities import CANDIDATE, DUTY, GEAR, INPUTS
 from hpn.words.reader import Reader

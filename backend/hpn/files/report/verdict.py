@@ -3,11 +3,11 @@
 from collections.abc import Iterable, Mapping
 from typing import Any
 
+from hpn.account.readings import shortest_life, torque_limit_of
 from hpn.catalogue.gear import Gear
 from hpn.engine.candidates import Candidate, reason_of
 from hpn.engine.remedy import remedy_of
 from hpn.engine.tried import needed_of
-from hpn.explain.readings import shortest_life, torque_limit_of
 from hpn.files.export import Export
 from hpn.files.report.checks import bar, failures
 from hpn.files.words import bound_of, exact_percent, measured, title_of, used

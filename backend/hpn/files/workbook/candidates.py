@@ -1,7 +1,7 @@
 """The sheet of all candidates, best first: verdict and utilisations, then computed and published figures."""
 
+from hpn.account.readings import figure_symbol, shortest_life
 from hpn.engine.candidates import FIGURES, Candidate
-from hpn.explain.readings import figure_symbol, shortest_life
 from hpn.files.workbook.sheet import VERDICT_STYLES, Sheet
 from hpn.words.quantities import CANDIDATE, GEAR
 from hpn.words.terms import VERDICTS

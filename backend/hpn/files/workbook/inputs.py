@@ -2,11 +2,11 @@
 
 from collections.abc import Sequence
 
+from hpn.account.inputs import LOADS, REQUIREMENTS, WORDS, value_of
+from hpn.account.motion import MOTION_TITLE, MOVES, MOVES_TITLE, mechanism_of, moves_of
+from hpn.account.motion import WORDS as MOTION_WORDS
 from hpn.application.motion import Motion
 from hpn.files.export import Export
-from hpn.files.inputs import LOADS, REQUIREMENTS, WORDS, value_of
-from hpn.files.motion import MOTION_TITLE, MOVES, MOVES_TITLE, mechanism_of, moves_of
-from hpn.files.motion import WORDS as MOTION_WORDS
 from hpn.files.report.tables import columns, numbers
 from hpn.files.workbook.sheet import Cell, Line, Sheet
 from hpn.words.quantities import INPUTS

@@ -7,8 +7,8 @@ from typing import Any
 
 import xlsxwriter
 
+from hpn.account.readings import AT_MOTOR, Reading, figure_symbol
 from hpn.engine.candidates import FIGURES
-from hpn.explain.readings import AT_MOTOR, Reading, figure_symbol
 from hpn.files.export import LOWER_BOUND, Export
 from hpn.files.report.checks import readings
 from hpn.files.words import catalogue_version, equation, origin

@@ -11,6 +11,9 @@ from pydantic import ValidationError
 from starlette.requests import Request
 from starlette.responses import RedirectResponse, Response
 
+from hpn.account.inputs import LOADS, REQUIREMENTS, InputLine, given
+from hpn.account.motion import lines, move_line
+from hpn.account.readings import Reading, figure_symbol
 from hpn.application import Application
 from hpn.application.phase import Phase
 from hpn.catalogue import Catalogue
@@ -18,9 +21,6 @@ from hpn.engine.candidates import FIGURES, Candidate, CheckResult
 from hpn.engine.check import Check
 from hpn.engine.checks import BY_CODE
 from hpn.explain.differences import is_same
-from hpn.explain.readings import Reading, figure_symbol
-from hpn.files.inputs import LOADS, REQUIREMENTS, InputLine, given
-from hpn.files.motion import lines, move_line
 from hpn.store import SavedSelection
 from hpn.web.archive import answer_of, with_catalogue
 from hpn.web.door.access import admit

@@ -5,6 +5,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
+from hpn.account.readings import Life, Reading, TorqueLimit, readings_of, shortest_life, torque_limit_of
 from hpn.application import Application, RankBy
 from hpn.catalogue import Catalogue
 from hpn.catalogue.gear import Gear
@@ -16,7 +17,6 @@ from hpn.engine.selection import Selection
 from hpn.engine.tried import needed_of
 from hpn.explain.comparison import lighter_miss
 from hpn.explain.drawings import Pictures, Subject
-from hpn.explain.readings import Life, Reading, TorqueLimit, readings_of, shortest_life, torque_limit_of
 from hpn.files.export import DIGITS
 from hpn.web.door.visit import current
 from hpn.web.pages.drive import Drive

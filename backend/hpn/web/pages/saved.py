@@ -11,14 +11,14 @@ from starlette.requests import Request
 from starlette.responses import RedirectResponse, Response
 
 from hpn import ENGINE_VERSION
+from hpn.account.inputs import LOADS, REQUIREMENTS, given
+from hpn.account.motion import lines, move_line
 from hpn.application import Application
 from hpn.catalogue import Catalogue
 from hpn.engine.candidates import reason_of
 from hpn.engine.selection import Selection
 from hpn.explain.differences import Difference, FigureDifference, is_number
 from hpn.files.export import DIGITS
-from hpn.files.inputs import LOADS, REQUIREMENTS, given
-from hpn.files.motion import lines, move_line
 from hpn.files.report.content import qr_code
 from hpn.files.report.tables import number_of
 from hpn.store import ID, SavedSelection

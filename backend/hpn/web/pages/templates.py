@@ -14,6 +14,7 @@ from jinja2.runtime import Context
 from markupsafe import Markup, escape
 from starlette.datastructures import State
 
+from hpn.account.readings import shortest_life, stiffness_of
 from hpn.engine.candidates import REASONS, Candidate, reason_of
 from hpn.engine.checks import BY_CODE, name_of
 from hpn.engine.remedy import DRIVER_NAMES
@@ -21,7 +22,6 @@ from hpn.explain.calculation import calculation_of, mathml
 from hpn.explain.drawings import Figure
 from hpn.explain.drawings.picture import beyond_limit
 from hpn.explain.drawings.svg import markup
-from hpn.explain.readings import shortest_life, stiffness_of
 from hpn.installed import data_folder, has_extra
 from hpn.physics.motion.moves import Move
 from hpn.web.door.visit import address, current

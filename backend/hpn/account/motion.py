@@ -3,8 +3,8 @@
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
+from hpn.account.inputs import InputLine
 from hpn.application.motion import Motion
-from hpn.files.inputs import InputLine
 from hpn.words.motion import MOTION
 from hpn.words.quantities import INPUTS
 from hpn.words.reader import Reader
