@@ -76,7 +76,7 @@ soak: install browser office curl nginx pdfua
 
 # Each small change of the modules that decide has to make a test fail; one that no test finds is explained or listed.
 mutants: install
-	$(BIN)/python -m tests.mutants $(ONLY)
+	$(BIN)/python -m tools.mutants $(ONLY)
 
 check: $(ENVIRONMENT)
 	$(BIN)/ruff format --check
@@ -88,10 +88,10 @@ check: $(ENVIRONMENT)
 
 # Times that a user feels, of this checkout and a plain service; with BESIDE=folder, of another installed checkout as well.
 bench: install browser
-	$(BIN)/python -m tests.benchmarks $(if $(BESIDE),--beside "$(BESIDE)") $(ONLY)
+	$(BIN)/python -m tools.benchmarks $(if $(BESIDE),--beside "$(BESIDE)") $(ONLY)
 
 screenshots: install browser
-	$(BIN)/python -m tests.screenshots
+	$(BIN)/python -m tools.screenshots
 
 # --- Python -----------------------------------------------------------------------------------------------------------
 
@@ -184,7 +184,7 @@ SERVED := serve report aas fleet postgres
 
 # Texts of code and templates into the catalogues of translations; prints what is left to translate.
 messages: $(ENVIRONMENT)
-	$(BIN)/python -m tests.messages
+	$(BIN)/python -m tools.messages
 
 lock: $(UV) | $(NODE)
 	$(UV) $(COMPILE) pyproject.toml $(addprefix --extra ,$(SERVED)) --output-file requirements.lock
@@ -199,15 +199,15 @@ lock: $(UV) | $(NODE)
 
 # Licences of everything in the locks, into docs/licences.md.
 licences: $(ENVIRONMENT)
-	$(BIN)/python -m tests.supply.licences
+	$(BIN)/python -m tools.supply.licences
 
 # Packages of an installed service, as CycloneDX; the same locks give the same bytes.
 sbom: $(ENVIRONMENT)
-	$(BIN)/python -m tests.supply.sbom sbom.cdx.json
+	$(BIN)/python -m tools.supply.sbom sbom.cdx.json
 
 # The locks against known vulnerabilities: ends with 1 where there is one, 3 where no database can be asked.
 audit: $(ENVIRONMENT) | $(NODE)
-	$(BIN)/python -m tests.supply.audit
+	$(BIN)/python -m tools.supply.audit
 
 # The image and the compose file on a real engine: ends with 1 where a trial fails, 3 where no engine can be had.
 .PHONY: containers

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from hpn.words.reader import path_of
-from tests import messages
+from tools import messages
 
 ROOT = Path(__file__).parents[2]
 
@@ -75,7 +75,7 @@ def test_clean_takes_nothing_that_git_tracks() -> None:
 def test_messages_leaves_the_date_of_a_catalogue_alone(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     before = path_of("de").read_text()
     written = tmp_path / "hpn.po"
-    monkeypatch.setattr("tests.messages.path_of", lambda code: written)
+    monkeypatch.setattr("tools.messages.path_of", lambda code: written)
 
     messages.update("de")
 

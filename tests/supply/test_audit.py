@@ -10,8 +10,8 @@ from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from threading import Thread
 from typing import Any
 
-from tests.supply import locks
-from tests.supply.audit import Answer, report
+from tools.supply import locks
+from tools.supply.audit import Answer, report
 
 LOCK = locks.ROOT / "requirements-build.lock"
 PACKAGES = locks.python(LOCK)
@@ -66,7 +66,7 @@ def run(address: str) -> "subprocess.CompletedProcess[str]":
         "npm_config_fetch_retries": "0",
         "NO_PROXY": "127.0.0.1",
     }
-    command = [sys.executable, "-m", "tests.supply.audit", LOCK.name]
+    command = [sys.executable, "-m", "tools.supply.audit", LOCK.name]
     return subprocess.run(command, cwd=locks.ROOT, env=environment, capture_output=True, text=True)
 
 

@@ -5,8 +5,8 @@ from importlib.metadata import PackageNotFoundError, version
 
 import pytest
 
-from tests.supply.licences import WRITTEN, sections
-from tests.supply.locks import Package
+from tools.supply.licences import WRITTEN, sections
+from tools.supply.locks import Package
 
 Sections = dict[str, dict[Package, str]]
 TEXT = WRITTEN.read_text()

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 from cyclonedx.schema import SchemaVersion
 
-from tests.supply import licences, locks, sbom
+from tools.supply import licences, locks, sbom
 
 
 @pytest.fixture(scope="module")
@@ -25,7 +25,7 @@ def test_the_bill_is_valid(text: str) -> None:
 
 
 def test_the_bill_is_the_same_each_time(text: str, tmp_path: Path) -> None:
-    command = [sys.executable, "-m", "tests.supply.sbom", str(tmp_path / "again.json")]
+    command = [sys.executable, "-m", "tools.supply.sbom", str(tmp_path / "again.json")]
     subprocess.run(command, cwd=locks.ROOT, env=os.environ | {"PYTHONHASHSEED": "7"}, check=True)
 
     assert (tmp_path / "again.json").read_text() == text

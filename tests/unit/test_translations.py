@@ -6,7 +6,7 @@ from string import Formatter
 import pytest
 
 from hpn.words.reader import LANGUAGES, catalogue, translations
-from tests.messages import missing
+from tools.messages import missing
 
 OTHERS = [code for code in LANGUAGES if code != "en"]
 

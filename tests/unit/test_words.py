@@ -20,7 +20,7 @@ from hpn.explain.drawings.picture import bearing_picture
 from hpn.web.form.symbols import BY_NAME
 from hpn.words.reader import Reader, catalogue
 from tests.build import cycle, phase
-from tests.messages import BACKEND, TEMPLATES, texts
+from tools.messages import BACKEND, TEMPLATES, texts
 
 ENGLISH = (
     r"\bof these and T_k\b|times$",

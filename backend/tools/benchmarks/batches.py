@@ -7,9 +7,9 @@ import time
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from tests.benchmarks.applications import axis
-from tests.benchmarks.turns import in_turns, ratios
-from tests.benchmarks.variants import Server
+from tools.benchmarks.applications import axis
+from tools.benchmarks.turns import in_turns, ratios
+from tools.benchmarks.variants import Server
 
 AXES = 10_000
 PHASES = 10

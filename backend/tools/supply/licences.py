@@ -3,8 +3,8 @@
 from collections.abc import Iterable
 from importlib.metadata import PackageNotFoundError, metadata
 
-from tests.supply import locks
-from tests.supply.locks import Package
+from tools.supply import locks
+from tools.supply.locks import Package
 
 WRITTEN = locks.ROOT / "docs" / "licences.md"
 

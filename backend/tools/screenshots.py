@@ -7,7 +7,7 @@ from pathlib import Path
 
 from playwright.sync_api import Browser, sync_playwright
 
-from tests.operations.service import serving
+from tools.benchmarks.variants import HERE, Checkout, product
 
 FOLDER = Path("docs/screenshots")
 BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
@@ -40,10 +40,14 @@ def main() -> None:
     """Take every picture anew."""
     FOLDER.mkdir(parents=True, exist_ok=True)
     path = next(filter(None, map(shutil.which, BROWSERS)), None)
-    with tempfile.TemporaryDirectory() as folder, serving(Path(folder)) as server, sync_playwright() as driver:
+    with (
+        tempfile.TemporaryDirectory() as folder,
+        product(Checkout("here", HERE), Path(folder)) as server,
+        sync_playwright() as driver,
+    ):
         browser = driver.chromium.launch(executable_path=path, args=[OFFLINE])
         for state in STATES:
-            _take(browser, server.url, state)
+            _take(browser, server.address, state)
         browser.close()
 
 

@@ -5,7 +5,7 @@ import re
 from pathlib import Path
 from typing import Any, NamedTuple
 
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[3]
 RUN_LOCK = ROOT / "requirements.lock"
 DEVELOPMENT_LOCKS = tuple(ROOT / f"requirements-{name}.lock" for name in ("dev", "build", "node"))
 PAGE = ROOT / "frontend"

@@ -21,8 +21,8 @@ from cyclonedx.model.license import LicenseExpression
 from cyclonedx.output.json import JsonV1Dot6
 from packageurl import PackageURL
 
-from tests.supply import licences, locks
-from tests.supply.locks import Package
+from tools.supply import licences, locks
+from tools.supply.locks import Package
 
 ALGORITHMS = {"sha256": HashAlgorithm.SHA_256, "sha512": HashAlgorithm.SHA_512}
 

@@ -10,9 +10,9 @@ from typing import Any
 
 import uvloop
 
-from tests.benchmarks.applications import CASES, save_body, select_body
-from tests.benchmarks.turns import in_turns, p95, ratios
-from tests.benchmarks.variants import Server
+from tools.benchmarks.applications import CASES, save_body, select_body
+from tools.benchmarks.turns import in_turns, p95, ratios
+from tools.benchmarks.variants import Server
 
 CONNECTIONS = (1, 16)
 REQUESTS = {"/api/v1/select": 160, "/api/v1/selections": 64}

@@ -5,9 +5,9 @@ from pathlib import Path
 
 import pytest
 
-from tests.mutants.__main__ import MODULES, mutants_in
-from tests.mutants.changes import Mutant, mutants_of
-from tests.mutants.explained import EXPLAINED
+from tools.mutants.__main__ import MODULES, mutants_in
+from tools.mutants.changes import Mutant, mutants_of
+from tools.mutants.explained import EXPLAINED
 
 MUTANTS = {module: mutants_in(module) for module in MODULES}
 

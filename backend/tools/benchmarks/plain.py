@@ -2,7 +2,7 @@
 
 It answers what the benchmark asks and no more (no bearing, no requirements but ratios and sizes, no number formats), so
 it does less than the product for the same reply. Texts and ratings come from two replies that the benchmark has asked
-the product for, so that nothing of the engine is imported: `python -m tests.benchmarks.plain PORT FOLDER`.
+the product for, so that nothing of the engine is imported: `python -m tools.benchmarks.plain PORT FOLDER`.
 """
 
 import json

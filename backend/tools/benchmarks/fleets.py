@@ -23,8 +23,8 @@ from hpn.catalogue import Catalogue, load_catalogue
 from hpn.engine.evaluation import SUITABLE, evaluate
 from hpn.fleet.axes import Axes
 from hpn.physics.equations import FloatArray
-from tests.benchmarks.turns import in_turns, ratios
-from tests.benchmarks.variants import Checkout
+from tools.benchmarks.turns import in_turns, ratios
+from tools.benchmarks.variants import Checkout
 
 AXES, PHASES, UNIT_ROWS = 1_000_000, 10, 50_000
 TIMES = 10

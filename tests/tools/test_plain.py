@@ -9,10 +9,10 @@ from starlette.testclient import TestClient
 
 from hpn.web.app import create_app
 from hpn.web.settings import Settings
-from tests.benchmarks import plain
-from tests.benchmarks.applications import CASES, EVERY, select_body
-from tests.benchmarks.replies import differing
-from tests.benchmarks.variants import JSON
+from tools.benchmarks import plain
+from tools.benchmarks.applications import CASES, EVERY, select_body
+from tools.benchmarks.replies import differing
+from tools.benchmarks.variants import JSON
 
 
 @pytest.mark.parametrize("restriction", CASES.values(), ids=CASES)

@@ -1,4 +1,4 @@
-"""`python -m tests.mutants [MODULE …]`: puts every mutant on trial, and lists those that no test finds."""
+"""`python -m tools.mutants [MODULE …]`: puts every mutant on trial, and lists those that no test finds."""
 
 import argparse
 import os
@@ -7,9 +7,9 @@ from concurrent.futures import ThreadPoolExecutor
 from importlib import import_module
 from pathlib import Path
 
-from tests.mutants.changes import Mutant, mutants_of
-from tests.mutants.explained import EXPLAINED
-from tests.mutants.trial import timed
+from tools.mutants.changes import Mutant, mutants_of
+from tools.mutants.explained import EXPLAINED
+from tools.mutants.trial import timed
 
 LIBRARIES = (
     "babel.numbers",
@@ -26,7 +26,7 @@ LIBRARIES = (
 )
 """Libraries of the modules, imported once for all forked processes; the modules and tests themselves are not."""
 
-PACKAGE = Path(__file__).parents[2] / "backend" / "hpn"
+PACKAGE = Path(__file__).parents[2] / "hpn"
 MODULES = {
     "equations": "physics",
     "bearing": "physics",
@@ -98,7 +98,7 @@ def mutants_in(module: str) -> list[Mutant]:
 
 def main() -> int:
     """Print each survivor that is not explained, and counts; 1 where there is one."""
-    parser = argparse.ArgumentParser(prog="python -m tests.mutants", description=__doc__)
+    parser = argparse.ArgumentParser(prog="python -m tools.mutants", description=__doc__)
     parser.add_argument("modules", nargs="*", metavar="MODULE", help=f"out of {', '.join(MODULES)}; all by default")
     parser.add_argument("--list", action="store_true", help="list the mutants, and try none")
     parser.add_argument("--only", default="", help="only those whose name contains this")

@@ -11,7 +11,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
-HERE = Path(__file__).parents[2]
+HERE = Path(__file__).parents[3]
 JSON = {"Content-Type": "application/json"}
 START_SECONDS = 120
 
@@ -97,7 +97,7 @@ def product(checkout: Checkout, folder: Path) -> Iterator[Server]:
 @contextmanager
 def plain_service(folder: Path) -> Iterator[Server]:
     """The plain FastAPI service; `folder` holds what it reads."""
-    command = [sys.executable, "-m", "tests.benchmarks.plain", "{port}", str(folder)]
+    command = [sys.executable, "-m", "tools.benchmarks.plain", "{port}", str(folder)]
     with _running(command, HERE, clean_environment()) as server:
         yield server
 

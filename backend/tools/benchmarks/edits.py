@@ -10,8 +10,8 @@ from typing import Any
 
 from playwright.sync_api import Browser, Page, sync_playwright
 
-from tests.benchmarks.turns import in_turns, p95, ratios
-from tests.benchmarks.variants import Server
+from tools.benchmarks.turns import in_turns, p95, ratios
+from tools.benchmarks.variants import Server
 
 EDITS = 8
 TURNS = 7

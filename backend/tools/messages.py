@@ -1,6 +1,6 @@
 """Every text that a reader may see, found where it stands in code, templates and catalogue.
 
-`python -m tests.messages` brings the catalogues of translations up to date and says what is left to translate.
+`python -m tools.messages` brings the catalogues of translations up to date and says what is left to translate.
 """
 
 import ast
@@ -15,7 +15,7 @@ from jinja2.ext import babel_extract
 
 from hpn.words.reader import LANGUAGES, catalogue, path_of
 
-ROOT = Path(__file__).parents[1]
+ROOT = Path(__file__).parents[2]
 BACKEND, TEMPLATES, FIGURES = ROOT / "backend/hpn", ROOT / "frontend/templates", ROOT / "catalogue"
 
 MARKS = {

@@ -12,8 +12,8 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any, NamedTuple
 
-from tests.supply import locks
-from tests.supply.locks import Package
+from tools.supply import locks
+from tools.supply.locks import Package
 
 SOUND, VULNERABLE, NOT_ASKED = 0, 1, 3
 LOCKS = (locks.RUN_LOCK, *locks.DEVELOPMENT_LOCKS)

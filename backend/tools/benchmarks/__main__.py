@@ -16,10 +16,10 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
-from tests.benchmarks import batches, edits, fleets, replies, starts
-from tests.benchmarks.applications import EVERY, select_body
-from tests.benchmarks.turns import ratios
-from tests.benchmarks.variants import HERE, Checkout, Server, plain_service, product
+from tools.benchmarks import batches, edits, fleets, replies, starts
+from tools.benchmarks.applications import EVERY, select_body
+from tools.benchmarks.turns import ratios
+from tools.benchmarks.variants import HERE, Checkout, Server, plain_service, product
 
 RESULTS = HERE / "bench-results.json"
 MEASURES = ("first_starts", "commands", "idle", "replies", "edits", "batches", "savings", "fleets")
@@ -46,7 +46,7 @@ def main() -> None:
 
 
 def _options() -> argparse.Namespace:
-    parser = argparse.ArgumentParser("python -m tests.benchmarks")
+    parser = argparse.ArgumentParser("python -m tools.benchmarks")
     parser.add_argument("--beside", type=Path, metavar="FOLDER", help="another installed checkout to measure as well")
     parser.add_argument("only", nargs="*", metavar="MEASURE", help="what to measure; everything by default")
     return parser.parse_args()

@@ -8,9 +8,9 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from tests.benchmarks.applications import FIVE, select_body
-from tests.benchmarks.turns import in_turns, ratios
-from tests.benchmarks.variants import Checkout, clean_environment, product
+from tools.benchmarks.applications import FIVE, select_body
+from tools.benchmarks.turns import in_turns, ratios
+from tools.benchmarks.variants import Checkout, clean_environment, product
 
 STARTS = 2
 COMMANDS = 3

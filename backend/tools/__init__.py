@@ -1,0 +1,1 @@
+"""What helps to make HPN Select and asserts nothing: benchmarks, mutants, texts, pictures, supply."""
