@@ -12,6 +12,7 @@ from starlette.requests import Request
 from hpn import ENGINE_VERSION
 from hpn.application import Application, InputError
 from hpn.catalogue import Catalogue
+from hpn.catalogue.ordering import OrderingCode, read_ordering_code
 from hpn.engine.kept import UnreadableReplyError, decode, fields_of
 from hpn.engine.selection import Selection, encode, select
 from hpn.explain.differences import Difference, FigureDifference, differences, figure_differences
@@ -19,7 +20,7 @@ from hpn.store import Draft, KeyReusedError, KeySpentError, SavedSelection
 from hpn.web.door.observation import note
 from hpn.web.door.pools import compute
 from hpn.web.door.problems import Problem
-from hpn.web.form.labels import FIELDS, OrderingCode, query_of, read_ordering_code
+from hpn.web.form.labels import FIELDS, query_of
 from hpn.web.form.link_writer import to_link
 from hpn.words.fields import Model
 from hpn.words.titles import CONTROLS, LONGEST_TITLE, NO_CONTROLS, SCHEMA_CONTROLS, Title

@@ -10,8 +10,8 @@ from pydantic_core import PydanticCustomError
 
 from hpn.words.wording import N_, Sentence
 
-LONGEST_TITLE, LONGEST_NAME = 200, 40
-"""Characters of a title, and of the name of a phase or a move."""
+LONGEST_TITLE, LONGEST_NAME, LONGEST_NOTE = 200, 40, 2000
+"""Characters of a title, of the name of a phase or a move, and of a note."""
 
 CONTROLS = re.compile(r"[\x00-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069\ufffe\uffff]")
 """Control characters, line separators, marks that turn the direction of the text around them, and no characters."""
@@ -79,6 +79,20 @@ Name = Annotated[
     _VISIBLE,
 ]
 """A title that is short enough for a cell of a table."""
+
+
+def _without_controls(text: str) -> str | None:
+    for fault in faults_of(text.replace("\r\n", "\n").replace("\n", " ").replace("\t", " "), LONGEST_NOTE):
+        raise PydanticCustomError("note", "{text}", {"text": fault.text})
+    return text or None
+
+
+Note = Annotated[
+    str,
+    StringConstraints(strip_whitespace=True, max_length=LONGEST_NOTE),
+    AfterValidator(_without_controls),
+]
+"""Some lines of text. An empty one counts as none."""
 
 
 def is_title(text: str, longest: int = LONGEST_TITLE) -> bool:

@@ -15,6 +15,7 @@ from starlette.responses import Response
 
 from hpn.application import Application
 from hpn.catalogue import Catalogue
+from hpn.catalogue.ordering import ordering_code
 from hpn.engine.selection import judge, select
 from hpn.files.aas import Metamodel
 from hpn.files.export import DIGITS, Export, Heading, made_by
@@ -27,7 +28,6 @@ from hpn.web.door.conditions import etag_of, has_already
 from hpn.web.door.pools import pool_of, while_present
 from hpn.web.door.problems import Problem, needs
 from hpn.web.door.visit import absolute
-from hpn.web.form.labels import ordering_code
 from hpn.web.form.labels import query_of as query_of_labels
 from hpn.web.form.link_writer import to_link
 from hpn.web.form.linked import linked, query_of

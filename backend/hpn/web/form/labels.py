@@ -1,16 +1,12 @@
-"""Labels of a selection: its title block, and the ordering code with the parts that no catalogue knows.
+"""Labels of a selection: its title block, and the parts of the ordering code that no catalogue knows.
 
 They stand beside the application, in the address of its page as in its form; the canonical link has none of them.
 """
 
-import re
 from collections.abc import Mapping
-from dataclasses import dataclass
 from urllib.parse import urlencode
 
-from hpn.catalogue import Catalogue, OutputVersion
-from hpn.catalogue.gear import Gear
-from hpn.words.wording import N_, Sentence
+from hpn.words.wording import N_
 
 TITLE_BLOCK: Mapping[str, str] = {
     "title": N_("Title"),
@@ -35,50 +31,3 @@ def query_of(labels: Mapping[str, str]) -> str:
     """Tail of an address that gives labels: `&title=Axis+7`, nothing for blank ones."""
     given = urlencode([(name, text.strip()) for name, text in labels.items() if text.strip()])
     return f"&{given}" if given else ""
-
-
-# --- Ordering codes: HPN-20A-5-J6-BH-AF1 is gear, output version and code for the motor adapter (table 9.1) -----------
-
-MOTOR_CODE = r"[A-Za-z0-9]{1,8}([.\-][A-Za-z0-9]{1,8}){0,3}"
-"""Codes for the motor adapter look like `BH-AF1` or `xx.xx`; which one fits a motor only the maker says."""
-
-NOT_A_MOTOR_CODE = N_("letters and digits, in groups separated by - or . such as BH-AF1")
-NOT_A_CODE = N_("must be a gear of the catalogue, an output version and the motor adapter, such as HPN-20A-5-J6-BH-AF1")
-
-
-@dataclass(frozen=True, slots=True)
-class OrderingCode:
-    """A code as far as it is known, what it was made of, and what is wrong with the part that was typed."""
-
-    text: str
-    gear: Gear
-    output: str
-    motor: str
-    versions: tuple[OutputVersion, ...]
-    problem: str | None = None
-
-    @property
-    def labels(self) -> Mapping[str, str]:
-        """Labels that an address gives of it; the default version is left out."""
-        return {"order_output": "" if self.output == self.versions[0].code else self.output, "order_motor": self.motor}
-
-
-def ordering_code(catalogue: Catalogue, gear: Gear, output: str = "", motor: str = "") -> OrderingCode:
-    """Code of a gear with an output version, the first one where none or an unknown one is asked for."""
-    versions = tuple(version for version in catalogue.output_versions if version.position == "output")
-    output = output if any(version.code == output for version in versions) else versions[0].code
-    motor = motor.strip()[:60]
-    valid = re.fullmatch(MOTOR_CODE, motor) is not None
-    problem = None if valid or not motor else NOT_A_MOTOR_CODE
-    parts = [gear.designation, output, *([motor.upper()] if valid else [])]
-    return OrderingCode("-".join(parts), gear, output, motor, versions, problem)
-
-
-def read_ordering_code(catalogue: Catalogue, text: str) -> OrderingCode | Sentence:
-    """Code of a text such as `hpn-20a-5-j6-bh-af1`; output and motor may be left out, from the end."""
-    head, gear_size, ratio, output, motor = (*text.strip().upper().split("-", 4), "", "", "", "", "")[:5]
-    gear = catalogue.find(f"{head}-{gear_size}-{ratio}")
-    if gear is None:
-        return Sentence(NOT_A_CODE)
-    code = ordering_code(catalogue, gear, output, motor)
-    return Sentence(NOT_A_CODE) if code.problem or output not in ("", code.output) else code

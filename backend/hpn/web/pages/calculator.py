@@ -13,6 +13,7 @@ from starlette.responses import HTMLResponse, RedirectResponse, Response
 from hpn.application import Application, InputError
 from hpn.catalogue import Catalogue
 from hpn.catalogue.gear import Gear
+from hpn.catalogue.ordering import OrderingCode, ordering_code
 from hpn.engine.candidates import REASONS, Candidate
 from hpn.engine.selection import Selection, judge
 from hpn.engine.tried import tried
@@ -24,7 +25,7 @@ from hpn.web.door.visit import absolute, current
 from hpn.web.form import link_reader
 from hpn.web.form.form import Form, address_of_empty, for_reader
 from hpn.web.form.given import FieldProblem
-from hpn.web.form.labels import OrderingCode, ordering_code, query_of
+from hpn.web.form.labels import query_of
 from hpn.web.form.link_writer import to_link
 from hpn.web.form.linked import LONGEST_LINK
 from hpn.web.form.offers import beside_fields

@@ -15,6 +15,7 @@ from hpn.account.inputs import LOADS, REQUIREMENTS, given
 from hpn.account.motion import lines, move_line
 from hpn.application import Application
 from hpn.catalogue import Catalogue
+from hpn.catalogue.ordering import read_ordering_code
 from hpn.engine.candidates import reason_of
 from hpn.engine.selection import Selection
 from hpn.explain.differences import Difference, FigureDifference, is_number
@@ -26,7 +27,6 @@ from hpn.web.archive import Reopened, found, url_of
 from hpn.web.door.access import MAXIMUM_QUERY_BYTES, admit
 from hpn.web.door.visit import absolute, current
 from hpn.web.form import link_reader
-from hpn.web.form.labels import read_ordering_code
 from hpn.web.pages import calculator
 from hpn.web.pages.gear_figures import Figure, all_figures
 from hpn.web.pages.rendering import or_reason, page

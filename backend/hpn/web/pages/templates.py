@@ -15,6 +15,7 @@ from markupsafe import Markup, escape
 from starlette.datastructures import State
 
 from hpn.account.readings import shortest_life, stiffness_of
+from hpn.catalogue.ordering import MOTOR_CODE, ordering_code
 from hpn.engine.candidates import REASONS, Candidate, reason_of
 from hpn.engine.checks import BY_CODE, name_of
 from hpn.engine.remedy import DRIVER_NAMES
@@ -26,7 +27,6 @@ from hpn.installed import data_folder, has_extra
 from hpn.physics.motion.moves import Move
 from hpn.web.door.visit import address, current
 from hpn.web.form import symbols, ways
-from hpn.web.form.labels import MOTOR_CODE, ordering_code
 from hpn.web.form.linked import carried_pairs, onward
 from hpn.web.form.rows import BODY_COLUMNS, LOADS, MOVE_COLUMNS
 from hpn.web.pages import assets

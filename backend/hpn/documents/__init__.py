@@ -1,0 +1,12 @@
+"""Documents: what is saved. A machine has a title block, common values and axes; a selection has one axis.
+
+- `common`: `Common`, the values that hold for every axis, and COMMON, the paths of fields that may be among them
+- `axis`: `Axis`, one axis as it is sent, with its own values and `without`; the bounds of a document
+- `document`: `Document`, a machine as it is sent, and `TitleBlock`
+- `merge`: `resolve(own, common, without)`, the application of an axis, or the faults for which it stays open
+- `answers`: `answers(axes, catalogue)`, the `AxisAnswer` of many axes in one evaluation
+- `revision`: labels of revisions, and `Frozen`, everything of a document as it was, in packed bytes
+- `gears`: the list of gears to order, with quantities and masses
+
+Nothing here knows the store or the web.
+"""

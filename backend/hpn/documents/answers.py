@@ -1,0 +1,154 @@
+"""Answers of the axes of a document: the gear of each, and how it does."""
+
+from collections.abc import Iterable, Sequence
+from itertools import islice
+from math import isfinite
+from typing import Annotated, Literal, NamedTuple
+
+from msgspec import structs
+from pydantic import Field
+
+from hpn import ENGINE_VERSION
+from hpn.application import InputError
+from hpn.application.faults import Fault, faults_of, pointer
+from hpn.catalogue import Catalogue
+from hpn.catalogue.ordering import OrderingCode, read_ordering_code
+from hpn.documents.merge import Resolved
+from hpn.engine.batch import judge_batch
+from hpn.engine.candidates import LifeOf
+from hpn.engine.evaluation import STATUS, UNRATED, Evaluation
+from hpn.engine.selection import Judged
+from hpn.physics.equations import FloatArray
+from hpn.words.quantities import CANDIDATE
+from hpn.words.reply import Reply, described
+from hpn.words.wording import N_, Sentence
+
+AxisStatus = Literal["suitable", "unsuitable", "unrated", "open"]
+MOST_FAULTS = 20
+"""Faults that are kept of an axis."""
+
+NO_CANDIDATE = N_("{gear} is not a candidate: the selected ratios or sizes exclude it")
+
+
+class AxisFault(Reply, frozen=True):
+    """One thing wrong with an axis."""
+
+    pointer: Annotated[str, Field(description="JSON pointer into the resolved application, or to the ordering code.")]
+    code: Annotated[str, Field(description="Code for programs.")]
+    detail: Annotated[str, Field(description="What would be right.")]
+
+    @classmethod
+    def of(cls, faults: Iterable[Fault]) -> tuple["AxisFault", ...]:
+        """Faults as they are kept, no more than are named of any input."""
+        return tuple(cls(pointer(location), code, text) for location, text, code in islice(faults, MOST_FAULTS))
+
+
+class Asked(NamedTuple):
+    """What an axis asks, and the ordering code of the gear that it is to have, if any."""
+
+    resolved: Resolved
+    ordering_code: str | None = None
+
+
+class AxisAnswer(Reply, frozen=True):
+    """The gear of an axis: that of its ordering code, else the selected one, else the nearest miss.
+
+    An open axis has none of the figures, and `faults` say why.
+    """
+
+    __pydantic_config__ = described(CANDIDATE)
+
+    status: Annotated[AxisStatus, Field(description="Verdict on the gear; open where there is no answer.")]
+    selected: Annotated[str | None, Field(description="Designation of the first suitable gear.")] = None
+    designation: Annotated[str | None, Field(description="Gear that the figures are of.")] = None
+    governing_check: str | None = None
+    utilisation: float | None = None
+    shortest_life_h: float | None = None
+    shortest_life_of: LifeOf | None = None
+    natural_frequency_Hz: float | None = None
+    motor_torque_limit_Nm: float | None = None
+    weight_kg: Annotated[float | None, Field(description="Mass of one such gear.")] = None
+    suitable: Annotated[int | None, Field(description="Number of suitable gears.")] = None
+    runner_up: Annotated[str | None, Field(description="Designation of the second suitable gear.")] = None
+    average_torque_Nm: Annotated[float | None, Field(description="Average torque T_av of the cycle.")] = None
+    not_asked: Annotated[
+        tuple[str, ...], Field(description="Paths of common values that need what this axis lacks.")
+    ] = ()
+    faults: Annotated[tuple[AxisFault, ...], Field(description="Reasons for which an axis is open.")] = ()
+    engine_version: Annotated[str, Field(description="Version of the calculation.")] = ENGINE_VERSION
+    catalogue_version: Annotated[str, Field(description="Catalogue that was asked.")] = ""
+
+
+def answers(axes: Sequence[Asked], catalogue: Catalogue) -> list[AxisAnswer]:
+    """Answers to axes, all of them judged together; an axis whose application has a fault is open."""
+    # Copies, so that axes with one application have a code each.
+    applications = [each and each.model_copy() for each in (asked.resolved.application for asked in axes)]
+    codes = {id(each): asked.ordering_code for each, asked in zip(applications, axes, strict=True)}
+
+    def answered(judged: Judged) -> AxisAnswer | InputError:
+        return _answered(judged, codes[id(judged.application)])
+
+    sound = [application for application in applications if application is not None]
+    judged = iter(judge_batch(sound, catalogue, answered))
+    found = (None if application is None else next(judged) for application in applications)
+    return [_whole(asked.resolved, answer, catalogue) for asked, answer in zip(axes, found, strict=True)]
+
+
+def _whole(resolved: Resolved, answer: AxisAnswer | InputError | None, catalogue: Catalogue) -> AxisAnswer:
+    if not isinstance(answer, AxisAnswer):
+        faults = resolved.faults if answer is None else faults_of(answer)
+        answer = AxisAnswer("open", faults=AxisFault.of(faults))
+    return structs.replace(answer, not_asked=resolved.not_asked, catalogue_version=catalogue.version)
+
+
+def _answered(judged: Judged, code: str | None) -> AxisAnswer | InputError:
+    evaluation, index = judged.evaluation, judged.index
+    try:
+        gear = _foremost(evaluation, index) if code is None else _ordered(evaluation, code)
+    except InputError as error:
+        return error
+    figures = evaluation.case.figures
+    outcome, rows, verdict = judged.outcome(), evaluation.gears.rows, evaluation.verdict.item(index, gear)
+    governing = evaluation.checks[evaluation.governing.item(index, gear)].code
+    return AxisAnswer(
+        status=STATUS[verdict],
+        selected=outcome.selected,
+        designation=rows[gear].designation,
+        governing_check=None if verdict == UNRATED else governing,
+        utilisation=_finite(evaluation.utilisation.item(index, gear)),
+        shortest_life_h=_figure(figures.shortest_life_h, index, gear),
+        shortest_life_of=figures.shortest_life_of[index].tolist()[gear] or None,
+        natural_frequency_Hz=_figure(figures.natural_frequency_Hz, index, gear),
+        motor_torque_limit_Nm=_figure(figures.motor_torque_limit_Nm, index, gear),
+        weight_kg=rows[gear].weight_kg,
+        suitable=outcome.suitable,
+        runner_up=rows[evaluation.order.item(index, 1)].designation if outcome.suitable > 1 else None,
+        average_torque_Nm=_finite(evaluation.case.duty.average_torque_Nm.item(index)),
+    )
+
+
+def _foremost(evaluation: Evaluation, index: int) -> int:
+    """Place of the selected gear, else of the first that is judged or lacks an input alone, as a selection shows it."""
+    order = evaluation.order[index]
+    judged = evaluation.is_judged[index] | evaluation.lacks_input[index]
+    return int(order[judged[order].argmax()])
+
+
+def _ordered(evaluation: Evaluation, text: str) -> int:
+    """Place of the gear of an ordering code; InputError for a code that is none, or of a gear that is no candidate."""
+    code = read_ordering_code(evaluation.catalogue, text)
+    if isinstance(code, OrderingCode):
+        names = [gear.designation for gear in evaluation.gears.rows]
+        if code.gear.designation in names:
+            return names.index(code.gear.designation)
+        code = Sentence(NO_CANDIDATE, {"gear": code.gear.designation})
+    raise InputError((("ordering_code",), code))
+
+
+def _figure(values: FloatArray, index: int, gear: int) -> float | None:
+    """Figure of a gear under an application, of an array that may be the same for every gear."""
+    return _finite(values.item(index, gear if values.shape[1] > 1 else 0))
+
+
+def _finite(value: float) -> float | None:
+    return value if isfinite(value) else None

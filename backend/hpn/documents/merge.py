@@ -1,0 +1,102 @@
+"""From an axis's own values and the common ones to its application."""
+
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from pydantic import ValidationError
+
+from hpn.application import Application
+from hpn.application.faults import Fault, faults_of
+from hpn.documents.axis import loads_in_phases
+from hpn.documents.common import EXCLUSIVE, flat
+
+Json = dict[str, Any]
+
+PARTS = ("requirements", "output_load")
+"""Parts that are merged field by field; every other value is own or inherited as a whole."""
+
+LOADING = ("radial_N", "axial_N", "from_motion", "drive")
+"""Fields of `output_load` by which an axis has a load."""
+
+LACKS = frozenset(("inertia_of_load", "no_rest", "error_radius"))
+"""Codes of faults by which an application lacks what one of its values needs: a common value is then not asked."""
+
+
+@dataclass(frozen=True, slots=True)
+class Resolved:
+    """The application of an axis: its own values and the common ones that hold for it, as JSON and as a model.
+
+    `inherited` are the paths of common values in it, `not_asked` those of common values that need what the axis lacks.
+    `application` is None where `faults` say why there is none.
+    """
+
+    whole: Json
+    inherited: frozenset[str]
+    not_asked: tuple[str, ...] = ()
+    application: Application | None = None
+    faults: tuple[Fault, ...] = ()
+
+
+def resolve(own: Mapping[str, Any], common: Mapping[str, Any], without: Collection[str] = ()) -> Resolved:
+    """Application of an axis with these own and common values, given as JSON.
+
+    A common value that the models refuse for lack of something on this axis is left out, and named in `not_asked`.
+    """
+    not_asked: list[str] = []
+    while True:
+        whole, inherited = _merged(own, common, {*without, *not_asked})
+        try:
+            application = Application.model_validate(whole)
+        except ValidationError as error:
+            lacking = _lacking(error, inherited)
+            if not lacking:
+                return Resolved(whole, inherited, tuple(not_asked), faults=tuple(faults_of(error)))
+            not_asked += lacking
+        else:
+            return Resolved(whole, inherited, tuple(not_asked), application)
+
+
+def _lacking(error: ValidationError, inherited: Collection[str]) -> list[str]:
+    """Paths of inherited values that are refused for lack of something."""
+    found = error.errors(include_url=False, include_input=False, include_context=False)
+    paths = (".".join(map(str, entry["loc"])) for entry in found if entry["type"] in LACKS)
+    return list(dict.fromkeys(path for path in paths if path in inherited))
+
+
+def _merged(
+    own: Mapping[str, Any], common: Mapping[str, Any], left_out: Collection[str]
+) -> tuple[Json, frozenset[str]]:
+    """An axis's own values with those common ones that hold for it, and the paths of these."""
+    whole = {name: _given(value) if name in PARTS else value for name, value in own.items() if value is not None}
+    held = {path: value for path, value in flat(common) if path not in left_out and _holds(path, whole, own)}
+    for path, value in held.items():
+        part, _, name = path.rpartition(".")
+        if part:
+            whole[part] = {**whole.get(part, {}), name: value}
+        else:
+            whole[name] = value
+    return whole, frozenset(held)
+
+
+def _given(part: Any) -> Any:
+    """A part of an application without its nulls."""
+    return {name: value for name, value in part.items() if value is not None} if isinstance(part, Mapping) else part
+
+
+def _holds(path: str, whole: Mapping[str, Any], own: Mapping[str, Any]) -> bool:
+    """True for a common value that an axis with these own ones takes."""
+    part, _, name = path.rpartition(".")
+    if not part:
+        return name not in whole
+    fields = whole.get(part, {})
+    if not isinstance(fields, Mapping):  # the models say that this is no object
+        return False
+    if part == "output_load" and not (any(fields.get(each) for each in LOADING[2:]) or _is_loaded(fields, own)):
+        return False
+    names = {name, *(other.rpartition(".")[2] for pair in EXCLUSIVE for other in pair if path in pair)}
+    return names.isdisjoint(fields)
+
+
+def _is_loaded(load: Mapping[str, Any], own: Mapping[str, Any]) -> bool:
+    return any(name in load for name in LOADING[:2]) or loads_in_phases(own)
